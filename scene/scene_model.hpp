@@ -1,0 +1,63 @@
+// What the scene is made of (SceneModel) and where it stands at one instant (SceneState).
+//
+// SceneModel is immutable and shared between threads. SceneState is a value: every image carries
+// the state of its capture instant, the display draws the predicted one, and neither needs a lock.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/time.hpp"
+#include "scene/mesh.hpp"
+
+namespace foresight {
+
+using Pose = Eigen::Isometry3d;
+
+/// A rigid part of the scene. A node without triangles only carries its children.
+struct Node {
+  std::string name;
+  Mesh mesh;                              ///< in the node's own frame
+  int parent = -1;                        ///< index of an earlier node, or -1: the world
+  Pose T_parent_node = Pose::Identity();  ///< rest pose
+};
+
+class SceneModel {
+ public:
+  SceneModel() = default;
+
+  /// Throws std::invalid_argument: no node, a parent that is not an earlier node, two nodes with
+  /// one name, no triangle at all.
+  explicit SceneModel(std::vector<Node> nodes);
+
+  const std::vector<Node>& nodes() const { return nodes_; }
+  std::optional<int> find(std::string_view name) const;
+
+  std::size_t triangle_count() const { return triangle_count_; }
+
+  /// Length of the diagonal of the axis-aligned box around all nodes in their rest poses, metres.
+  double diagonal() const { return diagonal_; }
+
+  /// T_world_node of every node at rest.
+  std::vector<Pose> rest_poses() const;
+
+ private:
+  std::vector<Node> nodes_;
+  std::size_t triangle_count_ = 0;
+  double diagonal_ = 0;
+};
+
+/// How much a state can be trusted.
+enum class StateStatus { exact, interpolated, predicted, invalid };
+
+/// Where every node stands at one instant.
+struct SceneState {
+  RobotTime time;
+  StateStatus status = StateStatus::invalid;
+  std::vector<Pose> T_world_node;  ///< one per node of the model, in its order
+};
+
+}  // namespace foresight
