@@ -185,6 +185,16 @@ ReportPlot memory_plot(const Columns& columns, const Summary& summary) {
   return {title, legend({{"s-predicted", "in use, both generations"}}) + plot.str()};
 }
 
+ReportPlot gain_plot(const Columns& columns) {
+  const auto gain = columns.means([](const FrameRecord& f) { return f.gain; });
+  const double low = std::fmin(0.9, least({gain})), high = std::fmax(1.1, largest({gain}));
+  SvgPlot plot("Exposure gain", columns.span(), {low - 0.02, high + 0.02}, "s", "factor, linear light");
+  plot.line(columns.time(), gain, "s-predicted");
+  const SvgPlot::Series series[] = {{"gain", gain}};
+  plot.readout(columns.time(), series, 3, "");
+  return {"Exposure gain of the newest image", legend({{"s-predicted", "gain"}}) + plot.str()};
+}
+
 }  // namespace
 
 std::vector<ReportPlot> plots_of(const RunRecord& run, const Summary& summary) {
@@ -196,7 +206,8 @@ std::vector<ReportPlot> plots_of(const RunRecord& run, const Summary& summary) {
                        [](const auto& q) { return q.sharpness; }),
           stage_plot(columns, summary),
           latency_plot(run, summary),
-          memory_plot(columns, summary)};
+          memory_plot(columns, summary),
+          gain_plot(columns)};
 }
 
 }  // namespace foresight

@@ -67,7 +67,7 @@ std::vector<double> round_ticks(SvgPlot::Range range, int count) {
   const double power = std::pow(10, std::floor(std::log10(raw)));
   double step = 10 * power;
   for (const double factor : {5.0, 2.5, 2.0, 1.0})
-    if (raw <= factor * power * (1 + 1e-9)) step = factor * power;
+    if (raw <= factor * power * (1 + 1e-9) && (factor != 2.5 || power >= 10)) step = factor * power;
   std::vector<double> ticks;
   // Counted in steps: adding up would drift, and -0 is no tick.
   for (double i = std::ceil(range.min / step - 1e-9); i * step <= range.max + 1e-9 * step; ++i)

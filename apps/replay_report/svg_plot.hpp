@@ -54,7 +54,7 @@ class SvgPlot {
   Range x_, y_;
 };
 
-/// About `count` round values (1, 2, 2.5 or 5 times a power of ten apart) inside the range.
+/// About `count` round values (1, 2 or 5, from 25 on also 2.5, times a power of ten apart) inside the range.
 std::vector<double> round_ticks(SvgPlot::Range range, int count);
 
 }  // namespace foresight

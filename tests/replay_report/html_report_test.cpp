@@ -62,7 +62,7 @@ TEST(HtmlReport, IsWellFormedAndSelfContained) {
   EXPECT_EQ(malformed(html), "");
   EXPECT_EQ(count(html, "src=\"data:image/jpeg;base64,"), 12u) << "3 instants of 4 pictures";
   EXPECT_EQ(count(html, "src="), 12u) << "nothing else is loaded";
-  EXPECT_EQ(count(html, "<svg "), 7u);
+  EXPECT_EQ(count(html, "<svg "), 8u);
   EXPECT_THAT(html, Not(HasSubstr("href=")));
   EXPECT_THAT(html, Not(HasSubstr("@import")));
   EXPECT_THAT(html, Not(HasSubstr("{{")));
