@@ -17,7 +17,7 @@ uniform float gain;
 const float kSeenShare = 0.25;
 
 bool ray_through(ivec2 pixel, out vec3 ray) {
-  if (camera.tangential.z < 0.5) {
+  if (lens_model(camera) == 0) {
     ray = vec3((vec2(pixel) - camera.focal.zw) / camera.focal.xy, 1.0);
     return true;
   }

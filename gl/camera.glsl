@@ -9,12 +9,30 @@ struct CameraBlock {
   vec4 tone;
 };
 
+// Software renderers run both sides of every branch: where a program knows its lens model and
+// faces when it is built, it defines LENS_MODEL and CUBE_FACES (gl::camera_defines).
+int lens_model(const CameraBlock c) {
+#ifdef LENS_MODEL
+  return LENS_MODEL;
+#else
+  return int(c.tangential.z + 0.5);
+#endif
+}
+
+bool has_cube_faces(const CameraBlock c) {
+#ifdef CUBE_FACES
+  return CUBE_FACES == 1;
+#else
+  return c.tone.w > 1.5;
+#endif
+}
+
 const float kNear = 0.01;  // gl::kNearPlane; depth buffers hold kNear / z, 0 where no model is
 
 // Pixel that sees p (camera frame); false where the lens model does not hold (common/lens.hpp).
 bool project_lens(const CameraBlock c, vec3 p, out vec2 pixel) {
   pixel = vec2(-1e6);
-  if (c.tangential.z > 1.5) {  // equidistant
+  if (lens_model(c) == 2) {  // equidistant
     float rho = length(p.xy);
     float theta = atan(rho, p.z);
     if (!(theta <= c.tangential.w)) return false;
@@ -25,7 +43,7 @@ bool project_lens(const CameraBlock c, vec3 p, out vec2 pixel) {
   }
   if (!(p.z > 0.0)) return false;
   vec2 n = p.xy / p.z;
-  if (c.tangential.z > 0.5) {
+  if (lens_model(c) == 1) {
     float r2 = dot(n, n);
     if (!(r2 <= c.tangential.w * c.tangential.w)) return false;
     float s = (1.0 + r2 * (c.radial.x + r2 * (c.radial.y + r2 * c.radial.z))) /
@@ -42,7 +60,7 @@ bool project_lens(const CameraBlock c, vec3 p, out vec2 pixel) {
 // face's axis. False behind the near plane or off every face.
 bool project_face(const CameraBlock c, vec3 p, out vec3 place, out float inverse_z) {
   place = vec3(0.0);
-  if (c.tone.w > 1.5) {  // cube; order and axes as in gl/faces.cpp
+  if (has_cube_faces(c)) {  // order and axes as in gl/faces.cpp
     vec3 a = abs(p);
     if (a.z >= a.x && a.z >= a.y) {
       place.z = p.z > 0.0 ? 0.0 : 2.0;

@@ -25,6 +25,17 @@ CameraBlock make_camera_block(const Lens& lens, const Faces& faces) {
   return block;
 }
 
+std::vector<std::string> camera_defines(std::span<const Lens> lenses) {
+  const auto kind = [](const Lens& lens) {
+    const int model = lens.model() == LensModel::equidistant ? 2 : lens.has_distortion() ? 1 : 0;
+    return std::pair(model, faces_for(lens, 0).count > 1 ? 1 : 0);
+  };
+  const auto [model, cube] = kind(lenses[0]);
+  for (const Lens& lens : lenses)
+    if (kind(lens) != std::pair(model, cube)) return {};
+  return {"LENS_MODEL " + std::to_string(model), "CUBE_FACES " + std::to_string(cube)};
+}
+
 void append_node_rows(const Pose& T_world_camera, const SceneState& state, std::vector<Eigen::Vector4f>& out) {
   const Pose T_camera_world = T_world_camera.inverse();
   for (const Pose& T_world_node : state.T_world_node) {

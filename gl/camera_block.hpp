@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/lens.hpp"
@@ -25,6 +26,9 @@ struct CameraBlock {
 static_assert(sizeof(CameraBlock) == 7 * 16);
 
 CameraBlock make_camera_block(const Lens& lens, const Faces& faces);
+
+/// Defines for programs that serve these cameras only; empty where the cameras differ in kind.
+std::vector<std::string> camera_defines(std::span<const Lens> lenses);
 
 /// Rows of T_camera_node (3 x vec4 per node), appended to `out` for the samplerBuffer `node_poses`.
 void append_node_rows(const Pose& T_world_camera, const SceneState& state, std::vector<Eigen::Vector4f>& out);

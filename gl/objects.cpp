@@ -43,7 +43,7 @@ VertexArray create_vertex_array(const char* label) {
 }
 
 Buffer::Buffer(std::size_t bytes, const char* label)
-    : Handle<delete_buffer>(create_buffer_name()), bytes_(std::max<std::size_t>(bytes, 16)) {
+    : Handle<delete_buffer>(create_buffer_name()), bytes_((std::max<std::size_t>(bytes, 1) + 15) / 16 * 16) {
   glNamedBufferStorage(name(), static_cast<GLsizeiptr>(bytes_), nullptr, GL_DYNAMIC_STORAGE_BIT);
   glObjectLabel(GL_BUFFER, name(), -1, label);
 }

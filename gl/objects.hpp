@@ -53,7 +53,7 @@ VertexArray create_vertex_array(const char* label);
 class Buffer : public Handle<delete_buffer> {
  public:
   Buffer() = default;
-  /// `bytes` > 0, contents undefined; `label` shows up in GL debuggers.
+  /// At least `bytes`, rounded up to whole texels of any format; contents undefined; `label` shows up in GL debuggers.
   Buffer(std::size_t bytes, const char* label);
 
   std::size_t bytes() const { return bytes_; }

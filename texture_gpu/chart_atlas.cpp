@@ -24,7 +24,7 @@ double density_in_view(const Chart& chart, int node, const AtlasView& view) {
   if (view.faces->count > 1) {
     const double angle = std::atan2(p.head<2>().norm(), p.z());
     if (distance > r && angle - std::asin(r / distance) > view.lens->max_angle()) return 0;
-    return focal / std::max({distance - 0.5 * r, 0.25 * r, kNearest});
+    return focal / std::max({distance, 0.5 * r, kNearest});
   }
   if (p.z() + r <= gl::kNearPlane) return 0;
   const auto& f = *view.faces;
@@ -35,7 +35,7 @@ double density_in_view(const Chart& chart, int node, const AtlasView& view) {
   if (outside(p.x(), p.z(), f.fx, f.cx + 0.5) || outside(-p.x(), p.z(), f.fx, f.width - 0.5 - f.cx) ||
       outside(p.y(), p.z(), f.fy, f.cy + 0.5) || outside(-p.y(), p.z(), f.fy, f.height - 0.5 - f.cy))
     return 0;
-  return focal / std::max({p.z() - 0.5 * r, 0.25 * r, kNearest});
+  return focal / std::max({p.z(), 0.5 * r, kNearest});
 }
 
 std::uint32_t pack(int low, int high) { return static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16; }
@@ -47,8 +47,9 @@ void find_page_ranges(AtlasChart& chart) {
       const std::uint16_t raw = r.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)];
       if (!raw) continue;
       AtlasPage& page = chart.page[static_cast<std::size_t>((y / atlas::kPage) * chart.pages.x() + x / atlas::kPage)];
-      page.low = page.covered ? std::min(page.low, raw) : raw;
-      page.high = std::max(page.high, raw);
+      const std::uint32_t h = raw & ~ChartRaster::kCore & 0xffffu;
+      std::uint32_t& range = page.tile_heights[static_cast<std::size_t>(y / atlas::kTile % 2 * 2 + x / atlas::kTile % 2)];
+      range = range ? std::min(range & 0xffffu, h) | std::max(range >> 16, h) << 16 : h | h << 16;
       ++page.covered;
     }
   }
@@ -80,7 +81,7 @@ int ChartAtlas::wanted_level(int index) const {
   const double side = (shape.upper - shape.lower).maxCoeff();
   const int most = options_.max_texture > 0 ? std::min(options_.max_texture, kLargestChart) : kLargestChart;
   const int limit = static_cast<int>(std::floor(kLevelsPerOctave * std::log2(most / std::max(side, 1e-9))));
-  const int level = static_cast<int>(std::ceil(kLevelsPerOctave * std::log2(density) - 1e-9)) + policy_.bias;
+  const int level = static_cast<int>(std::lround(kLevelsPerOctave * std::log2(density))) + policy_.bias;
   return std::min(level, limit);
 }
 
@@ -127,7 +128,7 @@ void ChartAtlas::collect_records() {
       for (int x = 0; x < chart.pages.x(); ++x) {
         const AtlasPage& page = chart.page[static_cast<std::size_t>(y * chart.pages.x() + x)];
         if (page.covered)
-          records_.push_back({static_cast<std::uint32_t>(i), pack(x, y), pack(page.low, page.high), page.height});
+          records_.push_back({static_cast<std::uint32_t>(i), pack(x, y), page.height, 0, page.tile_heights});
       }
   }
 }
@@ -275,6 +276,29 @@ void ChartAtlas::commit() {
 
 void ChartAtlas::give_back_colours(std::span<const std::uint32_t> slots) {
   for (std::uint32_t slot : slots) colours_.give_back(slot);
+}
+
+void ChartAtlas::write_job_geometry(std::span<const PageJob> jobs, std::span<const AtlasView> views,
+                                    std::vector<Eigen::Vector4f>& out) const {
+  out.clear();
+  out.reserve(4 * jobs.size() * views.size());
+  const auto slot = [](std::uint32_t s) { return s == atlas::kNoSlot ? -1.0 : static_cast<double>(s); };
+  for (const PageJob& job : jobs) {
+    const ChartRaster& r = charts_[job.chart].raster;
+    const Patch& patch = surface_->patches[static_cast<std::size_t>(surface_->charts[job.chart].patch)];
+    const Eigen::Vector2d uv = r.uv0 + atlas::kPage / r.density * Eigen::Vector2d(job.xy & 0xffff, job.xy >> 16);
+    const Eigen::Vector3d corner = patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + r.height0 * patch.n;
+    for (const AtlasView& view : views) {
+      const Pose& T = view.T_camera_node[static_cast<std::size_t>(patch.node)];
+      const auto row = [&](const Eigen::Vector3d& v, double w) {
+        out.push_back(Eigen::Vector4d(v.x(), v.y(), v.z(), w).cast<float>());
+      };
+      row(T * corner, slot(job.height_slot));
+      row(T.linear() * patch.eu / r.density, slot(job.old_slot));
+      row(T.linear() * patch.ev / r.density, slot(job.new_slot));
+      row(T.linear() * patch.n * r.height_step, 0);
+    }
+  }
 }
 
 void ChartAtlas::write_table(std::vector<std::uint32_t>& out) const {

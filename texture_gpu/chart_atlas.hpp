@@ -1,6 +1,7 @@
 // Which charts have which resolution, and where their pages lie. Pure bookkeeping on the CPU.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -24,7 +25,8 @@ struct AtlasView {
 
 /// A page as cull.comp reads it.
 struct PageRecord {
-  std::uint32_t chart, xy, heights, height_slot;
+  std::uint32_t chart, xy, height_slot, unused = 0;
+  std::array<std::uint32_t, 4> tile_heights{};  ///< lowest | highest raw height << 16; 0: no surface on the tile
 };
 
 /// A page to be written, as jobs.glsl reads it.
@@ -44,8 +46,8 @@ struct PageExposure {
 struct AtlasPage {
   std::uint32_t colour = atlas::kNoSlot;
   std::uint32_t height = atlas::kNoSlot;
-  std::uint16_t low = 0, high = 0;  ///< raw heights; 0: no surface on this page
-  std::uint16_t covered = 0;        ///< texels on the surface
+  std::array<std::uint32_t, 4> tile_heights{};  ///< as in PageRecord
+  std::uint16_t covered = 0;                    ///< texels on the surface
   std::int64_t last_seen = -1;      ///< image number
   PageExposure exposure;
 };
@@ -121,6 +123,11 @@ class ChartAtlas {
   void give_back_colours(std::span<const std::uint32_t> slots);
 
   AtlasPage& page_of(const PageRecord& record);
+
+  /// For the GPU: per job and view four vec4, the page's corner and texel axes in camera
+  /// coordinates (extract.comp).
+  void write_job_geometry(std::span<const PageJob> jobs, std::span<const AtlasView> views,
+                          std::vector<Eigen::Vector4f>& out) const;
 
   /// For the GPU: the page table, and five vec4 per chart (chart_record.glsl).
   void write_table(std::vector<std::uint32_t>& out) const;

@@ -100,6 +100,7 @@ ChartRaster raster_chart(const SurfacePatches& surface, int index, double densit
     }
     draw(grid, corners);
   }
+  const std::vector<float> core = grid.h;
   grow_guard(grid);
   grow_guard(grid);
 
@@ -108,12 +109,14 @@ ChartRaster raster_chart(const SurfacePatches& surface, int index, double densit
     if (!std::isnan(h)) low = std::min(low, h), high = std::max(high, h);
   out.raw.assign(grid.h.size(), 0);
   if (low > high) return out;
-  constexpr double kLevels = 65534;
+  constexpr double kLevels = 32766;
   out.height0 = low;
   out.height_step = std::max(1e-9, (static_cast<double>(high) - low) / kLevels);
   for (std::size_t i = 0; i < grid.h.size(); ++i)
     if (!std::isnan(grid.h[i]))
-      out.raw[i] = static_cast<std::uint16_t>(1 + std::lround((static_cast<double>(grid.h[i]) - low) / out.height_step));
+      out.raw[i] = static_cast<std::uint16_t>(
+          (1 + std::lround((static_cast<double>(grid.h[i]) - low) / out.height_step)) |
+          (std::isnan(core[i]) ? 0 : ChartRaster::kCore));
   return out;
 }
 

@@ -17,7 +17,9 @@ struct ChartRaster {
   Eigen::Vector2d uv0;             ///< metres on the patch's plane
   double height0 = 0;              ///< metres along n of raw value 1
   double height_step = 0;          ///< metres per unit of a raw value
-  std::vector<std::uint16_t> raw;  ///< row-major; 0: no surface, else 1 + (h - height0) / height_step
+  std::vector<std::uint16_t> raw;  ///< row-major; 0: no surface, else 1 + (h - height0) / height_step,
+                                   ///< plus kCore inside the triangles (without it: guard band)
+  static constexpr std::uint16_t kCore = 0x8000;
 };
 
 /// Size in texels that raster_chart() will give, without the work.

@@ -7,7 +7,7 @@ layout(std140, binding = 0) uniform Cameras { CameraBlock cameras[2]; };
 layout(binding = 0) uniform samplerBuffer node_poses;
 layout(binding = 1) uniform sampler2DArray blocks0;
 layout(binding = 2) uniform sampler2DArray blocks1;
-layout(binding = 3) uniform usamplerBuffer pages;  // chart, x | y << 16, lowest | highest raw height << 16, height slot
+layout(binding = 3) uniform usamplerBuffer pages;  // two texels a page: PageRecord in chart_atlas.hpp
 layout(binding = 4) uniform samplerBuffer charts;
 layout(binding = 0, std430) writeonly buffer Masks { uint masks[]; };
 uniform int page_count;
@@ -19,7 +19,7 @@ const int kMostBlocks = 8;  // a sphere over more blocks than this a side counts
 
 bool may_see(int c, vec3 p, float radius) {
   float nearest = p.z - radius;
-  bool cube = cameras[c].tone.w > 1.5;
+  bool cube = has_cube_faces(cameras[c]);
   if (!cube && p.z + radius < kNear) return false;
   vec3 place;
   float inverse_z;
@@ -48,13 +48,15 @@ bool may_see(int c, vec3 p, float radius) {
 void main() {
   int index = int(gl_GlobalInvocationID.x);
   if (index >= page_count) return;
-  uvec4 page = texelFetch(pages, index);
+  uvec4 page = texelFetch(pages, 2 * index), ranges = texelFetch(pages, 2 * index + 1);
   ChartRecord chart = read_chart(charts, int(page.x));
   vec2 corner = 16.0 * vec2(page.y & 0xffffu, page.y >> 16);
-  float low = float(page.z & 0xffffu) - 1.0, high = float(page.z >> 16) - 1.0;
-  float radius = length(vec2(5.0 * (length(chart.eu) + length(chart.ev)) * 0.70711, 0.5 * (high - low) * length(chart.eh)));
+  float across = 3.6 * sqrt(dot(chart.eu, chart.eu) + dot(chart.ev, chart.ev));
   uint mask = 0u;
   for (int tile = 0; tile < 4; ++tile) {
+    if (ranges[tile] == 0u) continue;
+    float low = float(ranges[tile] & 0xffffu) - 1.0, high = float(ranges[tile] >> 16) - 1.0;
+    float radius = length(vec2(across, 0.5 * (high - low) * length(chart.eh)));
     vec2 middle = corner + vec2(tile & 1, tile >> 1) * 8.0 + 3.5;
     vec3 p_node = chart.origin + middle.x * chart.eu + middle.y * chart.ev + 0.5 * (low + high) * chart.eh;
     for (int c = 0; c < camera_count; ++c) {

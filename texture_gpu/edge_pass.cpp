@@ -1,14 +1,18 @@
 #include "texture_gpu/edge_pass.hpp"
 
+#include <cmath>
+
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
 
 EdgePass::EdgePass()
     : blocks_(gl::Program::compute(gl::texture_gpu_shaders(), "blocks.comp")),
-      uncertain_(gl::Program::compute(gl::texture_gpu_shaders(), "uncertain.comp")) {}
+      edge_tiles_(gl::Program::compute(gl::texture_gpu_shaders(), "edge_tiles.comp")),
+      uncertain_(gl::Program::compute(gl::texture_gpu_shaders(), "uncertain.comp")),
+      tiles_(1, 1, "edge tiles") {}
 
-void EdgePass::operator()(const CameraInput& camera, double margin_px, double depth_tolerance) const {
+void EdgePass::operator()(const CameraInput& camera, double margin_px, double depth_tolerance) {
   const gl::Faces& faces = camera.faces().faces;
   const Eigen::Vector2i size(faces.width, faces.height);
   const auto layers = static_cast<GLuint>(faces.count);
@@ -20,13 +24,25 @@ void EdgePass::operator()(const CameraInput& camera, double margin_px, double de
   glDispatchCompute(gl::groups(faces.width, 32), gl::groups(faces.height, 32), layers);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 
+  glClearTexImage(camera.uncertain().name(), 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+  if (margin_px <= 0) return;
+  const auto tolerance = static_cast<float>(depth_tolerance);
+  const int tiles_x = (faces.width + 7) / 8, tiles_y = (faces.height + 7) / 8;
+  edge_tiles_.use();
+  edge_tiles_.set("face_size", size);
+  edge_tiles_.set("reach", (static_cast<int>(std::ceil(margin_px)) + 3) / 4);
+  edge_tiles_.set("depth_tolerance", tolerance);
+  glBindTextureUnit(1, camera.blocks().name());
+  tiles_.start(static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y) * layers);
+  glDispatchCompute(gl::groups(tiles_x, 8), gl::groups(tiles_y, 8), layers);
+  tiles_.finish();
+
   uncertain_.use();
   uncertain_.set("face_size", size);
   uncertain_.set("margin", static_cast<float>(margin_px));
-  uncertain_.set("depth_tolerance", static_cast<float>(depth_tolerance));
-  glBindTextureUnit(1, camera.blocks().name());
+  uncertain_.set("depth_tolerance", tolerance);
   glBindImageTexture(0, camera.uncertain().name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R8);
-  glDispatchCompute(gl::groups(faces.width, 8), gl::groups(faces.height, 8), layers);
+  tiles_.dispatch(0);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

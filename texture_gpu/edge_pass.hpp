@@ -3,18 +3,21 @@
 
 #include "gl/program.hpp"
 #include "texture_gpu/camera_input.hpp"
+#include "texture_gpu/work_list.hpp"
 
 namespace foresight {
 
-/// From a camera's depth: its blocks, and its uncertain pixels (blocks.comp, uncertain.comp). One context.
+/// From a camera's depth: its blocks, the tiles that need the exact test, and in these the
+/// uncertain pixels (blocks.comp, edge_tiles.comp, uncertain.comp). One context.
 class EdgePass {
  public:
   EdgePass();
   /// `margin_px` >= 0 in pixels of the faces, `depth_tolerance` in metres.
-  void operator()(const CameraInput& camera, double margin_px, double depth_tolerance) const;
+  void operator()(const CameraInput& camera, double margin_px, double depth_tolerance);
 
  private:
-  gl::Program blocks_, uncertain_;
+  gl::Program blocks_, edge_tiles_, uncertain_;
+  WorkList tiles_;
 };
 
 }  // namespace foresight

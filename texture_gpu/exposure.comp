@@ -16,10 +16,10 @@ void main() {
   int index = int(gl_GlobalInvocationID.x);
   if (index >= page_count) return;
   samples[index] = vec2(-1.0, 0.0);
-  uvec4 page = texelFetch(pages, index);
-  if (page.w == kNoSlot) return;
+  uvec4 page = texelFetch(pages, 2 * index);
+  if (page.z == kNoSlot) return;
   ChartRecord chart = read_chart(charts, int(page.x));
-  ivec3 origin = slot_origin(page.w, 0);
+  ivec3 origin = slot_origin(page.z, 0);
   ivec2 corner = 16 * ivec2(page.y & 0xffffu, page.y >> 16);
   float sum = 0.0, highest = 0.0, count = 0.0;
   vec2 center = vec2(0.0);
@@ -28,7 +28,7 @@ void main() {
     uint raw = texelFetch(heights, origin + ivec3(at, 0), 0).r;
     if (raw == 0u) continue;
     vec2 t = vec2(corner + at);
-    vec3 p_node = chart.origin + t.x * chart.eu + t.y * chart.ev + (float(raw) - 1.0) * chart.eh;
+    vec3 p_node = chart.origin + t.x * chart.eu + t.y * chart.ev + (float(raw & 0x7fffu) - 1.0) * chart.eh;
     vec3 p = node_to_camera(node_poses, camera * node_count + chart.node, p_node);
     vec2 pixel;
     if (!is_seen(camera, p, pixel)) continue;

@@ -1,14 +1,13 @@
 // The heart of it: one back-projection per texel. A work group is one tile of 8x8 texels; each
 // finds its surface point, asks the cameras whether they saw it, takes the sharper one's colour and
 // keeps the old colour only where the new one is clearly worse.
+//
+// Defines: CAMERAS 1 or 2; MINIFY 1 where texels may be larger than pixels.
 #include "camera.glsl"
 #include "seen.glsl"
-#include "chart_record.glsl"
 #include "atlas.glsl"
-#include "jobs.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 7) uniform usamplerBuffer jobs;
-layout(binding = 8) uniform samplerBuffer charts;
+layout(binding = 7) uniform samplerBuffer geometry;  // per job and camera four texels (ChartAtlas::write_job_geometry)
 layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 10) uniform usamplerBuffer tiles;  // job << 4 | tile << 2 | cameras that may see it
 layout(binding = 11) uniform sampler2DArray old_colours;
@@ -17,12 +16,12 @@ layout(binding = 0, std430) writeonly buffer Holes { uint holes[]; };  // per jo
 uniform int first_group;
 uniform float worse;  // new colours below this share of the old resolution do not replace them
 
-// Brightness that the lens takes away at a pixel, and the image's gain against the reference.
+// Factor from the image's values to the reference exposure (exposure.hpp).
 float tone(int c, vec2 pixel) {
   vec2 half_size = 0.5 * (cameras[c].size.xy - 1.0);
   vec2 offset = (pixel - half_size) / length(half_size);
   float r2 = dot(offset, offset);
-  return cameras[c].tone.x / (1.0 + r2 * (cameras[c].tone.y + r2 * cameras[c].tone.z));
+  return cameras[c].tone.x * exp(-r2 * (cameras[c].tone.y + r2 * cameras[c].tone.z));
 }
 
 vec3 fetch_image(int c, vec2 pixel, float lod) {
@@ -33,9 +32,9 @@ vec3 fetch_image(int c, vec2 pixel, float lod) {
 // Colour over the texel's footprint. Up to about one pixel a single bilinear sample is it; above,
 // taps along both axes of the footprint, from a level whose pixels are as large as their spacing.
 vec3 sample_image(int c, vec2 pixel, mat2 axes) {
+#if MINIFY
   vec2 lengths = vec2(length(axes[0]), length(axes[1]));
-  if (max(lengths.x, lengths.y) < 1.5) return fetch_image(c, pixel, 0.0);
-  ivec2 taps = ivec2(clamp(ceil(lengths), vec2(1.0), vec2(4.0)));
+  ivec2 taps = ivec2(clamp(ceil(lengths - 0.5), vec2(1.0), vec2(4.0)));
   float spacing = max(lengths.x / float(taps.x), lengths.y / float(taps.y));
   float lod = max(log2(spacing), 0.0);
   vec3 sum = vec3(0.0);
@@ -45,44 +44,43 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
       sum += fetch_image(c, pixel + axes * t, lod);
     }
   return sum / float(taps.x * taps.y);
+#else
+  return fetch_image(c, pixel, 0.0);
+#endif
 }
 
 void main() {
-  uint tile_word = texelFetch(tiles, first_group + int(gl_WorkGroupID.x)).r;
-  int job_index = int(tile_word >> 4);
-  Job job = read_job(jobs, job_index);
-  ivec2 in_page = ivec2(gl_LocalInvocationID.xy) + 8 * ivec2((tile_word >> 2) & 1u, (tile_word >> 3) & 1u);
-  vec4 colour = job.old_slot == kNoSlot ? vec4(0.0) : texelFetch(old_colours, slot_origin(job.old_slot, 0) + ivec3(in_page, 0), 0);
-  ivec3 target = slot_origin(job.new_slot, 0) + ivec3(in_page, 0);
-  uint raw = texelFetch(heights, slot_origin(job.height_slot, 0) + ivec3(in_page, 0), 0).r;
-  uint cameras_here = tile_word & 3u;
-  if (raw != 0u && cameras_here != 0u) {
-    ChartRecord chart = read_chart(charts, job.chart);
-    vec2 texel = vec2(16 * job.page + in_page);
-    vec3 p_node = chart.origin + texel.x * chart.eu + texel.y * chart.ev + (float(raw) - 1.0) * chart.eh;
-    int best = -1;
-    float best_quality = 0.0;
-    vec2 best_pixel = vec2(0.0);
-    mat2 best_axes = mat2(0.0);
-    for (int c = 0; c < CAMERAS; ++c) {
-      if ((cameras_here & (1u << c)) == 0u) continue;
-      vec3 p = node_to_camera(node_poses, c * node_count + chart.node, p_node);
-      vec2 pixel;
-      if (!is_seen(c, p, pixel)) continue;
-      mat2 axes = footprint(c, p, rotate_to_camera(node_poses, c * node_count + chart.node, chart.eu),
-                            rotate_to_camera(node_poses, c * node_count + chart.node, chart.ev));
-      float quality = sqrt(abs(determinant(axes)));
-      if (quality > best_quality) best = c, best_quality = quality, best_pixel = pixel, best_axes = axes;
+  uint tile = texelFetch(tiles, first_group + int(gl_WorkGroupID.x)).r;
+  int job = int(tile >> 4);
+  vec4 g0 = texelFetch(geometry, 4 * CAMERAS * job), g1 = texelFetch(geometry, 4 * CAMERAS * job + 1),
+       g2 = texelFetch(geometry, 4 * CAMERAS * job + 2), g3 = texelFetch(geometry, 4 * CAMERAS * job + 3);
+  ivec2 in_page = ivec2(gl_LocalInvocationID.xy) + 8 * ivec2((tile >> 2) & 1u, (tile >> 3) & 1u);
+  uint raw = texelFetch(heights, slot_origin(uint(g0.w), 0) + ivec3(in_page, 0), 0).r;
+  float height = float(raw & 0x7fffu) - 1.0;
+  vec4 colour = g1.w < 0.0 ? vec4(0.0) : texelFetch(old_colours, slot_origin(uint(max(g1.w, 0.0)), 0) + ivec3(in_page, 0), 0);
+
+  float best_quality = 0.0;
+  vec4 best = vec4(0.0);
+  for (int c = 0; c < CAMERAS; ++c) {
+    if (c == 1) {
+      g0 = texelFetch(geometry, 8 * job + 4), g1 = texelFetch(geometry, 8 * job + 5);
+      g2 = texelFetch(geometry, 8 * job + 6), g3 = texelFetch(geometry, 8 * job + 7);
     }
-    float code = encode_quality(best_quality);
-    // The newest wins. What is clearly worse waits; the old colour's claim ages by one step
-    // (1/32 of a doubling) for each image that would have replaced it.
-    if (best >= 0 && (colour.a < kSeen || code >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0))
-      colour = vec4(sample_image(best, best_pixel, best_axes) * tone(best, best_pixel), code);
-    else if (best >= 0)
-      colour.a = max(colour.a - 1.0 / 255.0, 2.0 / 255.0);
+    vec3 p = g0.xyz + float(in_page.x) * g1.xyz + float(in_page.y) * g2.xyz + height * g3.xyz;
+    vec2 pixel;
+    bool seen = is_seen(c, p, pixel) && raw != 0u && (tile & (1u << c)) != 0u;
+    mat2 axes = footprint(c, p, g1.xyz, g2.xyz);
+    float quality = sqrt(abs(determinant(axes)));
+    if (seen && quality > best_quality) {
+      best_quality = quality;
+      best = vec4(sample_image(c, pixel, axes) * tone(c, pixel), encode_quality(quality));
+    }
   }
+  // The newest wins. What is clearly worse waits; the old colour's claim ages by one step
+  // (1/32 of a doubling) for each image that would have replaced it.
+  bool take = colour.a < kSeen || best.a >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
+  if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
   if (raw == 0u) colour = vec4(0.0);
-  if (raw != 0u && colour.a < kSeen) holes[job_index] = 1u;
-  imageStore(colours, target, colour);
+  if (raw >= 0x8000u && colour.a < kSeen) holes[job] = 1u;
+  imageStore(colours, slot_origin(uint(g2.w), 0) + ivec3(in_page, 0), colour);
 }

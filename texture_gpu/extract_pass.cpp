@@ -6,17 +6,31 @@
 
 namespace foresight {
 
-ExtractPass::ExtractPass()
+namespace {
+
+gl::Program extract_program(std::span<const Lens> lenses, std::size_t variant) {
+  auto defines = gl::camera_defines(lenses);
+  defines.push_back("CAMERAS " + std::to_string(1 + variant / 2));
+  defines.push_back("MINIFY " + std::to_string(variant % 2));
+  return gl::Program::compute(gl::texture_gpu_shaders(), "extract.comp", defines);
+}
+
+}  // namespace
+
+ExtractPass::ExtractPass(std::span<const Lens> lenses)
     : heights_(gl::Program::compute(gl::texture_gpu_shaders(), "heights.comp")),
       relevel_(gl::Program::compute(gl::texture_gpu_shaders(), "relevel.comp")),
-      extract_mono_(gl::Program::compute(gl::texture_gpu_shaders(), "extract.comp", {"CAMERAS 1"})),
-      extract_stereo_(gl::Program::compute(gl::texture_gpu_shaders(), "extract.comp", {"CAMERAS 2"})),
+      copy_(gl::Program::compute(gl::texture_gpu_shaders(), "copy.comp")),
       jobs_(GL_RGBA32UI, 4096, "extraction jobs"),
+      geometry_(GL_RGBA32F, 4096, "job geometry"),
       relevel_jobs_(GL_RGBA32UI, 4096, "relevel jobs"),
       tiles_(GL_R32UI, 4096, "tiles"),
+      copy_tiles_(GL_R32UI, 4096, "tiles to copy"),
       holes_(GL_R32UI, 4096, "holes"),
       staged_(GL_R16UI, 4096, "staged heights"),
-      slots_(GL_R32UI, 4096, "height slots") {}
+      slots_(GL_R32UI, 4096, "height slots") {
+  for (std::size_t v = 0; v < 2 * lenses.size(); ++v) extract_[v] = extract_program(lenses, v);
+}
 
 void dispatch_groups(const gl::Program& program, std::size_t count) {
   constexpr std::size_t kMost = 65535;
@@ -66,32 +80,40 @@ void ExtractPass::relevel(std::span<const PageJob> jobs, const gl::BufferTexture
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
-void ExtractPass::extract(std::span<const PageJob> jobs, std::span<const std::uint8_t> masks, const SeenInputs& inputs,
-                          const gl::BufferTexture& charts, const AtlasStore& store, double depth_tolerance,
+void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
                           double worse) {
-  std::vector<std::uint32_t> tiles;
-  tiles.reserve(4 * jobs.size());
-  for (std::size_t i = 0; i < jobs.size(); ++i)
-    for (std::uint32_t t = 0; t < 4; ++t)
-      tiles.push_back(static_cast<std::uint32_t>(i) << 4 | t << 2 | ((masks[i] >> (2 * t)) & 3u));
+  std::vector<std::uint32_t> tiles, unseen;
+  tiles.reserve(4 * work.jobs.size());
+  for (std::size_t i = 0; i < work.jobs.size(); ++i)
+    for (std::uint32_t t = 0; t < 4; ++t) {
+      const std::uint32_t cameras = (work.masks[i] >> (2 * t)) & 3u;
+      (cameras ? tiles : unseen).push_back(static_cast<std::uint32_t>(i) << 4 | t << 2 | cameras);
+    }
   tile_count_ = tiles.size();
-  if (tiles.empty()) return;
-  jobs_.assign(jobs);
+  if (work.jobs.empty()) return;
+  jobs_.assign(work.jobs);
+  geometry_.assign(work.geometry);
   tiles_.assign(std::span<const std::uint32_t>(tiles));
-  holes_.reserve(jobs.size() * sizeof(std::uint32_t));
+  copy_tiles_.assign(std::span<const std::uint32_t>(unseen));
+  holes_.reserve(work.jobs.size() * sizeof(std::uint32_t));
   holes_.buffer().clear_to_zero();
 
-  const gl::Program& program = inputs.camera_count() == 2 ? extract_stereo_ : extract_mono_;
-  inputs.bind(program, depth_tolerance);
-  program.set("worse", static_cast<float>(worse));
-  glBindTextureUnit(7, jobs_.texture());
-  glBindTextureUnit(8, charts.texture());
   glBindTextureUnit(9, store.heights.name());
-  glBindTextureUnit(10, tiles_.texture());
   glBindTextureUnit(11, store.colours.name());
   glBindImageTexture(0, store.colours.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
+
+  const gl::Program& program = extract_[2 * static_cast<std::size_t>(inputs.camera_count() - 1) + (work.minify ? 1 : 0)];
+  inputs.bind(program, depth_tolerance);
+  program.set("worse", static_cast<float>(worse));
+  glBindTextureUnit(7, geometry_.texture());
+  glBindTextureUnit(10, tiles_.texture());
   dispatch_groups(program, tiles.size());
+
+  copy_.use();
+  glBindTextureUnit(7, jobs_.texture());
+  glBindTextureUnit(10, copy_tiles_.texture());
+  dispatch_groups(copy_, unseen.size());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

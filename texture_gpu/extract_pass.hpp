@@ -1,6 +1,7 @@
 // Writes new colours: heights of new pages, re-levelled pages, and the extraction itself.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "texture_gpu/atlas_store.hpp"
@@ -12,7 +13,8 @@ namespace foresight {
 /// One context. Leaves the colours visible to texture fetches and image loads that follow.
 class ExtractPass {
  public:
-  ExtractPass();
+  /// `lenses`: of all cameras.
+  explicit ExtractPass(std::span<const Lens> lenses);
 
   /// Sends the heights of pages that were just given a slot (heights.comp).
   void upload_heights(const ChartAtlas& atlas, std::span<const std::pair<std::uint32_t, int>> pages,
@@ -22,18 +24,25 @@ class ExtractPass {
   void relevel(std::span<const PageJob> jobs, const gl::BufferTexture& charts, const PublishedTextures& published,
                const AtlasStore& store);
 
-  /// Extracts the images of `inputs` into all jobs (extract.comp). `masks` as in the allocation.
-  void extract(std::span<const PageJob> jobs, std::span<const std::uint8_t> masks, const SeenInputs& inputs,
-               const gl::BufferTexture& charts, const AtlasStore& store, double depth_tolerance, double worse);
+  struct Work {
+    std::span<const PageJob> jobs;
+    std::span<const std::uint8_t> masks;          ///< of each job (ChartAtlas::Allocation)
+    std::span<const Eigen::Vector4f> geometry;    ///< ChartAtlas::write_job_geometry()
+    bool minify = false;                          ///< texels may be larger than pixels
+  };
+  /// Extracts the images of `inputs` into all jobs (extract.comp); tiles that no camera sees are
+  /// carried over (copy.comp).
+  void extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance, double worse);
 
   /// Of the last extract(): its jobs, and for each whether it has texels that no camera saw.
   const gl::BufferTexture& jobs() const { return jobs_; }
   const gl::BufferTexture& holes() const { return holes_; }
-  std::size_t tiles() const { return tile_count_; }  ///< tiles of the last extract()
+  std::size_t tiles() const { return tile_count_; }  ///< tiles of the last extract() that a camera may see
 
  private:
-  gl::Program heights_, relevel_, extract_mono_, extract_stereo_;
-  gl::BufferTexture jobs_, relevel_jobs_, tiles_, holes_, staged_, slots_;
+  gl::Program heights_, relevel_, copy_;
+  std::array<gl::Program, 4> extract_;  // 2 * (cameras - 1) + minify
+  gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_, copy_tiles_, holes_, staged_, slots_;
   std::size_t tile_count_ = 0;
 };
 

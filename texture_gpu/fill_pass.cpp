@@ -25,11 +25,13 @@ FillPass::FillPass(const SurfacePatches& surface)
       push_rest_(compute("push_rest.comp")),
       coarse_(compute("coarse.comp")),
       spread_(compute("spread.comp")),
+      hole_jobs_(compute("hole_jobs.comp")),
       pull_{pull_program(0), pull_program(1), pull_program(2), pull_program(3)},
       neighbour_start_(GL_R32UI, 16, "neighbour starts"),
       neighbours_(GL_R32UI, 16, "neighbours"),
       dirty_(GL_R32UI, 16, "dirty charts"),
       spare_means_(GL_R32UI, surface.charts.size() * sizeof(std::uint32_t), "spare chart means"),
+      with_holes_(4, 1, "pages with holes"),
       chart_count_(static_cast<int>(surface.charts.size())) {
   std::vector<std::uint32_t> start{0}, list;
   for (const Chart& chart : surface.charts) {
@@ -93,20 +95,23 @@ void FillPass::means(std::span<const std::uint32_t> dirty, const AtlasStore& sto
 }
 
 void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
-                    const PublishedTextures& next) const {
+                    const PublishedTextures& next) {
   if (job_count == 0) return;
+  hole_jobs_.use();
+  hole_jobs_.set("job_count", static_cast<int>(job_count));
+  glBindTextureUnit(10, holes.texture());
+  with_holes_.start(job_count);
+  glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
+  with_holes_.finish();
+
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
-  glBindTextureUnit(10, holes.texture());
   glBindTextureUnit(14, next.coarse.texture());
   for (int level = 3; level >= 0; --level) {
-    const gl::Program& program = pull_[static_cast<std::size_t>(level)];
-    program.use();
-    program.set("job_count", static_cast<int>(job_count));
+    pull_[static_cast<std::size_t>(level)].use();
     bind_level(0, store.colours, level, GL_READ_WRITE);
     bind_level(1, store.colours, level + 1, GL_READ_ONLY);
-    const std::size_t texels = job_count * (256u >> (2 * level));
-    dispatch_groups(program, (texels + 63) / 64);
+    with_holes_.dispatch(level == 0 ? 0 : 1);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   }
 }

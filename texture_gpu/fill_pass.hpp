@@ -2,6 +2,7 @@
 #pragma once
 
 #include "texture_gpu/extract_pass.hpp"
+#include "texture_gpu/work_list.hpp"
 
 namespace foresight {
 
@@ -22,11 +23,12 @@ class FillPass {
   void means(std::span<const std::uint32_t> dirty, const AtlasStore& store, const PublishedTextures& previous,
              PublishedTextures& next);
   void pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
-            const PublishedTextures& next) const;
+            const PublishedTextures& next);
 
-  gl::Program push_, push_rest_, coarse_, spread_;
+  gl::Program push_, push_rest_, coarse_, spread_, hole_jobs_;
   std::array<gl::Program, 4> pull_;  // by the level written
   gl::BufferTexture neighbour_start_, neighbours_, dirty_, spare_means_;
+  WorkList with_holes_;
   int chart_count_;
 };
 

@@ -1,19 +1,21 @@
 // Hole filling, downwards: texels of a level without (enough) seen texels under them take the
 // level above, interpolated across page borders. Pages without holes are left alone.
-// LEVEL is the level written; one invocation a texel of it.
+// LEVEL is the level written; work groups as hole_jobs.comp listed them.
 #include "chart_record.glsl"
 #include "atlas.glsl"
 #include "jobs.glsl"
-layout(local_size_x = 64) in;
+#include "work_item.glsl"
+#if LEVEL == 0
+layout(local_size_x = 8, local_size_y = 8) in;  // four groups a page
+#else
+layout(local_size_x = 16 >> LEVEL, local_size_y = 16 >> LEVEL) in;  // one group a page
+#endif
 layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 8) uniform samplerBuffer charts;
 layout(binding = 9) uniform usamplerBuffer table;
-layout(binding = 10) uniform usamplerBuffer holes;
 layout(binding = 14) uniform usamplerBuffer coarse;
 layout(binding = 0, rgba8) uniform image2DArray colours;
 layout(binding = 1, rgba8) uniform readonly image2DArray above;
-uniform int job_count;
-uniform int first_group;
 
 const int kSide = 16 >> LEVEL;  // texels of a page at this level
 
@@ -31,11 +33,13 @@ vec4 parent(ChartRecord chart, ivec2 at) {
 }
 
 void main() {
-  int index = int(gl_GlobalInvocationID.x) + first_group * 64;
-  int job_index = index / (kSide * kSide);
-  if (job_index >= job_count || texelFetch(holes, job_index).r == 0u) return;
-  Job job = read_job(jobs, job_index);
-  ivec2 in_page = ivec2(index % kSide, (index / kSide) % kSide);
+  uint job_index;
+  if (!next_work(job_index)) return;
+  Job job = read_job(jobs, int(job_index));
+  ivec2 in_page = ivec2(gl_LocalInvocationID.xy);
+#if LEVEL == 0
+  in_page += 8 * ivec2(gl_WorkGroupID.x & 1u, gl_WorkGroupID.x >> 1);
+#endif
   ivec3 place = slot_origin(job.new_slot, LEVEL) + ivec3(in_page, 0);
   vec4 own = imageLoad(colours, place);
 #if LEVEL == 0

@@ -29,14 +29,13 @@ bool is_seen(int c, vec3 p, out vec2 pixel) {
   ivec3 texel = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
   float uncertain = c == 0 ? texelFetch(uncertain0, texel, 0).r : texelFetch(uncertain1, texel, 0).r;
   if (uncertain > 0.5) return false;
-  if (!project_lens(cameras[c], p, pixel)) return false;
-  return all(greaterThanEqual(pixel, vec2(0.5))) && all(lessThanEqual(pixel, cameras[c].size.xy - 1.5));
+  return project_lens(cameras[c], p, pixel) && all(greaterThanEqual(pixel, vec2(0.5))) && all(lessThanEqual(pixel, cameras[c].size.xy - 1.5));
 }
 
 // Pixels per texel along the two texel axes `eu`, `ev` (camera frame, metres per texel) at `p`.
 mat2 footprint(int c, vec3 p, vec3 eu, vec3 ev) {
   vec2 f = cameras[c].focal.xy;
-  if (cameras[c].tangential.z > 1.5) {  // equidistant: pixels per radian, the same all around
+  if (lens_model(cameras[c]) == 2) {  // equidistant: pixels per radian, the same all around
     float r = length(p);
     vec3 d = p / r;
     vec3 a = (eu - d * dot(d, eu)) / r, b = (ev - d * dot(d, ev)) / r;

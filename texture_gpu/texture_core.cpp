@@ -12,6 +12,10 @@ namespace {
 constexpr double kGpuTimeout = 20;                          // seconds for one frame, software renderers included
 constexpr std::chrono::milliseconds kDisplayTimeout{5000};  // for the display to move on to newer textures
 
+std::vector<Lens> all_lenses(const Lens& left, const std::optional<Lens>& right) {
+  return right ? std::vector{left, *right} : std::vector{left};
+}
+
 }  // namespace
 
 TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, std::shared_ptr<const SurfacePatches> surface,
@@ -23,6 +27,7 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, std::shared_pt
       store_(atlas_),
       exposures_(right ? 2 : 1),
       raster_(std::make_shared<gl::SceneBuffers>(*scene_), false),
+      extract_(all_lenses(left, right)),
       fill_(*surface),
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
@@ -54,8 +59,9 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   extract_.upload_heights(atlas_, allocation.new_heights, store_);
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
   clock_.mark("prepare");
-  extract_.extract(allocation.jobs, allocation.masks, inputs_, next->charts, store_, options_.depth_tolerance,
-                   options_.worse);
+  atlas_.write_job_geometry(allocation.jobs, views_, geometry_);
+  extract_.extract({allocation.jobs, allocation.masks, geometry_, coarse_textures_}, inputs_, store_,
+                   options_.depth_tolerance, options_.worse);
   clock_.mark("extract");
   fill_and_finish(allocation, *next);
 
@@ -70,6 +76,7 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   clock_.mark("publish");
   ++image_;
 
+  if (getenv("FSDBG")) { long vis=0, cov=0; for (size_t q=0;q<allocation.jobs.size();++q){ for(int t=0;t<4;++t) vis += ((allocation.masks[q]>>(2*t))&3)!=0; cov+=allocation.jobs[q].covered;} fprintf(stderr,"pages %zu tiles %zu visible %ld covered %ld resident %u records %zu relevel %zu\n", allocation.jobs.size(), extract_.tiles(), vis, cov, atlas_.resident_pages(), records_.size(), allocation.relevel.size()); }
   report.published = true;
   report.newest_image = frame.left.time;
   report.published_at = std::chrono::steady_clock::now();
@@ -91,9 +98,9 @@ void TextureCore::look(const PosedFrame& frame) {
   if (frame.right && cameras_.size() > 1) images_.push_back(&*frame.right);
   active_.clear();
   views_.clear();
-  const bool coarse_textures = options_.texels_per_metre > 0 || options_.max_texture > 0 || atlas_.policy().bias < 0;
+  coarse_textures_ = options_.texels_per_metre > 0 || options_.max_texture > 0 || atlas_.policy().bias < 0;
   for (std::size_t i = 0; i < images_.size(); ++i) {
-    cameras_[i]->upload(images_[i]->pixels, coarse_textures);
+    cameras_[i]->upload(images_[i]->pixels, coarse_textures_);
     active_.push_back(cameras_[i].get());
   }
   clock_.mark("upload");

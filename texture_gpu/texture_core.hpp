@@ -76,7 +76,8 @@ class TextureCore {
   std::vector<AtlasView> views_;
   std::span<const PageRecord> records_;
   gl::BufferTexture charts_;  // planned resolutions, before they are part of a generation
-  std::vector<Eigen::Vector4f> chart_rows_;
+  std::vector<Eigen::Vector4f> chart_rows_, geometry_;
+  bool coarse_textures_ = false;  // some texels may be larger than pixels
   std::vector<std::uint32_t> table_;
 
   struct Retired {

@@ -8,9 +8,9 @@
 // Discontinuity means: off the plane. 1/z is linear in the picture of a plane, so that a plane seen
 // at a grazing angle is none.
 #include "camera.glsl"
+#include "work_item.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2DArray depth;
-layout(binding = 1) uniform sampler2DArray blocks;
 layout(binding = 0, r8) uniform writeonly image2DArray uncertain;
 uniform ivec2 face_size;
 uniform float margin;            // px
@@ -18,19 +18,6 @@ uniform float depth_tolerance;   // metres
 
 float inverse_z(ivec2 at, int layer) {
   return texelFetch(depth, ivec3(clamp(at, ivec2(0), face_size - 1), layer), 0).r / kNear;
-}
-
-// True where the smoothness of a whole neighbourhood makes the test needless.
-bool is_smooth(ivec3 tile, int reach) {
-  ivec2 last = (face_size + 3) / 4 - 1;
-  float far = 1e30, near = 0.0;
-  for (int y = -reach; y < 2 + reach; ++y)
-    for (int x = -reach; x < 2 + reach; ++x) {
-      vec2 b = texelFetch(blocks, ivec3(clamp(tile.xy * 2 + ivec2(x, y), ivec2(0), last), tile.z), 0).xy;
-      near = max(near, b.y);
-      if (x >= 0 && x < 2 && y >= 0 && y < 2) far = min(far, abs(b.x));
-    }
-  return near == 0.0 || 1.0 / far - 1.0 / near < depth_tolerance;
 }
 
 // Slope of 1/z along `step` at p, from the side on which the surface bends less.
@@ -61,10 +48,8 @@ bool is_uncertain(ivec2 p, int layer) {
 }
 
 void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID);
-  if (margin <= 0.0 || is_smooth(ivec3(gl_WorkGroupID), (int(ceil(margin)) + 3) / 4)) {
-    imageStore(uncertain, at, vec4(0.0));
-    return;
-  }
+  uint tile;
+  if (!next_work(tile)) return;
+  ivec3 at = ivec3(8 * ivec2(tile & 0xfffu, (tile >> 12) & 0xfffu) + ivec2(gl_LocalInvocationID.xy), int(tile >> 24));
   imageStore(uncertain, at, vec4(is_uncertain(at.xy, at.z) ? 1.0 : 0.0));
 }
