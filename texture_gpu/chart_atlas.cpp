@@ -102,6 +102,7 @@ void ChartAtlas::set_level(int index, int level) {
   }
   for (AtlasPage& page : chart.page) drop_page(page);
   chart.level = level;
+  chart.relevelled = true;
   const bool fixed = options_.texels_per_metre > 0 && policy_.bias == 0 && options_.max_texture == 0;
   chart.raster = raster_chart(*surface_, index, fixed ? options_.texels_per_metre : density_of(level));
   chart.pages = {(chart.raster.width + atlas::kPage - 1) / atlas::kPage,
@@ -265,7 +266,10 @@ ChartAtlas::Allocation ChartAtlas::allocate(std::span<const std::uint32_t> masks
 }
 
 void ChartAtlas::commit() {
-  for (AtlasChart& chart : charts_) chart.before.reset();
+  for (AtlasChart& chart : charts_) {
+    chart.before.reset();
+    chart.relevelled = false;
+  }
   quiet_images_ = heights_.used() * 2 < heights_.capacity() ? quiet_images_ + 1 : 0;
   if (policy_.bias < 0 && quiet_images_ >= kImagesBeforeRise) {
     ++policy_.bias;

@@ -69,6 +69,7 @@ struct AtlasChart {
     std::vector<bool> resident;
   };
   std::optional<Before> before;
+  bool relevelled = true;  ///< the page grid is new since commit()
   static constexpr int kNoLevel = -100000;
 };
 

@@ -11,11 +11,14 @@ layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 0, std430) writeonly buffer Samples { vec2 samples[]; };  // brightness 0..1 or -1; squared radius
 uniform int page_count;
 uniform int camera;
+uniform int first_page;  // the pages first_page, first_page + stride, ... are asked about
+uniform int stride;
 
 void main() {
-  int index = int(gl_GlobalInvocationID.x);
+  int sample_index = int(gl_GlobalInvocationID.x);
+  int index = first_page + sample_index * stride;
   if (index >= page_count) return;
-  samples[index] = vec2(-1.0, 0.0);
+  samples[sample_index] = vec2(-1.0, 0.0);
   uvec4 page = texelFetch(pages, 2 * index);
   if (page.z == kNoSlot) return;
   ChartRecord chart = read_chart(charts, int(page.x));
@@ -44,5 +47,5 @@ void main() {
   if (count < 12.0 || highest > 0.97) return;
   vec2 half_size = 0.5 * (cameras[camera].size.xy - 1.0);
   vec2 offset = (center / count - half_size) / length(half_size);
-  samples[index] = vec2(sum / count, dot(offset, offset));
+  samples[sample_index] = vec2(sum / count, dot(offset, offset));
 }

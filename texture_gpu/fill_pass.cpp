@@ -24,14 +24,17 @@ FillPass::FillPass(const SurfacePatches& surface)
     : push_(compute("push.comp")),
       push_rest_(compute("push_rest.comp")),
       coarse_(compute("coarse.comp")),
+      coarse_fill_(compute("coarse_fill.comp")),
       spread_(compute("spread.comp")),
       hole_jobs_(compute("hole_jobs.comp")),
       pull_{pull_program(0), pull_program(1), pull_program(2), pull_program(3)},
       neighbour_start_(GL_R32UI, 16, "neighbour starts"),
       neighbours_(GL_R32UI, 16, "neighbours"),
       dirty_(GL_R32UI, 16, "dirty charts"),
+      chart_of_page_(GL_R32UI, 16, "charts of pages"),
       spare_means_(GL_R32UI, surface.charts.size() * sizeof(std::uint32_t), "spare chart means"),
       with_holes_(4, 1, "pages with holes"),
+      empty_pages_(1, 1, "pages without colour"),
       chart_count_(static_cast<int>(surface.charts.size())) {
   std::vector<std::uint32_t> start{0}, list;
   for (const Chart& chart : surface.charts) {
@@ -42,13 +45,14 @@ FillPass::FillPass(const SurfacePatches& surface)
   neighbours_.assign(std::span<const std::uint32_t>(list));
 }
 
-void FillPass::operator()(const ExtractPass& extracted, std::size_t job_count, std::span<const std::uint32_t> dirty,
-                          const AtlasStore& store, const PublishedTextures& previous, PublishedTextures& next) {
+void FillPass::operator()(const ExtractPass& extracted, const Work& work, const AtlasStore& store,
+                          const PublishedTextures& previous, PublishedTextures& next) {
   glBindTextureUnit(7, extracted.jobs().texture());
-  push(job_count, store);
-  means(dirty, store, previous, next);
+  push(work.job_count, store);
+  means(work, store, previous, next);
+  spread(next);
   glBindTextureUnit(7, extracted.jobs().texture());
-  pull(job_count, extracted.holes(), store, next);
+  pull(work.job_count, extracted.holes(), store, next);
 }
 
 void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
@@ -65,21 +69,36 @@ void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
-void FillPass::means(std::span<const std::uint32_t> dirty, const AtlasStore& store, const PublishedTextures& previous,
+void FillPass::means(const Work& work, const AtlasStore& store, const PublishedTextures& previous,
                      PublishedTextures& next) {
-  dirty_.assign(dirty);
+  constexpr auto kEntry = static_cast<GLintptr>(sizeof(GLuint));
+  glCopyNamedBufferSubData(previous.means.buffer().name(), next.means.buffer().name(), 0, 0, chart_count_ * kEntry);
+  for (const auto& [before, now, count] : work.kept)
+    glCopyNamedBufferSubData(previous.coarse.buffer().name(), next.coarse.buffer().name(), before * kEntry, now * kEntry,
+                             count * kEntry);
+  if (work.dirty.empty()) return;
+  dirty_.assign(work.dirty);
+  chart_of_page_.assign(work.chart_of_page);
   coarse_.use();
-  coarse_.set("chart_count", chart_count_);
+  glBindTextureUnit(7, dirty_.texture());
   glBindTextureUnit(8, next.charts.texture());
-  glBindTextureUnit(9, dirty_.texture());
-  glBindTextureUnit(10, next.table.texture());
-  previous.bind();
+  glBindTextureUnit(9, next.table.texture());
   glBindTextureUnit(11, store.colours.name());
   glBindImageTexture(0, next.coarse.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
   glBindImageTexture(1, next.means.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
-  dispatch_groups(coarse_, static_cast<std::size_t>(chart_count_));
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  empty_pages_.start(work.chart_of_page.size());
+  dispatch_groups(coarse_, work.dirty.size());
+  empty_pages_.finish();
 
+  coarse_fill_.use();
+  glBindTextureUnit(7, chart_of_page_.texture());
+  glBindTextureUnit(10, next.means.texture());
+  empty_pages_.dispatch(0);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+/// Hands chart means on to charts that were never seen.
+void FillPass::spread(const PublishedTextures& next) const {
   spread_.use();
   spread_.set("chart_count", chart_count_);
   glBindTextureUnit(7, neighbour_start_.texture());

@@ -13,22 +13,28 @@ class FillPass {
  public:
   explicit FillPass(const SurfacePatches& surface);
 
-  /// For the jobs of the last extraction. `dirty`: per chart, 1 where a page changed. Writes the
-  /// coarse colours and chart means of `next`, starting from those of `previous`.
-  void operator()(const ExtractPass& extracted, std::size_t job_count, std::span<const std::uint32_t> dirty,
-                  const AtlasStore& store, const PublishedTextures& previous, PublishedTextures& next);
+  struct Work {
+    std::size_t job_count = 0;                       ///< of the last extraction
+    std::span<const std::uint32_t> dirty;            ///< charts of which a page changed
+    std::span<const std::uint32_t> chart_of_page;    ///< for the whole page table of `next`
+    std::span<const std::array<int, 3>> kept;        ///< runs of pages to keep: first before, first now, count
+  };
+  /// Writes the pyramids of the jobs, and the coarse colours and chart means of `next`, starting
+  /// from those of `previous`.
+  void operator()(const ExtractPass& extracted, const Work& work, const AtlasStore& store,
+                  const PublishedTextures& previous, PublishedTextures& next);
 
  private:
   void push(std::size_t job_count, const AtlasStore& store) const;
-  void means(std::span<const std::uint32_t> dirty, const AtlasStore& store, const PublishedTextures& previous,
-             PublishedTextures& next);
+  void means(const Work& work, const AtlasStore& store, const PublishedTextures& previous, PublishedTextures& next);
+  void spread(const PublishedTextures& next) const;
   void pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
             const PublishedTextures& next);
 
-  gl::Program push_, push_rest_, coarse_, spread_, hole_jobs_;
+  gl::Program push_, push_rest_, coarse_, coarse_fill_, spread_, hole_jobs_;
   std::array<gl::Program, 4> pull_;  // by the level written
-  gl::BufferTexture neighbour_start_, neighbours_, dirty_, spare_means_;
-  WorkList with_holes_;
+  gl::BufferTexture neighbour_start_, neighbours_, dirty_, chart_of_page_, spare_means_;
+  WorkList with_holes_, empty_pages_;
   int chart_count_;
 };
 

@@ -40,17 +40,21 @@ std::vector<std::uint32_t> SurveyPass::cull(const SeenInputs& inputs, const gl::
 }
 
 std::vector<ExposureSample> SurveyPass::brightness(const SeenInputs& inputs, const gl::BufferTexture& charts,
-                                                   const AtlasStore& store, int camera, double depth_tolerance) {
-  std::vector<ExposureSample> samples(static_cast<std::size_t>(page_count_));
+                                                   const AtlasStore& store, int camera, double depth_tolerance,
+                                                   int first, int stride) {
+  const int count = first < page_count_ ? (page_count_ - first + stride - 1) / stride : 0;
+  std::vector<ExposureSample> samples(static_cast<std::size_t>(count));
   if (samples.empty()) return samples;
   inputs.bind(exposure_, depth_tolerance);
   exposure_.set("page_count", page_count_);
   exposure_.set("camera", camera);
+  exposure_.set("first_page", first);
+  exposure_.set("stride", stride);
   glBindTextureUnit(7, pages_.texture());
   glBindTextureUnit(8, charts.texture());
   glBindTextureUnit(9, store.heights.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, samples_.name());
-  glDispatchCompute(gl::groups(page_count_, 64), 1, 1);
+  glDispatchCompute(gl::groups(count, 64), 1, 1);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   samples_.read(std::span(samples));
   return samples;

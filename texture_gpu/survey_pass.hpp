@@ -21,9 +21,11 @@ class SurveyPass {
   /// One mask per page: bit 2 * tile + camera (cull.comp). Waits for the GPU.
   std::vector<std::uint32_t> cull(const SeenInputs& inputs, const gl::BufferTexture& charts, double depth_tolerance);
 
-  /// One sample per page as `camera` sees it now (exposure.comp). Waits for the GPU.
+  /// Samples of the pages first, first + stride, ... as `camera` sees them now (exposure.comp).
+  /// Waits for the GPU.
   std::vector<ExposureSample> brightness(const SeenInputs& inputs, const gl::BufferTexture& charts,
-                                         const AtlasStore& store, int camera, double depth_tolerance);
+                                         const AtlasStore& store, int camera, double depth_tolerance, int first,
+                                         int stride);
 
  private:
   gl::Program cull_, exposure_;

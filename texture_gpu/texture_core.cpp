@@ -3,12 +3,14 @@
 #include <chrono>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "gl/context.hpp"
 
 namespace foresight {
 namespace {
 
+constexpr int kExposurePages = 600;
 constexpr double kGpuTimeout = 20;                          // seconds for one frame, software renderers included
 constexpr std::chrono::milliseconds kDisplayTimeout{5000};  // for the display to move on to newer textures
 
@@ -76,7 +78,7 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   clock_.mark("publish");
   ++image_;
 
-  if (getenv("FSDBG")) { long vis=0, cov=0; for (size_t q=0;q<allocation.jobs.size();++q){ for(int t=0;t<4;++t) vis += ((allocation.masks[q]>>(2*t))&3)!=0; cov+=allocation.jobs[q].covered;} fprintf(stderr,"pages %zu tiles %zu visible %ld covered %ld resident %u records %zu relevel %zu\n", allocation.jobs.size(), extract_.tiles(), vis, cov, atlas_.resident_pages(), records_.size(), allocation.relevel.size()); }
+  if (getenv("FSDBG")) { uint32_t acc[1]; extract_.holes().buffer().read(std::span<uint32_t>(acc)); fprintf(stderr,"accepted %u ",acc[0]); long vis=0, cov=0; for (size_t q=0;q<allocation.jobs.size();++q){ for(int t=0;t<4;++t) vis += ((allocation.masks[q]>>(2*t))&3)!=0; cov+=allocation.jobs[q].covered;} fprintf(stderr,"pages %zu tiles %zu visible %ld covered %ld resident %u records %zu relevel %zu\n", allocation.jobs.size(), extract_.tiles(), vis, cov, atlas_.resident_pages(), records_.size(), allocation.relevel.size()); }
   report.published = true;
   report.newest_image = frame.left.time;
   report.published_at = std::chrono::steady_clock::now();
@@ -139,11 +141,16 @@ bool TextureCore::allocate(ChartAtlas::Allocation& out) {
 
 void TextureCore::estimate_exposure() {
   if (!options_.even_exposure) return;
+  // Enough pages for a median; each image asks others, so that all get references.
+  const int stride = std::max(1, static_cast<int>(records_.size()) / kExposurePages);
+  const int first = static_cast<int>(image_ % stride);
   std::vector<AtlasPage*> pages;
-  for (const PageRecord& record : records_) pages.push_back(&atlas_.page_of(record));
+  for (std::size_t i = static_cast<std::size_t>(first); i < records_.size(); i += static_cast<std::size_t>(stride))
+    pages.push_back(&atlas_.page_of(records_[i]));
   std::vector<Eigen::Vector3f> tones;
   for (std::size_t i = 0; i < active_.size(); ++i) {
-    exposures_[i].update(survey_.brightness(inputs_, charts_, store_, static_cast<int>(i), options_.depth_tolerance),
+    exposures_[i].update(survey_.brightness(inputs_, charts_, store_, static_cast<int>(i), options_.depth_tolerance, first,
+                                           stride),
                          pages, image_);
     tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
                        exposures_[i].vignetting().y());
@@ -152,14 +159,36 @@ void TextureCore::estimate_exposure() {
   clock_.mark("exposure");
 }
 
+/// Coarse colours of charts that did not change move with their place in the page table.
+void TextureCore::list_fill_work(const ChartAtlas::Allocation& allocation) {
+  const auto& charts = atlas_.charts();
+  std::vector<bool> changed(charts.size());
+  for (const PageJob& job : allocation.jobs) changed[job.chart] = true;
+  dirty_.clear();
+  kept_.clear();
+  chart_of_page_.clear();
+  first_page_before_.resize(charts.size(), 0);
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    const int count = charts[i].pages.prod();
+    chart_of_page_.insert(chart_of_page_.end(), static_cast<std::size_t>(count), static_cast<std::uint32_t>(i));
+    const int before = std::exchange(first_page_before_[i], charts[i].first_page);
+    if (count == 0) continue;
+    if (changed[i] || charts[i].relevelled) {
+      dirty_.push_back(static_cast<std::uint32_t>(i));
+    } else if (!kept_.empty() && kept_.back()[0] + kept_.back()[2] == before &&
+               kept_.back()[1] + kept_.back()[2] == charts[i].first_page) {
+      kept_.back()[2] += count;
+    } else {
+      kept_.push_back({before, charts[i].first_page, count});
+    }
+  }
+}
+
 void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next) {
-  std::vector<std::uint32_t> dirty(atlas_.charts().size(), 0);
-  for (const PageJob& job : allocation.jobs) dirty[job.chart] = 1;
-  for (std::size_t i = 0; i < dirty.size(); ++i)
-    if (atlas_.charts()[i].before) dirty[i] = 1;  // its pages moved in the table
+  list_fill_work(allocation);
   next.coarse.reserve(static_cast<std::size_t>(atlas_.page_count()) * sizeof(std::uint32_t));
-  next.means.reserve(dirty.size() * sizeof(std::uint32_t));
-  fill_(extract_, allocation.jobs.size(), dirty, store_, *current_, next);
+  next.means.reserve(atlas_.charts().size() * sizeof(std::uint32_t));
+  fill_(extract_, {allocation.jobs.size(), dirty_, chart_of_page_, kept_}, store_, *current_, next);
   // The flip must not show what the GPU has not finished.
   gl::Fence::insert().wait(kGpuTimeout);
   gl::check_errors("texture extraction");

@@ -54,6 +54,7 @@ class TextureCore {
   bool wait_for_slots(std::size_t needed);
   void reclaim();
   Generation next_generation();
+  void list_fill_work(const ChartAtlas::Allocation& allocation);
   void fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next);
 
   std::shared_ptr<const SceneModel> scene_;
@@ -78,7 +79,9 @@ class TextureCore {
   gl::BufferTexture charts_;  // planned resolutions, before they are part of a generation
   std::vector<Eigen::Vector4f> chart_rows_, geometry_;
   bool coarse_textures_ = false;  // some texels may be larger than pixels
-  std::vector<std::uint32_t> table_;
+  std::vector<std::uint32_t> table_, dirty_, chart_of_page_;
+  std::vector<std::array<int, 3>> kept_;
+  std::vector<int> first_page_before_;  // of the published generation
 
   struct Retired {
     Generation generation;               // still shows the slots

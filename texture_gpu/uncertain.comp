@@ -36,15 +36,20 @@ bool is_uncertain(ivec2 p, int layer) {
   vec2 gradient = vec2(slope(p, ivec2(1, 0), layer, center), slope(p, ivec2(0, 1), layer, center));
   int reach = int(ceil(margin));
   float limit = (margin + 0.5) * (margin + 0.5);
-  for (int y = -reach; y <= reach; ++y)
-    for (int x = -reach; x <= reach; ++x) {
-      float near = inverse_z(p + ivec2(x, y), layer);
-      float plane = center + dot(gradient, vec2(x, y));
+  bool found = false;
+  // Four pixels at a time; the last column and row of the quads may reach beyond the margin.
+  for (int y = -reach; y <= reach; y += 2)
+    for (int x = -reach; x <= reach; x += 2) {
+      vec2 corner = (vec2(p) + vec2(x, y) + 1.0) / vec2(face_size);
+      vec4 near = textureGather(depth, vec3(corner, float(layer))) / kNear;  // (0,1) (1,1) (1,0) (0,0)
+      vec4 dx = float(x) + vec4(0.0, 1.0, 1.0, 0.0), dy = float(y) + vec4(1.0, 1.0, 0.0, 0.0);
+      vec4 plane = center + gradient.x * dx + gradient.y * dy;
       // 1/plane - 1/near > tolerance, without dividing; a plane beyond the horizon is behind all.
-      bool off = near > plane && near - plane > depth_tolerance * near * max(plane, 0.0);
-      if (off && float(x * x + y * y) <= limit) return true;
+      vec4 excess = near - plane - depth_tolerance * near * max(plane, 0.0);
+      vec4 outside = dx * dx + dy * dy - limit;
+      found = found || any(bvec4(ivec4(greaterThan(excess, vec4(0.0))) * ivec4(lessThanEqual(outside, vec4(0.0)))));
     }
-  return false;
+  return found;
 }
 
 void main() {

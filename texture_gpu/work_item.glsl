@@ -1,8 +1,16 @@
-// Reads what append_work() (work_list.glsl) stored: the item of this work group.
+// Reads what append_work() (work_list.glsl) stored: the item of this work group, or of this
+// invocation where the list was filled with ITEMS_PER_GROUP set to the group's size.
 layout(binding = 15) uniform usamplerBuffer work;
 
+#ifndef ITEMS_PER_GROUP
+#define ITEMS_PER_GROUP 1
+#endif
+
 bool next_work(out uint item) {
-  uint index = gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u;
+  uint index = (gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u) * ITEMS_PER_GROUP;
+#if ITEMS_PER_GROUP > 1
+  index += gl_LocalInvocationIndex;
+#endif
   item = texelFetch(work, 8 + int(index)).r;
   return index < texelFetch(work, 3).r;
 }
