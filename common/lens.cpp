@@ -88,8 +88,9 @@ void Lens::find_max_radius() {
     const double r = limit * (static_cast<double>(i) / kSteps) * (fisheye ? 1.0 : static_cast<double>(i) / kSteps);
     const double value = radial(r);
     if (!(value > previous)) {
-      double low = r * (1 - 2.0 / i), high = r;  // the maximum lies between the last three samples
-      low = std::max(low, 0.0);
+      // The maximum lies between the last three samples.
+      const double two_back = std::max(1 - 2.0 / i, 0.0);
+      double low = r * two_back * (fisheye ? 1.0 : two_back), high = r;
       for (int k = 0; k < 60; ++k) {
         const double a = low + (high - low) / 3, b = high - (high - low) / 3;
         (radial(a) < radial(b) ? low : high) = radial(a) < radial(b) ? a : b;

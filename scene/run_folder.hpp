@@ -1,10 +1,16 @@
 // Reads a recorded run: a folder in the form of TUM RGB-D runs.
 //
-//   camera.yaml, rgb.txt, trajectory.txt, scene.ply or scene.yaml;
-//   optional: nodes.txt, camera_right.yaml with rgb_right.txt
+//   camera.yaml         ROS camera_info of the (left) camera         scene/camera_info.hpp
+//   rgb.txt             time file                                    seconds, path in the folder
+//   trajectory.txt      time tx ty tz qx qy qz qw                    T_world_camera
+//   scene.ply or scene.yaml                                          scene/scene_reader.hpp
+//   nodes.txt           time node tx ty tz qx qy qz qw               T_world_node; optional
+//   camera_right.yaml   camera_info and T_left_right                 optional, with
+//   rgb_right.txt       time file
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -12,16 +18,17 @@
 #include <vector>
 
 #include "common/lens.hpp"
+#include "scene/pose_track.hpp"
 #include "scene/scene_model.hpp"
 
 namespace foresight {
 
 /// One image of a run, not yet read.
 struct RunImage {
-  RobotTime time;               ///< capture instant: mid-exposure of the centre row
-  std::filesystem::path file;   ///< absolute
-  std::string stem;             ///< file name without folder and extension; unique in its list
-  Pose T_world_camera;          ///< of this camera (left or right) at `time`
+  RobotTime time;                                  ///< capture instant: mid-exposure of the centre row
+  std::filesystem::path file;                      ///< absolute
+  std::string stem;                                ///< file name without folder and extension; unique in its list
+  Pose T_world_camera;                             ///< of this camera (left or right) at `time`
   StateStatus pose_status = StateStatus::invalid;  ///< exact or interpolated
 };
 
@@ -29,57 +36,40 @@ struct RunImage {
 struct RunFrame {
   RunImage left;
   std::optional<RunImage> right;
-};
 
-/// A pose over time: `samples` strictly ascending in time.
-class PoseTrack {
- public:
-  struct Sample {
-    RobotTime time;
-    Pose pose;
-  };
-  struct Answer {
-    Pose pose = Pose::Identity();
-    StateStatus status = StateStatus::invalid;
-  };
-  static constexpr Duration kExact{1'000'000};     ///< a sample this near is used as it is
-  static constexpr Duration kLargestGap{200'000'000};  ///< a larger gap is not interpolated
-
-  PoseTrack() = default;
-  explicit PoseTrack(std::vector<Sample> samples);
-
-  const std::vector<Sample>& samples() const { return samples_; }
-
-  /// The nearest sample where it lies within kExact, else linear (position) and spherical
-  /// (rotation) interpolation over a gap of up to kLargestGap, else `invalid`.
-  Answer at(RobotTime time) const;
-
- private:
-  std::vector<Sample> samples_;
+  /// A right image belongs to the nearest left one if no more than this apart, nor more than half
+  /// the median interval of the left images. Cameras that free-run at 30 Hz may be 17 ms apart;
+  /// in 5 ms a hand that moves at 0.4 m/s covers 2 mm.
+  static constexpr Duration kLargestOffset{5'000'000};
 };
 
 /// A run whose text files and model were read and checked. Immutable; safe to share.
 class RunFolder {
  public:
   struct Options {
-    std::optional<std::filesystem::path> scene;  ///< instead of the run's own; may lie anywhere
+    /// Instead of the run's own; may lie anywhere. What it names must lie in its folder.
+    std::optional<std::filesystem::path> scene;
   };
 
   /// Reads and checks everything but the pixels. Throws InputError naming file, line or field,
-  /// and the cure. Times ascend strictly; every image has a pose; every path stays in the folder.
+  /// and the cure. Times ascend strictly; every image exists and has a pose, the name (stem) of
+  /// each is unique in its list; every path stays in the folder.
   static RunFolder open(const std::filesystem::path& root, const Options& options);
 
   const std::filesystem::path& root() const { return root_; }
   const Lens& lens_left() const { return lens_left_; }
   const std::optional<Lens>& lens_right() const { return lens_right_; }
-  const Pose& T_left_right() const { return T_left_right_; }  ///< identity for a single camera
+  /// Right camera to left camera coordinates; identity for a single camera.
+  const Pose& T_left_right() const { return T_left_right_; }
   const std::vector<RunFrame>& frames() const { return frames_; }
   const std::shared_ptr<const SceneModel>& scene() const { return scene_; }
   std::size_t unpaired_right() const { return unpaired_right_; }  ///< right images without a left one
 
   /// Where the scene stands at `time`: nodes with a track in nodes.txt follow it (held still
-  /// before its first and after its last sample), their descendants without a track move along,
-  /// the rest stands in its rest pose.
+  /// at the nearer sample before its first, after its last, and in a gap too large to
+  /// interpolate), their descendants without a track move along, the rest stands in its rest
+  /// pose. The status is the worst of the tracked nodes: exact, interpolated, or predicted for
+  /// one that is held; never invalid.
   SceneState state_at(RobotTime time) const;
 
  private:
@@ -93,13 +83,15 @@ class RunFolder {
   std::size_t unpaired_right_ = 0;
 };
 
-/// Reads the pixels of one image: 8-bit grey (CV_8UC1) or 8-bit colour (CV_8UC3, BGR), of the
-/// size of `lens`. Throws InputError naming the file: missing, truncated or damaged, another
-/// depth or channel count, another size.
+/// Reads the pixels of one PNG or JPEG: 8-bit grey (CV_8UC1) or 8-bit colour (CV_8UC3, BGR), of
+/// the size of `lens`, as stored (EXIF orientation is not applied: the calibration speaks of the
+/// sensor's rows). Throws InputError naming the file: missing, truncated or damaged, another
+/// format, depth or channel count, another size.
 cv::Mat read_run_image(const RunImage& image, const Lens& lens);
 
-/// Reads every image once, on all cores, only to find the first that read_run_image refuses.
-/// Calls `progress(done, total)` from the calling thread. Throws that InputError.
+/// Reads every image once, on all cores, only to find the first (frame by frame, left before
+/// right) that read_run_image refuses, and throws its error. Blocks; calls `progress(done, total)`
+/// from the calling thread, with done == total at the end; it may be empty.
 void check_run_images(const RunFolder& run, const std::function<void(std::size_t, std::size_t)>& progress);
 
 }  // namespace foresight

@@ -50,7 +50,7 @@ class SceneModel {
   double diagonal_ = 0;
 };
 
-/// How much a state can be trusted.
+/// How much a state can be trusted, from best to worst.
 enum class StateStatus { exact, interpolated, predicted, invalid };
 
 /// Where every node stands at one instant.

@@ -1,0 +1,121 @@
+#include "common/text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+#include <vector>
+
+namespace foresight {
+namespace {
+
+constexpr bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+template <typename Number>
+std::optional<Number> parse_whole(std::string_view text) {
+  // std::from_chars takes no plus sign.
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+struct Decimal {
+  bool negative = false;
+  std::string digits;      // without point and leading zeros
+  long long exponent = 0;  // of ten, for the point in front of digits[0]
+};
+
+std::optional<Decimal> parse_decimal(std::string_view text) {
+  Decimal out;
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) {
+    out.negative = text[0] == '-';
+    text.remove_prefix(1);
+  }
+  bool point = false, any = false;
+  std::size_t i = 0;
+  for (; i < text.size() && (is_digit(text[i]) || (text[i] == '.' && !point)); ++i) {
+    if (text[i] == '.') {
+      point = true;
+      continue;
+    }
+    any = true;
+    if (text[i] != '0' || !out.digits.empty()) {
+      out.digits += text[i];
+      if (!point) ++out.exponent;
+    } else if (point) {
+      --out.exponent;
+    }
+  }
+  if (!any) return std::nullopt;
+  if (i < text.size()) {
+    if (text[i] != 'e' && text[i] != 'E') return std::nullopt;
+    const auto exponent = parse_integer(text.substr(i + 1));
+    if (!exponent || std::abs(*exponent) > 1'000'000) return std::nullopt;
+    out.exponent += *exponent;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+  return parse_whole<double>(text);
+}
+
+std::optional<long long> parse_integer(std::string_view text) {
+  return parse_whole<long long>(text);
+}
+
+std::optional<Duration> parse_seconds(std::string_view text) {
+  const auto decimal = parse_decimal(text);
+  if (!decimal) return std::nullopt;
+  const long long wanted = decimal->exponent + 9;  // digits in front of the point of the ns value
+  if (decimal->digits.empty() || wanted < 0) return Duration{0};
+  if (wanted > 19) return std::nullopt;
+  const auto digit = [&](long long i) {
+    return i < static_cast<long long>(decimal->digits.size()) ? decimal->digits[static_cast<std::size_t>(i)] - '0' : 0;
+  };
+  std::uint64_t ns = 0;
+  for (long long i = 0; i < wanted; ++i) ns = ns * 10 + static_cast<std::uint64_t>(digit(i));
+  if (digit(wanted) >= 5) ++ns;
+  if (ns > static_cast<std::uint64_t>(kLargestSeconds) * 1'000'000'000u) return std::nullopt;
+  const auto value = static_cast<std::int64_t>(ns);
+  return Duration{decimal->negative ? -value : value};
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  std::string out = "'";
+  for (char c : text.substr(0, kLongest)) out += (c >= 0 && c < 32) || c == 127 ? '?' : c;
+  return out + (text.size() > kLongest ? "...'" : "'");
+}
+
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+  const std::string_view a = word.substr(0, 64);  // no key is longer; bounds the work on garbage
+  std::string best;
+  std::size_t best_distance = SIZE_MAX;
+  for (const std::string& b : candidates) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      std::size_t diagonal = std::exchange(row[0], i + 1);
+      for (std::size_t j = 0; j < b.size(); ++j) {
+        const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+      }
+    }
+    // A word that was cut ("height" for "image_height") is nearer than its missing letters say.
+    if (a.size() >= 3 && b.find(a) != std::string::npos) row.back() = std::min(row.back(), std::size_t{1});
+    if (row.back() < best_distance) {
+      best_distance = row.back();
+      best = b;
+    }
+  }
+  return best;
+}
+
+}  // namespace foresight

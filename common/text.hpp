@@ -1,0 +1,33 @@
+// Small helpers for text that comes from outside: exact numbers, and words for error messages.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/time.hpp"
+
+namespace foresight {
+
+/// The whole of `text` as a decimal number ("1", "-.5", "+2e-3", "nan"), independent of the
+/// locale; nothing where it is anything else or too large for a double.
+std::optional<double> parse_number(std::string_view text);
+
+/// The whole of `text` as a decimal integer; nothing where it is anything else or too large.
+std::optional<long long> parse_integer(std::string_view text);
+
+/// Seconds as text ("1305031102.175304", "1.3e9") to nanoseconds without passing through a
+/// double, which has only about 240 ns left at today's unix times. Rounds half away from zero at
+/// the tenth decimal. Nothing where `text` is no number or exceeds kLargestSeconds.
+std::optional<Duration> parse_seconds(std::string_view text);
+inline constexpr long long kLargestSeconds = 4'000'000'000;  ///< unix time of the year 2096
+
+/// `text` in single quotes for a message: cut to 60 bytes, control characters as '?'.
+std::string in_quotes(std::string_view text);
+
+/// The candidate with the smallest edit distance to `word`, or that contains it (the first of
+/// equals); empty only where there is no candidate.
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
+
+}  // namespace foresight

@@ -1,0 +1,21 @@
+// The textured surface as the view shader reads it.
+#pragma once
+
+#include "gl/objects.hpp"
+#include "texture_gpu/surface_patches.hpp"
+
+namespace foresight {
+
+/// Two texels per triangle (its plane in the node's frame; patch and node) and four per patch.
+/// Immutable; usable from every context of the share group.
+class SurfaceRecords {
+ public:
+  explicit SurfaceRecords(const SurfacePatches& surface);
+  GLuint triangles() const { return triangles_.texture(); }
+  GLuint patches() const { return patches_.texture(); }
+
+ private:
+  gl::BufferTexture triangles_, patches_;
+};
+
+}  // namespace foresight

@@ -1,0 +1,74 @@
+// Cameras in shaders: lens projection, face projection, node poses. C++ side: gl/camera_block.hpp.
+struct CameraBlock {
+  vec4 focal;
+  vec4 radial;
+  vec4 radial_denominator;
+  vec4 tangential;
+  vec4 size;
+  vec4 face;
+  vec4 tone;
+};
+
+const float kNear = 0.01;  // gl::kNearPlane; depth buffers hold kNear / z, 0 where no model is
+
+// Pixel that sees p (camera frame); false where the lens model does not hold (common/lens.hpp).
+bool project_lens(const CameraBlock c, vec3 p, out vec2 pixel) {
+  pixel = vec2(-1e6);
+  if (c.tangential.z > 1.5) {  // equidistant
+    float rho = length(p.xy);
+    float theta = atan(rho, p.z);
+    if (!(theta <= c.tangential.w)) return false;
+    float t2 = theta * theta;
+    float r = theta * (1.0 + t2 * (c.radial.x + t2 * (c.radial.y + t2 * (c.radial.z + t2 * c.radial.w))));
+    pixel = c.focal.xy * p.xy * (rho > 1e-9 ? r / rho : 1.0 / p.z) + c.focal.zw;
+    return true;
+  }
+  if (!(p.z > 0.0)) return false;
+  vec2 n = p.xy / p.z;
+  if (c.tangential.z > 0.5) {
+    float r2 = dot(n, n);
+    if (!(r2 <= c.tangential.w * c.tangential.w)) return false;
+    float s = (1.0 + r2 * (c.radial.x + r2 * (c.radial.y + r2 * c.radial.z))) /
+              (1.0 + r2 * (c.radial_denominator.x + r2 * (c.radial_denominator.y + r2 * c.radial_denominator.z)));
+    float p1 = c.tangential.x, p2 = c.tangential.y;
+    n = n * s + vec2(2.0 * p1 * n.x * n.y + p2 * (r2 + 2.0 * n.x * n.x),
+                     p1 * (r2 + 2.0 * n.y * n.y) + 2.0 * p2 * n.x * n.y);
+  }
+  pixel = c.focal.xy * n + c.focal.zw;
+  return true;
+}
+
+// Place of p (camera frame) on the faces: xy in px, z the layer. inverse_z is 1 / depth along that
+// face's axis. False behind the near plane or off every face.
+bool project_face(const CameraBlock c, vec3 p, out vec3 place, out float inverse_z) {
+  place = vec3(0.0);
+  if (c.tone.w > 1.5) {  // cube; order and axes as in gl/faces.cpp
+    vec3 a = abs(p);
+    if (a.z >= a.x && a.z >= a.y) {
+      place.z = p.z > 0.0 ? 0.0 : 2.0;
+      p = p.z > 0.0 ? p : vec3(-p.x, p.y, -p.z);
+    } else if (a.x >= a.y) {
+      place.z = p.x > 0.0 ? 1.0 : 3.0;
+      p = p.x > 0.0 ? vec3(-p.z, p.y, p.x) : vec3(p.z, p.y, -p.x);
+    } else {
+      place.z = p.y > 0.0 ? 4.0 : 5.0;
+      p = p.y > 0.0 ? vec3(p.x, -p.z, p.y) : vec3(p.x, p.z, -p.y);
+    }
+  }
+  inverse_z = 1.0 / p.z;
+  place.xy = c.face.xy * p.xy * inverse_z + c.face.zw;
+  return p.z >= kNear && all(greaterThanEqual(place.xy, vec2(-0.5))) &&
+         all(lessThanEqual(place.xy, c.size.zw - vec2(0.5)));
+}
+
+// Rows of T_camera_node, three texels a node; `base` is the first node of the camera.
+vec3 node_to_camera(samplerBuffer poses, int node, vec3 p_node) {
+  vec4 h = vec4(p_node, 1.0);
+  return vec3(dot(texelFetch(poses, 3 * node), h), dot(texelFetch(poses, 3 * node + 1), h),
+              dot(texelFetch(poses, 3 * node + 2), h));
+}
+
+vec3 rotate_to_camera(samplerBuffer poses, int node, vec3 v_node) {
+  return vec3(dot(texelFetch(poses, 3 * node).xyz, v_node), dot(texelFetch(poses, 3 * node + 1).xyz, v_node),
+              dot(texelFetch(poses, 3 * node + 2).xyz, v_node));
+}

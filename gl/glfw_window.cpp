@@ -1,0 +1,68 @@
+#include "gl/glfw_window.hpp"
+
+#include <epoxy/gl.h>
+// epoxy must come first: it replaces the system's GL header.
+#include <GLFW/glfw3.h>
+
+#include "common/error.hpp"
+
+namespace foresight::gl {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  throw RuntimeFailure(what + ": " + (text ? text : "unknown reason"),
+                       "check DISPLAY and the graphics driver, or leave out --window");
+}
+
+std::shared_ptr<void> start_library() {
+  if (!glfwInit()) fail("no desktop to open a window on");
+  return {nullptr, [](void*) { glfwTerminate(); }};
+}
+
+GLFWwindow* create(int width, int height, const char* title, bool visible, GLFWwindow* share) {
+  glfwDefaultWindowHints();
+  // EGL on X11 too, so that contexts with and without a window come from one interface.
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
+  return glfwCreateWindow(width, height, title, nullptr, share);
+}
+
+}  // namespace
+
+Window::Window(int width, int height, const std::string& title) : library_(start_library()) {
+  window_ = create(width, height, title.c_str(), true, nullptr);
+  if (!window_) fail("no window with OpenGL 4.5");
+  make_current();
+  glfwSwapInterval(1);
+}
+
+Window::Window(Window& share, int) : library_(share.library_) {
+  window_ = create(16, 16, "", false, share.window_);
+  if (!window_) fail("no second OpenGL context");
+}
+
+Window::~Window() { glfwDestroyWindow(window_); }
+
+void Window::make_current() { glfwMakeContextCurrent(window_); }
+void Window::release() { glfwMakeContextCurrent(nullptr); }
+
+std::unique_ptr<Context> Window::create_shared() { return std::unique_ptr<Context>(new Window(*this, 0)); }
+
+void Window::present() {
+  glfwSwapBuffers(window_);
+  glfwPollEvents();
+}
+
+bool Window::should_close() const {
+  return glfwWindowShouldClose(window_) || glfwGetKey(window_, GLFW_KEY_ESCAPE) == GLFW_PRESS ||
+         glfwGetKey(window_, GLFW_KEY_Q) == GLFW_PRESS;
+}
+
+void Window::framebuffer_size(int& width, int& height) const { glfwGetFramebufferSize(window_, &width, &height); }
+
+}  // namespace foresight::gl

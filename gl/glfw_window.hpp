@@ -1,0 +1,39 @@
+// A window on the desktop, with the context that draws into it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "gl/context.hpp"
+
+struct GLFWwindow;
+
+namespace foresight::gl {
+
+/// A GLFW window. All methods on the main thread (a rule of GLFW); only make_current() of shared
+/// contexts may be called elsewhere.
+class Window final : public Context {
+ public:
+  /// Opens a window of `width` x `height` screen units, shown at once, its context current.
+  /// Throws RuntimeFailure with GLFW's own description (no display, no OpenGL 4.5).
+  Window(int width, int height, const std::string& title);
+  ~Window() override;
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  void make_current() override;
+  void release() override;
+  std::unique_ptr<Context> create_shared() override;  ///< as a hidden window
+
+  /// Shows what was drawn and handles events, without blocking longer than one display frame.
+  void present();
+  bool should_close() const;  ///< closed by the user, or Escape or Q pressed
+  void framebuffer_size(int& width, int& height) const;  ///< px
+
+ private:
+  Window(Window& share, int);
+  std::shared_ptr<void> library_;  // glfwTerminate with the last window
+  GLFWwindow* window_ = nullptr;
+};
+
+}  // namespace foresight::gl

@@ -1,0 +1,102 @@
+#include "gl/program.hpp"
+
+#include <sstream>
+
+#include "common/error.hpp"
+
+namespace foresight::gl {
+
+void delete_program(GLuint name) { glDeleteProgram(name); }
+
+namespace {
+
+const std::string& find_source(const ShaderSources& sources, const std::string& file) {
+  if (const auto it = sources.find(file); it != sources.end()) return it->second;
+  if (const auto it = gl_shaders().find(file); it != gl_shaders().end()) return it->second;
+  throw RuntimeFailure("the shader " + file + " is not embedded", "add it to SHADERS in its CMakeLists.txt");
+}
+
+void append_expanded(const ShaderSources& sources, const std::string& file, std::string& out) {
+  std::istringstream lines(find_source(sources, file));
+  for (std::string line; std::getline(lines, line);) {
+    constexpr std::string_view kInclude = "#include \"";
+    if (line.starts_with(kInclude))
+      append_expanded(sources, line.substr(kInclude.size(), line.rfind('"') - kInclude.size()), out);
+    else
+      out += line + "\n";
+  }
+}
+
+GLuint compile(const ShaderSources& sources, GLenum stage, const std::string& file,
+               const std::vector<std::string>& defines) {
+  std::string text = "#version 450 core\n";
+  for (const std::string& define : defines) text += "#define " + define + "\n";
+  append_expanded(sources, file, text);
+  const GLuint shader = glCreateShader(stage);
+  const char* pointer = text.c_str();
+  glShaderSource(shader, 1, &pointer, nullptr);
+  glCompileShader(shader);
+  GLint ok = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+  if (ok) return shader;
+  std::string log(4096, '\0');
+  GLsizei length = 0;
+  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  glDeleteShader(shader);
+  throw RuntimeFailure("shader " + file + " does not compile: " + log, "please report this with the driver's name");
+}
+
+GLuint link(const std::vector<GLuint>& shaders, const std::string& label) {
+  const GLuint program = glCreateProgram();
+  for (GLuint shader : shaders) glAttachShader(program, shader);
+  glLinkProgram(program);
+  for (GLuint shader : shaders) {
+    glDetachShader(program, shader);
+    glDeleteShader(shader);
+  }
+  GLint ok = 0;
+  glGetProgramiv(program, GL_LINK_STATUS, &ok);
+  glObjectLabel(GL_PROGRAM, program, -1, label.c_str());
+  if (ok) return program;
+  std::string log(4096, '\0');
+  GLsizei length = 0;
+  glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  glDeleteProgram(program);
+  throw RuntimeFailure("program " + label + " does not link: " + log, "please report this with the driver's name");
+}
+
+GLint location(const Program& program, const char* uniform) { return glGetUniformLocation(program.name(), uniform); }
+
+}  // namespace
+
+Program Program::compute(const ShaderSources& sources, const std::string& file,
+                         const std::vector<std::string>& defines) {
+  return Program(link({compile(sources, GL_COMPUTE_SHADER, file, defines)}, file));
+}
+
+Program Program::graphics(const ShaderSources& sources, const std::string& vertex, const std::string& fragment,
+                          const std::vector<std::string>& defines) {
+  const GLuint v = compile(sources, GL_VERTEX_SHADER, vertex, defines);
+  const GLuint f = compile(sources, GL_FRAGMENT_SHADER, fragment, defines);
+  return Program(link({v, f}, fragment));
+}
+
+void Program::set(const char* uniform, int value) const { glProgramUniform1i(name(), location(*this, uniform), value); }
+void Program::set(const char* uniform, unsigned value) const { glProgramUniform1ui(name(), location(*this, uniform), value); }
+void Program::set(const char* uniform, float value) const { glProgramUniform1f(name(), location(*this, uniform), value); }
+void Program::set(const char* uniform, const Eigen::Vector2f& v) const {
+  glProgramUniform2f(name(), location(*this, uniform), v.x(), v.y());
+}
+void Program::set(const char* uniform, const Eigen::Vector4f& v) const {
+  glProgramUniform4f(name(), location(*this, uniform), v.x(), v.y(), v.z(), v.w());
+}
+void Program::set(const char* uniform, const Eigen::Vector2i& v) const {
+  glProgramUniform2i(name(), location(*this, uniform), v.x(), v.y());
+}
+void Program::set(const char* uniform, const Eigen::Matrix4f& m) const {
+  glProgramUniformMatrix4fv(name(), location(*this, uniform), 1, GL_FALSE, m.data());
+}
+
+}  // namespace foresight::gl

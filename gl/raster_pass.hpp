@@ -1,0 +1,37 @@
+// Rasterises the scene into the faces of a camera: depth only, or depth and surface.
+#pragma once
+
+#include "gl/faces.hpp"
+#include "gl/program.hpp"
+#include "gl/scene_buffers.hpp"
+
+namespace foresight::gl {
+
+/// What the pass draws into. Layers are faces.
+struct FaceImages {
+  /// `with_surface`: also hold the triangle seen at each pixel.
+  FaceImages(const Faces& faces, bool with_surface);
+
+  Faces faces;
+  Texture depth;    ///< DEPTH_COMPONENT32F array: kNearPlane / z at the pixel's centre, 0 = no model
+  Texture surface;  ///< R32UI array: scene triangle index + 1, 0 = no model; empty without surface
+};
+
+/// Draws all nodes of the scene at the poses of one state. Belongs to the context it was built in.
+class RasterPass {
+ public:
+  /// `with_surface` as in the FaceImages that it will draw into.
+  RasterPass(std::shared_ptr<const SceneBuffers> scene, bool with_surface);
+
+  /// Fills `target` as seen from T_world_camera. Leaves framebuffer 0 bound and depth test off.
+  void operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target) const;
+
+ private:
+  std::shared_ptr<const SceneBuffers> scene_;
+  VertexArray array_;
+  Program program_;
+  Framebuffer framebuffer_;
+  bool with_surface_;
+};
+
+}  // namespace foresight::gl

@@ -1,0 +1,25 @@
+// Files of a run folder: read whole, and never from outside the folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace foresight {
+
+/// Throws InputError naming the file: missing, a folder, a device.
+void require_regular_file(const std::filesystem::path& file);
+
+/// The whole content. Throws like require_regular_file, and where it cannot be read.
+std::string read_file(const std::filesystem::path& file);
+
+/// `folder / name` for a `name` written in a file of the run. `root` is canonical, and `folder`
+/// lies in it. Throws InputError at `where` when the name is empty, absolute, or leads out of
+/// `root` (by ".." or a symbolic link), or when no regular file is there.
+std::filesystem::path resolve_inside(const std::filesystem::path& root, const std::filesystem::path& folder,
+                                     std::string_view name, const std::string& where);
+
+/// Canonical path of an existing folder; throws InputError otherwise.
+std::filesystem::path canonical_folder(const std::filesystem::path& folder);
+
+}  // namespace foresight

@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "scene/urdf_reader.hpp"
+
+namespace foresight {
+namespace {
+
+void require_settable(const UrdfRobot& robot, const std::string& name, double position, const std::string& where) {
+  std::vector<std::string> names;
+  for (const UrdfJoint& joint : robot.joints)
+    if (joint.kind != UrdfJoint::Kind::fixed && !joint.mimic) names.push_back(joint.name);
+  const std::string shown = in_quotes(name);
+  const auto joint =
+      std::find_if(robot.joints.begin(), robot.joints.end(), [&](const auto& j) { return j.name == name; });
+  if (joint == robot.joints.end())
+    throw InputError(where, "the robot has no joint " + shown,
+                     names.empty() ? "remove it" : "did you mean '" + nearest_word(name, names) + "'?");
+  if (joint->kind == UrdfJoint::Kind::fixed) throw InputError(where, "joint " + shown + " is fixed", "remove it");
+  if (joint->mimic)
+    throw InputError(where, "joint " + shown + " follows another",
+                     "set '" + robot.joints[static_cast<std::size_t>(joint->mimic->joint)].name + "' instead");
+  if (!(position >= joint->lower && position <= joint->upper) || !std::isfinite(position))
+    throw InputError(where, "joint " + shown + " at " + std::to_string(position) + " is beyond its limits",
+                     "choose from " + std::to_string(joint->lower) + " to " + std::to_string(joint->upper));
+}
+
+Pose motion(const UrdfJoint& joint, double position) {
+  Pose T = Pose::Identity();
+  if (joint.kind == UrdfJoint::Kind::rotating) T.linear() = Eigen::AngleAxisd(position, joint.axis).toRotationMatrix();
+  if (joint.kind == UrdfJoint::Kind::sliding) T.translation() = position * joint.axis;
+  return T;
+}
+
+}  // namespace
+
+void pose_links(UrdfRobot& robot, const std::map<std::string, double>& positions, const std::string& where) {
+  for (const auto& [name, position] : positions) require_settable(robot, name, position, where);
+  const auto own_position = [&](const UrdfJoint& joint) {
+    const auto given = positions.find(joint.name);
+    return given != positions.end() ? given->second : std::clamp(0.0, joint.lower, joint.upper);
+  };
+  for (const UrdfJoint& joint : robot.joints) {
+    // A mimic joint may follow another mimic joint; read_urdf has refused circles.
+    double factor = 1, offset = 0;
+    const UrdfJoint* leader = &joint;
+    while (leader->mimic) {
+      offset += factor * leader->mimic->offset;
+      factor *= leader->mimic->multiplier;
+      leader = &robot.joints[static_cast<std::size_t>(leader->mimic->joint)];
+    }
+    const double position = factor * own_position(*leader) + offset;
+    robot.links[static_cast<std::size_t>(joint.child)].T_parent_node = joint.T_parent_joint * motion(joint, position);
+  }
+}
+
+}  // namespace foresight

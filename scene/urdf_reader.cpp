@@ -1,0 +1,232 @@
+#include "scene/urdf_reader.hpp"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <set>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "scene/files.hpp"
+#include "scene/mesh_builder.hpp"
+#include "scene/mesh_reader.hpp"
+#include "scene/primitives.hpp"
+#include "scene/text_table.hpp"
+
+namespace foresight {
+namespace fs = std::filesystem;
+namespace {
+
+// urdfdom reports only through a process-wide logger: this keeps the first error for our own
+// message and the terminal quiet.
+class LogCapture : public console_bridge::OutputHandler {
+ public:
+  LogCapture() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
+  ~LogCapture() override { console_bridge::restorePreviousOutputHandler(); }
+  LogCapture(const LogCapture&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (first_error_.empty() && level == console_bridge::CONSOLE_BRIDGE_LOG_ERROR) first_error_ = text;
+  }
+  const std::string& first_error() const { return first_error_; }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  std::lock_guard<std::mutex> lock_;
+  std::string first_error_;
+};
+
+// urdfdom's XML reader recurses into nested elements; a hostile file could exhaust the stack.
+bool is_deep(std::string_view xml) {
+  int depth = 0;
+  for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at + 1)) {
+    const char next = at + 1 < xml.size() ? xml[at + 1] : '>';
+    if (next == '/')
+      --depth;
+    else if (std::isalpha(static_cast<unsigned char>(next)) || next == '_')
+      ++depth;
+    const std::size_t end = xml.find('>', at);
+    if (end != std::string_view::npos && xml[end - 1] == '/' && next != '/') --depth;
+    if (depth > 1000) return true;
+  }
+  return false;
+}
+
+urdf::ModelInterfaceSharedPtr parse(const fs::path& file) {
+  const std::string xml = read_file(file);
+  if (is_deep(xml)) throw InputError(file.string(), "its elements nest too deep", "write a plain URDF");
+  if (xml.find("xmlns:xacro") != std::string::npos && xml.find("<xacro:") != std::string::npos)
+    throw InputError(file.string(), "is a xacro file", "expand it to a URDF with the xacro tool");
+  urdf::ModelInterfaceSharedPtr model;
+  std::string reason;
+  {
+    LogCapture log;
+    try {
+      model = urdf::parseURDF(xml);
+      reason = log.first_error();
+    } catch (const std::exception& error) {
+      reason = error.what();
+    }
+  }
+  if (!model || !model->getRoot())
+    throw InputError(file.string(), "is not a valid URDF (" + (reason.empty() ? "no XML" : reason) + ")",
+                     "correct it; check_urdf shows more");
+  return model;
+}
+
+class RobotBuilder {
+ public:
+  RobotBuilder(const fs::path& file, const fs::path& root) : file_(file), root_(root), model_(parse(file)) {}
+
+  UrdfRobot build() {
+    robot_.name = model_->getName();
+    add_link(*model_->getRoot(), -1);
+    // The list grows while it is walked: parents come before their children.
+    for (std::size_t i = 0; i < robot_.links.size(); ++i) {
+      const auto link = model_->getLink(robot_.links[i].name);
+      for (const auto& joint : link->child_joints) add_joint(*joint, static_cast<int>(i));
+    }
+    if (robot_.links.size() != model_->links_.size())
+      throw InputError(file_.string(), "some links hang in a circle", "connect every link to " + robot_.links[0].name);
+    add_mimics();
+    return std::move(robot_);
+  }
+
+ private:
+  void add_link(const urdf::Link& link, int parent) {
+    if (!seen_.insert(link.name).second)
+      throw InputError(file_.string(), "link " + in_quotes(link.name) + " has two parent joints", "remove one of them");
+    std::vector<Mesh> parts;
+    std::vector<Eigen::Affine3d> T;
+    const std::string where = file_.string() + ": link " + in_quotes(link.name);
+    for (const auto& visual : link.visual_array) {
+      if (!visual || !visual->geometry) continue;
+      Eigen::Vector3d scale(1, 1, 1);
+      parts.push_back(read_geometry(*visual->geometry, where, scale));
+      T.push_back(Eigen::Affine3d(to_pose(visual->origin, where).matrix()) * Eigen::Scaling(scale));
+    }
+    Node node{link.name, merged(parts, T), parent, Pose::Identity()};
+    for (const auto& v : node.mesh.vertices)
+      if (!v.allFinite()) throw InputError(where, "its visual geometry is not finite", "correct its scale");
+    robot_.links.push_back(std::move(node));
+  }
+
+  Mesh read_geometry(const urdf::Geometry& geometry, const std::string& where, Eigen::Vector3d& scale) {
+    const auto positive = [&](double size) {
+      if (!(size > 0 && size <= kFarthest))
+        throw InputError(where, "the size " + std::to_string(size) + " of a visual is not positive",
+                         "write it in metres");
+      return size;
+    };
+    switch (geometry.type) {
+      case urdf::Geometry::BOX: {
+        const auto& d = static_cast<const urdf::Box&>(geometry).dim;
+        return make_box({positive(d.x), positive(d.y), positive(d.z)});
+      }
+      case urdf::Geometry::CYLINDER: {
+        const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+        return make_cylinder(positive(cylinder.radius), positive(cylinder.length));
+      }
+      case urdf::Geometry::SPHERE: return make_sphere(positive(static_cast<const urdf::Sphere&>(geometry).radius));
+      case urdf::Geometry::MESH: break;
+    }
+    const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+    scale = {mesh.scale.x, mesh.scale.y, mesh.scale.z};  // negative mirrors
+    for (double s : scale) positive(std::abs(s));
+    return read_mesh(find_mesh(mesh.filename, where));
+  }
+
+  fs::path find_mesh(const std::string& name, const std::string& where) const {
+    constexpr std::string_view kPackage = "package://";
+    const bool in_package = name.starts_with(kPackage);
+    const std::string path = in_package ? name.substr(kPackage.size()) : name;
+    if (path.find("://") != std::string::npos || fs::path(path).is_absolute())
+      throw InputError(where, "the mesh " + in_quotes(name) + " is not named relative to the robot",
+                       "write package://NAME/path or a relative path");
+    const std::size_t slash = path.find('/');
+    std::error_code error;
+    for (fs::path folder = file_.parent_path();; folder = folder.parent_path()) {
+      if (fs::exists(folder / path, error)) return resolve_inside(root_, folder, path, where);
+      // The run folder itself may be the package.
+      if (in_package && slash != std::string::npos && folder.filename() == path.substr(0, slash) &&
+          fs::exists(folder / path.substr(slash + 1), error))
+        return resolve_inside(root_, folder, path.substr(slash + 1), where);
+      if (folder == root_ || folder == folder.parent_path()) break;
+    }
+    throw InputError(where, "the mesh " + in_quotes(name) + " is missing",
+                     "put it beside the URDF or in a folder above it, up to " + root_.string());
+  }
+
+  Pose to_pose(const urdf::Pose& pose, const std::string& where) const {
+    return checked_pose({pose.position.x, pose.position.y, pose.position.z},
+                        {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}, where);
+  }
+
+  void add_joint(const urdf::Joint& from, int parent) {
+    const std::string where = file_.string() + ": joint " + in_quotes(from.name);
+    UrdfJoint joint;
+    joint.name = from.name;
+    joint.T_parent_joint = to_pose(from.parent_to_joint_origin_transform, where);
+    joint.axis = {from.axis.x, from.axis.y, from.axis.z};
+    const bool moves = from.type == urdf::Joint::REVOLUTE || from.type == urdf::Joint::CONTINUOUS ||
+                       from.type == urdf::Joint::PRISMATIC;
+    if (moves) {
+      joint.kind = from.type == urdf::Joint::PRISMATIC ? UrdfJoint::Kind::sliding : UrdfJoint::Kind::rotating;
+      if (!(joint.axis.norm() > 1e-6 && joint.axis.norm() < kFarthest))
+        throw InputError(where, "its axis has no direction", "write a unit vector");
+      joint.axis.normalize();
+      const bool endless = from.type == urdf::Joint::CONTINUOUS || !from.limits;
+      joint.lower = endless ? -std::numeric_limits<double>::infinity() : from.limits->lower;
+      joint.upper = endless ? std::numeric_limits<double>::infinity() : from.limits->upper;
+      if (!(joint.lower <= joint.upper))
+        throw InputError(where, "its lower limit exceeds the upper one", "swap lower and upper");
+    }
+    const auto link = model_->getLink(from.child_link_name);
+    if (!link) throw InputError(where, "has no child link", "name one");
+    joint.child = static_cast<int>(robot_.links.size());
+    add_link(*link, parent);
+    robot_.links.back().T_parent_node = joint.T_parent_joint;
+    robot_.joints.push_back(std::move(joint));
+  }
+
+  void add_mimics() {
+    for (UrdfJoint& joint : robot_.joints) {
+      const auto from = model_->getJoint(joint.name);
+      if (!from || !from->mimic || joint.kind == UrdfJoint::Kind::fixed) continue;
+      const auto leader = std::find_if(robot_.joints.begin(), robot_.joints.end(),
+                                       [&](const UrdfJoint& j) { return j.name == from->mimic->joint_name; });
+      if (leader == robot_.joints.end() || leader->kind == UrdfJoint::Kind::fixed)
+        throw InputError(file_.string() + ": joint " + in_quotes(joint.name),
+                         "follows " + in_quotes(from->mimic->joint_name) + ", which does not move",
+                         "name a moving joint in <mimic>");
+      joint.mimic = {static_cast<int>(leader - robot_.joints.begin()), from->mimic->multiplier, from->mimic->offset};
+    }
+    for (const UrdfJoint& joint : robot_.joints) {
+      std::size_t steps = 0;
+      for (const UrdfJoint* j = &joint; j->mimic; j = &robot_.joints[static_cast<std::size_t>(j->mimic->joint)])
+        if (++steps > robot_.joints.size())
+          throw InputError(file_.string() + ": joint " + in_quotes(joint.name), "follows itself in a circle",
+                           "remove one <mimic>");
+    }
+  }
+
+  const fs::path& file_;
+  const fs::path& root_;
+  urdf::ModelInterfaceSharedPtr model_;
+  UrdfRobot robot_;
+  std::set<std::string> seen_;
+};
+
+}  // namespace
+
+UrdfRobot read_urdf(const fs::path& file, const fs::path& root) {
+  return RobotBuilder(file, root).build();
+}
+
+}  // namespace foresight

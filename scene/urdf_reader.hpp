@@ -1,0 +1,50 @@
+// Reads a robot from a URDF file and poses its links by forward kinematics.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/scene_model.hpp"
+
+namespace foresight {
+
+struct UrdfJoint {
+  enum class Kind { fixed, rotating, sliding };
+  struct Mimic {
+    int joint = -1;  ///< index of the joint that it follows
+    double multiplier = 1;
+    double offset = 0;  ///< rad or m
+  };
+
+  std::string name;
+  Kind kind = Kind::fixed;
+  int child = -1;                          ///< index of the link that it moves
+  Pose T_parent_joint = Pose::Identity();  ///< parent link to joint frame at position 0
+  Eigen::Vector3d axis{1, 0, 0};           ///< unit vector, in the joint frame
+  double lower = 0, upper = 0;             ///< rad or m; infinite for a continuous joint
+  std::optional<Mimic> mimic;
+};
+
+struct UrdfRobot {
+  std::string name;
+  std::vector<Node> links;        ///< parents first; link 0 is the root, with parent -1
+  std::vector<UrdfJoint> joints;  ///< joint i moves link i + 1
+};
+
+/// Reads links, joints and visual geometry: meshes (with their scale), boxes, cylinders and
+/// spheres; all visuals of a link become its one mesh. A mesh named package://NAME/... or by a
+/// relative path is looked for in the folder of the URDF and in those above it, up to `root`.
+/// Links stand at joint positions 0. Floating and planar joints count as fixed. Throws InputError
+/// naming the file and the link or joint: not a URDF, no single tree, a missing mesh, a size or
+/// axis that is no such thing.
+UrdfRobot read_urdf(const std::filesystem::path& file, const std::filesystem::path& root);
+
+/// Joint positions in rad or m, by name. Sets T_parent_node of all links but the root. Joints
+/// that are not named stand at 0 or their nearest limit; mimic joints follow theirs. Throws
+/// InputError at `where`: an unknown joint (with the nearest name), one that is fixed or follows
+/// another, a position outside of the limits or not finite.
+void pose_links(UrdfRobot& robot, const std::map<std::string, double>& positions, const std::string& where);
+
+}  // namespace foresight

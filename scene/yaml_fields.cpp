@@ -1,0 +1,173 @@
+#include "scene/yaml_fields.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <limits>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "scene/files.hpp"
+#include "scene/text_table.hpp"
+
+namespace foresight {
+namespace {
+
+std::string join(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+}  // namespace
+
+YamlMap::YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node)
+    : file_(std::move(file)), prefix_(std::move(prefix)), node_(std::move(node)) {}
+
+YamlMap YamlMap::load(const std::filesystem::path& file) {
+  const std::string content = read_file(file);
+  YAML::Node node;
+  try {
+    node = YAML::Load(content);
+  } catch (const YAML::Exception& error) {
+    throw InputError(at_line(file, error.mark.line + 1), "is not valid YAML (" + error.msg + ")", "correct the line");
+  }
+  if (!node.IsMap()) throw InputError(file.string(), "is not a mapping", "write one 'key: value' a line");
+  return YamlMap(file, "", node);
+}
+
+void YamlMap::require_known(const std::vector<std::string>& known) const {
+  std::vector<std::string> seen;
+  for (const std::string& key : keys()) {
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw InputError(where(key), "unknown key " + in_quotes(key),
+                       "did you mean '" + nearest_word(key, known) + "'? Known are " + join(known));
+    if (std::find(seen.begin(), seen.end(), key) != seen.end())
+      throw InputError(where(key), "key " + in_quotes(key) + " appears twice", "remove one of the two");
+    seen.push_back(key);
+  }
+}
+
+std::vector<std::string> YamlMap::keys() const {
+  std::vector<std::string> out;
+  for (const auto& entry : node_) {
+    if (!entry.first.IsScalar())
+      throw InputError(at_line(file_, entry.first.Mark().line + 1), "a key is not a plain word", "write 'key: value'");
+    out.push_back(entry.first.Scalar());
+  }
+  return out;
+}
+
+std::string YamlMap::where(const std::string& key) const {
+  const YAML::Node value = node_[key];
+  const YAML::Mark mark = value.IsDefined() ? value.Mark() : node_.Mark();
+  const std::string shown = in_quotes(prefix_ + key);
+  return at_line(file_, std::max(mark.line, 0) + 1) + ": " + shown.substr(1, shown.size() - 2);
+}
+
+YAML::Node YamlMap::require(const std::string& key) const {
+  const YAML::Node value = node_[key];
+  if (!value.IsDefined() || value.IsNull()) throw InputError(where(key), "is missing", "add the key '" + key + "'");
+  return value;
+}
+
+std::string YamlMap::text(const std::string& key) const {
+  const YAML::Node value = require(key);
+  if (!value.IsScalar() || value.Scalar().empty()) throw InputError(where(key), "is not a word", "write one word");
+  return value.Scalar();
+}
+
+double YamlMap::finite(const YAML::Node& node, const std::string& key) const {
+  const auto value = node.IsScalar() ? parse_number(node.Scalar()) : std::nullopt;
+  if (!value || !std::isfinite(*value))
+    throw InputError(where(key), (node.IsScalar() ? in_quotes(node.Scalar()) : "an entry") + " is not a finite number",
+                     "write a decimal number");
+  return *value;
+}
+
+double YamlMap::number(const std::string& key) const {
+  return finite(require(key), key);
+}
+
+int YamlMap::integer(const std::string& key) const {
+  const YAML::Node node = require(key);
+  const auto value = node.IsScalar() ? parse_integer(node.Scalar()) : std::nullopt;
+  if (!value || *value > std::numeric_limits<int>::max() || *value < std::numeric_limits<int>::min())
+    throw InputError(where(key), (node.IsScalar() ? in_quotes(node.Scalar()) : "the value") + " is not an integer",
+                     "write a whole number");
+  return static_cast<int>(*value);
+}
+
+std::vector<double> YamlMap::numbers(const std::string& key) const {
+  YAML::Node list = require(key);
+  if (list.IsMap()) {
+    const YamlMap matrix = map(key);
+    matrix.require_known({"rows", "cols", "data"});
+    std::vector<double> out = matrix.numbers("data");
+    const long long cells = static_cast<long long>(matrix.integer("rows")) * matrix.integer("cols");
+    if (cells != static_cast<long long>(out.size()))
+      throw InputError(where(key), "data has " + std::to_string(out.size()) + " numbers",
+                       "write rows x cols = " + std::to_string(cells) + " of them");
+    return out;
+  }
+  if (!list.IsSequence()) throw InputError(where(key), "is not a list of numbers", "write [a, b, ...]");
+  std::vector<double> out;
+  for (const YAML::Node& entry : list) out.push_back(finite(entry, key));
+  return out;
+}
+
+std::vector<double> YamlMap::numbers(const std::string& key, std::size_t count) const {
+  std::vector<double> out = numbers(key);
+  if (out.size() != count)
+    throw InputError(where(key), "has " + std::to_string(out.size()) + " numbers",
+                     "write " + std::to_string(count) + " of them");
+  return out;
+}
+
+YamlMap YamlMap::map(const std::string& key) const {
+  const YAML::Node value = require(key);
+  if (!value.IsMap()) throw InputError(where(key), "is not a mapping", "write {key: value, ...}");
+  return YamlMap(file_, prefix_ + key + ".", value);
+}
+
+std::vector<YamlMap> YamlMap::maps(const std::string& key) const {
+  const YAML::Node list = require(key);
+  if (!list.IsSequence()) throw InputError(where(key), "is not a list", "start each entry with '-'");
+  std::vector<YamlMap> out;
+  for (const YAML::Node& entry : list) {
+    const std::string name = key + "[" + std::to_string(out.size()) + "]";
+    if (!entry.IsMap())
+      throw InputError(at_line(file_, entry.Mark().line + 1) + ": " + prefix_ + name, "is not a mapping",
+                       "write 'key: value' pairs");
+    out.push_back(YamlMap(file_, prefix_ + name + ".", entry));
+  }
+  return out;
+}
+
+Pose YamlMap::pose(const std::string& key) const {
+  const YAML::Node value = require(key);
+  if (value.IsMap() && !value["data"].IsDefined()) {
+    const YamlMap parts = map(key);
+    parts.require_known({"xyz", "quaternion"});
+    if (!parts.has("xyz") && !parts.has("quaternion"))
+      throw InputError(where(key), "is empty", "write {xyz: [x, y, z], quaternion: [x, y, z, w]}");
+    const auto t = parts.has("xyz") ? parts.numbers("xyz", 3) : std::vector<double>{0, 0, 0};
+    const auto q = parts.has("quaternion") ? parts.numbers("quaternion", 4) : std::vector<double>{0, 0, 0, 1};
+    return checked_pose(Eigen::Vector3d(t.data()), Eigen::Vector4d(q.data()), where(key));
+  }
+  const auto m = numbers(key, 16);
+  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  const bool rigid = matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1) &&
+                     ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 2e-3) &&
+                     R.determinant() > 0;
+  if (!rigid)
+    throw InputError(where(key), "the 4x4 matrix is no rotation and translation",
+                     "write an orthonormal rotation and the last row 0 0 0 1, row by row");
+  // The nearest rotation; a quaternion from R itself would keep part of its rounding.
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Quaterniond q(Eigen::Matrix3d(svd.matrixU() * svd.matrixV().transpose()));
+  return checked_pose(matrix.topRightCorner<3, 1>(), q.normalized().coeffs(), where(key));
+}
+
+}  // namespace foresight

@@ -1,0 +1,50 @@
+// Fields of a YAML file, checked: every error names file, line and field.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/scene_model.hpp"
+
+namespace foresight {
+
+/// A mapping in a YAML file. Cheap to copy. All methods throw InputError.
+class YamlMap {
+ public:
+  /// Reads the file, whose top level must be a mapping. Refuses what is not YAML.
+  static YamlMap load(const std::filesystem::path& file);
+
+  /// Refuses keys that are not in `known` (naming the nearest that is) and keys given twice.
+  void require_known(const std::vector<std::string>& known) const;
+
+  const std::filesystem::path& file() const { return file_; }
+  bool has(const std::string& key) const { return node_[key].IsDefined(); }
+  std::vector<std::string> keys() const;
+  std::string where(const std::string& key) const;  ///< "file:line: a.b.key", of this map when absent
+
+  std::string text(const std::string& key) const;             ///< a scalar that is not empty
+  double number(const std::string& key) const;                ///< finite
+  int integer(const std::string& key) const;                  ///< within int
+  std::vector<double> numbers(const std::string& key) const;  ///< a list, or {rows, cols, data}; finite
+  std::vector<double> numbers(const std::string& key, std::size_t count) const;
+  YamlMap map(const std::string& key) const;
+  std::vector<YamlMap> maps(const std::string& key) const;  ///< a list of mappings
+
+  /// {xyz: [..], quaternion: [x, y, z, w]} (either may be absent), or a rigid 4x4 matrix,
+  /// row-major, as a list of 16 or as {rows, cols, data}.
+  Pose pose(const std::string& key) const;
+
+ private:
+  YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node);
+  YAML::Node require(const std::string& key) const;
+  double finite(const YAML::Node& node, const std::string& key) const;
+
+  std::filesystem::path file_;
+  std::string prefix_;  // "robots[0].", for messages
+  YAML::Node node_;
+};
+
+}  // namespace foresight

@@ -1,0 +1,44 @@
+// Everything the extraction keeps for one camera on the GPU: its image and its view of the model.
+#pragma once
+
+#include <array>
+
+#include "gl/camera_block.hpp"
+#include "gl/raster_pass.hpp"
+#include "texture_gpu/posed_image.hpp"
+
+namespace foresight {
+
+/// One context. A ring of mapped buffers carries images to the GPU, so that the next one can be
+/// written while the last is still being read.
+class CameraInput {
+ public:
+  explicit CameraInput(const Lens& lens, double largest_margin_px);
+  ~CameraInput();
+  CameraInput(const CameraInput&) = delete;
+  CameraInput& operator=(const CameraInput&) = delete;
+
+  /// Starts the upload of `pixels`; `with_levels` also builds the coarser levels that textures
+  /// of low resolution are sampled from.
+  void upload(const cv::Mat& pixels, bool with_levels);
+
+  const Lens& lens() const { return lens_; }
+  const gl::FaceImages& faces() const { return faces_; }
+  const gl::Texture& image() const { return image_; }
+  const gl::Texture& blocks() const { return blocks_; }        ///< RG32F: 1/z of each 4x4 block (blocks.comp)
+  const gl::Texture& uncertain() const { return uncertain_; }  ///< R8: 1 on the far side of an edge (uncertain.comp)
+
+ private:
+  struct Staging {
+    gl::Handle<gl::delete_buffer> buffer;
+    void* memory = nullptr;
+    gl::Fence read;  // passed when the GPU has fetched it
+  };
+  Lens lens_;
+  gl::FaceImages faces_;
+  gl::Texture image_, blocks_, uncertain_;
+  std::array<Staging, 3> ring_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace foresight

@@ -1,0 +1,161 @@
+// Which charts have which resolution, and where their pages lie. Pure bookkeeping on the CPU.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gl/faces.hpp"
+#include "texture_gpu/chart_raster.hpp"
+#include "texture_gpu/options.hpp"
+#include "texture_gpu/page_pool.hpp"
+
+namespace foresight {
+
+/// A camera at one instant, as far as visibility and resolution are concerned.
+struct AtlasView {
+  const Lens* lens = nullptr;
+  const gl::Faces* faces = nullptr;
+  std::vector<Pose> T_camera_node;  ///< one per node of the scene
+};
+
+/// A page as cull.comp reads it.
+struct PageRecord {
+  std::uint32_t chart, xy, heights, height_slot;
+};
+
+/// A page to be written, as jobs.glsl reads it.
+struct PageJob {
+  std::uint32_t chart, xy, old_slot, new_slot;
+  std::uint32_t height_slot, table_index, covered, unused = 0;
+};
+
+/// Brightness of a page when it was last taken as a reference (exposure.hpp).
+struct PageExposure {
+  float log_brightness = 0;
+  float radius2 = 0;
+  float log_gain = 0;
+  std::int64_t image = -1;  ///< -1: none yet
+};
+
+struct AtlasPage {
+  std::uint32_t colour = atlas::kNoSlot;
+  std::uint32_t height = atlas::kNoSlot;
+  std::uint16_t low = 0, high = 0;  ///< raw heights; 0: no surface on this page
+  std::uint16_t covered = 0;        ///< texels on the surface
+  std::int64_t last_seen = -1;      ///< image number
+  PageExposure exposure;
+};
+
+/// A chart at its present resolution.
+struct AtlasChart {
+  int level = kNoLevel;     ///< density is 2^(level / 4); kNoLevel: no texels yet
+  double wanted = 0;        ///< texels per metre of the closest view so far
+  ChartRaster raster;
+  Eigen::Vector2i pages{0, 0};
+  int first_page = 0;       ///< in the page table
+  std::vector<AtlasPage> page;
+  bool in_view = false;
+  /// Set from a change of resolution until commit(): what the published generation still holds.
+  struct Before {
+    double density = 0;
+    Eigen::Vector2d uv0{0, 0};
+    Eigen::Vector2i pages{0, 0};
+    std::vector<bool> resident;
+  };
+  std::optional<Before> before;
+  static constexpr int kNoLevel = -100000;
+};
+
+/// Two-step allocation for each image: plan() decides resolutions and names the pages that may be
+/// seen; after the GPU has tested them, allocate() gives slots to those that are.
+///
+/// Memory policy: pages not in view lose their place first, those unseen for longest before
+/// others; if what is in view does not fit, all resolutions fall by steps of 2^(1/4), and rise
+/// again when less than half is used. One thread.
+class ChartAtlas {
+ public:
+  ChartAtlas(std::shared_ptr<const SurfacePatches> surface, const TextureOptions& options);
+
+  /// Resident pages that the memory budget allows, with room for a second generation of each.
+  static std::uint32_t page_capacity(std::uint64_t memory_bytes);
+
+  const SurfacePatches& surface() const { return *surface_; }
+  const std::vector<AtlasChart>& charts() const { return charts_; }
+  int page_count() const { return page_count_; }  ///< length of the page table
+  std::uint32_t resident_pages() const { return heights_.used(); }
+  std::uint32_t colour_slots_in_use() const { return colours_.used(); }
+  std::uint32_t colour_capacity() const { return colours_.capacity(); }
+  std::uint32_t height_capacity() const { return heights_.capacity(); }
+  std::uint64_t bytes_in_use() const;
+
+  /// Chooses each chart's resolution for the views of image number `image` and rasterises what
+  /// changed. Returns the pages that may be seen, in table order.
+  std::span<const PageRecord> plan(std::span<const AtlasView> views, std::int64_t image);
+
+  struct Allocation {
+    std::vector<PageJob> jobs;            ///< pages to extract, each with a new place for its colours
+    std::vector<std::uint8_t> masks;      ///< of each job, as cull.comp gave them
+    std::vector<PageJob> relevel;         ///< pages to be filled from the previous generation first
+    std::vector<std::pair<std::uint32_t, int>> new_heights;  ///< (chart, page) whose heights the GPU lacks
+    std::vector<std::uint32_t> retired;   ///< colour slots that the previous generation still shows
+    bool fits = true;                     ///< false: resolutions were lowered, plan() again
+  };
+
+  /// `masks`: one per record of the last plan(), zero for unseen. Throws RuntimeFailure where even
+  /// the smallest pages do not fit. `fits` false leaves nothing allocated.
+  /// Needs one free colour slot for each page with a mask and each page to be re-levelled: at most
+  /// slots_needed() of them.
+  Allocation allocate(std::span<const std::uint32_t> masks, std::int64_t image);
+
+  /// Free colour slots that allocate() needs for these masks.
+  std::size_t slots_needed(std::span<const std::uint32_t> masks) const;
+  std::uint32_t free_colour_slots() const { return colours_.free(); }
+
+  /// The allocation was published: re-levelling is done.
+  void commit();
+
+  void give_back_colours(std::span<const std::uint32_t> slots);
+
+  AtlasPage& page_of(const PageRecord& record);
+
+  /// For the GPU: the page table, and five vec4 per chart (chart_record.glsl).
+  void write_table(std::vector<std::uint32_t>& out) const;
+  void write_charts(std::vector<Eigen::Vector4f>& out) const;
+  bool layout_changed() const { return layout_changed_; }  ///< by the last plan()
+
+  /// Actions of the memory policy so far.
+  struct Policy {
+    std::uint64_t evicted_pages = 0;
+    int steps_down = 0, steps_up = 0;
+    int bias = 0;  ///< present offset of all levels, <= 0
+  };
+  const Policy& policy() const { return policy_; }
+
+ private:
+  int wanted_level(int chart) const;
+  void set_level(int index, int level);
+  void lay_out();
+  void collect_records();
+  bool needs_relevel(const AtlasChart& chart, int page) const;
+  bool make_room(std::size_t heights_needed, std::int64_t image);
+  bool lower_resolution();
+  void drop_page(AtlasPage& page);
+  int page_index(const PageRecord& r) const;
+
+  std::shared_ptr<const SurfacePatches> surface_;
+  TextureOptions options_;
+  std::vector<AtlasChart> charts_;
+  SlotPool heights_, colours_;
+  int page_count_ = 0;
+  std::vector<PageRecord> records_;
+  std::vector<std::uint32_t> retired_;  // colour slots given up since the last commit
+  bool layout_changed_ = true;
+  int quiet_images_ = 0;
+  Policy policy_;
+};
+
+}  // namespace foresight

@@ -1,0 +1,48 @@
+// The new image's brightness at each page that it sees for certain: the mean of a 4x4 grid of
+// points on the page. One invocation a page.
+#include "camera.glsl"
+#include "seen.glsl"
+#include "chart_record.glsl"
+#include "atlas.glsl"
+layout(local_size_x = 64) in;
+layout(binding = 7) uniform usamplerBuffer pages;  // as in cull.comp
+layout(binding = 8) uniform samplerBuffer charts;
+layout(binding = 9) uniform usampler2DArray heights;
+layout(binding = 0, std430) writeonly buffer Samples { vec2 samples[]; };  // brightness 0..1 or -1; squared radius
+uniform int page_count;
+uniform int camera;
+
+void main() {
+  int index = int(gl_GlobalInvocationID.x);
+  if (index >= page_count) return;
+  samples[index] = vec2(-1.0, 0.0);
+  uvec4 page = texelFetch(pages, index);
+  if (page.w == kNoSlot) return;
+  ChartRecord chart = read_chart(charts, int(page.x));
+  ivec3 origin = slot_origin(page.w, 0);
+  ivec2 corner = 16 * ivec2(page.y & 0xffffu, page.y >> 16);
+  float sum = 0.0, highest = 0.0, count = 0.0;
+  vec2 center = vec2(0.0);
+  for (int i = 0; i < 16; ++i) {
+    ivec2 at = ivec2(i & 3, i >> 2) * 4 + 2;
+    uint raw = texelFetch(heights, origin + ivec3(at, 0), 0).r;
+    if (raw == 0u) continue;
+    vec2 t = vec2(corner + at);
+    vec3 p_node = chart.origin + t.x * chart.eu + t.y * chart.ev + (float(raw) - 1.0) * chart.eh;
+    vec3 p = node_to_camera(node_poses, camera * node_count + chart.node, p_node);
+    vec2 pixel;
+    if (!is_seen(camera, p, pixel)) continue;
+    vec2 uv = (pixel + 0.5) / cameras[camera].size.xy;
+    vec3 rgb = camera == 0 ? textureLod(image0, uv, 0.0).rgb : textureLod(image1, uv, 0.0).rgb;
+    float luma = dot(rgb, vec3(0.299, 0.587, 0.114));
+    sum += luma;
+    highest = max(highest, max(rgb.r, max(rgb.g, rgb.b)));
+    center += pixel;
+    count += 1.0;
+  }
+  // Fewer points than this are an edge of the page or of the view; saturated ones carry no ratio.
+  if (count < 12.0 || highest > 0.97) return;
+  vec2 half_size = 0.5 * (cameras[camera].size.xy - 1.0);
+  vec2 offset = (center / count - half_size) / length(half_size);
+  samples[index] = vec2(sum / count, dot(offset, offset));
+}

@@ -1,0 +1,81 @@
+#include "texture_gpu/exposure.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+constexpr std::size_t kFewestSamples = 30;
+constexpr std::int64_t kReferenceAge = 30;  // images; long enough for pages to cross the picture
+constexpr double kLargestLogGain = 1.4;     // a factor of four
+constexpr float kDarkest = 0.04f;           // below, noise and black level rule the ratio
+constexpr double kForgetting = 0.995;       // per image
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void ExposureEstimator::update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages,
+                               std::int64_t image) {
+  std::vector<double> ratios;
+  std::vector<std::size_t> used;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].brightness < kDarkest || !pages[i] || pages[i]->exposure.image < 0) continue;
+    const PageExposure& ref = pages[i]->exposure;
+    const double log_t = ref.log_brightness - ref.log_gain - vignetting_log(ref.radius2);
+    ratios.push_back(std::log(samples[i].brightness) - vignetting_log(samples[i].radius2) - log_t);
+    used.push_back(i);
+  }
+  if (ratios.size() >= kFewestSamples) {
+    const double gain = median(ratios);
+    std::vector<double> deviations = ratios;
+    for (double& d : deviations) d = std::abs(d - gain);
+    const double sigma = std::max(0.005, 1.4826 * median(deviations));
+    log_gain_ = std::clamp(gain, -kLargestLogGain, kLargestLogGain);
+    std::vector<Eigen::Vector3d> rows;  // x1, x2, residual without any vignetting
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      const ExposureSample& s = samples[used[k]];
+      const PageExposure& ref = pages[used[k]]->exposure;
+      const double r = s.radius2, q = ref.radius2;
+      const double residual = std::log(s.brightness) - ref.log_brightness - (log_gain_ - ref.log_gain);
+      if (std::abs(ratios[k] - gain) < 3 * sigma) rows.emplace_back(r - q, r * r - q * q, residual);
+    }
+    learn_vignetting(rows, sigma);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].brightness < kDarkest || !pages[i]) continue;
+    PageExposure& ref = pages[i]->exposure;
+    if (ref.image >= 0 && image - ref.image < kReferenceAge) continue;
+    ref = {std::log(samples[i].brightness), samples[i].radius2, static_cast<float>(log_gain_), image};
+  }
+}
+
+/// Least squares over all images, each with its own mean taken out: the mean is the gain's.
+void ExposureEstimator::learn_vignetting(const std::vector<Eigen::Vector3d>& rows, double sigma) {
+  if (rows.size() < kFewestSamples) return;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const auto& row : rows) mean += row / static_cast<double>(rows.size());
+  information_ *= kForgetting;
+  moment_ *= kForgetting;
+  const double weight = 1 / (sigma * sigma);
+  for (const auto& row : rows) {
+    const Eigen::Vector3d d = row - mean;
+    information_ += weight * d.head<2>() * d.head<2>().transpose();
+    moment_ += weight * d.head<2>() * d.z();
+  }
+  // Pages are not independent of each other; a tenth of the information is a safe claim.
+  const Eigen::Matrix2d covariance = (0.1 * information_ + 1e-6 * Eigen::Matrix2d::Identity()).inverse();
+  const Eigen::Vector2d solution = covariance * (0.1 * moment_);
+  const Eigen::Vector2d at_corner(1, 1);
+  const double value = at_corner.dot(solution), deviation = std::sqrt(at_corner.dot(covariance * at_corner));
+  const bool trusted = deviation < 0.03 && std::abs(value) > 3 * deviation && std::abs(value) < 2;
+  applied_ = trusted ? solution : Eigen::Vector2d::Zero();
+}
+
+}  // namespace foresight

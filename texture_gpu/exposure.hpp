@@ -1,0 +1,47 @@
+// Evens out exposure: the gain of each image and the vignetting of each lens.
+//
+// Camera responses are close to a power law, so a factor in linear light is a factor in the
+// 8-bit values too (g^(1/gamma)); all gains here are natural logarithms of that factor. An image
+// is modelled as   log I(x) = log T(x) + g + v(r),   v(r) = a r^2 + b r^4,
+// T the surface's brightness at the reference exposure (the first image's), r the distance from
+// the image's centre in half diagonals.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "texture_gpu/chart_atlas.hpp"
+
+namespace foresight {
+
+/// One page as exposure.comp saw it: brightness 0..1, or -1 where it did not; squared radius.
+struct ExposureSample {
+  float brightness = -1;
+  float radius2 = 0;
+};
+
+/// For one camera. One thread.
+class ExposureEstimator {
+ public:
+  /// Estimates the gain of a new image from its samples against the pages' references (`pages`,
+  /// same order; nullptr allowed), the median of their log ratios; keeps the last gain where fewer
+  /// than 30 pages can be compared. Also refines the vignetting. Then renews references that are
+  /// missing or older than 30 images.
+  void update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages, std::int64_t image);
+
+  double log_gain() const { return log_gain_; }
+  /// (a, b); zero until it is known well enough to help: v(1) beyond three of its own sigma.
+  Eigen::Vector2d vignetting() const { return applied_; }
+  double vignetting_log(double r2) const { return r2 * (applied_.x() + r2 * applied_.y()); }
+
+ private:
+  void learn_vignetting(const std::vector<Eigen::Vector3d>& rows, double sigma);
+
+  double log_gain_ = 0;
+  Eigen::Vector2d applied_ = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d information_ = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d moment_ = Eigen::Vector2d::Zero();
+};
+
+}  // namespace foresight

@@ -1,0 +1,98 @@
+#include "texture_gpu/extract_pass.hpp"
+
+#include <algorithm>
+
+#include "texture_gpu/shaders.hpp"
+
+namespace foresight {
+
+ExtractPass::ExtractPass()
+    : heights_(gl::Program::compute(gl::texture_gpu_shaders(), "heights.comp")),
+      relevel_(gl::Program::compute(gl::texture_gpu_shaders(), "relevel.comp")),
+      extract_mono_(gl::Program::compute(gl::texture_gpu_shaders(), "extract.comp", {"CAMERAS 1"})),
+      extract_stereo_(gl::Program::compute(gl::texture_gpu_shaders(), "extract.comp", {"CAMERAS 2"})),
+      jobs_(GL_RGBA32UI, 4096, "extraction jobs"),
+      relevel_jobs_(GL_RGBA32UI, 4096, "relevel jobs"),
+      tiles_(GL_R32UI, 4096, "tiles"),
+      holes_(GL_R32UI, 4096, "holes"),
+      staged_(GL_R16UI, 4096, "staged heights"),
+      slots_(GL_R32UI, 4096, "height slots") {}
+
+void dispatch_groups(const gl::Program& program, std::size_t count) {
+  constexpr std::size_t kMost = 65535;
+  for (std::size_t first = 0; first < count; first += kMost) {
+    program.set("first_group", static_cast<int>(first));
+    glDispatchCompute(static_cast<GLuint>(std::min(kMost, count - first)), 1, 1);
+  }
+}
+
+void ExtractPass::upload_heights(const ChartAtlas& atlas, std::span<const std::pair<std::uint32_t, int>> pages,
+                                 const AtlasStore& store) {
+  constexpr std::size_t kBatch = 16384;
+  for (std::size_t first = 0; first < pages.size(); first += kBatch) {
+    const auto batch = pages.subspan(first, std::min(kBatch, pages.size() - first));
+    std::vector<std::uint16_t> raw(batch.size() * 256, 0);
+    std::vector<std::uint32_t> slots;
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const AtlasChart& chart = atlas.charts()[batch[i].first];
+      slots.push_back(chart.page[static_cast<std::size_t>(batch[i].second)].height);
+      const int x0 = atlas::kPage * (batch[i].second % chart.pages.x()), y0 = atlas::kPage * (batch[i].second / chart.pages.x());
+      const int columns = std::min(atlas::kPage, chart.raster.width - x0), rows = std::min(atlas::kPage, chart.raster.height - y0);
+      for (int y = 0; y < rows; ++y)
+        std::copy_n(chart.raster.raw.begin() + (y0 + y) * chart.raster.width + x0, columns,
+                    raw.begin() + static_cast<std::ptrdiff_t>(i * 256) + y * atlas::kPage);
+    }
+    staged_.assign(std::span<const std::uint16_t>(raw));
+    slots_.assign(std::span<const std::uint32_t>(slots));
+    heights_.use();
+    glBindTextureUnit(7, staged_.texture());
+    glBindTextureUnit(8, slots_.texture());
+    glBindImageTexture(0, store.heights.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R16UI);
+    glDispatchCompute(static_cast<GLuint>(batch.size()), 1, 1);
+  }
+  if (!pages.empty()) glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void ExtractPass::relevel(std::span<const PageJob> jobs, const gl::BufferTexture& charts,
+                          const PublishedTextures& published, const AtlasStore& store) {
+  if (jobs.empty()) return;
+  relevel_jobs_.assign(jobs);
+  relevel_.use();
+  glBindTextureUnit(7, relevel_jobs_.texture());
+  glBindTextureUnit(8, charts.texture());
+  published.bind();
+  glBindImageTexture(0, store.colours.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  dispatch_groups(relevel_, 4 * jobs.size());
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+void ExtractPass::extract(std::span<const PageJob> jobs, std::span<const std::uint8_t> masks, const SeenInputs& inputs,
+                          const gl::BufferTexture& charts, const AtlasStore& store, double depth_tolerance,
+                          double worse) {
+  std::vector<std::uint32_t> tiles;
+  tiles.reserve(4 * jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    for (std::uint32_t t = 0; t < 4; ++t)
+      tiles.push_back(static_cast<std::uint32_t>(i) << 4 | t << 2 | ((masks[i] >> (2 * t)) & 3u));
+  tile_count_ = tiles.size();
+  if (tiles.empty()) return;
+  jobs_.assign(jobs);
+  tiles_.assign(std::span<const std::uint32_t>(tiles));
+  holes_.reserve(jobs.size() * sizeof(std::uint32_t));
+  holes_.buffer().clear_to_zero();
+
+  const gl::Program& program = inputs.camera_count() == 2 ? extract_stereo_ : extract_mono_;
+  inputs.bind(program, depth_tolerance);
+  program.set("worse", static_cast<float>(worse));
+  glBindTextureUnit(7, jobs_.texture());
+  glBindTextureUnit(8, charts.texture());
+  glBindTextureUnit(9, store.heights.name());
+  glBindTextureUnit(10, tiles_.texture());
+  glBindTextureUnit(11, store.colours.name());
+  glBindImageTexture(0, store.colours.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
+  dispatch_groups(program, tiles.size());
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+}  // namespace foresight

@@ -1,0 +1,44 @@
+// Writes new colours: heights of new pages, re-levelled pages, and the extraction itself.
+#pragma once
+
+#include <span>
+
+#include "texture_gpu/atlas_store.hpp"
+#include "texture_gpu/published_textures.hpp"
+#include "texture_gpu/seen_inputs.hpp"
+
+namespace foresight {
+
+/// One context. Leaves the colours visible to texture fetches and image loads that follow.
+class ExtractPass {
+ public:
+  ExtractPass();
+
+  /// Sends the heights of pages that were just given a slot (heights.comp).
+  void upload_heights(const ChartAtlas& atlas, std::span<const std::pair<std::uint32_t, int>> pages,
+                      const AtlasStore& store);
+
+  /// Fills pages of charts whose resolution changed from `published` (relevel.comp).
+  void relevel(std::span<const PageJob> jobs, const gl::BufferTexture& charts, const PublishedTextures& published,
+               const AtlasStore& store);
+
+  /// Extracts the images of `inputs` into all jobs (extract.comp). `masks` as in the allocation.
+  void extract(std::span<const PageJob> jobs, std::span<const std::uint8_t> masks, const SeenInputs& inputs,
+               const gl::BufferTexture& charts, const AtlasStore& store, double depth_tolerance, double worse);
+
+  /// Of the last extract(): its jobs, and for each whether it has texels that no camera saw.
+  const gl::BufferTexture& jobs() const { return jobs_; }
+  const gl::BufferTexture& holes() const { return holes_; }
+  std::size_t tiles() const { return tile_count_; }  ///< tiles of the last extract()
+
+ private:
+  gl::Program heights_, relevel_, extract_mono_, extract_stereo_;
+  gl::BufferTexture jobs_, relevel_jobs_, tiles_, holes_, staged_, slots_;
+  std::size_t tile_count_ = 0;
+};
+
+/// Runs a one-dimensional dispatch of any length: the API allows 65,535 groups at once. The
+/// program's uniform `first_group` tells where each part begins.
+void dispatch_groups(const gl::Program& program, std::size_t count);
+
+}  // namespace foresight

@@ -1,0 +1,114 @@
+#include "texture_gpu/fill_pass.hpp"
+
+#include "texture_gpu/atlas_layout.hpp"
+#include "texture_gpu/shaders.hpp"
+
+namespace foresight {
+namespace {
+
+// Each round carries colours one chart farther into what was never seen; later images continue.
+constexpr int kSpreadRounds = 4;
+
+gl::Program compute(const char* file) { return gl::Program::compute(gl::texture_gpu_shaders(), file); }
+gl::Program pull_program(int level) {
+  return gl::Program::compute(gl::texture_gpu_shaders(), "pull.comp", {"LEVEL " + std::to_string(level)});
+}
+
+void bind_level(GLuint unit, const gl::Texture& colours, int level, GLenum access) {
+  glBindImageTexture(unit, colours.name(), level, GL_TRUE, 0, access, GL_RGBA8);
+}
+
+}  // namespace
+
+FillPass::FillPass(const SurfacePatches& surface)
+    : push_(compute("push.comp")),
+      push_rest_(compute("push_rest.comp")),
+      coarse_(compute("coarse.comp")),
+      spread_(compute("spread.comp")),
+      pull_{pull_program(0), pull_program(1), pull_program(2), pull_program(3)},
+      neighbour_start_(GL_R32UI, 16, "neighbour starts"),
+      neighbours_(GL_R32UI, 16, "neighbours"),
+      dirty_(GL_R32UI, 16, "dirty charts"),
+      spare_means_(GL_R32UI, surface.charts.size() * sizeof(std::uint32_t), "spare chart means"),
+      chart_count_(static_cast<int>(surface.charts.size())) {
+  std::vector<std::uint32_t> start{0}, list;
+  for (const Chart& chart : surface.charts) {
+    list.insert(list.end(), chart.neighbours.begin(), chart.neighbours.end());
+    start.push_back(static_cast<std::uint32_t>(list.size()));
+  }
+  neighbour_start_.assign(std::span<const std::uint32_t>(start));
+  neighbours_.assign(std::span<const std::uint32_t>(list));
+}
+
+void FillPass::operator()(const ExtractPass& extracted, std::size_t job_count, std::span<const std::uint32_t> dirty,
+                          const AtlasStore& store, const PublishedTextures& previous, PublishedTextures& next) {
+  glBindTextureUnit(7, extracted.jobs().texture());
+  push(job_count, store);
+  means(dirty, store, previous, next);
+  glBindTextureUnit(7, extracted.jobs().texture());
+  pull(job_count, extracted.holes(), store, next);
+}
+
+void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
+  if (job_count == 0) return;
+  glBindTextureUnit(11, store.colours.name());
+  push_.use();
+  bind_level(0, store.colours, 1, GL_WRITE_ONLY);
+  dispatch_groups(push_, job_count);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  push_rest_.use();
+  push_rest_.set("job_count", static_cast<int>(job_count));
+  for (int level = 2; level <= 4; ++level) bind_level(static_cast<GLuint>(level - 2), store.colours, level, GL_WRITE_ONLY);
+  glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+void FillPass::means(std::span<const std::uint32_t> dirty, const AtlasStore& store, const PublishedTextures& previous,
+                     PublishedTextures& next) {
+  dirty_.assign(dirty);
+  coarse_.use();
+  coarse_.set("chart_count", chart_count_);
+  glBindTextureUnit(8, next.charts.texture());
+  glBindTextureUnit(9, dirty_.texture());
+  glBindTextureUnit(10, next.table.texture());
+  previous.bind();
+  glBindTextureUnit(11, store.colours.name());
+  glBindImageTexture(0, next.coarse.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+  glBindImageTexture(1, next.means.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+  dispatch_groups(coarse_, static_cast<std::size_t>(chart_count_));
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+
+  spread_.use();
+  spread_.set("chart_count", chart_count_);
+  glBindTextureUnit(7, neighbour_start_.texture());
+  glBindTextureUnit(8, neighbours_.texture());
+  const gl::BufferTexture* from = &next.means;
+  const gl::BufferTexture* to = &spare_means_;
+  for (int round = 0; round < kSpreadRounds; ++round, std::swap(from, to)) {  // even: ends in next.means
+    glBindTextureUnit(9, from->texture());
+    glBindImageTexture(0, to->texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+    glDispatchCompute(gl::groups(chart_count_, 64), 1, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  }
+}
+
+void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
+                    const PublishedTextures& next) const {
+  if (job_count == 0) return;
+  glBindTextureUnit(8, next.charts.texture());
+  glBindTextureUnit(9, next.table.texture());
+  glBindTextureUnit(10, holes.texture());
+  glBindTextureUnit(14, next.coarse.texture());
+  for (int level = 3; level >= 0; --level) {
+    const gl::Program& program = pull_[static_cast<std::size_t>(level)];
+    program.use();
+    program.set("job_count", static_cast<int>(job_count));
+    bind_level(0, store.colours, level, GL_READ_WRITE);
+    bind_level(1, store.colours, level + 1, GL_READ_ONLY);
+    const std::size_t texels = job_count * (256u >> (2 * level));
+    dispatch_groups(program, (texels + 63) / 64);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  }
+}
+
+}  // namespace foresight

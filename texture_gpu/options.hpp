@@ -1,0 +1,28 @@
+// What a user may choose about texture extraction.
+#pragma once
+
+#include <cstdint>
+
+namespace foresight {
+
+struct TextureOptions {
+  /// Texels per metre of surface (thesis, d in eqs. 4.28/4.29); 0: each chart gets one texel per
+  /// pixel of the closest view so far. Range 0, 1 .. 1e6.
+  double texels_per_metre = 0;
+  /// Most texels along a side of a chart (thesis, r_max in eqs. 4.28/4.29); 0: only memory limits.
+  int max_texture = 0;
+  /// All that the atlas may hold at any instant, both generations counted. Reserved at the start,
+  /// so that a session does not run out of memory in the middle.
+  std::uint64_t memory_bytes = std::uint64_t{1024} << 20;
+  /// Pixels on the far side of a depth discontinuity that are not trusted; follows the
+  /// registration's uncertainty. Range 0 .. 32.
+  double margin_px = 3;
+  /// Surfaces nearer to each other than this count as one, metres. Larger than the model's error.
+  double depth_tolerance = 0.02;
+  /// A new colour seen at less than this share of the old one's resolution does not replace it.
+  double worse = 0.3;
+  /// Estimate each image's gain and the lens's vignetting and even them out.
+  bool even_exposure = true;
+};
+
+}  // namespace foresight

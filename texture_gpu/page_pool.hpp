@@ -1,0 +1,37 @@
+// Hands out numbered slots of a fixed store.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "texture_gpu/atlas_layout.hpp"
+
+namespace foresight {
+
+/// One thread. Slots come lowest first on a fresh pool, so that runs are repeatable.
+class SlotPool {
+ public:
+  explicit SlotPool(std::uint32_t capacity) : capacity_(capacity) {}
+
+  std::uint32_t capacity() const { return capacity_; }
+  std::uint32_t free() const { return capacity_ - next_ + static_cast<std::uint32_t>(returned_.size()); }
+  std::uint32_t used() const { return capacity_ - free(); }
+
+  /// A slot that nobody holds; kNoSlot where none is free.
+  std::uint32_t take() {
+    if (!returned_.empty()) {
+      const std::uint32_t slot = returned_.back();
+      returned_.pop_back();
+      return slot;
+    }
+    return next_ < capacity_ ? next_++ : atlas::kNoSlot;
+  }
+  void give_back(std::uint32_t slot) { returned_.push_back(slot); }
+
+ private:
+  std::uint32_t capacity_;
+  std::uint32_t next_ = 0;
+  std::vector<std::uint32_t> returned_;
+};
+
+}  // namespace foresight

@@ -1,0 +1,25 @@
+// An image and where it was taken.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "scene/scene_model.hpp"
+
+namespace foresight {
+
+/// One camera image with the pose of its camera and of everything else at its capture instant.
+struct PosedImage {
+  cv::Mat pixels;       ///< CV_8UC1, or CV_8UC3 (BGR), of the lens's size; raw, never undistorted
+  RobotTime time;       ///< mid-exposure of the centre row
+  Pose T_world_camera;
+  SceneState scene;     ///< at `time`
+};
+
+/// The images of one stereo head, taken together. The right one may be missing.
+struct PosedFrame {
+  PosedImage left;
+  std::optional<PosedImage> right;
+};
+
+}  // namespace foresight

@@ -1,0 +1,65 @@
+// Hole filling, downwards: texels of a level without (enough) seen texels under them take the
+// level above, interpolated across page borders. Pages without holes are left alone.
+// LEVEL is the level written; one invocation a texel of it.
+#include "chart_record.glsl"
+#include "atlas.glsl"
+#include "jobs.glsl"
+layout(local_size_x = 64) in;
+layout(binding = 7) uniform usamplerBuffer jobs;
+layout(binding = 8) uniform samplerBuffer charts;
+layout(binding = 9) uniform usamplerBuffer table;
+layout(binding = 10) uniform usamplerBuffer holes;
+layout(binding = 14) uniform usamplerBuffer coarse;
+layout(binding = 0, rgba8) uniform image2DArray colours;
+layout(binding = 1, rgba8) uniform readonly image2DArray above;
+uniform int job_count;
+uniform int first_group;
+
+const int kSide = 16 >> LEVEL;  // texels of a page at this level
+
+vec4 parent(ChartRecord chart, ivec2 at) {
+  const int shift = 3 - LEVEL;  // log2 of the page's side one level up
+  ivec2 page = at >> shift;
+  if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(page, chart.pages))) return vec4(0.0);
+  int index = chart.first_page + page.y * chart.pages.x + page.x;
+  vec4 c = vec4(0.0);
+#if LEVEL < 3
+  uint slot = texelFetch(table, index).r;
+  if (slot != kNoSlot) c = imageLoad(above, slot_origin(slot, LEVEL + 1) + ivec3(at & ((1 << shift) - 1), 0));
+#endif
+  return c.a > 0.0 ? c : unpackUnorm4x8(texelFetch(coarse, index).r);
+}
+
+void main() {
+  int index = int(gl_GlobalInvocationID.x) + first_group * 64;
+  int job_index = index / (kSide * kSide);
+  if (job_index >= job_count || texelFetch(holes, job_index).r == 0u) return;
+  Job job = read_job(jobs, job_index);
+  ivec2 in_page = ivec2(index % kSide, (index / kSide) % kSide);
+  ivec3 place = slot_origin(job.new_slot, LEVEL) + ivec3(in_page, 0);
+  vec4 own = imageLoad(colours, place);
+#if LEVEL == 0
+  if (own.a >= kSeen) return;
+#else
+  if (own.a >= 0.5) return;
+#endif
+  ChartRecord chart = read_chart(charts, job.chart);
+  vec2 up = (vec2(kSide * job.page + in_page) + 0.5) / 2.0 - 0.5;
+  ivec2 base = ivec2(floor(up));
+  vec2 f = up - vec2(base);
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 o = ivec2(i & 1, i >> 1);
+    vec4 c = parent(chart, base + o);
+    float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
+    if (c.a > 0.0) sum += w * vec4(c.rgb, 1.0);
+  }
+  if (sum.a == 0.0) return;
+  vec3 from_above = sum.rgb / sum.a;
+#if LEVEL == 0
+  imageStore(colours, place, vec4(from_above, kFilled));
+#else
+  // Keeps its share of seen texels, but never less than the least that marks a colour.
+  imageStore(colours, place, vec4(mix(from_above, own.rgb, 2.0 * own.a), max(own.a, kFilled)));
+#endif
+}

@@ -1,0 +1,26 @@
+// Carries the colours of a chart over to its new resolution: each new texel takes the four old
+// texels around its place. One work group a tile, four a page.
+#include "chart_record.glsl"
+#include "atlas.glsl"
+#include "jobs.glsl"
+#include "lookup.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 7) uniform usamplerBuffer jobs;
+layout(binding = 8) uniform samplerBuffer charts;      // at the new resolution
+layout(binding = 0, rgba8) uniform writeonly image2DArray colours;
+uniform int first_group;
+
+void main() {
+  int group = first_group + int(gl_WorkGroupID.x);
+  Job job = read_job(jobs, group >> 2);
+  ivec2 in_page = ivec2(gl_LocalInvocationID.xy) + 8 * ivec2(group & 1, (group >> 1) & 1);
+  ChartRecord fresh = read_chart(charts, job.chart), old = read_chart(published_charts, job.chart);
+  vec2 uv = fresh.uv0 + vec2(16 * job.page + in_page) / fresh.density;
+  // Coarser levels of the old pyramid where the new texels are larger.
+  float lod = max(log2(old.density / fresh.density), 0.0);
+  vec4 seen = seen_colour(old, (uv - old.uv0) * old.density, int(lod + 0.5));
+  // Twice as many texels for the same pixels: each holds half as many pixels along a side.
+  float shift = log2(old.density / fresh.density) / 8.0 * 253.0 / 255.0;
+  vec4 colour = seen.a > 0.0 ? vec4(seen.rgb, clamp(seen.a + shift, 2.0 / 255.0, 1.0)) : vec4(0.0);
+  imageStore(colours, slot_origin(job.new_slot, 0) + ivec3(in_page, 0), colour);
+}

@@ -1,0 +1,48 @@
+// Whether a camera saw a surface point, and how sharply. Needs camera.glsl.
+layout(std140, binding = 0) uniform Cameras { CameraBlock cameras[2]; };
+layout(binding = 0) uniform samplerBuffer node_poses;  // camera 0's nodes, then camera 1's
+layout(binding = 1) uniform sampler2DArray depth0;
+layout(binding = 2) uniform sampler2DArray depth1;
+layout(binding = 3) uniform sampler2DArray uncertain0;
+layout(binding = 4) uniform sampler2DArray uncertain1;
+layout(binding = 5) uniform sampler2D image0;
+layout(binding = 6) uniform sampler2D image1;
+uniform int node_count;
+uniform float depth_tolerance;  // metres: surfaces nearer to each other than this count as one
+
+// True where `p` (camera frame) is the visible surface in camera `c`, outside its uncertain edges
+// and inside its image; `pixel` is then its place there.
+bool is_seen(int c, vec3 p, out vec2 pixel) {
+  vec3 place;
+  float inverse_z;
+  if (!project_face(cameras[c], p, place, inverse_z)) return false;
+  vec2 size = cameras[c].size.zw;
+  vec3 at = vec3((place.xy + 0.5) / size, place.z);
+  vec4 near_over_z = c == 0 ? textureGather(depth0, at) : textureGather(depth1, at);
+  // The four depths around the place bracket a surface that is seen at a grazing angle.
+  float far = min(min(near_over_z.x, near_over_z.y), min(near_over_z.z, near_over_z.w)) / kNear;
+  float near = max(max(near_over_z.x, near_over_z.y), max(near_over_z.z, near_over_z.w)) / kNear;
+  float z = 1.0 / inverse_z;
+  // z beyond the farthest by more than the tolerance: hidden. Before the nearest: a guard texel
+  // that floats beside the surface.
+  if ((z - depth_tolerance) * far > 1.0 || (z + depth_tolerance) * near < 1.0) return false;
+  ivec3 texel = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
+  float uncertain = c == 0 ? texelFetch(uncertain0, texel, 0).r : texelFetch(uncertain1, texel, 0).r;
+  if (uncertain > 0.5) return false;
+  if (!project_lens(cameras[c], p, pixel)) return false;
+  return all(greaterThanEqual(pixel, vec2(0.5))) && all(lessThanEqual(pixel, cameras[c].size.xy - 1.5));
+}
+
+// Pixels per texel along the two texel axes `eu`, `ev` (camera frame, metres per texel) at `p`.
+mat2 footprint(int c, vec3 p, vec3 eu, vec3 ev) {
+  vec2 f = cameras[c].focal.xy;
+  if (cameras[c].tangential.z > 1.5) {  // equidistant: pixels per radian, the same all around
+    float r = length(p);
+    vec3 d = p / r;
+    vec3 a = (eu - d * dot(d, eu)) / r, b = (ev - d * dot(d, ev)) / r;
+    vec3 x = normalize(cross(vec3(0.0, 1.0, 0.0001), d)), y = cross(d, x);
+    return mat2(f * vec2(dot(a, x), dot(a, y)), f * vec2(dot(b, x), dot(b, y)));
+  }
+  float iz2 = 1.0 / (p.z * p.z);
+  return mat2(f * (eu.xy * p.z - p.xy * eu.z) * iz2, f * (ev.xy * p.z - p.xy * ev.z) * iz2);
+}

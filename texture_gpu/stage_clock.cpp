@@ -1,0 +1,58 @@
+#include "texture_gpu/stage_clock.hpp"
+
+#include <ctime>
+
+namespace foresight {
+
+double process_cpu_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
+}
+
+void StageClock::record(const char* stage) {
+  GLuint query = 0;
+  if (software_) {
+    glFinish();
+  } else {
+    if (queries_.size() <= marks_.size()) {
+      GLuint name = 0;
+      glCreateQueries(GL_TIMESTAMP, 1, &name);
+      queries_.emplace_back(name);
+    }
+    query = queries_[marks_.size()].name();
+    glQueryCounter(query, GL_TIMESTAMP);
+  }
+  marks_.push_back({stage, process_cpu_ms(), query});
+}
+
+void StageClock::start() {
+  marks_.clear();
+  record("");
+}
+
+void StageClock::mark(const char* stage) { record(stage); }
+
+std::vector<StageTime> StageClock::read() {
+  std::vector<StageTime> out;
+  const auto gpu_ns = [](GLuint query) {
+    GLuint64 ns = 0;
+    glGetQueryObjectui64v(query, GL_QUERY_RESULT, &ns);
+    return static_cast<double>(ns);
+  };
+  for (std::size_t i = 1; i < marks_.size(); ++i) {
+    StageTime time{marks_[i].stage, marks_[i].cpu_ms - marks_[i - 1].cpu_ms, std::nullopt};
+    if (!software_) time.gpu_ms = (gpu_ns(marks_[i].query) - gpu_ns(marks_[i - 1].query)) * 1e-6;
+    bool merged = false;
+    for (StageTime& earlier : out) {
+      if (earlier.name != time.name) continue;
+      earlier.cpu_ms += time.cpu_ms;
+      if (time.gpu_ms) earlier.gpu_ms = earlier.gpu_ms.value_or(0) + *time.gpu_ms;
+      merged = true;
+    }
+    if (!merged) out.push_back(std::move(time));
+  }
+  return out;
+}
+
+}  // namespace foresight

@@ -1,0 +1,194 @@
+#include "texture_gpu/texture_core.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "gl/context.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr double kGpuTimeout = 20;                          // seconds for one frame, software renderers included
+constexpr std::chrono::milliseconds kDisplayTimeout{5000};  // for the display to move on to newer textures
+
+}  // namespace
+
+TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, std::shared_ptr<const SurfacePatches> surface,
+                         const Lens& left, const std::optional<Lens>& right, const TextureOptions& options,
+                         bool software_renderer)
+    : scene_(std::move(scene)),
+      options_(options),
+      atlas_(surface, options),
+      store_(atlas_),
+      exposures_(right ? 2 : 1),
+      raster_(std::make_shared<gl::SceneBuffers>(*scene_), false),
+      fill_(*surface),
+      clock_(software_renderer),
+      charts_(GL_RGBA32F, 16, "planned charts") {
+  cameras_.push_back(std::make_unique<CameraInput>(left, options.margin_px));
+  if (right) cameras_.push_back(std::make_unique<CameraInput>(*right, options.margin_px));
+  // The first image is fused with an empty generation.
+  current_ = next_generation();
+  atlas_.write_table(table_);
+  atlas_.write_charts(chart_rows_);
+  current_->table.assign(std::span<const std::uint32_t>(table_));
+  current_->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
+  current_->means.reserve(surface->charts.size() * sizeof(std::uint32_t));
+  current_->means.buffer().clear_to_zero();
+  current_->coarse.buffer().clear_to_zero();
+}
+
+ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& latest) {
+  ExtractionReport report;
+  clock_.start();
+  look(frame);
+  ChartAtlas::Allocation allocation;
+  if (!allocate(allocation)) return report;
+  estimate_exposure();
+
+  Generation next = next_generation();
+  atlas_.write_table(table_);
+  next->table.assign(std::span<const std::uint32_t>(table_));
+  next->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
+  extract_.upload_heights(atlas_, allocation.new_heights, store_);
+  extract_.relevel(allocation.relevel, next->charts, *current_, store_);
+  clock_.mark("prepare");
+  extract_.extract(allocation.jobs, allocation.masks, inputs_, next->charts, store_, options_.depth_tolerance,
+                   options_.worse);
+  clock_.mark("extract");
+  fill_and_finish(allocation, *next);
+
+  next->number = ++number_;
+  next->newest_image = frame.left.time;
+  next->image_count = image_ + 1;
+  next->display_gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
+  atlas_.commit();
+  retired_.push_back({current_, std::move(allocation.retired)});
+  current_ = next;
+  latest.publish(next);
+  clock_.mark("publish");
+  ++image_;
+
+  report.published = true;
+  report.number = number_;
+  report.stages = clock_.read();
+  report.log_gain = exposures_[0].log_gain();
+  report.pages = allocation.jobs.size();
+  report.tiles = extract_.tiles();
+  report.bytes_in_use = atlas_.bytes_in_use();
+  report.bytes_reserved = options_.memory_bytes;
+  report.texels_resident = std::uint64_t{atlas_.resident_pages()} * atlas::kPage * atlas::kPage;
+  report.policy = atlas_.policy();
+  return report;
+}
+
+/// Image upload, depth and uncertain edges of every camera of the frame.
+void TextureCore::look(const PosedFrame& frame) {
+  images_ = {&frame.left};
+  if (frame.right && cameras_.size() > 1) images_.push_back(&*frame.right);
+  active_.clear();
+  views_.clear();
+  const bool coarse_textures = options_.texels_per_metre > 0 || options_.max_texture > 0 || atlas_.policy().bias < 0;
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    cameras_[i]->upload(images_[i]->pixels, coarse_textures);
+    active_.push_back(cameras_[i].get());
+  }
+  clock_.mark("upload");
+  for (std::size_t i = 0; i < images_.size(); ++i)
+    raster_(images_[i]->T_world_camera, images_[i]->scene, cameras_[i]->faces());
+  clock_.mark("depth");
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    edges_(*cameras_[i], options_.margin_px, options_.depth_tolerance);
+    AtlasView view{&cameras_[i]->lens(), &cameras_[i]->faces().faces, {}};
+    const Pose T_camera_world = images_[i]->T_world_camera.inverse();
+    for (const Pose& T_world_node : images_[i]->scene.T_world_node)
+      view.T_camera_node.push_back(T_camera_world * T_world_node);
+    views_.push_back(std::move(view));
+  }
+  clock_.mark("edges");
+  inputs_.update(active_, images_, std::vector<Eigen::Vector3f>(images_.size(), {1, 0, 0}));
+}
+
+/// Plans resolutions, asks the GPU which pages are seen, and gives them places; again with lower
+/// resolutions until they fit.
+bool TextureCore::allocate(ChartAtlas::Allocation& out) {
+  reclaim();
+  for (;;) {
+    records_ = atlas_.plan(views_, image_);
+    atlas_.write_charts(chart_rows_);
+    charts_.assign(std::span<const Eigen::Vector4f>(chart_rows_));
+    survey_.set_pages(records_);
+    const auto masks = survey_.cull(inputs_, charts_, options_.depth_tolerance);
+    if (!wait_for_slots(atlas_.slots_needed(masks))) return false;
+    out = atlas_.allocate(masks, image_);
+    if (out.fits) break;
+  }
+  clock_.mark("plan");
+  return true;
+}
+
+void TextureCore::estimate_exposure() {
+  if (!options_.even_exposure) return;
+  std::vector<AtlasPage*> pages;
+  for (const PageRecord& record : records_) pages.push_back(&atlas_.page_of(record));
+  std::vector<Eigen::Vector3f> tones;
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    exposures_[i].update(survey_.brightness(inputs_, charts_, store_, static_cast<int>(i), options_.depth_tolerance),
+                         pages, image_);
+    tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
+                       exposures_[i].vignetting().y());
+  }
+  inputs_.update(active_, images_, tones);
+  clock_.mark("exposure");
+}
+
+void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next) {
+  std::vector<std::uint32_t> dirty(atlas_.charts().size(), 0);
+  for (const PageJob& job : allocation.jobs) dirty[job.chart] = 1;
+  for (std::size_t i = 0; i < dirty.size(); ++i)
+    if (atlas_.charts()[i].before) dirty[i] = 1;  // its pages moved in the table
+  next.coarse.reserve(static_cast<std::size_t>(atlas_.page_count()) * sizeof(std::uint32_t));
+  next.means.reserve(dirty.size() * sizeof(std::uint32_t));
+  fill_(extract_, allocation.jobs.size(), dirty, store_, *current_, next);
+  // The flip must not show what the GPU has not finished.
+  gl::Fence::insert().wait(kGpuTimeout);
+  gl::check_errors("texture extraction");
+  clock_.mark("fill");
+}
+
+/// Takes back what retired generations held, oldest first, as far as the display let go of them.
+void TextureCore::reclaim() {
+  while (!retired_.empty() && retired_.front().generation->leases.load(std::memory_order_acquire) == 0) {
+    atlas_.give_back_colours(retired_.front().slots);
+    pool_.push_back(std::move(retired_.front().generation));
+    retired_.pop_front();
+  }
+}
+
+bool TextureCore::wait_for_slots(std::size_t needed) {
+  const auto deadline = std::chrono::steady_clock::now() + kDisplayTimeout;
+  while (atlas_.free_colour_slots() < needed && !retired_.empty()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    reclaim();
+  }
+  return true;  // with all of them back, the atlas decides by its policy
+}
+
+TextureCore::Generation TextureCore::next_generation() {
+  if (!pool_.empty()) {
+    Generation reused = std::move(pool_.back());
+    pool_.pop_back();
+    return reused;
+  }
+  auto fresh = std::make_shared<PublishedTextures>();
+  fresh->table = gl::BufferTexture(GL_R32UI, 16, "page table");
+  fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
+  fresh->coarse = gl::BufferTexture(GL_R32UI, 16, "page means");
+  fresh->means = gl::BufferTexture(GL_R32UI, 16, "chart means");
+  fresh->colours = &store_.colours;
+  return fresh;
+}
+
+}  // namespace foresight

@@ -1,0 +1,90 @@
+// From posed camera images to textures: the order of the passes for one frame.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "texture_gpu/edge_pass.hpp"
+#include "texture_gpu/extract_pass.hpp"
+#include "texture_gpu/fill_pass.hpp"
+#include "texture_gpu/stage_clock.hpp"
+#include "texture_gpu/survey_pass.hpp"
+
+namespace foresight {
+
+/// What one call of TextureCore::process() did.
+struct ExtractionReport {
+  bool published = false;        ///< false: dropped, the display never gave back its textures
+  std::uint64_t number = 0;      ///< of the published generation
+  std::vector<StageTime> stages;
+  double log_gain = 0;           ///< of the left image (exposure.hpp)
+  std::size_t pages = 0;         ///< pages written
+  std::size_t tiles = 0;         ///< tiles of 64 texels written
+  std::uint64_t bytes_in_use = 0;    ///< of the atlas, both generations
+  std::uint64_t bytes_reserved = 0;  ///< the budget, at most Options::memory_bytes
+  std::uint64_t texels_resident = 0;
+  ChartAtlas::Policy policy;
+};
+
+/// Owns the atlas and all passes. Belongs to one thread and one context, in a share group with
+/// the display's.
+class TextureCore {
+ public:
+  /// `scene` and `surface` describe the same model. Throws RuntimeFailure (shaders, memory).
+  TextureCore(std::shared_ptr<const SceneModel> scene, std::shared_ptr<const SurfacePatches> surface,
+              const Lens& left, const std::optional<Lens>& right, const TextureOptions& options,
+              bool software_renderer);
+
+  /// Extracts one frame and publishes the result to `latest`. Blocks until the GPU is done; waits
+  /// up to a few seconds for the display to give back old generations. Throws RuntimeFailure: out
+  /// of texture memory at the lowest resolution, context lost.
+  ExtractionReport process(const PosedFrame& frame, LatestTextures& latest);
+
+ private:
+  using Generation = std::shared_ptr<PublishedTextures>;
+
+  void look(const PosedFrame& frame);
+  void estimate_exposure();
+  bool allocate(ChartAtlas::Allocation& out);
+  bool wait_for_slots(std::size_t needed);
+  void reclaim();
+  Generation next_generation();
+  void fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next);
+
+  std::shared_ptr<const SceneModel> scene_;
+  TextureOptions options_;
+  ChartAtlas atlas_;
+  AtlasStore store_;
+  std::vector<std::unique_ptr<CameraInput>> cameras_;
+  std::vector<ExposureEstimator> exposures_;
+  gl::RasterPass raster_;
+  EdgePass edges_;
+  SurveyPass survey_;
+  ExtractPass extract_;
+  FillPass fill_;
+  SeenInputs inputs_;
+  StageClock clock_;
+
+  // Of the frame in work.
+  std::vector<const CameraInput*> active_;
+  std::vector<const PosedImage*> images_;
+  std::vector<AtlasView> views_;
+  std::span<const PageRecord> records_;
+  gl::BufferTexture charts_;  // planned resolutions, before they are part of a generation
+  std::vector<Eigen::Vector4f> chart_rows_;
+  std::vector<std::uint32_t> table_;
+
+  struct Retired {
+    Generation generation;               // still shows the slots
+    std::vector<std::uint32_t> slots;
+  };
+  Generation current_;
+  std::vector<Generation> pool_;
+  std::deque<Retired> retired_;
+  std::int64_t image_ = 0;
+  std::uint64_t number_ = 0;
+};
+
+}  // namespace foresight
