@@ -118,7 +118,7 @@ void write_images(const fs::path& folder, const SampleRunOptions& options, const
                   const std::function<void(int, int)>& progress) {
   // Finer pictures and light for finer images, so that a small test is quick and a large image sharp.
   const double relative = 640.0 / std::max(options.width, options.height);
-  const LightMap light(lab, std::clamp(relative, 0.6, 6.0));
+  const LightMap light(lab, std::clamp(relative, 0.6, 16.0));
   const Renderer renderer(lab, light);
   std::vector<RayTable> rays;
   for (int eye = 0; eye <= int{options.stereo}; ++eye) rays.emplace_back(sample_lens(options, eye == 1));

@@ -124,6 +124,11 @@ void add_handle(Facets& out, const Vector3f& centre, float bow_radius, float tub
   for (int i = 0; i < kAlong; ++i)
     for (int j = 0; j < kAround; ++j)
       add_quad(out, corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), corner(i + 1, j), material);
+  for (int i : {0, kAlong}) {  // lids
+    const Corner middle{centre + Vector3f(0, 0, i ? bow_radius : -bow_radius), -Vector3f::UnitX(), {0, 0}};
+    for (int j = 0; j < kAround; ++j)
+      out.push_back({{middle, corner(i, i ? j : j + 1), corner(i, i ? j + 1 : j)}, material});
+  }
 }
 
 void transform(Facets& facets, std::size_t first, const Eigen::Isometry3f& T) {
