@@ -49,7 +49,8 @@ void run(Arguments arguments) {
 }  // namespace
 
 void add_sample_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("sample", "Write the built-in sample run: a small lab, rendered with exact truth");
+  CLI::App* command =
+      app.add_subcommand("sample", "Write the built-in sample run: a small lab, rendered with exact truth");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("OUT", arguments->out, "Folder to write; an earlier sample run in it is replaced")->required();
   command->add_option("--frames", arguments->options.frames, "Images per camera, 30 per second")->capture_default_str();

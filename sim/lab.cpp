@@ -90,17 +90,19 @@ void add_wall_things(Builder& b) {
   paint.front = pegs;
   add_box(b.part("pegboard", placed(0.609, 1.13, 0.10, 0), 0.012), {0, 0, 0}, {0.020f, 0.70f, 0.44f}, 0.0015f, paint);
 
-  const int board = b.material(
-      [](double t, unsigned s) { return prints::wood(0.90, 0.19, t, 0xd9b98c, 0xa2774a, 0.30, s); });
+  const int board =
+      b.material([](double t, unsigned s) { return prints::wood(0.90, 0.19, t, 0xd9b98c, 0xa2774a, 0.30, s); });
   Facets& shelf = b.part("shelf", placed(0.52, -0.52, 0.26, 0), 0.010);
   add_box(shelf, {0, 0, 0}, {0.19f, 0.90f, 0.018f}, 0.002f, BoxPaint::all(board));
-  for (float y : {-0.34f, 0.34f}) add_box(shelf, {0.06f, y, -0.10f}, {0.06f, 0.02f, 0.10f}, 0.002f, BoxPaint::all(steel));
+  for (float y : {-0.34f, 0.34f})
+    add_box(shelf, {0.06f, y, -0.10f}, {0.06f, 0.02f, 0.10f}, 0.002f, BoxPaint::all(steel));
   constexpr std::uint32_t kColours[] = {0x7a2f2b, 0x23516b, 0x4c6b3a, 0xb98a2e, 0x3b3f63, 0x8a4a63, 0x2f6f6b, 0x5b4a3c};
   Facets& books = b.part("books", placed(0.51, -0.16, 0.278, 0), 0.010);
   float y = 0;
   for (unsigned i = 0; i < 8; ++i) {
     const float thick = 0.024f + 0.006f * static_cast<float>((i * 5) % 4);
-    const float tall = 0.170f + 0.012f * static_cast<float>((i * 3) % 5), deep = 0.120f + 0.006f * static_cast<float>(i % 3);
+    const float tall = 0.170f + 0.012f * static_cast<float>((i * 3) % 5),
+                deep = 0.120f + 0.006f * static_cast<float>(i % 3);
     BoxPaint book = BoxPaint::all(b.plain(kColours[i], 0.05));
     book.top = white;
     book.front = b.material([=](double t, unsigned) { return prints::book_spine(thick, tall, t, kColours[i], i); });
@@ -108,7 +110,8 @@ void add_wall_things(Builder& b) {
     y -= thick + 0.0012f;
   }
   const int label = b.material([](double t, unsigned s) { return prints::cardboard(0.26, 0.13, t, true, s); });
-  BoxPaint crate = BoxPaint::all(b.material([](double t, unsigned s) { return prints::cardboard(0.15, 0.26, t, false, s); }));
+  BoxPaint crate =
+      BoxPaint::all(b.material([](double t, unsigned s) { return prints::cardboard(0.15, 0.26, t, false, s); }));
   crate.front = label;
   add_box(b.part("shelf_box", placed(0.52, -0.70, 0.278, 4), 0.010), {0, 0, 0}, {0.15f, 0.26f, 0.13f}, 0.002f, crate);
 }
@@ -140,8 +143,10 @@ void add_boxes(Builder& b) {
   add_box(b.part("carton", placed(0.20, 0.30, 0, -17), 0.007), {0, 0, 0}, {0.21f, 0.30f, 0.19f}, 0.002f, carton);
 
   BoxPaint product = BoxPaint::all(b.plain(0x16335c, 0.05));
-  product.front = product.back = b.material([](double t, unsigned s) { return prints::product_front(t, s); }, 0.8, 0.02f);
-  product.left = product.right = b.material([](double t, unsigned s) { return prints::product_side(t, s); }, 0.8, 0.02f);
+  product.front = product.back =
+      b.material([](double t, unsigned s) { return prints::product_front(t, s); }, 0.8, 0.02f);
+  product.left = product.right =
+      b.material([](double t, unsigned s) { return prints::product_side(t, s); }, 0.8, 0.02f);
   add_box(b.part("servo_kit", placed(0.13, -0.01, 0, 13), 0.007), {0, 0, 0}, {0.09f, 0.12f, 0.21f}, 0.0015f, product);
 
   const auto block = [&](const char* name, const Pose& pose, float size, std::uint32_t colour, char letter) {
@@ -164,9 +169,17 @@ void add_turned_things(Builder& b) {
   const int tea = b.plain(0x4a2713, 0.02, 0.05f);
   Facets& mug = b.part("mug", placed(-0.10, -0.48, 0, -118), 0.012);
   const float r = kMugRadius, h = kMugHeight;
-  add_turned(mug, {{0, 0, blue}, {r - 0.004f, 0, blue}, {r, 0.004f, glaze}, {r, 0.05f, glaze}, {r, h - 0.003f, blue},
-                   {r - 0.002f, h, inside}, {r - 0.004f, h - 0.003f, inside}, {r - 0.004f, h - 0.016f, tea},
-                   {0, h - 0.016f, tea}}, 32, r, h);
+  add_turned(mug,
+             {{0, 0, blue},
+              {r - 0.004f, 0, blue},
+              {r, 0.004f, glaze},
+              {r, 0.05f, glaze},
+              {r, h - 0.003f, blue},
+              {r - 0.002f, h, inside},
+              {r - 0.004f, h - 0.003f, inside},
+              {r - 0.004f, h - 0.016f, tea},
+              {0, h - 0.016f, tea}},
+             32, r, h);
   add_handle(mug, {r - 0.003f, 0, 0.5f * h}, 0.026f, 0.0055f, blue);
 
   const int wrap = b.material(
@@ -174,17 +187,35 @@ void add_turned_things(Builder& b) {
   const int tin = b.plain(0xb4b8bd, 0.05, 0.04f);
   const float c = kCanRadius, ch = kCanHeight;
   add_turned(b.part("can", placed(0.10, -0.40, 0, 150), 0.012),
-             {{0, 0, tin}, {c - 0.002f, 0, tin}, {c, 0.002f, wrap}, {c, ch - 0.002f, tin}, {c - 0.002f, ch, tin},
-              {c - 0.004f, ch - 0.004f, tin}, {0, ch - 0.004f, tin}}, 32, c, ch);
+             {{0, 0, tin},
+              {c - 0.002f, 0, tin},
+              {c, 0.002f, wrap},
+              {c, ch - 0.002f, tin},
+              {c - 0.002f, ch, tin},
+              {c - 0.004f, ch - 0.004f, tin},
+              {0, ch - 0.004f, tin}},
+             32, c, ch);
 
-  const int bottle = b.material(
-      [=](double t, unsigned s) { return prints::bottle_wrap(t, around(kBottleRadius), kBottleHeight, s); }, 0.8, 0.05f);
+  const int bottle =
+      b.material([=](double t, unsigned s) { return prints::bottle_wrap(t, around(kBottleRadius), kBottleHeight, s); },
+                 0.8, 0.05f);
   const float q = kBottleRadius, qh = kBottleHeight;
   add_turned(b.part("bottle", placed(0.14, -0.245, 0, 105), 0.012),
-             {{0, 0, bottle}, {q - 0.005f, 0, bottle}, {q - 0.001f, 0.002f, bottle}, {q, 0.007f, bottle}, {q, 0.150f, bottle},
-              {q - 0.002f, 0.163f, bottle}, {q - 0.008f, 0.176f, bottle}, {q - 0.016f, 0.188f, bottle},
-              {q - 0.022f, 0.197f, bottle}, {q - 0.023f, 0.209f, bottle}, {q - 0.019f, 0.209f, bottle},
-              {q - 0.019f, qh - 0.002f, bottle}, {q - 0.021f, qh, bottle}, {0, qh, bottle}}, 28, q, qh);
+             {{0, 0, bottle},
+              {q - 0.005f, 0, bottle},
+              {q - 0.001f, 0.002f, bottle},
+              {q, 0.007f, bottle},
+              {q, 0.150f, bottle},
+              {q - 0.002f, 0.163f, bottle},
+              {q - 0.008f, 0.176f, bottle},
+              {q - 0.016f, 0.188f, bottle},
+              {q - 0.022f, 0.197f, bottle},
+              {q - 0.023f, 0.209f, bottle},
+              {q - 0.019f, 0.209f, bottle},
+              {q - 0.019f, qh - 0.002f, bottle},
+              {q - 0.021f, qh, bottle},
+              {0, qh, bottle}},
+             28, q, qh);
 
   const int yellow = b.plain(0xe2ab2c, 0.05, 0.02f), tip = b.plain(0xd8bd92, 0.05), lead = b.plain(0x26282c, 0.05);
   Pose lying = placed(-0.30, -0.40, 0.0035, 35);
@@ -231,7 +262,8 @@ Mesh mesh_of(const Part& part) {
     std::array<std::uint32_t, 3> triangle{};
     for (int k = 0; k < 3; ++k) {
       const Vector3f& p = facet.corners[k].p;
-      const auto [at, added] = known.try_emplace({p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(mesh.vertices.size()));
+      const auto [at, added] =
+          known.try_emplace({p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(mesh.vertices.size()));
       if (added) mesh.vertices.push_back(p);
       triangle[k] = at->second;
     }

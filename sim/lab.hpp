@@ -20,9 +20,9 @@ struct Material {
 /// One node of the scene.
 struct Part {
   std::string name;
-  Facets facets;                          ///< node frame
-  Pose T_world_part = Pose::Identity();   ///< at rest
-  double light_step = 0.01;               ///< largest distance between light samples on it, metres
+  Facets facets;                         ///< node frame
+  Pose T_world_part = Pose::Identity();  ///< at rest
+  double light_step = 0.01;              ///< largest distance between light samples on it, metres
 };
 
 /// Immutable once built; safe to share between threads.

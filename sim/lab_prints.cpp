@@ -12,13 +12,15 @@ namespace {
 constexpr std::uint32_t kPaper = 0xf1eee4, kInk = 0x22242a, kRed = 0xc8432f, kBlue = 0x2f5f9e, kTeal = 0x2b7f78,
                         kYellow = 0xe9b93a;
 
-float f(double x) { return static_cast<float>(x); }
+float f(double x) {
+  return static_cast<float>(x);
+}
 
 // Fine speckle and broad unevenness that every real surface has.
 void roughen(Painter& p, double strength, std::uint32_t seed) {
   p.modulate([&](double x, double y) {
-    return strength * (0.7 * fractal_noise(f(x * 14), f(y * 14), 3, seed) + 0.5 * noise(f(x * 450), f(y * 450), seed + 5) +
-                       0.5 * noise(f(x * 1100), f(y * 1100), seed + 9));
+    return strength * (0.7 * fractal_noise(f(x * 14), f(y * 14), 3, seed) +
+                       0.5 * noise(f(x * 450), f(y * 450), seed + 5) + 0.5 * noise(f(x * 1100), f(y * 1100), seed + 9));
   });
 }
 
@@ -205,7 +207,9 @@ cv::Mat poster(double texel, std::uint32_t seed) {
   p.line(0.330, 0.330, 0.590, 0.330, 0.0020, kInk);
   p.grid(0.330, 0.130, 0.250, 0.200, 0.025, 0.0005, 0xc9ccc8);
   for (int k = 0; k < 2; ++k) {
-    const auto curve = [k](double x) { return k ? 0.30 - 0.62 * x + 0.02 * std::sin(40 * x) : 0.17 + 0.45 * x * x * 4; };
+    const auto curve = [k](double x) {
+      return k ? 0.30 - 0.62 * x + 0.02 * std::sin(40 * x) : 0.17 + 0.45 * x * x * 4;
+    };
     for (double x = 0; x < 0.245; x += 0.007)
       p.line(0.330 + x, curve(x), 0.337 + x, curve(x + 0.007), 0.0034, k ? kTeal : kRed);
   }

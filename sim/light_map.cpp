@@ -17,10 +17,10 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kLampSide = 8;  // the lamp is kLampSide^2 points: one bit each in a 64-bit word
 constexpr int kLampPoints = kLampSide * kLampSide;
 constexpr int kStillRays = 96, kPlateRays = 40, kShadeRays = 16;
-constexpr float kReach = 0.20f;     // metres around the plate within which its shadow is looked for
+constexpr float kReach = 0.20f;  // metres around the plate within which its shadow is looked for
 constexpr float kOffGeometry = 2e-4f, kOffRounded = 1e-3f;  // metres: no surface shades itself
-constexpr float kHidden = 0.005f;   // metres: what the plate covers this closely is never seen
-constexpr float kBounce = 0.20f;    // light on the plate's surroundings while it is gathered, unlit part
+constexpr float kHidden = 0.005f;                           // metres: what the plate covers this closely is never seen
+constexpr float kBounce = 0.20f;  // light on the plate's surroundings while it is gathered, unlit part
 
 const Vector3f kLampCentre(-0.62f, 0.95f, 1.45f), kLampTarget(0.05f, 0.0f, 0.0f);
 const Vector3f kLampRadiance(24.0f, 21.9f, 18.6f);
@@ -143,7 +143,8 @@ void LightMap::add_part(const Part& part, const Pose& T, double coarser) {
     grids_.push_back({static_cast<int>(samples_.size()), n});
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i + j <= n; ++i) {
-        const float b1 = static_cast<float>(i) / static_cast<float>(n), b2 = static_cast<float>(j) / static_cast<float>(n);
+        const float b1 = static_cast<float>(i) / static_cast<float>(n),
+                    b2 = static_cast<float>(j) / static_cast<float>(n);
         const float b0 = 1 - b1 - b2;
         samples_.push_back({Tf * (b0 * c[0].p + b1 * c[1].p + b2 * c[2].p),
                             (Tf.linear() * (b0 * c[0].n + b1 * c[1].n + b2 * c[2].n)).normalized(), g});

@@ -60,13 +60,13 @@ class LightMap {
   void light_plate(const Eigen::Isometry3f& T_world_plate, Irradiance& out) const;
   void shade_surroundings(const Eigen::Isometry3f& T_world_plate, Irradiance& out) const;
 
-  std::vector<Grid> grids_;                // one per facet
-  std::vector<Eigen::Vector3f> albedo_;    // one per facet, mean
+  std::vector<Grid> grids_;              // one per facet
+  std::vector<Eigen::Vector3f> albedo_;  // one per facet, mean
   std::vector<Sample> samples_;
-  std::vector<int> still_facets_;          // facet of each of the still tracer's triangles
-  int plate_first_ = 0, plate_end_ = 0;    // the plate's facets
-  std::vector<Tracer> tracers_;            // still scene, plate (node frame)
-  std::vector<std::uint64_t> seen_;        // lamp points that a still sample sees, one bit each
+  std::vector<int> still_facets_;        // facet of each of the still tracer's triangles
+  int plate_first_ = 0, plate_end_ = 0;  // the plate's facets
+  std::vector<Tracer> tracers_;          // still scene, plate (node frame)
+  std::vector<std::uint64_t> seen_;      // lamp points that a still sample sees, one bit each
   Irradiance direct_, ambient_;
   std::vector<std::uint8_t> inside_;
 };

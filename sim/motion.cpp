@@ -8,7 +8,9 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-double wave(double t, double period, double phase) { return std::sin(kTurn * (t / period + phase)); }
+double wave(double t, double period, double phase) {
+  return std::sin(kTurn * (t / period + phase));
+}
 
 // Tremor of a hand: three incommensurate waves.
 double tremor(double t, double phase) {
@@ -25,14 +27,16 @@ Pose T_world_camera_at(double t) {
       Eigen::Vector3d(0.02 - distance * std::cos(elevation) * std::cos(azimuth),
                       distance * std::cos(elevation) * std::sin(azimuth), 0.06 + distance * std::sin(elevation)) +
       0.003 * shake;
-  const Eigen::Vector3d target(0.06 + 0.004 * tremor(t, 0.53), 0.03 * wave(t, 4.1, 0.6), 0.075 + 0.004 * tremor(t, 0.17));
+  const Eigen::Vector3d target(0.06 + 0.004 * tremor(t, 0.53), 0.03 * wave(t, 4.1, 0.6),
+                               0.075 + 0.004 * tremor(t, 0.17));
 
   Pose pose = Pose::Identity();
   const Eigen::Vector3d forward = (target - eye).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
   pose.linear() << right, forward.cross(right), forward;
-  pose.linear() = pose.linear() * Eigen::AngleAxisd(0.02 * wave(t, 3.7, 0.2) + 0.003 * tremor(t, 0.29),
-                                                    Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  pose.linear() =
+      pose.linear() * Eigen::AngleAxisd(0.02 * wave(t, 3.7, 0.2) + 0.003 * tremor(t, 0.29), Eigen::Vector3d::UnitZ())
+                          .toRotationMatrix();
   pose.translation() = eye;
   return pose;
 }

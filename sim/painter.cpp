@@ -10,7 +10,9 @@ namespace {
 constexpr int kShift = 4;  // fraction bits of OpenCV's drawing functions
 constexpr std::uint32_t kInk = 0x1b1b1f;
 
-float mix(float a, float b, float t) { return a + t * (b - a); }
+float mix(float a, float b, float t) {
+  return a + t * (b - a);
+}
 
 std::uint32_t hash(std::int32_t x, std::int32_t y, std::uint32_t seed) {
   std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^ static_cast<std::uint32_t>(y) * 0xd8163841u ^
@@ -20,11 +22,15 @@ std::uint32_t hash(std::int32_t x, std::int32_t y, std::uint32_t seed) {
   return h ^ (h >> 15);
 }
 
-float unit(std::uint32_t h) { return static_cast<float>(h >> 8) / 16777216.0f; }
+float unit(std::uint32_t h) {
+  return static_cast<float>(h >> 8) / 16777216.0f;
+}
 
 }  // namespace
 
-cv::Scalar rgb(std::uint32_t hex) { return cv::Scalar(hex & 255, (hex >> 8) & 255, (hex >> 16) & 255); }
+cv::Scalar rgb(std::uint32_t hex) {
+  return cv::Scalar(hex & 255, (hex >> 8) & 255, (hex >> 16) & 255);
+}
 
 float noise(float x, float y, std::uint32_t seed) {
   const float fx = std::floor(x), fy = std::floor(y);
@@ -54,7 +60,9 @@ cv::Point Painter::fixed(double x, double y) const {
   return {f(x), f(y)};
 }
 
-int Painter::thickness(double line) const { return std::max(1, static_cast<int>(std::lround(line * scale_))); }
+int Painter::thickness(double line) const {
+  return std::max(1, static_cast<int>(std::lround(line * scale_)));
+}
 
 void Painter::rectangle(double x, double y, double w, double h, std::uint32_t colour) {
   polygon({{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}}, colour);

@@ -49,9 +49,12 @@ std::vector<View> views_of(const Lab& lab, const Pose& T_world_camera, const Pos
       for (int i = 0; i < 3; ++i) v[i] = T_camera_part * f.corners[i].p.cast<double>();
       const double volume = v[0].dot(v[1].cross(v[2]));
       if (volume < 0)  // else seen from behind: all solids are closed
-        out.push_back({&f, index, k,
-                       {-v[1].cross(v[2]).cast<float>(), -v[2].cross(v[0]).cast<float>(), -v[0].cross(v[1]).cast<float>()},
-                       static_cast<float>(-1 / volume)});
+        out.push_back(
+            {&f,
+             index,
+             k,
+             {-v[1].cross(v[2]).cast<float>(), -v[2].cross(v[0]).cast<float>(), -v[0].cross(v[1]).cast<float>()},
+             static_cast<float>(-1 / volume)});
       ++index;
     }
   }
@@ -139,7 +142,10 @@ class PixelShader {
  public:
   PixelShader(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance, const Pose& T_world_camera,
               const Pose& T_world_plate, float pixel_angle)
-      : lab_(lab), light_(light), irradiance_(irradiance), T_world_camera_(T_world_camera.cast<float>()),
+      : lab_(lab),
+        light_(light),
+        irradiance_(irradiance),
+        T_world_camera_(T_world_camera.cast<float>()),
         footprint_(pixel_angle * kPerSide) {
     for (const Part& part : lab.parts) rotations_.push_back(part.T_world_part.linear().cast<float>());
     rotations_[lab.plate] = T_world_plate.linear().cast<float>();
@@ -184,21 +190,22 @@ class PixelShader {
   const LightMap::Irradiance& irradiance_;
   Eigen::Isometry3f T_world_camera_;
   std::vector<Eigen::Matrix3f> rotations_;  // of each part into the world
-  float footprint_;  // metres between rays at one metre
+  float footprint_;                         // metres between rays at one metre
   Vector3f light_here_ = Vector3f::Zero(), mirror_here_ = Vector3f::Zero();
 };
 
 }  // namespace
 
 RayTable::RayTable(const Lens& lens)
-    : width_(lens.width()), height_(lens.height()), pixel_angle_(static_cast<float>(1 / lens.parameters().fx)),
+    : width_(lens.width()),
+      height_(lens.height()),
+      pixel_angle_(static_cast<float>(1 / lens.parameters().fx)),
       corners_(static_cast<std::size_t>(width_ + 1) * (height_ + 1),
                Vector2f::Constant(std::numeric_limits<float>::quiet_NaN())) {
   parallel_for(static_cast<std::size_t>(height_) + 1, [&](std::size_t row) {
     for (int column = 0; column <= width_; ++column) {
       const auto ray = lens.unproject({column - 0.5, static_cast<double>(row) - 0.5});
-      if (ray && ray->z() > 0.02)
-        corners_[row * (width_ + 1) + column] = (ray->head<2>() / ray->z()).cast<float>();
+      if (ray && ray->z() > 0.02) corners_[row * (width_ + 1) + column] = (ray->head<2>() / ray->z()).cast<float>();
     }
   });
 }

@@ -39,7 +39,9 @@ void write_bytes(const fs::path& file, const void* data, std::size_t size) {
   if (!stream) throw RuntimeFailure("cannot write " + file.string(), "free some space on its disk");
 }
 
-void write_text(const fs::path& file, const std::string& text) { write_bytes(file, text.data(), text.size()); }
+void write_text(const fs::path& file, const std::string& text) {
+  write_bytes(file, text.data(), text.size());
+}
 
 std::string numbers(const Pose& pose) {
   const Eigen::Vector3d p = pose.translation();
@@ -61,8 +63,8 @@ std::string camera_yaml(const Lens& lens, bool right) {
   text += format("camera_matrix:\n  rows: 3\n  cols: 3\n  data: [%.17g, 0, %.17g, 0, %.17g, %.17g, 0, 0, 1]\n", p.fx,
                  p.cx, p.fy, p.cy);
   text += "distortion_model: " + to_string(p.model) + "\n";
-  text += format("distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [%.17g, %.17g, %.17g, %.17g, %.17g]\n", p.d[0],
-                 p.d[1], p.d[2], p.d[3], p.d[4]);
+  text += format("distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [%.17g, %.17g, %.17g, %.17g, %.17g]\n",
+                 p.d[0], p.d[1], p.d[2], p.d[3], p.d[4]);
   if (right) text += "T_left_right: " + yaml(T_left_right()) + "\n";
   return text;
 }
@@ -76,7 +78,9 @@ std::string ply(const Mesh& mesh) {
   return text;
 }
 
-std::string image_name(const char* folder, int frame) { return format("%s/%06d.png", folder, frame); }
+std::string image_name(const char* folder, int frame) {
+  return format("%s/%06d.png", folder, frame);
+}
 
 void write_scene(const fs::path& folder, const Lab& lab) {
   fs::create_directory(folder / "meshes");
@@ -108,8 +112,7 @@ void write_camera(const fs::path& folder, const SampleRunOptions& options, bool 
   const char* images = right ? "rgb_right" : "rgb";
   fs::create_directory(folder / images);
   std::string list = "# time[s] file\n";
-  for (int i = 0; i < options.frames; ++i)
-    list += format("%.9f ", i / kSampleFrameRate) + image_name(images, i) + "\n";
+  for (int i = 0; i < options.frames; ++i) list += format("%.9f ", i / kSampleFrameRate) + image_name(images, i) + "\n";
   write_text(folder / (right ? "rgb_right.txt" : "rgb.txt"), list);
   write_text(folder / (right ? "camera_right.yaml" : "camera.yaml"), camera_yaml(sample_lens(options, right), right));
 }
@@ -177,7 +180,8 @@ Lens sample_lens(const SampleRunOptions& options, bool right) {
   p.cx = (p.width - 1) / 2.0 + (right ? -2.9 : 3.7) * unit;
   p.cy = (p.height - 1) / 2.0 + (right ? 2.2 : -4.1) * unit;
   if (options.distortion)
-    p.d = right ? std::array<double, 8>{-0.276, 0.087, -0.0004, 0.0007} : std::array<double, 8>{-0.28, 0.09, 0.0006, -0.0005};
+    p.d = right ? std::array<double, 8>{-0.276, 0.087, -0.0004, 0.0007}
+                : std::array<double, 8>{-0.28, 0.09, 0.0006, -0.0005};
   return Lens(p);
 }
 
@@ -195,10 +199,11 @@ void write_sample_run(const fs::path& out, const SampleRunOptions& options,
     throw InputError(out.string(), "cannot be written (" + e.code().message() + ")", "choose a writable place");
   }
   try {
-    const Lab lab = make_lab(0.0005 * std::clamp(640.0 / std::max(options.width, options.height), 0.6, 8.0), options.seed);
+    const Lab lab =
+        make_lab(0.0005 * std::clamp(640.0 / std::max(options.width, options.height), 0.6, 8.0), options.seed);
     write_text(partial / kMarker,
-               format("%s\nsize: [%d, %d]\nframes: %d\nstereo: %s\ndistortion: %s\nseed: %u\n", kMarkerLine, options.width,
-                      options.height, options.frames, options.stereo ? "true" : "false",
+               format("%s\nsize: [%d, %d]\nframes: %d\nstereo: %s\ndistortion: %s\nseed: %u\n", kMarkerLine,
+                      options.width, options.height, options.frames, options.stereo ? "true" : "false",
                       options.distortion ? "true" : "false", options.seed));
     write_scene(partial, lab);
     write_tracks(partial, options, lab.parts[lab.plate].name);
@@ -208,7 +213,8 @@ void write_sample_run(const fs::path& out, const SampleRunOptions& options,
     fs::rename(partial, target);
   } catch (const fs::filesystem_error& e) {
     fs::remove_all(partial);
-    throw RuntimeFailure("cannot write " + target.string() + " (" + e.code().message() + ")", "see that its disk has space");
+    throw RuntimeFailure("cannot write " + target.string() + " (" + e.code().message() + ")",
+                         "see that its disk has space");
   } catch (...) {
     fs::remove_all(partial);
     throw;

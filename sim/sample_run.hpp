@@ -18,8 +18,8 @@ struct SampleRunOptions {
   unsigned seed = 1;       ///< varies wood grain and small print
 };
 
-inline constexpr double kSampleFrameRate = 30;   ///< images per second
-inline constexpr int kSamplePosesPerFrame = 4;   ///< plate poses in nodes.txt per image: 120 Hz
+inline constexpr double kSampleFrameRate = 30;  ///< images per second
+inline constexpr int kSamplePosesPerFrame = 4;  ///< plate poses in nodes.txt per image: 120 Hz
 
 /// The left or right lens of the sample run.
 Lens sample_lens(const SampleRunOptions& options, bool right);

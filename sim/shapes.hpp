@@ -9,9 +9,9 @@
 namespace foresight::sim {
 
 struct Corner {
-  Eigen::Vector3f p;     ///< metres, node frame
-  Eigen::Vector3f n;     ///< unit normal for shading; differs from the triangle's on rounded solids
-  Eigen::Vector2f uv;    ///< metres on the material's picture, right and down
+  Eigen::Vector3f p;   ///< metres, node frame
+  Eigen::Vector3f n;   ///< unit normal for shading; differs from the triangle's on rounded solids
+  Eigen::Vector2f uv;  ///< metres on the material's picture, right and down
 };
 
 /// One triangle, counter-clockwise seen from outside.

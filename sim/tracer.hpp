@@ -13,8 +13,8 @@ namespace foresight::sim {
 using Triangle = std::array<Eigen::Vector3f, 3>;
 
 struct Hit {
-  int triangle = -1;  ///< index into the triangles given to the tracer
-  float t = 0;        ///< distance in units of the ray's direction
+  int triangle = -1;     ///< index into the triangles given to the tracer
+  float t = 0;           ///< distance in units of the ray's direction
   float b1 = 0, b2 = 0;  ///< barycentric weights of corners 1 and 2
 };
 

@@ -28,7 +28,8 @@ TEST(Lab, SolidsAreClosedAndFaceOutwards) {
         balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
       }
       volume += mesh.vertices[t[0]].cast<double>().dot(
-                    mesh.vertices[t[1]].cast<double>().cross(mesh.vertices[t[2]].cast<double>())) / 6;
+                    mesh.vertices[t[1]].cast<double>().cross(mesh.vertices[t[2]].cast<double>())) /
+                6;
     }
     for (const auto& [edge, sum] : balance)
       ASSERT_EQ(sum, 0) << part.name << ": edge " << edge.first << " - " << edge.second << " is open";

@@ -40,7 +40,8 @@ struct World {
       const Mesh& mesh = run.scene()->nodes()[n].mesh;
       for (const auto& t : mesh.triangles) {
         Triangle world;
-        for (int k = 0; k < 3; ++k) world[k] = (state.T_world_node[n] * mesh.vertices[t[k]].cast<double>()).cast<float>();
+        for (int k = 0; k < 3; ++k)
+          world[k] = (state.T_world_node[n] * mesh.vertices[t[k]].cast<double>()).cast<float>();
         triangles.push_back(world);
         node.push_back(static_cast<int>(n));
       }
@@ -130,7 +131,8 @@ TEST_F(SampleRun, ModelAndPicturesAgree) {
       const Eigen::Vector3d p_before = from.T_world_camera.translation() + hit->t * ray;
       const Eigen::Vector3d p = after.state.T_world_node[node] * before.state.T_world_node[node].inverse() * p_before;
       const auto pixel = lens.project(to.T_world_camera.inverse() * p);
-      if (!pixel || pixel->minCoeff() < 4 || pixel->x() > options.width - 5 || pixel->y() > options.height - 5) continue;
+      if (!pixel || pixel->minCoeff() < 4 || pixel->x() > options.width - 5 || pixel->y() > options.height - 5)
+        continue;
       const Eigen::Vector3d eye = to.T_world_camera.translation();
       if (after.tracer->blocked(eye.cast<float>(), (p - eye).cast<float>(), 0.995f)) continue;
       const auto compare = [&](double dx) {
