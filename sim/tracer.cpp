@@ -69,16 +69,46 @@ void Tracer::build(int begin, int end) {
     nodes_[index].count = end - begin;
     return;
   }
-  int axis = 0;
-  centres.sizes().maxCoeff(&axis);
-  const int middle = (begin + end) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int a, int b) {
-    const float ca = box_of(triangles_[a]).center()[axis], cb = box_of(triangles_[b]).center()[axis];
-    return ca != cb ? ca < cb : a < b;
-  });
+  const int middle = split(begin, end, centres);
   build(begin, middle);
   nodes_[index].first = static_cast<int>(nodes_.size());
   build(middle, end);
+}
+
+// Cuts where the boxes' areas, weighed by their triangles, are smallest (surface area heuristic),
+// over kBins places along the longest side; halves where all centres coincide.
+int Tracer::split(int begin, int end, const Eigen::AlignedBox3f& centres) {
+  constexpr int kBins = 16;
+  int axis = 0;
+  const float length = centres.sizes().maxCoeff(&axis);
+  const auto bin_of = [&](int triangle) {
+    const float place = (box_of(triangles_[triangle]).center()[axis] - centres.min()[axis]) / length;
+    return std::min(static_cast<int>(place * kBins), kBins - 1);
+  };
+  int best_bin = 0;
+  float lowest = std::numeric_limits<float>::infinity();
+  for (int bin = 1; bin < kBins && length > 0; ++bin) {
+    std::array<Eigen::AlignedBox3f, 2> boxes;
+    std::array<int, 2> counts{};
+    for (int i = begin; i < end; ++i) {
+      const int side = bin_of(order_[i]) >= bin;
+      boxes[side].extend(box_of(triangles_[order_[i]]));
+      ++counts[side];
+    }
+    if (!counts[0] || !counts[1]) continue;
+    const auto cost = [&](int side) {
+      const Eigen::Vector3f s = boxes[side].sizes();
+      return static_cast<float>(counts[side]) * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
+    };
+    if (cost(0) + cost(1) < lowest) {
+      lowest = cost(0) + cost(1);
+      best_bin = bin;
+    }
+  }
+  if (best_bin == 0) return (begin + end) / 2;
+  const auto middle = std::stable_partition(order_.begin() + begin, order_.begin() + end,
+                                            [&](int triangle) { return bin_of(triangle) < best_bin; });
+  return static_cast<int>(middle - order_.begin());
 }
 
 template <bool kAny>

@@ -37,6 +37,7 @@ class Tracer {
     int count = 0;
   };
   void build(int begin, int end);
+  int split(int begin, int end, const Eigen::AlignedBox3f& centres);
   template <bool kAny>
   std::optional<Hit> walk(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_max) const;
 
