@@ -19,7 +19,7 @@ constexpr int kLampPoints = kLampSide * kLampSide;
 constexpr int kStillRays = 96, kPlateRays = 40, kShadeRays = 16;
 constexpr float kReach = 0.20f;  // metres around the plate within which its shadow is looked for
 constexpr float kOffGeometry = 2e-4f, kOffRounded = 1e-3f;  // metres: no surface shades itself
-constexpr float kHidden = 0.005f;                           // metres: what the plate covers this closely is never seen
+constexpr float kHidden = 0.005f;                           // metres: what is covered this closely is hardly seen
 constexpr float kBounce = 0.20f;  // light on the plate's surroundings while it is gathered, unlit part
 
 const Vector3f kLampCentre(-0.62f, 0.95f, 1.45f), kLampTarget(0.05f, 0.0f, 0.0f);
@@ -126,7 +126,8 @@ LightMap::LightMap(const Lab& lab, double coarser) {
   each_still_facet([&](int i) {
     const Gather g = gather(samples_[i], kStillRays, nullptr, Eigen::Isometry3f::Identity());
     ambient_[i] = g.light;
-    inside_[i] = g.inside;
+    inside_[i] = g.inside ||
+                 tracers_[0].blocked(off_surface(samples_[i].p, samples_[i].n, samples_[i].g), samples_[i].g, kHidden);
   });
 }
 
@@ -188,7 +189,7 @@ LightMap::Gather LightMap::gather(const Sample& s, int rays, const Tracer* plate
   return out;
 }
 
-// Samples inside a solid are dark; interpolating them would draw a ragged seam along its foot.
+// Samples inside a solid or under its chamfer are dark; interpolating them would draw a ragged seam along its foot.
 // Their nearest usable neighbours speak for them.
 void LightMap::fill(const Grid& grid, std::vector<std::uint8_t>& unusable, Irradiance& irradiance) const {
   constexpr int kNeighbours[6][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}};
