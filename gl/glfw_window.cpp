@@ -63,6 +63,8 @@ bool Window::should_close() const {
          glfwGetKey(window_, GLFW_KEY_Q) == GLFW_PRESS;
 }
 
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
 void Window::framebuffer_size(int& width, int& height) const { glfwGetFramebufferSize(window_, &width, &height); }
 
 }  // namespace foresight::gl

@@ -299,7 +299,7 @@ void ChartAtlas::write_charts(std::vector<Eigen::Vector4f>& out) const {
     pack4(patch.eu * pitch, r.density);
     pack4(patch.ev * pitch, chart.first_page);
     pack4(patch.n * r.height_step, patch.node);
-    pack4({r.uv0.x(), r.uv0.y(), chart.pages.y()}, 0);
+    pack4({r.uv0.x(), r.uv0.y(), static_cast<double>(chart.pages.y())}, 0);
   }
 }
 

@@ -48,14 +48,14 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
 }
 
 void main() {
-  uint packed = texelFetch(tiles, first_group + int(gl_WorkGroupID.x)).r;
-  int job_index = int(packed >> 4);
+  uint tile_word = texelFetch(tiles, first_group + int(gl_WorkGroupID.x)).r;
+  int job_index = int(tile_word >> 4);
   Job job = read_job(jobs, job_index);
-  ivec2 in_page = ivec2(gl_LocalInvocationID.xy) + 8 * ivec2((packed >> 2) & 1u, (packed >> 3) & 1u);
+  ivec2 in_page = ivec2(gl_LocalInvocationID.xy) + 8 * ivec2((tile_word >> 2) & 1u, (tile_word >> 3) & 1u);
   vec4 colour = job.old_slot == kNoSlot ? vec4(0.0) : texelFetch(old_colours, slot_origin(job.old_slot, 0) + ivec3(in_page, 0), 0);
   ivec3 target = slot_origin(job.new_slot, 0) + ivec3(in_page, 0);
   uint raw = texelFetch(heights, slot_origin(job.height_slot, 0) + ivec3(in_page, 0), 0).r;
-  uint cameras_here = packed & 3u;
+  uint cameras_here = tile_word & 3u;
   if (raw != 0u && cameras_here != 0u) {
     ChartRecord chart = read_chart(charts, job.chart);
     vec2 texel = vec2(16 * job.page + in_page);

@@ -33,18 +33,18 @@ void StageClock::start() {
 
 void StageClock::mark(const char* stage) { record(stage); }
 
-std::vector<StageTime> StageClock::read() {
-  std::vector<StageTime> out;
+std::vector<StageCost> StageClock::read() {
+  std::vector<StageCost> out;
   const auto gpu_ns = [](GLuint query) {
     GLuint64 ns = 0;
     glGetQueryObjectui64v(query, GL_QUERY_RESULT, &ns);
     return static_cast<double>(ns);
   };
   for (std::size_t i = 1; i < marks_.size(); ++i) {
-    StageTime time{marks_[i].stage, marks_[i].cpu_ms - marks_[i - 1].cpu_ms, std::nullopt};
+    StageCost time{marks_[i].stage, marks_[i].cpu_ms - marks_[i - 1].cpu_ms, std::nullopt};
     if (!software_) time.gpu_ms = (gpu_ns(marks_[i].query) - gpu_ns(marks_[i - 1].query)) * 1e-6;
     bool merged = false;
-    for (StageTime& earlier : out) {
+    for (StageCost& earlier : out) {
       if (earlier.name != time.name) continue;
       earlier.cpu_ms += time.cpu_ms;
       if (time.gpu_ms) earlier.gpu_ms = earlier.gpu_ms.value_or(0) + *time.gpu_ms;

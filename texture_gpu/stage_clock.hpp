@@ -9,7 +9,7 @@
 
 namespace foresight {
 
-struct StageTime {
+struct StageCost {
   std::string name;
   double cpu_ms = 0;             ///< CPU time of the whole process: software renderers work in threads of their own
   std::optional<double> gpu_ms;  ///< only where the GPU is one
@@ -26,7 +26,7 @@ class StageClock {
   /// Ends the stage that began at the previous mark (or start()).
   void mark(const char* stage);
   /// Call after the fence of the image has passed.
-  std::vector<StageTime> read();
+  std::vector<StageCost> read();
 
  private:
   struct Mark {

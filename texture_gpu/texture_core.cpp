@@ -71,6 +71,8 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   ++image_;
 
   report.published = true;
+  report.newest_image = frame.left.time;
+  report.published_at = std::chrono::steady_clock::now();
   report.number = number_;
   report.stages = clock_.read();
   report.log_gain = exposures_[0].log_gain();

@@ -1,6 +1,7 @@
 // From posed camera images to textures: the order of the passes for one frame.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <string>
@@ -18,7 +19,9 @@ namespace foresight {
 struct ExtractionReport {
   bool published = false;        ///< false: dropped, the display never gave back its textures
   std::uint64_t number = 0;      ///< of the published generation
-  std::vector<StageTime> stages;
+  RobotTime newest_image;        ///< capture instant of the frame
+  std::chrono::steady_clock::time_point published_at;
+  std::vector<StageCost> stages;
   double log_gain = 0;           ///< of the left image (exposure.hpp)
   std::size_t pages = 0;         ///< pages written
   std::size_t tiles = 0;         ///< tiles of 64 texels written

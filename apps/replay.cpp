@@ -1,0 +1,314 @@
+#include "apps/replay.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <thread>
+
+#include "apps/replay_report/atomic_file.hpp"
+#include "apps/replay_report/contact_sheet.hpp"
+#include "apps/replay_report/html_report.hpp"
+#include "apps/replay_report/image_metrics.hpp"
+#include "apps/replay_report/instants.hpp"
+#include "apps/replay_report/progress_bar.hpp"
+#include "apps/replay_report/replay_report.hpp"
+#include "apps/replay_session.hpp"
+#include "common/error.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+std::atomic<bool> interrupted = false;
+extern "C" void on_interrupt(int) { interrupted = true; }
+
+/// For each image time, the number of images that have arrived by then: those not newer than the
+/// time minus the delay. Throws InputError for a delay that no image outlives.
+std::vector<std::size_t> arrivals(const RunFolder& run, const ReplayOptions& options) {
+  const auto& frames = run.frames();
+  std::vector<std::size_t> arrived(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (options.delay_frames) {
+      const auto delay = static_cast<std::size_t>(*options.delay_frames);
+      arrived[i] = i + 1 > delay ? i + 1 - delay : 0;
+    } else {
+      const RobotTime newest = frames[i].left.time - seconds(options.delay_ms.value_or(0) * 1e-3);
+      arrived[i] = i ? arrived[i - 1] : 0;
+      while (arrived[i] < frames.size() && frames[arrived[i]].left.time <= newest) ++arrived[i];
+    }
+  }
+  if (arrived.back() == 0)
+    throw InputError(options.delay_frames ? "--delay-frames" : "--delay-ms", "the delay is longer than the run",
+                     options.delay_frames
+                         ? "give at most " + std::to_string(frames.size() - 1) + " images"
+                         : "give less than " +
+                               std::to_string(to_seconds(frames.back().left.time - frames.front().left.time) * 1e3) + " ms");
+  return arrived;
+}
+
+/// Refuses an output that cannot be written, before any work is done: the nearest folder that
+/// exists must take new files.
+void check_writable(const fs::path& path, const std::string& option) {
+  fs::path at = fs::absolute(path);
+  while (!fs::exists(at) && at.has_relative_path()) at = at.parent_path();
+  if (!fs::is_directory(at))
+    throw InputError(option + " " + path.string(), at.string() + " is not a folder", "give a folder that can be made");
+  if (::access(at.c_str(), W_OK | X_OK) != 0)
+    throw InputError(option + " " + path.string(), at.string() + " cannot be written to", "give another place or change its rights");
+}
+
+void check_outputs(const ReplayOptions& options) {
+  if (options.out) check_writable(*options.out / "predicted", "--out");
+  for (const auto& [file, name] : {std::pair{options.report, "--report"}, std::pair{options.html, "--html"}}) {
+    if (!file) continue;
+    if (fs::is_directory(*file)) throw InputError(std::string(name) + " " + file->string(), "this is a folder", "give a file name");
+    check_writable(fs::absolute(*file).parent_path(), name);
+  }
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw RuntimeFailure("cannot make the folder " + folder.string() + ": " + error.message(), "check the disk");
+}
+
+cv::Mat as_colour(const cv::Mat& pixels) {
+  if (pixels.channels() == 3) return pixels;
+  cv::Mat colour;
+  cv::cvtColor(pixels, colour, cv::COLOR_GRAY2BGR);
+  return colour;
+}
+
+void write_png(const fs::path& file, const cv::Mat& picture) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// One replay, from the checked run to the written reports.
+class Replay {
+ public:
+  Replay(const RunFolder& run, const ReplayOptions& options, std::vector<std::size_t> arrived)
+      : run_(run),
+        options_(options),
+        arrived_(std::move(arrived)),
+        session_(run, options.textures, options.window),
+        bar_("replay", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr()) {
+    describe();
+    if (options.out) make_folder(*options.out / "predicted");
+  }
+
+  int play() {
+    options_.real_time ? play_by_the_clock() : play_step_by_step();
+    std::cerr << bar_.finish(record_.frames.size(), Clock::now());
+    record_.complete = !interrupted;
+    record_.drops += session_.textures().replaced();
+    note_policy();
+    write_reports();
+    print_summary();
+    return interrupted ? 130 : 0;
+  }
+
+ private:
+  void describe() {
+    const Lens& lens = run_.lens_left();
+    record_.run = fs::absolute(options_.run).lexically_normal().filename().string();
+    if (record_.run.empty()) record_.run = fs::absolute(options_.run).lexically_normal().parent_path().filename().string();
+    record_.image_width_px = lens.width();
+    record_.image_height_px = lens.height();
+    record_.cameras = run_.lens_right() ? 2 : 1;
+    record_.lens_model = to_string(lens.model());
+    record_.scene_triangles = run_.scene()->triangle_count();
+    for (const Node& node : run_.scene()->nodes()) record_.degenerate_triangles += node.mesh.dropped_degenerate;
+    record_.charts = static_cast<std::uint64_t>(std::count_if(session_.surface().charts.begin(), session_.surface().charts.end(),
+                                                              [](const Chart& c) { return c.radius > 0; }));
+    record_.renderer = session_.driver().renderer + ", OpenGL " + session_.driver().version;
+    record_.version = FORESIGHT_VERSION;
+    const TextureOptions& t = options_.textures;
+    if (options_.delay_frames) record_.options.push_back({"delay_frames", std::int64_t{*options_.delay_frames}});
+    else record_.options.push_back({"delay_ms", options_.delay_ms.value_or(0)});
+    record_.options.push_back({"margin_px", t.margin_px});
+    record_.options.push_back({"texels_per_metre", t.texels_per_metre});
+    record_.options.push_back({"max_texture", std::int64_t{t.max_texture}});
+    record_.options.push_back({"texture_memory_mb", static_cast<std::int64_t>(t.memory_bytes >> 20)});
+    record_.options.push_back({"depth_tolerance_m", t.depth_tolerance});
+    record_.options.push_back({"real_time", options_.real_time});
+    if (options_.scene) record_.options.push_back({"scene", options_.scene->string()});
+    if (run_.unpaired_right())
+      record_.notes.push_back(std::to_string(run_.unpaired_right()) + " right images have no left one and were left out.");
+  }
+
+  void play_step_by_step() {
+    std::size_t fed = 0;
+    for (std::size_t i = 0; i < arrived_.size() && !interrupted; ++i) {
+      FrameRecord record = new_record(i);
+      while (fed < arrived_[i] && !interrupted) {
+        PosedFrame frame = session_.load(fed++);
+        delayed_ = as_colour(frame.left.pixels);
+        delayed_time_ = frame.left.time;
+        const auto arrival = Clock::now();
+        const ExtractionReport report = session_.textures().process(std::move(frame));
+        record.arrival_to_publish_ms = std::chrono::duration<double, std::milli>(Clock::now() - arrival).count();
+        take(report, record);
+      }
+      if (arrived_[i] == 0 || interrupted) continue;
+      if (!show_and_measure(i, record)) break;
+    }
+  }
+
+  /// Every image arrives when the clock says so, whether the last one is done or not; image times
+  /// that have passed before they can be drawn are dropped.
+  void play_by_the_clock() {
+    const auto& frames = run_.frames();
+    const auto start = Clock::now();
+    const auto due = [&](std::size_t i) {
+      return start + std::chrono::duration_cast<Clock::duration>(frames[i].left.time - frames.front().left.time);
+    };
+    std::size_t fed = 0;
+    for (std::size_t i = 0; i < arrived_.size() && !interrupted; ++i) {
+      std::this_thread::sleep_until(due(i));
+      FrameRecord record = new_record(i);
+      if (arrived_[i] > fed) {
+        // The newest wins: images that came meanwhile are never even decoded.
+        record_.drops += arrived_[i] - fed - 1;
+        fed = arrived_[i];
+        PosedFrame frame = session_.load(fed - 1);
+        delayed_ = as_colour(frame.left.pixels);
+        delayed_time_ = frame.left.time;
+        submitted_.emplace_back(Clock::now(), frame.left.time);
+        session_.textures().submit(std::move(frame));
+      }
+      if (const auto report = session_.textures().take_report()) {
+        take(*report, record);
+        record.arrival_to_publish_ms = publish_latency(*report);
+      }
+      if (arrived_[i] == 0) continue;
+      const bool late = i + 1 < frames.size() && Clock::now() > due(i + 1);
+      if (late) {
+        record.dropped = true;
+        record_.frames.push_back(std::move(record));
+      } else if (!show_and_measure(i, record)) {
+        break;
+      }
+    }
+  }
+
+  std::optional<double> publish_latency(const ExtractionReport& report) {
+    for (const auto& [arrival, time] : submitted_)
+      if (time == report.newest_image)
+        return std::chrono::duration<double, std::milli>(report.published_at - arrival).count();
+    return std::nullopt;
+  }
+
+  FrameRecord new_record(std::size_t i) const {
+    FrameRecord record;
+    record.stem = run_.frames()[i].left.stem;
+    record.time_s = static_cast<double>(run_.frames()[i].left.time.ns) * 1e-9;
+    record.texture_bytes_used = bytes_used_;
+    record.texture_bytes_budget = options_.textures.memory_bytes;
+    record.gain = gain_;
+    return record;
+  }
+
+  void take(const ExtractionReport& report, FrameRecord& record) {
+    if (!report.published) {
+      ++record_.drops;
+      return;
+    }
+    for (const StageCost& cost : report.stages) record.stages.push_back({cost.name, cost.cpu_ms, cost.gpu_ms, StagePart::texture});
+    record.texture_bytes_used = bytes_used_ = report.bytes_in_use;
+    record.gain = gain_ = std::exp(2.2 * report.log_gain);  // from 8-bit values to linear light
+    record_.texels = std::max(record_.texels, report.texels_resident);
+    policy_ = report.policy;
+  }
+
+  /// Draws the view of image time i, compares, writes. False: the window was closed.
+  bool show_and_measure(std::size_t i, FrameRecord& record) {
+    record.delay_s = to_seconds(run_.frames()[i].left.time - delayed_time_);
+    const double before = process_cpu_ms();
+    const cv::Mat predicted = session_.predict(i);
+    if (predicted.empty()) return true;  // real time: nothing has been published yet
+    const double drawn = process_cpu_ms();
+    const cv::Mat actual = as_colour(read_run_image(run_.frames()[i].left, run_.lens_left()));
+    const ImageComparison comparison(actual, seen_mask(predicted));
+    record.predicted = comparison.measure(predicted);
+    record.delayed = comparison.measure(delayed_);
+    record.coverage = measure_coverage(predicted);
+    if (options_.out) write_png(*options_.out / "predicted" / (record.stem + ".png"), predicted);
+    record.stages.push_back({"view", drawn - before, std::nullopt, StagePart::view});
+    record.stages.push_back({"measure", process_cpu_ms() - drawn, std::nullopt, StagePart::measure});
+    keeper_.offer(record, delayed_, predicted, actual);
+    record_.frames.push_back(record);
+    std::cerr << bar_.update(i + 1, Clock::now()) << std::flush;
+    char title[160];
+    std::snprintf(title, sizeof title, "Foresight replay: %.0f ms delayed %.1f dB | predicted %.1f dB | actual", record.delay_s * 1e3,
+                  record.delayed.psnr_db.value_or(0), record.predicted.psnr_db.value_or(0));
+    return session_.show(delayed_, predicted, actual, title);
+  }
+
+  void note_policy() {
+    if (policy_.evicted_pages)
+      record_.notes.push_back("The texture budget was reached: " + std::to_string(policy_.evicted_pages) +
+                              " pages out of view, unseen for longest, gave up their place.");
+    if (policy_.steps_down)
+      record_.notes.push_back("The view did not fit the texture budget: all resolutions were lowered " + std::to_string(policy_.steps_down) +
+                              " times and raised " + std::to_string(policy_.steps_up) + " times by a factor of 1.19; now " +
+                              std::to_string(policy_.bias) + " steps.");
+  }
+
+  void write_reports() {
+    const auto instants = keeper_.instants();
+    if (options_.out && !instants.empty()) write_contact_sheet("Foresight replay of " + record_.run, instants, *options_.out / "contact_sheet.png");
+    if (options_.report) make_folder(fs::absolute(*options_.report).parent_path()), write_json_report(record_, *options_.report);
+    if (options_.html) make_folder(fs::absolute(*options_.html).parent_path()), write_html_report(record_, instants, *options_.html);
+  }
+
+  void print_summary() const {
+    const Summary s = summarise(record_);
+    std::printf("%zu image times: predicted %.2f dB, delayed image %.2f dB on the same pixels\n", record_.frames.size(),
+                s.predicted.psnr_db.mean, s.delayed.psnr_db.mean);
+    std::printf("seen %.3f, filled %.3f, empty %.3f of the image; sharpness %.2f of the real image's\n", s.coverage.seen, s.coverage.filled,
+                s.coverage.empty(), s.predicted.sharpness.mean);
+    std::printf("%.1f images per core-second, %.1f CPU-ms per image; renderer: %s\n", s.images_per_core_second, s.texture_cpu_ms,
+                record_.renderer.c_str());
+    for (const std::string& note : record_.notes) std::printf("%s\n", note.c_str());
+  }
+
+  const RunFolder& run_;
+  const ReplayOptions& options_;
+  std::vector<std::size_t> arrived_;
+  ReplaySession session_;
+  ProgressBar bar_;
+  RunRecord record_;
+  InstantKeeper keeper_{4};
+  cv::Mat delayed_;
+  RobotTime delayed_time_;
+  std::vector<std::pair<Clock::time_point, RobotTime>> submitted_;
+  std::uint64_t bytes_used_ = 0;
+  double gain_ = 1;
+  ChartAtlas::Policy policy_;
+};
+
+}  // namespace
+
+int replay(const ReplayOptions& options) {
+  const RunFolder run = RunFolder::open(options.run, {.scene = options.scene});
+  std::vector<std::size_t> arrived = arrivals(run, options);
+  check_outputs(options);
+  ProgressBar bar("check", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr());
+  check_run_images(run, [&](std::size_t done, std::size_t) { std::cerr << bar.update(done, Clock::now()) << std::flush; });
+  std::cerr << bar.finish(run.frames().size(), Clock::now());
+  interrupted = false;
+  std::signal(SIGINT, on_interrupt);
+  return Replay(run, options, std::move(arrived)).play();
+}
+
+}  // namespace foresight

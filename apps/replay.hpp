@@ -1,0 +1,30 @@
+// `foresight replay`: plays a recorded run through the texture core and measures the prediction.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "common/time.hpp"
+#include "texture_gpu/options.hpp"
+
+namespace foresight {
+
+struct ReplayOptions {
+  std::filesystem::path run;
+  std::optional<std::filesystem::path> scene;   ///< instead of the run's own model
+  std::optional<int> delay_frames;              ///< not with delay_ms
+  std::optional<double> delay_ms;               ///< not with delay_frames; without either: 0
+  TextureOptions textures;
+  std::optional<std::filesystem::path> out;     ///< folder for pictures
+  std::optional<std::filesystem::path> report;  ///< JSON file
+  std::optional<std::filesystem::path> html;    ///< HTML file
+  bool window = false;
+  bool real_time = false;
+};
+
+/// Checks all input before anything is written, then replays. Returns the exit code: 0, or 130
+/// after Ctrl-C (finished frames and a valid report are left). Throws InputError and
+/// RuntimeFailure.
+int replay(const ReplayOptions& options);
+
+}  // namespace foresight

@@ -1,0 +1,49 @@
+#include "apps/replay_command.hpp"
+
+#include <memory>
+
+#include "apps/replay.hpp"
+
+namespace foresight {
+
+void add_replay_command(CLI::App& app, std::function<int()>& action) {
+  auto* command = app.add_subcommand(
+      "replay", "Plays a recorded run with a delay and shows what the operator would have seen");
+  auto options = std::make_shared<ReplayOptions>();
+  auto memory_mb = std::make_shared<std::uint64_t>(1024);
+  command->add_option("RUN", options->run,
+                      "Folder with camera.yaml, rgb.txt, trajectory.txt and scene.ply or scene.yaml")
+      ->required();
+  command->add_option("--scene", options->scene, "Model to use instead of the run's own");
+  auto* frames = command->add_option("--delay-frames", options->delay_frames, "Delay in images of the run (default 0)")
+                     ->check(CLI::Range(0, 1000000));
+  command->add_option("--delay-ms", options->delay_ms, "Delay in milliseconds")
+      ->check(CLI::Range(0.0, 1e7))
+      ->excludes(frames);
+  command->add_option("--texels-per-metre", options->textures.texels_per_metre,
+                      "Resolution of all textures (default: one texel per pixel of the closest view)")
+      ->check(CLI::Range(1.0, 1e6));
+  command->add_option("--max-texture", options->textures.max_texture, "Most texels along a side of a chart")
+      ->check(CLI::Range(16, 4096));
+  command->add_option("--texture-memory-mb", *memory_mb, "Memory for textures, both generations")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  command->add_option("--margin-px", options->textures.margin_px, "Pixels behind a silhouette that are not trusted")
+      ->check(CLI::Range(0.0, 32.0))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Folder for predicted/*.png and contact_sheet.png");
+  command->add_option("--report", options->report, "JSON file with all measurements");
+  command->add_option("--html", options->html, "HTML file with pictures and plots, self-contained");
+  command->add_flag("--window", options->window, "Show delayed, predicted and actual side by side");
+  command->add_flag("--real-time", options->real_time, "Play by the clock and drop what comes too late");
+  command->footer(
+      "Pictures are RGBA; alpha 255: colour from a camera image, 128: filled hole, 64: model without colour,\n"
+      "0: no model. Image times before the first delayed image arrives are left out.\n\n"
+      "Example: foresight replay runs/bench --delay-ms 500 --out out --html out/report.html");
+  command->callback([options, memory_mb, &action] {
+    options->textures.memory_bytes = *memory_mb << 20;
+    action = [options] { return replay(*options); };
+  });
+}
+
+}  // namespace foresight

@@ -1,0 +1,65 @@
+#include "apps/replay_session.hpp"
+
+#include <opencv2/imgproc.hpp>
+
+namespace foresight {
+namespace {
+
+constexpr int kWindowWidth = 1440;
+constexpr double kDrawTimeout = 20;  // seconds
+
+}  // namespace
+
+ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options, bool window) : run_(run) {
+  const Lens& lens = run.lens_left();
+  if (window) {
+    const int height = kWindowWidth * lens.height() / (3 * lens.width());
+    auto opened = std::make_unique<gl::Window>(kWindowWidth, std::max(height, 120), "Foresight replay");
+    window_ = opened.get();
+    context_ = std::move(opened);
+  } else {
+    context_ = gl::create_headless_context();
+  }
+  driver_ = gl::query_driver();
+  gl::set_up_context();
+  surface_ = std::make_shared<const SurfacePatches>(find_surface_patches(*run.scene(), PatchOptions{}));
+  thread_ = std::make_unique<TextureThread>(
+      context_->create_shared(), TextureThread::Setup{run.scene(), surface_, lens, run.lens_right(), options});
+  context_->make_current();
+  view_ = std::make_unique<PredictedView>(std::make_shared<const gl::SceneBuffers>(*run.scene()),
+                                          std::make_shared<const SurfaceRecords>(*surface_), lens);
+  if (window_) comparison_ = std::make_unique<ComparisonWindow>(lens.width(), lens.height());
+}
+
+PosedFrame ReplaySession::load(std::size_t index) const {
+  const auto posed = [&](const RunImage& image, const Lens& lens) {
+    return PosedImage{read_run_image(image, lens), image.time, image.T_world_camera, run_.state_at(image.time)};
+  };
+  const RunFrame& frame = run_.frames()[index];
+  PosedFrame out{posed(frame.left, run_.lens_left()), std::nullopt};
+  if (frame.right) out.right = posed(*frame.right, *run_.lens_right());
+  return out;
+}
+
+cv::Mat ReplaySession::predict(std::size_t index) {
+  // Reading the picture waits for the GPU, so the lease may end with this function.
+  const TextureLease textures = thread_->textures().acquire();
+  if (!textures) return {};
+  const RunImage& at = run_.frames()[index].left;
+  view_->draw(at.T_world_camera, run_.state_at(at.time), *textures);
+  cv::Mat picture = view_->read();
+  gl::Fence::insert().wait(kDrawTimeout);
+  gl::check_errors("the predicted view");
+  return picture;
+}
+
+bool ReplaySession::show(const cv::Mat& delayed, const cv::Mat& predicted, const cv::Mat& actual,
+                         const std::string& title) {
+  if (!window_) return true;
+  comparison_->draw(*window_, delayed, predicted, actual);
+  window_->set_title(title);
+  window_->present();
+  return !window_->should_close();
+}
+
+}  // namespace foresight

@@ -1,0 +1,46 @@
+// The running parts of a replay: contexts, texture thread, predicted view.
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "display/comparison_window.hpp"
+#include "display/predicted_view.hpp"
+#include "gl/context.hpp"
+#include "gl/glfw_window.hpp"
+#include "scene/run_folder.hpp"
+#include "texture_gpu/texture_thread.hpp"
+
+namespace foresight {
+
+/// Everything that a replay keeps alive between images. One thread.
+class ReplaySession {
+ public:
+  ReplaySession(const RunFolder& run, const TextureOptions& options, bool window);
+
+  const gl::DriverInfo& driver() const { return driver_; }
+  const SurfacePatches& surface() const { return *surface_; }
+  TextureThread& textures() { return *thread_; }
+
+  /// Reads the pixels of frame `index` of the run, with poses and scene. Throws InputError.
+  PosedFrame load(std::size_t index) const;
+
+  /// The view at the pose of frame `index` with the newest textures, CV_8UC4 (BGRA); empty where
+  /// nothing has been published yet.
+  cv::Mat predict(std::size_t index);
+
+  /// Shows the three pictures in the window, if there is one. False: the user closed it.
+  bool show(const cv::Mat& delayed, const cv::Mat& predicted, const cv::Mat& actual, const std::string& title);
+
+ private:
+  const RunFolder& run_;
+  std::unique_ptr<gl::Context> context_;
+  gl::Window* window_ = nullptr;  // context_, where it is one
+  gl::DriverInfo driver_;
+  std::shared_ptr<const SurfacePatches> surface_;
+  std::unique_ptr<PredictedView> view_;
+  std::unique_ptr<ComparisonWindow> comparison_;
+  std::unique_ptr<TextureThread> thread_;  // ends before the context it shares with
+};
+
+}  // namespace foresight

@@ -1,0 +1,102 @@
+#include "texture_gpu/texture_thread.hpp"
+
+#include <chrono>
+
+#include "common/error.hpp"
+
+namespace foresight {
+
+TextureThread::TextureThread(std::unique_ptr<gl::Context> context, const Setup& setup) : context_(std::move(context)) {
+  thread_ = std::jthread([this, setup](std::stop_token stop) { run(stop, setup); });
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return ready_ || error_; });
+  if (error_) {
+    lock.unlock();
+    thread_.join();
+    std::rethrow_exception(error_);
+  }
+}
+
+TextureThread::~TextureThread() = default;  // jthread: asks the thread to stop and joins it
+
+void TextureThread::run(std::stop_token stop, const Setup& setup) {
+  try {
+    context_->make_current();
+    gl::set_up_context();
+    {
+      TextureCore core(setup.scene, setup.surface, setup.left, setup.right, setup.options,
+                       gl::query_driver().is_software);
+      {
+        const std::scoped_lock lock(mutex_);
+        ready_ = true;
+      }
+      changed_.notify_all();
+      work(stop, core);
+      latest_.publish(nullptr);  // its textures go with the core
+    }
+  } catch (...) {
+    const std::scoped_lock lock(mutex_);
+    error_ = std::current_exception();
+  }
+  latest_.publish(nullptr);
+  changed_.notify_all();
+  context_->release();
+}
+
+void TextureThread::work(std::stop_token stop, TextureCore& core) {
+  while (!stop.stop_requested()) {
+    std::unique_lock lock(mutex_);
+    // The time-out only bounds the wait; a stop request wakes the thread at once.
+    if (!changed_.wait_for(lock, stop, std::chrono::seconds(1), [&] { return waiting_.has_value(); })) continue;
+    const PosedFrame frame = std::move(*waiting_);
+    waiting_.reset();
+    const std::uint64_t number = submitted_;
+    lock.unlock();
+    ExtractionReport report = core.process(frame, latest_);
+    lock.lock();
+    report_ = std::move(report);
+    finished_ = number;
+    lock.unlock();
+    changed_.notify_all();
+  }
+}
+
+void TextureThread::rethrow_locked() {
+  if (error_) std::rethrow_exception(error_);
+}
+
+void TextureThread::submit(PosedFrame frame) {
+  {
+    const std::scoped_lock lock(mutex_);
+    rethrow_locked();
+    if (waiting_) ++replaced_;
+    waiting_ = std::move(frame);
+    ++submitted_;
+  }
+  changed_.notify_all();
+}
+
+std::optional<ExtractionReport> TextureThread::take_report() {
+  const std::scoped_lock lock(mutex_);
+  rethrow_locked();
+  return std::exchange(report_, std::nullopt);
+}
+
+ExtractionReport TextureThread::process(PosedFrame frame, double timeout_s) {
+  submit(std::move(frame));
+  std::unique_lock lock(mutex_);
+  const bool done = changed_.wait_for(lock, std::chrono::duration<double>(timeout_s),
+                                      [&] { return error_ || finished_ == submitted_; });
+  rethrow_locked();
+  if (!done)
+    throw RuntimeFailure("the texture thread did not finish an image within " + std::to_string(timeout_s) + " s",
+                         "look for a GPU fault with `dmesg`");
+  return std::move(*std::exchange(report_, std::nullopt));
+}
+
+std::uint64_t TextureThread::replaced() const {
+  const std::scoped_lock lock(mutex_);
+  return replaced_;
+}
+
+}  // namespace foresight

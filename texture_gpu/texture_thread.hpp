@@ -1,0 +1,65 @@
+// The extraction on a thread and context of its own, so that the display never waits for it.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "gl/context.hpp"
+#include "texture_gpu/texture_core.hpp"
+
+namespace foresight {
+
+/// Takes posed frames, newest first, and publishes textures. Construct and destroy on the thread
+/// that owns the display's context; all other methods from any one thread.
+class TextureThread {
+ public:
+  struct Setup {
+    std::shared_ptr<const SceneModel> scene;
+    std::shared_ptr<const SurfacePatches> surface;
+    Lens left;
+    std::optional<Lens> right;
+    TextureOptions options;
+  };
+
+  /// `context`: shares objects with the display's context; used by this thread only from now on.
+  /// Blocks until the core is built; rethrows what its construction throws.
+  TextureThread(std::unique_ptr<gl::Context> context, const Setup& setup);
+  ~TextureThread();
+  TextureThread(const TextureThread&) = delete;
+  TextureThread& operator=(const TextureThread&) = delete;
+
+  const LatestTextures& textures() const { return latest_; }
+
+  /// Hands over a frame and returns at once. A frame that still waits is replaced and counted.
+  /// Rethrows an error of the thread.
+  void submit(PosedFrame frame);
+
+  /// The report of the newest finished frame since the last call, if any. Rethrows an error.
+  std::optional<ExtractionReport> take_report();
+
+  /// submit(), then blocks until that frame is published (or dropped for lack of room). Throws
+  /// RuntimeFailure after `timeout_s`.
+  ExtractionReport process(PosedFrame frame, double timeout_s = 120);
+
+  std::uint64_t replaced() const;  ///< frames that were never extracted because a newer one came
+
+ private:
+  void run(std::stop_token stop, const Setup& setup);
+  void work(std::stop_token stop, TextureCore& core);
+  void rethrow_locked();
+
+  std::unique_ptr<gl::Context> context_;
+  LatestTextures latest_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<PosedFrame> waiting_;
+  std::optional<ExtractionReport> report_;
+  std::exception_ptr error_;
+  std::uint64_t replaced_ = 0, submitted_ = 0, finished_ = 0;
+  bool ready_ = false;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace foresight
