@@ -1,5 +1,6 @@
 #include "common/lens.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

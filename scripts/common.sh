@@ -1,0 +1,24 @@
+# Shared by the scripts in this folder; source it, do not run it.
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+script=${0##*/}
+
+say() { printf '\n== %s: %s\n' "$script" "$*" >&2; }
+fail() { printf '%s: %s\n' "$script" "$*" >&2; exit 1; }
+# The comment at the head of the calling script is its help text.
+usage() { sed -n '2,/^[^#]/{s/^# \{0,1\}//p}' "$0"; }
+
+# Compilers need about 1.5 GB each; FORESIGHT_JOBS overrides.
+jobs() {
+  local cores memory
+  cores=$(nproc)
+  memory=$(awk '/^MemAvailable/ {print int($2 / 1572864)}' /proc/meminfo)
+  [ "$memory" -ge 1 ] || memory=1
+  echo "${FORESIGHT_JOBS:-$((cores < memory ? cores : memory))}"
+}
+
+# build_preset NAME: configures and builds the CMake preset NAME.
+build_preset() {
+  say "building preset $1 with $(jobs) jobs"
+  (cd "$root" && cmake --preset "$1" >/dev/null && cmake --build --preset "$1" --parallel "$(jobs)") ||
+    fail "the build of preset $1 failed; the first error above says why"
+}

@@ -1,0 +1,197 @@
+#include "sim/sample_run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+
+#include "common/error.hpp"
+#include "scene/run_folder.hpp"
+#include "sim/motion.hpp"
+#include "sim/tracer.hpp"
+
+namespace foresight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+std::map<std::string, std::string> bytes_of(const fs::path& folder) {
+  std::map<std::string, std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream file(entry.path(), std::ios::binary);
+    std::stringstream text;
+    text << file.rdbuf();
+    out[fs::relative(entry.path(), folder).string()] = text.str();
+  }
+  return out;
+}
+
+// The model of a run at one instant, as triangles in the world.
+struct World {
+  World(const RunFolder& run, RobotTime time) : state(run.state_at(time)) {
+    std::vector<Triangle> triangles;
+    for (std::size_t n = 0; n < run.scene()->nodes().size(); ++n) {
+      const Mesh& mesh = run.scene()->nodes()[n].mesh;
+      for (const auto& t : mesh.triangles) {
+        Triangle world;
+        for (int k = 0; k < 3; ++k)
+          world[k] = (state.T_world_node[n] * mesh.vertices[t[k]].cast<double>()).cast<float>();
+        triangles.push_back(world);
+        node.push_back(static_cast<int>(n));
+      }
+    }
+    tracer.emplace(std::move(triangles));
+  }
+  SceneState state;
+  std::vector<int> node;  // of each triangle
+  std::optional<Tracer> tracer;
+};
+
+class SampleRun : public ::testing::Test {
+ protected:
+  SampleRun() : folder_(fs::temp_directory_path() / ("foresight_sample_test_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~SampleRun() override { fs::remove_all(folder_); }
+
+  std::vector<fs::path> left_behind() const {
+    std::vector<fs::path> out;
+    for (const auto& entry : fs::directory_iterator(folder_)) out.push_back(entry.path());
+    return out;
+  }
+
+  fs::path folder_;
+  const SampleRunOptions tiny_{.width = 48, .height = 36, .frames = 2};
+};
+
+TEST_F(SampleRun, IsReadBackAsWritten) {
+  SampleRunOptions options = tiny_;
+  options.stereo = true;
+  write_sample_run(folder_ / "run", options);
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  ASSERT_EQ(run.frames().size(), 2u);
+  EXPECT_EQ(run.lens_left().parameters().d, sample_lens(options, false).parameters().d);
+  EXPECT_EQ(run.lens_right()->parameters().fx, sample_lens(options, true).parameters().fx);
+  EXPECT_TRUE(run.T_left_right().isApprox(T_left_right(), 1e-12));
+  const double t = 1 / kSampleFrameRate;
+  EXPECT_EQ(run.frames()[1].left.pose_status, StateStatus::exact);
+  EXPECT_TRUE(run.frames()[1].left.T_world_camera.isApprox(T_world_camera_at(t), 1e-11));
+  ASSERT_TRUE(run.frames()[1].right);
+  EXPECT_TRUE(run.frames()[1].right->T_world_camera.isApprox(T_world_camera_at(t) * T_left_right(), 1e-11));
+  const int plate = run.scene()->find("plate").value();
+  const SceneState state = run.state_at(run.frames()[1].left.time);
+  EXPECT_EQ(state.status, StateStatus::exact);
+  EXPECT_TRUE(state.T_world_node[plate].isApprox(T_world_plate_at(t), 1e-11));
+  for (const RunFrame& frame : run.frames()) {
+    EXPECT_EQ(read_run_image(frame.left, run.lens_left()).size(), cv::Size(48, 36));
+    EXPECT_EQ(read_run_image(*frame.right, *run.lens_right()).size(), cv::Size(48, 36));
+  }
+}
+
+TEST_F(SampleRun, SameOptionsGiveTheSameBytes) {
+  write_sample_run(folder_ / "a", tiny_);
+  write_sample_run(folder_ / "b", tiny_);
+  EXPECT_EQ(bytes_of(folder_ / "a"), bytes_of(folder_ / "b"));
+  SampleRunOptions other = tiny_;
+  other.seed = 2;
+  write_sample_run(folder_ / "c", other);
+  EXPECT_NE(bytes_of(folder_ / "a").at("rgb/000000.png"), bytes_of(folder_ / "c").at("rgb/000000.png"));
+}
+
+// Follows surface points from the first image to the last through what was written: lens, poses, meshes, plate
+// track. They must look the same there, and must not three pixels beside.
+TEST_F(SampleRun, ModelAndPicturesAgree) {
+  SampleRunOptions options;
+  options.width = 240;
+  options.height = 180;
+  options.frames = 8;
+  write_sample_run(folder_ / "run", options);
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  const RunImage &from = run.frames().front().left, &to = run.frames().back().left;
+  const Lens& lens = run.lens_left();
+  const World before(run, from.time), after(run, to.time);
+  const cv::Mat seen = read_run_image(from, lens), later = read_run_image(to, lens);
+  const int plate = run.scene()->find("plate").value();
+
+  std::vector<double> differences, beside;
+  int on_plate = 0;
+  for (int y = 2; y < options.height; y += 3)
+    for (int x = 2; x < options.width; x += 3) {
+      const Eigen::Vector3d ray = from.T_world_camera.linear() * lens.unproject({x, y}).value();
+      const auto hit = before.tracer->nearest(from.T_world_camera.translation().cast<float>(), ray.cast<float>());
+      if (!hit) continue;
+      const int node = before.node[hit->triangle];
+      const Eigen::Vector3d p_before = from.T_world_camera.translation() + hit->t * ray;
+      const Eigen::Vector3d p = after.state.T_world_node[node] * before.state.T_world_node[node].inverse() * p_before;
+      const auto pixel = lens.project(to.T_world_camera.inverse() * p);
+      if (!pixel || pixel->minCoeff() < 4 || pixel->x() > options.width - 5 || pixel->y() > options.height - 5)
+        continue;
+      const Eigen::Vector3d eye = to.T_world_camera.translation();
+      if (after.tracer->blocked(eye.cast<float>(), (p - eye).cast<float>(), 0.995f)) continue;
+      const auto compare = [&](double dx) {
+        cv::Mat patch;
+        cv::getRectSubPix(later, {1, 1},
+                          cv::Point2f(static_cast<float>(pixel->x() + dx), static_cast<float>(pixel->y())), patch);
+        return cv::norm(patch.at<cv::Vec3b>(0, 0), seen.at<cv::Vec3b>(y, x), cv::NORM_L1) / 3;
+      };
+      differences.push_back(compare(0));
+      beside.push_back(compare(3));
+      on_plate += node == plate;
+    }
+  ASSERT_GT(differences.size(), 2000u);
+  EXPECT_GT(on_plate, 40);
+  const auto share_above = [](const std::vector<double>& values, double level) {
+    return static_cast<double>(std::count_if(values.begin(), values.end(), [&](double v) { return v > level; })) /
+           static_cast<double>(values.size());
+  };
+  // Interpolating fine print costs some levels; a wrong place costs contrast.
+  EXPECT_LT(share_above(differences, 16), 0.12);
+  EXPECT_GT(share_above(beside, 16), 2 * share_above(differences, 16));
+}
+
+TEST_F(SampleRun, RefusesSizesAndCountsOutOfRange) {
+  const auto refuses = [&](const SampleRunOptions& options, const char* text) {
+    try {
+      write_sample_run(folder_ / "run", options);
+      ADD_FAILURE() << "accepted; expected " << text;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), HasSubstr(text));
+    }
+    EXPECT_THAT(left_behind(), ::testing::IsEmpty());
+  };
+  refuses({.width = 15}, "width: 15 is outside 16 .. 8192");
+  refuses({.height = 8193}, "height: 8193 is outside 16 .. 8192");
+  refuses({.frames = 0}, "frames: 0 is outside 1");
+}
+
+TEST_F(SampleRun, KeepsTheFoldersOfOthersAndReplacesItsOwn) {
+  fs::create_directory(folder_ / "photos");
+  std::ofstream(folder_ / "photos" / "holiday.png") << "x";
+  EXPECT_THROW(write_sample_run(folder_ / "photos", tiny_), InputError);
+  EXPECT_TRUE(fs::exists(folder_ / "photos" / "holiday.png"));
+  EXPECT_EQ(left_behind().size(), 1u);
+
+  fs::create_directory(folder_ / "run");
+  SampleRunOptions one = tiny_;
+  write_sample_run(folder_ / "run", one);
+  one.frames = 1;
+  write_sample_run(folder_ / "run", one);
+  EXPECT_FALSE(fs::exists(folder_ / "run" / "rgb" / "000001.png"));
+  EXPECT_EQ(left_behind().size(), 2u);
+}
+
+TEST_F(SampleRun, LeavesNothingWhenStopped) {
+  EXPECT_THROW(write_sample_run(folder_ / "run", tiny_, [](int, int) { throw std::runtime_error("stop"); }),
+               std::runtime_error);
+  EXPECT_THAT(left_behind(), ::testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace foresight::sim
