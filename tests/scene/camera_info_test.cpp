@@ -33,7 +33,7 @@ std::string model(const std::string& name, const std::string& coefficients) {
 }
 
 TEST(CameraInfo, ReadsACalibration) {
-  const auto& p = read(kCamera).lens.parameters();
+  const auto p = read(kCamera).lens.parameters();
   EXPECT_EQ(p.width, 8);
   EXPECT_EQ(p.height, 6);
   EXPECT_EQ(p.fx, 10);

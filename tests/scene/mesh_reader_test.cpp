@@ -235,6 +235,36 @@ TEST(MeshReader, DoesNotFollowAGltfOutOfItsFolder) {
   EXPECT_THAT(input_error([&] { read_mesh(file); }), says("m.gltf", "cannot be read as a mesh", "export"));
 }
 
+const std::string kCollada = R"(<COLLADA version="1.4.1"><asset><unit meter="1"/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="9">0 0 0 2 0 0 0 0 1</float_array><technique_common>
+<accessor source="#a" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+
+TEST(MeshReader, LeavesTheAxesOfACollada) {
+  const Mesh mesh = read("m.dae", kCollada);
+  EXPECT_NEAR(area(mesh), 1, 1e-6);
+  EXPECT_EQ(mesh.vertices[2], Eigen::Vector3f(0, 0, 1));  // Z_UP stays z
+}
+
+// Each of these makes assimp 5.2 read out of bounds or loop for ever.
+TEST(MeshReader, RefusesADamagedColladaBeforeAssimpSeesIt) {
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "count=\"9\"", "count=\"0\"")),
+              says("m.dae:4", "reads beyond its array of 0", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "count=\"9\"", "")), says("m.dae:3", "no valid count", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "count=\"3\"", "count=\"4\"")),
+              says("m.dae:4", "reads beyond its array of 9", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "stride=\"3\"", "stride=\"9223372036854775807\"")),
+              says("m.dae:4", "no valid stride", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "0 1 2</p>", "0 1 x</p>")), says("m.dae:7", "an index list", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "<COLLADA", "<collada")),
+              says("m.dae:1", "no COLLADA element", "export"));
+}
+
 TEST(MeshReader, RefusesWhatIsNoMesh) {
   EXPECT_THAT(error("m.xyz", "1 2 3"), says("m.xyz", "unknown kind of mesh '.xyz'", "convert it to one of .ply"));
   EXPECT_THAT(error("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), says("m.obj", "cannot be read", "export"));
