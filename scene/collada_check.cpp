@@ -51,7 +51,11 @@ class ColladaCheck {
       if (name == "float_array") add_array(tag);
       if (name == "accessor") add_accessor(tag);
       if (name == "param" && !accessors_.empty()) ++accessors_.back().params;
-      if ((name == "p" || name == "vcount") && !tag.ends_with('/')) check_indices(rest.substr(tag.size() + 1));
+      if (name == "triangles" || name == "polylist" || name == "polygons") begin_primitives(name, tag);
+      if (name == "p") ++lists_;
+      if (tag == "/triangles" || tag == "/polylist" || tag == "/polygons") end_primitives();
+      if ((name == "p" || name == "vcount") && !tag.ends_with('/'))
+        check_indices(rest.substr(std::min(tag.size() + 2, rest.size())));
     }
     at_ = 0;
     if (!has_root) fail("has no COLLADA element in UTF-8");
@@ -98,10 +102,22 @@ class ColladaCheck {
       fail("an accessor reads beyond its array of " + std::to_string(array->second) + " numbers");
   }
 
+  void begin_primitives(std::string_view name, std::string_view tag) {
+    const long long count = number(tag, "count", 0);
+    expected_lists_ = name == "polygons" ? count : std::min(count, 1LL);
+    lists_ = 0;
+  }
+
+  // assimp counts along and aborts the program where it comes out with another number.
+  void end_primitives() const {
+    if (lists_ != expected_lists_)
+      fail("has " + std::to_string(lists_) + " index lists where " + std::to_string(expected_lists_) +
+           " are announced");
+  }
+
   void check_indices(std::string_view content) {
-    const std::size_t end = content.find_first_not_of("> \t\r\n0123456789");
-    if (end == std::string_view::npos || content[end] != '<' || content.substr(0, end).find('>') != 0)
-      fail("an index list holds something else than indices");
+    const std::size_t end = content.find_first_not_of(" \t\r\n0123456789");
+    if (end == std::string_view::npos || content[end] != '<') fail("an index list holds something else than indices");
   }
 
   const std::filesystem::path& file_;
@@ -109,6 +125,7 @@ class ColladaCheck {
   std::size_t at_ = 0;
   std::map<std::string_view, long long> arrays_;  // id -> count
   std::vector<Accessor> accessors_;
+  long long lists_ = 0, expected_lists_ = 0;  // p elements in the current group of primitives
 };
 
 }  // namespace

@@ -261,6 +261,9 @@ TEST(MeshReader, RefusesADamagedColladaBeforeAssimpSeesIt) {
   EXPECT_THAT(error("m.dae", replaced(kCollada, "stride=\"3\"", "stride=\"9223372036854775807\"")),
               says("m.dae:4", "no valid stride", "export"));
   EXPECT_THAT(error("m.dae", replaced(kCollada, "0 1 2</p>", "0 1 x</p>")), says("m.dae:7", "an index list", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "<p>0 1 2</p>", "<p>0 1 2</p><p>0 1 2</p>")),
+              says("m.dae:7", "has 2 index lists where 1 are announced", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "<p>", "<p>>")), says("m.dae:7", "an index list", "export"));
   EXPECT_THAT(error("m.dae", replaced(kCollada, "<COLLADA", "<collada")),
               says("m.dae:1", "no COLLADA element", "export"));
 }
