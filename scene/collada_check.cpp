@@ -54,8 +54,10 @@ class ColladaCheck {
       if (name == "triangles" || name == "polylist" || name == "polygons") begin_primitives(name, tag);
       if (name == "p") ++lists_;
       if (tag == "/triangles" || tag == "/polylist" || tag == "/polygons") end_primitives();
-      if ((name == "p" || name == "vcount") && !tag.ends_with('/'))
-        check_indices(rest.substr(std::min(tag.size() + 2, rest.size())));
+      if ((name == "p" || name == "vcount") && !tag.ends_with('/')) {
+        const long long count = check_indices(rest.substr(std::min(tag.size() + 2, rest.size())));
+        if (name == "vcount") sizes_ += count;
+      }
     }
     at_ = 0;
     if (!has_root) fail("has no COLLADA element in UTF-8");
@@ -105,19 +107,30 @@ class ColladaCheck {
   void begin_primitives(std::string_view name, std::string_view tag) {
     const long long count = number(tag, "count", 0);
     expected_lists_ = name == "polygons" ? count : std::min(count, 1LL);
-    lists_ = 0;
+    expected_sizes_ = name == "polylist" ? count : 0;
+    lists_ = sizes_ = 0;
   }
 
-  // assimp counts along and aborts the program where it comes out with another number.
+  // assimp takes the number of polygon sizes on trust; it counts index lists along and aborts the
+  // program where it comes out with another number.
   void end_primitives() const {
+    if (sizes_ != expected_sizes_)
+      fail("has " + std::to_string(sizes_) + " polygon sizes where " + std::to_string(expected_sizes_) +
+           " are announced");
     if (lists_ != expected_lists_)
       fail("has " + std::to_string(lists_) + " index lists where " + std::to_string(expected_lists_) +
            " are announced");
   }
 
-  void check_indices(std::string_view content) {
+  // Returns how many there are.
+  long long check_indices(std::string_view content) const {
     const std::size_t end = content.find_first_not_of(" \t\r\n0123456789");
     if (end == std::string_view::npos || content[end] != '<') fail("an index list holds something else than indices");
+    long long count = 0;
+    for (std::size_t i = 0; i < end; ++i)
+      count += kBlank.find(content[i]) == std::string_view::npos &&
+               (i == 0 || kBlank.find(content[i - 1]) != std::string_view::npos);
+    return count;
   }
 
   const std::filesystem::path& file_;
@@ -125,7 +138,8 @@ class ColladaCheck {
   std::size_t at_ = 0;
   std::map<std::string_view, long long> arrays_;  // id -> count
   std::vector<Accessor> accessors_;
-  long long lists_ = 0, expected_lists_ = 0;  // p elements in the current group of primitives
+  // Of the current group of primitives: p elements, and numbers in vcount.
+  long long lists_ = 0, expected_lists_ = 0, sizes_ = 0, expected_sizes_ = 0;
 };
 
 }  // namespace

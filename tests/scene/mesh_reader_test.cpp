@@ -264,6 +264,9 @@ TEST(MeshReader, RefusesADamagedColladaBeforeAssimpSeesIt) {
   EXPECT_THAT(error("m.dae", replaced(kCollada, "<p>0 1 2</p>", "<p>0 1 2</p><p>0 1 2</p>")),
               says("m.dae:7", "has 2 index lists where 1 are announced", "export"));
   EXPECT_THAT(error("m.dae", replaced(kCollada, "<p>", "<p>>")), says("m.dae:7", "an index list", "export"));
+  const std::string list = replaced(replaced(kCollada, "<triangles", "<polylist"), "</triangles", "</polylist");
+  EXPECT_THAT(error("m.dae", list), says("m.dae:7", "has 0 polygon sizes where 1 are announced", "export"));
+  EXPECT_EQ(error("m.dae", replaced(list, "<p>", "<vcount> 3 </vcount><p>")), "no error");
   EXPECT_THAT(error("m.dae", replaced(kCollada, "<COLLADA", "<collada")),
               says("m.dae:1", "no COLLADA element", "export"));
 }
