@@ -31,7 +31,7 @@ class MeshBuilder {
   std::unordered_map<Eigen::Vector3f, std::uint32_t, Hash> index_;
 };
 
-/// Appends `from`, moved by `T`, to `to`; welds across the two. `T` may scale.
+/// One mesh of all `parts`, each moved by its `T` (which may scale), welded across them.
 Mesh merged(std::span<const Mesh> parts, std::span<const Eigen::Affine3d> T);
 
 }  // namespace foresight

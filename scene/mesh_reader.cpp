@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "scene/collada_check.hpp"
 #include "scene/files.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/ply_reader.hpp"
@@ -116,6 +117,7 @@ Mesh read_mesh(const fs::path& file) {
     throw InputError(file.string(), "unknown kind of mesh " + in_quotes(extension),
                      "convert it to one of .ply .obj .stl .gltf .glb .dae");
   require_regular_file(file);
+  if (extension == ".dae") check_collada(file);
   Mesh mesh = extension == ".ply" ? read_ply(file) : read_through_assimp(file);
   if (mesh.triangles.empty())
     throw InputError(file.string(), "none of its faces has an area", "export the mesh again, in metres");

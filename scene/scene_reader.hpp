@@ -19,9 +19,10 @@ namespace foresight {
 ///       parent: table                      # optional
 ///       pose: {...}                        # T_parent_base; optional
 ///       joints: {shoulder: 0.5}            # rad or m; unnamed joints stand at 0 (or the nearest limit)
+///       prefix: left_                      # in front of its link names; optional
 ///
 /// Links of a robot become nodes named by the link, posed by forward kinematics; visual meshes
-/// (file or package:// resolved beside the URDF), boxes, cylinders and spheres are read.
+/// (scene/urdf_reader.hpp says where they are looked for), boxes, cylinders and spheres are read.
 /// Files named in the yaml must lie inside `root` (the run folder). Throws InputError naming file
 /// and line or field: unknown key (with the nearest known one), missing name, duplicate or
 /// unknown node, a path that leaves `root`, whatever read_mesh refuses.
