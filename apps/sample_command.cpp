@@ -1,7 +1,5 @@
 #include "apps/sample_command.hpp"
 
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <charconv>
 #include <csignal>
 #include <cstdio>
@@ -31,7 +29,7 @@ void parse_size(const std::string& text, sim::SampleRunOptions& options) {
     throw InputError("--size", "'" + text + "' is not a size", "write it as WIDTHxHEIGHT, such as 640x480");
 }
 
-void run(Arguments arguments) {
+int run(Arguments arguments) {
   parse_size(arguments.size, arguments.options);
   std::signal(SIGINT, [](int) { interrupted = 1; });
   const std::size_t images = static_cast<std::size_t>(arguments.options.frames) * (arguments.options.stereo ? 2 : 1);
@@ -44,11 +42,12 @@ void run(Arguments arguments) {
   });
   std::fputs(bar.finish(images, now()).c_str(), stderr);
   std::printf("%s\n", arguments.out.c_str());
+  return 0;
 }
 
 }  // namespace
 
-void add_sample_command(CLI::App& app) {
+void add_sample_command(CLI::App& app, std::function<int()>& action) {
   CLI::App* command =
       app.add_subcommand("sample", "Write the built-in sample run: a small lab, rendered with exact truth");
   const auto arguments = std::make_shared<Arguments>();
@@ -58,7 +57,7 @@ void add_sample_command(CLI::App& app) {
   command->add_flag("--stereo", arguments->options.stereo, "Add a second camera, 65 mm to the right");
   command->add_flag("!--no-distortion", arguments->options.distortion, "An ideal pinhole instead of a real lens");
   command->add_option("--seed", arguments->options.seed, "Varies wood grain and small print")->capture_default_str();
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 
 }  // namespace foresight

@@ -1,10 +1,12 @@
 #pragma once
 
-#include <CLI/App.hpp>
+#include <CLI/CLI.hpp>
+#include <functional>
 
 namespace foresight {
 
 /// `foresight sample OUT [--frames N] [--size WxH] [--stereo] [--no-distortion] [--seed N]`: writes the built-in run.
-void add_sample_command(CLI::App& app);
+/// When it is chosen, `action` becomes what main() is to run.
+void add_sample_command(CLI::App& app, std::function<int()>& action);
 
 }  // namespace foresight

@@ -45,7 +45,17 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
     }
   return sum / float(taps.x * taps.y);
 #else
-  return fetch_image(c, pixel, 0.0);
+  // Catmull-Rom in five bilinear taps.
+  vec2 center = floor(pixel) ;
+  vec2 f = pixel - center;
+  vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f)), w1 = 1.0 + f * f * (-2.5 + 1.5 * f), w2 = f * (0.5 + f * (2.0 - 1.5 * f)),
+       w3 = f * f * (-0.5 + 0.5 * f);
+  vec2 w12 = w1 + w2, at12 = center + w2 / w12;
+  vec4 wc = vec4(w12.x * w0.y, w0.x * w12.y, w3.x * w12.y, w12.x * w3.y);
+  float wm = w12.x * w12.y;
+  vec3 sum = wm * fetch_image(c, at12, 0.0) + wc.x * fetch_image(c, vec2(at12.x, center.y - 1.0), 0.0) + wc.y * fetch_image(c, vec2(center.x - 1.0, at12.y), 0.0) +
+             wc.z * fetch_image(c, vec2(center.x + 2.0, at12.y), 0.0) + wc.w * fetch_image(c, vec2(at12.x, center.y + 2.0), 0.0);
+  return clamp(sum / (wm + wc.x + wc.y + wc.z + wc.w), 0.0, 1.0);
 #endif
 }
 

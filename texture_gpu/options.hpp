@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 
 namespace foresight {
 
@@ -18,7 +19,7 @@ struct TextureOptions {
   /// registration's uncertainty. Range 0 .. 32.
   double margin_px = 3;
   /// Surfaces nearer to each other than this count as one, metres. Larger than the model's error.
-  double depth_tolerance = 0.02;
+  double depth_tolerance = getenv("TOL")?atof(getenv("TOL")):0.02;
   /// A new colour seen at less than this share of the old one's resolution does not replace it.
   double worse = 0.3;
   /// Estimate each image's gain and the lens's vignetting and even them out.

@@ -26,9 +26,9 @@ bool is_seen(int c, vec3 p, out vec2 pixel) {
   // z beyond the farthest by more than the tolerance: hidden. Before the nearest: a guard texel
   // that floats beside the surface.
   if ((z - depth_tolerance) * far > 1.0 || (z + depth_tolerance) * near < 1.0) return false;
-  ivec3 texel = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
-  float uncertain = c == 0 ? texelFetch(uncertain0, texel, 0).r : texelFetch(uncertain1, texel, 0).r;
-  if (uncertain > 0.5) return false;
+  // All four must be certain: beside a silhouette the nearest pixel may show what stands in front.
+  vec4 uncertain = c == 0 ? textureGather(uncertain0, at) : textureGather(uncertain1, at);
+  if (any(greaterThan(uncertain, vec4(0.5)))) return false;
   return project_lens(cameras[c], p, pixel) && all(greaterThanEqual(pixel, vec2(0.5))) && all(lessThanEqual(pixel, cameras[c].size.xy - 1.5));
 }
 

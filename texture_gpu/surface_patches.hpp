@@ -22,7 +22,7 @@
 namespace foresight {
 
 struct PatchOptions {
-  double cone_deg = 68;       ///< largest angle between a triangle and its patch's axis while growing
+  double cone_deg = 60;       ///< largest angle between a triangle and its patch's axis while growing
   double chart_extent = 0;    ///< largest side of a chart, metres; 0: a sixteenth of the scene's diagonal
 };
 
