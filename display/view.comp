@@ -52,10 +52,13 @@ vec4 shade(vec3 ray) {
   int chart_index = int(c.w) + cell.y * cells.x + cell.x;
   ChartRecord chart = read_chart(published_charts, chart_index);
   vec4 fallback = vec4(0.0);
-  if (chart.density > 0.0) {
+  if (chart.density.x > 0.0) {
     vec2 texel = (uv - chart.uv0) * chart.density;
-    // Texels per pixel across the line of sight: above one, coarser levels hold the means.
-    float lod = log2(chart.density * abs(t) * length(ray) / max(camera.focal.x, camera.focal.y));
+    // Where even the less crowded axis has more texels than pixels, coarser levels hold the means.
+    vec3 sight = normalize(d);
+    vec3 du = chart.eu - sight * dot(sight, chart.eu), dv = chart.ev - sight * dot(sight, chart.ev);
+    float pixels_per_texel = max(camera.focal.x, camera.focal.y) * max(length(du), length(dv)) / (abs(t) * length(ray));
+    float lod = -log2(max(pixels_per_texel, 1e-6));
     int level = clamp(int(floor(lod + 0.5)), 0, 4);
     Taps taps = gather_taps(chart, texel, level);
     if (taps.seen.a >= kSeenShare) return vec4(min(taps.seen.rgb / taps.seen.a * gain, vec3(1.0)), 1.0);

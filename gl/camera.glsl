@@ -79,6 +79,16 @@ bool project_face(const CameraBlock c, vec3 p, out vec3 place, out float inverse
          all(lessThanEqual(place.xy, c.size.zw - vec2(0.5)));
 }
 
+// Direction in the camera frame of a direction in the frame of a cube face; inverse of the choice above.
+vec3 from_cube_face(vec3 d, int face) {
+  if (face == 1) return vec3(d.z, d.y, -d.x);
+  if (face == 2) return vec3(-d.x, d.y, -d.z);
+  if (face == 3) return vec3(-d.z, d.y, d.x);
+  if (face == 4) return vec3(d.x, d.z, -d.y);
+  if (face == 5) return vec3(d.x, -d.z, d.y);
+  return d;
+}
+
 // Rows of T_camera_node, three texels a node; `base` is the first node of the camera.
 vec3 node_to_camera(samplerBuffer poses, int node, vec3 p_node) {
   vec4 h = vec4(p_node, 1.0);

@@ -21,7 +21,10 @@ CameraInput::CameraInput(const Lens& lens, double largest_margin_px)
       faces_(gl::faces_for(lens, static_cast<int>(std::ceil(largest_margin_px)) + 2), false),
       image_(GL_RGBA8, lens.width(), lens.height(), 0, level_count(lens), "camera image"),
       blocks_(GL_RG32F, (faces_.faces.width + 3) / 4, (faces_.faces.height + 3) / 4, faces_.faces.count, 1, "depth blocks"),
-      uncertain_(GL_R8, faces_.faces.width, faces_.faces.height, faces_.faces.count, 1, "uncertain edges") {
+      uncertain_(GL_R8, faces_.faces.width, faces_.faces.height, faces_.faces.count, 1, "uncertain edges"),
+      block_(sizeof(gl::CameraBlock), "camera") {
+  const gl::CameraBlock block = gl::make_camera_block(lens, faces_.faces);
+  block_.write(std::span(&block, 1));
   glTextureParameteri(image_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTextureParameteri(image_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   const auto bytes = static_cast<GLsizeiptr>(4) * lens.width() * lens.height();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/error.hpp"
 
@@ -13,29 +14,63 @@ constexpr double kNearest = 0.05;      // metres; views from nearer do not ask f
 constexpr int kLargestChart = 4096;    // texels along a side
 constexpr int kImagesBeforeRise = 10;  // images with half of the memory free before resolutions rise
 
-double density_of(int level) { return std::exp2(level / kLevelsPerOctave); }
+// Changing a chart's resolution copies it, so it waits until a view is closer by more than kRise
+// steps, and then leaves some headroom. Only the memory policy makes charts coarser: by whole steps.
+constexpr double kRise = 1.0, kHeadroom = 0.25, kFall = 0.8;
+constexpr double kFlattest = 0.25;     // of the head-on density: a grazing view may come closer head-on soon
 
-/// Texels per metre that give one texel per pixel on the chart, seen from the view; 0: out of view.
-double density_in_view(const Chart& chart, int node, const AtlasView& view) {
-  const Eigen::Vector3d p = view.T_camera_node[static_cast<std::size_t>(node)] * chart.center;
-  const double distance = p.norm(), r = chart.radius;
+Eigen::Vector2d density_of(const Eigen::Vector2i& level) {
+  return {std::exp2(level.x() / kLevelsPerOctave), std::exp2(level.y() / kLevelsPerOctave)};
+}
+
+bool in_frustum(const Eigen::Vector3d& p, double r, const AtlasView& view) {
+  const auto& f = *view.faces;
+  if (f.count > 1) {
+    const double angle = std::atan2(p.head<2>().norm(), p.z());
+    return p.norm() <= r || angle - std::asin(r / p.norm()) <= view.lens->max_angle();
+  }
+  if (p.z() + r <= gl::kNearPlane) return false;
+  // Signed distances from the four planes through the camera and the borders of the face.
+  const auto outside = [&](double x, double focal_px, double border) {
+    return (focal_px * x + border * p.z()) / std::hypot(focal_px, border) < -r;
+  };
+  return !outside(p.x(), f.fx, f.cx + 0.5) && !outside(-p.x(), f.fx, f.width - 0.5 - f.cx) &&
+         !outside(p.y(), f.fy, f.cy + 0.5) && !outside(-p.y(), f.fy, f.height - 0.5 - f.cy);
+}
+
+/// True where every triangle of a solid's chart is turned away from the camera, wherever it lies in
+/// the chart's sphere. `n`, `p`: the patch's normal and the chart's centre in the camera frame.
+bool shows_its_back(const Chart& chart, const Eigen::Vector3d& n, const Eigen::Vector3d& p) {
+  if (!chart.closed || p.norm() <= chart.radius) return false;
+  if (chart.cone < 1e-3) return n.dot(p) > 1e-9;  // all in one plane: the camera is behind it
+  const double angle = chart.cone + std::asin(chart.radius / p.norm());
+  return angle < std::numbers::pi / 2 && n.dot(p) / p.norm() > std::sin(angle);
+}
+
+/// Texels per metre along u and v that give one texel per pixel on the chart as seen from the view;
+/// zero: out of view.
+Eigen::Vector2d density_in_view(const Chart& chart, const Patch& patch, const AtlasView& view) {
+  const Pose& T_camera_node = view.T_camera_node[static_cast<std::size_t>(patch.node)];
+  const Eigen::Vector3d p = T_camera_node * chart.center;
+  if (!in_frustum(p, chart.radius, view) || shows_its_back(chart, T_camera_node.linear() * patch.n, p))
+    return Eigen::Vector2d::Zero();
   const auto& lens = view.lens->parameters();
   const double focal = std::max(lens.fx, lens.fy);
-  if (view.faces->count > 1) {
-    const double angle = std::atan2(p.head<2>().norm(), p.z());
-    if (distance > r && angle - std::asin(r / distance) > view.lens->max_angle()) return 0;
-    return focal / std::max({distance, 0.5 * r, kNearest});
-  }
-  if (p.z() + r <= gl::kNearPlane) return 0;
-  const auto& f = *view.faces;
-  // Signed distances from the four planes through the camera and the borders of the face.
-  const auto outside = [&](double x, double z, double focal_px, double border) {
-    return (focal_px * x + border * z) / std::hypot(focal_px, border) < -r;
+  // Angular resolution at the chart's centre. A chart around the camera counts as half a radius away.
+  const double distance = std::max({p.norm(), 0.5 * chart.radius, kNearest});
+  const Eigen::Vector3d sight = p.normalized();
+  const double depth = view.faces->count > 1 ? distance : std::max({p.z(), 0.5 * chart.radius, kNearest});
+  const double scale = focal / depth;
+  // A step along u on a slope also rises: the steepest usual slope shows it longest.
+  const auto pixels_per_metre = [&](const Eigen::Vector3d& axis) {
+    double most = kFlattest;
+    for (double s : {-chart.slope, 0.0, chart.slope}) {
+      const Eigen::Vector3d step = T_camera_node.linear() * (axis + s * patch.n);
+      most = std::max(most, (step - sight * sight.dot(step)).norm());
+    }
+    return most * scale;
   };
-  if (outside(p.x(), p.z(), f.fx, f.cx + 0.5) || outside(-p.x(), p.z(), f.fx, f.width - 0.5 - f.cx) ||
-      outside(p.y(), p.z(), f.fy, f.cy + 0.5) || outside(-p.y(), p.z(), f.fy, f.height - 0.5 - f.cy))
-    return 0;
-  return focal / std::max({p.z(), 0.5 * r, kNearest});
+  return {pixels_per_metre(patch.eu), pixels_per_metre(patch.ev)};
 }
 
 std::uint32_t pack(int low, int high) { return static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16; }
@@ -74,15 +109,20 @@ std::uint64_t ChartAtlas::bytes_in_use() const {
   return colours_.used() * atlas::kColourBytes + heights_.used() * atlas::kHeightBytes;
 }
 
-int ChartAtlas::wanted_level(int index) const {
+Eigen::Vector2i ChartAtlas::wanted_level(int index) const {
   const AtlasChart& chart = charts_[static_cast<std::size_t>(index)];
   const Chart& shape = surface_->charts[static_cast<std::size_t>(index)];
-  double density = options_.texels_per_metre > 0 ? options_.texels_per_metre : chart.wanted;
-  const double side = (shape.upper - shape.lower).maxCoeff();
   const int most = options_.max_texture > 0 ? std::min(options_.max_texture, kLargestChart) : kLargestChart;
-  const int limit = static_cast<int>(std::floor(kLevelsPerOctave * std::log2(most / std::max(side, 1e-9))));
-  const int level = static_cast<int>(std::lround(kLevelsPerOctave * std::log2(density))) + policy_.bias;
-  return std::min(level, limit);
+  Eigen::Vector2i level = chart.level;
+  for (int i = 0; i < 2; ++i) {
+    const double density = options_.texels_per_metre > 0 ? options_.texels_per_metre : chart.wanted[i];
+    const double side = std::max(1e-9, shape.upper[i] - shape.lower[i]);
+    const int limit = static_cast<int>(std::floor(kLevelsPerOctave * std::log2(most / side)));
+    const double exact = kLevelsPerOctave * std::log2(density) + policy_.bias;
+    const bool fits = exact - chart.level[i] < kRise && exact - chart.level[i] > -kFall && chart.level[i] <= limit;
+    if (!fits) level[i] = std::min(static_cast<int>(std::lround(exact + kHeadroom)), limit);
+  }
+  return level;
 }
 
 void ChartAtlas::drop_page(AtlasPage& page) {
@@ -92,9 +132,9 @@ void ChartAtlas::drop_page(AtlasPage& page) {
   page.height = page.colour = atlas::kNoSlot;
 }
 
-void ChartAtlas::set_level(int index, int level) {
+void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
   AtlasChart& chart = charts_[static_cast<std::size_t>(index)];
-  if (!chart.before && chart.level != AtlasChart::kNoLevel) {
+  if (!chart.before && chart.level.x() != AtlasChart::kNoLevel) {
     AtlasChart::Before before{chart.raster.density, chart.raster.uv0, chart.pages, {}};
     before.resident.reserve(chart.page.size());
     for (const AtlasPage& page : chart.page) before.resident.push_back(page.colour != atlas::kNoSlot);
@@ -104,7 +144,7 @@ void ChartAtlas::set_level(int index, int level) {
   chart.level = level;
   chart.relevelled = true;
   const bool fixed = options_.texels_per_metre > 0 && policy_.bias == 0 && options_.max_texture == 0;
-  chart.raster = raster_chart(*surface_, index, fixed ? options_.texels_per_metre : density_of(level));
+  chart.raster = raster_chart(*surface_, index, fixed ? Eigen::Vector2d::Constant(options_.texels_per_metre) : density_of(level));
   chart.pages = {(chart.raster.width + atlas::kPage - 1) / atlas::kPage,
                  (chart.raster.height + atlas::kPage - 1) / atlas::kPage};
   chart.page.assign(static_cast<std::size_t>(chart.pages.prod()), {});
@@ -140,13 +180,13 @@ std::span<const PageRecord> ChartAtlas::plan(std::span<const AtlasView> views, s
     const Chart& shape = surface_->charts[i];
     AtlasChart& chart = charts_[i];
     if (shape.radius == 0) continue;
-    double density = 0;
-    const int node = surface_->patches[static_cast<std::size_t>(shape.patch)].node;
-    for (const AtlasView& view : views) density = std::max(density, density_in_view(shape, node, view));
-    chart.in_view = density > 0;
+    Eigen::Vector2d density = Eigen::Vector2d::Zero();
+    const Patch& patch = surface_->patches[static_cast<std::size_t>(shape.patch)];
+    for (const AtlasView& view : views) density = density.cwiseMax(density_in_view(shape, patch, view));
+    chart.in_view = density.x() > 0;
     if (!chart.in_view) continue;
-    chart.wanted = std::max(chart.wanted, density);
-    const int level = wanted_level(static_cast<int>(i));
+    chart.wanted = chart.wanted.cwiseMax(density);
+    const Eigen::Vector2i level = wanted_level(static_cast<int>(i));
     if (level != chart.level) set_level(static_cast<int>(i), level);
   }
   lay_out();
@@ -167,9 +207,10 @@ bool ChartAtlas::needs_relevel(const AtlasChart& chart, int page) const {
   if (!chart.before) return false;
   const auto& before = *chart.before;
   const Eigen::Array2d at(page % chart.pages.x(), page / chart.pages.x());
-  const Eigen::Array2d lower = (chart.raster.uv0.array() + atlas::kPage * at / chart.raster.density -
-                                before.uv0.array()) * before.density / atlas::kPage;
-  const Eigen::Array2d upper = lower + before.density / chart.raster.density;
+  const Eigen::Array2d ratio = before.density.array() / chart.raster.density.array();
+  const Eigen::Array2d lower =
+      (chart.raster.uv0 - before.uv0).array() * before.density.array() / atlas::kPage + at * ratio;
+  const Eigen::Array2d upper = lower + ratio;
   const Eigen::Array2i from = lower.floor().cast<int>().max(0);
   const Eigen::Array2i to = upper.floor().cast<int>().min(before.pages.array() - 1);
   for (int y = from.y(); y <= to.y(); ++y)
@@ -290,7 +331,7 @@ void ChartAtlas::write_job_geometry(std::span<const PageJob> jobs, std::span<con
   for (const PageJob& job : jobs) {
     const ChartRaster& r = charts_[job.chart].raster;
     const Patch& patch = surface_->patches[static_cast<std::size_t>(surface_->charts[job.chart].patch)];
-    const Eigen::Vector2d uv = r.uv0 + atlas::kPage / r.density * Eigen::Vector2d(job.xy & 0xffff, job.xy >> 16);
+    const Eigen::Vector2d uv = r.uv0 + atlas::kPage * Eigen::Vector2d(job.xy & 0xffff, job.xy >> 16).cwiseQuotient(r.density);
     const Eigen::Vector3d corner = patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + r.height0 * patch.n;
     for (const AtlasView& view : views) {
       const Pose& T = view.T_camera_node[static_cast<std::size_t>(patch.node)];
@@ -298,8 +339,8 @@ void ChartAtlas::write_job_geometry(std::span<const PageJob> jobs, std::span<con
         out.push_back(Eigen::Vector4d(v.x(), v.y(), v.z(), w).cast<float>());
       };
       row(T * corner, slot(job.height_slot));
-      row(T.linear() * patch.eu / r.density, slot(job.old_slot));
-      row(T.linear() * patch.ev / r.density, slot(job.new_slot));
+      row(T.linear() * patch.eu / r.density.x(), slot(job.old_slot));
+      row(T.linear() * patch.ev / r.density.y(), slot(job.new_slot));
       row(T.linear() * patch.n * r.height_step, 0);
     }
   }
@@ -322,12 +363,12 @@ void ChartAtlas::write_charts(std::vector<Eigen::Vector4f>& out) const {
     const AtlasChart& chart = charts_[i];
     const Patch& patch = surface_->patches[static_cast<std::size_t>(surface_->charts[i].patch)];
     const ChartRaster& r = chart.raster;
-    const double pitch = r.density > 0 ? 1 / r.density : 0;
+    const Eigen::Vector2d pitch = r.density.x() > 0 ? r.density.cwiseInverse().eval() : Eigen::Vector2d::Zero();
     pack4(patch.origin + r.uv0.x() * patch.eu + r.uv0.y() * patch.ev + r.height0 * patch.n, chart.pages.x());
-    pack4(patch.eu * pitch, r.density);
-    pack4(patch.ev * pitch, chart.first_page);
+    pack4(patch.eu * pitch.x(), r.density.x());
+    pack4(patch.ev * pitch.y(), chart.first_page);
     pack4(patch.n * r.height_step, patch.node);
-    pack4({r.uv0.x(), r.uv0.y(), static_cast<double>(chart.pages.y())}, 0);
+    pack4({r.uv0.x(), r.uv0.y(), static_cast<double>(chart.pages.y())}, r.density.y());
   }
 }
 

@@ -54,8 +54,8 @@ struct AtlasPage {
 
 /// A chart at its present resolution.
 struct AtlasChart {
-  int level = kNoLevel;     ///< density is 2^(level / 4); kNoLevel: no texels yet
-  double wanted = 0;        ///< texels per metre of the closest view so far
+  Eigen::Vector2i level{kNoLevel, kNoLevel};  ///< density is 2^(level / 4); kNoLevel: no texels yet
+  Eigen::Vector2d wanted{0, 0};  ///< texels per metre along u and v of the closest view so far
   ChartRaster raster;
   Eigen::Vector2i pages{0, 0};
   int first_page = 0;       ///< in the page table
@@ -63,7 +63,7 @@ struct AtlasChart {
   bool in_view = false;
   /// Set from a change of resolution until commit(): what the published generation still holds.
   struct Before {
-    double density = 0;
+    Eigen::Vector2d density{0, 0};
     Eigen::Vector2d uv0{0, 0};
     Eigen::Vector2i pages{0, 0};
     std::vector<bool> resident;
@@ -144,8 +144,8 @@ class ChartAtlas {
   const Policy& policy() const { return policy_; }
 
  private:
-  int wanted_level(int chart) const;
-  void set_level(int index, int level);
+  Eigen::Vector2i wanted_level(int chart) const;
+  void set_level(int index, const Eigen::Vector2i& level);
   void lay_out();
   void collect_records();
   bool needs_relevel(const AtlasChart& chart, int page) const;

@@ -75,12 +75,12 @@ void grow_guard(Grid& grid) {
 
 }  // namespace
 
-Eigen::Vector2i chart_size(const Chart& chart, double density) {
-  const Vector2d extent = (chart.upper - chart.lower) * density;
+Eigen::Vector2i chart_size(const Chart& chart, const Vector2d& density) {
+  const Vector2d extent = (chart.upper - chart.lower).cwiseProduct(density);
   return {static_cast<int>(std::ceil(extent.x() + 2 * kGuard)) + 1, static_cast<int>(std::ceil(extent.y() + 2 * kGuard)) + 1};
 }
 
-ChartRaster raster_chart(const SurfacePatches& surface, int index, double density) {
+ChartRaster raster_chart(const SurfacePatches& surface, int index, const Vector2d& density) {
   const Chart& chart = surface.charts[static_cast<std::size_t>(index)];
   const Patch& patch = surface.patches[static_cast<std::size_t>(chart.patch)];
   const Eigen::Vector2i size = chart_size(chart, density);
@@ -88,7 +88,7 @@ ChartRaster raster_chart(const SurfacePatches& surface, int index, double densit
   out.density = density;
   out.width = size.x();
   out.height = size.y();
-  out.uv0 = chart.lower - Vector2d::Constant(kGuard / density);
+  out.uv0 = chart.lower - kGuard * density.cwiseInverse();
 
   Grid grid{out.width, out.height,
             std::vector<float>(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height), kNone)};
@@ -96,7 +96,8 @@ ChartRaster raster_chart(const SurfacePatches& surface, int index, double densit
     std::array<Corner, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
       const Eigen::Vector3d p = surface.corners[t][i] - patch.origin;
-      corners[i] = {(p.dot(patch.eu) - out.uv0.x()) * density, (p.dot(patch.ev) - out.uv0.y()) * density, p.dot(patch.n)};
+      corners[i] = {(p.dot(patch.eu) - out.uv0.x()) * density.x(), (p.dot(patch.ev) - out.uv0.y()) * density.y(),
+                    p.dot(patch.n)};
     }
     draw(grid, corners);
   }

@@ -8,11 +8,12 @@
 
 namespace foresight {
 
-/// Texel (i, j) has its centre at (u, v) = uv0 + (i, j) / density on the patch's plane. A guard
+/// Texel (i, j) has its centre at (u, v) = uv0 + (i, j) / density, by element, on the patch's plane:
+/// a surface that cameras see at a grazing angle has fewer texels along the line of sight. A guard
 /// band around the triangles continues the surface, so that the four texels around any point of
 /// it always exist and filtering never reaches into another chart (thesis, section 4.5).
 struct ChartRaster {
-  double density = 0;              ///< texels per metre
+  Eigen::Vector2d density{0, 0};   ///< texels per metre along u and v
   int width = 0, height = 0;       ///< texels
   Eigen::Vector2d uv0;             ///< metres on the patch's plane
   double height0 = 0;              ///< metres along n of raw value 1
@@ -23,9 +24,9 @@ struct ChartRaster {
 };
 
 /// Size in texels that raster_chart() will give, without the work.
-Eigen::Vector2i chart_size(const Chart& chart, double density);
+Eigen::Vector2i chart_size(const Chart& chart, const Eigen::Vector2d& density);
 
-/// `density` > 0 in texels per metre.
-ChartRaster raster_chart(const SurfacePatches& surface, int chart, double density);
+/// `density` > 0 in texels per metre along u and v.
+ChartRaster raster_chart(const SurfacePatches& surface, int chart, const Eigen::Vector2d& density);
 
 }  // namespace foresight

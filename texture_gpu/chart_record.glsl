@@ -8,11 +8,11 @@ struct ChartRecord {
   ivec2 pages;      // pages in a row, rows of pages
   int first_page;   // in the page table
   vec2 uv0;         // centre of texel (0, 0) on the patch's plane, metres
-  float density;    // texels per metre; 0: the chart has no texels yet
+  vec2 density;     // texels per metre along u and v; 0: the chart has no texels yet
 };
 
 ChartRecord read_chart(samplerBuffer charts, int index) {
   vec4 a = texelFetch(charts, 5 * index), b = texelFetch(charts, 5 * index + 1), c = texelFetch(charts, 5 * index + 2),
        d = texelFetch(charts, 5 * index + 3), e = texelFetch(charts, 5 * index + 4);
-  return ChartRecord(a.xyz, b.xyz, c.xyz, d.xyz, int(d.w), ivec2(int(a.w), int(e.z)), int(c.w), e.xy, b.w);
+  return ChartRecord(a.xyz, b.xyz, c.xyz, d.xyz, int(d.w), ivec2(int(a.w), int(e.z)), int(c.w), e.xy, vec2(b.w, e.w));
 }

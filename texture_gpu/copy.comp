@@ -5,7 +5,7 @@ layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 10) uniform usamplerBuffer tiles;  // job << 4 | tile << 2
 layout(binding = 11) uniform sampler2DArray old_colours;
 layout(binding = 0, rgba8) uniform writeonly image2DArray colours;
-layout(binding = 0, std430) writeonly buffer Holes { uint holes[]; };
+#include "holes.glsl"
 layout(binding = 9) uniform usampler2DArray heights;
 uniform int first_group;
 
@@ -16,6 +16,6 @@ void main() {
   ivec2 in_page = ivec2(gl_LocalInvocationID.xy) + 8 * ivec2((tile >> 2) & 1u, (tile >> 3) & 1u);
   vec4 colour = a.z == kNoSlot ? vec4(0.0) : texelFetch(old_colours, slot_origin(a.z & 0xffffffu, 0) + ivec3(in_page, 0), 0);
   uint raw = texelFetch(heights, slot_origin(texelFetch(jobs, 2 * job + 1).x, 0) + ivec3(in_page, 0), 0).r;
-  if (raw >= 0x8000u && colour.a < kSeen) holes[job] = 1u;
+  note_hole(job, raw, colour.a);
   imageStore(colours, slot_origin(a.w, 0) + ivec3(in_page, 0), colour);
 }

@@ -20,6 +20,7 @@ void EdgePass::operator()(const CameraInput& camera, double margin_px, double de
 
   blocks_.use();
   blocks_.set("face_size", size);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera.block().name());
   glBindImageTexture(0, camera.blocks().name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RG32F);
   glDispatchCompute(gl::groups(faces.width, 32), gl::groups(faces.height, 32), layers);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -1,25 +1,34 @@
-// Lists the 8x8 tiles of a face in which the exact test for uncertain edges must run: those where
-// the nearest surface around lies in front of the farthest within by more than the tolerance.
+// Lists the 8x8 tiles of a face in which the exact test for uncertain edges must run: all but those
+// that lie on one plane with nothing in front of it around them. A plane is linear in 1/z, so the
+// extremes of each 4x4 block tell whether it fits. Half of the tolerance is left for the slopes
+// that the exact test estimates pixel by pixel.
 #include "camera.glsl"
+#include "depth_slope.glsl"
 #include "work_list.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 1) uniform sampler2DArray blocks;
-uniform ivec2 face_size;
 uniform int reach;               // blocks
 uniform float depth_tolerance;   // metres
 
 void main() {
   ivec3 tile = ivec3(gl_GlobalInvocationID);
   ivec2 last = (face_size + 3) / 4 - 1;
-  float far = 1e30, near = 0.0;
+  ivec2 middle = min(tile.xy * 8 + 4, face_size - 1);
+  float center = inverse_z(middle, tile.z);
+  vec2 gradient = vec2(slope(middle, ivec2(1, 0), tile.z, center), slope(middle, ivec2(0, 1), tile.z, center));
+  float spread = 1.5 * (abs(gradient.x) + abs(gradient.y));  // within a block, from its centre
+  bool smooth_around = true, has_model = false;
   for (int y = -reach; y < 2 + reach; ++y)
     for (int x = -reach; x < 2 + reach; ++x) {
-      vec2 b = texelFetch(blocks, ivec3(clamp(tile.xy * 2 + ivec2(x, y), ivec2(0), last), tile.z), 0).xy;
-      near = max(near, b.y);
-      if (x >= 0 && x < 2 && y >= 0 && y < 2) far = min(far, abs(b.x));
+      ivec2 block = clamp(tile.xy * 2 + ivec2(x, y), ivec2(0), last);
+      vec2 b = texelFetch(blocks, ivec3(block, tile.z), 0).xy;
+      float plane = center + dot(gradient, vec2(block * 4) + 1.5 - vec2(middle));
+      float slack = 0.5 * depth_tolerance * b.y * max(plane, 0.0);
+      bool own = x >= 0 && x < 2 && y >= 0 && y < 2;
+      smooth_around = smooth_around && b.y - (plane + spread) <= slack && (!own || plane - spread - abs(b.x) <= slack || b.y == 0.0);
+      has_model = has_model || (own && b.y > 0.0);
     }
   bool inside = all(lessThan(tile.xy * 8, face_size));
-  // far stays huge where the tile shows no model: nothing there to be uncertain about.
-  if (inside && far < 1e29 && near > 0.0 && 1.0 / far - 1.0 / near > depth_tolerance)
+  if (inside && has_model && !(smooth_around && center > 0.0))
     append_work(uint(tile.x) | uint(tile.y) << 12 | uint(tile.z) << 24);
 }

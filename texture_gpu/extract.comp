@@ -12,7 +12,7 @@ layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 10) uniform usamplerBuffer tiles;  // job << 4 | tile << 2 | cameras that may see it
 layout(binding = 11) uniform sampler2DArray old_colours;
 layout(binding = 0, rgba8) uniform writeonly image2DArray colours;
-layout(binding = 0, std430) writeonly buffer Holes { uint holes[]; };  // per job: 1 where a texel has no seen colour
+#include "holes.glsl"
 uniform int first_group;
 uniform float worse;  // new colours below this share of the old resolution do not replace them
 
@@ -91,6 +91,6 @@ void main() {
   bool take = colour.a < kSeen || best.a >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
   if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
   if (raw == 0u) colour = vec4(0.0);
-  if (raw >= 0x8000u && colour.a < kSeen) holes[job] = 1u;
+  note_hole(job, raw, colour.a);
   imageStore(colours, slot_origin(uint(g2.w), 0) + ivec3(in_page, 0), colour);
 }

@@ -8,6 +8,8 @@ namespace {
 
 // Each round carries colours one chart farther into what was never seen; later images continue.
 constexpr int kSpreadRounds = 4;
+// Images within which filled texels follow the colours around them.
+constexpr int kRefresh = 4;
 
 gl::Program compute(const char* file) { return gl::Program::compute(gl::texture_gpu_shaders(), file); }
 gl::Program pull_program(int level) {
@@ -53,6 +55,7 @@ void FillPass::operator()(const ExtractPass& extracted, const Work& work, const 
   spread(next);
   glBindTextureUnit(7, extracted.jobs().texture());
   pull(work.job_count, extracted.holes(), store, next);
+  turn_ = (turn_ + 1) % kRefresh;
 }
 
 void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
@@ -113,20 +116,26 @@ void FillPass::spread(const PublishedTextures& next) const {
   }
 }
 
-void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
-                    const PublishedTextures& next) {
-  if (job_count == 0) return;
+void FillPass::list_holes(std::size_t job_count, const gl::BufferTexture& holes, int refresh) {
   hole_jobs_.use();
   hole_jobs_.set("job_count", static_cast<int>(job_count));
+  hole_jobs_.set("turn", turn_);
+  hole_jobs_.set("refresh", refresh);
   glBindTextureUnit(10, holes.texture());
   with_holes_.start(job_count);
   glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
   with_holes_.finish();
+}
 
+void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
+                    const PublishedTextures& next) {
+  if (job_count == 0) return;
+  list_holes(job_count, holes, 1);
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
   glBindTextureUnit(14, next.coarse.texture());
   for (int level = 3; level >= 0; --level) {
+    if (level == 0) list_holes(job_count, holes, kRefresh);  // by far the most texels
     pull_[static_cast<std::size_t>(level)].use();
     bind_level(0, store.colours, level, GL_READ_WRITE);
     bind_level(1, store.colours, level + 1, GL_READ_ONLY);

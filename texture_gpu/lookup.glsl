@@ -39,7 +39,7 @@ Taps gather_taps(ChartRecord chart, vec2 texel, int level) {
 
 // Colour and resolution code (alpha) from seen texels only; alpha 0 where there is none.
 vec4 seen_colour(ChartRecord chart, vec2 texel, int level) {
-  if (chart.density <= 0.0) return vec4(0.0);
+  if (chart.density.x <= 0.0) return vec4(0.0);
   Taps taps = gather_taps(chart, texel, min(level, 4));
   return taps.seen.a > 0.25 ? vec4(taps.seen.rgb, taps.quality) / taps.seen.a : vec4(0.0);
 }

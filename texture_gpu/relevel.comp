@@ -17,10 +17,11 @@ void main() {
   ChartRecord fresh = read_chart(charts, job.chart), old = read_chart(published_charts, job.chart);
   vec2 uv = fresh.uv0 + vec2(16 * job.page + in_page) / fresh.density;
   // Coarser levels of the old pyramid where the new texels are larger.
-  float lod = max(log2(old.density / fresh.density), 0.0);
+  vec2 ratio = old.density / fresh.density;
+  float lod = max(log2(min(ratio.x, ratio.y)), 0.0);
   vec4 seen = seen_colour(old, (uv - old.uv0) * old.density, int(lod + 0.5));
   // Twice as many texels for the same pixels: each holds half as many pixels along a side.
-  float shift = log2(old.density / fresh.density) / 8.0 * 253.0 / 255.0;
+  float shift = 0.5 * log2(ratio.x * ratio.y) / 8.0 * 253.0 / 255.0;
   vec4 colour = seen.a > 0.0 ? vec4(seen.rgb, clamp(seen.a + shift, 2.0 / 255.0, 1.0)) : vec4(0.0);
   imageStore(colours, slot_origin(job.new_slot, 0) + ivec3(in_page, 0), colour);
 }

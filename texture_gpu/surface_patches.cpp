@@ -49,6 +49,23 @@ void link_neighbours(const Mesh& mesh, int first, std::vector<Face>& faces) {
   }
 }
 
+/// True where every edge is run through once in each direction: a solid with normals outwards (or,
+/// rarely, inwards: then a negative volume tells).
+bool is_closed(const Mesh& mesh) {
+  std::unordered_map<std::uint64_t, int> directed;
+  directed.reserve(3 * mesh.triangles.size());
+  double volume = 0;
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (++directed[std::uint64_t{t[i]} << 32 | t[(i + 1) % 3]] > 1) return false;
+    const auto at = [&](std::size_t i) { return mesh.vertices[t[i]].cast<double>(); };
+    volume += at(0).dot(at(1).cross(at(2)));
+  }
+  for (const auto& [edge, count] : directed)
+    if (!directed.contains(edge << 32 | edge >> 32)) return false;
+  return volume > 0;
+}
+
 Vector3d any_perpendicular(const Vector3d& n) {
   const Vector3d axis = std::abs(n.x()) < 0.7 ? Vector3d::UnitX() : Vector3d::UnitY();
   return (axis - axis.dot(n) * n).normalized();
@@ -198,6 +215,7 @@ class Builder {
       out_.corners.push_back(c);
     }
     link_neighbours(mesh, first, faces_);
+    closed_.push_back(is_closed(mesh));
   }
 
   void add_patch(std::vector<int> members) {
@@ -297,8 +315,17 @@ class Builder {
       return;
     }
     const Patch& patch = out_.patches.back();
-    double h0 = 1e300, h1 = -1e300;
-    for (std::uint32_t t : chart.triangles) height_range(patch, chart, out_.corners[t], h0, h1);
+    double h0 = 1e300, h1 = -1e300, slope2 = 0, area = 0, least_cosine = 1;
+    for (std::uint32_t t : chart.triangles) {
+      height_range(patch, chart, out_.corners[t], h0, h1);
+      const double cosine = std::max(kSteepestCos, faces_[t].normal.dot(patch.n));
+      least_cosine = std::min(least_cosine, faces_[t].normal.dot(patch.n));
+      slope2 += faces_[t].area * (1 / (cosine * cosine) - 1);
+      area += faces_[t].area;
+    }
+    chart.slope = std::sqrt(slope2 / area);
+    chart.cone = std::acos(std::clamp(least_cosine, -1.0, 1.0));
+    chart.closed = closed_[static_cast<std::size_t>(patch.node)];
     const Vector2d mid = (chart.lower + chart.upper) / 2;
     chart.center = patch.origin + mid.x() * patch.eu + mid.y() * patch.ev + (h0 + h1) / 2 * patch.n;
     chart.radius = std::max(1e-6, std::hypot((chart.upper - chart.lower).norm() / 2, (h1 - h0) / 2));
@@ -364,6 +391,7 @@ class Builder {
   double extent_ = 1;
   std::vector<Face> faces_;
   std::vector<int> node_;
+  std::vector<bool> closed_;  // per node
   SurfacePatches out_;
 };
 

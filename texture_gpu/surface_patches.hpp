@@ -42,6 +42,9 @@ struct Chart {
   std::vector<std::uint32_t> triangles;   ///< of the whole scene; all that reach into the cell or its border
   Eigen::Vector3d center;                 ///< of the bounding sphere, node frame
   double radius = 0;                      ///< metres; 0: an empty cell
+  double slope = 0;                       ///< rms slope of its triangles against the patch's plane
+  double cone = 0;                        ///< largest angle of a triangle's normal from the patch's, radians
+  bool closed = false;                    ///< part of a watertight mesh: its back can never be seen
   std::vector<int> neighbours;            ///< charts that touch this one
 };
 

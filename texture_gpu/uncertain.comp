@@ -8,27 +8,12 @@
 // Discontinuity means: off the plane. 1/z is linear in the picture of a plane, so that a plane seen
 // at a grazing angle is none.
 #include "camera.glsl"
+#include "depth_slope.glsl"
 #include "work_item.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2DArray depth;
 layout(binding = 0, r8) uniform writeonly image2DArray uncertain;
-uniform ivec2 face_size;
 uniform float margin;            // px
 uniform float depth_tolerance;   // metres
-
-float inverse_z(ivec2 at, int layer) {
-  return texelFetch(depth, ivec3(clamp(at, ivec2(0), face_size - 1), layer), 0).r / kNear;
-}
-
-// Slope of 1/z along `step` at p, from the side on which the surface bends less.
-float slope(ivec2 p, ivec2 step, int layer, float center) {
-  float a1 = inverse_z(p - step, layer), a2 = inverse_z(p - 2 * step, layer);
-  float b1 = inverse_z(p + step, layer), b2 = inverse_z(p + 2 * step, layer);
-  float bend_a = a1 > 0.0 && a2 > 0.0 ? abs(a2 - 2.0 * a1 + center) : 1e30;
-  float bend_b = b1 > 0.0 && b2 > 0.0 ? abs(b2 - 2.0 * b1 + center) : 1e30;
-  if (min(bend_a, bend_b) > 1e29) return 0.0;
-  return bend_a < bend_b ? center - a1 : b1 - center;
-}
 
 bool is_uncertain(ivec2 p, int layer) {
   float center = inverse_z(p, layer);

@@ -1,0 +1,17 @@
+// Depth of a face as 1/z, and its slope. Needs camera.glsl.
+layout(binding = 0) uniform sampler2DArray depth;
+uniform ivec2 face_size;
+
+float inverse_z(ivec2 at, int layer) {
+  return texelFetch(depth, ivec3(clamp(at, ivec2(0), face_size - 1), layer), 0).r / kNear;
+}
+
+// Slope of 1/z along `step` at p, from the side on which the surface bends less.
+float slope(ivec2 p, ivec2 step, int layer, float center) {
+  float a1 = inverse_z(p - step, layer), a2 = inverse_z(p - 2 * step, layer);
+  float b1 = inverse_z(p + step, layer), b2 = inverse_z(p + 2 * step, layer);
+  float bend_a = a1 > 0.0 && a2 > 0.0 ? abs(a2 - 2.0 * a1 + center) : 1e30;
+  float bend_b = b1 > 0.0 && b2 > 0.0 ? abs(b2 - 2.0 * b1 + center) : 1e30;
+  if (min(bend_a, bend_b) > 1e29) return 0.0;
+  return bend_a < bend_b ? center - a1 : b1 - center;
+}
