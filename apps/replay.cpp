@@ -139,7 +139,7 @@ class Replay {
     record_.options.push_back({"texels_per_metre", t.texels_per_metre});
     record_.options.push_back({"max_texture", std::int64_t{t.max_texture}});
     record_.options.push_back({"texture_memory_mb", static_cast<std::int64_t>(t.memory_bytes >> 20)});
-    record_.options.push_back({"depth_tolerance_m", t.depth_tolerance});
+    record_.options.push_back({"model_accuracy_m", t.depth_tolerance});
     record_.options.push_back({"real_time", options_.real_time});
     if (options_.scene) record_.options.push_back({"scene", options_.scene->string()});
     if (run_.unpaired_right())
@@ -299,8 +299,11 @@ class Replay {
 
 }  // namespace
 
-int replay(const ReplayOptions& options) {
-  const RunFolder run = RunFolder::open(options.run, {.scene = options.scene});
+int replay(const ReplayOptions& given) {
+  const RunFolder run = RunFolder::open(given.run, {.scene = given.scene});
+  ReplayOptions options = given;
+  options.textures.depth_tolerance =
+      given.model_accuracy.value_or(run.scene()->accuracy().value_or(options.textures.depth_tolerance));
   std::vector<std::size_t> arrived = arrivals(run, options);
   check_outputs(options);
   ProgressBar bar("check", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr());

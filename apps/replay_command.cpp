@@ -31,6 +31,9 @@ void add_replay_command(CLI::App& app, std::function<int()>& action) {
   command->add_option("--margin-px", options->textures.margin_px, "Pixels behind a silhouette that are not trusted")
       ->check(CLI::Range(0.0, 32.0))
       ->capture_default_str();
+  command->add_option("--model-accuracy-m", options->model_accuracy,
+                      "Largest usual error of the model (default: accuracy_m of scene.yaml, else 0.02)")
+      ->check(CLI::Range(1e-4, 1.0));
   command->add_option("--out", options->out, "Folder for predicted/*.png and contact_sheet.png");
   command->add_option("--report", options->report, "JSON file with all measurements");
   command->add_option("--html", options->html, "HTML file with pictures and plots, self-contained");

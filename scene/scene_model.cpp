@@ -6,7 +6,8 @@
 
 namespace foresight {
 
-SceneModel::SceneModel(std::vector<Node> nodes) : nodes_(std::move(nodes)) {
+SceneModel::SceneModel(std::vector<Node> nodes, std::optional<double> accuracy)
+    : nodes_(std::move(nodes)), accuracy_(accuracy) {
   if (nodes_.empty()) throw std::invalid_argument("a scene needs at least one node");
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {

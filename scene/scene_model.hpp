@@ -31,7 +31,10 @@ class SceneModel {
 
   /// Throws std::invalid_argument: no node, a parent that is not an earlier node, two nodes with
   /// one name, no triangle at all.
-  explicit SceneModel(std::vector<Node> nodes);
+  explicit SceneModel(std::vector<Node> nodes, std::optional<double> accuracy = std::nullopt);
+
+  /// Largest usual distance between the model and the real surface, metres, where its maker states it.
+  std::optional<double> accuracy() const { return accuracy_; }
 
   const std::vector<Node>& nodes() const { return nodes_; }
   std::optional<int> find(std::string_view name) const;
@@ -48,6 +51,7 @@ class SceneModel {
   std::vector<Node> nodes_;
   std::size_t triangle_count_ = 0;
   double diagonal_ = 0;
+  std::optional<double> accuracy_;
 };
 
 /// How much a state can be trusted, from best to worst.

@@ -18,9 +18,17 @@ class SceneYaml {
  public:
   SceneYaml(const fs::path& file, const fs::path& root) : file_(file), root_(root) {}
 
+  std::optional<double> accuracy() const { return accuracy_; }
+
   std::vector<Node> read() {
     const YamlMap yaml = YamlMap::load(file_);
-    yaml.require_known({"nodes", "robots"});
+    yaml.require_known({"nodes", "robots", "accuracy_m"});
+    if (yaml.has("accuracy_m")) {
+      accuracy_ = yaml.number("accuracy_m");
+      if (!(*accuracy_ > 0 && *accuracy_ <= 1))
+        throw InputError(yaml.where("accuracy_m"), "an accuracy of " + std::to_string(*accuracy_) + " m",
+                         "give the model's largest usual error, above 0 and at most 1");
+    }
     if (yaml.has("nodes"))
       for (const YamlMap& node : yaml.maps("nodes")) add_node(node);
     if (yaml.has("robots"))
@@ -95,18 +103,23 @@ class SceneYaml {
   const fs::path& file_;
   const fs::path& root_;
   std::vector<Node> nodes_;
+  std::optional<double> accuracy_;
 };
 
 }  // namespace
 
 SceneModel read_scene(const fs::path& file, const fs::path& root) {
   std::vector<Node> nodes;
-  if (file.extension() == ".yaml" || file.extension() == ".yml")
-    nodes = SceneYaml(file, root).read();
-  else
+  std::optional<double> accuracy;
+  if (file.extension() == ".yaml" || file.extension() == ".yml") {
+    SceneYaml yaml(file, root);
+    nodes = yaml.read();
+    accuracy = yaml.accuracy();
+  } else {
     nodes.push_back({"scene", read_mesh(file), -1, Pose::Identity()});
+  }
   try {
-    return SceneModel(std::move(nodes));
+    return SceneModel(std::move(nodes), accuracy);
   } catch (const std::invalid_argument& error) {
     throw InputError(file.string(), error.what(), "add a node with a mesh");
   }

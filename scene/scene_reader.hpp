@@ -14,6 +14,7 @@ namespace foresight {
 ///       mesh: table.ply                    # relative to the yaml; optional
 ///       parent: world                      # an earlier node; optional
 ///       pose: {xyz: [m, m, m], quaternion: [x, y, z, w]}   # T_parent_node; optional
+///   accuracy_m: 0.005                      # how far the model may be from the real surface; optional
 ///   robots:                                # optional
 ///     - urdf: arm.urdf                     # relative to the yaml
 ///       parent: table                      # optional

@@ -84,7 +84,7 @@ std::string image_name(const char* folder, int frame) {
 
 void write_scene(const fs::path& folder, const Lab& lab) {
   fs::create_directory(folder / "meshes");
-  std::string text = "nodes:\n";
+  std::string text = "accuracy_m: 0.004  # the model is exact; this tells thin parts from what they lie on\nnodes:\n";
   for (const Part& part : lab.parts) {
     write_text(folder / "meshes" / (part.name + ".ply"), ply(mesh_of(part)));
     text += "  - name: " + part.name + "\n    mesh: meshes/" + part.name + ".ply\n";

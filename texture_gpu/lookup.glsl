@@ -44,12 +44,19 @@ vec4 seen_colour(ChartRecord chart, vec2 texel, int level) {
   return taps.seen.a > 0.25 ? vec4(taps.seen.rgb, taps.quality) / taps.seen.a : vec4(0.0);
 }
 
-// What stands in for a page without colours of its own: its filled mean, else the chart's.
+// What stands in for a page without colours of its own: the filled means of the pages around the
+// point, interpolated between their centres, else the chart's mean.
 vec4 coarse_colour(ChartRecord chart, int chart_index, vec2 texel) {
-  ivec2 page = ivec2(floor(texel / 16.0));
-  vec4 c = vec4(0.0);
-  if (all(greaterThanEqual(page, ivec2(0))) && all(lessThan(page, chart.pages)))
-    c = unpackUnorm4x8(texelFetch(published_coarse, chart.first_page + page.y * chart.pages.x + page.x).r);
-  if (c.a == 0.0) c = unpackUnorm4x8(texelFetch(published_means, chart_index).r);
-  return c;
+  vec2 at = (texel + 0.5) / 16.0 - 0.5;
+  ivec2 base = ivec2(floor(at));
+  vec2 f = at - vec2(base);
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 o = ivec2(i & 1, i >> 1);
+    ivec2 page = clamp(base + o, ivec2(0), chart.pages - 1);
+    vec4 c = unpackUnorm4x8(texelFetch(published_coarse, chart.first_page + page.y * chart.pages.x + page.x).r);
+    float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
+    sum += w * c.a * vec4(c.rgb, 1.0);
+  }
+  return sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : unpackUnorm4x8(texelFetch(published_means, chart_index).r);
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
 
 namespace foresight {
 
@@ -18,8 +17,10 @@ struct TextureOptions {
   /// Pixels on the far side of a depth discontinuity that are not trusted; follows the
   /// registration's uncertainty. Range 0 .. 32.
   double margin_px = 3;
-  /// Surfaces nearer to each other than this count as one, metres. Larger than the model's error.
-  double depth_tolerance = getenv("TOL")?atof(getenv("TOL")):0.02;
+  /// Surfaces nearer to each other than this count as one, metres: the model's accuracy. Smaller,
+  /// errors of the model tear holes into textures; larger, thin parts leave their picture on what
+  /// they lie on. Range 1e-4 .. 1.
+  double depth_tolerance = 0.02;
   /// A new colour seen at less than this share of the old one's resolution does not replace it.
   double worse = 0.3;
   /// Estimate each image's gain and the lens's vignetting and even them out.

@@ -78,7 +78,6 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   clock_.mark("publish");
   ++image_;
 
-  if (getenv("FSDBG")) { uint32_t acc[1]; extract_.holes().buffer().read(std::span<uint32_t>(acc)); fprintf(stderr,"accepted %u ",acc[0]); long vis=0, cov=0; for (size_t q=0;q<allocation.jobs.size();++q){ for(int t=0;t<4;++t) vis += ((allocation.masks[q]>>(2*t))&3)!=0; cov+=allocation.jobs[q].covered;} fprintf(stderr,"pages %zu tiles %zu visible %ld covered %ld resident %u records %zu relevel %zu\n", allocation.jobs.size(), extract_.tiles(), vis, cov, atlas_.resident_pages(), records_.size(), allocation.relevel.size()); }
   report.published = true;
   report.newest_image = frame.left.time;
   report.published_at = std::chrono::steady_clock::now();
