@@ -100,13 +100,21 @@ ChartAtlas::ChartAtlas(std::shared_ptr<const SurfacePatches> surface, const Text
       colours_(2 * page_capacity(options.memory_bytes)) {}
 
 std::uint32_t ChartAtlas::page_capacity(std::uint64_t memory_bytes) {
-  // Whole layers are reserved; two colour layers for one of heights keep the ratio.
   const std::uint64_t a_page = 2 * atlas::kColourBytes + atlas::kHeightBytes;
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory_bytes / a_page, 1u << 20));
+  const std::uint64_t pages = std::min<std::uint64_t>(memory_bytes / a_page, 1u << 20);
+  // What is reserved are whole layers, or whole rows of a single one; two colour slots a page.
+  const std::uint64_t step = pages >= atlas::kSlotsPerLayer       ? atlas::kSlotsPerLayer
+                             : pages >= atlas::kSlotsPerLayer / 2 ? atlas::kSlotsPerLayer / 2
+                                                                  : atlas::kSlotsPerRow;
+  return static_cast<std::uint32_t>(pages / step * step);
 }
 
 std::uint64_t ChartAtlas::bytes_in_use() const {
   return colours_.used() * atlas::kColourBytes + heights_.used() * atlas::kHeightBytes;
+}
+
+std::uint64_t ChartAtlas::bytes_reserved() const {
+  return colours_.capacity() * atlas::kColourBytes + heights_.capacity() * atlas::kHeightBytes;
 }
 
 Eigen::Vector2i ChartAtlas::wanted_level(int index) const {
