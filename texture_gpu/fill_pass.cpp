@@ -116,12 +116,13 @@ void FillPass::spread(const PublishedTextures& next) const {
   }
 }
 
-void FillPass::list_holes(std::size_t job_count, const gl::BufferTexture& holes, int refresh) {
+void FillPass::list_holes(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store, int refresh) {
   hole_jobs_.use();
   hole_jobs_.set("job_count", static_cast<int>(job_count));
   hole_jobs_.set("turn", turn_);
   hole_jobs_.set("refresh", refresh);
   glBindTextureUnit(10, holes.texture());
+  glBindTextureUnit(11, store.colours.name());
   with_holes_.start(job_count);
   glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
   with_holes_.finish();
@@ -130,12 +131,12 @@ void FillPass::list_holes(std::size_t job_count, const gl::BufferTexture& holes,
 void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
                     const PublishedTextures& next) {
   if (job_count == 0) return;
-  list_holes(job_count, holes, 1);
+  list_holes(job_count, holes, store, 1);
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
   glBindTextureUnit(14, next.coarse.texture());
   for (int level = 3; level >= 0; --level) {
-    if (level == 0) list_holes(job_count, holes, kRefresh);  // by far the most texels
+    if (level == 0) list_holes(job_count, holes, store, kRefresh);  // by far the most texels
     pull_[static_cast<std::size_t>(level)].use();
     bind_level(0, store.colours, level, GL_READ_WRITE);
     bind_level(1, store.colours, level + 1, GL_READ_ONLY);
