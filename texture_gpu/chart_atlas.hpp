@@ -9,19 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "gl/faces.hpp"
 #include "texture_gpu/chart_raster.hpp"
+#include "texture_gpu/chart_resolution.hpp"
 #include "texture_gpu/options.hpp"
 #include "texture_gpu/page_pool.hpp"
 
 namespace foresight {
-
-/// A camera at one instant, as far as visibility and resolution are concerned.
-struct AtlasView {
-  const Lens* lens = nullptr;
-  const gl::Faces* faces = nullptr;
-  std::vector<Pose> T_camera_node;  ///< one per node of the scene
-};
 
 /// A page as cull.comp reads it.
 struct PageRecord {
