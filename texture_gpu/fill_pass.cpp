@@ -92,12 +92,14 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   empty_pages_.start(work.chart_of_page.size());
   dispatch_groups(coarse_, work.dirty.size());
   empty_pages_.finish();
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // both passes store into the coarse colours
 
   coarse_fill_.use();
   glBindTextureUnit(7, chart_of_page_.texture());
   glBindTextureUnit(10, next.means.texture());
   empty_pages_.dispatch(0);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  // Fetched by what follows, and copied when the next generation starts from this one.
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /// Hands chart means on to charts that were never seen.
@@ -112,7 +114,7 @@ void FillPass::spread(const PublishedTextures& next) const {
     glBindTextureUnit(9, from->texture());
     glBindImageTexture(0, to->texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     glDispatchCompute(gl::groups(chart_count_, 64), 1, 1);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   }
 }
 
