@@ -20,7 +20,7 @@ std::vector<Lens> all_lenses(const Lens& left, const std::optional<Lens>& right)
 
 }  // namespace
 
-TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, std::shared_ptr<const SurfacePatches> surface,
+TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::shared_ptr<const SurfacePatches>& surface,
                          const Lens& left, const std::optional<Lens>& right, const TextureOptions& options,
                          bool software_renderer)
     : scene_(std::move(scene)),

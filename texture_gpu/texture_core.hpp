@@ -36,7 +36,7 @@ struct ExtractionReport {
 class TextureCore {
  public:
   /// `scene` and `surface` describe the same model. Throws RuntimeFailure (shaders, memory).
-  TextureCore(std::shared_ptr<const SceneModel> scene, std::shared_ptr<const SurfacePatches> surface,
+  TextureCore(std::shared_ptr<const SceneModel> scene, const std::shared_ptr<const SurfacePatches>& surface,
               const Lens& left, const std::optional<Lens>& right, const TextureOptions& options,
               bool software_renderer);
 

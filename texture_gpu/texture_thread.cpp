@@ -7,7 +7,7 @@
 namespace foresight {
 
 TextureThread::TextureThread(std::unique_ptr<gl::Context> context, const Setup& setup) : context_(std::move(context)) {
-  thread_ = std::jthread([this, setup](std::stop_token stop) { run(stop, setup); });
+  thread_ = std::jthread([this, setup](const std::stop_token& stop) { run(stop, setup); });
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return ready_ || error_; });
   if (error_) {
@@ -19,7 +19,7 @@ TextureThread::TextureThread(std::unique_ptr<gl::Context> context, const Setup& 
 
 TextureThread::~TextureThread() = default;  // jthread: asks the thread to stop and joins it
 
-void TextureThread::run(std::stop_token stop, const Setup& setup) {
+void TextureThread::run(const std::stop_token& stop, const Setup& setup) {
   try {
     context_->make_current();
     gl::set_up_context();
@@ -43,7 +43,7 @@ void TextureThread::run(std::stop_token stop, const Setup& setup) {
   context_->release();
 }
 
-void TextureThread::work(std::stop_token stop, TextureCore& core) {
+void TextureThread::work(const std::stop_token& stop, TextureCore& core) {
   while (!stop.stop_requested()) {
     std::unique_lock lock(mutex_);
     // The time-out only bounds the wait; a stop request wakes the thread at once.

@@ -46,8 +46,8 @@ class TextureThread {
   std::uint64_t replaced() const;  ///< frames that were never extracted because a newer one came
 
  private:
-  void run(std::stop_token stop, const Setup& setup);
-  void work(std::stop_token stop, TextureCore& core);
+  void run(const std::stop_token& stop, const Setup& setup);
+  void work(const std::stop_token& stop, TextureCore& core);
   void rethrow_locked();
 
   std::unique_ptr<gl::Context> context_;
