@@ -217,7 +217,11 @@ class Replay {
     record.delay_s = to_seconds(run_.frames()[i].left.time - delayed_time_);
     const double before = process_cpu_ms();
     const cv::Mat predicted = session_.predict(i);
-    if (predicted.empty()) return;  // real time: nothing has been published yet
+    if (predicted.empty()) {  // real time: the first image is still in work
+      record.dropped = true;
+      record_.frames.push_back(record);
+      return;
+    }
     const double drawn = process_cpu_ms();
     const cv::Mat actual = as_colour(read_run_image(run_.frames()[i].left, run_.lens_left()));
     const ImageComparison comparison(actual, seen_mask(predicted));

@@ -19,7 +19,8 @@ class TrialFolder {
  public:
   explicit TrialFolder(const fs::path& folder) {
     std::error_code ignored;
-    for (fs::path at = folder; at.has_relative_path() && !fs::exists(at, ignored); at = at.parent_path()) made_.push_back(at);
+    for (fs::path at = folder; at.has_relative_path() && !fs::exists(at, ignored); at = at.parent_path())
+      made_.push_back(at);
     fs::create_directories(folder, error_);
     if (!error_ && !fs::is_directory(folder, ignored)) error_ = std::make_error_code(std::errc::not_a_directory);
   }
@@ -63,8 +64,8 @@ std::set<fs::path> files_of(const RunFolder& run, const ReplayOptions& options) 
   std::set<fs::path> files;
   std::error_code ignored;
   const auto add = [&](const fs::path& file) { files.insert(fs::weakly_canonical(file, ignored)); };
-  for (const char* name : {"camera.yaml", "camera_right.yaml", "rgb.txt", "rgb_right.txt", "trajectory.txt", "nodes.txt",
-                           "scene.ply", "scene.yaml"})
+  for (const char* name : {"camera.yaml", "camera_right.yaml", "rgb.txt", "rgb_right.txt", "trajectory.txt",
+                           "nodes.txt", "scene.ply", "scene.yaml"})
     add(run.root() / name);
   for (const RunFrame& frame : run.frames()) {
     add(frame.left.file);
@@ -80,7 +81,8 @@ void check_folder(const fs::path& out, const RunFolder& run, const std::set<fs::
   if (fs::is_directory(out / "contact_sheet.png"))
     throw InputError(where, "contact_sheet.png in it is a folder", "remove it or give another place");
   require_new_or_ours(where, out / "contact_sheet.png", inputs);
-  for (const RunFrame& frame : run.frames()) require_new_or_ours(where, out / "predicted" / (frame.left.stem + ".png"), inputs);
+  for (const RunFrame& frame : run.frames())
+    require_new_or_ours(where, out / "predicted" / (frame.left.stem + ".png"), inputs);
 }
 
 void check_file(const std::string& option, const fs::path& file, const std::set<fs::path>& inputs) {
@@ -103,14 +105,16 @@ void check_outputs(const ReplayOptions& options, const RunFolder& run) {
   if (options.report) check_file("--report", *options.report, inputs);
   if (options.html) check_file("--html", *options.html, inputs);
   std::error_code ignored;
-  if (options.report && options.html && fs::weakly_canonical(*options.report, ignored) == fs::weakly_canonical(*options.html, ignored))
+  if (options.report && options.html &&
+      fs::weakly_canonical(*options.report, ignored) == fs::weakly_canonical(*options.html, ignored))
     throw InputError("--html " + options.html->string(), "is the file of --report", "give each its own name");
 }
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw RuntimeFailure("cannot make the folder " + folder.string() + ": " + error.message(), "check the disk");
+  if (error)
+    throw RuntimeFailure("cannot make the folder " + folder.string() + ": " + error.message(), "check the disk");
 }
 
 }  // namespace foresight
