@@ -52,7 +52,7 @@ std::vector<std::size_t> arrivals(const RunFolder& run, const ReplayOptions& opt
     throw InputError(options.delay_frames ? "--delay-frames" : "--delay-ms", "the delay is longer than the run",
                      options.delay_frames
                          ? "give at most " + std::to_string(frames.size() - 1) + " images"
-                         : "give less than " +
+                         : "give at most " +
                                std::to_string(to_seconds(frames.back().left.time - frames.front().left.time) * 1e3) + " ms");
   return arrived;
 }

@@ -123,7 +123,7 @@ const std::vector<Case>& cases() {
       {"both delays", nothing, {"--delay-ms", "10", "--delay-frames", "1"}, "--delay-ms", "--delay-frames is given too", "give one of the two"},
       {"both delays, both 0", nothing, {"--delay-ms", "0", "--delay-frames", "0"}, "--delay-ms", "--delay-frames is given too", "give one of the two"},
       {"too many images of delay", nothing, {"--delay-frames", "3"}, "--delay-frames", "longer than the run", "at most 2"},
-      {"too much time of delay", nothing, {"--delay-ms", "201"}, "--delay-ms", "longer than the run", "200"},
+      {"too much time of delay", nothing, {"--delay-ms", "201"}, "--delay-ms", "longer than the run", "at most 199.9"},
       // Other options.
       {"margin out of range", nothing, {"--margin-px", "-1"}, "--margin-px", "'-1'", "from 0 to 32"},
       {"density out of range", nothing, {"--texels-per-metre", "0"}, "--texels-per-metre", "'0'", "from 1"},
