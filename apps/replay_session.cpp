@@ -2,11 +2,23 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "texture_gpu/chart_extent.hpp"
+
 namespace foresight {
 namespace {
 
 constexpr int kWindowWidth = 1440;
 constexpr double kDrawTimeout = 20;  // seconds
+
+/// A few views spread over the run.
+std::vector<ExpectedView> some_views(const RunFolder& run) {
+  constexpr std::size_t kMost = 12;
+  const auto& frames = run.frames();
+  std::vector<ExpectedView> views;
+  for (std::size_t i = 0; i < frames.size(); i += std::max<std::size_t>(1, frames.size() / kMost))
+    views.push_back({frames[i].left.T_world_camera, run.state_at(frames[i].left.time)});
+  return views;
+}
 
 }  // namespace
 
@@ -22,7 +34,9 @@ ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options
   }
   driver_ = gl::query_driver();
   gl::set_up_context();
-  surface_ = std::make_shared<const SurfacePatches>(find_surface_patches(*run.scene(), PatchOptions{}));
+  PatchOptions patches;
+  patches.chart_extent = chart_extent_for(*run.scene(), lens, some_views(run));
+  surface_ = std::make_shared<const SurfacePatches>(find_surface_patches(*run.scene(), patches));
   thread_ = std::make_unique<TextureThread>(
       context_->create_shared(), TextureThread::Setup{run.scene(), surface_, lens, run.lens_right(), options});
   context_->make_current();

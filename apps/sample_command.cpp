@@ -62,6 +62,7 @@ void add_sample_command(CLI::App& app, std::function<int()>& action) {
   command->add_option("--size", arguments->size, "Image size in pixels, WIDTHxHEIGHT")->capture_default_str();
   command->add_flag("--stereo", arguments->options.stereo, "Add a second camera, 65 mm to the right");
   command->add_flag("!--no-distortion", arguments->options.distortion, "An ideal pinhole instead of a real lens");
+  command->add_flag("--fisheye", arguments->options.fisheye, "An equidistant lens of 150 degrees");
   command->add_option("--seed", arguments->options.seed, "Varies wood grain and small print")->capture_default_str();
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

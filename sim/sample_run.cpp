@@ -63,8 +63,10 @@ std::string camera_yaml(const Lens& lens, bool right) {
   text += format("camera_matrix:\n  rows: 3\n  cols: 3\n  data: [%.17g, 0, %.17g, 0, %.17g, %.17g, 0, 0, 1]\n", p.fx,
                  p.cx, p.fy, p.cy);
   text += "distortion_model: " + to_string(p.model) + "\n";
-  text += format("distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [%.17g, %.17g, %.17g, %.17g, %.17g]\n",
-                 p.d[0], p.d[1], p.d[2], p.d[3], p.d[4]);
+  const int count = p.model == LensModel::equidistant ? 4 : 5;
+  text += format("distortion_coefficients:\n  rows: 1\n  cols: %d\n  data: [%.17g", count, p.d[0]);
+  for (int i = 1; i < count; ++i) text += format(", %.17g", p.d[static_cast<std::size_t>(i)]);
+  text += "]\n";
   if (right) text += "T_left_right: " + yaml(T_left_right()) + "\n";
   return text;
 }
@@ -182,7 +184,12 @@ Lens sample_lens(const SampleRunOptions& options, bool right) {
   p.fy = (right ? 523.9 : 522.3) * unit;
   p.cx = (p.width - 1) / 2.0 + (right ? -2.9 : 3.7) * unit;
   p.cy = (p.height - 1) / 2.0 + (right ? 2.2 : -4.1) * unit;
-  if (options.distortion)
+  if (options.fisheye) {
+    // 150 degrees along the diagonal: too wide for any one pinhole picture.
+    p.model = LensModel::equidistant;
+    p.fx = p.fy = 305.0 * unit;
+    p.d = {-0.012, 0.003, -0.0006, 0.0};
+  } else if (options.distortion)
     p.d = right ? std::array<double, 8>{-0.276, 0.087, -0.0004, 0.0007}
                 : std::array<double, 8>{-0.28, 0.09, 0.0006, -0.0005};
   return Lens(p);
@@ -205,9 +212,9 @@ void write_sample_run(const fs::path& out, const SampleRunOptions& options,
     const Lab lab =
         make_lab(0.0005 * std::clamp(640.0 / std::max(options.width, options.height), 0.6, 8.0), options.seed);
     write_text(partial / kMarker,
-               format("%s\nsize: [%d, %d]\nframes: %d\nstereo: %s\ndistortion: %s\nseed: %u\n", kMarkerLine,
+               format("%s\nsize: [%d, %d]\nframes: %d\nstereo: %s\nfisheye: %s\ndistortion: %s\nseed: %u\n", kMarkerLine,
                       options.width, options.height, options.frames, options.stereo ? "true" : "false",
-                      options.distortion ? "true" : "false", options.seed));
+                      options.fisheye ? "true" : "false", options.distortion ? "true" : "false", options.seed));
     write_scene(partial, lab);
     write_tracks(partial, options, lab.parts[lab.plate].name);
     for (int eye = 0; eye <= int{options.stereo}; ++eye) write_camera(partial, options, eye == 1);

@@ -14,6 +14,7 @@ struct SampleRunOptions {
   int height = 480;        ///< px, 16 .. 8192
   int frames = 90;         ///< 1 .. 1,000,000, at 30 per second
   bool stereo = false;     ///< a second camera, 65 mm to the right
+  bool fisheye = false;    ///< an equidistant lens of 150 degrees along the diagonal, instead of the other two
   bool distortion = true;  ///< a plumb_bob lens with strong barrel distortion; else an ideal pinhole
   unsigned seed = 1;       ///< varies wood grain and small print
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "common/error.hpp"
 
@@ -10,67 +9,14 @@ namespace foresight {
 namespace {
 
 constexpr double kLevelsPerOctave = 4;
-constexpr double kNearest = 0.05;      // metres; views from nearer do not ask for more texels
 constexpr int kLargestChart = 4096;    // texels along a side
 constexpr int kImagesBeforeRise = 10;  // images with half of the memory free before resolutions rise
 
 // Changing a chart's resolution copies it, so it waits until a view is closer by more than kRise
 // steps, and then leaves some headroom. Only the memory policy makes charts coarser: by whole steps.
 constexpr double kRise = 1.0, kHeadroom = 0.25, kFall = 0.8;
-constexpr double kFlattest = 0.25;     // of the head-on density: a grazing view may come closer head-on soon
-
 Eigen::Vector2d density_of(const Eigen::Vector2i& level) {
   return {std::exp2(level.x() / kLevelsPerOctave), std::exp2(level.y() / kLevelsPerOctave)};
-}
-
-bool in_frustum(const Eigen::Vector3d& p, double r, const AtlasView& view) {
-  const auto& f = *view.faces;
-  if (f.count > 1) {
-    const double angle = std::atan2(p.head<2>().norm(), p.z());
-    return p.norm() <= r || angle - std::asin(r / p.norm()) <= view.lens->max_angle();
-  }
-  if (p.z() + r <= gl::kNearPlane) return false;
-  // Signed distances from the four planes through the camera and the borders of the face.
-  const auto outside = [&](double x, double focal_px, double border) {
-    return (focal_px * x + border * p.z()) / std::hypot(focal_px, border) < -r;
-  };
-  return !outside(p.x(), f.fx, f.cx + 0.5) && !outside(-p.x(), f.fx, f.width - 0.5 - f.cx) &&
-         !outside(p.y(), f.fy, f.cy + 0.5) && !outside(-p.y(), f.fy, f.height - 0.5 - f.cy);
-}
-
-/// True where every triangle of a solid's chart is turned away from the camera, wherever it lies in
-/// the chart's sphere. `n`, `p`: the patch's normal and the chart's centre in the camera frame.
-bool shows_its_back(const Chart& chart, const Eigen::Vector3d& n, const Eigen::Vector3d& p) {
-  if (!chart.closed || p.norm() <= chart.radius) return false;
-  if (chart.cone < 1e-3) return n.dot(p) > 1e-9;  // all in one plane: the camera is behind it
-  const double angle = chart.cone + std::asin(chart.radius / p.norm());
-  return angle < std::numbers::pi / 2 && n.dot(p) / p.norm() > std::sin(angle);
-}
-
-/// Texels per metre along u and v that give one texel per pixel on the chart as seen from the view;
-/// zero: out of view.
-Eigen::Vector2d density_in_view(const Chart& chart, const Patch& patch, const AtlasView& view) {
-  const Pose& T_camera_node = view.T_camera_node[static_cast<std::size_t>(patch.node)];
-  const Eigen::Vector3d p = T_camera_node * chart.center;
-  if (!in_frustum(p, chart.radius, view) || shows_its_back(chart, T_camera_node.linear() * patch.n, p))
-    return Eigen::Vector2d::Zero();
-  const auto& lens = view.lens->parameters();
-  const double focal = std::max(lens.fx, lens.fy);
-  // Angular resolution at the chart's centre. A chart around the camera counts as half a radius away.
-  const double distance = std::max({p.norm(), 0.5 * chart.radius, kNearest});
-  const Eigen::Vector3d sight = p.normalized();
-  const double depth = view.faces->count > 1 ? distance : std::max({p.z(), 0.5 * chart.radius, kNearest});
-  const double scale = focal / depth;
-  // A step along u on a slope also rises: the steepest usual slope shows it longest.
-  const auto pixels_per_metre = [&](const Eigen::Vector3d& axis) {
-    double most = kFlattest;
-    for (double s : {-chart.slope, 0.0, chart.slope}) {
-      const Eigen::Vector3d step = T_camera_node.linear() * (axis + s * patch.n);
-      most = std::max(most, (step - sight * sight.dot(step)).norm());
-    }
-    return most * scale;
-  };
-  return {pixels_per_metre(patch.eu), pixels_per_metre(patch.ev)};
 }
 
 std::uint32_t pack(int low, int high) { return static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16; }
@@ -100,13 +46,21 @@ ChartAtlas::ChartAtlas(std::shared_ptr<const SurfacePatches> surface, const Text
       colours_(2 * page_capacity(options.memory_bytes)) {}
 
 std::uint32_t ChartAtlas::page_capacity(std::uint64_t memory_bytes) {
-  // Whole layers are reserved; two colour layers for one of heights keep the ratio.
   const std::uint64_t a_page = 2 * atlas::kColourBytes + atlas::kHeightBytes;
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory_bytes / a_page, 1u << 20));
+  const std::uint64_t pages = std::min<std::uint64_t>(memory_bytes / a_page, 1u << 20);
+  // What is reserved are whole layers, or whole rows of a single one; two colour slots a page.
+  const std::uint64_t step = pages >= atlas::kSlotsPerLayer       ? atlas::kSlotsPerLayer
+                             : pages >= atlas::kSlotsPerLayer / 2 ? atlas::kSlotsPerLayer / 2
+                                                                  : atlas::kSlotsPerRow;
+  return static_cast<std::uint32_t>(pages / step * step);
 }
 
 std::uint64_t ChartAtlas::bytes_in_use() const {
   return colours_.used() * atlas::kColourBytes + heights_.used() * atlas::kHeightBytes;
+}
+
+std::uint64_t ChartAtlas::bytes_reserved() const {
+  return colours_.capacity() * atlas::kColourBytes + heights_.capacity() * atlas::kHeightBytes;
 }
 
 Eigen::Vector2i ChartAtlas::wanted_level(int index) const {
@@ -321,55 +275,6 @@ void ChartAtlas::commit() {
 
 void ChartAtlas::give_back_colours(std::span<const std::uint32_t> slots) {
   for (std::uint32_t slot : slots) colours_.give_back(slot);
-}
-
-void ChartAtlas::write_job_geometry(std::span<const PageJob> jobs, std::span<const AtlasView> views,
-                                    std::vector<Eigen::Vector4f>& out) const {
-  out.clear();
-  out.reserve(4 * jobs.size() * views.size());
-  const auto slot = [](std::uint32_t s) { return s == atlas::kNoSlot ? -1.0 : static_cast<double>(s); };
-  for (const PageJob& job : jobs) {
-    const ChartRaster& r = charts_[job.chart].raster;
-    const Patch& patch = surface_->patches[static_cast<std::size_t>(surface_->charts[job.chart].patch)];
-    const Eigen::Vector2d uv = r.uv0 + atlas::kPage * Eigen::Vector2d(job.xy & 0xffff, job.xy >> 16).cwiseQuotient(r.density);
-    const Eigen::Vector3d corner = patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + r.height0 * patch.n;
-    for (const AtlasView& view : views) {
-      const Pose& T = view.T_camera_node[static_cast<std::size_t>(patch.node)];
-      const auto row = [&](const Eigen::Vector3d& v, double w) {
-        out.push_back(Eigen::Vector4d(v.x(), v.y(), v.z(), w).cast<float>());
-      };
-      row(T * corner, slot(job.height_slot));
-      row(T.linear() * patch.eu / r.density.x(), slot(job.old_slot));
-      row(T.linear() * patch.ev / r.density.y(), slot(job.new_slot));
-      row(T.linear() * patch.n * r.height_step, 0);
-    }
-  }
-}
-
-void ChartAtlas::write_table(std::vector<std::uint32_t>& out) const {
-  out.clear();
-  out.reserve(static_cast<std::size_t>(page_count_));
-  for (const AtlasChart& chart : charts_)
-    for (const AtlasPage& page : chart.page) out.push_back(page.colour);
-}
-
-void ChartAtlas::write_charts(std::vector<Eigen::Vector4f>& out) const {
-  out.clear();
-  out.reserve(5 * charts_.size());
-  const auto pack4 = [&](const Eigen::Vector3d& v, double w) {
-    out.push_back(Eigen::Vector4d(v.x(), v.y(), v.z(), w).cast<float>());
-  };
-  for (std::size_t i = 0; i < charts_.size(); ++i) {
-    const AtlasChart& chart = charts_[i];
-    const Patch& patch = surface_->patches[static_cast<std::size_t>(surface_->charts[i].patch)];
-    const ChartRaster& r = chart.raster;
-    const Eigen::Vector2d pitch = r.density.x() > 0 ? r.density.cwiseInverse().eval() : Eigen::Vector2d::Zero();
-    pack4(patch.origin + r.uv0.x() * patch.eu + r.uv0.y() * patch.ev + r.height0 * patch.n, chart.pages.x());
-    pack4(patch.eu * pitch.x(), r.density.x());
-    pack4(patch.ev * pitch.y(), chart.first_page);
-    pack4(patch.n * r.height_step, patch.node);
-    pack4({r.uv0.x(), r.uv0.y(), static_cast<double>(chart.pages.y())}, r.density.y());
-  }
 }
 
 }  // namespace foresight

@@ -9,19 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "gl/faces.hpp"
 #include "texture_gpu/chart_raster.hpp"
+#include "texture_gpu/chart_resolution.hpp"
 #include "texture_gpu/options.hpp"
 #include "texture_gpu/page_pool.hpp"
 
 namespace foresight {
-
-/// A camera at one instant, as far as visibility and resolution are concerned.
-struct AtlasView {
-  const Lens* lens = nullptr;
-  const gl::Faces* faces = nullptr;
-  std::vector<Pose> T_camera_node;  ///< one per node of the scene
-};
 
 /// A page as cull.comp reads it.
 struct PageRecord {
@@ -83,7 +76,8 @@ class ChartAtlas {
  public:
   ChartAtlas(std::shared_ptr<const SurfacePatches> surface, const TextureOptions& options);
 
-  /// Resident pages that the memory budget allows, with room for a second generation of each.
+  /// Resident pages that the memory budget allows, with room for a second generation of each;
+  /// 0 where not even one row of pages fits.
   static std::uint32_t page_capacity(std::uint64_t memory_bytes);
 
   const SurfacePatches& surface() const { return *surface_; }
@@ -94,6 +88,7 @@ class ChartAtlas {
   std::uint32_t colour_capacity() const { return colours_.capacity(); }
   std::uint32_t height_capacity() const { return heights_.capacity(); }
   std::uint64_t bytes_in_use() const;
+  std::uint64_t bytes_reserved() const;
 
   /// Chooses each chart's resolution for the views of image number `image` and rasterises what
   /// changed. Returns the pages that may be seen, in table order.

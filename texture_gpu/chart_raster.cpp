@@ -103,7 +103,6 @@ ChartRaster raster_chart(const SurfacePatches& surface, int index, const Vector2
   }
   const std::vector<float> core = grid.h;
   grow_guard(grid);
-  grow_guard(grid);
 
   float low = std::numeric_limits<float>::max(), high = -low;
   for (float h : grid.h)

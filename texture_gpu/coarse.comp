@@ -1,5 +1,5 @@
 // Hole filling, above the pages: the mean colour of every page of the charts that changed, and of
-// each such chart. Pages without a seen texel are listed for coarse_fill.comp.
+// each such chart. Pages with hardly a seen texel are listed for coarse_fill.comp.
 // One work group a chart.
 #define ITEMS_PER_GROUP 64
 #include "chart_record.glsl"
@@ -15,6 +15,9 @@ layout(binding = 1, r32ui) uniform writeonly uimageBuffer means;
 uniform int first_group;
 shared vec4 sums[16];
 
+// Share of seen texels from which a page's mean stands for itself; a handful at its edge does not.
+const float kFirm = 0.25;
+
 void main() {
   int index = int(texelFetch(dirty, first_group + int(gl_WorkGroupID.x)).r);
   int lane = int(gl_LocalInvocationID.x);
@@ -25,7 +28,7 @@ void main() {
     uint slot = texelFetch(table, chart.first_page + i).r;
     vec4 c = slot == kNoSlot ? vec4(0.0) : texelFetch(colours, slot_origin(slot & 0xffffffu, 4), 4);
     sum += vec4(c.rgb * c.a, c.a);
-    if (c.a == 0.0) append_work(uint(chart.first_page + i));
+    if (c.a < kFirm) append_work(uint(chart.first_page + i));
     imageStore(coarse, chart.first_page + i, uvec4(c.a > 0.0 ? packUnorm4x8(vec4(c.rgb, 1.0)) : 0u));
   }
   sums[lane] = sum;

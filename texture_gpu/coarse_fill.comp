@@ -1,5 +1,5 @@
-// Hole filling, above the pages: a page without a seen texel takes the means of the pages around
-// it, the nearer the more, and far from all of them its chart's. One invocation a page.
+// Hole filling, above the pages: a page with hardly a seen texel takes the means of itself and the
+// pages around it, the nearer and the more seen the more, and far from all of them its chart's. One invocation a page.
 #define ITEMS_PER_GROUP 64
 #include "chart_record.glsl"
 #include "atlas.glsl"

@@ -26,7 +26,7 @@ void main() {
       float slack = 0.5 * depth_tolerance * b.y * max(plane, 0.0);
       bool own = x >= 0 && x < 2 && y >= 0 && y < 2;
       smooth_around = smooth_around && b.y - (plane + spread) <= slack && (!own || plane - spread - abs(b.x) <= slack || b.y == 0.0);
-      has_model = has_model || (own && b.y > 0.0);
+      has_model = has_model || (own && b.y > 0.0 && abs(b.x) < 1e29);  // and the image shows it
     }
   bool inside = all(lessThan(tile.xy * 8, face_size));
   if (inside && has_model && !(smooth_around && center > 0.0))

@@ -69,6 +69,7 @@ void main() {
   float height = float(raw & 0x7fffu) - 1.0;
   vec4 colour = g1.w < 0.0 ? vec4(0.0) : texelFetch(old_colours, slot_origin(uint(max(g1.w, 0.0)), 0) + ivec3(in_page, 0), 0);
 
+  float before = colour.a;
   float best_quality = 0.0;
   vec4 best = vec4(0.0);
   for (int c = 0; c < CAMERAS; ++c) {
@@ -91,6 +92,6 @@ void main() {
   bool take = colour.a < kSeen || best.a >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
   if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
   if (raw == 0u) colour = vec4(0.0);
-  note_hole(job, raw, colour.a);
+  note_hole(job, raw, before, colour.a);
   imageStore(colours, slot_origin(uint(g2.w), 0) + ivec3(in_page, 0), colour);
 }

@@ -114,7 +114,7 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   glBindTextureUnit(7, jobs_.texture());
   glBindTextureUnit(10, copy_tiles_.texture());
   dispatch_groups(copy_, unseen.size());
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 }  // namespace foresight

@@ -92,12 +92,14 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   empty_pages_.start(work.chart_of_page.size());
   dispatch_groups(coarse_, work.dirty.size());
   empty_pages_.finish();
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // both passes store into the coarse colours
 
   coarse_fill_.use();
   glBindTextureUnit(7, chart_of_page_.texture());
   glBindTextureUnit(10, next.means.texture());
   empty_pages_.dispatch(0);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  // Fetched by what follows, and copied when the next generation starts from this one.
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /// Hands chart means on to charts that were never seen.
@@ -112,16 +114,17 @@ void FillPass::spread(const PublishedTextures& next) const {
     glBindTextureUnit(9, from->texture());
     glBindImageTexture(0, to->texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     glDispatchCompute(gl::groups(chart_count_, 64), 1, 1);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   }
 }
 
-void FillPass::list_holes(std::size_t job_count, const gl::BufferTexture& holes, int refresh) {
+void FillPass::list_holes(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store, int refresh) {
   hole_jobs_.use();
   hole_jobs_.set("job_count", static_cast<int>(job_count));
   hole_jobs_.set("turn", turn_);
   hole_jobs_.set("refresh", refresh);
   glBindTextureUnit(10, holes.texture());
+  glBindTextureUnit(11, store.colours.name());
   with_holes_.start(job_count);
   glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
   with_holes_.finish();
@@ -130,12 +133,12 @@ void FillPass::list_holes(std::size_t job_count, const gl::BufferTexture& holes,
 void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
                     const PublishedTextures& next) {
   if (job_count == 0) return;
-  list_holes(job_count, holes, 1);
+  list_holes(job_count, holes, store, 1);
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
   glBindTextureUnit(14, next.coarse.texture());
   for (int level = 3; level >= 0; --level) {
-    if (level == 0) list_holes(job_count, holes, kRefresh);  // by far the most texels
+    if (level == 0) list_holes(job_count, holes, store, kRefresh);  // by far the most texels
     pull_[static_cast<std::size_t>(level)].use();
     bind_level(0, store.colours, level, GL_READ_WRITE);
     bind_level(1, store.colours, level + 1, GL_READ_ONLY);

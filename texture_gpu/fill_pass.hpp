@@ -30,7 +30,7 @@ class FillPass {
   void spread(const PublishedTextures& next) const;
   void pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
             const PublishedTextures& next);
-  void list_holes(std::size_t job_count, const gl::BufferTexture& holes, int refresh);
+  void list_holes(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store, int refresh);
 
   int turn_ = 0;
   gl::Program push_, push_rest_, coarse_, coarse_fill_, spread_, hole_jobs_;

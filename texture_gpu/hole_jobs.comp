@@ -1,9 +1,13 @@
-// Lists the jobs whose pages have texels that no camera has seen. What was filled before stays
-// filled when a page moves; of pages without new holes every REFRESH-th is refilled, so that fills
-// follow the colours around them within a few images.
+// Lists the jobs whose pages are to be filled: those with texels that no camera has seen, but also
+// some that one has; a page without any shows the means of the pages around it. What was filled
+// before stays filled when a page moves: of pages on which nothing new was seen every REFRESH-th is
+// refilled, so that fills follow the colours around them within a few images.
+#include "atlas.glsl"
+#include "jobs.glsl"
 #include "work_list.glsl"
 layout(local_size_x = 64) in;
 layout(binding = 10) uniform usamplerBuffer holes;
+layout(binding = 11) uniform sampler2DArray colours;
 layout(binding = 7) uniform usamplerBuffer jobs;
 uniform int job_count;
 uniform int turn;     // of this image
@@ -13,6 +17,8 @@ void main() {
   int index = int(gl_GlobalInvocationID.x);
   if (index >= job_count) return;
   uint hole = texelFetch(holes, index).r;
-  int table_index = int(texelFetch(jobs, 2 * index + 1).y);
-  if (hole == 3u || (hole != 0u && (table_index + turn) % refresh == 0)) append_work(uint(index));
+  Job job = read_job(jobs, index);
+  bool has_colour = texelFetch(colours, slot_origin(job.new_slot, 4), 4).a > 0.0;
+  bool changed = (hole & 6u) != 0u || (job.table_index + turn) % refresh == 0;
+  if ((hole & 1u) != 0u && has_colour && changed) append_work(uint(index));
 }

@@ -3,12 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include <queue>
 #include <set>
-#include <unordered_map>
+
+#include "texture_gpu/mesh_topology.hpp"
+#include "texture_gpu/overlap_grid.hpp"
 
 namespace foresight {
 namespace {
@@ -20,51 +21,6 @@ using Corners = std::array<Vector3d, 3>;
 // While a patch grows its axis moves; a triangle that ends up steeper than this against the final
 // axis is given back, so that texels are never stretched more than threefold.
 constexpr double kSteepestCos = 0.35;
-
-struct Face {
-  Vector3d normal;
-  double area = 0;
-  std::array<int, 3> neighbours{-1, -1, -1};  // scene triangles over each edge, same node
-};
-
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-  return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
-}
-
-void link_neighbours(const Mesh& mesh, int first, std::vector<Face>& faces) {
-  std::unordered_map<std::uint64_t, std::pair<int, int>> open;  // edge to (triangle, side)
-  open.reserve(mesh.triangles.size() * 2);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (int side = 0; side < 3; ++side) {
-      const auto& tri = mesh.triangles[t];
-      const auto key = edge_key(tri[static_cast<std::size_t>(side)], tri[static_cast<std::size_t>((side + 1) % 3)]);
-      const int id = first + static_cast<int>(t);
-      const auto [it, inserted] = open.try_emplace(key, id, side);
-      if (inserted || it->second.first < 0) continue;
-      const auto [other, other_side] = it->second;
-      faces[static_cast<std::size_t>(id)].neighbours[static_cast<std::size_t>(side)] = other;
-      faces[static_cast<std::size_t>(other)].neighbours[static_cast<std::size_t>(other_side)] = id;
-      it->second.first = -1;  // a third triangle on one edge stays apart
-    }
-  }
-}
-
-/// True where every edge is run through once in each direction: a solid with normals outwards (or,
-/// rarely, inwards: then a negative volume tells).
-bool is_closed(const Mesh& mesh) {
-  std::unordered_map<std::uint64_t, int> directed;
-  directed.reserve(3 * mesh.triangles.size());
-  double volume = 0;
-  for (const auto& t : mesh.triangles) {
-    for (std::size_t i = 0; i < 3; ++i)
-      if (++directed[std::uint64_t{t[i]} << 32 | t[(i + 1) % 3]] > 1) return false;
-    const auto at = [&](std::size_t i) { return mesh.vertices[t[i]].cast<double>(); };
-    volume += at(0).dot(at(1).cross(at(2)));
-  }
-  for (const auto& [edge, count] : directed)
-    if (!directed.contains(edge << 32 | edge >> 32)) return false;
-  return volume > 0;
-}
 
 Vector3d any_perpendicular(const Vector3d& n) {
   const Vector3d axis = std::abs(n.x()) < 0.7 ? Vector3d::UnitX() : Vector3d::UnitY();
@@ -102,59 +58,6 @@ std::vector<int> grow(int seed, double cos_cone, const std::vector<Face>& faces,
   }
   return members;
 }
-
-/// Marks which members of a patch hide another one when seen along the axis; the first to claim
-/// a place keeps it.
-class OverlapGrid {
- public:
-  OverlapGrid(const Vector2d& lower, const Vector2d& upper, double tolerance) : lower_(lower), tolerance_(tolerance) {
-    const Vector2d extent = (upper - lower).cwiseMax(1e-6);
-    scale_ = kCells / extent.maxCoeff();
-    width_ = static_cast<int>(extent.x() * scale_) + 2;
-    heights_.assign(static_cast<std::size_t>(width_) * (static_cast<std::size_t>(extent.y() * scale_) + 2), kNone);
-  }
-
-  bool claim(const std::array<Vector2d, 3>& uv, const std::array<double, 3>& h) {
-    return visit(uv, h, [&](double& cell, double height) { return cell == kNone || std::abs(cell - height) < tolerance_; }) &&
-           visit(uv, h, [&](double& cell, double height) {
-             if (cell == kNone) cell = height;
-             return true;
-           });
-  }
-
- private:
-  static constexpr int kCells = 256;  // along the longer side
-  static constexpr double kNone = 1e300;
-
-  template <typename F>
-  bool visit(const std::array<Vector2d, 3>& uv, const std::array<double, 3>& h, F&& f) {
-    std::array<Vector2d, 3> g;
-    for (std::size_t i = 0; i < 3; ++i) g[i] = (uv[i] - lower_) * scale_;
-    const double area = (g[1] - g[0]).x() * (g[2] - g[0]).y() - (g[1] - g[0]).y() * (g[2] - g[0]).x();
-    if (std::abs(area) < 1e-12) return true;
-    const int x0 = static_cast<int>(std::ceil(std::min({g[0].x(), g[1].x(), g[2].x()})));
-    const int x1 = static_cast<int>(std::floor(std::max({g[0].x(), g[1].x(), g[2].x()})));
-    const int y0 = static_cast<int>(std::ceil(std::min({g[0].y(), g[1].y(), g[2].y()})));
-    const int y1 = static_cast<int>(std::floor(std::max({g[0].y(), g[1].y(), g[2].y()})));
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        const Vector2d d = Vector2d(x, y) - g[0];
-        const double b1 = (d.x() * (g[2] - g[0]).y() - d.y() * (g[2] - g[0]).x()) / area;
-        const double b2 = ((g[1] - g[0]).x() * d.y() - (g[1] - g[0]).y() * d.x()) / area;
-        if (b1 < 0 || b2 < 0 || b1 + b2 > 1) continue;
-        const double height = h[0] + b1 * (h[1] - h[0]) + b2 * (h[2] - h[0]);
-        if (!f(heights_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)], height))
-          return false;
-      }
-    }
-    return true;
-  }
-
-  Vector2d lower_;
-  double tolerance_, scale_ = 1;
-  int width_ = 0;
-  std::vector<double> heights_;
-};
 
 /// Axes in the plane across `n` that give the smallest bounding rectangle, tried in 3 degree steps.
 std::pair<Vector3d, Vector3d> tightest_axes(const std::vector<int>& members, const std::vector<Corners>& corners,

@@ -9,7 +9,7 @@
 //     u = (p_node - origin) . eu                 ----------   plane, u to the right
 //
 // Large patches are divided into a grid of cells; each non-empty cell is a chart, the unit that
-// has a resolution of its own (docs/decisions/0002-height-field-charts.md).
+// has a resolution of its own (docs/decisions/0004-height-field-charts.md).
 #pragma once
 
 #include <Eigen/Core>

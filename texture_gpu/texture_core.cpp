@@ -87,7 +87,7 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   report.pages = allocation.jobs.size();
   report.tiles = extract_.tiles();
   report.bytes_in_use = atlas_.bytes_in_use();
-  report.bytes_reserved = options_.memory_bytes;
+  report.bytes_reserved = atlas_.bytes_reserved();
   report.texels_resident = std::uint64_t{atlas_.resident_pages()} * atlas::kPage * atlas::kPage;
   report.policy = atlas_.policy();
   return report;

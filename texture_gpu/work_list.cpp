@@ -19,7 +19,8 @@ void WorkList::start(std::size_t most) {
 }
 
 void WorkList::finish() const {
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  // The last bit is for the next start(), which writes the header again.
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindTextureUnit(15, buffer_.texture());
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer_.buffer().name());
 }
