@@ -8,6 +8,23 @@
 #include "apps/replay_command.hpp"
 #include "apps/sample_command.hpp"
 #include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace {
+
+// What is wrong with the command line, and what to do about it.
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  std::vector<std::string> jobs;
+  for (const CLI::App* job : app.get_subcommands({})) jobs.push_back(job->get_name());
+  const auto chosen = app.get_subcommands();
+  const auto unknown = app.remaining();
+  if (chosen.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
+    return "there is no subcommand " + foresight::in_quotes(unknown.front()) + "; did you mean '" +
+           foresight::nearest_word(unknown.front(), jobs) + "'? See `foresight --help`";
+  return error.what() + ("; see `foresight " + (chosen.empty() ? "" : chosen.front()->get_name() + " ")) + "--help`";
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Foresight: a teleoperation display that already shows what the robot will do"};
@@ -21,7 +38,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    std::cerr << "foresight: " << error.what() << "; see `foresight --help`\n";
+    std::cerr << "foresight: " << explain(app, error) << "\n";
     return 2;
   }
   try {
@@ -29,6 +46,9 @@ int main(int argc, char** argv) {
   } catch (const foresight::InputError& error) {
     std::cerr << "foresight: " << error.what() << "\n";
     return 2;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "foresight: out of memory; close other programs, or give a smaller run or model\n";
+    return 1;
   } catch (const std::exception& error) {
     std::cerr << "foresight: " << error.what() << "\n";
     return 1;

@@ -1,11 +1,10 @@
 #include "apps/replay.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <deque>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -18,6 +17,7 @@
 #include "apps/replay_report/instants.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "apps/replay_report/replay_report.hpp"
+#include "apps/replay_outputs.hpp"
 #include "apps/replay_session.hpp"
 #include "common/error.hpp"
 
@@ -28,7 +28,10 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 std::atomic<bool> interrupted = false;
-extern "C" void on_interrupt(int) { interrupted = true; }
+extern "C" void on_interrupt(int) {
+  interrupted = true;
+  std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C ends the program even where a driver hangs
+}
 
 /// For each image time, the number of images that have arrived by then: those not newer than the
 /// time minus the delay. Throws InputError for a delay that no image outlives.
@@ -49,35 +52,9 @@ std::vector<std::size_t> arrivals(const RunFolder& run, const ReplayOptions& opt
     throw InputError(options.delay_frames ? "--delay-frames" : "--delay-ms", "the delay is longer than the run",
                      options.delay_frames
                          ? "give at most " + std::to_string(frames.size() - 1) + " images"
-                         : "give less than " +
+                         : "give at most " +
                                std::to_string(to_seconds(frames.back().left.time - frames.front().left.time) * 1e3) + " ms");
   return arrived;
-}
-
-/// Refuses an output that cannot be written, before any work is done: the nearest folder that
-/// exists must take new files.
-void check_writable(const fs::path& path, const std::string& option) {
-  fs::path at = fs::absolute(path);
-  while (!fs::exists(at) && at.has_relative_path()) at = at.parent_path();
-  if (!fs::is_directory(at))
-    throw InputError(option + " " + path.string(), at.string() + " is not a folder", "give a folder that can be made");
-  if (::access(at.c_str(), W_OK | X_OK) != 0)
-    throw InputError(option + " " + path.string(), at.string() + " cannot be written to", "give another place or change its rights");
-}
-
-void check_outputs(const ReplayOptions& options) {
-  if (options.out) check_writable(*options.out / "predicted", "--out");
-  for (const auto& [file, name] : {std::pair{options.report, "--report"}, std::pair{options.html, "--html"}}) {
-    if (!file) continue;
-    if (fs::is_directory(*file)) throw InputError(std::string(name) + " " + file->string(), "this is a folder", "give a file name");
-    check_writable(fs::absolute(*file).parent_path(), name);
-  }
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw RuntimeFailure("cannot make the folder " + folder.string() + ": " + error.message(), "check the disk");
 }
 
 cv::Mat as_colour(const cv::Mat& pixels) {
@@ -109,7 +86,7 @@ class Replay {
   int play() {
     options_.real_time ? play_by_the_clock() : play_step_by_step();
     std::cerr << bar_.finish(record_.frames.size(), Clock::now());
-    record_.complete = !interrupted;
+    record_.complete = !interrupted && !closed_;
     record_.drops += session_.textures().replaced();
     note_policy();
     write_reports();
@@ -148,9 +125,9 @@ class Replay {
 
   void play_step_by_step() {
     std::size_t fed = 0;
-    for (std::size_t i = 0; i < arrived_.size() && !interrupted; ++i) {
+    for (std::size_t i = 0; i < arrived_.size() && !stopped(); ++i) {
       FrameRecord record = new_record(i);
-      while (fed < arrived_[i] && !interrupted) {
+      while (fed < arrived_[i] && !stopped()) {
         PosedFrame frame = session_.load(fed++);
         delayed_ = as_colour(frame.left.pixels);
         delayed_time_ = frame.left.time;
@@ -159,10 +136,12 @@ class Replay {
         record.arrival_to_publish_ms = std::chrono::duration<double, std::milli>(Clock::now() - arrival).count();
         take(report, record);
       }
-      if (arrived_[i] == 0 || interrupted) continue;
-      if (!show_and_measure(i, record)) break;
+      if (arrived_[i] == 0 || stopped()) continue;
+      show_and_measure(i, record);
     }
   }
+
+  bool stopped() const { return interrupted || closed_; }
 
   /// Every image arrives when the clock says so, whether the last one is done or not; image times
   /// that have passed before they can be drawn are dropped.
@@ -173,9 +152,14 @@ class Replay {
       return start + std::chrono::duration_cast<Clock::duration>(frames[i].left.time - frames.front().left.time);
     };
     std::size_t fed = 0;
-    for (std::size_t i = 0; i < arrived_.size() && !interrupted; ++i) {
-      std::this_thread::sleep_until(due(i));
+    for (std::size_t i = 0; i < arrived_.size() && !stopped(); ++i) {
+      sleep_until(due(i));
       FrameRecord record = new_record(i);
+      if (i + 1 < frames.size() && Clock::now() > due(i + 1)) {
+        record.dropped = true;
+        if (arrived_[i] > 0) record_.frames.push_back(std::move(record));
+        continue;
+      }
       if (arrived_[i] > fed) {
         // The newest wins: images that came meanwhile are never even decoded.
         record_.drops += arrived_[i] - fed - 1;
@@ -190,22 +174,20 @@ class Replay {
         take(*report, record);
         record.arrival_to_publish_ms = publish_latency(*report);
       }
-      if (arrived_[i] == 0) continue;
-      const bool late = i + 1 < frames.size() && Clock::now() > due(i + 1);
-      if (late) {
-        record.dropped = true;
-        record_.frames.push_back(std::move(record));
-      } else if (!show_and_measure(i, record)) {
-        break;
-      }
+      if (arrived_[i] > 0 && !stopped()) show_and_measure(i, record);
     }
   }
 
+  /// In short naps, so that Ctrl-C does not wait for a gap of the run.
+  void sleep_until(Clock::time_point wake) const {
+    while (!stopped() && Clock::now() < wake)
+      std::this_thread::sleep_until(std::min(wake, Clock::now() + std::chrono::milliseconds(50)));
+  }
+
   std::optional<double> publish_latency(const ExtractionReport& report) {
-    for (const auto& [arrival, time] : submitted_)
-      if (time == report.newest_image)
-        return std::chrono::duration<double, std::milli>(report.published_at - arrival).count();
-    return std::nullopt;
+    while (!submitted_.empty() && submitted_.front().second < report.newest_image) submitted_.pop_front();
+    if (submitted_.empty() || submitted_.front().second != report.newest_image) return std::nullopt;
+    return std::chrono::duration<double, std::milli>(report.published_at - submitted_.front().first).count();
   }
 
   FrameRecord new_record(std::size_t i) const {
@@ -230,12 +212,16 @@ class Replay {
     policy_ = report.policy;
   }
 
-  /// Draws the view of image time i, compares, writes. False: the window was closed.
-  bool show_and_measure(std::size_t i, FrameRecord& record) {
+  /// Draws the view of image time i, compares, writes.
+  void show_and_measure(std::size_t i, FrameRecord& record) {
     record.delay_s = to_seconds(run_.frames()[i].left.time - delayed_time_);
     const double before = process_cpu_ms();
     const cv::Mat predicted = session_.predict(i);
-    if (predicted.empty()) return true;  // real time: nothing has been published yet
+    if (predicted.empty()) {  // real time: the first image is still in work
+      record.dropped = true;
+      record_.frames.push_back(record);
+      return;
+    }
     const double drawn = process_cpu_ms();
     const cv::Mat actual = as_colour(read_run_image(run_.frames()[i].left, run_.lens_left()));
     const ImageComparison comparison(actual, seen_mask(predicted));
@@ -251,7 +237,7 @@ class Replay {
     char title[160];
     std::snprintf(title, sizeof title, "Foresight replay: %.0f ms delayed %.1f dB | predicted %.1f dB | actual", record.delay_s * 1e3,
                   record.delayed.psnr_db.value_or(0), record.predicted.psnr_db.value_or(0));
-    return session_.show(delayed_, predicted, actual, title);
+    closed_ = !session_.show(delayed_, predicted, actual, title);
   }
 
   void note_policy() {
@@ -273,7 +259,11 @@ class Replay {
 
   void print_summary() const {
     const Summary s = summarise(record_);
-    std::printf("%zu image times: predicted %.2f dB, delayed image %.2f dB on the same pixels\n", record_.frames.size(),
+    if (s.frames == 0) {
+      std::printf("no image time was shown\n");
+      return;
+    }
+    std::printf("%zu image times: predicted %.2f dB, delayed image %.2f dB on the same pixels\n", s.frames,
                 s.predicted.psnr_db.mean, s.delayed.psnr_db.mean);
     std::printf("seen %.3f, filled %.3f, empty %.3f of the image; sharpness %.2f of the real image's\n", s.coverage.seen, s.coverage.filled,
                 s.coverage.empty(), s.predicted.sharpness.mean);
@@ -291,27 +281,29 @@ class Replay {
   InstantKeeper keeper_{4};
   cv::Mat delayed_;
   RobotTime delayed_time_;
-  std::vector<std::pair<Clock::time_point, RobotTime>> submitted_;
+  std::deque<std::pair<Clock::time_point, RobotTime>> submitted_;  // real time: when each image came
   std::uint64_t bytes_used_ = 0;
   double gain_ = 1;
   ChartAtlas::Policy policy_;
+  bool closed_ = false;  // the window
 };
 
 }  // namespace
 
 int replay(const ReplayOptions& given) {
+  if (given.delay_frames && given.delay_ms) throw InputError("--delay-ms", "--delay-frames is given too", "give one of the two");
   const RunFolder run = RunFolder::open(given.run, {.scene = given.scene});
   ReplayOptions options = given;
   options.textures.depth_tolerance =
       given.model_accuracy.value_or(run.scene()->accuracy().value_or(options.textures.depth_tolerance));
-  std::vector<std::size_t> arrived = arrivals(run, options);
-  check_outputs(options);
+  const std::vector<std::size_t> arrived = arrivals(run, options);
+  check_outputs(options, run);
   ProgressBar bar("check", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr());
   check_run_images(run, [&](std::size_t done, std::size_t) { std::cerr << bar.update(done, Clock::now()) << std::flush; });
   std::cerr << bar.finish(run.frames().size(), Clock::now());
   interrupted = false;
   std::signal(SIGINT, on_interrupt);
-  return Replay(run, options, std::move(arrived)).play();
+  return Replay(run, options, arrived).play();
 }
 
 }  // namespace foresight

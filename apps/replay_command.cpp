@@ -1,10 +1,32 @@
 #include "apps/replay_command.hpp"
 
+#include <iomanip>
 #include <memory>
+#include <sstream>
 
 #include "apps/replay.hpp"
+#include "common/text.hpp"
 
 namespace foresight {
+namespace {
+
+/// Unlike CLI::Range it refuses "nan" too.
+CLI::Validator from_to(double low, double high) {
+  const auto text = [](double value) {
+    std::ostringstream stream;
+    stream << std::setprecision(8) << value;
+    return stream.str();
+  };
+  const std::string range = "from " + text(low) + " to " + text(high);
+  const auto check = [low, high, range](const std::string& given) {
+    const auto value = parse_number(given);
+    return value && *value >= low && *value <= high ? std::string()
+                                                    : in_quotes(given) + " is not a number " + range + "; give one";
+  };
+  return CLI::Validator(check, range, "range");
+}
+
+}  // namespace
 
 void add_replay_command(CLI::App& app, std::function<int()>& action) {
   auto* command = app.add_subcommand(
@@ -15,25 +37,24 @@ void add_replay_command(CLI::App& app, std::function<int()>& action) {
                       "Folder with camera.yaml, rgb.txt, trajectory.txt and scene.ply or scene.yaml")
       ->required();
   command->add_option("--scene", options->scene, "Model to use instead of the run's own");
-  auto* frames = command->add_option("--delay-frames", options->delay_frames, "Delay in images of the run (default 0)")
-                     ->check(CLI::Range(0, 1000000));
-  command->add_option("--delay-ms", options->delay_ms, "Delay in milliseconds")
-      ->check(CLI::Range(0.0, 1e7))
-      ->excludes(frames);
+  command->add_option("--delay-frames", options->delay_frames, "Delay in images of the run (default 0)")
+                     ->check(from_to(0, 1000000));
+  command->add_option("--delay-ms", options->delay_ms, "Delay in milliseconds; not with --delay-frames")
+      ->check(from_to(0.0, 1e7));
   command->add_option("--texels-per-metre", options->textures.texels_per_metre,
                       "Resolution of all textures (default: one texel per pixel of the closest view)")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(from_to(1.0, 1e6));
   command->add_option("--max-texture", options->textures.max_texture, "Most texels along a side of a chart")
-      ->check(CLI::Range(16, 4096));
+      ->check(from_to(16, 4096));
   command->add_option("--texture-memory-mb", *memory_mb, "Memory for textures, both generations")
-      ->check(CLI::Range(1, 65536))
+      ->check(from_to(1, 65536))
       ->capture_default_str();
   command->add_option("--margin-px", options->textures.margin_px, "Pixels behind a silhouette that are not trusted")
-      ->check(CLI::Range(0.0, 32.0))
+      ->check(from_to(0.0, 32.0))
       ->capture_default_str();
   command->add_option("--model-accuracy-m", options->model_accuracy,
                       "Largest usual error of the model (default: accuracy_m of scene.yaml, else 0.02)")
-      ->check(CLI::Range(1e-4, 1.0));
+      ->check(from_to(1e-4, 1.0));
   command->add_option("--out", options->out, "Folder for predicted/*.png and contact_sheet.png");
   command->add_option("--report", options->report, "JSON file with all measurements");
   command->add_option("--html", options->html, "HTML file with pictures and plots, self-contained");

@@ -19,6 +19,7 @@ struct Arguments {
 };
 
 volatile std::sig_atomic_t interrupted = 0;
+struct Interrupted {};
 
 void parse_size(const std::string& text, sim::SampleRunOptions& options) {
   const char* const end = text.data() + text.size();
@@ -36,10 +37,15 @@ int run(Arguments arguments) {
   const auto now = [] { return std::chrono::steady_clock::now(); };
   std::fputs("sample: lighting the lab\n", stderr);
   ProgressBar bar("sample", "images", images, now(), ProgressBar::for_stderr());
-  sim::write_sample_run(arguments.out, arguments.options, [&](int done, int) {
-    if (interrupted) throw RuntimeFailure("stopped by Ctrl-C, nothing was written", "run the command again");
-    std::fputs(bar.update(static_cast<std::size_t>(done), now()).c_str(), stderr);
-  });
+  try {
+    sim::write_sample_run(arguments.out, arguments.options, [&](int done, int) {
+      if (interrupted) throw Interrupted();
+      std::fputs(bar.update(static_cast<std::size_t>(done), now()).c_str(), stderr);
+    });
+  } catch (const Interrupted&) {
+    std::fputs("\nforesight: stopped by Ctrl-C, nothing was written\n", stderr);
+    return 130;
+  }
   std::fputs(bar.finish(images, now()).c_str(), stderr);
   std::printf("%s\n", arguments.out.c_str());
   return 0;

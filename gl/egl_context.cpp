@@ -38,14 +38,14 @@ class Display {
   EGLDisplay display_;
 };
 
-EGLContext create_context(EGLDisplay display, EGLContext share) {
+EGLContext create_context(EGLDisplay display, EGLContext share, const EGLint* attributes = kContextAttributes) {
   eglBindAPI(EGL_OPENGL_API);
   const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
   // Surfaceless contexts need no config where EGL_KHR_no_config_context is there.
   if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0) config = nullptr;
-  return eglCreateContext(display, config, share, kContextAttributes);
+  return eglCreateContext(display, config, share, attributes);
 }
 
 class EglContext final : public Context {
@@ -80,6 +80,18 @@ class EglContext final : public Context {
   EGLContext context_;
 };
 
+/// What the display has instead of OpenGL 4.5, such as "llvmpipe, OpenGL 3.3 (Mesa 22.3.6)".
+std::string found_instead(const std::shared_ptr<Display>& display) {
+  const std::string error = egl_error();
+  const EGLint any_version[] = {EGL_NONE};
+  const EGLContext context = create_context(display->get(), EGL_NO_CONTEXT, any_version);
+  if (context == EGL_NO_CONTEXT) return "no OpenGL, " + error;
+  EglContext older(display, context);
+  older.make_current();
+  const auto text = [](GLenum name) { return std::string(reinterpret_cast<const char*>(glGetString(name))); };
+  return "only " + text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
+}
+
 /// Tries one platform; on failure appends the reason to `tried`.
 std::unique_ptr<Context> try_display(EGLDisplay handle, const std::string& name, std::string& tried) {
   const auto fail = [&](const std::string& why) {
@@ -90,7 +102,7 @@ std::unique_ptr<Context> try_display(EGLDisplay handle, const std::string& name,
   if (!eglInitialize(handle, nullptr, nullptr)) return fail(egl_error());
   auto display = std::make_shared<Display>(handle);
   const EGLContext context = create_context(handle, EGL_NO_CONTEXT);
-  if (context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context, " + egl_error());
+  if (context == EGL_NO_CONTEXT) return fail(found_instead(display));
   auto result = std::make_unique<EglContext>(display, context);
   result->make_current();
   return result;

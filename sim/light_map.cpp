@@ -88,7 +88,7 @@ std::vector<Triangle> triangles_of(const Part& part, const Eigen::Isometry3f& T)
 
 }  // namespace
 
-LightMap::LightMap(const Lab& lab, double coarser) {
+LightMap::LightMap(const Lab& lab, double coarser, const std::function<void()>& poll) {
   std::vector<Triangle> still;
   for (int k = 0; k < static_cast<int>(lab.parts.size()); ++k) {
     const Part& part = lab.parts[k];
@@ -116,7 +116,10 @@ LightMap::LightMap(const Lab& lab, double coarser) {
   const auto each_still_facet = [&](auto&& work) {
     parallel_for(still_facets_.size(), [&](std::size_t k) {
       const Grid& grid = grids_[still_facets_[k]];
-      for (int i = grid.first; i < grid.first + (grid.n + 1) * (grid.n + 2) / 2; ++i) work(i);
+      for (int i = grid.first; i < grid.first + (grid.n + 1) * (grid.n + 2) / 2; ++i) {
+        if (poll && i % 64 == 0) poll();
+        work(i);
+      }
     });
   };
   each_still_facet([&](int i) {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "sim/lab.hpp"
@@ -27,7 +28,8 @@ class LightMap {
   using Irradiance = std::vector<Eigen::Vector3f>;
 
   /// Uses all cores. `coarser` multiplies the distance between samples. `lab` must outlive this.
-  LightMap(const Lab& lab, double coarser);
+  /// `poll`, which may be empty, is called now and then from all threads; what it throws stops the work.
+  LightMap(const Lab& lab, double coarser, const std::function<void()>& poll = {});
 
   /// The light while the plate stands at `T_world_plate`. One thread.
   Irradiance with_plate_at(const Pose& T_world_plate) const;

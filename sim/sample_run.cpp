@@ -123,14 +123,17 @@ void write_images(const fs::path& folder, const SampleRunOptions& options, const
                   const std::function<void(int, int)>& progress) {
   // Finer pictures and light for finer images, so that a small test is quick and a large image sharp.
   const double relative = 640.0 / std::max(options.width, options.height);
-  const LightMap light(lab, std::clamp(relative, 0.6, 16.0));
+  std::mutex mutex;
+  int done = 0;
+  const int total = options.frames * (options.stereo ? 2 : 1);
+  const LightMap light(lab, std::clamp(relative, 0.6, 16.0), [&] {
+    const std::scoped_lock lock(mutex);
+    if (progress) progress(0, total);
+  });
   const Renderer renderer(lab, light);
   std::vector<RayTable> rays;
   for (int eye = 0; eye <= int{options.stereo}; ++eye) rays.emplace_back(sample_lens(options, eye == 1));
 
-  std::mutex mutex;
-  int done = 0;
-  const int total = options.frames * static_cast<int>(rays.size());
   parallel_for(options.frames, [&](std::size_t frame) {
     const double t = static_cast<double>(frame) / kSampleFrameRate;
     const Pose T_world_plate = T_world_plate_at(t);

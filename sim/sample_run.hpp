@@ -27,8 +27,8 @@ Lens sample_lens(const SampleRunOptions& options, bool right);
 
 /// Writes camera.yaml, rgb.txt, trajectory.txt, nodes.txt, scene.yaml with PLY meshes, the images,
 /// and for stereo camera_right.yaml and rgb_right.txt. The same options give the same bytes. Uses
-/// all cores; calls `progress(done, total)` images from one thread at a time. An exception thrown
-/// by `progress` stops the work and is passed on.
+/// all cores; calls `progress(done, total)` images from one thread at a time, with done = 0 as long as
+/// the light is computed. An exception thrown by `progress` stops the work and is passed on.
 ///
 /// `out` must not exist, be an empty folder, or hold an earlier sample run, which is replaced.
 /// All is written into a neighbour folder that takes the name `out` when it is complete; on any

@@ -1,0 +1,17 @@
+// Where a replay writes to: checked before any work is done.
+#pragma once
+
+#include "apps/replay.hpp"
+#include "scene/run_folder.hpp"
+
+namespace foresight {
+
+/// Refuses outputs that cannot be written, that are each other, or that would overwrite the run.
+/// Makes each missing folder and a file in it to find out, and removes both again. Throws
+/// InputError naming the option, the path, the reason and the cure.
+void check_outputs(const ReplayOptions& options, const RunFolder& run);
+
+/// Makes `folder` and all above it. Throws RuntimeFailure.
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace foresight

@@ -1,0 +1,87 @@
+// Subcommands, help, and what is said about a wrong one.
+#include "tests/apps/program.hpp"
+#include "tests/scene/test_run.hpp"
+
+namespace foresight {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(CommandLine, HelpIsNoError) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--help"}, {"replay", "--help"}, {"sample", "--help"}}) {
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("Usage"));
+    EXPECT_EQ(outcome.err, "");
+  }
+  const std::string help = run_program({"replay", "--help"}).out;
+  for (const char* option :
+       {"--scene", "--delay-frames", "--delay-ms", "--texels-per-metre", "--max-texture", "--texture-memory-mb",
+        "--margin-px", "--out", "--report", "--html", "--window", "--real-time"})
+    EXPECT_THAT(help, HasSubstr(option));
+}
+
+TEST(CommandLine, VersionIsANumber) {
+  const Outcome outcome = run_program({"--version"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("^[0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
+TEST(CommandLine, WrongWordsEndWithCode2AndTheWayToTheHelp) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> all = {
+      {{}, "subcommand"},
+      {{"replya"}, "did you mean 'replay'?"},
+      {{"--frobnicate"}, "subcommand"},
+      {{"replay"}, "RUN is required"},
+      {{"sample"}, "OUT is required"},
+      {{"sample", "x", "--frobnicate"}, "--frobnicate"},
+      {{"replay", "x", "y"}, "y"},
+  };
+  for (const auto& [arguments, what] : all) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.last_line(),
+                testing::AllOf(testing::StartsWith("foresight: "), HasSubstr(what), HasSubstr("--help`")));
+  }
+}
+
+TEST(CommandLine, SampleRefusesWhatItCannotWrite) {
+  const TempFolder folder;
+  folder.write("mine/diary.txt", "kept");
+  const std::string out = folder / "out", mine = folder / "mine";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> all = {
+      {{"sample", out, "--size", "0x0"}, "choose a value"},
+      {{"sample", out, "--size", "64"}, "write it as WIDTHxHEIGHT"},
+      {{"sample", out, "--frames", "0"}, "choose a value"},
+      {{"sample", out, "--frames", "x"}, "--frames"},
+      {{"sample", mine}, "choose a new or empty folder"},
+      {{"sample", mine + "/diary.txt"}, "choose another place"},
+      {{"sample", "/proc/foresight"}, "choose a writable place"},
+  };
+  for (const auto& [arguments, what] : all) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.last_line(), testing::AllOf(testing::StartsWith("foresight: "), HasSubstr(what)));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  }
+  EXPECT_EQ(folder.read("mine/diary.txt"), "kept");
+}
+
+TEST(CommandLine, SampleStoppedByCtrlCLeavesNothing) {
+  const TempFolder folder;
+  Program program({"sample", folder / "out", "--frames", "2000"});
+  while (program.running() && std::filesystem::is_empty(folder.path())) usleep(1000);
+  usleep(200'000);
+  program.interrupt();
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130);
+  EXPECT_THAT(outcome.last_line(), HasSubstr("nothing was written"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace foresight

@@ -1,0 +1,56 @@
+// Runs the built program as a user would, and keeps what it said.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace foresight {
+
+struct Outcome {
+  int exit_code = -1;  ///< 128 + n where signal n ended it
+  std::string out, err;
+  double seconds = 0;
+
+  /// Last line on stderr, without its end.
+  std::string last_line() const;
+};
+
+struct ProgramOptions {
+  std::map<std::string, std::string> environment;  ///< added to this process's; an empty value unsets
+};
+
+/// A running child. One thread. Killed with its life's end.
+class Program {
+ public:
+  /// Starts `foresight arguments...`. Throws std::system_error.
+  explicit Program(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  pid_t pid() const { return pid_; }
+  bool running();
+  void interrupt() const;  ///< SIGINT, as Ctrl-C sends it
+
+  /// Waits; kills it and reports exit code 137 after `timeout`.
+  Outcome wait(std::chrono::seconds timeout = std::chrono::seconds(240));
+
+ private:
+  std::string read(const char* name) const;
+
+  std::filesystem::path folder_;  // holds stdout and stderr: pipes could fill up
+  std::chrono::steady_clock::time_point start_;
+  pid_t pid_ = -1;
+  int status_ = 0;
+  bool ended_ = false;
+};
+
+/// Starts and waits.
+Outcome run_program(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
+
+}  // namespace foresight

@@ -1,0 +1,56 @@
+// --real-time and --window.
+#include <regex>
+
+#include "tests/apps/program.hpp"
+#include "tests/apps/runs.hpp"
+
+namespace foresight {
+namespace {
+
+using nlohmann::json;
+
+// The time of the play itself, without set-up: "replay: 20 images in 2 s, 9.9/s".
+double played_seconds(const Outcome& outcome) {
+  std::smatch match;
+  const std::regex line("replay: .* in ([0-9]+) s");
+  return std::regex_search(outcome.err, match, line) ? std::stod(match[1]) : -1;
+}
+
+TEST(RealTime, PlaysByTheClock) {
+  const LoopedRun run(16, 0.15);
+  const TempFolder out;
+  const Outcome outcome =
+      run_program({"replay", run.path(), "--real-time", "--delay-ms", "300", "--report", out / "report.json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_GE(outcome.seconds, 15 * 0.15);
+  EXPECT_GE(played_seconds(outcome), 2);
+  EXPECT_LE(played_seconds(outcome), 8);
+  const json report = read_json(out / "report.json");
+  EXPECT_EQ(report["summary"]["frames"].get<int>() + report["summary"]["dropped_frames"].get<int>(), 14);
+  EXPECT_GE(report["summary"]["frames"], 1);
+  for (const json& frame : report["frames"]) EXPECT_TRUE(frame["dropped"] || frame["delay_s"] >= 0.299) << frame;
+}
+
+TEST(RealTime, DropsWhatComesTooLateAndCountsIt) {
+  const LoopedRun run(200, 0.001);
+  const TempFolder out;
+  const Outcome outcome = run_program({"replay", run.path(), "--real-time", "--report", out / "report.json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json summary = read_json(out / "report.json")["summary"];
+  EXPECT_EQ(summary["frames"].get<int>() + summary["dropped_frames"].get<int>(), 200);
+  EXPECT_GT(summary["dropped_frames"], 50);
+  EXPECT_GT(summary["dropped_images"], 50);
+}
+
+TEST(RealTime, AWindowShowsTheReplayAndCloses) {
+  if (!std::getenv("DISPLAY")) GTEST_SKIP() << "no DISPLAY; scripts/test gives one";
+  const SampleRun run;
+  const TempFolder out;
+  const Outcome outcome =
+      run_program({"replay", run.path(), "--window", "--delay-frames", "1", "--report", out / "report.json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(read_json(out / "report.json")["summary"]["frames"], 7);
+}
+
+}  // namespace
+}  // namespace foresight

@@ -1,0 +1,105 @@
+#include "tests/apps/runs.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "tests/apps/program.hpp"
+
+namespace foresight {
+namespace fs = std::filesystem;
+namespace {
+
+// Made once per test program.
+const fs::path& original(bool stereo) {
+  static const TempFolder folder;
+  static std::map<bool, fs::path> made;
+  fs::path& run = made[stereo];
+  if (!run.empty()) return run;
+  const fs::path out = folder / (stereo ? "stereo" : "mono");
+  std::vector<std::string> words{"sample", out, "--frames", "8", "--size", "96x72"};
+  if (stereo) words.push_back("--stereo");
+  const Outcome outcome = run_program(words);
+  if (outcome.exit_code != 0) throw std::runtime_error("no sample run: " + outcome.err);
+  return run = out;
+}
+
+// Lines with data, without the first word, which is the time.
+std::vector<std::string> rows(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    if (!line.starts_with('#')) out.push_back(line.substr(line.find(' ') + 1));
+  return out;
+}
+
+}  // namespace
+
+SampleRun::SampleRun(bool stereo) {
+  fs::copy(original(stereo), path(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+}
+
+void SampleRun::change_images(const std::function<cv::Mat(const cv::Mat&)>& change) const {
+  for (const std::string& name : names_in(path() / "rgb")) {
+    const std::string file = path() / "rgb" / name;
+    cv::imwrite(file, change(cv::imread(file, cv::IMREAD_UNCHANGED)));
+  }
+}
+
+void SampleRun::keep(const std::string& list, int count) const {
+  std::istringstream stream(read(list));
+  std::string kept;
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with('#') || count-- > 0) kept += line + "\n";
+  write(list, kept);
+}
+
+LoopedRun::LoopedRun(int images, double interval_s) {
+  const SampleRun sample;
+  for (const char* name : {"camera.yaml", "scene.yaml", "meshes"})
+    fs::copy(sample / name, path() / name, fs::copy_options::recursive);
+  fs::create_directory(path() / "rgb");
+  const auto files = rows(sample.read("rgb.txt")), poses = rows(sample.read("trajectory.txt")),
+             plates = rows(sample.read("nodes.txt"));
+  const int count = static_cast<int>(files.size()), plates_per_image = static_cast<int>(plates.size()) / (count - 1);
+  std::string list, trajectory, nodes;
+  for (int i = 0; i < images; ++i) {
+    const int turn = i % (2 * count - 2), source = turn < count ? turn : 2 * count - 2 - turn;
+    char text[64];
+    std::snprintf(text, sizeof text, "%.6f ", i * interval_s);
+    const std::string time = text;
+    std::snprintf(text, sizeof text, "rgb/%06d.png", i);
+    fs::create_hard_link(sample / files[static_cast<std::size_t>(source)], path() / text);
+    list += time + text + "\n";
+    trajectory += time + poses[static_cast<std::size_t>(source)] + "\n";
+    nodes += time + plates[static_cast<std::size_t>(source * plates_per_image)] + "\n";
+  }
+  write("rgb.txt", list);
+  write("trajectory.txt", trajectory);
+  write("nodes.txt", nodes);
+}
+
+nlohmann::json read_json(const fs::path& file) {
+  std::ifstream stream(file);
+  return nlohmann::json::parse(stream);
+}
+
+nlohmann::json without_times(nlohmann::json report) {
+  if (report.is_structured()) {
+    if (report.is_object())
+      for (auto it = report.begin(); it != report.end();)
+        it = it.key().find("_ms") != std::string::npos || it.key() == "images_per_core_second" ? report.erase(it)
+                                                                                               : std::next(it);
+    for (auto& value : report) value = without_times(value);
+  }
+  return report;
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (!fs::exists(folder)) return names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace foresight

@@ -1,0 +1,36 @@
+// Runs that the tests of the program replay.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+
+#include "tests/scene/test_run.hpp"
+
+namespace foresight {
+
+/// A copy of the built-in sample run, small: 96 x 72, 8 images, 30 per second, a moving plate.
+class SampleRun : public TempFolder {
+ public:
+  explicit SampleRun(bool stereo = false);
+
+  /// Reads, changes and writes each image of the left camera.
+  void change_images(const std::function<cv::Mat(const cv::Mat&)>& change) const;
+  /// Keeps only the first `count` lines with data of `list`.
+  void keep(const std::string& list, int count) const;
+};
+
+/// The sample run forwards and backwards again and again, `interval_s` between two images.
+class LoopedRun : public TempFolder {
+ public:
+  LoopedRun(int images, double interval_s);
+};
+
+nlohmann::json read_json(const std::filesystem::path& file);
+
+/// `report` without what differs from run to run: times.
+nlohmann::json without_times(nlohmann::json report);
+
+/// Names of the files in `folder`, sorted.
+std::vector<std::string> names_in(const std::filesystem::path& folder);
+
+}  // namespace foresight
