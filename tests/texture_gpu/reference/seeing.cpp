@@ -24,11 +24,13 @@ bool seen_at(const Camera& camera, std::size_t face, const Eigen::Vector2d& plac
     const int y = std::clamp(static_cast<int>(std::floor(place.y())) + (i >> 1), 0, depth.height - 1);
     const auto at = static_cast<std::size_t>(y * depth.width + x);
     if (camera.uncertain[face][at]) return false;
+    if (depth.inverse_z[at] == 0) continue;  // no model: between it and an occluder lies all that is hidden
     least = std::min(least, depth.inverse_z[at]);
     largest = std::max(largest, depth.inverse_z[at]);
   }
   // Beyond the farthest of the four: hidden. Before the nearest (or nothing there): beside the surface.
-  const double farthest = least > 0 ? 1 / least : 1e30, nearest = largest > 0 ? 1 / largest : 1e30;
+  if (largest == 0) return false;
+  const double farthest = 1 / least, nearest = 1 / largest;
   return z - tolerance <= farthest && z + tolerance >= nearest;
 }
 

@@ -20,8 +20,8 @@ struct Camera {
   cv::Mat image;                                    ///< CV_8UC3, BGR
 };
 
-/// The four depths around the point's place on its face bracket it within the tolerance, all four
-/// are certain, and its pixel lies in the image with half a pixel to spare. Borderline where the
+/// Those of the four depths around the point's place on its face that show model bracket it within
+/// the tolerance, all four are certain, and its pixel lies in the image with half a pixel to spare. Borderline where the
 /// precision of float or of texture coordinates (1/256 px) decides. `pixel`: in the image.
 Answer is_seen(const Camera& camera, const Eigen::Vector3d& p, double depth_tolerance, Eigen::Vector2d& pixel);
 
