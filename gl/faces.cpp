@@ -58,8 +58,8 @@ Faces faces_for(const Lens& lens, int border_px) {
   for (int u = -1; u <= p.width; ++u) include(u, -0.5), include(u, p.height - 0.5);
   for (int v = -1; v <= p.height; ++v) include(-0.5, v), include(p.width - 0.5, v);
 
-  const double scale = std::min({1.0, kLargestFace / ((x1 - x0) * p.fx + 2 * border_px),
-                                 kLargestFace / ((y1 - y0) * p.fy + 2 * border_px)});
+  const double room = kLargestFace - 2 * border_px - 3;  // 3: the centre's pixel, and both ends rounded up
+  const double scale = std::min({1.0, room / ((x1 - x0) * p.fx), room / ((y1 - y0) * p.fy)});
   faces.fx = p.fx * scale;
   faces.fy = p.fy * scale;
   faces.cx = std::ceil(-x0 * faces.fx) + border_px;

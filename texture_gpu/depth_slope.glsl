@@ -2,8 +2,10 @@
 layout(binding = 0) uniform sampler2DArray depth;
 uniform ivec2 face_size;
 
+// 0 outside: repeating the border's depth there would bend a plane.
 float inverse_z(ivec2 at, int layer) {
-  return texelFetch(depth, ivec3(clamp(at, ivec2(0), face_size - 1), layer), 0).r / kNear;
+  ivec2 inside = clamp(at, ivec2(0), face_size - 1);
+  return inside == at ? texelFetch(depth, ivec3(inside, layer), 0).r / kNear : 0.0;
 }
 
 // Slope of 1/z along `step` at p, from the side on which the surface bends less.

@@ -19,8 +19,10 @@ bool is_seen(int c, vec3 p, out vec2 pixel) {
   vec2 size = cameras[c].size.zw;
   vec3 at = vec3((place.xy + 0.5) / size, place.z);
   vec4 near_over_z = c == 0 ? textureGather(depth0, at) : textureGather(depth1, at);
-  // The four depths around the place bracket a surface that is seen at a grazing angle.
-  float far = min(min(near_over_z.x, near_over_z.y), min(near_over_z.z, near_over_z.w)) / kNear;
+  // The four depths around the place bracket a surface that is seen at a grazing angle. Pixels
+  // without model are left out: between an occluder and nothing lies all that it hides.
+  vec4 known = mix(near_over_z, vec4(1e30), equal(near_over_z, vec4(0.0)));
+  float far = min(min(known.x, known.y), min(known.z, known.w)) / kNear;
   float near = max(max(near_over_z.x, near_over_z.y), max(near_over_z.z, near_over_z.w)) / kNear;
   float z = 1.0 / inverse_z;
   // z beyond the farthest by more than the tolerance: hidden. Before the nearest: a guard texel

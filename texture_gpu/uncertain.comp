@@ -21,6 +21,7 @@ bool is_uncertain(ivec2 p, int layer) {
   vec2 gradient = vec2(slope(p, ivec2(1, 0), layer, center), slope(p, ivec2(0, 1), layer, center));
   int reach = int(ceil(margin));
   float limit = (margin + 0.5) * (margin + 0.5);
+  vec2 half_face = 0.5 * vec2(face_size - 1), from_middle = vec2(p) - half_face;
   bool found = false;
   // Four pixels at a time; the last column and row of the quads may reach beyond the margin.
   for (int y = -reach; y <= reach; y += 2)
@@ -28,10 +29,13 @@ bool is_uncertain(ivec2 p, int layer) {
       vec2 corner = (vec2(p) + vec2(x, y) + 1.0) / vec2(face_size);
       vec4 near = textureGather(depth, vec3(corner, float(layer))) / kNear;  // (0,1) (1,1) (1,0) (0,0)
       vec4 dx = float(x) + vec4(0.0, 1.0, 1.0, 0.0), dy = float(y) + vec4(1.0, 1.0, 0.0, 0.0);
-      vec4 plane = center + gradient.x * dx + gradient.y * dy;
-      // 1/plane - 1/near > tolerance, without dividing; a plane beyond the horizon is behind all.
-      vec4 excess = near - plane - depth_tolerance * near * max(plane, 0.0);
-      vec4 outside = dx * dx + dy * dy - limit;
+      // 1/plane - 1/near > tolerance, without dividing; a plane beyond the horizon is behind all
+      // that there is.
+      vec4 plane = max(center + gradient.x * dx + gradient.y * dy, 0.0);
+      vec4 excess = near - plane - depth_tolerance * near * plane;
+      // Beyond the margin, or beyond the face: the border's depth, repeated there, is off the plane.
+      vec4 beyond = max(abs(dx + from_middle.x) - half_face.x, abs(dy + from_middle.y) - half_face.y);
+      vec4 outside = max(dx * dx + dy * dy - limit, beyond);
       found = found || any(bvec4(ivec4(greaterThan(excess, vec4(0.0))) * ivec4(lessThanEqual(outside, vec4(0.0)))));
     }
   return found;

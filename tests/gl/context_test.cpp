@@ -1,0 +1,58 @@
+#include <epoxy/gl.h>
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "gl/objects.hpp"
+#include "tests/support/headless_test.hpp"
+
+namespace foresight::gl {
+namespace {
+
+using ContextTest = HeadlessTest;
+
+TEST_F(ContextTest, TellsWhatTheDriverIs) {
+  EXPECT_FALSE(driver_.vendor.empty());
+  EXPECT_FALSE(driver_.renderer.empty());
+  EXPECT_GE(epoxy_gl_version(), 45);
+  EXPECT_EQ(driver_.is_software, driver_.renderer.find("pipe") != std::string::npos) << driver_.renderer;
+}
+
+TEST_F(ContextTest, SharesObjectsWithASecondContextOnAnotherThread) {
+  Buffer buffer(16, "shared");
+  const std::array<int, 4> sent{1, -2, 3, 1 << 30};
+  buffer.write(std::span<const int>(sent));
+  glFinish();
+  auto second = context_->create_shared();
+  std::array<int, 4> received{};
+  std::jthread([&] {
+    second->make_current();
+    set_up_context();
+    buffer.read(std::span<int>(received));
+    check_errors("the second context");
+    second->release();
+  }).join();
+  EXPECT_EQ(received, sent);
+}
+
+TEST_F(ContextTest, ErrorsNameTheCaller) {
+  glEnable(0xffff);
+  try {
+    check_errors("a pass of the test");
+    FAIL() << "no error";
+  } catch (const RuntimeFailure& failure) {
+    EXPECT_THAT(failure.what(), testing::AllOf(testing::HasSubstr("GL_INVALID_ENUM"), testing::HasSubstr("a pass of the test")));
+  }
+  EXPECT_NO_THROW(check_errors("the next pass"));  // reported once
+}
+
+TEST_F(ContextTest, DepthIsNotRemapped) {
+  GLint depth_mode = 0, alignment = 0;
+  glGetIntegerv(GL_CLIP_DEPTH_MODE, &depth_mode);
+  glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment);
+  EXPECT_EQ(depth_mode, GL_ZERO_TO_ONE);
+  EXPECT_EQ(alignment, 1);
+}
+
+}  // namespace
+}  // namespace foresight::gl

@@ -1,0 +1,109 @@
+#include "gl/objects.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "gl/program.hpp"
+#include "tests/support/headless_test.hpp"
+
+namespace foresight::gl {
+namespace {
+
+using ObjectsTest = HeadlessTest;
+
+TEST_F(ObjectsTest, AHandleDeletesOnceAndMovesEmpty) {
+  GLuint name = 0;
+  {
+    Buffer first(64, "moved");
+    name = first.name();
+    Buffer second = std::move(first);
+    EXPECT_FALSE(first);  // NOLINT: what is left behind is the point
+    EXPECT_EQ(second.name(), name);
+    EXPECT_TRUE(glIsBuffer(name));
+    second = Buffer(16, "replaces");
+    EXPECT_FALSE(glIsBuffer(name));
+    name = second.name();
+  }
+  EXPECT_FALSE(glIsBuffer(name));
+}
+
+TEST_F(ObjectsTest, BuffersRoundUpWriteAtOffsetsAndClear) {
+  Buffer buffer(17, "odd");
+  EXPECT_EQ(buffer.bytes(), 32u);
+  buffer.clear_to_zero();
+  const std::array<int, 2> two{7, 8};
+  buffer.write(std::span<const int>(two), 8);
+  std::array<int, 8> all{};
+  buffer.read(std::span<int>(all));
+  EXPECT_THAT(all, testing::ElementsAre(0, 0, 7, 8, 0, 0, 0, 0));
+}
+
+TEST_F(ObjectsTest, BufferTexturesGrowByHalvesAndKeepTheirPlaceOtherwise) {
+  BufferTexture list(GL_R32UI, 64, "list");
+  const GLuint name = list.texture();
+  list.reserve(64);
+  EXPECT_EQ(list.texture(), name);
+  list.reserve(65);
+  EXPECT_EQ(list.buffer().bytes(), 96u);
+  list.assign(std::span<const int>());
+  std::vector<int> numbers(100);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  list.assign(std::span<const int>(numbers));
+  std::vector<int> back(100);
+  list.buffer().read(std::span<int>(back));
+  EXPECT_EQ(back, numbers);
+}
+
+TEST_F(ObjectsTest, FencesPassOnceTheCommandsAreDone) {
+  EXPECT_TRUE(Fence().signalled());
+  Fence fence = Fence::insert();
+  fence.wait(10);
+  EXPECT_TRUE(fence.signalled());
+  const Fence moved = std::move(fence);
+  EXPECT_TRUE(moved.signalled());
+}
+
+TEST_F(ObjectsTest, ProgramsIncludeFilesAndTakeDefines) {
+  const ShaderSources sources{
+      {"half.glsl", "uint half_of(uint v) { return v / DIVISOR; }\n"},
+      {"main.comp", "#include \"half.glsl\"\nlayout(local_size_x = 4) in;\n"
+                    "layout(binding = 0, std430) buffer Out { uint values[]; };\nuniform uint start;\n"
+                    "void main() { values[gl_LocalInvocationIndex] = half_of(start + gl_LocalInvocationIndex); }\n"}};
+  const Program program = Program::compute(sources, "main.comp", {"DIVISOR 2u"});
+  Buffer out(16, "out");
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.name());
+  program.use();
+  program.set("start", 10u);
+  program.set("no such uniform", 1);
+  glDispatchCompute(1, 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  std::array<unsigned, 4> values{};
+  out.read(std::span<unsigned>(values));
+  EXPECT_THAT(values, testing::ElementsAre(5u, 5u, 6u, 6u));
+}
+
+TEST_F(ObjectsTest, BadProgramsNameTheFile) {
+  const auto message = [](const ShaderSources& sources, const std::string& file) {
+    try {
+      Program::compute(sources, file);
+    } catch (const RuntimeFailure& failure) {
+      return std::string(failure.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(message({{"broken.comp", "layout(local_size_x = 1) in;\nvoid main() { nothing(); }\n"}}, "broken.comp"),
+              testing::AllOf(testing::HasSubstr("broken.comp does not compile"), testing::HasSubstr("nothing")));
+  EXPECT_THAT(message({}, "absent.comp"), testing::HasSubstr("absent.comp is not embedded"));
+  EXPECT_THAT(message({{"a.comp", "#include \"gone.glsl\"\n"}}, "a.comp"), testing::HasSubstr("gone.glsl"));
+}
+
+TEST_F(ObjectsTest, GroupsCoverEveryInvocation) {
+  EXPECT_EQ(groups(0, 8), 0u);
+  EXPECT_EQ(groups(1, 8), 1u);
+  EXPECT_EQ(groups(8, 8), 1u);
+  EXPECT_EQ(groups(9, 8), 2u);
+}
+
+}  // namespace
+}  // namespace foresight::gl

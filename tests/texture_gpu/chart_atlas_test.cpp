@@ -1,0 +1,308 @@
+// The bookkeeping of charts and pages, without a GPU: the masks are made up.
+#include "texture_gpu/chart_atlas.hpp"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "common/error.hpp"
+#include "tests/support/small_scene.hpp"
+
+namespace foresight {
+namespace {
+
+/// An atlas over the small scene that takes every page that may be seen as seen.
+class Atlas {
+ public:
+  explicit Atlas(TextureOptions options = {}, const std::string& lens = "pinhole")
+      : scene_(small_scene()),
+        lens_(small_lens(lens)),
+        faces_(gl::faces_for(lens_, 5)),
+        atlas_(std::make_shared<SurfacePatches>(find_surface_patches(*scene_, {})), options) {}
+
+  std::vector<AtlasView> view(const Pose& T_world_camera) const {
+    AtlasView view{&lens_, &faces_, {}};
+    for (const Pose& T : state_of(*scene_).T_world_node) view.T_camera_node.push_back(T_world_camera.inverse() * T);
+    return {view};
+  }
+
+  /// One image as TextureCore takes it; what it retires comes back at once.
+  ChartAtlas::Allocation take(const Pose& T_world_camera, std::uint32_t mask = 0x55) {
+    for (;;) {
+      const auto records = atlas_.plan(view(T_world_camera), image_);
+      auto out = atlas_.allocate(std::vector<std::uint32_t>(records.size(), mask), image_);
+      if (!out.fits) continue;
+      atlas_.commit();
+      atlas_.give_back_colours(out.retired);
+      ++image_;
+      return out;
+    }
+  }
+
+  ChartAtlas* operator->() { return &atlas_; }
+  ChartAtlas& operator*() { return atlas_; }
+  const Lens& lens() const { return lens_; }
+
+ private:
+  std::shared_ptr<const SceneModel> scene_;
+  Lens lens_;
+  gl::Faces faces_;
+  ChartAtlas atlas_;
+  std::int64_t image_ = 0;
+};
+
+Pose closer(double factor) { return look_at(Eigen::Vector3d(-1.0, -0.45, 0.8) * factor, {0.02, 0, 0.1}); }
+
+TEST(ChartAtlas, GivesAboutOneTexelPerPixel) {
+  Atlas atlas;
+  atlas.take(usual_view());
+  const auto views = atlas.view(usual_view());
+  int charts = 0;
+  for (std::size_t i = 0; i < atlas->charts().size(); ++i) {
+    const AtlasChart& chart = atlas->charts()[i];
+    const Chart& shape = atlas->surface().charts[i];
+    if (!chart.in_view || chart.raster.density.x() <= 0) continue;
+    const Patch& patch = atlas->surface().patches[static_cast<std::size_t>(shape.patch)];
+    const Pose& T = views[0].T_camera_node[static_cast<std::size_t>(patch.node)];
+    // Project a texel's steps at the chart's centre: at least as many texels as pixels, and less
+    // than the headroom (a quarter step), the rounding (half a step) and the depth within the chart
+    // can make of it: a factor of two. Along the line of sight no less than a quarter of head-on.
+    for (int axis = 0; axis < 2; ++axis) {
+      const Eigen::Vector3d step = (axis == 0 ? patch.eu : patch.ev) / chart.raster.density[axis];
+      const auto a = atlas.lens().project(T * shape.center), b = atlas.lens().project(T * (shape.center + step));
+      ASSERT_TRUE(a && b);
+      EXPECT_LT((*b - *a).norm(), 1.35) << "chart " << i;
+      EXPECT_GT((*b - *a).norm(), 0.1) << "chart " << i;
+    }
+    ++charts;
+  }
+  EXPECT_GT(charts, 20);
+}
+
+TEST(ChartAtlas, ResolutionRisesWithACloserViewAndStaysWhenItLeaves) {
+  Atlas atlas;
+  atlas.take(usual_view());
+  const auto levels = [&] {
+    std::vector<Eigen::Vector2i> all;
+    for (const AtlasChart& chart : atlas->charts()) all.push_back(chart.level);
+    return all;
+  };
+  const auto first = levels();
+  atlas.take(closer(0.97));  // less than one step of 2^(1/4) closer: nothing is copied
+  EXPECT_EQ(levels(), first);
+  atlas.take(closer(0.5));
+  const auto near = levels();
+  int risen = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (first[i].x() == AtlasChart::kNoLevel) continue;
+    EXPECT_TRUE((near[i].array() >= first[i].array()).all());
+    risen += near[i] != first[i];
+  }
+  EXPECT_GT(risen, 10);
+  atlas.take(usual_view());
+  EXPECT_EQ(levels(), near);
+}
+
+TEST(ChartAtlas, FixedResolutionAndLargestSizeAreKept) {
+  Atlas fixed({.texels_per_metre = 77});
+  fixed.take(usual_view());
+  for (const AtlasChart& chart : fixed->charts()) {
+    if (chart.raster.density.x() > 0) {
+      EXPECT_EQ(chart.raster.density, Eigen::Vector2d(77, 77));
+    }
+  }
+  Atlas limited({.max_texture = 12});
+  limited.take(closer(0.5));
+  for (std::size_t i = 0; i < limited->charts().size(); ++i) {
+    const AtlasChart& chart = limited->charts()[i];
+    const Chart& shape = limited->surface().charts[i];
+    EXPECT_LE((shape.upper - shape.lower).cwiseProduct(chart.raster.density).maxCoeff(), 12 + 1e-9);
+  }
+}
+
+TEST(ChartAtlas, PagesAreCountedAndNeverShared) {
+  Atlas atlas;
+  for (double factor : {1.0, 0.8, 0.6, 0.6, 0.9}) {
+    const auto allocation = atlas.take(closer(factor));
+    std::set<std::uint32_t> colours, heights;
+    std::size_t resident = 0;
+    for (const AtlasChart& chart : atlas->charts())
+      for (const AtlasPage& page : chart.page) {
+        EXPECT_EQ(page.colour == atlas::kNoSlot, page.height == atlas::kNoSlot);
+        if (page.colour == atlas::kNoSlot) continue;
+        ++resident;
+        EXPECT_TRUE(colours.insert(page.colour).second);
+        EXPECT_TRUE(heights.insert(page.height).second);
+      }
+    EXPECT_EQ(atlas->resident_pages(), resident);
+    EXPECT_EQ(atlas->colour_slots_in_use(), resident) << "all that was retired came back";
+    EXPECT_EQ(atlas->bytes_in_use(), resident * (atlas::kColourBytes + atlas::kHeightBytes));
+    EXPECT_GT(allocation.jobs.size(), 50u);
+  }
+}
+
+TEST(ChartAtlas, NewColoursNeverGoWhereThePublishedOnesAre) {
+  Atlas atlas;
+  atlas.take(usual_view());
+  std::vector<std::uint32_t> published;
+  atlas->write_table(published);
+  for (double factor : {1.0, 0.7}) {
+    const std::set<std::uint32_t> shown(published.begin(), published.end());
+    const auto allocation = atlas.take(closer(factor));
+    ASSERT_FALSE(allocation.jobs.empty());
+    for (const PageJob& job : allocation.jobs) EXPECT_FALSE(shown.contains(job.new_slot));
+    for (std::uint32_t slot : allocation.retired) EXPECT_TRUE(shown.contains(slot));
+    atlas->write_table(published);
+  }
+}
+
+TEST(ChartAtlas, TheTableIsInTheOrderOfTheRecords) {
+  Atlas atlas;
+  const auto records = atlas->plan(atlas.view(usual_view()), 0);
+  ASSERT_FALSE(records.empty());
+  std::vector<std::uint32_t> masks(records.size(), 0x01);
+  const auto allocation = atlas->allocate(masks, 0);
+  std::vector<std::uint32_t> table;
+  atlas->write_table(table);
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(atlas->page_count()));
+  EXPECT_EQ(allocation.jobs.size(), records.size());
+  EXPECT_EQ(allocation.new_heights.size(), records.size());
+  for (const PageJob& job : allocation.jobs) {
+    EXPECT_EQ(table[job.table_index], job.new_slot);
+    const AtlasChart& chart = atlas->charts()[job.chart];
+    EXPECT_EQ(static_cast<int>(job.table_index), chart.first_page + static_cast<int>(job.xy >> 16) * chart.pages.x() + static_cast<int>(job.xy & 0xffff));
+  }
+}
+
+TEST(ChartAtlas, TileRangesBoundTheHeights) {
+  Atlas atlas;
+  for (const PageRecord& record : atlas->plan(atlas.view(usual_view()), 0)) {
+    const ChartRaster& r = atlas->charts()[record.chart].raster;
+    const int x0 = 16 * static_cast<int>(record.xy & 0xffff), y0 = 16 * static_cast<int>(record.xy >> 16);
+    for (int tile = 0; tile < 4; ++tile) {
+      std::uint32_t low = 0xffff, high = 0;
+      for (int y = y0 + 8 * (tile / 2); y < std::min(r.height, y0 + 8 * (tile / 2) + 8); ++y)
+        for (int x = x0 + 8 * (tile % 2); x < std::min(r.width, x0 + 8 * (tile % 2) + 8); ++x)
+          if (const std::uint32_t raw = r.raw[static_cast<std::size_t>(y * r.width + x)] & 0x7fffu) low = std::min(low, raw), high = std::max(high, raw);
+      ASSERT_EQ(record.tile_heights[static_cast<std::size_t>(tile)], high ? (low | high << 16) : 0u);
+    }
+  }
+}
+
+TEST(ChartAtlas, BacksOfSolidsAndWhatIsOutOfViewAreNotPlanned) {
+  Atlas atlas;
+  const auto views = atlas.view(usual_view());
+  std::set<std::uint32_t> planned;
+  for (const PageRecord& record : atlas->plan(views, 0)) planned.insert(record.chart);
+  int backs = 0;
+  for (std::size_t i = 0; i < atlas->surface().charts.size(); ++i) {
+    const Chart& chart = atlas->surface().charts[i];
+    const Patch& patch = atlas->surface().patches[static_cast<std::size_t>(chart.patch)];
+    const Pose& T = views[0].T_camera_node[static_cast<std::size_t>(patch.node)];
+    const bool back = chart.closed && chart.cone < 1e-3 && (T.linear() * patch.n).dot(T * chart.center) > 0;
+    backs += back;
+    EXPECT_FALSE(back && planned.contains(static_cast<std::uint32_t>(i)));
+  }
+  EXPECT_GT(backs, 5);
+  EXPECT_TRUE(atlas->plan(atlas.view(look_at({0, 0, 1}, {0.1, 0, 2})), 1).empty());
+}
+
+constexpr std::uint64_t kPageBytes = 2 * atlas::kColourBytes + atlas::kHeightBytes;
+
+/// Charts that a view shows: no fewer pages will do.
+std::uint64_t charts_in_view(const Pose& T_world_camera) {
+  Atlas atlas;
+  atlas.take(T_world_camera);
+  const auto& charts = atlas->charts();
+  return static_cast<std::uint64_t>(std::count_if(charts.begin(), charts.end(), [](const AtlasChart& c) { return c.in_view; }));
+}
+
+// What is in view does not fit: resolutions fall until it does; the budget holds at every moment.
+TEST(ChartAtlas, ASmallBudgetLowersTheResolution) {
+  const std::uint64_t least = charts_in_view(usual_view());
+  for (std::uint64_t pages : {least + 5, 2 * least}) {
+    const std::uint64_t budget = pages * kPageBytes;
+    Atlas atlas({.memory_bytes = budget});
+    EXPECT_EQ(atlas->height_capacity(), pages);
+    EXPECT_EQ(atlas->colour_capacity(), 2 * pages);
+    for (double factor : {1.0, 0.7, 0.5, 1.0}) {
+      const auto allocation = atlas.take(closer(factor));
+      EXPECT_FALSE(allocation.jobs.empty());
+      EXPECT_LE(atlas->bytes_in_use(), budget);
+      EXPECT_LE(atlas->resident_pages(), pages);
+    }
+    EXPECT_GT(atlas->policy().steps_down, 0);
+    EXPECT_EQ(atlas->policy().bias, atlas->policy().steps_up - atlas->policy().steps_down);
+  }
+}
+
+TEST(ChartAtlas, TheLongestUnseenPagesGoFirst) {
+  // Two halves of the table, one after the other, with room for little more than one of them.
+  const Pose left = look_at({-0.5, -0.3, 0.35}, {-0.45, -0.25, 0}), right = look_at({0.4, -0.4, 0.35}, {0.45, -0.35, 0});
+  Atlas measure;
+  const std::size_t first = measure.take(left).jobs.size(), both = measure.take(right).jobs.size() + first;
+  const std::uint64_t pages = first + (both - first) * 3 / 4 + both / 10;
+  ASSERT_LT(pages, both) << "the views overlap too much for this test";
+  Atlas atlas({.memory_bytes = pages * kPageBytes});
+  atlas.take(left);
+  EXPECT_EQ(atlas->policy().evicted_pages, 0u);
+  atlas.take(right);
+  EXPECT_GT(atlas->policy().evicted_pages, 0u);
+  EXPECT_EQ(atlas->policy().steps_down, 0) << "pages out of view go before any resolution falls";
+  for (const AtlasChart& chart : atlas->charts())
+    for (const AtlasPage& page : chart.page)
+      if (page.last_seen == 1) {
+        EXPECT_NE(page.colour, atlas::kNoSlot) << "a page in view was evicted";
+      }
+}
+
+TEST(ChartAtlas, ResolutionsRiseAgainWhenHalfIsFree) {
+  Atlas atlas({.memory_bytes = (charts_in_view(usual_view()) + 40) * kPageBytes});
+  // Everything seems to be seen until the resolution fell; then it turns out that a third is.
+  std::uint32_t share = 1;
+  for (int tries = 0;; ++tries) {
+    const auto records = atlas->plan(atlas.view(closer(0.7)), 0);
+    std::vector<std::uint32_t> masks(records.size(), 0);
+    for (std::size_t i = 0; i < masks.size(); i += share) masks[i] = 1;
+    if (atlas->allocate(masks, 0).fits) break;
+    share = 3;
+    ASSERT_LT(tries, 100);
+  }
+  ASSERT_LT(2 * atlas->resident_pages(), atlas->height_capacity());
+  const int bias = atlas->policy().bias;
+  ASSERT_LT(bias, 0);
+  for (int i = 0; i < 9; ++i) atlas->commit();
+  EXPECT_EQ(atlas->policy().bias, bias) << "too early: resolutions would swing";
+  atlas->commit();
+  EXPECT_EQ(atlas->policy().bias, bias + 1);
+  EXPECT_EQ(atlas->policy().steps_up, 1);
+}
+
+TEST(ChartAtlas, FailsWhereEvenTheSmallestPagesDoNotFit) {
+  Atlas atlas({.memory_bytes = 3 * kPageBytes});
+  try {
+    atlas.take(usual_view());
+    FAIL() << "accepted";
+  } catch (const RuntimeFailure& failure) {
+    EXPECT_THAT(failure.what(), testing::AllOf(testing::HasSubstr("out of texture memory"), testing::HasSubstr("3 fit"),
+                                               testing::HasSubstr("--texture-memory-mb")));
+  }
+}
+
+TEST(ChartAtlas, ACopiedResolutionComesFromThePublishedOne) {
+  Atlas atlas;
+  atlas.take(usual_view());
+  const auto records = atlas->plan(atlas.view(closer(0.5)), 1);
+  const std::vector<std::uint32_t> masks(records.size(), 0x55);
+  EXPECT_LE(atlas->slots_needed(masks), atlas->free_colour_slots());
+  const auto allocation = atlas->allocate(masks, 1);
+  ASSERT_TRUE(allocation.fits);
+  EXPECT_GT(allocation.relevel.size(), 50u);
+  for (const PageJob& job : allocation.jobs) {
+    const bool relevelled = std::any_of(allocation.relevel.begin(), allocation.relevel.end(), [&](const PageJob& r) { return r.new_slot == job.new_slot; });
+    EXPECT_EQ(relevelled, job.old_slot == job.new_slot) << "re-levelled pages are extended in place, others are copied";
+  }
+}
+
+}  // namespace
+}  // namespace foresight

@@ -1,0 +1,142 @@
+// push, coarse, coarse_fill, spread and pull against the same in double precision.
+#include "texture_gpu/fill_pass.hpp"
+
+#include "tests/support/headless_test.hpp"
+#include "tests/texture_gpu/pass_bench.hpp"
+#include "tests/texture_gpu/reference/filling.hpp"
+
+namespace foresight {
+namespace {
+
+class FillTest : public HeadlessTest {
+ protected:
+  void make() { bench_ = std::make_unique<PassBench>(small_scene(), std::vector{lens_}, TextureOptions{.memory_bytes = 6 << 20}); }
+  void extract(const Pose& T_world_camera) {
+    bench_->look({posed_photograph(*bench_->scene, state_of(*bench_->scene), lens_, T_world_camera)});
+    bench_->cull(), bench_->allocate(), bench_->relevel(), bench_->extract();
+  }
+
+  /// All charts as they are before filling.
+  std::vector<reference::FillChart> charts(const reference::AtlasPixels& pixels) const {
+    std::vector<reference::FillChart> out;
+    for (std::size_t i = 0; i < bench_->atlas.charts().size(); ++i) {
+      const AtlasChart& chart = bench_->atlas.charts()[i];
+      const int width = 16 * chart.pages.x(), height = 16 * chart.pages.y();
+      reference::FillChart copy{chart.pages, bench_->surface->charts[i].neighbours, {}, {}, {}};
+      copy.texels.resize(static_cast<std::size_t>(width * height));
+      copy.has_hole.resize(chart.page.size());
+      for (const AtlasPage& page : chart.page) copy.resident.push_back(page.colour != atlas::kNoSlot);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          const auto page = static_cast<std::size_t>(y / 16 * chart.pages.x() + x / 16);
+          if (!copy.resident[page]) continue;
+          const reference::Texel t = pixels.at(chart.page[page].colour, 0, x % 16, y % 16);
+          copy.texels[static_cast<std::size_t>(y * width + x)] = t;
+          if ((PassBench::raw_height(chart, x, y) & ChartRaster::kCore) && t[3] < 2) copy.has_hole[page] = true;
+        }
+      out.push_back(std::move(copy));
+    }
+    return out;
+  }
+
+  const Lens lens_ = small_lens("pinhole");
+  std::unique_ptr<PassBench> bench_;
+};
+
+TEST_F(FillTest, EveryLevelIsThatOfTheReference) {
+  make();
+  extract(usual_view());
+  const auto before = charts(bench_->pixels());
+  const auto expected = reference::fill(before);
+  bench_->fill();
+  const reference::AtlasPixels after = bench_->pixels();
+  const reference::Generation generation = bench_->generation();
+
+  double worst[5] = {}, worst_alpha[5] = {}, worst_coarse = 0, worst_mean = 0;
+  int filled = 0, handed_on = 0, colourless = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const AtlasChart& chart = bench_->atlas.charts()[i];
+    const Eigen::Vector4d mean = reference::unpack(generation.means[i]);
+    EXPECT_NEAR(mean.w(), expected[i].mean.w(), 1e-6) << "chart " << i;
+    if (mean.w() > 0) worst_mean = std::max(worst_mean, 255 * (mean - expected[i].mean).cwiseAbs().maxCoeff());
+    handed_on += mean.w() > 0 && mean.w() < 1;
+    colourless += mean.w() == 0;
+    for (std::size_t page = 0; page < chart.page.size(); ++page) {
+      const Eigen::Vector4d coarse = reference::unpack(generation.coarse[static_cast<std::size_t>(chart.first_page) + page]);
+      worst_coarse = std::max(worst_coarse, 255 * (coarse - expected[i].coarse[page]).cwiseAbs().maxCoeff());
+      if (!before[i].resident[page]) continue;
+      for (int level = 0; level < atlas::kLevels; ++level) {
+        const int side = 16 >> level, width = side * chart.pages.x();
+        for (int k = 0; k < side * side; ++k) {
+          const int x = static_cast<int>(page) % chart.pages.x() * side + k % side, y = static_cast<int>(page) / chart.pages.x() * side + k / side;
+          const Eigen::Vector4d got = reference::to_vector(after.at(chart.page[page].colour, level, k % side, k / side));
+          const Eigen::Vector4d& want = expected[i].levels[static_cast<std::size_t>(level)][static_cast<std::size_t>(y * width + x)];
+          worst_alpha[level] = std::max(worst_alpha[level], 255 * std::abs(got.w() - want.w()));
+          if (want.w() > 0) worst[level] = std::max(worst[level], 255 * (got - want).head<3>().cwiseAbs().maxCoeff());
+          filled += level == 0 && std::abs(255 * got.w() - 1) < 1e-6;
+        }
+      }
+    }
+  }
+  EXPECT_GT(filled, 3000);
+  EXPECT_GT(handed_on, 5);
+  // Every level is rounded to eight bits before the next is made of it: half a step each, up to
+  // the top and down again.
+  for (int level = 0; level < atlas::kLevels; ++level) {
+    EXPECT_LT(worst[level], 3.5) << "level " << level;
+    EXPECT_LE(worst_alpha[level], level == 0 ? 0 : 1.01) << "level " << level;
+  }
+  EXPECT_LT(worst_coarse, 3);
+  EXPECT_LT(worst_mean, 3);
+}
+
+TEST_F(FillTest, SeenTexelsAreNeverTouchedAndFilledOnesGiveWay) {
+  make();
+  extract(usual_view());
+  for (const Pose& next : {look_at({0.9, -0.6, 0.7}, {0, 0, 0.1}), usual_view()}) {
+    const auto before = charts(bench_->pixels());
+    bench_->fill();
+    const auto after = charts(bench_->pixels());
+    int seen = 0, holes = 0;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      for (std::size_t k = 0; k < before[i].texels.size(); ++k)
+        if (before[i].texels[k][3] >= 2) {
+          ++seen;
+          ASSERT_EQ(after[i].texels[k], before[i].texels[k]);
+        } else {
+          ASSERT_LT(after[i].texels[k][3], 2) << "a filled texel must not look like a seen one";
+          holes += after[i].texels[k][3] == 1;
+        }
+    EXPECT_GT(seen, 10000);
+    EXPECT_GT(holes, 1000);
+    extract(next);
+  }
+  // The second look sees the other sides: what was filled there is seen now.
+  bench_->fill();
+  int gave_way = 0;
+  for (const auto& chart : charts(bench_->pixels()))
+    for (const auto& t : chart.texels) gave_way += t[3] >= 2;
+  EXPECT_GT(gave_way, 15000);
+}
+
+// A page whose holes are all filled already follows the colours around it within four images.
+TEST_F(FillTest, FilledTexelsFollowWithinFourImages) {
+  make();
+  bench_->run({posed_photograph(*bench_->scene, state_of(*bench_->scene), lens_, usual_view())});
+  const auto first = charts(bench_->pixels());
+  for (int i = 0; i < 4; ++i) bench_->run({posed_photograph(*bench_->scene, state_of(*bench_->scene), lens_, usual_view(), 0.5)});
+  const auto last = charts(bench_->pixels());
+  int followed = 0, stayed = 0;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t k = 0; k < first[i].texels.size(); ++k) {
+      const reference::Texel &a = first[i].texels[k], &b = last[i].texels[k];
+      const auto page = k / static_cast<std::size_t>(16 * first[i].pages.x()) / 16 * static_cast<std::size_t>(first[i].pages.x()) + k % static_cast<std::size_t>(16 * first[i].pages.x()) / 16;
+      if (a[3] != 1 || b[3] != 1 || a[1] < 40 || !last[i].has_hole[page]) continue;
+      (b[1] < 0.6 * a[1] ? followed : stayed) += 1;
+    }
+  EXPECT_GT(followed, 1000);
+  EXPECT_LT(stayed, followed / 50) << "pages that no image touched keep theirs";
+}
+
+}  // namespace
+}  // namespace foresight

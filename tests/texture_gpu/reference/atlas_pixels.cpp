@@ -1,0 +1,59 @@
+#include "tests/texture_gpu/reference/atlas_pixels.hpp"
+
+namespace foresight::reference {
+namespace {
+
+std::vector<std::uint32_t> read_words(const gl::BufferTexture& buffer, std::size_t count) {
+  std::vector<std::uint32_t> words(count);
+  buffer.buffer().read(std::span<std::uint32_t>(words));
+  return words;
+}
+
+}  // namespace
+
+AtlasPixels::AtlasPixels(const gl::Texture& colours) {
+  for (int level = 0; level < atlas::kLevels; ++level) {
+    const int side = atlas::kLayer >> level;
+    auto& pixels = levels[static_cast<std::size_t>(level)];
+    pixels.resize(static_cast<std::size_t>(side * side * colours.layers()));
+    glGetTextureImage(colours.name(), level, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size() * 4), pixels.data());
+  }
+}
+
+std::size_t AtlasPixels::place(std::uint32_t slot, int level, int x, int y) {
+  const std::size_t side = atlas::kLayer >> level, page = atlas::kPage >> level;
+  const std::size_t column = slot % 64, row = slot / 64 % 64, layer = slot / 4096;
+  return (layer * side + row * page + static_cast<std::size_t>(y)) * side + column * page + static_cast<std::size_t>(x);
+}
+
+Generation::Generation(const PublishedTextures& published, std::size_t count) : display_gain(published.display_gain) {
+  std::vector<Eigen::Vector4f> rows(5 * count);
+  published.charts.buffer().read(std::span<Eigen::Vector4f>(rows));
+  int pages = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = [&](std::size_t r) -> Eigen::Vector4d { return rows[5 * i + r].cast<double>(); };
+    ChartCopy chart;
+    chart.origin = row(0).head<3>();
+    chart.eu = row(1).head<3>();
+    chart.ev = row(2).head<3>();
+    chart.eh = row(3).head<3>();
+    chart.node = static_cast<int>(row(3).w());
+    chart.pages = {static_cast<int>(row(0).w()), static_cast<int>(row(4).z())};
+    chart.first_page = static_cast<int>(row(2).w());
+    chart.uv0 = row(4).head<2>();
+    chart.density = {row(1).w(), row(4).w()};
+    pages = chart.first_page + chart.pages.prod();
+    charts.push_back(chart);
+  }
+  table = read_words(published.table, static_cast<std::size_t>(pages));
+  coarse = read_words(published.coarse, static_cast<std::size_t>(pages));
+  means = read_words(published.means, count);
+}
+
+Eigen::Vector4d unpack(std::uint32_t v) {
+  return Eigen::Vector4d(v & 255, v >> 8 & 255, v >> 16 & 255, v >> 24) / 255;
+}
+
+Eigen::Vector4d to_vector(const Texel& t) { return Eigen::Vector4d(t[0], t[1], t[2], t[3]) / 255; }
+
+}  // namespace foresight::reference

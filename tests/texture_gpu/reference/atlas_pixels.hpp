@@ -1,0 +1,47 @@
+// The atlas and one generation of textures, copied to the CPU.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "gl/objects.hpp"
+#include "texture_gpu/atlas_layout.hpp"
+#include "texture_gpu/published_textures.hpp"
+
+namespace foresight::reference {
+
+using Texel = std::array<std::uint8_t, 4>;  ///< R, G, B, and the code of atlas.glsl
+
+/// All levels of the atlas's colours. Slots lie 64 to a row, 64 rows to a layer.
+struct AtlasPixels {
+  explicit AtlasPixels(const gl::Texture& colours);
+
+  /// Texel (x, y) of a slot at a level (side 16 >> level).
+  Texel at(std::uint32_t slot, int level, int x, int y) const { return levels[static_cast<std::size_t>(level)][place(slot, level, x, y)]; }
+  static std::size_t place(std::uint32_t slot, int level, int x, int y);
+
+  std::array<std::vector<Texel>, atlas::kLevels> levels;
+};
+
+/// One chart as chart_record.glsl says.
+struct ChartCopy {
+  Eigen::Vector3d origin, eu, ev, eh;
+  int node = 0, first_page = 0;
+  Eigen::Vector2i pages;
+  Eigen::Vector2d uv0, density;
+};
+
+struct Generation {
+  /// `charts`: how many the surface has.
+  Generation(const PublishedTextures& published, std::size_t charts);
+  std::vector<ChartCopy> charts;
+  std::vector<std::uint32_t> table, coarse, means;
+  float display_gain = 1;
+};
+
+/// Packed RGBA8 to values 0 .. 1.
+Eigen::Vector4d unpack(std::uint32_t rgba);
+Eigen::Vector4d to_vector(const Texel& texel);
+
+}  // namespace foresight::reference

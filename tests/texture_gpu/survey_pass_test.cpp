@@ -1,0 +1,120 @@
+// cull.comp and exposure.comp against one point at a time.
+#include "texture_gpu/survey_pass.hpp"
+
+#include "tests/support/headless_test.hpp"
+#include "tests/texture_gpu/pass_bench.hpp"
+
+namespace foresight {
+namespace {
+
+using reference::Answer;
+
+class SurveyOfLenses : public HeadlessTest, public testing::WithParamInterface<const char*> {
+ protected:
+  void look(const Pose& T_world_camera, double gain = 1) {
+    const Lens lens = small_lens(GetParam());
+    if (!bench_) bench_ = std::make_unique<PassBench>(small_scene(), std::vector{lens}, TextureOptions{.memory_bytes = 6 << 20});
+    bench_->look({posed_photograph(*bench_->scene, state_of(*bench_->scene), lens, T_world_camera, gain)});
+  }
+  std::unique_ptr<PassBench> bench_;
+};
+
+TEST_P(SurveyOfLenses, NoTileWithASeenTexelIsCulled) {
+  int seen_tiles = 0, kept = 0, tiles = 0;
+  for (const Pose& T_world_camera : {usual_view(), look_at({0.5, -0.6, 0.25}, {0, 0, 0.1}), look_at({-0.25, -0.1, 0.2}, {0.05, 0.1, 0.1})}) {
+    look(T_world_camera);
+    const reference::Camera camera = bench_->camera(0);
+    const auto masks = bench_->cull();
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+      const PageRecord& record = bench_->records[i];
+      const AtlasChart& chart = bench_->atlas.charts()[record.chart];
+      const Patch& patch = bench_->patch_of(record.chart);
+      const Pose& T = camera.T_camera_node[static_cast<std::size_t>(patch.node)];
+      for (int tile = 0; tile < 4; ++tile) {
+        bool seen = false;
+        for (int k = 0; k < 64 && !seen; ++k) {
+          const int x = 16 * static_cast<int>(record.xy & 0xffff) + 8 * (tile & 1) + k % 8;
+          const int y = 16 * static_cast<int>(record.xy >> 16) + 8 * (tile >> 1) + k / 8;
+          if (!PassBench::raw_height(chart, x, y)) continue;
+          Eigen::Vector2d pixel;
+          seen = reference::is_seen(camera, T * bench_->texel_point(chart, patch, x, y), bench_->options.depth_tolerance, pixel) == Answer::yes;
+        }
+        const bool bit = (masks[i] >> (2 * tile) & 1) != 0;
+        ++tiles;
+        kept += bit;
+        seen_tiles += seen;
+        ASSERT_TRUE(bit || !seen) << "chart " << record.chart << ", tile " << tile;
+        ASSERT_FALSE(masks[i] >> (2 * tile + 1) & 1) << "there is no second camera";
+      }
+    }
+    bench_->allocate();
+    bench_->relevel();
+    bench_->extract();
+    bench_->fill();
+  }
+  EXPECT_GT(seen_tiles, 300);
+  // Conservative, but not idle: it keeps at most two and a half times of what is seen.
+  EXPECT_LT(kept, std::min(tiles, seen_tiles * 5 / 2));
+}
+
+TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {
+  const Pose close = look_at({-0.45, -0.3, 0.4}, {0.02, 0, 0.1});
+  look(close);
+  bench_->cull();
+  bench_->allocate();
+  bench_->relevel();
+  bench_->extract();
+  bench_->fill();
+  look(close, 0.8);
+  bench_->cull();
+  const reference::Camera camera = bench_->camera(0);
+  const auto samples = bench_->survey.brightness(bench_->inputs, bench_->next->charts, bench_->store, 0, bench_->options.depth_tolerance, 0, 1);
+  ASSERT_EQ(samples.size(), bench_->records.size());
+  int compared = 0, unseen = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const PageRecord& record = bench_->records[i];
+    const AtlasChart& chart = bench_->atlas.charts()[record.chart];
+    const Patch& patch = bench_->patch_of(record.chart);
+    double sum = 0;
+    Eigen::Vector2d center(0, 0);
+    int count = 0, borderline = 0;
+    for (int k = 0; k < 16 && record.height_slot != atlas::kNoSlot; ++k) {
+      const int x = 16 * static_cast<int>(record.xy & 0xffff) + 4 * (k & 3) + 2, y = 16 * static_cast<int>(record.xy >> 16) + 4 * (k >> 2) + 2;
+      if (!PassBench::raw_height(chart, x, y)) continue;
+      Eigen::Vector2d pixel;
+      const Answer seen = reference::is_seen(camera, camera.T_camera_node[static_cast<std::size_t>(patch.node)] * bench_->texel_point(chart, patch, x, y), bench_->options.depth_tolerance, pixel);
+      borderline += seen == Answer::borderline;
+      if (seen != Answer::yes) continue;
+      // One bilinear sample.
+      const int x0 = static_cast<int>(std::floor(pixel.x())), y0 = static_cast<int>(std::floor(pixel.y()));
+      const double fx = pixel.x() - x0, fy = pixel.y() - y0;
+      for (int j = 0; j < 4; ++j) {
+        const auto& v = camera.image.at<cv::Vec3b>(y0 + (j >> 1), x0 + (j & 1));
+        sum += (j & 1 ? fx : 1 - fx) * (j >> 1 ? fy : 1 - fy) * (0.114 * v[0] + 0.587 * v[1] + 0.299 * v[2]) / 255;
+      }
+      center += pixel;
+      ++count;
+    }
+    if (borderline) continue;
+    if (count < 12) {
+      ++unseen;
+      EXPECT_EQ(samples[i].brightness, -1);
+      continue;
+    }
+    ++compared;
+    const Eigen::Vector2d half(79.5, 59.5);
+    ASSERT_NEAR(samples[i].brightness, sum / count, 0.004) << "one step of 255";
+    ASSERT_NEAR(samples[i].radius2, ((center / count - half) / half.norm()).squaredNorm(), 1e-3);
+  }
+  EXPECT_GT(compared, 10);
+  EXPECT_GT(unseen, 20);
+  // Every third page, from the second on.
+  const auto some = bench_->survey.brightness(bench_->inputs, bench_->next->charts, bench_->store, 0, bench_->options.depth_tolerance, 1, 3);
+  ASSERT_EQ(some.size(), (samples.size() + 1) / 3);
+  for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].brightness, samples[1 + 3 * i].brightness);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, SurveyOfLenses, testing::ValuesIn(kLensKinds), [](const auto& i) { return std::string(i.param); });
+
+}  // namespace
+}  // namespace foresight
