@@ -1,0 +1,104 @@
+#include "tests/display/reference_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foresight::reference {
+namespace {
+
+constexpr double kSeen = 1, kHole = 128.0 / 255, kBare = 64.0 / 255;
+
+/// Weights of the four neighbours of a place, centres at integers.
+template <typename F>
+void bilinear(const Eigen::Vector2d& at, F&& f) {
+  const Eigen::Vector2d base = at.array().floor(), part = at - base;
+  for (int i = 0; i < 4; ++i)
+    f(base.cast<int>() + Eigen::Vector2i(i & 1, i >> 1), (i & 1 ? part.x() : 1 - part.x()) * (i >> 1 ? part.y() : 1 - part.y()));
+}
+
+}  // namespace
+
+ViewPixel View::at(const Lens& lens, const Pose& T_world_camera, const Eigen::Vector2d& pixel) const {
+  const auto cast = [&](const Eigen::Vector2d& at) -> std::optional<RayCaster::Hit> {
+    const auto ray = lens.unproject(at);
+    return ray ? caster_.cast(T_world_camera.translation(), T_world_camera.linear() * *ray, gl::kNearPlane) : std::nullopt;
+  };
+  const auto hit = cast(pixel);
+  ViewPixel out;
+  if (hit) out = shade(*hit, T_world_camera.linear() * *lens.unproject(pixel), std::max(lens.parameters().fx, lens.parameters().fy));
+  // The face's pixel that names the triangle lies up to 0.7 face pixels beside the ray.
+  for (int i = 0; i < 9; ++i) {
+    const auto beside = cast(pixel + 1.5 * Eigen::Vector2d(i % 3 - 1, i / 3 - 1));
+    if (beside.has_value() != hit.has_value()) out.borderline = true;
+    if (!beside || !hit || beside->triangle == hit->triangle) continue;
+    out.borderline = true;
+  }
+  return out;
+}
+
+ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, double focal_px) const {
+  const auto patch_index = static_cast<std::size_t>(surface_.patch_of_triangle[static_cast<std::size_t>(hit.triangle)]);
+  const Patch& patch = surface_.patches[patch_index];
+  const Pose T_node_world = state_.T_world_node[static_cast<std::size_t>(patch.node)].inverse();
+  const Eigen::Vector3d p = T_node_world * hit.p_world - patch.origin;
+  const Eigen::Vector2d uv(p.dot(patch.eu), p.dot(patch.ev));
+  const Eigen::Vector2d in_cells = uv.cwiseQuotient(patch.cell_size());
+  const Eigen::Array2i cell = in_cells.array().floor().cast<int>().max(0).min(patch.cells.array() - 1);
+  const auto index = static_cast<std::size_t>(patch.first_chart + cell.y() * patch.cells.x() + cell.x());
+  const ChartCopy& chart = generation_.charts[index];
+
+  ViewPixel out;
+  // Between two charts either one is right.
+  out.borderline = (in_cells - in_cells.array().round().matrix()).cwiseAbs().minCoeff() < 1e-4;
+  const auto with = [&](Eigen::Vector3d rgb, double alpha) {
+    rgb = (rgb * static_cast<double>(generation_.display_gain)).cwiseMin(1);
+    out.rgba << rgb, alpha;
+    return out;
+  };
+  Eigen::Vector4d fallback = unpack(generation_.means[index]);
+  if (chart.density.x() > 0) {
+    const Eigen::Vector2d texel = (uv - chart.uv0).cwiseProduct(chart.density);
+    const Eigen::Vector3d sight = (T_node_world.linear() * ray).normalized();
+    const auto across = [&](const Eigen::Vector3d& e) { return (e - sight * sight.dot(e)).norm(); };
+    const double pixels = focal_px * std::max(across(chart.eu), across(chart.ev)) / (hit.t * ray.norm());
+    const double lod = std::clamp(-std::log2(pixels), 0.0, 4.0);
+    const int level = static_cast<int>(std::floor(lod + 0.5));
+    out.borderline |= std::abs(lod + 0.5 - std::round(lod + 0.5)) < 1e-3;
+
+    Eigen::Vector4d seen(0, 0, 0, 0), filled(0, 0, 0, 0);
+    const Eigen::Vector2d at = (texel + Eigen::Vector2d(0.5, 0.5)) / (1 << level) - Eigen::Vector2d(0.5, 0.5);
+    bilinear(at, [&](const Eigen::Vector2i& t, double weight) {
+      const int side = 16 >> level;
+      if (t.minCoeff() < 0 || t.x() >= side * chart.pages.x() || t.y() >= side * chart.pages.y()) return;
+      const std::uint32_t slot = generation_.table[static_cast<std::size_t>(chart.first_page + t.y() / side * chart.pages.x() + t.x() / side)];
+      if (slot == atlas::kNoSlot) return;
+      const Eigen::Vector4d c = to_vector(pixels_.at(slot, level, t.x() % side, t.y() % side));
+      const double code = 255 * c.w(), share = code < 1.5 ? 0 : level == 0 ? 1 : c.w();
+      const Eigen::Vector4d opaque(c.x(), c.y(), c.z(), 1);
+      seen += weight * share * opaque;
+      if (code > 0.5) filled += weight * (1 - share) * opaque;
+    });
+    out.borderline |= std::abs(seen.w() - 0.25) < 1e-3;
+    if (seen.w() >= 0.25) return with(seen.head<3>() / seen.w(), kSeen);
+    const Eigen::Vector4d all = seen + filled;
+    if (all.w() > 0) {
+      out.borderline |= all.w() < 1e-3;
+      return with(all.head<3>() / all.w(), kHole);
+    }
+    fallback = coarse(chart, index, texel);
+  }
+  return fallback.w() > 0 ? with(fallback.head<3>(), kHole) : with({0, 0, 0}, kBare);
+}
+
+/// What stands in for pages without texels: their means, between the centres of the pages.
+Eigen::Vector4d View::coarse(const ChartCopy& chart, std::size_t index, const Eigen::Vector2d& texel) const {
+  Eigen::Vector4d sum(0, 0, 0, 0);
+  bilinear((texel + Eigen::Vector2d(0.5, 0.5)) / 16 - Eigen::Vector2d(0.5, 0.5), [&](const Eigen::Vector2i& at, double weight) {
+    const Eigen::Array2i page = at.array().max(0).min(chart.pages.array() - 1);
+    const Eigen::Vector4d c = unpack(generation_.coarse[static_cast<std::size_t>(chart.first_page + page.y() * chart.pages.x() + page.x())]);
+    sum += weight * c.w() * Eigen::Vector4d(c.x(), c.y(), c.z(), 1);
+  });
+  return sum.w() > 0 ? (sum / sum.w()).eval() : unpack(generation_.means[index]);
+}
+
+}  // namespace foresight::reference

@@ -1,0 +1,104 @@
+#include "texture_gpu/texture_thread.hpp"
+
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "tests/support/headless_test.hpp"
+#include "tests/support/small_scene.hpp"
+
+namespace foresight {
+namespace {
+
+class TextureThreadTest : public HeadlessTest {
+ protected:
+  std::unique_ptr<TextureThread> start(std::uint64_t memory_bytes = 6 << 20) {
+    return std::make_unique<TextureThread>(context_->create_shared(), TextureThread::Setup{scene_, surface_, lens_, std::nullopt, {.memory_bytes = memory_bytes}});
+  }
+  PosedFrame frame(std::int64_t ns) const {
+    PosedFrame out = picture_;
+    out.left.time = RobotTime{ns};
+    return out;
+  }
+
+  std::shared_ptr<const SceneModel> scene_ = small_scene();
+  std::shared_ptr<const SurfacePatches> surface_ = std::make_shared<SurfacePatches>(find_surface_patches(*scene_, {}));
+  Lens lens_ = small_lens("pinhole");
+  PosedFrame picture_{posed_photograph(*scene_, state_of(*scene_), lens_, usual_view()), std::nullopt};
+};
+
+TEST_F(TextureThreadTest, PublishesWhatWasProcessed) {
+  const auto thread = start();
+  EXPECT_FALSE(thread->textures().acquire());
+  EXPECT_FALSE(thread->take_report());
+  for (int i = 1; i <= 3; ++i) {
+    const ExtractionReport report = thread->process(frame(i));
+    EXPECT_TRUE(report.published);
+    EXPECT_EQ(report.newest_image.ns, i);
+    const TextureLease lease = thread->textures().acquire();
+    ASSERT_TRUE(lease);
+    EXPECT_EQ(lease->newest_image.ns, i);
+    EXPECT_FALSE(thread->take_report()) << "process() took it";
+  }
+  EXPECT_EQ(thread->replaced(), 0u);
+}
+
+TEST_F(TextureThreadTest, TheNewestFrameWinsAndTheOthersAreCounted) {
+  const auto thread = start();
+  thread->process(frame(1));
+  constexpr int kFrames = 40;
+  for (int i = 2; i <= kFrames; ++i) thread->submit(frame(i));
+  std::uint64_t finished = 1;
+  std::int64_t newest = 0;
+  for (int tries = 0; tries < 2000 && newest < kFrames; ++tries) {
+    if (const auto report = thread->take_report()) newest = report->newest_image.ns;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(newest, kFrames) << "the last frame must never be lost";
+  finished = thread->textures().acquire()->number;
+  // Every frame was either extracted or replaced.
+  EXPECT_EQ(finished + thread->replaced(), static_cast<std::uint64_t>(kFrames));
+  EXPECT_GT(thread->replaced(), 0u);
+}
+
+TEST_F(TextureThreadTest, AnErrorReachesTheCallerAndStays) {
+  const auto thread = start(20000);  // six pages: no view fits
+  EXPECT_THROW(thread->process(frame(1)), RuntimeFailure);
+  EXPECT_THROW(thread->submit(frame(2)), RuntimeFailure);
+  EXPECT_THROW(thread->take_report(), RuntimeFailure);
+  EXPECT_FALSE(thread->textures().acquire()) << "its textures are gone with the core";
+}
+
+TEST_F(TextureThreadTest, ErrorsOfConstructionAreThrownByTheConstructor) {
+  class Refuses final : public gl::Context {
+   public:
+    void make_current() override { throw RuntimeFailure("no context today", "try again"); }
+    void release() override {}
+    std::unique_ptr<gl::Context> create_shared() override { return nullptr; }
+  };
+  EXPECT_THAT([&] { TextureThread(std::make_unique<Refuses>(), {scene_, surface_, lens_, std::nullopt, {}}); },
+              testing::ThrowsMessage<RuntimeFailure>(testing::HasSubstr("no context today")));
+}
+
+TEST_F(TextureThreadTest, StopsWhileBusyAndWithALeaseOut) {
+  for (int wait_ms : {0, 1, 5, 20}) {
+    auto thread = start();
+    TextureLease lease;
+    if (wait_ms > 1) thread->process(frame(1)), lease = thread->textures().acquire();
+    for (int i = 2; i < 5; ++i) thread->submit(frame(i));
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+    lease = TextureLease();
+    const auto begin = std::chrono::steady_clock::now();
+    thread.reset();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5)) << "one image, not more";
+  }
+}
+
+TEST_F(TextureThreadTest, GivesUpWaitingAfterTheTimeOut) {
+  const auto thread = start();
+  thread->process(frame(1));
+  EXPECT_THROW(thread->process(frame(2), 0.0), RuntimeFailure);
+}
+
+}  // namespace
+}  // namespace foresight
