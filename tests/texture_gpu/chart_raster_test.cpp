@@ -14,7 +14,7 @@ TEST(ChartRaster, HasTheSizeThatWasAnnounced) {
   const SurfacePatches surface = find_surface_patches(*small_scene(), {});
   for (std::size_t i = 0; i < surface.charts.size(); ++i) {
     if (surface.charts[i].radius == 0) continue;
-    for (const Eigen::Vector2d density : {Eigen::Vector2d(90, 90), Eigen::Vector2d(33, 210)}) {
+    for (const Eigen::Vector2d& density : {Eigen::Vector2d(90, 90), Eigen::Vector2d(33, 210)}) {
       const ChartRaster r = raster_chart(surface, static_cast<int>(i), density);
       EXPECT_EQ(Eigen::Vector2i(r.width, r.height), chart_size(surface.charts[i], density));
       EXPECT_EQ(r.raw.size(), static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height));

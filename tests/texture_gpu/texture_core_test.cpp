@@ -188,7 +188,9 @@ TEST_F(TextureCoreTest, SmallBudgetsAreKept) {
       most = std::max(most, report.bytes_in_use);
     }
     EXPECT_LE(most, budget);
-    EXPECT_EQ(report.bytes_reserved, budget);
+    EXPECT_LE(report.bytes_reserved, budget);
+    EXPECT_LE(most, report.bytes_reserved);
+    EXPECT_GT(report.bytes_reserved, budget / 2);
     if (budget < 1 << 20) {
       EXPECT_GT(report.policy.evicted_pages + static_cast<std::uint64_t>(report.policy.steps_down), 0u);
     }
@@ -204,7 +206,8 @@ TEST_F(TextureCoreTest, SmallBudgetsAreKept) {
 }
 
 TEST_F(TextureCoreTest, AnAbsurdBudgetFailsWithACure) {
-  make({.memory_bytes = 20000});
+  EXPECT_THROW(make({.memory_bytes = 20000}), RuntimeFailure) << "not even one row of pages";
+  make({.memory_bytes = 210000});  // one row: fewer pages than charts in view
   try {
     process(frame(orbit(0)));
     FAIL() << "accepted";

@@ -62,7 +62,7 @@ TEST_F(TextureThreadTest, TheNewestFrameWinsAndTheOthersAreCounted) {
 }
 
 TEST_F(TextureThreadTest, AnErrorReachesTheCallerAndStays) {
-  const auto thread = start(20000);  // six pages: no view fits
+  const auto thread = start(210000);  // one row of pages: no view fits
   EXPECT_THROW(thread->process(frame(1)), RuntimeFailure);
   EXPECT_THROW(thread->submit(frame(2)), RuntimeFailure);
   EXPECT_THROW(thread->take_report(), RuntimeFailure);

@@ -9,6 +9,7 @@ namespace {
 using Eigen::Vector4d;
 
 constexpr double kFilled = 1.0 / 255;
+constexpr double kFirm = 0.25;  // share of seen texels from which a page's mean stands for itself
 constexpr int kSpreadRounds = 4, kReach = 3;
 
 Vector4d opaque(const Vector4d& c) { return {c.x(), c.y(), c.z(), 1}; }
@@ -59,7 +60,7 @@ void find_means(const FillChart& chart, FilledChart& out) {
   if (!mean.empty()) out.mean = mean.over(1), out.mean.w() = 1;
   const auto pages = out.levels[4];
   for (int i = 0; i < count; ++i) {
-    if (pages[static_cast<std::size_t>(i)].w() > 0) continue;
+    if (pages[static_cast<std::size_t>(i)].w() >= kFirm) continue;
     Mean around;
     if (out.mean.w() > 0) around.add(out.mean, 1e-4);
     for (int y = 0; y < chart.pages.y(); ++y)
@@ -100,7 +101,8 @@ void pull(const FillChart& chart, FilledChart& out) {
       for (int x = 0; x < width; ++x) {
         const auto page = static_cast<std::size_t>(y / side * chart.pages.x() + x / side);
         Vector4d& own = out.levels[static_cast<std::size_t>(level)][static_cast<std::size_t>(y * width + x)];
-        if (!chart.resident[page] || !chart.has_hole[page] || own.w() >= (level == 0 ? 1.5 / 255 : 0.5)) continue;
+        const bool has_colour = out.levels[4][page].w() > 0;  // else the display takes the coarse colours
+        if (!chart.resident[page] || !chart.has_hole[page] || !has_colour || own.w() >= (level == 0 ? 1.5 / 255 : 0.5)) continue;
         const double u = (x + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
         const int x0 = static_cast<int>(std::floor(u)), y0 = static_cast<int>(std::floor(v));
         Mean mean;
