@@ -27,6 +27,16 @@ void append_expanded(const ShaderSources& sources, const std::string& file, std:
   }
 }
 
+/// `get`: glGetShaderInfoLog or glGetProgramInfoLog.
+template <typename Get>
+std::string info_log(GLuint name, Get get) {
+  std::string log(4096, '\0');
+  GLsizei length = 0;
+  get(name, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return log;
+}
+
 GLuint compile(const ShaderSources& sources, GLenum stage, const std::string& file,
                const std::vector<std::string>& defines) {
   std::string text = "#version 450 core\n";
@@ -39,10 +49,7 @@ GLuint compile(const ShaderSources& sources, GLenum stage, const std::string& fi
   GLint ok = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
   if (ok) return shader;
-  std::string log(4096, '\0');
-  GLsizei length = 0;
-  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
+  const std::string log = info_log(shader, glGetShaderInfoLog);
   glDeleteShader(shader);
   throw RuntimeFailure("shader " + file + " does not compile: " + log, "please report this with the driver's name");
 }
@@ -59,10 +66,7 @@ GLuint link(const std::vector<GLuint>& shaders, const std::string& label) {
   glGetProgramiv(program, GL_LINK_STATUS, &ok);
   glObjectLabel(GL_PROGRAM, program, -1, label.c_str());
   if (ok) return program;
-  std::string log(4096, '\0');
-  GLsizei length = 0;
-  glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
+  const std::string log = info_log(program, glGetProgramInfoLog);
   glDeleteProgram(program);
   throw RuntimeFailure("program " + label + " does not link: " + log, "please report this with the driver's name");
 }
