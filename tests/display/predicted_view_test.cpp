@@ -14,10 +14,16 @@ namespace {
 class PredictedViewTest : public HeadlessTest {
  protected:
   void extract(const std::vector<Pose>& views, const char* lens = "pinhole", double gain = 1) {
-    if (!core_) core_ = std::make_unique<TextureCore>(scene_, surface_, small_lens(lens), std::nullopt, TextureOptions{.memory_bytes = 6 << 20}, driver_.is_software);
-    for (const Pose& view : views) core_->process({posed_photograph(*scene_, state_of(*scene_), small_lens(lens), view, gain), std::nullopt}, latest_);
+    if (!core_)
+      core_ = std::make_unique<TextureCore>(scene_, surface_, small_lens(lens), std::nullopt,
+                                            TextureOptions{.memory_bytes = 6 << 20}, driver_.is_software);
+    for (const Pose& view : views)
+      core_->process({posed_photograph(*scene_, state_of(*scene_), small_lens(lens), view, gain), std::nullopt},
+                     latest_);
   }
-  PredictedView view_through(const Lens& lens) const { return {std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens}; }
+  PredictedView view_through(const Lens& lens) const {
+    return {std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens};
+  }
 
   std::shared_ptr<const SceneModel> scene_ = small_scene();
   std::shared_ptr<const SurfacePatches> surface_ = std::make_shared<SurfacePatches>(find_surface_patches(*scene_, {}));
@@ -38,7 +44,9 @@ TEST_P(ViewOfLenses, EveryPixelIsThatOfTheReference) {
   // As the camera stood, from elsewhere, near, and so far that coarser levels are shown.
   int compared = 0, borderline = 0, other_state = 0, states[256] = {};
   double worst = 0;
-  for (const Pose& T_world_camera : {usual_view(), look_at({-0.2, -1.1, 0.9}, {0.1, 0, 0.1}), look_at({-0.4, -0.4, 0.3}, {0.05, 0.1, 0.1}), look_at({-3, -1.5, 2.2}, {0, 0, 0.1})}) {
+  for (const Pose& T_world_camera :
+       {usual_view(), look_at({-0.2, -1.1, 0.9}, {0.1, 0, 0.1}), look_at({-0.4, -0.4, 0.3}, {0.05, 0.1, 0.1}),
+        look_at({-3, -1.5, 2.2}, {0, 0, 0.1})}) {
     view.draw(T_world_camera, predicted, *lease);
     const cv::Mat picture = view.read();
     ASSERT_EQ(picture.type(), CV_8UC4);
@@ -70,7 +78,8 @@ TEST_P(ViewOfLenses, EveryPixelIsThatOfTheReference) {
   EXPECT_LT(worst, 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, ViewOfLenses, testing::ValuesIn(kLensKinds), [](const auto& i) { return std::string(i.param); });
+INSTANTIATE_TEST_SUITE_P(Lenses, ViewOfLenses, testing::ValuesIn(kLensKinds),
+                         [](const auto& i) { return std::string(i.param); });
 
 // The loop closed: photographed, extracted, shown again from the same place, it is the photograph.
 TEST_P(ViewOfLenses, ShowsThePhotographAgain) {
@@ -145,7 +154,8 @@ TEST_F(PredictedViewTest, MatchesTheGoldenView) {
   view.draw(look_at({-0.75, -0.75, 0.6}, {0.05, 0, 0.1}), state_of(*scene_, 0.1), *lease);
   const cv::Mat picture = view.read();
   std::vector<std::array<std::uint8_t, 4>> untouched(160 * 120);
-  glGetTextureImage(beside.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(untouched.size() * 4), untouched.data());
+  glGetTextureImage(beside.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(untouched.size() * 4),
+                    untouched.data());
   for (const auto& v : untouched) ASSERT_EQ(v, (std::array<std::uint8_t, 4>{9, 8, 7, 6}));
   EXPECT_EQ(reference::AtlasPixels(atlas).levels[0], before.levels[0]) << "looking changes nothing";
   // Rounding of colours and alpha; silhouettes that fall on the other side of a pixel's centre.

@@ -13,7 +13,8 @@ template <typename F>
 void bilinear(const Eigen::Vector2d& at, F&& f) {
   const Eigen::Vector2d base = at.array().floor(), part = at - base;
   for (int i = 0; i < 4; ++i)
-    f(base.cast<int>() + Eigen::Vector2i(i & 1, i >> 1), (i & 1 ? part.x() : 1 - part.x()) * (i >> 1 ? part.y() : 1 - part.y()));
+    f(base.cast<int>() + Eigen::Vector2i(i & 1, i >> 1),
+      (i & 1 ? part.x() : 1 - part.x()) * (i >> 1 ? part.y() : 1 - part.y()));
 }
 
 }  // namespace
@@ -21,11 +22,14 @@ void bilinear(const Eigen::Vector2d& at, F&& f) {
 ViewPixel View::at(const Lens& lens, const Pose& T_world_camera, const Eigen::Vector2d& pixel) const {
   const auto cast = [&](const Eigen::Vector2d& at) -> std::optional<RayCaster::Hit> {
     const auto ray = lens.unproject(at);
-    return ray ? caster_.cast(T_world_camera.translation(), T_world_camera.linear() * *ray, gl::kNearPlane) : std::nullopt;
+    return ray ? caster_.cast(T_world_camera.translation(), T_world_camera.linear() * *ray, gl::kNearPlane)
+               : std::nullopt;
   };
   const auto hit = cast(pixel);
   ViewPixel out;
-  if (hit) out = shade(*hit, T_world_camera.linear() * *lens.unproject(pixel), std::max(lens.parameters().fx, lens.parameters().fy));
+  if (hit)
+    out = shade(*hit, T_world_camera.linear() * *lens.unproject(pixel),
+                std::max(lens.parameters().fx, lens.parameters().fy));
   // The face's pixel that names the triangle lies up to 0.7 face pixels beside the ray.
   for (int i = 0; i < 9; ++i) {
     const auto beside = cast(pixel + 1.5 * Eigen::Vector2d(i % 3 - 1, i / 3 - 1));
@@ -70,7 +74,8 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
     bilinear(at, [&](const Eigen::Vector2i& t, double weight) {
       const int side = 16 >> level;
       if (t.minCoeff() < 0 || t.x() >= side * chart.pages.x() || t.y() >= side * chart.pages.y()) return;
-      const std::uint32_t slot = generation_.table[static_cast<std::size_t>(chart.first_page + t.y() / side * chart.pages.x() + t.x() / side)];
+      const std::uint32_t slot =
+          generation_.table[static_cast<std::size_t>(chart.first_page + t.y() / side * chart.pages.x() + t.x() / side)];
       if (slot == atlas::kNoSlot) return;
       const Eigen::Vector4d c = to_vector(pixels_.at(slot, level, t.x() % side, t.y() % side));
       const double code = 255 * c.w(), share = code < 1.5 ? 0 : level == 0 ? 1 : c.w();
@@ -93,9 +98,11 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
 /// What stands in for pages without texels: their means, between the centres of the pages.
 Eigen::Vector4d View::coarse(const ChartCopy& chart, std::size_t index, const Eigen::Vector2d& texel) const {
   Eigen::Vector4d sum(0, 0, 0, 0);
-  bilinear((texel + Eigen::Vector2d(0.5, 0.5)) / 16 - Eigen::Vector2d(0.5, 0.5), [&](const Eigen::Vector2i& at, double weight) {
+  bilinear((texel + Eigen::Vector2d(0.5, 0.5)) / 16 - Eigen::Vector2d(0.5, 0.5), [&](const Eigen::Vector2i& at,
+                                                                                     double weight) {
     const Eigen::Array2i page = at.array().max(0).min(chart.pages.array() - 1);
-    const Eigen::Vector4d c = unpack(generation_.coarse[static_cast<std::size_t>(chart.first_page + page.y() * chart.pages.x() + page.x())]);
+    const Eigen::Vector4d c =
+        unpack(generation_.coarse[static_cast<std::size_t>(chart.first_page + page.y() * chart.pages.x() + page.x())]);
     sum += weight * c.w() * Eigen::Vector4d(c.x(), c.y(), c.z(), 1);
   });
   return sum.w() > 0 ? (sum / sum.w()).eval() : unpack(generation_.means[index]);

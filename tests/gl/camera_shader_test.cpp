@@ -44,7 +44,8 @@ std::vector<Eigen::Vector4f> points_around(const Lens& lens) {
   for (int i = 0; i < 4096; ++i) {
     const double angle = (i % 2 ? lens.max_angle() : M_PI) * unit(random), around = 2 * M_PI * unit(random);
     const double r = 0.1 + 5 * unit(random);
-    const Eigen::Vector3d p = r * Eigen::Vector3d(std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around), std::cos(angle));
+    const Eigen::Vector3d p =
+        r * Eigen::Vector3d(std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around), std::cos(angle));
     points.push_back(Eigen::Vector4d(p.x(), p.y(), p.z(), 0).cast<float>());
   }
   return points;
@@ -85,8 +86,10 @@ TEST_P(CameraShader, ProjectsAsTheLensDoes) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3d p = points[i].head<3>().cast<double>();
       const auto pixel = lens.project(p);
-      const double radius = lens.model() == LensModel::equidistant ? std::atan2(p.head<2>().norm(), p.z()) : p.head<2>().norm() / p.z();
-      const bool at_the_border = std::abs(radius - lens.max_radius()) < 1e-4 * lens.max_radius() || std::abs(p.z()) < 1e-6;
+      const double radius =
+          lens.model() == LensModel::equidistant ? std::atan2(p.head<2>().norm(), p.z()) : p.head<2>().norm() / p.z();
+      const bool at_the_border =
+          std::abs(radius - lens.max_radius()) < 1e-4 * lens.max_radius() || std::abs(p.z()) < 1e-6;
       // Where nothing is distorted the shader skips the test of the radius: 60 is 89 degrees.
       if (at_the_border || (!lens.has_distortion() && radius > lens.max_radius())) continue;
       ASSERT_EQ(answers[i].lens.z() > 0.5, pixel.has_value()) << p.transpose();
@@ -110,8 +113,10 @@ TEST_P(CameraShader, PlacesPointsOnTheFaceThatShowsThem) {
     const auto layer = static_cast<int>(answers[i].face.z());
     const Eigen::Vector3d q = Faces::rotation(layer) * p;
     const Eigen::Vector2d at(faces.fx * q.x() / q.z() + faces.cx, faces.fy * q.y() / q.z() + faces.cy);
-    const bool inside = q.z() >= kNearPlane && at.minCoeff() >= -0.5 && at.x() <= faces.width - 0.5 && at.y() <= faces.height - 0.5;
-    const double to_border = std::min({at.x() + 0.5, at.y() + 0.5, faces.width - 0.5 - at.x(), faces.height - 0.5 - at.y()});
+    const bool inside =
+        q.z() >= kNearPlane && at.minCoeff() >= -0.5 && at.x() <= faces.width - 0.5 && at.y() <= faces.height - 0.5;
+    const double to_border =
+        std::min({at.x() + 0.5, at.y() + 0.5, faces.width - 0.5 - at.x(), faces.height - 0.5 - at.y()});
     if (std::abs(to_border) > 1e-2) {
       ASSERT_EQ(answers[i].face.w() > 0.5, inside) << p.transpose();
     }
@@ -125,7 +130,8 @@ TEST_P(CameraShader, PlacesPointsOnTheFaceThatShowsThem) {
   EXPECT_GT(placed, faces.count == 6 ? 4000 : 400);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, CameraShader, testing::ValuesIn(kLensKinds), [](const auto& i) { return std::string(i.param); });
+INSTANTIATE_TEST_SUITE_P(Lenses, CameraShader, testing::ValuesIn(kLensKinds),
+                         [](const auto& i) { return std::string(i.param); });
 
 TEST(CameraDefines, AreEmptyForCamerasThatDifferInKind) {
   const std::vector<Lens> same{small_lens("plumb_bob"), small_lens("rational")};
@@ -147,7 +153,8 @@ TEST(NodeRows, MapNodePointsToTheCamera) {
   for (std::size_t n = 0; n < state.T_world_node.size(); ++n) {
     const Eigen::Vector3d expected = T_world_camera.inverse() * state.T_world_node[n] * p_node;
     for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(rows[3 * n + static_cast<std::size_t>(i)].cast<double>().dot(p_node.homogeneous()), expected[i], 1e-6);
+      EXPECT_NEAR(rows[3 * n + static_cast<std::size_t>(i)].cast<double>().dot(p_node.homogeneous()), expected[i],
+                  1e-6);
   }
 }
 

@@ -41,7 +41,8 @@ TEST_F(ContextTest, ErrorsNameTheCaller) {
     check_errors("a pass of the test");
     FAIL() << "no error";
   } catch (const RuntimeFailure& failure) {
-    EXPECT_THAT(failure.what(), testing::AllOf(testing::HasSubstr("GL_INVALID_ENUM"), testing::HasSubstr("a pass of the test")));
+    EXPECT_THAT(failure.what(),
+                testing::AllOf(testing::HasSubstr("GL_INVALID_ENUM"), testing::HasSubstr("a pass of the test")));
   }
   EXPECT_NO_THROW(check_errors("the next pass"));  // reported once
 }

@@ -67,9 +67,10 @@ TEST_F(ObjectsTest, FencesPassOnceTheCommandsAreDone) {
 TEST_F(ObjectsTest, ProgramsIncludeFilesAndTakeDefines) {
   const ShaderSources sources{
       {"half.glsl", "uint half_of(uint v) { return v / DIVISOR; }\n"},
-      {"main.comp", "#include \"half.glsl\"\nlayout(local_size_x = 4) in;\n"
-                    "layout(binding = 0, std430) buffer Out { uint values[]; };\nuniform uint start;\n"
-                    "void main() { values[gl_LocalInvocationIndex] = half_of(start + gl_LocalInvocationIndex); }\n"}};
+      {"main.comp",
+       "#include \"half.glsl\"\nlayout(local_size_x = 4) in;\n"
+       "layout(binding = 0, std430) buffer Out { uint values[]; };\nuniform uint start;\n"
+       "void main() { values[gl_LocalInvocationIndex] = half_of(start + gl_LocalInvocationIndex); }\n"}};
   const Program program = Program::compute(sources, "main.comp", {"DIVISOR 2u"});
   Buffer out(16, "out");
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.name());

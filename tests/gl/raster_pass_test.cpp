@@ -16,9 +16,11 @@ struct Drawn {
 Drawn read(const FaceImages& images) {
   const auto pixels = static_cast<std::size_t>(images.faces.width * images.faces.height * images.faces.count);
   Drawn out{std::vector<float>(pixels), std::vector<GLuint>(images.surface ? pixels : 0)};
-  glGetTextureImage(images.depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(pixels * 4), out.depth.data());
+  glGetTextureImage(images.depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(pixels * 4),
+                    out.depth.data());
   if (images.surface)
-    glGetTextureImage(images.surface.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, static_cast<GLsizei>(pixels * 4), out.surface.data());
+    glGetTextureImage(images.surface.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, static_cast<GLsizei>(pixels * 4),
+                      out.surface.data());
   return out;
 }
 
@@ -61,7 +63,8 @@ TEST_P(RasterAgainstRays, Agree) {
   EXPECT_LT(worst, 1e-4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, RasterAgainstRays, testing::ValuesIn(kLensKinds), [](const auto& i) { return std::string(i.param); });
+INSTANTIATE_TEST_SUITE_P(Lenses, RasterAgainstRays, testing::ValuesIn(kLensKinds),
+                         [](const auto& i) { return std::string(i.param); });
 
 TEST_F(RasterPassTest, DepthOnlyAndWithSurfaceAreTheSame) {
   const auto scene = small_scene();
@@ -98,8 +101,10 @@ TEST_F(RasterPassTest, PaintsOnlyItsTarget) {
   const RasterPass raster(std::make_shared<SceneBuffers>(*scene), true);
   raster(usual_view(), state_of(*scene), images);
   const Drawn other = read(beside);
-  EXPECT_EQ(std::count(other.depth.begin(), other.depth.end(), sentinel), static_cast<std::ptrdiff_t>(other.depth.size()));
-  EXPECT_EQ(std::count(other.surface.begin(), other.surface.end(), surface_sentinel), static_cast<std::ptrdiff_t>(other.surface.size()));
+  EXPECT_EQ(std::count(other.depth.begin(), other.depth.end(), sentinel),
+            static_cast<std::ptrdiff_t>(other.depth.size()));
+  EXPECT_EQ(std::count(other.surface.begin(), other.surface.end(), surface_sentinel),
+            static_cast<std::ptrdiff_t>(other.surface.size()));
   GLint framebuffer = -1;
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &framebuffer);
   EXPECT_EQ(framebuffer, 0);
@@ -115,7 +120,8 @@ TEST_F(RasterPassTest, ClearsWhatWasThere) {
   raster(look_at({0, 0, 1}, {0.1, 0, 2}), state_of(*scene), images);  // away from everything
   const Drawn drawn = read(images);
   EXPECT_EQ(std::count(drawn.depth.begin(), drawn.depth.end(), 0.0f), static_cast<std::ptrdiff_t>(drawn.depth.size()));
-  EXPECT_EQ(std::count(drawn.surface.begin(), drawn.surface.end(), 0u), static_cast<std::ptrdiff_t>(drawn.surface.size()));
+  EXPECT_EQ(std::count(drawn.surface.begin(), drawn.surface.end(), 0u),
+            static_cast<std::ptrdiff_t>(drawn.surface.size()));
 }
 
 }  // namespace

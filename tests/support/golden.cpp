@@ -6,7 +6,8 @@
 
 namespace foresight {
 
-testing::AssertionResult matches_golden(const cv::Mat& made, const std::string& name, const GoldenTolerance& tolerance) {
+testing::AssertionResult matches_golden(const cv::Mat& made, const std::string& name,
+                                        const GoldenTolerance& tolerance) {
   const std::filesystem::path file = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "tests/golden" / (name + ".png");
   const char* update = std::getenv("FORESIGHT_UPDATE_GOLDEN");
   if (update && std::string(update) == "1") {

@@ -11,9 +11,9 @@ namespace foresight {
 /// What may differ between renderers: rounding everywhere, and pixels at edges that fall on the
 /// other side of it.
 struct GoldenTolerance {
-  double mean = 0.5;          ///< mean absolute difference over all channels, of 255
-  int step = 6;               ///< a pixel differs when any channel is off by more than this
-  double share = 0.01;        ///< of pixels that may differ
+  double mean = 0.5;    ///< mean absolute difference over all channels, of 255
+  int step = 6;         ///< a pixel differs when any channel is off by more than this
+  double share = 0.01;  ///< of pixels that may differ
 };
 
 /// Compares with tests/golden/`name`.png (8 bit, 1, 3 or 4 channels). Where they disagree, what was

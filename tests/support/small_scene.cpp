@@ -29,10 +29,11 @@ std::shared_ptr<const SceneModel> small_scene() {
   board.rotate(Eigen::AngleAxisd(-1.2, Eigen::Vector3d::UnitY()));
   Pose box = at(0.05, 0.1, 0.15);
   box.rotate(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()));
-  return std::make_shared<SceneModel>(std::vector<Node>{{"table", rectangle(1.5, 1.1), -1, Pose::Identity()},
-                                                        {"box", make_box({0.25, 0.2, 0.3}), -1, box},
-                                                        {"block", make_box({0.15, 0.12, 0.1}), -1, at(-0.2, -0.25, 0.05)},
-                                                        {"board", rectangle(0.5, 0.7), -1, board}});
+  return std::make_shared<SceneModel>(
+      std::vector<Node>{{"table", rectangle(1.5, 1.1), -1, Pose::Identity()},
+                        {"box", make_box({0.25, 0.2, 0.3}), -1, box},
+                        {"block", make_box({0.15, 0.12, 0.1}), -1, at(-0.2, -0.25, 0.05)},
+                        {"board", rectangle(0.5, 0.7), -1, board}});
 }
 
 std::shared_ptr<const SceneModel> plane_scene(double x, double y) {
@@ -41,7 +42,8 @@ std::shared_ptr<const SceneModel> plane_scene(double x, double y) {
 
 SceneState state_of(const SceneModel& scene, double block_x) {
   SceneState state{RobotTime{1}, StateStatus::exact, scene.rest_poses()};
-  if (const auto block = scene.find("block")) state.T_world_node[static_cast<std::size_t>(*block)].translation().x() += block_x;
+  if (const auto block = scene.find("block"))
+    state.T_world_node[static_cast<std::size_t>(*block)].translation().x() += block_x;
   return state;
 }
 
@@ -54,7 +56,9 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
   return pose;
 }
 
-Pose usual_view() { return look_at({-1.0, -0.45, 0.8}, {0.02, 0, 0.1}); }
+Pose usual_view() {
+  return look_at({-1.0, -0.45, 0.8}, {0.02, 0, 0.1});
+}
 
 Lens small_lens(const std::string& kind) {
   Lens::Parameters p;
@@ -75,7 +79,8 @@ Lens small_lens(const std::string& kind) {
 }
 
 Eigen::Vector3d paint(int node, const Eigen::Vector3d& p) {
-  static const Eigen::Vector3d hues[] = {{0.30, 0.55, 0.30}, {0.15, 0.20, 0.70}, {0.75, 0.30, 0.15}, {0.50, 0.50, 0.52}};
+  static const Eigen::Vector3d hues[] = {
+      {0.30, 0.55, 0.30}, {0.15, 0.20, 0.70}, {0.75, 0.30, 0.15}, {0.50, 0.50, 0.52}};
   constexpr double kWave = 2 * M_PI / 0.2;
   const double wave = std::sin(kWave * p.x()) + std::sin(kWave * p.y() + 1) + std::sin(kWave * p.z() + 2);
   return hues[node % 4] * (1 + 0.1 * wave);
@@ -91,7 +96,8 @@ cv::Mat photograph(const SceneModel& scene, const SceneState& state, const Lens&
       if (!ray) continue;
       const auto hit = caster.cast(T_world_camera.translation(), T_world_camera.linear() * *ray, 0.01);
       if (!hit) continue;
-      const Eigen::Vector3d colour = gain * paint(hit->node, state.T_world_node[static_cast<std::size_t>(hit->node)].inverse() * hit->p_world);
+      const Eigen::Vector3d colour =
+          gain * paint(hit->node, state.T_world_node[static_cast<std::size_t>(hit->node)].inverse() * hit->p_world);
       for (int c = 0; c < 3; ++c) image.at<cv::Vec3b>(y, x)[c] = cv::saturate_cast<uchar>(255 * colour[c]);
     }
   return image;

@@ -51,7 +51,9 @@ class Atlas {
   std::int64_t image_ = 0;
 };
 
-Pose closer(double factor) { return look_at(Eigen::Vector3d(-1.0, -0.45, 0.8) * factor, {0.02, 0, 0.1}); }
+Pose closer(double factor) {
+  return look_at(Eigen::Vector3d(-1.0, -0.45, 0.8) * factor, {0.02, 0, 0.1});
+}
 
 TEST(ChartAtlas, GivesAboutOneTexelPerPixel) {
   Atlas atlas;
@@ -170,7 +172,8 @@ TEST(ChartAtlas, TheTableIsInTheOrderOfTheRecords) {
   for (const PageJob& job : allocation.jobs) {
     EXPECT_EQ(table[job.table_index], job.new_slot);
     const AtlasChart& chart = atlas->charts()[job.chart];
-    EXPECT_EQ(static_cast<int>(job.table_index), chart.first_page + static_cast<int>(job.xy >> 16) * chart.pages.x() + static_cast<int>(job.xy & 0xffff));
+    EXPECT_EQ(static_cast<int>(job.table_index),
+              chart.first_page + static_cast<int>(job.xy >> 16) * chart.pages.x() + static_cast<int>(job.xy & 0xffff));
   }
 }
 
@@ -183,7 +186,8 @@ TEST(ChartAtlas, TileRangesBoundTheHeights) {
       std::uint32_t low = 0xffff, high = 0;
       for (int y = y0 + 8 * (tile / 2); y < std::min(r.height, y0 + 8 * (tile / 2) + 8); ++y)
         for (int x = x0 + 8 * (tile % 2); x < std::min(r.width, x0 + 8 * (tile % 2) + 8); ++x)
-          if (const std::uint32_t raw = r.raw[static_cast<std::size_t>(y * r.width + x)] & 0x7fffu) low = std::min(low, raw), high = std::max(high, raw);
+          if (const std::uint32_t raw = r.raw[static_cast<std::size_t>(y * r.width + x)] & 0x7fffu)
+            low = std::min(low, raw), high = std::max(high, raw);
       ASSERT_EQ(record.tile_heights[static_cast<std::size_t>(tile)], high ? (low | high << 16) : 0u);
     }
   }
@@ -214,7 +218,8 @@ std::uint64_t charts_in_view(const Pose& T_world_camera) {
   Atlas atlas;
   atlas.take(T_world_camera);
   const auto& charts = atlas->charts();
-  return static_cast<std::uint64_t>(std::count_if(charts.begin(), charts.end(), [](const AtlasChart& c) { return c.in_view; }));
+  return static_cast<std::uint64_t>(
+      std::count_if(charts.begin(), charts.end(), [](const AtlasChart& c) { return c.in_view; }));
 }
 
 // What is in view does not fit: resolutions fall until it does; the budget holds at every moment.
@@ -239,7 +244,8 @@ TEST(ChartAtlas, ASmallBudgetLowersTheResolution) {
 
 TEST(ChartAtlas, TheLongestUnseenPagesGoFirst) {
   // Two halves of the table, one after the other, with room for little more than one of them.
-  const Pose left = look_at({-0.5, -0.3, 0.35}, {-0.45, -0.25, 0}), right = look_at({0.4, -0.4, 0.35}, {0.45, -0.35, 0});
+  const Pose left = look_at({-0.5, -0.3, 0.35}, {-0.45, -0.25, 0}),
+             right = look_at({0.4, -0.4, 0.35}, {0.45, -0.35, 0});
   Atlas measure;
   const std::size_t first = measure.take(left).jobs.size(), both = measure.take(right).jobs.size() + first;
   const std::uint64_t pages = first + (both - first) * 3 / 4 + both / 10;
@@ -300,7 +306,8 @@ TEST(ChartAtlas, ACopiedResolutionComesFromThePublishedOne) {
   ASSERT_TRUE(allocation.fits);
   EXPECT_GT(allocation.relevel.size(), 50u);
   for (const PageJob& job : allocation.jobs) {
-    const bool relevelled = std::any_of(allocation.relevel.begin(), allocation.relevel.end(), [&](const PageJob& r) { return r.new_slot == job.new_slot; });
+    const bool relevelled = std::any_of(allocation.relevel.begin(), allocation.relevel.end(),
+                                        [&](const PageJob& r) { return r.new_slot == job.new_slot; });
     EXPECT_EQ(relevelled, job.old_slot == job.new_slot) << "re-levelled pages are extended in place, others are copied";
   }
 }

@@ -8,7 +8,9 @@
 namespace foresight {
 namespace {
 
-bool is_core(std::uint16_t raw) { return (raw & ChartRaster::kCore) != 0; }
+bool is_core(std::uint16_t raw) {
+  return (raw & ChartRaster::kCore) != 0;
+}
 
 TEST(ChartRaster, HasTheSizeThatWasAnnounced) {
   const SurfacePatches surface = find_surface_patches(*small_scene(), {});
@@ -42,7 +44,8 @@ TEST(ChartRaster, MarksTheInsideAndSurroundsItWithGuards) {
         EXPECT_TRUE(is_core(raw)) << x << ", " << y;
       }
       // Every texel that bilinear filtering of an inner point may touch has a height.
-      const bool touched = (uv.array() > -1 / r.density.array()).all() && ((patch.size - uv).array() > -1 / r.density.array()).all();
+      const bool touched =
+          (uv.array() > -1 / r.density.array()).all() && ((patch.size - uv).array() > -1 / r.density.array()).all();
       if (touched) {
         EXPECT_NE(raw, 0) << x << ", " << y;
       }
@@ -66,7 +69,8 @@ TEST(ChartRaster, HeightsLieOnTheTriangles) {
         const std::uint16_t raw = r.raw[static_cast<std::size_t>(y * r.width + x)];
         if (!is_core(raw)) continue;
         const Eigen::Vector2d uv = r.uv0 + Eigen::Vector2d(x, y) / 150;
-        const Eigen::Vector3d p = patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + (r.height0 + ((raw & 0x7fff) - 1) * r.height_step) * patch.n;
+        const Eigen::Vector3d p = patch.origin + uv.x() * patch.eu + uv.y() * patch.ev +
+                                  (r.height0 + ((raw & 0x7fff) - 1) * r.height_step) * patch.n;
         // 32 facets around keep within 1 - cos(pi / 32) of the ball, 16 from pole to pole likewise.
         worst = std::max(worst, std::abs(p.norm() - 0.5));
         ++texels;
@@ -77,7 +81,8 @@ TEST(ChartRaster, HeightsLieOnTheTriangles) {
 }
 
 TEST(ChartRaster, TrianglesSmallerThanATexelAreNotLost) {
-  const SurfacePatches surface = find_surface_patches(SceneModel({{"ball", make_sphere(0.01), -1, Pose::Identity()}}), {});
+  const SurfacePatches surface =
+      find_surface_patches(SceneModel({{"ball", make_sphere(0.01), -1, Pose::Identity()}}), {});
   for (std::size_t i = 0; i < surface.charts.size(); ++i) {
     if (surface.charts[i].radius == 0) continue;
     const ChartRaster r = raster_chart(surface, static_cast<int>(i), {5, 5});

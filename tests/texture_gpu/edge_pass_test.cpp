@@ -45,9 +45,11 @@ TEST_P(EdgesOfLenses, BlocksHoldTheExtremesOfTheirPixels) {
         ++dropped;
         for (int k = 0; k < 16; ++k) {
           const int x = static_cast<int>(i) % columns * 4 + k % 4, y = static_cast<int>(i) / columns * 4 + k / 4;
-          const Eigen::Vector3d ray((x - camera.faces.cx) / camera.faces.fx, (y - camera.faces.cy) / camera.faces.fy, 1);
+          const Eigen::Vector3d ray((x - camera.faces.cx) / camera.faces.fx, (y - camera.faces.cy) / camera.faces.fy,
+                                    1);
           const auto pixel = camera.lens.project(gl::Faces::rotation(static_cast<int>(face)).transpose() * ray);
-          ASSERT_FALSE(pixel && pixel->x() > -0.5 && pixel->y() > -0.5 && pixel->x() < camera.lens.width() - 0.5 && pixel->y() < camera.lens.height() - 0.5);
+          ASSERT_FALSE(pixel && pixel->x() > -0.5 && pixel->y() > -0.5 && pixel->x() < camera.lens.width() - 0.5 &&
+                       pixel->y() < camera.lens.height() - 0.5);
         }
       } else if (e.largest > 0) {
         ASSERT_NEAR(std::abs(blocks[at].x()), e.least, 1e-6 * e.least);
@@ -65,7 +67,8 @@ TEST_P(EdgesOfLenses, UncertainPixelsAreThoseOfTheExactTest) {
   const reference::Camera camera = look(small_scene(), small_lens(GetParam()), usual_view());
   int wanted = 0, lost = 0, invented = 0, borderline = 0, all = 0;
   for (std::size_t face = 0; face < camera.depth.size(); ++face) {
-    const auto expected = reference::uncertain_edges(camera.depth[face], bench_->options.margin_px, bench_->options.depth_tolerance);
+    const auto expected =
+        reference::uncertain_edges(camera.depth[face], bench_->options.margin_px, bench_->options.depth_tolerance);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       ++all;
       wanted += expected[i] == Answer::yes;
@@ -86,11 +89,13 @@ TEST_P(EdgesOfLenses, UncertainPixelsAreThoseOfTheExactTest) {
   EXPECT_EQ(invented, 0) << "of " << wanted;
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, EdgesOfLenses, testing::ValuesIn(kLensKinds), [](const auto& i) { return std::string(i.param); });
+INSTANTIATE_TEST_SUITE_P(Lenses, EdgesOfLenses, testing::ValuesIn(kLensKinds),
+                         [](const auto& i) { return std::string(i.param); });
 
 TEST_F(EdgePassTest, MarginsOfAllSizesAgreeWithTheExactTest) {
   for (double margin : {0.0, 0.5, 1.0, 2.0, 4.5, 9.0}) {
-    const reference::Camera camera = look(small_scene(), small_lens("pinhole"), usual_view(), {.memory_bytes = kMemory, .margin_px = margin});
+    const reference::Camera camera =
+        look(small_scene(), small_lens("pinhole"), usual_view(), {.memory_bytes = kMemory, .margin_px = margin});
     const auto expected = reference::uncertain_edges(camera.depth[0], margin, 0.02);
     int wrong = 0, found = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -126,7 +131,9 @@ TEST_F(EdgePassTest, TheNearSideOfAnEdgeIsCertain) {
   const reference::Camera camera = look(scene, small_lens("pinhole"), usual_view());
   const reference::RayCaster caster(*scene, state_of(*scene));
   const auto picture = reference::draw_face(camera.faces, 0, usual_view(), caster);
-  const auto on_box = [&](std::size_t i) { return picture.surface[i] >= 3 && picture.surface[i] < 15; };  // after the table's two triangles
+  const auto on_box = [&](std::size_t i) {
+    return picture.surface[i] >= 3 && picture.surface[i] < 15;
+  };  // after the table's two triangles
   int near_side = 0, far_side = 0;
   for (int y = 5; y < picture.height - 5; ++y)
     for (int x = 5; x < picture.width - 5; ++x) {

@@ -12,9 +12,9 @@ namespace {
 class Drift {
  public:
   struct Options {
-    double a = 0, b = 0;       ///< true vignetting, log
-    double noise = 0.005;      ///< of the log brightness
-    double outliers = 0;       ///< share of pages whose brightness is anything
+    double a = 0, b = 0;   ///< true vignetting, log
+    double noise = 0.005;  ///< of the log brightness
+    double outliers = 0;   ///< share of pages whose brightness is anything
     bool moving = true;
     int pages = 300;
   };

@@ -52,9 +52,11 @@ class ExtractTest : public HeadlessTest {
       const AtlasChart& chart = b.atlas.charts()[job.chart];
       const Patch& patch = b.patch_of(job.chart);
       for (int k = 0; k < 256; ++k) {
-        const int px = k % 16, py = k / 16, x = 16 * static_cast<int>(job.xy & 0xffff) + px, y = 16 * static_cast<int>(job.xy >> 16) + py;
+        const int px = k % 16, py = k / 16, x = 16 * static_cast<int>(job.xy & 0xffff) + px,
+                  y = 16 * static_cast<int>(job.xy >> 16) + py;
         const reference::Texel got = after.at(job.new_slot, 0, px, py);
-        const reference::Texel old = job.old_slot == atlas::kNoSlot ? reference::Texel{} : before.at(job.old_slot, 0, px, py);
+        const reference::Texel old =
+            job.old_slot == atlas::kNoSlot ? reference::Texel{} : before.at(job.old_slot, 0, px, py);
         if (!PassBench::raw_height(chart, x, y)) {
           out.wrong += got[3] > 1;  // at most filled
           continue;
@@ -69,7 +71,9 @@ class ExtractTest : public HeadlessTest {
           const Answer seen = reference::is_seen(cameras[c], T * p_node, b.options.depth_tolerance, pixel);
           borderline |= seen == Answer::borderline;
           if (seen != Answer::yes) continue;
-          const Eigen::Matrix2d axes = reference::footprint(cameras[c], T * p_node, T.linear() * patch.eu / chart.raster.density.x(), T.linear() * patch.ev / chart.raster.density.y());
+          const Eigen::Matrix2d axes =
+              reference::footprint(cameras[c], T * p_node, T.linear() * patch.eu / chart.raster.density.x(),
+                                   T.linear() * patch.ev / chart.raster.density.y());
           const double quality = std::sqrt(std::abs(axes.determinant()));
           borderline |= std::abs(quality - best) < 0.01 * quality;
           if (quality <= best) continue;
@@ -105,7 +109,9 @@ class ExtractTest : public HeadlessTest {
   }
 
   Agreement compare(const std::vector<PosedImage>& images) {
-    return compare(images, false, [](const cv::Mat& image, const Eigen::Vector2d& pixel, const Eigen::Matrix2d&) { return reference::catmull_rom(image, pixel); });
+    return compare(images, false, [](const cv::Mat& image, const Eigen::Vector2d& pixel, const Eigen::Matrix2d&) {
+      return reference::catmull_rom(image, pixel);
+    });
   }
 
   std::vector<Lens> lenses_;
@@ -136,7 +142,8 @@ TEST_P(ExtractOfLenses, EveryTexelIsThatOfTheReference) {
   expect_agreement(second);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, ExtractOfLenses, testing::ValuesIn(kLensKinds), [](const auto& i) { return std::string(i.param); });
+INSTANTIATE_TEST_SUITE_P(Lenses, ExtractOfLenses, testing::ValuesIn(kLensKinds),
+                         [](const auto& i) { return std::string(i.param); });
 
 TEST_F(ExtractTest, OfTwoCamerasTheSharperOneWins) {
   make({"pinhole", "plumb_bob"});
@@ -175,7 +182,9 @@ TEST_F(ExtractTest, TexelsLargerThanPixelsAreMeans) {
   cv::theRNG().state = 9;
   cv::randu(noise, 0, 120);
   images[0].pixels += noise;
-  const auto mean = [](const cv::Mat& image, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& axes) { return reference::mean_over(image, pixel, axes); };
+  const auto mean = [](const cv::Mat& image, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& axes) {
+    return reference::mean_over(image, pixel, axes);
+  };
   const Agreement a = compare(images, true, mean);
   EXPECT_GT(a.seen, 1000);
   EXPECT_EQ(a.wrong, 0);
@@ -204,8 +213,10 @@ TEST_F(ExtractTest, TheToneIsTakenOut) {
     for (int k = 0; k < 256; k += 7) {
       const reference::Texel got = pixels.at(job.new_slot, 0, k % 16, k / 16);
       if (got[3] < 2) continue;
-      const Eigen::Vector3d p = bench_->texel_point(chart, patch, 16 * static_cast<int>(job.xy & 0xffff) + k % 16, 16 * static_cast<int>(job.xy >> 16) + k / 16);
-      const Eigen::Vector2d pixel = *camera.lens.project(camera.T_camera_node[static_cast<std::size_t>(patch.node)] * p);
+      const Eigen::Vector3d p = bench_->texel_point(chart, patch, 16 * static_cast<int>(job.xy & 0xffff) + k % 16,
+                                                    16 * static_cast<int>(job.xy >> 16) + k / 16);
+      const Eigen::Vector2d pixel =
+          *camera.lens.project(camera.T_camera_node[static_cast<std::size_t>(patch.node)] * p);
       const double r2 = (pixel - Eigen::Vector2d(79.5, 59.5)).squaredNorm() / Eigen::Vector2d(79.5, 59.5).squaredNorm();
       ASSERT_NEAR(got[1], 100 * 0.8 * std::exp(r2 * (0.3 + 0.1 * r2)), 1.5);
       ++compared;
@@ -233,7 +244,10 @@ TEST_F(ExtractTest, ANewResolutionStartsFromTheOldColours) {
     const Eigen::Vector2d ratio = chart.density.cwiseQuotient(fresh.raster.density);
     if (ratio.minCoeff() > 1.4) continue;  // from a coarser level; the others are plenty
     for (int k = 0; k < 256; ++k) {
-      const Eigen::Vector2d uv = fresh.raster.uv0 + Eigen::Vector2d(16 * (job.xy & 0xffff) + static_cast<unsigned>(k % 16), 16 * (job.xy >> 16) + static_cast<unsigned>(k / 16)).cwiseQuotient(fresh.raster.density);
+      const Eigen::Vector2d uv =
+          fresh.raster.uv0 + Eigen::Vector2d(16 * (job.xy & 0xffff) + static_cast<unsigned>(k % 16),
+                                             16 * (job.xy >> 16) + static_cast<unsigned>(k / 16))
+                                 .cwiseQuotient(fresh.raster.density);
       const Eigen::Vector2d texel = (uv - chart.uv0).cwiseProduct(chart.density);
       const Eigen::Vector2d base = texel.array().floor(), f = texel - base;
       Eigen::Vector4d sum(0, 0, 0, 0);
@@ -241,7 +255,8 @@ TEST_F(ExtractTest, ANewResolutionStartsFromTheOldColours) {
       for (int i = 0; i < 4; ++i) {
         const Eigen::Array2i t = base.cast<int>().array() + Eigen::Array2i(i & 1, i >> 1), page = t / 16;
         if ((t < 0).any() || (page >= chart.pages.array()).any()) continue;
-        const std::uint32_t slot = old.table[static_cast<std::size_t>(chart.first_page + page.y() * chart.pages.x() + page.x())];
+        const std::uint32_t slot =
+            old.table[static_cast<std::size_t>(chart.first_page + page.y() * chart.pages.x() + page.x())];
         if (slot == atlas::kNoSlot) continue;
         const reference::Texel c = before.at(slot, 0, t.x() % 16, t.y() % 16);
         const double w = (i & 1 ? f.x() : 1 - f.x()) * (i >> 1 ? f.y() : 1 - f.y());
@@ -280,7 +295,8 @@ TEST_F(ExtractTest, GuardTexelsTakeNoColourFromTheBackground) {
     if (patch.node != kBox) continue;
     const AtlasChart& chart = bench_->atlas.charts()[job.chart];
     for (int k = 0; k < 256; ++k) {
-      const std::uint16_t raw = PassBench::raw_height(chart, 16 * static_cast<int>(job.xy & 0xffff) + k % 16, 16 * static_cast<int>(job.xy >> 16) + k / 16);
+      const std::uint16_t raw = PassBench::raw_height(chart, 16 * static_cast<int>(job.xy & 0xffff) + k % 16,
+                                                      16 * static_cast<int>(job.xy >> 16) + k / 16);
       const reference::Texel got = pixels.at(job.new_slot, 0, k % 16, k / 16);
       if (!raw || got[3] < 2) {
         guards += raw && !(raw & ChartRaster::kCore);
@@ -316,13 +332,16 @@ TEST_F(ExtractTest, AnOccluderLeavesNothingBehindItself) {
       if (patch.node != kTable && patch.node != kBoard) continue;
       const AtlasChart& chart = bench_->atlas.charts()[job.chart];
       const SceneState state = state_of(*bench_->scene);
-      const Pose T_box_node = state.T_world_node[kBox].inverse() * state.T_world_node[static_cast<std::size_t>(patch.node)];
+      const Pose T_box_node =
+          state.T_world_node[kBox].inverse() * state.T_world_node[static_cast<std::size_t>(patch.node)];
       for (int k = 0; k < 256; ++k) {
         const reference::Texel got = pixels.at(job.new_slot, 0, k % 16, k / 16);
         if (got[3] < 2) continue;
         // Where the box stands on the table, nearer than the depth's tolerance and the margin's
         // few pixels of 7 mm, no depth tells them apart.
-        const Eigen::Vector3d p_box = T_box_node * bench_->texel_point(chart, patch, 16 * static_cast<int>(job.xy & 0xffff) + k % 16, 16 * static_cast<int>(job.xy >> 16) + k / 16);
+        const Eigen::Vector3d p_box =
+            T_box_node * bench_->texel_point(chart, patch, 16 * static_cast<int>(job.xy & 0xffff) + k % 16,
+                                             16 * static_cast<int>(job.xy >> 16) + k / 16);
         if ((p_box.cwiseAbs() - Eigen::Vector3d(0.125, 0.1, 0.15)).maxCoeff() < 0.05) continue;
         ++table;
         red += got[0] > 40 && got[0] > 1.5 * got[1];

@@ -4,9 +4,10 @@
 
 namespace foresight {
 
-PassBench::PassBench(std::shared_ptr<const SceneModel> model, const std::vector<Lens>& lenses, TextureOptions o)
+PassBench::PassBench(std::shared_ptr<const SceneModel> model, const std::vector<Lens>& lenses, TextureOptions o,
+                     const PatchOptions& patches)
     : scene(std::move(model)),
-      surface(std::make_shared<SurfacePatches>(find_surface_patches(*scene, {}))),
+      surface(std::make_shared<SurfacePatches>(find_surface_patches(*scene, patches))),
       options(o),
       atlas(surface, options),
       store(atlas),
@@ -43,7 +44,8 @@ void PassBench::look(const std::vector<PosedImage>& taken, const std::vector<Eig
     raster(images[i].T_world_camera, images[i].scene, cameras[i]->faces());
     edges(*cameras[i], options.margin_px, options.depth_tolerance);
     AtlasView view{&cameras[i]->lens(), &cameras[i]->faces().faces, {}};
-    for (const Pose& T : images[i].scene.T_world_node) view.T_camera_node.push_back(images[i].T_world_camera.inverse() * T);
+    for (const Pose& T : images[i].scene.T_world_node)
+      view.T_camera_node.push_back(images[i].T_world_camera.inverse() * T);
     views.push_back(std::move(view));
     active.push_back(cameras[i].get());
     pointers.push_back(&images[i]);
@@ -79,7 +81,8 @@ void PassBench::relevel() {
 void PassBench::extract(bool minify) {
   std::vector<Eigen::Vector4f> geometry;
   atlas.write_job_geometry(allocation.jobs, views, geometry);
-  extraction.extract({allocation.jobs, allocation.masks, geometry, minify}, inputs, store, options.depth_tolerance, options.worse);
+  extraction.extract({allocation.jobs, allocation.masks, geometry, minify}, inputs, store, options.depth_tolerance,
+                     options.worse);
 }
 
 void PassBench::fill() {
@@ -114,15 +117,18 @@ reference::Camera PassBench::camera(std::size_t i) const {
   const auto face_pixels = static_cast<std::size_t>(faces.width * faces.height);
   std::vector<float> depth(face_pixels * static_cast<std::size_t>(faces.count));
   std::vector<std::uint8_t> uncertain(depth.size());
-  glGetTextureImage(input.faces().depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(depth.size() * 4), depth.data());
-  glGetTextureImage(input.uncertain().name(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(uncertain.size()), uncertain.data());
+  glGetTextureImage(input.faces().depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(depth.size() * 4),
+                    depth.data());
+  glGetTextureImage(input.uncertain().name(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(uncertain.size()),
+                    uncertain.data());
   reference::Camera out{input.lens(), faces, views[i].T_camera_node, {}, {}, images[i].pixels};
   for (std::size_t face = 0; face < static_cast<std::size_t>(faces.count); ++face) {
     const std::size_t from = face * face_pixels;
     reference::FacePicture picture{faces.width, faces.height, {}, {}};
     for (std::size_t k = from; k < from + face_pixels; ++k) picture.inverse_z.push_back(depth[k] / gl::kNearPlane);
     out.depth.push_back(std::move(picture));
-    out.uncertain.emplace_back(uncertain.begin() + static_cast<std::ptrdiff_t>(from), uncertain.begin() + static_cast<std::ptrdiff_t>(from + face_pixels));
+    out.uncertain.emplace_back(uncertain.begin() + static_cast<std::ptrdiff_t>(from),
+                               uncertain.begin() + static_cast<std::ptrdiff_t>(from + face_pixels));
   }
   return out;
 }
@@ -143,7 +149,9 @@ Eigen::Vector3d PassBench::texel_point(const AtlasChart& chart, const Patch& pat
 
 std::uint16_t PassBench::raw_height(const AtlasChart& chart, int x, int y) {
   const ChartRaster& r = chart.raster;
-  return x < r.width && y < r.height ? r.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)] : std::uint16_t{0};
+  return x < r.width && y < r.height
+             ? r.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)]
+             : std::uint16_t{0};
 }
 
 }  // namespace foresight

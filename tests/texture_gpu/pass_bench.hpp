@@ -13,7 +13,8 @@ namespace foresight {
 
 class PassBench {
  public:
-  PassBench(std::shared_ptr<const SceneModel> scene, const std::vector<Lens>& lenses, TextureOptions options);
+  PassBench(std::shared_ptr<const SceneModel> scene, const std::vector<Lens>& lenses, TextureOptions options,
+            const PatchOptions& patches = {});
 
   /// Upload, depth and edges of one image per lens.
   void look(const std::vector<PosedImage>& images, const std::vector<Eigen::Vector3f>& tones = {});
@@ -40,7 +41,9 @@ class PassBench {
 
   /// Place of a chart's texel in the frame of its node.
   Eigen::Vector3d texel_point(const AtlasChart& chart, const Patch& patch, int x, int y) const;
-  const Patch& patch_of(std::uint32_t chart) const { return surface->patches[static_cast<std::size_t>(surface->charts[chart].patch)]; }
+  const Patch& patch_of(std::uint32_t chart) const {
+    return surface->patches[static_cast<std::size_t>(surface->charts[chart].patch)];
+  }
   static std::uint16_t raw_height(const AtlasChart& chart, int x, int y);
 
   std::shared_ptr<const SceneModel> scene;

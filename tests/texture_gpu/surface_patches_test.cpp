@@ -6,13 +6,15 @@
 #include <random>
 
 #include "scene/primitives.hpp"
-#include "texture_gpu/chart_raster.hpp"
 #include "tests/support/small_scene.hpp"
+#include "texture_gpu/chart_raster.hpp"
 
 namespace foresight {
 namespace {
 
-SceneModel one_node(Mesh mesh) { return SceneModel({{"node", std::move(mesh), -1, Pose::Identity()}}); }
+SceneModel one_node(Mesh mesh) {
+  return SceneModel({{"node", std::move(mesh), -1, Pose::Identity()}});
+}
 
 /// A ramp that winds `turns` times around z and rises `rise` metres a turn: seen from above it hides itself.
 Mesh spiral_ramp(double turns, double rise) {
@@ -111,7 +113,8 @@ TEST(SurfacePatches, PointsComeBackFromTheirPlaceAndHeight) {
     constexpr double kDensity = 250;  // texels per metre
     std::vector<ChartRaster> rasters;
     for (std::size_t i = 0; i < surface.charts.size(); ++i)
-      rasters.push_back(surface.charts[i].radius > 0 ? raster_chart(surface, static_cast<int>(i), {kDensity, kDensity}) : ChartRaster{});
+      rasters.push_back(surface.charts[i].radius > 0 ? raster_chart(surface, static_cast<int>(i), {kDensity, kDensity})
+                                                     : ChartRaster{});
     int beyond = 0, points = 0;
     for (std::size_t t = 0; t < surface.corners.size(); ++t) {
       const Patch& patch = surface.patches[static_cast<std::size_t>(surface.patch_of_triangle[t])];
@@ -122,8 +125,10 @@ TEST(SurfacePatches, PointsComeBackFromTheirPlaceAndHeight) {
         if (a + b > 1) a = 1 - a, b = 1 - b;
         const Eigen::Vector3d p = c[0] + a * (c[1] - c[0]) + b * (c[2] - c[0]);
         const Eigen::Vector2d uv((p - patch.origin).dot(patch.eu), (p - patch.origin).dot(patch.ev));
-        const Eigen::Array2i cell = (uv.array() / patch.cell_size().array()).floor().cast<int>().max(0).min(patch.cells.array() - 1);
-        const ChartRaster& r = rasters[static_cast<std::size_t>(patch.first_chart + cell.y() * patch.cells.x() + cell.x())];
+        const Eigen::Array2i cell =
+            (uv.array() / patch.cell_size().array()).floor().cast<int>().max(0).min(patch.cells.array() - 1);
+        const ChartRaster& r =
+            rasters[static_cast<std::size_t>(patch.first_chart + cell.y() * patch.cells.x() + cell.x())];
         ASSERT_GT(r.width, 0) << name << ": a point lies over an empty cell";
         const Eigen::Array2i texel = ((uv - r.uv0) * kDensity).array().round().cast<int>();
         ASSERT_TRUE((texel >= 0).all() && texel.x() < r.width && texel.y() < r.height) << name;
@@ -159,7 +164,8 @@ TEST(SurfacePatches, NoPatchHidesItself) {
         const bool inside = (d[1] - d[0]).cross(q - d[0]).dot(n) > 0 && (d[2] - d[1]).cross(q - d[1]).dot(n) > 0 &&
                             (d[0] - d[2]).cross(q - d[2]).dot(n) > 0;
         // Slivers within a hundredth of the patch's size are let pass by the overlap test.
-        EXPECT_FALSE(inside && std::abs(lambda) > patch.size.norm() / 100 + 1e-9) << name << ": triangles " << t << " and " << s;
+        EXPECT_FALSE(inside && std::abs(lambda) > patch.size.norm() / 100 + 1e-9)
+            << name << ": triangles " << t << " and " << s;
       }
     }
   }

@@ -13,7 +13,8 @@ class SurveyOfLenses : public HeadlessTest, public testing::WithParamInterface<c
  protected:
   void look(const Pose& T_world_camera, double gain = 1) {
     const Lens lens = small_lens(GetParam());
-    if (!bench_) bench_ = std::make_unique<PassBench>(small_scene(), std::vector{lens}, TextureOptions{.memory_bytes = 6 << 20});
+    if (!bench_)
+      bench_ = std::make_unique<PassBench>(small_scene(), std::vector{lens}, TextureOptions{.memory_bytes = 6 << 20});
     bench_->look({posed_photograph(*bench_->scene, state_of(*bench_->scene), lens, T_world_camera, gain)});
   }
   std::unique_ptr<PassBench> bench_;
@@ -21,7 +22,8 @@ class SurveyOfLenses : public HeadlessTest, public testing::WithParamInterface<c
 
 TEST_P(SurveyOfLenses, NoTileWithASeenTexelIsCulled) {
   int seen_tiles = 0, kept = 0, tiles = 0;
-  for (const Pose& T_world_camera : {usual_view(), look_at({0.5, -0.6, 0.25}, {0, 0, 0.1}), look_at({-0.25, -0.1, 0.2}, {0.05, 0.1, 0.1})}) {
+  for (const Pose& T_world_camera :
+       {usual_view(), look_at({0.5, -0.6, 0.25}, {0, 0, 0.1}), look_at({-0.25, -0.1, 0.2}, {0.05, 0.1, 0.1})}) {
     look(T_world_camera);
     const reference::Camera camera = bench_->camera(0);
     const auto masks = bench_->cull();
@@ -37,7 +39,8 @@ TEST_P(SurveyOfLenses, NoTileWithASeenTexelIsCulled) {
           const int y = 16 * static_cast<int>(record.xy >> 16) + 8 * (tile >> 1) + k / 8;
           if (!PassBench::raw_height(chart, x, y)) continue;
           Eigen::Vector2d pixel;
-          seen = reference::is_seen(camera, T * bench_->texel_point(chart, patch, x, y), bench_->options.depth_tolerance, pixel) == Answer::yes;
+          seen = reference::is_seen(camera, T * bench_->texel_point(chart, patch, x, y),
+                                    bench_->options.depth_tolerance, pixel) == Answer::yes;
         }
         const bool bit = (masks[i] >> (2 * tile) & 1) != 0;
         ++tiles;
@@ -68,7 +71,8 @@ TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {
   look(close, 0.8);
   bench_->cull();
   const reference::Camera camera = bench_->camera(0);
-  const auto samples = bench_->survey.brightness(bench_->inputs, bench_->next->charts, bench_->store, 0, bench_->options.depth_tolerance, 0, 1);
+  const auto samples = bench_->survey.brightness(bench_->inputs, bench_->next->charts, bench_->store, 0,
+                                                 bench_->options.depth_tolerance, 0, 1);
   ASSERT_EQ(samples.size(), bench_->records.size());
   int compared = 0, unseen = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -79,10 +83,13 @@ TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {
     Eigen::Vector2d center(0, 0);
     int count = 0, borderline = 0;
     for (int k = 0; k < 16 && record.height_slot != atlas::kNoSlot; ++k) {
-      const int x = 16 * static_cast<int>(record.xy & 0xffff) + 4 * (k & 3) + 2, y = 16 * static_cast<int>(record.xy >> 16) + 4 * (k >> 2) + 2;
+      const int x = 16 * static_cast<int>(record.xy & 0xffff) + 4 * (k & 3) + 2,
+                y = 16 * static_cast<int>(record.xy >> 16) + 4 * (k >> 2) + 2;
       if (!PassBench::raw_height(chart, x, y)) continue;
       Eigen::Vector2d pixel;
-      const Answer seen = reference::is_seen(camera, camera.T_camera_node[static_cast<std::size_t>(patch.node)] * bench_->texel_point(chart, patch, x, y), bench_->options.depth_tolerance, pixel);
+      const Answer seen = reference::is_seen(
+          camera, camera.T_camera_node[static_cast<std::size_t>(patch.node)] * bench_->texel_point(chart, patch, x, y),
+          bench_->options.depth_tolerance, pixel);
       borderline += seen == Answer::borderline;
       if (seen != Answer::yes) continue;
       // One bilinear sample.
@@ -109,12 +116,14 @@ TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {
   EXPECT_GT(compared, 10);
   EXPECT_GT(unseen, 20);
   // Every third page, from the second on.
-  const auto some = bench_->survey.brightness(bench_->inputs, bench_->next->charts, bench_->store, 0, bench_->options.depth_tolerance, 1, 3);
+  const auto some = bench_->survey.brightness(bench_->inputs, bench_->next->charts, bench_->store, 0,
+                                              bench_->options.depth_tolerance, 1, 3);
   ASSERT_EQ(some.size(), (samples.size() + 1) / 3);
   for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].brightness, samples[1 + 3 * i].brightness);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, SurveyOfLenses, testing::ValuesIn(kLensKinds), [](const auto& i) { return std::string(i.param); });
+INSTANTIATE_TEST_SUITE_P(Lenses, SurveyOfLenses, testing::ValuesIn(kLensKinds),
+                         [](const auto& i) { return std::string(i.param); });
 
 }  // namespace
 }  // namespace foresight

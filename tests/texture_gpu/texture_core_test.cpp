@@ -25,18 +25,22 @@ class TextureCoreTest : public HeadlessTest {
     return {posed_photograph(*scene_, state_of(*scene_, block_x), lens_, T_world_camera, gain), std::nullopt};
   }
   ExtractionReport process(const PosedFrame& frame) { return core_->process(frame, *latest_); }
-  reference::Generation generation(const PublishedTextures& textures) const { return {textures, surface_->charts.size()}; }
+  reference::Generation generation(const PublishedTextures& textures) const {
+    return {textures, surface_->charts.size()};
+  }
 
   static Pose orbit(int i) { return look_at({-1.0 + 0.06 * i, -0.45 - 0.03 * i, 0.8 - 0.02 * i}, {0.02, 0, 0.1}); }
 
   /// Level-0 texels of the pages of one node, in the order of its charts (nothing for pages without a slot).
-  std::vector<reference::Texel> texels_of(int node, const reference::Generation& g, const reference::AtlasPixels& pixels) const {
+  std::vector<reference::Texel> texels_of(int node, const reference::Generation& g,
+                                          const reference::AtlasPixels& pixels) const {
     std::vector<reference::Texel> out;
     for (const reference::ChartCopy& chart : g.charts) {
       if (chart.node != node || chart.density.x() <= 0) continue;
       for (int page = 0; page < chart.pages.prod(); ++page) {
         const std::uint32_t slot = g.table[static_cast<std::size_t>(chart.first_page + page)];
-        for (int k = 0; k < 256; ++k) out.push_back(slot == atlas::kNoSlot ? reference::Texel{} : pixels.at(slot, 0, k % 16, k / 16));
+        for (int k = 0; k < 256; ++k)
+          out.push_back(slot == atlas::kNoSlot ? reference::Texel{} : pixels.at(slot, 0, k % 16, k / 16));
       }
     }
     return out;
@@ -56,7 +60,8 @@ class TextureCoreTest : public HeadlessTest {
       for (int y = 0; y < raster.height; ++y)
         for (int x = 0; x < raster.width; ++x) {
           const std::uint16_t raw = raster.raw[static_cast<std::size_t>(y * raster.width + x)];
-          const std::uint32_t slot = g.table[static_cast<std::size_t>(chart.first_page + y / 16 * chart.pages.x() + x / 16)];
+          const std::uint32_t slot =
+              g.table[static_cast<std::size_t>(chart.first_page + y / 16 * chart.pages.x() + x / 16)];
           if (!(raw & ChartRaster::kCore) || slot == atlas::kNoSlot) continue;
           const reference::Texel t = pixels.at(slot, 0, x % 16, y % 16);
           if (t[3] < 2) continue;
@@ -96,7 +101,8 @@ TEST_F(TextureCoreTest, ReportsWhatItDid) {
     EXPECT_GE(cost.cpu_ms, 0);
     EXPECT_EQ(cost.gpu_ms.has_value(), !driver_.is_software) << "a software renderer has no GPU time";
   }
-  EXPECT_THAT(stages, testing::ElementsAre("upload", "depth", "edges", "plan", "exposure", "prepare", "extract", "fill", "publish"));
+  EXPECT_THAT(stages, testing::ElementsAre("upload", "depth", "edges", "plan", "exposure", "prepare", "extract", "fill",
+                                           "publish"));
   const TextureLease lease = latest_->acquire();
   EXPECT_EQ(lease->number, 1u);
   EXPECT_EQ(lease->newest_image.ns, 42);
@@ -131,7 +137,8 @@ TEST_F(TextureCoreTest, ALeasedGenerationNeverChanges) {
     for (std::uint32_t slot : g.table) {
       if (slot == atlas::kNoSlot) continue;
       for (int level = 0; level < atlas::kLevels; ++level)
-        for (int k = 0; k < (256 >> 2 * level); ++k) texels.push_back(pixels.at(slot, level, k % (16 >> level), k / (16 >> level)));
+        for (int k = 0; k < (256 >> 2 * level); ++k)
+          texels.push_back(pixels.at(slot, level, k % (16 >> level), k / (16 >> level)));
     }
     return std::tuple(g.table, g.coarse, g.means, texels);
   };
@@ -140,7 +147,9 @@ TEST_F(TextureCoreTest, ALeasedGenerationNeverChanges) {
   ASSERT_GT(std::get<3>(before).size(), 20000u);
   for (int i = 1; i <= 8; ++i) {
     // Nearer and nearer: charts change their resolution and pages their slots.
-    ASSERT_TRUE(process(frame(look_at(Eigen::Vector3d(-1.0, -0.45, 0.8) * (1 - 0.07 * i), {0.02, 0, 0.1}), 0.02 * i, 1 - 0.05 * i)).published);
+    ASSERT_TRUE(process(frame(look_at(Eigen::Vector3d(-1.0, -0.45, 0.8) * (1 - 0.07 * i), {0.02, 0, 0.1}), 0.02 * i,
+                              1 - 0.05 * i))
+                    .published);
     ASSERT_EQ(snapshot(*held), before) << "after " << i << " images";
   }
   EXPECT_EQ(latest_->acquire()->number, 9u);
@@ -170,7 +179,9 @@ TEST_F(TextureCoreTest, IdenticalRunsGiveIdenticalTextures) {
       const auto texels = texels_of(node, g, pixels);
       all.insert(all.end(), texels.begin(), texels.end());
     }
-    for (std::uint32_t v : g.coarse) all.push_back({static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(v >> 8), static_cast<std::uint8_t>(v >> 16), static_cast<std::uint8_t>(v >> 24)});
+    for (std::uint32_t v : g.coarse)
+      all.push_back({static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(v >> 8),
+                     static_cast<std::uint8_t>(v >> 16), static_cast<std::uint8_t>(v >> 24)});
     runs.push_back(std::move(all));
   }
   EXPECT_GT(runs[0].size(), 20000u);
@@ -212,7 +223,8 @@ TEST_F(TextureCoreTest, AnAbsurdBudgetFailsWithACure) {
     process(frame(orbit(0)));
     FAIL() << "accepted";
   } catch (const RuntimeFailure& failure) {
-    EXPECT_THAT(failure.what(), testing::AllOf(testing::HasSubstr("out of texture memory"), testing::HasSubstr("--texture-memory-mb")));
+    EXPECT_THAT(failure.what(),
+                testing::AllOf(testing::HasSubstr("out of texture memory"), testing::HasSubstr("--texture-memory-mb")));
   }
 }
 
@@ -263,11 +275,14 @@ TEST_F(TextureCoreTest, MatchesTheGoldenAtlas) {
     const auto texels = texels_of(node, g, pixels);
     int place = 0;
     for (std::size_t page = 0; page < texels.size() / 256 && place < 2 * kColumns; ++page) {
-      const auto seen = std::count_if(texels.begin() + static_cast<std::ptrdiff_t>(256 * page), texels.begin() + static_cast<std::ptrdiff_t>(256 * page + 256), [](const auto& t) { return t[3] >= 2; });
+      const auto seen = std::count_if(texels.begin() + static_cast<std::ptrdiff_t>(256 * page),
+                                      texels.begin() + static_cast<std::ptrdiff_t>(256 * page + 256),
+                                      [](const auto& t) { return t[3] >= 2; });
       if (seen < 60) continue;
       for (int k = 0; k < 256; ++k) {
         const reference::Texel& t = texels[256 * page + static_cast<std::size_t>(k)];
-        picture.at<cv::Vec3b>(32 * node + 16 * (place / kColumns) + k / 16, 16 * (place % kColumns) + k % 16) = {t[2], t[1], t[0]};
+        picture.at<cv::Vec3b>(32 * node + 16 * (place / kColumns) + k / 16, 16 * (place % kColumns) + k % 16) = {
+            t[2], t[1], t[0]};
       }
       ++place;
     }

@@ -13,7 +13,9 @@ namespace {
 class TextureThreadTest : public HeadlessTest {
  protected:
   std::unique_ptr<TextureThread> start(std::uint64_t memory_bytes = 6 << 20) {
-    return std::make_unique<TextureThread>(context_->create_shared(), TextureThread::Setup{scene_, surface_, lens_, std::nullopt, {.memory_bytes = memory_bytes}});
+    return std::make_unique<TextureThread>(
+        context_->create_shared(),
+        TextureThread::Setup{scene_, surface_, lens_, std::nullopt, {.memory_bytes = memory_bytes}});
   }
   PosedFrame frame(std::int64_t ns) const {
     PosedFrame out = picture_;
@@ -76,8 +78,11 @@ TEST_F(TextureThreadTest, ErrorsOfConstructionAreThrownByTheConstructor) {
     void release() override {}
     std::unique_ptr<gl::Context> create_shared() override { return nullptr; }
   };
-  EXPECT_THAT([&] { TextureThread(std::make_unique<Refuses>(), {scene_, surface_, lens_, std::nullopt, {}}); },
-              testing::ThrowsMessage<RuntimeFailure>(testing::HasSubstr("no context today")));
+  EXPECT_THAT(
+      [&] {
+        TextureThread(std::make_unique<Refuses>(), {scene_, surface_, lens_, std::nullopt, {}});
+      },
+      testing::ThrowsMessage<RuntimeFailure>(testing::HasSubstr("no context today")));
 }
 
 TEST_F(TextureThreadTest, StopsWhileBusyAndWithALeaseOut) {

@@ -16,7 +16,8 @@ AtlasPixels::AtlasPixels(const gl::Texture& colours) {
     const int side = atlas::kLayer >> level;
     auto& pixels = levels[static_cast<std::size_t>(level)];
     pixels.resize(static_cast<std::size_t>(side * side * colours.layers()));
-    glGetTextureImage(colours.name(), level, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size() * 4), pixels.data());
+    glGetTextureImage(colours.name(), level, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size() * 4),
+                      pixels.data());
   }
 }
 
@@ -54,6 +55,8 @@ Eigen::Vector4d unpack(std::uint32_t v) {
   return Eigen::Vector4d(v & 255, v >> 8 & 255, v >> 16 & 255, v >> 24) / 255;
 }
 
-Eigen::Vector4d to_vector(const Texel& t) { return Eigen::Vector4d(t[0], t[1], t[2], t[3]) / 255; }
+Eigen::Vector4d to_vector(const Texel& t) {
+  return Eigen::Vector4d(t[0], t[1], t[2], t[3]) / 255;
+}
 
 }  // namespace foresight::reference

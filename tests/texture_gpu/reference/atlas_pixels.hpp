@@ -18,7 +18,9 @@ struct AtlasPixels {
   explicit AtlasPixels(const gl::Texture& colours);
 
   /// Texel (x, y) of a slot at a level (side 16 >> level).
-  Texel at(std::uint32_t slot, int level, int x, int y) const { return levels[static_cast<std::size_t>(level)][place(slot, level, x, y)]; }
+  Texel at(std::uint32_t slot, int level, int x, int y) const {
+    return levels[static_cast<std::size_t>(level)][place(slot, level, x, y)];
+  }
   static std::size_t place(std::uint32_t slot, int level, int x, int y);
 
   std::array<std::vector<Texel>, atlas::kLevels> levels;

@@ -16,7 +16,9 @@ class Picture {
   explicit Picture(const FacePicture& face) : face_(face) {}
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < face_.width && y < face_.height; }
   /// 0 where there is no model, and outside.
-  double at(int x, int y) const { return inside(x, y) ? face_.inverse_z[static_cast<std::size_t>(y * face_.width + x)] : 0; }
+  double at(int x, int y) const {
+    return inside(x, y) ? face_.inverse_z[static_cast<std::size_t>(y * face_.width + x)] : 0;
+  }
 
   Slope slope(int x, int y, int dx, int dy) const {
     const double here = at(x, y);

@@ -12,7 +12,9 @@ constexpr double kFilled = 1.0 / 255;
 constexpr double kFirm = 0.25;  // share of seen texels from which a page's mean stands for itself
 constexpr int kSpreadRounds = 4, kReach = 3;
 
-Vector4d opaque(const Vector4d& c) { return {c.x(), c.y(), c.z(), 1}; }
+Vector4d opaque(const Vector4d& c) {
+  return {c.x(), c.y(), c.z(), 1};
+}
 
 /// Mean of the seen ones among some texels, and their share.
 class Mean {
@@ -94,7 +96,8 @@ void pull(const FillChart& chart, FilledChart& out) {
     const auto parent = [&](int x, int y) -> Vector4d {
       if (x < 0 || y < 0 || x >= width / 2 || y >= height / 2) return Vector4d::Zero();
       const int page = y / (side / 2) * chart.pages.x() + x / (side / 2);
-      const Vector4d& above = out.levels[static_cast<std::size_t>(level + 1)][static_cast<std::size_t>(y * (width / 2) + x)];
+      const Vector4d& above =
+          out.levels[static_cast<std::size_t>(level + 1)][static_cast<std::size_t>(y * (width / 2) + x)];
       return level < 3 && above.w() > 0 ? above : out.coarse[static_cast<std::size_t>(page)];
     };
     for (int y = 0; y < height; ++y)

@@ -12,17 +12,17 @@ namespace foresight::reference {
 /// A chart's pages before filling.
 struct FillChart {
   Eigen::Vector2i pages;
-  std::vector<int> neighbours;                 ///< charts
-  std::vector<bool> resident;                  ///< of each page
-  std::vector<bool> has_hole;                  ///< of each page: a texel on the surface that no camera has seen
-  std::vector<Texel> texels;                   ///< level 0, row by row over the whole chart (16 pages.x() wide)
+  std::vector<int> neighbours;  ///< charts
+  std::vector<bool> resident;   ///< of each page
+  std::vector<bool> has_hole;   ///< of each page: a texel on the surface that no camera has seen
+  std::vector<Texel> texels;    ///< level 0, row by row over the whole chart (16 pages.x() wide)
 };
 
 /// A chart after filling. Colours 0 .. 1 with alpha: level 0 as the code / 255, above the share of
 /// seen texels.
 struct FilledChart {
   std::array<std::vector<Eigen::Vector4d>, atlas::kLevels> levels;
-  std::vector<Eigen::Vector4d> coarse;         ///< of each page; alpha 1: has a colour
+  std::vector<Eigen::Vector4d> coarse;             ///< of each page; alpha 1: has a colour
   Eigen::Vector4d mean = Eigen::Vector4d::Zero();  ///< alpha 1: of its own texels, 128/255 handed on
 };
 

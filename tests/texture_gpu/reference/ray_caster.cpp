@@ -8,7 +8,9 @@ namespace foresight::reference {
 RayCaster::RayCaster(const SceneModel& scene, const SceneState& state) {
   for (std::size_t n = 0; n < scene.nodes().size(); ++n) {
     const Mesh& mesh = scene.nodes()[n].mesh;
-    const auto at = [&](std::uint32_t i) -> Eigen::Vector3d { return state.T_world_node[n] * mesh.vertices[i].cast<double>(); };
+    const auto at = [&](std::uint32_t i) -> Eigen::Vector3d {
+      return state.T_world_node[n] * mesh.vertices[i].cast<double>();
+    };
     for (const auto& t : mesh.triangles)
       triangles_.push_back({static_cast<int>(n), at(t[0]), at(t[1]) - at(t[0]), at(t[2]) - at(t[0])});
   }

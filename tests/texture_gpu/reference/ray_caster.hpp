@@ -17,9 +17,9 @@ class RayCaster {
   struct Hit {
     int triangle = 0;  ///< of the whole scene
     int node = 0;
-    double t = 0;      ///< in lengths of the direction
+    double t = 0;  ///< in lengths of the direction
     Eigen::Vector3d p_world;
-    double edge = 0;   ///< smallest barycentric coordinate: near 0 another triangle may be meant
+    double edge = 0;  ///< smallest barycentric coordinate: near 0 another triangle may be meant
   };
   /// Nearest hit with t >= `least_t`.
   std::optional<Hit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double least_t) const;

@@ -11,13 +11,15 @@ namespace {
 std::pair<std::size_t, Eigen::Vector3d> face_of(const gl::Faces& faces, const Eigen::Vector3d& p) {
   std::size_t best = 0;
   for (int i = 1; i < faces.count; ++i)
-    if ((gl::Faces::rotation(i) * p).z() > (gl::Faces::rotation(static_cast<int>(best)) * p).z()) best = static_cast<std::size_t>(i);
+    if ((gl::Faces::rotation(i) * p).z() > (gl::Faces::rotation(static_cast<int>(best)) * p).z())
+      best = static_cast<std::size_t>(i);
   return {best, gl::Faces::rotation(static_cast<int>(best)) * p};
 }
 
 bool seen_at(const Camera& camera, std::size_t face, const Eigen::Vector2d& place, double z, double tolerance) {
   const FacePicture& depth = camera.depth[face];
-  if (place.x() < -0.5 || place.y() < -0.5 || place.x() > depth.width - 0.5 || place.y() > depth.height - 0.5) return false;
+  if (place.x() < -0.5 || place.y() < -0.5 || place.x() > depth.width - 0.5 || place.y() > depth.height - 0.5)
+    return false;
   double least = 1e30, largest = 0;
   for (int i = 0; i < 4; ++i) {
     const int x = std::clamp(static_cast<int>(std::floor(place.x())) + (i & 1), 0, depth.width - 1);
@@ -35,7 +37,8 @@ bool seen_at(const Camera& camera, std::size_t face, const Eigen::Vector2d& plac
 }
 
 bool in_image(const Lens& lens, const Eigen::Vector2d& pixel, double slack) {
-  return pixel.x() >= 0.5 - slack && pixel.y() >= 0.5 - slack && pixel.x() <= lens.width() - 1.5 + slack && pixel.y() <= lens.height() - 1.5 + slack;
+  return pixel.x() >= 0.5 - slack && pixel.y() >= 0.5 - slack && pixel.x() <= lens.width() - 1.5 + slack &&
+         pixel.y() <= lens.height() - 1.5 + slack;
 }
 
 double cubic(double t) {
@@ -65,7 +68,8 @@ Answer is_seen(const Camera& camera, const Eigen::Vector3d& p, double tolerance,
     for (double dy : {-kShift, kShift})
       for (double dz : {-kDepth, kDepth}) {
         ++all;
-        yes += seen_at(camera, face, place + Eigen::Vector2d(dx, dy), q.z() * (1 + dz), tolerance) && in_image(camera.lens, pixel, dx);
+        yes += seen_at(camera, face, place + Eigen::Vector2d(dx, dy), q.z() * (1 + dz), tolerance) &&
+               in_image(camera.lens, pixel, dx);
       }
   return yes == 0 ? Answer::no : yes == all ? Answer::yes : Answer::borderline;
 }
@@ -89,7 +93,8 @@ Eigen::Vector3d mean_over(const cv::Mat& bgr, const Eigen::Vector2d& pixel, cons
   return sum / (kSamples * kSamples);
 }
 
-Eigen::Matrix2d footprint(const Camera& camera, const Eigen::Vector3d& p, const Eigen::Vector3d& eu, const Eigen::Vector3d& ev) {
+Eigen::Matrix2d footprint(const Camera& camera, const Eigen::Vector3d& p, const Eigen::Vector3d& eu,
+                          const Eigen::Vector3d& ev) {
   const auto& k = camera.lens.parameters();
   if (camera.lens.model() == LensModel::equidistant) {
     // Focal lengths times angles along two directions across the ray; their order does not matter
@@ -100,7 +105,9 @@ Eigen::Matrix2d footprint(const Camera& camera, const Eigen::Vector3d& p, const 
     axes << eu.dot(x), ev.dot(x), eu.dot(y), ev.dot(y);
     return f * axes;
   }
-  const auto project = [&](const Eigen::Vector3d& q) { return Eigen::Vector2d(k.fx * q.x() / q.z(), k.fy * q.y() / q.z()); };
+  const auto project = [&](const Eigen::Vector3d& q) {
+    return Eigen::Vector2d(k.fx * q.x() / q.z(), k.fy * q.y() / q.z());
+  };
   constexpr double h = 1e-3;
   Eigen::Matrix2d axes;
   axes << (project(p + h * eu) - project(p - h * eu)) / (2 * h), (project(p + h * ev) - project(p - h * ev)) / (2 * h);

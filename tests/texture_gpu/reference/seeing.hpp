@@ -15,14 +15,14 @@ struct Camera {
   Lens lens;
   gl::Faces faces;
   std::vector<Pose> T_camera_node;
-  std::vector<FacePicture> depth;                   ///< of each face
+  std::vector<FacePicture> depth;                    ///< of each face
   std::vector<std::vector<std::uint8_t>> uncertain;  ///< of each face: not 0 on the far side of an edge
-  cv::Mat image;                                    ///< CV_8UC3, BGR
+  cv::Mat image;                                     ///< CV_8UC3, BGR
 };
 
 /// Those of the four depths around the point's place on its face that show model bracket it within
-/// the tolerance, all four are certain, and its pixel lies in the image with half a pixel to spare. Borderline where the
-/// precision of float or of texture coordinates (1/256 px) decides. `pixel`: in the image.
+/// the tolerance, all four are certain, and its pixel lies in the image with half a pixel to spare. Borderline where
+/// the precision of float or of texture coordinates (1/256 px) decides. `pixel`: in the image.
 Answer is_seen(const Camera& camera, const Eigen::Vector3d& p, double depth_tolerance, Eigen::Vector2d& pixel);
 
 /// Catmull-Rom over the 4 x 4 pixels around; RGB, 0 .. 1, clamped.
@@ -34,7 +34,8 @@ Eigen::Vector3d mean_over(const cv::Mat& bgr, const Eigen::Vector2d& pixel, cons
 /// Pixels per texel along its two axes at p: derivative of the projection (columns u, v). Of
 /// perspective lenses without their distortion, of equidistant ones without their polynomial: the
 /// resolution serves to compare views, and the lens is the same in all of them.
-Eigen::Matrix2d footprint(const Camera& camera, const Eigen::Vector3d& p, const Eigen::Vector3d& eu, const Eigen::Vector3d& ev);
+Eigen::Matrix2d footprint(const Camera& camera, const Eigen::Vector3d& p, const Eigen::Vector3d& eu,
+                          const Eigen::Vector3d& ev);
 
 /// 2 .. 255: log2 of the pixels per texel from -8 to 0.
 double quality_code(double pixels_per_texel);
