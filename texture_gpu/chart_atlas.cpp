@@ -218,6 +218,7 @@ ChartAtlas::Allocation ChartAtlas::allocate(std::span<const std::uint32_t> masks
     if (masks[i]) ++visible;
     if (masks[i] && page.height == atlas::kNoSlot) ++visible_new;
   }
+  pages_in_view_ = visible;
   Allocation out;
   if (!make_room(visible_new, image) || colours_.free() < visible) {
     if (!lower_resolution())
@@ -260,12 +261,18 @@ ChartAtlas::Allocation ChartAtlas::allocate(std::span<const std::uint32_t> masks
   return out;
 }
 
+std::span<const PageRecord> ChartAtlas::placed_records() {
+  for (PageRecord& record : records_) record.height_slot = page_of(record).height;
+  return records_;
+}
+
 void ChartAtlas::commit() {
   for (AtlasChart& chart : charts_) {
     chart.before.reset();
     chart.relevelled = false;
   }
-  quiet_images_ = heights_.used() * 2 < heights_.capacity() ? quiet_images_ + 1 : 0;
+  // Pages out of view do not count: they give way.
+  quiet_images_ = pages_in_view_ * 2 < heights_.capacity() ? quiet_images_ + 1 : 0;
   if (policy_.bias < 0 && quiet_images_ >= kImagesBeforeRise) {
     ++policy_.bias;
     ++policy_.steps_up;

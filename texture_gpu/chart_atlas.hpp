@@ -71,7 +71,7 @@ struct AtlasChart {
 ///
 /// Memory policy: pages not in view lose their place first, those unseen for longest before
 /// others; if what is in view does not fit, all resolutions fall by steps of 2^(1/4), and rise
-/// again when less than half is used. One thread.
+/// again when what is in view needs less than half. One thread.
 class ChartAtlas {
  public:
   ChartAtlas(std::shared_ptr<const SurfacePatches> surface, const TextureOptions& options);
@@ -112,6 +112,9 @@ class ChartAtlas {
   /// Free colour slots that allocate() needs for these masks.
   std::size_t slots_needed(std::span<const std::uint32_t> masks) const;
   std::uint32_t free_colour_slots() const { return colours_.free(); }
+
+  /// The pages of the last plan() with the height slots that allocate() gave them.
+  std::span<const PageRecord> placed_records();
 
   /// The allocation was published: re-levelling is done.
   void commit();
@@ -157,6 +160,7 @@ class ChartAtlas {
   std::vector<PageRecord> records_;
   std::vector<std::uint32_t> retired_;  // colour slots given up since the last commit
   bool layout_changed_ = true;
+  std::size_t pages_in_view_ = 0;
   int quiet_images_ = 0;
   Policy policy_;
 };

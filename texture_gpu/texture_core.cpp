@@ -52,13 +52,15 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   look(frame);
   ChartAtlas::Allocation allocation;
   if (!allocate(allocation)) return report;
+  extract_.upload_heights(atlas_, allocation.new_heights, store_);
+  if (!allocation.new_heights.empty()) survey_.set_pages(records_ = atlas_.placed_records());
+  clock_.mark("prepare");
   estimate_exposure();
 
   Generation next = next_generation();
   atlas_.write_table(table_);
   next->table.assign(std::span<const std::uint32_t>(table_));
   next->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
-  extract_.upload_heights(atlas_, allocation.new_heights, store_);
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
   clock_.mark("prepare");
   atlas_.write_job_geometry(allocation.jobs, views_, geometry_);
