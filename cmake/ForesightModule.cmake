@@ -13,6 +13,9 @@ if(FORESIGHT_SANITIZE)
   target_compile_options(foresight_options INTERFACE -fsanitize=${FORESIGHT_SANITIZE} -fno-omit-frame-pointer
                                                      -fno-sanitize-recover=all)
   target_link_options(foresight_options INTERFACE -fsanitize=${FORESIGHT_SANITIZE})
+  add_library(foresight_keep_libraries OBJECT ${PROJECT_SOURCE_DIR}/tests/suppressions/keep_libraries.cpp)
+  target_link_libraries(foresight_options INTERFACE
+    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:$<TARGET_OBJECTS:foresight_keep_libraries>>)
 endif()
 
 # The third-party headers are by far the most expensive part of a build: one

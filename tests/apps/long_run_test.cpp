@@ -26,7 +26,8 @@ std::size_t count_files(const std::filesystem::path& folder) {
 }
 
 struct Budget {
-  const char *megabytes, *texels_per_metre;
+  const char* megabytes;
+  std::vector<std::string> resolution;
 };
 
 class LongRun : public testing::TestWithParam<Budget> {};
@@ -35,9 +36,11 @@ TEST_P(LongRun, MemoryStaysFlatWithinTheBudget) {
   if (!std::getenv("FORESIGHT_LONG")) GTEST_SKIP() << "takes minutes; scripts/test --long runs it";
   const LoopedRun run(kImages, 1 / 30.0);
   const TempFolder out;
-  Program program({"replay", run.path(), "--delay-frames", "3", "--texture-memory-mb", GetParam().megabytes,
-                   "--texels-per-metre", GetParam().texels_per_metre, "--out", out / "out", "--report",
-                   out / "report.json"});
+  std::vector<std::string> words{
+      "replay", run.path(), "--delay-frames", "3", "--texture-memory-mb", GetParam().megabytes};
+  words.insert(words.end(), GetParam().resolution.begin(), GetParam().resolution.end());
+  words.insert(words.end(), {"--out", out / "out", "--report", out / "report.json"});
+  Program program(words);
   double at_half = 0, most_after = 0;
   while (program.running()) {
     const std::size_t done = count_files(out / "out/predicted");
@@ -64,7 +67,8 @@ TEST_P(LongRun, MemoryStaysFlatWithinTheBudget) {
 }
 
 // At 500 texels per metre the view needs several times 16 MB: the memory policy is always at work.
-INSTANTIATE_TEST_SUITE_P(Budgets, LongRun, testing::Values(Budget{"1024", "200"}, Budget{"16", "500"}),
+INSTANTIATE_TEST_SUITE_P(Budgets, LongRun,
+                         testing::Values(Budget{"1024", {}}, Budget{"16", {"--texels-per-metre", "500"}}),
                          [](const auto& budget) { return std::string(budget.param.megabytes) + "MB"; });
 
 }  // namespace

@@ -10,14 +10,14 @@ namespace fs = std::filesystem;
 namespace {
 
 // Made once per test program.
-const fs::path& original(bool stereo) {
+const fs::path& original(const std::string& option) {
   static const TempFolder folder;
-  static std::map<bool, fs::path> made;
-  fs::path& run = made[stereo];
+  static std::map<std::string, fs::path> made;
+  fs::path& run = made[option];
   if (!run.empty()) return run;
-  const fs::path out = folder / (stereo ? "stereo" : "mono");
+  const fs::path out = folder / ("run" + option);
   std::vector<std::string> words{"sample", out, "--frames", "8", "--size", "96x72"};
-  if (stereo) words.push_back("--stereo");
+  if (!option.empty()) words.push_back(option);
   const Outcome outcome = run_program(words);
   if (outcome.exit_code != 0) throw std::runtime_error("no sample run: " + outcome.err);
   return run = out;
@@ -34,8 +34,8 @@ std::vector<std::string> rows(const std::string& text) {
 
 }  // namespace
 
-SampleRun::SampleRun(bool stereo) {
-  fs::copy(original(stereo), path(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+SampleRun::SampleRun(const std::string& option) {
+  fs::copy(original(option), path(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
 }
 
 void SampleRun::change_images(const std::function<cv::Mat(const cv::Mat&)>& change) const {

@@ -11,7 +11,8 @@ namespace foresight {
 /// A copy of the built-in sample run, small: 96 x 72, 8 images, 30 per second, a moving plate.
 class SampleRun : public TempFolder {
  public:
-  explicit SampleRun(bool stereo = false);
+  /// `option`: one more of `foresight sample`, such as "--stereo".
+  explicit SampleRun(const std::string& option = {});
 
   /// Reads, changes and writes each image of the left camera.
   void change_images(const std::function<cv::Mat(const cv::Mat&)>& change) const;
