@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "apps/replay_outputs.hpp"
 #include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/html_report.hpp"
@@ -17,7 +18,6 @@
 #include "apps/replay_report/instants.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "apps/replay_report/replay_report.hpp"
-#include "apps/replay_outputs.hpp"
 #include "apps/replay_session.hpp"
 #include "common/error.hpp"
 
@@ -26,6 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+constexpr double kLastPicture = 3;  // seconds for which the window shows the last instant
 
 std::atomic<bool> interrupted = false;
 extern "C" void on_interrupt(int) {
@@ -53,7 +55,8 @@ std::vector<std::size_t> arrivals(const RunFolder& run, const ReplayOptions& opt
                      options.delay_frames
                          ? "give at most " + std::to_string(frames.size() - 1) + " images"
                          : "give at most " +
-                               std::to_string(to_seconds(frames.back().left.time - frames.front().left.time) * 1e3) + " ms");
+                               std::to_string(to_seconds(frames.back().left.time - frames.front().left.time) * 1e3) +
+                               " ms");
   return arrived;
 }
 
@@ -85,6 +88,7 @@ class Replay {
 
   int play() {
     options_.real_time ? play_by_the_clock() : play_step_by_step();
+    if (!interrupted) session_.linger(kLastPicture);
     std::cerr << bar_.finish(record_.frames.size(), Clock::now());
     record_.complete = !interrupted && !closed_;
     record_.drops += session_.textures().replaced();
@@ -98,20 +102,24 @@ class Replay {
   void describe() {
     const Lens& lens = run_.lens_left();
     record_.run = fs::absolute(options_.run).lexically_normal().filename().string();
-    if (record_.run.empty()) record_.run = fs::absolute(options_.run).lexically_normal().parent_path().filename().string();
+    if (record_.run.empty())
+      record_.run = fs::absolute(options_.run).lexically_normal().parent_path().filename().string();
     record_.image_width_px = lens.width();
     record_.image_height_px = lens.height();
     record_.cameras = run_.lens_right() ? 2 : 1;
     record_.lens_model = to_string(lens.model());
     record_.scene_triangles = run_.scene()->triangle_count();
     for (const Node& node : run_.scene()->nodes()) record_.degenerate_triangles += node.mesh.dropped_degenerate;
-    record_.charts = static_cast<std::uint64_t>(std::count_if(session_.surface().charts.begin(), session_.surface().charts.end(),
-                                                              [](const Chart& c) { return c.radius > 0; }));
+    record_.charts =
+        static_cast<std::uint64_t>(std::count_if(session_.surface().charts.begin(), session_.surface().charts.end(),
+                                                 [](const Chart& c) { return c.radius > 0; }));
     record_.renderer = session_.driver().renderer + ", OpenGL " + session_.driver().version;
     record_.version = FORESIGHT_VERSION;
     const TextureOptions& t = options_.textures;
-    if (options_.delay_frames) record_.options.push_back({"delay_frames", std::int64_t{*options_.delay_frames}});
-    else record_.options.push_back({"delay_ms", options_.delay_ms.value_or(0)});
+    if (options_.delay_frames)
+      record_.options.push_back({"delay_frames", std::int64_t{*options_.delay_frames}});
+    else
+      record_.options.push_back({"delay_ms", options_.delay_ms.value_or(0)});
     record_.options.push_back({"margin_px", t.margin_px});
     record_.options.push_back({"texels_per_metre", t.texels_per_metre});
     record_.options.push_back({"max_texture", std::int64_t{t.max_texture}});
@@ -120,7 +128,8 @@ class Replay {
     record_.options.push_back({"real_time", options_.real_time});
     if (options_.scene) record_.options.push_back({"scene", options_.scene->string()});
     if (run_.unpaired_right())
-      record_.notes.push_back(std::to_string(run_.unpaired_right()) + " right images have no left one and were left out.");
+      record_.notes.push_back(std::to_string(run_.unpaired_right()) +
+                              " right images have no left one and were left out.");
   }
 
   void play_step_by_step() {
@@ -205,7 +214,8 @@ class Replay {
       ++record_.drops;
       return;
     }
-    for (const StageCost& cost : report.stages) record.stages.push_back({cost.name, cost.cpu_ms, cost.gpu_ms, StagePart::texture});
+    for (const StageCost& cost : report.stages)
+      record.stages.push_back({cost.name, cost.cpu_ms, cost.gpu_ms, StagePart::texture});
     record.texture_bytes_used = bytes_used_ = report.bytes_in_use;
     record.gain = gain_ = std::exp(2.2 * report.log_gain);  // from 8-bit values to linear light
     record_.texels = std::max(record_.texels, report.texels_resident);
@@ -235,8 +245,8 @@ class Replay {
     record_.frames.push_back(record);
     std::cerr << bar_.update(i + 1, Clock::now()) << std::flush;
     char title[160];
-    std::snprintf(title, sizeof title, "Foresight replay: %.0f ms delayed %.1f dB | predicted %.1f dB | actual", record.delay_s * 1e3,
-                  record.delayed.psnr_db.value_or(0), record.predicted.psnr_db.value_or(0));
+    std::snprintf(title, sizeof title, "Foresight replay: %.0f ms delayed %.1f dB | predicted %.1f dB | actual",
+                  record.delay_s * 1e3, record.delayed.psnr_db.value_or(0), record.predicted.psnr_db.value_or(0));
     closed_ = !session_.show(delayed_, predicted, actual, title);
   }
 
@@ -245,16 +255,20 @@ class Replay {
       record_.notes.push_back("The texture budget was reached: " + std::to_string(policy_.evicted_pages) +
                               " pages out of view, unseen for longest, gave up their place.");
     if (policy_.steps_down)
-      record_.notes.push_back("The view did not fit the texture budget: all resolutions were lowered " + std::to_string(policy_.steps_down) +
-                              " times and raised " + std::to_string(policy_.steps_up) + " times by a factor of 1.19; now " +
+      record_.notes.push_back("The view did not fit the texture budget: all resolutions were lowered " +
+                              std::to_string(policy_.steps_down) + " times and raised " +
+                              std::to_string(policy_.steps_up) + " times by a factor of 1.19; now " +
                               std::to_string(policy_.bias) + " steps.");
   }
 
   void write_reports() {
     const auto instants = keeper_.instants();
-    if (options_.out && !instants.empty()) write_contact_sheet("Foresight replay of " + record_.run, instants, *options_.out / "contact_sheet.png");
-    if (options_.report) make_folder(fs::absolute(*options_.report).parent_path()), write_json_report(record_, *options_.report);
-    if (options_.html) make_folder(fs::absolute(*options_.html).parent_path()), write_html_report(record_, instants, *options_.html);
+    if (options_.out && !instants.empty())
+      write_contact_sheet("Foresight replay of " + record_.run, instants, *options_.out / "contact_sheet.png");
+    if (options_.report)
+      make_folder(fs::absolute(*options_.report).parent_path()), write_json_report(record_, *options_.report);
+    if (options_.html)
+      make_folder(fs::absolute(*options_.html).parent_path()), write_html_report(record_, instants, *options_.html);
   }
 
   void print_summary() const {
@@ -265,10 +279,10 @@ class Replay {
     }
     std::printf("%zu image times: predicted %.2f dB, delayed image %.2f dB on the same pixels\n", s.frames,
                 s.predicted.psnr_db.mean, s.delayed.psnr_db.mean);
-    std::printf("seen %.3f, filled %.3f, empty %.3f of the image; sharpness %.2f of the real image's\n", s.coverage.seen, s.coverage.filled,
-                s.coverage.empty(), s.predicted.sharpness.mean);
-    std::printf("%.1f images per core-second, %.1f CPU-ms per image; renderer: %s\n", s.images_per_core_second, s.texture_cpu_ms,
-                record_.renderer.c_str());
+    std::printf("seen %.3f, filled %.3f, empty %.3f of the image; sharpness %.2f of the real image's\n",
+                s.coverage.seen, s.coverage.filled, s.coverage.empty(), s.predicted.sharpness.mean);
+    std::printf("%.1f images per core-second, %.1f CPU-ms per image; renderer: %s\n", s.images_per_core_second,
+                s.texture_cpu_ms, record_.renderer.c_str());
     for (const std::string& note : record_.notes) std::printf("%s\n", note.c_str());
   }
 
@@ -291,7 +305,8 @@ class Replay {
 }  // namespace
 
 int replay(const ReplayOptions& given) {
-  if (given.delay_frames && given.delay_ms) throw InputError("--delay-ms", "--delay-frames is given too", "give one of the two");
+  if (given.delay_frames && given.delay_ms)
+    throw InputError("--delay-ms", "--delay-frames is given too", "give one of the two");
   const RunFolder run = RunFolder::open(given.run, {.scene = given.scene});
   ReplayOptions options = given;
   options.textures.depth_tolerance =
@@ -299,7 +314,8 @@ int replay(const ReplayOptions& given) {
   const std::vector<std::size_t> arrived = arrivals(run, options);
   check_outputs(options, run);
   ProgressBar bar("check", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr());
-  check_run_images(run, [&](std::size_t done, std::size_t) { std::cerr << bar.update(done, Clock::now()) << std::flush; });
+  check_run_images(run,
+                   [&](std::size_t done, std::size_t) { std::cerr << bar.update(done, Clock::now()) << std::flush; });
   std::cerr << bar.finish(run.frames().size(), Clock::now());
   interrupted = false;
   std::signal(SIGINT, on_interrupt);

@@ -11,10 +11,10 @@ namespace foresight {
 
 struct ReplayOptions {
   std::filesystem::path run;
-  std::optional<std::filesystem::path> scene;   ///< instead of the run's own model
-  std::optional<int> delay_frames;              ///< not with delay_ms
-  std::optional<double> model_accuracy;         ///< metres; default: what the model states, else 0.02
-  std::optional<double> delay_ms;               ///< not with delay_frames; without either: 0
+  std::optional<std::filesystem::path> scene;  ///< instead of the run's own model
+  std::optional<int> delay_frames;             ///< not with delay_ms
+  std::optional<double> model_accuracy;        ///< metres; default: what the model states, else 0.02
+  std::optional<double> delay_ms;              ///< not with delay_frames; without either: 0
   TextureOptions textures;
   std::optional<std::filesystem::path> out;     ///< folder for pictures
   std::optional<std::filesystem::path> report;  ///< JSON file

@@ -29,20 +29,21 @@ CLI::Validator from_to(double low, double high) {
 }  // namespace
 
 void add_replay_command(CLI::App& app, std::function<int()>& action) {
-  auto* command = app.add_subcommand(
-      "replay", "Plays a recorded run with a delay and shows what the operator would have seen");
+  auto* command =
+      app.add_subcommand("replay", "Plays a recorded run with a delay and shows what the operator would have seen");
   auto options = std::make_shared<ReplayOptions>();
   auto memory_mb = std::make_shared<std::uint64_t>(1024);
-  command->add_option("RUN", options->run,
-                      "Folder with camera.yaml, rgb.txt, trajectory.txt and scene.ply or scene.yaml")
+  command
+      ->add_option("RUN", options->run, "Folder with camera.yaml, rgb.txt, trajectory.txt and scene.ply or scene.yaml")
       ->required();
   command->add_option("--scene", options->scene, "Model to use instead of the run's own");
   command->add_option("--delay-frames", options->delay_frames, "Delay in images of the run (default 0)")
-                     ->check(from_to(0, 1000000));
+      ->check(from_to(0, 1000000));
   command->add_option("--delay-ms", options->delay_ms, "Delay in milliseconds; not with --delay-frames")
       ->check(from_to(0.0, 1e7));
-  command->add_option("--texels-per-metre", options->textures.texels_per_metre,
-                      "Resolution of all textures (default: one texel per pixel of the closest view)")
+  command
+      ->add_option("--texels-per-metre", options->textures.texels_per_metre,
+                   "Resolution of all textures (default: one texel per pixel of the closest view)")
       ->check(from_to(1.0, 1e6));
   command->add_option("--max-texture", options->textures.max_texture, "Most texels along a side of a chart")
       ->check(from_to(16, 4096));
@@ -52,8 +53,9 @@ void add_replay_command(CLI::App& app, std::function<int()>& action) {
   command->add_option("--margin-px", options->textures.margin_px, "Pixels behind a silhouette that are not trusted")
       ->check(from_to(0.0, 32.0))
       ->capture_default_str();
-  command->add_option("--model-accuracy-m", options->model_accuracy,
-                      "Largest usual error of the model (default: accuracy_m of scene.yaml, else 0.02)")
+  command
+      ->add_option("--model-accuracy-m", options->model_accuracy,
+                   "Largest usual error of the model (default: accuracy_m of scene.yaml, else 0.02)")
       ->check(from_to(1e-4, 1.0));
   command->add_option("--out", options->out, "Folder for predicted/*.png and contact_sheet.png");
   command->add_option("--report", options->report, "JSON file with all measurements");

@@ -1,5 +1,6 @@
 #include "apps/replay_session.hpp"
 
+#include <chrono>
 #include <opencv2/imgproc.hpp>
 
 #include "texture_gpu/chart_extent.hpp"
@@ -74,6 +75,14 @@ bool ReplaySession::show(const cv::Mat& delayed, const cv::Mat& predicted, const
   window_->set_title(title);
   window_->present();
   return !window_->should_close();
+}
+
+void ReplaySession::linger(double seconds) {
+  if (!window_) return;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (std::chrono::steady_clock::now() < end && !window_->should_close()) {
+    window_->wait_events(0.05);
+  }
 }
 
 }  // namespace foresight

@@ -32,6 +32,9 @@ class ReplaySession {
   /// Shows the three pictures in the window, if there is one. False: the user closed it.
   bool show(const cv::Mat& delayed, const cv::Mat& predicted, const cv::Mat& actual, const std::string& title);
 
+  /// Leaves the window as it is for a while, or until the user closes it. Without one: returns at once.
+  void linger(double seconds);
+
  private:
   const RunFolder& run_;
   std::unique_ptr<gl::Context> context_;

@@ -8,6 +8,8 @@ InputError::InputError(const std::string& where, const std::string& what, const 
 RuntimeFailure::RuntimeFailure(const std::string& what, const std::string& cure)
     : std::runtime_error(what + "; " + cure) {}
 
-std::string at_line(const std::filesystem::path& file, int line) { return file.string() + ":" + std::to_string(line); }
+std::string at_line(const std::filesystem::path& file, int line) {
+  return file.string() + ":" + std::to_string(line);
+}
 
 }  // namespace foresight

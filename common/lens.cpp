@@ -109,8 +109,10 @@ void Lens::find_max_angle() {
   constexpr int kSamples = 32;  // along each border; the farthest pixel lies on the border
   for (int i = 0; i <= kSamples; ++i) {
     const double s = static_cast<double>(i) / kSamples;
-    const Eigen::Vector2d border[] = {
-        {-0.5 + s * (w + 0.5), -0.5}, {-0.5 + s * (w + 0.5), h}, {-0.5, -0.5 + s * (h + 0.5)}, {w, -0.5 + s * (h + 0.5)}};
+    const Eigen::Vector2d border[] = {{-0.5 + s * (w + 0.5), -0.5},
+                                      {-0.5 + s * (w + 0.5), h},
+                                      {-0.5, -0.5 + s * (h + 0.5)},
+                                      {w, -0.5 + s * (h + 0.5)}};
     for (const auto& pixel : border) {
       const auto ray = unproject(pixel);
       const double angle = ray ? std::acos(std::clamp(ray->z(), -1.0, 1.0))

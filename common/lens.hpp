@@ -29,12 +29,12 @@ class Lens {
  public:
   struct Parameters {
     LensModel model = LensModel::plumb_bob;
-    int width = 0;       ///< px
-    int height = 0;      ///< px
-    double fx = 0;       ///< focal length in px
-    double fy = 0;       ///< focal length in px
-    double cx = 0;       ///< principal point in px, pixel centres at integers
-    double cy = 0;       ///< principal point in px
+    int width = 0;              ///< px
+    int height = 0;             ///< px
+    double fx = 0;              ///< focal length in px
+    double fy = 0;              ///< focal length in px
+    double cx = 0;              ///< principal point in px, pixel centres at integers
+    double cy = 0;              ///< principal point in px
     std::array<double, 8> d{};  ///< coefficients in the order of `model`; unused ones are zero
   };
 

@@ -31,7 +31,11 @@ struct Time {
 using RobotTime = Time<RobotClock>;
 
 /// Seconds as a nanosecond duration, rounded to nearest; `seconds` must be finite.
-inline Duration seconds(double seconds) { return Duration{std::llround(seconds * 1e9)}; }
-inline double to_seconds(Duration d) { return static_cast<double>(d.count()) * 1e-9; }
+inline Duration seconds(double seconds) {
+  return Duration{std::llround(seconds * 1e9)};
+}
+inline double to_seconds(Duration d) {
+  return static_cast<double>(d.count()) * 1e-9;
+}
 
 }  // namespace foresight

@@ -7,7 +7,9 @@ namespace {
 
 constexpr int kGap = 6;  // px between the pictures
 
-gl::Texture picture(int width, int height) { return gl::Texture(GL_RGBA8, width, height, 0, 1, "compared picture"); }
+gl::Texture picture(int width, int height) {
+  return gl::Texture(GL_RGBA8, width, height, 0, 1, "compared picture");
+}
 
 }  // namespace
 
@@ -28,10 +30,12 @@ void ComparisonWindow::draw(const gl::Window& window, const cv::Mat& delayed, co
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const cv::Mat& source = *sources[i];
     const gl::Texture& texture = pictures_[i];
-    glTextureSubImage2D(texture.name(), 0, 0, 0, source.cols, source.rows,
-                        source.channels() == 4 ? GL_BGRA : GL_BGR, GL_UNSIGNED_BYTE, source.data);
-    const double scale = std::min(static_cast<double>(cell) / source.cols, static_cast<double>(height - 2 * kGap) / source.rows);
-    const int w = std::max(1, static_cast<int>(source.cols * scale)), h = std::max(1, static_cast<int>(source.rows * scale));
+    glTextureSubImage2D(texture.name(), 0, 0, 0, source.cols, source.rows, source.channels() == 4 ? GL_BGRA : GL_BGR,
+                        GL_UNSIGNED_BYTE, source.data);
+    const double scale =
+        std::min(static_cast<double>(cell) / source.cols, static_cast<double>(height - 2 * kGap) / source.rows);
+    const int w = std::max(1, static_cast<int>(source.cols * scale)),
+              h = std::max(1, static_cast<int>(source.rows * scale));
     const int x = kGap + static_cast<int>(i) * (cell + kGap) + (cell - w) / 2, y = (height - h) / 2;
     glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, texture.name(), 0);
     // Rows of a picture run downwards, those of a window upwards.

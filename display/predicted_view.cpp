@@ -26,7 +26,8 @@ gl::Texture make_rays(const Lens& lens) {
     for (int x = 0; x < lens.width(); ++x) {
       const auto ray = lens.unproject({x, y});
       row[static_cast<std::size_t>(x)] =
-          ray ? Eigen::Vector4f(static_cast<float>(ray->x()), static_cast<float>(ray->y()), static_cast<float>(ray->z()), 1)
+          ray ? Eigen::Vector4f(static_cast<float>(ray->x()), static_cast<float>(ray->y()),
+                                static_cast<float>(ray->z()), 1)
               : Eigen::Vector4f::Zero();  // no ray: the lens does not see anything here
     }
     glTextureSubImage2D(rays.name(), 0, 0, y, lens.width(), 1, GL_RGBA, GL_FLOAT, row.data());
@@ -76,7 +77,8 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
 
 cv::Mat PredictedView::read() const {
   cv::Mat picture(lens_.height(), lens_.width(), CV_8UC4);
-  glGetTextureImage(picture_.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(picture.total() * 4), picture.data);
+  glGetTextureImage(picture_.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(picture.total() * 4),
+                    picture.data);
   return picture;
 }
 

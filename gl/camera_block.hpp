@@ -15,8 +15,8 @@ namespace foresight::gl {
 
 /// std140 layout; every member is a vec4.
 struct CameraBlock {
-  Eigen::Vector4f focal = Eigen::Vector4f::Zero();      ///< fx fy cx cy of the lens, px
-  Eigen::Vector4f radial = Eigen::Vector4f::Zero();     ///< numerator k1 k2 k3; equidistant: k1 k2 k3 k4
+  Eigen::Vector4f focal = Eigen::Vector4f::Zero();               ///< fx fy cx cy of the lens, px
+  Eigen::Vector4f radial = Eigen::Vector4f::Zero();              ///< numerator k1 k2 k3; equidistant: k1 k2 k3 k4
   Eigen::Vector4f radial_denominator = Eigen::Vector4f::Zero();  ///< k4 k5 k6
   Eigen::Vector4f tangential = Eigen::Vector4f::Zero();  ///< p1 p2, model (0 none 1 rational 2 equidistant), max radius
   Eigen::Vector4f size = Eigen::Vector4f::Zero();        ///< image width, height; face width, height; px

@@ -28,8 +28,8 @@ std::string error_name(GLenum error) {
 
 DriverInfo query_driver() {
   DriverInfo info{text(GL_VENDOR), text(GL_RENDERER), text(GL_VERSION), false};
-  info.is_software = info.renderer.find("llvmpipe") != std::string::npos ||
-                     info.renderer.find("softpipe") != std::string::npos;
+  info.is_software =
+      info.renderer.find("llvmpipe") != std::string::npos || info.renderer.find("softpipe") != std::string::npos;
   if (epoxy_gl_version() < 45)
     throw RuntimeFailure("OpenGL 4.5 is needed, but " + info.renderer + " offers " + info.version,
                          "install a newer driver, or Mesa's software renderer (libgl1-mesa-dri, libegl-mesa0)");

@@ -11,13 +11,9 @@
 namespace foresight::gl {
 namespace {
 
-constexpr EGLint kContextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                         4,
-                                         EGL_CONTEXT_MINOR_VERSION,
-                                         5,
-                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                         EGL_NONE};
+constexpr EGLint kContextAttributes[] = {
+    EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
 
 std::string egl_error() {
   char text[32];
@@ -50,8 +46,7 @@ EGLContext create_context(EGLDisplay display, EGLContext share, const EGLint* at
 
 class EglContext final : public Context {
  public:
-  EglContext(std::shared_ptr<Display> display, EGLContext context)
-      : display_(std::move(display)), context_(context) {}
+  EglContext(std::shared_ptr<Display> display, EGLContext context) : display_(std::move(display)), context_(context) {}
   ~EglContext() override {
     if (eglGetCurrentContext() == context_) release();
     eglDestroyContext(display_->get(), context_);
@@ -119,7 +114,8 @@ std::vector<EGLDeviceEXT> devices_hardware_first() {
   eglQueryDevicesEXT(count, all.data(), &count);
   for (EGLDeviceEXT device : all) {
     const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
-    const bool is_software = extensions && std::string(extensions).find("EGL_MESA_device_software") != std::string::npos;
+    const bool is_software =
+        extensions && std::string(extensions).find("EGL_MESA_device_software") != std::string::npos;
     (is_software ? software : ordered).push_back(device);
   }
   ordered.insert(ordered.end(), software.begin(), software.end());

@@ -15,8 +15,8 @@ namespace foresight::gl {
 
 /// Geometry of the faces; all have the same size and intrinsics. Row 0 of a face is its top.
 struct Faces {
-  int count = 1;  ///< 1 or 6
-  int width = 0, height = 0;           ///< px
+  int count = 1;                          ///< 1 or 6
+  int width = 0, height = 0;              ///< px
   double fx = 0, fy = 0, cx = 0, cy = 0;  ///< px, pixel centres at integers
 
   /// R_face_camera of face `i`. Cube order: +z +x -z -x +y -y, each face's z axis outwards.

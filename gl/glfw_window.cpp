@@ -46,16 +46,28 @@ Window::Window(Window& share, int) : library_(share.library_) {
   if (!window_) fail("no second OpenGL context");
 }
 
-Window::~Window() { glfwDestroyWindow(window_); }
+Window::~Window() {
+  glfwDestroyWindow(window_);
+}
 
-void Window::make_current() { glfwMakeContextCurrent(window_); }
-void Window::release() { glfwMakeContextCurrent(nullptr); }
+void Window::make_current() {
+  glfwMakeContextCurrent(window_);
+}
+void Window::release() {
+  glfwMakeContextCurrent(nullptr);
+}
 
-std::unique_ptr<Context> Window::create_shared() { return std::unique_ptr<Context>(new Window(*this, 0)); }
+std::unique_ptr<Context> Window::create_shared() {
+  return std::unique_ptr<Context>(new Window(*this, 0));
+}
 
 void Window::present() {
   glfwSwapBuffers(window_);
   glfwPollEvents();
+}
+
+void Window::wait_events(double timeout_s) {
+  glfwWaitEventsTimeout(timeout_s);
 }
 
 bool Window::should_close() const {
@@ -63,8 +75,12 @@ bool Window::should_close() const {
          glfwGetKey(window_, GLFW_KEY_Q) == GLFW_PRESS;
 }
 
-void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
+}
 
-void Window::framebuffer_size(int& width, int& height) const { glfwGetFramebufferSize(window_, &width, &height); }
+void Window::framebuffer_size(int& width, int& height) const {
+  glfwGetFramebufferSize(window_, &width, &height);
+}
 
 }  // namespace foresight::gl

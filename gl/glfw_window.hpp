@@ -27,7 +27,8 @@ class Window final : public Context {
 
   /// Shows what was drawn and handles events, without blocking longer than one display frame.
   void present();
-  bool should_close() const;  ///< closed by the user, or Escape or Q pressed
+  void wait_events(double timeout_s);  ///< handles events, or returns after the time-out
+  bool should_close() const;           ///< closed by the user, or Escape or Q pressed
   void set_title(const std::string& title);
   void framebuffer_size(int& width, int& height) const;  ///< px
 

@@ -6,11 +6,21 @@
 
 namespace foresight::gl {
 
-void delete_buffer(GLuint name) { glDeleteBuffers(1, &name); }
-void delete_texture(GLuint name) { glDeleteTextures(1, &name); }
-void delete_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-void delete_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
-void delete_query(GLuint name) { glDeleteQueries(1, &name); }
+void delete_buffer(GLuint name) {
+  glDeleteBuffers(1, &name);
+}
+void delete_texture(GLuint name) {
+  glDeleteTextures(1, &name);
+}
+void delete_framebuffer(GLuint name) {
+  glDeleteFramebuffers(1, &name);
+}
+void delete_vertex_array(GLuint name) {
+  glDeleteVertexArrays(1, &name);
+}
+void delete_query(GLuint name) {
+  glDeleteQueries(1, &name);
+}
 
 namespace {
 
@@ -56,7 +66,9 @@ void Buffer::read_bytes(void* data, std::size_t bytes) const {
   if (bytes) glGetNamedBufferSubData(name(), 0, static_cast<GLsizeiptr>(bytes), data);
 }
 
-void Buffer::clear_to_zero() { glClearNamedBufferData(name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr); }
+void Buffer::clear_to_zero() {
+  glClearNamedBufferData(name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
 
 Texture::Texture(GLenum format, int width, int height, int layers, int levels, const char* label)
     : Handle<delete_texture>(create_texture_name(layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D)),

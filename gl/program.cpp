@@ -6,7 +6,9 @@
 
 namespace foresight::gl {
 
-void delete_program(GLuint name) { glDeleteProgram(name); }
+void delete_program(GLuint name) {
+  glDeleteProgram(name);
+}
 
 namespace {
 
@@ -71,7 +73,9 @@ GLuint link(const std::vector<GLuint>& shaders, const std::string& label) {
   throw RuntimeFailure("program " + label + " does not link: " + log, "please report this with the driver's name");
 }
 
-GLint location(const Program& program, const char* uniform) { return glGetUniformLocation(program.name(), uniform); }
+GLint location(const Program& program, const char* uniform) {
+  return glGetUniformLocation(program.name(), uniform);
+}
 
 }  // namespace
 
@@ -87,9 +91,15 @@ Program Program::graphics(const ShaderSources& sources, const std::string& verte
   return Program(link({v, f}, fragment));
 }
 
-void Program::set(const char* uniform, int value) const { glProgramUniform1i(name(), location(*this, uniform), value); }
-void Program::set(const char* uniform, unsigned value) const { glProgramUniform1ui(name(), location(*this, uniform), value); }
-void Program::set(const char* uniform, float value) const { glProgramUniform1f(name(), location(*this, uniform), value); }
+void Program::set(const char* uniform, int value) const {
+  glProgramUniform1i(name(), location(*this, uniform), value);
+}
+void Program::set(const char* uniform, unsigned value) const {
+  glProgramUniform1ui(name(), location(*this, uniform), value);
+}
+void Program::set(const char* uniform, float value) const {
+  glProgramUniform1f(name(), location(*this, uniform), value);
+}
 void Program::set(const char* uniform, const Eigen::Vector2f& v) const {
   glProgramUniform2f(name(), location(*this, uniform), v.x(), v.y());
 }

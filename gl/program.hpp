@@ -46,6 +46,8 @@ class Program : public Handle<delete_program> {
 };
 
 /// Groups of `group` needed to cover `count` invocations.
-constexpr unsigned groups(int count, int group) { return static_cast<unsigned>((count + group - 1) / group); }
+constexpr unsigned groups(int count, int group) {
+  return static_cast<unsigned>((count + group - 1) / group);
+}
 
 }  // namespace foresight::gl

@@ -14,11 +14,11 @@ namespace foresight::gl {
 class SceneBuffers {
  public:
   struct NodeRange {
-    int node = 0;                    ///< index in SceneModel::nodes()
+    int node = 0;  ///< index in SceneModel::nodes()
     GLsizei index_count = 0;
     std::size_t first_index = 0;
     GLint base_vertex = 0;
-    unsigned first_triangle = 0;     ///< in the numbering of the whole scene, node after node
+    unsigned first_triangle = 0;  ///< in the numbering of the whole scene, node after node
   };
 
   explicit SceneBuffers(const SceneModel& scene);

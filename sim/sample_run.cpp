@@ -212,8 +212,8 @@ void write_sample_run(const fs::path& out, const SampleRunOptions& options,
     const Lab lab =
         make_lab(0.0005 * std::clamp(640.0 / std::max(options.width, options.height), 0.6, 8.0), options.seed);
     write_text(partial / kMarker,
-               format("%s\nsize: [%d, %d]\nframes: %d\nstereo: %s\nfisheye: %s\ndistortion: %s\nseed: %u\n", kMarkerLine,
-                      options.width, options.height, options.frames, options.stereo ? "true" : "false",
+               format("%s\nsize: [%d, %d]\nframes: %d\nstereo: %s\nfisheye: %s\ndistortion: %s\nseed: %u\n",
+                      kMarkerLine, options.width, options.height, options.frames, options.stereo ? "true" : "false",
                       options.fisheye ? "true" : "false", options.distortion ? "true" : "false", options.seed));
     write_scene(partial, lab);
     write_tracks(partial, options, lab.parts[lab.plate].name);

@@ -5,12 +5,12 @@
 
 namespace foresight::atlas {
 
-inline constexpr int kPage = 16;           ///< texels along a page's side
-inline constexpr int kTile = 8;            ///< texels along the side of a work group; four tiles a page
-inline constexpr int kLayer = 1024;        ///< texels along a layer's side
+inline constexpr int kPage = 16;     ///< texels along a page's side
+inline constexpr int kTile = 8;      ///< texels along the side of a work group; four tiles a page
+inline constexpr int kLayer = 1024;  ///< texels along a layer's side
 inline constexpr int kSlotsPerRow = kLayer / kPage;
 inline constexpr int kSlotsPerLayer = kSlotsPerRow * kSlotsPerRow;
-inline constexpr int kLevels = 5;          ///< 16, 8, 4, 2, 1 texels a side: the hole filling's pyramid
+inline constexpr int kLevels = 5;  ///< 16, 8, 4, 2, 1 texels a side: the hole filling's pyramid
 inline constexpr std::uint32_t kNoSlot = 0xffffffffu;
 
 /// Bytes of one page's colours with its pyramid: RGBA8 times 4/3.

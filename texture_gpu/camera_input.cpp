@@ -20,7 +20,8 @@ CameraInput::CameraInput(const Lens& lens, double largest_margin_px)
     : lens_(lens),
       faces_(gl::faces_for(lens, static_cast<int>(std::ceil(largest_margin_px)) + 2), false),
       image_(GL_RGBA8, lens.width(), lens.height(), 0, level_count(lens), "camera image"),
-      blocks_(GL_RG32F, (faces_.faces.width + 3) / 4, (faces_.faces.height + 3) / 4, faces_.faces.count, 1, "depth blocks"),
+      blocks_(GL_RG32F, (faces_.faces.width + 3) / 4, (faces_.faces.height + 3) / 4, faces_.faces.count, 1,
+              "depth blocks"),
       uncertain_(GL_R8, faces_.faces.width, faces_.faces.height, faces_.faces.count, 1, "uncertain edges"),
       block_(sizeof(gl::CameraBlock), "camera") {
   const gl::CameraBlock block = gl::make_camera_block(lens, faces_.faces);

@@ -19,17 +19,21 @@ Eigen::Vector2d density_of(const Eigen::Vector2i& level) {
   return {std::exp2(level.x() / kLevelsPerOctave), std::exp2(level.y() / kLevelsPerOctave)};
 }
 
-std::uint32_t pack(int low, int high) { return static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16; }
+std::uint32_t pack(int low, int high) {
+  return static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16;
+}
 
 void find_page_ranges(AtlasChart& chart) {
   const ChartRaster& r = chart.raster;
   for (int y = 0; y < r.height; ++y) {
     for (int x = 0; x < r.width; ++x) {
-      const std::uint16_t raw = r.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)];
+      const std::uint16_t raw =
+          r.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)];
       if (!raw) continue;
       AtlasPage& page = chart.page[static_cast<std::size_t>((y / atlas::kPage) * chart.pages.x() + x / atlas::kPage)];
       const std::uint32_t h = raw & ~ChartRaster::kCore & 0xffffu;
-      std::uint32_t& range = page.tile_heights[static_cast<std::size_t>(y / atlas::kTile % 2 * 2 + x / atlas::kTile % 2)];
+      std::uint32_t& range =
+          page.tile_heights[static_cast<std::size_t>(y / atlas::kTile % 2 * 2 + x / atlas::kTile % 2)];
       range = range ? std::min(range & 0xffffu, h) | std::max(range >> 16, h) << 16 : h | h << 16;
       ++page.covered;
     }
@@ -98,7 +102,8 @@ void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
   chart.level = level;
   chart.relevelled = true;
   const bool fixed = options_.texels_per_metre > 0 && policy_.bias == 0 && options_.max_texture == 0;
-  chart.raster = raster_chart(*surface_, index, fixed ? Eigen::Vector2d::Constant(options_.texels_per_metre) : density_of(level));
+  chart.raster =
+      raster_chart(*surface_, index, fixed ? Eigen::Vector2d::Constant(options_.texels_per_metre) : density_of(level));
   chart.pages = {(chart.raster.width + atlas::kPage - 1) / atlas::kPage,
                  (chart.raster.height + atlas::kPage - 1) / atlas::kPage};
   chart.page.assign(static_cast<std::size_t>(chart.pages.prod()), {});
@@ -199,8 +204,8 @@ bool ChartAtlas::make_room(std::size_t needed, std::int64_t image) {
 }
 
 bool ChartAtlas::lower_resolution() {
-  const bool can = std::any_of(charts_.begin(), charts_.end(),
-                               [](const AtlasChart& c) { return c.in_view && c.pages.prod() > 1; });
+  const bool can =
+      std::any_of(charts_.begin(), charts_.end(), [](const AtlasChart& c) { return c.in_view && c.pages.prod() > 1; });
   if (!can) return false;
   --policy_.bias;
   ++policy_.steps_down;

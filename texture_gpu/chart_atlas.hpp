@@ -41,17 +41,17 @@ struct AtlasPage {
   std::uint32_t height = atlas::kNoSlot;
   std::array<std::uint32_t, 4> tile_heights{};  ///< as in PageRecord
   std::uint16_t covered = 0;                    ///< texels on the surface
-  std::int64_t last_seen = -1;      ///< image number
+  std::int64_t last_seen = -1;                  ///< image number
   PageExposure exposure;
 };
 
 /// A chart at its present resolution.
 struct AtlasChart {
   Eigen::Vector2i level{kNoLevel, kNoLevel};  ///< density is 2^(level / 4); kNoLevel: no texels yet
-  Eigen::Vector2d wanted{0, 0};  ///< texels per metre along u and v of the closest view so far
+  Eigen::Vector2d wanted{0, 0};               ///< texels per metre along u and v of the closest view so far
   ChartRaster raster;
   Eigen::Vector2i pages{0, 0};
-  int first_page = 0;       ///< in the page table
+  int first_page = 0;  ///< in the page table
   std::vector<AtlasPage> page;
   bool in_view = false;
   /// Set from a change of resolution until commit(): what the published generation still holds.
@@ -95,12 +95,12 @@ class ChartAtlas {
   std::span<const PageRecord> plan(std::span<const AtlasView> views, std::int64_t image);
 
   struct Allocation {
-    std::vector<PageJob> jobs;            ///< pages to extract, each with a new place for its colours
-    std::vector<std::uint8_t> masks;      ///< of each job, as cull.comp gave them
-    std::vector<PageJob> relevel;         ///< pages to be filled from the previous generation first
+    std::vector<PageJob> jobs;        ///< pages to extract, each with a new place for its colours
+    std::vector<std::uint8_t> masks;  ///< of each job, as cull.comp gave them
+    std::vector<PageJob> relevel;     ///< pages to be filled from the previous generation first
     std::vector<std::pair<std::uint32_t, int>> new_heights;  ///< (chart, page) whose heights the GPU lacks
-    std::vector<std::uint32_t> retired;   ///< colour slots that the previous generation still shows
-    bool fits = true;                     ///< false: resolutions were lowered, plan() again
+    std::vector<std::uint32_t> retired;                      ///< colour slots that the previous generation still shows
+    bool fits = true;                                        ///< false: resolutions were lowered, plan() again
   };
 
   /// `masks`: one per record of the last plan(), zero for unseen. Throws RuntimeFailure where even

@@ -11,7 +11,8 @@ void ChartAtlas::write_job_geometry(std::span<const PageJob> jobs, std::span<con
   for (const PageJob& job : jobs) {
     const ChartRaster& r = charts_[job.chart].raster;
     const Patch& patch = surface_->patches[static_cast<std::size_t>(surface_->charts[job.chart].patch)];
-    const Eigen::Vector2d uv = r.uv0 + atlas::kPage * Eigen::Vector2d(job.xy & 0xffff, job.xy >> 16).cwiseQuotient(r.density);
+    const Eigen::Vector2d uv =
+        r.uv0 + atlas::kPage * Eigen::Vector2d(job.xy & 0xffff, job.xy >> 16).cwiseQuotient(r.density);
     const Eigen::Vector3d corner = patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + r.height0 * patch.n;
     for (const AtlasView& view : views) {
       const Pose& T = view.T_camera_node[static_cast<std::size_t>(patch.node)];

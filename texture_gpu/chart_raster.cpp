@@ -15,7 +15,9 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 struct Grid {
   int width, height;
   std::vector<float> h;  // metres along n; NaN: no surface
-  float& at(int x, int y) { return h[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]; }
+  float& at(int x, int y) {
+    return h[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  }
 };
 
 struct Corner {
@@ -77,7 +79,8 @@ void grow_guard(Grid& grid) {
 
 Eigen::Vector2i chart_size(const Chart& chart, const Vector2d& density) {
   const Vector2d extent = (chart.upper - chart.lower).cwiseProduct(density);
-  return {static_cast<int>(std::ceil(extent.x() + 2 * kGuard)) + 1, static_cast<int>(std::ceil(extent.y() + 2 * kGuard)) + 1};
+  return {static_cast<int>(std::ceil(extent.x() + 2 * kGuard)) + 1,
+          static_cast<int>(std::ceil(extent.y() + 2 * kGuard)) + 1};
 }
 
 ChartRaster raster_chart(const SurfacePatches& surface, int index, const Vector2d& density) {
@@ -114,9 +117,9 @@ ChartRaster raster_chart(const SurfacePatches& surface, int index, const Vector2
   out.height_step = std::max(1e-9, (static_cast<double>(high) - low) / kLevels);
   for (std::size_t i = 0; i < grid.h.size(); ++i)
     if (!std::isnan(grid.h[i]))
-      out.raw[i] = static_cast<std::uint16_t>(
-          (1 + std::lround((static_cast<double>(grid.h[i]) - low) / out.height_step)) |
-          (std::isnan(core[i]) ? 0 : ChartRaster::kCore));
+      out.raw[i] =
+          static_cast<std::uint16_t>((1 + std::lround((static_cast<double>(grid.h[i]) - low) / out.height_step)) |
+                                     (std::isnan(core[i]) ? 0 : ChartRaster::kCore));
   return out;
 }
 

@@ -7,9 +7,8 @@
 namespace foresight {
 namespace {
 
-constexpr double kNearest = 0.05;      // metres; views from nearer do not ask for more texels
-constexpr double kFlattest = 0.25;     // of the head-on density: a grazing view may come closer head-on soon
-
+constexpr double kNearest = 0.05;   // metres; views from nearer do not ask for more texels
+constexpr double kFlattest = 0.25;  // of the head-on density: a grazing view may come closer head-on soon
 
 bool in_frustum(const Eigen::Vector3d& p, double r, const AtlasView& view) {
   const auto& f = *view.faces;

@@ -50,8 +50,10 @@ void ExtractPass::upload_heights(const ChartAtlas& atlas, std::span<const std::p
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const AtlasChart& chart = atlas.charts()[batch[i].first];
       slots.push_back(chart.page[static_cast<std::size_t>(batch[i].second)].height);
-      const int x0 = atlas::kPage * (batch[i].second % chart.pages.x()), y0 = atlas::kPage * (batch[i].second / chart.pages.x());
-      const int columns = std::min(atlas::kPage, chart.raster.width - x0), rows = std::min(atlas::kPage, chart.raster.height - y0);
+      const int x0 = atlas::kPage * (batch[i].second % chart.pages.x()),
+                y0 = atlas::kPage * (batch[i].second / chart.pages.x());
+      const int columns = std::min(atlas::kPage, chart.raster.width - x0),
+                rows = std::min(atlas::kPage, chart.raster.height - y0);
       for (int y = 0; y < rows; ++y)
         std::copy_n(chart.raster.raw.begin() + (y0 + y) * chart.raster.width + x0, columns,
                     raw.begin() + static_cast<std::ptrdiff_t>(i * 256) + y * atlas::kPage);
@@ -103,7 +105,8 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   glBindImageTexture(0, store.colours.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
 
-  const gl::Program& program = extract_[2 * static_cast<std::size_t>(inputs.camera_count() - 1) + (work.minify ? 1 : 0)];
+  const gl::Program& program =
+      extract_[2 * static_cast<std::size_t>(inputs.camera_count() - 1) + (work.minify ? 1 : 0)];
   inputs.bind(program, depth_tolerance);
   program.set("worse", static_cast<float>(worse));
   glBindTextureUnit(7, geometry_.texture());

@@ -26,13 +26,14 @@ class ExtractPass {
 
   struct Work {
     std::span<const PageJob> jobs;
-    std::span<const std::uint8_t> masks;          ///< of each job (ChartAtlas::Allocation)
-    std::span<const Eigen::Vector4f> geometry;    ///< ChartAtlas::write_job_geometry()
-    bool minify = false;                          ///< texels may be larger than pixels
+    std::span<const std::uint8_t> masks;        ///< of each job (ChartAtlas::Allocation)
+    std::span<const Eigen::Vector4f> geometry;  ///< ChartAtlas::write_job_geometry()
+    bool minify = false;                        ///< texels may be larger than pixels
   };
   /// Extracts the images of `inputs` into all jobs (extract.comp); tiles that no camera sees are
   /// carried over (copy.comp).
-  void extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance, double worse);
+  void extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
+               double worse);
 
   /// Of the last extract(): its jobs, and for each whether it has texels that no camera saw.
   const gl::BufferTexture& jobs() const { return jobs_; }

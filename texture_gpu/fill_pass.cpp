@@ -11,7 +11,9 @@ constexpr int kSpreadRounds = 4;
 // Images within which filled texels follow the colours around them.
 constexpr int kRefresh = 4;
 
-gl::Program compute(const char* file) { return gl::Program::compute(gl::texture_gpu_shaders(), file); }
+gl::Program compute(const char* file) {
+  return gl::Program::compute(gl::texture_gpu_shaders(), file);
+}
 gl::Program pull_program(int level) {
   return gl::Program::compute(gl::texture_gpu_shaders(), "pull.comp", {"LEVEL " + std::to_string(level)});
 }
@@ -67,7 +69,8 @@ void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   push_rest_.use();
   push_rest_.set("job_count", static_cast<int>(job_count));
-  for (int level = 2; level <= 4; ++level) bind_level(static_cast<GLuint>(level - 2), store.colours, level, GL_WRITE_ONLY);
+  for (int level = 2; level <= 4; ++level)
+    bind_level(static_cast<GLuint>(level - 2), store.colours, level, GL_WRITE_ONLY);
   glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
@@ -77,8 +80,8 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   constexpr auto kEntry = static_cast<GLintptr>(sizeof(GLuint));
   glCopyNamedBufferSubData(previous.means.buffer().name(), next.means.buffer().name(), 0, 0, chart_count_ * kEntry);
   for (const auto& [before, now, count] : work.kept)
-    glCopyNamedBufferSubData(previous.coarse.buffer().name(), next.coarse.buffer().name(), before * kEntry, now * kEntry,
-                             count * kEntry);
+    glCopyNamedBufferSubData(previous.coarse.buffer().name(), next.coarse.buffer().name(), before * kEntry,
+                             now * kEntry, count * kEntry);
   if (work.dirty.empty()) return;
   dirty_.assign(work.dirty);
   chart_of_page_.assign(work.chart_of_page);

@@ -14,10 +14,10 @@ class FillPass {
   explicit FillPass(const SurfacePatches& surface);
 
   struct Work {
-    std::size_t job_count = 0;                       ///< of the last extraction
-    std::span<const std::uint32_t> dirty;            ///< charts of which a page changed
-    std::span<const std::uint32_t> chart_of_page;    ///< for the whole page table of `next`
-    std::span<const std::array<int, 3>> kept;        ///< runs of pages to keep: first before, first now, count
+    std::size_t job_count = 0;                     ///< of the last extraction
+    std::span<const std::uint32_t> dirty;          ///< charts of which a page changed
+    std::span<const std::uint32_t> chart_of_page;  ///< for the whole page table of `next`
+    std::span<const std::array<int, 3>> kept;      ///< runs of pages to keep: first before, first now, count
   };
   /// Writes the pyramids of the jobs, and the coarse colours and chart means of `next`, starting
   /// from those of `previous`.

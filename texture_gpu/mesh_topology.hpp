@@ -11,8 +11,8 @@ namespace foresight {
 
 /// A triangle among others.
 struct Face {
-  Eigen::Vector3d normal;  // unit length
-  double area = 0;         // m^2
+  Eigen::Vector3d normal;                     // unit length
+  double area = 0;                            // m^2
   std::array<int, 3> neighbours{-1, -1, -1};  // scene triangles over each edge, same node
 };
 

@@ -26,7 +26,8 @@ class OverlapGrid {
   /// Takes the cells whose centres lie in the triangle with corners `uv` at heights `h`; false, and
   /// nothing is taken, where another surface has one of them.
   bool claim(const std::array<Eigen::Vector2d, 3>& uv, const std::array<double, 3>& h) {
-    return visit(uv, h, [&](double& cell, double height) { return cell == kNone || std::abs(cell - height) < tolerance_; }) &&
+    return visit(uv, h,
+                 [&](double& cell, double height) { return cell == kNone || std::abs(cell - height) < tolerance_; }) &&
            visit(uv, h, [&](double& cell, double height) {
              if (cell == kNone) cell = height;
              return true;
@@ -54,7 +55,8 @@ class OverlapGrid {
         const double b2 = ((g[1] - g[0]).x() * d.y() - (g[1] - g[0]).y() * d.x()) / area;
         if (b1 < 0 || b2 < 0 || b1 + b2 > 1) continue;
         const double height = h[0] + b1 * (h[1] - h[0]) + b2 * (h[2] - h[0]);
-        if (!f(heights_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)], height))
+        if (!f(heights_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)],
+               height))
           return false;
       }
     }

@@ -10,10 +10,10 @@ namespace foresight {
 
 /// One camera image with the pose of its camera and of everything else at its capture instant.
 struct PosedImage {
-  cv::Mat pixels;       ///< CV_8UC1, or CV_8UC3 (BGR), of the lens's size; raw, never undistorted
-  RobotTime time;       ///< mid-exposure of the centre row
+  cv::Mat pixels;  ///< CV_8UC1, or CV_8UC3 (BGR), of the lens's size; raw, never undistorted
+  RobotTime time;  ///< mid-exposure of the centre row
   Pose T_world_camera;
-  SceneState scene;     ///< at `time`
+  SceneState scene;  ///< at `time`
 };
 
 /// The images of one stereo head, taken together. The right one may be missing.

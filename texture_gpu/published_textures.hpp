@@ -15,14 +15,14 @@ namespace foresight {
 /// Everything needed to draw the scene with the textures of one instant. Written by the texture
 /// thread before it is published, then left alone until no lease is out.
 struct PublishedTextures {
-  std::uint64_t number = 0;   ///< counts up with each publish
-  RobotTime newest_image;     ///< capture instant of the newest image in it
+  std::uint64_t number = 0;  ///< counts up with each publish
+  RobotTime newest_image;    ///< capture instant of the newest image in it
   std::int64_t image_count = 0;
-  float display_gain = 1;     ///< factor on colours that shows the newest image's exposure
-  gl::BufferTexture table;    ///< R32UI: colour slot of each page
-  gl::BufferTexture charts;   ///< RGBA32F: five texels a chart (chart_record.glsl)
-  gl::BufferTexture coarse;   ///< R32UI, packed RGBA8: filled mean of each page
-  gl::BufferTexture means;    ///< R32UI, packed RGBA8: filled mean of each chart
+  float display_gain = 1;                ///< factor on colours that shows the newest image's exposure
+  gl::BufferTexture table;               ///< R32UI: colour slot of each page
+  gl::BufferTexture charts;              ///< RGBA32F: five texels a chart (chart_record.glsl)
+  gl::BufferTexture coarse;              ///< R32UI, packed RGBA8: filled mean of each page
+  gl::BufferTexture means;               ///< R32UI, packed RGBA8: filled mean of each chart
   const gl::Texture* colours = nullptr;  ///< the atlas, shared by all generations
 
   /// Bind for lookup.glsl: units 11 to 15.

@@ -31,7 +31,9 @@ void StageClock::start() {
   record("");
 }
 
-void StageClock::mark(const char* stage) { record(stage); }
+void StageClock::mark(const char* stage) {
+  record(stage);
+}
 
 std::vector<StageCost> StageClock::read() {
   std::vector<StageCost> out;

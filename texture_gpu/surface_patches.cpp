@@ -254,7 +254,8 @@ class Builder {
   }
 
   int chart_at(int triangle, const Vector3d& p) const {
-    const Patch& patch = out_.patches[static_cast<std::size_t>(out_.patch_of_triangle[static_cast<std::size_t>(triangle)])];
+    const Patch& patch =
+        out_.patches[static_cast<std::size_t>(out_.patch_of_triangle[static_cast<std::size_t>(triangle)])];
     const Eigen::Array2i cell = (uv(patch, p - patch.origin).array() / patch.cell_size().array())
                                     .floor()
                                     .cast<int>()
@@ -286,8 +287,7 @@ class Builder {
           if (x + 1 < p.cells.x()) link(at, at + 1);
           if (y + 1 < p.cells.y()) link(at, at + p.cells.x());
         }
-    for (std::size_t i = 0; i < links.size(); ++i)
-      out_.charts[i].neighbours.assign(links[i].begin(), links[i].end());
+    for (std::size_t i = 0; i < links.size(); ++i) out_.charts[i].neighbours.assign(links[i].begin(), links[i].end());
   }
 
   PatchOptions options_;

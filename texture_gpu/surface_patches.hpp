@@ -22,37 +22,37 @@
 namespace foresight {
 
 struct PatchOptions {
-  double cone_deg = 60;       ///< largest angle between a triangle and its patch's axis while growing
-  double chart_extent = 0;    ///< largest side of a chart, metres; 0: a sixteenth of the scene's diagonal
+  double cone_deg = 60;     ///< largest angle between a triangle and its patch's axis while growing
+  double chart_extent = 0;  ///< largest side of a chart, metres; 0: a sixteenth of the scene's diagonal
 };
 
 struct Patch {
   int node = 0;
-  Eigen::Vector3d origin, eu, ev, n;    ///< node frame; eu, ev, n are right-handed and of unit length
-  Eigen::Vector2d size;                 ///< extent in u and v, metres; the patch spans [0, size]
-  Eigen::Vector2i cells;                ///< grid of charts
-  int first_chart = 0;                  ///< chart of cell (0, 0); cells in row-major order
+  Eigen::Vector3d origin, eu, ev, n;  ///< node frame; eu, ev, n are right-handed and of unit length
+  Eigen::Vector2d size;               ///< extent in u and v, metres; the patch spans [0, size]
+  Eigen::Vector2i cells;              ///< grid of charts
+  int first_chart = 0;                ///< chart of cell (0, 0); cells in row-major order
   Eigen::Vector2d cell_size() const { return size.cwiseQuotient(cells.cast<double>()); }
 };
 
 /// One cell of one patch.
 struct Chart {
   int patch = 0;
-  Eigen::Vector2d lower, upper;           ///< what its triangles cover in the patch's (u, v), metres
-  std::vector<std::uint32_t> triangles;   ///< of the whole scene; all that reach into the cell or its border
-  Eigen::Vector3d center;                 ///< of the bounding sphere, node frame
-  double radius = 0;                      ///< metres; 0: an empty cell
-  double slope = 0;                       ///< rms slope of its triangles against the patch's plane
-  double cone = 0;                        ///< largest angle of a triangle's normal from the patch's, radians
-  bool closed = false;                    ///< part of a watertight mesh: its back can never be seen
-  std::vector<int> neighbours;            ///< charts that touch this one
+  Eigen::Vector2d lower, upper;          ///< what its triangles cover in the patch's (u, v), metres
+  std::vector<std::uint32_t> triangles;  ///< of the whole scene; all that reach into the cell or its border
+  Eigen::Vector3d center;                ///< of the bounding sphere, node frame
+  double radius = 0;                     ///< metres; 0: an empty cell
+  double slope = 0;                      ///< rms slope of its triangles against the patch's plane
+  double cone = 0;                       ///< largest angle of a triangle's normal from the patch's, radians
+  bool closed = false;                   ///< part of a watertight mesh: its back can never be seen
+  std::vector<int> neighbours;           ///< charts that touch this one
 };
 
 struct SurfacePatches {
   std::vector<Patch> patches;
   std::vector<Chart> charts;
-  std::vector<int> patch_of_triangle;                        ///< scene triangle index to patch
-  std::vector<std::array<Eigen::Vector3d, 3>> corners;       ///< of each scene triangle, node frame
+  std::vector<int> patch_of_triangle;                   ///< scene triangle index to patch
+  std::vector<std::array<Eigen::Vector3d, 3>> corners;  ///< of each scene triangle, node frame
 };
 
 /// Deterministic; takes about 1 s for 200,000 triangles. Triangles are numbered node after node,

@@ -12,7 +12,8 @@ SurveyPass::SurveyPass()
 void SurveyPass::set_pages(std::span<const PageRecord> pages) {
   page_count_ = static_cast<int>(pages.size());
   pages_.assign(pages);
-  const std::size_t mask_bytes = pages.size() * sizeof(std::uint32_t), sample_bytes = pages.size() * sizeof(ExposureSample);
+  const std::size_t mask_bytes = pages.size() * sizeof(std::uint32_t),
+                    sample_bytes = pages.size() * sizeof(ExposureSample);
   if (masks_.bytes() < mask_bytes) masks_ = gl::Buffer(mask_bytes * 3 / 2, "page masks");
   if (samples_.bytes() < sample_bytes) samples_ = gl::Buffer(sample_bytes * 3 / 2, "page brightness");
 }

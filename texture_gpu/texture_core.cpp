@@ -150,9 +150,9 @@ void TextureCore::estimate_exposure() {
     pages.push_back(&atlas_.page_of(records_[i]));
   std::vector<Eigen::Vector3f> tones;
   for (std::size_t i = 0; i < active_.size(); ++i) {
-    exposures_[i].update(survey_.brightness(inputs_, charts_, store_, static_cast<int>(i), options_.depth_tolerance, first,
-                                           stride),
-                         pages, image_);
+    exposures_[i].update(
+        survey_.brightness(inputs_, charts_, store_, static_cast<int>(i), options_.depth_tolerance, first, stride),
+        pages, image_);
     tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
                        exposures_[i].vignetting().y());
   }

@@ -17,14 +17,14 @@ namespace foresight {
 
 /// What one call of TextureCore::process() did.
 struct ExtractionReport {
-  bool published = false;        ///< false: dropped, the display never gave back its textures
-  std::uint64_t number = 0;      ///< of the published generation
-  RobotTime newest_image;        ///< capture instant of the frame
+  bool published = false;    ///< false: dropped, the display never gave back its textures
+  std::uint64_t number = 0;  ///< of the published generation
+  RobotTime newest_image;    ///< capture instant of the frame
   std::chrono::steady_clock::time_point published_at;
   std::vector<StageCost> stages;
-  double log_gain = 0;           ///< of the left image (exposure.hpp)
-  std::size_t pages = 0;         ///< pages written
-  std::size_t tiles = 0;         ///< tiles of 64 texels written
+  double log_gain = 0;               ///< of the left image (exposure.hpp)
+  std::size_t pages = 0;             ///< pages written
+  std::size_t tiles = 0;             ///< tiles of 64 texels written
   std::uint64_t bytes_in_use = 0;    ///< of the atlas, both generations
   std::uint64_t bytes_reserved = 0;  ///< the budget, at most Options::memory_bytes
   std::uint64_t texels_resident = 0;
@@ -84,7 +84,7 @@ class TextureCore {
   std::vector<int> first_page_before_;  // of the published generation
 
   struct Retired {
-    Generation generation;               // still shows the slots
+    Generation generation;  // still shows the slots
     std::vector<std::uint32_t> slots;
   };
   Generation current_;

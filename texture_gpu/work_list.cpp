@@ -25,6 +25,8 @@ void WorkList::finish() const {
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer_.buffer().name());
 }
 
-void WorkList::dispatch(int way) const { glDispatchComputeIndirect(static_cast<GLintptr>(way) * 4 * sizeof(GLuint)); }
+void WorkList::dispatch(int way) const {
+  glDispatchComputeIndirect(static_cast<GLintptr>(way) * 4 * sizeof(GLuint));
+}
 
 }  // namespace foresight

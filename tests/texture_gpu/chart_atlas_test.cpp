@@ -291,8 +291,9 @@ TEST(ChartAtlas, FailsWhereEvenTheSmallestPagesDoNotFit) {
     atlas.take(usual_view());
     FAIL() << "accepted";
   } catch (const RuntimeFailure& failure) {
-    EXPECT_THAT(failure.what(), testing::AllOf(testing::HasSubstr("out of texture memory"), testing::HasSubstr("64 fit"),
-                                               testing::HasSubstr("--texture-memory-mb")));
+    EXPECT_THAT(failure.what(),
+                testing::AllOf(testing::HasSubstr("out of texture memory"), testing::HasSubstr("64 fit"),
+                               testing::HasSubstr("--texture-memory-mb")));
   }
 }
 

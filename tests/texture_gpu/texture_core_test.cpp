@@ -248,7 +248,6 @@ TEST_F(TextureCoreTest, DropsAnImageWhereTheDisplayHoldsEverything) {
 TEST_F(TextureCoreTest, FollowsTheGainOfTheImages) {
   make();
   for (int i = 0; i < 20; ++i) {
-    // Pages get their reference when they are seen for the second time.
     const double gain = 1 + 0.15 * std::sin(0.5 * i);  // against the first image, whose gain is 1
     const ExtractionReport report = process(frame(orbit(i % 4), 0, gain));
     EXPECT_NEAR(std::exp(report.log_gain), gain, 0.01) << "image " << i;

@@ -105,7 +105,8 @@ void pull(const FillChart& chart, FilledChart& out) {
         const auto page = static_cast<std::size_t>(y / side * chart.pages.x() + x / side);
         Vector4d& own = out.levels[static_cast<std::size_t>(level)][static_cast<std::size_t>(y * width + x)];
         const bool has_colour = out.levels[4][page].w() > 0;  // else the display takes the coarse colours
-        if (!chart.resident[page] || !chart.has_hole[page] || !has_colour || own.w() >= (level == 0 ? 1.5 / 255 : 0.5)) continue;
+        if (!chart.resident[page] || !chart.has_hole[page] || !has_colour || own.w() >= (level == 0 ? 1.5 / 255 : 0.5))
+          continue;
         const double u = (x + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
         const int x0 = static_cast<int>(std::floor(u)), y0 = static_cast<int>(std::floor(v));
         Mean mean;
