@@ -34,14 +34,14 @@ GLFWwindow* create(int width, int height, const char* title, bool visible, GLFWw
 
 }  // namespace
 
-Window::Window(int width, int height, const std::string& title) : library_(start_library()) {
+Window::Window(int width, int height, const std::string& title) : glfw_(start_library()) {
   window_ = create(width, height, title.c_str(), true, nullptr);
   if (!window_) fail("no window with OpenGL 4.5");
   make_current();
   glfwSwapInterval(1);
 }
 
-Window::Window(Window& share, int) : library_(share.library_) {
+Window::Window(Window& share, int) : glfw_(share.glfw_) {
   window_ = create(16, 16, "", false, share.window_);
   if (!window_) fail("no second OpenGL context");
 }

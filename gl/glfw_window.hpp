@@ -34,7 +34,7 @@ class Window final : public Context {
 
  private:
   Window(Window& share, int);
-  std::shared_ptr<void> library_;  // glfwTerminate with the last window
+  std::shared_ptr<void> glfw_;  // glfwTerminate with the last window
   GLFWwindow* window_ = nullptr;
 };
 
