@@ -1,8 +1,9 @@
 #include "display/predicted_view.hpp"
 
+#include "texture_gpu/shaders.hpp"
+
 namespace foresight::gl {
 const ShaderSources& display_shaders();
-const ShaderSources& texture_gpu_shaders();
 }  // namespace foresight::gl
 
 namespace foresight {

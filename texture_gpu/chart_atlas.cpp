@@ -15,6 +15,7 @@ constexpr int kImagesBeforeRise = 10;  // images with half of the memory free be
 // Changing a chart's resolution copies it, so it waits until a view is closer by more than kRise
 // steps, and then leaves some headroom. Only the memory policy makes charts coarser: by whole steps.
 constexpr double kRise = 1.0, kHeadroom = 0.25, kFall = 0.8;
+
 Eigen::Vector2d density_of(const Eigen::Vector2i& level) {
   return {std::exp2(level.x() / kLevelsPerOctave), std::exp2(level.y() / kLevelsPerOctave)};
 }
@@ -108,7 +109,6 @@ void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
                  (chart.raster.height + atlas::kPage - 1) / atlas::kPage};
   chart.page.assign(static_cast<std::size_t>(chart.pages.prod()), {});
   find_page_ranges(chart);
-  layout_changed_ = true;
 }
 
 void ChartAtlas::lay_out() {
@@ -134,7 +134,6 @@ void ChartAtlas::collect_records() {
 }
 
 std::span<const PageRecord> ChartAtlas::plan(std::span<const AtlasView> views, std::int64_t) {
-  layout_changed_ = false;
   for (std::size_t i = 0; i < charts_.size(); ++i) {
     const Chart& shape = surface_->charts[i];
     AtlasChart& chart = charts_[i];

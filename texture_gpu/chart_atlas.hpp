@@ -131,7 +131,6 @@ class ChartAtlas {
   /// For the GPU: the page table, and five vec4 per chart (chart_record.glsl).
   void write_table(std::vector<std::uint32_t>& out) const;
   void write_charts(std::vector<Eigen::Vector4f>& out) const;
-  bool layout_changed() const { return layout_changed_; }  ///< by the last plan()
 
   /// Actions of the memory policy so far.
   struct Policy {
@@ -159,7 +158,6 @@ class ChartAtlas {
   int page_count_ = 0;
   std::vector<PageRecord> records_;
   std::vector<std::uint32_t> retired_;  // colour slots given up since the last commit
-  bool layout_changed_ = true;
   std::size_t pages_in_view_ = 0;
   int quiet_images_ = 0;
   Policy policy_;

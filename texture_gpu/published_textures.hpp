@@ -15,9 +15,8 @@ namespace foresight {
 /// Everything needed to draw the scene with the textures of one instant. Written by the texture
 /// thread before it is published, then left alone until no lease is out.
 struct PublishedTextures {
-  std::uint64_t number = 0;  ///< counts up with each publish
-  RobotTime newest_image;    ///< capture instant of the newest image in it
-  std::int64_t image_count = 0;
+  std::uint64_t number = 0;              ///< counts up with each publish
+  RobotTime newest_image;                ///< capture instant of the newest image in it
   float display_gain = 1;                ///< factor on colours that shows the newest image's exposure
   gl::BufferTexture table;               ///< R32UI: colour slot of each page
   gl::BufferTexture charts;              ///< RGBA32F: five texels a chart (chart_record.glsl)

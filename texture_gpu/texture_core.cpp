@@ -71,7 +71,6 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
 
   next->number = ++number_;
   next->newest_image = frame.left.time;
-  next->image_count = image_ + 1;
   next->display_gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
   atlas_.commit();
   retired_.push_back({current_, std::move(allocation.retired)});
