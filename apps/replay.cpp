@@ -60,6 +60,15 @@ std::vector<std::size_t> arrivals(const RunFolder& run, const ReplayOptions& opt
   return arrived;
 }
 
+/// Nothing where the core is to do it. The thesis' own resolution is the default there.
+std::optional<thesis::Options> thesis_options(const ReplayOptions& options) {
+  if (options.pipeline == ReplayPipeline::core) return std::nullopt;
+  thesis::Options out;
+  if (options.textures.texels_per_metre > 0) out.texels_per_metre = options.textures.texels_per_metre;
+  if (options.textures.max_texture > 0) out.max_texture = options.textures.max_texture;
+  return out;
+}
+
 cv::Mat as_colour(const cv::Mat& pixels) {
   if (pixels.channels() == 3) return pixels;
   cv::Mat colour;
@@ -80,7 +89,7 @@ class Replay {
       : run_(run),
         options_(options),
         arrived_(std::move(arrived)),
-        session_(run, options.textures, options.window),
+        session_(run, options.textures, thesis_options(options), options.window),
         bar_("replay", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr()) {
     describe();
     if (options.out) make_folder(*options.out / "predicted");
@@ -91,7 +100,7 @@ class Replay {
     if (!interrupted) session_.linger(kLastPicture);
     std::cerr << bar_.finish(record_.frames.size(), Clock::now());
     record_.complete = !interrupted && !closed_;
-    record_.drops += session_.textures().replaced();
+    if (options_.real_time) record_.drops += session_.textures().replaced();
     note_policy();
     write_reports();
     print_summary();
@@ -110,11 +119,10 @@ class Replay {
     record_.lens_model = to_string(lens.model());
     record_.scene_triangles = run_.scene()->triangle_count();
     for (const Node& node : run_.scene()->nodes()) record_.degenerate_triangles += node.mesh.dropped_degenerate;
-    record_.charts =
-        static_cast<std::uint64_t>(std::count_if(session_.surface().charts.begin(), session_.surface().charts.end(),
-                                                 [](const Chart& c) { return c.radius > 0; }));
+    record_.charts = session_.surface_count();
     record_.renderer = session_.driver().renderer + ", OpenGL " + session_.driver().version;
     record_.version = FORESIGHT_VERSION;
+    record_.options.push_back({"pipeline", std::string(options_.pipeline == ReplayPipeline::core ? "core" : "thesis")});
     const TextureOptions& t = options_.textures;
     if (options_.delay_frames)
       record_.options.push_back({"delay_frames", std::int64_t{*options_.delay_frames}});
@@ -141,7 +149,7 @@ class Replay {
         delayed_ = as_colour(frame.left.pixels);
         delayed_time_ = frame.left.time;
         const auto arrival = Clock::now();
-        const ExtractionReport report = session_.textures().process(std::move(frame));
+        const ExtractionReport report = session_.process(std::move(frame));
         record.arrival_to_publish_ms = std::chrono::duration<double, std::milli>(Clock::now() - arrival).count();
         take(report, record);
       }
@@ -307,6 +315,9 @@ class Replay {
 int replay(const ReplayOptions& given) {
   if (given.delay_frames && given.delay_ms)
     throw InputError("--delay-ms", "--delay-frames is given too", "give one of the two");
+  if (given.pipeline == ReplayPipeline::thesis && given.real_time)
+    throw InputError("--real-time", "the thesis' pipeline draws and extracts in one thread",
+                     "leave --real-time away, or use --pipeline core");
   const RunFolder run = RunFolder::open(given.run, {.scene = given.scene});
   ReplayOptions options = given;
   options.textures.depth_tolerance =

@@ -1,4 +1,4 @@
-// `foresight replay`: plays a recorded run through the texture core and measures the prediction.
+// `foresight replay`: plays a recorded run through a texture pipeline and measures the prediction.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,18 @@
 
 namespace foresight {
 
+enum class ReplayPipeline {
+  core,    ///< texture_core.hpp
+  thesis,  ///< thesis_pipeline.hpp, the baseline
+};
+
 struct ReplayOptions {
   std::filesystem::path run;
   std::optional<std::filesystem::path> scene;  ///< instead of the run's own model
   std::optional<int> delay_frames;             ///< not with delay_ms
   std::optional<double> model_accuracy;        ///< metres; default: what the model states, else 0.02
   std::optional<double> delay_ms;              ///< not with delay_frames; without either: 0
+  ReplayPipeline pipeline = ReplayPipeline::core;
   TextureOptions textures;
   std::optional<std::filesystem::path> out;     ///< folder for pictures
   std::optional<std::filesystem::path> report;  ///< JSON file

@@ -1,6 +1,7 @@
 #include "apps/replay_command.hpp"
 
 #include <iomanip>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -41,6 +42,11 @@ void add_replay_command(CLI::App& app, std::function<int()>& action) {
       ->check(from_to(0, 1000000));
   command->add_option("--delay-ms", options->delay_ms, "Delay in milliseconds; not with --delay-frames")
       ->check(from_to(0.0, 1e7));
+  const std::map<std::string, ReplayPipeline> pipelines{{"core", ReplayPipeline::core},
+                                                        {"thesis", ReplayPipeline::thesis}};
+  command->add_option("--pipeline", options->pipeline, "Who extracts the textures: core, or thesis (the baseline)")
+      ->transform(CLI::CheckedTransformer(pipelines))
+      ->default_str("core");
   command
       ->add_option("--texels-per-metre", options->textures.texels_per_metre,
                    "Resolution of all textures (default: one texel per pixel of the closest view)")

@@ -1,5 +1,6 @@
 #include "apps/replay_session.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <opencv2/imgproc.hpp>
 
@@ -23,7 +24,9 @@ std::vector<ExpectedView> some_views(const RunFolder& run) {
 
 }  // namespace
 
-ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options, bool window) : run_(run) {
+ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options,
+                             const std::optional<thesis::Options>& thesis, bool window)
+    : run_(run) {
   const Lens& lens = run.lens_left();
   if (window) {
     const int height = kWindowWidth * lens.height() / (3 * lens.width());
@@ -35,6 +38,12 @@ ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options
   }
   driver_ = gl::query_driver();
   gl::set_up_context();
+  if (window_) comparison_ = std::make_unique<ComparisonWindow>(lens.width(), lens.height());
+  if (thesis) {
+    thesis_ = std::make_unique<thesis::Pipeline>(run.scene(), lens, run.lens_right(), *thesis, driver_.is_software);
+    thesis_view_ = std::make_unique<ThesisView>(*thesis_, lens);
+    return;
+  }
   PatchOptions patches;
   patches.chart_extent = chart_extent_for(*run.scene(), lens, some_views(run));
   surface_ = std::make_shared<const SurfacePatches>(find_surface_patches(*run.scene(), patches));
@@ -43,7 +52,16 @@ ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options
   context_->make_current();
   view_ = std::make_unique<PredictedView>(std::make_shared<const gl::SceneBuffers>(*run.scene()),
                                           std::make_shared<const SurfaceRecords>(*surface_), lens);
-  if (window_) comparison_ = std::make_unique<ComparisonWindow>(lens.width(), lens.height());
+}
+
+std::size_t ReplaySession::surface_count() const {
+  if (thesis_) return thesis_->textures().polygons().size();
+  return static_cast<std::size_t>(std::count_if(surface_->charts.begin(), surface_->charts.end(),
+                                                [](const Chart& chart) { return chart.radius > 0; }));
+}
+
+ExtractionReport ReplaySession::process(PosedFrame frame) {
+  return thesis_ ? thesis_->process(frame) : thread_->process(std::move(frame));
 }
 
 PosedFrame ReplaySession::load(std::size_t index) const {
@@ -57,10 +75,14 @@ PosedFrame ReplaySession::load(std::size_t index) const {
 }
 
 cv::Mat ReplaySession::predict(std::size_t index) {
+  const RunImage& at = run_.frames()[index].left;
+  if (thesis_) {
+    thesis_view_->draw(at.T_world_camera, run_.state_at(at.time));
+    return thesis_view_->read();
+  }
   // Reading the picture waits for the GPU, so the lease may end with this function.
   const TextureLease textures = thread_->textures().acquire();
   if (!textures) return {};
-  const RunImage& at = run_.frames()[index].left;
   view_->draw(at.T_world_camera, run_.state_at(at.time), *textures);
   cv::Mat picture = view_->read();
   gl::Fence::insert().wait(kDrawTimeout);

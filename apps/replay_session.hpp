@@ -1,4 +1,4 @@
-// The running parts of a replay: contexts, texture thread, predicted view.
+// The running parts of a replay: contexts, texture pipeline, predicted view.
 #pragma once
 
 #include <memory>
@@ -6,6 +6,7 @@
 
 #include "display/comparison_window.hpp"
 #include "display/predicted_view.hpp"
+#include "display/thesis_view.hpp"
 #include "gl/context.hpp"
 #include "gl/glfw_window.hpp"
 #include "scene/run_folder.hpp"
@@ -16,17 +17,23 @@ namespace foresight {
 /// Everything that a replay keeps alive between images. One thread.
 class ReplaySession {
  public:
-  ReplaySession(const RunFolder& run, const TextureOptions& options, bool window);
+  /// With `thesis`, that pipeline replaces the texture core; textures() and surface() do not exist then.
+  ReplaySession(const RunFolder& run, const TextureOptions& options, const std::optional<thesis::Options>& thesis,
+                bool window);
 
   const gl::DriverInfo& driver() const { return driver_; }
-  const SurfacePatches& surface() const { return *surface_; }
+  /// Surfaces with a texture of their own: the core's charts, the thesis' polygons.
+  std::size_t surface_count() const;
   TextureThread& textures() { return *thread_; }
+
+  /// Extracts one frame and returns when its textures are there.
+  ExtractionReport process(PosedFrame frame);
 
   /// Reads the pixels of frame `index` of the run, with poses and scene. Throws InputError.
   PosedFrame load(std::size_t index) const;
 
   /// The view at the pose of frame `index` with the newest textures, CV_8UC4 (BGRA); empty where
-  /// nothing has been published yet.
+  /// the core has not published anything yet.
   cv::Mat predict(std::size_t index);
 
   /// Shows the three pictures in the window, if there is one. False: the user closed it.
@@ -44,6 +51,8 @@ class ReplaySession {
   std::unique_ptr<PredictedView> view_;
   std::unique_ptr<ComparisonWindow> comparison_;
   std::unique_ptr<TextureThread> thread_;  // ends before the context it shares with
+  std::unique_ptr<thesis::Pipeline> thesis_;
+  std::unique_ptr<ThesisView> thesis_view_;
 };
 
 }  // namespace foresight

@@ -1,5 +1,6 @@
 #include "display/predicted_view.hpp"
 
+#include "display/lens_rays.hpp"
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight::gl {
@@ -19,23 +20,6 @@ const gl::ShaderSources& sources() {
   return all;
 }
 
-gl::Texture make_rays(const Lens& lens) {
-  if (!lens.has_distortion()) return gl::Texture(GL_RGBA32F, 1, 1, 0, 1, "lens rays (none)");
-  gl::Texture rays(GL_RGBA32F, lens.width(), lens.height(), 0, 1, "lens rays");
-  std::vector<Eigen::Vector4f> row(static_cast<std::size_t>(lens.width()));
-  for (int y = 0; y < lens.height(); ++y) {
-    for (int x = 0; x < lens.width(); ++x) {
-      const auto ray = lens.unproject({x, y});
-      row[static_cast<std::size_t>(x)] =
-          ray ? Eigen::Vector4f(static_cast<float>(ray->x()), static_cast<float>(ray->y()),
-                                static_cast<float>(ray->z()), 1)
-              : Eigen::Vector4f::Zero();  // no ray: the lens does not see anything here
-    }
-    glTextureSubImage2D(rays.name(), 0, 0, y, lens.width(), 1, GL_RGBA, GL_FLOAT, row.data());
-  }
-  return rays;
-}
-
 }  // namespace
 
 PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
@@ -47,7 +31,7 @@ PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
       program_(gl::Program::compute(sources(), "view.comp")),
       camera_(sizeof(gl::CameraBlock), "view camera"),
       node_poses_(GL_RGBA32F, 16, "view node poses"),
-      rays_(make_rays(lens)),
+      rays_(make_lens_rays(lens)),
       picture_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view") {}
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {

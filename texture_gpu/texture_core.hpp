@@ -1,35 +1,17 @@
 // From posed camera images to textures: the order of the passes for one frame.
 #pragma once
 
-#include <chrono>
 #include <deque>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "texture_gpu/edge_pass.hpp"
 #include "texture_gpu/extract_pass.hpp"
+#include "texture_gpu/extraction_report.hpp"
 #include "texture_gpu/fill_pass.hpp"
-#include "texture_gpu/stage_clock.hpp"
 #include "texture_gpu/survey_pass.hpp"
 
 namespace foresight {
-
-/// What one call of TextureCore::process() did.
-struct ExtractionReport {
-  bool published = false;    ///< false: dropped, the display never gave back its textures
-  std::uint64_t number = 0;  ///< of the published generation
-  RobotTime newest_image;    ///< capture instant of the frame
-  std::chrono::steady_clock::time_point published_at;
-  std::vector<StageCost> stages;
-  double log_gain = 0;               ///< of the left image (exposure.hpp)
-  std::size_t pages = 0;             ///< pages written
-  std::size_t tiles = 0;             ///< tiles of 64 texels written
-  std::uint64_t bytes_in_use = 0;    ///< of the atlas, both generations
-  std::uint64_t bytes_reserved = 0;  ///< the budget, at most Options::memory_bytes
-  std::uint64_t texels_resident = 0;
-  ChartAtlas::Policy policy;
-};
 
 /// Owns the atlas and all passes. Belongs to one thread and one context, in a share group with
 /// the display's.

@@ -1,0 +1,29 @@
+// What the extraction of one frame did and cost.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "common/time.hpp"
+#include "texture_gpu/chart_atlas.hpp"
+#include "texture_gpu/stage_clock.hpp"
+
+namespace foresight {
+
+struct ExtractionReport {
+  bool published = false;    ///< false: dropped, the display never gave back its textures
+  std::uint64_t number = 0;  ///< of the published generation
+  RobotTime newest_image;    ///< capture instant of the frame
+  std::chrono::steady_clock::time_point published_at;
+  std::vector<StageCost> stages;
+  double log_gain = 0;               ///< of the left image (exposure.hpp)
+  std::size_t pages = 0;             ///< pages written; the thesis' pipeline: polygons
+  std::size_t tiles = 0;             ///< tiles of 64 texels written
+  std::uint64_t bytes_in_use = 0;    ///< of all textures; the atlas counts both generations
+  std::uint64_t bytes_reserved = 0;  ///< the budget, at most TextureOptions::memory_bytes
+  std::uint64_t texels_resident = 0;
+  ChartAtlas::Policy policy;
+};
+
+}  // namespace foresight
