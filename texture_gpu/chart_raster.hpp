@@ -29,4 +29,8 @@ Eigen::Vector2i chart_size(const Chart& chart, const Eigen::Vector2d& density);
 /// `density` > 0 in texels per metre along u and v.
 ChartRaster raster_chart(const SurfacePatches& surface, int chart, const Eigen::Vector2d& density);
 
+/// The scene triangle under the centre of each texel of raster_chart()'s result, row-major: the one
+/// whose height it has. -1: none, that is guard band, or a triangle smaller than a texel.
+std::vector<int> triangles_under(const SurfacePatches& surface, int chart, const ChartRaster& raster);
+
 }  // namespace foresight

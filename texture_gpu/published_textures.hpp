@@ -1,16 +1,25 @@
 // What the texture thread hands to the display: one whole generation of textures.
 #pragma once
 
+#include <Eigen/Core>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "common/time.hpp"
 #include "gl/objects.hpp"
 
 namespace foresight {
+
+/// Where a chart's texels lie: what `PublishedTextures::charts` says in floats, to the last bit. From
+/// it the CPU finds the heights again that the extraction projected (texture_readback.hpp).
+struct ChartPlace {
+  Eigen::Vector2d density{0, 0};  ///< texels per metre along u and v; 0: the chart has no texels yet
+  int first_page = 0;             ///< in the page table
+};
 
 /// Everything needed to draw the scene with the textures of one instant. Written by the texture
 /// thread before it is published, then left alone until no lease is out.
@@ -22,6 +31,7 @@ struct PublishedTextures {
   gl::BufferTexture charts;              ///< RGBA32F: five texels a chart (chart_record.glsl)
   gl::BufferTexture coarse;              ///< R32UI, packed RGBA8: filled mean of each page
   gl::BufferTexture means;               ///< R32UI, packed RGBA8: filled mean of each chart
+  std::vector<ChartPlace> places;        ///< one per chart
   const gl::Texture* colours = nullptr;  ///< the atlas, shared by all generations
 
   /// Bind for lookup.glsl: units 11 to 15.

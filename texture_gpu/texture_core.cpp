@@ -61,6 +61,8 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   atlas_.write_table(table_);
   next->table.assign(std::span<const std::uint32_t>(table_));
   next->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
+  next->places.clear();
+  for (const AtlasChart& chart : atlas_.charts()) next->places.push_back({chart.raster.density, chart.first_page});
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
   clock_.mark("prepare");
   atlas_.write_job_geometry(allocation.jobs, views_, geometry_);

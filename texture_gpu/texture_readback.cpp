@@ -1,0 +1,143 @@
+#include "texture_gpu/texture_readback.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gl/context.hpp"
+#include "texture_gpu/atlas_layout.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr std::uint8_t kSeen = 255, kFilled = 128, kBare = 64;
+constexpr std::uint8_t kFirstSeenCode = 2;  // alpha codes: atlas.glsl
+
+Eigen::Vector2i page_grid(const ChartRaster& raster) {
+  return {(raster.width + atlas::kPage - 1) / atlas::kPage, (raster.height + atlas::kPage - 1) / atlas::kPage};
+}
+
+/// Packed RGBA8, as shaders pack it.
+cv::Vec4b unpack(std::uint32_t rgba) {
+  if (rgba >> 24 == 0) return {0, 0, 0, kBare};
+  const auto byte = [&](int shift) { return static_cast<std::uint8_t>(rgba >> shift & 255); };
+  return {byte(16), byte(8), byte(0), kFilled};
+}
+
+template <typename T>
+std::vector<T> read(const gl::BufferTexture& buffer, std::size_t count) {
+  std::vector<T> out(count);
+  if (count) buffer.buffer().read(std::span<T>(out));
+  return out;
+}
+
+/// Takes away the triangles of texels that a neighbouring chart counts as its own.
+void keep_own_cell(ChartTexels& texels) {
+  const Patch& patch = texels.patch;
+  const Eigen::Array2d cell_size = patch.cell_size();
+  const int own = texels.chart - patch.first_chart;
+  for (int y = 0; y < texels.height(); ++y)
+    for (int x = 0; x < texels.width(); ++x) {
+      // The rule by which view.comp finds the chart of a surface point.
+      const Eigen::Array2i cell =
+          (texels.uv(x, y).array() / cell_size).floor().cast<int>().max(0).min(patch.cells.array() - 1);
+      if (cell.y() * patch.cells.x() + cell.x() != own) texels.triangle[texels.index(x, y)] = -1;
+    }
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector3d> ChartTexels::point(int x, int y) const {
+  const std::uint16_t raw = raster.raw[index(x, y)];
+  if (raw == 0) return std::nullopt;
+  const Eigen::Vector2d at = uv(x, y);
+  const double h = raster.height0 + raster.height_step * ((raw & ~ChartRaster::kCore & 0xffff) - 1);
+  return patch.origin + at.x() * patch.eu + at.y() * patch.ev + h * patch.n;
+}
+
+TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_ptr<const SurfacePatches> surface)
+    : surface_(std::move(surface)), display_gain_(textures.display_gain), places_(textures.places) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (places_[i].density.x() <= 0) continue;
+    const Eigen::Vector2i size = chart_size(surface_->charts[i], places_[i].density);
+    const Eigen::Array2i pages = (size.array() + atlas::kPage - 1) / atlas::kPage;
+    count = std::max(count, static_cast<std::size_t>(places_[i].first_page + pages.prod()));
+  }
+  const auto table = read<std::uint32_t>(textures.table, count), coarse = read<std::uint32_t>(textures.coarse, count);
+  means_ = read<std::uint32_t>(textures.means, places_.size());
+  for (std::size_t i = 0; i < count; ++i) pages_.push_back({table[i], coarse[i]});
+
+  const gl::Texture& colours = *textures.colours;
+  layers_.resize(static_cast<std::size_t>(colours.layers()));
+  for (const Page& page : pages_) {
+    if (page.slot == atlas::kNoSlot) continue;
+    const auto layer = static_cast<int>(page.slot / atlas::kSlotsPerLayer);
+    cv::Mat& pixels = layers_[static_cast<std::size_t>(layer)];
+    if (!pixels.empty()) continue;
+    pixels.create(colours.height(), colours.width(), CV_8UC4);
+    glGetTextureSubImage(colours.name(), 0, 0, 0, layer, pixels.cols, pixels.rows, 1, GL_BGRA, GL_UNSIGNED_BYTE,
+                         static_cast<GLsizei>(pixels.total() * 4), pixels.data);
+  }
+  gl::check_errors("reading textures back");
+}
+
+cv::Vec4b TextureReadback::mean(int index) const {
+  return unpack(means_[static_cast<std::size_t>(index)]);
+}
+
+std::optional<ChartTexels> TextureReadback::chart(int index) const {
+  const ChartPlace& place = places_[static_cast<std::size_t>(index)];
+  if (place.density.x() <= 0) return std::nullopt;
+  ChartTexels out;
+  out.chart = index;
+  out.patch = surface_->patches[static_cast<std::size_t>(surface_->charts[static_cast<std::size_t>(index)].patch)];
+  out.raster = raster_chart(*surface_, index, place.density);
+  out.triangle = triangles_under(*surface_, index, out.raster);
+  keep_own_cell(out);
+
+  const Eigen::Vector2i size = page_grid(out.raster);
+  const Page* pages = pages_.data() + place.first_page;
+  out.colours.create(out.height(), out.width(), CV_8UC4);
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) {
+      cv::Vec4b& colour = out.colours.at<cv::Vec4b>(y, x) = {0, 0, 0, 0};
+      if (out.raster.raw[out.index(x, y)] == 0) continue;
+      const std::uint32_t slot = pages[y / atlas::kPage * size.x() + x / atlas::kPage].slot;
+      if (slot != atlas::kNoSlot) colour = stored(slot, x % atlas::kPage, y % atlas::kPage);
+      if (colour[3] == 0) colour = stand_in(index, pages, size, x, y);
+    }
+  return out;
+}
+
+/// A texel of the atlas; all 0 where it has no colour.
+cv::Vec4b TextureReadback::stored(std::uint32_t slot, int x, int y) const {
+  const auto column = static_cast<int>(slot % atlas::kSlotsPerRow);
+  const auto row = static_cast<int>(slot / atlas::kSlotsPerRow % atlas::kSlotsPerRow);
+  cv::Vec4b colour =
+      layers_[slot / atlas::kSlotsPerLayer].at<cv::Vec4b>(row * atlas::kPage + y, column * atlas::kPage + x);
+  if (colour[3] == 0) return {0, 0, 0, 0};
+  colour[3] = colour[3] >= kFirstSeenCode ? kSeen : kFilled;
+  return colour;
+}
+
+/// coarse_colour() of lookup.glsl: what a view shows where a chart has no texel of its own.
+cv::Vec4b TextureReadback::stand_in(int chart, const Page* pages, const Eigen::Vector2i& size, int x, int y) const {
+  const Eigen::Vector2d at = (Eigen::Vector2d(x, y).array() + 0.5) / atlas::kPage - 0.5;
+  const Eigen::Vector2d base = at.array().floor(), part = at - base;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double weight = 0;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Array2i page =
+        (base.cast<int>() + Eigen::Vector2i(i & 1, i >> 1)).array().max(0).min(size.array() - 1);
+    const cv::Vec4b c = unpack(pages[page.y() * size.x() + page.x()].coarse);
+    if (c[3] != kFilled) continue;
+    const double w = (i & 1 ? part.x() : 1 - part.x()) * (i >> 1 ? part.y() : 1 - part.y());
+    sum += w * Eigen::Vector3d(c[0], c[1], c[2]);
+    weight += w;
+  }
+  if (weight <= 0) return mean(chart);
+  const auto byte = [&](int i) { return static_cast<std::uint8_t>(std::lround(sum[i] / weight)); };
+  return {byte(0), byte(1), byte(2), kFilled};
+}
+
+}  // namespace foresight
