@@ -10,7 +10,7 @@ struct CameraBlock {
 };
 
 // Software renderers run both sides of every branch: where a program knows its lens model and
-// faces when it is built, it defines LENS_MODEL and CUBE_FACES (gl::camera_defines).
+// faces when it is built, it defines LENS_MODEL, CUBE_FACES and FACE_IS_IMAGE (gl::camera_defines).
 int lens_model(const CameraBlock c) {
 #ifdef LENS_MODEL
   return LENS_MODEL;

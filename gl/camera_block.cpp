@@ -33,7 +33,9 @@ std::vector<std::string> camera_defines(std::span<const Lens> lenses) {
   const auto [model, cube] = kind(lenses[0]);
   for (const Lens& lens : lenses)
     if (kind(lens) != std::pair(model, cube)) return {};
-  return {"LENS_MODEL " + std::to_string(model), "CUBE_FACES " + std::to_string(cube)};
+  const bool face_is_image = model == 0 && cube == 0;  // faces_for()
+  return {"LENS_MODEL " + std::to_string(model), "CUBE_FACES " + std::to_string(cube),
+          "FACE_IS_IMAGE " + std::to_string(face_is_image ? 1 : 0)};
 }
 
 void append_node_rows(const Pose& T_world_camera, const SceneState& state, std::vector<Eigen::Vector4f>& out) {

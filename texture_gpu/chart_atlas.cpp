@@ -24,20 +24,21 @@ std::uint32_t pack(int low, int high) {
   return static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16;
 }
 
-void find_page_ranges(AtlasChart& chart) {
+/// What the pages know of the texels on them.
+void describe_pages(const SurfacePatches& surface, int index, AtlasChart& chart) {
   const ChartRaster& r = chart.raster;
-  for (int y = 0; y < r.height; ++y) {
-    for (int x = 0; x < r.width; ++x) {
-      const std::uint16_t raw =
-          r.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)];
-      if (!raw) continue;
-      AtlasPage& page = chart.page[static_cast<std::size_t>((y / atlas::kPage) * chart.pages.x() + x / atlas::kPage)];
-      const std::uint32_t h = raw & ~ChartRaster::kCore & 0xffffu;
-      std::uint32_t& range =
-          page.tile_heights[static_cast<std::size_t>(y / atlas::kTile % 2 * 2 + x / atlas::kTile % 2)];
-      range = range ? std::min(range & 0xffffu, h) | std::max(range >> 16, h) << 16 : h | h << 16;
-      ++page.covered;
-    }
+  const auto width = static_cast<std::size_t>(r.width);
+  const auto page_at = [&](int x, int y) -> AtlasPage& {
+    return chart.page[static_cast<std::size_t>((y / atlas::kPage) * chart.pages.x() + x / atlas::kPage)];
+  };
+  for (int y = 0; y < r.height; ++y)
+    for (int x = 0; x < r.width; ++x)
+      if (r.raw[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)]) ++page_at(x, y).covered;
+  const std::vector<TilePlane> planes = find_tile_planes(surface, index, r);
+  const int across = (r.width + atlas::kTile - 1) / atlas::kTile;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const int x = static_cast<int>(i) % across, y = static_cast<int>(i) / across;
+    page_at(x * atlas::kTile, y * atlas::kTile).tiles[static_cast<std::size_t>(y % 2 * 2 + x % 2)] = planes[i];
   }
 }
 
@@ -108,7 +109,7 @@ void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
   chart.pages = {(chart.raster.width + atlas::kPage - 1) / atlas::kPage,
                  (chart.raster.height + atlas::kPage - 1) / atlas::kPage};
   chart.page.assign(static_cast<std::size_t>(chart.pages.prod()), {});
-  find_page_ranges(chart);
+  describe_pages(*surface_, index, chart);
 }
 
 void ChartAtlas::lay_out() {
@@ -119,16 +120,41 @@ void ChartAtlas::lay_out() {
   }
 }
 
-void ChartAtlas::collect_records() {
+void ChartAtlas::collect_records(std::span<const AtlasView> views) {
   records_.clear();
+  std::vector<Eigen::Vector3d> eyes;  // u, v, height on the chart's patch
   for (std::size_t i = 0; i < charts_.size(); ++i) {
     const AtlasChart& chart = charts_[i];
     if (!chart.in_view && !chart.before) continue;
+    const Chart& shape = surface_->charts[i];
+    const Patch& patch = surface_->patches[static_cast<std::size_t>(shape.patch)];
+    eyes.clear();
+    for (const AtlasView& view : views) {
+      const Eigen::Vector3d eye =
+          view.T_camera_node[static_cast<std::size_t>(patch.node)].inverse().translation() - patch.origin;
+      eyes.emplace_back(eye.dot(patch.eu), eye.dot(patch.ev), eye.dot(patch.n));
+    }
+    const ChartRaster& raster = chart.raster;
+    const auto seen_from_front = [&](const TilePlane& tile, const Eigen::Vector2d& first_texel) {
+      const Eigen::Vector2d uv =
+          raster.uv0 + (first_texel.array() + (atlas::kTile - 1) / 2.0).matrix().cwiseQuotient(raster.density);
+      return std::any_of(eyes.begin(), eyes.end(), [&](const auto& eye) { return !faces_away(tile, raster, uv, eye); });
+    };
     for (int y = 0; y < chart.pages.y(); ++y)
       for (int x = 0; x < chart.pages.x(); ++x) {
         const AtlasPage& page = chart.page[static_cast<std::size_t>(y * chart.pages.x() + x)];
-        if (page.covered)
-          records_.push_back({static_cast<std::uint32_t>(i), pack(x, y), page.height, 0, page.tile_heights});
+        if (!page.covered) continue;
+        PageRecord record{static_cast<std::uint32_t>(i), pack(x, y), page.height, 0, {}};
+        bool any = chart.before.has_value();
+        for (std::size_t t = 0; t < 4; ++t) {
+          TilePlane tile = page.tiles[t];
+          const Eigen::Vector2d first(x * atlas::kPage + static_cast<int>(t % 2) * atlas::kTile,
+                                      y * atlas::kPage + static_cast<int>(t / 2) * atlas::kTile);
+          if (shape.closed && !seen_from_front(tile, first)) tile.residual = -1;
+          any = any || tile.residual >= 0;
+          record.tiles[t] = packed(tile, raster);
+        }
+        if (any) records_.push_back(record);
       }
   }
 }
@@ -148,7 +174,7 @@ std::span<const PageRecord> ChartAtlas::plan(std::span<const AtlasView> views, s
     if (level != chart.level) set_level(static_cast<int>(i), level);
   }
   lay_out();
-  collect_records();
+  collect_records(views);
   return records_;
 }
 

@@ -13,13 +13,14 @@
 #include "texture_gpu/chart_resolution.hpp"
 #include "texture_gpu/options.hpp"
 #include "texture_gpu/page_pool.hpp"
+#include "texture_gpu/tile_planes.hpp"
 
 namespace foresight {
 
 /// A page as cull.comp reads it.
 struct PageRecord {
   std::uint32_t chart, xy, height_slot, unused = 0;
-  std::array<std::uint32_t, 4> tile_heights{};  ///< lowest | highest raw height << 16; 0: no surface on the tile
+  std::array<std::array<std::uint32_t, 2>, 4> tiles{};  ///< packed(TilePlane); turned away from all: no surface
 };
 
 /// A page to be written, as jobs.glsl reads it.
@@ -39,7 +40,7 @@ struct PageExposure {
 struct AtlasPage {
   std::uint32_t colour = atlas::kNoSlot;
   std::uint32_t height = atlas::kNoSlot;
-  std::array<std::uint32_t, 4> tile_heights{};  ///< as in PageRecord
+  std::array<TilePlane, 4> tiles{};
   std::uint16_t covered = 0;                    ///< texels on the surface
   std::int64_t last_seen = -1;                  ///< image number
   PageExposure exposure;
@@ -144,7 +145,7 @@ class ChartAtlas {
   Eigen::Vector2i wanted_level(int chart) const;
   void set_level(int index, const Eigen::Vector2i& level);
   void lay_out();
-  void collect_records();
+  void collect_records(std::span<const AtlasView> views);
   bool needs_relevel(const AtlasChart& chart, int page) const;
   bool make_room(std::size_t heights_needed, std::int64_t image);
   bool lower_resolution();

@@ -19,7 +19,7 @@ void main() {
   int index = first_page + sample_index * stride;
   if (index >= page_count) return;
   samples[sample_index] = vec2(-1.0, 0.0);
-  uvec4 page = texelFetch(pages, 2 * index);
+  uvec4 page = texelFetch(pages, 3 * index);
   if (page.z == kNoSlot) return;
   ChartRecord chart = read_chart(charts, int(page.x));
   ivec3 origin = slot_origin(page.z, 0);

@@ -1,8 +1,9 @@
-// The heart of it: one back-projection per texel. A work group is one tile of 8x8 texels; each
-// finds its surface point, asks the cameras whether they saw it, takes the sharper one's colour and
-// keeps the old colour only where the new one is clearly worse.
+// The heart of it: one back-projection per texel. A work group goes through four tiles of 8x8 texels;
+// an invocation takes four texels below each other, so that what they share is found once. Each
+// texel finds its surface point, asks the cameras whether they saw it, takes the sharper one's colour
+// and keeps the old colour only where the new one is clearly worse.
 //
-// Defines: CAMERAS 1 or 2; MINIFY 1 where texels may be larger than pixels.
+// Defines: CAMERAS 1 or 2; MINIFY 1 where texels are larger than pixels.
 #include "camera.glsl"
 #include "seen.glsl"
 #include "atlas.glsl"
@@ -13,7 +14,7 @@ layout(binding = 10) uniform usamplerBuffer tiles;  // job << 4 | tile << 2 | ca
 layout(binding = 11) uniform sampler2DArray old_colours;
 layout(binding = 0, rgba8) uniform writeonly image2DArray colours;
 #include "holes.glsl"
-uniform int first_group;
+uniform int first_group, tile_count;
 uniform float worse;  // new colours below this share of the old resolution do not replace them
 
 // Factor from the image's values to the reference exposure (exposure.hpp).
@@ -59,32 +60,36 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
 #endif
 }
 
-void main() {
-  uint tile = texelFetch(tiles, first_group + int(gl_WorkGroupID.x)).r;
-  int job = int(tile >> 4);
-  vec4 g0 = texelFetch(geometry, 4 * CAMERAS * job), g1 = texelFetch(geometry, 4 * CAMERAS * job + 1),
-       g2 = texelFetch(geometry, 4 * CAMERAS * job + 2), g3 = texelFetch(geometry, 4 * CAMERAS * job + 3);
-  ivec2 in_page = ivec2(gl_LocalInvocationID.xy) + 8 * ivec2((tile >> 2) & 1u, (tile >> 3) & 1u);
-  uint raw = texelFetch(heights, slot_origin(uint(g0.w), 0) + ivec3(in_page, 0), 0).r;
-  float height = float(raw & 0x7fffu) - 1.0;
-  vec4 colour = g1.w < 0.0 ? vec4(0.0) : texelFetch(old_colours, slot_origin(uint(max(g1.w, 0.0)), 0) + ivec3(in_page, 0), 0);
+// Four texels below each other: what one camera needs to know of them.
+struct View {
+  vec3 first, down, height;  // camera frame: the first texel's foot, the next one's offset, a unit of height
+  mat2 axes;                 // pixels per texel along the texel axes, at the middle
+  float quality;             // pixels per texel; 0: this camera does not see the tile
+};
+struct Column {
+  uint tile;
+  int job;
+  bool has_old;
+  ivec3 heights_at, old_at, new_at;
+  View views[CAMERAS];
+};
+const int kRows = 4;
 
+void extract_texel(Column column, int row) {
+  ivec3 below = ivec3(0, row, 0);
+  uint raw = texelFetch(heights, column.heights_at + below, 0).r;
+  float height = float(raw & 0x7fffu) - 1.0;
+  vec4 colour = column.has_old ? texelFetch(old_colours, column.old_at + below, 0) : vec4(0.0);
   float before = colour.a;
   float best_quality = 0.0;
   vec4 best = vec4(0.0);
   for (int c = 0; c < CAMERAS; ++c) {
-    if (c == 1) {
-      g0 = texelFetch(geometry, 8 * job + 4), g1 = texelFetch(geometry, 8 * job + 5);
-      g2 = texelFetch(geometry, 8 * job + 6), g3 = texelFetch(geometry, 8 * job + 7);
-    }
-    vec3 p = g0.xyz + float(in_page.x) * g1.xyz + float(in_page.y) * g2.xyz + height * g3.xyz;
+    View view = column.views[c];
     vec2 pixel;
-    bool seen = is_seen(c, p, pixel) && raw != 0u && (tile & (1u << c)) != 0u;
-    mat2 axes = footprint(c, p, g1.xyz, g2.xyz);
-    float quality = sqrt(abs(determinant(axes)));
-    if (seen && quality > best_quality) {
-      best_quality = quality;
-      best = vec4(sample_image(c, pixel, axes) * tone(c, pixel), encode_quality(quality));
+    bool seen = is_seen(c, view.first + float(row) * view.down + height * view.height, pixel) && raw != 0u;
+    if (seen && view.quality > best_quality) {
+      best_quality = view.quality;
+      best = vec4(sample_image(c, pixel, view.axes) * tone(c, pixel), encode_quality(view.quality));
     }
   }
   // The newest wins. What is clearly worse waits; the old colour's claim ages by one step
@@ -92,6 +97,37 @@ void main() {
   bool take = colour.a < kSeen || best.a >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
   if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
   if (raw == 0u) colour = vec4(0.0);
-  note_hole(job, raw, before, colour.a);
-  imageStore(colours, slot_origin(uint(g2.w), 0) + ivec3(in_page, 0), colour);
+  note_hole(column.job, raw, before, colour.a);
+  imageStore(colours, column.new_at + below, colour);
+}
+
+void main() {
+  int index = 4 * (first_group + int(gl_WorkGroupID.x)) + int(gl_LocalInvocationID.y >> 1);
+  if (index >= tile_count) return;
+  Column column;
+  column.tile = texelFetch(tiles, index).r;
+  column.job = int(column.tile >> 4);
+  ivec2 first = ivec2(gl_LocalInvocationID.x, (gl_LocalInvocationID.y & 1u) * kRows) +
+                8 * ivec2((column.tile >> 2) & 1u, (column.tile >> 3) & 1u);
+  for (int c = 0; c < CAMERAS; ++c) {
+    int at = 4 * (CAMERAS * column.job + c);
+    vec4 corner = texelFetch(geometry, at), eu = texelFetch(geometry, at + 1), ev = texelFetch(geometry, at + 2),
+         eh = texelFetch(geometry, at + 3);
+    vec3 foot = corner.xyz + float(first.x) * eu.xyz + float(first.y) * ev.xyz;
+    // The height in the middle decides for all four: the resolution hardly changes within a tile.
+    column.heights_at = slot_origin(uint(corner.w), 0) + ivec3(first, 0);
+    float middle = float(texelFetch(heights, column.heights_at + ivec3(0, kRows / 2, 0), 0).r & 0x7fffu);
+    vec3 p = foot + 0.5 * float(kRows) * ev.xyz + middle * eh.xyz;
+    mat2 axes = footprint(c, p, eu.xyz, ev.xyz);
+    float quality = (column.tile & (1u << c)) != 0u ? sqrt(abs(determinant(axes))) : 0.0;
+    column.views[c] = View(foot, ev.xyz, eh.xyz, axes, quality);
+    column.has_old = eu.w >= 0.0;
+    column.old_at = slot_origin(uint(max(eu.w, 0.0)), 0) + ivec3(first, 0);
+    column.new_at = slot_origin(uint(ev.w), 0) + ivec3(first, 0);
+  }
+  // Written out, not looped over: software renderers keep all of a loop's variables in memory.
+  extract_texel(column, 0);
+  extract_texel(column, 1);
+  extract_texel(column, 2);
+  extract_texel(column, 3);
 }

@@ -111,7 +111,8 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   program.set("worse", static_cast<float>(worse));
   glBindTextureUnit(7, geometry_.texture());
   glBindTextureUnit(10, tiles_.texture());
-  dispatch_groups(program, tiles.size());
+  program.set("tile_count", static_cast<int>(tiles.size()));
+  dispatch_groups(program, (tiles.size() + 3) / 4);
 
   copy_.use();
   glBindTextureUnit(7, jobs_.texture());

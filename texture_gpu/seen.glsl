@@ -13,6 +13,7 @@ uniform float depth_tolerance;  // metres: surfaces nearer to each other than th
 // True where `p` (camera frame) is the visible surface in camera `c`, outside its uncertain edges
 // and inside its image; `pixel` is then its place there.
 bool is_seen(int c, vec3 p, out vec2 pixel) {
+  pixel = vec2(0.0);
   vec3 place;
   float inverse_z;
   if (!project_face(cameras[c], p, place, inverse_z)) return false;
@@ -31,7 +32,12 @@ bool is_seen(int c, vec3 p, out vec2 pixel) {
   // All four must be certain: beside a silhouette the nearest pixel may show what stands in front.
   vec4 uncertain = c == 0 ? textureGather(uncertain0, at) : textureGather(uncertain1, at);
   if (any(greaterThan(uncertain, vec4(0.5)))) return false;
-  return project_lens(cameras[c], p, pixel) && all(greaterThanEqual(pixel, vec2(0.5))) && all(lessThanEqual(pixel, cameras[c].size.xy - 1.5));
+#if defined(FACE_IS_IMAGE) && FACE_IS_IMAGE
+  pixel = place.xy;
+#else
+  if (!project_lens(cameras[c], p, pixel)) return false;
+#endif
+  return all(greaterThanEqual(pixel, vec2(0.5))) && all(lessThanEqual(pixel, cameras[c].size.xy - 1.5));
 }
 
 // Pixels per texel along the two texel axes `eu`, `ev` (camera frame, metres per texel) at `p`.
