@@ -1,7 +1,6 @@
 // Hole filling, above the pages: the mean colour of every page of the charts that changed, and of
 // each such chart. Pages with hardly a seen texel are listed for coarse_fill.comp.
 // One work group a chart.
-#define ITEMS_PER_GROUP 64
 #include "chart_record.glsl"
 #include "atlas.glsl"
 #include "work_list.glsl"

@@ -17,6 +17,6 @@ void main() {
   vec4 colour = a.z == kNoSlot ? vec4(0.0) : texelFetch(old_colours, slot_origin(a.z & 0xffffffu, 0) + ivec3(in_page, 0), 0);
   uint raw = texelFetch(heights, slot_origin(texelFetch(jobs, 2 * job + 1).x, 0) + ivec3(in_page, 0), 0).r;
   if (raw == 0u) colour = vec4(0.0);  // re-levelling may have reached beyond the surface
-  note_hole(job, raw, colour.a, colour.a);
+  note_hole(int(tile >> 2), raw, colour.a, colour.a);
   imageStore(colours, slot_origin(a.w, 0) + ivec3(in_page, 0), colour);
 }

@@ -1,7 +1,5 @@
 #include "texture_gpu/edge_pass.hpp"
 
-#include <cmath>
-
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
@@ -9,8 +7,10 @@ namespace foresight {
 EdgePass::EdgePass()
     : blocks_(gl::Program::compute(gl::texture_gpu_shaders(), "blocks.comp")),
       edge_tiles_(gl::Program::compute(gl::texture_gpu_shaders(), "edge_tiles.comp")),
+      near_edges_(gl::Program::compute(gl::texture_gpu_shaders(), "near_edges.comp")),
       uncertain_(gl::Program::compute(gl::texture_gpu_shaders(), "uncertain.comp")),
-      tiles_(1, 1, "edge tiles") {}
+      tiles_("edge tiles"),
+      pixels_("pixels at edges", 64) {}
 
 void EdgePass::operator()(const CameraInput& camera, double margin_px, double depth_tolerance) {
   const gl::Faces& faces = camera.faces().faces;
@@ -31,19 +31,25 @@ void EdgePass::operator()(const CameraInput& camera, double margin_px, double de
   const int tiles_x = (faces.width + 7) / 8, tiles_y = (faces.height + 7) / 8;
   edge_tiles_.use();
   edge_tiles_.set("face_size", size);
-  edge_tiles_.set("reach", (static_cast<int>(std::ceil(margin_px)) + 3) / 4);
   edge_tiles_.set("depth_tolerance", tolerance);
   glBindTextureUnit(1, camera.blocks().name());
   tiles_.start(static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y) * layers);
   glDispatchCompute(gl::groups(tiles_x, 8), gl::groups(tiles_y, 8), layers);
   tiles_.finish();
 
+  near_edges_.use();
+  near_edges_.set("face_size", size);
+  near_edges_.set("depth_tolerance", tolerance);
+  pixels_.start(static_cast<std::size_t>(faces.width) * static_cast<std::size_t>(faces.height) * layers);
+  tiles_.dispatch();
+  pixels_.finish();
+
   uncertain_.use();
   uncertain_.set("face_size", size);
   uncertain_.set("margin", static_cast<float>(margin_px));
   uncertain_.set("depth_tolerance", tolerance);
   glBindImageTexture(0, camera.uncertain().name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R8);
-  tiles_.dispatch(0);
+  pixels_.dispatch();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

@@ -7,8 +7,9 @@
 
 namespace foresight {
 
-/// From a camera's depth: its blocks, the tiles that need the exact test, and in these the
-/// uncertain pixels (blocks.comp, edge_tiles.comp, uncertain.comp). One context.
+/// From a camera's depth: its blocks, the tiles that may hold edges, in these the near side of each
+/// edge, and within the margin of that the uncertain pixels (blocks.comp, edge_tiles.comp,
+/// near_edges.comp, uncertain.comp). One context.
 class EdgePass {
  public:
   EdgePass();
@@ -16,8 +17,8 @@ class EdgePass {
   void operator()(const CameraInput& camera, double margin_px, double depth_tolerance);
 
  private:
-  gl::Program blocks_, edge_tiles_, uncertain_;
-  WorkList tiles_;
+  gl::Program blocks_, edge_tiles_, near_edges_, uncertain_;
+  WorkList tiles_, pixels_;
 };
 
 }  // namespace foresight

@@ -68,7 +68,6 @@ struct View {
 };
 struct Column {
   uint tile;
-  int job;
   bool has_old;
   ivec3 heights_at, old_at, new_at;
   View views[CAMERAS];
@@ -97,7 +96,7 @@ void extract_texel(Column column, int row) {
   bool take = colour.a < kSeen || best.a >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
   if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
   if (raw == 0u) colour = vec4(0.0);
-  note_hole(column.job, raw, before, colour.a);
+  note_hole(int(column.tile >> 2), raw, before, colour.a);
   imageStore(colours, column.new_at + below, colour);
 }
 
@@ -106,11 +105,11 @@ void main() {
   if (index >= tile_count) return;
   Column column;
   column.tile = texelFetch(tiles, index).r;
-  column.job = int(column.tile >> 4);
+  int job = int(column.tile >> 4);
   ivec2 first = ivec2(gl_LocalInvocationID.x, (gl_LocalInvocationID.y & 1u) * kRows) +
                 8 * ivec2((column.tile >> 2) & 1u, (column.tile >> 3) & 1u);
   for (int c = 0; c < CAMERAS; ++c) {
-    int at = 4 * (CAMERAS * column.job + c);
+    int at = 4 * (CAMERAS * job + c);
     vec4 corner = texelFetch(geometry, at), eu = texelFetch(geometry, at + 1), ev = texelFetch(geometry, at + 2),
          eh = texelFetch(geometry, at + 3);
     vec3 foot = corner.xyz + float(first.x) * eu.xyz + float(first.y) * ev.xyz;

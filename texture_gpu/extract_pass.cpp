@@ -97,7 +97,7 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   geometry_.assign(work.geometry);
   tiles_.assign(std::span<const std::uint32_t>(tiles));
   copy_tiles_.assign(std::span<const std::uint32_t>(unseen));
-  holes_.reserve(work.jobs.size() * sizeof(std::uint32_t));
+  holes_.reserve(4 * work.jobs.size() * sizeof(std::uint32_t));
   holes_.buffer().clear_to_zero();
 
   glBindTextureUnit(9, store.heights.name());

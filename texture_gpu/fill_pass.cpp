@@ -9,13 +9,17 @@ namespace {
 // Each round carries colours one chart farther into what was never seen; later images continue.
 constexpr int kSpreadRounds = 4;
 // Images within which filled texels follow the colours around them.
-constexpr int kRefresh = 4;
+constexpr int kRefresh = 8;
 
 gl::Program compute(const char* file) {
   return gl::Program::compute(gl::texture_gpu_shaders(), file);
 }
 gl::Program pull_program(int level) {
   return gl::Program::compute(gl::texture_gpu_shaders(), "pull.comp", {"LEVEL " + std::to_string(level)});
+}
+
+gl::Program hole_program(int tiles) {
+  return gl::Program::compute(gl::texture_gpu_shaders(), "hole_jobs.comp", {"TILES " + std::to_string(tiles)});
 }
 
 void bind_level(GLuint unit, const gl::Texture& colours, int level, GLenum access) {
@@ -30,15 +34,16 @@ FillPass::FillPass(const SurfacePatches& surface)
       coarse_(compute("coarse.comp")),
       coarse_fill_(compute("coarse_fill.comp")),
       spread_(compute("spread.comp")),
-      hole_jobs_(compute("hole_jobs.comp")),
+      hole_jobs_(hole_program(0)),
+      hole_tiles_(hole_program(1)),
       pull_{pull_program(0), pull_program(1), pull_program(2), pull_program(3)},
       neighbour_start_(GL_R32UI, 16, "neighbour starts"),
       neighbours_(GL_R32UI, 16, "neighbours"),
       dirty_(GL_R32UI, 16, "dirty charts"),
       chart_of_page_(GL_R32UI, 16, "charts of pages"),
       spare_means_(GL_R32UI, surface.charts.size() * sizeof(std::uint32_t), "spare chart means"),
-      with_holes_(4, 1, "pages with holes"),
-      empty_pages_(1, 1, "pages without colour"),
+      with_holes_("pages or tiles with holes"),
+      empty_pages_("pages without colour", 64),
       chart_count_(static_cast<int>(surface.charts.size())) {
   std::vector<std::uint32_t> start{0}, list;
   for (const Chart& chart : surface.charts) {
@@ -100,7 +105,7 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   coarse_fill_.use();
   glBindTextureUnit(7, chart_of_page_.texture());
   glBindTextureUnit(10, next.means.texture());
-  empty_pages_.dispatch(0);
+  empty_pages_.dispatch();
   // Fetched by what follows, and copied when the next generation starts from this one.
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
@@ -121,31 +126,32 @@ void FillPass::spread(const PublishedTextures& next) const {
   }
 }
 
-void FillPass::list_holes(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store, int refresh) {
-  hole_jobs_.use();
-  hole_jobs_.set("job_count", static_cast<int>(job_count));
-  hole_jobs_.set("turn", turn_);
-  hole_jobs_.set("refresh", refresh);
+void FillPass::list_holes(const gl::Program& program, std::size_t job_count, std::size_t most,
+                          const gl::BufferTexture& holes, const AtlasStore& store) {
+  program.use();
+  program.set("job_count", static_cast<int>(job_count));
+  program.set("turn", turn_);
+  program.set("refresh", kRefresh);
   glBindTextureUnit(10, holes.texture());
   glBindTextureUnit(11, store.colours.name());
-  with_holes_.start(job_count);
-  glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
+  with_holes_.start(most);
+  glDispatchCompute(gl::groups(static_cast<int>(most), 64), 1, 1);
   with_holes_.finish();
 }
 
 void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
                     const PublishedTextures& next) {
   if (job_count == 0) return;
-  list_holes(job_count, holes, store, 1);
+  list_holes(hole_jobs_, job_count, job_count, holes, store);
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
   glBindTextureUnit(14, next.coarse.texture());
   for (int level = 3; level >= 0; --level) {
-    if (level == 0) list_holes(job_count, holes, store, kRefresh);  // by far the most texels
+    if (level == 0) list_holes(hole_tiles_, job_count, 4 * job_count, holes, store);
     pull_[static_cast<std::size_t>(level)].use();
     bind_level(0, store.colours, level, GL_READ_WRITE);
     bind_level(1, store.colours, level + 1, GL_READ_ONLY);
-    with_holes_.dispatch(level == 0 ? 0 : 1);
+    with_holes_.dispatch();
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   }
 }

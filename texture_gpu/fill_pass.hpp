@@ -30,10 +30,11 @@ class FillPass {
   void spread(const PublishedTextures& next) const;
   void pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
             const PublishedTextures& next);
-  void list_holes(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store, int refresh);
+  void list_holes(const gl::Program& program, std::size_t job_count, std::size_t most, const gl::BufferTexture& holes,
+                  const AtlasStore& store);
 
   int turn_ = 0;
-  gl::Program push_, push_rest_, coarse_, coarse_fill_, spread_, hole_jobs_;
+  gl::Program push_, push_rest_, coarse_, coarse_fill_, spread_, hole_jobs_, hole_tiles_;
   std::array<gl::Program, 4> pull_;  // by the level written
   gl::BufferTexture neighbour_start_, neighbours_, dirty_, chart_of_page_, spare_means_;
   WorkList with_holes_, empty_pages_;

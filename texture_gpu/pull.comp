@@ -6,7 +6,7 @@
 #include "jobs.glsl"
 #include "work_item.glsl"
 #if LEVEL == 0
-layout(local_size_x = 8, local_size_y = 8) in;  // four groups a page
+layout(local_size_x = 8, local_size_y = 8) in;  // one group a tile
 #else
 layout(local_size_x = 16 >> LEVEL, local_size_y = 16 >> LEVEL) in;  // one group a page
 #endif
@@ -33,12 +33,14 @@ vec4 parent(ChartRecord chart, ivec2 at) {
 }
 
 void main() {
-  uint job_index;
-  if (!next_work(job_index)) return;
-  Job job = read_job(jobs, int(job_index));
+  uint item;
+  if (!next_work(item)) return;
   ivec2 in_page = ivec2(gl_LocalInvocationID.xy);
 #if LEVEL == 0
-  in_page += 8 * ivec2(gl_WorkGroupID.x & 1u, gl_WorkGroupID.x >> 1);
+  in_page += 8 * ivec2(item & 1u, (item >> 1) & 1u);
+  Job job = read_job(jobs, int(item >> 2));
+#else
+  Job job = read_job(jobs, int(item));
 #endif
   ivec3 place = slot_origin(job.new_slot, LEVEL) + ivec3(in_page, 0);
   vec4 own = imageLoad(colours, place);

@@ -9,9 +9,11 @@ layout(binding = 1, rgba8) uniform writeonly image2DArray level3;
 layout(binding = 2, rgba8) uniform writeonly image2DArray level4;
 uniform int job_count;
 
-// Premultiplied mean of up to four values; a share that is not zero stays visible in eight bits.
-vec4 store_form(vec4 sum, float count) {
-  return sum.a > 0.0 ? vec4(sum.rgb / sum.a, max(sum.a / count, 2.0 / 255.0)) : vec4(0.0);
+// Mean of `seen` texels weighted by their share, which stays visible in eight bits; where there are
+// none, of the `filled` ones.
+vec4 store_form(vec4 seen, vec4 filled, float count) {
+  if (seen.a > 0.0) return vec4(seen.rgb / seen.a, max(seen.a / count, 2.0 / 255.0));
+  return filled.a > 0.0 ? vec4(filled.rgb / filled.a, kFilled) : vec4(0.0);
 }
 
 void main() {
@@ -19,21 +21,23 @@ void main() {
   if (index >= job_count) return;
   Job job = read_job(jobs, index);
   ivec3 from = slot_origin(job.new_slot, 1);
-  vec4 sum4 = vec4(0.0);
+  vec4 seen4 = vec4(0.0);
   for (int q = 0; q < 4; ++q) {  // level 3 texel
-    vec4 sum3 = vec4(0.0);
+    vec4 seen3 = vec4(0.0), filled3 = vec4(0.0);
     for (int r = 0; r < 4; ++r) {  // level 2 texel within
       ivec2 at2 = 2 * ivec2(q & 1, q >> 1) + ivec2(r & 1, r >> 1);
-      vec4 sum2 = vec4(0.0);
+      vec4 seen2 = vec4(0.0), filled2 = vec4(0.0);
       for (int s = 0; s < 4; ++s) {
         vec4 c = texelFetch(colours, from + ivec3(2 * at2 + ivec2(s & 1, s >> 1), 0), 1);
-        sum2 += vec4(c.rgb * c.a, c.a);
+        seen2 += step(kSeen, c.a) * vec4(c.rgb, 1.0) * c.a;
+        filled2 += step(0.5 / 255.0, c.a) * vec4(c.rgb, 1.0);
       }
-      imageStore(level2, slot_origin(job.new_slot, 2) + ivec3(at2, 0), store_form(sum2, 4.0));
-      sum3 += sum2;
+      imageStore(level2, slot_origin(job.new_slot, 2) + ivec3(at2, 0), store_form(seen2, filled2, 4.0));
+      seen3 += seen2;
+      filled3 += filled2;
     }
-    imageStore(level3, slot_origin(job.new_slot, 3) + ivec3(q & 1, q >> 1, 0), store_form(sum3, 16.0));
-    sum4 += sum3;
+    imageStore(level3, slot_origin(job.new_slot, 3) + ivec3(q & 1, q >> 1, 0), store_form(seen3, filled3, 16.0));
+    seen4 += seen3;
   }
-  imageStore(level4, slot_origin(job.new_slot, 4), store_form(sum4, 64.0));
+  imageStore(level4, slot_origin(job.new_slot, 4), store_form(seen4, vec4(0.0), 64.0));
 }

@@ -1,5 +1,5 @@
 // Reads what append_work() (work_list.glsl) stored: the item of this work group, or of this
-// invocation where the list was filled with ITEMS_PER_GROUP set to the group's size.
+// invocation where ITEMS_PER_GROUP is the group's size, as in the WorkList.
 layout(binding = 15) uniform usamplerBuffer work;
 
 #ifndef ITEMS_PER_GROUP
@@ -11,6 +11,6 @@ bool next_work(out uint item) {
 #if ITEMS_PER_GROUP > 1
   index += gl_LocalInvocationIndex;
 #endif
-  item = texelFetch(work, 8 + int(index)).r;
+  item = texelFetch(work, 4 + int(index)).r;
   return index < texelFetch(work, 3).r;
 }

@@ -2,31 +2,40 @@
 
 #include <array>
 
+#include "texture_gpu/shaders.hpp"
+
 namespace foresight {
 namespace {
 
-constexpr std::size_t kHeader = 8 * sizeof(GLuint);
+constexpr std::size_t kHeader = 4 * sizeof(GLuint);
 
 }  // namespace
 
-WorkList::WorkList(unsigned x0, unsigned x1, const char* label) : x0_(x0), x1_(x1), buffer_(GL_R32UI, 4096, label) {}
+WorkList::WorkList(const char* label, unsigned items_per_group)
+    : items_per_group_(items_per_group),
+      args_(gl::Program::compute(gl::texture_gpu_shaders(), "work_args.comp")),
+      buffer_(GL_R32UI, 4096, label) {}
 
 void WorkList::start(std::size_t most) {
   buffer_.reserve(kHeader + most * sizeof(GLuint));
-  const std::array<GLuint, 8> header{x0_, 0, 0, 0, x1_, 0, 0, 0};
+  const std::array<GLuint, 4> header{1, 0, 0, 0};
   buffer_.buffer().write(std::span<const GLuint>(header));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffer_.buffer().name());
 }
 
 void WorkList::finish() const {
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  args_.use();
+  args_.set("items_per_group", items_per_group_);
+  glDispatchCompute(1, 1, 1);
   // The last bit is for the next start(), which writes the header again.
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindTextureUnit(15, buffer_.texture());
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer_.buffer().name());
 }
 
-void WorkList::dispatch(int way) const {
-  glDispatchComputeIndirect(static_cast<GLintptr>(way) * 4 * sizeof(GLuint));
+void WorkList::dispatch() const {
+  glDispatchComputeIndirect(0);
 }
 
 }  // namespace foresight

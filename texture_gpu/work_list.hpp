@@ -1,7 +1,7 @@
 // Lists on the GPU: one dispatch decides what needs work, the next does just that.
 #pragma once
 
-#include "gl/objects.hpp"
+#include "gl/program.hpp"
 
 namespace foresight {
 
@@ -9,20 +9,22 @@ namespace foresight {
 /// what works them off must not depend on it. One context.
 class WorkList {
  public:
-  /// `x0`, `x1`: work groups per item in the two ways to dispatch.
-  WorkList(unsigned x0, unsigned x1, const char* label);
+  /// `items_per_group`: items that one work group of the program takes that works the list off.
+  explicit WorkList(const char* label, unsigned items_per_group = 1);
 
   /// Empties the list, makes room for `most` items, and binds it for append_work().
   void start(std::size_t most);
 
-  /// After the filling dispatch: binds the list for next_work() and as indirect arguments.
+  /// After the filling dispatch: binds the list for next_work() and as indirect arguments. Runs a
+  /// program of its own.
   void finish() const;
 
-  /// Dispatches the current program over the list, `way` 0 or 1.
-  void dispatch(int way) const;
+  /// Dispatches the current program over the list.
+  void dispatch() const;
 
  private:
-  unsigned x0_, x1_;
+  unsigned items_per_group_;
+  gl::Program args_;
   gl::BufferTexture buffer_;
 };
 
