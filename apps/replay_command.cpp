@@ -49,7 +49,7 @@ void add_replay_command(CLI::App& app, std::function<int()>& action) {
       ->default_str("core");
   command
       ->add_option("--texels-per-metre", options->textures.texels_per_metre,
-                   "Resolution of all textures (default: one texel per pixel of the closest view)")
+                   "Finest resolution of textures (default: one texel per pixel of the closest view)")
       ->check(from_to(1.0, 1e6));
   command->add_option("--max-texture", options->textures.max_texture, "Most texels along a side of a chart")
       ->check(from_to(16, 4096));

@@ -43,7 +43,7 @@ CameraInput::~CameraInput() {
   for (Staging& staging : ring_) glUnmapNamedBuffer(staging.buffer.name());
 }
 
-void CameraInput::upload(const cv::Mat& pixels, bool with_levels) {
+void CameraInput::upload(const cv::Mat& pixels) {
   CV_Assert(pixels.cols == lens_.width() && pixels.rows == lens_.height());
   Staging& staging = ring_[next_];
   next_ = (next_ + 1) % ring_.size();
@@ -54,8 +54,10 @@ void CameraInput::upload(const cv::Mat& pixels, bool with_levels) {
   glTextureSubImage2D(image_.name(), 0, 0, 0, pixels.cols, pixels.rows, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   staging.read = gl::Fence::insert();
-  if (with_levels) glGenerateTextureMipmap(image_.name());
-  glTextureParameteri(image_.name(), GL_TEXTURE_MIN_FILTER, with_levels ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
+}
+
+void CameraInput::build_levels() const {
+  glGenerateTextureMipmap(image_.name());
 }
 
 }  // namespace foresight

@@ -18,9 +18,11 @@ class CameraInput {
   CameraInput(const CameraInput&) = delete;
   CameraInput& operator=(const CameraInput&) = delete;
 
-  /// Starts the upload of `pixels`; `with_levels` also builds the coarser levels that textures
-  /// of low resolution are sampled from.
-  void upload(const cv::Mat& pixels, bool with_levels);
+  /// Starts the upload of `pixels`.
+  void upload(const cv::Mat& pixels);
+
+  /// Builds the coarser levels that textures of low resolution are sampled from.
+  void build_levels() const;
 
   const Lens& lens() const { return lens_; }
   const gl::FaceImages& faces() const { return faces_; }

@@ -75,7 +75,8 @@ Eigen::Vector2i ChartAtlas::wanted_level(int index) const {
   const int most = options_.max_texture > 0 ? std::min(options_.max_texture, kLargestChart) : kLargestChart;
   Eigen::Vector2i level = chart.level;
   for (int i = 0; i < 2; ++i) {
-    const double density = options_.texels_per_metre > 0 ? options_.texels_per_metre : chart.wanted[i];
+    const double density =
+        options_.texels_per_metre > 0 ? std::min(options_.texels_per_metre, chart.wanted[i]) : chart.wanted[i];
     const double side = std::max(1e-9, shape.upper[i] - shape.lower[i]);
     const int limit = static_cast<int>(std::floor(kLevelsPerOctave * std::log2(most / side)));
     const double exact = kLevelsPerOctave * std::log2(density) + policy_.bias;
@@ -103,9 +104,9 @@ void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
   for (AtlasPage& page : chart.page) drop_page(page);
   chart.level = level;
   chart.relevelled = true;
-  const bool fixed = options_.texels_per_metre > 0 && policy_.bias == 0 && options_.max_texture == 0;
-  chart.raster =
-      raster_chart(*surface_, index, fixed ? Eigen::Vector2d::Constant(options_.texels_per_metre) : density_of(level));
+  Eigen::Vector2d density = density_of(level);
+  if (options_.texels_per_metre > 0) density = density.cwiseMin(options_.texels_per_metre);  // no step of a level
+  chart.raster = raster_chart(*surface_, index, density);
   chart.pages = {(chart.raster.width + atlas::kPage - 1) / atlas::kPage,
                  (chart.raster.height + atlas::kPage - 1) / atlas::kPage};
   chart.page.assign(static_cast<std::size_t>(chart.pages.prod()), {});

@@ -24,7 +24,7 @@ ExtractPass::ExtractPass(std::span<const Lens> lenses)
       jobs_(GL_RGBA32UI, 4096, "extraction jobs"),
       geometry_(GL_RGBA32F, 4096, "job geometry"),
       relevel_jobs_(GL_RGBA32UI, 4096, "relevel jobs"),
-      tiles_(GL_R32UI, 4096, "tiles"),
+      tiles_{gl::BufferTexture(GL_R32UI, 4096, "tiles"), gl::BufferTexture(GL_R32UI, 4096, "tiles of large texels")},
       copy_tiles_(GL_R32UI, 4096, "tiles to copy"),
       holes_(GL_R32UI, 4096, "holes"),
       staged_(GL_R16UI, 4096, "staged heights"),
@@ -82,42 +82,72 @@ void ExtractPass::relevel(std::span<const PageJob> jobs, const gl::BufferTexture
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
+/// Into those that cameras may see, by whether their texels are larger than pixels, and the others.
+void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
+  for (auto& tiles : seen_tiles_) tiles.clear();
+  unseen_tiles_.clear();
+  const int cameras = inputs.camera_count();
+  // Pixels per texel of a page, from its corner and axes in the camera's frame.
+  const auto texel_size = [&](std::size_t job, int camera) {
+    const auto* g = &work.geometry[4 * (job * static_cast<std::size_t>(cameras) + static_cast<std::size_t>(camera))];
+    const Lens::Parameters& lens = inputs.camera(camera).lens().parameters();
+    const Eigen::Vector3f eu = g[1].head<3>(), ev = g[2].head<3>();
+    const Eigen::Vector3f p = g[0].head<3>() + 0.5f * atlas::kPage * (eu + ev);
+    const Eigen::Vector3f sight = p.normalized();
+    const auto across = [&](const Eigen::Vector3f& axis) { return (axis - sight * sight.dot(axis)).norm(); };
+    return std::max(lens.fx, lens.fy) * std::max(across(eu), across(ev)) / p.norm();
+  };
+  for (std::size_t i = 0; i < work.jobs.size(); ++i) {
+    bool minify = false;
+    for (int c = 0; c < cameras; ++c) minify = minify || texel_size(i, c) > work.minify_above;
+    for (std::uint32_t t = 0; t < 4; ++t) {
+      const std::uint32_t seen_by = (work.masks[i] >> (2 * t)) & 3u;
+      (seen_by ? seen_tiles_[minify] : unseen_tiles_).push_back(static_cast<std::uint32_t>(i) << 4 | t << 2 | seen_by);
+    }
+  }
+  tile_count_ = seen_tiles_[0].size() + seen_tiles_[1].size();
+}
+
+void ExtractPass::run(bool minify, const SeenInputs& inputs, double depth_tolerance, double worse) {
+  const auto& tiles = seen_tiles_[minify];
+  if (tiles.empty()) return;
+  const gl::Program& program =
+      extract_[2 * static_cast<std::size_t>(inputs.camera_count() - 1) + static_cast<std::size_t>(minify)];
+  for (int c = 0; minify && c < inputs.camera_count(); ++c) inputs.camera(c).build_levels();
+  const auto filter = [&](GLint mode) {
+    for (int c = 0; minify && c < inputs.camera_count(); ++c)
+      glTextureParameteri(inputs.camera(c).image().name(), GL_TEXTURE_MIN_FILTER, mode);
+  };
+  filter(GL_LINEAR_MIPMAP_LINEAR);
+  inputs.bind(program, depth_tolerance);
+  program.set("worse", static_cast<float>(worse));
+  program.set("tile_count", static_cast<int>(tiles.size()));
+  tiles_[minify].assign(std::span<const std::uint32_t>(tiles));
+  glBindTextureUnit(7, geometry_.texture());
+  glBindTextureUnit(10, tiles_[minify].texture());
+  dispatch_groups(program, (tiles.size() + 3) / 4);
+  filter(GL_LINEAR);
+}
+
 void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
                           double worse) {
-  std::vector<std::uint32_t> tiles, unseen;
-  tiles.reserve(4 * work.jobs.size());
-  for (std::size_t i = 0; i < work.jobs.size(); ++i)
-    for (std::uint32_t t = 0; t < 4; ++t) {
-      const std::uint32_t cameras = (work.masks[i] >> (2 * t)) & 3u;
-      (cameras ? tiles : unseen).push_back(static_cast<std::uint32_t>(i) << 4 | t << 2 | cameras);
-    }
-  tile_count_ = tiles.size();
+  sort_tiles(work, inputs);
   if (work.jobs.empty()) return;
   jobs_.assign(work.jobs);
   geometry_.assign(work.geometry);
-  tiles_.assign(std::span<const std::uint32_t>(tiles));
-  copy_tiles_.assign(std::span<const std::uint32_t>(unseen));
   holes_.reserve(4 * work.jobs.size() * sizeof(std::uint32_t));
   holes_.buffer().clear_to_zero();
-
   glBindTextureUnit(9, store.heights.name());
   glBindTextureUnit(11, store.colours.name());
   glBindImageTexture(0, store.colours.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
-
-  const gl::Program& program =
-      extract_[2 * static_cast<std::size_t>(inputs.camera_count() - 1) + (work.minify ? 1 : 0)];
-  inputs.bind(program, depth_tolerance);
-  program.set("worse", static_cast<float>(worse));
-  glBindTextureUnit(7, geometry_.texture());
-  glBindTextureUnit(10, tiles_.texture());
-  program.set("tile_count", static_cast<int>(tiles.size()));
-  dispatch_groups(program, (tiles.size() + 3) / 4);
+  for (bool minify : {false, true}) run(minify, inputs, depth_tolerance, worse);
 
   copy_.use();
+  copy_tiles_.assign(std::span<const std::uint32_t>(unseen_tiles_));
   glBindTextureUnit(7, jobs_.texture());
   glBindTextureUnit(10, copy_tiles_.texture());
-  dispatch_groups(copy_, unseen.size());
+  dispatch_groups(copy_, unseen_tiles_.size());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

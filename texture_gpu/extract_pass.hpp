@@ -28,7 +28,8 @@ class ExtractPass {
     std::span<const PageJob> jobs;
     std::span<const std::uint8_t> masks;        ///< of each job (ChartAtlas::Allocation)
     std::span<const Eigen::Vector4f> geometry;  ///< ChartAtlas::write_job_geometry()
-    bool minify = false;                        ///< texels may be larger than pixels
+    /// Pages with texels of more pixels than this along a side take the mean of what they cover.
+    double minify_above = 1.5;
   };
   /// Extracts the images of `inputs` into all jobs (extract.comp); tiles that no camera sees are
   /// carried over (copy.comp).
@@ -43,7 +44,12 @@ class ExtractPass {
  private:
   gl::Program heights_, relevel_, copy_;
   std::array<gl::Program, 4> extract_;  // 2 * (cameras - 1) + minify
-  gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_, copy_tiles_, holes_, staged_, slots_;
+  void sort_tiles(const Work& work, const SeenInputs& inputs);
+  void run(bool minify, const SeenInputs& inputs, double depth_tolerance, double worse);
+
+  gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_[2], copy_tiles_, holes_, staged_, slots_;
+  std::array<std::vector<std::uint32_t>, 2> seen_tiles_;  // by whether they minify; job << 4 | tile << 2 | cameras
+  std::vector<std::uint32_t> unseen_tiles_;
   std::size_t tile_count_ = 0;
 };
 

@@ -6,8 +6,9 @@
 namespace foresight {
 
 struct TextureOptions {
-  /// Texels per metre of surface (thesis, d in eqs. 4.28/4.29); 0: each chart gets one texel per
-  /// pixel of the closest view so far. Range 0, 1 .. 1e6.
+  /// Most texels per metre of surface (thesis, d in eqs. 4.28/4.29); 0: no limit. Below it each
+  /// chart gets one texel per pixel of the closest view so far: more would hold nothing more.
+  /// Range 0, 1 .. 1e6.
   double texels_per_metre = 0;
   /// Most texels along a side of a chart (thesis, r_max in eqs. 4.28/4.29); 0: only memory limits.
   int max_texture = 0;

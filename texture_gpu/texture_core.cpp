@@ -66,8 +66,8 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
   clock_.mark("prepare");
   atlas_.write_job_geometry(allocation.jobs, views_, geometry_);
-  extract_.extract({allocation.jobs, allocation.masks, geometry_, coarse_textures_}, inputs_, store_,
-                   options_.depth_tolerance, options_.worse);
+  extract_.extract({allocation.jobs, allocation.masks, geometry_}, inputs_, store_, options_.depth_tolerance,
+                   options_.worse);
   clock_.mark("extract");
   fill_and_finish(allocation, *next);
 
@@ -102,9 +102,8 @@ void TextureCore::look(const PosedFrame& frame) {
   if (frame.right && cameras_.size() > 1) images_.push_back(&*frame.right);
   active_.clear();
   views_.clear();
-  coarse_textures_ = options_.texels_per_metre > 0 || options_.max_texture > 0 || atlas_.policy().bias < 0;
   for (std::size_t i = 0; i < images_.size(); ++i) {
-    cameras_[i]->upload(images_[i]->pixels, coarse_textures_);
+    cameras_[i]->upload(images_[i]->pixels);
     active_.push_back(cameras_[i].get());
   }
   clock_.mark("upload");

@@ -60,7 +60,6 @@ class TextureCore {
   std::span<const PageRecord> records_;
   gl::BufferTexture charts_;  // planned resolutions, before they are part of a generation
   std::vector<Eigen::Vector4f> chart_rows_, geometry_;
-  bool coarse_textures_ = false;  // some texels may be larger than pixels
   std::vector<std::uint32_t> table_, dirty_, chart_of_page_;
   std::vector<std::array<int, 3>> kept_;
   std::vector<int> first_page_before_;  // of the published generation

@@ -25,7 +25,7 @@ CameraFrame::CameraFrame(const Lens& lens, const std::shared_ptr<const gl::Scene
 }
 
 void CameraFrame::upload(const PosedImage& image) {
-  input_.upload(image.pixels, false);
+  input_.upload(image.pixels);
 }
 
 void CameraFrame::load(const TexelDrawing& drawing) {
