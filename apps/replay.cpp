@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "apps/output_files.hpp"
 #include "apps/replay_outputs.hpp"
 #include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
@@ -111,7 +112,7 @@ class Replay {
     record_.scene_triangles = run_.scene()->triangle_count();
     for (const Node& node : run_.scene()->nodes()) record_.degenerate_triangles += node.mesh.dropped_degenerate;
     record_.charts =
-        static_cast<std::uint64_t>(std::count_if(session_.surface().charts.begin(), session_.surface().charts.end(),
+        static_cast<std::uint64_t>(std::count_if(session_.surface()->charts.begin(), session_.surface()->charts.end(),
                                                  [](const Chart& c) { return c.radius > 0; }));
     record_.renderer = session_.driver().renderer + ", OpenGL " + session_.driver().version;
     record_.version = FORESIGHT_VERSION;
@@ -307,16 +308,11 @@ class Replay {
 int replay(const ReplayOptions& given) {
   if (given.delay_frames && given.delay_ms)
     throw InputError("--delay-ms", "--delay-frames is given too", "give one of the two");
-  const RunFolder run = RunFolder::open(given.run, {.scene = given.scene});
   ReplayOptions options = given;
-  options.textures.depth_tolerance =
-      given.model_accuracy.value_or(run.scene()->accuracy().value_or(options.textures.depth_tolerance));
+  const RunFolder run = open_run(options);
   const std::vector<std::size_t> arrived = arrivals(run, options);
   check_outputs(options, run);
-  ProgressBar bar("check", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr());
-  check_run_images(run,
-                   [&](std::size_t done, std::size_t) { std::cerr << bar.update(done, Clock::now()) << std::flush; });
-  std::cerr << bar.finish(run.frames().size(), Clock::now());
+  check_images(run);
   interrupted = false;
   std::signal(SIGINT, on_interrupt);
   return Replay(run, options, arrived).play();

@@ -1,4 +1,4 @@
-// The running parts of a replay: contexts, texture thread, predicted view.
+// The running parts of a replay or an export: contexts, texture thread, predicted view.
 #pragma once
 
 #include <memory>
@@ -13,13 +13,13 @@
 
 namespace foresight {
 
-/// Everything that a replay keeps alive between images. One thread.
+/// Everything that is kept alive between images. One thread.
 class ReplaySession {
  public:
   ReplaySession(const RunFolder& run, const TextureOptions& options, bool window);
 
   const gl::DriverInfo& driver() const { return driver_; }
-  const SurfacePatches& surface() const { return *surface_; }
+  const std::shared_ptr<const SurfacePatches>& surface() const { return surface_; }
   TextureThread& textures() { return *thread_; }
 
   /// Reads the pixels of frame `index` of the run, with poses and scene. Throws InputError.
