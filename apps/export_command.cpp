@@ -14,7 +14,7 @@ void add_export_command(CLI::App& app, std::function<int()>& action) {
   command->add_option("--until-frame", options->until_frame, "Last image to use, counted from 0 (default: all)")
       ->check(from_to(0, 1000000));
   command->add_option("--max-atlas", options->max_atlas, "Most pixels along a side of the picture of all textures")
-      ->check(from_to(64, 32768))
+      ->check(from_to(64, 16384))
       ->capture_default_str();
   command->footer(
       "Nodes stand where they stood at the last image used, and colours are at its exposure; holes are filled.\n\n"

@@ -10,10 +10,10 @@
 namespace foresight {
 namespace {
 
-// Level 2 has pixels of 4 px: its filter reaches one of their widths from a point, and that pixel
-// is half of one wider.
-constexpr int kGuard = 6;
+// A filter on level 2 takes in, besides the pixel of 4 x 4 px under a point, those next to it.
+// Rectangles that start and end between such pixels need one of them as guard.
 constexpr int kAlign = 4;
+constexpr int kGuard = kAlign;
 constexpr double kShrink = 0.97;  // a step of the search for what fits
 constexpr double kLeastScale = 1e-3;
 const cv::Vec3b kNeverSeen(128, 128, 128);
@@ -42,56 +42,80 @@ cv::Size outer_size(const Eigen::Vector2i& inner) {
   return {aligned(inner.x() + 2 * kGuard), aligned(inner.y() + 2 * kGuard)};
 }
 
-/// Colours of a chart without alpha; texels without any take those of the nearest that has one.
-cv::Mat without_holes(const cv::Mat& bgra) {
-  cv::Mat hole(bgra.size(), CV_8U), colours, distance, labels;
-  for (int y = 0; y < bgra.rows; ++y)
-    for (int x = 0; x < bgra.cols; ++x) hole.at<std::uint8_t>(y, x) = bgra.at<cv::Vec4b>(y, x)[3] < 128 ? 255 : 0;
-  cv::cvtColor(bgra, colours, cv::COLOR_BGRA2BGR);
-  const int holes = cv::countNonZero(hole);
-  if (holes == static_cast<int>(hole.total())) colours.setTo(kNeverSeen);
-  if (holes == 0 || holes == static_cast<int>(hole.total())) return colours;
-  cv::distanceTransform(hole, distance, labels, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
-  std::vector<cv::Vec3b> colour_of(static_cast<std::size_t>(hole.total()) + 1);
-  for (int y = 0; y < hole.rows; ++y)
-    for (int x = 0; x < hole.cols; ++x)
-      if (!hole.at<std::uint8_t>(y, x))
-        colour_of[static_cast<std::size_t>(labels.at<int>(y, x))] = colours.at<cv::Vec3b>(y, x);
-  for (int y = 0; y < hole.rows; ++y)
-    for (int x = 0; x < hole.cols; ++x)
-      if (hole.at<std::uint8_t>(y, x))
-        colours.at<cv::Vec3b>(y, x) = colour_of[static_cast<std::size_t>(labels.at<int>(y, x))];
-  return colours;
+/// 255 where a texel has no colour, else 0.
+cv::Mat holes_of(const cv::Mat& bgra) {
+  cv::Mat alpha, holes;
+  cv::extractChannel(bgra, alpha, 3);
+  cv::compare(alpha, 128, holes, cv::CMP_LT);
+  return holes;
 }
 
-/// One axis of the map from a pixel of a patch's rectangle to a chart's texels: slope, offset.
+/// Pixels in holes take the colour of the nearest that is in none; where all are, of what was never seen.
+void fill(cv::Mat& bgr, const cv::Mat& holes) {
+  const int count = cv::countNonZero(holes);
+  if (count == 0) return;
+  if (count == static_cast<int>(holes.total())) {
+    bgr.setTo(kNeverSeen);
+    return;
+  }
+  cv::Mat distance, labels;
+  cv::distanceTransform(holes, distance, labels, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
+  std::vector<cv::Vec3b> colour_of(holes.total() + 1);
+  for (int y = 0; y < holes.rows; ++y)
+    for (int x = 0; x < holes.cols; ++x)
+      if (!holes.at<std::uint8_t>(y, x))
+        colour_of[static_cast<std::size_t>(labels.at<int>(y, x))] = bgr.at<cv::Vec3b>(y, x);
+  for (int y = 0; y < holes.rows; ++y)
+    for (int x = 0; x < holes.cols; ++x)
+      if (holes.at<std::uint8_t>(y, x))
+        bgr.at<cv::Vec3b>(y, x) = colour_of[static_cast<std::size_t>(labels.at<int>(y, x))];
+}
+
+/// From a pixel of a patch's rectangle to a chart's texels, along one axis.
 struct AxisMap {
   double slope, offset;
+
+  /// Pixel p has its centre at (p - kGuard + 0.5) / px_per_metre on the patch's plane.
+  AxisMap(double px_per_metre, double uv0, double texels_per_metre)
+      : slope(texels_per_metre / px_per_metre), offset(((0.5 - kGuard) / px_per_metre - uv0) * texels_per_metre) {}
+
+  /// The same to a picture of the texels that is smaller by `factor`.
+  void shrink(double factor) {
+    slope *= factor;
+    offset = (offset + 0.5) * factor - 0.5;
+  }
 };
-AxisMap axis_map(double px_per_metre, double uv0, double texels_per_metre, int texels, int texels_after_shrinking) {
-  // Pixel p has its centre at (p - kGuard + 0.5) / px_per_metre on the patch's plane.
-  const double slope = texels_per_metre / px_per_metre;
-  const double offset = ((0.5 - kGuard) / px_per_metre - uv0) * texels_per_metre;
-  const double shrink = static_cast<double>(texels_after_shrinking) / texels;
-  return {slope * shrink, (offset + 0.5) * shrink - 0.5};
+
+cv::Mat resampled(const cv::Mat& texels, const AxisMap& x, const AxisMap& y, const cv::Rect& region, int filter,
+                  cv::BorderTypes border) {
+  const cv::Matx23d to_texel(x.slope, 0, x.offset + x.slope * region.x, 0, y.slope, y.offset + y.slope * region.y);
+  cv::Mat out;
+  cv::warpAffine(texels, out, to_texel, region.size(), filter | cv::WARP_INVERSE_MAP, border, cv::Scalar::all(255));
+  return out;
 }
 
-/// Resamples a chart into `region` (px) of its patch's rectangle.
-void draw_chart(const ChartTexels& texels, const Eigen::Vector2d& density, const cv::Rect& region, cv::Mat& rectangle) {
-  cv::Mat colours = without_holes(texels.colours);
+/// Resamples a chart into `region` (px) of its patch's rectangle, and says where it has no surface.
+void draw_chart(const ChartTexels& texels, const Eigen::Vector2d& density, const cv::Rect& region, cv::Mat& rectangle,
+                cv::Mat& holes) {
+  const Eigen::Vector2d& own = texels.raster.density;
+  AxisMap x(density.x(), texels.raster.uv0.x(), own.x()), y(density.y(), texels.raster.uv0.y(), own.y());
+  const cv::Mat hole = holes_of(texels.colours);
+  resampled(hole, x, y, region, cv::INTER_NEAREST, cv::BORDER_CONSTANT).copyTo(holes(region));
+
+  cv::Mat colours;
+  cv::cvtColor(texels.colours, colours, cv::COLOR_BGRA2BGR);
+  fill(colours, hole);
   // Sharper than the rectangle: means first, or fine patterns would alias.
-  const Eigen::Array2d ratio = density.array() / texels.raster.density.array();
-  const auto shrunk = [](int size, double r) {
-    return r < 0.95 ? std::max(1, static_cast<int>(std::lround(size * r))) : size;
+  const auto shrunk = [](int size, double ratio) {
+    return ratio < 0.95 ? std::max(1, static_cast<int>(std::lround(size * ratio))) : size;
   };
-  const cv::Size size(shrunk(colours.cols, ratio.x()), shrunk(colours.rows, ratio.y()));
-  const AxisMap x = axis_map(density.x(), texels.raster.uv0.x(), texels.raster.density.x(), colours.cols, size.width);
-  const AxisMap y = axis_map(density.y(), texels.raster.uv0.y(), texels.raster.density.y(), colours.rows, size.height);
-  if (size != colours.size()) cv::resize(colours, colours, size, 0, 0, cv::INTER_AREA);
-  const cv::Matx23d to_texel(x.slope, 0, x.offset + x.slope * region.x, 0, y.slope, y.offset + y.slope * region.y);
-  cv::Mat part;
-  cv::warpAffine(colours, part, to_texel, region.size(), cv::INTER_CUBIC | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
-  part.copyTo(rectangle(region));
+  const cv::Size size(shrunk(colours.cols, density.x() / own.x()), shrunk(colours.rows, density.y() / own.y()));
+  if (size != colours.size()) {
+    x.shrink(static_cast<double>(size.width) / colours.cols);
+    y.shrink(static_cast<double>(size.height) / colours.rows);
+    cv::resize(colours, colours, size, 0, 0, cv::INTER_AREA);
+  }
+  resampled(colours, x, y, region, cv::INTER_CUBIC, cv::BORDER_REPLICATE).copyTo(rectangle(region));
 }
 
 /// First pixel whose centre lies in each cell along one axis, and the end: outermost cells reach
@@ -104,24 +128,27 @@ std::vector<int> cell_bounds(int cells, double cell_px, int size) {
   return out;
 }
 
-/// Draws all cells of a patch into its rectangle.
+/// Draws all cells of a patch into its rectangle, and continues the surface where it has none.
 void draw_patch(const TextureReadback& textures, const Patch& patch, const Eigen::Vector2d& density,
                 cv::Mat rectangle) {
   const Eigen::Vector2d cell_px = patch.cell_size().cwiseProduct(density);
   const std::vector<int> xs = cell_bounds(patch.cells.x(), cell_px.x(), rectangle.cols),
                          ys = cell_bounds(patch.cells.y(), cell_px.y(), rectangle.rows);
+  cv::Mat holes(rectangle.size(), CV_8U, cv::Scalar(255));
   for (int i = 0; i < patch.cells.prod(); ++i) {
     const auto x = static_cast<std::size_t>(i % patch.cells.x()), y = static_cast<std::size_t>(i / patch.cells.x());
     const cv::Rect region(xs[x], ys[y], xs[x + 1] - xs[x], ys[y + 1] - ys[y]);
     if (region.empty()) continue;
     const int chart = patch.first_chart + i;
     if (textures.resolution(chart).x() > 0) {
-      draw_chart(*textures.chart(chart), density, region, rectangle);
-    } else {
+      draw_chart(*textures.chart(chart), density, region, rectangle, holes);
+    } else if (textures.surface().charts[static_cast<std::size_t>(chart)].radius > 0) {
       const cv::Vec4b mean = textures.mean(chart);
+      holes(region).setTo(0);
       rectangle(region).setTo(mean[3] == 128 ? cv::Vec3b(mean[0], mean[1], mean[2]) : kNeverSeen);
     }
   }
+  fill(rectangle, holes);
 }
 
 }  // namespace

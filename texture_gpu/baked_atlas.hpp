@@ -32,8 +32,8 @@ struct BakedAtlas {
 };
 
 /// Never larger than `most` px a side: resolutions are lowered together until everything fits.
-/// What no camera ever saw, nor anything beside it, is grey. Any thread; takes about 1 s per 20
-/// million px. Throws InputError naming --max-atlas where not even the smallest rectangles fit.
+/// What no camera ever saw, nor anything beside it, is grey. Any thread. Throws
+/// InputError naming --max-atlas where not even the smallest rectangles fit.
 BakedAtlas bake_atlas(const TextureReadback& textures, int most);
 
 }  // namespace foresight

@@ -134,7 +134,7 @@ TEST_F(BakedAtlasTest, ShowsWhatTheTexturesHold) {
   // Coarser levels blur, also over the folds between charts, but never take in another patch.
   const cv::Mat level1 = next_level(atlas.colours), level2 = next_level(level1);
   EXPECT_LT(error(atlas, level1).first, 1.6);
-  EXPECT_LT(error(atlas, level2).first, 2.5);
+  EXPECT_LT(error(atlas, level2).first, 3);
   EXPECT_LT(error(atlas, level2).second, 0.03);
 }
 
@@ -158,6 +158,24 @@ TEST_F(BakedAtlasTest, NoFilterReachesAnotherPatch) {
       EXPECT_LE(last.y(), place.rectangle.br().y);
     }
   }
+}
+
+// The corner of an L is a cell without surface; filters at its rim still find the L's colours.
+TEST_F(BakedAtlasTest, CellsWithoutSurfaceContinueTheirNeighbours) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.8F, 0, 0}, {0.8F, 0.2F, 0}, {0.2F, 0.2F, 0}, {0.2F, 0.8F, 0}, {0, 0.8F, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}};
+  scene_ = std::make_shared<SceneModel>(std::vector<Node>{{"L", mesh, -1, Pose::Identity()}});
+  surface_ = std::make_shared<SurfacePatches>(find_surface_patches(*scene_, {.chart_extent = 0.1}));
+  ASSERT_EQ(surface_->patches.size(), 1u);
+  ASSERT_TRUE(
+      std::any_of(surface_->charts.begin(), surface_->charts.end(), [](const Chart& c) { return c.radius == 0; }));
+  extract({look_at({0.2, 0.3, 1.3}, {0.3, 0.3, 0})});
+  const BakedAtlas atlas = bake_atlas(*textures_, kLargest);
+  const cv::Mat rectangle = atlas.colours(atlas.places[0].rectangle);
+  for (int y = 0; y < rectangle.rows; ++y)
+    for (int x = 0; x < rectangle.cols; ++x)
+      ASSERT_NE(rectangle.at<cv::Vec3b>(y, x), cv::Vec3b(128, 128, 128)) << "grey at " << x << ", " << y;
 }
 
 TEST_F(BakedAtlasTest, IsScaledDownToFit) {
