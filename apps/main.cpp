@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "apps/export_command.hpp"
 #include "apps/replay_command.hpp"
 #include "apps/sample_command.hpp"
 #include "common/error.hpp"
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   std::function<int()> action;
   foresight::add_replay_command(app, action);
+  foresight::add_export_command(app, action);
   foresight::add_sample_command(app, action);
 
   try {

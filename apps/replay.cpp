@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "apps/output_files.hpp"
 #include "apps/replay_outputs.hpp"
 #include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
@@ -318,16 +319,11 @@ int replay(const ReplayOptions& given) {
   if (given.pipeline == ReplayPipeline::thesis && given.real_time)
     throw InputError("--real-time", "the thesis' pipeline draws and extracts in one thread",
                      "leave --real-time away, or use --pipeline core");
-  const RunFolder run = RunFolder::open(given.run, {.scene = given.scene});
   ReplayOptions options = given;
-  options.textures.depth_tolerance =
-      given.model_accuracy.value_or(run.scene()->accuracy().value_or(options.textures.depth_tolerance));
+  const RunFolder run = open_run(options);
   const std::vector<std::size_t> arrived = arrivals(run, options);
   check_outputs(options, run);
-  ProgressBar bar("check", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr());
-  check_run_images(run,
-                   [&](std::size_t done, std::size_t) { std::cerr << bar.update(done, Clock::now()) << std::flush; });
-  std::cerr << bar.finish(run.frames().size(), Clock::now());
+  check_images(run);
   interrupted = false;
   std::signal(SIGINT, on_interrupt);
   return Replay(run, options, arrived).play();

@@ -4,8 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "common/time.hpp"
-#include "texture_gpu/options.hpp"
+#include "apps/run_options.hpp"
 
 namespace foresight {
 
@@ -14,14 +13,10 @@ enum class ReplayPipeline {
   thesis,  ///< thesis_pipeline.hpp, the baseline
 };
 
-struct ReplayOptions {
-  std::filesystem::path run;
-  std::optional<std::filesystem::path> scene;  ///< instead of the run's own model
-  std::optional<int> delay_frames;             ///< not with delay_ms
-  std::optional<double> model_accuracy;        ///< metres; default: what the model states, else 0.02
-  std::optional<double> delay_ms;              ///< not with delay_frames; without either: 0
+struct ReplayOptions : RunOptions {
   ReplayPipeline pipeline = ReplayPipeline::core;
-  TextureOptions textures;
+  std::optional<int> delay_frames;              ///< not with delay_ms
+  std::optional<double> delay_ms;               ///< not with delay_frames; without either: 0
   std::optional<std::filesystem::path> out;     ///< folder for pictures
   std::optional<std::filesystem::path> report;  ///< JSON file
   std::optional<std::filesystem::path> html;    ///< HTML file

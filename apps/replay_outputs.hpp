@@ -6,12 +6,8 @@
 
 namespace foresight {
 
-/// Refuses outputs that cannot be written, that are each other, or that would overwrite the run.
-/// Makes each missing folder and a file in it to find out, and removes both again. Throws
-/// InputError naming the option, the path, the reason and the cure.
+/// Refuses outputs that cannot be written, that are each other, or that would overwrite the run
+/// (output_files.hpp). Throws InputError naming the option, the path, the reason and the cure.
 void check_outputs(const ReplayOptions& options, const RunFolder& run);
-
-/// Makes `folder` and all above it. Throws RuntimeFailure.
-void make_folder(const std::filesystem::path& folder);
 
 }  // namespace foresight

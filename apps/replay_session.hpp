@@ -1,4 +1,4 @@
-// The running parts of a replay: contexts, texture pipeline, predicted view.
+// The running parts of a replay or an export: contexts, texture pipeline, predicted view.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace foresight {
 
-/// Everything that a replay keeps alive between images. One thread.
+/// Everything that is kept alive between images. One thread.
 class ReplaySession {
  public:
   /// With `thesis`, that pipeline replaces the texture core; textures() and surface() do not exist then.
@@ -24,6 +24,7 @@ class ReplaySession {
   const gl::DriverInfo& driver() const { return driver_; }
   /// Surfaces with a texture of their own: the core's charts, the thesis' polygons.
   std::size_t surface_count() const;
+  const std::shared_ptr<const SurfacePatches>& surface() const { return surface_; }
   TextureThread& textures() { return *thread_; }
 
   /// Extracts one frame and returns when its textures are there.

@@ -12,8 +12,8 @@ namespace {
 constexpr std::uint8_t kSeen = 255, kFilled = 128, kBare = 64;
 constexpr std::uint8_t kFirstSeenCode = 2;  // alpha codes: atlas.glsl
 
-Eigen::Vector2i page_grid(const ChartRaster& raster) {
-  return {(raster.width + atlas::kPage - 1) / atlas::kPage, (raster.height + atlas::kPage - 1) / atlas::kPage};
+Eigen::Vector2i page_grid(const Eigen::Vector2i& texels) {
+  return (texels.array() + atlas::kPage - 1) / atlas::kPage;
 }
 
 /// Packed RGBA8, as shaders pack it.
@@ -59,9 +59,8 @@ TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_
   std::size_t count = 0;
   for (std::size_t i = 0; i < places_.size(); ++i) {
     if (places_[i].density.x() <= 0) continue;
-    const Eigen::Vector2i size = chart_size(surface_->charts[i], places_[i].density);
-    const Eigen::Array2i pages = (size.array() + atlas::kPage - 1) / atlas::kPage;
-    count = std::max(count, static_cast<std::size_t>(places_[i].first_page + pages.prod()));
+    const int pages = page_grid(chart_size(surface_->charts[i], places_[i].density)).prod();
+    count = std::max(count, static_cast<std::size_t>(places_[i].first_page + pages));
   }
   const auto table = read<std::uint32_t>(textures.table, count), coarse = read<std::uint32_t>(textures.coarse, count);
   means_ = read<std::uint32_t>(textures.means, places_.size());
@@ -81,6 +80,15 @@ TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_
   gl::check_errors("reading textures back");
 }
 
+Eigen::Vector2d TextureReadback::resolution(int index) const {
+  const auto i = static_cast<std::size_t>(index);
+  if (places_[i].density.x() <= 0) return {0, 0};
+  const auto first = pages_.begin() + places_[i].first_page;
+  const bool any = std::any_of(first, first + page_grid(chart_size(surface_->charts[i], places_[i].density)).prod(),
+                               [](const Page& page) { return page.slot != atlas::kNoSlot; });
+  return any ? places_[i].density : Eigen::Vector2d(0, 0);
+}
+
 cv::Vec4b TextureReadback::mean(int index) const {
   return unpack(means_[static_cast<std::size_t>(index)]);
 }
@@ -95,7 +103,7 @@ std::optional<ChartTexels> TextureReadback::chart(int index) const {
   out.triangle = triangles_under(*surface_, index, out.raster);
   keep_own_cell(out);
 
-  const Eigen::Vector2i size = page_grid(out.raster);
+  const Eigen::Vector2i size = page_grid({out.width(), out.height()});
   const Page* pages = pages_.data() + place.first_page;
   out.colours.create(out.height(), out.width(), CV_8UC4);
   for (int y = 0; y < out.height(); ++y)

@@ -66,6 +66,9 @@ class TextureReadback {
   /// Nothing for a chart that never came into view: mean() stands in for it.
   std::optional<ChartTexels> chart(int index) const;
 
+  /// Texels per metre along u and v of a chart that has pages with colours; 0 for any other.
+  Eigen::Vector2d resolution(int index) const;
+
   /// Mean colour of a chart, handed on from its neighbours where it was never seen: BGR as stored,
   /// alpha 128; all 0 but alpha 64 where there is none.
   cv::Vec4b mean(int index) const;

@@ -5,6 +5,8 @@
 
 #include <cerrno>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "common/error.hpp"
 
@@ -34,29 +36,60 @@ int write_and_close(int fd, std::string_view bytes) {
   return error;
 }
 
+/// A file written under a temporary name, which goes with this unless it was renamed.
+class WrittenFile {
+ public:
+  WrittenFile(fs::path path, std::string_view bytes) : path_(std::move(path)) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path_, ignored);
+    if (fs::is_directory(status)) fail(path_, EISDIR);
+    if (fs::exists(status) && !fs::is_regular_file(status)) {  // a pipe or a device
+      const int fd = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+      const int error = fd < 0 ? errno : write_and_close(fd, bytes);
+      if (error) fail(path_, error);
+      return;
+    }
+    target_ = fs::exists(status) ? fs::canonical(path_) : path_;
+    fs::path temporary = target_;
+    temporary += ".part" + std::to_string(::getpid());
+    const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (fd < 0) fail(path_, errno);
+    temporary_ = std::move(temporary);
+    if (const int error = write_and_close(fd, bytes)) {
+      ::unlink(temporary_.c_str());
+      fail(path_, error);
+    }
+  }
+  WrittenFile(WrittenFile&& other) noexcept
+      : path_(std::move(other.path_)),
+        target_(std::move(other.target_)),
+        temporary_(std::exchange(other.temporary_, fs::path())) {}
+  ~WrittenFile() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+
+  void rename() {
+    if (temporary_.empty()) return;
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, errno);
+    temporary_.clear();
+  }
+
+ private:
+  fs::path path_, target_;
+  fs::path temporary_;  // empty: nothing to rename or to remove
+};
+
 }  // namespace
 
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  if (fs::is_directory(status)) fail(path, EISDIR);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    const int fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    const int error = fd < 0 ? errno : write_and_close(fd, bytes);
-    if (error) fail(path, error);
-    return;
-  }
-  const fs::path target = fs::exists(status) ? fs::canonical(path) : path;
-  fs::path temporary = target;
-  temporary += ".part" + std::to_string(::getpid());
-  const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd < 0) fail(path, errno);
-  int error = write_and_close(fd, bytes);
-  if (!error && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
-  if (error) {
-    ::unlink(temporary.c_str());
-    fail(path, error);
-  }
+  WrittenFile(path, bytes).rename();
+}
+
+void write_files_atomically(std::span<const FileContent> files) {
+  std::vector<WrittenFile> written;
+  written.reserve(files.size());
+  for (const FileContent& file : files) written.emplace_back(file.path, file.bytes);
+  for (WrittenFile& file : written) file.rename();
 }
 
 }  // namespace foresight

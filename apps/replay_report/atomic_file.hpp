@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 namespace foresight {
@@ -11,5 +12,14 @@ namespace foresight {
 /// followed; a path that is no regular file (a pipe, /dev/stdout) is written directly.
 /// Throws RuntimeFailure naming `path`, the cause and the cure; no temporary file stays behind.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+struct FileContent {
+  std::filesystem::path path;
+  std::string_view bytes;
+};
+
+/// The same for files that belong together: none is renamed before all are written, so that a full
+/// disk leaves the old ones, or none.
+void write_files_atomically(std::span<const FileContent> files);
 
 }  // namespace foresight

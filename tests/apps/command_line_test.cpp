@@ -9,7 +9,7 @@ using testing::HasSubstr;
 
 TEST(CommandLine, HelpIsNoError) {
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"--help"}, {"replay", "--help"}, {"sample", "--help"}}) {
+       {std::vector<std::string>{"--help"}, {"replay", "--help"}, {"export", "--help"}, {"sample", "--help"}}) {
     const Outcome outcome = run_program(arguments);
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.out, HasSubstr("Usage"));
@@ -34,6 +34,7 @@ TEST(CommandLine, WrongWordsEndWithCode2AndTheWayToTheHelp) {
       {{"replya"}, "did you mean 'replay'?"},
       {{"--frobnicate"}, "subcommand"},
       {{"replay"}, "RUN is required"},
+      {{"export", "x"}, "--out is required"},
       {{"sample"}, "OUT is required"},
       {{"sample", "x", "--frobnicate"}, "--frobnicate"},
       {{"replay", "x", "y"}, "y"},

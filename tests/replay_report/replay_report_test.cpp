@@ -127,6 +127,20 @@ TEST(AtomicFile, ReplacesAndLeavesNothingElse) {
   EXPECT_EQ(folder.files(), 2u);
 }
 
+TEST(AtomicFile, FilesThatBelongTogetherAreAllNewOrAllOld) {
+  const Folder folder;
+  write_files_atomically(std::vector<FileContent>{{folder / "a", "old a"}, {folder / "b", "old b"}});
+  EXPECT_THROW(write_files_atomically(std::vector<FileContent>{{folder / "a", "new"}, {"/dev/full", "x"}}),
+               RuntimeFailure);
+  EXPECT_THROW(write_files_atomically(std::vector<FileContent>{{folder / "c", "new"}, {folder / "missing/d", "x"}}),
+               RuntimeFailure);
+  EXPECT_EQ(read(folder / "a") + read(folder / "b"), "old aold b");
+  EXPECT_EQ(folder.files(), 2u);
+  write_files_atomically(std::vector<FileContent>{{folder / "a", "1"}, {folder / "b", "2"}});
+  EXPECT_EQ(read(folder / "a") + read(folder / "b"), "12");
+  EXPECT_EQ(folder.files(), 2u);
+}
+
 TEST(AtomicFile, FailureNamesFileAndCureAndKeepsTheOldContent) {
   const Folder folder;
   try {

@@ -1,0 +1,129 @@
+#include "apps/export.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "apps/output_files.hpp"
+#include "apps/replay_report/atomic_file.hpp"
+#include "apps/replay_report/progress_bar.hpp"
+#include "apps/replay_session.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "texture_gpu/gltf_scene.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// The files of one export.
+struct Outputs {
+  fs::path model;
+  fs::path bin, png;  // empty for .glb, which holds them
+};
+
+Outputs outputs_of(const ExportOptions& options) {
+  std::string extension = options.out.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".glb") return {options.out, {}, {}};
+  if (extension != ".gltf")
+    throw InputError(
+        "--out " + options.out.string(),
+        extension.empty() ? "has no extension" : in_quotes(extension) + " is not a form that can be written",
+        "name the file .glb or .gltf");
+  Outputs out{options.out, options.out, options.out};
+  out.bin.replace_extension(".bin");
+  out.png.replace_extension(".png");
+  return out;
+}
+
+void check_outputs(const Outputs& outputs, const RunFolder& run, const ExportOptions& options) {
+  const auto inputs = input_files(run, options);
+  for (const fs::path& file : {outputs.model, outputs.bin, outputs.png})
+    if (!file.empty()) check_output_file("--out", file, inputs);
+}
+
+std::size_t image_count(const RunFolder& run, const ExportOptions& options) {
+  const std::size_t count = run.frames().size();
+  if (!options.until_frame) return count;
+  const auto wanted = static_cast<std::size_t>(*options.until_frame) + 1;
+  if (wanted > count)
+    throw InputError("--until-frame " + std::to_string(*options.until_frame),
+                     "the run has only " + std::to_string(count) + " images",
+                     "give at most " + std::to_string(count - 1));
+  return wanted;
+}
+
+/// False: stopped by Ctrl-C.
+bool extract(ReplaySession& session, std::size_t count) {
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  ProgressBar bar("export", "images", count, now(), ProgressBar::for_stderr());
+  ChartAtlas::Policy policy;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (interrupted) return false;
+    policy = session.textures().process(session.load(i)).policy;
+    std::cerr << bar.update(i + 1, now()) << std::flush;
+  }
+  std::cerr << bar.finish(count, now());
+  if (policy.evicted_pages || policy.steps_down)
+    std::printf(
+        "The texture budget was reached, so some surfaces are coarser or forgotten; give more with "
+        "--texture-memory-mb.\n");
+  return true;
+}
+
+std::string as_png(const cv::Mat& picture) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".png", picture, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+void write(const GltfModel& model, const Outputs& outputs) {
+  make_folder(fs::absolute(outputs.model).parent_path());
+  if (outputs.bin.empty()) return write_file_atomically(outputs.model, to_glb(model));
+  const GltfFiles files = to_gltf(model, outputs.bin.filename().string(), outputs.png.filename().string());
+  const FileContent all[] = {{outputs.png, model.png}, {outputs.bin, files.bin}, {outputs.model, files.gltf}};
+  write_files_atomically(all);
+}
+
+}  // namespace
+
+int export_model(const ExportOptions& given) {
+  const Outputs outputs = outputs_of(given);
+  ExportOptions options = given;
+  const RunFolder run = open_run(options);
+  const std::size_t count = image_count(run, options);
+  check_outputs(outputs, run, options);
+  check_images(run);
+  std::signal(SIGINT, [](int) {
+    interrupted = 1;
+    std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C ends the program even where a driver hangs
+  });
+
+  ReplaySession session(run, options.textures, std::nullopt, false);
+  if (!extract(session, count)) {
+    std::cerr << "\nforesight: stopped by Ctrl-C, nothing was written\n";
+    return 130;
+  }
+  const TextureLease lease = session.textures().textures().acquire();
+  const BakedAtlas atlas = bake_atlas(TextureReadback(*lease, session.surface()), options.max_atlas);
+  GltfModel model;
+  model.generator = "Foresight " FORESIGHT_VERSION;
+  model.nodes = gltf_nodes(*run.scene(), run.state_at(run.frames()[count - 1].left.time), *session.surface(), atlas);
+  model.png = as_png(atlas.colours);
+  write(model, outputs);
+  std::printf("%zu triangles, %zu nodes, textures of %zu images in %d x %d px\n", run.scene()->triangle_count(),
+              model.nodes.size(), count, atlas.colours.cols, atlas.colours.rows);
+  if (atlas.scale < 1)
+    std::printf("The textures were scaled by %.2f to fit; give more with --max-atlas.\n", atlas.scale);
+  std::printf("%s\n", outputs.model.c_str());
+  return 0;
+}
+
+}  // namespace foresight

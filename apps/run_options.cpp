@@ -1,0 +1,68 @@
+#include "apps/run_options.hpp"
+
+#include <chrono>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "apps/replay_report/progress_bar.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+
+CLI::Validator from_to(double low, double high) {
+  const auto text = [](double value) {
+    std::ostringstream stream;
+    stream << std::setprecision(8) << value;
+    return stream.str();
+  };
+  const std::string range = "from " + text(low) + " to " + text(high);
+  const auto check = [low, high, range](const std::string& given) {
+    const auto value = parse_number(given);
+    return value && *value >= low && *value <= high ? std::string()
+                                                    : in_quotes(given) + " is not a number " + range + "; give one";
+  };
+  return CLI::Validator(check, range, "range");
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("RUN", options.run, "Folder with camera.yaml, rgb.txt, trajectory.txt and scene.ply or scene.yaml")
+      ->required();
+  command.add_option("--scene", options.scene, "Model to use instead of the run's own");
+  command
+      .add_option("--texels-per-metre", options.textures.texels_per_metre,
+                  "Finest resolution of textures (default: one texel per pixel of the closest view)")
+      ->check(from_to(1.0, 1e6));
+  command.add_option("--max-texture", options.textures.max_texture, "Most texels along a side of a chart")
+      ->check(from_to(16, 4096));
+  command
+      .add_option_function<std::uint64_t>(
+          "--texture-memory-mb", [&options](std::uint64_t mb) { options.textures.memory_bytes = mb << 20; },
+          "Memory for textures, both generations")
+      ->check(from_to(1, 65536))
+      ->default_str(std::to_string(options.textures.memory_bytes >> 20));
+  command.add_option("--margin-px", options.textures.margin_px, "Pixels behind a silhouette that are not trusted")
+      ->check(from_to(0.0, 32.0))
+      ->capture_default_str();
+  command
+      .add_option("--model-accuracy-m", options.model_accuracy,
+                  "Largest usual error of the model (default: accuracy_m of scene.yaml, else 0.02)")
+      ->check(from_to(1e-4, 1.0));
+}
+
+RunFolder open_run(RunOptions& options) {
+  RunFolder run = RunFolder::open(options.run, {.scene = options.scene});
+  options.textures.depth_tolerance =
+      options.model_accuracy.value_or(run.scene()->accuracy().value_or(options.textures.depth_tolerance));
+  return run;
+}
+
+void check_images(const RunFolder& run) {
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  ProgressBar bar("check", "images", run.frames().size(), now(), ProgressBar::for_stderr());
+  check_run_images(run, [&](std::size_t done, std::size_t) { std::cerr << bar.update(done, now()) << std::flush; });
+  std::cerr << bar.finish(run.frames().size(), now());
+}
+
+}  // namespace foresight

@@ -1,0 +1,33 @@
+// What every command that turns a run into textures asks for, and how it opens the run.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+
+#include "scene/run_folder.hpp"
+#include "texture_gpu/options.hpp"
+
+namespace foresight {
+
+struct RunOptions {
+  std::filesystem::path run;
+  std::optional<std::filesystem::path> scene;  ///< instead of the run's own model
+  std::optional<double> model_accuracy;        ///< metres; default: what the model states, else 0.02
+  TextureOptions textures;
+};
+
+/// Adds RUN, --scene, and the options of the textures. `options` must live as long as `command`.
+void add_run_options(CLI::App& command, RunOptions& options);
+
+/// A number of the closed range; unlike CLI::Range it refuses "nan" too.
+CLI::Validator from_to(double low, double high);
+
+/// Reads and checks all of the run but its pixels, and sets options.textures.depth_tolerance by the
+/// model. Throws InputError.
+RunFolder open_run(RunOptions& options);
+
+/// Reads every image once, with a progress bar on stderr. Throws InputError for the first bad one.
+void check_images(const RunFolder& run);
+
+}  // namespace foresight
