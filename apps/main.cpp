@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "apps/replay_command.hpp"
-#include "apps/sample_command.hpp"
+#include "apps/synth_command.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   std::function<int()> action;
   foresight::add_replay_command(app, action);
-  foresight::add_sample_command(app, action);
+  foresight::add_synth_command(app, action);
 
   try {
     app.parse(argc, argv);

@@ -1,4 +1,4 @@
-// The camera of the sample run: exact rays through the lens, many per pixel, in linear light.
+// The camera of the synthetic runs: exact rays through the lens, many per pixel, in linear light.
 //
 // Shares no code with the OpenGL path, so its pictures are an independent truth for it.
 #pragma once
@@ -33,16 +33,33 @@ class RayTable {
   std::vector<Eigen::Vector2f> corners_;
 };
 
+/// What the camera sees, and what it sees it of.
+struct Picture {
+  explicit Picture(cv::Size size);
+
+  cv::Mat light;  ///< CV_32FC3, linear RGB; 0 where nothing is
+  cv::Mat depth;  ///< CV_32FC1, metres along the optical axis, of the ray through the pixel's centre; 0: nothing
+  cv::Mat facet;  ///< CV_32SC1, the facet that this ray meets, numbered as in LightMap; -1: nothing
+};
+
 /// Immutable; safe to share between threads. `lab` and `light` must outlive it.
 class Renderer {
  public:
-  static constexpr int kSide = 3;  ///< kSide^2 rays per pixel, on a regular grid
+  /// kSide^2 rays per pixel, on a regular grid; odd, so that one goes through the pixel's centre.
+  static constexpr int kSide = 3;
 
   Renderer(const Lab& lab, const LightMap& light) : lab_(lab), light_(light) {}
 
-  /// The picture (CV_8UC3, BGR, sRGB) with the plate at `T_world_plate`, lit by `irradiance`
-  /// (LightMap::with_plate_at the same pose). One thread. Black where the lens sees nothing.
-  cv::Mat render(const RayTable& rays, const Pose& T_world_camera, const Pose& T_world_plate,
+  const Lab& lab() const { return lab_; }
+  const LightMap& light() const { return light_; }
+
+  /// The rows [first_row, end_row) of what the camera sees while the parts stand at `T_world_part`,
+  /// lit by `irradiance` (LightMap::lit of the same state). One thread.
+  void render(const RayTable& rays, const Pose& T_world_camera, const LabState& T_world_part,
+              const LightMap::Irradiance& irradiance, int first_row, int end_row, Picture& out) const;
+
+  /// All rows.
+  Picture render(const RayTable& rays, const Pose& T_world_camera, const LabState& T_world_part,
                  const LightMap::Irradiance& irradiance) const;
 
  private:
