@@ -48,10 +48,7 @@ Pose HeadPath::at(double t) const {
   const auto& samples = track_.samples();
   if (time <= samples.front().time) return samples.front().pose;
   if (time >= samples.back().time) return samples.back().pose;
-  const auto after = std::upper_bound(samples.begin(), samples.end(), time,
-                                      [](RobotTime a, const PoseTrack::Sample& b) { return a < b.time; });
-  const auto before = after - 1;
-  return interpolate(before->pose, after->pose, to_seconds(time - before->time) / to_seconds(after->time - before->time));
+  return track_.at(time, Duration{0}).pose;
 }
 
 struct RoomCheck::Solid {

@@ -107,6 +107,10 @@ void aim(const RayTable& rays, const cv::Rect& tile, TileRays& out) {
           out.x[k] = d.x();
           out.y[k] = d.y();
         }
+      const Vector2f& centre = rays.centre(tile.x + c, tile.y + r);
+      k += kCentre - kSide * kSide;
+      out.x[k] = centre.x();
+      out.y[k] = centre.y();
     }
   out.inverse_depth.fill(0);
   out.view.fill(-1);
@@ -183,21 +187,27 @@ class PixelShader {
   Vector3f light_here_ = Vector3f::Zero(), mirror_here_ = Vector3f::Zero();
 };
 
+// (x / z, y / z) at pixels (column + offset, row + offset).
+std::vector<Vector2f> table(const Lens& lens, int columns, int rows, double offset) {
+  std::vector<Vector2f> out(static_cast<std::size_t>(columns) * rows,
+                            Vector2f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  parallel_for(static_cast<std::size_t>(rows), [&](std::size_t row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto ray = lens.unproject({column + offset, static_cast<double>(row) + offset});
+      if (ray && ray->z() > 0.02) out[row * columns + column] = (ray->head<2>() / ray->z()).cast<float>();
+    }
+  });
+  return out;
+}
+
 }  // namespace
 
 RayTable::RayTable(const Lens& lens)
     : width_(lens.width()),
       height_(lens.height()),
       pixel_angle_(static_cast<float>(1 / lens.parameters().fx)),
-      corners_(static_cast<std::size_t>(width_ + 1) * (height_ + 1),
-               Vector2f::Constant(std::numeric_limits<float>::quiet_NaN())) {
-  parallel_for(static_cast<std::size_t>(height_) + 1, [&](std::size_t row) {
-    for (int column = 0; column <= width_; ++column) {
-      const auto ray = lens.unproject({column - 0.5, static_cast<double>(row) - 0.5});
-      if (ray && ray->z() > 0.02) corners_[row * (width_ + 1) + column] = (ray->head<2>() / ray->z()).cast<float>();
-    }
-  });
-}
+      corners_(table(lens, width_ + 1, height_ + 1, -0.5)),
+      centres_(table(lens, width_, height_, 0)) {}
 
 Picture::Picture(cv::Size size)
     : light(size, CV_32FC3, cv::Scalar::all(0)),

@@ -22,15 +22,20 @@ class RayTable {
   float pixel_angle() const { return pixel_angle_; }  ///< radians per pixel on the axis
 
   /// (x / z, y / z) at the top-left corner of pixel (column, row), column <= width, row <= height.
-  /// Within a pixel, directions are bilinear to better than 1e-3 px. Not finite where the lens sees nothing.
+  /// Not finite where the lens sees nothing. Directions in between are taken as bilinear, to 1e-3 px in an
+  /// image of usual size.
   const Eigen::Vector2f& corner(int column, int row) const {
     return corners_[static_cast<std::size_t>(row) * (width_ + 1) + column];
+  }
+  /// The same at the centre of the pixel, exactly.
+  const Eigen::Vector2f& centre(int column, int row) const {
+    return centres_[static_cast<std::size_t>(row) * width_ + column];
   }
 
  private:
   int width_, height_;
   float pixel_angle_;
-  std::vector<Eigen::Vector2f> corners_;
+  std::vector<Eigen::Vector2f> corners_, centres_;
 };
 
 /// What the camera sees, and what it sees it of.

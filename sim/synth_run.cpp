@@ -94,6 +94,7 @@ class SynthRun {
   // As the reader will number the nodes, whatever the order of its robots' links is.
   void node_of_facet(const Lab& lab) {
     const SceneModel scene = read_scene(target_.path() / "scene.yaml", target_.path());
+    node_count_ = static_cast<int>(scene.nodes().size());
     for (const Part& part : lab.parts) node_.insert(node_.end(), part.facets.size(), scene.find(part.name).value());
   }
 
@@ -132,8 +133,8 @@ class SynthRun {
     std::string trajectory = "# time[s] tx ty tz[m] qx qy qz qw: true T_world_camera of this camera\n";
     for (const double t : track_times()) trajectory += format("%.9f ", t) + pose_text(T_world_eye(t, right)) + "\n";
     write_text(truth / "trajectory.txt", trajectory);
-    write_text(truth / "truth.yaml",
-               format("depth_unit_m: %g\nreadout_s: %.9g\n", kDepthUnit, options_.shutter.readout_s));
+    write_text(truth / "truth.yaml", format("depth_unit_m: %g\nreadout_s: %.9g\nnodes: %d\n", kDepthUnit,
+                                            options_.shutter.readout_s, node_count_));
   }
 
   SynthSummary write_images(const Lab& lab, const Polygons& polygons, const std::function<void(int, int)>& progress) {
@@ -199,7 +200,7 @@ class SynthRun {
 
   void write_marker(const SynthSummary& summary) const {
     const auto& o = options_;
-    std::string text = std::string(kMarkerLine) + "\n";
+    std::string text = format("%s\n", kMarkerLine);
     text += format("size: [%d, %d]\nframes: %d\nrate_hz: %.9g\nstereo: %s\nlens: %s\nseed: %u\n", o.width, o.height,
                    o.frames, o.rate, o.stereo ? "true" : "false",
                    o.fisheye ? "fisheye" : (o.distortion ? "distorted" : "pinhole"), o.seed);
@@ -218,6 +219,7 @@ class SynthRun {
   std::optional<HeadPath> head_path_;
   std::vector<Lens> lenses_;
   std::vector<int> node_;  // of each facet
+  int node_count_ = 0;
   std::vector<Pose> pose_errors_;
 };
 

@@ -21,10 +21,10 @@ struct SynthOptions {
   bool fisheye = false;    ///< an equidistant lens of 150 degrees along the diagonal, instead of the other two
   bool distortion = true;  ///< a plumb_bob lens with strong barrel distortion; else an ideal pinhole
   unsigned seed = 1;       ///< varies wood grain, small print, noise and pose errors
-  Shutter shutter;         ///< exposure and readout 0 .. 1 s
-  Sensor sensor;           ///< noise 0 .. 100, shares 0 .. 0.9; its seed is set from `seed`
+  Shutter shutter = {};    ///< exposure and readout 0 .. 1 s
+  Sensor sensor = {};      ///< noise 0 .. 100, shares 0 .. 0.9; its seed is set from `seed`
   double pose_error_px = 0;  ///< root mean square displacement in the image by the errors of trajectory.txt, 0 .. 100
-  std::optional<std::filesystem::path> head_path;  ///< instead of the built-in one; sim/head_path.hpp
+  std::optional<std::filesystem::path> head_path = {};  ///< instead of the built-in one; sim/head_path.hpp
   bool truth = true;                               ///< write the true surface of each pixel and the true poses
 };
 
