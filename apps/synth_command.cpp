@@ -38,7 +38,8 @@ int run(Arguments arguments) {
   arguments.options.shutter.readout_s = arguments.rolling_shutter_ms * 1e-3;
   if (!arguments.head_path.empty()) arguments.options.head_path = arguments.head_path;
   std::signal(SIGINT, [](int) { interrupted = 1; });
-  const std::size_t images = static_cast<std::size_t>(std::max(0, arguments.options.frames)) * (arguments.options.stereo ? 2 : 1);
+  const std::size_t images =
+      static_cast<std::size_t>(std::max(0, arguments.options.frames)) * (arguments.options.stereo ? 2 : 1);
   const auto now = [] { return std::chrono::steady_clock::now(); };
   std::fputs("synth: lighting the lab\n", stderr);
   ProgressBar bar("synth", "images", images, now(), ProgressBar::for_stderr());
@@ -62,7 +63,8 @@ int run(Arguments arguments) {
 }  // namespace
 
 void add_synth_command(CLI::App& app, std::function<int()>& action) {
-  CLI::App* command = app.add_subcommand("synth", "Write a synthetic run: a lab with a moving arm, and its exact truth");
+  CLI::App* command =
+      app.add_subcommand("synth", "Write a synthetic run: a lab with a moving arm, and its exact truth");
   const auto arguments = std::make_shared<Arguments>();
   sim::SynthOptions& options = arguments->options;
   command->add_option("OUT", arguments->out, "Folder to write; an earlier synthetic run in it is replaced")->required();
@@ -79,15 +81,17 @@ void add_synth_command(CLI::App& app, std::function<int()>& action) {
                       "'t x y z qx qy qz qw', seconds from 0, camera to world");
   command->add_option("--noise", options.sensor.noise, "Standard deviation at mid grey, in 8-bit values")
       ->capture_default_str();
-  command->add_option("--exposure-drift", options.sensor.exposure_drift, "Share by which the exposure swings up and down")
+  command
+      ->add_option("--exposure-drift", options.sensor.exposure_drift, "Share by which the exposure swings up and down")
       ->capture_default_str();
   command->add_option("--vignetting", options.sensor.vignetting, "Share of the light that the corners lose")
       ->capture_default_str();
   command->add_option("--motion-blur", arguments->motion_blur_ms, "Exposure time in ms")->capture_default_str();
   command->add_option("--rolling-shutter", arguments->rolling_shutter_ms, "Readout time from first to last row in ms")
       ->capture_default_str();
-  command->add_option("--pose-error-px", options.pose_error_px,
-                      "Error of the poses in trajectory.txt: root mean square displacement in the image, in pixels")
+  command
+      ->add_option("--pose-error-px", options.pose_error_px,
+                   "Error of the poses in trajectory.txt: root mean square displacement in the image, in pixels")
       ->capture_default_str();
   command->add_flag("!--no-truth", options.truth, "Leave out the true depth, node and poses of each image");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });

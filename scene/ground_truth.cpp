@@ -29,8 +29,7 @@ cv::Mat read_plane(const fs::path& file, const Lens& lens) {
                          ", the camera's images are " + std::to_string(lens.width()) + "x" +
                          std::to_string(lens.height()),
                      kCure);
-  const cv::Mat out =
-      cv::imdecode(std::vector<std::uint8_t>(bytes.begin(), bytes.end()), cv::IMREAD_UNCHANGED);
+  const cv::Mat out = cv::imdecode(std::vector<std::uint8_t>(bytes.begin(), bytes.end()), cv::IMREAD_UNCHANGED);
   if (out.type() != CV_16UC1) throw InputError(file.string(), "cannot be decoded", kCure);
   return out;
 }

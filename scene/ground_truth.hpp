@@ -22,8 +22,8 @@ namespace foresight {
 class GroundTruth {
  public:
   struct Point {
-    int node = -1;            ///< index into the run's SceneModel
-    Eigen::Vector3d p_node;   ///< true surface point in the node's own frame at the capture instant, metres
+    int node = -1;           ///< index into the run's SceneModel
+    Eigen::Vector3d p_node;  ///< true surface point in the node's own frame at the capture instant, metres
   };
 
   /// The truth of one image. Owns its pixels.
@@ -40,7 +40,7 @@ class GroundTruth {
     friend class GroundTruth;
     Lens lens_;
     double unit_ = 0;
-    cv::Mat depth_, node_;                            // CV_16UC1
+    cv::Mat depth_, node_;                          // CV_16UC1
     std::vector<std::vector<Pose>> T_node_camera_;  // per row, or one for all; per node
   };
 
@@ -61,7 +61,7 @@ class GroundTruth {
  private:
   struct Camera {
     std::filesystem::path folder;
-    double unit = 0;       // metres
+    double unit = 0;  // metres
     Duration readout{0};
     PoseTrack track;
   };

@@ -78,8 +78,9 @@ class Covers {
   }
 
   void hand(Facets& f) {
-    add_turned(f, {{0, 0, steel_}, {0.038f, 0, orange_}, {0.038f, 0.010f, dark_}, {0.030f, 0.022f, dark_}, {0, 0.022f, dark_}},
-               14, 0.038f, 0.022f);
+    add_turned(
+        f, {{0, 0, steel_}, {0.038f, 0, orange_}, {0.038f, 0.010f, dark_}, {0.030f, 0.022f, dark_}, {0, 0.022f, dark_}},
+        14, 0.038f, 0.022f);
     BoxPaint palm = BoxPaint::all(shell_);
     palm.top = dark_;
     palm.left = palm.right = dark_;
@@ -101,12 +102,12 @@ class Covers {
  private:
   int wrap(float radius, float height, const std::string& label, std::uint32_t ring) {
     const double around = 2 * std::numbers::pi * radius;
-    return b_.material(
-        [=](double t, unsigned s) { return prints::arm_cover(around, height, t, label, ring, s); }, 0.8, 0.03f);
+    return b_.material([=](double t, unsigned s) { return prints::arm_cover(around, height, t, label, ring, s); }, 0.8,
+                       0.03f);
   }
   int wrap_flat(float width, float height) {
-    return b_.material(
-        [=](double t, unsigned s) { return prints::arm_cover(width, height, t, "G2", kBlue, s); }, 0.8, 0.03f);
+    return b_.material([=](double t, unsigned s) { return prints::arm_cover(width, height, t, "G2", kBlue, s); }, 0.8,
+                       0.03f);
   }
 
   LabBuilder& b_;

@@ -28,13 +28,15 @@ HeadPath::HeadPath(const std::filesystem::path& file, double last) {
     if (!samples.empty()) {
       require_ascending(row, samples.back().time, sample.time);
       if (sample.time - samples.back().time > PoseTrack::kLargestGap)
-        throw InputError(row.where(), "comes " + seconds_text(to_seconds(sample.time - samples.back().time)) +
-                                          " after the row before",
-                         "give poses no more than 0.2 s apart");
+        throw InputError(
+            row.where(),
+            "comes " + seconds_text(to_seconds(sample.time - samples.back().time)) + " after the row before",
+            "give poses no more than 0.2 s apart");
     }
     samples.push_back(sample);
   });
-  const double first = to_seconds(samples.front().time - RobotTime{}), end = to_seconds(samples.back().time - RobotTime{});
+  const double first = to_seconds(samples.front().time - RobotTime{}),
+               end = to_seconds(samples.back().time - RobotTime{});
   if (first > 1e-9)
     throw InputError(file.string(), "starts at " + seconds_text(first), "let it start at 0 s, when the run does");
   if (end < last - 1e-9)
@@ -84,7 +86,9 @@ std::string RoomCheck::fault(const Eigen::Vector3d& eye, const LabState& T_world
       return "is inside '" + solid->name + "'";
     for (int k = 0; k < 26; ++k) {
       const int i = k < 13 ? k : k + 1;
-      const Vector3f d = Vector3f(static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1), static_cast<float>(i / 9 - 1)).normalized();
+      const Vector3f d =
+          Vector3f(static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1), static_cast<float>(i / 9 - 1))
+              .normalized();
       if (solid->tracer.blocked(p, d, kClearance)) return "touches '" + solid->name + "'";
     }
   }

@@ -56,8 +56,7 @@ void add_wall_things(LabBuilder& b) {
       b.material([](double t, unsigned s) { return prints::wood(0.90, 0.19, t, 0xd9b98c, 0xa2774a, 0.30, s); });
   Facets& shelf = b.part("shelf", placed(0.52, -0.52, 0.26, 0), 0.010);
   add_box(shelf, {0, 0, 0}, {0.19f, 0.90f, 0.018f}, 0.002f, BoxPaint::all(board));
-  for (float y : {-0.34f, 0.34f})
-    add_box(shelf, {0.06f, y, -0.10f}, {0.06f, 0.02f, 0.10f}, 0, BoxPaint::all(steel));
+  for (float y : {-0.34f, 0.34f}) add_box(shelf, {0.06f, y, -0.10f}, {0.06f, 0.02f, 0.10f}, 0, BoxPaint::all(steel));
   constexpr std::uint32_t kColours[] = {0x7a2f2b, 0x23516b, 0x4c6b3a, 0xb98a2e, 0x3b3f63, 0x8a4a63, 0x2f6f6b, 0x5b4a3c};
   Facets& books = b.part("books", placed(0.51, -0.16, 0.278, 0), 0.010);
   float y = 0;

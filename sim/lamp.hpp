@@ -10,7 +10,7 @@ namespace foresight::sim::lamp {
 inline constexpr int kPoints = 64;       ///< the lamp is this many points: one bit each in a 64-bit word
 inline constexpr float kRadius = 0.44f;  ///< of the sphere around all of them, metres
 
-const Eigen::Vector3f& centre();                        ///< world
+const Eigen::Vector3f& centre();                       ///< world
 const std::array<Eigen::Vector3f, kPoints>& points();  ///< world
 
 /// Irradiance (linear RGB) at `p` with normal `n` from the lamp points in `seen`.

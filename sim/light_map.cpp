@@ -20,7 +20,7 @@ constexpr int kStillRays = 96, kMoverRays = 40, kShadeRays = 16;
 constexpr float kReach = 0.25f;  // metres around what moves within which it shades the daylight
 constexpr float kOffGeometry = 2e-4f, kOffRounded = 1e-3f;  // metres: no surface shades itself
 constexpr float kHidden = 0.005f;                           // metres: what is covered this closely is hardly seen
-constexpr float kBounce = 0.20f;  // light on what is met while gathering, unlit part
+constexpr float kBounce = 0.20f;                            // light on what is met while gathering, unlit part
 
 // The k-th of `count` directions about n, dense as the cosine (Malley's method on a spiral).
 Vector3f cosine_direction(const Vector3f& n, int k, int count) {
@@ -215,7 +215,7 @@ LightMap::Irradiance LightMap::lit(const LabState& T_world_part) const {
   for (std::size_t m = 0; m < moving_.size(); ++m) {
     const Eigen::Isometry3f T = T_world_part[static_cast<std::size_t>(moving_[m].part)].cast<float>();
     std::vector<Triangle> placed = solids_[m];
-    for (int facet = moving_[m].first_facet; Triangle& t : placed) {
+    for (int facet = moving_[m].first_facet; Triangle & t : placed) {
       for (Vector3f& p : t) p = T * p;
       movers.normals.push_back((t[1] - t[0]).cross(t[2] - t[0]));
       movers.facets.push_back(facet++);

@@ -74,8 +74,8 @@ class LightMap {
   std::vector<Eigen::Vector3f> albedo_;  // one per facet, mean
   std::vector<Sample> samples_;
   std::vector<Range> still_, moving_;
-  std::vector<int> still_facets_;            // facet of each of the still tracer's triangles
-  std::vector<Eigen::Vector3f> still_g_;     // normals of these
+  std::vector<int> still_facets_;              // facet of each of the still tracer's triangles
+  std::vector<Eigen::Vector3f> still_g_;       // normals of these
   std::vector<std::vector<Triangle>> solids_;  // of each moving part, node frame
   std::optional<Tracer> still_tracer_;
   std::vector<std::uint64_t> seen_;  // lamp points that a still sample sees, one bit each

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr int kBlock = 64;        // px; a block holds whole tiles
+constexpr int kBlock = 64;       // px; a block holds whole tiles
 constexpr int kTilePixels = 64;  // 8 x 8, or 64 x 1 where a row has its own instant
 constexpr int kSide = Renderer::kSide, kRays = kTilePixels * kSide * kSide;
 constexpr int kCentre = kSide * kSide / 2;  // the ray through the pixel's centre

@@ -78,7 +78,8 @@ Polygons polygons_of(const Lab& lab) {
       if (b == a + 1 || is_convex(part.facets, members[faces.root(a)])) polygons.join(a, b);
     std::map<int, int> numbers;
     for (int i = 0; i < static_cast<int>(part.facets.size()); ++i)
-      out.of_facet.push_back(numbers.try_emplace(polygons.root(i), out.count + static_cast<int>(numbers.size())).first->second);
+      out.of_facet.push_back(
+          numbers.try_emplace(polygons.root(i), out.count + static_cast<int>(numbers.size())).first->second);
     out.count += static_cast<int>(numbers.size());
   }
   return out;

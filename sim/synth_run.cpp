@@ -61,7 +61,9 @@ class SynthRun {
   double time(int frame) const { return frame / options_.rate; }
 
   Pose T_world_left(double t) const { return head_path_ ? head_path_->at(t) : T_world_camera_at(t); }
-  Pose T_world_eye(double t, bool right) const { return right ? Pose(T_world_left(t) * T_left_right()) : T_world_left(t); }
+  Pose T_world_eye(double t, bool right) const {
+    return right ? Pose(T_world_left(t) * T_left_right()) : T_world_left(t);
+  }
 
   SynthSummary write_all(const std::function<void(int, int)>& progress) {
     const Lab lab = make_lab(0.0005 * std::clamp(relative_, 0.6, 8.0), options_.seed);
@@ -180,7 +182,8 @@ class SynthRun {
         const double steps = picture.depth.at<float>(v, u) / kDepthUnit;
         const bool stored = facet >= 0 && steps < 65535;
         depth.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(stored ? std::lround(steps) : 0);
-        node.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(stored ? node_[static_cast<std::size_t>(facet)] + 1 : 0);
+        node.at<std::uint16_t>(v, u) =
+            static_cast<std::uint16_t>(stored ? node_[static_cast<std::size_t>(facet)] + 1 : 0);
         if (facet >= 0) seen[static_cast<std::size_t>(polygons.of_facet[static_cast<std::size_t>(facet)])] = 1;
       }
     if (options_.truth) {
@@ -194,7 +197,8 @@ class SynthRun {
   void write_trajectories() const {
     std::string text = "# time[s] tx ty tz[m] qx qy qz qw: T_world_camera of the left camera\n";
     for (int i = 0; i < options_.frames; ++i)
-      text += format("%.9f ", time(i)) + pose_text(T_world_left(time(i)) * pose_errors_[static_cast<std::size_t>(i)]) + "\n";
+      text += format("%.9f ", time(i)) + pose_text(T_world_left(time(i)) * pose_errors_[static_cast<std::size_t>(i)]) +
+              "\n";
     write_text(target_.path() / "trajectory.txt", text);
   }
 
@@ -204,9 +208,9 @@ class SynthRun {
     text += format("size: [%d, %d]\nframes: %d\nrate_hz: %.9g\nstereo: %s\nlens: %s\nseed: %u\n", o.width, o.height,
                    o.frames, o.rate, o.stereo ? "true" : "false",
                    o.fisheye ? "fisheye" : (o.distortion ? "distorted" : "pinhole"), o.seed);
-    text += format("noise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
-                   o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s,
-                   o.shutter.readout_s);
+    text +=
+        format("noise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
+               o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s, o.shutter.readout_s);
     text += format("pose_error_px: %.9g\nhead_path: %s\n", o.pose_error_px, o.head_path ? "given" : "built in");
     text += format("polygons: %d\npolygons_in_view: [%d, %d]\n", summary.polygons, summary.fewest_polygons_in_view,
                    summary.most_polygons_in_view);

@@ -13,24 +13,24 @@
 namespace foresight::sim {
 
 struct SynthOptions {
-  int width = 751;         ///< px, 16 .. 8192
-  int height = 570;        ///< px, 16 .. 8192
-  int frames = 320;        ///< 1 .. 1,000,000
-  double rate = 30;        ///< images per second, 0.1 .. 1000
-  bool stereo = false;     ///< a second camera, 65 mm to the right
-  bool fisheye = false;    ///< an equidistant lens of 150 degrees along the diagonal, instead of the other two
-  bool distortion = true;  ///< a plumb_bob lens with strong barrel distortion; else an ideal pinhole
-  unsigned seed = 1;       ///< varies wood grain, small print, noise and pose errors
-  Shutter shutter = {};    ///< exposure and readout 0 .. 1 s
-  Sensor sensor = {};      ///< noise 0 .. 100, shares 0 .. 0.9; its seed is set from `seed`
+  int width = 751;           ///< px, 16 .. 8192
+  int height = 570;          ///< px, 16 .. 8192
+  int frames = 320;          ///< 1 .. 1,000,000
+  double rate = 30;          ///< images per second, 0.1 .. 1000
+  bool stereo = false;       ///< a second camera, 65 mm to the right
+  bool fisheye = false;      ///< an equidistant lens of 150 degrees along the diagonal, instead of the other two
+  bool distortion = true;    ///< a plumb_bob lens with strong barrel distortion; else an ideal pinhole
+  unsigned seed = 1;         ///< varies wood grain, small print, noise and pose errors
+  Shutter shutter = {};      ///< exposure and readout 0 .. 1 s
+  Sensor sensor = {};        ///< noise 0 .. 100, shares 0 .. 0.9; its seed is set from `seed`
   double pose_error_px = 0;  ///< root mean square displacement in the image by the errors of trajectory.txt, 0 .. 100
   std::optional<std::filesystem::path> head_path = {};  ///< instead of the built-in one; sim/head_path.hpp
-  bool truth = true;                               ///< write the true surface of each pixel and the true poses
+  bool truth = true;                                    ///< write the true surface of each pixel and the true poses
 };
 
 /// Numbers about what was written.
 struct SynthSummary {
-  int polygons = 0;                                     ///< of the lab
+  int polygons = 0;                                            ///< of the lab
   int fewest_polygons_in_view = 0, most_polygons_in_view = 0;  ///< seen at the centre of a pixel, over all images
 };
 

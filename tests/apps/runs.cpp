@@ -77,8 +77,7 @@ LoopedRun::LoopedRun(int images, double interval_s) {
     fs::create_hard_link(run / files[source], path() / text);
     list += time + text + "\n";
     trajectory += time + poses[source] + "\n";
-    for (std::size_t k = 0; k < movers; ++k)
-      nodes += time + tracks[source * instants_per_image * movers + k] + "\n";
+    for (std::size_t k = 0; k < movers; ++k) nodes += time + tracks[source * instants_per_image * movers + k] + "\n";
   }
   write("rgb.txt", list);
   write("trajectory.txt", trajectory);

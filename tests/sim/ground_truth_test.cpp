@@ -28,8 +28,9 @@ double distance_to_triangle(const Vector3d& p, const Vector3d& a, const Vector3d
 double distance_to_mesh(const Vector3d& p, const Mesh& mesh) {
   double least = 1;
   for (const auto& t : mesh.triangles)
-    least = std::min(least, distance_to_triangle(p, mesh.vertices[t[0]].cast<double>(),
-                                                 mesh.vertices[t[1]].cast<double>(), mesh.vertices[t[2]].cast<double>()));
+    least =
+        std::min(least, distance_to_triangle(p, mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(),
+                                             mesh.vertices[t[2]].cast<double>()));
   return least;
 }
 
