@@ -59,16 +59,9 @@ class Covers {
   void elbow(Facets& f, float drum, float half_width, float radius, float start, float top, const char* label,
              std::uint32_t ring, int cap, int segments) {
     const float w = half_width, r = drum;
-    add_turned(f,
-               {{0, -w, dark_},
-                {0.45f * r, -w, cap},
-                {r - 0.005f, -w, dark_},
-                {r, 0.005f - w, dark_},
-                {r, w - 0.005f, dark_},
-                {r - 0.005f, w, cap},
-                {0.45f * r, w, dark_},
-                {0, w, dark_}},
-               16, r, w);
+    add_turned(
+        f, {{0, -w, dark_}, {0.45f * r, -w, cap}, {r, -w, dark_}, {r, w, cap}, {0.45f * r, w, dark_}, {0, w, dark_}},
+        14, r, w);
     Eigen::Isometry3f T = Eigen::Isometry3f::Identity();
     T.rotate(Eigen::AngleAxisf(-std::numbers::pi_v<float> / 2, Vector3f::UnitX()));  // z becomes y
     transform(f, 0, T);
@@ -85,15 +78,15 @@ class Covers {
     palm.top = dark_;
     palm.left = palm.right = dark_;
     palm.front = palm.back = wrap_flat(0.12f, 0.036f);
-    add_box(f, {0, 0, 0.020f}, {0.056f, 0.12f, 0.036f}, 0.004f, palm);
+    add_box(f, {0, 0, 0.020f}, {0.056f, 0.12f, 0.036f}, 0, palm);
   }
 
   void finger(Facets& f, float side) {
     BoxPaint paint = BoxPaint::all(dark_);
-    add_box(f, {0, side * 0.011f, 0}, {0.034f, 0.020f, 0.022f}, 0.002f, paint);
+    add_box(f, {0, side * 0.011f, 0}, {0.034f, 0.020f, 0.022f}, 0, paint);
     BoxPaint tip = BoxPaint::all(steel_);
-    tip.top = tip.edge = orange_;
-    add_box(f, {0, side * 0.006f, 0.020f}, {0.020f, 0.011f, 0.075f}, 0.0025f, tip);
+    tip.top = orange_;
+    add_box(f, {0, side * 0.006f, 0.020f}, {0.020f, 0.011f, 0.075f}, 0, tip);
   }
 
   int orange() const { return orange_; }
@@ -123,12 +116,12 @@ void add_arm(LabBuilder& builder) {
   const auto link = [&](std::size_t i) -> Facets& {
     return builder.part(arm_joints()[i - 1].child, rest[i], kLightStep, true);
   };
-  covers.post(link(1), 0.070f, 0.066f, 0.072f, 0.14f, "S1", kOrange, 20);
-  covers.elbow(link(2), 0.050f, 0.080f, 0.054f, 0.045f, 0.18f, "UPPER", kBlue, covers.orange(), 20);
-  covers.post(link(3), 0.054f, 0.048f, 0.058f, 0.18f, "A3", kOrange, 20);
-  covers.elbow(link(4), 0.040f, 0.066f, 0.046f, 0.035f, 0.17f, "LOWER", kBlue, covers.blue(), 18);
-  covers.post(link(5), 0.046f, 0.039f, 0.048f, 0.17f, "A5", kOrange, 18);
-  covers.elbow(link(6), 0.033f, 0.055f, 0.038f, 0.028f, 0.05f, "W", kBlue, covers.orange(), 16);
+  covers.post(link(1), 0.070f, 0.066f, 0.072f, 0.14f, "S1", kOrange, 14);
+  covers.elbow(link(2), 0.050f, 0.080f, 0.054f, 0.045f, 0.18f, "UPPER", kBlue, covers.orange(), 14);
+  covers.post(link(3), 0.054f, 0.048f, 0.058f, 0.18f, "A3", kOrange, 14);
+  covers.elbow(link(4), 0.040f, 0.066f, 0.046f, 0.035f, 0.17f, "LOWER", kBlue, covers.blue(), 14);
+  covers.post(link(5), 0.046f, 0.039f, 0.048f, 0.17f, "A5", kOrange, 14);
+  covers.elbow(link(6), 0.033f, 0.055f, 0.038f, 0.028f, 0.05f, "W", kBlue, covers.orange(), 12);
   covers.hand(link(7));
   covers.finger(link(8), 1);
   covers.finger(link(9), -1);

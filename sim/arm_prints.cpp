@@ -1,5 +1,7 @@
 #include "sim/arm_prints.hpp"
 
+#include <algorithm>
+
 #include "sim/painter.hpp"
 
 namespace foresight::sim::prints {
@@ -30,15 +32,16 @@ cv::Mat arm_cover(double length, double height, double texel, const std::string&
   p.line(0, 0.019, length, 0.019, 0.0009, kSeam);
   for (int i = 0; i < 2; ++i) {
     const double x = 0.5 * length * i, w = 0.5 * length, h = height - 0.020;
+    const double size = std::min(0.13 * w, 0.42 * w / static_cast<double>(label.size()));
     p.line(x + 0.003, 0.019, x + 0.003, height, 0.0009, kSeam);
-    p.text(x + 0.14 * w, 0.020 + 0.42 * h, 0.22 * w, 0.034 * w, kInk, label);
+    p.text(x + 0.14 * w, 0.020 + 0.42 * h, size, 0.15 * size, kInk, label);
     p.rectangle(x + 0.14 * w, 0.020 + 0.50 * h, 0.30 * w, 0.0022, ring);
     p.small_print(x + 0.14 * w, 0.020 + 0.56 * h, 0.34 * w, 0.16 * h, 0.0048, 0x5f666e, seed + 7 * i);
     if (i == 0)
-      warning(p, x + 0.74 * w, 0.020 + 0.36 * h, 0.10 * w);
+      warning(p, x + 0.74 * w, 0.020 + 0.36 * h, 0.07 * w);
     else
       p.bar_code(x + 0.60 * w, 0.020 + 0.22 * h, 0.30 * w, 0.20 * h, seed);
-    p.polygon({{x + 0.66 * w, 0.020 + 0.72 * h}, {x + 0.74 * w, 0.020 + 0.60 * h}, {x + 0.82 * w, 0.020 + 0.72 * h}},
+    p.polygon({{x + 0.70 * w, 0.020 + 0.72 * h}, {x + 0.74 * w, 0.020 + 0.65 * h}, {x + 0.78 * w, 0.020 + 0.72 * h}},
               kRed);
     for (double v : {0.10, 0.88})
       for (double u : {0.06, 0.95}) screw(p, x + u * w, 0.020 + v * h);

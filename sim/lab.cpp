@@ -7,6 +7,7 @@
 
 #include "sim/arm_covers.hpp"
 #include "sim/lab_builder.hpp"
+#include "sim/lab_furniture.hpp"
 #include "sim/lab_prints.hpp"
 
 namespace foresight::sim {
@@ -89,7 +90,7 @@ void add_table(LabBuilder& b) {
 
   BoxPaint mat = BoxPaint::all(b.plain(0x1b5a4a));
   mat.top = b.material([](double t, unsigned s) { return prints::cutting_mat(t, s); }, 0.8);
-  add_box(b.part("mat", placed(-0.19, 0.02, 0, 1.5), 0.006), {0, 0, 0}, {0.42f, 0.60f, 0.002f}, 0.0005f, mat);
+  add_box(b.part("mat", placed(-0.19, 0.02, 0, 1.5), 0.006), {0, 0, 0}, {0.42f, 0.60f, 0.002f}, 0, mat);
   BoxPaint paper = BoxPaint::all(b.plain(0xe8e6de));
   paper.top = b.material([](double t, unsigned s) { return prints::graph_paper(t, s); }, 0.8);
   add_box(b.part("paper", placed(-0.21, 0.50, 0, 14), 0.006), {0, 0, 0}, {0.297f, 0.21f, 0.0012f}, 0, paper);
@@ -113,8 +114,7 @@ void add_boxes(LabBuilder& b) {
   const auto block = [&](const char* name, const Pose& pose, float size, std::uint32_t colour, char letter) {
     const int face = b.material([=](double t, unsigned s) { return prints::letter_block(size, t, colour, letter, s); });
     BoxPaint paint = BoxPaint::all(face);
-    paint.edge = b.plain(0xd8bb8e, 0.05);
-    add_box(b.part(name, pose, 0.006), {0, 0, 0}, {size, size, size}, 0.003f, paint);
+    add_box(b.part(name, pose, 0.006), {0, 0, 0}, {size, size, size}, 0, paint);
   };
   block("block_a", placed(0.02, 0.50, 0, 24), 0.055f, 0xc8432f, 'A');
   block("block_b", placed(0.03, 0.565, 0, -12), 0.055f, 0x2f5f9e, 'B');
@@ -140,7 +140,7 @@ void add_turned_things(LabBuilder& b) {
               {r - 0.004f, h - 0.003f, inside},
               {r - 0.004f, h - 0.016f, tea},
               {0, h - 0.016f, tea}},
-             32, r, h);
+             16, r, h);
   add_handle(mug, {r - 0.003f, 0, 0.5f * h}, 0.026f, 0.0055f, blue);
 
   const int wrap = b.material(
@@ -155,7 +155,7 @@ void add_turned_things(LabBuilder& b) {
               {c - 0.002f, ch, tin},
               {c - 0.004f, ch - 0.004f, tin},
               {0, ch - 0.004f, tin}},
-             32, c, ch);
+             16, c, ch);
 
   const int bottle =
       b.material([=](double t, unsigned s) { return prints::bottle_wrap(t, around(kBottleRadius), kBottleHeight, s); },
@@ -167,16 +167,14 @@ void add_turned_things(LabBuilder& b) {
               {q - 0.001f, 0.002f, bottle},
               {q, 0.007f, bottle},
               {q, 0.150f, bottle},
-              {q - 0.002f, 0.163f, bottle},
               {q - 0.008f, 0.176f, bottle},
-              {q - 0.016f, 0.188f, bottle},
-              {q - 0.022f, 0.197f, bottle},
+              {q - 0.018f, 0.191f, bottle},
               {q - 0.023f, 0.209f, bottle},
               {q - 0.019f, 0.209f, bottle},
               {q - 0.019f, qh - 0.002f, bottle},
               {q - 0.021f, qh, bottle},
               {0, qh, bottle}},
-             28, q, qh);
+             16, q, qh);
 
   const int yellow = b.plain(0xe2ab2c, 0.05, 0.02f), tip = b.plain(0xd8bd92, 0.05), lead = b.plain(0x26282c, 0.05);
   Pose lying = placed(-0.16, -0.36, 0.0035, 35);
@@ -207,6 +205,7 @@ Lab make_lab(double texel, unsigned seed) {
   add_table(builder);
   add_boxes(builder);
   add_turned_things(builder);
+  add_furniture(builder);
   const int arm = static_cast<int>(builder.part_count());
   add_arm(builder);
   Lab lab = builder.finish();

@@ -11,9 +11,9 @@ using Eigen::Vector3f;
 
 constexpr int kSide = 8;
 static_assert(kSide * kSide == kPoints);
-const Vector3f kCentre(-0.62f, 0.95f, 1.45f), kTarget(0.05f, 0.0f, 0.0f);
-const Vector3f kRadiance(24.0f, 21.9f, 18.6f);
-constexpr float kSize = 0.62f;
+const Vector3f kCentre(-0.42f, 0.50f, 1.65f), kTarget(0.0f, 0.0f, 0.0f);
+const Vector3f kRadiance(44.0f, 40.1f, 34.1f);
+constexpr float kSize = 0.40f;
 
 struct Lamp {
   Vector3f normal, right, up;

@@ -7,8 +7,8 @@
 
 namespace foresight::sim::lamp {
 
-inline constexpr int kPoints = 64;       ///< the lamp is this many points: one bit each in a 64-bit word
-inline constexpr float kRadius = 0.44f;  ///< of the sphere around all of them, metres
+inline constexpr int kPoints = 64;        ///< the lamp is this many points: one bit each in a 64-bit word
+inline constexpr float kRadius = 0.285f;  ///< of the sphere around all of them, metres
 
 const Eigen::Vector3f& centre();                       ///< world
 const std::array<Eigen::Vector3f, kPoints>& points();  ///< world

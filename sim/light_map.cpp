@@ -238,9 +238,9 @@ void LightMap::light_movers(const LabState& T_world_part, const Movers& movers, 
       const Gather g = gather(s, kMoverRays, &movers);
       unusable[i] = g.inside;
       std::uint64_t seen = g.inside ? 0 : lamp_points_seen(s);
-      const Vector3f origin = off_surface(s.p, s.n, s.g);
+      const LampRays rays(off_surface(s.p, s.n, s.g));
       for (const Occluder& occluder : movers.occluders)
-        if (seen) seen &= ~occluder.hidden(origin, seen);
+        if (seen) seen &= ~occluder.hidden(rays, seen);
       out[i] = lamp::irradiance(s.p, s.n, seen) + g.light;
     }
     for (int f = range.first_facet; f < range.end_facet; ++f) fill(grids_[f], unusable, out);
@@ -258,8 +258,10 @@ void LightMap::shade_still(const Movers& movers, Irradiance& out) const {
       const Sample& s = samples_[i];
       const Vector3f origin = off_surface(s.p, s.n, s.g);
       std::uint64_t seen = seen_[i];
-      for (const Occluder& occluder : movers.occluders)
-        if (seen) seen &= ~occluder.hidden(origin, seen);
+      if (seen) {
+        const LampRays rays(origin);
+        for (const Occluder& occluder : movers.occluders) seen &= ~occluder.hidden(rays, seen);
+      }
       float shaded = 0;
       if (std::any_of(reach.begin(), reach.end(), [&](const auto& box) { return box.contains(s.p); })) {
         if (movers.tracer->blocked(origin, s.g, kHidden)) {

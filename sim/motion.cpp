@@ -32,16 +32,39 @@ constexpr double kArmKeys[kKeys][8] = {
     {-0.24, 0.88, 0.82, 1.96, -1.20, 0.55, 1.05, 0.020},
 };
 
-struct Spline {
-  std::array<double, kKeys> y, d;  // values and slopes per key interval
+// Eye and what it looks at, world, metres; kHeadPeriod / kKeys apart.
+constexpr double kHeadPeriod = 12;
+constexpr double kHeadKeys[kKeys][6] = {
+    {-0.74, 0.08, 0.48, -0.08, 0.04, 0.03},    // over the mat
+    {-0.74, 0.26, 0.48, -0.06, 0.26, 0.04},    //
+    {-0.38, 0.51, 0.25, -0.24, 0.53, -0.03},   // close to the paper
+    {-0.60, 0.32, 0.40, -0.02, 0.40, 0.05},    // the blocks
+    {-0.70, 0.02, 0.50, -0.06, 0.02, 0.05},    //
+    {-0.62, -0.18, 0.42, -0.06, -0.16, 0.05},  // mug, bottle and hand
+    {-0.72, -0.06, 0.52, -0.12, -0.06, 0.03},  //
+    {-0.76, 0.02, 0.48, -0.06, 0.02, 0.03},
 };
 
-// Slopes of the closed cubic spline: d[k-1] + 4 d[k] + d[k+1] = 3 (y[k+1] - y[k-1]), by Gauss and Seidel.
-std::array<Spline, 8> arm_splines() {
-  std::array<Spline, 8> out{};
-  for (std::size_t j = 0; j < 8; ++j) {
+// A closed cubic spline through values that are 1 / kKeys apart.
+struct Spline {
+  std::array<double, kKeys> y, d;  // values and slopes per key interval
+
+  double at(double turns) const {
+    const double place = (turns - std::floor(turns)) * kKeys;
+    const int k = std::min(static_cast<int>(place), kKeys - 1), next = (k + 1) % kKeys;
+    const double s = place - k;
+    return y[k] +
+           s * (d[k] + s * (3 * (y[next] - y[k]) - 2 * d[k] - d[next] + s * (2 * (y[k] - y[next]) + d[k] + d[next])));
+  }
+};
+
+// One spline per column. Slopes solve d[k-1] + 4 d[k] + d[k+1] = 3 (y[k+1] - y[k-1]), by Gauss and Seidel.
+template <std::size_t kColumns>
+std::array<Spline, kColumns> closed_splines(const double (&keys)[kKeys][kColumns]) {
+  std::array<Spline, kColumns> out{};
+  for (std::size_t j = 0; j < kColumns; ++j) {
     auto& [y, d] = out[j];
-    for (int k = 0; k < kKeys; ++k) y[k] = kArmKeys[k][j];
+    for (int k = 0; k < kKeys; ++k) y[k] = keys[k][j];
     for (int round = 0; round < 60; ++round)
       for (int k = 0; k < kKeys; ++k) {
         const int before = (k + kKeys - 1) % kKeys, after = (k + 1) % kKeys;
@@ -54,15 +77,12 @@ std::array<Spline, 8> arm_splines() {
 }  // namespace
 
 Pose T_world_camera_at(double t) {
-  const double azimuth = 0.40 * wave(t, 7.0, -0.21), elevation = 0.42 + 0.06 * wave(t, 5.3, 0.1);
-  const double distance = 1.14 + 0.07 * wave(t, 6.1, 0.3);
+  static const auto splines = closed_splines(kHeadKeys);
+  const auto at = [&](std::size_t j) { return splines[j].at(t / kHeadPeriod); };
   const Eigen::Vector3d shake(tremor(t, 0.11), tremor(t, 0.37), tremor(t, 0.71));
-  const Eigen::Vector3d eye =
-      Eigen::Vector3d(0.02 - distance * std::cos(elevation) * std::cos(azimuth),
-                      distance * std::cos(elevation) * std::sin(azimuth), 0.06 + distance * std::sin(elevation)) +
-      0.003 * shake;
-  const Eigen::Vector3d target(0.06 + 0.004 * tremor(t, 0.53), 0.03 * wave(t, 4.1, 0.6),
-                               0.075 + 0.004 * tremor(t, 0.17));
+  const Eigen::Vector3d eye = Eigen::Vector3d(at(0), at(1), at(2)) + 0.002 * shake;
+  const Eigen::Vector3d target =
+      Eigen::Vector3d(at(3), at(4), at(5)) + 0.003 * Eigen::Vector3d(tremor(t, 0.53), tremor(t, 0.23), tremor(t, 0.17));
 
   Pose pose = Pose::Identity();
   const Eigen::Vector3d forward = (target - eye).normalized();
@@ -76,17 +96,10 @@ Pose T_world_camera_at(double t) {
 }
 
 ArmPosition arm_position_at(double t) {
-  static const auto knots = arm_splines();
-  const double place = (t / kArmPeriod - std::floor(t / kArmPeriod)) * kKeys;
-  const int k = std::min(static_cast<int>(place), kKeys - 1);
-  const double s = place - k;
+  static const auto splines = closed_splines(kArmKeys);
   ArmPosition out;
-  for (std::size_t j = 0; j < 8; ++j) {
-    const auto& [y, d] = knots[j];
-    const double y0 = y[k], y1 = y[(k + 1) % kKeys], d0 = d[k], d1 = d[(k + 1) % kKeys];
-    const double value = y0 + s * (d0 + s * (3 * (y1 - y0) - 2 * d0 - d1 + s * (2 * (y0 - y1) + d0 + d1)));
-    (j < 7 ? out.joints[j] : out.opening) = value;
-  }
+  for (std::size_t j = 0; j < 7; ++j) out.joints[j] = splines[j].at(t / kArmPeriod);
+  out.opening = splines[7].at(t / kArmPeriod);
   return out;
 }
 

@@ -1,42 +1,27 @@
 #include "sim/occluder.hpp"
 
 #include <algorithm>
-#include <array>
-
-#include "sim/lamp.hpp"
 
 namespace foresight::sim {
-namespace {
-
 using Eigen::Vector3f;
 
-// The rays from one place to the lamp, and a cone around them.
-struct Rays {
-  explicit Rays(const Vector3f& p) : origin(p), axis(lamp::centre() - p), length(axis.norm()) {
-    axis /= length;
-    for (int k = 0; k < lamp::kPoints; ++k) {
-      const Vector3f d = lamp::points()[k] - p;
-      x[k] = d.x();
-      y[k] = d.y();
-      z[k] = d.z();
-    }
+LampRays::LampRays(const Vector3f& p) : origin(p), axis(lamp::centre() - p), length(axis.norm()) {
+  axis /= length;
+  const auto& points = lamp::points();
+  for (int k = 0; k < lamp::kPoints; ++k) {
+    x[k] = points[k].x() - p.x();
+    y[k] = points[k].y() - p.y();
+    z[k] = points[k].z() - p.z();
   }
+}
 
-  // Whether a ray may come within `radius` of `centre`.
-  bool near(const Vector3f& centre, float radius) const {
-    const Vector3f d = centre - origin;
-    const float along = axis.dot(d);
-    if (along < -radius || along > length + lamp::kRadius + radius) return false;
-    const float reach = lamp::kRadius * std::max(along, 0.0f) / length + 1.1f * radius;
-    return d.squaredNorm() - along * along < reach * reach;
-  }
-
-  Vector3f origin, axis;
-  float length;
-  std::array<float, lamp::kPoints> x, y, z;
-};
-
-}  // namespace
+bool LampRays::near(const Vector3f& centre, float radius) const {
+  const Vector3f d = centre - origin;
+  const float along = axis.dot(d);
+  if (along < -radius || along > length + lamp::kRadius + radius) return false;
+  const float reach = lamp::kRadius * std::max(along, 0.0f) / length + 1.1f * radius;
+  return d.squaredNorm() - along * along < reach * reach;
+}
 
 Occluder::Occluder(const std::vector<Triangle>& triangles) {
   for (const Triangle& t : triangles) {
@@ -45,11 +30,12 @@ Occluder::Occluder(const std::vector<Triangle>& triangles) {
     faces_.push_back({t, normal, normal.dot(t[0]), centre, radius});
     for (const Vector3f& p : t) box_.extend(p);
   }
+  radius_ = 0.5f * box_.diagonal().norm();
 }
 
-std::uint64_t Occluder::hidden(const Vector3f& p, std::uint64_t of) const {
-  const Rays rays(p);
-  if (!rays.near(box_.center(), 0.5f * box_.diagonal().norm())) return 0;
+std::uint64_t Occluder::hidden(const LampRays& rays, std::uint64_t of) const {
+  if (!rays.near(box_.center(), radius_)) return 0;
+  const Vector3f& p = rays.origin;
   std::uint64_t out = 0;
   for (const Face& face : faces_) {
     // Entering a closed solid means meeting a face from its front.

@@ -2,12 +2,26 @@
 // is set up once for all 64 points of the lamp; that is several times quicker than single rays.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "sim/lamp.hpp"
 #include "sim/tracer.hpp"
 
 namespace foresight::sim {
+
+/// The rays from one place to all points of the lamp, and a cone around them.
+struct LampRays {
+  explicit LampRays(const Eigen::Vector3f& p);
+
+  /// Whether a ray may come within `radius` of `centre`.
+  bool near(const Eigen::Vector3f& centre, float radius) const;
+
+  Eigen::Vector3f origin, axis;
+  float length;
+  std::array<float, lamp::kPoints> x, y, z;  ///< to each point, metres
+};
 
 /// A closed solid where it stands at one instant. Immutable; safe to share between threads.
 class Occluder {
@@ -15,8 +29,8 @@ class Occluder {
   /// `triangles`: world frame, counter-clockwise seen from outside.
   explicit Occluder(const std::vector<Triangle>& triangles);
 
-  /// Which of the lamp points in `of` it hides from `p`, which lies outside the solid.
-  std::uint64_t hidden(const Eigen::Vector3f& p, std::uint64_t of) const;
+  /// Which of the lamp points in `of` it hides from the rays' origin, which lies outside the solid.
+  std::uint64_t hidden(const LampRays& rays, std::uint64_t of) const;
 
   const Eigen::AlignedBox3f& box() const { return box_; }
 
@@ -30,6 +44,7 @@ class Occluder {
   };
   std::vector<Face> faces_;
   Eigen::AlignedBox3f box_;
+  float radius_ = 0;  // of the sphere around box_
 };
 
 }  // namespace foresight::sim

@@ -230,20 +230,21 @@ class SynthRun {
 }  // namespace
 
 void check(const SynthOptions& o) {
-  const auto range = [](const char* name, double value, double low, double high) {
+  const auto range = [](const char* option, const char* what, double value, double low, double high) {
     if (!(value >= low && value <= high))
-      throw InputError(name, format("%.9g is outside %.9g .. %.9g", value, low, high), "choose a value inside");
+      throw InputError(option, format("%s%.9g is outside %.9g .. %.9g", what, value, low, high),
+                       "choose a value inside");
   };
-  range("width", o.width, 16, 8192);
-  range("height", o.height, 16, 8192);
-  range("frames", o.frames, 1, 1'000'000);
-  range("rate", o.rate, 0.1, 1000);
-  range("noise", o.sensor.noise, 0, 100);
-  range("exposure drift", o.sensor.exposure_drift, 0, 0.9);
-  range("vignetting", o.sensor.vignetting, 0, 0.9);
-  range("exposure in seconds", o.shutter.exposure_s, 0, 1);
-  range("readout in seconds", o.shutter.readout_s, 0, 1);
-  range("pose error in px", o.pose_error_px, 0, 100);
+  range("--size", "a width of ", o.width, 16, 8192);
+  range("--size", "a height of ", o.height, 16, 8192);
+  range("--frames", "", o.frames, 1, 1'000'000);
+  range("--rate", "", o.rate, 0.1, 1000);
+  range("--noise", "", o.sensor.noise, 0, 100);
+  range("--exposure-drift", "", o.sensor.exposure_drift, 0, 0.9);
+  range("--vignetting", "", o.sensor.vignetting, 0, 0.9);
+  range("--motion-blur", "", o.shutter.exposure_s * 1e3, 0, 1000);
+  range("--rolling-shutter", "", o.shutter.readout_s * 1e3, 0, 1000);
+  range("--pose-error-px", "", o.pose_error_px, 0, 100);
 }
 
 Lens synth_lens(const SynthOptions& options, bool right) {

@@ -39,7 +39,7 @@ inline constexpr double kNodeRate = 120;  ///< lowest rate of the poses in nodes
 /// The left or right lens of a synthetic run.
 Lens synth_lens(const SynthOptions& options, bool right);
 
-/// Throws InputError naming the option, the value and the range.
+/// Throws InputError naming the option of `foresight synth`, the value and the range.
 void check(const SynthOptions& options);
 
 /// Writes a run as scene/run_folder.hpp reads it, and the truth as scene/ground_truth.hpp does.

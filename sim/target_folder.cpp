@@ -48,9 +48,10 @@ void TargetFolder::require_space(double bytes) const {
   std::error_code error;
   const fs::space_info space = fs::space(partial_, error);
   if (error || static_cast<double>(space.available) >= bytes) return;
-  throw RuntimeFailure(target_.string() + " needs at least " + std::to_string(std::llround(bytes / 1e6)) +
-                           " MB, but its disk has only " + std::to_string(space.available / 1'000'000) + " MB left",
-                       "free some disk space, or ask for fewer or smaller images");
+  char text[96];
+  std::snprintf(text, sizeof text, " needs at least %.3g MB, but its disk has only %.3g MB left", bytes / 1e6,
+                static_cast<double>(space.available) / 1e6);
+  throw RuntimeFailure(target_.string() + text, "free some disk space, or ask for fewer or smaller images");
 }
 
 void TargetFolder::commit() {

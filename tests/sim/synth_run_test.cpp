@@ -178,13 +178,13 @@ TEST_F(SynthRun, RefusesSizesAndCountsOutOfRange) {
     }
     EXPECT_THAT(left_behind(), ::testing::IsEmpty());
   };
-  refuses({.width = 15}, "width: 15 is outside 16 .. 8192");
-  refuses({.height = 8193}, "height: 8193 is outside 16 .. 8192");
-  refuses({.frames = 0}, "frames: 0 is outside 1");
-  refuses({.rate = 0}, "rate: 0 is outside 0.1 .. 1000");
-  refuses({.pose_error_px = std::nan("")}, "pose error in px: nan is outside 0 .. 100");
-  refuses({.sensor = {.vignetting = 1}}, "vignetting: 1 is outside 0 .. 0.9");
-  refuses({.shutter = {.exposure_s = -1}}, "exposure in seconds: -1 is outside 0 .. 1");
+  refuses({.width = 15}, "--size: a width of 15 is outside 16 .. 8192");
+  refuses({.height = 8193}, "--size: a height of 8193 is outside 16 .. 8192");
+  refuses({.frames = 0}, "--frames: 0 is outside 1");
+  refuses({.rate = 0}, "--rate: 0 is outside 0.1 .. 1000");
+  refuses({.pose_error_px = std::nan("")}, "--pose-error-px: nan is outside 0 .. 100");
+  refuses({.sensor = {.vignetting = 1}}, "--vignetting: 1 is outside 0 .. 0.9");
+  refuses({.shutter = {.exposure_s = -1}}, "--motion-blur: -1000 is outside 0 .. 1000");
 }
 
 TEST_F(SynthRun, KeepsTheFoldersOfOthersAndReplacesItsOwn) {
