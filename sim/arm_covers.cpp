@@ -19,7 +19,7 @@ class Covers {
       : b_(builder),
         dark_(b_.plain(0x3a3f46, 0.05, 0.03f)),
         steel_(b_.plain(0x9aa1a8, 0.05, 0.05f)),
-        shell_(b_.plain(0xdedfdc, 0.03, 0.03f)),
+        shell_(b_.plain(0xd3d5d3, 0.03, 0.03f)),
         orange_(b_.plain(kOrange, 0.04, 0.03f)),
         blue_(b_.plain(kBlue, 0.04, 0.03f)) {}
 
@@ -43,15 +43,18 @@ class Covers {
             int segments) {
     const float below = top - 0.75f * ball, height = below + 0.001f;
     const int cover = wrap(radius, height, label, ring);
+    const double around = 2 * std::numbers::pi * radius, ball_height = top + ball - below;
+    const int sphere = b_.material(
+        [=](double t, unsigned s) { return prints::arm_ball(around, ball_height, t, ring, s); }, 0.8, 0.03f);
     add_turned(f,
                {{0, 0, dark_},
                 {radius, 0, cover},
                 {radius, 0.35f * below, cover},
-                {neck, below, shell_},
-                {ball, top, shell_},
-                {0.80f * ball, top + 0.60f * ball, shell_},
-                {0.42f * ball, top + 0.91f * ball, shell_},
-                {0, top + ball, shell_}},
+                {neck, below, sphere},
+                {ball, top, sphere},
+                {0.80f * ball, top + 0.60f * ball, sphere},
+                {0.42f * ball, top + 0.91f * ball, sphere},
+                {0, top + ball, sphere}},
                segments, radius, below);
   }
 

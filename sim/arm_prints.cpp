@@ -7,7 +7,7 @@
 namespace foresight::sim::prints {
 namespace {
 
-constexpr std::uint32_t kShell = 0xdedfdc, kInk = 0x2a2e35, kSeam = 0x8e9296, kYellow = 0xe9b93a, kRed = 0xc8432f;
+constexpr std::uint32_t kShell = 0xd3d5d3, kInk = 0x2a2e35, kSeam = 0x8e9296, kYellow = 0xe9b93a, kRed = 0xc8432f;
 
 void screw(Painter& p, double x, double y) {
   p.disc(x, y, 0.0034, kSeam);
@@ -21,6 +21,14 @@ void warning(Painter& p, double x, double y, double s) {
   p.polygon({{x - 0.72 * s, y + 0.64 * s}, {x, y - 0.66 * s}, {x + 0.72 * s, y + 0.64 * s}}, kYellow);
   p.rectangle(x - 0.09 * s, y - 0.25 * s, 0.18 * s, 0.5 * s, kInk);
   p.rectangle(x - 0.09 * s, y + 0.36 * s, 0.18 * s, 0.16 * s, kInk);
+}
+
+// Broad unevenness and the grain of the paint.
+void wear(Painter& p, std::uint32_t seed) {
+  p.modulate([&](double x, double y) {
+    return 0.03 * fractal_noise(static_cast<float>(x * 22), static_cast<float>(y * 22), 3, seed) +
+           0.025 * noise(static_cast<float>(x * 700), static_cast<float>(y * 700), seed + 5);
+  });
 }
 
 }  // namespace
@@ -48,10 +56,26 @@ cv::Mat arm_cover(double length, double height, double texel, const std::string&
     for (int k = 0; k < 12; ++k)  // a scale that shows the joint's angle
       p.line(x + (k + 0.5) * w / 12, height - (k % 3 ? 0.004 : 0.008), x + (k + 0.5) * w / 12, height, 0.0008, kInk);
   }
-  p.modulate([&](double x, double y) {
-    return 0.02 * fractal_noise(static_cast<float>(x * 22), static_cast<float>(y * 22), 3, seed) +
-           0.025 * noise(static_cast<float>(x * 700), static_cast<float>(y * 700), seed + 5);
-  });
+  wear(p, seed);
+  return p.picture();
+}
+
+// Seen through its mirror image at the lower end: no letters.
+cv::Mat arm_ball(double length, double height, double texel, std::uint32_t ring, std::uint32_t seed) {
+  Painter p(length, height, texel, kShell);
+  p.line(0, 0.30 * height, length, 0.30 * height, 0.0009, kSeam);
+  p.rectangle(0, 0.36 * height, length, 0.004, ring);
+  for (int i = 0; i < 4; ++i) {
+    const double x = (i + 0.5) * length / 4;
+    p.line(x - 0.12 * length, 0.30 * height, x - 0.12 * length, height, 0.0009, kSeam);
+    screw(p, x - 0.05 * length, 0.48 * height);
+    screw(p, x + 0.05 * length, 0.48 * height);
+    p.disc(x, 0.62 * height, 0.0045, i % 2 ? kRed : kInk);
+    for (int k = 0; k < 9; ++k)
+      p.line(x + (k - 4) * 0.020 * length, 0.16 * height, x + (k - 4) * 0.020 * length, (k % 4 ? 0.22 : 0.26) * height,
+             0.0008, kInk);
+  }
+  wear(p, seed);
   return p.picture();
 }
 

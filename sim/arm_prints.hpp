@@ -12,4 +12,7 @@ namespace foresight::sim::prints {
 cv::Mat arm_cover(double length, double height, double texel, const std::string& label, std::uint32_t ring,
                   std::uint32_t seed);
 
+/// The ball around a joint, `length` around and `height` from its neck to its pole: seams, screws, dots, a scale.
+cv::Mat arm_ball(double length, double height, double texel, std::uint32_t ring, std::uint32_t seed);
+
 }  // namespace foresight::sim::prints

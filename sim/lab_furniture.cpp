@@ -17,8 +17,8 @@ Pose at(double x, double y, double z, double yaw_deg = 0) {
 // Left of the table, along the wall.
 void add_cabinet(LabBuilder& b) {
   const int body = b.plain(0x4c5a66, 0.05), front = b.plain(0x7d8d9a, 0.05), steel = b.plain(0xa9afb5, 0.05);
-  const int top = b.material(
-      [](double t, unsigned s) { return prints::wood(0.60, 1.30, t, 0xc9a478, 0x94683d, 0.30, s); }, 2);
+  const int top =
+      b.material([](double t, unsigned s) { return prints::wood(0.60, 1.30, t, 0xc9a478, 0x94683d, 0.30, s); }, 2);
   Facets& cabinet = b.part("cabinet", at(0.38, 1.75, -0.75), 0.04);
   add_box(cabinet, {0, 0, 0}, {0.42f, 1.20f, 0.70f}, 0.004f, BoxPaint::all(body));
   add_box(cabinet, {0, 0, 0.70f}, {0.46f, 1.24f, 0.03f}, 0.004f, BoxPaint::all(top));
@@ -53,7 +53,12 @@ void add_stool(LabBuilder& b) {
   const int seat = b.plain(0x8a3d35, 0.05, 0.02f), steel = b.plain(0xa9afb5, 0.05, 0.03f);
   Facets& stool = b.part("stool", at(-0.75, 1.30, -0.75, 20), 0.03);
   add_turned(stool,
-             {{0, 0.44f, steel}, {0.16f, 0.44f, seat}, {0.185f, 0.46f, seat}, {0.185f, 0.49f, seat}, {0.16f, 0.505f, seat}, {0, 0.505f, seat}},
+             {{0, 0.44f, steel},
+              {0.16f, 0.44f, seat},
+              {0.185f, 0.46f, seat},
+              {0.185f, 0.49f, seat},
+              {0.16f, 0.505f, seat},
+              {0, 0.505f, seat}},
              18, 0.185f, 0.505f);
   for (float x : {-0.11f, 0.11f})
     for (float y : {-0.11f, 0.11f}) add_box(stool, {x, y, 0}, {0.022f, 0.022f, 0.445f}, 0.002f, BoxPaint::all(steel));

@@ -11,8 +11,8 @@ using Eigen::Vector3f;
 
 constexpr int kSide = 8;
 static_assert(kSide * kSide == kPoints);
-const Vector3f kCentre(-0.42f, 0.50f, 1.65f), kTarget(0.0f, 0.0f, 0.0f);
-const Vector3f kRadiance(44.0f, 40.1f, 34.1f);
+const Vector3f kCentre(0.02f, 0.46f, 1.60f), kTarget(-0.10f, 0.0f, 0.0f);
+const Vector3f kRadiance(46.0f, 42.0f, 35.7f);
 constexpr float kSize = 0.40f;
 
 struct Lamp {

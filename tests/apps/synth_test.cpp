@@ -35,9 +35,9 @@ class Synth : public testing::Test {
 };
 
 TEST_F(Synth, EverythingAtOnceIsReadBack) {
-  const Outcome outcome = synth({"--stereo", "--noise", "2", "--exposure-drift", "0.1", "--vignetting", "0.3",
-                                 "--motion-blur", "5", "--rolling-shutter", "10", "--pose-error-px", "1", "--rate", "15",
-                                 "--seed", "7"});
+  const Outcome outcome =
+      synth({"--stereo", "--noise", "2", "--exposure-drift", "0.1", "--vignetting", "0.3", "--motion-blur", "5",
+             "--rolling-shutter", "10", "--pose-error-px", "1", "--rate", "15", "--seed", "7"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, (folder_ / "out").string() + "\n");
   EXPECT_THAT(outcome.last_line(), testing::ContainsRegex("[0-9]+ polygons, [0-9]+ to [0-9]+ in view"));
