@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "sim/hemisphere.hpp"
 #include "sim/lamp.hpp"
 #include "sim/parallel.hpp"
 
@@ -20,18 +21,9 @@ constexpr int kStillRays = 96, kMoverRays = 40, kShadeRays = 16;
 constexpr float kReach = 0.25f;  // metres around what moves within which it shades the daylight
 constexpr float kOffGeometry = 2e-4f, kOffRounded = 1e-3f;  // metres: no surface shades itself
 constexpr float kHidden = 0.005f;                           // metres: what is covered this closely is hardly seen
+constexpr float kSheet = 0.003f;                            // metres: what is thicker darkens its foot
+constexpr float kFoot = 0.6f;                               // light that is left under the foot of a solid
 constexpr float kBounce = 0.20f;                            // light on what is met while gathering, unlit part
-
-// The k-th of `count` directions about n, dense as the cosine (Malley's method on a spiral).
-Vector3f cosine_direction(const Vector3f& n, int k, int count) {
-  const float r2 = (static_cast<float>(k) + 0.5f) / static_cast<float>(count);
-  const float angle = static_cast<float>(k) * kPi * (3 - std::sqrt(5.0f));
-  const float r = std::sqrt(r2);
-  // Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
-  const float sign = std::copysign(1.0f, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
-  const Vector3f t(1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()), s(b, sign + n.y() * n.y() * a, -n.y());
-  return r * std::cos(angle) * t + r * std::sin(angle) * s + std::sqrt(1 - r2) * n;
-}
 
 Vector3f off_surface(const Vector3f& p, const Vector3f& n, const Vector3f& g) {
   const float rounded = n.dot(g) < 0.9999f ? kOffRounded : 0;
@@ -76,6 +68,7 @@ LightMap::LightMap(const Lab& lab, double coarser, const std::function<void()>& 
 
   seen_.assign(samples_.size(), 0);
   inside_.assign(samples_.size(), 0);
+  deep_ = inside_;
   direct_.assign(samples_.size(), Vector3f::Zero());
   ambient_ = direct_;
   std::vector<int> samples;
@@ -97,6 +90,8 @@ LightMap::LightMap(const Lab& lab, double coarser, const std::function<void()>& 
     const Gather g = gather(s, kStillRays, nullptr);
     ambient_[i] = g.light;
     inside_[i] = g.inside || still_tracer_->blocked(off_surface(s.p, s.n, s.g), s.g, kHidden);
+    const auto cover = still_tracer_->nearest(s.p + kSheet * s.g, s.g);
+    deep_[i] = inside_[i] && cover && still_g_[cover->triangle].dot(s.g) > 0;
   });
 }
 
@@ -178,7 +173,7 @@ LightMap::Gather LightMap::gather(const Sample& s, int rays, const Movers* mover
 }
 
 // Samples inside a solid or under its chamfer are dark; interpolating them would draw a ragged seam along its foot.
-// Their nearest usable neighbours speak for them.
+// Their nearest usable neighbours speak for them, darker under a solid that stands there.
 void LightMap::fill(const Grid& grid, std::vector<std::uint8_t>& unusable, Irradiance& irradiance) const {
   constexpr int kNeighbours[6][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}};
   for (int round = 0; round < 2; ++round) {
@@ -194,7 +189,9 @@ void LightMap::fill(const Grid& grid, std::vector<std::uint8_t>& unusable, Irrad
           sum += irradiance[index(grid, a, b)];
           ++count;
         }
-        if (count) filled.emplace_back(index(grid, i, j), sum / static_cast<float>(count));
+        if (count)
+          filled.emplace_back(index(grid, i, j),
+                              sum * ((deep_[index(grid, i, j)] ? kFoot : 1) / static_cast<float>(count)));
       }
     for (const auto& [place, value] : filled) {
       irradiance[place] = value;

@@ -81,6 +81,7 @@ class LightMap {
   std::vector<std::uint64_t> seen_;  // lamp points that a still sample sees, one bit each
   Irradiance direct_, ambient_;
   std::vector<std::uint8_t> inside_;
+  std::vector<std::uint8_t> deep_;  // inside, and covered by more than a sheet
 };
 
 }  // namespace foresight::sim
