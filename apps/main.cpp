@@ -7,7 +7,7 @@
 
 #include "apps/export_command.hpp"
 #include "apps/replay_command.hpp"
-#include "apps/sample_command.hpp"
+#include "apps/synth_command.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
   std::function<int()> action;
   foresight::add_replay_command(app, action);
   foresight::add_export_command(app, action);
-  foresight::add_sample_command(app, action);
+  foresight::add_synth_command(app, action);
 
   try {
     app.parse(argc, argv);

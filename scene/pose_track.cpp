@@ -28,10 +28,10 @@ const PoseTrack::Sample& PoseTrack::nearest(RobotTime time) const {
   return time - before->time <= after->time - time ? *before : *after;
 }
 
-PoseTrack::Answer PoseTrack::at(RobotTime time) const {
+PoseTrack::Answer PoseTrack::at(RobotTime time, Duration exact) const {
   if (samples_.empty()) return {};
   const Sample& near = nearest(time);
-  if (std::chrono::abs(near.time - time) <= kExact) return {near.pose, StateStatus::exact};
+  if (std::chrono::abs(near.time - time) <= exact) return {near.pose, StateStatus::exact};
   const std::size_t i = static_cast<std::size_t>(&near - samples_.data());
   const std::size_t other = near.time < time ? i + 1 : i - 1;  // wraps below 0, out of range too
   if (other >= samples_.size()) return {};

@@ -31,9 +31,9 @@ class PoseTrack {
   /// The sample nearest to `time`; the track must not be empty.
   const Sample& nearest(RobotTime time) const;
 
-  /// The nearest sample where it lies within kExact, else linear (position) and spherical
+  /// The nearest sample where it lies within `exact`, else linear (position) and spherical
   /// (rotation) interpolation over a gap of up to kLargestGap, else `invalid`.
-  Answer at(RobotTime time) const;
+  Answer at(RobotTime time, Duration exact = kExact) const;
 
  private:
   std::vector<Sample> samples_;

@@ -187,7 +187,7 @@ RunFolder RunFolder::open(const fs::path& root, const Options& options) {
   return run;
 }
 
-SceneState RunFolder::state_at(RobotTime time) const {
+SceneState RunFolder::state_at(RobotTime time, Duration exact) const {
   SceneState state{time, StateStatus::exact, {}};
   const auto& nodes = scene_->nodes();
   state.T_world_node.reserve(nodes.size());
@@ -199,7 +199,7 @@ SceneState RunFolder::state_at(RobotTime time) const {
                                                          node.T_parent_node);
       continue;
     }
-    PoseTrack::Answer answer = node_tracks_[i]->at(time);
+    PoseTrack::Answer answer = node_tracks_[i]->at(time, exact);
     if (answer.status == StateStatus::invalid) answer = {node_tracks_[i]->nearest(time).pose, StateStatus::predicted};
     state.status = std::max(state.status, answer.status);  // the enumeration goes from best to worst
     state.T_world_node.push_back(answer.pose);

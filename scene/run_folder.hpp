@@ -69,8 +69,8 @@ class RunFolder {
   /// at the nearer sample before its first, after its last, and in a gap too large to
   /// interpolate), their descendants without a track move along, the rest stands in its rest
   /// pose. The status is the worst of the tracked nodes: exact, interpolated, or predicted for
-  /// one that is held; never invalid.
-  SceneState state_at(RobotTime time) const;
+  /// one that is held; never invalid. A sample within `exact` of `time` is used as it is.
+  SceneState state_at(RobotTime time, Duration exact = PoseTrack::kExact) const;
 
  private:
   std::filesystem::path root_;

@@ -1,12 +1,14 @@
 #include "sim/lab.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 
+#include "sim/arm_covers.hpp"
+#include "sim/lab_builder.hpp"
+#include "sim/lab_furniture.hpp"
 #include "sim/lab_prints.hpp"
-#include "sim/parallel.hpp"
 
 namespace foresight::sim {
 namespace {
@@ -15,6 +17,7 @@ using Eigen::Vector3f;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kMugRadius = 0.040f, kCanRadius = 0.034f, kBottleRadius = 0.036f;
+constexpr double kTableY = 0.14;  // the arm's stand takes the place on the right
 constexpr double kMugHeight = 0.095, kCanHeight = 0.110, kBottleHeight = 0.235;
 
 Pose placed(double x, double y, double z, double yaw_deg) {
@@ -24,47 +27,7 @@ Pose placed(double x, double y, double z, double yaw_deg) {
   return pose;
 }
 
-class Builder {
- public:
-  Builder(double texel, unsigned seed) : texel_(texel), seed_(seed) {}
-
-  // `print(texel, seed)` is called later, together with all others on all cores.
-  int material(std::function<cv::Mat(double, unsigned)> print, double coarser = 1, float gloss = 0) {
-    jobs_.push_back({std::move(print), texel_ * coarser, seed_ + 31 * static_cast<unsigned>(jobs_.size()), gloss});
-    return static_cast<int>(jobs_.size()) - 1;
-  }
-  int plain(std::uint32_t colour, double roughness = 0.05, float gloss = 0) {
-    return material([=](double t, unsigned s) { return prints::plain(0.15, 0.15, t, colour, roughness, s); }, 1, gloss);
-  }
-  Facets& part(const std::string& name, const Pose& T_world_part, double light_step) {
-    lab.parts.push_back({name, {}, T_world_part, light_step});
-    return lab.parts.back().facets;
-  }
-
-  Lab finish() {
-    std::vector<std::optional<Texture>> pictures(jobs_.size());
-    parallel_for(jobs_.size(), [&](std::size_t i) {
-      pictures[i].emplace(jobs_[i].print(jobs_[i].texel, jobs_[i].seed), jobs_[i].texel);
-    });
-    for (std::size_t i = 0; i < jobs_.size(); ++i) lab.materials.push_back({std::move(*pictures[i]), jobs_[i].gloss});
-    return std::move(lab);
-  }
-
-  Lab lab;
-
- private:
-  struct Job {
-    std::function<cv::Mat(double, unsigned)> print;
-    double texel;
-    unsigned seed;
-    float gloss;
-  };
-  double texel_;
-  unsigned seed_;
-  std::vector<Job> jobs_;
-};
-
-void add_room(Builder& b) {
+void add_room(LabBuilder& b) {
   const int wall = b.material([](double t, unsigned s) { return prints::plain(1.6, 1.6, t, 0xb9c3c1, 0.07, s); }, 3);
   const int floor = b.material([](double t, unsigned s) { return prints::floor_tiles(t, s); }, 3);
   const int base = b.plain(0x6a5b4c);
@@ -79,23 +42,22 @@ void add_room(Builder& b) {
   add_box(room, {0.612f, 0, -0.75f}, {0.016f, 6, 0.08f}, 0.003f, BoxPaint::all(base));
 }
 
-void add_wall_things(Builder& b) {
+void add_wall_things(LabBuilder& b) {
   const int frame = b.plain(0x2c2f33, 0.05), white = b.plain(0xe6e3da, 0.04), steel = b.plain(0x8d939a, 0.06);
   const int poster = b.material([](double t, unsigned s) { return prints::poster(t, s); });
   const int pegs = b.material([](double t, unsigned s) { return prints::pegboard(t, s); });
   BoxPaint paint = BoxPaint::all(frame);
   paint.front = poster;
-  add_box(b.part("poster", placed(0.607, 0.36, 0.10, 0), 0.012), {0, 0, 0}, {0.024f, 0.62f, 0.44f}, 0.0015f, paint);
+  add_box(b.part("poster", placed(0.607, 0.36, 0.10, 0), 0.012), {0, 0, 0}, {0.024f, 0.62f, 0.44f}, 0, paint);
   paint = BoxPaint::all(b.plain(0xb09a72));
   paint.front = pegs;
-  add_box(b.part("pegboard", placed(0.609, 1.13, 0.10, 0), 0.012), {0, 0, 0}, {0.020f, 0.70f, 0.44f}, 0.0015f, paint);
+  add_box(b.part("pegboard", placed(0.609, 1.13, 0.10, 0), 0.012), {0, 0, 0}, {0.020f, 0.70f, 0.44f}, 0, paint);
 
   const int board =
       b.material([](double t, unsigned s) { return prints::wood(0.90, 0.19, t, 0xd9b98c, 0xa2774a, 0.30, s); });
   Facets& shelf = b.part("shelf", placed(0.52, -0.52, 0.26, 0), 0.010);
   add_box(shelf, {0, 0, 0}, {0.19f, 0.90f, 0.018f}, 0.002f, BoxPaint::all(board));
-  for (float y : {-0.34f, 0.34f})
-    add_box(shelf, {0.06f, y, -0.10f}, {0.06f, 0.02f, 0.10f}, 0.002f, BoxPaint::all(steel));
+  for (float y : {-0.34f, 0.34f}) add_box(shelf, {0.06f, y, -0.10f}, {0.06f, 0.02f, 0.10f}, 0, BoxPaint::all(steel));
   constexpr std::uint32_t kColours[] = {0x7a2f2b, 0x23516b, 0x4c6b3a, 0xb98a2e, 0x3b3f63, 0x8a4a63, 0x2f6f6b, 0x5b4a3c};
   Facets& books = b.part("books", placed(0.51, -0.16, 0.278, 0), 0.010);
   float y = 0;
@@ -106,7 +68,7 @@ void add_wall_things(Builder& b) {
     BoxPaint book = BoxPaint::all(b.plain(kColours[i], 0.05));
     book.top = white;
     book.front = b.material([=](double t, unsigned) { return prints::book_spine(thick, tall, t, kColours[i], i); });
-    add_box(books, {0, y - thick / 2, 0}, {deep, thick, tall}, 0.0015f, book);
+    add_box(books, {0, y - thick / 2, 0}, {deep, thick, tall}, 0, book);
     y -= thick + 0.0012f;
   }
   const int label = b.material([](double t, unsigned s) { return prints::cardboard(0.26, 0.13, t, true, s); });
@@ -116,25 +78,25 @@ void add_wall_things(Builder& b) {
   add_box(b.part("shelf_box", placed(0.52, -0.70, 0.278, 4), 0.010), {0, 0, 0}, {0.15f, 0.26f, 0.13f}, 0.002f, crate);
 }
 
-void add_table(Builder& b) {
+void add_table(LabBuilder& b) {
   const int top = b.material(
       [](double t, unsigned s) { return prints::wood(1.60, 0.96, t, 0xd2a878, 0x8f6137, 0.12, s); }, 1, 0.012f);
   const int leg = b.plain(0x3a3d42, 0.06);
-  Facets& table = b.part("table", placed(0, 0, -0.03, 0), 0.007);
+  Facets& table = b.part("table", placed(0, kTableY, -0.03, 0), 0.007);
   BoxPaint paint = BoxPaint::all(top);
-  add_box(table, {0, 0, 0}, {0.92f, 1.56f, 0.03f}, 0.004f, paint);
+  add_box(table, {0, 0, 0}, {0.92f, 1.28f, 0.03f}, 0.004f, paint);
   for (float x : {-0.40f, 0.40f})
-    for (float y : {-0.72f, 0.72f}) add_box(table, {x, y, -0.72f}, {0.05f, 0.05f, 0.72f}, 0.004f, BoxPaint::all(leg));
+    for (float y : {-0.58f, 0.58f}) add_box(table, {x, y, -0.72f}, {0.05f, 0.05f, 0.72f}, 0, BoxPaint::all(leg));
 
   BoxPaint mat = BoxPaint::all(b.plain(0x1b5a4a));
   mat.top = b.material([](double t, unsigned s) { return prints::cutting_mat(t, s); }, 0.8);
-  add_box(b.part("mat", placed(-0.19, 0.02, 0, 1.5), 0.006), {0, 0, 0}, {0.42f, 0.60f, 0.002f}, 0.0005f, mat);
+  add_box(b.part("mat", placed(-0.19, 0.02, 0, 1.5), 0.006), {0, 0, 0}, {0.42f, 0.60f, 0.002f}, 0, mat);
   BoxPaint paper = BoxPaint::all(b.plain(0xe8e6de));
   paper.top = b.material([](double t, unsigned s) { return prints::graph_paper(t, s); }, 0.8);
   add_box(b.part("paper", placed(-0.21, 0.50, 0, 14), 0.006), {0, 0, 0}, {0.297f, 0.21f, 0.0012f}, 0, paper);
 }
 
-void add_boxes(Builder& b) {
+void add_boxes(LabBuilder& b) {
   const int tape = b.material([](double t, unsigned s) { return prints::cardboard(0.30, 0.21, t, false, s); });
   BoxPaint carton = BoxPaint::all(tape);
   carton.front = b.material([](double t, unsigned s) { return prints::cardboard(0.30, 0.19, t, true, s); });
@@ -152,8 +114,7 @@ void add_boxes(Builder& b) {
   const auto block = [&](const char* name, const Pose& pose, float size, std::uint32_t colour, char letter) {
     const int face = b.material([=](double t, unsigned s) { return prints::letter_block(size, t, colour, letter, s); });
     BoxPaint paint = BoxPaint::all(face);
-    paint.edge = b.plain(0xd8bb8e, 0.05);
-    add_box(b.part(name, pose, 0.006), {0, 0, 0}, {size, size, size}, 0.003f, paint);
+    add_box(b.part(name, pose, 0.006), {0, 0, 0}, {size, size, size}, 0, paint);
   };
   block("block_a", placed(0.02, 0.50, 0, 24), 0.055f, 0xc8432f, 'A');
   block("block_b", placed(0.03, 0.565, 0, -12), 0.055f, 0x2f5f9e, 'B');
@@ -161,13 +122,13 @@ void add_boxes(Builder& b) {
   block("block_d", placed(0.20, 0.33, 0.19, -30), 0.070f, 0xb98a2e, 'F');
 }
 
-void add_turned_things(Builder& b) {
+void add_turned_things(LabBuilder& b) {
   const auto around = [](float radius) { return 2 * std::numbers::pi * radius; };
   const int glaze = b.material(
       [=](double t, unsigned s) { return prints::mug_wrap(t, around(kMugRadius), kMugHeight, s); }, 0.8, 0.05f);
   const int inside = b.plain(0xefe9dc, 0.03, 0.04f), blue = b.plain(0x2b6f8f, 0.03, 0.05f);
   const int tea = b.plain(0x4a2713, 0.02, 0.05f);
-  Facets& mug = b.part("mug", placed(-0.10, -0.48, 0, -118), 0.012);
+  Facets& mug = b.part("mug", placed(-0.32, -0.36, 0, -118), 0.012);
   const float r = kMugRadius, h = kMugHeight;
   add_turned(mug,
              {{0, 0, blue},
@@ -179,14 +140,14 @@ void add_turned_things(Builder& b) {
               {r - 0.004f, h - 0.003f, inside},
               {r - 0.004f, h - 0.016f, tea},
               {0, h - 0.016f, tea}},
-             32, r, h);
+             16, r, h);
   add_handle(mug, {r - 0.003f, 0, 0.5f * h}, 0.026f, 0.0055f, blue);
 
   const int wrap = b.material(
       [=](double t, unsigned s) { return prints::can_wrap(t, around(kCanRadius), kCanHeight, s); }, 0.8, 0.03f);
   const int tin = b.plain(0xb4b8bd, 0.05, 0.04f);
   const float c = kCanRadius, ch = kCanHeight;
-  add_turned(b.part("can", placed(0.10, -0.40, 0, 150), 0.012),
+  add_turned(b.part("can", placed(0.23, -0.36, 0, 150), 0.012),
              {{0, 0, tin},
               {c - 0.002f, 0, tin},
               {c, 0.002f, wrap},
@@ -194,65 +155,62 @@ void add_turned_things(Builder& b) {
               {c - 0.002f, ch, tin},
               {c - 0.004f, ch - 0.004f, tin},
               {0, ch - 0.004f, tin}},
-             32, c, ch);
+             16, c, ch);
 
   const int bottle =
       b.material([=](double t, unsigned s) { return prints::bottle_wrap(t, around(kBottleRadius), kBottleHeight, s); },
                  0.8, 0.05f);
   const float q = kBottleRadius, qh = kBottleHeight;
-  add_turned(b.part("bottle", placed(0.14, -0.245, 0, 105), 0.012),
+  add_turned(b.part("bottle", placed(0.22, -0.20, 0, 105), 0.012),
              {{0, 0, bottle},
               {q - 0.005f, 0, bottle},
               {q - 0.001f, 0.002f, bottle},
               {q, 0.007f, bottle},
               {q, 0.150f, bottle},
-              {q - 0.002f, 0.163f, bottle},
               {q - 0.008f, 0.176f, bottle},
-              {q - 0.016f, 0.188f, bottle},
-              {q - 0.022f, 0.197f, bottle},
+              {q - 0.018f, 0.191f, bottle},
               {q - 0.023f, 0.209f, bottle},
               {q - 0.019f, 0.209f, bottle},
               {q - 0.019f, qh - 0.002f, bottle},
               {q - 0.021f, qh, bottle},
               {0, qh, bottle}},
-             28, q, qh);
+             16, q, qh);
 
   const int yellow = b.plain(0xe2ab2c, 0.05, 0.02f), tip = b.plain(0xd8bd92, 0.05), lead = b.plain(0x26282c, 0.05);
-  Pose lying = placed(-0.30, -0.40, 0.0035, 35);
+  Pose lying = placed(-0.16, -0.36, 0.0035, 35);
   lying.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
   add_turned(b.part("pencil", lying, 0.012),
              {{0, 0, lead}, {0.004f, 0, yellow}, {0.004f, 0.150f, tip}, {0.001f, 0.166f, lead}, {0, 0.170f, lead}}, 6,
              0.004f, 0.17f);
 }
 
-void add_plate(Builder& b) {
-  BoxPaint plate = BoxPaint::all(b.plain(0x9aa1a8, 0.05, 0.02f));
-  plate.top = b.material([](double t, unsigned s) { return prints::moving_plate(t, s); }, 0.8);
-  b.lab.plate = static_cast<int>(b.lab.parts.size());
-  Facets& facets = b.part("plate", placed(-0.20, 0, 0.0025, 0), 0.012);
-  add_box(facets, {0, 0, 0}, {0.18f, 0.24f, 0.012f}, 0.002f, plate);
-  const int face = b.material([](double t, unsigned s) { return prints::letter_block(0.05, t, 0xc8432f, 'P', s); });
-  BoxPaint cube = BoxPaint::all(face);
-  cube.edge = b.plain(0xd8bb8e, 0.05);
-  const std::size_t first = facets.size();
-  add_box(facets, {0, 0, 0}, {0.05f, 0.05f, 0.05f}, 0.003f, cube);
-  Eigen::Isometry3f T = Eigen::Isometry3f::Identity();
-  T.translate(Vector3f(-0.028f, -0.068f, 0.012f));
-  T.rotate(Eigen::AngleAxisf(20 * kPi / 180, Vector3f::UnitZ()));
-  transform(facets, first, T);
-}
-
 }  // namespace
 
+LabState Lab::at_rest() const {
+  LabState state;
+  for (const Part& part : parts) state.push_back(part.T_world_part);
+  return state;
+}
+
+int Lab::find(const std::string& name) const {
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i].name == name) return static_cast<int>(i);
+  throw std::out_of_range("the lab has no part " + name);
+}
+
 Lab make_lab(double texel, unsigned seed) {
-  Builder builder(texel, seed);
+  LabBuilder builder(texel, seed);
   add_room(builder);
   add_wall_things(builder);
   add_table(builder);
   add_boxes(builder);
   add_turned_things(builder);
-  add_plate(builder);
-  return builder.finish();
+  add_furniture(builder);
+  const int arm = static_cast<int>(builder.part_count());
+  add_arm(builder);
+  Lab lab = builder.finish();
+  lab.arm = arm;
+  return lab;
 }
 
 Mesh mesh_of(const Part& part) {

@@ -1,6 +1,9 @@
-// The small lab of the sample run: a table, boxes, and a plate that moves.
+// The lab of the synthetic runs: a table with things on it, a wall behind, and a robot arm beside it.
 //
-// World: x away from the operator, y left, z up; the origin is the middle of the table top. Metres.
+// World: x away from the operator, y left, z up; the origin lies on the table top. Metres.
+//
+// The way to a picture: a LabState says where every part stands, LightMap::at lights that state,
+// Renderer::render looks at it. Whoever drives the lab, a recorded motion or a live one, makes states.
 #pragma once
 
 #include <string>
@@ -23,13 +26,22 @@ struct Part {
   Facets facets;                         ///< node frame
   Pose T_world_part = Pose::Identity();  ///< at rest
   double light_step = 0.01;              ///< largest distance between light samples on it, metres
+  bool moves = false;                    ///< may stand elsewhere in a LabState; light on it is computed each time
 };
 
-/// Immutable once built; safe to share between threads.
+/// Where every part stands: T_world_part, one per part, in the lab's order. Parts that do not
+/// move stand at rest.
+using LabState = std::vector<Pose>;
+
+/// Immutable once built; safe to share between threads. Before a LightMap is made of it, `moves`
+/// may be set for any part that is to be moved about.
 struct Lab {
   std::vector<Material> materials;
   std::vector<Part> parts;
-  int plate = 0;  ///< index of the part that moves
+  int arm = 0;  ///< index of the arm's stand; its links follow, in the order of sim/arm.hpp
+
+  LabState at_rest() const;
+  int find(const std::string& name) const;  ///< index of the part; throws std::out_of_range
 };
 
 /// `texel`: metres per texel of the finest pictures. `seed` varies grain and small print.

@@ -24,11 +24,6 @@ void roughen(Painter& p, double strength, std::uint32_t seed) {
   });
 }
 
-void cross(Painter& p, double x, double y, double arm, double line, std::uint32_t colour) {
-  p.line(x - arm, y, x + arm, y, line, colour);
-  p.line(x, y - arm, x, y + arm, line, colour);
-}
-
 // The side view of a small arm: base, two links, gripper.
 void arm_drawing(Painter& p, double x, double y, double s, std::uint32_t colour, std::uint32_t accent) {
   const cv::Point2d base(x, y), shoulder(x, y - 0.30 * s), elbow(x + 0.28 * s, y - 0.78 * s),
@@ -110,30 +105,6 @@ cv::Mat cutting_mat(double texel, std::uint32_t seed) {
   p.line(0.21, 0.39, 0.57, 0.03, 0.0007, kLine);
   p.text(0.44, 0.375, 0.012, 0.0014, kLine, "LAB MAT A2");
   roughen(p, 0.10, seed);
-  return p.picture();
-}
-
-cv::Mat moving_plate(double texel, std::uint32_t seed) {
-  Painter p(0.24, 0.18, texel, 0xe8e6df);
-  p.grid(0.012, 0.012, 0.216, 0.156, 0.006, 0.0004, 0xb9c4cc);
-  p.grid(0.012, 0.012, 0.216, 0.156, 0.024, 0.0009, 0x7d94a6);
-  p.frame(0.006, 0.006, 0.228, 0.168, 0.003, kBlue);
-  for (double x : {0.024, 0.216})
-    for (double y : {0.024, 0.156}) {
-      p.disc(x, y, 0.012, kInk);
-      p.disc(x, y, 0.0075, kPaper);
-      cross(p, x, y, 0.0055, 0.0012, kRed);
-    }
-  p.rectangle(0.020, 0.060, 0.060, 0.060, kInk);  // a square code, six by six
-  constexpr const char* kCode[] = {"101101", "001110", "110001", "011011", "100101", "010110"};
-  for (int j = 0; j < 6; ++j)
-    for (int i = 0; i < 6; ++i)
-      if (kCode[j][i] == '1') p.rectangle(0.0275 + 0.0075 * i, 0.0675 + 0.0075 * j, 0.0075, 0.0075, kPaper);
-  p.text(0.060, 0.034, 0.011, 0.0016, kBlue, "MOVING PLATE");
-  p.text(0.060, 0.163, 0.0065, 0.0009, kInk, "120 Hz  x/y/yaw");
-  p.polygon({{0.186, 0.078}, {0.212, 0.090}, {0.186, 0.102}}, kRed);
-  p.line(0.150, 0.090, 0.188, 0.090, 0.004, kRed);
-  roughen(p, 0.05, seed);
   return p.picture();
 }
 

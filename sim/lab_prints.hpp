@@ -10,9 +10,8 @@ namespace foresight::sim::prints {
 cv::Mat wood(double width, double height, double texel, std::uint32_t light, std::uint32_t dark, double plank,
              std::uint32_t seed);
 cv::Mat plain(double width, double height, double texel, std::uint32_t colour, double roughness, std::uint32_t seed);
-cv::Mat floor_tiles(double texel, std::uint32_t seed);   ///< 2 x 2
-cv::Mat cutting_mat(double texel, std::uint32_t seed);   ///< 0.60 x 0.42
-cv::Mat moving_plate(double texel, std::uint32_t seed);  ///< 0.24 x 0.18
+cv::Mat floor_tiles(double texel, std::uint32_t seed);  ///< 2 x 2
+cv::Mat cutting_mat(double texel, std::uint32_t seed);  ///< 0.60 x 0.42
 cv::Mat cardboard(double width, double height, double texel, bool label, std::uint32_t seed);
 cv::Mat product_front(double texel, std::uint32_t seed);  ///< 0.12 x 0.21
 cv::Mat product_side(double texel, std::uint32_t seed);   ///< 0.09 x 0.21

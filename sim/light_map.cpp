@@ -4,8 +4,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <numbers>
 
+#include "sim/hemisphere.hpp"
+#include "sim/lamp.hpp"
 #include "sim/parallel.hpp"
 
 namespace foresight::sim {
@@ -14,66 +17,13 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr int kLampSide = 8;  // the lamp is kLampSide^2 points: one bit each in a 64-bit word
-constexpr int kLampPoints = kLampSide * kLampSide;
-constexpr int kStillRays = 96, kPlateRays = 40, kShadeRays = 16;
-constexpr float kReach = 0.20f;  // metres around the plate within which its shadow is looked for
+constexpr int kStillRays = 96, kMoverRays = 40, kShadeRays = 16;
+constexpr float kReach = 0.25f;  // metres around what moves within which it shades the daylight
 constexpr float kOffGeometry = 2e-4f, kOffRounded = 1e-3f;  // metres: no surface shades itself
 constexpr float kHidden = 0.005f;                           // metres: what is covered this closely is hardly seen
-constexpr float kBounce = 0.20f;  // light on the plate's surroundings while it is gathered, unlit part
-
-const Vector3f kLampCentre(-0.62f, 0.95f, 1.45f), kLampTarget(0.05f, 0.0f, 0.0f);
-const Vector3f kLampRadiance(24.0f, 21.9f, 18.6f);
-constexpr float kLampSize = 0.62f;
-
-struct Lamp {
-  Vector3f normal, right, up;
-  std::array<Vector3f, kLampPoints> points;
-};
-
-const Lamp& lamp() {
-  static const Lamp built = [] {
-    Lamp l;
-    l.normal = (kLampTarget - kLampCentre).normalized();
-    l.right = l.normal.cross(Vector3f::UnitZ()).normalized();
-    l.up = l.right.cross(l.normal);
-    for (int k = 0; k < kLampPoints; ++k) {
-      const float x = (static_cast<float>(k % kLampSide) + 0.5f) / kLampSide - 0.5f;
-      const float y = (static_cast<float>(k / kLampSide) + 0.5f) / kLampSide - 0.5f;
-      l.points[k] = kLampCentre + kLampSize * (x * l.right + y * l.up);
-    }
-    return l;
-  }();
-  return built;
-}
-
-// Daylight: bright and cool from above and from the operator's side, where the windows are.
-Vector3f daylight(const Vector3f& direction) {
-  const float up = std::clamp(0.5f + 0.5f * direction.z(), 0.0f, 1.0f);
-  const float window = std::pow(std::max(0.0f, direction.dot(Vector3f(-0.75f, -0.55f, 0.37f))), 3.0f);
-  return (0.11f + 0.30f * up) * Vector3f(0.86f, 0.93f, 1.0f) + 0.7f * window * Vector3f(0.80f, 0.92f, 1.08f);
-}
-
-Vector3f from_lamp(const Vector3f& p, const Vector3f& n, std::uint64_t seen) {
-  float sum = 0;
-  for (; seen; seen &= seen - 1) {
-    const Vector3f d = lamp().points[std::countr_zero(seen)] - p;
-    const float r2 = d.squaredNorm();
-    sum += std::max(0.0f, n.dot(d)) * std::max(0.0f, -lamp().normal.dot(d)) / (r2 * r2);
-  }
-  return sum * (kLampSize * kLampSize / kLampPoints) * kLampRadiance;
-}
-
-// The k-th of `count` directions about n, dense as the cosine (Malley's method on a spiral).
-Vector3f cosine_direction(const Vector3f& n, int k, int count) {
-  const float r2 = (static_cast<float>(k) + 0.5f) / static_cast<float>(count);
-  const float angle = static_cast<float>(k) * kPi * (3 - std::sqrt(5.0f));
-  const float r = std::sqrt(r2);
-  // Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
-  const float sign = std::copysign(1.0f, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
-  const Vector3f t(1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()), s(b, sign + n.y() * n.y() * a, -n.y());
-  return r * std::cos(angle) * t + r * std::sin(angle) * s + std::sqrt(1 - r2) * n;
-}
+constexpr float kSheet = 0.003f;                            // metres: what is thicker darkens its foot
+constexpr float kFoot = 0.6f;                               // light that is left under the foot of a solid
+constexpr float kBounce = 0.20f;                            // light on what is met while gathering, unlit part
 
 Vector3f off_surface(const Vector3f& p, const Vector3f& n, const Vector3f& g) {
   const float rounded = n.dot(g) < 0.9999f ? kOffRounded : 0;
@@ -88,54 +38,67 @@ std::vector<Triangle> triangles_of(const Part& part, const Eigen::Isometry3f& T)
 
 }  // namespace
 
+// What moves, where it stands in one state.
+struct LightMap::Movers {
+  std::vector<Occluder> occluders;  // one per moving part
+  std::vector<Vector3f> normals;    // of the tracer's triangles
+  std::vector<int> facets;
+  std::optional<Tracer> tracer;
+};
+
 LightMap::LightMap(const Lab& lab, double coarser, const std::function<void()>& poll) {
   std::vector<Triangle> still;
   for (int k = 0; k < static_cast<int>(lab.parts.size()); ++k) {
     const Part& part = lab.parts[k];
-    const bool moves = k == lab.plate;
-    const int first = static_cast<int>(grids_.size());
-    add_part(part, moves ? Pose::Identity() : part.T_world_part, coarser);
+    const Range range = add_part(part, k, part.moves ? Pose::Identity() : part.T_world_part, coarser);
     for (const Facet& f : part.facets) albedo_.push_back(lab.materials[f.material].picture.mean());
-    if (moves) {
-      plate_first_ = first;
-      plate_end_ = static_cast<int>(grids_.size());
+    if (part.moves) {
+      moving_.push_back(range);
+      solids_.push_back(triangles_of(part, Eigen::Isometry3f::Identity()));
       continue;
     }
-    for (int facet = first; const Triangle& t : triangles_of(part, part.T_world_part.cast<float>())) {
+    still_.push_back(range);
+    for (int facet = range.first_facet; const Triangle& t : triangles_of(part, part.T_world_part.cast<float>())) {
       still_facets_.push_back(facet++);
+      still_g_.push_back((t[1] - t[0]).cross(t[2] - t[0]));
       still.push_back(t);
     }
   }
-  tracers_.emplace_back(std::move(still));
-  tracers_.emplace_back(triangles_of(lab.parts[lab.plate], Eigen::Isometry3f::Identity()));
+  still_tracer_.emplace(std::move(still));
 
   seen_.assign(samples_.size(), 0);
   inside_.assign(samples_.size(), 0);
+  deep_ = inside_;
   direct_.assign(samples_.size(), Vector3f::Zero());
   ambient_ = direct_;
-  const auto each_still_facet = [&](auto&& work) {
-    parallel_for(still_facets_.size(), [&](std::size_t k) {
-      const Grid& grid = grids_[still_facets_[k]];
-      for (int i = grid.first; i < grid.first + (grid.n + 1) * (grid.n + 2) / 2; ++i) {
-        if (poll && i % 64 == 0) poll();
-        work(i);
-      }
+  std::vector<int> samples;
+  for (const Range& range : still_)
+    for (int i = range.first_sample; i < range.end_sample; ++i) samples.push_back(i);
+  const auto each = [&](auto&& work) {
+    constexpr std::size_t kChunk = 64;
+    parallel_for((samples.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+      if (poll) poll();
+      for (std::size_t k = chunk * kChunk; k < std::min(samples.size(), (chunk + 1) * kChunk); ++k) work(samples[k]);
     });
   };
-  each_still_facet([&](int i) {
+  each([&](int i) {
     seen_[i] = lamp_points_seen(samples_[i]);
-    direct_[i] = from_lamp(samples_[i].p, samples_[i].n, seen_[i]);
+    direct_[i] = lamp::irradiance(samples_[i].p, samples_[i].n, seen_[i]);
   });
-  each_still_facet([&](int i) {
-    const Gather g = gather(samples_[i], kStillRays, nullptr, Eigen::Isometry3f::Identity());
+  each([&](int i) {
+    const Sample& s = samples_[i];
+    const Gather g = gather(s, kStillRays, nullptr);
     ambient_[i] = g.light;
-    inside_[i] = g.inside ||
-                 tracers_[0].blocked(off_surface(samples_[i].p, samples_[i].n, samples_[i].g), samples_[i].g, kHidden);
+    inside_[i] = g.inside || still_tracer_->blocked(off_surface(s.p, s.n, s.g), s.g, kHidden);
+    const auto cover = still_tracer_->nearest(s.p + kSheet * s.g, s.g);
+    deep_[i] = inside_[i] && cover && still_g_[cover->triangle].dot(s.g) > 0;
   });
 }
 
-void LightMap::add_part(const Part& part, const Pose& T, double coarser) {
+LightMap::Range LightMap::add_part(const Part& part, int number, const Pose& T, double coarser) {
+  Range range{number, static_cast<int>(samples_.size()), 0, static_cast<int>(grids_.size()), 0};
   const Eigen::Isometry3f Tf = T.cast<float>();
+  std::map<std::array<int, 6>, int> known;  // place in 2 um, normal in 1e-2
   for (const Facet& f : part.facets) {
     const auto& c = f.corners;
     const float longest = std::max({(c[1].p - c[0].p).norm(), (c[2].p - c[1].p).norm(), (c[0].p - c[2].p).norm()});
@@ -144,46 +107,63 @@ void LightMap::add_part(const Part& part, const Pose& T, double coarser) {
     const double across = std::max(std::sqrt(area.norm()), longest / 8) / (part.light_step * coarser);
     const int n = std::clamp(static_cast<int>(std::ceil(across)), 1, 512);
     const Vector3f g = area.normalized();
-    grids_.push_back({static_cast<int>(samples_.size()), n});
+    grids_.push_back({static_cast<int>(grid_samples_.size()), n});
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i + j <= n; ++i) {
         const float b1 = static_cast<float>(i) / static_cast<float>(n),
                     b2 = static_cast<float>(j) / static_cast<float>(n);
         const float b0 = 1 - b1 - b2;
-        samples_.push_back({Tf * (b0 * c[0].p + b1 * c[1].p + b2 * c[2].p),
-                            (Tf.linear() * (b0 * c[0].n + b1 * c[1].n + b2 * c[2].n)).normalized(), g});
+        const Vector3f p = b0 * c[0].p + b1 * c[1].p + b2 * c[2].p;
+        const Vector3f m = (b0 * c[0].n + b1 * c[1].n + b2 * c[2].n).normalized();
+        std::array<int, 6> key;
+        for (int k = 0; k < 3; ++k) {
+          key[k] = static_cast<int>(std::lround(p[k] * 5e5f));
+          key[k + 3] = static_cast<int>(std::lround(m[k] * 1e2f));
+        }
+        const auto [at, is_new] = known.try_emplace(key, static_cast<int>(samples_.size()));
+        grid_samples_.push_back(at->second);
+        if (is_new)
+          samples_.push_back({Tf * p, Tf.linear() * m, g});
+        else if (samples_[at->second].g.dot(g) < 0.9999f)
+          samples_[at->second].g = samples_[at->second].n;
       }
   }
+  range.end_sample = static_cast<int>(samples_.size());
+  range.end_facet = static_cast<int>(grids_.size());
+  return range;
 }
 
 std::uint64_t LightMap::lamp_points_seen(const Sample& s) const {
   const Vector3f origin = off_surface(s.p, s.n, s.g);
   std::uint64_t seen = 0;
-  for (int k = 0; k < kLampPoints; ++k) {
-    const Vector3f d = lamp().points[k] - origin;
-    if (s.n.dot(d) > 0 && !tracers_[0].blocked(origin, d, 1)) seen |= std::uint64_t{1} << k;
+  for (int k = 0; k < lamp::kPoints; ++k) {
+    const Vector3f d = lamp::points()[k] - origin;
+    if (s.n.dot(d) > 0 && !still_tracer_->blocked(origin, d, 1)) seen |= std::uint64_t{1} << k;
   }
   return seen;
 }
 
-LightMap::Gather LightMap::gather(const Sample& s, int rays, const Tracer* plate,
-                                  const Eigen::Isometry3f& T_plate_world) const {
+LightMap::Gather LightMap::gather(const Sample& s, int rays, const Movers* movers) const {
   const Vector3f origin = off_surface(s.p, s.n, s.g);
   Gather out;
   int behind = 0;
   for (int k = 0; k < rays; ++k) {
     const Vector3f d = cosine_direction(s.n, k, rays);
-    if (plate && plate->blocked(T_plate_world * origin, T_plate_world.linear() * d, 10)) {
-      out.light += Vector3f::Constant(0.5f * kBounce);
-      continue;
+    const auto hit = still_tracer_->nearest(origin, d);
+    if (movers) {
+      const auto nearer = movers->tracer->nearest(origin, d, hit ? hit->t : 10);
+      if (nearer) {
+        if (movers->normals[nearer->triangle].dot(d) > 0) ++behind;
+        out.light += 2 * kBounce * albedo_[movers->facets[nearer->triangle]];
+        continue;
+      }
     }
-    const auto hit = tracers_[0].nearest(origin, d);
     if (!hit) {
-      out.light += daylight(d);
+      out.light += lamp::daylight(d);
       continue;
     }
     const int facet = still_facets_[hit->triangle];
-    if (samples_[grids_[facet].first].g.dot(d) > 0) ++behind;
+    if (still_g_[hit->triangle].dot(d) > 0) ++behind;
     const Vector3f lit = at(direct_, facet, hit->b1, hit->b2) + Vector3f::Constant(kBounce * kPi);
     out.light += albedo_[facet].cwiseProduct(lit) / kPi;
   }
@@ -193,88 +173,109 @@ LightMap::Gather LightMap::gather(const Sample& s, int rays, const Tracer* plate
 }
 
 // Samples inside a solid or under its chamfer are dark; interpolating them would draw a ragged seam along its foot.
-// Their nearest usable neighbours speak for them.
+// Their nearest usable neighbours speak for them, darker under a solid that stands there.
 void LightMap::fill(const Grid& grid, std::vector<std::uint8_t>& unusable, Irradiance& irradiance) const {
   constexpr int kNeighbours[6][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}};
   for (int round = 0; round < 2; ++round) {
     std::vector<std::pair<int, Vector3f>> filled;
     for (int j = 0; j <= grid.n; ++j)
       for (int i = 0; i + j <= grid.n; ++i) {
-        if (!unusable[grid.index(i, j)]) continue;
+        if (!unusable[index(grid, i, j)]) continue;
         Vector3f sum = Vector3f::Zero();
         int count = 0;
         for (const auto& d : kNeighbours) {
           const int a = i + d[0], b = j + d[1];
-          if (a < 0 || b < 0 || a + b > grid.n || unusable[grid.index(a, b)]) continue;
-          sum += irradiance[grid.index(a, b)];
+          if (a < 0 || b < 0 || a + b > grid.n || unusable[index(grid, a, b)]) continue;
+          sum += irradiance[index(grid, a, b)];
           ++count;
         }
-        if (count) filled.emplace_back(grid.index(i, j), sum / static_cast<float>(count));
+        if (count)
+          filled.emplace_back(index(grid, i, j),
+                              sum * ((deep_[index(grid, i, j)] ? kFoot : 1) / static_cast<float>(count)));
       }
-    for (const auto& [index, value] : filled) {
-      irradiance[index] = value;
-      unusable[index] = 0;
+    for (const auto& [place, value] : filled) {
+      irradiance[place] = value;
+      unusable[place] = 0;
     }
   }
 }
 
-LightMap::Irradiance LightMap::with_plate_at(const Pose& T_world_plate) const {
-  const Eigen::Isometry3f T = T_world_plate.cast<float>();
+LightMap::Irradiance LightMap::lit(const LabState& T_world_part) const {
   Irradiance out(samples_.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = direct_[i] + ambient_[i];
-  light_plate(T, out);
-  shade_surroundings(T, out);
+  if (moving_.empty()) {
+    shade_still({}, out);
+    return out;
+  }
+  Movers movers;
+  std::vector<Triangle> all;
+  for (std::size_t m = 0; m < moving_.size(); ++m) {
+    const Eigen::Isometry3f T = T_world_part[static_cast<std::size_t>(moving_[m].part)].cast<float>();
+    std::vector<Triangle> placed = solids_[m];
+    for (int facet = moving_[m].first_facet; Triangle & t : placed) {
+      for (Vector3f& p : t) p = T * p;
+      movers.normals.push_back((t[1] - t[0]).cross(t[2] - t[0]));
+      movers.facets.push_back(facet++);
+    }
+    all.insert(all.end(), placed.begin(), placed.end());
+    movers.occluders.emplace_back(placed);
+  }
+  movers.tracer.emplace(std::move(all));
+  light_movers(T_world_part, movers, out);
+  shade_still(movers, out);
   return out;
 }
 
-void LightMap::light_plate(const Eigen::Isometry3f& T_world_plate, Irradiance& out) const {
-  const Eigen::Isometry3f T_plate_world = T_world_plate.inverse();
-  for (int f = plate_first_; f < plate_end_; ++f)
-    for (int i = grids_[f].first; i < grids_[f].first + (grids_[f].n + 1) * (grids_[f].n + 2) / 2; ++i) {
-      const Sample& own = samples_[i];
-      const Sample s{T_world_plate * own.p, T_world_plate.linear() * own.n, T_world_plate.linear() * own.g};
-      const Vector3f origin = off_surface(own.p, own.n, own.g);
-      std::uint64_t seen = lamp_points_seen(s);
-      for (std::uint64_t left = seen; left; left &= left - 1) {
-        const int k = std::countr_zero(left);
-        if (tracers_[1].blocked(origin, T_plate_world * lamp().points[k] - origin, 1)) seen &= ~(std::uint64_t{1} << k);
-      }
-      out[i] = from_lamp(s.p, s.n, seen) + gather(s, kPlateRays, &tracers_[1], T_plate_world).light;
+void LightMap::light_movers(const LabState& T_world_part, const Movers& movers, Irradiance& out) const {
+  std::vector<std::uint8_t> unusable(samples_.size(), 0);
+  for (const Range& range : moving_) {
+    const Eigen::Isometry3f T = T_world_part[static_cast<std::size_t>(range.part)].cast<float>();
+    for (int i = range.first_sample; i < range.end_sample; ++i) {
+      const Sample s{T * samples_[i].p, T.linear() * samples_[i].n, T.linear() * samples_[i].g};
+      const Gather g = gather(s, kMoverRays, &movers);
+      unusable[i] = g.inside;
+      std::uint64_t seen = g.inside ? 0 : lamp_points_seen(s);
+      const LampRays rays(off_surface(s.p, s.n, s.g));
+      for (const Occluder& occluder : movers.occluders)
+        if (seen) seen &= ~occluder.hidden(rays, seen);
+      out[i] = lamp::irradiance(s.p, s.n, seen) + g.light;
     }
+    for (int f = range.first_facet; f < range.end_facet; ++f) fill(grids_[f], unusable, out);
+  }
 }
 
-void LightMap::shade_surroundings(const Eigen::Isometry3f& T_world_plate, Irradiance& out) const {
-  const Eigen::Isometry3f T_plate_world = T_world_plate.inverse();
-  const Tracer& plate = tracers_[1];
-  Eigen::AlignedBox3f reach(plate.bounds().min() - Vector3f::Constant(kReach),
-                            plate.bounds().max() + Vector3f::Constant(kReach));
-  std::array<Vector3f, kLampPoints> lamp_plate;
-  for (int k = 0; k < kLampPoints; ++k) lamp_plate[k] = T_plate_world * lamp().points[k];
-
+void LightMap::shade_still(const Movers& movers, Irradiance& out) const {
   std::vector<std::uint8_t> unusable = inside_;
-  for (const int facet : still_facets_) {
-    const Grid& grid = grids_[facet];
-    for (int i = grid.first; i < grid.first + (grid.n + 1) * (grid.n + 2) / 2; ++i) {
+  std::vector<Eigen::AlignedBox3f> reach;
+  for (const Occluder& o : movers.occluders)
+    reach.emplace_back(o.box().min() - Vector3f::Constant(kReach), o.box().max() + Vector3f::Constant(kReach));
+  for (const Range& range : still_)
+    for (int i = range.first_sample; i < range.end_sample; ++i) {
+      if (inside_[i]) continue;
       const Sample& s = samples_[i];
-      if (inside_[i] || !reach.contains(T_plate_world * s.p)) continue;
-      const Vector3f origin = T_plate_world * off_surface(s.p, s.n, s.g);
-      if (plate.blocked(origin, T_plate_world.linear() * s.g, kHidden)) {
-        unusable[i] = 1;
-        continue;
-      }
+      const Vector3f origin = off_surface(s.p, s.n, s.g);
       std::uint64_t seen = seen_[i];
-      for (std::uint64_t left = seen; left; left &= left - 1) {
-        const int k = std::countr_zero(left);
-        if (plate.blocked(origin, lamp_plate[k] - origin, 1)) seen &= ~(std::uint64_t{1} << k);
+      if (seen) {
+        const LampRays rays(origin);
+        for (const Occluder& occluder : movers.occluders) seen &= ~occluder.hidden(rays, seen);
       }
-      int shaded = 0;
-      for (int k = 0; k < kShadeRays; ++k)
-        shaded += plate.blocked(origin, T_plate_world.linear() * cosine_direction(s.n, k, kShadeRays), kReach);
-      const float open = 1 - 0.7f * static_cast<float>(shaded) / kShadeRays;
-      out[i] = (seen == seen_[i] ? direct_[i] : from_lamp(s.p, s.n, seen)) + open * ambient_[i];
+      float shaded = 0;
+      if (std::any_of(reach.begin(), reach.end(), [&](const auto& box) { return box.contains(s.p); })) {
+        if (movers.tracer->blocked(origin, s.g, kHidden)) {
+          unusable[i] = 1;
+          continue;
+        }
+        for (int k = 0; k < kShadeRays; ++k) {
+          const auto hit = movers.tracer->nearest(origin, cosine_direction(s.n, k, kShadeRays), kReach);
+          if (hit) shaded += (1 - hit->t / kReach) * (1 - hit->t / kReach);
+        }
+      }
+      if (seen == seen_[i] && shaded == 0) continue;
+      out[i] = (seen == seen_[i] ? direct_[i] : lamp::irradiance(s.p, s.n, seen)) +
+               (1 - 0.85f * shaded / kShadeRays) * ambient_[i];
     }
-    fill(grid, unusable, out);
-  }
+  for (const Range& range : still_)
+    for (int f = range.first_facet; f < range.end_facet; ++f) fill(grids_[f], unusable, out);
 }
 
 Vector3f LightMap::at(const Irradiance& irradiance, int facet, float b1, float b2) const {
@@ -284,22 +285,10 @@ Vector3f LightMap::at(const Irradiance& irradiance, int facet, float b1, float b
   const int j = std::min(static_cast<int>(y), grid.n - 1);
   const int i = std::min(static_cast<int>(x), grid.n - 1 - j);
   const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-  const Vector3f& right = irradiance[grid.index(i + 1, j)];
-  const Vector3f& below = irradiance[grid.index(i, j + 1)];
-  if (a + b <= 1 || i + j + 2 > grid.n) return (1 - a - b) * irradiance[grid.index(i, j)] + a * right + b * below;
-  return (a + b - 1) * irradiance[grid.index(i + 1, j + 1)] + (1 - b) * right + (1 - a) * below;
-}
-
-float LightMap::mirrored_lamp(const Vector3f& p, const Vector3f& n, const Vector3f& to_eye) {
-  const Vector3f d = 2 * n.dot(to_eye) * n - to_eye;
-  const float towards = -lamp().normal.dot(d);
-  if (towards <= 0.05f) return 0;
-  const Vector3f at = p + d * (lamp().normal.dot(p - kLampCentre) / towards) - kLampCentre;
-  const auto edge = [](float x) {  // a slightly rough surface softens the lamp's border
-    const float t = std::clamp((kLampSize * 0.62f - std::abs(x)) / (0.24f * kLampSize), 0.0f, 1.0f);
-    return t * t * (3 - 2 * t);
-  };
-  return edge(at.dot(lamp().right)) * edge(at.dot(lamp().up));
+  const Vector3f& right = irradiance[index(grid, i + 1, j)];
+  const Vector3f& below = irradiance[index(grid, i, j + 1)];
+  if (a + b <= 1 || i + j + 2 > grid.n) return (1 - a - b) * irradiance[index(grid, i, j)] + a * right + b * below;
+  return (a + b - 1) * irradiance[index(grid, i + 1, j + 1)] + (1 - b) * right + (1 - a) * below;
 }
 
 }  // namespace foresight::sim

@@ -7,21 +7,24 @@
 //      j (towards corner 2)
 //      v
 //
-// The still scene is computed once. For each frame only the moving plate's own samples and the
-// ones in its reach are computed again: which of the lamp's points each sample sees is remembered.
+// Grids share the samples where they meet on a smooth surface. What stands still is lit once. For a
+// state of the lab only the samples on moving parts, in their shadow and near them are computed:
+// which of the lamp's points each still sample sees is remembered.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "sim/lab.hpp"
+#include "sim/occluder.hpp"
 #include "sim/tracer.hpp"
 
 namespace foresight::sim {
 
-/// Immutable once built; safe to share between threads. Facets are numbered through all parts
-/// in order, the plate's included.
+/// Immutable once built; safe to share between threads. Facets are numbered through all parts in
+/// order, the moving ones included.
 class LightMap {
  public:
   /// Irradiance (linear RGB; a white surface of 1 shows as 1 / pi) of every sample.
@@ -31,46 +34,54 @@ class LightMap {
   /// `poll`, which may be empty, is called now and then from all threads; what it throws stops the work.
   LightMap(const Lab& lab, double coarser, const std::function<void()>& poll = {});
 
-  /// The light while the plate stands at `T_world_plate`. One thread.
-  Irradiance with_plate_at(const Pose& T_world_plate) const;
+  /// The light while the parts stand at `T_world_part`. One thread.
+  Irradiance lit(const LabState& T_world_part) const;
 
+  /// Irradiance on a facet at barycentric weights of its corners 1 and 2.
   Eigen::Vector3f at(const Irradiance& irradiance, int facet, float b1, float b2) const;
-
-  /// Strength in 0 .. 1 of the lamp's mirror image at `p` for a viewer in `to_eye` (world frame).
-  static float mirrored_lamp(const Eigen::Vector3f& p, const Eigen::Vector3f& n, const Eigen::Vector3f& to_eye);
 
   std::size_t sample_count() const { return samples_.size(); }
 
  private:
   struct Sample {
-    Eigen::Vector3f p;  // world; node frame on the plate
+    Eigen::Vector3f p;  // world; node frame on a moving part
     Eigen::Vector3f n;  // for shading
-    Eigen::Vector3f g;  // of the triangle
+    Eigen::Vector3f g;  // of the triangle; n where several share the sample
   };
   struct Grid {
-    int first = 0, n = 1;
-    int index(int i, int j) const { return first + j * (n + 1) - j * (j - 1) / 2 + i; }
+    int first = 0, n = 1;  // of grid_samples_
+    int size() const { return (n + 1) * (n + 2) / 2; }
+    int place(int i, int j) const { return first + j * (n + 1) - j * (j - 1) / 2 + i; }
   };
+  struct Range {  // of one part
+    int part = 0, first_sample = 0, end_sample = 0, first_facet = 0, end_facet = 0;
+  };
+  struct Movers;
   struct Gather {
     Eigen::Vector3f light = Eigen::Vector3f::Zero();
     bool inside = false;  // within a solid: most rays meet a surface from behind
   };
-  void add_part(const Part& part, const Pose& T, double coarser);
+  int index(const Grid& grid, int i, int j) const { return grid_samples_[grid.place(i, j)]; }
+  Range add_part(const Part& part, int number, const Pose& T, double coarser);
   std::uint64_t lamp_points_seen(const Sample& s) const;
-  Gather gather(const Sample& s, int rays, const Tracer* plate, const Eigen::Isometry3f& T_plate_world) const;
+  Gather gather(const Sample& s, int rays, const Movers* movers) const;
   void fill(const Grid& grid, std::vector<std::uint8_t>& unusable, Irradiance& irradiance) const;
-  void light_plate(const Eigen::Isometry3f& T_world_plate, Irradiance& out) const;
-  void shade_surroundings(const Eigen::Isometry3f& T_world_plate, Irradiance& out) const;
+  void light_movers(const LabState& T_world_part, const Movers& movers, Irradiance& out) const;
+  void shade_still(const Movers& movers, Irradiance& out) const;
 
   std::vector<Grid> grids_;              // one per facet
+  std::vector<int> grid_samples_;        // index into samples_
   std::vector<Eigen::Vector3f> albedo_;  // one per facet, mean
   std::vector<Sample> samples_;
-  std::vector<int> still_facets_;        // facet of each of the still tracer's triangles
-  int plate_first_ = 0, plate_end_ = 0;  // the plate's facets
-  std::vector<Tracer> tracers_;          // still scene, plate (node frame)
-  std::vector<std::uint64_t> seen_;      // lamp points that a still sample sees, one bit each
+  std::vector<Range> still_, moving_;
+  std::vector<int> still_facets_;              // facet of each of the still tracer's triangles
+  std::vector<Eigen::Vector3f> still_g_;       // normals of these
+  std::vector<std::vector<Triangle>> solids_;  // of each moving part, node frame
+  std::optional<Tracer> still_tracer_;
+  std::vector<std::uint64_t> seen_;  // lamp points that a still sample sees, one bit each
   Irradiance direct_, ambient_;
   std::vector<std::uint8_t> inside_;
+  std::vector<std::uint8_t> deep_;  // inside, and covered by more than a sheet
 };
 
 }  // namespace foresight::sim

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
+#include "sim/lamp.hpp"
 #include "sim/parallel.hpp"
 
 namespace foresight::sim {
@@ -14,8 +16,11 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr int kTile = 8, kBlock = 64;  // px; a block holds whole tiles
-constexpr int kSide = Renderer::kSide, kRays = kTile * kTile * kSide * kSide;
+constexpr int kBlock = 64;       // px; a block holds whole tiles
+constexpr int kTilePixels = 64;  // 8 x 8, or 64 x 1 where a row has its own instant
+constexpr int kSide = Renderer::kSide, kRays = kTilePixels * kSide * kSide;
+constexpr int kCentre = kSide * kSide / 2;  // the ray through the pixel's centre
+static_assert(kSide % 2 == 1);
 constexpr float kPerSide = 1.0f / kSide, kPerPixel = kPerSide * kPerSide;
 
 // A facet in the camera frame, as its three edge planes through the eye. A ray d = (x, y, 1) meets
@@ -38,12 +43,12 @@ struct TileRays {
   std::array<std::int32_t, kRays> view;
 };
 
-std::vector<View> views_of(const Lab& lab, const Pose& T_world_camera, const Pose& T_world_plate) {
+std::vector<View> views_of(const Lab& lab, const Pose& T_world_camera, const LabState& T_world_part) {
   std::vector<View> out;
   int index = 0;
   for (int k = 0; k < static_cast<int>(lab.parts.size()); ++k) {
     const Part& part = lab.parts[k];
-    const Pose T_camera_part = T_world_camera.inverse() * (k == lab.plate ? T_world_plate : part.T_world_part);
+    const Pose T_camera_part = T_world_camera.inverse() * T_world_part[static_cast<std::size_t>(k)];
     for (const Facet& f : part.facets) {
       std::array<Eigen::Vector3d, 3> v;
       for (int i = 0; i < 3; ++i) v[i] = T_camera_part * f.corners[i].p.cast<double>();
@@ -86,7 +91,7 @@ std::vector<int> narrow(const std::vector<View>& views, const std::vector<int>& 
   return out;
 }
 
-// Rays are ordered by pixel (row by row, always kTile per row), then by place within the pixel.
+// Rays are ordered by pixel (row by row), then by place within the pixel.
 void aim(const RayTable& rays, const cv::Rect& tile, TileRays& out) {
   out.x.fill(std::numeric_limits<float>::quiet_NaN());
   out.y = out.x;
@@ -94,7 +99,7 @@ void aim(const RayTable& rays, const cv::Rect& tile, TileRays& out) {
     for (int c = 0; c < tile.width; ++c) {
       const Vector2f &a = rays.corner(tile.x + c, tile.y + r), &b = rays.corner(tile.x + c + 1, tile.y + r);
       const Vector2f &e = rays.corner(tile.x + c, tile.y + r + 1), &f = rays.corner(tile.x + c + 1, tile.y + r + 1);
-      int k = (r * kTile + c) * kSide * kSide;
+      int k = (r * tile.width + c) * kSide * kSide;
       for (int j = 0; j < kSide; ++j)
         for (int i = 0; i < kSide; ++i, ++k) {
           const float u = (static_cast<float>(i) + 0.5f) * kPerSide, v = (static_cast<float>(j) + 0.5f) * kPerSide;
@@ -102,6 +107,10 @@ void aim(const RayTable& rays, const cv::Rect& tile, TileRays& out) {
           out.x[k] = d.x();
           out.y[k] = d.y();
         }
+      const Vector2f& centre = rays.centre(tile.x + c, tile.y + r);
+      k += kCentre - kSide * kSide;
+      out.x[k] = centre.x();
+      out.y[k] = centre.y();
     }
   out.inverse_depth.fill(0);
   out.view.fill(-1);
@@ -122,33 +131,17 @@ void meet(const View& view, int index, TileRays& rays) {
   }
 }
 
-// Linear light to 8-bit sRGB with a soft shoulder, like a camera's.
-std::uint8_t encode(float light) {
-  static const std::vector<std::uint8_t> table = [] {
-    std::vector<std::uint8_t> t(32768);
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      const float x = 4.0f * (static_cast<float>(i) + 0.5f) / static_cast<float>(t.size());
-      const float y = x < 0.55f ? x : 0.55f + 0.45f * (1 - std::exp(-(x - 0.55f) / 0.45f));
-      t[i] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(srgb_from_linear(y), 0.0f, 1.0f)));
-    }
-    return t;
-  }();
-  const float place = std::clamp(light * static_cast<float>(table.size()) / 4.0f, 0.0f, 1e6f);
-  return table[std::min(static_cast<std::size_t>(place), table.size() - 1)];
-}
-
 // Shades the rays of one pixel. The light changes slowly, so one look-up per facet and pixel will do.
 class PixelShader {
  public:
   PixelShader(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance, const Pose& T_world_camera,
-              const Pose& T_world_plate, float pixel_angle)
+              const LabState& T_world_part, float pixel_angle)
       : lab_(lab),
         light_(light),
         irradiance_(irradiance),
         T_world_camera_(T_world_camera.cast<float>()),
         footprint_(pixel_angle * kPerSide) {
-    for (const Part& part : lab.parts) rotations_.push_back(part.T_world_part.linear().cast<float>());
-    rotations_[lab.plate] = T_world_plate.linear().cast<float>();
+    for (const Pose& T : T_world_part) rotations_.push_back(T.linear().cast<float>());
   }
 
   Vector3f shade(const std::vector<View>& views, const TileRays& rays, int first) {
@@ -182,7 +175,7 @@ class PixelShader {
     n = rotations_[view.part] * n;
     const Vector3f p = T_world_camera_ * p_camera;
     const Vector3f to_eye = (T_world_camera_.translation() - p).normalized();
-    mirror_here_.setConstant(10 * material.gloss * LightMap::mirrored_lamp(p, n.normalized(), to_eye));
+    mirror_here_.setConstant(10 * material.gloss * lamp::mirrored(p, n.normalized(), to_eye));
   }
 
   const Lab& lab_;
@@ -194,49 +187,70 @@ class PixelShader {
   Vector3f light_here_ = Vector3f::Zero(), mirror_here_ = Vector3f::Zero();
 };
 
+// (x / z, y / z) at pixels (column + offset, row + offset).
+std::vector<Vector2f> table(const Lens& lens, int columns, int rows, double offset) {
+  std::vector<Vector2f> out(static_cast<std::size_t>(columns) * rows,
+                            Vector2f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  parallel_for(static_cast<std::size_t>(rows), [&](std::size_t row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto ray = lens.unproject({column + offset, static_cast<double>(row) + offset});
+      if (ray && ray->z() > 0.02) out[row * columns + column] = (ray->head<2>() / ray->z()).cast<float>();
+    }
+  });
+  return out;
+}
+
 }  // namespace
 
 RayTable::RayTable(const Lens& lens)
     : width_(lens.width()),
       height_(lens.height()),
       pixel_angle_(static_cast<float>(1 / lens.parameters().fx)),
-      corners_(static_cast<std::size_t>(width_ + 1) * (height_ + 1),
-               Vector2f::Constant(std::numeric_limits<float>::quiet_NaN())) {
-  parallel_for(static_cast<std::size_t>(height_) + 1, [&](std::size_t row) {
-    for (int column = 0; column <= width_; ++column) {
-      const auto ray = lens.unproject({column - 0.5, static_cast<double>(row) - 0.5});
-      if (ray && ray->z() > 0.02) corners_[row * (width_ + 1) + column] = (ray->head<2>() / ray->z()).cast<float>();
-    }
-  });
-}
+      corners_(table(lens, width_ + 1, height_ + 1, -0.5)),
+      centres_(table(lens, width_, height_, 0)) {}
 
-cv::Mat Renderer::render(const RayTable& rays, const Pose& T_world_camera, const Pose& T_world_plate,
-                         const LightMap::Irradiance& irradiance) const {
-  cv::Mat picture(rays.height(), rays.width(), CV_8UC3);
-  const std::vector<View> views = views_of(lab_, T_world_camera, T_world_plate);
-  PixelShader shader(lab_, light_, irradiance, T_world_camera, T_world_plate, rays.pixel_angle());
+Picture::Picture(cv::Size size)
+    : light(size, CV_32FC3, cv::Scalar::all(0)),
+      depth(size, CV_32FC1, cv::Scalar::all(0)),
+      facet(size, CV_32SC1, cv::Scalar::all(-1)) {}
+
+void Renderer::render(const RayTable& rays, const Pose& T_world_camera, const LabState& T_world_part,
+                      const LightMap::Irradiance& irradiance, int first_row, int end_row, Picture& out) const {
+  const std::vector<View> views = views_of(lab_, T_world_camera, T_world_part);
+  PixelShader shader(lab_, light_, irradiance, T_world_camera, T_world_part, rays.pixel_angle());
   std::vector<int> all(views.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  std::iota(all.begin(), all.end(), 0);
 
   TileRays tile_rays;
-  const cv::Rect whole(0, 0, rays.width(), rays.height());
-  for (int by = 0; by < whole.height; by += kBlock)
+  const cv::Rect whole(0, first_row, rays.width(), end_row - first_row);
+  const cv::Size size = whole.height < 8 ? cv::Size(kTilePixels, 1) : cv::Size(8, 8);
+  for (int by = first_row; by < end_row; by += kBlock)
     for (int bx = 0; bx < whole.width; bx += kBlock) {
       const cv::Rect block = cv::Rect(bx, by, kBlock, kBlock) & whole;
       const std::vector<int> near = narrow(views, all, window_of(rays, block));
-      for (int y = by; y < block.br().y; y += kTile)
-        for (int x = bx; x < block.br().x; x += kTile) {
-          const cv::Rect tile = cv::Rect(x, y, kTile, kTile) & whole;
+      for (int y = by; y < block.br().y; y += size.height)
+        for (int x = bx; x < block.br().x; x += size.width) {
+          const cv::Rect tile = cv::Rect(cv::Point(x, y), size) & whole;
           aim(rays, tile, tile_rays);
           for (int i : narrow(views, near, window_of(rays, tile))) meet(views[i], i, tile_rays);
           for (int r = 0; r < tile.height; ++r)
             for (int c = 0; c < tile.width; ++c) {
-              const Vector3f light = shader.shade(views, tile_rays, (r * kTile + c) * kSide * kSide);
-              picture.at<cv::Vec3b>(y + r, x + c) = {encode(light.z()), encode(light.y()), encode(light.x())};
+              const int first = (r * tile.width + c) * kSide * kSide;
+              const Vector3f light = shader.shade(views, tile_rays, first);
+              out.light.at<cv::Vec3f>(y + r, x + c) = {light.x(), light.y(), light.z()};
+              const int view = tile_rays.view[first + kCentre];
+              out.facet.at<int>(y + r, x + c) = view < 0 ? -1 : views[view].index;
+              out.depth.at<float>(y + r, x + c) = view < 0 ? 0 : 1 / tile_rays.inverse_depth[first + kCentre];
             }
         }
     }
-  return picture;
+}
+
+Picture Renderer::render(const RayTable& rays, const Pose& T_world_camera, const LabState& T_world_part,
+                         const LightMap::Irradiance& irradiance) const {
+  Picture out({rays.width(), rays.height()});
+  render(rays, T_world_camera, T_world_part, irradiance, 0, rays.height(), out);
+  return out;
 }
 
 }  // namespace foresight::sim

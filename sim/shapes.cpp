@@ -113,7 +113,7 @@ void add_turned(Facets& out, const std::vector<ProfilePoint>& profile, int segme
 }
 
 void add_handle(Facets& out, const Vector3f& centre, float bow_radius, float tube_radius, int material) {
-  constexpr int kAlong = 12, kAround = 8;
+  constexpr int kAlong = 8, kAround = 6;
   const auto corner = [&](int i, int j) {
     const float bow = kPi * (static_cast<float>(i) / kAlong - 0.5f);
     const float around = 2 * kPi * static_cast<float>(j % kAround) / kAround;

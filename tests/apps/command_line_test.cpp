@@ -9,7 +9,7 @@ using testing::HasSubstr;
 
 TEST(CommandLine, HelpIsNoError) {
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"--help"}, {"replay", "--help"}, {"export", "--help"}, {"sample", "--help"}}) {
+       {std::vector<std::string>{"--help"}, {"replay", "--help"}, {"export", "--help"}, {"synth", "--help"}}) {
     const Outcome outcome = run_program(arguments);
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.out, HasSubstr("Usage"));
@@ -35,8 +35,8 @@ TEST(CommandLine, WrongWordsEndWithCode2AndTheWayToTheHelp) {
       {{"--frobnicate"}, "subcommand"},
       {{"replay"}, "RUN is required"},
       {{"export", "x"}, "--out is required"},
-      {{"sample"}, "OUT is required"},
-      {{"sample", "x", "--frobnicate"}, "--frobnicate"},
+      {{"synth"}, "OUT is required"},
+      {{"synth", "x", "--frobnicate"}, "--frobnicate"},
       {{"replay", "x", "y"}, "y"},
   };
   for (const auto& [arguments, what] : all) {
@@ -49,18 +49,18 @@ TEST(CommandLine, WrongWordsEndWithCode2AndTheWayToTheHelp) {
   }
 }
 
-TEST(CommandLine, SampleRefusesWhatItCannotWrite) {
+TEST(CommandLine, SynthRefusesWhatItCannotWrite) {
   const TempFolder folder;
   folder.write("mine/diary.txt", "kept");
   const std::string out = folder / "out", mine = folder / "mine";
   const std::vector<std::pair<std::vector<std::string>, std::string>> all = {
-      {{"sample", out, "--size", "0x0"}, "choose a value"},
-      {{"sample", out, "--size", "64"}, "write it as WIDTHxHEIGHT"},
-      {{"sample", out, "--frames", "0"}, "choose a value"},
-      {{"sample", out, "--frames", "x"}, "--frames"},
-      {{"sample", mine}, "choose a new or empty folder"},
-      {{"sample", mine + "/diary.txt"}, "choose another place"},
-      {{"sample", "/proc/foresight"}, "choose a writable place"},
+      {{"synth", out, "--size", "0x0"}, "choose a value"},
+      {{"synth", out, "--size", "64"}, "write it as WIDTHxHEIGHT"},
+      {{"synth", out, "--frames", "0"}, "choose a value"},
+      {{"synth", out, "--frames", "x"}, "--frames"},
+      {{"synth", mine}, "choose a new or empty folder"},
+      {{"synth", mine + "/diary.txt"}, "choose another place"},
+      {{"synth", "/proc/foresight"}, "choose a writable place"},
   };
   for (const auto& [arguments, what] : all) {
     SCOPED_TRACE(testing::PrintToString(arguments));
@@ -72,9 +72,9 @@ TEST(CommandLine, SampleRefusesWhatItCannotWrite) {
   EXPECT_EQ(folder.read("mine/diary.txt"), "kept");
 }
 
-TEST(CommandLine, SampleStoppedByCtrlCLeavesNothing) {
+TEST(CommandLine, SynthStoppedByCtrlCLeavesNothing) {
   const TempFolder folder;
-  Program program({"sample", folder / "out", "--frames", "2000"});
+  Program program({"synth", folder / "out", "--frames", "2000"});
   while (program.running() && std::filesystem::is_empty(folder.path())) usleep(1000);
   usleep(200'000);
   program.interrupt();

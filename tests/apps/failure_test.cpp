@@ -27,7 +27,7 @@ class Failure : public testing::Test {
 };
 
 TEST_F(Failure, AnOldOpenGlIsNamed) {
-  const SampleRun run;
+  const SmallRun run;
   const Outcome outcome =
       run_program({"replay", run.path(), "--out", out_ / "out"}, {{{"MESA_GL_VERSION_OVERRIDE", "3.3"}}});
   if (outcome.exit_code == 0) GTEST_SKIP() << "this driver cannot be told to be old";
@@ -37,7 +37,7 @@ TEST_F(Failure, AnOldOpenGlIsNamed) {
 }
 
 TEST_F(Failure, NoOpenGlAtAllIsNamed) {
-  const SampleRun run;
+  const SmallRun run;
   const Outcome outcome =
       run_program({"replay", run.path(), "--out", out_ / "out"}, {{{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"}}});
   if (outcome.exit_code == 0) GTEST_SKIP() << "EGL is not chosen through GLVND here";
@@ -46,7 +46,7 @@ TEST_F(Failure, NoOpenGlAtAllIsNamed) {
 }
 
 TEST_F(Failure, AWindowNeedsADisplay) {
-  const SampleRun run;
+  const SmallRun run;
   const Outcome outcome = run_program({"replay", run.path(), "--window", "--out", out_ / "out"},
                                       {{{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
   expect_refused(outcome, "", "leave out --window");
@@ -54,13 +54,13 @@ TEST_F(Failure, AWindowNeedsADisplay) {
 }
 
 TEST_F(Failure, AFullDeviceIsNamed) {
-  const SampleRun run;
+  const SmallRun run;
   run.keep("rgb.txt", 1);
   expect_refused(run_program({"replay", run.path(), "--report", "/dev/full"}), "/dev/full", "free some disk space");
 }
 
 TEST_F(Failure, AFullDiskIsNamed) {
-  const SampleRun run;
+  const SmallRun run;
   const fs::path disk = out_ / "disk";
   fs::create_directory(disk);
   if (::mount("foresight", disk.c_str(), "tmpfs", 0, "size=24k") != 0)

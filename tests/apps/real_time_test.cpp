@@ -44,7 +44,7 @@ TEST(RealTime, DropsWhatComesTooLateAndCountsIt) {
 
 TEST(RealTime, AWindowShowsTheReplayAndCloses) {
   if (!std::getenv("DISPLAY")) GTEST_SKIP() << "no DISPLAY; scripts/test gives one";
-  const SampleRun run;
+  const SmallRun run;
   const TempFolder out;
   const Outcome outcome =
       run_program({"replay", run.path(), "--window", "--delay-frames", "1", "--report", out / "report.json"});

@@ -50,7 +50,7 @@ void expect_quality(const json& quality) {
 }
 
 TEST_F(Replay, WritesPicturesAndReports) {
-  const SampleRun run;
+  const SmallRun run;
   replay(run.path(), {"--delay-frames", "2"});
   EXPECT_THAT(names_in(out_.path()), testing::ElementsAre("out", "report.html", "report.json"));
   EXPECT_THAT(names_in(out_ / "out"), testing::ElementsAre("contact_sheet.png", "predicted"));
@@ -103,7 +103,7 @@ TEST_F(Replay, WritesPicturesAndReports) {
 }
 
 TEST_F(Replay, IsBitIdenticalButForTimesAndOverwritesPictures) {
-  const SampleRun run;
+  const SmallRun run;
   const auto contents = [&] {
     std::map<std::string, std::string> all{{"sheet", out_.read("out/contact_sheet.png")}};
     for (const std::string& name : names_in(out_ / "out/predicted")) all[name] = out_.read("out/predicted/" + name);
@@ -123,7 +123,7 @@ TEST_F(Replay, IsBitIdenticalButForTimesAndOverwritesPictures) {
 }
 
 TEST_F(Replay, ARunOfOneImageWithoutDelayShowsThatImage) {
-  const SampleRun run;
+  const SmallRun run;
   run.keep("rgb.txt", 1);
   const Outcome outcome = replay(run.path(), {});
   EXPECT_THAT(names_in(out_ / "out/predicted"), testing::ElementsAre("000000.png"));
@@ -135,7 +135,7 @@ TEST_F(Replay, ARunOfOneImageWithoutDelayShowsThatImage) {
 }
 
 TEST_F(Replay, ADelayOfZeroIsAllowedInBothUnits) {
-  const SampleRun run;
+  const SmallRun run;
   run.keep("rgb.txt", 3);
   replay(run.path(), {"--delay-frames", "0"});
   const json frames = without_times(report())["frames"];
@@ -145,7 +145,7 @@ TEST_F(Replay, ADelayOfZeroIsAllowedInBothUnits) {
 }
 
 TEST_F(Replay, OptionsOfTheTexturesAreFollowed) {
-  const SampleRun run;
+  const SmallRun run;
   run.keep("rgb.txt", 3);
   replay(run.path(),
          {"--texels-per-metre", "150", "--max-texture", "64", "--texture-memory-mb", "16", "--margin-px", "0"});
@@ -161,7 +161,7 @@ TEST_F(Replay, OptionsOfTheTexturesAreFollowed) {
 }
 
 TEST_F(Replay, TwoCamerasSeeMoreThanOne) {
-  const SampleRun stereo("--stereo");
+  const SmallRun stereo("--stereo");
   stereo.keep("rgb.txt", 3);
   replay(stereo.path(), {});
   const json both = report();
@@ -174,7 +174,7 @@ TEST_F(Replay, TwoCamerasSeeMoreThanOne) {
 }
 
 TEST_F(Replay, GreyImagesGiveGreyViews) {
-  const SampleRun run;
+  const SmallRun run;
   run.keep("rgb.txt", 3);
   run.change_images([](const cv::Mat& colour) {
     cv::Mat grey;
@@ -194,7 +194,7 @@ TEST_F(Replay, GreyImagesGiveGreyViews) {
 }
 
 TEST_F(Replay, AFisheyeOf150DegreesWorks) {
-  const SampleRun run("--fisheye");
+  const SmallRun run("--fisheye");
   run.keep("rgb.txt", 4);
   replay(run.path(), {"--delay-frames", "1"});
   const json all = report();
@@ -205,7 +205,7 @@ TEST_F(Replay, AFisheyeOf150DegreesWorks) {
 }
 
 TEST_F(Replay, AnotherModelCanBeChosen) {
-  const SampleRun run;
+  const SmallRun run;
   const TempFolder models;
   run.keep("rgb.txt", 2);
   fs::remove(run / "nodes.txt");

@@ -16,10 +16,10 @@ const fs::path& original(const std::string& option) {
   fs::path& run = made[option];
   if (!run.empty()) return run;
   const fs::path out = folder / ("run" + option);
-  std::vector<std::string> words{"sample", out, "--frames", "8", "--size", "96x72"};
+  std::vector<std::string> words{"synth", out, "--frames", "8", "--size", "96x72"};
   if (!option.empty()) words.push_back(option);
   const Outcome outcome = run_program(words);
-  if (outcome.exit_code != 0) throw std::runtime_error("no sample run: " + outcome.err);
+  if (outcome.exit_code != 0) throw std::runtime_error("no synthetic run: " + outcome.err);
   return run = out;
 }
 
@@ -34,18 +34,18 @@ std::vector<std::string> rows(const std::string& text) {
 
 }  // namespace
 
-SampleRun::SampleRun(const std::string& option) {
+SmallRun::SmallRun(const std::string& option) {
   fs::copy(original(option), path(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
 }
 
-void SampleRun::change_images(const std::function<cv::Mat(const cv::Mat&)>& change) const {
+void SmallRun::change_images(const std::function<cv::Mat(const cv::Mat&)>& change) const {
   for (const std::string& name : names_in(path() / "rgb")) {
     const std::string file = path() / "rgb" / name;
     cv::imwrite(file, change(cv::imread(file, cv::IMREAD_UNCHANGED)));
   }
 }
 
-void SampleRun::keep(const std::string& list, int count) const {
+void SmallRun::keep(const std::string& list, int count) const {
   std::istringstream stream(read(list));
   std::string kept;
   for (std::string line; std::getline(stream, line);)
@@ -54,24 +54,30 @@ void SampleRun::keep(const std::string& list, int count) const {
 }
 
 LoopedRun::LoopedRun(int images, double interval_s) {
-  const SampleRun sample;
-  for (const char* name : {"camera.yaml", "scene.yaml", "meshes"})
-    fs::copy(sample / name, path() / name, fs::copy_options::recursive);
+  const SmallRun run;
+  for (const char* name : {"camera.yaml", "scene.yaml", "arm.urdf", "meshes"})
+    fs::copy(run / name, path() / name, fs::copy_options::recursive);
   fs::create_directory(path() / "rgb");
-  const auto files = rows(sample.read("rgb.txt")), poses = rows(sample.read("trajectory.txt")),
-             plates = rows(sample.read("nodes.txt"));
-  const int count = static_cast<int>(files.size()), plates_per_image = static_cast<int>(plates.size()) / (count - 1);
+  const auto files = rows(run.read("rgb.txt")), poses = rows(run.read("trajectory.txt")),
+             tracks = rows(run.read("nodes.txt"));
+  // All moving nodes at one instant follow each other.
+  const auto first = [](const std::string& row) { return row.substr(0, row.find(' ')); };
+  std::size_t movers = 1;
+  while (movers < tracks.size() && first(tracks[movers]) != first(tracks[0])) ++movers;
+  const int count = static_cast<int>(files.size());
+  const std::size_t instants_per_image = (tracks.size() / movers - 1) / static_cast<std::size_t>(count - 1);
   std::string list, trajectory, nodes;
   for (int i = 0; i < images; ++i) {
-    const int turn = i % (2 * count - 2), source = turn < count ? turn : 2 * count - 2 - turn;
+    const int turn = i % (2 * count - 2);
+    const auto source = static_cast<std::size_t>(turn < count ? turn : 2 * count - 2 - turn);
     char text[64];
     std::snprintf(text, sizeof text, "%.6f ", i * interval_s);
     const std::string time = text;
     std::snprintf(text, sizeof text, "rgb/%06d.png", i);
-    fs::create_hard_link(sample / files[static_cast<std::size_t>(source)], path() / text);
+    fs::create_hard_link(run / files[source], path() / text);
     list += time + text + "\n";
-    trajectory += time + poses[static_cast<std::size_t>(source)] + "\n";
-    nodes += time + plates[static_cast<std::size_t>(source * plates_per_image)] + "\n";
+    trajectory += time + poses[source] + "\n";
+    for (std::size_t k = 0; k < movers; ++k) nodes += time + tracks[source * instants_per_image * movers + k] + "\n";
   }
   write("rgb.txt", list);
   write("trajectory.txt", trajectory);

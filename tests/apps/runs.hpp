@@ -8,11 +8,11 @@
 
 namespace foresight {
 
-/// A copy of the built-in sample run, small: 96 x 72, 8 images, 30 per second, a moving plate.
-class SampleRun : public TempFolder {
+/// A copy of a small synthetic run: 96 x 72, 8 images, 30 per second, a moving arm.
+class SmallRun : public TempFolder {
  public:
-  /// `option`: one more of `foresight sample`, such as "--stereo".
-  explicit SampleRun(const std::string& option = {});
+  /// `option`: one more of `foresight synth`, such as "--stereo".
+  explicit SmallRun(const std::string& option = {});
 
   /// Reads, changes and writes each image of the left camera.
   void change_images(const std::function<cv::Mat(const cv::Mat&)>& change) const;
@@ -20,7 +20,7 @@ class SampleRun : public TempFolder {
   void keep(const std::string& list, int count) const;
 };
 
-/// The sample run forwards and backwards again and again, `interval_s` between two images.
+/// That run forwards and backwards again and again, `interval_s` between two images.
 class LoopedRun : public TempFolder {
  public:
   LoopedRun(int images, double interval_s);

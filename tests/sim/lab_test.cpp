@@ -5,7 +5,9 @@
 #include <map>
 #include <set>
 
+#include "sim/head_path.hpp"
 #include "sim/motion.hpp"
+#include "sim/polygons.hpp"
 
 namespace foresight::sim {
 namespace {
@@ -37,29 +39,52 @@ TEST(Lab, SolidsAreClosedAndFaceOutwards) {
   }
 }
 
-TEST(Lab, NamesAreUniqueAndThePlateMoves) {
+TEST(Lab, NamesAreUniqueAndTheArmMoves) {
   std::set<std::string> names;
-  std::size_t triangles = 0;
-  for (const Part& part : lab().parts) {
-    EXPECT_TRUE(names.insert(part.name).second) << part.name;
-    triangles += part.facets.size();
+  for (const Part& part : lab().parts) EXPECT_TRUE(names.insert(part.name).second) << part.name;
+  EXPECT_EQ(lab().find("stand"), lab().arm);
+  for (std::size_t i = 0; i < arm_joints().size(); ++i) {
+    const Part& link = lab().parts[static_cast<std::size_t>(lab().arm) + i + 1];
+    EXPECT_EQ(link.name, arm_joints()[i].child);
+    EXPECT_TRUE(link.moves);
   }
-  EXPECT_EQ(lab().parts[lab().plate].name, "plate");
-  EXPECT_GT(triangles, 1000u);
-  EXPECT_LT(triangles, 5000u);
 }
 
-TEST(Motion, IsSmoothAndStaysOverTheTable) {
-  for (double t = 0; t < 60; t += 1.0 / 30) {
+TEST(Lab, HasTheSizeOfARealModel) {
+  EXPECT_NEAR(polygons_of(lab()).count, 1936, 0.02 * 1936);
+}
+
+TEST(Polygons, ABoxHasSixAndAPrismItsSidesAndLids) {
+  Lab small;
+  small.parts.resize(2);
+  add_box(small.parts[0].facets, {0, 0, 0}, {1, 2, 3}, 0, BoxPaint::all(0));
+  add_turned(small.parts[1].facets, {{0, 0, 0}, {0.5f, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}}, 7, 1, 2);
+  const Polygons polygons = polygons_of(small);
+  EXPECT_EQ(polygons.count, 6 + 7 + 2);
+  EXPECT_EQ(polygons.of_facet[0], polygons.of_facet[1]);
+}
+
+TEST(Motion, OfTheHeadIsSmoothAndInTheRoom) {
+  const RoomCheck room(lab());
+  for (double t = 0; t < 24; t += 1.0 / 30) {
     const Pose a = T_world_camera_at(t), b = T_world_camera_at(t + 1.0 / 30);
-    EXPECT_LT((a.translation() - b.translation()).norm(), 0.03);  // 0.9 m/s
-    EXPECT_LT(Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle(), 0.05);
+    EXPECT_LT((a.translation() - b.translation()).norm(), 0.04) << t;  // 1.2 m/s
+    EXPECT_LT(Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle(), 0.07) << t;
     EXPECT_NEAR(a.linear().determinant(), 1, 1e-12);
-    EXPECT_GT(a.translation().z(), 0.3);
-    const Eigen::Vector3d plate = T_world_plate_at(t).translation();
-    EXPECT_LT(std::abs(plate.y()), 0.25);
-    EXPECT_LT(plate.x(), -0.15) << "would touch the boxes";
+    const LabState state = lab_state_at(lab(), t);
+    EXPECT_EQ(room.fault(a.translation(), state), "") << t;
+    EXPECT_EQ(room.fault((a * T_left_right()).translation(), state), "") << t;
   }
+}
+
+TEST(RoomCheck, NamesWhatIsWrong) {
+  const RoomCheck room(lab());
+  const LabState state = lab().at_rest();
+  EXPECT_EQ(room.fault({-0.8, 0, 0.5}, state), "");
+  EXPECT_EQ(room.fault({3, 0, 0.5}, state), "has left the lab");
+  EXPECT_EQ(room.fault({0, 0.1, -0.015}, state), "is inside 'table'");
+  EXPECT_EQ(room.fault({0.2, 0.30, 0.1}, state), "is inside 'carton'");
+  EXPECT_EQ(room.fault({0.0, 0.7, 0.006}, state), "touches 'table'");
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
-#include "sim/sample_run.hpp"
+#include "sim/synth_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
@@ -53,13 +54,13 @@ struct World {
   std::optional<Tracer> tracer;
 };
 
-class SampleRun : public ::testing::Test {
+class SynthRun : public ::testing::Test {
  protected:
-  SampleRun() : folder_(fs::temp_directory_path() / ("foresight_sample_test_" + std::to_string(getpid()))) {
+  SynthRun() : folder_(fs::temp_directory_path() / ("foresight_synth_test_" + std::to_string(getpid()))) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
-  ~SampleRun() override { fs::remove_all(folder_); }
+  ~SynthRun() override { fs::remove_all(folder_); }
 
   std::vector<fs::path> left_behind() const {
     std::vector<fs::path> out;
@@ -68,60 +69,71 @@ class SampleRun : public ::testing::Test {
   }
 
   fs::path folder_;
-  const SampleRunOptions tiny_{.width = 48, .height = 36, .frames = 2};
+  const SynthOptions tiny_{.width = 48, .height = 36, .frames = 2, .sensor = {.noise = 2}, .pose_error_px = 0};
 };
 
-TEST_F(SampleRun, IsReadBackAsWritten) {
-  SampleRunOptions options = tiny_;
+TEST_F(SynthRun, IsReadBackAsWritten) {
+  SynthOptions options = tiny_;
   options.stereo = true;
-  write_sample_run(folder_ / "run", options);
+  write_synth_run(folder_ / "run", options);
   const RunFolder run = RunFolder::open(folder_ / "run", {});
   ASSERT_EQ(run.frames().size(), 2u);
-  EXPECT_EQ(run.lens_left().parameters().d, sample_lens(options, false).parameters().d);
-  EXPECT_EQ(run.lens_right()->parameters().fx, sample_lens(options, true).parameters().fx);
+  EXPECT_EQ(run.lens_left().parameters().d, synth_lens(options, false).parameters().d);
+  EXPECT_EQ(run.lens_right()->parameters().fx, synth_lens(options, true).parameters().fx);
   EXPECT_TRUE(run.T_left_right().isApprox(T_left_right(), 1e-12));
-  const double t = 1 / kSampleFrameRate;
+  const double t = 1 / options.rate;
   EXPECT_EQ(run.frames()[1].left.pose_status, StateStatus::exact);
   EXPECT_TRUE(run.frames()[1].left.T_world_camera.isApprox(T_world_camera_at(t), 1e-11));
   ASSERT_TRUE(run.frames()[1].right);
   EXPECT_TRUE(run.frames()[1].right->T_world_camera.isApprox(T_world_camera_at(t) * T_left_right(), 1e-11));
-  const int plate = run.scene()->find("plate").value();
   const SceneState state = run.state_at(run.frames()[1].left.time);
   EXPECT_EQ(state.status, StateStatus::exact);
-  EXPECT_TRUE(state.T_world_node[plate].isApprox(T_world_plate_at(t), 1e-11));
+  const Lab lab = make_lab(0.01, 1);
+  const LabState expected = lab_state_at(lab, t);
+  ASSERT_EQ(run.scene()->nodes().size(), lab.parts.size());
+  for (std::size_t k = 0; k < lab.parts.size(); ++k) {
+    const auto node = static_cast<std::size_t>(run.scene()->find(lab.parts[k].name).value());
+    EXPECT_TRUE(state.T_world_node[node].isApprox(expected[k], 1e-11)) << lab.parts[k].name;
+    EXPECT_EQ(run.scene()->nodes()[node].mesh.triangles.size(), lab.parts[k].facets.size()) << lab.parts[k].name;
+  }
+  // The robot's own joints say the same as its tracks do at the start.
+  const auto rest = run.scene()->rest_poses();
+  const auto start = run.state_at(run.frames()[0].left.time).T_world_node;
+  for (std::size_t node = 0; node < rest.size(); ++node) EXPECT_TRUE(rest[node].isApprox(start[node], 1e-9)) << node;
   for (const RunFrame& frame : run.frames()) {
     EXPECT_EQ(read_run_image(frame.left, run.lens_left()).size(), cv::Size(48, 36));
     EXPECT_EQ(read_run_image(*frame.right, *run.lens_right()).size(), cv::Size(48, 36));
   }
 }
 
-TEST_F(SampleRun, SameOptionsGiveTheSameBytes) {
-  write_sample_run(folder_ / "a", tiny_);
-  write_sample_run(folder_ / "b", tiny_);
+TEST_F(SynthRun, SameOptionsGiveTheSameBytes) {
+  write_synth_run(folder_ / "a", tiny_);
+  write_synth_run(folder_ / "b", tiny_);
   EXPECT_EQ(bytes_of(folder_ / "a"), bytes_of(folder_ / "b"));
-  SampleRunOptions other = tiny_;
+  SynthOptions other = tiny_;
   other.seed = 2;
-  write_sample_run(folder_ / "c", other);
+  write_synth_run(folder_ / "c", other);
   EXPECT_NE(bytes_of(folder_ / "a").at("rgb/000000.png"), bytes_of(folder_ / "c").at("rgb/000000.png"));
 }
 
-// Follows surface points from the first image to the last through what was written: lens, poses, meshes, plate
-// track. They must look the same there, and must not three pixels beside.
-TEST_F(SampleRun, ModelAndPicturesAgree) {
-  SampleRunOptions options;
+// Follows surface points from the first image to the last through what was written: lens, poses, meshes, node
+// tracks. They must look the same there, and must not three pixels beside.
+TEST_F(SynthRun, ModelAndPicturesAgree) {
+  SynthOptions options;
   options.width = 240;
   options.height = 180;
   options.frames = 8;
-  write_sample_run(folder_ / "run", options);
+  options.rate = 15;
+  write_synth_run(folder_ / "run", options);
   const RunFolder run = RunFolder::open(folder_ / "run", {});
   const RunImage &from = run.frames().front().left, &to = run.frames().back().left;
   const Lens& lens = run.lens_left();
   const World before(run, from.time), after(run, to.time);
   const cv::Mat seen = read_run_image(from, lens), later = read_run_image(to, lens);
-  const int plate = run.scene()->find("plate").value();
+  const auto moves = [&](int node) { return run.scene()->nodes()[node].name.starts_with("arm_"); };
 
   std::vector<double> differences, beside;
-  int on_plate = 0;
+  int on_arm = 0;
   for (int y = 2; y < options.height; y += 3)
     for (int x = 2; x < options.width; x += 3) {
       const Eigen::Vector3d ray = from.T_world_camera.linear() * lens.unproject({x, y}).value();
@@ -143,10 +155,10 @@ TEST_F(SampleRun, ModelAndPicturesAgree) {
       };
       differences.push_back(compare(0));
       beside.push_back(compare(3));
-      on_plate += node == plate;
+      on_arm += moves(node);
     }
   ASSERT_GT(differences.size(), 2000u);
-  EXPECT_GT(on_plate, 40);
+  EXPECT_GT(on_arm, 40);
   const auto share_above = [](const std::vector<double>& values, double level) {
     return static_cast<double>(std::count_if(values.begin(), values.end(), [&](double v) { return v > level; })) /
            static_cast<double>(values.size());
@@ -156,39 +168,43 @@ TEST_F(SampleRun, ModelAndPicturesAgree) {
   EXPECT_GT(share_above(beside, 16), 2 * share_above(differences, 16));
 }
 
-TEST_F(SampleRun, RefusesSizesAndCountsOutOfRange) {
-  const auto refuses = [&](const SampleRunOptions& options, const char* text) {
+TEST_F(SynthRun, RefusesSizesAndCountsOutOfRange) {
+  const auto refuses = [&](const SynthOptions& options, const char* text) {
     try {
-      write_sample_run(folder_ / "run", options);
+      write_synth_run(folder_ / "run", options);
       ADD_FAILURE() << "accepted; expected " << text;
     } catch (const InputError& e) {
       EXPECT_THAT(e.what(), HasSubstr(text));
     }
     EXPECT_THAT(left_behind(), ::testing::IsEmpty());
   };
-  refuses({.width = 15}, "width: 15 is outside 16 .. 8192");
-  refuses({.height = 8193}, "height: 8193 is outside 16 .. 8192");
-  refuses({.frames = 0}, "frames: 0 is outside 1");
+  refuses({.width = 15}, "--size: a width of 15 is outside 16 .. 8192");
+  refuses({.height = 8193}, "--size: a height of 8193 is outside 16 .. 8192");
+  refuses({.frames = 0}, "--frames: 0 is outside 1");
+  refuses({.rate = 0}, "--rate: 0 is outside 0.1 .. 1000");
+  refuses({.pose_error_px = std::nan("")}, "--pose-error-px: nan is outside 0 .. 100");
+  refuses({.sensor = {.vignetting = 1}}, "--vignetting: 1 is outside 0 .. 0.9");
+  refuses({.shutter = {.exposure_s = -1}}, "--motion-blur: -1000 is outside 0 .. 1000");
 }
 
-TEST_F(SampleRun, KeepsTheFoldersOfOthersAndReplacesItsOwn) {
+TEST_F(SynthRun, KeepsTheFoldersOfOthersAndReplacesItsOwn) {
   fs::create_directory(folder_ / "photos");
   std::ofstream(folder_ / "photos" / "holiday.png") << "x";
-  EXPECT_THROW(write_sample_run(folder_ / "photos", tiny_), InputError);
+  EXPECT_THROW(write_synth_run(folder_ / "photos", tiny_), InputError);
   EXPECT_TRUE(fs::exists(folder_ / "photos" / "holiday.png"));
   EXPECT_EQ(left_behind().size(), 1u);
 
   fs::create_directory(folder_ / "run");
-  SampleRunOptions one = tiny_;
-  write_sample_run(folder_ / "run", one);
+  SynthOptions one = tiny_;
+  write_synth_run(folder_ / "run", one);
   one.frames = 1;
-  write_sample_run(folder_ / "run", one);
+  write_synth_run(folder_ / "run", one);
   EXPECT_FALSE(fs::exists(folder_ / "run" / "rgb" / "000001.png"));
   EXPECT_EQ(left_behind().size(), 2u);
 }
 
-TEST_F(SampleRun, LeavesNothingWhenStopped) {
-  EXPECT_THROW(write_sample_run(folder_ / "run", tiny_, [](int, int) { throw std::runtime_error("stop"); }),
+TEST_F(SynthRun, LeavesNothingWhenStopped) {
+  EXPECT_THROW(write_synth_run(folder_ / "run", tiny_, [](int, int) { throw std::runtime_error("stop"); }),
                std::runtime_error);
   EXPECT_THAT(left_behind(), ::testing::IsEmpty());
 }

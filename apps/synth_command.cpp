@@ -1,0 +1,100 @@
+#include "apps/synth_command.hpp"
+
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+
+#include "apps/replay_report/progress_bar.hpp"
+#include "common/error.hpp"
+#include "sim/synth_run.hpp"
+
+namespace foresight {
+namespace {
+
+struct Arguments {
+  std::string out;
+  std::string size = "751x570";
+  std::string head_path;
+  double motion_blur_ms = 0, rolling_shutter_ms = 0;
+  sim::SynthOptions options;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+struct Interrupted {};
+
+void parse_size(const std::string& text, sim::SynthOptions& options) {
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, options.width);
+  const bool separated = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = separated ? std::from_chars(width.ptr + 1, end, options.height) : width;
+  if (!separated || height.ec != std::errc() || height.ptr != end)
+    throw InputError("--size", "'" + text + "' is not a size", "write it as WIDTHxHEIGHT, such as 751x570");
+}
+
+int run(Arguments arguments) {
+  parse_size(arguments.size, arguments.options);
+  arguments.options.shutter.exposure_s = arguments.motion_blur_ms * 1e-3;
+  arguments.options.shutter.readout_s = arguments.rolling_shutter_ms * 1e-3;
+  if (!arguments.head_path.empty()) arguments.options.head_path = arguments.head_path;
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  const std::size_t images =
+      static_cast<std::size_t>(std::max(0, arguments.options.frames)) * (arguments.options.stereo ? 2 : 1);
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  std::fputs("synth: lighting the lab\n", stderr);
+  ProgressBar bar("synth", "images", images, now(), ProgressBar::for_stderr());
+  sim::SynthSummary summary;
+  try {
+    summary = sim::write_synth_run(arguments.out, arguments.options, [&](int done, int) {
+      if (interrupted) throw Interrupted();
+      std::fputs(bar.update(static_cast<std::size_t>(done), now()).c_str(), stderr);
+    });
+  } catch (const Interrupted&) {
+    std::fputs("\nforesight: stopped by Ctrl-C, nothing was written\n", stderr);
+    return 130;
+  }
+  std::fputs(bar.finish(images, now()).c_str(), stderr);
+  std::fprintf(stderr, "synth: %d polygons, %d to %d in view\n", summary.polygons, summary.fewest_polygons_in_view,
+               summary.most_polygons_in_view);
+  std::printf("%s\n", arguments.out.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_synth_command(CLI::App& app, std::function<int()>& action) {
+  CLI::App* command =
+      app.add_subcommand("synth", "Write a synthetic run: a lab with a moving arm, and its exact truth");
+  const auto arguments = std::make_shared<Arguments>();
+  sim::SynthOptions& options = arguments->options;
+  command->add_option("OUT", arguments->out, "Folder to write; an earlier synthetic run in it is replaced")->required();
+  command->add_option("--frames", options.frames, "Images per camera")->capture_default_str();
+  command->add_option("--size", arguments->size, "Image size in pixels, WIDTHxHEIGHT")->capture_default_str();
+  command->add_option("--rate", options.rate, "Images per second")->capture_default_str();
+  command->add_flag("--stereo", options.stereo, "Add a second camera, 65 mm to the right");
+  command->add_flag("!--no-distortion", options.distortion, "An ideal pinhole instead of a real lens");
+  command->add_flag("--fisheye", options.fisheye, "An equidistant lens of 150 degrees");
+  command->add_option("--seed", options.seed, "Varies wood grain, small print, noise and pose errors")
+      ->capture_default_str();
+  command->add_option("--head-path", arguments->head_path,
+                      "Path of the left camera instead of the built-in one: a file of lines "
+                      "'t x y z qx qy qz qw', seconds from 0, camera to world");
+  command->add_option("--noise", options.sensor.noise, "Standard deviation at mid grey, in 8-bit values")
+      ->capture_default_str();
+  command
+      ->add_option("--exposure-drift", options.sensor.exposure_drift, "Share by which the exposure swings up and down")
+      ->capture_default_str();
+  command->add_option("--vignetting", options.sensor.vignetting, "Share of the light that the corners lose")
+      ->capture_default_str();
+  command->add_option("--motion-blur", arguments->motion_blur_ms, "Exposure time in ms")->capture_default_str();
+  command->add_option("--rolling-shutter", arguments->rolling_shutter_ms, "Readout time from first to last row in ms")
+      ->capture_default_str();
+  command
+      ->add_option("--pose-error-px", options.pose_error_px,
+                   "Error of the poses in trajectory.txt: root mean square displacement in the image, in pixels")
+      ->capture_default_str();
+  command->add_flag("!--no-truth", options.truth, "Leave out the true depth, node and poses of each image");
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace foresight

@@ -1,0 +1,278 @@
+#include "sim/synth_run.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <opencv2/imgcodecs.hpp>
+
+#include "common/error.hpp"
+#include "scene/scene_reader.hpp"
+#include "sim/head_path.hpp"
+#include "sim/motion.hpp"
+#include "sim/parallel.hpp"
+#include "sim/polygons.hpp"
+#include "sim/pose_error.hpp"
+#include "sim/run_files.hpp"
+#include "sim/target_folder.hpp"
+
+namespace foresight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMarker = "synth.yaml";  // tells our folders from those of others
+constexpr const char* kMarkerLine = "generator: foresight synth";
+constexpr double kDepthUnit = 1e-4;  // metres
+
+std::string image_name(const std::string& folder, int frame) {
+  return folder + format("/%06d.png", frame);
+}
+
+void write_png(const fs::path& file, const cv::Mat& image) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", image, bytes);
+  write_bytes(file, bytes.data(), bytes.size());
+}
+
+// One run while it is written.
+class SynthRun {
+ public:
+  SynthRun(const fs::path& out, const SynthOptions& options)
+      : options_(options),
+        target_(out, kMarker, kMarkerLine),
+        // Finer pictures and light for finer images, so that a small test is quick and a large image sharp.
+        relative_(640.0 / std::max(options.width, options.height)) {
+    options_.sensor.seed = options.seed;
+    const double pixels = 1.0 * options.width * options.height * options.frames * (options.stereo ? 2 : 1);
+    target_.require_space(0.5 * pixels);
+    if (options.head_path) head_path_.emplace(*options.head_path, time(options.frames - 1));
+    for (int eye = 0; eye <= int{options.stereo}; ++eye) lenses_.push_back(synth_lens(options, eye == 1));
+  }
+
+  SynthSummary write(const std::function<void(int, int)>& progress) {
+    try {
+      return write_all(progress);
+    } catch (const fs::filesystem_error& e) {
+      throw RuntimeFailure("cannot write " + target_.target().string() + " (" + e.code().message() + ")",
+                           "free some disk space");
+    }
+  }
+
+ private:
+  double time(int frame) const { return frame / options_.rate; }
+
+  Pose T_world_left(double t) const { return head_path_ ? head_path_->at(t) : T_world_camera_at(t); }
+  Pose T_world_eye(double t, bool right) const {
+    return right ? Pose(T_world_left(t) * T_left_right()) : T_world_left(t);
+  }
+
+  SynthSummary write_all(const std::function<void(int, int)>& progress) {
+    const Lab lab = make_lab(0.0005 * std::clamp(relative_, 0.6, 8.0), options_.seed);
+    if (head_path_) check_head(lab);
+    write_scene(target_.path(), lab, arm_position_at(0));
+    node_of_facet(lab);
+    write_node_track(lab);
+    for (int eye = 0; eye <= int{options_.stereo}; ++eye) write_camera(eye == 1);
+    const Polygons polygons = polygons_of(lab);
+    const SynthSummary summary = write_images(lab, polygons, progress);
+    write_trajectories();
+    write_marker(summary);
+    target_.commit();
+    return summary;
+  }
+
+  void check_head(const Lab& lab) const {
+    const RoomCheck room(lab);
+    for (int i = 0; i < options_.frames; ++i)
+      for (int eye = 0; eye <= int{options_.stereo}; ++eye) {
+        const double t = time(i);
+        const std::string fault = room.fault(T_world_eye(t, eye == 1).translation(), lab_state_at(lab, t));
+        if (!fault.empty())
+          throw InputError(options_.head_path->string(),
+                           format("at %.3f s the %s camera ", t, eye ? "right" : "left") + fault,
+                           "lead the path through the free space of the lab");
+      }
+  }
+
+  // As the reader will number the nodes, whatever the order of its robots' links is.
+  void node_of_facet(const Lab& lab) {
+    const SceneModel scene = read_scene(target_.path() / "scene.yaml", target_.path());
+    node_count_ = static_cast<int>(scene.nodes().size());
+    for (const Part& part : lab.parts) node_.insert(node_.end(), part.facets.size(), scene.find(part.name).value());
+  }
+
+  // Instants of tracks: all images, and between and around them enough for exposures of any row.
+  std::vector<double> track_times() const {
+    const int steps = static_cast<int>(std::ceil(kNodeRate / options_.rate));
+    const double margin = 0.5 * (options_.shutter.readout_s + options_.shutter.exposure_s);
+    const int extra = static_cast<int>(std::ceil(margin * options_.rate * steps - 1e-9));
+    std::vector<double> out;
+    for (int i = -extra; i <= steps * (options_.frames - 1) + extra; ++i) out.push_back(i / (options_.rate * steps));
+    return out;
+  }
+
+  void write_node_track(const Lab& lab) const {
+    std::string text = "# time[s] node tx ty tz[m] qx qy qz qw: T_world_node\n";
+    for (const double t : track_times()) {
+      const LabState state = lab_state_at(lab, t);
+      for (std::size_t k = 0; k < lab.parts.size(); ++k)
+        if (lab.parts[k].moves) text += format("%.9f ", t) + lab.parts[k].name + " " + pose_text(state[k]) + "\n";
+    }
+    write_text(target_.path() / "nodes.txt", text);
+  }
+
+  void write_camera(bool right) const {
+    const std::string images = right ? "rgb_right" : "rgb";
+    fs::create_directory(target_.path() / images);
+    std::string list = "# time[s] file\n";
+    for (int i = 0; i < options_.frames; ++i) list += format("%.9f ", time(i)) + image_name(images, i) + "\n";
+    write_text(target_.path() / (images + ".txt"), list);
+    const Pose T = T_left_right();
+    write_text(target_.path() / (right ? "camera_right.yaml" : "camera.yaml"),
+               camera_yaml(lenses_[right], right ? "synth_right" : "synth_left", right ? &T : nullptr));
+    if (!options_.truth) return;
+    const fs::path truth = target_.path() / (right ? "truth_right" : "truth");
+    for (const char* kind : {"depth", "node"}) fs::create_directories(truth / kind);
+    std::string trajectory = "# time[s] tx ty tz[m] qx qy qz qw: true T_world_camera of this camera\n";
+    for (const double t : track_times()) trajectory += format("%.9f ", t) + pose_text(T_world_eye(t, right)) + "\n";
+    write_text(truth / "trajectory.txt", trajectory);
+    write_text(truth / "truth.yaml", format("depth_unit_m: %g\nreadout_s: %.9g\nnodes: %d\n", kDepthUnit,
+                                            options_.shutter.readout_s, node_count_));
+  }
+
+  SynthSummary write_images(const Lab& lab, const Polygons& polygons, const std::function<void(int, int)>& progress) {
+    std::mutex mutex;
+    int done = 0;
+    const int total = options_.frames * static_cast<int>(lenses_.size());
+    const LightMap light(lab, std::clamp(relative_, 0.6, 16.0), [&] {
+      const std::scoped_lock lock(mutex);
+      if (progress) progress(0, total);
+    });
+    const Renderer renderer(lab, light);
+    std::vector<RayTable> rays(lenses_.begin(), lenses_.end());
+    pose_errors_.assign(options_.frames, Pose::Identity());
+    SynthSummary summary{polygons.count, polygons.count, 0};
+    parallel_for(options_.frames, [&](std::size_t frame) {
+      for (std::size_t eye = 0; eye < rays.size(); ++eye) {
+        const int in_view = write_image(renderer, rays[eye], polygons, static_cast<int>(frame), eye == 1);
+        const std::scoped_lock lock(mutex);
+        summary.fewest_polygons_in_view = std::min(summary.fewest_polygons_in_view, in_view);
+        summary.most_polygons_in_view = std::max(summary.most_polygons_in_view, in_view);
+        if (progress) progress(++done, total);
+      }
+    });
+    return summary;
+  }
+
+  // Returns the number of polygons in view.
+  int write_image(const Renderer& renderer, const RayTable& rays, const Polygons& polygons, int frame, bool right) {
+    const double t = time(frame);
+    const Motion motion{[&](double at) { return T_world_eye(at, right); },
+                        [&](double at) { return lab_state_at(renderer.lab(), at); }};
+    const Picture picture = expose(renderer, rays, motion, options_.shutter, t);
+    write_png(target_.path() / image_name(right ? "rgb_right" : "rgb", frame),
+              options_.sensor.develop(picture.light, t, 2 * static_cast<std::uint64_t>(frame) + right));
+    if (!right)
+      pose_errors_[static_cast<std::size_t>(frame)] =
+          random_pose_error(lenses_[0], picture.depth, options_.pose_error_px, options_.seed, frame);
+    cv::Mat depth(picture.depth.size(), CV_16UC1), node(picture.depth.size(), CV_16UC1);
+    std::vector<std::uint8_t> seen(static_cast<std::size_t>(polygons.count), 0);
+    for (int v = 0; v < depth.rows; ++v)
+      for (int u = 0; u < depth.cols; ++u) {
+        const int facet = picture.facet.at<int>(v, u);
+        const double steps = picture.depth.at<float>(v, u) / kDepthUnit;
+        const bool stored = facet >= 0 && steps < 65535;
+        depth.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(stored ? std::lround(steps) : 0);
+        node.at<std::uint16_t>(v, u) =
+            static_cast<std::uint16_t>(stored ? node_[static_cast<std::size_t>(facet)] + 1 : 0);
+        if (facet >= 0) seen[static_cast<std::size_t>(polygons.of_facet[static_cast<std::size_t>(facet)])] = 1;
+      }
+    if (options_.truth) {
+      const fs::path truth = target_.path() / (right ? "truth_right" : "truth");
+      write_png(truth / image_name("depth", frame), depth);
+      write_png(truth / image_name("node", frame), node);
+    }
+    return static_cast<int>(std::count(seen.begin(), seen.end(), 1));
+  }
+
+  void write_trajectories() const {
+    std::string text = "# time[s] tx ty tz[m] qx qy qz qw: T_world_camera of the left camera\n";
+    for (int i = 0; i < options_.frames; ++i)
+      text += format("%.9f ", time(i)) + pose_text(T_world_left(time(i)) * pose_errors_[static_cast<std::size_t>(i)]) +
+              "\n";
+    write_text(target_.path() / "trajectory.txt", text);
+  }
+
+  void write_marker(const SynthSummary& summary) const {
+    const auto& o = options_;
+    std::string text = format("%s\n", kMarkerLine);
+    text += format("size: [%d, %d]\nframes: %d\nrate_hz: %.9g\nstereo: %s\nlens: %s\nseed: %u\n", o.width, o.height,
+                   o.frames, o.rate, o.stereo ? "true" : "false",
+                   o.fisheye ? "fisheye" : (o.distortion ? "distorted" : "pinhole"), o.seed);
+    text +=
+        format("noise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
+               o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s, o.shutter.readout_s);
+    text += format("pose_error_px: %.9g\nhead_path: %s\n", o.pose_error_px, o.head_path ? "given" : "built in");
+    text += format("polygons: %d\npolygons_in_view: [%d, %d]\n", summary.polygons, summary.fewest_polygons_in_view,
+                   summary.most_polygons_in_view);
+    write_text(target_.path() / kMarker, text);
+  }
+
+  SynthOptions options_;
+  TargetFolder target_;
+  double relative_;
+  std::optional<HeadPath> head_path_;
+  std::vector<Lens> lenses_;
+  std::vector<int> node_;  // of each facet
+  int node_count_ = 0;
+  std::vector<Pose> pose_errors_;
+};
+
+}  // namespace
+
+void check(const SynthOptions& o) {
+  const auto range = [](const char* option, const char* what, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+      throw InputError(option, format("%s%.9g is outside %.9g .. %.9g", what, value, low, high),
+                       "choose a value inside");
+  };
+  range("--size", "a width of ", o.width, 16, 8192);
+  range("--size", "a height of ", o.height, 16, 8192);
+  range("--frames", "", o.frames, 1, 1'000'000);
+  range("--rate", "", o.rate, 0.1, 1000);
+  range("--noise", "", o.sensor.noise, 0, 100);
+  range("--exposure-drift", "", o.sensor.exposure_drift, 0, 0.9);
+  range("--vignetting", "", o.sensor.vignetting, 0, 0.9);
+  range("--motion-blur", "", o.shutter.exposure_s * 1e3, 0, 1000);
+  range("--rolling-shutter", "", o.shutter.readout_s * 1e3, 0, 1000);
+  range("--pose-error-px", "", o.pose_error_px, 0, 100);
+}
+
+Lens synth_lens(const SynthOptions& options, bool right) {
+  Lens::Parameters p;
+  p.width = options.width;
+  p.height = options.height;
+  // In units of the longer side, so that all sizes see the same.
+  const double unit = std::max(options.width, options.height) / 640.0;
+  p.fx = (right ? 523.4 : 521.6) * unit;
+  p.fy = (right ? 523.9 : 522.3) * unit;
+  p.cx = (p.width - 1) / 2.0 + (right ? -2.9 : 3.7) * unit;
+  p.cy = (p.height - 1) / 2.0 + (right ? 2.2 : -4.1) * unit;
+  if (options.fisheye) {
+    // 150 degrees along the diagonal: too wide for any one pinhole picture.
+    p.model = LensModel::equidistant;
+    p.fx = p.fy = 305.0 * unit;
+    p.d = {-0.012, 0.003, -0.0006, 0.0};
+  } else if (options.distortion) {
+    p.d = right ? std::array<double, 8>{-0.276, 0.087, -0.0004, 0.0007}
+                : std::array<double, 8>{-0.28, 0.09, 0.0006, -0.0005};
+  }
+  return Lens(p);
+}
+
+SynthSummary write_synth_run(const fs::path& out, const SynthOptions& options,
+                             const std::function<void(int, int)>& progress) {
+  check(options);
+  return SynthRun(out, options).write(progress);
+}
+
+}  // namespace foresight::sim
