@@ -3,7 +3,7 @@ const uint kNoSlot = 0xffffffffu;
 
 // First texel of a slot at a pyramid level (level 0: 16 texels a side).
 ivec3 slot_origin(uint slot, int level) {
-  return ivec3(int(slot & 63u) << (4 - level), int((slot >> 6) & 63u) << (4 - level), int(slot >> 12));
+  return ivec3(int(slot & 7u) << (4 - level), int((slot >> 3) & 511u) << (4 - level), int(slot >> 12));
 }
 
 // Alpha of a texel: 0 without colour, 1 (of 255) filled, from 2 on seen. The codes from 2 on hold

@@ -7,9 +7,12 @@ namespace foresight::atlas {
 
 inline constexpr int kPage = 16;     ///< texels along a page's side
 inline constexpr int kTile = 8;      ///< texels along the side of a work group; four tiles a page
-inline constexpr int kLayer = 1024;  ///< texels along a layer's side
-inline constexpr int kSlotsPerRow = kLayer / kPage;
-inline constexpr int kSlotsPerLayer = kSlotsPerRow * kSlotsPerRow;
+/// Layers are narrow, so that the rows of a page lie close together in memory: where a renderer
+/// keeps textures row by row, a page then touches two or three memory pages instead of sixteen.
+inline constexpr int kLayerWidth = 128, kLayerHeight = 8192;  ///< texels
+inline constexpr int kSlotsPerRow = kLayerWidth / kPage;
+inline constexpr int kRowsPerLayer = kLayerHeight / kPage;
+inline constexpr int kSlotsPerLayer = kSlotsPerRow * kRowsPerLayer;
 inline constexpr int kLevels = 5;  ///< 16, 8, 4, 2, 1 texels a side: the hole filling's pyramid
 inline constexpr std::uint32_t kNoSlot = 0xffffffffu;
 

@@ -11,8 +11,8 @@ namespace {
 gl::Texture reserve(GLenum format, std::uint32_t slots, int levels, const char* label) {
   const int layers = static_cast<int>((slots + atlas::kSlotsPerLayer - 1) / atlas::kSlotsPerLayer);
   const int rows = static_cast<int>(slots + atlas::kSlotsPerRow - 1) / atlas::kSlotsPerRow;
-  const int height = layers > 1 ? atlas::kLayer : rows * atlas::kPage;
-  return gl::Texture(format, atlas::kLayer, height, layers, levels, label);
+  const int height = layers > 1 ? atlas::kLayerHeight : rows * atlas::kPage;
+  return gl::Texture(format, atlas::kLayerWidth, height, layers, levels, label);
 }
 
 void require_pages(const ChartAtlas& atlas) {

@@ -10,8 +10,8 @@ namespace {
 
 gl::Program extract_program(std::span<const Lens> lenses, std::size_t variant) {
   auto defines = gl::camera_defines(lenses);
-  defines.push_back("CAMERAS " + std::to_string(1 + variant / 2));
-  defines.push_back("MINIFY " + std::to_string(variant % 2));
+  defines.push_back("CAMERAS " + std::to_string(1 + variant / 3));
+  defines.push_back("TEXELS " + std::to_string(variant % 3));
   return gl::Program::compute(gl::texture_gpu_shaders(), "extract.comp", defines);
 }
 
@@ -24,12 +24,13 @@ ExtractPass::ExtractPass(std::span<const Lens> lenses)
       jobs_(GL_RGBA32UI, 4096, "extraction jobs"),
       geometry_(GL_RGBA32F, 4096, "job geometry"),
       relevel_jobs_(GL_RGBA32UI, 4096, "relevel jobs"),
-      tiles_{gl::BufferTexture(GL_R32UI, 4096, "tiles"), gl::BufferTexture(GL_R32UI, 4096, "tiles of large texels")},
+      tiles_{gl::BufferTexture(GL_R32UI, 4096, "tiles"), gl::BufferTexture(GL_R32UI, 4096, "tiles of large texels"),
+             gl::BufferTexture(GL_R32UI, 4096, "tiles of larger texels")},
       copy_tiles_(GL_R32UI, 4096, "tiles to copy"),
       holes_(GL_R32UI, 4096, "holes"),
       staged_(GL_R16UI, 4096, "staged heights"),
       slots_(GL_R32UI, 4096, "height slots") {
-  for (std::size_t v = 0; v < 2 * lenses.size(); ++v) extract_[v] = extract_program(lenses, v);
+  for (std::size_t v = 0; v < kSizes * lenses.size(); ++v) extract_[v] = extract_program(lenses, v);
 }
 
 void dispatch_groups(const gl::Program& program, std::size_t count) {
@@ -82,7 +83,7 @@ void ExtractPass::relevel(std::span<const PageJob> jobs, const gl::BufferTexture
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
-/// Into those that cameras may see, by whether their texels are larger than pixels, and the others.
+/// Into those that cameras may see, by the size of their texels in pixels, and the others.
 void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
   for (auto& tiles : seen_tiles_) tiles.clear();
   unseen_tiles_.clear();
@@ -98,33 +99,36 @@ void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
     return std::max(lens.fx, lens.fy) * std::max(across(eu), across(ev)) / p.norm();
   };
   for (std::size_t i = 0; i < work.jobs.size(); ++i) {
-    bool minify = false;
-    for (int c = 0; c < cameras; ++c) minify = minify || texel_size(i, c) > work.minify_above;
+    double largest = 0;
+    for (int c = 0; c < cameras; ++c) largest = std::max(largest, texel_size(i, c));
+    const std::size_t size = largest > 2 * work.minify_above ? 2 : largest > work.minify_above ? 1 : 0;
     for (std::uint32_t t = 0; t < 4; ++t) {
       const std::uint32_t seen_by = (work.masks[i] >> (2 * t)) & 3u;
-      (seen_by ? seen_tiles_[minify] : unseen_tiles_).push_back(static_cast<std::uint32_t>(i) << 4 | t << 2 | seen_by);
+      (seen_by ? seen_tiles_[size] : unseen_tiles_).push_back(static_cast<std::uint32_t>(i) << 4 | t << 2 | seen_by);
     }
   }
-  tile_count_ = seen_tiles_[0].size() + seen_tiles_[1].size();
+  tile_count_ = 0;
+  for (const auto& tiles : seen_tiles_) tile_count_ += tiles.size();
 }
 
-void ExtractPass::run(bool minify, const SeenInputs& inputs, double depth_tolerance, double worse) {
-  const auto& tiles = seen_tiles_[minify];
+void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse) {
+  const auto& tiles = seen_tiles_[size];
   if (tiles.empty()) return;
   const gl::Program& program =
-      extract_[2 * static_cast<std::size_t>(inputs.camera_count() - 1) + static_cast<std::size_t>(minify)];
-  for (int c = 0; minify && c < inputs.camera_count(); ++c) inputs.camera(c).build_levels();
+      extract_[kSizes * static_cast<std::size_t>(inputs.camera_count() - 1) + size];
+  const bool levels = size == 2;
+  for (int c = 0; levels && c < inputs.camera_count(); ++c) inputs.camera(c).build_levels();
   const auto filter = [&](GLint mode) {
-    for (int c = 0; minify && c < inputs.camera_count(); ++c)
+    for (int c = 0; levels && c < inputs.camera_count(); ++c)
       glTextureParameteri(inputs.camera(c).image().name(), GL_TEXTURE_MIN_FILTER, mode);
   };
   filter(GL_LINEAR_MIPMAP_LINEAR);
   inputs.bind(program, depth_tolerance);
   program.set("worse", static_cast<float>(worse));
   program.set("tile_count", static_cast<int>(tiles.size()));
-  tiles_[minify].assign(std::span<const std::uint32_t>(tiles));
+  tiles_[size].assign(std::span<const std::uint32_t>(tiles));
   glBindTextureUnit(7, geometry_.texture());
-  glBindTextureUnit(10, tiles_[minify].texture());
+  glBindTextureUnit(10, tiles_[size].texture());
   dispatch_groups(program, (tiles.size() + 3) / 4);
   filter(GL_LINEAR);
 }
@@ -141,7 +145,7 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   glBindTextureUnit(11, store.colours.name());
   glBindImageTexture(0, store.colours.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
-  for (bool minify : {false, true}) run(minify, inputs, depth_tolerance, worse);
+  for (std::size_t size = 0; size < kSizes; ++size) run(size, inputs, depth_tolerance, worse);
 
   copy_.use();
   copy_tiles_.assign(std::span<const std::uint32_t>(unseen_tiles_));

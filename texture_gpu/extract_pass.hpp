@@ -28,7 +28,8 @@ class ExtractPass {
     std::span<const PageJob> jobs;
     std::span<const std::uint8_t> masks;        ///< of each job (ChartAtlas::Allocation)
     std::span<const Eigen::Vector4f> geometry;  ///< ChartAtlas::write_job_geometry()
-    /// Pages with texels of more pixels than this along a side take the mean of what they cover.
+    /// Texels of more pixels than this along a side take the mean of what they cover: up to twice
+    /// as many from the image, beyond from its coarser levels.
     double minify_above = 1.5;
   };
   /// Extracts the images of `inputs` into all jobs (extract.comp); tiles that no camera sees are
@@ -43,12 +44,13 @@ class ExtractPass {
 
  private:
   gl::Program heights_, relevel_, copy_;
-  std::array<gl::Program, 4> extract_;  // 2 * (cameras - 1) + minify
+  static constexpr std::size_t kSizes = 3;         // of texels in pixels, as TEXELS in extract.comp
+  std::array<gl::Program, 2 * kSizes> extract_;  // kSizes * (cameras - 1) + size
   void sort_tiles(const Work& work, const SeenInputs& inputs);
-  void run(bool minify, const SeenInputs& inputs, double depth_tolerance, double worse);
+  void run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse);
 
-  gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_[2], copy_tiles_, holes_, staged_, slots_;
-  std::array<std::vector<std::uint32_t>, 2> seen_tiles_;  // by whether they minify; job << 4 | tile << 2 | cameras
+  gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_[kSizes], copy_tiles_, holes_, staged_, slots_;
+  std::array<std::vector<std::uint32_t>, kSizes> seen_tiles_;  // by size; job << 4 | tile << 2 | cameras
   std::vector<std::uint32_t> unseen_tiles_;
   std::size_t tile_count_ = 0;
 };

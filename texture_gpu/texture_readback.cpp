@@ -120,7 +120,7 @@ std::optional<ChartTexels> TextureReadback::chart(int index) const {
 /// A texel of the atlas; all 0 where it has no colour.
 cv::Vec4b TextureReadback::stored(std::uint32_t slot, int x, int y) const {
   const auto column = static_cast<int>(slot % atlas::kSlotsPerRow);
-  const auto row = static_cast<int>(slot / atlas::kSlotsPerRow % atlas::kSlotsPerRow);
+  const auto row = static_cast<int>(slot / atlas::kSlotsPerRow % atlas::kRowsPerLayer);
   cv::Vec4b colour =
       layers_[slot / atlas::kSlotsPerLayer].at<cv::Vec4b>(row * atlas::kPage + y, column * atlas::kPage + x);
   if (colour[3] == 0) return {0, 0, 0, 0};
