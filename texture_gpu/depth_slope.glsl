@@ -2,10 +2,12 @@
 layout(binding = 0) uniform sampler2DArray depth;
 uniform ivec2 face_size;
 
-// 0 outside: repeating the border's depth there would bend a plane.
+// 0 outside: repeating the border's depth there would bend a plane. Software renderers fetch by
+// integer coordinates far more slowly than they sample the nearest texel.
 float inverse_z(ivec2 at, int layer) {
   ivec2 inside = clamp(at, ivec2(0), face_size - 1);
-  return inside == at ? texelFetch(depth, ivec3(inside, layer), 0).r / kNear : 0.0;
+  float d = textureLod(depth, vec3((vec2(at) + 0.5) / vec2(face_size), layer), 0.0).r;
+  return inside == at ? d / kNear : 0.0;
 }
 
 // Slope of 1/z along `step` at p, from the side on which the surface bends less.
