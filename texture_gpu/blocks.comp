@@ -24,14 +24,15 @@ void main() {
   if (any(greaterThanEqual(block.xy * 4, face_size))) return;
   float low = 1e30, high = 0.0;
   bool hole = false;
-  for (int y = 0; y < 4; ++y)
-    for (int x = 0; x < 4; ++x) {
-      ivec2 at = min(block.xy * 4 + ivec2(x, y), face_size - 1);
-      float d = texelFetch(depth, ivec3(at, block.z), 0).r;
-      low = d > 0.0 ? min(low, d) : low;
-      high = max(high, d);
-      hole = hole || d == 0.0;
-    }
+  for (int i = 0; i < 4; ++i) {
+    // Four pixels around a corner at a time; beyond the face its border repeats.
+    vec2 corner = vec2(block.xy * 4 + 2 * ivec2(i & 1, i >> 1)) + 1.0;
+    vec4 d = textureGather(depth, vec3(corner / vec2(face_size), block.z));
+    vec4 known = mix(d, vec4(1e30), equal(d, vec4(0.0)));
+    low = min(low, min(min(known.x, known.y), min(known.z, known.w)));
+    high = max(high, max(max(d.x, d.y), max(d.z, d.w)));
+    hole = hole || any(equal(d, vec4(0.0)));
+  }
   // A negative low tells that the block also shows no model: it hides nothing behind it.
   low = (hole ? -low : low) / kNear;
   if (!in_image(vec2(block.xy * 4) + 1.5, block.z)) low = 1e30;  // as if hidden behind something
