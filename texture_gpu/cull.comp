@@ -67,10 +67,12 @@ bool may_see(int c, vec3 p, vec3 a, vec3 b, float slack) {
   float offset = (n.z - dot(n.xy / cameras[c].face.xy, cameras[c].face.zw)) / distance;
   float along_ray = slack * length(n) * length(p) / (p.z * max(abs(distance) / p.z, 1e-9));
   bool plane = !cube && abs(distance) > 1e-6 * length(n) * length(p);
+  vec2 block_size = 1.0 / vec2(last + 1);
   for (int y = from.y; y <= to.y; ++y)
     for (int x = from.x; x <= to.x; ++x) {
-      ivec3 at = ivec3(x, y, int(place.z));
-      float farthest = c == 0 ? texelFetch(blocks0, at, 0).x : texelFetch(blocks1, at, 0).x;
+      // Sampling the nearest texel is far cheaper on software renderers than fetching it.
+      vec3 at = vec3((vec2(x, y) + 0.5) * block_size, place.z);
+      float farthest = c == 0 ? textureLod(blocks0, at, 0.0).x : textureLod(blocks1, at, 0.0).x;
       vec2 first = max(4.0 * vec2(x, y) - 0.5, low), end = min(4.0 * vec2(x, y) + 3.5, high);
       float largest = dot(slope, 0.5 * (first + end)) + offset + dot(abs(slope), 0.5 * max(end - first, vec2(0.0)));
       float z = plane && largest > 0.0 ? max(1.0 / largest - along_ray, nearest) : nearest;
@@ -86,6 +88,11 @@ void main() {
         planes23 = texelFetch(pages, 3 * index + 2);
   ChartRecord chart = read_chart(charts, int(page.x));
   vec2 corner = 16.0 * vec2(page.y & 0xffffu, page.y >> 16);
+  mat4x3 T_camera_node[2];
+  for (int c = 0; c < camera_count; ++c) {
+    int row = 3 * (c * node_count + chart.node);
+    T_camera_node[c] = transpose(mat3x4(texelFetch(node_poses, row), texelFetch(node_poses, row + 1), texelFetch(node_poses, row + 2)));
+  }
   uint mask = 0u;
   for (int tile = 0; tile < 4; ++tile) {
     uvec4 planes = tile < 2 ? planes01 : planes23;
@@ -97,9 +104,8 @@ void main() {
     vec3 a_node = 3.5 * (chart.eu + slope.x * chart.eh), b_node = 3.5 * (chart.ev + slope.y * chart.eh);
     float slack = center_residual.y * length(chart.eh);
     for (int c = 0; c < camera_count; ++c) {
-      int node = c * node_count + chart.node;
-      vec3 p = node_to_camera(node_poses, node, p_node);
-      vec3 a = rotate_to_camera(node_poses, node, a_node), b = rotate_to_camera(node_poses, node, b_node);
+      mat4x3 T = T_camera_node[c];
+      vec3 p = T * vec4(p_node, 1.0), a = mat3(T) * a_node, b = mat3(T) * b_node;
       if (may_see(c, p, a, b, slack)) mask |= 1u << (2 * tile + c);
     }
   }
