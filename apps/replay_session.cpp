@@ -4,23 +4,13 @@
 #include <chrono>
 #include <opencv2/imgproc.hpp>
 
-#include "texture_gpu/chart_extent.hpp"
+#include "apps/posed_frames.hpp"
 
 namespace foresight {
 namespace {
 
 constexpr int kWindowWidth = 1440;
 constexpr double kDrawTimeout = 20;  // seconds
-
-/// A few views spread over the run.
-std::vector<ExpectedView> some_views(const RunFolder& run) {
-  constexpr std::size_t kMost = 12;
-  const auto& frames = run.frames();
-  std::vector<ExpectedView> views;
-  for (std::size_t i = 0; i < frames.size(); i += std::max<std::size_t>(1, frames.size() / kMost))
-    views.push_back({frames[i].left.T_world_camera, run.state_at(frames[i].left.time)});
-  return views;
-}
 
 }  // namespace
 
@@ -44,9 +34,7 @@ ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options
     thesis_view_ = std::make_unique<ThesisView>(*thesis_, lens);
     return;
   }
-  PatchOptions patches;
-  patches.chart_extent = chart_extent_for(*run.scene(), lens, some_views(run));
-  surface_ = std::make_shared<const SurfacePatches>(find_surface_patches(*run.scene(), patches));
+  surface_ = surface_for(run);
   thread_ = std::make_unique<TextureThread>(
       context_->create_shared(), TextureThread::Setup{run.scene(), surface_, lens, run.lens_right(), options});
   context_->make_current();
@@ -65,13 +53,7 @@ ExtractionReport ReplaySession::process(PosedFrame frame) {
 }
 
 PosedFrame ReplaySession::load(std::size_t index) const {
-  const auto posed = [&](const RunImage& image, const Lens& lens) {
-    return PosedImage{read_run_image(image, lens), image.time, image.T_world_camera, run_.state_at(image.time)};
-  };
-  const RunFrame& frame = run_.frames()[index];
-  PosedFrame out{posed(frame.left, run_.lens_left()), std::nullopt};
-  if (frame.right) out.right = posed(*frame.right, *run_.lens_right());
-  return out;
+  return load_posed_frame(run_, index);
 }
 
 cv::Mat ReplaySession::predict(std::size_t index) {

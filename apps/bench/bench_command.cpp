@@ -2,7 +2,9 @@
 
 #include <memory>
 
+#include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
+#include "apps/run_options.hpp"
 
 namespace foresight {
 namespace {
@@ -15,11 +17,24 @@ void add_figures(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return draw_figures(*options); }; });
 }
 
+void add_extraction(CLI::App& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("extraction", "CPU time of the core and of the thesis' pipeline");
+  auto options = std::make_shared<ExtractionBenchOptions>();
+  command->add_option("RUN", options->run, "A run; the thesis' own scale: `foresight synth RUN --no-distortion`")
+      ->required();
+  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--images", options->images, "Take only the first so many images")->check(from_to(4, 1000000));
+  command->add_flag("!--no-tables", options->tables, "Only the comparison, without tables 7.1 to 7.4");
+  command->footer("Example: foresight synth lab --no-distortion && foresight bench extraction lab --json bench.json");
+  command->callback([options, &action] { action = [options] { return bench_extraction(*options); }; });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, std::function<int()>& action) {
   auto* bench = app.add_subcommand("bench", "Measures, and compares with the pipeline of the thesis");
   bench->require_subcommand(1);
+  add_extraction(*bench, action);
   add_figures(*bench, action);
 }
 

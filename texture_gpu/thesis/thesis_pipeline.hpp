@@ -34,6 +34,9 @@ class Pipeline {
   const std::shared_ptr<const PolygonBuffers>& polygon_buffers() const { return buffers_; }
   const Options& options() const { return options_; }
 
+  /// From the next image on.
+  void fill_holes_by(HoleFilling method) { options_.hole_filling = method; }
+
   /// The alpha mask of polygon `index` in `image` (left camera) after expansion, for pictures of
   /// single steps: CV_8UC1, its bounding box. Empty where it is not in that image. Changes no texture.
   cv::Mat alpha_mask(const PosedImage& image, std::size_t index, Expansion method, int iterations);

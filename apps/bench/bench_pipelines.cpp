@@ -1,0 +1,52 @@
+#include "apps/bench/bench_pipelines.hpp"
+
+#include <algorithm>
+
+#include "common/error.hpp"
+
+namespace foresight {
+
+ExtractionReport BenchCore::process(const PosedFrame& frame) {
+  ExtractionReport report = core_.process(frame, latest_);
+  if (!report.published) throw RuntimeFailure("the core dropped a frame", "give it more memory");
+  return report;
+}
+
+void StageSums::add(const ExtractionReport& report) {
+  ++count_;
+  for (const StageCost& stage : report.stages) {
+    const auto at = std::find_if(sums_.begin(), sums_.end(), [&](const StageCost& s) { return s.name == stage.name; });
+    if (at == sums_.end())
+      sums_.push_back(stage);
+    else
+      at->cpu_ms += stage.cpu_ms;
+  }
+}
+
+std::vector<StageCost> StageSums::means() const {
+  std::vector<StageCost> out = sums_;
+  for (StageCost& stage : out) stage.cpu_ms /= std::max(1, count_);
+  return out;
+}
+
+double StageSums::mean_of(const char* name) const {
+  for (const StageCost& stage : means())
+    if (stage.name == name) return stage.cpu_ms;
+  return 0;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<std::size_t> spread(std::size_t size, std::size_t count) {
+  std::vector<std::size_t> out;
+  count = std::min(count, size);
+  for (std::size_t i = 0; i < count; ++i) out.push_back((2 * i + 1) * size / (2 * count));
+  return out;
+}
+
+}  // namespace foresight
