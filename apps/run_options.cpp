@@ -34,7 +34,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       .add_option("--texels-per-metre", options.textures.texels_per_metre,
                   "Finest resolution of textures (default: one texel per pixel of the closest view)")
       ->check(from_to(1.0, 1e6));
-  command.add_option("--max-texture", options.textures.max_texture, "Most texels along a side of a chart")
+  command.add_option("--max-texture", options.textures.max_texture, "Most texels along a side of a flat polygon")
       ->check(from_to(16, 4096));
   command
       .add_option_function<std::uint64_t>(

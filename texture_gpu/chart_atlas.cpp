@@ -72,12 +72,13 @@ std::uint64_t ChartAtlas::bytes_reserved() const {
 Eigen::Vector2i ChartAtlas::wanted_level(int index) const {
   const AtlasChart& chart = charts_[static_cast<std::size_t>(index)];
   const Chart& shape = surface_->charts[static_cast<std::size_t>(index)];
-  const int most = options_.max_texture > 0 ? std::min(options_.max_texture, kLargestChart) : kLargestChart;
+  const bool limited = options_.max_texture > 0;
+  const int most = limited ? std::min(options_.max_texture, kLargestChart) : kLargestChart;
   Eigen::Vector2i level = chart.level;
   for (int i = 0; i < 2; ++i) {
     const double density =
         options_.texels_per_metre > 0 ? std::min(options_.texels_per_metre, chart.wanted[i]) : chart.wanted[i];
-    const double side = std::max(1e-9, shape.upper[i] - shape.lower[i]);
+    const double side = std::max({1e-9, shape.upper[i] - shape.lower[i], limited ? shape.polygon[i] : 0.0});
     const int limit = static_cast<int>(std::floor(kLevelsPerOctave * std::log2(most / side)));
     const double exact = kLevelsPerOctave * std::log2(density) + policy_.bias;
     const bool fits = exact - chart.level[i] < kRise && exact - chart.level[i] > -kFall && chart.level[i] <= limit;

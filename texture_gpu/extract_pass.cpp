@@ -10,8 +10,8 @@ namespace {
 
 gl::Program extract_program(std::span<const Lens> lenses, std::size_t variant) {
   auto defines = gl::camera_defines(lenses);
-  defines.push_back("CAMERAS " + std::to_string(1 + variant / 3));
-  defines.push_back("TEXELS " + std::to_string(variant % 3));
+  defines.push_back("CAMERAS " + std::to_string(1 + variant / 4));
+  defines.push_back("TEXELS " + std::to_string(variant % 4));
   return gl::Program::compute(gl::texture_gpu_shaders(), "extract.comp", defines);
 }
 
@@ -25,7 +25,8 @@ ExtractPass::ExtractPass(std::span<const Lens> lenses)
       geometry_(GL_RGBA32F, 4096, "job geometry"),
       relevel_jobs_(GL_RGBA32UI, 4096, "relevel jobs"),
       tiles_{gl::BufferTexture(GL_R32UI, 4096, "tiles"), gl::BufferTexture(GL_R32UI, 4096, "tiles of large texels"),
-             gl::BufferTexture(GL_R32UI, 4096, "tiles of larger texels")},
+             gl::BufferTexture(GL_R32UI, 4096, "tiles of larger texels"),
+             gl::BufferTexture(GL_R32UI, 4096, "tiles of the largest texels")},
       copy_tiles_(GL_R32UI, 4096, "tiles to copy"),
       holes_(GL_R32UI, 4096, "holes"),
       staged_(GL_R16UI, 4096, "staged heights"),
@@ -101,7 +102,8 @@ void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
   for (std::size_t i = 0; i < work.jobs.size(); ++i) {
     double largest = 0;
     for (int c = 0; c < cameras; ++c) largest = std::max(largest, texel_size(i, c));
-    const std::size_t size = largest > 2 * work.minify_above ? 2 : largest > work.minify_above ? 1 : 0;
+    std::size_t size = 0;
+    for (double limit = work.minify_above; size + 1 < kSizes && largest > limit; limit *= 2) ++size;
     for (std::uint32_t t = 0; t < 4; ++t) {
       const std::uint32_t seen_by = (work.masks[i] >> (2 * t)) & 3u;
       (seen_by ? seen_tiles_[size] : unseen_tiles_).push_back(static_cast<std::uint32_t>(i) << 4 | t << 2 | seen_by);
@@ -116,7 +118,7 @@ void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_t
   if (tiles.empty()) return;
   const gl::Program& program =
       extract_[kSizes * static_cast<std::size_t>(inputs.camera_count() - 1) + size];
-  const bool levels = size == 2;
+  const bool levels = size + 1 == kSizes;
   for (int c = 0; levels && c < inputs.camera_count(); ++c) inputs.camera(c).build_levels();
   const auto filter = [&](GLint mode) {
     for (int c = 0; levels && c < inputs.camera_count(); ++c)

@@ -10,7 +10,8 @@ struct TextureOptions {
   /// chart gets one texel per pixel of the closest view so far: more would hold nothing more.
   /// Range 0, 1 .. 1e6.
   double texels_per_metre = 0;
-  /// Most texels along a side of a chart (thesis, r_max in eqs. 4.28/4.29); 0: only memory limits.
+  /// Most texels along a side of a flat polygon, or of a chart where that is longer (thesis, r_max in
+  /// eqs. 4.28/4.29); 0: only memory limits.
   int max_texture = 0;
   /// All that the atlas may hold at any instant, both generations counted. Reserved at the start,
   /// so that a session does not run out of memory in the middle.

@@ -7,8 +7,10 @@
 #include <numeric>
 #include <queue>
 #include <set>
+#include <utility>
 
 #include "texture_gpu/mesh_topology.hpp"
+#include "texture_gpu/polygons.hpp"
 #include "texture_gpu/overlap_grid.hpp"
 
 namespace foresight {
@@ -298,10 +300,35 @@ class Builder {
   SurfacePatches out_;
 };
 
+/// Sets Chart::polygon.
+void measure_polygons(const SceneModel& scene, SurfacePatches& out) {
+  const std::vector<Polygon> polygons = find_polygons(scene);
+  std::vector<const Polygon*> polygon_of(out.corners.size());
+  for (const Polygon& polygon : polygons)
+    for (std::uint32_t t : polygon.scene_triangles) polygon_of[t] = &polygon;
+  for (Chart& chart : out.charts) {
+    const Patch& patch = out.patches[static_cast<std::size_t>(chart.patch)];
+    const Polygon* last = nullptr;
+    for (std::uint32_t t : chart.triangles) {
+      const Polygon* polygon = polygon_of[t];
+      if (!polygon || std::exchange(last, polygon) == polygon) continue;
+      Vector2d low(1e300, 1e300), high = -low;
+      for (const Vector3d& corner : polygon->corners) {
+        const Vector2d at(corner.dot(patch.eu), corner.dot(patch.ev));
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+      }
+      chart.polygon = chart.polygon.cwiseMax(high - low);
+    }
+  }
+}
+
 }  // namespace
 
 SurfacePatches find_surface_patches(const SceneModel& scene, const PatchOptions& options) {
-  return Builder(scene, options).run();
+  SurfacePatches out = Builder(scene, options).run();
+  measure_polygons(scene, out);
+  return out;
 }
 
 }  // namespace foresight

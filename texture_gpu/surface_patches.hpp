@@ -44,6 +44,7 @@ struct Chart {
   double radius = 0;                     ///< metres; 0: an empty cell
   double slope = 0;                      ///< rms slope of its triangles against the patch's plane
   double cone = 0;                       ///< largest angle of a triangle's normal from the patch's, radians
+  Eigen::Vector2d polygon{0, 0};         ///< longest flat polygon on it along u and along v, metres
   bool closed = false;                   ///< part of a watertight mesh: its back can never be seen
   std::vector<int> neighbours;           ///< charts that touch this one
 };

@@ -1,10 +1,10 @@
-#include "texture_gpu/thesis/polygons.hpp"
+#include "texture_gpu/polygons.hpp"
 
 #include <algorithm>
 #include <map>
 #include <optional>
 
-namespace foresight::thesis {
+namespace foresight {
 namespace {
 
 constexpr double kFlat = 1e-5;     // sine of the largest angle between joined triangles
@@ -118,4 +118,4 @@ std::vector<Polygon> find_polygons(const SceneModel& scene) {
   return polygons;
 }
 
-}  // namespace foresight::thesis
+}  // namespace foresight
