@@ -4,6 +4,7 @@
 
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
+#include "apps/bench/margin.hpp"
 #include "apps/run_options.hpp"
 
 namespace foresight {
@@ -29,6 +30,18 @@ void add_extraction(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_extraction(*options); }; });
 }
 
+void add_margin(CLI::App& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("margin", "Counts what registration errors paint wrong, by truth");
+  auto options = std::make_shared<MarginBenchOptions>();
+  command->add_option("RUN", options->run, "A run of `foresight synth --no-distortion`, with truth")->required();
+  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--plot", options->plot, "SVG file");
+  command->add_option("--images", options->images, "Images of the run, evenly spread")
+      ->check(from_to(1, 1024))
+      ->capture_default_str();
+  command->callback([options, &action] { action = [options] { return bench_margin(*options); }; });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, std::function<int()>& action) {
@@ -36,6 +49,7 @@ void add_bench_command(CLI::App& app, std::function<int()>& action) {
   bench->require_subcommand(1);
   add_extraction(*bench, action);
   add_figures(*bench, action);
+  add_margin(*bench, action);
 }
 
 }  // namespace foresight

@@ -70,7 +70,9 @@ int bench_extraction(const ExtractionBenchOptions& options) {
   if (!thesis::CameraFrame::can_undistort(run.lens_left()))
     throw InputError(options.run.string(), "the thesis' pipeline cannot take a lens of more than 120 degrees",
                      "give a run of `foresight synth --no-distortion`");
-  if (options.json) check_output_file("--json", *options.json, input_files(run, {.run = options.run}));
+  RunOptions inputs;
+  inputs.run = options.run;
+  if (options.json) check_output_file("--json", *options.json, input_files(run, inputs));
   const auto context = gl::create_headless_context();
   const gl::DriverInfo driver = gl::query_driver();
   gl::set_up_context();
