@@ -79,6 +79,8 @@ void add_synth_command(CLI::App& app, std::function<int()>& action) {
   command->add_option("--head-path", arguments->head_path,
                       "Path of the left camera instead of the built-in one: a file of lines "
                       "'t x y z qx qy qz qw', seconds from 0, camera to world");
+  command->add_option("--blur", options.sensor.blur, "Point spread of lens and demosaicing, standard deviation in px")
+      ->capture_default_str();
   command->add_option("--noise", options.sensor.noise, "Standard deviation at mid grey, in 8-bit values")
       ->capture_default_str();
   command

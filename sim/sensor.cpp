@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "sim/texture.hpp"
@@ -68,11 +69,13 @@ cv::Mat Sensor::develop(const cv::Mat& light, double t, std::uint64_t number) co
   const float slope = (srgb_from_linear(mid * 1.001f) - srgb_from_linear(mid)) / (mid * 0.001f);
   const float variance = std::pow(static_cast<float>(noise) / 255 / slope, 2.0f);
   const auto read = static_cast<float>(kReadShare) * variance, shot = (variance - read) / mid;
+  cv::Mat spread = light;
+  if (blur > 0) cv::GaussianBlur(light, spread, {}, blur);
   cv::Mat out(light.size(), CV_8UC3);
   for (int v = 0; v < light.rows; ++v) {
     Noise random((number << 20) + static_cast<std::uint64_t>(v) + (std::uint64_t{seed} << 52));
     for (int u = 0; u < light.cols; ++u) {
-      cv::Vec3f value = light.at<cv::Vec3f>(v, u) * static_cast<float>(gain(t) * falloff(u, v, light.size()));
+      cv::Vec3f value = spread.at<cv::Vec3f>(v, u) * static_cast<float>(gain(t) * falloff(u, v, light.size()));
       if (noise > 0) {
         const auto a = random.normal(), b = random.normal();
         const float normal[] = {a[0], a[1], b[0]};

@@ -209,8 +209,8 @@ class SynthRun {
                    o.frames, o.rate, o.stereo ? "true" : "false",
                    o.fisheye ? "fisheye" : (o.distortion ? "distorted" : "pinhole"), o.seed);
     text +=
-        format("noise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
-               o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s, o.shutter.readout_s);
+        format("blur_px: %.9g\nnoise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
+               o.sensor.blur, o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s, o.shutter.readout_s);
     text += format("pose_error_px: %.9g\nhead_path: %s\n", o.pose_error_px, o.head_path ? "given" : "built in");
     text += format("polygons: %d\npolygons_in_view: [%d, %d]\n", summary.polygons, summary.fewest_polygons_in_view,
                    summary.most_polygons_in_view);
@@ -239,6 +239,7 @@ void check(const SynthOptions& o) {
   range("--size", "a height of ", o.height, 16, 8192);
   range("--frames", "", o.frames, 1, 1'000'000);
   range("--rate", "", o.rate, 0.1, 1000);
+  range("--blur", " px", o.sensor.blur, 0, 10);
   range("--noise", "", o.sensor.noise, 0, 100);
   range("--exposure-drift", "", o.sensor.exposure_drift, 0, 0.9);
   range("--vignetting", "", o.sensor.vignetting, 0, 0.9);
