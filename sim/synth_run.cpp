@@ -239,7 +239,7 @@ void check(const SynthOptions& o) {
   range("--size", "a height of ", o.height, 16, 8192);
   range("--frames", "", o.frames, 1, 1'000'000);
   range("--rate", "", o.rate, 0.1, 1000);
-  range("--blur", " px", o.sensor.blur, 0, 10);
+  range("--blur", "", o.sensor.blur, 0, 10);
   range("--noise", "", o.sensor.noise, 0, 100);
   range("--exposure-drift", "", o.sensor.exposure_drift, 0, 0.9);
   range("--vignetting", "", o.sensor.vignetting, 0, 0.9);
