@@ -33,12 +33,14 @@ ThesisView::ThesisView(const thesis::Pipeline& pipeline, const Lens& lens)
       drawn_(thesis::smooth_texture(GL_RGBA8, plane_.width, plane_.height, "thesis view")),
       depth_(GL_DEPTH_COMPONENT32F, plane_.width, plane_.height, 0, 1, "thesis view depth"),
       rays_(make_lens_rays(lens)),
+      nothing_(GL_RGBA8, 1, 1, 0, 1, "no texture"),
       camera_(sizeof(gl::CameraBlock), "thesis view camera"),
       framebuffer_(gl::create_framebuffer("thesis view")),
       triangles_(pipeline.polygon_buffers()->create_vertex_array()),
       textured_(gl::Program::graphics(sources(), "textured.vert", "textured.frag")) {
   const gl::CameraBlock block = gl::make_camera_block(lens_, plane_);
   camera_.write(std::span(&block, 1));
+  glClearTexImage(nothing_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, drawn_.name(), 0);
   glNamedFramebufferTexture(framebuffer_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0);
   if (lens.has_distortion()) {
@@ -71,7 +73,7 @@ void ThesisView::draw(const Pose& T_world_camera, const SceneState& state) {
     textured_.set("to_s", to_coordinate(frame.x, frame.origin, frame.width));
     textured_.set("to_t", to_coordinate(frame.y, frame.origin, frame.height));
     textured_.set("hole_alpha", texture && filled ? 128.0f / 255.0f : 64.0f / 255.0f);
-    glBindTextureUnit(0, texture ? texture->name() : 0);
+    glBindTextureUnit(0, (texture ? *texture : nothing_).name());
     pipeline_.polygon_buffers()->draw(i);
   }
   glDisable(GL_DEPTH_TEST);

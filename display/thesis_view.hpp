@@ -23,6 +23,7 @@ class ThesisView {
   Lens lens_;
   gl::Faces plane_;
   gl::Texture drawn_, depth_, rays_, picture_;
+  gl::Texture nothing_;  // of polygons without colours: where no texture is bound, shaders read opaque black
   gl::Buffer camera_;
   gl::Framebuffer framebuffer_;
   gl::VertexArray triangles_;

@@ -1,11 +1,94 @@
 #include "apps/bench/figures.hpp"
 
+#include <array>
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+
+#include "apps/bench/core_figure.hpp"
+#include "apps/bench/mask_figures.hpp"
+#include "apps/bench/view_figures.hpp"
+#include "apps/output_files.hpp"
+#include "apps/replay_report/atomic_file.hpp"
 #include "common/error.hpp"
 
 namespace foresight {
+namespace {
 
-int draw_figures(const FigureOptions& options) {
-  throw RuntimeFailure("not written yet: " + options.out.string(), "wait");
+namespace fs = std::filesystem;
+
+constexpr std::size_t kFewest = 20;  // images
+constexpr std::array kNames{"fig_4_08", "fig_4_15", "fig_4_20", "fig_5_09",
+                            "fig_5_11", "fig_5_19", "fig_5_23", "core_vs_thesis"};
+
+void check_run(const RunFolder& run) {
+  const std::string where = run.root().string();
+  if (!thesis::CameraFrame::can_undistort(run.lens_left()))
+    throw InputError(where, "the lens sees more than one picture plane can hold, as the thesis' pipeline needs it",
+                     "take a run with a lens of less than 120 degrees");
+  if (run.frames().size() < kFewest)
+    throw InputError(where, "holds only " + std::to_string(run.frames().size()) + " images",
+                     "take a run of at least " + std::to_string(kFewest));
+}
+
+void check_out(const fs::path& out, const std::set<fs::path>& inputs) {
+  const std::string where = "--out " + out.string();
+  require_writable(where, fs::absolute(out), kNames[0]);
+  for (const std::string name : kNames) {
+    const fs::path file = out / (name + ".png");
+    require_not_an_input(where, file, inputs);
+    if (fs::is_directory(file))
+      throw InputError(where, name + ".png in it is a folder", "remove it or give another place");
+  }
+}
+
+std::vector<FigurePage> draw_all(const RunFolder& run, const TextureOptions& core) {
+  const auto say = [](const char* what) { std::fprintf(stderr, "figures: %s\n", what); };
+  std::vector<FigurePage> pages;
+  {
+    const FigureLab lab(run);
+    say("choosing the images");
+    const FigurePair pair = choose_pair(lab);
+    say("chapter 4");
+    pages.push_back(occlusion_figure(lab, pair));
+    BorderFigures borders = border_figures(lab, pair);
+    pages.push_back(std::move(borders.without));
+    pages.push_back(std::move(borders.with));
+    say("chapter 5");
+    ErrorFigures errors = error_figures(lab, pair);
+    pages.push_back(std::move(errors.expansion));
+    pages.push_back(mask_figure(lab, pair));
+    pages.push_back(std::move(errors.filling));
+    pages.push_back(filling_figure(lab, pair));
+  }
+  say("core and thesis");
+  pages.push_back(core_figure(run, core));
+  return pages;
+}
+
+void write(const std::vector<FigurePage>& pages, const fs::path& out) {
+  std::vector<std::string> bytes;
+  for (const FigurePage& page : pages) {
+    std::vector<uchar> png;
+    cv::imencode(".png", draw_page(page), png);
+    bytes.emplace_back(png.begin(), png.end());
+  }
+  make_folder(out);
+  std::vector<FileContent> files;
+  for (std::size_t i = 0; i < pages.size(); ++i) files.push_back({out / (std::string(kNames[i]) + ".png"), bytes[i]});
+  write_files_atomically(files);
+}
+
+}  // namespace
+
+int draw_figures(const FigureOptions& given) {
+  FigureOptions options = given;
+  const RunFolder run = open_run(options);
+  check_run(run);
+  check_out(options.out, input_files(run, options));
+  check_images(run);
+  write(draw_all(run, options.textures), options.out);
+  std::printf("%s\n", options.out.c_str());
+  return 0;
 }
 
 }  // namespace foresight

@@ -1,12 +1,11 @@
 // `foresight bench figures`: the effect of each step of the thesis' pipeline, as pictures.
 #pragma once
 
-#include <filesystem>
+#include "apps/run_options.hpp"
 
 namespace foresight {
 
-struct FigureOptions {
-  std::filesystem::path run;
+struct FigureOptions : RunOptions {
   std::filesystem::path out;  ///< folder, made where it is missing
 };
 

@@ -8,52 +8,13 @@
 #include <stdexcept>
 
 #include "apps/replay_report/atomic_file.hpp"
+#include "apps/replay_report/drawn_text.hpp"
 
 namespace foresight {
 namespace {
 
 const cv::Scalar kPaper{22, 19, 17}, kInk{238, 234, 232}, kFaint{160, 150, 144}, kGood{160, 214, 120};
-constexpr int kOversampling = 4;  // OpenCV draws bare strokes: drawn large and scaled down they look like type
 constexpr int kHeading = 25, kCaption = 18;  // px, height of a line's capitals is about 0.7 of it
-
-struct Text {
-  std::string text;
-  int size;
-  cv::Scalar colour;
-  bool bold = false;
-};
-
-cv::Size drawn_size(const Text& t, double& scale, int& thickness, int& baseline) {
-  scale = t.size * kOversampling / 30.0;
-  thickness = std::max(1, static_cast<int>(std::lround(t.size * kOversampling * (t.bold ? 0.085 : 0.06))));
-  return cv::getTextSize(t.text, cv::FONT_HERSHEY_SIMPLEX, scale, thickness, &baseline);
-}
-
-int text_width(const Text& t) {
-  double scale;
-  int thickness, baseline;
-  return drawn_size(t, scale, thickness, baseline).width / kOversampling;
-}
-
-// `at`: left end of the baseline. Clipped to the sheet.
-void draw_text(cv::Mat& sheet, const Text& t, cv::Point at) {
-  double scale;
-  int thickness, baseline;
-  const cv::Size size = drawn_size(t, scale, thickness, baseline);
-  const int pad = t.size / 2;
-  cv::Rect box(at.x - pad, at.y - t.size - pad, size.width / kOversampling + 2 * pad, 2 * t.size + 2 * pad);
-  cv::Mat large = cv::Mat::zeros(box.height * kOversampling, box.width * kOversampling, CV_8U), ink;
-  cv::putText(large, t.text, cv::Point(pad, t.size + pad) * kOversampling, cv::FONT_HERSHEY_SIMPLEX, scale, 255,
-              thickness, cv::LINE_AA);
-  cv::resize(large, ink, box.size(), 0, 0, cv::INTER_AREA);
-  const cv::Rect inside = box & cv::Rect(0, 0, sheet.cols, sheet.rows);
-  for (int y = inside.y; y < inside.br().y; ++y)
-    for (int x = inside.x; x < inside.br().x; ++x) {
-      const double share = ink.at<uchar>(y - box.y, x - box.x) / 255.0;
-      auto& pixel = sheet.at<cv::Vec3b>(y, x);
-      for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<uchar>(std::lerp(pixel[c], t.colour[c], share));
-    }
-}
 
 struct Layout {
   int width, margin, gap, tile_width, tile_height, top, row_height, bottom;
@@ -91,7 +52,7 @@ void draw_row(cv::Mat& sheet, const Layout& layout, const Instant& instant, int 
     draw_tile(sheet, layout, *pictures[i], {layout.column(i), top});
     const cv::Scalar colour = i == 1 ? kGood : i == 0 ? kInk : kFaint;
     const int baseline = top + layout.tile_height + kCaption + 6;
-    const Text caption{captions[i], kCaption, colour, i < 2};
+    const DrawnText caption{captions[i], kCaption, colour, i < 2};
     draw_text(sheet, caption, {layout.column(i), baseline});
     if (i > 1) continue;
     const ImageQuality& q = i ? f.predicted : f.delayed;
