@@ -59,8 +59,12 @@ vec4 shade(vec3 ray) {
     vec3 du = chart.eu - sight * dot(sight, chart.eu), dv = chart.ev - sight * dot(sight, chart.ev);
     float pixels_per_texel = max(camera.focal.x, camera.focal.y) * max(length(du), length(dv)) / (abs(t) * length(ray));
     float lod = -log2(max(pixels_per_texel, 1e-6));
-    int level = clamp(int(floor(lod + 0.5)), 0, 4);
-    Taps taps = gather_taps(chart, texel, level);
+    int level = clamp(int(floor(lod + 0.15)), 0, 4);
+    Taps taps;
+    if (level == 0)
+      taps = gather_sharp_taps(chart, texel);
+    else
+      taps = gather_taps(chart, texel, level);
     if (taps.seen.a >= kSeenShare) return vec4(min(taps.seen.rgb / taps.seen.a * gain, vec3(1.0)), 1.0);
     if (taps.seen.a + taps.filled.a > 0.0)
       return vec4(min((taps.seen.rgb + taps.filled.rgb) / (taps.seen.a + taps.filled.a) * gain, vec3(1.0)), 128.0 / 255.0);
