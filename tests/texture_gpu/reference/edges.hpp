@@ -1,4 +1,4 @@
-// Uncertain edges by brute force: every pixel, every neighbour within the margin.
+// Uncertain edges by brute force: every pixel at which a surface ends, every neighbour within the margin.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,14 @@ namespace foresight::reference {
 
 enum class Answer { no, yes, borderline };
 
-/// For every pixel of a face: is there, within margin + 1/2 px, a pixel that lies in front of the
-/// plane through this one by more than the tolerance (metres)? Beyond the picture nothing is known.
-/// The plane's slope in 1/z is that of the side on which the surface bends less. Borderline where
+/// For every pixel p of a face: is there, within margin + 1/2 px, a pixel q at which a surface ends,
+/// and does p lie behind that surface by more than the tolerance (metres)?
+///
+/// A surface ends at q where q lies in front of the plane of the two pixels next to it (in some row
+/// or column), by more than the tolerance; where only one pixel follows, in front of that one as far
+/// as q's own slope does not explain it. It is thought to go on from q as a plane, but no closer than
+/// q; its slope in 1/z is that of the side on which it bends less, and none where it bends by more
+/// than the tolerance within two pixels. Beyond the picture nothing is known. Borderline where
 /// rounding to float decides.
 std::vector<Answer> uncertain_edges(const FacePicture& face, double margin_px, double depth_tolerance);
 
