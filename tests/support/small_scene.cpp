@@ -31,11 +31,10 @@ std::shared_ptr<const SceneModel> small_scene() {
   board.rotate(Eigen::AngleAxisd(-1.2, Eigen::Vector3d::UnitY()));
   Pose box = at(0.05, 0.1, 0.15);
   box.rotate(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()));
-  return std::make_shared<SceneModel>(
-      std::vector<Node>{{"table", rectangle(1.5, 1.1), -1, Pose::Identity()},
-                        {"box", make_box(kBoxSize), -1, box},
-                        {"block", make_box(kBlockSize), -1, at(-0.2, -0.25, 0.05)},
-                        {"board", rectangle(0.5, 0.7), -1, board}});
+  return std::make_shared<SceneModel>(std::vector<Node>{{"table", rectangle(1.5, 1.1), -1, Pose::Identity()},
+                                                        {"box", make_box(kBoxSize), -1, box},
+                                                        {"block", make_box(kBlockSize), -1, at(-0.2, -0.25, 0.05)},
+                                                        {"board", rectangle(0.5, 0.7), -1, board}});
 }
 
 bool at_contact(const SceneState& state, int node, const Eigen::Vector3d& p_node, double reach) {

@@ -41,32 +41,21 @@ class Picture {
     const double before = at(x - dx, y - dy);
     return in_front(before > 0 ? 2 * here - before : here, beyond, 2 * (here + before));
   }
-  Answer ends(int x, int y) const {
-    return either(either(ends(x, y, 1, 0), ends(x, y, -1, 0)), either(ends(x, y, 0, 1), ends(x, y, 0, -1)));
-  }
-
-  /// The slope of 1/z along (dx, dy) with which the surface of (x, y) goes on: that of the side on
-  /// which it bends less, none where it is not a plane. Several where rounding decides.
+  /// The slope of 1/z with which the surface of (x, y) goes on towards (dx, dy): its own as far as it
+  /// is seen, else that of the plane before, none where there is no plane. Several where rounding decides.
   std::vector<double> slopes(int x, int y, int dx, int dy) const {
-    const double here = at(x, y);
-    struct Side {
-      double bend = 1e30, slope = 0;
-    };
-    const auto side = [&](int s) -> Side {
-      const double one = at(x + s * dx, y + s * dy), two = at(x + 2 * s * dx, y + 2 * s * dy);
-      return {one > 0 && two > 0 ? std::abs(two - 2 * one + here) : 1e30, s * (one - here)};
-    };
-    const Side a = side(-1), b = side(1);
-    if (std::min(a.bend, b.bend) > 1e29) return {0};
+    const double here = at(x, y), bent = tolerance_ * here * here, rounding = 4 * kRounding * here;
+    const double a1 = at(x + dx, y + dy), a2 = at(x + 2 * dx, y + 2 * dy);
+    const double b1 = at(x - dx, y - dy), b2 = at(x - 2 * dx, y - 2 * dy);
     std::vector<double> out;
-    for (const Side& s : {a, b}) {
-      if (s.bend > std::min(a.bend, b.bend) + 4 * kRounding * here) continue;
-      const double ahead = std::abs(at(x + 2 * dx, y + 2 * dy) - here - 2 * s.slope),
-                   back = std::abs(at(x - 2 * dx, y - 2 * dy) - here + 2 * s.slope);
-      const Answer curved = sign(std::min(ahead, back) - tolerance_ * here * here, 4 * kRounding * here);
-      if (curved != Answer::yes) out.push_back(s.slope);
-      if (curved != Answer::no) out.push_back(0);
-    }
+    const Answer ends = a1 > 0 && a2 > 0 ? sign(std::abs(a2 - 2 * a1 + here) - bent, rounding) : Answer::yes;
+    if (ends != Answer::yes) out.push_back(a1 - here);
+    if (ends == Answer::no) return out;
+    const double slope = here - b1, bend = std::abs(b2 - 2 * b1 + here);
+    const Answer curved =
+        b1 > 0 && b2 > 0 ? sign(bend - std::min(bent, 0.25 * std::abs(slope)), rounding) : Answer::yes;
+    if (curved != Answer::yes) out.push_back(slope);
+    if (curved != Answer::no) out.push_back(0);
     return out;
   }
 
@@ -83,19 +72,30 @@ std::vector<Answer> uncertain_edges(const FacePicture& face, double margin, doub
   std::vector<Answer> out(face.inverse_z.size(), Answer::no);
   for (int y = 0; y < face.height; ++y)
     for (int x = 0; x < face.width; ++x) {
-      const Answer edge = picture.ends(x, y);
-      if (edge == Answer::no) continue;
+      const Answer ends_right = picture.ends(x, y, 1, 0), ends_left = picture.ends(x, y, -1, 0),
+                   ends_down = picture.ends(x, y, 0, 1), ends_up = picture.ends(x, y, 0, -1);
+      if (either(either(ends_right, ends_left), either(ends_down, ends_up)) == Answer::no) continue;
       const double here = picture.at(x, y);
-      const auto along_u = picture.slopes(x, y, 1, 0), along_v = picture.slopes(x, y, 0, 1);
+      const auto right = picture.slopes(x, y, 1, 0), left = picture.slopes(x, y, -1, 0),
+                 down = picture.slopes(x, y, 0, 1), up = picture.slopes(x, y, 0, -1);
       for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
           const double far = picture.at(x + dx, y + dy);
           if (far <= 0 || dx * dx + dy * dy > (margin + 0.5) * (margin + 0.5)) continue;
+          // Only to the sides on which the surface ends.
+          const Answer edge = either(std::abs(dx) < std::abs(dy) || dx == 0 ? Answer::no
+                                     : dx > 0                               ? ends_right
+                                                                            : ends_left,
+                                     std::abs(dy) < std::abs(dx) || dy == 0 ? Answer::no
+                                     : dy > 0                               ? ends_down
+                                                                            : ends_up);
+          if (edge == Answer::no) continue;
           int yes = 0, no = 0;
+          const auto &along_u = dx < 0 ? left : right, &along_v = dy < 0 ? up : down;
           for (double u : along_u)
             for (double v : along_v) {
-              // The surface goes on as a plane, but never closer than where it ends.
-              const double near = std::min(here, here + u * dx + v * dy);
+              // Never closer than where it ends.
+              const double near = std::min(here, here + u * std::abs(dx) + v * std::abs(dy));
               const double scale = here * (1 + std::abs(dx) + std::abs(dy));
               const Answer behind = sign(near - far - tolerance * near * far, kRounding * scale);
               yes += behind == Answer::yes;
