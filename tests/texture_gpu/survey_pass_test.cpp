@@ -57,8 +57,9 @@ TEST_P(SurveyOfLenses, NoTileWithASeenTexelIsCulled) {
     bench_->fill();
   }
   EXPECT_GT(seen_tiles, 300);
-  // Conservative, but not idle: it keeps at most two and a half times of what is seen.
-  EXPECT_LT(kept, std::min(tiles, seen_tiles * 5 / 2));
+  // Conservative, but not idle: about a third more than what is seen, and far from all.
+  EXPECT_LT(kept, seen_tiles * 1.45);
+  EXPECT_LT(kept, tiles * 0.7);
 }
 
 TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {
