@@ -201,6 +201,69 @@ TEST_F(ExtractTest, TexelsLargerThanPixelsAreMeans) {
   EXPECT_GT(sharp.colour_mean(), 4 * a.colour_mean()) << "this test would not see aliasing";
 }
 
+/// Mean of four bilinear samples in the middles of the quarters of the footprint.
+Eigen::Vector3d four_taps(const cv::Mat& image, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& axes) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector2d& tap : {Eigen::Vector2d(1, 1), {1, -1}, {-1, 1}, {-1, -1}}) {
+    const Eigen::Vector2d at = pixel + 0.25 * axes * tap, base = at.array().floor(), f = at - base;
+    for (int i = 0; i < 4; ++i) {
+      const int x = std::clamp(static_cast<int>(base.x()) + (i & 1), 0, image.cols - 1),
+                y = std::clamp(static_cast<int>(base.y()) + (i >> 1), 0, image.rows - 1);
+      const auto& v = image.at<cv::Vec3b>(y, x);
+      sum +=
+          0.25 * (i & 1 ? f.x() : 1 - f.x()) * (i >> 1 ? f.y() : 1 - f.y()) * Eigen::Vector3d(v[2], v[1], v[0]) / 255;
+    }
+  }
+  return sum;
+}
+
+TEST_F(ExtractTest, TexelsSomewhatLargerThanPixelsTakeFourTaps) {
+  make({"pinhole"}, {.texels_per_metre = 65, .memory_bytes = kMemory});
+  std::vector<PosedImage> images = photographs({usual_view()});
+  cv::Mat noise(images[0].pixels.size(), CV_8UC3);
+  cv::theRNG().state = 9;
+  cv::randu(noise, 0, 120);
+  images[0].pixels += noise;
+  // At 65 texels per metre they are 0.9 to 1.8 pixels large, but for a few pages.
+  const Agreement a = compare(images, 0.9, [](const cv::Mat& image, const auto& pixel, const auto& axes) {
+    return four_taps(image, pixel, axes);
+  });
+  EXPECT_GT(a.seen, 2000);
+  EXPECT_EQ(a.wrong, 0);
+  EXPECT_LE(a.code_worst, 1);
+  EXPECT_LT(a.colour_mean(), 1.5);  // other ways are off by more than three
+}
+
+// Which of the three ways a page's colours are taken follows from its texels' size in pixels.
+TEST_F(ExtractTest, TheSizeOfTexelsDecidesHowTheyAreSampled) {
+  // A fine chequer: single samples keep its contrast, four taps over two pixels lose it, coarser levels too.
+  const auto contrast = [&](double texels_per_metre, double minify_above) {
+    lenses_.clear();
+    make({"pinhole"}, {.texels_per_metre = texels_per_metre, .memory_bytes = kMemory});
+    std::vector<PosedImage> images = photographs({usual_view()});
+    for (int y = 0; y < images[0].pixels.rows; ++y)
+      for (int x = 0; x < images[0].pixels.cols; ++x)
+        images[0].pixels.at<cv::Vec3b>(y, x) = cv::Vec3b::all((x + y) % 2 ? 200 : 50);
+    bench_->look(images);
+    bench_->cull(), bench_->allocate(), bench_->relevel(), bench_->extract(minify_above);
+    const reference::AtlasPixels pixels = bench_->pixels();
+    double sum = 0;
+    int count = 0;
+    for (const PageJob& job : bench_->allocation.jobs)
+      for (int k = 0; k < 256; ++k) {
+        const reference::Texel t = pixels.at(job.new_slot, 0, k % 16, k / 16);
+        if (t[3] >= 2) sum += std::abs(t[0] - 125), ++count;
+      }
+    EXPECT_GT(count, 500);
+    return sum / count;
+  };
+  const double fine = contrast(0, 1.5), never = contrast(0, PassBench::kNever);
+  EXPECT_NEAR(fine, never, 0.05 * never) << "texels of one pixel are sampled as they are";
+  EXPECT_GT(fine, 15);
+  EXPECT_LT(contrast(50, 1.5), 0.65 * contrast(50, PassBench::kNever)) << "two pixels";
+  EXPECT_LT(contrast(20, 1.5), 0.15 * contrast(20, PassBench::kNever)) << "five pixels";
+}
+
 TEST_F(ExtractTest, TheToneIsTakenOut) {
   make({"pinhole"});
   const Eigen::Vector3f tone(0.8f, -0.3f, -0.1f);
