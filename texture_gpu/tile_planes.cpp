@@ -11,9 +11,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kGuardReach = 2;                    // texels beyond a triangle that take its height
-constexpr double kHalfTile = atlas::kTile / 2.0;     // texels
-constexpr double kCenter = (atlas::kTile - 1) / 2.0; // of a tile, from its first texel
+constexpr double kGuardReach = 2;                     // texels beyond a triangle that take its height
+constexpr double kHalfTile = atlas::kTile / 2.0;      // texels
+constexpr double kCenter = (atlas::kTile - 1) / 2.0;  // of a tile, from its first texel
 
 /// Range of values.
 struct Span {
@@ -32,7 +32,8 @@ template <typename F>
 void for_each_texel(const ChartRaster& raster, int tiles_across, F&& f) {
   for (int y = 0; y < raster.height; ++y)
     for (int x = 0; x < raster.width; ++x) {
-      const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(x);
+      const auto at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(x);
       const auto raw = static_cast<std::uint16_t>(raster.raw[at] & ~ChartRaster::kCore);
       if (raw)
         f(static_cast<std::size_t>(y / atlas::kTile * tiles_across + x / atlas::kTile), x % atlas::kTile - kCenter,
@@ -72,8 +73,7 @@ std::vector<TilePlane> find_tile_planes(const SurfacePatches& surface, int index
     const Vector2d step(((h[1] - h[0]) * b.y() - (h[2] - h[0]) * a.y()) / area,
                         ((h[2] - h[0]) * a.x() - (h[1] - h[0]) * b.x()) / area);  // metres per texel
     const Vector2d low = at[0].cwiseMin(at[1]).cwiseMin(at[2]), high = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
-    const Eigen::Array2i from =
-        ((low.array() - kGuardReach) / atlas::kTile).floor().cast<int>().max(0).min(tiles - 1);
+    const Eigen::Array2i from = ((low.array() - kGuardReach) / atlas::kTile).floor().cast<int>().max(0).min(tiles - 1);
     const Eigen::Array2i to = ((high.array() + kGuardReach) / atlas::kTile).floor().cast<int>().max(0).min(tiles - 1);
     for (int y = from.y(); y <= to.y(); ++y)
       for (int x = from.x(); x <= to.x(); ++x) {
@@ -130,7 +130,7 @@ std::array<std::uint32_t, 2> packed(const TilePlane& tile, const ChartRaster& ra
   };
   if (tile.residual < 0) return {half2(0, -1), 0};
   const double half_range = (tile.high - tile.low) / 2.0;
-  constexpr double kLargest = 30000;  // far below what half floats hold
+  constexpr double kLargest = 30000;                         // far below what half floats hold
   const bool extreme = !(std::abs(tile.center) < kLargest);  // a triangle smaller than a texel, extended over the tile
   if (half_range <= tile.residual || extreme) return {half2((tile.low + tile.high) / 2.0, half_range * 1.001 + 17), 0};
   const Eigen::Vector2d step =

@@ -17,7 +17,7 @@ struct TilePlane {
   float residual = -1;  ///< largest distance of any texel from the plane, raw units; below 0: no surface
   float offset = 0;     ///< planes of single triangles pass the centre within this, raw units
   Eigen::Vector2f slope{0, 0};
-  Eigen::Vector2f spread{0, 0};  ///< slopes of single triangles differ from `slope` by up to this
+  Eigen::Vector2f spread{0, 0};     ///< slopes of single triangles differ from `slope` by up to this
   std::uint16_t low = 0, high = 0;  ///< lowest and highest raw height of a texel; 0: none
 };
 
