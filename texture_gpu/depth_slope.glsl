@@ -1,6 +1,7 @@
-// Depth of a face as 1/z, and its slope. Needs camera.glsl.
+// Depth of a face as 1/z, its slope, and where its surfaces end. Needs camera.glsl.
 layout(binding = 0) uniform sampler2DArray depth;
 uniform ivec2 face_size;
+uniform float depth_tolerance;  // metres
 
 // 0 outside: repeating the border's depth there would bend a plane. Software renderers fetch by
 // integer coordinates far more slowly than they sample the nearest texel.
@@ -18,4 +19,34 @@ float slope(ivec2 p, ivec2 step, int layer, float center) {
   float bend_b = b1 > 0.0 && b2 > 0.0 ? abs(b2 - 2.0 * b1 + center) : 1e30;
   if (min(bend_a, bend_b) > 1e29) return 0.0;
   return bend_a < bend_b ? center - a1 : b1 - center;
+}
+
+// Is `q` in front of what lies beyond it along `step`?
+//
+//   q ____            r, r2: the surface beyond; its plane, extended to q, is behind q by more than
+//         |           the tolerance
+//         |  r r2
+//         |__.__.___
+//
+// Off the plane, not just nearer: 1/z is linear in the picture of a plane, so that a plane seen at
+// a grazing angle has no discontinuity, and a crease has none.
+bool ends(ivec2 q, float center, ivec2 step, int layer) {
+  float r = inverse_z(q + step, layer), r2 = inverse_z(q + 2 * step, layer);
+  if (r <= 0.0 || r >= center) return false;
+  float near = center, far = 2.0 * r - r2;
+  if (r2 <= 0.0) {
+    // Nothing tells the slope beyond: the near surface's own goes on.
+    float before = inverse_z(q - step, layer);
+    near = before > 0.0 ? 2.0 * center - before : center;
+    far = r;
+  }
+  far = max(far, 0.0);  // a plane beyond its horizon is behind all
+  return near - far > depth_tolerance * near * far;
+}
+
+// Towards +x, +y, -x, -y.
+bvec4 ends_around(ivec2 q, float center, int layer) {
+  if (center <= 0.0) return bvec4(false);
+  return bvec4(ends(q, center, ivec2(1, 0), layer), ends(q, center, ivec2(0, 1), layer),
+               ends(q, center, ivec2(-1, 0), layer), ends(q, center, ivec2(0, -1), layer));
 }

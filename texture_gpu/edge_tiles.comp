@@ -7,7 +7,6 @@
 #include "work_list.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 1) uniform sampler2DArray blocks;
-uniform float depth_tolerance;  // metres
 
 void main() {
   ivec3 tile = ivec3(gl_GlobalInvocationID);

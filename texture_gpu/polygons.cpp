@@ -41,6 +41,7 @@ class NodePolygons {
  public:
   explicit NodePolygons(const Mesh& mesh) : mesh_(mesh) {
     std::map<Edge, std::size_t> owner;
+    std::vector<std::pair<std::size_t, std::size_t>> neighbours;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto& corners = mesh.triangles[t];
       loops_.push_back({corners.begin(), corners.end()});
@@ -51,9 +52,14 @@ class NodePolygons {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (int k = 0; k < 3; ++k) {
         const Edge edge{mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]};
-        if (const auto twin = owner.find({edge.second, edge.first}); twin != owner.end()) try_join(t, twin->second);
+        if (const auto twin = owner.find({edge.second, edge.first}); twin != owner.end())
+          neighbours.emplace_back(t, twin->second);
         owner.emplace(edge, t);
       }
+    // Again and again: two rows of a grid fit together only once both are whole.
+    const auto joins = [this](const auto& pair) { return try_join(pair.first, pair.second); };
+    while (std::count_if(neighbours.begin(), neighbours.end(), joins) > 0) {
+    }
   }
 
   template <typename Use>
@@ -77,15 +83,16 @@ class NodePolygons {
     return true;
   }
 
-  void try_join(std::size_t t, std::size_t u) {
+  bool try_join(std::size_t t, std::size_t u) {
     const std::size_t a = group_[t], b = group_[u];
-    if (a == b || normals_[a].cross(normals_[b]).norm() > kFlat || normals_[a].dot(normals_[b]) < 0) return;
+    if (a == b || normals_[a].cross(normals_[b]).norm() > kFlat || normals_[a].dot(normals_[b]) < 0) return false;
     const auto joined = join(loops_[a], loops_[b]);
-    if (!joined || !convex(*joined, normals_[a])) return;
+    if (!joined || !convex(*joined, normals_[a])) return false;
     loops_[a] = *joined;
     for (std::size_t member : members_[b]) group_[member] = a;
     members_[a].insert(members_[a].end(), members_[b].begin(), members_[b].end());
     members_[b].clear();
+    return true;
   }
 
   const Mesh& mesh_;

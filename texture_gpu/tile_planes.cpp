@@ -11,9 +11,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kGuardReach = 2;                    // texels beyond a triangle that take its height
-constexpr double kHalfTile = atlas::kTile / 2.0;     // texels
-constexpr double kCenter = (atlas::kTile - 1) / 2.0; // of a tile, from its first texel
+constexpr double kGuardReach = 2;                     // texels beyond a triangle that take its height
+constexpr double kHalfTile = atlas::kTile / 2.0;      // texels
+constexpr double kCenter = (atlas::kTile - 1) / 2.0;  // of a tile, from its first texel
 
 /// Range of values.
 struct Span {
@@ -27,16 +27,17 @@ struct Bounds {
   Span center, slope_u, slope_v;  // metres
 };
 
-void find_height_ranges(const ChartRaster& raster, int tiles_across, std::vector<TilePlane>& out) {
+/// Calls f(tile, x, y, raw) for each texel on the surface; x, y: from its tile's centre.
+template <typename F>
+void for_each_texel(const ChartRaster& raster, int tiles_across, F&& f) {
   for (int y = 0; y < raster.height; ++y)
     for (int x = 0; x < raster.width; ++x) {
-      const auto raw = static_cast<std::uint16_t>(
-          raster.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(x)] &
-          ~ChartRaster::kCore);
-      if (!raw) continue;
-      TilePlane& tile = out[static_cast<std::size_t>(y / atlas::kTile * tiles_across + x / atlas::kTile)];
-      tile.low = tile.low ? std::min(tile.low, raw) : raw;
-      tile.high = std::max(tile.high, raw);
+      const auto at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(x);
+      const auto raw = static_cast<std::uint16_t>(raster.raw[at] & ~ChartRaster::kCore);
+      if (raw)
+        f(static_cast<std::size_t>(y / atlas::kTile * tiles_across + x / atlas::kTile), x % atlas::kTile - kCenter,
+          y % atlas::kTile - kCenter, raw);
     }
 }
 
@@ -72,8 +73,7 @@ std::vector<TilePlane> find_tile_planes(const SurfacePatches& surface, int index
     const Vector2d step(((h[1] - h[0]) * b.y() - (h[2] - h[0]) * a.y()) / area,
                         ((h[2] - h[0]) * a.x() - (h[1] - h[0]) * b.x()) / area);  // metres per texel
     const Vector2d low = at[0].cwiseMin(at[1]).cwiseMin(at[2]), high = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
-    const Eigen::Array2i from =
-        ((low.array() - kGuardReach) / atlas::kTile).floor().cast<int>().max(0).min(tiles - 1);
+    const Eigen::Array2i from = ((low.array() - kGuardReach) / atlas::kTile).floor().cast<int>().max(0).min(tiles - 1);
     const Eigen::Array2i to = ((high.array() + kGuardReach) / atlas::kTile).floor().cast<int>().max(0).min(tiles - 1);
     for (int y = from.y(); y <= to.y(); ++y)
       for (int x = from.x(); x <= to.x(); ++x) {
@@ -86,17 +86,28 @@ std::vector<TilePlane> find_tile_planes(const SurfacePatches& surface, int index
       }
   }
   std::vector<TilePlane> out(bounds.size());
-  find_height_ranges(raster, tiles.x(), out);
+  for_each_texel(raster, tiles.x(), [&](std::size_t tile, double, double, std::uint16_t raw) {
+    out[tile].low = out[tile].low ? std::min(out[tile].low, raw) : raw;
+    out[tile].high = std::max(out[tile].high, raw);
+  });
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const Bounds& tile = bounds[i];
     if (tile.center.low > tile.center.high || !out[i].high) continue;
     TilePlane& plane = out[i];
     plane.slope = Vector2d(tile.slope_u.middle(), tile.slope_v.middle()).cast<float>();
     plane.spread = Vector2d(tile.slope_u.half(), tile.slope_v.half()).cast<float>();
-    const double reach = kHalfTile * (tile.slope_u.half() / raster.density.x() + tile.slope_v.half() / raster.density.y());
     plane.center = static_cast<float>(1 + (tile.center.middle() - raster.height0) / raster.height_step);
-    plane.residual = static_cast<float>((tile.center.half() + reach) / raster.height_step);
+    plane.offset = static_cast<float>(tile.center.half() / raster.height_step);
+    plane.residual = 0;
   }
+  // Texels of the guard band, and those of triangles smaller than a texel, lie beside the planes of
+  // the triangles: only they themselves tell how far.
+  for_each_texel(raster, tiles.x(), [&](std::size_t tile, double x, double y, std::uint16_t raw) {
+    TilePlane& plane = out[tile];
+    const Vector2d step = plane.slope.cast<double>().cwiseQuotient(raster.density) / raster.height_step;
+    const double off = std::abs(raw - static_cast<double>(plane.center) - step.dot(Vector2d(x, y)));
+    plane.residual = std::max(plane.residual, static_cast<float>(off));
+  });
   return out;
 }
 
@@ -105,11 +116,10 @@ bool faces_away(const TilePlane& tile, const ChartRaster& raster, const Vector2d
   if (tile.residual < 0) return true;
   const double height = raster.height0 + (static_cast<double>(tile.center) - 1) * raster.height_step;
   const Vector3d s = eye - Vector3d(uv.x(), uv.y(), height);
-  // A triangle's normal is (-slope, 1). The plane through its point nearest to the tile's centre may
-  // pass the centre at the distance of the residual.
+  // A triangle's normal is (-slope, 1); its plane passes the tile's centre at up to `offset`.
   const Vector2d slope = tile.slope.cast<double>(), spread = tile.spread.cast<double>();
   const double facing = s.z() - slope.dot(s.head<2>()) + spread.dot(s.head<2>().cwiseAbs());
-  const double slack = static_cast<double>(tile.residual) * raster.height_step + kRounding;
+  const double slack = static_cast<double>(tile.offset) * raster.height_step + kRounding;
   return facing + slack < 0;
 }
 
@@ -120,7 +130,9 @@ std::array<std::uint32_t, 2> packed(const TilePlane& tile, const ChartRaster& ra
   };
   if (tile.residual < 0) return {half2(0, -1), 0};
   const double half_range = (tile.high - tile.low) / 2.0;
-  if (half_range <= tile.residual) return {half2((tile.low + tile.high) / 2.0, half_range * 1.001 + 17), 0};
+  constexpr double kLargest = 30000;                         // far below what half floats hold
+  const bool extreme = !(std::abs(tile.center) < kLargest);  // a triangle smaller than a texel, extended over the tile
+  if (half_range <= tile.residual || extreme) return {half2((tile.low + tile.high) / 2.0, half_range * 1.001 + 17), 0};
   const Eigen::Vector2d step =
       tile.slope.cast<double>().cwiseQuotient(raster.density) / std::max(raster.height_step, 1e-12);
   // Half floats keep eleven bits: the residual makes up for what the others lose.

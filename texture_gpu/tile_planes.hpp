@@ -10,13 +10,14 @@
 
 namespace foresight {
 
-/// Bounds of all triangles on a tile. Slopes are changes of height per step along u and v, both in
-/// metres. Valid for guard texels too.
+/// Bounds of all texels and triangles on a tile. Slopes are changes of height per step along u and v,
+/// both in metres. Without texels: no surface.
 struct TilePlane {
   float center = 0;     ///< height at the tile's centre, raw units of the ChartRaster
   float residual = -1;  ///< largest distance of any texel from the plane, raw units; below 0: no surface
+  float offset = 0;     ///< planes of single triangles pass the centre within this, raw units
   Eigen::Vector2f slope{0, 0};
-  Eigen::Vector2f spread{0, 0};  ///< slopes of single triangles differ from `slope` by up to this
+  Eigen::Vector2f spread{0, 0};     ///< slopes of single triangles differ from `slope` by up to this
   std::uint16_t low = 0, high = 0;  ///< lowest and highest raw height of a texel; 0: none
 };
 

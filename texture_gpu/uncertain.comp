@@ -12,14 +12,19 @@
 #include "work_item.glsl"
 layout(local_size_x = 64) in;
 layout(binding = 0, r8) uniform writeonly image2DArray uncertain;
-uniform float margin;           // px
-uniform float depth_tolerance;  // metres
+uniform float margin;  // px
 
-// 0 where the surface bends too much on both sides to have a plane: it is a few pixels wide.
-float slope_of_plane(ivec2 q, ivec2 step, int layer, float center) {
-  float s = slope(q, step, layer, center);
-  float bend = min(abs(inverse_z(q + 2 * step, layer) - center - 2.0 * s), abs(inverse_z(q - 2 * step, layer) - center + 2.0 * s));
-  return bend > depth_tolerance * center * center ? 0.0 : s;
+// Slope of 1/z with which the surface of q goes on along `step`: its own, as far as it is seen there, so
+// that what lies beyond a crease is no far side. Where it ends, that of the plane before; none of a
+// curved surface, which would sink below what lies behind it, or of one that is a few pixels wide.
+float slope_ahead(ivec2 q, ivec2 step, int layer, float center) {
+  float bent = depth_tolerance * center * center;
+  float a1 = inverse_z(q + step, layer), a2 = inverse_z(q + 2 * step, layer);
+  if (a1 > 0.0 && a2 > 0.0 && abs(a2 - 2.0 * a1 + center) <= bent) return a1 - center;
+  float b1 = inverse_z(q - step, layer), b2 = inverse_z(q - 2 * step, layer);
+  float s = center - b1;
+  bool is_plane = b1 > 0.0 && b2 > 0.0 && abs(b2 - 2.0 * b1 + center) <= min(bent, 0.25 * abs(s));
+  return is_plane ? s : 0.0;
 }
 
 void main() {
@@ -28,16 +33,23 @@ void main() {
   ivec2 q = ivec2(item & 0x3fffu, (item >> 14) & 0x3fffu);
   int layer = int(item >> 28);
   float center = inverse_z(q, layer);
-  vec2 gradient = vec2(slope_of_plane(q, ivec2(1, 0), layer, center), slope_of_plane(q, ivec2(0, 1), layer, center));
+  vec2 ahead = vec2(slope_ahead(q, ivec2(1, 0), layer, center), slope_ahead(q, ivec2(0, 1), layer, center));
+  vec2 back = vec2(slope_ahead(q, ivec2(-1, 0), layer, center), slope_ahead(q, ivec2(0, -1), layer, center));
+  bvec4 ended = ends_around(q, center, layer);
   int reach = int(ceil(margin));
   float limit = (margin + 0.5) * (margin + 0.5);
   for (int y = -reach; y <= reach; ++y)
     for (int x = -reach; x <= reach; ++x) {
+      // Only to the sides on which the surface ends: of all its pixels, the one nearest to a pixel
+      // beyond has no other one of them before it.
+      bool beyond = (abs(x) >= abs(y) && (x > 0 ? ended.x : x < 0 && ended.z)) ||
+                    (abs(y) >= abs(x) && (y > 0 ? ended.y : y < 0 && ended.w));
       vec2 offset = vec2(x, y);
+      if (!beyond || dot(offset, offset) > limit) continue;
       float far = inverse_z(q + ivec2(x, y), layer);
-      // A near surface that comes closer away from its edge must not count as behind it.
-      float near = min(center, center + dot(gradient, offset));
-      bool behind = far > 0.0 && near - far > depth_tolerance * near * far;
-      if (behind && dot(offset, offset) <= limit) imageStore(uncertain, ivec3(q + ivec2(x, y), layer), vec4(1.0));
+      // Never closer than at its edge: what comes closer beyond it is not seen there.
+      float near = min(center, center + dot(ahead, max(offset, 0.0)) + dot(back, max(-offset, 0.0)));
+      if (far > 0.0 && near - far > depth_tolerance * near * far)
+        imageStore(uncertain, ivec3(q + ivec2(x, y), layer), vec4(1.0));
     }
 }

@@ -71,7 +71,7 @@ Similarity compare(const cv::Mat& picture, const cv::Mat& view) {
 }
 
 TEST_F(Export, LooksLikeThePredictedView) {
-  const SampleRun sample;
+  const SmallRun sample;
   const RunFolder folder = RunFolder::open(sample.path(), {});
   run({"replay", sample.path(), "--out", out_ / "replay"});
   for (const std::size_t frame : {std::size_t{7}, std::size_t{3}}) {
@@ -96,13 +96,13 @@ TEST_F(Export, LooksLikeThePredictedView) {
 }
 
 TEST_F(Export, IsTheSameEveryTime) {
-  const SampleRun sample;
+  const SmallRun sample;
   for (const char* name : {"a.glb", "b.glb"}) run({"export", sample.path(), "--out", out_ / name});
   EXPECT_EQ(out_.read("a.glb"), out_.read("b.glb"));
 }
 
 TEST_F(Export, MakesFoldersAndFitsTheAtlas) {
-  const SampleRun sample;
+  const SmallRun sample;
   const Outcome outcome = run({"export", sample.path(), "--out", out_ / "a/b/model.GLTF", "--max-atlas", "300"});
   EXPECT_THAT(names_in(out_ / "a/b"), testing::ElementsAre("model.GLTF", "model.bin", "model.png"));
   EXPECT_THAT(outcome.out, HasSubstr("--max-atlas"));
@@ -111,7 +111,7 @@ TEST_F(Export, MakesFoldersAndFitsTheAtlas) {
 }
 
 TEST_F(Export, WrongInputEndsWithCode2AndNoOutput) {
-  const SampleRun sample;
+  const SmallRun sample;
   const TempFolder places;
   places.write("file", "kept");
   fs::create_directories(places / "folder.glb");
@@ -144,7 +144,7 @@ TEST_F(Export, WrongInputEndsWithCode2AndNoOutput) {
 }
 
 TEST_F(Export, AFullDiskLeavesTheOldFiles) {
-  const SampleRun sample;
+  const SmallRun sample;
   const fs::path disk = out_ / "disk";
   fs::create_directory(disk);
   if (::mount("foresight", disk.c_str(), "tmpfs", 0, "size=24k") != 0)

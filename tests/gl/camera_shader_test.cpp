@@ -135,11 +135,11 @@ INSTANTIATE_TEST_SUITE_P(Lenses, CameraShader, testing::ValuesIn(kLensKinds),
 
 TEST(CameraDefines, AreEmptyForCamerasThatDifferInKind) {
   const std::vector<Lens> same{small_lens("plumb_bob"), small_lens("rational")};
-  EXPECT_EQ(camera_defines(same), (std::vector<std::string>{"LENS_MODEL 1", "CUBE_FACES 0"}));
+  EXPECT_EQ(camera_defines(same), (std::vector<std::string>{"LENS_MODEL 1", "CUBE_FACES 0", "FACE_IS_IMAGE 0"}));
   const std::vector<Lens> mixed{small_lens("plumb_bob"), small_lens("fisheye")};
   EXPECT_TRUE(camera_defines(mixed).empty());
   const std::vector<Lens> wide{small_lens("wide_fisheye")};
-  EXPECT_EQ(camera_defines(wide), (std::vector<std::string>{"LENS_MODEL 2", "CUBE_FACES 1"}));
+  EXPECT_EQ(camera_defines(wide), (std::vector<std::string>{"LENS_MODEL 2", "CUBE_FACES 1", "FACE_IS_IMAGE 0"}));
 }
 
 TEST(NodeRows, MapNodePointsToTheCamera) {

@@ -8,6 +8,8 @@
 namespace foresight {
 namespace {
 
+const Eigen::Vector3d kBoxSize(0.25, 0.2, 0.3), kBlockSize(0.15, 0.12, 0.1);
+
 Mesh rectangle(double x, double y) {
   const auto a = static_cast<float>(x / 2), b = static_cast<float>(y / 2);
   Mesh mesh;
@@ -29,11 +31,20 @@ std::shared_ptr<const SceneModel> small_scene() {
   board.rotate(Eigen::AngleAxisd(-1.2, Eigen::Vector3d::UnitY()));
   Pose box = at(0.05, 0.1, 0.15);
   box.rotate(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()));
-  return std::make_shared<SceneModel>(
-      std::vector<Node>{{"table", rectangle(1.5, 1.1), -1, Pose::Identity()},
-                        {"box", make_box({0.25, 0.2, 0.3}), -1, box},
-                        {"block", make_box({0.15, 0.12, 0.1}), -1, at(-0.2, -0.25, 0.05)},
-                        {"board", rectangle(0.5, 0.7), -1, board}});
+  return std::make_shared<SceneModel>(std::vector<Node>{{"table", rectangle(1.5, 1.1), -1, Pose::Identity()},
+                                                        {"box", make_box(kBoxSize), -1, box},
+                                                        {"block", make_box(kBlockSize), -1, at(-0.2, -0.25, 0.05)},
+                                                        {"board", rectangle(0.5, 0.7), -1, board}});
+}
+
+bool at_contact(const SceneState& state, int node, const Eigen::Vector3d& p_node, double reach) {
+  const Eigen::Vector3d p_world = state.T_world_node[static_cast<std::size_t>(node)] * p_node;
+  if (node != kTable) return p_world.z() < reach;
+  const auto within = [&](int solid, const Eigen::Vector3d& size) {
+    const Eigen::Vector3d p = state.T_world_node[static_cast<std::size_t>(solid)].inverse() * p_world;
+    return (p.cwiseAbs() - size / 2).maxCoeff() < reach;
+  };
+  return within(kBox, kBoxSize) || within(kBlock, kBlockSize);
 }
 
 std::shared_ptr<const SceneModel> plane_scene(double x, double y) {

@@ -16,6 +16,10 @@ enum SmallSceneNode { kTable, kBox, kBlock, kBoard };
 
 std::shared_ptr<const SceneModel> small_scene();
 
+/// True where a point of the table, the box or the block is closer than `reach` metres to another one of
+/// them: there no depth tells them apart, and colours mix.
+bool at_contact(const SceneState& state, int node, const Eigen::Vector3d& p_node, double reach);
+
 /// A single rectangle of `x` by `y` metres in the plane z = 0 of the world.
 std::shared_ptr<const SceneModel> plane_scene(double x, double y);
 

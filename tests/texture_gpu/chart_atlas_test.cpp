@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/error.hpp"
+#include "scene/primitives.hpp"
 #include "tests/support/small_scene.hpp"
 
 namespace foresight {
@@ -105,14 +106,39 @@ TEST(ChartAtlas, ResolutionRisesWithACloserViewAndStaysWhenItLeaves) {
   EXPECT_EQ(levels(), near);
 }
 
-TEST(ChartAtlas, FixedResolutionAndLargestSizeAreKept) {
-  Atlas fixed({.texels_per_metre = 77});
-  fixed.take(usual_view());
-  for (const AtlasChart& chart : fixed->charts()) {
-    if (chart.raster.density.x() > 0) {
-      EXPECT_EQ(chart.raster.density, Eigen::Vector2d(77, 77));
+TEST(ChartAtlas, DensityIsLimitedAndLargestSizeIsKept) {
+  Atlas free;
+  free.take(usual_view());
+  int at_limit = 0, below = 0;
+  Atlas capped({.texels_per_metre = 77});
+  capped.take(usual_view());
+  for (std::size_t i = 0; i < capped->charts().size(); ++i) {
+    const AtlasChart& chart = capped->charts()[i];
+    EXPECT_EQ(chart.raster.density.x() > 0, free->charts()[i].raster.density.x() > 0);
+    if (chart.raster.density.x() <= 0) continue;
+    for (int axis = 0; axis < 2; ++axis) {
+      EXPECT_LE(chart.raster.density[axis], 77);
+      if (chart.wanted[axis] >= 77) {
+        EXPECT_GT(chart.raster.density[axis], 77 * std::exp2(-0.25 / 4)) << "a quarter of a step of rounding";
+        ++at_limit;
+      } else {
+        // Seen from farther away than that: as without a limit, where that is below it.
+        EXPECT_EQ(chart.raster.density[axis], std::min(77.0, free->charts()[i].raster.density[axis]));
+        ++below;
+      }
     }
   }
+  EXPECT_GT(at_limit, 10);
+  // A limit that nothing reaches changes nothing.
+  Atlas high({.texels_per_metre = 1e5});
+  high.take(usual_view());
+  for (std::size_t i = 0; i < high->charts().size(); ++i) EXPECT_EQ(high->charts()[i].level, free->charts()[i].level);
+  // One below what the nearest view asks for, one above what the farthest does.
+  Atlas between({.texels_per_metre = 130});
+  between.take(usual_view());
+  for (const AtlasChart& chart : between->charts())
+    for (int axis = 0; axis < 2 && chart.raster.density.x() > 0; ++axis) below += chart.raster.density[axis] < 130;
+  EXPECT_GT(below, 10);
   Atlas limited({.max_texture = 12});
   limited.take(closer(0.5));
   for (std::size_t i = 0; i < limited->charts().size(); ++i) {
@@ -177,20 +203,62 @@ TEST(ChartAtlas, TheTableIsInTheOrderOfTheRecords) {
   }
 }
 
-TEST(ChartAtlas, TileRangesBoundTheHeights) {
+// What the tiles' planes bound: tile_planes_test.cpp.
+TEST(ChartAtlas, RecordsHoldTheTilesThatACameraMaySeeFromTheFront) {
   Atlas atlas;
-  for (const PageRecord& record : atlas->plan(atlas.view(usual_view()), 0)) {
+  const auto views = atlas.view(usual_view());
+  int kept = 0, dropped = 0;
+  for (const PageRecord& record : atlas->plan(views, 0)) {
     const ChartRaster& r = atlas->charts()[record.chart].raster;
-    const int x0 = 16 * static_cast<int>(record.xy & 0xffff), y0 = 16 * static_cast<int>(record.xy >> 16);
+    const Chart& shape = atlas->surface().charts[record.chart];
+    const Patch& patch = atlas->surface().patches[static_cast<std::size_t>(shape.patch)];
+    const Eigen::Vector3d s =
+        views[0].T_camera_node[static_cast<std::size_t>(patch.node)].inverse().translation() - patch.origin;
+    const Eigen::Vector3d eye(s.dot(patch.eu), s.dot(patch.ev), s.dot(patch.n));
+    const auto planes = find_tile_planes(atlas->surface(), static_cast<int>(record.chart), r);
+    const int across = (r.width + 7) / 8, down = (r.height + 7) / 8;
+    int surfaces = 0;
     for (int tile = 0; tile < 4; ++tile) {
-      std::uint32_t low = 0xffff, high = 0;
-      for (int y = y0 + 8 * (tile / 2); y < std::min(r.height, y0 + 8 * (tile / 2) + 8); ++y)
-        for (int x = x0 + 8 * (tile % 2); x < std::min(r.width, x0 + 8 * (tile % 2) + 8); ++x)
-          if (const std::uint32_t raw = r.raw[static_cast<std::size_t>(y * r.width + x)] & 0x7fffu)
-            low = std::min(low, raw), high = std::max(high, raw);
-      ASSERT_EQ(record.tile_heights[static_cast<std::size_t>(tile)], high ? (low | high << 16) : 0u);
+      const int x = 2 * static_cast<int>(record.xy & 0xffff) + tile % 2,
+                y = 2 * static_cast<int>(record.xy >> 16) + tile / 2;
+      TilePlane plane;
+      if (x < across && y < down) plane = planes[static_cast<std::size_t>(y * across + x)];
+      const Eigen::Vector2d uv = r.uv0 + Eigen::Vector2d(8 * x + 3.5, 8 * y + 3.5).cwiseQuotient(r.density);
+      if (shape.closed && faces_away(plane, r, uv, eye)) {
+        dropped += plane.residual >= 0;
+        plane.residual = -1;
+      }
+      surfaces += plane.residual >= 0;
+      ASSERT_EQ(record.tiles[static_cast<std::size_t>(tile)], packed(plane, r));
     }
+    EXPECT_GT(surfaces, 0) << "a page without any tile is not asked about";
+    kept += surfaces;
   }
+  EXPECT_GT(kept, 300);
+  EXPECT_EQ(dropped, 0) << "charts of boxes are flat: they face away as a whole, and are not in view then";
+}
+
+// A sphere's charts bend around its outline: there single tiles face away.
+TEST(ChartAtlas, TilesBehindTheOutlineOfASolidAreDropped) {
+  const SceneModel scene({{"sphere", make_sphere(0.3), -1, Pose::Identity()}});
+  const Lens lens = small_lens("pinhole");
+  const gl::Faces faces = gl::faces_for(lens, 5);
+  const auto surface = std::make_shared<SurfacePatches>(find_surface_patches(scene, {}));
+  const Pose T_world_camera = look_at({-1, 0, 0.2}, {0, 0, 0});
+  const std::vector<AtlasView> views{{&lens, &faces, {T_world_camera.inverse()}}};
+  ChartAtlas atlas(surface, {});
+  int dropped = 0, kept = 0;
+  const auto records = atlas.plan(views, 0);
+  for (const PageRecord& record : records)
+    for (std::size_t tile = 0; tile < 4; ++tile) {
+      const AtlasPage& page = atlas.page_of(record);
+      const bool away = record.tiles[tile] == packed({}, atlas.charts()[record.chart].raster);
+      kept += !away;
+      dropped += away && page.tiles[tile].residual >= 0;
+    }
+  EXPECT_GT(kept, 100);
+  EXPECT_GT(dropped, 10);
+  EXPECT_LT(records.size(), static_cast<std::size_t>(atlas.page_count())) << "pages without a tile are not asked about";
 }
 
 TEST(ChartAtlas, BacksOfSolidsAndWhatIsOutOfViewAreNotPlanned) {
@@ -225,7 +293,7 @@ std::uint64_t charts_in_view(const Pose& T_world_camera) {
 // What is in view does not fit: resolutions fall until it does; the budget holds at every moment.
 TEST(ChartAtlas, ASmallBudgetLowersTheResolution) {
   const std::uint64_t least = charts_in_view(usual_view());
-  const auto whole_rows = [](std::uint64_t pages) { return (pages + 63) / 64 * 64; };  // what is reserved
+  const auto whole_rows = [](std::uint64_t pages) { return (pages + 7) / 8 * 8; };  // what is reserved
   for (std::uint64_t pages : {whole_rows(least), whole_rows(2 * least)}) {
     const std::uint64_t budget = pages * kPageBytes;
     Atlas atlas({.memory_bytes = budget});

@@ -40,7 +40,7 @@ void PassBench::look(const std::vector<PosedImage>& taken, const std::vector<Eig
   std::vector<const CameraInput*> active;
   std::vector<const PosedImage*> pointers;
   for (std::size_t i = 0; i < images.size(); ++i) {
-    cameras[i]->upload(images[i].pixels, true);
+    cameras[i]->upload(images[i].pixels);
     raster(images[i].T_world_camera, images[i].scene, cameras[i]->faces());
     edges(*cameras[i], options.margin_px, options.depth_tolerance);
     AtlasView view{&cameras[i]->lens(), &cameras[i]->faces().faces, {}};
@@ -78,11 +78,11 @@ void PassBench::relevel() {
   extraction.relevel(allocation.relevel, next->charts, *current, store);
 }
 
-void PassBench::extract(bool minify) {
+void PassBench::extract(double minify_above) {
   std::vector<Eigen::Vector4f> geometry;
   atlas.write_job_geometry(allocation.jobs, views, geometry);
-  extraction.extract({allocation.jobs, allocation.masks, geometry, minify}, inputs, store, options.depth_tolerance,
-                     options.worse);
+  extraction.extract({allocation.jobs, allocation.masks, geometry, minify_above}, inputs, store,
+                     options.depth_tolerance, options.worse);
 }
 
 void PassBench::fill() {
@@ -102,12 +102,13 @@ void PassBench::fill() {
   ++image;
 }
 
-void PassBench::run(const std::vector<PosedImage>& taken, const std::vector<Eigen::Vector3f>& tones, bool minify) {
+void PassBench::run(const std::vector<PosedImage>& taken, const std::vector<Eigen::Vector3f>& tones,
+                    double minify_above) {
   look(taken, tones);
   cull();
   allocate();
   relevel();
-  extract(minify);
+  extract(minify_above);
   fill();
 }
 
@@ -138,6 +139,20 @@ std::vector<Eigen::Vector2f> PassBench::blocks(std::size_t i) const {
   std::vector<Eigen::Vector2f> out(static_cast<std::size_t>(texture.width() * texture.height() * texture.layers()));
   glGetTextureImage(texture.name(), 0, GL_RG, GL_FLOAT, static_cast<GLsizei>(out.size() * 8), out.data());
   return out;
+}
+
+bool PassBench::turned_away(std::uint32_t index) const {
+  const Chart& chart = surface->charts[index];
+  if (!chart.closed) return false;
+  for (const AtlasView& view : views) {
+    const Eigen::Vector3d eye =
+        view.T_camera_node[static_cast<std::size_t>(patch_of(index).node)].inverse().translation();
+    for (const std::uint32_t t : chart.triangles) {
+      const auto& p = surface->corners[t];
+      if ((p[1] - p[0]).cross(p[2] - p[0]).dot(eye - p[0]) > 0) return false;
+    }
+  }
+  return true;
 }
 
 Eigen::Vector3d PassBench::texel_point(const AtlasChart& chart, const Patch& patch, int x, int y) const {

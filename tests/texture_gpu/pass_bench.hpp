@@ -25,19 +25,25 @@ class PassBench {
 
   /// Heights, re-levelling, extraction.
   void relevel();
-  void extract(bool minify = false);
+  void extract(double minify_above = kNever);
 
   /// Filling, then the flip.
   void fill();
 
   /// All of it for one set of images.
-  void run(const std::vector<PosedImage>& images, const std::vector<Eigen::Vector3f>& tones = {}, bool minify = false);
+  void run(const std::vector<PosedImage>& images, const std::vector<Eigen::Vector3f>& tones = {},
+           double minify_above = kNever);
+  static constexpr double kNever = 1e9;  ///< of ExtractPass::Work::minify_above: Catmull-Rom for all texels
 
   /// What the reference needs of camera `i`, its depth and edges as the GPU found them.
   reference::Camera camera(std::size_t i) const;
   std::vector<Eigen::Vector2f> blocks(std::size_t i) const;
   reference::AtlasPixels pixels() const { return reference::AtlasPixels(store.colours); }
   reference::Generation generation() const { return {*current, surface->charts.size()}; }
+
+  /// True where all cameras see all triangles of a solid's chart from behind: its texels count as
+  /// unseen, though a thin solid's may lie within the depth tolerance of what is seen.
+  bool turned_away(std::uint32_t chart) const;
 
   /// Place of a chart's texel in the frame of its node.
   Eigen::Vector3d texel_point(const AtlasChart& chart, const Patch& patch, int x, int y) const;

@@ -32,9 +32,10 @@ TEST_P(SurveyOfLenses, NoTileWithASeenTexelIsCulled) {
       const AtlasChart& chart = bench_->atlas.charts()[record.chart];
       const Patch& patch = bench_->patch_of(record.chart);
       const Pose& T = camera.T_camera_node[static_cast<std::size_t>(patch.node)];
+      const bool turned_away = bench_->turned_away(record.chart);
       for (int tile = 0; tile < 4; ++tile) {
         bool seen = false;
-        for (int k = 0; k < 64 && !seen; ++k) {
+        for (int k = 0; k < 64 && !seen && !turned_away; ++k) {
           const int x = 16 * static_cast<int>(record.xy & 0xffff) + 8 * (tile & 1) + k % 8;
           const int y = 16 * static_cast<int>(record.xy >> 16) + 8 * (tile >> 1) + k / 8;
           if (!PassBench::raw_height(chart, x, y)) continue;
@@ -56,8 +57,9 @@ TEST_P(SurveyOfLenses, NoTileWithASeenTexelIsCulled) {
     bench_->fill();
   }
   EXPECT_GT(seen_tiles, 300);
-  // Conservative, but not idle: it keeps at most two and a half times of what is seen.
-  EXPECT_LT(kept, std::min(tiles, seen_tiles * 5 / 2));
+  // Conservative, but not idle: about a third more than what is seen, and far from all.
+  EXPECT_LT(kept, seen_tiles * 1.45);
+  EXPECT_LT(kept, tiles * 0.7);
 }
 
 TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {

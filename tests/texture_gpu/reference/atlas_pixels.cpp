@@ -13,18 +13,21 @@ std::vector<std::uint32_t> read_words(const gl::BufferTexture& buffer, std::size
 
 AtlasPixels::AtlasPixels(const gl::Texture& colours) {
   for (int level = 0; level < atlas::kLevels; ++level) {
-    const int side = atlas::kLayer >> level;
     auto& pixels = levels[static_cast<std::size_t>(level)];
-    pixels.resize(static_cast<std::size_t>(side * side * colours.layers()));
+    pixels.resize(
+        static_cast<std::size_t>((colours.width() >> level) * (colours.height() >> level) * colours.layers()));
     glGetTextureImage(colours.name(), level, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size() * 4),
                       pixels.data());
   }
 }
 
 std::size_t AtlasPixels::place(std::uint32_t slot, int level, int x, int y) {
-  const std::size_t side = atlas::kLayer >> level, page = atlas::kPage >> level;
-  const std::size_t column = slot % 64, row = slot / 64 % 64, layer = slot / 4096;
-  return (layer * side + row * page + static_cast<std::size_t>(y)) * side + column * page + static_cast<std::size_t>(x);
+  // A single layer may be lower than others: the height counts only where there are several.
+  const std::size_t width = atlas::kLayerWidth >> level, height = atlas::kLayerHeight >> level;
+  const std::size_t page = atlas::kPage >> level;
+  const std::size_t column = slot % 8, row = slot / 8 % 512, layer = slot / 4096;
+  return (layer * height + row * page + static_cast<std::size_t>(y)) * width + column * page +
+         static_cast<std::size_t>(x);
 }
 
 Generation::Generation(const PublishedTextures& published, std::size_t count) : display_gain(published.display_gain) {

@@ -13,7 +13,7 @@ namespace foresight::reference {
 
 using Texel = std::array<std::uint8_t, 4>;  ///< R, G, B, and the code of atlas.glsl
 
-/// All levels of the atlas's colours. Slots lie 64 to a row, 64 rows to a layer.
+/// All levels of the atlas's colours. Slots lie 8 to a row, 512 rows to a layer.
 struct AtlasPixels {
   explicit AtlasPixels(const gl::Texture& colours);
 

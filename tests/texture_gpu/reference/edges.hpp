@@ -1,4 +1,4 @@
-// Uncertain edges by brute force: every pixel, every neighbour within the margin.
+// Uncertain edges by brute force: every pixel at which a surface ends, every neighbour within the margin.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,16 @@ namespace foresight::reference {
 
 enum class Answer { no, yes, borderline };
 
-/// For every pixel of a face: is there, within margin + 1/2 px, a pixel that lies in front of the
-/// plane through this one by more than the tolerance (metres)? Beyond the picture nothing is known.
-/// The plane's slope in 1/z is that of the side on which the surface bends less. Borderline where
-/// rounding to float decides.
+/// For every pixel p of a face: is there, within margin + 1/2 px, a pixel q at which a surface ends,
+/// towards the side of p (that along which p is farther), and does p lie behind that surface by more than the tolerance
+/// (metres)?
+///
+/// A surface ends at q where q lies in front of the plane of the two pixels next to it (in some row
+/// or column), by more than the tolerance; where only one pixel follows, in front of that one as far
+/// as q's own slope does not explain it. It is thought to go on from q towards each side as it is seen
+/// there, or where it ends (within two pixels it bends by more than the tolerance) as the plane of the
+/// other side, but no closer than q. Curved surfaces and those of one or two pixels just keep q's depth. Beyond the
+/// picture nothing is known. Borderline where rounding to float decides.
 std::vector<Answer> uncertain_edges(const FacePicture& face, double margin_px, double depth_tolerance);
 
 /// Least and largest 1/z over each 4x4 block of pixels with model, and whether it has any without.

@@ -31,6 +31,23 @@ class Mean {
   Vector4d sum_ = Vector4d::Zero();
 };
 
+/// Where nothing was seen, levels 1 to 3 hold what was filled before: level 1 the mean of its texels, the
+/// others that of level 1.
+Vector4d kept_fill(const FilledChart& chart, int level, int x, int y, int width) {
+  const int from = level == 1 ? 0 : 1, side = 1 << (level - from), row = width >> from;
+  Mean mean;
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      const auto at = static_cast<std::size_t>((y * side + j) * row + x * side + i);
+      const Vector4d& c = chart.levels[static_cast<std::size_t>(from)][at];
+      if (c.w() > 0) mean.add(c, 1);
+    }
+  if (mean.empty() || level == 4) return Vector4d::Zero();
+  Vector4d out = mean.over(1);
+  out.w() = kFilled;
+  return out;
+}
+
 void push(const FillChart& chart, FilledChart& out) {
   const int width = 16 * chart.pages.x(), height = 16 * chart.pages.y();
   for (const Texel& t : chart.texels) out.levels[0].push_back(to_vector(t));
@@ -44,7 +61,7 @@ void push(const FillChart& chart, FilledChart& out) {
             const Vector4d& c = out.levels[0][static_cast<std::size_t>((y * side + j) * width + x * side + i)];
             if (c.w() > 1.5 / 255) mean.add(c, 1);
           }
-        Vector4d c = mean.empty() ? Vector4d::Zero().eval() : mean.over(side * side);
+        Vector4d c = mean.empty() ? kept_fill(out, level, x, y, width) : mean.over(side * side);
         if (!mean.empty() && level > 1) c.w() = std::max(c.w(), 2.0 / 255);
         out.levels[static_cast<std::size_t>(level)].push_back(c);
       }
@@ -105,8 +122,11 @@ void pull(const FillChart& chart, FilledChart& out) {
         const auto page = static_cast<std::size_t>(y / side * chart.pages.x() + x / side);
         Vector4d& own = out.levels[static_cast<std::size_t>(level)][static_cast<std::size_t>(y * width + x)];
         const bool has_colour = out.levels[4][page].w() > 0;  // else the display takes the coarse colours
-        if (!chart.resident[page] || !chart.has_hole[page] || !has_colour || own.w() >= (level == 0 ? 1.5 / 255 : 0.5))
-          continue;
+        const auto& holes = chart.holes[page];
+        const auto tile = static_cast<std::size_t>(y % side / 8 * 2 + x % side / 8);  // at level 0
+        const bool has_hole = level == 0 ? holes[tile] : std::find(holes.begin(), holes.end(), true) != holes.end();
+        if (!chart.resident[page] || !chart.changed[page] || !has_hole || !has_colour) continue;
+        if (own.w() >= (level == 0 ? 1.5 / 255 : 0.5)) continue;
         const double u = (x + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
         const int x0 = static_cast<int>(std::floor(u)), y0 = static_cast<int>(std::floor(v));
         Mean mean;

@@ -12,10 +12,11 @@ namespace foresight::reference {
 /// A chart's pages before filling.
 struct FillChart {
   Eigen::Vector2i pages;
-  std::vector<int> neighbours;  ///< charts
-  std::vector<bool> resident;   ///< of each page
-  std::vector<bool> has_hole;   ///< of each page: a texel on the surface that no camera has seen
-  std::vector<Texel> texels;    ///< level 0, row by row over the whole chart (16 pages.x() wide)
+  std::vector<int> neighbours;             ///< charts
+  std::vector<bool> resident;              ///< of each page
+  std::vector<std::array<bool, 4>> holes;  ///< of each page's tiles: a texel on the surface that no camera has seen
+  std::vector<bool> changed;               ///< of each page: to be filled anew; others keep what was filled before
+  std::vector<Texel> texels;               ///< level 0, row by row over the whole chart (16 pages.x() wide)
 };
 
 /// A chart after filling. Colours 0 .. 1 with alpha: level 0 as the code / 255, above the share of
@@ -26,7 +27,7 @@ struct FilledChart {
   Eigen::Vector4d mean = Eigen::Vector4d::Zero();  ///< alpha 1: of its own texels, 128/255 handed on
 };
 
-/// The first filling: no means are left from an earlier generation.
+/// No chart means are left from an earlier generation.
 std::vector<FilledChart> fill(const std::vector<FillChart>& charts);
 
 }  // namespace foresight::reference
