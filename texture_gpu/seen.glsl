@@ -8,6 +8,7 @@ layout(binding = 4) uniform sampler2DArray uncertain1;
 layout(binding = 5) uniform sampler2D image0;
 layout(binding = 6) uniform sampler2D image1;
 uniform int node_count;
+const float kBehind = 0.05;  // share of the tolerance for what lies behind the drawn surface
 uniform float depth_tolerance;  // metres: surfaces nearer to each other than this count as one
 
 // True where `p` (camera frame) is the visible surface in camera `c`, outside its uncertain edges
@@ -26,9 +27,10 @@ bool is_seen(int c, vec3 p, out vec2 pixel) {
   float far = min(min(known.x, known.y), min(known.z, known.w)) / kNear;
   float near = max(max(near_over_z.x, near_over_z.y), max(near_over_z.z, near_over_z.w)) / kNear;
   float z = 1.0 / inverse_z;
-  // z beyond the farthest by more than the tolerance: hidden. Before the nearest: a guard texel
+  // z beyond the farthest by more than a part of the tolerance: hidden. What stands on a surface must
+  // not paint the part of it that it covers. Before the nearest: a guard texel
   // that floats beside the surface.
-  if ((z - depth_tolerance) * far > 1.0 || (z + depth_tolerance) * near < 1.0) return false;
+  if ((z - kBehind * depth_tolerance) * far > 1.0 || (z + depth_tolerance) * near < 1.0) return false;
   // All four must be certain: beside a silhouette the nearest pixel may show what stands in front.
   vec4 uncertain = c == 0 ? textureGather(uncertain0, at) : textureGather(uncertain1, at);
   if (any(greaterThan(uncertain, vec4(0.5)))) return false;
