@@ -33,7 +33,7 @@ bool seen_at(const Camera& camera, std::size_t face, const Eigen::Vector2d& plac
   // Beyond the farthest of the four: hidden. Before the nearest (or nothing there): beside the surface.
   if (largest == 0) return false;
   const double farthest = 1 / least, nearest = 1 / largest;
-  return z - 0.25 * tolerance <= farthest && z + tolerance >= nearest;
+  return z - 0.05 * tolerance <= farthest && z + tolerance >= nearest;
 }
 
 bool in_image(const Lens& lens, const Eigen::Vector2d& pixel, double slack) {
