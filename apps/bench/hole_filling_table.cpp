@@ -49,6 +49,23 @@ std::size_t node_of(const std::vector<std::size_t>& polygons, std::size_t wanted
   return best;
 }
 
+/// Frames in whose left image some polygon of the case is in view.
+std::vector<std::size_t> frames_of(const BenchSetup& setup, const Case& which) {
+  const gl::Faces plane = gl::faces_for(setup.run.lens_left(), 0);
+  const auto polygons = thesis::find_polygons(*which.scene);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < setup.frames.size(); ++i) {
+    const PosedFrame frame = frame_of(setup.frames[i], which.node);
+    const Pose T_camera_world = frame.left.T_world_camera.inverse();
+    const auto in_view = [&](const thesis::Polygon& p) {
+      const Pose& T_world_node = frame.left.scene.T_world_node[static_cast<std::size_t>(p.node)];
+      return thesis::bounding_box(p, T_camera_world * T_world_node, plane).has_value();
+    };
+    if (std::any_of(polygons.begin(), polygons.end(), in_view)) out.push_back(i);
+  }
+  return out;
+}
+
 double measure(const BenchSetup& setup, const Case& which, HoleFilling method) {
   thesis::Options options;
   options.texels_per_metre = setup.texels_per_metre;
@@ -56,7 +73,10 @@ double measure(const BenchSetup& setup, const Case& which, HoleFilling method) {
   options.profile = true;
   options.hole_filling = which.textured_before ? HoleFilling::pyramid : method;
   // The images before are textured by the quickest way, then the one that is measured.
-  const auto frames = spread(setup.frames.size(), which.textured_before + 1);
+  const auto in_view = frames_of(setup, which);
+  if (in_view.empty()) return 0;
+  std::vector<std::size_t> frames;
+  for (std::size_t i : spread(in_view.size(), which.textured_before + 1)) frames.push_back(in_view[i]);
   thesis::Pipeline pipeline(which.scene, setup.run.lens_left(), std::nullopt, options, setup.software);
   for (std::size_t i = 0; i + 1 < frames.size(); ++i) pipeline.process(frame_of(setup.frames[frames[i]], which.node));
   pipeline.fill_holes_by(method);
