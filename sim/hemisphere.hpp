@@ -14,7 +14,8 @@ inline Eigen::Vector3f cosine_direction(const Eigen::Vector3f& n, int k, int cou
   const float r = std::sqrt(r2);
   // Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
   const float sign = std::copysign(1.0f, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
-  const Eigen::Vector3f t(1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()), s(b, sign + n.y() * n.y() * a, -n.y());
+  const Eigen::Vector3f t(1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()),
+      s(b, sign + n.y() * n.y() * a, -n.y());
   return r * std::cos(angle) * t + r * std::sin(angle) * s + std::sqrt(1 - r2) * n;
 }
 

@@ -208,9 +208,10 @@ class SynthRun {
     text += format("size: [%d, %d]\nframes: %d\nrate_hz: %.9g\nstereo: %s\nlens: %s\nseed: %u\n", o.width, o.height,
                    o.frames, o.rate, o.stereo ? "true" : "false",
                    o.fisheye ? "fisheye" : (o.distortion ? "distorted" : "pinhole"), o.seed);
-    text +=
-        format("blur_px: %.9g\nnoise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
-               o.sensor.blur, o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s, o.shutter.readout_s);
+    text += format(
+        "blur_px: %.9g\nnoise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
+        o.sensor.blur, o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s,
+        o.shutter.readout_s);
     text += format("pose_error_px: %.9g\nhead_path: %s\n", o.pose_error_px, o.head_path ? "given" : "built in");
     text += format("polygons: %d\npolygons_in_view: [%d, %d]\n", summary.polygons, summary.fewest_polygons_in_view,
                    summary.most_polygons_in_view);

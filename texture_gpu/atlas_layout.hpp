@@ -5,8 +5,8 @@
 
 namespace foresight::atlas {
 
-inline constexpr int kPage = 16;     ///< texels along a page's side
-inline constexpr int kTile = 8;      ///< texels along the side of a work group; four tiles a page
+inline constexpr int kPage = 16;  ///< texels along a page's side
+inline constexpr int kTile = 8;   ///< texels along the side of a work group; four tiles a page
 /// Layers are narrow, so that the rows of a page lie close together in memory: where a renderer
 /// keeps textures row by row, a page then touches two or three memory pages instead of sixteen.
 inline constexpr int kLayerWidth = 128, kLayerHeight = 8192;  ///< texels

@@ -41,8 +41,8 @@ struct AtlasPage {
   std::uint32_t colour = atlas::kNoSlot;
   std::uint32_t height = atlas::kNoSlot;
   std::array<TilePlane, 4> tiles{};
-  std::uint16_t covered = 0;                    ///< texels on the surface
-  std::int64_t last_seen = -1;                  ///< image number
+  std::uint16_t covered = 0;    ///< texels on the surface
+  std::int64_t last_seen = -1;  ///< image number
   PageExposure exposure;
 };
 

@@ -116,8 +116,7 @@ void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
 void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse) {
   const auto& tiles = seen_tiles_[size];
   if (tiles.empty()) return;
-  const gl::Program& program =
-      extract_[kSizes * static_cast<std::size_t>(inputs.camera_count() - 1) + size];
+  const gl::Program& program = extract_[kSizes * static_cast<std::size_t>(inputs.camera_count() - 1) + size];
   const bool levels = size + 1 == kSizes;
   for (int c = 0; levels && c < inputs.camera_count(); ++c) inputs.camera(c).build_levels();
   const auto filter = [&](GLint mode) {

@@ -44,7 +44,7 @@ class ExtractPass {
 
  private:
   gl::Program heights_, relevel_, copy_;
-  static constexpr std::size_t kSizes = 4;         // of texels in pixels, as TEXELS in extract.comp
+  static constexpr std::size_t kSizes = 4;       // of texels in pixels, as TEXELS in extract.comp
   std::array<gl::Program, 2 * kSizes> extract_;  // kSizes * (cameras - 1) + size
   void sort_tiles(const Work& work, const SeenInputs& inputs);
   void run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse);

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "texture_gpu/mesh_topology.hpp"
-#include "texture_gpu/polygons.hpp"
 #include "texture_gpu/overlap_grid.hpp"
+#include "texture_gpu/polygons.hpp"
 
 namespace foresight {
 namespace {

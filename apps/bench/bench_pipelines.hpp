@@ -15,7 +15,8 @@ class BenchCore {
  public:
   BenchCore(std::shared_ptr<const SceneModel> scene, std::shared_ptr<const SurfacePatches> surface, const Lens& lens,
             const TextureOptions& options, bool software_renderer)
-      : surface_(std::move(surface)), core_(std::move(scene), surface_, lens, std::nullopt, options, software_renderer) {}
+      : surface_(std::move(surface)),
+        core_(std::move(scene), surface_, lens, std::nullopt, options, software_renderer) {}
 
   /// Throws RuntimeFailure where the frame could not be published.
   ExtractionReport process(const PosedFrame& frame);

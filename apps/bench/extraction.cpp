@@ -54,8 +54,7 @@ double mean(const std::vector<double>& values) {
 
 BenchSetup prepare(const RunFolder& run, const ExtractionBenchOptions& options, bool software) {
   BenchSetup setup{run, surface_for(run), {}, software};
-  const std::size_t count =
-      std::min(run.frames().size(), static_cast<std::size_t>(options.images.value_or(1 << 30)));
+  const std::size_t count = std::min(run.frames().size(), static_cast<std::size_t>(options.images.value_or(1 << 30)));
   for (std::size_t i = 0; i < count; ++i) {
     setup.frames.push_back(load_posed_frame(run, i));
     setup.frames.back().right.reset();  // the thesis' figures are of one camera
@@ -93,9 +92,9 @@ int bench_extraction(const ExtractionBenchOptions& options) {
   all["renderer"] = driver.renderer + ", OpenGL " + driver.version;
   all["texels_per_image"] = comparison.texels;
   all["polygons_per_image"] = comparison.polygons;
-  std::printf("%zu images of %d x %d, %.0f texels/m, at most %d texels a side, holes filled; %s\n",
-              setup.frames.size(), run.lens_left().width(), run.lens_left().height(), setup.texels_per_metre,
-              setup.max_texture, driver.renderer.c_str());
+  std::printf("%zu images of %d x %d, %.0f texels/m, at most %d texels a side, holes filled; %s\n", setup.frames.size(),
+              run.lens_left().width(), run.lens_left().height(), setup.texels_per_metre, setup.max_texture,
+              driver.renderer.c_str());
   std::printf("                     CPU-ms per image   median   images per core-second\n");
   std::printf("core                       %10.1f %8.1f   %.1f\n", core_ms, median(comparison.core_ms), 1000 / core_ms);
   std::printf("thesis' pipeline           %10.1f %8.1f   %.2f\n", thesis_ms, median(comparison.thesis_ms),

@@ -9,9 +9,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kFrames = 24;      // of which the tables take means
-constexpr std::size_t kFewFrames = 6;    // where every setting needs a pipeline of its own
-constexpr double kThesisTotal = 125.7;   // ms, table 7.1
+constexpr std::size_t kFrames = 24;     // of which the tables take means
+constexpr std::size_t kFewFrames = 6;   // where every setting needs a pipeline of its own
+constexpr double kThesisTotal = 125.7;  // ms, table 7.1
 
 thesis::Options profiled(const BenchSetup& setup) {
   thesis::Options options;
@@ -55,9 +55,9 @@ std::unique_ptr<BenchCore> make_core(const BenchSetup& setup, double texels_per_
 
 json bench_stages(const BenchSetup& setup) {
   struct Row {
-    const char* stage;   // of thesis::Pipeline
-    const char* title;   // of table 7.1
-    double thesis_ms;    // of table 7.1
+    const char* stage;  // of thesis::Pipeline
+    const char* title;  // of table 7.1
+    double thesis_ms;   // of table 7.1
   };
   constexpr Row kRows[] = {{"perspective texture", "extraction of the perspective texture", 14.6},
                            {"occlusion", "occlusion", 4.6},
@@ -106,8 +106,8 @@ json bench_expansion(const BenchSetup& setup) {
     int iterations;
     double thesis_scaling, thesis_shader;
   };
-  constexpr Row kRows[] = {{0, 0, 0},         {2, 15.3, 18.6}, {4, 25.7, 29.5},
-                           {6, 36.1, 40.5},   {8, 46.5, 51.5}, {10, 56.9, 62.4}};
+  constexpr Row kRows[] = {{0, 0, 0},       {2, 15.3, 18.6}, {4, 25.7, 29.5},
+                           {6, 36.1, 40.5}, {8, 46.5, 51.5}, {10, 56.9, 62.4}};
   std::printf("\nTable 7.2: suppression of artefacts, CPU-ms per image (thesis: ms)\n");
   std::printf("%10s %22s %22s\n", "iterations", "bilinear (thesis)", "shader (thesis)");
   json out;
@@ -140,8 +140,8 @@ json bench_resolutions(const BenchSetup& setup) {
   constexpr Row kRows[] = {{50, 512, 118.3}, {100, 64, 100.9},  {100, 256, 112.5}, {100, 512, 128.9},
                            {500, 64, 104.8}, {500, 256, 125.7}, {500, 512, 464.7}};
   std::printf("\nTable 7.4: resolution of textures, per image\n");
-  std::printf("%12s %8s %12s %18s %14s %7s\n", "texels/m", "at most", "thesis [ms]", "pipeline [CPU-ms]", "core [CPU-ms]",
-              "ratio");
+  std::printf("%12s %8s %12s %18s %14s %7s\n", "texels/m", "at most", "thesis [ms]", "pipeline [CPU-ms]",
+              "core [CPU-ms]", "ratio");
   json out;
   for (const Row& row : kRows) {
     BenchSetup coarse = setup;
@@ -188,9 +188,10 @@ json bench_bandwidth(const BenchSetup& setup, double core_cpu_ms, double texels)
   // Per pixel: colour converted and uploaded, depth written and read for blocks.
   const double bytes = texels * kBytesPerTexel + pixels * (3 + 4 + 4 + 4 + 4);
   const double core = bytes / (core_cpu_ms * 1e-3) * 1e-9;
-  std::printf("\nBandwidth: memory copies at %.1f GB/s here; the core moves %.1f bytes per texel, in all %.1f MB per\n"
-              "image: %.2f GB/s, %.1f %% of that\n",
-              copy, kBytesPerTexel, bytes * 1e-6, core, 100 * core / copy);
+  std::printf(
+      "\nBandwidth: memory copies at %.1f GB/s here; the core moves %.1f bytes per texel, in all %.1f MB per\n"
+      "image: %.2f GB/s, %.1f %% of that\n",
+      copy, kBytesPerTexel, bytes * 1e-6, core, 100 * core / copy);
   return {{"copy_gb_per_s", copy},
           {"bytes_per_texel", kBytesPerTexel},
           {"core_mb_per_image", bytes * 1e-6},

@@ -19,10 +19,10 @@ struct BenchSetup {
 };
 
 /// Each prints its table to stdout and returns the same numbers. CPU-ms per image, means.
-nlohmann::json bench_stages(const BenchSetup& setup);         ///< table 7.1
-nlohmann::json bench_expansion(const BenchSetup& setup);      ///< table 7.2
-nlohmann::json bench_hole_filling(const BenchSetup& setup);   ///< table 7.3
-nlohmann::json bench_resolutions(const BenchSetup& setup);    ///< table 7.4
+nlohmann::json bench_stages(const BenchSetup& setup);        ///< table 7.1
+nlohmann::json bench_expansion(const BenchSetup& setup);     ///< table 7.2
+nlohmann::json bench_hole_filling(const BenchSetup& setup);  ///< table 7.3
+nlohmann::json bench_resolutions(const BenchSetup& setup);   ///< table 7.4
 
 /// What this machine copies from memory to memory in one thread, and how near the core comes.
 nlohmann::json bench_bandwidth(const BenchSetup& setup, double core_cpu_ms, double texels_per_image);

@@ -109,10 +109,8 @@ json bench_hole_filling(const BenchSetup& setup) {
       const double ms = measure(setup, which, kMethods[m].first);
       std::printf("  %s %.1f (%.1f)", kMethods[m].second, ms, which.thesis_ms[m]);
       std::fflush(stdout);
-      out.push_back({{"case", which.title},
-                     {"method", kMethods[m].second},
-                     {"cpu_ms", ms},
-                     {"thesis_ms", which.thesis_ms[m]}});
+      out.push_back(
+          {{"case", which.title}, {"method", kMethods[m].second}, {"cpu_ms", ms}, {"thesis_ms", which.thesis_ms[m]}});
     }
     std::printf("\n");
   }

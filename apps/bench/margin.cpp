@@ -38,8 +38,8 @@ std::vector<JudgedImage> images_with(const RunFolder& run, const GroundTruth& tr
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const RunImage& image = run.frames()[frames[i]].left;
     JudgedImage judged{{}, truth.read(frames[i], false), static_cast<int>(i)};
-    const Pose error = sim::random_pose_error(run.lens_left(), depth_of(judged.truth), error_px, kSeed,
-                                              static_cast<int>(frames[i]));
+    const Pose error =
+        sim::random_pose_error(run.lens_left(), depth_of(judged.truth), error_px, kSeed, static_cast<int>(frames[i]));
     judged.given = {coded_picture(run.lens_left(), judged.code), image.time,
                     truth.T_world_camera(frames[i], false) * error, run.state_at(image.time)};
     out.push_back(std::move(judged));
@@ -49,7 +49,8 @@ std::vector<JudgedImage> images_with(const RunFolder& run, const GroundTruth& tr
 
 class MarginBench {
  public:
-  MarginBench(const RunFolder& run, bool software) : run_(run), software_(software), surface_(surface_for(run)), judge_(run) {}
+  MarginBench(const RunFolder& run, bool software)
+      : run_(run), software_(software), surface_(surface_for(run)), judge_(run) {}
 
   TexelCount core(const std::vector<JudgedImage>& images, double margin_px) const {
     TextureOptions options;
@@ -113,9 +114,10 @@ void print(const std::vector<MarginRow>& rows) {
                 row.core_without.wrong / 1e3, (row.core_without.right - row.core.right) / 1e3, row.thesis.wrong / 1e3,
                 row.thesis_without.wrong / 1e3, (row.thesis_without.right - row.thesis.right) / 1e3);
   const MarginRow& exact = rows.front();
-  std::printf("Of %.0f thousand right texels. The arm on what stands still, without errors: %.2f thousand (core), "
-              "%.2f (thesis).\n",
-              exact.core_without.right / 1e3, exact.core.arm_stray / 1e3, exact.thesis.arm_stray / 1e3);
+  std::printf(
+      "Of %.0f thousand right texels. The arm on what stands still, without errors: %.2f thousand (core), "
+      "%.2f (thesis).\n",
+      exact.core_without.right / 1e3, exact.core.arm_stray / 1e3, exact.thesis.arm_stray / 1e3);
 }
 
 }  // namespace
@@ -142,8 +144,8 @@ int bench_margin(const MarginBenchOptions& options) {
   ProgressBar bar("margin", "errors", std::size(kErrors), Clock::now(), ProgressBar::for_stderr());
   for (double error : kErrors) {
     const auto images = images_with(run, truth, frames, error);
-    rows.push_back({error, bench.core(images, TextureOptions().margin_px), bench.core(images, 0), bench.thesis(images, 3),
-                    bench.thesis(images, 0)});
+    rows.push_back({error, bench.core(images, TextureOptions().margin_px), bench.core(images, 0),
+                    bench.thesis(images, 3), bench.thesis(images, 0)});
     std::cerr << bar.update(rows.size(), Clock::now()) << std::flush;
   }
   std::cerr << bar.finish(rows.size(), Clock::now());

@@ -56,7 +56,8 @@ std::string panel(double x0, const char* title, const std::vector<MarginRow>& ro
     std::string path;
     for (const MarginRow& row : rows)
       path += formatted("%c%.1f %.1f", path.empty() ? 'M' : 'L', px(row.error_px), py(curve.value(row)));
-    out += formatted("<path d=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\"%s/>\n", path.c_str(), curve.colour, dash);
+    out += formatted("<path d=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\"%s/>\n", path.c_str(), curve.colour,
+                     dash);
     for (const MarginRow& row : rows)
       out += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>", px(row.error_px), py(curve.value(row)),
                        curve.colour);
@@ -76,14 +77,13 @@ std::string margin_plot(const std::vector<MarginRow>& rows) {
   std::string out =
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"760\" height=\"360\" font-family=\"sans-serif\" "
       "font-size=\"12\">\n<rect width=\"760\" height=\"360\" fill=\"white\"/>\n";
-  out += panel(0, "Wrong texels [thousands]", rows,
-               {{"core without margin", kCore, true, [](const MarginRow& r) { return r.core_without.wrong / 1e3; }},
-                {"core, margin of 3 px", kCore, false, [](const MarginRow& r) { return r.core.wrong / 1e3; }},
-                {"thesis without expansion", kThesis, true,
-                 [](const MarginRow& r) { return r.thesis_without.wrong / 1e3; }},
-                {"thesis, 3 shader iterations", kThesis, false,
-                 [](const MarginRow& r) { return r.thesis.wrong / 1e3; }}},
-               true);
+  out += panel(
+      0, "Wrong texels [thousands]", rows,
+      {{"core without margin", kCore, true, [](const MarginRow& r) { return r.core_without.wrong / 1e3; }},
+       {"core, margin of 3 px", kCore, false, [](const MarginRow& r) { return r.core.wrong / 1e3; }},
+       {"thesis without expansion", kThesis, true, [](const MarginRow& r) { return r.thesis_without.wrong / 1e3; }},
+       {"thesis, 3 shader iterations", kThesis, false, [](const MarginRow& r) { return r.thesis.wrong / 1e3; }}},
+      true);
   out += panel(380, "Right texels lost [thousands]", rows,
                {{"core, margin of 3 px", kCore, false,
                  [](const MarginRow& r) { return (r.core_without.right - r.core.right) / 1e3; }},

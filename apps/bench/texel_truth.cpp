@@ -5,10 +5,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kWrong = 0.020;               // metres between a texel and what its pixel shows
-constexpr double kUnit = 0.002 * 0.002;        // m^2 of a counted texel
-constexpr int kSteps = 32, kStep = 8;          // 32 values of a channel, eight apart: rounding cannot mix them up
-constexpr int kMark = 100;                     // the blue channel of all coded pictures
+constexpr double kWrong = 0.020;         // metres between a texel and what its pixel shows
+constexpr double kUnit = 0.002 * 0.002;  // m^2 of a counted texel
+constexpr int kSteps = 32, kStep = 8;    // 32 values of a channel, eight apart: rounding cannot mix them up
+constexpr int kMark = 100;               // the blue channel of all coded pictures
 
 bool inside(const thesis::Polygon& polygon, const Eigen::Vector3d& p) {
   for (std::size_t i = 0; i < polygon.corners.size(); ++i) {

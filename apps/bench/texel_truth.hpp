@@ -6,9 +6,9 @@
 #pragma once
 
 #include "scene/ground_truth.hpp"
+#include "texture_gpu/posed_image.hpp"
 #include "texture_gpu/texture_readback.hpp"
 #include "texture_gpu/thesis/polygon_textures.hpp"
-#include "texture_gpu/posed_image.hpp"
 
 namespace foresight {
 

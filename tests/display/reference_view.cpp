@@ -1,8 +1,8 @@
 #include "tests/display/reference_view.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <cmath>
+#include <optional>
 
 namespace foresight::reference {
 namespace {

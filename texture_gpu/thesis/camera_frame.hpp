@@ -35,9 +35,9 @@ class CameraFrame {
   /// Binds the framebuffer, alpha the only channel that is written.
   void bind_alpha() const;
 
-  const gl::Faces& plane() const { return input_.faces().faces; }         ///< size and intrinsics, px
+  const gl::Faces& plane() const { return input_.faces().faces; }                       ///< size and intrinsics, px
   const gl::Texture& colour() const { return straight_ ? straight_ : input_.image(); }  ///< RGBA8
-  const gl::Texture& depth() const { return input_.faces().depth; }       ///< one layer, near / z
+  const gl::Texture& depth() const { return input_.faces().depth; }                     ///< one layer, near / z
 
  private:
   CameraInput input_;

@@ -14,10 +14,10 @@ enum class Expansion {
 /// How holes are filled (section 5.2).
 enum class HoleFilling {
   none,
-  pyramid,          ///< sections 5.2.2 to 5.2.4
-  shader_one_stage, ///< only the first filter (eqs. 5.26, 5.27); leaves hard edges (figure 5.23 b)
-  shader,           ///< both filters (eqs. 5.28, 5.29), as many passes as the largest hole could need (eq. 5.30)
-  shader_query,     ///< the same, ended by an occlusion query as soon as nothing changes
+  pyramid,           ///< sections 5.2.2 to 5.2.4
+  shader_one_stage,  ///< only the first filter (eqs. 5.26, 5.27); leaves hard edges (figure 5.23 b)
+  shader,            ///< both filters (eqs. 5.28, 5.29), as many passes as the largest hole could need (eq. 5.30)
+  shader_query,      ///< the same, ended by an occlusion query as soon as nothing changes
 };
 
 struct Options {

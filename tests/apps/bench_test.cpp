@@ -1,0 +1,77 @@
+// `foresight bench extraction` and `bench margin` on a small run: their numbers agree with each other
+// and mean what they say.
+#include "tests/apps/program.hpp"
+#include "tests/apps/runs.hpp"
+
+namespace foresight {
+namespace {
+
+class Bench : public testing::Test {
+ protected:
+  /// A small run with truth, made once.
+  static const std::string& run() {
+    static const TempFolder folder;
+    static const std::string path = [] {
+      const std::string out = folder / "run";
+      const Outcome outcome =
+          run_program({"synth", out, "--frames", "12", "--size", "240x180", "--rate", "10", "--no-distortion"});
+      if (outcome.exit_code != 0) throw std::runtime_error("no synthetic run: " + outcome.err);
+      return out;
+    }();
+    return path;
+  }
+  TempFolder out_;
+};
+
+TEST_F(Bench, ExtractionComparesBothPipelines) {
+  const std::string file = out_ / "bench.json";
+  const Outcome outcome = run_program({"bench", "extraction", run(), "--no-tables", "--json", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json all = read_json(file);
+  const double core = all["images_per_core_second"], thesis = all["thesis_images_per_core_second"];
+  EXPECT_GT(core, 0);
+  EXPECT_NEAR(all["speedup_over_thesis"], core / thesis, 1e-6 * core / thesis);
+  EXPECT_NEAR(all["core_cpu_ms"]["mean"], 1000 / core, 1e-6 * 1000 / core);
+  EXPECT_EQ(all["images"], 12);
+  EXPECT_GT(all["polygons_per_image"], 20);
+  EXPECT_GT(all["texels_per_image"], 1000);
+}
+
+TEST_F(Bench, MarginCountsByTruth) {
+  const std::string json = out_ / "margin.json", plot = out_ / "margin.svg";
+  const Outcome outcome = run_program({"bench", "margin", run(), "--images", "2", "--json", json, "--plot", plot});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json rows = read_json(json)["errors"];
+  ASSERT_EQ(rows.size(), 5u);
+  const nlohmann::json exact = rows[0], off = rows[4];
+  EXPECT_GT(exact["core"]["right"], 1e5) << "of 2 mm x 2 mm";
+  EXPECT_LT(exact["core"]["wrong"], 1e-3 * exact["core"]["right"].get<double>());
+  EXPECT_EQ(exact["core"]["arm_on_still_nodes"], 0) << "the arm is never painted on what stands still";
+  EXPECT_GT(off["core"]["wrong"], exact["core"]["wrong"]) << "an error of 3 px must show";
+  for (const nlohmann::json& row : rows) {
+    EXPECT_LT(row["core"]["wrong"], 0.7 * row["core_without_margin"]["wrong"].get<double>()) << row;
+    EXPECT_LT(row["core"]["wrong"], row["thesis"]["wrong"]) << row;
+  }
+  EXPECT_TRUE(std::filesystem::file_size(plot) > 1000);
+}
+
+TEST_F(Bench, WrongInputIsRefused) {
+  const SmallRun distorted;
+  std::filesystem::remove_all(distorted / "truth");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> all = {
+      {{"bench", "margin", distorted.path().string()}, "has no truth"},
+      {{"bench", "margin", (out_ / "none")}, "none"},
+      {{"bench", "margin", run(), "--images", "0"}, "--images"},
+      {{"bench", "extraction", run(), "--images", "1"}, "--images"},
+      {{"bench", "extraction", run(), "--json", run() + "/scene.yaml"}, "--json"},
+      {{"bench", "extraction", (out_ / "none")}, "none"},
+  };
+  for (const auto& [arguments, what] : all) {
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_THAT(outcome.last_line(), testing::HasSubstr(what));
+  }
+}
+
+}  // namespace
+}  // namespace foresight
