@@ -28,7 +28,7 @@ std::string panel(double x0, const char* title, const std::vector<MarginRow>& ro
   double most = kFloor;
   for (const Curve& curve : curves)
     for (const MarginRow& row : rows) most = std::max(most, curve.value(row));
-  const double top = logarithmic ? std::ceil(std::log10(most)) : most * 1.1;
+  const double top = logarithmic ? std::ceil(std::log10(most)) : 40 * std::ceil(most / 40);
   const double bottom = logarithmic ? std::log10(kFloor) : 0;
   const auto px = [&](double error) { return x0 + kLeft + kWidth * error / rows.back().error_px; };
   const auto py = [&](double value) {
