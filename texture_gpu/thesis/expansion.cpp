@@ -24,6 +24,17 @@ void ExpansionPass::operator()(const PerspectiveTexture& texture, const Bounding
     scale(texture, box, method == Expansion::progressive, iterations, drawing);
 }
 
+/// The mask becomes the alpha channel of the perspective texture.
+void ExpansionPass::write_back(const gl::Texture& mask, const PerspectiveTexture& texture, const BoundingBox& box,
+                               const TexelDrawing& drawing) const {
+  copy_.use();
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+  drawing.onto(texture.texture(), box.width, box.height);
+  glBindTextureUnit(0, mask.name());
+  drawing.rectangle();
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 void ExpansionPass::dilate(const PerspectiveTexture& texture, const BoundingBox& box, int iterations,
                            const TexelDrawing& drawing) const {
   dilate_.use();
@@ -35,12 +46,7 @@ void ExpansionPass::dilate(const PerspectiveTexture& texture, const BoundingBox&
     drawing.rectangle();
     from = &masks_[i % 2];
   }
-  copy_.use();
-  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-  drawing.onto(texture.texture(), box.width, box.height);
-  glBindTextureUnit(0, from->name());
-  drawing.rectangle();
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  write_back(*from, texture, box, drawing);
 }
 
 void ExpansionPass::scale(const PerspectiveTexture& texture, const BoundingBox& box, bool progressive, int iterations,
@@ -64,12 +70,7 @@ void ExpansionPass::scale(const PerspectiveTexture& texture, const BoundingBox& 
     for (std::size_t i = 0; i + 1 < sizes.size(); ++i) draw(halve_, sizes[i], sizes[i + 1]);
     for (std::size_t i = sizes.size() - 1; i > 0; --i) draw(double_, sizes[i], sizes[i - 1]);
   }
-  copy_.use();
-  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-  drawing.onto(texture.texture(), box.width, box.height);
-  glBindTextureUnit(0, from->name());
-  drawing.rectangle();
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  write_back(*from, texture, box, drawing);
 }
 
 }  // namespace foresight::thesis

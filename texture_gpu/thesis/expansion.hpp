@@ -23,6 +23,9 @@ class ExpansionPass {
   void scale(const PerspectiveTexture& texture, const BoundingBox& box, bool progressive, int iterations,
              const TexelDrawing& drawing) const;
 
+  void write_back(const gl::Texture& mask, const PerspectiveTexture& texture, const BoundingBox& box,
+                  const TexelDrawing& drawing) const;
+
   gl::Texture masks_[2];  // R8
   gl::Program dilate_, halve_, double_, copy_;
 };
