@@ -6,6 +6,12 @@
 
 namespace foresight {
 
+void require_thesis_lens(const RunFolder& run) {
+  if (!thesis::CameraFrame::can_undistort(run.lens_left()))
+    throw InputError(run.root().string(), "the thesis' pipeline cannot take a lens of more than 120 degrees",
+                     "give a run of `foresight synth --no-distortion`");
+}
+
 ExtractionReport BenchCore::process(const PosedFrame& frame) {
   ExtractionReport report = core_.process(frame, latest_);
   if (!report.published) throw RuntimeFailure("the core dropped a frame", "give it more memory");

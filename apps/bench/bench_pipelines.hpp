@@ -5,10 +5,14 @@
 #include <vector>
 
 #include "gl/context.hpp"
+#include "scene/run_folder.hpp"
 #include "texture_gpu/texture_core.hpp"
 #include "texture_gpu/thesis/thesis_pipeline.hpp"
 
 namespace foresight {
+
+/// Throws InputError where the thesis' pipeline cannot take the run's left lens.
+void require_thesis_lens(const RunFolder& run);
 
 /// A core on the calling thread, with the place it publishes to.
 class BenchCore {

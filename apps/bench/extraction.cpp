@@ -66,9 +66,7 @@ BenchSetup prepare(const RunFolder& run, const ExtractionBenchOptions& options, 
 
 int bench_extraction(const ExtractionBenchOptions& options) {
   const RunFolder run = RunFolder::open(options.run, {});
-  if (!thesis::CameraFrame::can_undistort(run.lens_left()))
-    throw InputError(options.run.string(), "the thesis' pipeline cannot take a lens of more than 120 degrees",
-                     "give a run of `foresight synth --no-distortion`");
+  require_thesis_lens(run);
   RunOptions inputs;
   inputs.run = options.run;
   if (options.json) check_output_file("--json", *options.json, input_files(run, inputs));

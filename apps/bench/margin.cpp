@@ -126,9 +126,7 @@ int bench_margin(const MarginBenchOptions& options) {
   const RunFolder run = RunFolder::open(options.run, {});
   if (!GroundTruth::exists(run))
     throw InputError(options.run.string(), "has no truth", "give a run of `foresight synth --no-distortion`");
-  if (!thesis::CameraFrame::can_undistort(run.lens_left()))
-    throw InputError(options.run.string(), "the thesis' pipeline cannot take a lens of more than 120 degrees",
-                     "give a run of `foresight synth --no-distortion`");
+  require_thesis_lens(run);
   RunOptions inputs;
   inputs.run = options.run;
   if (options.json) check_output_file("--json", *options.json, input_files(run, inputs));
