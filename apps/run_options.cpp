@@ -42,7 +42,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
           "Memory for textures, both generations")
       ->check(from_to(1, 65536))
       ->default_str(std::to_string(options.textures.memory_bytes >> 20));
-  command.add_option("--margin-px", options.textures.margin_px, "Pixels behind a silhouette that are not trusted")
+  command
+      .add_option("--margin-px", options.textures.margin_px,
+                  "Pixels behind a silhouette that are not trusted, besides the outermost one before it")
       ->check(from_to(0.0, 32.0))
       ->capture_default_str();
   command

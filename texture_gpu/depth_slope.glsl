@@ -3,6 +3,11 @@ layout(binding = 0) uniform sampler2DArray depth;
 uniform ivec2 face_size;
 uniform float depth_tolerance;  // metres
 
+// Is what is seen at 1/z = near in front of 1/z = far by more than the tolerance?
+bool steps_back(float near, float far) {
+  return near - far > depth_tolerance * near * far;
+}
+
 // 0 outside: repeating the border's depth there would bend a plane. Software renderers fetch by
 // integer coordinates far more slowly than they sample the nearest texel.
 float inverse_z(ivec2 at, int layer) {
@@ -41,7 +46,7 @@ bool ends(ivec2 q, float center, ivec2 step, int layer) {
     far = r;
   }
   far = max(far, 0.0);  // a plane beyond its horizon is behind all
-  return near - far > depth_tolerance * near * far;
+  return steps_back(near, far);
 }
 
 // Towards +x, +y, -x, -y.

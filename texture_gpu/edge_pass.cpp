@@ -3,7 +3,6 @@
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
-
 EdgePass::EdgePass()
     : blocks_(gl::Program::compute(gl::texture_gpu_shaders(), "blocks.comp")),
       edge_tiles_(gl::Program::compute(gl::texture_gpu_shaders(), "edge_tiles.comp")),

@@ -1,4 +1,4 @@
-// Finds the pixels whose surface is uncertain: the far side of depth discontinuities.
+// Finds the pixels whose surface is uncertain: those beside depth discontinuities.
 #pragma once
 
 #include "gl/program.hpp"

@@ -16,9 +16,9 @@ struct TextureOptions {
   /// All that the atlas may hold at any instant, both generations counted. Reserved at the start,
   /// so that a session does not run out of memory in the middle.
   std::uint64_t memory_bytes = std::uint64_t{1024} << 20;
-  /// Pixels on the far side of a depth discontinuity that are not trusted; follows the
-  /// registration's uncertainty. Range 0 .. 32.
-  double margin_px = 3;
+  /// Pixels on the far side of a depth discontinuity that are not trusted, besides the outermost one
+  /// on its near side; follows the registration's uncertainty. 0: all are trusted. Range 0 .. 32.
+  double margin_px = 1.5;
   /// Surfaces nearer to each other than this count as one, metres: the model's accuracy. Smaller,
   /// errors of the model tear holes into textures; larger, thin parts leave their picture on what
   /// they lie on. Range 1e-4 .. 1.

@@ -1,7 +1,8 @@
-// Marks pixels on the far side of a depth discontinuity, within the margin (thesis, case 3 in
-// section 5.1.1): a small registration error would paint them with what stands in front.
+// Marks the pixels beside a depth discontinuity that a small registration error would paint with the
+// other surface: of the far one those within the margin (thesis, case 3 in section 5.1.1), of the near
+// one the outermost, unless it is thin.
 //
-//   near surface ___q      q: of near_edges.comp; its surface is thought to go on
+//   near surface __p       p = q: of near_edges.comp; its surface is thought to go on
 //                    |margin|
 //                    |..p.p.p_______ far surface: behind it by more than the tolerance
 //
@@ -27,6 +28,21 @@ float slope_ahead(ivec2 q, ivec2 step, int layer, float center) {
   return is_plane ? s : 0.0;
 }
 
+// Does the surface of q, which ends there, end within kThin pixels towards the other side too? All of a
+// cable or a rim is as uncertain as its outline: it keeps its colours rather than having none.
+const int kThin = 4;
+bool is_thin(ivec2 q, bvec4 ended, int layer) {
+  for (int k = 0; k < kThin; ++k) {
+    ivec2 x = ivec2(k, 0), y = ivec2(0, k);
+    if ((ended.x && ends(q - x, inverse_z(q - x, layer), ivec2(-1, 0), layer)) ||
+        (ended.y && ends(q - y, inverse_z(q - y, layer), ivec2(0, -1), layer)) ||
+        (ended.z && ends(q + x, inverse_z(q + x, layer), ivec2(1, 0), layer)) ||
+        (ended.w && ends(q + y, inverse_z(q + y, layer), ivec2(0, 1), layer)))
+      return true;
+  }
+  return false;
+}
+
 void main() {
   uint item;
   if (!next_work(item)) return;
@@ -36,6 +52,7 @@ void main() {
   vec2 ahead = vec2(slope_ahead(q, ivec2(1, 0), layer, center), slope_ahead(q, ivec2(0, 1), layer, center));
   vec2 back = vec2(slope_ahead(q, ivec2(-1, 0), layer, center), slope_ahead(q, ivec2(0, -1), layer, center));
   bvec4 ended = ends_around(q, center, layer);
+  bool hides = false;
   int reach = int(ceil(margin));
   float limit = (margin + 0.5) * (margin + 0.5);
   for (int y = -reach; y <= reach; ++y)
@@ -49,7 +66,9 @@ void main() {
       float far = inverse_z(q + ivec2(x, y), layer);
       // Never closer than at its edge: what comes closer beyond it is not seen there.
       float near = min(center, center + dot(ahead, max(offset, 0.0)) + dot(back, max(-offset, 0.0)));
-      if (far > 0.0 && near - far > depth_tolerance * near * far)
-        imageStore(uncertain, ivec3(q + ivec2(x, y), layer), vec4(1.0));
+      if (far <= 0.0 || !steps_back(near, far)) continue;
+      imageStore(uncertain, ivec3(q + ivec2(x, y), layer), vec4(1.0));
+      hides = true;
     }
+  if (hides && !is_thin(q, ended, layer)) imageStore(uncertain, ivec3(q, layer), vec4(1.0));
 }

@@ -107,7 +107,8 @@ nlohmann::json to_json(const MarginRow& row) {
 
 void print(const std::vector<MarginRow>& rows) {
   std::printf("Texels of 2 mm x 2 mm, in thousands. Wrong: the pixel shows a point more than 20 mm away.\n");
-  std::printf("%5s | %30s | %30s\n", "error", "core: margin of 3 px (none)", "thesis: 3 shader iter. (none)");
+  std::printf("%5s | %30s | %30s\n", "error", (core_with_margin() + " (none)").c_str(),
+              "thesis: 3 shader iter. (none)");
   std::printf("%5s | %15s %14s | %15s %14s\n", "px", "wrong", "right lost", "wrong", "right lost");
   for (const MarginRow& row : rows)
     std::printf("%5.1f | %6.2f (%6.2f) %14.1f | %6.2f (%6.2f) %14.1f\n", row.error_px, row.core.wrong / 1e3,

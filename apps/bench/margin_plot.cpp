@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <functional>
 
+#include "texture_gpu/options.hpp"
+
 namespace foresight {
 namespace {
 
 struct Curve {
-  const char* name;
+  std::string name;
   const char* colour;
   bool dashed;
   std::function<double(const MarginRow&)> value;  // thousands of texels
@@ -71,6 +73,10 @@ std::string panel(double x0, const char* title, const std::vector<MarginRow>& ro
 
 }  // namespace
 
+std::string core_with_margin() {
+  return formatted("core, margin of %g px", TextureOptions().margin_px);
+}
+
 std::string margin_plot(const std::vector<MarginRow>& rows) {
   constexpr const char* kCore = "#0b6e99";
   constexpr const char* kThesis = "#c4571b";
@@ -80,12 +86,12 @@ std::string margin_plot(const std::vector<MarginRow>& rows) {
   out += panel(
       0, "Wrong texels [thousands]", rows,
       {{"core without margin", kCore, true, [](const MarginRow& r) { return r.core_without.wrong / 1e3; }},
-       {"core, margin of 3 px", kCore, false, [](const MarginRow& r) { return r.core.wrong / 1e3; }},
+       {core_with_margin(), kCore, false, [](const MarginRow& r) { return r.core.wrong / 1e3; }},
        {"thesis without expansion", kThesis, true, [](const MarginRow& r) { return r.thesis_without.wrong / 1e3; }},
        {"thesis, 3 shader iterations", kThesis, false, [](const MarginRow& r) { return r.thesis.wrong / 1e3; }}},
       true);
   out += panel(380, "Right texels lost [thousands]", rows,
-               {{"core, margin of 3 px", kCore, false,
+               {{core_with_margin(), kCore, false,
                  [](const MarginRow& r) { return (r.core_without.right - r.core.right) / 1e3; }},
                 {"thesis, 3 shader iterations", kThesis, false,
                  [](const MarginRow& r) { return (r.thesis_without.right - r.thesis.right) / 1e3; }}},

@@ -14,6 +14,9 @@ struct MarginRow {
   TexelCount core, core_without, thesis, thesis_without;
 };
 
+/// What the core's curves and columns are called: "core, margin of 1.5 px", with the default margin.
+std::string core_with_margin();
+
 /// A self-contained SVG: wrong texels on the left (logarithmic), right ones lost on the right.
 std::string margin_plot(const std::vector<MarginRow>& rows);
 

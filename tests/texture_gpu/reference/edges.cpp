@@ -13,6 +13,12 @@ Answer either(Answer a, Answer b) {
   if (a == Answer::yes || b == Answer::yes) return Answer::yes;
   return a == Answer::no && b == Answer::no ? Answer::no : Answer::borderline;
 }
+Answer negation(Answer a) {
+  return a == Answer::yes ? Answer::no : a == Answer::no ? Answer::yes : a;
+}
+Answer both(Answer a, Answer b) {
+  return negation(either(negation(a), negation(b)));
+}
 Answer sign(double value, double rounding) {
   return value > rounding ? Answer::yes : value < -rounding ? Answer::no : Answer::borderline;
 }
@@ -40,6 +46,12 @@ class Picture {
     if (next > 0) return in_front(here, 2 * beyond - next, 2 * (here + next));
     const double before = at(x - dx, y - dy);
     return in_front(before > 0 ? 2 * here - before : here, beyond, 2 * (here + before));
+  }
+  /// Does the surface end towards (-dx, -dy) within four pixels of (x, y)?
+  Answer ends_behind(int x, int y, int dx, int dy) const {
+    Answer out = Answer::no;
+    for (int k = 0; k < 4; ++k) out = either(out, ends(x - k * dx, y - k * dy, -dx, -dy));
+    return out;
   }
   /// The slope of 1/z with which the surface of (x, y) goes on towards (dx, dy): its own as far as it
   /// is seen, else that of the plane before, none where there is no plane. Several where rounding decides.
@@ -74,7 +86,12 @@ std::vector<Answer> uncertain_edges(const FacePicture& face, double margin, doub
     for (int x = 0; x < face.width; ++x) {
       const Answer ends_right = picture.ends(x, y, 1, 0), ends_left = picture.ends(x, y, -1, 0),
                    ends_down = picture.ends(x, y, 0, 1), ends_up = picture.ends(x, y, 0, -1);
-      if (either(either(ends_right, ends_left), either(ends_down, ends_up)) == Answer::no) continue;
+      const Answer any_edge = either(either(ends_right, ends_left), either(ends_down, ends_up));
+      if (any_edge == Answer::no) continue;
+      const Answer thin = either(
+          either(both(ends_right, picture.ends_behind(x, y, 1, 0)), both(ends_left, picture.ends_behind(x, y, -1, 0))),
+          either(both(ends_down, picture.ends_behind(x, y, 0, 1)), both(ends_up, picture.ends_behind(x, y, 0, -1))));
+      Answer hides = Answer::no;
       const double here = picture.at(x, y);
       const auto right = picture.slopes(x, y, 1, 0), left = picture.slopes(x, y, -1, 0),
                  down = picture.slopes(x, y, 0, 1), up = picture.slopes(x, y, 0, -1);
@@ -104,8 +121,12 @@ std::vector<Answer> uncertain_edges(const FacePicture& face, double margin, doub
           const int all = static_cast<int>(along_u.size() * along_v.size());
           if (no == all) continue;
           Answer& answer = out[static_cast<std::size_t>((y + dy) * face.width + x + dx)];
-          answer = either(answer, yes == all ? edge : Answer::borderline);
+          const Answer behind = yes == all ? edge : Answer::borderline;
+          answer = either(answer, behind);
+          hides = either(hides, behind);
         }
+      Answer& own = out[static_cast<std::size_t>(y * face.width + x)];
+      own = either(own, both(hides, negation(thin)));
     }
   return out;
 }

@@ -11,7 +11,8 @@ enum class Answer { no, yes, borderline };
 
 /// For every pixel p of a face: is there, within margin + 1/2 px, a pixel q at which a surface ends,
 /// towards the side of p (that along which p is farther), and does p lie behind that surface by more than the tolerance
-/// (metres)?
+/// (metres)? Or is p itself such a q for others, on a surface that does not also end within four pixels towards the
+/// side opposite to one at which it ends at p?
 ///
 /// A surface ends at q where q lies in front of the plane of the two pixels next to it (in some row
 /// or column), by more than the tolerance; where only one pixel follows, in front of that one as far
