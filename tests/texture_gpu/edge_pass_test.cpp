@@ -84,8 +84,9 @@ TEST_P(EdgesOfLenses, UncertainPixelsAreThoseOfTheExactTest) {
   EXPECT_GT(wanted, 100);
   EXPECT_LT(borderline, all / 50);
   // The preselection should only skip tiles where the exact test finds nothing.
-  // It compares whole blocks with half of the tolerance: a few pixels in a thousand are lost.
-  EXPECT_LE(lost, std::max(3.0, 0.005 * wanted)) << "of " << wanted;
+  // It compares whole blocks with half of the tolerance: a few edges in a thousand are lost,
+  // with a pixel on each side.
+  EXPECT_LE(lost, std::max(3.0, 0.011 * wanted)) << "of " << wanted;
   EXPECT_EQ(invented, 0) << "of " << wanted;
 }
 
