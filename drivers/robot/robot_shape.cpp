@@ -1,0 +1,162 @@
+#include "drivers/robot/robot_shape.hpp"
+
+#include <algorithm>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr int kSamples = 16;  // of a segment, against boxes
+
+// Around all vertices: along the longest side of their box.
+Capsule capsule_around(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const auto& v : mesh.vertices) box.extend(v.cast<double>());
+  int along = 0;
+  box.sizes().maxCoeff(&along);
+  const Eigen::Vector3d axis = Eigen::Vector3d::Unit(along), center = box.center();
+  double radius = 0;
+  for (const auto& v : mesh.vertices) {
+    const Eigen::Vector3d d = v.cast<double>() - center;
+    radius = std::max(radius, (d - d.dot(axis) * axis).norm());
+  }
+  // The caps need not reach beyond the mesh where its ends are round; they do, to be safe, where flat.
+  double half = 0;
+  for (const auto& v : mesh.vertices) {
+    const Eigen::Vector3d d = v.cast<double>() - center;
+    const double across = (d - d.dot(axis) * axis).norm();
+    half = std::max(half, std::abs(d.dot(axis)) - std::sqrt(std::max(0.0, radius * radius - across * across)));
+  }
+  return {center - half * axis, center + half * axis, radius};
+}
+
+// Least distance of two segments (Ericson, Real-Time Collision Detection, 5.1.9).
+double segment_distance(const Capsule& s, const Capsule& t) {
+  const Eigen::Vector3d d1 = s.b - s.a, d2 = t.b - t.a, r = s.a - t.a;
+  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);
+  const auto unit = [](double x) { return std::clamp(x, 0.0, 1.0); };
+  double u = 0, v = 0;
+  if (a < 1e-12) {
+    v = e < 1e-12 ? 0 : unit(f / e);
+  } else if (e < 1e-12) {
+    u = unit(-c / a);
+  } else {
+    const double denominator = a * e - b * b;
+    u = denominator > 1e-12 ? unit((b * f - c * e) / denominator) : 0;
+    v = (b * u + f) / e;
+    if (v < 0 || v > 1) {
+      v = unit(v);
+      u = unit((b * v - c) / a);
+    }
+  }
+  return (s.a + u * d1 - t.a - v * d2).norm();
+}
+
+/// How many joints two links are apart in the tree.
+int joints_between(const std::vector<Node>& links, std::size_t one, std::size_t other) {
+  const auto depth = [&](std::size_t i) {
+    int d = 0;
+    for (int k = static_cast<int>(i); links[static_cast<std::size_t>(k)].parent >= 0; ++d)
+      k = links[static_cast<std::size_t>(k)].parent;
+    return d;
+  };
+  int apart = 0, a = static_cast<int>(one), b = static_cast<int>(other);
+  for (int da = depth(one), db = depth(other); a != b; ++apart) {
+    int& deeper = da >= db ? a : b;
+    (da >= db ? da : db)--;
+    deeper = links[static_cast<std::size_t>(deeper)].parent;
+  }
+  return apart;
+}
+
+}  // namespace
+
+double distance(const Capsule& one, const Capsule& other) {
+  return segment_distance(one, other) - one.radius - other.radius;
+}
+
+double distance(const Capsule& capsule, const Eigen::AlignedBox3d& box) {
+  double least = 1e30;
+  for (int i = 0; i <= kSamples; ++i)
+    least = std::min(least, box.exteriorDistance(capsule.a + i * (1.0 / kSamples) * (capsule.b - capsule.a)));
+  return least - capsule.radius - 0.5 * (capsule.b - capsule.a).norm() / kSamples;
+}
+
+RobotShape::RobotShape(UrdfRobot robot, std::vector<std::string> joints, const Pose& T_world_root,
+                       const std::string& where)
+    : robot_(std::move(robot)) {
+  std::vector<std::string> names;
+  for (const UrdfJoint& joint : robot_.joints) names.push_back(joint.name);
+  for (const std::string& joint : joints)
+    if (std::find(names.begin(), names.end(), joint) == names.end())
+      throw InputError(where, "the URDF has no joint " + in_quotes(joint),
+                       "did you mean '" + nearest_word(joint, names) + "'?");
+  for (const UrdfJoint& joint : robot_.joints) {
+    const UrdfJoint* leader = &joint;
+    double factor = 1, offset = 0;
+    while (leader->mimic) {
+      offset += factor * leader->mimic->offset;
+      factor *= leader->mimic->multiplier;
+      leader = &robot_.joints[static_cast<std::size_t>(leader->mimic->joint)];
+    }
+    const auto given = std::find(joints.begin(), joints.end(), leader->name);
+    input_.push_back(given == joints.end() ? -1 : static_cast<int>(given - joints.begin()));
+    factor_.push_back(factor);
+    offset_.push_back(given == joints.end() ? factor * std::clamp(0.0, leader->lower, leader->upper) + offset : offset);
+  }
+  T_world_link_.assign(robot_.links.size(), T_world_root);
+  placed_.resize(robot_.links.size());
+  links_.resize(robot_.links.size());
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    Link& link = links_[i];
+    const Node& node = robot_.links[i];
+    link.has_body = !node.mesh.vertices.empty();
+    if (link.has_body) link.body = capsule_around(node.mesh);
+    link.moves = node.parent >= 0 && (input_[i - 1] >= 0 || links_[static_cast<std::size_t>(node.parent)].moves);
+    link.leaves = "link '" + node.name + "' leaves the workspace";
+    link.hits_obstacle = "link '" + node.name + "' comes too close to an obstacle";
+    for (std::size_t k = 0; k < i; ++k)
+      if (link.has_body && links_[k].has_body && (link.moves || links_[k].moves) &&
+          joints_between(robot_.links, i, k) > 2)
+        pairs_.push_back({i, k, "link '" + node.name + "' comes too close to link '" + robot_.links[k].name + "'"});
+  }
+}
+
+void RobotShape::pose(std::span<const double> positions) noexcept {
+  for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+    const UrdfJoint& joint = robot_.joints[j];
+    const int input = input_[j];
+    const double q = offset_[j] + (input < 0 ? 0 : factor_[j] * positions[static_cast<std::size_t>(input)]);
+    Pose T_joint_child = Pose::Identity();
+    if (joint.kind == UrdfJoint::Kind::rotating)
+      T_joint_child.linear() = Eigen::AngleAxisd(q, joint.axis).toRotationMatrix();
+    if (joint.kind == UrdfJoint::Kind::sliding) T_joint_child.translation() = q * joint.axis;
+    const auto child = static_cast<std::size_t>(joint.child);
+    T_world_link_[child] =
+        T_world_link_[static_cast<std::size_t>(robot_.links[child].parent)] * joint.T_parent_joint * T_joint_child;
+  }
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    placed_[i] = {T_world_link_[i] * links_[i].body.a, T_world_link_[i] * links_[i].body.b, links_[i].body.radius};
+}
+
+const char* RobotShape::obstructed(std::span<const double> positions, const Surroundings& surroundings) noexcept {
+  pose(positions);
+  const Eigen::AlignedBox3d& space = surroundings.workspace;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (!links_[i].has_body || !links_[i].moves) continue;
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(placed_[i].radius);
+    const bool inside =
+        space.isEmpty() || (space.contains(placed_[i].a - reach) && space.contains(placed_[i].a + reach) &&
+                            space.contains(placed_[i].b - reach) && space.contains(placed_[i].b + reach));
+    if (!inside) return links_[i].leaves.c_str();
+    for (const Eigen::AlignedBox3d& obstacle : surroundings.obstacles)
+      if (distance(placed_[i], obstacle) < surroundings.clearance) return links_[i].hits_obstacle.c_str();
+  }
+  for (const Pair& pair : pairs_)
+    if (distance(placed_[pair.one], placed_[pair.other]) < surroundings.clearance) return pair.message.c_str();
+  return nullptr;
+}
+
+}  // namespace foresight

@@ -1,0 +1,79 @@
+#include "drivers/robot/robot_shape.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "common/error.hpp"
+#include "tests/scene/test_run.hpp"
+
+namespace foresight {
+namespace {
+
+TEST(Capsules, DistancesAreThoseOfTheirSurfaces) {
+  const Capsule x{{0, 0, 0}, {1, 0, 0}, 0.1};
+  EXPECT_NEAR(distance(x, Capsule{{0.5, 0.5, 0}, {0.5, 1, 0}, 0.1}), 0.3, 1e-12);
+  EXPECT_NEAR(distance(x, Capsule{{0.5, -1, 0.4}, {0.5, 1, 0.4}, 0.1}), 0.2, 1e-12) << "crossing";
+  EXPECT_NEAR(distance(x, Capsule{{0, 1, 0}, {1, 1, 0}, 0.2}), 0.7, 1e-12) << "parallel";
+  EXPECT_NEAR(distance(x, Capsule{{2, 0, 0}, {2, 0, 0}, 0.5}), 0.4, 1e-12) << "a sphere";
+  EXPECT_NEAR(distance(x, Capsule{{0.2, 0, 0}, {0.3, 0, 0}, 0.1}), -0.2, 1e-12) << "overlapping";
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-5, -5, -2), Eigen::Vector3d(5, 5, -1));
+  const double least = distance(x, box);
+  EXPECT_LE(least, 0.9);
+  EXPECT_GT(least, 0.85);
+}
+
+/// Three rods of 0.4 m that turn about y, one after the other, stretched upwards at 0; and a fourth.
+UrdfRobot rods(const std::filesystem::path& folder) {
+  std::string text = "<robot name='rods'><link name='base'/>";
+  std::string parent = "base";
+  for (int i = 1; i <= 4; ++i) {
+    const std::string name = "rod_" + std::to_string(i);
+    text += "<link name='" + name +
+            "'><visual><origin xyz='0 0 0.2'/><geometry><box size='0.04 0.04 0.4'/></geometry></visual></link>";
+    text += "<joint name='turn_" + std::to_string(i) + "' type='revolute'><parent link='" + parent +
+            "'/><child link='" + name + "'/><origin xyz='0 0 " + (i == 1 ? "0" : "0.4") +
+            "'/><axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='1' velocity='1'/></joint>";
+    parent = name;
+  }
+  const auto file = folder / "rods.urdf";
+  std::ofstream(file) << text << "</robot>";
+  return read_urdf(file, folder);
+}
+
+class RobotShapeTest : public testing::Test {
+ protected:
+  const char* obstructed(std::vector<double> positions) { return shape_.obstructed(positions, surroundings_); }
+  TempFolder folder_;
+  RobotShape shape_{rods(folder_.path()), {"turn_1", "turn_2", "turn_3", "turn_4"}, Pose::Identity(), "rig.yaml"};
+  Surroundings surroundings_;
+};
+
+TEST_F(RobotShapeTest, StandsFreeWithoutSurroundings) {
+  EXPECT_EQ(obstructed({0, 0, 0, 0}), nullptr);
+  EXPECT_EQ(obstructed({1, 0.5, 0.5, 0.5}), nullptr);
+}
+
+TEST_F(RobotShapeTest, NamesTheLinkThatLeavesTheWorkspace) {
+  surroundings_.workspace = {Eigen::Vector3d(-1, -1, -0.2), Eigen::Vector3d(1, 1, 1.4)};
+  EXPECT_STREQ(obstructed({0, 0, 0, 0}), "link 'rod_4' leaves the workspace");
+  EXPECT_EQ(obstructed({0, 0, 0.8, 0.8}), nullptr);
+}
+
+TEST_F(RobotShapeTest, NamesTheLinkThatTouchesTheTable) {
+  surroundings_.obstacles = {{Eigen::Vector3d(-3, -3, -1), Eigen::Vector3d(3, 3, -0.1)}};
+  EXPECT_EQ(obstructed({1.5, 0, 0, 0}), nullptr);
+  EXPECT_STREQ(obstructed({1.7, 0, 0, 0}), "link 'rod_2' comes too close to an obstacle");
+}
+
+TEST_F(RobotShapeTest, NamesTheLinksThatMeet) {
+  // Folded to a closed triangle and on: the fourth rod meets the first.
+  EXPECT_STREQ(obstructed({0, 2.0944, 2.0944, 2.0944}), "link 'rod_4' comes too close to link 'rod_1'");
+}
+
+TEST_F(RobotShapeTest, RefusesAnUnknownJoint) {
+  EXPECT_THROW(RobotShape(rods(folder_.path()), {"turn_9"}, Pose::Identity(), "rig.yaml"), InputError);
+}
+
+}  // namespace
+}  // namespace foresight
