@@ -61,7 +61,7 @@ TEST_F(RobotShapeTest, NamesTheLinkThatLeavesTheWorkspace) {
 }
 
 TEST_F(RobotShapeTest, NamesTheLinkThatTouchesTheTable) {
-  surroundings_.obstacles = {{Eigen::Vector3d(-3, -3, -1), Eigen::Vector3d(3, 3, -0.1)}};
+  surroundings_.obstacles = {{Eigen::Vector3d(-3, -3, -1), Eigen::Vector3d(3, 3, -0.125)}};
   EXPECT_EQ(obstructed({1.5, 0, 0, 0}), nullptr);
   EXPECT_STREQ(obstructed({1.7, 0, 0, 0}), "link 'rod_2' comes too close to an obstacle");
 }
