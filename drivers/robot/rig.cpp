@@ -1,0 +1,227 @@
+#include "drivers/robot/rig.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "scene/yaml_fields.hpp"
+
+namespace foresight {
+namespace {
+
+template <typename T>
+T choice(const YamlMap& map, const std::string& key, const std::vector<std::pair<std::string, T>>& known) {
+  const std::string text = map.text(key);
+  std::vector<std::string> names;
+  for (const auto& [name, value] : known) {
+    if (name == text) return value;
+    names.push_back(name);
+  }
+  throw InputError(map.where(key), in_quotes(text) + " is not known here",
+                   "did you mean '" + nearest_word(text, names) + "'?");
+}
+
+double number(const YamlMap& map, const std::string& key, double fallback) {
+  return map.has(key) ? map.number(key) : fallback;
+}
+
+double positive(const YamlMap& map, const std::string& key) {
+  const double value = map.number(key);
+  if (!(value > 0)) throw InputError(map.where(key), "is " + std::to_string(value), "give a number above 0");
+  return value;
+}
+
+int integer_in(const YamlMap& map, const std::string& key, int least, int most) {
+  const int value = map.integer(key);
+  if (value < least || value > most)
+    throw InputError(map.where(key), "is " + std::to_string(value),
+                     "choose from " + std::to_string(least) + " to " + std::to_string(most));
+  return value;
+}
+
+Eigen::AlignedBox3d box(const YamlMap& map, const std::string& key) {
+  const auto n = map.numbers(key, 6);
+  const Eigen::Vector3d least(n[0], n[1], n[2]), most(n[3], n[4], n[5]);
+  if (!(least.array() < most.array()).all())
+    throw InputError(map.where(key), "has a least corner that is not below the largest",
+                     "give [x, y, z of the least corner, x, y, z of the largest], metres");
+  return {least, most};
+}
+
+std::optional<std::uint32_t> identity(const YamlMap& map, const std::string& key) {
+  if (!map.has(key)) return std::nullopt;
+  const auto value = parse_integer(map.text(key));
+  if (!value || *value < 0 || *value > 0xffffffffLL)
+    throw InputError(map.where(key), "is no 32-bit number", "give what the device reports, in decimal");
+  return static_cast<std::uint32_t>(*value);
+}
+
+RigBus read_bus(const YamlMap& map) {
+  map.require_known({"name", "interface", "protocol", "bit_rate"});
+  RigBus bus;
+  bus.name = map.text("name");
+  bus.interface = map.text("interface");
+  bus.protocol = choice<DriveProtocol>(map, "protocol",
+                                       {{"powercube", DriveProtocol::powercube}, {"cia402", DriveProtocol::cia402}});
+  if (map.has("bit_rate")) bus.bit_rate = integer_in(map, "bit_rate", 10'000, 1'000'000);
+  return bus;
+}
+
+void read_limits(const YamlMap& map, RigJoint& joint) {
+  joint.drive.min_position = map.number("min");
+  joint.drive.max_position = map.number("max");
+  if (joint.drive.min_position >= joint.drive.max_position)
+    throw InputError(map.where("min"), "is not below max", "exchange or correct them");
+  joint.drive.max_velocity = positive(map, "velocity");
+  joint.drive.max_acceleration = positive(map, "acceleration");
+  joint.jerk = positive(map, "jerk");
+  joint.following_error = positive(map, "following_error");
+  joint.drive.homing_velocity =
+      map.has("homing_velocity") ? positive(map, "homing_velocity") : 0.1 * joint.drive.max_velocity;
+  if (joint.drive.homing_velocity > 0.25 * joint.drive.max_velocity)
+    throw InputError(map.where("homing_velocity"), "is more than a quarter of the joint's velocity", "home slowly");
+  joint.homing_method = map.has("homing_method") ? integer_in(map, "homing_method", 1, 37) : 35;
+}
+
+RigJoint read_joint(const YamlMap& map, const std::vector<RigBus>& buses) {
+  map.require_known({"name", "group", "bus", "node", "unit", "counts_per_unit", "direction", "offset", "min", "max",
+                     "velocity", "acceleration", "jerk", "following_error", "homing_velocity", "homing_method",
+                     "vendor", "product", "serial"});
+  RigJoint joint;
+  joint.drive.name = map.text("name");
+  joint.group = choice<JointGroup>(
+      map, "group", {{"arm", JointGroup::arm}, {"gripper", JointGroup::gripper}, {"pan_tilt", JointGroup::pan_tilt}});
+  if (!map.has("unit"))
+    throw InputError(map.where("unit"), "joint '" + joint.drive.name + "' has no unit",
+                     "say `unit: rad`, or `unit: m` where it slides");
+  joint.unit = choice<std::string>(map, "unit", {{"rad", "rad"}, {"m", "m"}});
+  std::vector<std::pair<std::string, std::size_t>> names;
+  for (std::size_t i = 0; i < buses.size(); ++i) names.emplace_back(buses[i].name, i);
+  joint.bus = choice<std::size_t>(map, "bus", names);
+  const bool powercube = buses[joint.bus].protocol == DriveProtocol::powercube;
+  joint.drive.node = integer_in(map, "node", 1, powercube ? 31 : 126);
+  if (powercube && map.has("counts_per_unit"))
+    throw InputError(map.where("counts_per_unit"), "is not for PowerCube modules, which count in rad or m themselves",
+                     "remove it");
+  joint.drive.counts_per_unit = powercube ? 1 : positive(map, "counts_per_unit");
+  if (map.has("direction")) {
+    joint.drive.direction = map.integer("direction");
+    if (std::abs(joint.drive.direction) != 1)
+      throw InputError(map.where("direction"), "is " + std::to_string(joint.drive.direction), "give 1 or -1");
+  }
+  joint.drive.offset = number(map, "offset", 0);
+  read_limits(map, joint);
+  joint.drive.vendor = identity(map, "vendor");
+  joint.drive.product = identity(map, "product");
+  joint.drive.serial = identity(map, "serial");
+  return joint;
+}
+
+void check_joints(const YamlMap& map, const Rig& rig) {
+  std::set<std::string> names;
+  std::set<std::pair<std::size_t, int>> nodes;
+  for (const RigJoint& joint : rig.joints) {
+    if (!names.insert(joint.drive.name).second)
+      throw InputError(map.where("joints"), "joint '" + joint.drive.name + "' is given twice", "rename or remove one");
+    if (!nodes.insert({joint.bus, joint.drive.node}).second)
+      throw InputError(map.where("joints"),
+                       "node " + std::to_string(joint.drive.node) + " on bus '" + rig.buses[joint.bus].name +
+                           "' is used twice, again by joint '" + joint.drive.name + "'",
+                       "give every drive its own node id");
+  }
+  if (!rig.robot) return;
+  std::vector<std::string> movable;
+  for (const UrdfJoint& joint : rig.robot->joints)
+    if (joint.kind != UrdfJoint::Kind::fixed && !joint.mimic) movable.push_back(joint.name);
+  for (const RigJoint& joint : rig.joints)
+    if (joint.group != JointGroup::pan_tilt &&
+        std::find(movable.begin(), movable.end(), joint.drive.name) == movable.end())
+      throw InputError(map.where("joints"), "joint '" + joint.drive.name + "' is none that moves in the URDF",
+                       "did you mean '" + nearest_word(joint.drive.name, movable) + "'?");
+  for (const std::string& name : movable)
+    if (!names.contains(name))
+      throw InputError(
+          map.where("joints"),
+          "the URDF has " + std::to_string(movable.size()) + " joints that move; '" + name + "' is not in the rig",
+          "add it, or make it fixed in the URDF");
+}
+
+void read_surroundings(const YamlMap& map, Surroundings& out) {
+  map.require_known({"workspace_m", "clearance_m", "obstacles"});
+  if (map.has("workspace_m")) out.workspace = box(map, "workspace_m");
+  if (map.has("clearance_m")) out.clearance = positive(map, "clearance_m");
+  if (!map.has("obstacles")) return;
+  for (const YamlMap& obstacle : map.maps("obstacles")) {
+    obstacle.require_known({"name", "box_m"});
+    out.obstacles.push_back(box(obstacle, "box_m"));
+  }
+}
+
+void read_control(const YamlMap& map, Rig& rig) {
+  map.require_known({"rate_hz", "command_age_s", "feedback_age_s", "ramp_s"});
+  rig.rate_hz = number(map, "rate_hz", rig.rate_hz);
+  rig.command_age_s = number(map, "command_age_s", rig.command_age_s);
+  rig.feedback_age_s = number(map, "feedback_age_s", rig.feedback_age_s);
+  rig.ramp_s = number(map, "ramp_s", rig.ramp_s);
+}
+
+void read_robot(const YamlMap& map, Rig& rig) {
+  map.require_known({"urdf", "pose"});
+  const auto urdf = map.file().parent_path() / map.text("urdf");
+  if (!std::filesystem::is_regular_file(urdf))
+    throw InputError(map.where("urdf"), "there is no file " + urdf.string(), "give its path, relative to the rig file");
+  rig.robot = read_urdf(urdf, urdf.parent_path().empty() ? std::filesystem::path(".") : urdf.parent_path());
+  if (map.has("pose")) rig.T_world_robot = map.pose("pose");
+}
+
+}  // namespace
+
+const char* to_string(JointGroup group) {
+  switch (group) {
+    case JointGroup::arm: return "arm";
+    case JointGroup::gripper: return "gripper";
+    case JointGroup::pan_tilt: return "pan_tilt";
+  }
+  return "?";
+}
+
+GateOptions Rig::gate_options() const {
+  GateOptions out;
+  out.rate_hz = rate_hz;
+  out.command_age_s = command_age_s;
+  out.feedback_age_s = feedback_age_s;
+  out.ramp_s = ramp_s;
+  out.surroundings = surroundings;
+  for (const RigJoint& joint : joints)
+    out.joints.push_back({joint.drive.name,
+                          {joint.drive.min_position, joint.drive.max_position, joint.drive.max_velocity,
+                           joint.drive.max_acceleration, joint.jerk},
+                          joint.following_error,
+                          joint.group == JointGroup::gripper});
+  return out;
+}
+
+std::vector<std::string> Rig::joint_names() const {
+  std::vector<std::string> out;
+  for (const RigJoint& joint : joints) out.push_back(joint.drive.name);
+  return out;
+}
+
+Rig read_rig(const std::filesystem::path& file) {
+  const YamlMap map = YamlMap::load(file);
+  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints"});
+  Rig rig;
+  rig.name = map.text("name");
+  if (map.has("robot")) read_robot(map.map("robot"), rig);
+  if (map.has("control")) read_control(map.map("control"), rig);
+  if (map.has("surroundings")) read_surroundings(map.map("surroundings"), rig.surroundings);
+  for (const YamlMap& bus : map.maps("buses")) rig.buses.push_back(read_bus(bus));
+  for (const YamlMap& joint : map.maps("joints")) rig.joints.push_back(read_joint(joint, rig.buses));
+  check_joints(map, rig);
+  rig.gate_options().validate(file.string());
+  return rig;
+}
+
+}  // namespace foresight

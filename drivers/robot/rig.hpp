@@ -1,0 +1,56 @@
+// The rig file: which devices a lab has, how they are wired and what they may do.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/drive/drive.hpp"
+#include "drivers/robot/safety_gate.hpp"
+#include "scene/urdf_reader.hpp"
+
+namespace foresight {
+
+enum class JointGroup : std::uint8_t { arm, gripper, pan_tilt };
+const char* to_string(JointGroup group);
+
+enum class DriveProtocol : std::uint8_t { powercube, cia402 };
+
+struct RigBus {
+  std::string name;       ///< by which joints refer to it
+  std::string interface;  ///< "can0"; "mock": emulated drives inside of the process
+  DriveProtocol protocol = DriveProtocol::cia402;
+  int bit_rate = 1'000'000;  ///< bit/s: 10,000 .. 1,000,000
+};
+
+struct RigJoint {
+  JointGroup group = JointGroup::arm;
+  std::string unit;     ///< "rad" or "m": that of all its numbers
+  std::size_t bus = 0;  ///< index into Rig::buses
+  DriveConfig drive;
+  double jerk = 0;             ///< unit/s^3; > 0
+  double following_error = 0;  ///< unit; > 0
+  int homing_method = 35;      ///< CiA 402, object 6098h; 35 and 37: here is home
+};
+
+struct Rig {
+  std::string name;
+  std::optional<UrdfRobot> robot;  ///< without it, nothing is checked against the surroundings
+  Pose T_world_robot = Pose::Identity();
+  double rate_hz = 250, command_age_s = 0.1, feedback_age_s = 0.05, ramp_s = 2;
+  Surroundings surroundings;
+  std::vector<RigBus> buses;
+  std::vector<RigJoint> joints;  ///< in the order of the file, which is that of commands
+
+  /// What the safety gate needs of all that.
+  GateOptions gate_options() const;
+  std::vector<std::string> joint_names() const;
+};
+
+/// Reads and checks a rig file (docs/rig-files.md). Throws InputError naming file, line and field: unknown keys with
+/// the nearest known one, a missing unit, limits that contradict each other, a node id used twice on a bus, joints that
+/// the URDF does not have or that it has and the file does not.
+Rig read_rig(const std::filesystem::path& file);
+
+}  // namespace foresight

@@ -1,0 +1,242 @@
+#include "drivers/robot/robot.hpp"
+
+#include <algorithm>
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kEnableWithin = 5s;
+constexpr Duration kHomeWithin = 120s;  // a joint
+constexpr Duration kRestWithin = 3s;
+
+bool is_enabled(const DriveFeedback& f) {
+  return f.state == DriveState::enabled;
+}
+
+}  // namespace
+
+const char* to_string(RobotPhase phase) {
+  switch (phase) {
+    case RobotPhase::disabled: return "disabled";
+    case RobotPhase::enabling: return "enabling";
+    case RobotPhase::ready: return "ready";
+    case RobotPhase::homing: return "homing";
+    case RobotPhase::stopped: return "stopped";
+  }
+  return "?";
+}
+
+Robot::Robot(GateOptions options, RobotShape* shape, std::vector<DriveNetwork*> networks, std::vector<Drive*> drives)
+    : gate_(std::move(options), shape),
+      networks_(std::move(networks)),
+      drives_(std::move(drives)),
+      feedback_(drives_.size()) {
+  publish({});
+}
+
+void Robot::submit(const MotionCommand& command) {
+  const std::lock_guard lock(writers_);
+  commands_.put(command);
+}
+
+void Robot::ask(RobotRequest request) noexcept {
+  if (request == RobotRequest::emergency_stop)
+    stop_asked_ = true;  // no later request may take its place
+  else
+    request_ = request;
+}
+
+RobotStatus Robot::status() const {
+  const std::lock_guard lock(readers_);
+  if (auto newer = published_.take()) last_ = *newer;
+  return last_;
+}
+
+void Robot::enter(RobotPhase phase, RobotTime now) noexcept {
+  phase_ = phase;
+  phase_since_ = now;
+  waiting_for_ = -1;
+}
+
+// A gripper keeps its last set-point and with it its grip.
+void Robot::stop_all() noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    if (!gate_.options().joints[i].keeps_grip) drives_[i]->request(DriveRequest::quick_stop);
+}
+
+// The gripper stays as it is here too: what it holds must not fall because the robot rests.
+void Robot::disable_all() noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    if (!gate_.options().joints[i].keeps_grip) drives_[i]->request(DriveRequest::disable);
+}
+
+bool Robot::all_disabled() const noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    if (!gate_.options().joints[i].keeps_grip && feedback_[i].state != DriveState::disabled) return false;
+  return true;
+}
+
+void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
+  const GateState gate = gate_.status().state;
+  const bool free = gate == GateState::idle || (gate == GateState::stopped && gate_.at_rest());
+  refused_ = "";
+  switch (request) {
+    case RobotRequest::none:
+    case RobotRequest::emergency_stop: return;
+    case RobotRequest::enable:
+      if (phase_ != RobotPhase::disabled) return void(refused_ = "enable: only while disabled");
+      break;
+    case RobotRequest::reset:
+      if (phase_ != RobotPhase::stopped) return void(refused_ = "reset: nothing is stopped");
+      if (!gate_.at_rest()) return void(refused_ = "reset: wait until the robot is at rest");
+      for (Drive* drive : drives_) drive->request(DriveRequest::reset_fault);
+      resetting_ = true;
+      return enter(RobotPhase::enabling, now);
+    case RobotRequest::disable:
+      if (!free) return void(refused_ = "disable: wait until the robot is at rest");
+      disable_all();
+      return enter(RobotPhase::disabled, now);
+    case RobotRequest::home:
+      if (phase_ != RobotPhase::ready || gate != GateState::idle)
+        return void(refused_ = "home: only while ready and nobody is in charge");
+      homing_ = 0;
+      homing_asked_ = false;
+      return enter(RobotPhase::homing, now);
+  }
+  for (Drive* drive : drives_) drive->request(DriveRequest::enable);
+  resetting_ = false;
+  enter(RobotPhase::enabling, now);
+}
+
+void Robot::advance_enabling(RobotTime now) noexcept {
+  const auto missing = std::find_if_not(feedback_.begin(), feedback_.end(), is_enabled);
+  if (missing == feedback_.end()) {
+    if (gate_.reset(feedback_, now)) return enter(RobotPhase::ready, now);
+    stop_all();
+    return enter(RobotPhase::stopped, now);
+  }
+  waiting_for_ = static_cast<int>(missing - feedback_.begin());
+  // Faults are cleared first; what is still at fault after that stays so.
+  const bool faulty =
+      std::any_of(feedback_.begin(), feedback_.end(), [](const auto& f) { return f.state == DriveState::fault; });
+  if (resetting_ && !faulty) {
+    for (Drive* drive : drives_) drive->request(DriveRequest::enable);
+    resetting_ = false;
+  }
+  if (now - phase_since_ < kEnableWithin) return;
+  refused_ = "a drive did not get enabled in time";
+  stop_all();
+  const int joint = waiting_for_;
+  enter(RobotPhase::stopped, now);
+  waiting_for_ = joint;
+}
+
+void Robot::advance_homing(RobotTime now) noexcept {
+  const DriveFeedback& f = feedback_[homing_];
+  waiting_for_ = static_cast<int>(homing_);
+  const bool failed =
+      f.state == DriveState::fault || f.state == DriveState::offline || now - phase_since_ > kHomeWithin;
+  if (failed) {
+    gate_.emergency_stop("homing failed");
+    stop_all();
+    return enter(RobotPhase::stopped, now);
+  }
+  if (!homing_asked_) {
+    drives_[homing_]->request(DriveRequest::home);
+    homing_asked_ = true;
+    phase_since_ = now;
+    return;
+  }
+  // The drive needs a few cycles to say that it has begun.
+  if (now - phase_since_ < 200ms || !f.homed || f.state != DriveState::enabled) return;
+  homing_asked_ = false;
+  if (++homing_ < drives_.size()) return;
+  if (gate_.reset(feedback_, now)) return enter(RobotPhase::ready, now);
+  gate_.emergency_stop("homing ended beyond the limits");
+  enter(RobotPhase::stopped, now);
+}
+
+void Robot::cycle(RobotTime now) noexcept {
+  for (DriveNetwork* network : networks_) network->receive(now);
+  for (std::size_t i = 0; i < drives_.size(); ++i) feedback_[i] = drives_[i]->feedback();
+  for (DriveNetwork* network : networks_)
+    if (!network->healthy() && phase_ != RobotPhase::disabled) gate_.bus_fault(network->reason());
+  const auto command = commands_.take();
+  if (stop_asked_.exchange(false)) {
+    gate_.emergency_stop("asked for");
+    if (phase_ == RobotPhase::homing || phase_ == RobotPhase::enabling) stop_all();
+    if (phase_ != RobotPhase::disabled) enter(RobotPhase::stopped, now);
+  }
+  const RobotRequest request = request_.exchange(RobotRequest::none);
+  if (request != RobotRequest::none) follow_request(request, now);
+
+  if (phase_ == RobotPhase::enabling) advance_enabling(now);
+  if (phase_ == RobotPhase::homing) advance_homing(now);
+  if (phase_ == RobotPhase::ready || phase_ == RobotPhase::stopped) {
+    gate_.step(now, phase_ == RobotPhase::ready ? command : std::nullopt, feedback_);
+    if (gate_.status().state == GateState::stopped && phase_ == RobotPhase::ready) {
+      if (gate_.wants_quick_stop()) stop_all();
+      enter(RobotPhase::stopped, now);
+    }
+    for (std::size_t i = 0; i < drives_.size(); ++i)
+      drives_[i]->set_point(gate_.set_point(i).position, gate_.set_point(i).velocity);
+  }
+  for (DriveNetwork* network : networks_) network->send(now);
+  publish(now);
+}
+
+void Robot::publish(RobotTime now) noexcept {
+  RobotStatus status;
+  status.time = now;
+  status.phase = phase_;
+  status.gate = gate_.status();
+  for (const DriveNetwork* network : networks_)
+    if (!network->healthy() && status.bus_healthy) {
+      status.bus_healthy = false;
+      status.bus_reason = network->reason();
+    }
+  status.all_homed = std::all_of(feedback_.begin(), feedback_.end(), [](const DriveFeedback& f) { return f.homed; });
+  status.waiting_for = waiting_for_;
+  status.refused = refused_;
+  std::copy(feedback_.begin(), feedback_.end(), status.feedback.begin());
+  for (std::size_t i = 0; i < drives_.size(); ++i) status.set_point[i] = gate_.set_point(i);
+  status.loop = loop_;
+  published_.put(status);
+}
+
+void Robot::run(Clock& clock, std::stop_token stop) noexcept {
+  const Duration period = seconds(1 / gate_.options().rate_hz);
+  RobotTime due = clock.now() + period;
+  while (!stop.stop_requested()) {
+    clock.sleep_until(due);
+    const Duration late = clock.now() - due;
+    loop_.count(late, period);
+    cycle(clock.now());
+    // Skipped cycles are not made up for: set-points go on from where they are.
+    due = std::max(due + period, late >= period ? clock.now() : due);
+  }
+  shut_down(clock, due);
+}
+
+void Robot::shut_down(Clock& clock, RobotTime due) noexcept {
+  const Duration period = seconds(1 / gate_.options().rate_hz);
+  const auto cycle_once = [&] {
+    clock.sleep_until(due);
+    cycle(clock.now());
+    due = clock.now() + period;
+  };
+  gate_.emergency_stop("the program ends");
+  if (phase_ == RobotPhase::homing || phase_ == RobotPhase::enabling) stop_all();
+  if (phase_ != RobotPhase::disabled) enter(RobotPhase::stopped, clock.now());
+  const RobotTime until = clock.now() + kRestWithin;
+  do cycle_once();
+  while (!gate_.at_rest() && clock.now() < until);
+  ask(RobotRequest::disable);
+  const RobotTime disabled_until = clock.now() + 1s;
+  do cycle_once();
+  while (!all_disabled() && clock.now() < disabled_until);
+}
+
+}  // namespace foresight
