@@ -209,6 +209,15 @@ std::vector<std::string> Rig::joint_names() const {
   return out;
 }
 
+std::unique_ptr<RobotShape> Rig::shape() const {
+  if (!robot) return nullptr;
+  std::vector<std::string> names = joint_names();
+  for (std::string& joint : names)
+    if (std::none_of(robot->joints.begin(), robot->joints.end(), [&](const UrdfJoint& j) { return j.name == joint; }))
+      joint.clear();
+  return std::make_unique<RobotShape>(*robot, std::move(names), T_world_robot, name);
+}
+
 Rig read_rig(const std::filesystem::path& file) {
   const YamlMap map = YamlMap::load(file);
   map.require_known({"name", "robot", "control", "surroundings", "buses", "joints"});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,8 @@ struct Rig {
   /// What the safety gate needs of all that.
   GateOptions gate_options() const;
   std::vector<std::string> joint_names() const;
+  /// The robot's body, or null where the rig has none.
+  std::unique_ptr<RobotShape> shape() const;
 };
 
 /// Reads and checks a rig file (docs/rig-files.md). Throws InputError naming file, line and field: unknown keys with

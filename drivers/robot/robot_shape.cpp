@@ -90,7 +90,7 @@ RobotShape::RobotShape(UrdfRobot robot, std::vector<std::string> joints, const P
   std::vector<std::string> names;
   for (const UrdfJoint& joint : robot_.joints) names.push_back(joint.name);
   for (const std::string& joint : joints)
-    if (std::find(names.begin(), names.end(), joint) == names.end())
+    if (!joint.empty() && std::find(names.begin(), names.end(), joint) == names.end())
       throw InputError(where, "the URDF has no joint " + in_quotes(joint),
                        "did you mean '" + nearest_word(joint, names) + "'?");
   for (const UrdfJoint& joint : robot_.joints) {

@@ -34,8 +34,9 @@ struct Surroundings {
 /// A robot's links as capsules around their meshes. Thread: one at a time.
 class RobotShape {
  public:
-  /// `joints`: those whose positions check() gets, in its order; all others stay at 0 (or their
-  /// nearest limit). Mimic joints follow. Throws InputError at `where` for a joint that the robot does not have.
+  /// `joints`: those whose positions obstructed() gets, in its order, "" for one that is not of this robot (a pan-tilt
+  /// head's); all others stay at 0 or their nearest limit. Mimic joints follow. Throws InputError at `where` for a
+  /// joint that the robot does not have.
   RobotShape(UrdfRobot robot, std::vector<std::string> joints, const Pose& T_world_root, const std::string& where);
 
   /// What keeps the robot from standing there, such as "link 'arm_5' leaves the workspace"; nullptr where nothing does.

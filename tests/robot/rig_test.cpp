@@ -1,0 +1,94 @@
+#include "drivers/robot/rig.hpp"
+
+#include "tests/scene/test_run.hpp"
+
+namespace foresight {
+namespace {
+
+std::filesystem::path config(const char* name) {
+  return std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs" / name;
+}
+
+TEST(Rig, TheRigsThatComeWithTheProgramAreValid) {
+  for (const char* name : {"minerva.yaml", "cia402.yaml"}) {
+    const Rig rig = read_rig(config(name));
+    EXPECT_EQ(rig.joints.size(), 10u) << name;
+    EXPECT_EQ(rig.buses.size(), 2u);
+    const auto shape = rig.shape();
+    ASSERT_TRUE(shape);
+    const GateOptions gate = rig.gate_options();
+    const std::vector<double> home(10, 0);
+    EXPECT_EQ(shape->obstructed(home, gate.surroundings), nullptr) << "stretched upwards";
+    std::vector<double> down(10, 0);
+    down[1] = 1.9;
+    down[3] = 1.2;
+    EXPECT_NE(shape->obstructed(down, gate.surroundings), nullptr) << "into the table";
+    EXPECT_TRUE(gate.joints[7].keeps_grip);
+    EXPECT_FALSE(gate.joints[0].keeps_grip);
+  }
+}
+
+/// A valid rig whose text a test changes.
+class BadRig : public testing::Test {
+ protected:
+  std::string error_with(const std::string& what, const std::string& instead) {
+    std::string text = text_;
+    const auto at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    text.replace(at, what.size(), instead);
+    const auto file = folder_.write("rig.yaml", text);
+    return input_error([&] { read_rig(file); });
+  }
+  TempFolder folder_;
+  std::string text_ = R"(name: small
+buses:
+  - {name: main, interface: can0, protocol: cia402}
+joints:
+  - {name: a, group: arm, bus: main, node: 1, unit: rad, counts_per_unit: 1000,
+     min: -1, max: 1, velocity: 1, acceleration: 2, jerk: 20, following_error: 0.1}
+  - {name: b, group: gripper, bus: main, node: 2, unit: m, counts_per_unit: 1000,
+     min: 0, max: 0.1, velocity: 0.1, acceleration: 2, jerk: 20, following_error: 0.1}
+)";
+};
+
+TEST_F(BadRig, IsNotBadBeforeItIsChanged) {
+  EXPECT_EQ(error_with("name: small", "name: tall"), "no error");
+}
+
+TEST_F(BadRig, EveryMistakeHasItsMessage) {
+  const auto expect = [&](const char* what, const char* instead, std::initializer_list<const char*> words) {
+    const std::string message = error_with(what, instead);
+    EXPECT_THAT(message, testing::HasSubstr("rig.yaml")) << instead;
+    for (const char* word : words) EXPECT_THAT(message, testing::HasSubstr(word)) << instead;
+  };
+  expect("velocity: 1,", "velocty: 1,", {"velocty", "velocity"});
+  expect("unit: rad, ", "", {"unit", "no unit", "rad"});
+  expect("unit: rad", "unit: deg", {"deg", "rad"});
+  expect("min: -1, max: 1", "min: 1, max: -1", {"min", "not below max"});
+  expect("node: 2", "node: 1", {"node 1", "used twice", "'b'"});
+  expect("node: 2", "node: 200", {"200", "1 to 126"});
+  expect("name: b", "name: a", {"'a' is given twice"});
+  expect("bus: main, node: 1", "bus: mian, node: 1", {"mian", "main"});
+  expect("group: arm", "group: leg", {"leg"});
+  expect("protocol: cia402", "protocol: cia403", {"cia403", "cia402"});
+  expect("jerk: 20", "jerk: -1", {"jerk", "above 0"});
+  expect("following_error: 0.1", "following_error: 0.001", {"following error"});
+  expect("velocity: 1, acc", "velocity: .nan, acc", {"velocity"});
+  expect("name: small", "name: small\nrobot: {urdf: none.urdf}", {"none.urdf", "no file"});
+}
+
+TEST_F(BadRig, JointsMustBeThoseOfTheUrdf) {
+  folder_.write("two.urdf", R"(<robot name='r'><link name='base'/><link name='l1'/><link name='l2'/>
+<joint name='a' type='revolute'><parent link='base'/><child link='l1'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>
+<joint name='c' type='revolute'><parent link='l1'/><child link='l2'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>)");
+  EXPECT_THAT(error_with("name: small", "name: small\nrobot: {urdf: two.urdf}"),
+              testing::HasSubstr("'b' is none that moves"));
+  text_.replace(text_.find("name: b"), 7, "name: c");
+  EXPECT_EQ(error_with("name: small", "name: small\nrobot: {urdf: two.urdf}"), "no error");
+  text_.resize(text_.find("  - {name: c"));
+  EXPECT_THAT(error_with("name: small", "name: small\nrobot: {urdf: two.urdf}"),
+              testing::HasSubstr("'c' is not in the rig"));
+}
+
+}  // namespace
+}  // namespace foresight

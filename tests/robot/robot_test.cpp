@@ -1,0 +1,223 @@
+// The robot's phases, with drives that answer at once.
+#include "drivers/robot/robot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Follows every request in the next cycle and every set-point at once.
+class PromptDrive final : public Drive {
+ public:
+  const DriveConfig& config() const noexcept override { return config_; }
+  void identify() override {}
+  void configure() override {}
+  void request(DriveRequest what) noexcept override {
+    requests.push_back(what);
+    if (state.state == DriveState::offline || stuck) return;
+    if (what == DriveRequest::reset_fault && state.state == DriveState::fault) state.state = DriveState::disabled;
+    if (state.state == DriveState::fault) return;
+    if (what == DriveRequest::enable) state.state = DriveState::enabled;
+    if (what == DriveRequest::disable || what == DriveRequest::quick_stop) state.state = DriveState::disabled;
+    if (what == DriveRequest::home) state.homed = true;
+  }
+  void set_point(double position, double) noexcept override {
+    if (state.state == DriveState::enabled) state.position = position;
+  }
+  DriveFeedback feedback() const noexcept override { return state; }
+  bool asked(DriveRequest what) const { return std::find(requests.begin(), requests.end(), what) != requests.end(); }
+
+  DriveFeedback state{{}, 0, 0, DriveState::disabled};
+  std::vector<DriveRequest> requests;
+  bool stuck = false;
+
+ private:
+  DriveConfig config_;
+};
+
+class PromptNetwork final : public DriveNetwork {
+ public:
+  explicit PromptNetwork(std::vector<PromptDrive>& drives) : drives_(drives) {}
+  std::span<Drive* const> drives() const noexcept override { return {}; }
+  void receive(RobotTime now) noexcept override {
+    for (PromptDrive& drive : drives_) drive.state.time = now;
+  }
+  void send(RobotTime) noexcept override {}
+  bool healthy() const noexcept override { return fault == nullptr; }
+  const char* reason() const noexcept override { return fault == nullptr ? "" : fault; }
+  const char* fault = nullptr;
+
+ private:
+  std::vector<PromptDrive>& drives_;
+};
+
+class RobotTest : public testing::Test {
+ protected:
+  static GateOptions options() {
+    GateOptions out;
+    out.joints = {{"arm", {-2, 2, 1, 4, 60}, 0.2}, {"grip", {0, 0.1, 0.1, 1, 20}, 0.02, true}};
+    out.ramp_s = 0;
+    return out;
+  }
+  void run(int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      now_ = now_ + 4ms;
+      robot_.cycle(now_);
+    }
+  }
+  void command(double arm, double grip, bool deadman = true) {
+    MotionCommand c{1, ++sequence_, now_, deadman, 2, {}};
+    c.position[0] = arm;
+    c.position[1] = grip;
+    robot_.submit(c);
+  }
+  void make_ready() {
+    robot_.ask(RobotRequest::enable);
+    run(3);
+    ASSERT_EQ(robot_.status().phase, RobotPhase::ready);
+  }
+  void get_moving() {
+    make_ready();
+    command(0, 0.05, false);
+    run(1);
+    for (int i = 0; i < 200; ++i) {
+      command(1.9, 0.05);
+      run(1);
+    }
+    ASSERT_GT(robot_.status().set_point[0].velocity, 0.5);
+  }
+  RobotTime now_{1'000'000'000};
+  std::uint64_t sequence_ = 0;
+  std::vector<PromptDrive> drives_{std::vector<PromptDrive>(2)};
+  PromptNetwork network_{drives_};
+  Robot robot_{options(), nullptr, {&network_}, {&drives_[0], &drives_[1]}};
+};
+
+TEST_F(RobotTest, MovesNothingBeforeItIsEnabled) {
+  command(1, 0, false);
+  run(2);
+  for (int i = 0; i < 100; ++i) {
+    command(1, 0);
+    run(1);
+  }
+  EXPECT_EQ(robot_.status().phase, RobotPhase::disabled);
+  EXPECT_TRUE(drives_[0].requests.empty());
+  EXPECT_EQ(drives_[0].state.position, 0);
+}
+
+TEST_F(RobotTest, FollowsOnceEnabled) {
+  get_moving();
+  for (int i = 0; i < 1000; ++i) {
+    command(1.9, 0.05);
+    run(1);
+  }
+  EXPECT_NEAR(drives_[0].state.position, 1.9, 1e-3);
+  EXPECT_NEAR(drives_[1].state.position, 0.05, 1e-3);
+}
+
+TEST_F(RobotTest, AFaultStopsAllButTheGripAndLatches) {
+  get_moving();
+  const double grip = drives_[1].state.position;
+  drives_[0].state.state = DriveState::fault;
+  drives_[0].state.fault = "overcurrent";
+  run(100);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
+  EXPECT_EQ(robot_.status().gate.reason, GateReason::drive_fault);
+  EXPECT_TRUE(drives_[0].asked(DriveRequest::quick_stop));
+  EXPECT_FALSE(drives_[1].asked(DriveRequest::quick_stop));
+  EXPECT_FALSE(drives_[1].asked(DriveRequest::disable));
+  EXPECT_NEAR(drives_[1].state.position, grip, 0.005) << "it holds what it holds";
+  robot_.ask(RobotRequest::reset);
+  run(5);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
+  const double stood = drives_[0].state.position;
+  command(-1, 0);
+  run(10);
+  EXPECT_EQ(drives_[0].state.position, stood) << "the operator must engage again";
+}
+
+TEST_F(RobotTest, AnEmergencyStopBrakesAlongSetPoints) {
+  get_moving();
+  robot_.ask(RobotRequest::emergency_stop);
+  robot_.ask(RobotRequest::enable);
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
+  const double before = drives_[0].state.position;
+  run(300);
+  EXPECT_GT(drives_[0].state.position, before) << "it slows down, it does not jerk";
+  EXPECT_EQ(robot_.status().set_point[0].velocity, 0);
+}
+
+TEST_F(RobotTest, ABusThatFailsStops) {
+  get_moving();
+  network_.fault = "bus-off";
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
+  EXPECT_EQ(robot_.status().gate.reason, GateReason::bus_fault);
+  EXPECT_STREQ(robot_.status().gate.detail, "bus-off");
+}
+
+TEST_F(RobotTest, HomesOnlyWithConsentAndOnlyWhileNobodyIsInCharge) {
+  make_ready();
+  run(100);
+  EXPECT_FALSE(drives_[0].asked(DriveRequest::home));
+  robot_.ask(RobotRequest::home);
+  run(200);
+  EXPECT_TRUE(robot_.status().all_homed);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
+  command(0, 0, false);
+  run(1);
+  command(1, 0);
+  run(1);
+  drives_[0].requests.clear();
+  robot_.ask(RobotRequest::home);
+  run(1);
+  EXPECT_STRNE(robot_.status().refused, "");
+  EXPECT_FALSE(drives_[0].asked(DriveRequest::home));
+}
+
+TEST_F(RobotTest, ADriveThatIsNeverEnabledIsNamed) {
+  drives_[1].stuck = true;
+  robot_.ask(RobotRequest::enable);
+  run(1300);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
+  EXPECT_EQ(robot_.status().waiting_for, 1);
+  EXPECT_STRNE(robot_.status().refused, "");
+}
+
+TEST_F(RobotTest, RunStopsUnderControlAtTheEnd) {
+  SteppedClock clock;
+  now_ = clock.now();
+  std::stop_source stop;
+  clock.every(4ms, [&](RobotTime now) {
+    now_ = now;
+    if (now.ns == 40'000'000) robot_.ask(RobotRequest::enable);
+    if (now.ns > 100'000'000) command(1.9, 0, now.ns > 200'000'000);
+    if (now.ns == 1'000'000'000) stop.request_stop();
+  });
+  robot_.run(clock, stop.get_token());
+  EXPECT_GT(drives_[0].state.position, 0.3);
+  EXPECT_EQ(robot_.status().set_point[0].velocity, 0);
+  EXPECT_EQ(drives_[0].state.state, DriveState::disabled);
+  EXPECT_EQ(drives_[1].state.state, DriveState::enabled) << "the grip";
+  EXPECT_GT(robot_.status().loop.cycles(), 200u);
+  EXPECT_EQ(robot_.status().loop.overruns(), 0u);
+}
+
+TEST(LoopStatistics, CountsLatenessAndOverruns) {
+  LoopStatistics loop;
+  for (int i = 0; i < 990; ++i) loop.count(50us, 4ms);
+  for (int i = 0; i < 10; ++i) loop.count(5ms, 4ms);
+  EXPECT_EQ(loop.cycles(), 1000u);
+  EXPECT_EQ(loop.overruns(), 10u);
+  EXPECT_EQ(loop.worst(), 5ms);
+  EXPECT_NEAR(static_cast<double>(loop.quantile(0.5).count()), 50e3, 6e3);
+  EXPECT_EQ(loop.quantile(0.999), 5ms);
+}
+
+}  // namespace
+}  // namespace foresight
