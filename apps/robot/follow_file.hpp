@@ -1,0 +1,30 @@
+// A motion in a CSV file: times, and where the joints are then.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "drivers/robot/rig.hpp"
+
+namespace foresight {
+
+/// Positions over time, straight between the rows. Immutable.
+class FollowFile {
+ public:
+  /// First line: `time_s` and names of joints of the rig, in any order; joints that are not named stay where they are.
+  /// Then rows of as many numbers, times ascending. Throws InputError naming file and line: an unknown joint, a number
+  /// that is none, one beyond the joint's limits, times that do not ascend, or a motion faster than a joint may move.
+  FollowFile(const std::filesystem::path& file, const Rig& rig);
+
+  double duration_s() const { return times_.back() - times_.front(); }
+  /// `seconds` after the first row; before and after, where it begins and ends. Joints that are not named keep
+  /// their value in `positions`.
+  void at(double seconds, JointValues& positions) const;
+
+ private:
+  std::vector<std::size_t> joints_;  // of each column, its joint
+  std::vector<double> times_;
+  std::vector<std::vector<double>> rows_;
+};
+
+}  // namespace foresight

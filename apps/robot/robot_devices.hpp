@@ -1,0 +1,44 @@
+// The buses and drives of a rig, real or mock.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/robot/status_view.hpp"
+#include "common/clock.hpp"
+#include "drivers/robot/rig.hpp"
+
+namespace foresight {
+
+struct RobotDeviceOptions {
+  bool mock = false;                         ///< every bus with emulated drives, whatever the rig says
+  std::optional<std::filesystem::path> log;  ///< candump log of all frames
+};
+
+/// Opens the rig's buses: SocketCAN interfaces, or in-process ones with emulated drives where the rig says `mock`.
+/// Outlived by the clock. Construction and bring_up() throw InputError or RuntimeFailure; nothing moves.
+class RobotDevices {
+ public:
+  RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOptions& options);
+  ~RobotDevices();
+
+  /// Identifies and configures every drive, in the rig's order; `say` gets a line for each.
+  void bring_up(const std::function<void(const std::string&)>& say);
+
+  std::vector<DriveNetwork*> networks() const;
+  std::vector<Drive*> drives() const;  ///< in the rig's order
+  /// Thread-safe while the loop runs.
+  std::vector<BusLine> buses() const;
+
+ private:
+  struct Bus;
+  const Rig& rig_;
+  std::vector<std::unique_ptr<Bus>> buses_;
+  std::vector<Drive*> drives_;
+};
+
+}  // namespace foresight

@@ -1,0 +1,169 @@
+#include "apps/robot_command.hpp"
+
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "apps/robot/keyboard.hpp"
+#include "apps/robot/operators.hpp"
+#include "apps/robot/robot_devices.hpp"
+#include "apps/robot/service_notify.hpp"
+#include "common/error.hpp"
+#include "common/real_time.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kTick = 10ms;
+constexpr Duration kRedraw = 200ms;
+constexpr int kPriority = 80;  // above the network's and the cameras' threads, below the kernel's watchdogs
+
+struct Arguments {
+  std::string rig;
+  std::string follow;
+  std::string log;
+  bool mock = false, stepped = false, may_home = false, check_only = false;
+};
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+void say(const std::string& line) { std::fprintf(stderr, "robot: %s\n", line.c_str()); }
+
+/// What goes on beside the control loop: operators, the view, the service's watchdog.
+class Console {
+ public:
+  Console(const Rig& rig, const RobotDevices& devices, Robot& robot, const Arguments& arguments)
+      : rig_(rig), devices_(devices), robot_(robot), keys_(rig.gate_options().joints) {
+    if (!arguments.follow.empty())
+      follow_.emplace(FollowFile(arguments.follow, rig), rig.joints.size(), arguments.may_home);
+    if (keyboard_.is_terminal()) say(KeyOperator::help());
+  }
+
+  /// False: the program shall end.
+  bool tick(RobotTime now) {
+    const RobotStatus status = robot_.status();
+    OperatorWish wish = follow_ ? follow_->tick(now, status) : OperatorWish{};
+    const std::string typed = keyboard_.pressed();
+    // The keyboard can always stop and quit; it drives only where no file does.
+    if (follow_ && typed.find(' ') != std::string::npos) wish.request = RobotRequest::emergency_stop;
+    if (follow_ && typed.find('q') != std::string::npos) wish.quit = true;
+    if (!follow_ && keyboard_.is_terminal()) wish = keys_.tick(now, status, typed);
+    if (wish.request != RobotRequest::none) robot_.ask(wish.request);
+    if (wish.command) robot_.submit(*wish.command);
+    show(now, status);
+    notify(now, status);
+    return !wish.quit;
+  }
+
+  /// The last words, and the exit code.
+  int finish() {
+    const RobotStatus status = robot_.status();
+    std::fputs(status_text(rig_, status, devices_.buses(), -1).c_str(), stdout);
+    if (!follow_) return 0;
+    say("follow: " + (follow_->outcome().empty() ? "interrupted" : follow_->outcome()));
+    return follow_->succeeded() ? 0 : 1;
+  }
+
+ private:
+  void show(RobotTime now, const RobotStatus& status) {
+    if (!keyboard_.is_terminal() || now - shown_ < kRedraw) return;
+    shown_ = now;
+    std::string text = status_text(rig_, status, devices_.buses(), follow_ ? -1 : static_cast<int>(keys_.selected()));
+    if (keys_.asks_for_consent()) text += "Every joint will look for home, slowly. Is the robot's way clear? y/n\n";
+    std::fputs(("\x1b[H\x1b[J" + text).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  void notify(RobotTime now, const RobotStatus& status) {
+    const auto period = service_watchdog_period();
+    if (!period || now - notified_ < *period / 2) return;
+    // Only while the loop goes on.
+    if (status.loop.cycles() != cycles_) notify_service("WATCHDOG=1");
+    cycles_ = status.loop.cycles();
+    notified_ = now;
+  }
+
+  const Rig& rig_;
+  const RobotDevices& devices_;
+  Robot& robot_;
+  Keyboard keyboard_;
+  KeyOperator keys_;
+  std::optional<FollowOperator> follow_;
+  RobotTime shown_, notified_;
+  std::uint64_t cycles_ = 0;
+};
+
+int run_stepped(SteppedClock& clock, Robot& robot, Console& console) {
+  std::stop_source stop;
+  clock.every(kTick, [&](RobotTime now) {
+    if (!stop.stop_requested() && (!console.tick(now) || stop_signal != 0)) stop.request_stop();
+  });
+  robot.run(clock, stop.get_token());
+  return console.finish();
+}
+
+int run_real(MonotonicClock& clock, Robot& robot, Console& console) {
+  {
+    std::jthread loop([&](const std::stop_token& stop) {
+      for (const std::string& refused : make_real_time(kPriority)) say(refused);
+      robot.run(clock, stop);
+    });
+    notify_service("READY=1");
+    for (RobotTime due = clock.now(); stop_signal == 0 && console.tick(due); due = std::max(due + kTick, clock.now()))
+      clock.sleep_until(due + kTick);
+    notify_service("STOPPING=1");
+  }
+  const int code = console.finish();
+  return stop_signal == SIGINT ? 130 : code;
+}
+
+template <typename ClockKind>
+int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, Robot&, Console&)) {
+  ClockKind clock;
+  RobotDeviceOptions options;
+  options.mock = arguments.mock;
+  if (!arguments.log.empty()) options.log = arguments.log;
+  RobotDevices devices(rig, clock, options);
+  devices.bring_up(say);
+  if (arguments.check_only) return 0;
+  const auto shape = rig.shape();
+  if (!shape) say("the rig has no robot.urdf: nothing is checked against the surroundings");
+  Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
+  Console console(rig, devices, robot, arguments);
+  std::signal(SIGINT, [](int signal) { stop_signal = signal; });
+  std::signal(SIGTERM, [](int signal) { stop_signal = signal; });
+  std::signal(SIGHUP, [](int signal) { stop_signal = signal; });
+  return run(clock, robot, console);
+}
+
+int run(const Arguments& arguments) {
+  const Rig rig = read_rig(arguments.rig);
+  if (!arguments.stepped) return run_with<MonotonicClock>(rig, arguments, run_real);
+  for (const RigBus& bus : rig.buses)
+    if (!arguments.mock && bus.interface != "mock")
+      throw InputError("--stepped", "bus '" + bus.name + "' is a real one, whose time cannot be stepped", "add --mock, or leave --stepped out");
+  return run_with<SteppedClock>(rig, arguments, run_stepped);
+}
+
+}  // namespace
+
+void add_robot_command(CLI::App& app, std::function<int()>& action) {
+  auto* command = app.add_subcommand("robot", "Runs the robot side of a rig: drives behind a safety gate");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->required();
+  command->add_flag("--mock", arguments->mock, "Emulated drives on every bus, whatever the rig says");
+  command->add_option("--follow", arguments->follow, "CSV file with the columns time_s and names of joints; enables, follows it and ends");
+  command->add_flag("--home", arguments->may_home, "Consent: with --follow, joints that are not homed look for home, slowly");
+  command->add_option("--log", arguments->log, "candump log of all frames");
+  command->add_flag("--stepped", arguments->stepped, "As fast as the machine can, the same on every run; only with mock drives");
+  command->add_flag("--check", arguments->check_only, "Only identify and configure the drives; move nothing");
+  command->footer(
+      "On a terminal, keys enable, home, move and stop the robot; space is a stop. A software stop does not replace a\n"
+      "hardware emergency stop. The drives stop on their own when this program ends in whatever way.\n\n"
+      "Exit codes: 0 done, 1 stopped or a device failed, 2 wrong input, 130 Ctrl-C.\n\n"
+      "Example: foresight robot configs/minerva.yaml --mock --home --follow motion.csv --log session.log");
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace foresight

@@ -1,0 +1,57 @@
+#include "apps/robot/follow_file.hpp"
+
+#include "tests/scene/test_run.hpp"
+
+namespace foresight {
+namespace {
+
+class FollowFileTest : public testing::Test {
+ protected:
+  std::string error_of(const std::string& text) {
+    const auto file = folder_.write("motion.csv", text);
+    return input_error([&] { FollowFile(file, rig_); });
+  }
+  TempFolder folder_;
+  Rig rig_ = read_rig(std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/minerva.yaml");
+};
+
+TEST_F(FollowFileTest, GoesStraightBetweenItsRows) {
+  const auto file = folder_.write("motion.csv", "# a nod\ntime_s, elbow, tilt\r\n1,0.5,0\r\n2,1.0,-0.5\n\n4,1,0.5\n");
+  const FollowFile follow(file, rig_);
+  EXPECT_EQ(follow.duration_s(), 3);
+  JointValues q{};
+  q[0] = 0.25;
+  const auto expect = [&](double t, double elbow, double tilt) {
+    follow.at(t, q);
+    EXPECT_NEAR(q[3], elbow, 1e-12) << t;
+    EXPECT_NEAR(q[9], tilt, 1e-12) << t;
+    EXPECT_EQ(q[0], 0.25) << "not in the file";
+  };
+  expect(-1, 0.5, 0);
+  expect(0, 0.5, 0);
+  expect(0.5, 0.75, -0.25);
+  expect(2, 1, 0);
+  expect(9, 1, 0.5);
+}
+
+TEST_F(FollowFileTest, EveryMistakeHasItsMessage) {
+  const auto expect = [&](const char* text, std::initializer_list<const char*> words) {
+    const std::string message = error_of(text);
+    for (const char* word : words) EXPECT_THAT(message, testing::HasSubstr(word)) << text;
+  };
+  expect("", {"motion.csv", "no positions"});
+  expect("time_s,elbow\n", {"no positions"});
+  expect("0,1\n", {"motion.csv:1", "no heading"});
+  expect("time_s,elbo\n0,1\n", {"motion.csv:1", "elbo", "'elbow'"});
+  expect("time_s,elbow,elbow\n0,1,1\n", {"two columns"});
+  expect("time_s,elbow\n0,1,2\n", {"motion.csv:2", "3 fields", "give 2"});
+  expect("time_s,elbow\n0,one\n", {"motion.csv:2", "'one'"});
+  expect("time_s,elbow\n0,nan\n", {"motion.csv:2", "nan"});
+  expect("time_s,elbow\n0,0\n0,0\n", {"motion.csv:3", "after the row before"});
+  expect("time_s,elbow\n0,3\n", {"motion.csv:2", "elbow", "beyond its limits"});
+  expect("time_s,elbow\n0,0\n0.1,1\n", {"motion.csv:3", "faster than"});
+  EXPECT_THAT(input_error([&] { FollowFile("none.csv", rig_); }), testing::HasSubstr("none.csv"));
+}
+
+}  // namespace
+}  // namespace foresight
