@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "apps/bench/can_bench.hpp"
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
 #include "apps/bench/margin.hpp"
@@ -42,11 +43,20 @@ void add_margin(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_margin(*options); }; });
 }
 
+void add_can(CLI::App& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("can", "CPU time of our share of CAN beside what a wire can carry");
+  auto options = std::make_shared<CanBenchOptions>();
+  command->add_option("--json", options->json, "File for all numbers");
+  command->footer("Exit code: 1 where a full 1 Mbit/s bus needs 5 % of a core or more.");
+  command->callback([options, &action] { action = [options] { return bench_can(*options); }; });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, std::function<int()>& action) {
   auto* bench = app.add_subcommand("bench", "Measures, and compares with the pipeline of the thesis");
   bench->require_subcommand(1);
+  add_can(*bench, action);
   add_extraction(*bench, action);
   add_figures(*bench, action);
   add_margin(*bench, action);

@@ -2,17 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/can/frames.hpp"
+
 namespace foresight {
 namespace {
 
 using namespace std::chrono_literals;
-
-CanFrame frame(std::uint32_t id, std::initializer_list<std::uint8_t> bytes = {}) {
-  CanFrame out;
-  out.id = id;
-  for (std::uint8_t b : bytes) out.data[out.size++] = b;
-  return out;
-}
 
 TEST(InProcessBus, DeliversToAllOthersInOrder) {
   MonotonicClock clock;

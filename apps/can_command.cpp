@@ -1,0 +1,61 @@
+#include "apps/can_command.hpp"
+
+#include <memory>
+
+#include "apps/can_jobs.hpp"
+#include "apps/run_options.hpp"
+
+namespace foresight {
+namespace {
+
+void add_scan(CLI::App& can, std::function<int()>& action) {
+  auto* command = can.add_subcommand("scan", "Lists the CAN interfaces with their bit rate and state");
+  command->footer("Exit code: 0 where an interface can be used, 1 where none is there or all are down or bus-off.");
+  command->callback([&action] { action = [] { return scan_can(); }; });
+}
+
+void add_dump(CLI::App& can, std::function<int()>& action) {
+  auto* command = can.add_subcommand("dump", "Prints the frames on a bus, in can-utils' log form");
+  auto options = std::make_shared<CanDumpOptions>();
+  command->add_option("IF", options->interface, "Interface, such as can0")->required();
+  command->add_option("--count", options->count, "Stop after so many frames")->check(from_to(1, 1e15));
+  command->add_option("--seconds", options->seconds, "Stop after so long")->check(from_to(0, 1e9));
+  command->add_option("--log", options->log, "Write a log there too");
+  command->add_option("--filter", options->filters, "Only these identifiers: ID:MASK in hex (8 digits: 29 bits)");
+  command->add_flag("--fd", options->fd, "FD frames too; the interface must be set up for them");
+  command->footer("Example: foresight can dump can0 --filter 580:780 --seconds 10 --log sdo.log");
+  command->callback([options, &action] { action = [options] { return dump_can(*options); }; });
+}
+
+void add_send(CLI::App& can, std::function<int()>& action) {
+  auto* command = can.add_subcommand("send", "Sends one frame");
+  auto options = std::make_shared<CanSendOptions>();
+  command->add_option("IF", options->interface, "Interface, such as can0")->required();
+  command->add_option("FRAME", options->frame, "123#DEADBEEF; 123#R8 remote; 123##1AABB FD")->required();
+  command->callback([options, &action] { action = [options] { return send_can(*options); }; });
+}
+
+void add_replay(CLI::App& can, std::function<int()>& action) {
+  auto* command = can.add_subcommand("replay", "Sends what a log holds, at its pace");
+  auto options = std::make_shared<CanReplayOptions>();
+  command->add_option("FILE", options->file, "A log of `foresight can dump --log` or candump -l")->required();
+  command->add_option("IF", options->interface, "Interface, such as vcan0")->required();
+  command->add_option("--speed", options->speed, "2: twice as fast")->check(from_to(1e-3, 1e6))->capture_default_str();
+  command->add_option("--gap", options->gap_ms, "ms between frames that have no times")
+      ->check(from_to(0, 1e6))
+      ->capture_default_str();
+  command->callback([options, &action] { action = [options] { return replay_can(*options); }; });
+}
+
+}  // namespace
+
+void add_can_command(CLI::App& app, std::function<int()>& action) {
+  auto* can = app.add_subcommand("can", "Looks at CAN buses, records them, and talks to them by hand");
+  can->require_subcommand(1);
+  add_scan(*can, action);
+  add_dump(*can, action);
+  add_send(*can, action);
+  add_replay(*can, action);
+}
+
+}  // namespace foresight

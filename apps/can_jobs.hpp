@@ -1,0 +1,40 @@
+// What the subcommands of `foresight can` do. All throw InputError and RuntimeFailure, and return
+// the exit code: 0, or 130 after Ctrl-C.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace foresight {
+
+/// Lists the interfaces with what the kernel knows of them, and what to type where something is
+/// missing. Returns 1 where none can be used (none there, or all down or bus-off).
+int scan_can();
+
+struct CanDumpOptions {
+  std::string interface;
+  bool fd = false;                           ///< FD frames too
+  std::optional<long long> count;            ///< stop after so many frames
+  std::optional<double> seconds;             ///< stop after so long
+  std::optional<std::filesystem::path> log;  ///< and write a log there
+  std::vector<std::string> filters;          ///< "ID:MASK" in hex, as candump's
+};
+/// Prints frames as can-utils' log form, with unix times.
+int dump_can(const CanDumpOptions& options);
+
+struct CanSendOptions {
+  std::string interface, frame;
+};
+int send_can(const CanSendOptions& options);
+
+struct CanReplayOptions {
+  std::filesystem::path file;
+  std::string interface;
+  double speed = 1;
+  double gap_ms = 1;
+};
+int replay_can(const CanReplayOptions& options);
+
+}  // namespace foresight

@@ -1,0 +1,25 @@
+// Reading the kernel's messages on network links (rtnetlink), as far as CAN is concerned.
+#pragma once
+
+#include <linux/netlink.h>
+
+#include <optional>
+
+#include "drivers/can/can_interfaces.hpp"
+
+namespace foresight {
+
+/// What a message says of a link's life; read without allocation.
+struct LinkState {
+  int index = 0;
+  bool gone = false;
+  bool up = false;
+  std::optional<CanBusState> state;  ///< of the controller, where the message has it
+};
+
+/// Of an RTM_NEWLINK or RTM_DELLINK message; nothing for others and for links that are not CAN.
+std::optional<LinkState> read_link_state(const nlmsghdr& message) noexcept;
+/// All of an RTM_NEWLINK message.
+std::optional<CanInterface> read_can_interface(const nlmsghdr& message);
+
+}  // namespace foresight
