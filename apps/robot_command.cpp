@@ -29,7 +29,9 @@ struct Arguments {
 
 volatile std::sig_atomic_t stop_signal = 0;
 
-void say(const std::string& line) { std::fprintf(stderr, "robot: %s\n", line.c_str()); }
+void say(const std::string& line) {
+  std::fprintf(stderr, "robot: %s\n", line.c_str());
+}
 
 /// What goes on beside the control loop: operators, the view, the service's watchdog.
 class Console {
@@ -142,7 +144,8 @@ int run(const Arguments& arguments) {
   if (!arguments.stepped) return run_with<MonotonicClock>(rig, arguments, run_real);
   for (const RigBus& bus : rig.buses)
     if (!arguments.mock && bus.interface != "mock")
-      throw InputError("--stepped", "bus '" + bus.name + "' is a real one, whose time cannot be stepped", "add --mock, or leave --stepped out");
+      throw InputError("--stepped", "bus '" + bus.name + "' is a real one, whose time cannot be stepped",
+                       "add --mock, or leave --stepped out");
   return run_with<SteppedClock>(rig, arguments, run_stepped);
 }
 
@@ -153,10 +156,13 @@ void add_robot_command(CLI::App& app, std::function<int()>& action) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->required();
   command->add_flag("--mock", arguments->mock, "Emulated drives on every bus, whatever the rig says");
-  command->add_option("--follow", arguments->follow, "CSV file with the columns time_s and names of joints; enables, follows it and ends");
-  command->add_flag("--home", arguments->may_home, "Consent: with --follow, joints that are not homed look for home, slowly");
+  command->add_option("--follow", arguments->follow,
+                      "CSV file with the columns time_s and names of joints; enables, follows it and ends");
+  command->add_flag("--home", arguments->may_home,
+                    "Consent: with --follow, joints that are not homed look for home, slowly");
   command->add_option("--log", arguments->log, "candump log of all frames");
-  command->add_flag("--stepped", arguments->stepped, "As fast as the machine can, the same on every run; only with mock drives");
+  command->add_flag("--stepped", arguments->stepped,
+                    "As fast as the machine can, the same on every run; only with mock drives");
   command->add_flag("--check", arguments->check_only, "Only identify and configure the drives; move nothing");
   command->footer(
       "On a terminal, keys enable, home, move and stop the robot; space is a stop. A software stop does not replace a\n"

@@ -1,5 +1,6 @@
 #include "drivers/robot/rig.hpp"
 
+#include "drivers/robot/bus_plan.hpp"
 #include "tests/scene/test_run.hpp"
 
 namespace foresight {
@@ -26,6 +27,20 @@ TEST(Rig, TheRigsThatComeWithTheProgramAreValid) {
     EXPECT_TRUE(gate.joints[7].keeps_grip);
     EXPECT_FALSE(gate.joints[0].keeps_grip);
   }
+}
+
+TEST(BusPlan, KnowsWhatARigWillSend) {
+  Rig rig = read_rig(config("minerva.yaml"));
+  // Eight modules, each a set-point and an answer of 8 bytes (111 bits and at most 24 stuffed) 250 times a second.
+  EXPECT_NEAR(planned_bus_load(rig, 0), 8 * 250 * 2 * 135 / 1e6, 0.01);
+  EXPECT_NO_THROW(require_room_on_buses(rig));
+  rig.buses[0].bit_rate = 500'000;
+  EXPECT_THAT(
+      input_error([&] { require_room_on_buses(rig); }),
+      testing::AllOf(testing::HasSubstr("'arm'"), testing::HasSubstr("108 %"), testing::HasSubstr("rate_hz to 158")));
+  const Rig cia402 = read_rig(config("cia402.yaml"));
+  EXPECT_LT(planned_bus_load(cia402, 0), kMostBusLoad);
+  EXPECT_GT(planned_bus_load(cia402, 0), 0.5);
 }
 
 /// A valid rig whose text a test changes.

@@ -1,0 +1,29 @@
+// What `foresight doctor` looks at. Each check is a function that changes nothing on the machine.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/robot/rig.hpp"
+
+namespace foresight::doctor {
+
+enum class Verdict : std::uint8_t { good, absent, poor, bad };  ///< absent: not there, and not needed by the rig
+
+/// One line of the report.
+struct Finding {
+  Verdict verdict = Verdict::good;
+  std::string subject;  ///< "bus arm"
+  std::string what;     ///< what was found
+  std::string cure;     ///< what to type or do; empty where nothing is wrong
+};
+using Findings = std::vector<Finding>;
+
+Findings check_can();                   ///< sockets in the kernel, interfaces and their state
+Findings check_buses(const Rig& rig);   ///< the rig's interfaces, bit rates and planned load
+Findings check_drives(const Rig& rig);  ///< identifies every drive; moves nothing
+Findings check_real_time();
+Findings check_graphics();
+Findings check_network();
+
+}  // namespace foresight::doctor
