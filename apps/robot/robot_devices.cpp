@@ -1,0 +1,171 @@
+#include "apps/robot/robot_devices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "common/error.hpp"
+#include "drivers/can/candump_log.hpp"
+#include "drivers/can/in_process_bus.hpp"
+#include "drivers/can/metered_bus.hpp"
+#include "drivers/can/recording_bus.hpp"
+#include "drivers/can/socket_can_bus.hpp"
+#include "drivers/canopen/canopen_network.hpp"
+#include "drivers/powercube/network.hpp"
+#include "drivers/robot/bus_plan.hpp"
+#include "sim/drives/drive_rack.hpp"
+
+namespace foresight {
+namespace {
+
+/// Writes at once, in the caller's thread: for stepped time, in which nothing may be left out and waiting costs nothing.
+class LoggedBus final : public CanBus {
+ public:
+  LoggedBus(CanBus& bus, const Clock& clock, const std::filesystem::path& file) : bus_(bus), clock_(clock), writer_(file) {}
+  const std::string& name() const noexcept override { return bus_.name(); }
+  CanSend send(const CanFrame& frame) noexcept override {
+    const CanSend result = bus_.send(frame);
+    if (result == CanSend::sent) writer_.write(Duration{clock_.now().ns}, name(), frame, true);
+    return result;
+  }
+  std::optional<CanFrame> receive(Duration timeout) noexcept override {
+    const auto frame = bus_.receive(timeout);
+    if (frame) writer_.write(Duration{frame->time.ns}, name(), *frame, false);
+    return frame;
+  }
+  CanBusState state() const noexcept override { return bus_.state(); }
+  CanCounters counters() const noexcept override { return bus_.counters(); }
+
+ private:
+  CanBus& bus_;
+  const Clock& clock_;
+  CandumpWriter writer_;
+};
+
+/// A log for each bus: FILE where there is one, else FILE's name with the bus's before its extension.
+std::filesystem::path log_of(std::filesystem::path file, const Rig& rig, const RigBus& bus) {
+  if (rig.buses.size() == 1) return file;
+  const std::string extension = file.extension().string();
+  return file.replace_extension().concat("-" + bus.name + extension);
+}
+
+/// The drive that a joint of the rig needs, as its own shaft sees it.
+sim::NodeConfig emulated(const RigJoint& joint, DriveProtocol protocol) {
+  const DriveConfig& d = joint.drive;
+  const auto at_drive = [&](double position) { return d.direction * (position - d.offset); };
+  const double room = d.max_position - d.min_position;
+  const bool powercube = protocol == DriveProtocol::powercube;
+  sim::NodeConfig out;
+  out.kind = powercube ? sim::NodeConfig::Kind::powercube : sim::NodeConfig::Kind::cia402;
+  out.node = d.node;
+  out.name = d.name;
+  if (!powercube) out.counts_per_unit = d.counts_per_unit;
+  std::tie(out.min_position, out.max_position) = std::minmax({at_drive(d.min_position), at_drive(d.max_position)});
+  // Not quite at home, where it can be looked for.
+  const double home = std::clamp(0.0, d.min_position, d.max_position);
+  out.home_position = at_drive(home);
+  out.motor.start = at_drive(powercube ? std::min(home + 0.02 * room, d.max_position) : home);
+  out.motor.min_stop = out.min_position - 0.05 * room;
+  out.motor.max_stop = out.max_position + 0.05 * room;
+  out.motor.max_velocity = 1.5 * d.max_velocity;
+  out.motor.max_acceleration = 4 * d.max_acceleration;
+  out.motor.following_error_limit = 2 * joint.following_error;
+  if (d.vendor) out.vendor = *d.vendor;
+  if (d.product) out.product = *d.product;
+  if (d.serial) out.serial = *d.serial;
+  return out;
+}
+
+std::unique_ptr<DriveNetwork> make_network(CanBus& bus, Clock& clock, const Rig& rig, std::size_t number) {
+  const Duration cycle = seconds(1 / rig.rate_hz);
+  if (rig.buses[number].protocol == DriveProtocol::powercube) {
+    std::vector<DriveConfig> drives;
+    for (const RigJoint& joint : rig.joints)
+      if (joint.bus == number) drives.push_back(joint.drive);
+    powercube::Options options;
+    options.cycle = cycle;
+    return std::make_unique<powercube::Network>(bus, clock, drives, options);
+  }
+  std::vector<canopen::Cia402Config> drives;
+  for (const RigJoint& joint : rig.joints)
+    if (joint.bus == number) {
+      canopen::Cia402Config config;
+      config.drive = joint.drive;
+      config.homing_method = joint.homing_method;
+      drives.push_back(config);
+    }
+  canopen::NetworkConfig config;
+  config.cycle = cycle;
+  return std::make_unique<canopen::CanopenNetwork>(bus, clock, config, drives);
+}
+
+}  // namespace
+
+struct RobotDevices::Bus {
+  std::unique_ptr<InProcessBus> medium;  // of a mock bus
+  std::unique_ptr<sim::DriveRack> rack;
+  std::unique_ptr<CanBus> end;
+  std::unique_ptr<CanBus> logged;
+  std::unique_ptr<MeteredBus> metered;
+  std::unique_ptr<DriveNetwork> network;
+  std::jthread rack_thread;  // the last: joined before all else goes
+};
+
+RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOptions& options) : rig_(rig) {
+  require_room_on_buses(rig);
+  const bool stepped = dynamic_cast<SteppedClock*>(&clock) != nullptr;
+  for (std::size_t i = 0; i < rig.buses.size(); ++i) {
+    const RigBus& config = rig.buses[i];
+    auto bus = std::make_unique<Bus>();
+    const CanBitRates rates{config.bit_rate, 0};
+    if (options.mock || config.interface == "mock") {
+      bus->medium = std::make_unique<InProcessBus>(config.name, clock, InProcessBusOptions{.wire = rates, .faults = {}});
+      std::vector<sim::NodeConfig> nodes;
+      for (const RigJoint& joint : rig.joints)
+        if (joint.bus == i) nodes.push_back(emulated(joint, config.protocol));
+      bus->rack = std::make_unique<sim::DriveRack>(clock, bus->medium->attach(), nodes);
+      bus->end = bus->medium->attach();
+    } else {
+      bus->end = std::make_unique<SocketCanBus>(config.interface);
+    }
+    if (options.log && stepped)
+      bus->logged = std::make_unique<LoggedBus>(*bus->end, clock, log_of(*options.log, rig, config));
+    else if (options.log)
+      bus->logged = std::make_unique<RecordingBus>(*bus->end, clock, log_of(*options.log, rig, config));
+    bus->metered = std::make_unique<MeteredBus>(bus->logged ? *bus->logged : *bus->end, clock, rates);
+    bus->network = make_network(*bus->metered, clock, rig, i);
+    if (bus->rack && !stepped)
+      bus->rack_thread = std::jthread([rack = bus->rack.get()](std::stop_token stop) { rack->run(std::move(stop)); });
+    buses_.push_back(std::move(bus));
+  }
+  std::vector<std::size_t> next(rig.buses.size());
+  for (const RigJoint& joint : rig.joints) drives_.push_back(buses_[joint.bus]->network->drives()[next[joint.bus]++]);
+}
+
+RobotDevices::~RobotDevices() = default;
+
+void RobotDevices::bring_up(const std::function<void(const std::string&)>& say) {
+  for (Drive* drive : drives_) drive->identify();
+  say(std::to_string(drives_.size()) + " drives answer as the rig says");
+  for (Drive* drive : drives_) drive->configure();
+  say("limits, process data and watchdogs are written and read back");
+}
+
+std::vector<DriveNetwork*> RobotDevices::networks() const {
+  std::vector<DriveNetwork*> out;
+  for (const auto& bus : buses_) out.push_back(bus->network.get());
+  return out;
+}
+
+std::vector<Drive*> RobotDevices::drives() const { return drives_; }
+
+std::vector<BusLine> RobotDevices::buses() const {
+  std::vector<BusLine> out;
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    const MeteredBus::Snapshot now = buses_[i]->metered->snapshot();
+    out.push_back({rig_.buses[i].name, now.state, now.counters, now.load});
+  }
+  return out;
+}
+
+}  // namespace foresight
