@@ -18,10 +18,12 @@
 namespace foresight {
 namespace {
 
-/// Writes at once, in the caller's thread: for stepped time, in which nothing may be left out and waiting costs nothing.
+/// Writes at once, in the caller's thread: for stepped time, in which nothing may be left out and waiting costs
+/// nothing.
 class LoggedBus final : public CanBus {
  public:
-  LoggedBus(CanBus& bus, const Clock& clock, const std::filesystem::path& file) : bus_(bus), clock_(clock), writer_(file) {}
+  LoggedBus(CanBus& bus, const Clock& clock, const std::filesystem::path& file)
+      : bus_(bus), clock_(clock), writer_(file) {}
   const std::string& name() const noexcept override { return bus_.name(); }
   CanSend send(const CanFrame& frame) noexcept override {
     const CanSend result = bus_.send(frame);
@@ -119,7 +121,8 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
     auto bus = std::make_unique<Bus>();
     const CanBitRates rates{config.bit_rate, 0};
     if (options.mock || config.interface == "mock") {
-      bus->medium = std::make_unique<InProcessBus>(config.name, clock, InProcessBusOptions{.wire = rates, .faults = {}});
+      bus->medium =
+          std::make_unique<InProcessBus>(config.name, clock, InProcessBusOptions{.wire = rates, .faults = {}});
       std::vector<sim::NodeConfig> nodes;
       for (const RigJoint& joint : rig.joints)
         if (joint.bus == i) nodes.push_back(emulated(joint, config.protocol));
@@ -157,7 +160,9 @@ std::vector<DriveNetwork*> RobotDevices::networks() const {
   return out;
 }
 
-std::vector<Drive*> RobotDevices::drives() const { return drives_; }
+std::vector<Drive*> RobotDevices::drives() const {
+  return drives_;
+}
 
 std::vector<BusLine> RobotDevices::buses() const {
   std::vector<BusLine> out;

@@ -4,7 +4,8 @@ namespace foresight {
 
 using namespace std::chrono_literals;
 
-MeteredBus::MeteredBus(CanBus& bus, const Clock& clock, const CanBitRates& rates) : bus_(bus), clock_(clock), load_(rates) {}
+MeteredBus::MeteredBus(CanBus& bus, const Clock& clock, const CanBitRates& rates)
+    : bus_(bus), clock_(clock), load_(rates) {}
 
 CanSend MeteredBus::send(const CanFrame& frame) noexcept {
   const CanSend result = bus_.send(frame);
