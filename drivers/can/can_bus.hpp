@@ -23,10 +23,10 @@ enum class CanSend : std::uint8_t {
 /// Since the bus was opened.
 struct CanCounters {
   std::uint64_t sent = 0, received = 0;
-  std::uint64_t send_failures = 0;   ///< full or bus_down
-  std::uint64_t lost = 0;            ///< received by the controller, dropped before we read them
+  std::uint64_t send_failures = 0;  ///< full or bus_down
+  std::uint64_t lost = 0;           ///< received by the controller, dropped before we read them
   std::uint64_t error_frames = 0;
-  std::uint64_t restarts = 0;        ///< recoveries from bus-off
+  std::uint64_t restarts = 0;  ///< recoveries from bus-off
 };
 
 /// SocketCAN (socket_can_bus.hpp), or an end of an in-process bus (in_process_bus.hpp). One thread uses one object; it

@@ -14,12 +14,12 @@ namespace foresight {
 
 /// How a joint's motor is reached and scaled. Joint units: rad (or m), after gear and offset.
 struct DriveConfig {
-  std::string name;            ///< the joint's name, for messages
-  int node = 0;                ///< CANopen node id 1 .. 127, PowerCube module id 1 .. 31
-  double counts_per_unit = 1;  ///< CiA 402: position increments per rad (or m) of the joint; > 0
-  int direction = 1;           ///< +1, or -1 where the motor turns against the joint
-  double offset = 0;           ///< joint position where the drive says 0
-  double min_position = 0, max_position = 0;  ///< written into the drive where it takes them
+  std::string name;                               ///< the joint's name, for messages
+  int node = 0;                                   ///< CANopen node id 1 .. 127, PowerCube module id 1 .. 31
+  double counts_per_unit = 1;                     ///< CiA 402: position increments per rad (or m) of the joint; > 0
+  int direction = 1;                              ///< +1, or -1 where the motor turns against the joint
+  double offset = 0;                              ///< joint position where the drive says 0
+  double min_position = 0, max_position = 0;      ///< written into the drive where it takes them
   double max_velocity = 0, max_acceleration = 0;  ///< > 0
   double homing_velocity = 0.05;                  ///< > 0, slow
   /// What the device must say of itself; absent: anything. A device that says otherwise is never moved.
@@ -30,7 +30,7 @@ enum class DriveState : std::uint8_t {
   offline,   ///< nothing heard of it in time (heartbeat, answer)
   disabled,  ///< reachable, no torque (brake holds)
   enabling,
-  enabled,   ///< follows set-points
+  enabled,  ///< follows set-points
   homing,
   stopping,  ///< decelerates after a quick stop or a halt
   fault,
@@ -39,15 +39,15 @@ const char* to_string(DriveState state);
 
 /// What a drive last told. A plain value.
 struct DriveFeedback {
-  RobotTime time;             ///< when the position was received; 0: never
+  RobotTime time;                                              ///< when the position was received; 0: never
   double position = std::numeric_limits<double>::quiet_NaN();  ///< joint units
   double velocity = std::numeric_limits<double>::quiet_NaN();
   DriveState state = DriveState::offline;
   bool homed = false;
   bool target_reached = false;
-  bool limit = false;         ///< the drive itself limits: a limit switch, soft limit or its following error
-  std::uint32_t fault_code = 0;   ///< CiA 402: EMCY / 603Fh code; PowerCube: state word
-  const char* fault = "";         ///< its meaning; static text
+  bool limit = false;            ///< the drive itself limits: a limit switch, soft limit or its following error
+  std::uint32_t fault_code = 0;  ///< CiA 402: EMCY / 603Fh code; PowerCube: state word
+  const char* fault = "";        ///< its meaning; static text
 };
 
 enum class DriveRequest : std::uint8_t {
