@@ -7,8 +7,10 @@
 
 #include "apps/bench/bench_command.hpp"
 #include "apps/can_command.hpp"
+#include "apps/doctor_command.hpp"
 #include "apps/export_command.hpp"
 #include "apps/replay_command.hpp"
+#include "apps/robot_command.hpp"
 #include "apps/synth_command.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
@@ -39,6 +41,8 @@ int main(int argc, char** argv) {
   foresight::add_synth_command(app, action);
   foresight::add_can_command(app, action);
   foresight::add_bench_command(app, action);
+  foresight::add_robot_command(app, action);
+  foresight::add_doctor_command(app, action);
 
   try {
     app.parse(argc, argv);

@@ -108,7 +108,7 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console) {
 int run_real(MonotonicClock& clock, Robot& robot, Console& console) {
   {
     std::jthread loop([&](const std::stop_token& stop) {
-      for (const std::string& refused : make_real_time(kPriority)) say(refused);
+      if (const std::string refused = make_real_time(kPriority); !refused.empty()) say(refused);
       robot.run(clock, stop);
     });
     notify_service("READY=1");
@@ -127,8 +127,10 @@ int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, 
   options.mock = arguments.mock;
   if (!arguments.log.empty()) options.log = arguments.log;
   RobotDevices devices(rig, clock, options);
-  devices.bring_up(say);
-  if (arguments.check_only) return 0;
+  if (arguments.check_only) {
+    devices.bring_up(say);
+    return 0;
+  }
   const auto shape = rig.shape();
   if (!shape) say("the rig has no robot.urdf: nothing is checked against the surroundings");
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
@@ -136,6 +138,8 @@ int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, 
   std::signal(SIGINT, [](int signal) { stop_signal = signal; });
   std::signal(SIGTERM, [](int signal) { stop_signal = signal; });
   std::signal(SIGHUP, [](int signal) { stop_signal = signal; });
+  if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
+  devices.bring_up(say);
   return run(clock, robot, console);
 }
 

@@ -8,22 +8,23 @@
 
 namespace foresight {
 
-std::vector<std::string> make_real_time(int priority) {
-  std::vector<std::string> refused;
+std::string make_real_time(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
-  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters); error != 0)
-    refused.push_back("no real-time priority (" + std::string(std::strerror(error)) +
-                      "): add '@realtime - rtprio 90' to /etc/security/limits.conf and yourself to the group realtime, "
-                      "or LimitRTPRIO=90 to the systemd unit");
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+  if (error == 0) return {};
+  return "no real-time priority (" + std::string(std::strerror(error)) +
+         "): add '@realtime - rtprio 90' to /etc/security/limits.conf and yourself to the group realtime, or "
+         "LimitRTPRIO=90 to the systemd unit";
+}
+
+std::string lock_memory() {
   rlimit most{};
   getrlimit(RLIMIT_MEMLOCK, &most);
   // With a limit, MCL_FUTURE would make later allocations fail.
-  if (most.rlim_cur != RLIM_INFINITY || mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
-    refused.push_back(
-        "memory is not locked: add '@realtime - memlock unlimited' to /etc/security/limits.conf, or "
-        "LimitMEMLOCK=infinity to the systemd unit");
-  return refused;
+  if (most.rlim_cur == RLIM_INFINITY && mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return {};
+  return "memory is not locked: add '@realtime - memlock unlimited' to /etc/security/limits.conf, or "
+         "LimitMEMLOCK=infinity to the systemd unit";
 }
 
 }  // namespace foresight

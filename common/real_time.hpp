@@ -2,12 +2,15 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace foresight {
 
-/// Gives the calling thread real-time priority (SCHED_FIFO) and locks the process's memory. What the system refuses
-/// is left as it was; the answer has a sentence for each refusal, with what to set, and is empty where all was granted.
-std::vector<std::string> make_real_time(int priority);
+/// Gives the calling thread real-time priority (SCHED_FIFO). Where the system refuses, all is left as it was and the
+/// answer says why and what to set; empty where it was granted.
+std::string make_real_time(int priority);
+
+/// Keeps the process's memory, present and future, out of reach of the swap. Takes a while. Answers as
+/// make_real_time().
+std::string lock_memory();
 
 }  // namespace foresight

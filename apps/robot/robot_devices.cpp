@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <thread>
 
 #include "common/error.hpp"
@@ -27,21 +28,59 @@ class LoggedBus final : public CanBus {
   const std::string& name() const noexcept override { return bus_.name(); }
   CanSend send(const CanFrame& frame) noexcept override {
     const CanSend result = bus_.send(frame);
-    if (result == CanSend::sent) writer_.write(Duration{clock_.now().ns}, name(), frame, true);
+    if (result == CanSend::sent) write(clock_.now(), frame, true);
     return result;
   }
   std::optional<CanFrame> receive(Duration timeout) noexcept override {
     const auto frame = bus_.receive(timeout);
-    if (frame) writer_.write(Duration{frame->time.ns}, name(), *frame, false);
+    if (frame) write(frame->time, *frame, false);
     return frame;
   }
   CanBusState state() const noexcept override { return bus_.state(); }
   CanCounters counters() const noexcept override { return bus_.counters(); }
 
  private:
+  void write(RobotTime time, const CanFrame& frame, bool sent) noexcept {
+    if (failed_) return;
+    try {
+      writer_.write(Duration{time.ns}, name(), frame, sent);
+    } catch (const std::exception& error) {
+      failed_ = true;
+      std::fprintf(stderr, "robot: the log ends here: %s\n", error.what());
+    }
+  }
+
   CanBus& bus_;
   const Clock& clock_;
   CandumpWriter writer_;
+  bool failed_ = false;
+};
+
+/// While one network is set up and waits for its answers here, the others go on: their drives' watchdogs would find
+/// them silent.
+class PatientBus final : public CanBus {
+ public:
+  PatientBus(CanBus& bus, Clock& clock, std::function<void()> meanwhile)
+      : bus_(bus), clock_(clock), meanwhile_(std::move(meanwhile)) {}
+  const std::string& name() const noexcept override { return bus_.name(); }
+  CanSend send(const CanFrame& frame) noexcept override { return bus_.send(frame); }
+  std::optional<CanFrame> receive(Duration timeout) noexcept override {
+    if (timeout.count() <= 0) return bus_.receive(timeout);
+    const RobotTime until = clock_.now() + timeout;
+    for (RobotTime now = clock_.now();; now = clock_.now()) {
+      meanwhile_();
+      if (auto frame = bus_.receive(std::clamp(until - now, Duration{0}, kSlice))) return frame;
+      if (clock_.now() >= until) return std::nullopt;
+    }
+  }
+  CanBusState state() const noexcept override { return bus_.state(); }
+  CanCounters counters() const noexcept override { return bus_.counters(); }
+
+ private:
+  static constexpr Duration kSlice = std::chrono::milliseconds(2);
+  CanBus& bus_;
+  Clock& clock_;
+  std::function<void()> meanwhile_;
 };
 
 /// A log for each bus: FILE where there is one, else FILE's name with the bus's before its extension.
@@ -109,11 +148,13 @@ struct RobotDevices::Bus {
   std::unique_ptr<CanBus> end;
   std::unique_ptr<CanBus> logged;
   std::unique_ptr<MeteredBus> metered;
+  std::unique_ptr<PatientBus> patient;
+  RobotTime served;
   std::unique_ptr<DriveNetwork> network;
   std::jthread rack_thread;  // the last: joined before all else goes
 };
 
-RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOptions& options) : rig_(rig) {
+RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOptions& options) : rig_(rig), clock_(clock) {
   require_room_on_buses(rig);
   const bool stepped = dynamic_cast<SteppedClock*>(&clock) != nullptr;
   for (std::size_t i = 0; i < rig.buses.size(); ++i) {
@@ -136,7 +177,8 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
     else if (options.log)
       bus->logged = std::make_unique<RecordingBus>(*bus->end, clock, log_of(*options.log, rig, config));
     bus->metered = std::make_unique<MeteredBus>(bus->logged ? *bus->logged : *bus->end, clock, rates);
-    bus->network = make_network(*bus->metered, clock, rig, i);
+    bus->patient = std::make_unique<PatientBus>(*bus->metered, clock, [this, i] { serve_others(i); });
+    bus->network = make_network(*bus->patient, clock, rig, i);
     if (bus->rack && !stepped)
       bus->rack_thread = std::jthread([rack = bus->rack.get()](std::stop_token stop) { rack->run(std::move(stop)); });
     buses_.push_back(std::move(bus));
@@ -146,6 +188,17 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
 }
 
 RobotDevices::~RobotDevices() = default;
+
+void RobotDevices::serve_others(std::size_t than) noexcept {
+  const RobotTime now = clock_.now();
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    Bus& bus = *buses_[i];
+    if (i == than || now - bus.served < seconds(1 / rig_.rate_hz)) continue;
+    bus.served = now;
+    bus.network->receive(now);
+    bus.network->send(now);
+  }
+}
 
 void RobotDevices::bring_up(const std::function<void(const std::string&)>& say) {
   for (Drive* drive : drives_) drive->identify();

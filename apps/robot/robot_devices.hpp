@@ -26,7 +26,8 @@ class RobotDevices {
   RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOptions& options);
   ~RobotDevices();
 
-  /// Identifies and configures every drive, in the rig's order; `say` gets a line for each.
+  /// Identifies and configures every drive, in the rig's order; `say` gets a line for each step. From then on the
+  /// drives expect to hear from us, every 100 ms at least: the loop must follow at once.
   void bring_up(const std::function<void(const std::string&)>& say);
 
   std::vector<DriveNetwork*> networks() const;
@@ -36,7 +37,10 @@ class RobotDevices {
 
  private:
   struct Bus;
+  void serve_others(std::size_t than) noexcept;
+
   const Rig& rig_;
+  Clock& clock_;
   std::vector<std::unique_ptr<Bus>> buses_;
   std::vector<Drive*> drives_;
 };

@@ -9,7 +9,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint32_t kRepeatCycles = 5;    // a lost Halt is sent again after so many
+constexpr std::uint32_t kRepeatCycles = 5;  // a lost Halt is sent again after so many
+constexpr std::uint32_t kAskWhileStepping = 5;
 constexpr Duration kEnableTime = 1s;          // from the request until the module has left its halt
 constexpr Duration kResetRepeatTime = 100ms;  // a lost Reset is sent again
 constexpr Duration kHomeBeginTime = 1s;       // until homing shows in the state word
@@ -256,13 +257,19 @@ void Module::watch_homing() noexcept {
   if (now_ - entered_ > longest) fail("homing takes too long");
 }
 
+// One question a cycle: eight modules at 250 Hz would fill the bus with more. Behind set-points, whose answers hold
+// position and the most important bits, only now and then.
 void Module::send_questions(CanBus& bus) noexcept {
   const bool stepping = state_ == DriveState::enabled && word_is(kHomeOk) && options_.set_points == SetPoints::step;
+  if (stepping && cycles_ % kAskWhileStepping != 0) return;
+  const std::uint32_t turn = stepping ? cycles_ / kAskWhileStepping : cycles_;
   // The state before the position: a position that follows "homed" is one after homing.
-  if (!stepping || cycles_ % 2 == 0) bus.send(get_param(config_.node, Param::cube_state));
-  if (state_ == DriveState::offline) return;
-  if (!stepping) bus.send(get_param(config_.node, Param::act_pos));
-  if (cycles_ % 2 == 1) bus.send(get_param(config_.node, Param::act_vel));
+  if (turn % 2 == 0 || state_ == DriveState::offline)
+    bus.send(get_param(config_.node, Param::cube_state));
+  else if (stepping || turn % 8 == 7)
+    bus.send(get_param(config_.node, Param::act_vel));
+  else
+    bus.send(get_param(config_.node, Param::act_pos));
 }
 
 }  // namespace foresight::powercube

@@ -14,6 +14,9 @@ constexpr Duration kRestWithin = 3s;
 bool is_enabled(const DriveFeedback& f) {
   return f.state == DriveState::enabled;
 }
+bool is_faulty(const DriveFeedback& f) {
+  return f.state == DriveState::fault;
+}
 
 }  // namespace
 
@@ -105,8 +108,9 @@ void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
       homing_asked_ = false;
       return enter(RobotPhase::homing, now);
   }
-  for (Drive* drive : drives_) drive->request(DriveRequest::enable);
-  resetting_ = false;
+  // A drive whose watchdog stopped it when the program ended before says so now. Whoever enables has looked.
+  resetting_ = std::any_of(feedback_.begin(), feedback_.end(), is_faulty);
+  for (Drive* drive : drives_) drive->request(resetting_ ? DriveRequest::reset_fault : DriveRequest::enable);
   enter(RobotPhase::enabling, now);
 }
 
@@ -119,8 +123,7 @@ void Robot::advance_enabling(RobotTime now) noexcept {
   }
   waiting_for_ = static_cast<int>(missing - feedback_.begin());
   // Faults are cleared first; what is still at fault after that stays so.
-  const bool faulty =
-      std::any_of(feedback_.begin(), feedback_.end(), [](const auto& f) { return f.state == DriveState::fault; });
+  const bool faulty = std::any_of(feedback_.begin(), feedback_.end(), is_faulty);
   if (resetting_ && !faulty) {
     for (Drive* drive : drives_) drive->request(DriveRequest::enable);
     resetting_ = false;

@@ -234,6 +234,8 @@ void Cia402Node::run(RobotTime, double dt) {
                                                                            : Braking::quick;
     motor_.track(motion_.step(dt, braking, halted, motor_.shaft().position, switches()));
     if (motion_.at_rest() && std::abs(motor_.shaft().velocity) < kRest) states_.at_rest();
+  } else {
+    motion_.hold(motor_.shaft().position);  // a new mode counts at once
   }
   motor_.step(dt);
   take_events();
