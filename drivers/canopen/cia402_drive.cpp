@@ -211,7 +211,10 @@ std::optional<CanFrame> Cia402Drive::command(bool permitted, RobotTime now) noex
   if (!configured_) return std::nullopt;
   const bool followed = machine_.follows();
   const bool may_enable = permitted && online_ && process_seen_ && *refusal_ == 0 && !mode_failed_;
-  std::uint16_t word = machine_.step({status_, mode_shown_, may_enable, error_told_}, now);
+  // Just set up: a request waits for the first process data, at most until its absence counts as a loss.
+  const bool waits = !process_seen_ && online_ && machine_.idle();
+  std::uint16_t word = 0;
+  if (!waits) word = machine_.step({status_, mode_shown_, may_enable, error_told_}, now);
   if (machine_.resetting()) error_told_ = false;
   // What was asked for before a stop, a fault or another mode is forgotten: it starts where the joint is.
   if (!followed || !machine_.follows()) hold();

@@ -35,6 +35,7 @@ class Cia402Machine {
   void stop() noexcept;
 
   DriveState state() const noexcept;
+  bool idle() const noexcept { return goal_ == Goal::off; }  ///< nothing is asked for but what is pending
   /// The drive takes set-points now; otherwise it gets its own actual position.
   bool follows() const noexcept { return follows_; }
   OperationMode wanted_mode() const noexcept { return wanted_mode_; }  ///< to be written to 6060h
