@@ -240,6 +240,43 @@ TEST_F(Network, FailedHomingStops) {
   EXPECT_THAT(rig.feedback().fault, HasSubstr("homing failed"));
 }
 
+TEST_F(Network, ARefusedModeStops) {
+  slave.remove(0x6060);
+  rig.drive().request(DriveRequest::home);
+  rig.cycles(10, 3.0);
+  EXPECT_EQ(rig.feedback().state, DriveState::stopping);
+  EXPECT_STREQ(rig.feedback().fault, "the drive refused its mode of operation");
+  rig.enable();
+  EXPECT_EQ(rig.feedback().state, DriveState::stopping);
+}
+
+TEST(NetworkFaults, ADriveThatIsInFaultAtSetUpCanBeReset) {
+  CanopenRig rig;
+  rig.slave().state = 0x08;
+  rig.slave().remove(0x603F);
+  rig.configure();
+  rig.cycles(3);
+  EXPECT_EQ(rig.feedback().state, DriveState::fault);
+  EXPECT_STREQ(rig.feedback().fault, "the drive does not say why");
+  rig.drive().request(DriveRequest::reset_fault);
+  rig.cycles(12);
+  rig.enable();
+  EXPECT_EQ(rig.feedback().state, DriveState::enabled);
+}
+
+TEST(NetworkFaults, AFaultThatRemainsIsSaid) {
+  CanopenRig rig;
+  rig.configure();
+  rig.enable();
+  rig.slave().stuck_fault = true;
+  rig.slave().fail(0x7121);
+  rig.cycles(3);
+  rig.drive().request(DriveRequest::reset_fault);
+  rig.cycles(40);
+  EXPECT_EQ(rig.feedback().state, DriveState::fault);
+  EXPECT_EQ(rig.feedback().fault_code, 0x7121u);
+}
+
 TEST(NetworkModes, CyclicVelocityStartsAndStopsAtZero) {
   CanopenRig rig(1, OperationMode::cyclic_velocity);
   rig.configure();
