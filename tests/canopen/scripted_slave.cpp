@@ -83,6 +83,8 @@ void ScriptedSlave::answer_sdo(const CanFrame& r) {
   const std::uint32_t index = at >> 8;
   const bool mapping = (index & 0xff00) == 0x1600 || (index & 0xff00) == 0x1a00;
   if (mapping && !(objects[(index - 0x200) << 8 | 1].value & 0x80000000)) return reply(0x80, 0x06040041);
+  const bool cob_id = ((index & 0xff00) == 0x1400 || (index & 0xff00) == 0x1800) && (at & 0xff) == 1;
+  if (cob_id && !(o.value & 0x80000000) && (value ^ o.value) & 0x3fffffff) return reply(0x80, 0x06090030);
   writes.push_back(at);
   if (o.keeps) o.value = value;
   if (at == 0x606000 && o.keeps) objects[0x606100].value = value;

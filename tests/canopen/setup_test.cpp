@@ -53,6 +53,17 @@ TEST(Setup, WritesAndProvesEverything) {
   EXPECT_DOUBLE_EQ(rig.feedback().position, 1.5);
 }
 
+TEST(Setup, PdosOfAnotherMasterAreTakenOver) {
+  CanopenRig rig;
+  ScriptedSlave& s = rig.slave();
+  s.object(0x1400, 1).value = 0x333;  // the slave lets its other bits change only while bit 31 is set
+  s.object(0x1600, 0).value = 3;
+  s.object(0x1600, 3).value = 0x60FF0020;
+  rig.configure();
+  EXPECT_EQ(s.object(0x1400, 1).value, 0x201u);
+  EXPECT_EQ(s.object(0x1600, 0).value, 2u);
+}
+
 TEST(Setup, LimitsOfATurnedMotorAreTurnedToo) {
   CanopenRig rig(2);
   rig.configure();
