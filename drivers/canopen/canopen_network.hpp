@@ -12,7 +12,8 @@
 namespace foresight::canopen {
 
 /// Set-up: identify() and configure() of each drive wait here for their answers, and the heartbeat goes on
-/// meanwhile. Loop: receive(), requests and set-points, send(), every `config.cycle`. send() puts RPDOs first and
+/// meanwhile; from the first configure() on, the drives stop themselves where send() or set-up pauses for longer
+/// than `watchdog`. Loop: receive(), requests and set-points, send(), every `config.cycle`. send() puts RPDOs first and
 /// SYNC behind them, so that set-points count at once and positions are those of that instant.
 /// Another master on the bus (frames that only a master sends, and not we) ends enabling for good: every
 /// enabled drive gets a quick stop. One thread.

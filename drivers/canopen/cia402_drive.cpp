@@ -170,7 +170,6 @@ void Cia402Drive::check(RobotTime now) noexcept {
   const bool owed = unanswered_ * network_.cycle > network_.feedback_timeout;
   if (owed || now - process_time_ > network_.feedback_timeout) process_seen_ = false;
   const bool silent = !heartbeat_.state(now) || owed;
-  if (silent && online_) machine_.stop();
   online_ = !silent;
 }
 
@@ -194,14 +193,13 @@ std::uint16_t Cia402Drive::strobe(std::uint16_t word) noexcept {
 }
 
 void Cia402Drive::switch_mode(RobotTime now) noexcept {
-  if (sdo_.busy()) return;
-  const bool failed = sdo_.status() != SdoStatus::done && sdo_.status() != SdoStatus::idle;
-  if (failed && !mode_failed_) {
-    mode_failed_ = true;
-    machine_.stop();
+  if (sdo_.busy() || mode_failed_) return;
+  if (switching_ && sdo_.status() != SdoStatus::done) {
+    mode_failed_ = true;  // ends enabling; only configure() puts it right
     return;
   }
-  if (machine_.wanted_mode() == mode_written_ || failed) return;
+  switching_ = machine_.wanted_mode() != mode_written_;
+  if (!switching_) return;
   mode_written_ = machine_.wanted_mode();
   const auto byte = static_cast<std::uint8_t>(mode_written_);
   sdo_.download(0x6060, 0, {&byte, 1}, bus_, now);
@@ -211,7 +209,10 @@ std::optional<CanFrame> Cia402Drive::command(bool permitted, RobotTime now) noex
   if (!configured_) return std::nullopt;
   const bool followed = machine_.follows();
   const bool may_enable = permitted && online_ && process_seen_ && *refusal_ == 0 && !mode_failed_;
-  std::uint16_t word = machine_.step({status_, mode_shown_, may_enable, error_told_}, now);
+  // Just set up: a request waits for the first process data, at most until its absence counts as a loss.
+  const bool waits = !process_seen_ && online_ && machine_.idle();
+  std::uint16_t word = 0;
+  if (!waits) word = machine_.step({status_, mode_shown_, may_enable, error_told_}, now);
   if (machine_.resetting()) error_told_ = false;
   // What was asked for before a stop, a fault or another mode is forgotten: it starts where the joint is.
   if (!followed || !machine_.follows()) hold();

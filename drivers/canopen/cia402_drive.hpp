@@ -102,7 +102,8 @@ class Cia402Drive final : public Drive {
   bool speed_seen_ = false;
   int mode_shown_ = 0;
   OperationMode mode_written_ = OperationMode::none;
-  bool mode_failed_ = false;
+  bool switching_ = false;    // a write of the mode is under way
+  bool mode_failed_ = false;  // it was refused
   bool error_told_ = false;
   std::uint16_t fault_code_ = 0;
 

@@ -37,11 +37,6 @@ void Cia402Machine::restart() noexcept {
   trouble_ = "";
 }
 
-void Cia402Machine::stop() noexcept {
-  if (goal_ != Goal::off) set_goal(Goal::quick_stop);
-  pending_ = DriveRequest::none;
-}
-
 std::uint16_t Cia402Machine::step(const Input& in, RobotTime now) noexcept {
   now_ = now;
   observe(in);

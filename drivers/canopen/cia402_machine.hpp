@@ -31,10 +31,9 @@ class Cia402Machine {
   std::uint16_t step(const Input& in, RobotTime now) noexcept;
   /// Forgets all requests: after set-up, after a loss.
   void restart() noexcept;
-  /// As request(quick_stop), at once: for losses that step() cannot see.
-  void stop() noexcept;
 
   DriveState state() const noexcept;
+  bool idle() const noexcept { return goal_ == Goal::off; }  ///< nothing is asked for but what is pending
   /// The drive takes set-points now; otherwise it gets its own actual position.
   bool follows() const noexcept { return follows_; }
   OperationMode wanted_mode() const noexcept { return wanted_mode_; }  ///< to be written to 6060h

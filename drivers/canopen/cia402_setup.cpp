@@ -54,7 +54,7 @@ void Cia402Drive::configure() {
   lose("configure() has not succeeded");
   lost_ = "";
   notes_.clear();
-  speed_seen_ = mode_failed_ = false;
+  speed_seen_ = switching_ = mode_failed_ = false;
   identify();
   bus_.send(nmt_frame(NmtCommand::enter_pre_operational, config_.drive.node));
   switch_off();

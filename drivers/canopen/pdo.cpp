@@ -74,7 +74,8 @@ void configure_pdo(SdoAccess& sdo, const Pdo& pdo) {
   const auto old = static_cast<std::uint32_t>(sdo.read({communication, 1, 4}));
   // A node may insist on the bit that says whether it answers remote requests; it is left as it is.
   const std::uint32_t id = (old & kNoRemote) | pdo.cob_id();
-  sdo.write({communication, 1, 4}, kInvalid | id);
+  // The other bits may change only once it does not exist (7.5.2.36).
+  sdo.write({communication, 1, 4}, kInvalid | std::int64_t{old});
   sdo.write_proven({communication, 2, 1}, pdo.transmission());
   sdo.write({mapping, 0, 1}, 0);
   for (std::size_t i = 0; i < pdo.entries().size(); ++i) {
