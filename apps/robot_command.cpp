@@ -39,7 +39,7 @@ class Console {
   Console(const Rig& rig, const RobotDevices& devices, Robot& robot, const Arguments& arguments)
       : rig_(rig), devices_(devices), robot_(robot), keys_(rig.gate_options().joints) {
     if (!arguments.follow.empty())
-      follow_.emplace(FollowFile(arguments.follow, rig), rig.joints.size(), arguments.may_home);
+      follow_.emplace(FollowFile(arguments.follow, rig), rig.joint_names(), arguments.may_home);
     if (keyboard_.is_terminal()) say(KeyOperator::help());
   }
 

@@ -16,8 +16,8 @@ constexpr double kJogSpeed = 0.3;        // share of the joint's velocity
 
 }  // namespace
 
-FollowOperator::FollowOperator(FollowFile file, std::size_t joints, bool may_home)
-    : file_(std::move(file)), joints_(joints), may_home_(may_home) {}
+FollowOperator::FollowOperator(FollowFile file, std::vector<std::string> joints, bool may_home)
+    : file_(std::move(file)), names_(std::move(joints)), joints_(names_.size()), may_home_(may_home) {}
 
 OperatorWish FollowOperator::end(std::string outcome) {
   outcome_ = std::move(outcome);
@@ -38,9 +38,15 @@ OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
   if (!outcome_.empty()) return {.quit = true};
   if (since_.ns == 0) since_ = now;
   if (status.phase == RobotPhase::stopped) {
-    const char* why = *status.refused != '\0' ? status.refused : to_string(status.gate.reason);
-    return end(std::string("stopped: ") + why +
-               (*status.gate.detail != '\0' ? std::string(" (") + status.gate.detail + ")" : ""));
+    std::string why = *status.refused != '\0' ? status.refused : to_string(status.gate.reason);
+    if (*status.gate.detail != '\0') why += std::string(": ") + status.gate.detail;
+    const int joint = status.waiting_for >= 0 ? status.waiting_for : status.gate.joint;
+    if (joint >= 0) {
+      const DriveFeedback& f = status.feedback[static_cast<std::size_t>(joint)];
+      why += "; joint " + names_[static_cast<std::size_t>(joint)] + ": " + to_string(f.state);
+      if (*f.fault != '\0') why += std::string(", ") + f.fault;
+    }
+    return end("stopped: " + why);
   }
   switch (step_) {
     case Step::enable:

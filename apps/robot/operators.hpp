@@ -20,7 +20,8 @@ struct OperatorWish {
 /// every 10 ms.
 class FollowOperator {
  public:
-  FollowOperator(FollowFile file, std::size_t joints, bool may_home);
+  /// `joints`: the rig's, by name.
+  FollowOperator(FollowFile file, std::vector<std::string> joints, bool may_home);
   OperatorWish tick(RobotTime now, const RobotStatus& status);
   /// "done", or why not; empty while it goes on.
   const std::string& outcome() const { return outcome_; }
@@ -34,6 +35,7 @@ class FollowOperator {
   void enter(Step step, RobotTime now);
 
   FollowFile file_;
+  std::vector<std::string> names_;
   std::size_t joints_;
   bool may_home_;
   Step step_ = Step::enable;

@@ -8,6 +8,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kEnableWithin = 5s;
+constexpr Duration kAskAgain = 100ms;
 constexpr Duration kHomeWithin = 120s;  // a joint
 constexpr Duration kRestWithin = 3s;
 
@@ -96,6 +97,7 @@ void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
       if (!gate_.at_rest()) return void(refused_ = "reset: wait until the robot is at rest");
       for (Drive* drive : drives_) drive->request(DriveRequest::reset_fault);
       resetting_ = true;
+      ask_again_ = now;
       return enter(RobotPhase::enabling, now);
     case RobotRequest::disable:
       if (!free) return void(refused_ = "disable: wait until the robot is at rest");
@@ -110,7 +112,9 @@ void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
   }
   // A drive whose watchdog stopped it when the program ended before says so now. Whoever enables has looked.
   resetting_ = std::any_of(feedback_.begin(), feedback_.end(), is_faulty);
-  for (Drive* drive : drives_) drive->request(resetting_ ? DriveRequest::reset_fault : DriveRequest::enable);
+  if (resetting_)
+    for (Drive* drive : drives_) drive->request(DriveRequest::reset_fault);
+  ask_again_ = now;
   enter(RobotPhase::enabling, now);
 }
 
@@ -124,9 +128,12 @@ void Robot::advance_enabling(RobotTime now) noexcept {
   waiting_for_ = static_cast<int>(missing - feedback_.begin());
   // Faults are cleared first; what is still at fault after that stays so.
   const bool faulty = std::any_of(feedback_.begin(), feedback_.end(), is_faulty);
-  if (resetting_ && !faulty) {
-    for (Drive* drive : drives_) drive->request(DriveRequest::enable);
-    resetting_ = false;
+  resetting_ = resetting_ && faulty;
+  // Again and again: a drive that was not ready for the request has dropped it.
+  if (!resetting_ && now >= ask_again_) {
+    for (std::size_t i = 0; i < drives_.size(); ++i)
+      if (feedback_[i].state == DriveState::disabled) drives_[i]->request(DriveRequest::enable);
+    ask_again_ = now + kAskAgain;
   }
   if (now - phase_since_ < kEnableWithin) return;
   refused_ = "a drive did not get enabled in time";
@@ -144,7 +151,10 @@ void Robot::advance_homing(RobotTime now) noexcept {
   if (failed) {
     gate_.emergency_stop("homing failed");
     stop_all();
-    return enter(RobotPhase::stopped, now);
+    const int joint = waiting_for_;
+    enter(RobotPhase::stopped, now);
+    waiting_for_ = joint;
+    return;
   }
   if (!homing_asked_) {
     drives_[homing_]->request(DriveRequest::home);

@@ -85,6 +85,7 @@ class Robot {
   std::size_t homing_ = 0;
   bool homing_asked_ = false;
   bool resetting_ = false;
+  RobotTime ask_again_;
   const char* refused_ = "";
   int waiting_for_ = -1;
   LoopStatistics loop_;

@@ -40,7 +40,7 @@ class FollowOperatorTest : public OperatorsTest {
  protected:
   std::string follow(bool may_home, const std::function<void()>& meanwhile = {}) {
     FollowOperator who(FollowFile(folder_.write("m.csv", "time_s,elbow,finger\n0,0.5,0\n2,1.0,0.02\n"), rig_),
-                       rig_.joints.size(), may_home);
+                       rig_.joint_names(), may_home);
     for (int i = 0; i < 3000; ++i) {
       if (!tick([&](RobotTime now, const RobotStatus& status) { return who.tick(now, status); })) break;
       highest_ = std::max(highest_, drives_[3].state.position);
