@@ -28,7 +28,8 @@ void SteppedClock::sleep_until(RobotTime time) noexcept {
 
 void SteppedClock::step_towards(RobotTime limit) noexcept {
   if (limit <= now_) return;
-  const auto due = std::min_element(tasks_.begin(), tasks_.end(), [](const Task& a, const Task& b) { return a.next < b.next; });
+  const auto due =
+      std::min_element(tasks_.begin(), tasks_.end(), [](const Task& a, const Task& b) { return a.next < b.next; });
   if (due == tasks_.end() || due->next > limit) {
     now_ = limit;
     return;
