@@ -49,8 +49,8 @@ enum class Conversion : std::uint8_t {
   damaged,    ///< not a picture of that size in that format
 };
 /// Writes an 8-bit BGR image of the frame's size (grey: three equal channels) to `out`, reusing its memory where that
-/// fits and nobody else holds it. Demosaicing is bilinear; 10 bits lose the lowest two. `out` is left undefined unless
-/// ok. Any thread.
+/// fits and nobody else holds it. A JPEG with damage between whole markers is given as the decoder repaired it.
+/// Demosaicing is bilinear; 10 bits lose the lowest two. `out` is left undefined unless ok. Any thread.
 Conversion to_bgr(const CameraFrame& frame, cv::Mat& out) noexcept;
 
 }  // namespace foresight

@@ -57,8 +57,12 @@ ImageFolderCamera::ImageFolderCamera(std::string name, const std::filesystem::pa
 void ImageFolderCamera::start() {
   const cv::Mat first = cv::imread(files_.front().string(), cv::IMREAD_COLOR);
   if (first.empty()) throw InputError(files_.front().string(), "not a readable image", "replace it");
-  settings_ = {.width = first.cols, .height = first.rows, .rate = options_.rate, .format = PixelFormat::bgr,
-               .controls = {}, .readout = Duration{0}};
+  settings_ = {.width = first.cols,
+               .height = first.rows,
+               .rate = options_.rate,
+               .format = PixelFormat::bgr,
+               .controls = {},
+               .readout = Duration{0}};
   start_ = clock_.now();
   next_ = 0;
   counters_ = {};
@@ -102,9 +106,16 @@ CameraStatus ImageFolderCamera::wait_frame(Duration timeout, CameraFrame& out) n
     return CameraStatus::corrupt;
   }
   ++counters_.frames;
-  out = CameraFrame{.format = PixelFormat::bgr, .width = image.cols, .height = image.rows, .stride = image.step[0],
-                    .bytes = {image.data, image.step[0] * static_cast<std::size_t>(image.rows)}, .pixels = image,
-                    .dmabuf = -1, .sequence = index, .time = due, .uncertainty = Duration{0}};
+  out = CameraFrame{.format = PixelFormat::bgr,
+                    .width = image.cols,
+                    .height = image.rows,
+                    .stride = image.step[0],
+                    .bytes = {image.data, image.step[0] * static_cast<std::size_t>(image.rows)},
+                    .pixels = image,
+                    .dmabuf = -1,
+                    .sequence = index,
+                    .time = due,
+                    .uncertainty = Duration{0}};
   return CameraStatus::ok;
 }
 

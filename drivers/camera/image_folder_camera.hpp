@@ -13,9 +13,9 @@ namespace foresight {
 class ImageFolderCamera final : public Camera {
  public:
   struct Options {
-    std::string prefix;     ///< only files whose names begin so, up to the number ("left_"); "" for all
-    double rate = 30;       ///< frames per second, > 0
-    bool repeat = true;     ///< from the first again; otherwise lost at the end
+    std::string prefix;  ///< only files whose names begin so, up to the number ("left_"); "" for all
+    double rate = 30;    ///< frames per second, > 0
+    bool repeat = true;  ///< from the first again; otherwise lost at the end
   };
   /// `clock` must outlive this. Throws InputError (no such folder, no such files, two of one number, bad rate).
   ImageFolderCamera(std::string name, const std::filesystem::path& folder, const Options& options, Clock& clock);

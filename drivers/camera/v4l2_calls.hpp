@@ -32,7 +32,7 @@ class UniqueFd {
 class Calls {
  public:
   virtual ~Calls() = default;
-  virtual std::vector<std::string> devices() = 0;  ///< "/dev/video0", ... in order of their numbers
+  virtual std::vector<std::string> devices() = 0;             ///< "/dev/video0", ... in order of their numbers
   virtual std::string serial(const std::string& device) = 0;  ///< of the USB device behind it; "" where there is none
   virtual UniqueFd open(const std::string& device) = 0;       ///< for reading and writing, not blocking
   virtual int ioctl(int fd, unsigned long request, void* argument) = 0;

@@ -1,7 +1,7 @@
 #include "drivers/camera/v4l2_camera.hpp"
 
-#include <algorithm>
 #include <fcntl.h>
+#include <algorithm>
 
 #include <cerrno>
 #include <cmath>
@@ -68,8 +68,7 @@ void V4l2Camera::open() {
   try {
     format_ = v4l2::set_format(calls_, device_, settings_, name_);
     settings_.rate = format_.rate;
-    for (const auto& [control, value] : settings_.controls)
-      v4l2::set_control(calls_, device_, control, value, name_);
+    for (const auto& [control, value] : settings_.controls) v4l2::set_control(calls_, device_, control, value, name_);
     map_buffers();
     if (!stream_on()) {
       throw RuntimeFailure("camera '" + name_ + "', " + device_.path + ": VIDIOC_STREAMON" + v4l2::errno_text(errno),

@@ -28,9 +28,9 @@ class V4l2Camera final : public Camera {
   struct Options {
     std::string device = "/dev/video0";  ///< path, "serial:..." or "bus:..."; the latter two survive a new number
     CameraSettings settings;
-    int buffers = 4;                       ///< 2 .. 32
-    Duration hangs_after{1'000'000'000};   ///< without a frame; more than 2 frame periods
-    Duration reopen_every{500'000'000};    ///< while lost
+    int buffers = 4;                      ///< 2 .. 32
+    Duration hangs_after{1'000'000'000};  ///< without a frame; more than 2 frame periods
+    Duration reopen_every{500'000'000};   ///< while lost
   };
   /// Opens nothing yet. `clock` (of CLOCK_MONOTONIC) and `calls` must outlive this. Throws InputError (bad option).
   V4l2Camera(std::string name, const Options& options, Clock& clock, v4l2::Calls& calls = v4l2::system_calls());
@@ -76,7 +76,7 @@ class V4l2Camera final : public Camera {
   v4l2::Format format_;
   std::vector<Buffer> buffers_;
   bool started_ = false, lost_ = false;
-  std::optional<std::uint32_t> lent_;          // the buffer of the last frame
+  std::optional<std::uint32_t> lent_;  // the buffer of the last frame
   std::optional<std::uint32_t> last_sequence_;
   RobotTime last_frame_, last_try_;
   int hangs_ = 0;  // since the last frame

@@ -18,13 +18,20 @@ constexpr struct {
   PixelFormat format;
   std::uint32_t fourcc;
 } kFormats[] = {
-    {PixelFormat::yuyv, V4L2_PIX_FMT_YUYV},           {PixelFormat::nv12, V4L2_PIX_FMT_NV12},
-    {PixelFormat::mjpeg, V4L2_PIX_FMT_MJPEG},         {PixelFormat::mjpeg, V4L2_PIX_FMT_JPEG},
-    {PixelFormat::grey, V4L2_PIX_FMT_GREY},           {PixelFormat::bayer_rggb8, V4L2_PIX_FMT_SRGGB8},
-    {PixelFormat::bayer_bggr8, V4L2_PIX_FMT_SBGGR8},  {PixelFormat::bayer_gbrg8, V4L2_PIX_FMT_SGBRG8},
-    {PixelFormat::bayer_grbg8, V4L2_PIX_FMT_SGRBG8},  {PixelFormat::bayer_rggb10, V4L2_PIX_FMT_SRGGB10},
-    {PixelFormat::bayer_bggr10, V4L2_PIX_FMT_SBGGR10}, {PixelFormat::bayer_gbrg10, V4L2_PIX_FMT_SGBRG10},
-    {PixelFormat::bayer_grbg10, V4L2_PIX_FMT_SGRBG10}, {PixelFormat::bgr, V4L2_PIX_FMT_BGR24},
+    {PixelFormat::yuyv, V4L2_PIX_FMT_YUYV},
+    {PixelFormat::nv12, V4L2_PIX_FMT_NV12},
+    {PixelFormat::mjpeg, V4L2_PIX_FMT_MJPEG},
+    {PixelFormat::mjpeg, V4L2_PIX_FMT_JPEG},
+    {PixelFormat::grey, V4L2_PIX_FMT_GREY},
+    {PixelFormat::bayer_rggb8, V4L2_PIX_FMT_SRGGB8},
+    {PixelFormat::bayer_bggr8, V4L2_PIX_FMT_SBGGR8},
+    {PixelFormat::bayer_gbrg8, V4L2_PIX_FMT_SGBRG8},
+    {PixelFormat::bayer_grbg8, V4L2_PIX_FMT_SGRBG8},
+    {PixelFormat::bayer_rggb10, V4L2_PIX_FMT_SRGGB10},
+    {PixelFormat::bayer_bggr10, V4L2_PIX_FMT_SBGGR10},
+    {PixelFormat::bayer_gbrg10, V4L2_PIX_FMT_SGBRG10},
+    {PixelFormat::bayer_grbg10, V4L2_PIX_FMT_SGRBG10},
+    {PixelFormat::bgr, V4L2_PIX_FMT_BGR24},
 };
 
 template <std::size_t N>
@@ -167,9 +174,11 @@ Format set_format(Calls& calls, const Device& device, const CameraSettings& sett
     throw RuntimeFailure(where + ": VIDIOC_S_FMT" + errno_text(errno), "see whether another program has the camera");
   }
   const auto size = [](long w, long h) { return std::to_string(w) + "x" + std::to_string(h); };
-  const bool same_size = static_cast<int>(pix.width) == settings.width && static_cast<int>(pix.height) == settings.height;
+  const bool same_size =
+      static_cast<int>(pix.width) == settings.width && static_cast<int>(pix.height) == settings.height;
   if (pix.pixelformat != wanted || !same_size) {
-    throw InputError(where, "it does not do " + size(settings.width, settings.height) + " " + to_string(settings.format),
+    throw InputError(where,
+                     "it does not do " + size(settings.width, settings.height) + " " + to_string(settings.format),
                      "the nearest that it does is " + size(pix.width, pix.height));
   }
   return {.stride = settings.format == PixelFormat::mjpeg ? 0 : pix.bytesperline,

@@ -22,9 +22,9 @@ class FakeV4l2 final : public v4l2::Calls {
   bool hangs_for_good = false;  ///< nor then
   std::uint32_t extra_flags = 0;
   std::uint32_t clear_flags = 0;
-  std::uint32_t bytes_used = 0;  ///< instead of all; 0: all
-  std::uint32_t skip = 0;        ///< sequence numbers lost before the next frame
-  Duration jump{0};              ///< added to the time stamps
+  std::uint32_t bytes_used = 0;           ///< instead of all; 0: all
+  std::uint32_t skip = 0;                 ///< sequence numbers lost before the next frame
+  Duration jump{0};                       ///< added to the time stamps
   std::map<unsigned long, int> failures;  ///< ioctl request to errno
 
   // What it saw and has.

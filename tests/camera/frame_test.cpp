@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
@@ -32,10 +33,11 @@ cv::Vec3d bgr_of(double y, double u, double v) {
   return {clamp(l + 2.018 * (u - 128)), clamp(l - 0.391 * (u - 128) - 0.813 * (v - 128)), clamp(l + 1.596 * (v - 128))};
 }
 
+/// Within 16 .. 235: outside of that, YUV has no meaning.
 std::vector<std::uint8_t> noise(std::size_t n) {
   std::mt19937 random(3);
   std::vector<std::uint8_t> out(n);
-  for (auto& b : out) b = static_cast<std::uint8_t>(random());
+  for (auto& b : out) b = static_cast<std::uint8_t>(16 + random() % 220);
   return out;
 }
 

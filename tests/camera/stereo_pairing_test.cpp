@@ -25,7 +25,9 @@ class Rig {
     out.time = RobotTime{(i + 1) * kPeriod.count()} + jitter + shift;
     return out;
   }
-  RobotTime arrival(std::int64_t i) { return RobotTime{(i + 1) * kPeriod.count()} + 40ms + Duration(random_() % 20'000'000); }
+  RobotTime arrival(std::int64_t i) {
+    return RobotTime{(i + 1) * kPeriod.count()} + 40ms + Duration(random_() % 20'000'000);
+  }
   std::optional<StereoPair> add(Side side, std::int64_t i, Duration shift = 0ns) {
     now = std::max(now, arrival(i));
     return pairing.add(side, image(side, i, shift), now);

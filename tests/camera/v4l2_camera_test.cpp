@@ -94,7 +94,8 @@ TEST_F(V4l2, IsFoundBySerialNumberAndBus) {
 
 TEST_F(V4l2, NamesWhatIsThere) {
   options_.device = "serial:DEAD";
-  EXPECT_THAT(error(), AllOf(HasSubstr("'left'"), HasSubstr("serial:DEAD"), HasSubstr("/dev/video2"), HasSubstr("C0FFEE")));
+  EXPECT_THAT(error(),
+              AllOf(HasSubstr("'left'"), HasSubstr("serial:DEAD"), HasSubstr("/dev/video2"), HasSubstr("C0FFEE")));
   options_.device = "/dev/video0";
   EXPECT_THAT(error(), HasSubstr("does not capture"));
   options_.device = "video2";
