@@ -269,8 +269,8 @@ void V4l2Camera::set_control(const std::string& control, std::int64_t value) {
   if (!device_.fd) {
     throw RuntimeFailure("camera '" + name_ + "': setting " + control + " while the camera is not open", "start it");
   }
-  v4l2::set_control(calls_, device_, control, value, name_);
-  settings_.controls[control] = value;  // set again after a return of the device
+  const bool stays = v4l2::set_control(calls_, device_, control, value, name_);
+  if (stays) settings_.controls[control] = value;  // set again after a return of the device
   exposure_age_ = 0;
 }
 

@@ -96,7 +96,8 @@ void for_each_control(Calls& calls, int fd, Use use) {
   query.id = V4L2_CTRL_FLAG_NEXT_CTRL;
   for (; calls.ioctl(fd, VIDIOC_QUERYCTRL, &query) == 0; query.id |= V4L2_CTRL_FLAG_NEXT_CTRL) {
     const bool number = query.type == V4L2_CTRL_TYPE_INTEGER || query.type == V4L2_CTRL_TYPE_BOOLEAN ||
-                        query.type == V4L2_CTRL_TYPE_MENU || query.type == V4L2_CTRL_TYPE_INTEGER_MENU;
+                        query.type == V4L2_CTRL_TYPE_MENU || query.type == V4L2_CTRL_TYPE_INTEGER_MENU ||
+                        query.type == V4L2_CTRL_TYPE_BUTTON;
     if (number && (query.flags & V4L2_CTRL_FLAG_DISABLED) == 0) use(query);
   }
 }
@@ -196,7 +197,7 @@ std::vector<CameraControl> list_controls(Calls& calls, const Device& device) {
   return out;
 }
 
-void set_control(Calls& calls, const Device& device, const std::string& control, std::int64_t value,
+bool set_control(Calls& calls, const Device& device, const std::string& control, std::int64_t value,
                  const std::string& camera) {
   const std::string where = "camera '" + camera + "', " + device.path;
   std::optional<v4l2_queryctrl> found;
@@ -218,6 +219,7 @@ void set_control(Calls& calls, const Device& device, const std::string& control,
     throw RuntimeFailure(where + ": setting " + control + " to " + std::to_string(value) + errno_text(errno),
                          "switch off the automatic control that holds it");
   }
+  return found->type != V4L2_CTRL_TYPE_BUTTON;
 }
 
 std::optional<Duration> exposure(Calls& calls, int fd) noexcept {

@@ -32,8 +32,8 @@ Format set_format(Calls& calls, const Device& device, const CameraSettings& sett
 std::optional<std::uint32_t> fourcc(PixelFormat format);
 
 std::vector<CameraControl> list_controls(Calls& calls, const Device& device);
-/// Throws as Camera::set_control().
-void set_control(Calls& calls, const Device& device, const std::string& control, std::int64_t value,
+/// Throws as Camera::set_control(). False: a button was pressed (with 0), and no value stays.
+bool set_control(Calls& calls, const Device& device, const std::string& control, std::int64_t value,
                  const std::string& camera);
 /// Of V4L2_CID_EXPOSURE_ABSOLUTE; nothing where the device has none.
 std::optional<Duration> exposure(Calls& calls, int fd) noexcept;
