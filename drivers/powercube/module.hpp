@@ -45,6 +45,7 @@ struct Options {
 ///   from before survives it. A module in `fault` is not enabled; reset_fault clears it and halts.
 /// * Not homed, it is enabled but follows no set-point: only home moves it. Homing ends enabled, holding where it is.
 /// * Set-points are kept within the joint's limits, and steps within max_velocity. Their velocity is not used.
+/// * configure() may be repeated between two cycles of the loop, for a module that lost its power.
 /// * DriveFeedback::fault_code is the state word CubeState; `fault` also says what we ourselves miss.
 class Module final : public Drive {
  public:

@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "allocations.hpp"
 #include "common/error.hpp"
 #include "scripted_module.hpp"
 
@@ -41,8 +42,10 @@ class PowerCube : public testing::Test {
   }
   void run(int cycles) {
     for (int i = 0; i < cycles; ++i) {
+      const std::size_t before = allocations();
       network_->receive(clock_.now());
       network_->send(clock_.now());
+      ASSERT_EQ(allocations(), before) << "the loop must not allocate";
       clock_.sleep_until(clock_.now() + 10ms);
     }
     network_->receive(clock_.now());
@@ -304,6 +307,62 @@ TEST_F(PowerCube, AnotherMasterStopsAll) {
   EXPECT_EQ(state(), DriveState::disabled);
   ask(DriveRequest::enable);
   EXPECT_EQ(state(), DriveState::disabled);
+}
+
+TEST_F(PowerCube, TheAllocationCounterCounts) {
+  const std::size_t before = allocations();
+  ::operator delete(::operator new(1));  // a plain new could be optimised away
+  EXPECT_GT(allocations(), before);
+}
+
+/// A bus whose transmit queue is full, or that is off, while `refuses` says so.
+class RefusingBus final : public CanBus {
+ public:
+  explicit RefusingBus(CanBus& bus) : bus_(bus) {}
+  CanSend refuses = CanSend::sent;
+
+  const std::string& name() const noexcept override { return bus_.name(); }
+  CanSend send(const CanFrame& frame) noexcept override {
+    return refuses == CanSend::sent ? bus_.send(frame) : refuses;
+  }
+  std::optional<CanFrame> receive(Duration timeout) noexcept override { return bus_.receive(timeout); }
+  CanBusState state() const noexcept override {
+    return refuses == CanSend::bus_down ? CanBusState::bus_off : CanBusState::active;
+  }
+  CanCounters counters() const noexcept override { return bus_.counters(); }
+
+ private:
+  CanBus& bus_;
+};
+
+TEST_F(PowerCube, ABusThatWasOffLeavesAllHalted) {
+  shoulder_.state |= kHomeOk;
+  auto bus = std::make_unique<RefusingBus>(*end_);
+  RefusingBus& refusing = *bus;
+  network_ = std::make_unique<Network>(refusing, clock_, std::vector{joint("shoulder", 3)});
+  drive().identify();
+  drive().configure();
+  run(10);
+  ask(DriveRequest::enable);
+  ASSERT_EQ(state(), DriveState::enabled);
+  drive().set_point(1, 0);
+  run(5);
+  refusing.refuses = CanSend::bus_down;
+  run(20);
+  EXPECT_FALSE(network_->healthy());
+  EXPECT_EQ(state(), DriveState::offline);
+  EXPECT_TRUE(shoulder_.state & kHalted) << "by its watchdog";
+  const double stood = shoulder_.position;
+  refusing.refuses = CanSend::sent;
+  shoulder_.steps.clear();
+  run(20);
+  EXPECT_TRUE(network_->healthy());
+  EXPECT_EQ(state(), DriveState::disabled);
+  EXPECT_TRUE(shoulder_.steps.empty());
+  EXPECT_EQ(shoulder_.position, stood);
+  refusing.refuses = CanSend::full;
+  EXPECT_THAT(message_of<RuntimeFailure>([&] { drive().identify(); }), HasSubstr("transmit queue is full"));
+  network_.reset();
 }
 
 TEST_F(PowerCube, RandomFramesChangeNoSetPoint) {
