@@ -1,0 +1,121 @@
+#include "sim/drives/drive_rack.hpp"
+
+#include <algorithm>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "sim/drives/cia402_node.hpp"
+#include "sim/drives/powercube_node.hpp"
+
+namespace foresight::sim {
+namespace {
+
+constexpr Duration kStep = std::chrono::milliseconds(1);
+constexpr int kMostSteps = 100;
+constexpr std::size_t kOutbox = 256;
+
+}  // namespace
+
+DriveRack::DriveRack(Clock& clock, std::unique_ptr<CanBus> bus, const std::vector<NodeConfig>& nodes)
+    : clock_(clock), bus_(std::move(bus)), now_(clock.now()), exists_(std::make_shared<const bool>(true)) {
+  for (const NodeConfig& config : nodes) {
+    config.validate();
+    for (const auto& other : slots_)
+      if (other->node->config().kind == config.kind && other->node->config().node == config.node)
+        throw InputError(
+            "drive " + in_quotes(config.name),
+            "node " + std::to_string(config.node) + " is also that of " + in_quotes(other->node->config().name),
+            "give each drive its own");
+    auto slot = std::make_unique<Slot>();
+    const auto send = [this, to = slot.get()](const CanFrame& frame) { post(*to, frame); };
+    if (config.kind == NodeConfig::Kind::cia402)
+      slot->node = std::make_unique<Cia402Node>(config, send);
+    else
+      slot->node = std::make_unique<PowerCubeNode>(config, send);
+    slots_.push_back(std::move(slot));
+  }
+  if (auto* const stepped = dynamic_cast<SteppedClock*>(&clock))
+    stepped->every(kStep, [this, exists = std::weak_ptr(exists_)](RobotTime now) {
+      if (!exists.expired()) step(now);
+    });
+}
+
+DriveRack::~DriveRack() = default;
+
+void DriveRack::post(Slot& slot, const CanFrame& frame) {
+  if (slot.silent) return;
+  if (slot.outbox.size() >= kOutbox)
+    ++dropped_;
+  else
+    slot.outbox.push_back({now_ + slot.delay, frame});
+  flush(slot);
+}
+
+void DriveRack::flush(Slot& slot) {
+  while (!slot.outbox.empty() && slot.outbox.front().due <= now_) {
+    if (bus_->send(slot.outbox.front().frame) == CanSend::full) return;  // again at the next step
+    slot.outbox.pop_front();
+  }
+}
+
+void DriveRack::step(RobotTime now) {
+  const std::lock_guard lock(mutex_);
+  if (now - now_ > kMostSteps * kStep) now_ = now - kMostSteps * kStep;
+  while (const auto frame = bus_->receive(Duration(0)))
+    for (const auto& slot : slots_) slot->node->receive(*frame, now_);
+  while (now_ + kStep <= now) {
+    now_ = now_ + kStep;
+    for (const auto& slot : slots_) {
+      flush(*slot);
+      slot->node->step(now_, 1e-3);
+    }
+  }
+}
+
+void DriveRack::run(std::stop_token stop) {
+  RobotTime next = clock_.now();
+  while (!stop.stop_requested()) {
+    next = std::max(next + kStep, clock_.now() - kMostSteps * kStep);
+    clock_.sleep_until(next);
+    step(clock_.now());
+  }
+}
+
+const NodeConfig& DriveRack::config(std::size_t i) const {
+  return slots_.at(i)->node->config();
+}
+
+std::optional<std::size_t> DriveRack::find(std::string_view name) const {
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    if (slots_[i]->node->config().name == name) return i;
+  return std::nullopt;
+}
+
+ShaftState DriveRack::shaft(std::size_t i) const {
+  const std::lock_guard lock(mutex_);
+  return slots_.at(i)->node->shaft();
+}
+
+void DriveRack::forget_extremes(std::size_t i) {
+  const std::lock_guard lock(mutex_);
+  slots_.at(i)->node->forget_extremes();
+}
+
+void DriveRack::inject(std::size_t i, DriveFault fault, double value) {
+  const std::lock_guard lock(mutex_);
+  Slot& slot = *slots_.at(i);
+  if (fault == DriveFault::recover) {
+    slot.silent = false;
+    slot.delay = {};
+  }
+  if (fault == DriveFault::silent) slot.silent = true;
+  if (fault == DriveFault::slow) slot.delay = seconds(value);
+  slot.node->inject(fault, value);
+}
+
+std::uint64_t DriveRack::dropped() const {
+  const std::lock_guard lock(mutex_);
+  return dropped_;
+}
+
+}  // namespace foresight::sim

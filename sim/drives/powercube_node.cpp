@@ -1,0 +1,435 @@
+#include "sim/drives/powercube_node.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "sim/drives/object_dictionary.hpp"
+#include "sim/drives/powercube_parameters.hpp"
+
+namespace foresight::sim {
+
+using namespace powercube;
+
+namespace {
+
+constexpr std::uint8_t kAck = 0x64, kSetExtended = 0x08, kGetExtended = 0x0A, kSetMotion = 0x0B;
+constexpr std::uint8_t kConfigWord = 0x39, kMaxDelta = 0x40, kMinPos = 0x45, kMaxPos = 0x46, kMaxVel = 0x48,
+                       kMaxAcc = 0x4A, kMaxCur = 0x4C, kTargetVel = 0x4F, kTargetAcc = 0x50, kHomeOffset = 0x59;
+constexpr double kBootTime_s = 0.3, kLongestCyclicStep_s = 0.1, kTorquePerAmpere = 5, kAmperePerDigit = 0.01;
+constexpr double kStandstill = 1e-3;  // rad/s
+
+double decode(std::span<const std::uint8_t> bytes, Coding coding) {
+  if (coding != Coding::real)
+    return static_cast<double>(decode_integer(bytes, coding == Coding::int32 || coding == Coding::int16));
+  return std::bit_cast<float>(static_cast<std::uint32_t>(decode_integer(bytes, false)));
+}
+
+void encode(double value, Coding coding, std::span<std::uint8_t> bytes) {
+  if (coding == Coding::real)
+    encode_integer(std::bit_cast<std::uint32_t>(static_cast<float>(value)), bytes);
+  else
+    encode_integer(std::isfinite(value) ? std::llround(std::clamp(value, -2147483648.0, 4294967295.0)) : 0, bytes);
+}
+
+}  // namespace
+
+PowerCubeNode::PowerCubeNode(const NodeConfig& config, Send send) : DriveNode(config), send_(std::move(send)) {
+  power_up();
+  deaf_s_ = 0;
+}
+
+void PowerCubeNode::power_up() {
+  motor_.power(false);
+  const MotorConfig& motor = config_.motor;
+  const bool limited = config_.min_position < config_.max_position;
+  values_ = {};
+  const double low = limited ? config_.min_position : -1e6, high = limited ? config_.max_position : 1e6;
+  values_[0x01] = values_[0x02] = values_[0x07] = values_[0x08] = 1;
+  values_[0x03] = values_[kMinPos] = low;
+  values_[0x04] = values_[kMaxPos] = high;
+  values_[0x05] = values_[kMaxDelta] = motor.following_error_limit;
+  values_[0x0A] = values_[kMaxVel] = motor.max_velocity;
+  values_[0x0C] = values_[kMaxAcc] = motor.max_acceleration;
+  values_[0x0E] = values_[kMaxCur] = motor.torque_limit / kTorquePerAmpere;
+  values_[0x0F] = motor.max_velocity / 20;
+  values_[0x10] = values_[kTargetAcc] = motor.max_acceleration / 2;
+  values_[kTargetVel] = motor.max_velocity / 2;
+  values_[0x00] = values_[kHomeOffset] = config_.home_position;
+  values_[0x1A] = config_.serial;
+  values_[0x1D] = config_.revision;
+  values_[0x20] = config_.node;
+  values_[0x22] = values_[0x23] = 2;  // 500 kbit/s
+  values_[0x3B] = config_.counts_per_unit;
+  homed_ = config_.homed;
+  zero_ = homed_ ? 0 : motor_.shaft().position;
+  errors_ = 0;
+  beyond_soft_ = ramp_ended_ = false;
+  activity_ = Activity::idle;
+  refreshed_.reset();
+  waiting_.reset();
+  deaf_s_ = kBootTime_s;
+}
+
+void PowerCubeNode::answer(Bytes bytes) {
+  CanFrame frame;
+  frame.id = 0x0A0 + static_cast<std::uint32_t>(config_.node);
+  frame.size = static_cast<std::uint8_t>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
+  send_(frame);
+}
+
+void PowerCubeNode::acknowledge(std::initializer_list<std::uint8_t> bytes) {
+  if ((static_cast<std::uint32_t>(values_[kConfigWord]) & kDisableAck) == 0) answer({bytes.begin(), bytes.size()});
+}
+
+void PowerCubeNode::receive(const CanFrame& frame, RobotTime now) {
+  if (deaf_s_ > 0 || frame.error || frame.extended || frame.fd || frame.remote || frame.size == 0) return;
+  const std::uint32_t module = static_cast<std::uint32_t>(config_.node);
+  const Bytes bytes = frame.payload();
+  if (frame.id == 0x100 && frame.size == 1)
+    broadcast(bytes[0], now);
+  else if (frame.id == 0x0C0 + module && frame.size == 2 && bytes[0] == kGetExtended)
+    get(bytes[1]);
+  else if (frame.id == 0x0E0 + module)
+    tell(bytes, now);
+}
+
+void PowerCubeNode::broadcast(std::uint8_t command, RobotTime now) {
+  switch (command) {
+    case 0x00: reset(); return;
+    case 0x01: home(); return;
+    case 0x02: halt(); return;
+    case 0x07: refresh_watchdog(now); return;
+    case 0x0F:
+      if (waiting_) move((*waiting_)[1], Bytes(*waiting_).subspan(2, waiting_size_ - 2u));
+      waiting_.reset();
+      return;
+    default: return;  // SetBaud and SavePos: it stores nothing
+  }
+}
+
+void PowerCubeNode::tell(Bytes bytes, RobotTime now) {
+  const std::uint8_t command = bytes[0];
+  switch (command) {
+    case 0x00:
+      if (bytes.size() == 1 && reset()) acknowledge({command, kAck});
+      return;
+    case 0x01:
+      if (bytes.size() == 1 && home()) acknowledge({command, kAck});
+      return;
+    case 0x02:
+      if (bytes.size() == 1 && halt()) acknowledge({command, kAck});
+      return;
+    case 0x07:
+      if (bytes.size() == 1) refresh_watchdog(now);
+      return;
+    case 0x09:
+      if (bytes.size() == 1) acknowledge({command, kAck});
+      return;
+    case kSetExtended:
+      if (bytes.size() >= 3 && set(bytes[1], bytes.subspan(2))) acknowledge({command, bytes[1], kAck});
+      return;
+    case kSetMotion:
+      if (bytes.size() >= 4) accept_motion(bytes);
+      return;
+    case 0x0D:
+      if (bytes.size() == 7 && move(0x0B, bytes.subspan(1))) acknowledge({command, kAck});
+      return;
+    default: return;
+  }
+}
+
+void PowerCubeNode::refresh_watchdog(RobotTime now) {
+  refreshed_ = now;
+  values_[kConfigWord] = static_cast<std::uint32_t>(values_[kConfigWord]) | kWatchdogEnable;
+}
+
+bool PowerCubeNode::reset() {
+  if (activity_ == Activity::halt) return false;  // first it stops
+  errors_ = 0;
+  beyond_soft_ = false;
+  return true;
+}
+
+bool PowerCubeNode::halt() {
+  errors_ |= kHalted;
+  waiting_.reset();
+  if (motor_.shaft().powered) begin(Activity::halt);
+  return true;
+}
+
+bool PowerCubeNode::home() {
+  if (errors_ != 0) return false;
+  homed_ = false;
+  begin(Activity::homing);
+  return true;
+}
+
+void PowerCubeNode::fail(std::uint32_t bits) {
+  errors_ |= bits | kError | kHalted;
+  if ((bits & kTowError) != 0) reference_ = {motor_.shaft().position, motor_.shaft().velocity, 0};
+  if (motor_.shaft().powered)
+    begin(Activity::halt);
+  else
+    activity_ = Activity::idle;
+}
+
+void PowerCubeNode::begin(Activity activity) {
+  if (!motor_.shaft().powered) {
+    motor_.power(true);
+    reference_ = {motor_.shaft().position, 0, 0};
+    steps_.start(reference_.position);
+  }
+  if (activity == Activity::step && activity_ != Activity::step) steps_.start(reference_.position);
+  if (activity_ == Activity::current) reference_ = {motor_.shaft().position, motor_.shaft().velocity, 0};
+  activity_ = activity;
+  ramp_ended_ = false;
+}
+
+double PowerCubeNode::cut(double position) {
+  beyond_soft_ = false;
+  if (config_.motor.limits_off || values_[kMinPos] >= values_[kMaxPos]) return to_shaft(position);
+  const double inside = std::clamp(position, values_[kMinPos], values_[kMaxPos]);
+  beyond_soft_ = inside != position;
+  return to_shaft(inside);
+}
+
+void PowerCubeNode::accept_motion(Bytes bytes) {
+  const std::uint8_t motion = bytes[1];
+  bool good;
+  if ((static_cast<std::uint32_t>(values_[kConfigWord]) & kSyncMotion) != 0) {
+    waiting_.emplace();
+    std::copy(bytes.begin(), bytes.end(), waiting_->begin());
+    waiting_size_ = static_cast<std::uint8_t>(bytes.size());
+    good = homed_ && errors_ == 0;
+  } else {
+    good = move(motion, bytes.subspan(2));
+  }
+  if (motion >= 0x0E && motion <= 0x17 && motion != 0x0F && motion != 0x14) {
+    std::array<std::uint8_t, 8> out{kSetMotion, motion};
+    const bool integer = motion >= 0x13;
+    encode(shown_position() * (integer ? config_.counts_per_unit : 1), integer ? Coding::int32 : Coding::real,
+           std::span(out).subspan(2, 4));
+    out[6] = short_state();
+    if ((static_cast<std::uint32_t>(values_[kConfigWord]) & kDisableAck) == 0) answer(out);
+  } else if (good) {
+    acknowledge({kSetMotion, motion, kAck});
+  }
+}
+
+// Motions 0Eh .. 17h are 04h .. 0Dh with the extended acknowledge.
+bool PowerCubeNode::move(std::uint8_t motion, Bytes value) {
+  const std::uint8_t plain = motion >= 0x0E ? static_cast<std::uint8_t>(motion - 0x0A) : motion;
+  const bool integer = plain >= 0x09, step = plain == 0x06 || plain == 0x0B;
+  const Coding coding = plain == 0x0D ? Coding::int16 : integer ? Coding::int32 : Coding::real;
+  if (plain < 0x04 || plain > 0x0D || plain == 0x05 || plain == 0x0A) return false;
+  if (value.size() != powercube::size_of(coding) + (step ? 2u : 0u) || !homed_ || errors_ != 0) return false;
+  const double raw = decode(value.first(powercube::size_of(coding)), coding);
+  if (!std::isfinite(raw)) return false;
+  const double amount = plain == 0x0D ? raw * kAmperePerDigit : integer ? raw / config_.counts_per_unit : raw;
+  switch (plain) {
+    case 0x04:
+    case 0x09:
+      target_ = cut(amount);
+      begin(Activity::ramp);
+      return true;
+    case 0x06:
+    case 0x0B: {
+      const double interval_s = std::max(0.001, static_cast<double>(decode_integer(value.subspan(4, 2), false)) * 1e-3);
+      begin(Activity::step);
+      const bool alone = interval_s > kLongestCyclicStep_s && steps_.resting();
+      steps_.push(cut(amount), alone ? interval_s / 2 : interval_s);
+      return true;
+    }
+    case 0x07:
+    case 0x0C:
+      begin(Activity::velocity);
+      target_ = config_.motor.limits_off ? amount : std::clamp(amount, -values_[kMaxVel], values_[kMaxVel]);
+      return true;
+    default:
+      begin(Activity::current);
+      current_ = config_.motor.limits_off ? amount : std::clamp(amount, -values_[kMaxCur], values_[kMaxCur]);
+      return true;
+  }
+}
+
+bool PowerCubeNode::set(std::uint8_t parameter, Bytes value) {
+  const Coding how = coding(parameter);
+  if (!settable(parameter) || value.size() != powercube::size_of(how)) return false;
+  const double number = decode(value, how);
+  if (!std::isfinite(number) || (positive(parameter) && number <= 0)) return false;
+  if (parameter == kMaxVel && number > values_[0x0A]) return false;
+  if (parameter == kMaxAcc && number > values_[0x0C]) return false;
+  values_[parameter] = number;
+  return true;
+}
+
+void PowerCubeNode::get(std::uint8_t parameter) {
+  const Coding how = coding(parameter);
+  if (how == Coding::none) return;
+  std::array<std::uint8_t, 8> out{kGetExtended, parameter};
+  encode(this->parameter(parameter), how, std::span(out).subspan(2, powercube::size_of(how)));
+  answer(Bytes(out).first(2 + powercube::size_of(how)));
+}
+
+double PowerCubeNode::parameter(std::uint8_t parameter) {
+  const ShaftState& shaft = motor_.shaft();
+  switch (parameter) {
+    case 0x24: return shown_position() * config_.counts_per_unit;
+    case 0x27: return state_word();
+    case 0x3C:
+    case 0x3D: return shown_position();
+    case 0x3E: return reference_.position - zero_;
+    case 0x3F: return motor_.following_error();
+    case 0x41: return garbage_ ? arbitrary() * 1e6 : frozen_ ? 0 : shaft.velocity;
+    case 0x42: return reference_.velocity;
+    case 0x4D: return shaft.torque / kTorquePerAmpere;
+    case 0x4E: return target_ - zero_;
+    case 0x35: return shaft.torque / kTorquePerAmpere / kAmperePerDigit;
+    default: return values_[parameter];
+  }
+}
+
+double PowerCubeNode::shown_position() {
+  if (frozen_) return frozen_position_;
+  if (!garbage_) return motor_.shaft().position - zero_;
+  const double die = arbitrary();
+  if (die > 0.5) return std::numeric_limits<double>::quiet_NaN();
+  return die > 0 ? std::numeric_limits<double>::infinity() : die * 1e30;
+}
+
+std::uint32_t PowerCubeNode::state_word() const {
+  const ShaftState& shaft = motor_.shaft();
+  const double v = reference_.velocity, a = reference_.acceleration;
+  std::uint32_t out = errors_;
+  const auto add = [&](bool on, std::uint32_t bit) { out |= on ? bit : 0; };
+  add(homed_, kHomeOk);
+  add(std::abs(shaft.position - config_.home_position) < 0.01, kHomeSwitch);
+  add(shaft.position <= config_.low_switch, kSwitch1);
+  add(shaft.position >= config_.high_switch, kSwitch2);
+  add(shaft.brake_closed, kBrakeActive);
+  add(motor_.torque_limited(), kCurrentLimit);
+  add(std::abs(shaft.velocity) > kStandstill, kMotion);
+  const bool ramps = activity_ == Activity::ramp || activity_ == Activity::velocity;
+  add(ramps && a * v > 0, kRampAcc);
+  add(ramps && a == 0 && v != 0, kRampSteady);
+  add(ramps && a * v < 0, kRampDec);
+  add(ramp_ended_, kRampEnd);
+  add(activity_ == Activity::step && !steps_.resting(), kInProgress);
+  add(shaft.hit_stop, kBeyondHard);
+  add(beyond_soft_, kBeyondSoft);
+  return out;
+}
+
+std::uint8_t PowerCubeNode::short_state() const {
+  const std::uint32_t state = state_word();
+  std::uint8_t out = 0;
+  const auto add = [&](bool on, unsigned bit) { out = static_cast<std::uint8_t>(out | (on ? bit : 0)); };
+  add((state & (kError | kHalted)) != 0 || (state & kHomeOk) == 0, 0x01);
+  add(state & kHomeSwitch, 0x02);
+  add(state & kSwitch1, 0x04);
+  add(state & kSwitch2, 0x08);
+  add(state & kMotion, 0x10);
+  add(state & kRampEnd, 0x20);
+  add(state & kInProgress, 0x40);
+  return out;
+}
+
+void PowerCubeNode::stop_after_silence(RobotTime now) {
+  const bool enabled = (static_cast<std::uint32_t>(values_[kConfigWord]) & kWatchdogEnable) != 0;
+  if (!enabled || !refreshed_ || now - *refreshed_ <= seconds(config_.watchdog_s)) return;
+  refreshed_.reset();
+  fail(kCommError);
+}
+
+// After the step's time the module goes to the point given and stops there.
+Reference PowerCubeNode::next_step(double dt) {
+  const double slack = std::min(0.5 * steps_.interval_s(), 0.005);
+  if (!steps_.resting() && steps_.elapsed_s() >= steps_.interval_s() + (steps_.interval_s() > 0.05 ? 0 : slack))
+    steps_.push(steps_.last(), steps_.interval_s());
+  return steps_.step(dt);
+}
+
+Reference PowerCubeNode::next_reference(double dt) {
+  const double v = values_[kTargetVel], a = values_[kTargetAcc];
+  switch (activity_) {
+    case Activity::ramp: {
+      const Reference next = approach(reference_, target_, {v, a, a}, dt);
+      ramp_ended_ = next.position == target_ && next.velocity == 0;
+      return next;
+    }
+    case Activity::step: return next_step(dt);
+    case Activity::velocity: {
+      // Soft limits stop a velocity motion too, in time.
+      const double end = to_shaft(target_ > 0 ? values_[kMaxPos] : values_[kMinPos]);
+      if (config_.motor.limits_off || values_[kMinPos] >= values_[kMaxPos] || target_ == 0)
+        return change_speed(reference_, target_, a, dt);
+      const Reference next = approach(reference_, end, {std::abs(target_), a, a}, dt);
+      beyond_soft_ = next.position == end;
+      return next;
+    }
+    case Activity::homing: return approach(reference_, config_.home_position, {values_[0x0F], a, a}, dt);
+    default: return change_speed(reference_, 0, values_[kMaxAcc], dt);
+  }
+}
+
+void PowerCubeNode::step(RobotTime now, double dt) {
+  if (deaf_s_ > 0) deaf_s_ -= dt;
+  stop_after_silence(now);
+  if (motor_.shaft().powered) {
+    reference_ = activity_ == Activity::current ? Reference{motor_.shaft().position, motor_.shaft().velocity, 0}
+                                                : next_reference(dt);
+    if (activity_ == Activity::current)
+      motor_.apply_torque(current_ * kTorquePerAmpere);
+    else
+      motor_.track(reference_);
+  }
+  motor_.step(dt);
+  if (activity_ == Activity::homing && reference_.position == config_.home_position && reference_.velocity == 0) {
+    zero_ = config_.home_position - values_[kHomeOffset];
+    homed_ = true;
+    activity_ = Activity::idle;
+  }
+  if (activity_ == Activity::halt && reference_.velocity == 0 && std::abs(motor_.shaft().velocity) < kStandstill) {
+    motor_.power(false);
+    activity_ = Activity::idle;
+  }
+  const bool lags = std::abs(motor_.following_error()) > values_[kMaxDelta];
+  if (lags && !config_.motor.limits_off && (errors_ & kTowError) == 0) fail(kTowError);
+}
+
+void PowerCubeNode::inject(DriveFault fault, double) {
+  switch (fault) {
+    case DriveFault::recover:
+      frozen_ = garbage_ = false;
+      motor_.jam(false);
+      values_[0x1A] = config_.serial;
+      values_[0x1D] = config_.revision;
+      return;
+    case DriveFault::overcurrent:
+      // A short circuit leaves no current to brake with.
+      fail(kPowerFault | kShortCircuit);
+      motor_.power(false);
+      activity_ = Activity::idle;
+      return;
+    case DriveFault::tow_error: return fail(kTowError);
+    case DriveFault::reset: return power_up();
+    case DriveFault::frozen:
+      frozen_position_ = shown_position();
+      frozen_ = true;
+      return;
+    case DriveFault::garbage: garbage_ = true; return;
+    case DriveFault::wrong_identity:
+      values_[0x1A] = config_.serial ^ 0x5555u;
+      values_[0x1D] = (config_.revision ^ 0x5555u) & 0xffff;
+      return;
+    case DriveFault::jam: motor_.jam(true); return;
+    case DriveFault::emergency:
+    case DriveFault::silent:
+    case DriveFault::slow: return;
+  }
+}
+
+}  // namespace foresight::sim
