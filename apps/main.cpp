@@ -8,6 +8,7 @@
 #include "apps/bench/bench_command.hpp"
 #include "apps/export_command.hpp"
 #include "apps/replay_command.hpp"
+#include "apps/sim_command.hpp"
 #include "apps/synth_command.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
   foresight::add_replay_command(app, action);
   foresight::add_export_command(app, action);
   foresight::add_synth_command(app, action);
+  foresight::add_sim_command(app, action);
   foresight::add_bench_command(app, action);
 
   try {
