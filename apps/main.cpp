@@ -11,6 +11,7 @@
 #include "apps/export_command.hpp"
 #include "apps/replay_command.hpp"
 #include "apps/robot_command.hpp"
+#include "apps/sim_command.hpp"
 #include "apps/synth_command.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
   foresight::add_export_command(app, action);
   foresight::add_synth_command(app, action);
   foresight::add_can_command(app, action);
+  foresight::add_sim_command(app, action);
   foresight::add_bench_command(app, action);
   foresight::add_robot_command(app, action);
   foresight::add_doctor_command(app, action);

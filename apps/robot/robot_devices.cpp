@@ -142,6 +142,13 @@ std::unique_ptr<DriveNetwork> make_network(CanBus& bus, Clock& clock, const Rig&
 
 }  // namespace
 
+std::vector<sim::NodeConfig> emulated_drives(const Rig& rig, std::size_t bus) {
+  std::vector<sim::NodeConfig> out;
+  for (const RigJoint& joint : rig.joints)
+    if (joint.bus == bus) out.push_back(emulated(joint, rig.buses[bus].protocol));
+  return out;
+}
+
 struct RobotDevices::Bus {
   std::unique_ptr<InProcessBus> medium;  // of a mock bus
   std::unique_ptr<sim::DriveRack> rack;
@@ -164,10 +171,7 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
     if (options.mock || config.interface == "mock") {
       bus->medium =
           std::make_unique<InProcessBus>(config.name, clock, InProcessBusOptions{.wire = rates, .faults = {}});
-      std::vector<sim::NodeConfig> nodes;
-      for (const RigJoint& joint : rig.joints)
-        if (joint.bus == i) nodes.push_back(emulated(joint, config.protocol));
-      bus->rack = std::make_unique<sim::DriveRack>(clock, bus->medium->attach(), nodes);
+      bus->rack = std::make_unique<sim::DriveRack>(clock, bus->medium->attach(), emulated_drives(rig, i));
       bus->end = bus->medium->attach();
     } else {
       bus->end = std::make_unique<SocketCanBus>(config.interface);

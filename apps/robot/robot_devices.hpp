@@ -11,8 +11,12 @@
 #include "apps/robot/status_view.hpp"
 #include "common/clock.hpp"
 #include "drivers/robot/rig.hpp"
+#include "sim/drives/drive_node.hpp"
 
 namespace foresight {
+
+/// The drives that a bus of a rig needs, emulated, as their own shafts see them. PowerCube modules start a little off home.
+std::vector<sim::NodeConfig> emulated_drives(const Rig& rig, std::size_t bus);
 
 struct RobotDeviceOptions {
   bool mock = false;                         ///< every bus with emulated drives, whatever the rig says

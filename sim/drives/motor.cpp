@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace foresight::sim {
+namespace {
+
+constexpr double kCreep = 1e-3;  // rad/s; slower than this dry friction is left alone and stops the shaft
+
+}  // namespace
 
 Motor::Motor(const MotorConfig& config) : config_(config), since_off_s_(config.brake_delay_s) {
   shaft_.position = config.start;
@@ -45,8 +50,7 @@ bool Motor::following_failed() const {
 }
 
 // A velocity loop inside of a position loop, together critically damped. Far away the position loop asks for
-// no more speed than can be braked away again. Weight is compensated as an integrator would do; dry friction not
-// wholly, or the shaft would never come to rest.
+// no more speed than can be braked away again. Weight and friction are compensated, as an integrator would do.
 double Motor::servo_torque(double dt) {
   const double error = reference_.position - shaft_.position;
   double correction = config_.bandwidth / 2 * error;
@@ -63,7 +67,8 @@ double Motor::servo_torque(double dt) {
     const double fastest = std::max((config_.max_velocity - shaft_.velocity) / dt, -config_.max_acceleration);
     acceleration = std::clamp(acceleration, slowest, fastest);
   }
-  const double moving = shaft_.velocity != 0 ? shaft_.velocity : reference_.velocity;
+  const bool creeps = reference_.velocity == 0 && std::abs(shaft_.velocity) < kCreep;
+  const double moving = creeps ? 0 : reference_.velocity != 0 ? reference_.velocity : shaft_.velocity;
   const double coulomb = moving == 0 ? 0 : std::copysign(0.9 * config_.coulomb, moving);
   return config_.inertia * acceleration + coulomb + config_.viscous * shaft_.velocity - config_.load;
 }

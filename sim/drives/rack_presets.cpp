@@ -32,6 +32,10 @@ std::vector<NodeConfig> rack(NodeConfig::Kind kind, int first_node, bool homed) 
     config.motor.max_velocity = joint.velocity_deg * kDegree;
     config.motor.max_acceleration = joint.acceleration_deg * kDegree;
     config.motor.inertia = joint.inertia;
+    config.motor.viscous = 0.2 * joint.inertia;
+    config.motor.coulomb = 0.05 * joint.inertia;
+    config.motor.brake_torque = 40 * joint.inertia;
+    config.motor.torque_limit = 3 * config.motor.max_acceleration * joint.inertia;
     config.high_switch = config.max_position + 1 * kDegree;
     config.low_switch = -config.high_switch;
     out.push_back(config);

@@ -14,8 +14,10 @@ Reference approach(const Reference& from, double target, const ProfileLimits& li
   const double distance = target - from.position, brake = limits.deceleration;
   if (std::abs(distance) <= brake * dt * dt && std::abs(from.velocity) <= 2 * brake * dt)
     return {target, 0, -from.velocity / dt};
-  // The speed from which whole steps of braking end at the target.
-  const double allowed = std::sqrt(brake * dt * brake * dt / 4 + 2 * brake * std::abs(distance)) - brake * dt / 2;
+  // The speed after this step from which steady braking ends at the target.
+  const double left = std::abs(distance) - std::copysign(from.velocity, distance * from.velocity) * dt / 2;
+  const double half = brake * dt / 2;
+  const double allowed = left > 0 ? std::sqrt(half * half + 2 * brake * left) - half : 0;
   const double wanted = std::copysign(std::min(limits.velocity, allowed), distance);
   const bool slows = wanted * from.velocity < 0 || std::abs(wanted) < std::abs(from.velocity);
   return change_speed(from, wanted, slows ? brake : limits.acceleration, dt);
@@ -39,7 +41,7 @@ Reference CyclicInterpolator::step(double dt) {
   const double s = std::min(1.0, elapsed_s_ / interval_s_), beyond = std::max(0.0, elapsed_s_ - interval_s_);
   const double velocity = ((p1_ - p0_) * (1 - s) + (p2_ - p1_) * s) / interval_s_;
   const double position = p0_ * (1 - s) * (1 - s) / 2 + p1_ * (0.5 + s - s * s) + p2_ * s * s / 2 + velocity * beyond;
-  const double acceleration = beyond > 0 ? 0 : (p2_ - 2 * p1_ + p0_) / (interval_s_ * interval_s_);
+  const double acceleration = beyond > 1e-9 ? 0 : (p2_ - 2 * p1_ + p0_) / (interval_s_ * interval_s_);
   return {position, velocity, acceleration};
 }
 
