@@ -63,7 +63,7 @@ void read_controller(unsigned type, const rtattr& value, CanInterface& out) {
   switch (type) {
     case IFLA_CAN_BITTIMING: {
       const auto timing = value_of<can_bittiming>(value);
-      if (timing.bitrate == 0) break;  // never set
+      if (timing.bitrate == 0 || timing.bitrate == ~0u) break;  // never set; set, but not by the kernel (slcand)
       out.bit_rate = static_cast<int>(timing.bitrate);
       out.sample_point = timing.sample_point * 1e-3;
       break;

@@ -7,6 +7,8 @@
 #include <linux/can/error.h>
 #include <sys/socket.h>
 
+#include <cstring>
+
 #include "common/clock.hpp"
 #include "common/error.hpp"
 #include "drivers/can/candump_log.hpp"
@@ -218,6 +220,22 @@ TEST_F(SocketCan, NamesTheInterfacesThatThereAre) {
     EXPECT_THAT(error.what(), HasSubstr("'can99': find: no such CAN interface"));
     EXPECT_THAT(error.what(), HasSubstr(name_));
   }
+}
+
+// tests/devices/can_slcan.sh takes an interface to bus-off first.
+TEST(SocketCanRestart, BringsABusBackFromBusOff) {
+  const char* interface = std::getenv("FORESIGHT_CAN_BUS_OFF");
+  if (interface == nullptr) GTEST_SKIP() << "FORESIGHT_CAN_BUS_OFF names no interface in bus-off";
+  SocketCanOptions options;
+  options.restart_after_bus_off = true;
+  SocketCanBus bus(interface, options);
+  ASSERT_EQ(bus.state(), CanBusState::bus_off);
+  EXPECT_EQ(bus.send(frame(1)), CanSend::bus_down);
+  const RobotTime give_up = MonotonicClock().now() + 5s;
+  while (bus.state() != CanBusState::active && MonotonicClock().now() < give_up) bus.receive(10ms);
+  EXPECT_EQ(bus.state(), CanBusState::active) << std::strerror(bus.restart_error());
+  EXPECT_EQ(bus.counters().restarts, 1u);
+  EXPECT_EQ(bus.send(frame(1)), CanSend::sent);
 }
 
 }  // namespace
