@@ -7,14 +7,12 @@
 
 #include "common/error.hpp"
 #include "drivers/can/candump_log.hpp"
-#include "drivers/can/in_process_bus.hpp"
 #include "drivers/can/metered_bus.hpp"
 #include "drivers/can/recording_bus.hpp"
 #include "drivers/can/socket_can_bus.hpp"
 #include "drivers/canopen/canopen_network.hpp"
 #include "drivers/powercube/network.hpp"
 #include "drivers/robot/bus_plan.hpp"
-#include "sim/drives/drive_rack.hpp"
 
 namespace foresight {
 namespace {
@@ -171,7 +169,9 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
     if (options.mock || config.interface == "mock") {
       bus->medium =
           std::make_unique<InProcessBus>(config.name, clock, InProcessBusOptions{.wire = rates, .faults = {}});
-      bus->rack = std::make_unique<sim::DriveRack>(clock, bus->medium->attach(), emulated_drives(rig, i));
+      auto nodes = emulated_drives(rig, i);
+      for (sim::NodeConfig& node : nodes) node.motor.limits_off = options.mock_without_limits;
+      bus->rack = std::make_unique<sim::DriveRack>(clock, bus->medium->attach(), nodes);
       bus->end = bus->medium->attach();
     } else {
       bus->end = std::make_unique<SocketCanBus>(config.interface);
@@ -219,6 +219,16 @@ std::vector<DriveNetwork*> RobotDevices::networks() const {
 
 std::vector<Drive*> RobotDevices::drives() const {
   return drives_;
+}
+
+sim::DriveRack* RobotDevices::rack(std::size_t bus) const {
+  return buses_[bus]->rack.get();
+}
+InProcessBus* RobotDevices::medium(std::size_t bus) const {
+  return buses_[bus]->medium.get();
+}
+CanBus& RobotDevices::master_end(std::size_t bus) const {
+  return *buses_[bus]->end;
 }
 
 std::vector<BusLine> RobotDevices::buses() const {

@@ -10,17 +10,20 @@
 
 #include "apps/robot/status_view.hpp"
 #include "common/clock.hpp"
+#include "drivers/can/in_process_bus.hpp"
 #include "drivers/robot/rig.hpp"
-#include "sim/drives/drive_node.hpp"
+#include "sim/drives/drive_rack.hpp"
 
 namespace foresight {
 
-/// The drives that a bus of a rig needs, emulated, as their own shafts see them. PowerCube modules start a little off home.
+/// The drives that a bus of a rig needs, emulated, as their own shafts see them. PowerCube modules start a little off
+/// home.
 std::vector<sim::NodeConfig> emulated_drives(const Rig& rig, std::size_t bus);
 
 struct RobotDeviceOptions {
   bool mock = false;                         ///< every bus with emulated drives, whatever the rig says
   std::optional<std::filesystem::path> log;  ///< candump log of all frames
+  bool mock_without_limits = false;          ///< emulated drives do whatever they are told: to prove the gate
 };
 
 /// Opens the rig's buses: SocketCAN interfaces, or in-process ones with emulated drives where the rig says `mock`.
@@ -38,6 +41,11 @@ class RobotDevices {
   std::vector<Drive*> drives() const;  ///< in the rig's order
   /// Thread-safe while the loop runs.
   std::vector<BusLine> buses() const;
+
+  /// What is behind a mock bus, for tests: where the shafts are, faults, other ends; null behind a real one.
+  sim::DriveRack* rack(std::size_t bus) const;
+  InProcessBus* medium(std::size_t bus) const;
+  CanBus& master_end(std::size_t bus) const;  ///< the end of the medium that we use
 
  private:
   struct Bus;

@@ -192,7 +192,6 @@ void Module::send(RobotTime now, CanBus& bus) noexcept {
   if (state_ == DriveState::enabling) send_enabling(bus);
   if (state_ == DriveState::enabled) send_enabled(bus);
   send_orders(bus);
-  send_questions(bus);
 }
 
 void Module::send_orders(CanBus& bus) noexcept {
@@ -259,10 +258,11 @@ void Module::watch_homing() noexcept {
 
 // One question a cycle: eight modules at 250 Hz would fill the bus with more. Behind set-points, whose answers hold
 // position and the most important bits, only now and then.
-void Module::send_questions(CanBus& bus) noexcept {
+void Module::ask(CanBus& bus) noexcept {
   const bool stepping = state_ == DriveState::enabled && word_is(kHomeOk) && options_.set_points == SetPoints::step;
-  if (stepping && cycles_ % kAskWhileStepping != 0) return;
-  const std::uint32_t turn = stepping ? cycles_ / kAskWhileStepping : cycles_;
+  const std::uint32_t turn_of_all = cycles_ + static_cast<std::uint32_t>(config_.node);  // not all in one cycle
+  if (stepping && turn_of_all % kAskWhileStepping != 0) return;
+  const std::uint32_t turn = stepping ? turn_of_all / kAskWhileStepping : cycles_;
   // The state before the position: a position that follows "homed" is one after homing.
   if (turn % 2 == 0 || state_ == DriveState::offline)
     bus.send(get_param(config_.node, Param::cube_state));

@@ -67,6 +67,8 @@ class Module final : public Drive {
   void take(const Message& message, RobotTime time) noexcept;
   void check(RobotTime now) noexcept;  ///< marks what fell silent
   void send(RobotTime now, CanBus& bus) noexcept;
+  /// After all modules have sent: what the loop wants to know of this one.
+  void ask(CanBus& bus) noexcept;
 
  private:
   /// What configure() proved, and enable proves again. Wire units.
@@ -94,7 +96,6 @@ class Module final : public Drive {
   void send_enabled(CanBus& bus) noexcept;
   void watch_homing() noexcept;
   void send_orders(CanBus& bus) noexcept;
-  void send_questions(CanBus& bus) noexcept;
   bool send_ramp(double wire, CanBus& bus) noexcept;
   bool word_is(std::uint32_t bits) const noexcept { return (word_ & bits) != 0; }
 

@@ -76,10 +76,12 @@ void Network::receive(RobotTime now) noexcept {
 void Network::send(RobotTime now) noexcept {
   if (!healthy())
     for (const auto& module : modules_) module->request(DriveRequest::quick_stop);
+  // Set-points first: what else there is to send in a cycle must not change when they arrive.
+  for (const auto& module : modules_) module->send(now, bus_);
   if (!fed_ || now + options_.cycle - *fed_ > kFeedTime) {
     if (bus_.send(broadcast(Command::watchdog_refresh)) == CanSend::sent) fed_ = now;
   }
-  for (const auto& module : modules_) module->send(now, bus_);
+  for (const auto& module : modules_) module->ask(bus_);
 }
 
 const char* Network::reason() const noexcept {

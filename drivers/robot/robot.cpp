@@ -132,7 +132,8 @@ void Robot::advance_enabling(RobotTime now) noexcept {
   // Again and again: a drive that was not ready for the request has dropped it.
   if (!resetting_ && now >= ask_again_) {
     for (std::size_t i = 0; i < drives_.size(); ++i)
-      if (feedback_[i].state == DriveState::disabled) drives_[i]->request(DriveRequest::enable);
+      if (feedback_[i].state == DriveState::disabled || feedback_[i].state == DriveState::stopping)
+        drives_[i]->request(DriveRequest::enable);
     ask_again_ = now + kAskAgain;
   }
   if (now - phase_since_ < kEnableWithin) return;

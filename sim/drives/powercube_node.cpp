@@ -240,7 +240,7 @@ bool PowerCubeNode::move(std::uint8_t motion, Bytes value) {
       const double interval_s = std::max(0.001, static_cast<double>(decode_integer(value.subspan(4, 2), false)) * 1e-3);
       begin(Activity::step);
       const bool alone = interval_s > kLongestCyclicStep_s && steps_.resting();
-      steps_.push(cut(amount), alone ? interval_s / 2 : interval_s);
+      steps_.queue(cut(amount), alone ? interval_s / 2 : interval_s);
       return true;
     }
     case 0x07:

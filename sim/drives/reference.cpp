@@ -25,6 +25,7 @@ Reference approach(const Reference& from, double target, const ProfileLimits& li
 
 void CyclicInterpolator::start(double position) {
   p0_ = p1_ = p2_ = position;
+  waiting_.reset();
   elapsed_s_ = interval_s_ = 1;
 }
 
@@ -36,8 +37,21 @@ void CyclicInterpolator::push(double position, double interval_s) {
   interval_s_ = interval_s;
 }
 
+void CyclicInterpolator::queue(double position, double interval_s) {
+  if (elapsed_s_ < interval_s_ - 1e-9)
+    waiting_ = {position, interval_s};
+  else
+    push(position, interval_s);
+}
+
 Reference CyclicInterpolator::step(double dt) {
   elapsed_s_ += dt;
+  if (waiting_ && elapsed_s_ > interval_s_) {
+    const double into_next = elapsed_s_ - interval_s_;
+    push(waiting_->position, waiting_->interval_s);
+    elapsed_s_ = into_next;
+    waiting_.reset();
+  }
   const double s = std::min(1.0, elapsed_s_ / interval_s_), beyond = std::max(0.0, elapsed_s_ - interval_s_);
   const double velocity = ((p1_ - p0_) * (1 - s) + (p2_ - p1_) * s) / interval_s_;
   const double position = p0_ * (1 - s) * (1 - s) / 2 + p1_ * (0.5 + s - s * s) + p2_ * s * s / 2 + velocity * beyond;

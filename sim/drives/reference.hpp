@@ -3,6 +3,8 @@
 // Joint units. Plain arithmetic, one thread.
 #pragma once
 
+#include <optional>
+
 #include "sim/drives/motor.hpp"
 
 namespace foresight::sim {
@@ -26,7 +28,10 @@ class CyclicInterpolator {
  public:
   void start(double position);                    ///< at rest there
   void push(double position, double interval_s);  ///< the next interval begins now; `interval_s` > 0
-  Reference step(double dt);                      ///< after the interval: onward with its last velocity
+  /// push(), but where an interval still goes on, after it: set-points that come a little early or late do not disturb
+  /// the motion. A second one that waits takes the place of the first.
+  void queue(double position, double interval_s);
+  Reference step(double dt);  ///< after the interval: onward with its last velocity
   double last() const { return p2_; }
   double extrapolated() const { return 2 * p2_ - p1_; }
   double elapsed_s() const { return elapsed_s_; }
@@ -36,6 +41,10 @@ class CyclicInterpolator {
  private:
   double p0_ = 0, p1_ = 0, p2_ = 0;
   double elapsed_s_ = 0, interval_s_ = 1;
+  struct Waiting {
+    double position, interval_s;
+  };
+  std::optional<Waiting> waiting_;
 };
 
 }  // namespace foresight::sim
