@@ -1,30 +1,12 @@
-// What runs in control loops must not allocate after construction: counted, by replacing operator new.
+// What runs in control loops must not allocate after construction: counted, by tests/support/allocations.cpp.
 #include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <new>
 
 #include "common/clock.hpp"
 #include "drivers/can/in_process_bus.hpp"
 #include "drivers/can/recording_bus.hpp"
 #include "drivers/can/socket_can_bus.hpp"
 #include "tests/can/frames.hpp"
-
-namespace {
-thread_local long allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocations.hpp"
 
 namespace foresight {
 namespace {
@@ -32,10 +14,10 @@ namespace {
 using namespace std::chrono_literals;
 
 template <typename Work>
-long allocations_of(Work&& work) {
-  const long before = allocations;
+std::size_t allocations_of(Work&& work) {
+  const std::size_t before = allocations();
   work();
-  return allocations - before;
+  return allocations() - before;
 }
 
 TEST(NoAllocation, TheCounterCounts) {

@@ -1,27 +1,8 @@
-// The loop must not allocate: every allocation of this program is counted.
+// The loop must not allocate: every allocation of this thread is counted.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "scripted_slave.hpp"
-
-namespace {
-std::atomic<long> allocations;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
+#include "tests/support/allocations.hpp"
 
 namespace foresight::canopen {
 namespace {
@@ -29,12 +10,12 @@ namespace {
 TEST(Loop, DoesNotAllocate) {
   CanopenRig rig(3);
   rig.configure();
-  long inside = 0;
+  std::size_t inside = 0;
   int homed = 0;
   for (int i = 0; i < 400; ++i) {
     rig.clock.sleep_until(rig.clock.now() + rig.config.cycle);
     if (i == 250) rig.slave(1).fail(0x8611);
-    const long before = allocations;
+    const std::size_t before = allocations();
     rig.network->receive(rig.clock.now());
     for (Drive* drive : rig.network->drives()) {
       if (i == 2) drive->request(DriveRequest::enable);
@@ -45,12 +26,12 @@ TEST(Loop, DoesNotAllocate) {
       homed += drive->feedback().homed;
     }
     rig.network->send(rig.clock.now());
-    inside += allocations - before;
+    inside += allocations() - before;
   }
   EXPECT_EQ(inside, 0);
   EXPECT_GT(homed, 0);
   EXPECT_EQ(rig.feedback(0).state, DriveState::stopping);
-  EXPECT_GT(allocations, 100) << "they are counted";
+  EXPECT_GT(allocations(), 100u) << "they are counted";
 }
 
 }  // namespace

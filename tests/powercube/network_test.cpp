@@ -6,9 +6,9 @@
 
 #include <random>
 
-#include "allocations.hpp"
 #include "common/error.hpp"
 #include "scripted_module.hpp"
+#include "tests/support/allocations.hpp"
 
 namespace foresight::powercube {
 namespace {

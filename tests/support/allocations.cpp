@@ -1,4 +1,4 @@
-#include "allocations.hpp"
+#include "tests/support/allocations.hpp"
 
 #include <cstdlib>
 #include <new>
@@ -21,10 +21,10 @@ void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 
-namespace foresight::powercube {
+namespace foresight {
 
 std::size_t allocations() noexcept {
   return count;
 }
 
-}  // namespace foresight::powercube
+}  // namespace foresight
