@@ -6,6 +6,7 @@
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
 #include "apps/bench/margin.hpp"
+#include "apps/bench/robot_bench.hpp"
 #include "apps/run_options.hpp"
 
 namespace foresight {
@@ -51,6 +52,18 @@ void add_can(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_can(*options); }; });
 }
 
+void add_robot(CLI::App& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("robot", "Punctuality and CPU time of the control loop, with emulated drives");
+  auto options = std::make_shared<RobotBenchOptions>();
+  command->add_option("RIG", options->rig, "Rig file; its buses are taken as mock ones")->required();
+  command->add_option("--seconds", options->seconds, "How long")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers");
+  command->footer("Exit code: 1 where the robot did not follow to the end.");
+  command->callback([options, &action] { action = [options] { return bench_robot(*options); }; });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, std::function<int()>& action) {
@@ -60,6 +73,7 @@ void add_bench_command(CLI::App& app, std::function<int()>& action) {
   add_extraction(*bench, action);
   add_figures(*bench, action);
   add_margin(*bench, action);
+  add_robot(*bench, action);
 }
 
 }  // namespace foresight
