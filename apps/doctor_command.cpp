@@ -32,6 +32,7 @@ int run(const std::string& rig_file) {
     add(check_drives(rig));
   }
   add(check_can());
+  add(check_cameras());
   add(check_real_time());
   add(check_graphics());
   add(check_network());

@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cstring>
 
@@ -22,7 +23,8 @@ std::string lock_memory() {
   rlimit most{};
   getrlimit(RLIMIT_MEMLOCK, &most);
   // With a limit, MCL_FUTURE would make later allocations fail.
-  if (most.rlim_cur == RLIM_INFINITY && mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return {};
+  const bool unlimited = most.rlim_cur == RLIM_INFINITY || geteuid() == 0;
+  if (unlimited && mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return {};
   return "memory is not locked: add '@realtime - memlock unlimited' to /etc/security/limits.conf, or "
          "LimitMEMLOCK=infinity to the systemd unit";
 }

@@ -22,6 +22,7 @@ using Findings = std::vector<Finding>;
 Findings check_can();                   ///< sockets in the kernel, interfaces and their state
 Findings check_buses(const Rig& rig);   ///< the rig's interfaces, bit rates and planned load
 Findings check_drives(const Rig& rig);  ///< identifies every drive; moves nothing
+Findings check_cameras();               ///< takes ten images of each that V4L2 knows
 Findings check_real_time();
 Findings check_graphics();
 Findings check_network();
