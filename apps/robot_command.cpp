@@ -73,6 +73,7 @@ class Console {
     if (!keyboard_.is_terminal() || now - shown_ < kRedraw) return;
     shown_ = now;
     std::string text = status_text(rig_, status, devices_.buses(), follow_ ? -1 : static_cast<int>(keys_.selected()));
+    text += std::string("\n") + KeyOperator::help() + "\n";
     if (keys_.asks_for_consent()) text += "Every joint will look for home, slowly. Is the robot's way clear? y/n\n";
     std::fputs(("\x1b[H\x1b[J" + text).c_str(), stdout);
     std::fflush(stdout);

@@ -1,6 +1,7 @@
 #include "drivers/robot/rig.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -52,10 +53,15 @@ Eigen::AlignedBox3d box(const YamlMap& map, const std::string& key) {
 
 std::optional<std::uint32_t> identity(const YamlMap& map, const std::string& key) {
   if (!map.has(key)) return std::nullopt;
-  const auto value = parse_integer(map.text(key));
-  if (!value || *value < 0 || *value > 0xffffffffLL)
-    throw InputError(map.where(key), "is no 32-bit number", "give what the device reports, in decimal");
-  return static_cast<std::uint32_t>(*value);
+  const std::string text = map.text(key);
+  const bool hex = text.starts_with("0x") || text.starts_with("0X");
+  std::uint32_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data() + (hex ? 2 : 0), end, value, hex ? 16 : 10);
+  if (error != std::errc() || stopped != end)
+    throw InputError(map.where(key), in_quotes(text) + " is no 32-bit number",
+                     "give what the device reports, in decimal or as 0x and hex digits");
+  return value;
 }
 
 RigBus read_bus(const YamlMap& map) {

@@ -189,7 +189,10 @@ void Robot::cycle(RobotTime now) noexcept {
   if (phase_ == RobotPhase::enabling) advance_enabling(now);
   if (phase_ == RobotPhase::homing) advance_homing(now);
   if (phase_ == RobotPhase::ready || phase_ == RobotPhase::stopped) {
-    gate_.step(now, phase_ == RobotPhase::ready ? command : std::nullopt, feedback_);
+    const bool may_move = phase_ == RobotPhase::ready && all_homed();
+    if (phase_ == RobotPhase::ready && !may_move && command)
+      refused_ = "not all joints know where they are: home first";
+    gate_.step(now, may_move ? command : std::nullopt, feedback_);
     if (gate_.status().state == GateState::stopped && phase_ == RobotPhase::ready) {
       if (gate_.wants_quick_stop()) stop_all();
       enter(RobotPhase::stopped, now);
@@ -199,6 +202,10 @@ void Robot::cycle(RobotTime now) noexcept {
   }
   for (DriveNetwork* network : networks_) network->send(now);
   publish(now);
+}
+
+bool Robot::all_homed() const noexcept {
+  return std::all_of(feedback_.begin(), feedback_.end(), [](const DriveFeedback& f) { return f.homed; });
 }
 
 void Robot::publish(RobotTime now) noexcept {
@@ -211,7 +218,7 @@ void Robot::publish(RobotTime now) noexcept {
       status.bus_healthy = false;
       status.bus_reason = network->reason();
     }
-  status.all_homed = std::all_of(feedback_.begin(), feedback_.end(), [](const DriveFeedback& f) { return f.homed; });
+  status.all_homed = all_homed();
   status.waiting_for = waiting_for_;
   status.refused = refused_;
   std::copy(feedback_.begin(), feedback_.end(), status.feedback.begin());

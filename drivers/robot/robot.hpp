@@ -24,10 +24,11 @@ const char* to_string(RobotPhase phase);
 
 enum class RobotRequest : std::uint8_t {
   none,
-  enable,          ///< from disabled: drives hold where they stand
-  disable,         ///< at rest only: no torque, brakes close
-  home,            ///< consent to homing: joint by joint, slowly; from ready, while nobody is in charge
-  reset,           ///< from stopped, once what stopped it is gone: clears faults, enables again
+  enable,   ///< from disabled: drives hold where they stand
+  disable,  ///< at rest only: no torque, brakes close
+  home,   ///< consent to homing: joint by joint, slowly; from ready, while nobody is in charge. No command is followed
+          ///< before
+  reset,  ///< from stopped, once what stopped it is gone: clears faults, enables again
   emergency_stop,  ///< any time
 };
 
@@ -75,6 +76,7 @@ class Robot {
   void shut_down(Clock& clock, RobotTime due) noexcept;
   void disable_all() noexcept;
   bool all_disabled() const noexcept;
+  bool all_homed() const noexcept;
 
   SafetyGate gate_;
   std::vector<DriveNetwork*> networks_;

@@ -89,6 +89,8 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("jerk: 20", "jerk: -1", {"jerk", "above 0"});
   expect("following_error: 0.1", "following_error: 0.001", {"following error"});
   expect("velocity: 1, acc", "velocity: .nan, acc", {"velocity"});
+  expect("node: 2", "node: 2, serial: 12g", {"12g", "32-bit"});
+  expect("node: 2", "node: 2, serial: 0x100000000", {"32-bit"});
   expect("name: small", "name: small\nrobot: {urdf: none.urdf}", {"none.urdf", "no file"});
 }
 

@@ -14,6 +14,9 @@ using namespace std::chrono_literals;
 
 class RobotTest : public testing::Test {
  protected:
+  RobotTest() {
+    for (PromptDrive& drive : drives_) drive.state.homed = true;
+  }
   static GateOptions options() {
     GateOptions out;
     out.joints = {{"arm", {-2, 2, 1, 4, 60}, 0.2}, {"grip", {0, 0.1, 0.1, 1, 20}, 0.02, true}};
@@ -64,6 +67,19 @@ TEST_F(RobotTest, MovesNothingBeforeItIsEnabled) {
   EXPECT_EQ(robot_.status().phase, RobotPhase::disabled);
   EXPECT_TRUE(drives_[0].requests.empty());
   EXPECT_EQ(drives_[0].state.position, 0);
+}
+
+TEST_F(RobotTest, MovesNothingBeforeAllJointsAreHomed) {
+  drives_[1].state.homed = false;
+  make_ready();
+  command(1, 0, false);
+  run(1);
+  for (int i = 0; i < 100; ++i) {
+    command(1, 0);
+    run(1);
+  }
+  EXPECT_EQ(drives_[0].state.position, 0);
+  EXPECT_STRNE(robot_.status().refused, "");
 }
 
 TEST_F(RobotTest, FollowsOnceEnabled) {
@@ -119,6 +135,7 @@ TEST_F(RobotTest, ABusThatFailsStops) {
 }
 
 TEST_F(RobotTest, HomesOnlyWithConsentAndOnlyWhileNobodyIsInCharge) {
+  for (PromptDrive& drive : drives_) drive.state.homed = false;
   make_ready();
   run(100);
   EXPECT_FALSE(drives_[0].asked(DriveRequest::home));

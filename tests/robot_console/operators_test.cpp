@@ -80,6 +80,9 @@ class KeyOperatorTest : public OperatorsTest {
     for (int i = 0; i < ticks; ++i)
       tick([&](RobotTime now, const RobotStatus& status) { return who_.tick(now, status, i == 0 ? keys : ""); });
   }
+  KeyOperatorTest() {
+    for (PromptDrive& drive : drives_) drive.state.homed = true;
+  }
   KeyOperator who_{rig_.gate_options().joints};
 };
 

@@ -30,6 +30,26 @@ TEST_P(Loop, AllocatesNothingAfterItsStart) {
   EXPECT_EQ(live.robot().status().phase, RobotPhase::stopped);
 }
 
+TEST_P(Loop, ADriveThatIsAnotherThanTheRigSaysIsNeverEnabled) {
+  SteppedClock clock;
+  Rig rig = read_rig(std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs" / GetParam());
+  rig.joints[3].drive.serial = 4711;
+  RobotDeviceOptions options;
+  options.mock = true;
+  RobotDevices devices(rig, clock, options);
+  devices.rack(0)->inject(3, sim::DriveFault::wrong_identity);
+  const std::string error = input_error([&] { devices.bring_up([](const std::string&) {}); });
+  EXPECT_THAT(error, testing::AllOf(testing::HasSubstr("elbow"), testing::HasSubstr("serial")));
+  Robot robot(rig.gate_options(), nullptr, devices.networks(), devices.drives());
+  robot.ask(RobotRequest::enable);
+  for (int i = 0; i < 2000; ++i) {
+    clock.sleep_until(clock.now() + 4ms);
+    robot.cycle(clock.now());
+  }
+  EXPECT_STRNE(to_string(robot.status().phase), "ready");
+  for (std::size_t i = 0; i < devices.rack(0)->size(); ++i) EXPECT_FALSE(devices.rack(0)->shaft(i).powered) << i;
+}
+
 /// A session, its log of both buses as one text.
 std::string session(const char* rig_file, const std::filesystem::path& folder) {
   SteppedClock clock;
@@ -46,10 +66,11 @@ std::string session(const char* rig_file, const std::filesystem::path& folder) {
     const RobotTime start = clock.now();
     clock.every(8ms, [&](RobotTime now) {
       if (now - start < 16ms) robot.ask(RobotRequest::enable);
-      MotionCommand command{1, ++sequence, now, now - start > 600ms, rig.joints.size(), {}};
+      if (now - start > 500ms && now - start < 516ms) robot.ask(RobotRequest::home);
+      MotionCommand command{1, ++sequence, now, robot.status().all_homed && now - start > 1s, rig.joints.size(), {}};
       command.position[3] = 0.5;
       robot.submit(command);
-      if (now - start > 3s) stop.request_stop();
+      if (now - start > 15s) stop.request_stop();
     });
     robot.run(clock, stop.get_token());
   }
