@@ -72,10 +72,6 @@ class SystemCalls final : public Calls {
 
 }  // namespace
 
-UniqueFd::~UniqueFd() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
 Calls& system_calls() {
   static SystemCalls calls;
   return calls;

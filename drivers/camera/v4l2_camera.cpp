@@ -103,7 +103,7 @@ void V4l2Camera::map_buffers() {
     exported.index = i;
     exported.flags = O_CLOEXEC;
     // Not every driver can; then there is the mapping.
-    if (calls_.ioctl(fd, VIDIOC_EXPBUF, &exported) == 0) buffer.dmabuf = v4l2::UniqueFd(exported.fd);
+    if (calls_.ioctl(fd, VIDIOC_EXPBUF, &exported) == 0) buffer.dmabuf = UniqueFd(exported.fd);
     buffers_.push_back(std::move(buffer));
   }
 }

@@ -49,7 +49,7 @@ class V4l2Camera final : public Camera {
   struct Buffer {
     void* address = nullptr;
     std::size_t size = 0;
-    v4l2::UniqueFd dmabuf;
+    UniqueFd dmabuf;
   };
 
   void open();  ///< and configures and streams; throws

@@ -15,8 +15,8 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/unique_fd.hpp"
 #include "drivers/can/link_message.hpp"
-#include "drivers/can/unique_fd.hpp"
 
 namespace foresight {
 namespace {

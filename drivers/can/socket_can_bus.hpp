@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
+#include "common/unique_fd.hpp"
 #include "drivers/can/can_bus.hpp"
 #include "drivers/can/can_interfaces.hpp"
 #include "drivers/can/receive_time.hpp"
-#include "drivers/can/unique_fd.hpp"
 
 struct canfd_frame;
 struct msghdr;

@@ -50,13 +50,13 @@ std::string FakeV4l2::serial(const std::string&) {
   return "C0FFEE";
 }
 
-v4l2::UniqueFd FakeV4l2::open(const std::string& device) {
+UniqueFd FakeV4l2::open(const std::string& device) {
   if (!present || (device != "/dev/video0" && device != "/dev/video2")) {
     errno = ENOENT;
     return {};
   }
   ++opened;
-  return v4l2::UniqueFd(::open(device == "/dev/video0" ? "/dev/zero" : "/dev/null", O_RDWR | O_CLOEXEC));
+  return UniqueFd(::open(device == "/dev/video0" ? "/dev/zero" : "/dev/null", O_RDWR | O_CLOEXEC));
 }
 
 int FakeV4l2::ioctl(int fd, unsigned long request, void* argument) {

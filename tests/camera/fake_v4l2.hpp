@@ -35,7 +35,7 @@ class FakeV4l2 final : public v4l2::Calls {
 
   std::vector<std::string> devices() override;
   std::string serial(const std::string& device) override;
-  v4l2::UniqueFd open(const std::string& device) override;
+  UniqueFd open(const std::string& device) override;
   int ioctl(int fd, unsigned long request, void* argument) override;
   void* map(std::size_t bytes, int fd, std::int64_t offset) override;
   void unmap(void* address, std::size_t bytes) override;

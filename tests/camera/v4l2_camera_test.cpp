@@ -210,7 +210,7 @@ TEST_F(V4l2, ErrorsOfDequeueRestartTheStream) {
 
 TEST_F(V4l2, LeaksNoDescriptors) {
   const auto next_free = [] {
-    const v4l2::UniqueFd fd(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+    const UniqueFd fd(::open("/dev/null", O_RDONLY | O_CLOEXEC));
     return fd.get();
   };
   const int before = next_free();
