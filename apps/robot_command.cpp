@@ -97,7 +97,7 @@ class Console {
   std::uint64_t cycles_ = 0;
 };
 
-int run_stepped(SteppedClock& clock, Robot& robot, Console& console) {
+int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices&) {
   std::stop_source stop;
   clock.every(kTick, [&](RobotTime now) {
     if (!stop.stop_requested() && (!console.tick(now) || stop_signal != 0)) stop.request_stop();
@@ -106,11 +106,18 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console) {
   return console.finish();
 }
 
-int run_real(MonotonicClock& clock, Robot& robot, Console& console) {
+int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices) {
+  const auto set_up = [&] {
+    try {
+      devices.bring_up(say);
+    } catch (const std::exception& error) {
+      say(error.what());
+    }
+  };
   {
     std::jthread loop([&](const std::stop_token& stop) {
       if (const std::string refused = make_real_time(kPriority); !refused.empty()) say(refused);
-      robot.run(clock, stop);
+      robot.run(clock, stop, set_up);
     });
     notify_service("READY=1");
     for (RobotTime due = clock.now(); stop_signal == 0 && console.tick(due); due = std::max(due + kTick, clock.now()))
@@ -122,7 +129,7 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console) {
 }
 
 template <typename ClockKind>
-int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, Robot&, Console&)) {
+int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, Robot&, Console&, RobotDevices&)) {
   ClockKind clock;
   RobotDeviceOptions options;
   options.mock = arguments.mock;
@@ -141,7 +148,7 @@ int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, 
   std::signal(SIGHUP, [](int signal) { stop_signal = signal; });
   if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
   devices.bring_up(say);
-  return run(clock, robot, console);
+  return run(clock, robot, console, devices);
 }
 
 int run(const Arguments& arguments) {

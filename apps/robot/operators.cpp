@@ -98,7 +98,7 @@ OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
 KeyOperator::KeyOperator(std::vector<GateJoint> joints) : joints_(std::move(joints)) {}
 
 const char* KeyOperator::help() {
-  return "e enable  h home  1-9 0 joint  +/- move (hold)  space STOP  r reset  d disable  q quit";
+  return "e enable  h home  1-9 0 joint  +/- move (hold)  space STOP  r reset  c configure anew  d disable  q quit";
 }
 
 RobotRequest KeyOperator::request_for(char key) {
@@ -107,6 +107,7 @@ RobotRequest KeyOperator::request_for(char key) {
     case 'e': return RobotRequest::enable;
     case 'd': return RobotRequest::disable;
     case 'r': return RobotRequest::reset;
+    case 'c': return RobotRequest::set_up;
     case ' ': return RobotRequest::emergency_stop;
     case 'y': return consents ? RobotRequest::home : RobotRequest::none;
     default: return RobotRequest::none;

@@ -1,5 +1,6 @@
 #include "apps/robot/status_view.hpp"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -39,12 +40,13 @@ std::string status_text(const Rig& rig, const RobotStatus& status, const std::ve
          static_cast<unsigned long long>(status.gate.accepted), static_cast<unsigned long long>(status.gate.dropped),
          status.gate.last_dropped == GateReason::none ? "" : ", last: ", to_string(status.gate.last_dropped),
          100 * status.gate.speed);
-  append(out, "  %-16s %10s %10s %5s  %s\n", "joint", "position", "set-point", "", "drive");
+  append(out, "  %-16s %10s %10s %5s %7s  %s\n", "joint", "position", "set-point", "", "age ms", "drive");
   for (std::size_t i = 0; i < rig.joints.size(); ++i) {
     const DriveFeedback& f = status.feedback[i];
-    append(out, "%c %-16s %10.4f %10.4f %-5s  %s%s%s%s%s\n", static_cast<int>(i) == selected ? '>' : ' ',
+    const double age_ms = f.time.ns == 0 ? 0 : std::max(0.0, 1e3 * to_seconds(status.time - f.time));
+    append(out, "%c %-16s %10.4f %10.4f %-5s %7.1f  %s%s%s%s%s\n", static_cast<int>(i) == selected ? '>' : ' ',
            rig.joints[i].drive.name.c_str(), f.position, status.set_point[i].position, rig.joints[i].unit.c_str(),
-           to_string(f.state), f.homed ? "" : ", not homed", f.limit ? ", at a limit" : "",
+           age_ms, to_string(f.state), f.homed ? "" : ", not homed", f.limit ? ", at a limit" : "",
            *f.fault != '\0' ? ": " : "", f.fault);
   }
   for (const BusLine& bus : buses)

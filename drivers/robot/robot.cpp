@@ -99,6 +99,11 @@ void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
       resetting_ = true;
       ask_again_ = now;
       return enter(RobotPhase::enabling, now);
+    case RobotRequest::set_up:
+      if ((phase_ != RobotPhase::disabled && phase_ != RobotPhase::stopped) || !gate_.at_rest())
+        return void(refused_ = "set up: only while disabled or stopped, and at rest");
+      set_up_asked_ = true;
+      return;
     case RobotRequest::disable:
       if (!free) return void(refused_ = "disable: wait until the robot is at rest");
       disable_all();
@@ -227,7 +232,7 @@ void Robot::publish(RobotTime now) noexcept {
   published_.put(status);
 }
 
-void Robot::run(Clock& clock, std::stop_token stop) noexcept {
+void Robot::run(Clock& clock, std::stop_token stop, const std::function<void()>& set_up) noexcept {
   const Duration period = seconds(1 / gate_.options().rate_hz);
   RobotTime due = clock.now() + period;
   while (!stop.stop_requested()) {
@@ -235,6 +240,11 @@ void Robot::run(Clock& clock, std::stop_token stop) noexcept {
     const Duration late = clock.now() - due;
     loop_.count(late, period);
     cycle(clock.now());
+    if (std::exchange(set_up_asked_, false) && set_up) {
+      set_up();
+      enter(RobotPhase::disabled, clock.now());
+      due = clock.now();
+    }
     // Skipped cycles are not made up for: set-points go on from where they are.
     due = std::max(due + period, late >= period ? clock.now() : due);
   }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <stop_token>
@@ -26,9 +27,11 @@ enum class RobotRequest : std::uint8_t {
   none,
   enable,   ///< from disabled: drives hold where they stand
   disable,  ///< at rest only: no torque, brakes close
-  home,   ///< consent to homing: joint by joint, slowly; from ready, while nobody is in charge. No command is followed
-          ///< before
-  reset,  ///< from stopped, once what stopped it is gone: clears faults, enables again
+  home,    ///< consent to homing: joint by joint, slowly; from ready, while nobody is in charge. No command is followed
+           ///< before
+  reset,   ///< from stopped, once what stopped it is gone: clears faults, enables again
+  set_up,  ///< from disabled or stopped, at rest: identifies and configures all drives anew, such as one that lost its
+           ///< power
   emergency_stop,  ///< any time
 };
 
@@ -64,7 +67,9 @@ class Robot {
 
   /// Cycles at absolute deadlines until `stop`, then shuts down: stops under control, closes the brakes. In
   /// real time or in stepped time.
-  void run(Clock& clock, std::stop_token stop) noexcept;
+  /// `set_up` follows RobotRequest::set_up between two cycles; it may block, throws nothing, and leaves all drives
+  /// disabled.
+  void run(Clock& clock, std::stop_token stop, const std::function<void()>& set_up = {}) noexcept;
 
  private:
   void follow_request(RobotRequest request, RobotTime now) noexcept;
@@ -87,6 +92,7 @@ class Robot {
   std::size_t homing_ = 0;
   bool homing_asked_ = false;
   bool resetting_ = false;
+  bool set_up_asked_ = false;
   RobotTime ask_again_;
   const char* refused_ = "";
   int waiting_for_ = -1;

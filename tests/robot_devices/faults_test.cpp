@@ -109,6 +109,36 @@ TEST_P(Faults, ANodeThatRestartsInMotion) {
       "elbow");
 }
 
+// It has forgotten all: configured anew, it goes on.
+TEST_P(Faults, ANodeThatRestartedIsSetUpAgain) {
+  live_.inject("elbow", DriveFault::reset);
+  live_.move(2s);
+  ASSERT_EQ(live_.robot().status().phase, RobotPhase::stopped);
+  live_.robot().ask(RobotRequest::set_up);
+  live_.run(8ms);
+  std::stop_source stop;
+  int asked = 0;
+  live_.clock().every(8ms, [&](RobotTime) {
+    if (asked++ == 500) stop.request_stop();
+  });
+  std::string error = "not set up";
+  live_.robot().run(live_.clock(), stop.get_token(), [&] {
+    try {
+      live_.devices().bring_up([](const std::string&) {});
+      error.clear();
+    } catch (const std::exception& what) {
+      error = what.what();
+    }
+    live_.robot().ask(RobotRequest::enable);
+  });
+  EXPECT_EQ(error, "");
+  EXPECT_STREQ(to_string(live_.robot().status().phase), "disabled") << "run() has ended";
+  live_.robot().ask(RobotRequest::enable);
+  live_.run(2s);
+  EXPECT_STREQ(to_string(live_.robot().status().phase), "ready")
+      << live_.robot().status().waiting_for << " " << live_.robot().status().refused;
+}
+
 TEST_P(Faults, BusOff) {
   live_.devices().medium(0)->force_bus_off(live_.devices().master_end(0));
   expect_stopped("bus-off", {GateReason::bus_fault});
