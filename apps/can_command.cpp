@@ -47,6 +47,18 @@ void add_replay(CLI::App& can, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return replay_can(*options); }; });
 }
 
+void add_explain(CLI::App& can, std::function<int()>& action) {
+  auto* command = can.add_subcommand("explain", "Prints a log's frames with what they say in words");
+  auto options = std::make_shared<CanExplainOptions>();
+  command->add_option("FILE", options->file, "A log of `foresight can dump --log`, `robot --log` or candump -l")
+      ->required();
+  command->add_option("--protocol", options->protocol, "What the bus speaks: cia402 or powercube")
+      ->required()
+      ->check(CLI::IsMember({"cia402", "powercube"}));
+  command->footer("Exit code: 0 where all frames are known, 1 where some are not.");
+  command->callback([options, &action] { action = [options] { return explain_can(*options); }; });
+}
+
 }  // namespace
 
 void add_can_command(CLI::App& app, std::function<int()>& action) {
@@ -56,6 +68,7 @@ void add_can_command(CLI::App& app, std::function<int()>& action) {
   add_dump(*can, action);
   add_send(*can, action);
   add_replay(*can, action);
+  add_explain(*can, action);
 }
 
 }  // namespace foresight

@@ -37,4 +37,12 @@ struct CanReplayOptions {
 };
 int replay_can(const CanReplayOptions& options);
 
+struct CanExplainOptions {
+  std::filesystem::path file;
+  std::string protocol;  ///< "cia402" or "powercube"
+};
+/// Prints each frame of a log with what it says in words, and how many say nothing known. Returns 1 where there are
+/// any.
+int explain_can(const CanExplainOptions& options);
+
 }  // namespace foresight

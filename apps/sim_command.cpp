@@ -45,25 +45,31 @@ std::vector<std::string> names_of(const sim::DriveRack& rack) {
   return out;
 }
 
+// Positions, velocities and accelerations in the joint's unit; the four last ones since the start or the last "forget".
 void show(const sim::DriveRack& rack) {
-  std::printf("%-12s %5s %12s %12s %s\n", "drive", "node", "position", "velocity", "brake");
+  std::printf("%-16s %4s %10s %10s %6s %10s %10s %10s %10s\n", "drive", "node", "position", "velocity", "brake",
+              "lowest", "highest", "fastest", "hardest");
   for (std::size_t i = 0; i < rack.size(); ++i) {
     const sim::ShaftState shaft = rack.shaft(i);
-    std::printf("%-12s %5d %12.5f %12.5f %s\n", rack.config(i).name.c_str(), rack.config(i).node, shaft.position,
-                shaft.velocity, shaft.brake_closed ? "closed" : "open");
+    std::printf("%-16s %4d %10.5f %10.5f %6s %10.5f %10.5f %10.5f %10.4f\n", rack.config(i).name.c_str(),
+                rack.config(i).node, shaft.position, shaft.velocity, shaft.brake_closed ? "closed" : "open",
+                shaft.most_negative, shaft.most_positive, shaft.largest_velocity, shaft.largest_acceleration);
   }
+  std::printf("\n");  // ends the table, for programs that read it
   std::fflush(stdout);
 }
 
-// "show", "quit" or "FAULT DRIVE [VALUE]". Returns false to end.
+// "show", "forget", "quit" or "FAULT DRIVE [VALUE]". Returns false to end.
 bool obey(const std::string& line, sim::DriveRack& rack) {
   std::istringstream words(line);
   std::string verb, name, value = "0";
   words >> verb >> name >> value;
   if (verb == "quit") return false;
   if (verb == "show") show(rack);
-  if (verb.empty() || verb == "show") return true;
-  std::vector<std::string> verbs{"show", "quit"};
+  if (verb == "forget")
+    for (std::size_t i = 0; i < rack.size(); ++i) rack.forget_extremes(i);
+  if (verb.empty() || verb == "show" || verb == "forget") return true;
+  std::vector<std::string> verbs{"show", "forget", "quit"};
   for (int f = 0; f <= static_cast<int>(sim::DriveFault::jam); ++f) {
     const auto fault = static_cast<sim::DriveFault>(f);
     verbs.emplace_back(sim::to_string(fault));
@@ -107,7 +113,8 @@ int run(const Arguments& arguments) {
   MonotonicClock clock;
   sim::DriveRack rack(clock, std::make_unique<SocketCanBus>(arguments.can), nodes);
   std::signal(SIGINT, [](int) { interrupted = 1; });
-  std::printf("sim: %zu drives on %s; commands: show, quit, FAULT DRIVE [VALUE]\n", rack.size(), arguments.can.c_str());
+  std::printf("sim: %zu drives on %s; commands: show, forget, quit, FAULT DRIVE [VALUE]\n", rack.size(),
+              arguments.can.c_str());
   std::fflush(stdout);
   const std::jthread thread([&](std::stop_token stop) { rack.run(stop); });
   obey_stdin(rack);

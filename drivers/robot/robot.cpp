@@ -95,8 +95,10 @@ void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
     case RobotRequest::reset:
       if (phase_ != RobotPhase::stopped) return void(refused_ = "reset: nothing is stopped");
       if (!gate_.at_rest()) return void(refused_ = "reset: wait until the robot is at rest");
-      for (Drive* drive : drives_) drive->request(DriveRequest::reset_fault);
-      resetting_ = true;
+      for (std::size_t i = 0; i < drives_.size(); ++i) {
+        drives_[i]->request(DriveRequest::reset_fault);
+        reset_asked_[i] = is_faulty(feedback_[i]);
+      }
       ask_again_ = now;
       return enter(RobotPhase::enabling, now);
     case RobotRequest::set_up:
@@ -115,10 +117,7 @@ void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
       homing_asked_ = false;
       return enter(RobotPhase::homing, now);
   }
-  // A drive whose watchdog stopped it when the program ended before says so now. Whoever enables has looked.
-  resetting_ = std::any_of(feedback_.begin(), feedback_.end(), is_faulty);
-  if (resetting_)
-    for (Drive* drive : drives_) drive->request(DriveRequest::reset_fault);
+  reset_asked_ = {};
   ask_again_ = now;
   enter(RobotPhase::enabling, now);
 }
@@ -131,11 +130,15 @@ void Robot::advance_enabling(RobotTime now) noexcept {
     return enter(RobotPhase::stopped, now);
   }
   waiting_for_ = static_cast<int>(missing - feedback_.begin());
-  // Faults are cleared first; what is still at fault after that stays so.
+  // Faults are cleared first, as of a drive whose watchdog stopped it when the program ended before: whoever enables
+  // has looked. Some drives need a few cycles to say that they have one. Each is asked once; what stays at fault stays
+  // so.
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    if (is_faulty(feedback_[i]) && !std::exchange(reset_asked_[i], true))
+      drives_[i]->request(DriveRequest::reset_fault);
   const bool faulty = std::any_of(feedback_.begin(), feedback_.end(), is_faulty);
-  resetting_ = resetting_ && faulty;
   // Again and again: a drive that was not ready for the request has dropped it.
-  if (!resetting_ && now >= ask_again_) {
+  if (!faulty && now >= ask_again_) {
     for (std::size_t i = 0; i < drives_.size(); ++i)
       if (feedback_[i].state == DriveState::disabled || feedback_[i].state == DriveState::stopping)
         drives_[i]->request(DriveRequest::enable);

@@ -91,8 +91,8 @@ class Robot {
   RobotTime phase_since_;
   std::size_t homing_ = 0;
   bool homing_asked_ = false;
-  bool resetting_ = false;
   bool set_up_asked_ = false;
+  std::array<bool, kMostJoints> reset_asked_{};  // since enabling began
   RobotTime ask_again_;
   const char* refused_ = "";
   int waiting_for_ = -1;

@@ -38,6 +38,52 @@ TEST(Can, WrongInputIsNamedBeforeAnythingIsOpened) {
   }
 }
 
+class ExplainedLog {
+ public:
+  explicit ExplainedLog(const std::string& text)
+      : file_(std::filesystem::temp_directory_path() / ("foresight-explain-" + std::to_string(getpid()) + ".log")) {
+    std::ofstream(file_) << text;
+  }
+  ~ExplainedLog() { std::filesystem::remove(file_); }
+  Outcome as(const char* protocol) const {
+    return run_program({"can", "explain", file_.string(), "--protocol", protocol});
+  }
+
+ private:
+  std::filesystem::path file_;
+};
+
+TEST(Can, ExplainSaysEachFrameInWords) {
+  const Outcome canopen = ExplainedLog(
+                              "(1700000000.123456) can0 000#0102 T\n# a remark\n(1700000000.123556) can0 080#\n"
+                              "can0 20000040#0000000000000000\n")
+                              .as("cia402");
+  EXPECT_EQ(canopen.exit_code, 0) << canopen.err;
+  EXPECT_EQ(canopen.out,
+            "(1700000000.123456) can0 000#0102 T  NMT start, node 2\n(1700000000.123556) can0 080#  SYNC\n"
+            "(0000000000.000000) can0 20000040#0000000000000000  error frame, class 0x040\n3 frames, 0 unknown\n");
+  const Outcome powercube = ExplainedLog("(1.5) can0 0E3#00\n(1.6) can0 100#07\n").as("powercube");
+  EXPECT_EQ(powercube.exit_code, 0) << powercube.err;
+  EXPECT_THAT(powercube.out, HasSubstr("0E3#00  to module 3: "));
+  EXPECT_THAT(powercube.out, HasSubstr("100#07  to all: "));
+  EXPECT_THAT(powercube.out, HasSubstr("2 frames, 0 unknown\n"));
+}
+
+TEST(Can, ExplainCountsWhatItDoesNotKnow) {
+  // A 29-bit identifier, an SDO of three bytes, one with a command that there is not, and a heartbeat.
+  const ExplainedLog log("(1) can0 1F334455#11\n(1) can0 583#010203\n(1) can0 603#E000000000000000\n(1) can0 703#05\n");
+  const Outcome out = log.as("cia402");
+  EXPECT_EQ(out.exit_code, 1);
+  EXPECT_THAT(out.out, HasSubstr("703#05  heartbeat of node 3: operational\n4 frames, 3 unknown\n"));
+  EXPECT_THAT(log.as("powercube").out, HasSubstr("4 frames, 4 unknown\n"));
+}
+
+TEST(Can, ExplainNamesTheLineThatIsNoFrame) {
+  const Outcome out = ExplainedLog("(1) can0 080#\n(1) can0 08\n").as("cia402");
+  EXPECT_EQ(out.exit_code, 2);
+  EXPECT_THAT(out.last_line(), HasSubstr(":2: "));
+}
+
 TEST(Can, BenchMeetsTheLimit) {
   const auto file =
       std::filesystem::temp_directory_path() / ("foresight-bench-can-" + std::to_string(getpid()) + ".json");

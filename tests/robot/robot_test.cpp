@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/robot/prompt_drive.hpp"
@@ -161,6 +162,28 @@ TEST_F(RobotTest, ADriveThatIsNeverEnabledIsNamed) {
   EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
   EXPECT_EQ(robot_.status().waiting_for, 1);
   EXPECT_STRNE(robot_.status().refused, "");
+}
+
+TEST_F(RobotTest, FaultsFromBeforeAreClearedThoughADriveTellsItsLater) {
+  drives_[0].state.state = DriveState::fault;
+  drives_[1].state.state = DriveState::stopping;  // its first answers are still on the way
+  drives_[1].stuck = true;
+  robot_.ask(RobotRequest::enable);
+  run(3);
+  drives_[1].state.state = DriveState::fault;
+  drives_[1].stuck = false;
+  run(40);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
+}
+
+TEST_F(RobotTest, AFaultThatComesBackIsNotClearedAgainAndAgain) {
+  drives_[0].state.state = DriveState::fault;
+  drives_[0].stuck = true;
+  robot_.ask(RobotRequest::enable);
+  run(1500);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
+  EXPECT_EQ(std::count(drives_[0].requests.begin(), drives_[0].requests.end(), DriveRequest::reset_fault), 1);
+  EXPECT_FALSE(drives_[1].asked(DriveRequest::enable));
 }
 
 TEST_F(RobotTest, RunStopsUnderControlAtTheEnd) {
