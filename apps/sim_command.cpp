@@ -33,7 +33,8 @@ std::vector<sim::NodeConfig> nodes_of(const Arguments& arguments) {
     const Rig rig = read_rig(arguments.rig);
     for (std::size_t i = 0; i < rig.buses.size(); ++i)
       if (rig.buses[i].interface == arguments.can) return emulated_drives(rig, i);
-    throw InputError(arguments.rig, "no bus of this rig is on " + in_quotes(arguments.can), "give its interface with --can");
+    throw InputError(arguments.rig, "no bus of this rig is on " + in_quotes(arguments.can),
+                     "give its interface with --can");
   }
   return arguments.profile == "cia402" ? sim::cia402_rack() : sim::powercube_rack();
 }

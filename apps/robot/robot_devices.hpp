@@ -15,7 +15,8 @@
 
 namespace foresight {
 
-/// The drives that a bus of a rig needs, emulated, as their own shafts see them. PowerCube modules start a little off home.
+/// The drives that a bus of a rig needs, emulated, as their own shafts see them. PowerCube modules start a little off
+/// home.
 std::vector<sim::NodeConfig> emulated_drives(const Rig& rig, std::size_t bus);
 
 struct RobotDeviceOptions {

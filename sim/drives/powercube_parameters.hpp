@@ -97,8 +97,8 @@ constexpr bool settable(std::uint8_t parameter) {
 
 /// Speeds, accelerations and the like, which must be positive.
 constexpr bool positive(std::uint8_t parameter) {
-  return parameter == 0x0F || parameter == 0x10 || parameter == 0x40 || parameter == 0x48 || parameter == 0x4A || parameter == 0x4C || parameter == 0x4F ||
-         parameter == 0x50;
+  return parameter == 0x0F || parameter == 0x10 || parameter == 0x40 || parameter == 0x48 || parameter == 0x4A ||
+         parameter == 0x4C || parameter == 0x4F || parameter == 0x50;
 }
 
 constexpr std::uint32_t kError = 1, kHomeOk = 2, kHalted = 4, kPowerFault = 8, kTowError = 0x10, kCommError = 0x20,
