@@ -65,8 +65,7 @@ void check(const Arguments& a) {
     throw InputError(a.left.empty() ? "--left" : "--right", "is missing", "name both cameras");
   if (a.camera_right.empty())
     throw InputError("--camera-right", "is missing", "give the right camera's calibration, with T_left_right in it");
-  if (a.scene.empty())
-    std::fputs("record: no --scene, so that `foresight replay` will need one\n", stderr);
+  if (a.scene.empty()) std::fputs("record: no --scene, so that `foresight replay` will need one\n", stderr);
   if (a.pose.empty())
     std::fputs("record: no --pose, so that the run needs a trajectory.txt before it can be replayed\n", stderr);
 }

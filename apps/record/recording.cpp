@@ -55,10 +55,10 @@ RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const Recor
       throw RuntimeFailure(result.fault + "; nothing was recorded", "check the cables, and `foresight doctor`");
   }
   const auto& p = result.cameras.pairing;
-  result.counts = recorder.finish(sim::format(
-      "missed_pairs: %llu\nunpaired: [%llu, %llu]\nwrong_times: [%llu, %llu]\ndamaged: [%llu, %llu]\n",
-      number(result.cameras.dropped), number(p.unpaired[0]), number(p.unpaired[1]), number(p.jumps[0]),
-      number(p.jumps[1]), number(result.cameras.corrupt[0]), number(result.cameras.corrupt[1])));
+  result.counts = recorder.finish(
+      sim::format("missed_pairs: %llu\nunpaired: [%llu, %llu]\nwrong_times: [%llu, %llu]\ndamaged: [%llu, %llu]\n",
+                  number(result.cameras.dropped), number(p.unpaired[0]), number(p.unpaired[1]), number(p.jumps[0]),
+                  number(p.jumps[1]), number(result.cameras.corrupt[0]), number(result.cameras.corrupt[1])));
   if (recorder.disk_full()) result.fault = "the disk is nearly full";
   return result;
 }

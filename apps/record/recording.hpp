@@ -7,8 +7,8 @@
 namespace foresight {
 
 struct RecordingLimits {
-  std::optional<std::uint64_t> count;  ///< pairs
-  std::optional<Duration> length;      ///< from the first pair on
+  std::optional<std::uint64_t> count;               ///< pairs
+  std::optional<Duration> length;                   ///< from the first pair on
   Duration silent_after = std::chrono::seconds(5);  ///< without a pair
 };
 
@@ -19,8 +19,8 @@ struct RecordingResult {
 };
 
 /// Starts `cameras`, records, stops them and finishes `recorder`. What was recorded before a fault is kept. Blocks;
-/// `stop` is polled at least every 0.1 s. Throws what StereoCamera::start, RunRecorder::add and finish do; RuntimeFailure
-/// where not one pair came, saying why.
+/// `stop` is polled at least every 0.1 s. Throws what StereoCamera::start, RunRecorder::add and finish do;
+/// RuntimeFailure where not one pair came, saying why.
 RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const RecordingLimits& limits, const Clock& clock,
                        const std::function<bool()>& stop);
 

@@ -166,11 +166,10 @@ RecorderCounts RunRecorder::finish(const std::string& remarks) {
     list->close();
     if (!*list) cannot_write(target_.target(), std::strerror(errno));
   }
-  sim::write_text(target_.path() / kMarker,
-                  sim::format("%s\npairs: %llu\ndropped_by_disk: %llu\n", kMarkerLine,
-                              static_cast<unsigned long long>(counts_.written),
-                              static_cast<unsigned long long>(counts_.dropped)) +
-                      remarks);
+  sim::write_text(target_.path() / kMarker, sim::format("%s\npairs: %llu\ndropped_by_disk: %llu\n", kMarkerLine,
+                                                        static_cast<unsigned long long>(counts_.written),
+                                                        static_cast<unsigned long long>(counts_.dropped)) +
+                                                remarks);
   try {
     target_.commit();
   } catch (const fs::filesystem_error& e) {

@@ -36,9 +36,9 @@ struct RecorderOptions {
   std::function<RecordedPoses(RobotTime)> poses;
   /// Writes the scene's files into the folder; empty: the run gets none (`foresight replay --scene`).
   std::function<void(const std::filesystem::path&)> write_scene;
-  std::size_t waiting = 8;       ///< pairs in memory, at most; > 0
-  double spare_bytes = 16e6;     ///< of the disk that are left free
-  Duration slowed_by{0};         ///< for tests: a disk that takes so much longer for a pair
+  std::size_t waiting = 8;    ///< pairs in memory, at most; > 0
+  double spare_bytes = 16e6;  ///< of the disk that are left free
+  Duration slowed_by{0};      ///< for tests: a disk that takes so much longer for a pair
 };
 
 struct RecorderCounts {

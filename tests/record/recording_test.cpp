@@ -124,7 +124,8 @@ TEST_F(Recording, IsARunThatCanBeReadBack) {
     EXPECT_NEAR(frame.right->T_world_camera.translation().x(), 0.067 + to_seconds(frame.left.time - RobotTime{}), 1e-6);
     EXPECT_NEAR(run.state_at(frame.left.time).T_world_node[1].translation().x(),
                 to_seconds(frame.left.time - RobotTime{}), 1e-6);
-    const cv::Mat left = read_run_image(frame.left, run.lens_left()), right = read_run_image(*frame.right, run.lens_left());
+    const cv::Mat left = read_run_image(frame.left, run.lens_left()),
+                  right = read_run_image(*frame.right, run.lens_left());
     EXPECT_EQ(cv::norm(left, right, cv::NORM_INF), 0);  // both count their frames
   }
 }
