@@ -21,9 +21,9 @@ using ShaftPositions = std::function<std::optional<double>(std::string_view join
 /// exactly that length.
 struct HiddenDeviations {
   unsigned seed = 1;
-  double object_m = 0;   ///< one thing on the table stands this far from where the model has it; 0 .. 0.05
-  double object_rad = 0; ///< and is turned by up to this about z
-  double joint_rad = 0;  ///< of each turning joint of the arm, and of pan and tilt
+  double object_m = 0;    ///< one thing on the table stands this far from where the model has it; 0 .. 0.05
+  double object_rad = 0;  ///< and is turned by up to this about z
+  double joint_rad = 0;   ///< of each turning joint of the arm, and of pan and tilt
 };
 
 inline constexpr const char* kBall = "ball";
@@ -51,7 +51,7 @@ class LiveLab {
   /// The same as the encoders tell it: without hidden offsets, the displaced object and the ball at rest.
   LabState modelled_state(const ShaftPositions& shafts) const;
 
-  Pose T_world_left(const ShaftPositions& shafts) const;           ///< true
+  Pose T_world_left(const ShaftPositions& shafts) const;            ///< true
   static Pose T_world_left_modelled(const ShaftPositions& shafts);  ///< by the encoders
 
   /// Where the ball is: rolls to and fro without slip, along y.
