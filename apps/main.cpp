@@ -9,6 +9,7 @@
 #include "apps/can_command.hpp"
 #include "apps/doctor_command.hpp"
 #include "apps/export_command.hpp"
+#include "apps/record_command.hpp"
 #include "apps/replay_command.hpp"
 #include "apps/robot_command.hpp"
 #include "apps/sim_command.hpp"
@@ -38,6 +39,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   std::function<int()> action;
   foresight::add_replay_command(app, action);
+  foresight::add_record_command(app, action);
   foresight::add_export_command(app, action);
   foresight::add_synth_command(app, action);
   foresight::add_can_command(app, action);

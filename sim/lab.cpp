@@ -1,6 +1,7 @@
 #include "sim/lab.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -184,6 +185,20 @@ void add_turned_things(LabBuilder& b) {
              0.004f, 0.17f);
 }
 
+// Banded, so that one sees it roll.
+void add_ball(LabBuilder& b) {
+  const int colours[] = {b.plain(0xd9542b, 0.04, 0.03f), b.plain(0xf0ece0, 0.04, 0.03f)};
+  constexpr int kBands = 16;
+  std::vector<ProfilePoint> profile;
+  for (int i = 0; i <= kBands; ++i) {
+    const float angle = kPi * static_cast<float>(i) / kBands;
+    const bool pole = i == 0 || i == kBands;
+    profile.push_back({pole ? 0 : kBallRadius * std::sin(angle), -kBallRadius * std::cos(angle), colours[i / 4 % 2]});
+  }
+  add_turned(b.part("ball", placed(-0.30, 0.02, 0.002 + kBallRadius, 0), 0.01, true), profile, 24, kBallRadius,
+             kBallRadius);
+}
+
 }  // namespace
 
 LabState Lab::at_rest() const {
@@ -198,7 +213,7 @@ int Lab::find(const std::string& name) const {
   throw std::out_of_range("the lab has no part " + name);
 }
 
-Lab make_lab(double texel, unsigned seed) {
+Lab make_lab(double texel, unsigned seed, bool with_ball) {
   LabBuilder builder(texel, seed);
   add_room(builder);
   add_wall_things(builder);
@@ -208,6 +223,7 @@ Lab make_lab(double texel, unsigned seed) {
   add_furniture(builder);
   const int arm = static_cast<int>(builder.part_count());
   add_arm(builder);
+  if (with_ball) add_ball(builder);
   Lab lab = builder.finish();
   lab.arm = arm;
   return lab;

@@ -45,7 +45,9 @@ struct Lab {
 };
 
 /// `texel`: metres per texel of the finest pictures. `seed` varies grain and small print.
-Lab make_lab(double texel, unsigned seed);
+/// With a ball, that is one more part at the end, "ball", which moves.
+Lab make_lab(double texel, unsigned seed, bool with_ball = false);
+inline constexpr float kBallRadius = 0.03f;  ///< metres
 
 /// The part's triangles over welded vertices, exactly as they are rendered.
 Mesh mesh_of(const Part& part);

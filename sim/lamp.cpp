@@ -15,8 +15,7 @@ const Vector3f kCentre(0.02f, 0.46f, 1.60f), kTarget(-0.10f, 0.0f, 0.0f);
 const Vector3f kRadiance(46.0f, 42.0f, 35.7f);
 constexpr float kSize = 0.40f;
 
-struct Lamp {
-  Vector3f normal, right, up;
+struct Lamp : Axes {
   std::array<Vector3f, kPoints> points;
 };
 
@@ -40,6 +39,14 @@ const Lamp& lamp() {
 
 const Vector3f& centre() {
   return kCentre;
+}
+
+const Axes& axes() {
+  return lamp();
+}
+
+float size() {
+  return kSize;
 }
 
 const std::array<Vector3f, kPoints>& points() {

@@ -13,6 +13,12 @@ inline constexpr float kRadius = 0.285f;  ///< of the sphere around all of them,
 const Eigen::Vector3f& centre();                       ///< world
 const std::array<Eigen::Vector3f, kPoints>& points();  ///< world
 
+struct Axes {
+  Eigen::Vector3f normal, right, up;  ///< world, unit; light leaves along `normal`
+};
+const Axes& axes();
+float size();  ///< of each side, metres
+
 /// Irradiance (linear RGB) at `p` with normal `n` from the lamp points in `seen`.
 Eigen::Vector3f irradiance(const Eigen::Vector3f& p, const Eigen::Vector3f& n, std::uint64_t seen);
 

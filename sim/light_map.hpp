@@ -40,6 +40,9 @@ class LightMap {
   /// Irradiance on a facet at barycentric weights of its corners 1 and 2.
   Eigen::Vector3f at(const Irradiance& irradiance, int facet, float b1, float b2) const;
 
+  /// Steps of the grid along each side of a facet: samples lie at barycentric weights i / steps, j / steps.
+  int steps(int facet) const { return grids_[static_cast<std::size_t>(facet)].n; }
+
   std::size_t sample_count() const { return samples_.size(); }
 
  private:

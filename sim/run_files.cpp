@@ -71,6 +71,29 @@ std::string camera_yaml(const Lens& lens, const std::string& name, const Pose* T
   return text;
 }
 
+void write_model(const fs::path& folder, const SceneModel& scene) {
+  fs::create_directory(folder / "meshes");
+  const auto quoted = [](std::string name) {
+    for (std::size_t at = 0; (at = name.find('\'', at)) != std::string::npos; at += 2) name.insert(at, 1, '\'');
+    return "'" + name + "'";
+  };
+  std::string text = scene.accuracy() ? format("accuracy_m: %.9g\n", *scene.accuracy()) : "";
+  text += "nodes:\n";
+  for (std::size_t k = 0; k < scene.nodes().size(); ++k) {
+    const Node& node = scene.nodes()[k];
+    text += "  - name: " + quoted(node.name) + "\n";
+    if (!node.mesh.triangles.empty()) {
+      const std::string file = format("meshes/%03zu.ply", k);
+      write_text(folder / file, ply(node.mesh));
+      text += "    mesh: " + file + "\n";
+    }
+    if (node.parent >= 0)
+      text += "    parent: " + quoted(scene.nodes()[static_cast<std::size_t>(node.parent)].name) + "\n";
+    text += "    pose: " + yaml(node.T_parent_node) + "\n";
+  }
+  write_text(folder / "scene.yaml", text);
+}
+
 void write_scene(const fs::path& folder, const Lab& lab, const ArmPosition& arm) {
   fs::create_directory(folder / "meshes");
   std::string text = "accuracy_m: 0.004  # the model is exact; this tells thin parts from what they lie on\nnodes:\n";

@@ -24,6 +24,9 @@ std::string pose_text(const Pose& pose);
 /// camera.yaml; with `T_left_right` the right camera's.
 std::string camera_yaml(const Lens& lens, const std::string& name, const Pose* T_left_right);
 
+/// Writes scene.yaml and meshes/ of any model; its robots become plain nodes.
+void write_model(const std::filesystem::path& folder, const SceneModel& scene);
+
 /// Writes scene.yaml, arm.urdf and meshes/ into `folder`; the robot's `joints` are those of `arm`.
 void write_scene(const std::filesystem::path& folder, const Lab& lab, const ArmPosition& arm);
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <span>
 #include <vector>
 
 namespace foresight::sim {
@@ -22,6 +23,18 @@ class Texture {
   /// Bilinear colour at `uv`, metres right of and below the top-left corner of the picture, from
   /// the coarsest level whose texels are not larger than `footprint` (metres). Mirrored outside.
   Eigen::Vector3f sample(const Eigen::Vector2f& uv, float footprint) const;
+
+  /// Level `k` of the pyramid, 0 the finest: linear RGB and padding, 65535 is 1, row by row.
+  struct LevelView {
+    int width = 0, height = 0;
+    std::span<const std::array<std::uint16_t, 4>> texels;
+  };
+  int level_count() const { return static_cast<int>(levels_.size()); }
+  LevelView level(int k) const {
+    const Level& l = levels_[static_cast<std::size_t>(k)];
+    return {l.width, l.height, l.texels};
+  }
+  float texels_per_metre() const { return texels_per_metre_; }
 
   const Eigen::Vector3f& mean() const { return mean_; }
 

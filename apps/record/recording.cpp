@@ -1,0 +1,82 @@
+#include "apps/record/recording.hpp"
+
+#include "common/error.hpp"
+#include "sim/run_files.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+unsigned long long number(std::uint64_t n) {
+  return n;
+}
+
+std::string why_silent(const StereoStatus& status, Duration silent) {
+  std::string text = sim::format("no pair of images came for %.3g s", to_seconds(silent));
+  if (*status.reason) text += std::string(": ") + status.reason;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (status.cameras[i] != CameraStatus::ok)
+      text += sim::format(", %s camera: %s", i ? "right" : "left", to_string(status.cameras[i]));
+  return text;
+}
+
+struct Stopping {  // also where something throws
+  StereoCamera& cameras;
+  ~Stopping() { cameras.stop(); }
+};
+
+}  // namespace
+
+RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const RecordingLimits& limits, const Clock& clock,
+                       const std::function<bool()>& stop) {
+  RecordingResult result;
+  cameras.start();
+  {
+    const Stopping stopping{cameras};
+    std::uint64_t pairs = 0;
+    std::optional<RobotTime> first;
+    RobotTime heard = clock.now();
+    while (!stop() && !recorder.stopped() && !(limits.count && pairs >= *limits.count)) {
+      const auto pair = cameras.take(100ms);
+      if (!pair) {
+        if (clock.now() - heard <= limits.silent_after) continue;
+        result.fault = why_silent(cameras.status(), clock.now() - heard);
+        break;
+      }
+      heard = clock.now();
+      if (!first) first = pair->left.time;
+      if (limits.length && pair->left.time - *first >= *limits.length) break;
+      recorder.add(*pair);
+      ++pairs;
+    }
+    result.cameras = cameras.status();
+    if (pairs == 0 && !result.fault.empty())
+      throw RuntimeFailure(result.fault + "; nothing was recorded", "check the cables, and `foresight doctor`");
+  }
+  const auto& p = result.cameras.pairing;
+  result.counts = recorder.finish(
+      sim::format("missed_pairs: %llu\nunpaired: [%llu, %llu]\nwrong_times: [%llu, %llu]\ndamaged: [%llu, %llu]\n",
+                  number(result.cameras.dropped), number(p.unpaired[0]), number(p.unpaired[1]), number(p.jumps[0]),
+                  number(p.jumps[1]), number(result.cameras.corrupt[0]), number(result.cameras.corrupt[1])));
+  if (recorder.disk_full()) result.fault = "the disk is nearly full";
+  return result;
+}
+
+std::string counts_text(const RecordingResult& result) {
+  std::string text = sim::format("%llu pairs\n", number(result.counts.written));
+  const auto line = [&text](std::uint64_t n, const char* what) {
+    if (n) text += sim::format("%llu %s\n", number(n), what);
+  };
+  line(result.counts.dropped, "pairs dropped: the disk was too slow");
+  line(result.cameras.dropped, "pairs missed: this machine was too slow");
+  const char* const sides[] = {"left", "right"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    line(result.cameras.pairing.unpaired[i], sim::format("%s images without a partner", sides[i]).c_str());
+    line(result.cameras.pairing.jumps[i], sim::format("%s images with a wrong time", sides[i]).c_str());
+    line(result.cameras.corrupt[i], sim::format("%s images were damaged", sides[i]).c_str());
+  }
+  return text;
+}
+
+}  // namespace foresight

@@ -1,0 +1,30 @@
+// The loop of `foresight record`: from a stereo camera into a recorder, until enough came or none comes.
+#pragma once
+
+#include "apps/record/run_recorder.hpp"
+#include "drivers/camera/stereo_camera.hpp"
+
+namespace foresight {
+
+struct RecordingLimits {
+  std::optional<std::uint64_t> count;               ///< pairs
+  std::optional<Duration> length;                   ///< from the first pair on
+  Duration silent_after = std::chrono::seconds(5);  ///< without a pair
+};
+
+struct RecordingResult {
+  RecorderCounts counts;
+  StereoStatus cameras;
+  std::string fault;  ///< why it ended early: a silent camera, a full disk; "" where it did not
+};
+
+/// Starts `cameras`, records, stops them and finishes `recorder`. What was recorded before a fault is kept. Blocks;
+/// `stop` is polled at least every 0.1 s. Throws what StereoCamera::start, RunRecorder::add and finish do;
+/// RuntimeFailure where not one pair came, saying why.
+RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const RecordingLimits& limits, const Clock& clock,
+                       const std::function<bool()>& stop);
+
+/// Counts in words, one line each; what is 0 is left out but for the pairs.
+std::string counts_text(const RecordingResult& result);
+
+}  // namespace foresight

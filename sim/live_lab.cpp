@@ -1,0 +1,101 @@
+#include "sim/live_lab.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "common/error.hpp"
+#include "sim/motion.hpp"
+#include "sim/run_files.hpp"
+
+namespace foresight::sim {
+namespace {
+
+constexpr double kBallPeriod = 8, kBallWay = 0.22;  // seconds; metres to either side
+constexpr const char* kMovable[] = {"mug", "can", "bottle"};
+
+// The generator's own numbers, without the library's distributions, which differ between libraries.
+double evenly(std::mt19937& random, double size) {
+  return size * (2.0 * random() / 4294967295.0 - 1);
+}
+
+void check(const char* field, double value, double most) {
+  if (!(value >= 0 && value <= most))
+    throw InputError(field, format("%.9g is outside 0 .. %.9g", value, most), "choose a value inside");
+}
+
+PanTilt head_shafts(const ShaftPositions& shafts) {
+  return {shafts("pan").value_or(kHeadAtTable.pan), shafts("tilt").value_or(kHeadAtTable.tilt)};
+}
+
+}  // namespace
+
+LiveLab::LiveLab(const Options& options) : lab_(make_lab(options.texel, options.seed, true)), ball_(lab_.find(kBall)) {
+  const HiddenDeviations& hidden = options.hidden;
+  check("hidden object_m", hidden.object_m, 0.05);
+  check("hidden object_rad", hidden.object_rad, std::numbers::pi);
+  check("hidden joint_rad", hidden.joint_rad, 0.2);
+  modelled_rest_ = lab_.at_rest();
+  std::mt19937 random(hidden.seed);
+  for (double& offset : joint_offsets_) offset = evenly(random, hidden.joint_rad);
+  head_offset_ = {evenly(random, hidden.joint_rad), evenly(random, hidden.joint_rad)};
+  if (hidden.object_m == 0 && hidden.object_rad == 0) return;
+  displaced_ = lab_.find(kMovable[random() % std::size(kMovable)]);
+  Pose& pose = lab_.parts[static_cast<std::size_t>(displaced_)].T_world_part;
+  const double direction = evenly(random, std::numbers::pi);
+  pose.pretranslate(hidden.object_m * Eigen::Vector3d(std::cos(direction), std::sin(direction), 0));
+  pose.rotate(Eigen::AngleAxisd(evenly(random, hidden.object_rad), Eigen::Vector3d::UnitZ()));
+}
+
+LabState LiveLab::with_arm(LabState state, const ShaftPositions& shafts, const std::array<double, 7>& offsets) const {
+  ArmPosition arm;
+  for (std::size_t j = 0; j < arm.joints.size(); ++j)
+    arm.joints[j] = shafts(arm_joints()[j].name).value_or(*shafts_at_rest(arm_joints()[j].name)) + offsets[j];
+  const char* const finger = arm_joints()[arm.joints.size()].name;
+  arm.opening = shafts(finger).value_or(*shafts_at_rest(finger));
+  const auto links = arm_links_at(arm);
+  for (std::size_t i = 1; i < links.size(); ++i) state[static_cast<std::size_t>(lab_.arm) + i] = links[i];
+  return state;
+}
+
+LabState LiveLab::true_state(const ShaftPositions& shafts, double t) const {
+  LabState state = with_arm(lab_.at_rest(), shafts, joint_offsets_);
+  state[static_cast<std::size_t>(ball_)] = T_world_ball(t);
+  return state;
+}
+
+LabState LiveLab::modelled_state(const ShaftPositions& shafts) const {
+  return with_arm(modelled_rest_, shafts, {});
+}
+
+Pose LiveLab::T_world_left(const ShaftPositions& shafts) const {
+  PanTilt head = head_shafts(shafts);
+  head.pan += head_offset_.pan;
+  head.tilt += head_offset_.tilt;
+  return T_world_head_left(head);
+}
+
+Pose LiveLab::T_world_left_modelled(const ShaftPositions& shafts) {
+  return T_world_head_left(head_shafts(shafts));
+}
+
+Pose LiveLab::T_world_ball(double t) {
+  const double way = kBallWay * std::sin(2 * std::numbers::pi * t / kBallPeriod);
+  Pose pose = Pose::Identity();
+  pose.translate(Eigen::Vector3d(-0.30, 0.02 + way, 0.002 + kBallRadius));  // on the mat
+  // Rolls about x; to the left (+y) is a negative turn.
+  pose.rotate(Eigen::AngleAxisd(-way / kBallRadius, Eigen::Vector3d::UnitX()));
+  return pose;
+}
+
+std::optional<double> shafts_at_rest(std::string_view joint) {
+  static const ArmPosition arm = arm_position_at(0);
+  for (std::size_t j = 0; j < arm.joints.size(); ++j)
+    if (joint == arm_joints()[j].name) return arm.joints[j];
+  if (joint == arm_joints()[arm.joints.size()].name) return arm.opening;
+  if (joint == "pan") return kHeadAtTable.pan;
+  if (joint == "tilt") return kHeadAtTable.tilt;
+  return std::nullopt;
+}
+
+}  // namespace foresight::sim

@@ -1,0 +1,74 @@
+// The lab as a live world: its arm and head stand where drives' shafts stand, and a ball rolls on the table.
+//
+// Truth and model are two things: hidden deviations make the world differ from what the robot believes.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "sim/arm.hpp"
+#include "sim/lab.hpp"
+#include "sim/pan_tilt_head.hpp"
+
+namespace foresight::sim {
+
+/// Position of a joint's shaft by name (those of sim/arm.hpp without the mimic, "pan", "tilt"); rad or m. Nothing for
+/// one that the world should leave at rest.
+using ShaftPositions = std::function<std::optional<double>(std::string_view joint)>;
+
+/// What the model does not know. Each value is drawn evenly from -size .. size, but for the object's way, which has
+/// exactly that length.
+struct HiddenDeviations {
+  unsigned seed = 1;
+  double object_m = 0;    ///< one thing on the table stands this far from where the model has it; 0 .. 0.05
+  double object_rad = 0;  ///< and is turned by up to this about z
+  double joint_rad = 0;   ///< of each turning joint of the arm, and of pan and tilt
+};
+
+inline constexpr const char* kBall = "ball";
+
+/// Immutable; safe to share between threads (`shafts` is called on the caller's). The same arguments give the same
+/// world, so in stepped time all is repeatable.
+class LiveLab {
+ public:
+  struct Options {
+    double texel = 0.001;  ///< metres, of the finest pictures
+    unsigned seed = 1;     ///< of grain and small print
+    HiddenDeviations hidden = {};
+  };
+  /// Throws InputError (a deviation out of range).
+  explicit LiveLab(const Options& options);
+
+  /// The true lab: a displaced object stands where it truly is.
+  const Lab& lab() const { return lab_; }
+  /// What the robot believes of the parts: rest poses of the model, one per part.
+  const LabState& modelled_rest() const { return modelled_rest_; }
+  int displaced() const { return displaced_; }  ///< part that is not where the model has it; -1: none
+
+  /// Where every part truly stands `t` seconds after the start. The arm and the ball know nothing of each other.
+  LabState true_state(const ShaftPositions& shafts, double t) const;
+  /// The same as the encoders tell it: without hidden offsets, the displaced object and the ball at rest.
+  LabState modelled_state(const ShaftPositions& shafts) const;
+
+  Pose T_world_left(const ShaftPositions& shafts) const;            ///< true
+  static Pose T_world_left_modelled(const ShaftPositions& shafts);  ///< by the encoders
+
+  /// Where the ball is: rolls to and fro without slip, along y.
+  static Pose T_world_ball(double t);
+
+ private:
+  LabState with_arm(LabState state, const ShaftPositions& shafts, const std::array<double, 7>& offsets) const;
+
+  Lab lab_;
+  LabState modelled_rest_;
+  std::array<double, 7> joint_offsets_{};
+  PanTilt head_offset_;
+  int displaced_ = -1;
+  int ball_ = 0;
+};
+
+/// The arm a little bent above the table, the head at the table: for worlds without drives.
+std::optional<double> shafts_at_rest(std::string_view joint);
+
+}  // namespace foresight::sim

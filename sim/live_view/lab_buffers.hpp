@@ -1,0 +1,43 @@
+// The lab in GPU memory, lit once.
+#pragma once
+
+#include <vector>
+
+#include "gl/objects.hpp"
+#include "sim/light_map.hpp"
+
+namespace foresight::sim {
+
+/// Triangles between the light's samples, with the irradiance there; the materials' pictures with mipmaps. The light
+/// is that of one state of the lab: parts that move carry it along, and their shadows stay where they were. Immutable;
+/// usable from every context of the share group.
+class LabBuffers {
+ public:
+  struct Draw {
+    int part = 0, material = 0;
+    GLsizei index_count = 0;
+    std::size_t first_index = 0;
+  };
+  struct Picture {
+    gl::Texture texture;           ///< square roots of linear light, mirrored outside
+    Eigen::Vector2f per_metre{0, 0};  ///< pictures per metre
+    float gloss = 0;
+  };
+
+  LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance);
+
+  const std::vector<Draw>& draws() const { return draws_; }  ///< ordered by gloss, then by part
+  const Picture& picture(int material) const { return pictures_[static_cast<std::size_t>(material)]; }
+  std::size_t triangle_count() const { return triangles_; }
+
+  /// Of the current context: attributes 0 place, 1 normal, 2 place on the picture (metres), 3 irradiance.
+  gl::VertexArray create_vertex_array() const;
+
+ private:
+  std::vector<Picture> pictures_;
+  std::vector<Draw> draws_;
+  gl::Buffer vertices_, indices_;
+  std::size_t triangles_ = 0;
+};
+
+}  // namespace foresight::sim

@@ -1,0 +1,206 @@
+#include "apps/record/recording.hpp"
+
+#include <thread>
+
+#include "scene/run_folder.hpp"
+#include "scene/scene_reader.hpp"
+#include "sim/run_files.hpp"
+#include "tests/scene/test_run.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr int kWidth = 16, kHeight = 12;
+
+/// Frames of one colour at 100 fps; silent after `last` of them. `offset` shifts its clock.
+class CountingCamera final : public Camera {
+ public:
+  CountingCamera(Clock& clock, int last, Duration offset = 0ns, int width = kWidth)
+      : clock_(clock), last_(last), offset_(offset), image_(kHeight, width, CV_8UC3) {}
+  const std::string& name() const noexcept override { return name_; }
+  void start() override {}
+  void stop() noexcept override {}
+  CameraStatus wait_frame(Duration timeout, CameraFrame& out) noexcept override {
+    if (count_ >= last_) {
+      clock_.sleep_until(clock_.now() + timeout);
+      return CameraStatus::timeout;
+    }
+    const RobotTime due{(clock_.now().ns / 10'000'000 + 1) * 10'000'000};
+    clock_.sleep_until(due);
+    image_.setTo(cv::Scalar::all(++count_));
+    out = {};
+    out.width = image_.cols;
+    out.height = image_.rows;
+    out.stride = image_.step[0];
+    out.bytes = {image_.data, image_.total() * 3};
+    out.time = due + offset_;
+    return CameraStatus::ok;
+  }
+  const CameraSettings& settings() const noexcept override { return settings_; }
+  std::vector<CameraControl> controls() override { return {}; }
+  void set_control(const std::string&, std::int64_t) override {}
+  CameraCounters counters() const noexcept override { return {}; }
+
+ private:
+  std::string name_ = "camera";
+  Clock& clock_;
+  int last_, count_ = 0;
+  Duration offset_;
+  cv::Mat image_;
+  CameraSettings settings_;
+};
+
+class Recording : public testing::Test {
+ protected:
+  Recording() {
+    Lens::Parameters p;
+    p.width = kWidth;
+    p.height = kHeight;
+    p.fx = p.fy = 20;
+    p.cx = 7.5;
+    p.cy = 5.5;
+    options_.left = options_.right = Lens(p);
+    options_.T_left_right.translation().x() = 0.065;
+    options_.poses = [](RobotTime time) {
+      RecordedPoses poses;
+      poses.T_world_left.translation().x() = to_seconds(time - RobotTime{});
+      poses.T_world_node.emplace_back("ball", poses.T_world_left);
+      return poses;
+    };
+    Mesh triangle;
+    triangle.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.triangles = {{0, 1, 2}};
+    Pose above = Pose::Identity();
+    above.translation().z() = 2;
+    const SceneModel scene({{"o'table", triangle, -1, above}, {"ball", triangle, 0, above}}, 0.007);
+    options_.write_scene = [scene](const fs::path& folder) { sim::write_model(folder, scene); };
+  }
+
+  RecordingResult record_from(int left, int right, RecordingLimits limits = {}, Duration offset = 0ns) {
+    StereoCamera cameras(std::make_unique<CountingCamera>(clock_, left),
+                         std::make_unique<CountingCamera>(clock_, right, offset), clock_);
+    RunRecorder recorder(folder_ / "run", options_);
+    limits.silent_after = 300ms;
+    return record(cameras, recorder, limits, clock_, [this] { return stop_; });
+  }
+
+  StereoPair pair_at(std::int64_t ms, int width = kWidth) const {
+    const ColourImage image{cv::Mat(kHeight, width, CV_8UC3, cv::Scalar(1, 2, 3)), 0, RobotTime{ms * 1'000'000}, {}};
+    return {image, image};
+  }
+
+  std::vector<std::string> left_behind() const {
+    std::vector<std::string> out;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) out.push_back(entry.path().filename());
+    return out;
+  }
+
+  MonotonicClock clock_;
+  TempFolder folder_;
+  RecorderOptions options_;
+  bool stop_ = false;
+};
+
+TEST_F(Recording, IsARunThatCanBeReadBack) {
+  RecordingLimits limits;
+  limits.count = 5;
+  const RecordingResult result = record_from(1000, 1000, limits, 2ms);
+  EXPECT_EQ(result.fault, "");
+  EXPECT_EQ(result.counts.written, 5u);
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  ASSERT_EQ(run.frames().size(), 5u);
+  EXPECT_EQ(run.unpaired_right(), 0u);
+  EXPECT_NEAR(run.T_left_right().translation().x(), 0.065, 1e-12);
+  EXPECT_DOUBLE_EQ(run.scene()->accuracy().value(), 0.007);
+  EXPECT_NEAR(run.scene()->rest_poses()[1].translation().z(), 4, 1e-12);
+  for (const RunFrame& frame : run.frames()) {
+    ASSERT_TRUE(frame.right);
+    EXPECT_EQ(frame.right->time - frame.left.time, 2ms);
+    EXPECT_NEAR(frame.left.T_world_camera.translation().x(), to_seconds(frame.left.time - RobotTime{}), 1e-6);
+    EXPECT_NEAR(frame.right->T_world_camera.translation().x(), 0.067 + to_seconds(frame.left.time - RobotTime{}), 1e-6);
+    EXPECT_NEAR(run.state_at(frame.left.time).T_world_node[1].translation().x(),
+                to_seconds(frame.left.time - RobotTime{}), 1e-6);
+    const cv::Mat left = read_run_image(frame.left, run.lens_left()),
+                  right = read_run_image(*frame.right, run.lens_left());
+    EXPECT_EQ(cv::norm(left, right, cv::NORM_INF), 0);  // both count their frames
+  }
+}
+
+TEST_F(Recording, KeepsWhatCameBeforeACameraFellSilent) {
+  const RecordingResult result = record_from(40, 20);
+  EXPECT_THAT(result.fault, HasSubstr("right camera: timeout"));
+  EXPECT_GE(result.counts.written, 1u);
+  EXPECT_EQ(RunFolder::open(folder_ / "run", {}).frames().size(), result.counts.written);
+  EXPECT_GT(result.cameras.pairing.unpaired[0], 0u);
+  EXPECT_THAT(counts_text(result), HasSubstr("left images without a partner"));
+}
+
+TEST_F(Recording, LeavesNothingWhereNoPairCame) {
+  try {
+    record_from(1000, 0);
+    FAIL();
+  } catch (const RuntimeFailure& failure) {
+    EXPECT_THAT(failure.what(), testing::AllOf(HasSubstr("no pair of images came"), HasSubstr("nothing was recorded")));
+  }
+  EXPECT_THAT(left_behind(), testing::IsEmpty());
+}
+
+TEST_F(Recording, ASlowDiskDropsPairsAndCountsThem) {
+  options_.slowed_by = 50ms;
+  options_.waiting = 3;
+  RunRecorder recorder(folder_ / "run", options_);
+  for (int i = 1; i <= 20; ++i) recorder.add(pair_at(i));
+  const RecorderCounts counts = recorder.finish("");
+  EXPECT_EQ(counts.written + counts.dropped, 20u);
+  EXPECT_GE(counts.dropped, 15u);
+  EXPECT_EQ(RunFolder::open(folder_ / "run", {}).frames().size(), counts.written);
+  EXPECT_THAT(folder_.read("run/record.yaml"), HasSubstr("dropped_by_disk: " + std::to_string(counts.dropped)));
+}
+
+TEST_F(Recording, AFullDiskEndsItAndKeepsWhatIsThere) {
+  RunRecorder recorder(folder_ / "run", options_);
+  recorder.add(pair_at(1));
+  while (recorder.counts().written == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_FALSE(recorder.stopped());
+  EXPECT_EQ(recorder.finish("").written, 1u);
+
+  options_.spare_bytes = 1e18;
+  try {
+    RunRecorder(folder_ / "other", options_);
+    FAIL();
+  } catch (const RuntimeFailure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("free some disk space"));
+  }
+  EXPECT_EQ(left_behind(), std::vector<std::string>{"run"});
+}
+
+TEST_F(Recording, AFailingWriteLeavesNothing) {
+  {
+    RunRecorder recorder(folder_ / "run", options_);
+    for (const auto& entry : fs::directory_iterator(folder_.path())) fs::remove_all(entry.path() / "rgb_right");
+    recorder.add(pair_at(1));
+    EXPECT_THROW(recorder.finish(""), RuntimeFailure);
+  }
+  EXPECT_THAT(left_behind(), testing::IsEmpty());
+}
+
+TEST_F(Recording, RefusesImagesOfAnotherSizeAndTimesThatGoBack) {
+  RunRecorder recorder(folder_ / "run", options_);
+  EXPECT_THAT(input_error([&] { recorder.add(pair_at(1, 20)); }),
+              testing::AllOf(HasSubstr("left camera"), HasSubstr("20 x 12"), HasSubstr("16 x 12")));
+  recorder.add(pair_at(5));
+  EXPECT_THAT(input_error([&] { recorder.add(pair_at(5)); }), HasSubstr("do not ascend"));
+}
+
+TEST_F(Recording, DoesNotTouchFoldersOfOthers) {
+  folder_.write("run/mine.txt", "x");
+  EXPECT_THAT(input_error([&] { RunRecorder(folder_ / "run", options_); }), HasSubstr("not empty"));
+  EXPECT_EQ(folder_.read("run/mine.txt"), "x");
+}
+
+}  // namespace
+}  // namespace foresight
