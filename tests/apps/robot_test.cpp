@@ -44,7 +44,12 @@ TEST_P(Robot, DoesNotHomeWithoutConsent) {
 TEST_P(Robot, StopsUnderControlWhenItIsTerminated) {
   Program program({"robot", config(GetParam()), "--home", "--follow", motion()});
   std::this_thread::sleep_for(std::chrono::seconds(4));
-  ASSERT_TRUE(program.running());
+  if (!program.running()) {
+    const Outcome out = program.wait();
+    EXPECT_EQ(out.exit_code, 1);
+    EXPECT_THAT(out.err, HasSubstr("stopped: ")) << "nothing else may end it";
+    GTEST_SKIP() << "this machine is too busy for real time: " << out.last_line();
+  }
   kill(program.pid(), SIGTERM);
   const Outcome out = program.wait();
   EXPECT_EQ(out.exit_code, 1) << "the motion was not finished";
