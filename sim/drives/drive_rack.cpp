@@ -61,14 +61,23 @@ void DriveRack::flush(Slot& slot) {
 void DriveRack::step(RobotTime now) {
   const std::lock_guard lock(mutex_);
   if (now - now_ > kMostSteps * kStep) now_ = now - kMostSteps * kStep;
-  while (const auto frame = bus_->receive(Duration(0)))
-    for (const auto& slot : slots_) slot->node->receive(*frame, now_);
   while (now_ + kStep <= now) {
+    // A rack that was held up for long must not find its master silent meanwhile: each frame counts when it came.
+    take_frames(now_ + kStep);
     now_ = now_ + kStep;
     for (const auto& slot : slots_) {
       flush(*slot);
       slot->node->step(now_, 1e-3);
     }
+  }
+  take_frames(now);
+}
+
+void DriveRack::take_frames(RobotTime until) {
+  while (waiting_ || (waiting_ = bus_->receive(Duration(0)))) {
+    if (waiting_->time > until) return;
+    const CanFrame frame = *std::exchange(waiting_, std::nullopt);
+    for (const auto& slot : slots_) slot->node->receive(frame, now_);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,8 @@ class DriveRack {
     bool silent = false;
     Duration delay{};
   };
+  /// All that came until then; what came later waits.
+  void take_frames(RobotTime until);
   void post(Slot& slot, const CanFrame& frame);
   void flush(Slot& slot);
 
@@ -62,6 +65,7 @@ class DriveRack {
   std::vector<std::unique_ptr<Slot>> slots_;
   mutable std::mutex mutex_;
   RobotTime now_;
+  std::optional<CanFrame> waiting_;  // came after the step that is due
   std::uint64_t dropped_ = 0;
   std::shared_ptr<const bool> exists_;  // tells the clock's task that `this` is still there
 };

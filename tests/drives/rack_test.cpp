@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <random>
 #include <thread>
 
@@ -75,6 +76,51 @@ TEST(DriveRack, IsDeterministic) {
   const auto first = record(), second = record();
   EXPECT_GT(first.size(), 2000u);
   EXPECT_EQ(first, second);
+}
+
+/// Frames that came at known instants, however late they are read.
+class LateBus final : public CanBus {
+ public:
+  const std::string& name() const noexcept override { return name_; }
+  CanSend send(const CanFrame& frame) noexcept override {
+    sent.push_back(frame);
+    return CanSend::sent;
+  }
+  std::optional<CanFrame> receive(Duration) noexcept override {
+    if (coming.empty() || coming.front().time > now) return std::nullopt;
+    const CanFrame out = coming.front();
+    coming.pop_front();
+    return out;
+  }
+  CanBusState state() const noexcept override { return CanBusState::active; }
+  CanCounters counters() const noexcept override { return {}; }
+
+  std::deque<CanFrame> coming;
+  std::vector<CanFrame> sent;
+  RobotTime now;
+
+ private:
+  std::string name_ = "late";
+};
+
+TEST(DriveRack, HeldUpItDoesNotTakeItsMasterForSilent) {
+  MonotonicClock clock;
+  const RobotTime start = clock.now() + 1s;
+  auto owned = std::make_unique<LateBus>();
+  LateBus& bus = *owned;
+  DriveRack rack(clock, std::move(owned), {powercube_module(1)});
+  for (int at_ms : {0, 60, 120, 180, 185}) {
+    bus.coming.push_back(at_ms < 185 ? frame(0x100, {0x07}) : frame(0x0C1, {0x0A, 0x27}));
+    bus.coming.back().time = start + at_ms * 1ms;
+  }
+  // Its watchdog allows 100 ms of silence. The refreshes of 60 and 120 ms are both read at 149 ms.
+  for (int at_ms : {0, 59, 149, 179, 190}) {
+    bus.now = start + at_ms * 1ms;
+    rack.step(bus.now);
+  }
+  ASSERT_FALSE(bus.sent.empty());
+  EXPECT_EQ(bus.sent.back().data[1], 0x27);
+  EXPECT_EQ(bus.sent.back().data[2] & 0x01, 0) << "its watchdog has stopped it";
 }
 
 TEST(DriveRack, RunsInRealTime) {
