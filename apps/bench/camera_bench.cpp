@@ -66,8 +66,8 @@ int bench_camera(const CameraBenchOptions& options) {
   const RobotTime start = clock.now();
   const auto stereo = std::make_shared<sim::MockStereo>(
       world,
-      [start](std::string_view joint, RobotTime t) { return sim::shafts_in_motion(joint, to_seconds(t - start)); }, mock,
-      clock);
+      [start](std::string_view joint, RobotTime t) { return sim::shafts_in_motion(joint, to_seconds(t - start)); },
+      mock, clock);
   const Round quick = measure(stereo, 1000, options.seconds, clock);
   const Round steady = measure(stereo, options.rate, options.seconds, clock);
 
@@ -75,7 +75,8 @@ int bench_camera(const CameraBenchOptions& options) {
   std::printf("%d x %d px stereo                       pairs/s   CPU-ms per pair: rendering   copying   all else\n",
               options.width, options.height);
   nlohmann::json all;
-  for (const auto& [name, round] : {std::pair("as quick as they come", quick), std::pair("at the rate asked", steady)}) {
+  for (const auto& [name, round] :
+       {std::pair("as quick as they come", quick), std::pair("at the rate asked", steady)}) {
     std::printf("%-36s %9.1f %28.2f %9.3f %10.3f\n", name, static_cast<double>(round.pairs) / round.seconds,
                 1e3 * round.per_pair(round.process - round.other()), 1e3 * round.per_pair(round.copying),
                 1e3 * round.per_pair(round.consuming));

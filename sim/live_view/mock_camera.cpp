@@ -116,6 +116,11 @@ void MockStereo::loop(const std::stop_token& stop, std::promise<void>& ready) {
                                   other.seed += 7919;
                                   return other;
                                 }())};
+  for (LiveView& view : views) {  // the driver compiles with the first image, which would come too late to be trusted
+    view.draw(T_world_head_left(kHeadAtTable), world_->lab().at_rest(), 1, 0);
+    std::vector<std::uint8_t> unseen(std::size_t{2} * view.lens().width() * view.lens().height());
+    view.take(unseen, true);
+  }
   ready.set_value();
 
   std::deque<Shown> under_way;

@@ -23,11 +23,11 @@ namespace foresight::sim {
 using ShaftsAt = std::function<std::optional<double>(std::string_view joint, RobotTime)>;
 
 struct MockCameraOptions {
-  Lens left, right;                           ///< of even width
+  Lens left, right;  ///< of even width
   Pose T_left_right = T_head_left_right();
-  double rate = 30;                           ///< frames per second, > 0
-  Sensor sensor = {.noise = 1.5};             ///< its exposure drift is not used
-  double light_coarser = 4;                   ///< LightMap's; fewer triangles to draw
+  double rate = 30;                ///< frames per second, > 0
+  Sensor sensor = {.noise = 1.5};  ///< its exposure drift is not used
+  double light_coarser = 4;        ///< LightMap's; fewer triangles to draw
 };
 
 /// The renderer behind both cameras: a thread of its own, with its own OpenGL context, asks the shafts, draws both
@@ -59,7 +59,7 @@ class MockStereo {
 
  private:
   friend class MockCamera;
-  struct Shown;  // an image pair under way
+  struct Shown;          // an image pair under way
   void open(Side side);  ///< throws what OpenGL throws
   void close(Side side) noexcept;
   void render(const std::stop_token& stop, std::promise<void>& ready) noexcept;
