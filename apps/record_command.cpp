@@ -11,7 +11,9 @@
 #include "drivers/camera/v4l2_camera.hpp"
 #include "scene/camera_info.hpp"
 #include "scene/scene_reader.hpp"
+#include "sim/live_view/mock_camera.hpp"
 #include "sim/run_files.hpp"
+#include "sim/synth_run.hpp"
 
 namespace foresight {
 namespace {
@@ -25,6 +27,7 @@ struct Arguments {
   std::vector<std::string> images;
   std::string camera, camera_right, scene;
   std::vector<double> pose;
+  bool mock = false;
   double rate = 30;
   std::optional<double> seconds;
   std::optional<std::uint64_t> count;
@@ -57,10 +60,61 @@ Pose parse_pose(const std::vector<double>& v) {
   return pose;
 }
 
+/// The mock lab in front of its cameras, and how it is recorded.
+struct Mock {
+  std::shared_ptr<const sim::LiveLab> world;
+  std::shared_ptr<sim::MockStereo> stereo;
+
+  Mock(const Lens& left, const Lens& right, double rate, Clock& clock)
+      : world(std::make_shared<const sim::LiveLab>(sim::LiveLab::Options{})) {
+    sim::MockCameraOptions options;
+    options.left = left;
+    options.right = right;
+    options.rate = rate;
+    const auto shafts = [start = clock.now()](std::string_view joint, RobotTime time) {
+      return sim::shafts_in_motion(joint, to_seconds(time - start));
+    };
+    stereo = std::make_shared<sim::MockStereo>(world, shafts, options, clock);
+    poses_ = [shafts, w = world](RobotTime time) {
+      const sim::ShaftPositions now = [&](std::string_view joint) { return shafts(joint, time); };
+      RecordedPoses poses{sim::LiveLab::T_world_left_modelled(now), {}};
+      const sim::LabState state = w->modelled_state(now);
+      for (std::size_t k = 0; k < state.size(); ++k)
+        if (const sim::Part& part = w->lab().parts[k]; part.moves && part.name != sim::kBall)
+          poses.T_world_node.emplace_back(part.name, state[k]);
+      return poses;
+    };
+  }
+
+  /// The encoders' word for head and arm. The ball has no encoder: the model leaves it at rest.
+  void describe(RecorderOptions& options) const {
+    options.T_left_right = sim::T_head_left_right();
+    options.poses = poses_;
+    options.write_scene = [w = world](const fs::path& folder) {
+      sim::ArmPosition arm;
+      for (std::size_t j = 0; j < arm.joints.size(); ++j)
+        arm.joints[j] = *sim::shafts_at_rest(sim::arm_joints()[j].name);
+      sim::write_scene(folder, w->lab(), arm);
+    };
+  }
+
+ private:
+  std::function<RecordedPoses(RobotTime)> poses_;
+};
+
+void check_mock(const Arguments& a) {
+  if (!a.images.empty() || !a.left.empty() || !a.right.empty())
+    throw InputError("--mock", "stands beside other cameras", "choose one kind of cameras");
+  if (!a.scene.empty() || !a.pose.empty() || !a.camera_right.empty())
+    throw InputError("--mock", "knows its scene, poses and right camera", "leave --scene, --pose, --camera-right out");
+}
+
 void check(const Arguments& a) {
+  if (a.camera.empty())
+    throw InputError("--camera", "is missing", "give the left camera's calibration, or choose --mock");
   if (a.images.empty() == (a.left.empty() && a.right.empty()))
     throw InputError("--left, --right, --images", "say which cameras",
-                     "give either --left and --right, or --images LEFTDIR RIGHTDIR");
+                     "give --left and --right, or --images LEFTDIR RIGHTDIR, or --mock");
   if (a.images.empty() && (a.left.empty() || a.right.empty()))
     throw InputError(a.left.empty() ? "--left" : "--right", "is missing", "name both cameras");
   if (a.camera_right.empty())
@@ -88,11 +142,7 @@ RecorderOptions recorder_options(const Arguments& a) {
   return options;
 }
 
-int run(const Arguments& a) {
-  check(a);
-  MonotonicClock clock;
-  RecorderOptions options = recorder_options(a);
-  StereoCamera cameras(open_camera(a, false, options.left, clock), open_camera(a, true, options.right, clock), clock);
+int record_and_report(const Arguments& a, StereoCamera& cameras, RecorderOptions options, Clock& clock) {
   RunRecorder recorder(a.out, std::move(options));
   RecordingLimits limits;
   limits.count = a.count;
@@ -108,6 +158,35 @@ int run(const Arguments& a) {
   return 1;
 }
 
+int run_mock(const Arguments& a, Clock& clock) {
+  check_mock(a);
+  sim::SynthOptions usual;
+  usual.width = 640;
+  usual.height = 480;
+  RecorderOptions options;
+  options.left = a.camera.empty() ? sim::synth_lens(usual, false) : read_camera_info(a.camera).lens;
+  options.right = a.camera.empty() ? sim::synth_lens(usual, true) : options.left;
+  std::fputs("record: lighting the lab\n", stderr);
+  const Mock mock(options.left, options.right, a.rate, clock);
+  mock.describe(options);
+  StereoCamera cameras(std::make_unique<sim::MockCamera>("left", Side::left, mock.stereo),
+                       std::make_unique<sim::MockCamera>("right", Side::right, mock.stereo), clock);
+  const int code = record_and_report(a, cameras, std::move(options), clock);
+  if (const std::uint64_t skipped = mock.stereo->skipped())
+    std::fprintf(stderr, "record: %llu instants not rendered: this machine is too slow for %g Hz at that size\n",
+                 static_cast<unsigned long long>(skipped), a.rate);
+  return code;
+}
+
+int run(const Arguments& a) {
+  MonotonicClock clock;
+  if (a.mock) return run_mock(a, clock);
+  check(a);
+  RecorderOptions options = recorder_options(a);
+  StereoCamera cameras(open_camera(a, false, options.left, clock), open_camera(a, true, options.right, clock), clock);
+  return record_and_report(a, cameras, std::move(options), clock);
+}
+
 }  // namespace
 
 void add_record_command(CLI::App& app, std::function<int()>& action) {
@@ -117,7 +196,8 @@ void add_record_command(CLI::App& app, std::function<int()>& action) {
   command->add_option("--left", a->left, "V4L2 device: a path, serial:... or bus:...");
   command->add_option("--right", a->right, "The right camera's");
   command->add_option("--images", a->images, "Folders of numbered images instead: LEFTDIR RIGHTDIR")->expected(2);
-  command->add_option("--camera", a->camera, "Calibration of the left camera (camera.yaml)")->required();
+  command->add_flag("--mock", a->mock, "The mock lab in motion instead, with its scene and poses");
+  command->add_option("--camera", a->camera, "Calibration of the left camera (camera.yaml)");
   command->add_option("--camera-right", a->camera_right, "Of the right one, with T_left_right");
   command->add_option("--scene", a->scene, "Scene or mesh, stored with the run");
   command->add_option("--pose", a->pose, "Where the left camera stands, fixed: x y z qx qy qz qw, camera to world")
@@ -129,7 +209,8 @@ void add_record_command(CLI::App& app, std::function<int()>& action) {
   command->footer(
       "Ctrl-C ends a recording and keeps it.\n\n"
       "Exit codes: 0 done, 1 a camera fell silent or the disk is full (what came before is kept), 2 wrong input.\n\n"
-      "Example: foresight record run --left serial:A1 --right serial:A2 --camera left.yaml --camera-right right.yaml");
+      "Example: foresight record run --left serial:A1 --right serial:A2 --camera left.yaml --camera-right right.yaml\n"
+      "         foresight record run --mock --seconds 5");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 

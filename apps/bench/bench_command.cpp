@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "apps/bench/camera_bench.hpp"
 #include "apps/bench/can_bench.hpp"
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
@@ -64,11 +65,24 @@ void add_robot(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_robot(*options); }; });
 }
 
+void add_camera(CLI::App& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("camera", "CPU time of the mock cameras, rendering and all else apart");
+  auto options = std::make_shared<CameraBenchOptions>();
+  command->add_option("--width", options->width, "Pixels")->check(from_to(16, 4096))->capture_default_str();
+  command->add_option("--height", options->height, "Pixels")->check(from_to(16, 4096))->capture_default_str();
+  command->add_option("--rate", options->rate, "Pairs per second")->check(from_to(1, 240))->capture_default_str();
+  command->add_option("--seconds", options->seconds, "Of each round")->check(from_to(1, 60))->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers");
+  command->footer("Exit code: 1 where all that is not rendering takes a tenth of a core or more.");
+  command->callback([options, &action] { action = [options] { return bench_camera(*options); }; });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, std::function<int()>& action) {
   auto* bench = app.add_subcommand("bench", "Measures, and compares with the pipeline of the thesis");
   bench->require_subcommand(1);
+  add_camera(*bench, action);
   add_can(*bench, action);
   add_extraction(*bench, action);
   add_figures(*bench, action);

@@ -45,11 +45,14 @@ void add_facet(const Facet& facet, int number, const LightMap& light, const Ligh
                std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices) {
   const int n = light.steps(number);
   const auto first = static_cast<std::uint32_t>(vertices.size());
-  const auto place = [&](int i, int j) { return first + static_cast<std::uint32_t>(i + j * (n + 1) - j * (j - 1) / 2); };
+  const auto place = [&](int i, int j) {
+    return first + static_cast<std::uint32_t>(i + j * (n + 1) - j * (j - 1) / 2);
+  };
   const auto& c = facet.corners;
   for (int j = 0; j <= n; ++j)
     for (int i = 0; i + j <= n; ++i) {
-      const float b1 = static_cast<float>(i) / static_cast<float>(n), b2 = static_cast<float>(j) / static_cast<float>(n);
+      const float b1 = static_cast<float>(i) / static_cast<float>(n),
+                  b2 = static_cast<float>(j) / static_cast<float>(n);
       const float b0 = 1 - b1 - b2;
       vertices.push_back({b0 * c[0].p + b1 * c[1].p + b2 * c[2].p, b0 * c[0].n + b1 * c[1].n + b2 * c[2].n,
                           b0 * c[0].uv + b1 * c[1].uv + b2 * c[2].uv, light.at(irradiance, number, b1, b2)});

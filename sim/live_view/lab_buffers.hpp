@@ -19,7 +19,7 @@ class LabBuffers {
     std::size_t first_index = 0;
   };
   struct Picture {
-    gl::Texture texture;           ///< square roots of linear light, mirrored outside
+    gl::Texture texture;              ///< square roots of linear light, mirrored outside
     Eigen::Vector2f per_metre{0, 0};  ///< pictures per metre
     float gloss = 0;
   };

@@ -13,9 +13,9 @@ const ShaderSources& live_view_shaders();
 namespace foresight::sim {
 namespace {
 
-constexpr int kBorder = 3;            // px: the spread's
-constexpr double kTimeout = 10;       // seconds
-constexpr float kReadShare = 0.2f;    // as in sim/sensor.cpp
+constexpr int kBorder = 3;          // px: the spread's
+constexpr double kTimeout = 10;     // seconds
+constexpr float kReadShare = 0.2f;  // as in sim/sensor.cpp
 
 Eigen::Vector4f vec4(const Eigen::Vector3f& v, float w = 0) {
   return {v.x(), v.y(), v.z(), w};
@@ -40,9 +40,9 @@ LiveView::LiveView(std::shared_ptr<const LabBuffers> lab, const Lens& lens, cons
       nothing_(gl::create_vertex_array("no vertices")),
       matt_(gl::Program::graphics(gl::live_view_shaders(), "live.vert", "live.frag")),
       glossy_(gl::Program::graphics(gl::live_view_shaders(), "live.vert", "live.frag", {"GLOSS 1"})),
-      sensor_program_(gl::Program::graphics(
-          gl::live_view_shaders(), "whole.vert", "sensor.frag",
-          sensor.noise > 0 ? std::vector<std::string>{"NOISE 1"} : std::vector<std::string>{})),
+      sensor_program_(
+          gl::Program::graphics(gl::live_view_shaders(), "whole.vert", "sensor.frag",
+                                sensor.noise > 0 ? std::vector<std::string>{"NOISE 1"} : std::vector<std::string>{})),
       colour_(GL_RGBA8, faces_.width, faces_.height, faces_.count, 1, "live faces"),
       depth_(GL_DEPTH_COMPONENT32F, faces_.width, faces_.height, 0, 1, "live depth"),
       places_(GL_RGBA32F, lens.width(), lens.height(), 0, 1, "lens places"),
@@ -148,8 +148,8 @@ bool LiveView::draw(const Pose& T_world_camera, const LabState& T_world_part, do
   if (waiting_.size() == kImages) return false;
   draw_faces(T_world_camera, T_world_part);
   sensor_program_.use();
-  sensor_program_.set("texel", Eigen::Vector2f(1.0f / static_cast<float>(faces_.width),
-                                               1.0f / static_cast<float>(faces_.height)));
+  sensor_program_.set(
+      "texel", Eigen::Vector2f(1.0f / static_cast<float>(faces_.width), 1.0f / static_cast<float>(faces_.height)));
   // With what looking up between texels spreads on average (variance 1 / 6), this is a blur of 0.6 px.
   sensor_program_.set("spread", 0.45f);
   sensor_program_.set("gain", static_cast<float>(gain));

@@ -16,7 +16,8 @@
 namespace foresight::sim {
 
 /// Against sim::Renderer it lacks motion blur and rolling shutter, filters pictures by mipmaps, has one sample per
-/// pixel of a face, halves the colours' resolution (YUYV), and only takes sensors' blur of about 0.6 px. Belongs to one context.
+/// pixel of a face, halves the colours' resolution (YUYV), and only takes sensors' blur of about 0.6 px. Belongs to one
+/// context.
 class LiveView {
  public:
   static constexpr std::size_t kImages = 3;  ///< under way, at most
@@ -32,6 +33,8 @@ class LiveView {
   /// `wait`, when it is. False: none, or not yet.
   bool take(std::span<std::uint8_t> out, bool wait);
 
+  /// take() would not wait.
+  bool ready() const { return !waiting_.empty() && slots_[waiting_.front()].done.signalled(); }
   std::size_t under_way() const { return waiting_.size(); }
   const Lens& lens() const { return lens_; }
 
@@ -42,7 +45,8 @@ class LiveView {
     gl::Fence done;
   };
   void draw_faces(const Pose& T_world_camera, const LabState& T_world_part) const;
-  void draw_parts(const gl::Program& program, bool glossy, const Pose& T_face_world, const LabState& T_world_part) const;
+  void draw_parts(const gl::Program& program, bool glossy, const Pose& T_face_world,
+                  const LabState& T_world_part) const;
   void set_places();
 
   std::shared_ptr<const LabBuffers> lab_;

@@ -69,9 +69,8 @@ TEST_F(LiveViewTest, SeesWhatTheRayCasterSees) {
     SCOPED_TRACE(c.name);
     const Lens lens = lens_of(c.fisheye, c.distortion);
     const Sensor sensor{.vignetting = 0.2};
-    const Picture picture =
-        Renderer(world().live.lab(), world().light).render(RayTable(lens), world().T_world_camera, world().state,
-                                                          world().irradiance);
+    const Picture picture = Renderer(world().live.lab(), world().light)
+                                .render(RayTable(lens), world().T_world_camera, world().state, world().irradiance);
     const cv::Mat truth = sensor.develop(picture.light, 0, 0), made = seen(lens, sensor);
     const double psnr = cv::PSNR(truth, made);
     RecordProperty(c.name, std::to_string(psnr));

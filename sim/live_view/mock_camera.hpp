@@ -1,0 +1,114 @@
+// The cameras of the mock lab: what a stereo head sees of a live world, in real time.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "common/clock.hpp"
+#include "common/latest_value.hpp"
+#include "common/lens.hpp"
+#include "drivers/camera/camera.hpp"
+#include "drivers/camera/stereo_pairing.hpp"
+#include "sim/light_map.hpp"
+#include "sim/live_lab.hpp"
+#include "sim/sensor.hpp"
+
+namespace foresight::sim {
+
+/// Position of a joint's shaft at an instant, for the present and shortly before; see ShaftPositions.
+using ShaftsAt = std::function<std::optional<double>(std::string_view joint, RobotTime)>;
+
+struct MockCameraOptions {
+  Lens left, right;  ///< of even width
+  Pose T_left_right = T_head_left_right();
+  double rate = 30;                ///< frames per second, > 0
+  Sensor sensor = {.noise = 1.5};  ///< its exposure drift is not used
+  double light_coarser = 4;        ///< LightMap's; fewer triangles to draw
+};
+
+/// The renderer behind both cameras: a thread of its own, with its own OpenGL context, asks the shafts, draws both
+/// images and hands each camera its newest one. The light is that of the world at rest: moving parts carry theirs
+/// along. Both cameras see the same instant; there is no motion blur and no rolling shutter.
+///
+/// Real time only (LatestValue waits by the machine's clock). Any thread.
+class MockStereo {
+ public:
+  /// Exposure at which the picture has its right brightness, 100 us units as V4L2 has it.
+  static constexpr std::int64_t kExposure = 80, kLongestExposure = 300;
+
+  /// Lights the world, which takes seconds. `shafts` is called on the renderer's thread; `clock` must outlive this.
+  /// Throws InputError (rate, odd width, lenses of two sizes).
+  MockStereo(std::shared_ptr<const LiveLab> world, ShaftsAt shafts, const MockCameraOptions& options, Clock& clock);
+  ~MockStereo();
+
+  void set_rate(double rate);  ///< from the next start on
+  double rate() const { return options_.rate; }
+  const Lens& lens(Side side) const { return side == Side::left ? options_.left : options_.right; }
+  /// The world's time 0: T_world_ball and so on.
+  RobotTime epoch() const { return epoch_; }
+
+  /// Seconds of CPU time, for `foresight bench camera`: of the renderer's thread in handing over finished images, and
+  /// of the threads that call the cameras' wait_frame (0 where none runs).
+  double copying_cpu_s() const { return copying_cpu_s_; }
+  double consumers_cpu_s() const;
+  std::uint64_t skipped() const { return skipped_; }  ///< instants for which the renderer was too slow
+
+ private:
+  friend class MockCamera;
+  struct Shown;          // an image pair under way
+  void open(Side side);  ///< throws what OpenGL throws
+  void close(Side side) noexcept;
+  void render(const std::stop_token& stop, std::promise<void>& ready) noexcept;
+  void loop(const std::stop_token& stop, std::promise<void>& ready);
+
+  const std::shared_ptr<const LiveLab> world_;
+  const ShaftsAt shafts_;
+  MockCameraOptions options_;
+  Clock& clock_;
+  const RobotTime epoch_;
+  std::unique_ptr<LightMap> light_;
+  LightMap::Irradiance irradiance_;
+  std::array<LatestValue<CameraFrame>, 2> newest_;
+  std::atomic<std::int64_t> exposure_{kExposure};
+  std::array<std::atomic<clockid_t>, 2> consumers_{};
+  std::atomic<double> copying_cpu_s_ = 0;
+  std::atomic<std::uint64_t> skipped_ = 0;
+  std::mutex mutex_;  // open_, thread_
+  std::array<bool, 2> open_{};
+  std::jthread thread_;
+};
+
+/// YUYV. One control: exposure_time_absolute, which both cameras share. CameraFrame::time is the instant at which the
+/// shafts were asked: the true middle of the exposure.
+class MockCamera final : public Camera {
+ public:
+  MockCamera(std::string name, Side side, std::shared_ptr<MockStereo> stereo);
+  ~MockCamera() override { stop(); }
+
+  const std::string& name() const noexcept override { return name_; }
+  void start() override;
+  void stop() noexcept override;
+  CameraStatus wait_frame(Duration timeout, CameraFrame& out) noexcept override;
+  const CameraSettings& settings() const noexcept override { return settings_; }
+  std::vector<CameraControl> controls() override;
+  void set_control(const std::string& control, std::int64_t value) override;
+  CameraCounters counters() const noexcept override { return counters_; }
+
+ private:
+  std::string name_;
+  Side side_;
+  std::shared_ptr<MockStereo> stereo_;
+  CameraSettings settings_;
+  CameraCounters counters_;
+  std::optional<std::uint64_t> last_;
+  bool started_ = false;
+};
+
+/// A motion for worlds without drives: the arm works, the head looks about; `t` in seconds.
+std::optional<double> shafts_in_motion(std::string_view joint, double t);
+
+}  // namespace foresight::sim
