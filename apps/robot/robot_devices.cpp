@@ -99,6 +99,7 @@ sim::NodeConfig emulated(const RigJoint& joint, DriveProtocol protocol) {
   out.node = d.node;
   out.name = d.name;
   if (!powercube) out.counts_per_unit = d.counts_per_unit;
+  out.homed = joint.absolute;
   std::tie(out.min_position, out.max_position) = std::minmax({at_drive(d.min_position), at_drive(d.max_position)});
   // Not quite at home, where it can be looked for.
   const double home = std::clamp(0.0, d.min_position, d.max_position);
@@ -131,6 +132,7 @@ std::unique_ptr<DriveNetwork> make_network(CanBus& bus, Clock& clock, const Rig&
       canopen::Cia402Config config;
       config.drive = joint.drive;
       config.homing_method = joint.homing_method;
+      config.absolute_encoder = joint.absolute;
       drives.push_back(config);
     }
   canopen::NetworkConfig config;

@@ -88,13 +88,33 @@ void read_limits(const YamlMap& map, RigJoint& joint) {
       map.has("homing_velocity") ? positive(map, "homing_velocity") : 0.1 * joint.drive.max_velocity;
   if (joint.drive.homing_velocity > 0.25 * joint.drive.max_velocity)
     throw InputError(map.where("homing_velocity"), "is more than a quarter of the joint's velocity", "home slowly");
-  joint.homing_method = map.has("homing_method") ? integer_in(map, "homing_method", 1, 37) : 35;
+}
+
+// How the joint learns where it is. "Here is home" would make the model that all checks rest on whatever the arm's
+// pose is when somebody agrees to homing.
+void read_reference(const YamlMap& map, bool powercube, RigJoint& joint) {
+  if (powercube) {
+    for (const char* key : {"homing_method", "encoder"})
+      if (map.has(key))
+        throw InputError(map.where(key), "is for CiA 402 only; a PowerCube module has its own way home", "remove it");
+    return;
+  }
+  if (map.has("encoder")) joint.absolute = choice<bool>(map, "encoder", {{"absolute", true}, {"incremental", false}});
+  if (map.has("homing_method")) joint.homing_method = integer_in(map, "homing_method", 1, 37);
+  if (!joint.absolute && joint.homing_method == 0)
+    throw InputError(map.where("encoder"), "joint '" + joint.drive.name + "' has no way to know where it is",
+                     "say `encoder: absolute`, or give the homing_method of its switches");
+  if (!joint.absolute && (joint.homing_method == 35 || joint.homing_method == 37) && joint.group != JointGroup::gripper)
+    throw InputError(map.where("homing_method"),
+                     "35 and 37 take the joint's pose of the moment for home, wherever it stands",
+                     "home to a switch, or use an absolute encoder");
 }
 
 RigJoint read_joint(const YamlMap& map, const std::vector<RigBus>& buses) {
-  map.require_known({"name", "group", "bus", "node", "unit", "counts_per_unit", "direction", "offset", "min", "max",
-                     "velocity", "acceleration", "jerk", "following_error", "homing_velocity", "homing_method",
-                     "vendor", "product", "serial"});
+  map.require_known(
+      {"name",    "group",  "bus",      "node",         "unit", "counts_per_unit", "direction",       "offset",
+       "min",     "max",    "velocity", "acceleration", "jerk", "following_error", "homing_velocity", "homing_method",
+       "encoder", "vendor", "product",  "serial"});
   RigJoint joint;
   joint.drive.name = map.text("name");
   joint.group = choice<JointGroup>(
@@ -119,6 +139,7 @@ RigJoint read_joint(const YamlMap& map, const std::vector<RigBus>& buses) {
   }
   joint.drive.offset = number(map, "offset", 0);
   read_limits(map, joint);
+  read_reference(map, powercube, joint);
   joint.drive.vendor = identity(map, "vendor");
   joint.drive.product = identity(map, "product");
   joint.drive.serial = identity(map, "serial");

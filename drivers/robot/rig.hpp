@@ -32,7 +32,8 @@ struct RigJoint {
   DriveConfig drive;
   double jerk = 0;             ///< unit/s^3; > 0
   double following_error = 0;  ///< unit; > 0
-  int homing_method = 35;      ///< CiA 402, object 6098h; 35 and 37: here is home
+  int homing_method = 0;       ///< CiA 402, object 6098h; 0: none
+  bool absolute = false;       ///< CiA 402: its encoder knows the position from power-on, it needs no homing
 };
 
 struct Rig {

@@ -59,9 +59,9 @@ class BadRig : public testing::Test {
 buses:
   - {name: main, interface: can0, protocol: cia402}
 joints:
-  - {name: a, group: arm, bus: main, node: 1, unit: rad, counts_per_unit: 1000,
+  - {name: a, group: arm, bus: main, node: 1, unit: rad, encoder: absolute, counts_per_unit: 1000,
      min: -1, max: 1, velocity: 1, acceleration: 2, jerk: 20, following_error: 0.1}
-  - {name: b, group: gripper, bus: main, node: 2, unit: m, counts_per_unit: 1000,
+  - {name: b, group: gripper, bus: main, node: 2, unit: m, homing_method: 35, counts_per_unit: 1000,
      min: 0, max: 0.1, velocity: 0.1, acceleration: 2, jerk: 20, following_error: 0.1}
 )";
 };
@@ -89,6 +89,9 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("jerk: 20", "jerk: -1", {"jerk", "above 0"});
   expect("following_error: 0.1", "following_error: 0.001", {"following error"});
   expect("velocity: 1, acc", "velocity: .nan, acc", {"velocity"});
+  expect("encoder: absolute, ", "", {"encoder", "no way to know"});
+  expect("encoder: absolute", "homing_method: 35", {"wherever it stands"});
+  expect("encoder: absolute", "encoder: relative", {"relative", "absolute"});
   expect("node: 2", "node: 2, serial: 12g", {"12g", "32-bit"});
   expect("node: 2", "node: 2, serial: 0x100000000", {"32-bit"});
   expect("name: small", "name: small\nrobot: {urdf: none.urdf}", {"none.urdf", "no file"});

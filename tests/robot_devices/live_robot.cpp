@@ -53,7 +53,7 @@ void LiveRobot::get_moving() {
   run(1s);
   ASSERT_EQ(robot_->status().phase, RobotPhase::ready)
       << robot_->status().refused << ", joint " << robot_->status().waiting_for;
-  robot_->ask(RobotRequest::home);
+  if (!robot_->status().all_homed) robot_->ask(RobotRequest::home);
   for (int i = 0; i < 400 && (robot_->status().phase != RobotPhase::ready || !robot_->status().all_homed); ++i)
     run(100ms);
   ASSERT_TRUE(robot_->status().all_homed) << "joint " << robot_->status().waiting_for;
