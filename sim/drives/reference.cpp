@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace foresight::sim {
+namespace {
+
+constexpr double kRounding = 1e-9;  // seconds
+
+}  // namespace
 
 Reference change_speed(const Reference& from, double velocity, double rate, double dt) {
   const double next = std::clamp(velocity, from.velocity - rate * dt, from.velocity + rate * dt);
@@ -30,6 +35,7 @@ void CyclicInterpolator::start(double position) {
 }
 
 void CyclicInterpolator::push(double position, double interval_s) {
+  waiting_.reset();
   p0_ = p1_;
   p1_ = p2_;
   p2_ = position;
@@ -38,20 +44,25 @@ void CyclicInterpolator::push(double position, double interval_s) {
 }
 
 void CyclicInterpolator::queue(double position, double interval_s) {
-  if (elapsed_s_ < interval_s_ - 1e-9)
+  begin_waiting();
+  if (elapsed_s_ < interval_s_ - kRounding)
     waiting_ = {position, interval_s};
   else
     push(position, interval_s);
 }
 
+// What waits goes on where the interval before it ended; a set-point that waited longer would be one from long ago.
+void CyclicInterpolator::begin_waiting() {
+  if (!waiting_ || elapsed_s_ < interval_s_ - kRounding) return;
+  const Waiting next = *waiting_;
+  const double into_next = std::max(0.0, elapsed_s_ - interval_s_);
+  push(next.position, next.interval_s);
+  elapsed_s_ = into_next;
+}
+
 Reference CyclicInterpolator::step(double dt) {
   elapsed_s_ += dt;
-  if (waiting_ && elapsed_s_ > interval_s_) {
-    const double into_next = elapsed_s_ - interval_s_;
-    push(waiting_->position, waiting_->interval_s);
-    elapsed_s_ = into_next;
-    waiting_.reset();
-  }
+  begin_waiting();
   const double s = std::min(1.0, elapsed_s_ / interval_s_), beyond = std::max(0.0, elapsed_s_ - interval_s_);
   const double velocity = ((p1_ - p0_) * (1 - s) + (p2_ - p1_) * s) / interval_s_;
   const double position = p0_ * (1 - s) * (1 - s) / 2 + p1_ * (0.5 + s - s * s) + p2_ * s * s / 2 + velocity * beyond;

@@ -39,6 +39,8 @@ class CyclicInterpolator {
   bool resting() const { return p0_ == p1_ && p1_ == p2_; }
 
  private:
+  void begin_waiting();
+
   double p0_ = 0, p1_ = 0, p2_ = 0;
   double elapsed_s_ = 0, interval_s_ = 1;
   struct Waiting {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "sim/drives/reference.hpp"
 
@@ -135,6 +136,28 @@ TEST(CyclicInterpolator, AddsNoAccelerationOfItsOwn) {
     for (int i = 0; i < 10; ++i) position = spline.step(kDt).position;
   }
   EXPECT_NEAR(position, 3 * 0.25 / 2, 1e-12) << "and ends at the last set-point";
+}
+
+// Set-points of an even motion that come up to a millisecond early or late, and now and then one that is missing.
+TEST(CyclicInterpolator, SetPointsThatComeUnevenlyDoNotDisturbTheMotion) {
+  std::mt19937 random(1);
+  CyclicInterpolator steps;
+  steps.start(0);
+  constexpr double kSpeed = 0.5, kInterval = 0.004, kStep = 0.001;
+  double before = 0;
+  int next = 0, due = 0;
+  for (int tick = 0; tick < 100'000; ++tick) {
+    if (tick >= due) {
+      steps.queue(kSpeed * kInterval * next++, kInterval);
+      if (random() % 500 == 0) ++next;
+      due = 4 * next + static_cast<int>(random() % 3) - 1;
+    }
+    const double position = steps.step(kStep).position;
+    if (tick > 100) {
+      ASSERT_NEAR(position - before, kSpeed * kStep, 4 * kSpeed * kInterval) << tick;
+    }
+    before = position;
+  }
 }
 
 }  // namespace
