@@ -1,13 +1,11 @@
 #include "texture_gpu/stage_clock.hpp"
 
-#include <ctime>
+#include "common/cpu_time.hpp"
 
 namespace foresight {
 
 double process_cpu_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
+  return 1e3 * cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 void StageClock::record(const char* stage) {

@@ -1,10 +1,10 @@
 #include "apps/bench/camera_bench.hpp"
 
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "apps/replay_report/atomic_file.hpp"
+#include "common/cpu_time.hpp"
 #include "drivers/camera/stereo_camera.hpp"
 #include "sim/live_view/mock_camera.hpp"
 #include "sim/synth_run.hpp"
@@ -15,12 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kLargestShare = 0.1;
-
-double cpu_seconds(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
-}
 
 struct Round {
   double seconds = 0, process = 0, copying = 0, consuming = 0;  ///< CPU time but for `seconds`

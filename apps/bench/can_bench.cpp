@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "apps/replay_report/atomic_file.hpp"
+#include "common/cpu_time.hpp"
 #include "common/error.hpp"
 #include "drivers/can/can_bits.hpp"
 #include "drivers/can/candump_log.hpp"
@@ -31,12 +31,6 @@ std::vector<CanFrame> bus_traffic() {
     for (std::size_t i = 0; i < frame.size; ++i) frame.data[i] = static_cast<std::uint8_t>(next());
   }
   return out;
-}
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
 }
 
 struct Step {
@@ -121,9 +115,11 @@ void measure(std::vector<Step>& steps) {
   volatile std::uint64_t sink = 0;
   for (int round = -1; round < kRounds; ++round) {  // one more for the caches
     for (Step& step : steps) {
-      const double start = cpu_seconds();
+      const double start = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
       sink = sink + step.run();
-      if (round >= 0) step.ns_per_frame.push_back((cpu_seconds() - start) * 1e9 / static_cast<double>(kFrames));
+      if (round >= 0)
+        step.ns_per_frame.push_back((cpu_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) * 1e9 /
+                                    static_cast<double>(kFrames));
     }
   }
 }

@@ -4,12 +4,12 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "apps/replay_report/atomic_file.hpp"
 #include "apps/robot/robot_devices.hpp"
+#include "common/cpu_time.hpp"
 #include "common/real_time.hpp"
 #include "drivers/robot/robot.hpp"
 
@@ -17,12 +17,6 @@ namespace foresight {
 namespace {
 
 using namespace std::chrono_literals;
-
-double cpu_seconds(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
-}
 
 /// A thread that only wakes up: what the machine itself makes of such a loop.
 LoopStatistics empty_loop(Clock& clock, Duration period, const std::stop_token& stop) {

@@ -3,10 +3,10 @@
 #include <pthread.h>
 
 #include <cmath>
-#include <ctime>
 #include <deque>
 #include <numbers>
 
+#include "common/cpu_time.hpp"
 #include "common/error.hpp"
 #include "gl/context.hpp"
 #include "sim/live_view/live_view.hpp"
@@ -21,12 +21,6 @@ using namespace std::chrono_literals;
 constexpr Duration kPoll = 1ms;       // for finished images
 constexpr std::size_t kUnderWay = 2;  // pairs: one is drawn while the other is fetched; more would only be older
 constexpr const char* kControl = "exposure_time_absolute";
-
-double cpu_seconds(clockid_t clock) {
-  timespec t{};
-  if (clock_gettime(clock, &t) != 0) return 0;
-  return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
-}
 
 void check(const MockCameraOptions& o) {
   if (!(o.rate > 0 && o.rate <= 1000))
