@@ -7,9 +7,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "apps/output_files.hpp"
-#include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "apps/replay_session.hpp"
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "texture_gpu/gltf_scene.hpp"

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "apps/bench/bench_command.hpp"
+#include "apps/calibrate/calibrate_command.hpp"
 #include "apps/can_command.hpp"
 #include "apps/doctor_command.hpp"
 #include "apps/export_command.hpp"
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
   foresight::add_bench_command(app, action);
   foresight::add_robot_command(app, action);
   foresight::add_doctor_command(app, action);
+  foresight::add_calibrate_command(app, action);
 
   try {
     app.parse(argc, argv);

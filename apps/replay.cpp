@@ -12,7 +12,6 @@
 
 #include "apps/output_files.hpp"
 #include "apps/replay_outputs.hpp"
-#include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/html_report.hpp"
 #include "apps/replay_report/image_metrics.hpp"
@@ -20,6 +19,7 @@
 #include "apps/replay_report/progress_bar.hpp"
 #include "apps/replay_report/replay_report.hpp"
 #include "apps/replay_session.hpp"
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 
 namespace foresight {

@@ -119,4 +119,15 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
   return best;
 }
 
+std::string readable(double value, int digits, const std::string& unit) {
+  if (!std::isfinite(value)) return "-";
+  char text[64];  // not printf: its decimal point depends on the locale
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
+  return end.ec == std::errc() ? std::string(text, end.ptr) + unit : "-";
+}
+
+std::string readable(const std::optional<double>& value, int digits, const std::string& unit) {
+  return readable(value.value_or(NAN), digits, unit);
+}
+
 }  // namespace foresight

@@ -30,4 +30,8 @@ std::string in_quotes(std::string_view text);
 /// equals); empty only where there is no candidate.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 
+/// "18.4 dB", "-" where nothing was measured: `digits` after the point.
+std::string readable(double value, int digits, const std::string& unit = "");
+std::string readable(const std::optional<double>& value, int digits, const std::string& unit = "");
+
 }  // namespace foresight

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "apps/replay_report/atomic_file.hpp"
+#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "drivers/camera/stereo_camera.hpp"
 #include "sim/live_view/mock_camera.hpp"

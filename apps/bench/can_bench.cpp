@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/replay_report/atomic_file.hpp"
+#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
 #include "drivers/can/can_bits.hpp"

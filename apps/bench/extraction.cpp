@@ -8,8 +8,8 @@
 #include "apps/bench/extraction_tables.hpp"
 #include "apps/output_files.hpp"
 #include "apps/posed_frames.hpp"
-#include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/progress_bar.hpp"
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 
 namespace foresight {

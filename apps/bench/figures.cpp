@@ -8,7 +8,7 @@
 #include "apps/bench/mask_figures.hpp"
 #include "apps/bench/view_figures.hpp"
 #include "apps/output_files.hpp"
-#include "apps/replay_report/atomic_file.hpp"
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 
 namespace foresight {

@@ -9,8 +9,8 @@
 #include "apps/bench/texel_truth.hpp"
 #include "apps/output_files.hpp"
 #include "apps/posed_frames.hpp"
-#include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/progress_bar.hpp"
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "sim/pose_error.hpp"
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "apps/replay_report/atomic_file.hpp"
 #include "apps/robot/robot_devices.hpp"
+#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "common/real_time.hpp"
 #include "drivers/robot/robot.hpp"

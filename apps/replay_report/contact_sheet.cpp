@@ -7,8 +7,9 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/drawn_text.hpp"
+#include "common/atomic_file.hpp"
+#include "common/text.hpp"
 
 namespace foresight {
 namespace {
@@ -87,17 +88,6 @@ void draw_legend(cv::Mat& sheet, const Layout& layout, int top) {
 }
 
 }  // namespace
-
-std::string readable(double value, int digits, const std::string& unit) {
-  if (!std::isfinite(value)) return "-";
-  char text[64];  // not printf: its decimal point depends on the locale
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
-  return end.ec == std::errc() ? std::string(text, end.ptr) + unit : "-";
-}
-
-std::string readable(const std::optional<double>& value, int digits, const std::string& unit) {
-  return readable(value.value_or(NAN), digits, unit);
-}
 
 cv::Mat draw_contact_sheet(const std::string& title, std::span<const Instant> instants, int width) {
   const Layout layout(width, instants.empty() ? cv::Size(4, 1) : instants.front().actual.size());

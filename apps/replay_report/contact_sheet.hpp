@@ -18,8 +18,4 @@ cv::Mat draw_contact_sheet(const std::string& title, std::span<const Instant> in
 void write_contact_sheet(const std::string& title, std::span<const Instant> instants,
                          const std::filesystem::path& file);
 
-/// "18.4 dB", "-" where nothing was measured: `digits` after the point.
-std::string readable(double value, int digits, const std::string& unit = "");
-std::string readable(const std::optional<double>& value, int digits, const std::string& unit = "");
-
 }  // namespace foresight

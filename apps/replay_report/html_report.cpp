@@ -6,10 +6,11 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "apps/replay_report/atomic_file.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/report_plots.hpp"
-#include "apps/replay_report/svg_plot.hpp"
+#include "common/atomic_file.hpp"
+#include "common/svg_plot.hpp"
+#include "common/text.hpp"
 
 namespace foresight {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/replay_report/atomic_file.hpp"
+#include "common/atomic_file.hpp"
 
 namespace foresight {
 namespace {

@@ -6,7 +6,8 @@
 #include <initializer_list>
 
 #include "apps/replay_report/contact_sheet.hpp"
-#include "apps/replay_report/svg_plot.hpp"
+#include "common/svg_plot.hpp"
+#include "common/text.hpp"
 
 namespace foresight {
 namespace {

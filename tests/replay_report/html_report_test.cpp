@@ -8,8 +8,8 @@
 #include <set>
 
 #include "apps/replay_report/report_plots.hpp"
-#include "apps/replay_report/svg_plot.hpp"
 #include "common/error.hpp"
+#include "common/svg_plot.hpp"
 #include "tests/replay_report/example_run.hpp"
 
 namespace foresight {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/replay_report/atomic_file.hpp"
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "tests/replay_report/example_run.hpp"
 

@@ -1,4 +1,4 @@
-#include "apps/replay_report/atomic_file.hpp"
+#include "common/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

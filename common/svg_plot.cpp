@@ -1,9 +1,9 @@
-#include "apps/replay_report/svg_plot.hpp"
+#include "common/svg_plot.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apps/replay_report/contact_sheet.hpp"
+#include "common/text.hpp"
 
 namespace foresight {
 namespace {

@@ -1,0 +1,26 @@
+// What every `foresight calibrate` command may write: numbers, a result file, a report.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "calibration/result/result_file.hpp"
+
+namespace foresight {
+
+struct CalibrateOutputs {
+  std::optional<std::filesystem::path> json;    ///< all numbers
+  std::optional<std::filesystem::path> out;     ///< result file (calibration/result/result_file.hpp)
+  std::optional<std::filesystem::path> report;  ///< self-contained HTML page
+  bool force = false;                           ///< replaces a better result
+};
+
+/// --json, --out, --report, --force.
+void add_outputs(CLI::App& command, CalibrateOutputs& outputs);
+
+/// Writes to `file` where there is one; throws RuntimeFailure where it cannot be written.
+void write_json(const std::optional<std::filesystem::path>& file, const nlohmann::ordered_json& numbers);
+
+}  // namespace foresight

@@ -1,0 +1,43 @@
+// A self-contained HTML page: text, tables, and plots as inline SVG; it needs no network and no script.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace foresight {
+
+class HtmlReport {
+ public:
+  explicit HtmlReport(std::string title);
+
+  void heading(const std::string& text);
+  void paragraph(const std::string& text);
+  /// Every row as many cells as `columns`.
+  void table(const std::vector<std::string>& columns, const std::vector<std::vector<std::string>>& rows);
+
+  struct Series {
+    std::string name;
+    std::vector<Eigen::Vector2d> points;
+    bool line = false;  ///< joined by a line instead of dots
+  };
+  /// Axes with round ticks and units in their labels; `equal_scale` for residuals and places in an image.
+  void plot(const std::string& caption, const std::string& x_label, const std::string& y_label,
+            const std::vector<Series>& series, bool equal_scale = false);
+
+  /// A map over the image (CV_64F, any size, stretched to width x height px) with a colour bar.
+  void heat_map(const std::string& caption, const cv::Mat& values, int width, int height, const std::string& unit);
+
+  /// Throws RuntimeFailure where it cannot be written.
+  void write(const std::filesystem::path& file) const;
+
+  const std::string& body() const { return body_; }
+
+ private:
+  std::string title_;
+  std::string body_;
+};
+
+}  // namespace foresight

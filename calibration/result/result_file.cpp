@@ -1,0 +1,95 @@
+#include "calibration/result/result_file.hpp"
+
+#include <chrono>
+#include <ctime>
+
+#include "common/atomic_file.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr double kNoise = 1.02;  // two runs over other views of the same rig differ by about this factor
+
+ResultHeader read_header(const YamlMap& top) {
+  top.require_known({"kind", "date", "devices", "score", "sigma", "result"});
+  ResultHeader header;
+  header.kind = top.text("kind");
+  header.date = top.text("date");
+  if (top.has("devices")) {
+    const YamlMap devices = top.map("devices");
+    for (const std::string& role : devices.keys()) header.devices[role] = devices.text(role);
+  }
+  const YamlMap score = top.map("score");
+  score.require_known({"name", "value"});
+  header.score_name = score.text("name");
+  header.score = score.number("value");
+  if (top.has("sigma")) {
+    const YamlMap sigma = top.map("sigma");
+    for (const std::string& name : sigma.keys()) header.sigma[name] = sigma.number(name);
+  }
+  return header;
+}
+
+void require_better(const std::filesystem::path& file, const ResultHeader& header) {
+  if (!std::filesystem::exists(file)) return;
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(file.string(), what, "write to another file, or give --force to replace it");
+  };
+  ResultHeader old;
+  try {
+    old = read_header(YamlMap::load(file));
+  } catch (const InputError&) {
+    refuse("it exists and is no calibration result");
+  }
+  if (old.kind != header.kind) refuse("it holds a result of kind " + in_quotes(old.kind) + ", not " + header.kind);
+  for (const auto& [role, serial] : old.devices)
+    if (const auto now = header.devices.find(role); now != header.devices.end() && now->second != serial)
+      refuse("it belongs to the " + role + " device " + in_quotes(serial) + ", not " + in_quotes(now->second));
+  if (old.score_name == header.score_name && header.score > kNoise * old.score)
+    refuse("its " + old.score_name + " of " + std::to_string(old.score) + " is better than the new " +
+           std::to_string(header.score));
+}
+
+YAML::Node to_yaml(const ResultHeader& header, const YAML::Node& result) {
+  YAML::Node top;
+  top["kind"] = header.kind;
+  top["date"] = header.date;
+  for (const auto& [role, serial] : header.devices) top["devices"][role] = serial;
+  top["score"]["name"] = header.score_name;
+  top["score"]["value"] = header.score;
+  for (const auto& [name, sigma] : header.sigma) top["sigma"][name] = sigma;
+  top["result"] = result;
+  return top;
+}
+
+}  // namespace
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+void write_result(const std::filesystem::path& file, const ResultHeader& header, const YAML::Node& result, bool force) {
+  if (!force) require_better(file, header);
+  YAML::Emitter text;
+  text.SetDoublePrecision(17);
+  text << to_yaml(header, result);
+  write_file_atomically(file, std::string(text.c_str()) + "\n");
+}
+
+ResultFile read_result(const std::filesystem::path& file, const std::string& kind) {
+  const YamlMap top = YamlMap::load(file);
+  ResultHeader header = read_header(top);
+  if (header.kind != kind)
+    throw InputError(top.where("kind"), "this is a result of kind " + in_quotes(header.kind),
+                     "give one of `foresight calibrate " + kind + "`");
+  return {std::move(header), top.map("result")};
+}
+
+}  // namespace foresight
