@@ -7,6 +7,7 @@
 #include "apps/replay_report/image_metrics.hpp"
 #include "apps/replay_session.hpp"
 #include "common/error.hpp"
+#include "common/text.hpp"
 
 namespace foresight {
 namespace {
