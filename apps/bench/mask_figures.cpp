@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/replay_report/contact_sheet.hpp"
+#include "common/text.hpp"
 
 namespace foresight {
 namespace {

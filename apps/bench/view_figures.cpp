@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "apps/replay_report/contact_sheet.hpp"
+#include "common/text.hpp"
 
 namespace foresight {
 namespace {

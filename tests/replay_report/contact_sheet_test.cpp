@@ -1,4 +1,5 @@
 #include "apps/replay_report/contact_sheet.hpp"
+#include "common/text.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
