@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <future>
 #include <thread>
 
 #include "apps/robot/keyboard.hpp"
@@ -97,7 +98,8 @@ class Console {
   std::uint64_t cycles_ = 0;
 };
 
-int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices&) {
+int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices& devices) {
+  devices.bring_up(say);
   std::stop_source stop;
   clock.every(kTick, [&](RobotTime now) {
     if (!stop.stop_requested() && (!console.tick(now) || stop_signal != 0)) stop.request_stop();
@@ -115,10 +117,20 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
     }
   };
   {
+    std::promise<void> up;
     std::jthread loop([&](const std::stop_token& stop) {
       if (const std::string refused = make_real_time(kPriority); !refused.empty()) say(refused);
+      // In this thread: the drives' watchdogs would find the bus silent while a new one gets its stack, every page of
+      // which is locked in memory.
+      try {
+        devices.bring_up(say);
+      } catch (...) {
+        return up.set_exception(std::current_exception());
+      }
+      up.set_value();
       robot.run(clock, stop, set_up);
     });
+    up.get_future().get();
     notify_service("READY=1");
     for (RobotTime due = clock.now(); stop_signal == 0 && console.tick(due); due = std::max(due + kTick, clock.now()))
       clock.sleep_until(due + kTick);
@@ -147,7 +159,6 @@ int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, 
   std::signal(SIGTERM, [](int signal) { stop_signal = signal; });
   std::signal(SIGHUP, [](int signal) { stop_signal = signal; });
   if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
-  devices.bring_up(say);
   return run(clock, robot, console, devices);
 }
 
