@@ -31,7 +31,7 @@ std::string lock_memory() {
 
 void make_background() noexcept {
   constexpr int kNiceness = 10;             // about a tenth of a normal thread's share
-  setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread alone, under Linux; refused at worst
+  setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread alone, under Linux
 }
 
 }  // namespace foresight

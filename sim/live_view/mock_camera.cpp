@@ -7,6 +7,7 @@
 
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
+#include "common/real_time.hpp"
 #include "sim/live_view/stereo_renderer.hpp"
 #include "sim/motion.hpp"
 #include "sim/run_files.hpp"
@@ -93,6 +94,7 @@ void MockStereo::close(Side side) noexcept {
 }
 
 void MockStereo::render(const std::stop_token& stop, std::promise<void>& ready) noexcept {
+  if (!stepped_) make_background();  // a software renderer takes all that there is
   try {
     StereoRenderer renderer(world_->lab(), *light_, irradiance_, {options_.left, options_.right, options_.T_left_right},
                             options_.sensor);
