@@ -16,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_vnl(const fs::path& path) {
-  if (!fs::exists(path)) throw InputError("--corners", path.string() + " does not exist", "give a .vnl file or a folder");
+  if (!fs::exists(path))
+    throw InputError("--corners", path.string() + " does not exist", "give a .vnl file or a folder");
   return !fs::is_directory(path);
 }
 
@@ -107,7 +108,9 @@ std::string nearest_stamps(const CornerSet& left, const CornerSet& right) {
       const auto s = parse_integer(a.name), t = parse_integer(b.name);
       if (s && t) best = std::min(best, std::abs(*s - *t));
     }
-  return best == std::numeric_limits<long long>::max() ? "" : "; the nearest stamps differ by " + std::to_string(best) + " ns";
+  return best == std::numeric_limits<long long>::max()
+             ? ""
+             : "; the nearest stamps differ by " + std::to_string(best) + " ns";
 }
 
 void require_pairs(const StereoCorners& pair, const std::string& where) {
@@ -141,7 +144,8 @@ bool spans_a_plane(const std::vector<Corner>& corners) {
 CornerSet read_corners(const fs::path& path, const std::optional<Board>& board) {
   if (!is_vnl(path)) {
     if (fs::is_directory(path / "cam1") && fs::is_directory(path / "cam0"))
-      throw InputError(path.string(), "holds two cameras", "give " + (path / "cam0").string() + ", or calibrate stereo");
+      throw InputError(path.string(), "holds two cameras",
+                       "give " + (path / "cam0").string() + ", or calibrate stereo");
     const fs::path folder = fs::is_directory(path / "cam0") ? path / "cam0" : path;
     TagPoints points;
     const auto views = read_tag_views(folder, points);
@@ -150,7 +154,7 @@ CornerSet read_corners(const fs::path& path, const std::optional<Board>& board) 
   CornerSet set;
   set.p_board = board_points(needed(board, path));
   std::map<std::string, int> stems;
-  std::map<std::string, std::set<Side>> sides;
+  std::map<std::string, std::set<PairSide>> sides;
   auto images = read_vnl(path, set.p_board.size());
   for (VnlImage& image : images) {
     const SidedName name = split_side(image.name);
@@ -181,7 +185,7 @@ StereoCorners read_stereo_corners(const fs::path& path, const std::optional<Boar
     return pair;
   }
   pair.left.p_board = pair.right.p_board = board_points(needed(board, path));
-  std::map<std::pair<Side, std::string>, std::string> seen;
+  std::map<std::pair<PairSide, std::string>, std::string> seen;
   for (VnlImage& image : read_vnl(path, pair.left.p_board.size())) {
     const SidedName name = split_side(image.name);
     if (!name.side)
@@ -193,7 +197,7 @@ StereoCorners read_stereo_corners(const fs::path& path, const std::optional<Boar
                        in_quotes(image.name) + " is the same view of the same camera as " + in_quotes(at->second),
                        "give every view its own name");
     if (!spans_a_plane(image.corners)) continue;
-    (*name.side == Side::left ? pair.left : pair.right).views.push_back({name.view, std::move(image.corners)});
+    (*name.side == PairSide::left ? pair.left : pair.right).views.push_back({name.view, std::move(image.corners)});
   }
   for (const auto& [set, name] : {std::pair{&pair.left, "left"}, {&pair.right, "right"}})
     if (set->views.empty())
