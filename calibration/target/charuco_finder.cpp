@@ -19,10 +19,10 @@ constexpr double kUsualShare = 0.75;  // marker over square, where nothing is kn
 
 const std::vector<std::string>& dictionary_names() {  // in OpenCV's numbering
   static const std::vector<std::string> kNames{
-      "DICT_4X4_50",        "DICT_4X4_100",       "DICT_4X4_250",        "DICT_4X4_1000",       "DICT_5X5_50",
-      "DICT_5X5_100",       "DICT_5X5_250",       "DICT_5X5_1000",       "DICT_6X6_50",         "DICT_6X6_100",
-      "DICT_6X6_250",       "DICT_6X6_1000",      "DICT_7X7_50",         "DICT_7X7_100",        "DICT_7X7_250",
-      "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5", "DICT_APRILTAG_25h9",  "DICT_APRILTAG_36h10",
+      "DICT_4X4_50",        "DICT_4X4_100",        "DICT_4X4_250",       "DICT_4X4_1000",      "DICT_5X5_50",
+      "DICT_5X5_100",       "DICT_5X5_250",        "DICT_5X5_1000",      "DICT_6X6_50",        "DICT_6X6_100",
+      "DICT_6X6_250",       "DICT_6X6_1000",       "DICT_7X7_50",        "DICT_7X7_100",       "DICT_7X7_250",
+      "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5", "DICT_APRILTAG_25h9", "DICT_APRILTAG_36h10",
       "DICT_APRILTAG_36h11"};
   return kNames;
 }
@@ -50,8 +50,9 @@ int marker_count(const Board& board) {
 cv::Ptr<cv::aruco::CharucoBoard> charuco_board(const Board& board) {
   const auto dictionary = cv::aruco::getPredefinedDictionary(charuco_dictionary(board.family));
   if (dictionary->bytesList.rows < marker_count(board))
-    throw InputError("--board", board.family + " has " + std::to_string(dictionary->bytesList.rows) + " markers, the board " +
-                                    std::to_string(marker_count(board)),
+    throw InputError("--board",
+                     board.family + " has " + std::to_string(dictionary->bytesList.rows) + " markers, the board " +
+                         std::to_string(marker_count(board)),
                      "name a larger dictionary, such as DICT_6X6_1000");
   const double marker = board.marker_m > 0 ? board.marker_m : kUsualShare * board.size_m;
   return cv::aruco::CharucoBoard::create(board.cols, board.rows, static_cast<float>(board.size_m),
@@ -79,7 +80,8 @@ int charuco_dictionary(const std::string& name) {
   const auto& names = dictionary_names();
   const auto at = std::find(names.begin(), names.end(), name);
   if (at == names.end())
-    throw InputError("--board", "there is no dictionary " + in_quotes(name), "did you mean " + nearest_word(name, names) + "?");
+    throw InputError("--board", "there is no dictionary " + in_quotes(name),
+                     "did you mean " + nearest_word(name, names) + "?");
   return static_cast<int>(at - names.begin());
 }
 

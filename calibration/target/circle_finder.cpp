@@ -32,8 +32,10 @@ double disc_area(const cv::Mat& grey, cv::Point2f centre, float spacing) {
   cv::getRectSubPix(grey, {2 * half + 1, 2 * half + 1}, centre, patch, CV_32F);
   const double inside = patch.at<float>(half, half);
   const double outside = (patch.at<float>(0, 0) + patch.at<float>(0, 2 * half) + patch.at<float>(2 * half, 0) +
-                          patch.at<float>(2 * half, 2 * half)) / 4;
-  const cv::Mat dark = inside < outside ? cv::Mat(patch < (inside + outside) / 2) : cv::Mat(patch > (inside + outside) / 2);
+                          patch.at<float>(2 * half, 2 * half)) /
+                         4;
+  const cv::Mat dark =
+      inside < outside ? cv::Mat(patch < (inside + outside) / 2) : cv::Mat(patch > (inside + outside) / 2);
   return cv::countNonZero(dark);
 }
 
@@ -53,7 +55,8 @@ int big_disc(const std::vector<double>& areas) {
 std::vector<cv::Point2f> true_centres(const GridPoints& middles, const std::vector<double>& areas, int cols) {
   std::vector<cv::Point2f> grid;
   for (std::size_t i = 0; i < middles.size(); ++i)
-    grid.emplace_back(static_cast<float>(i % static_cast<std::size_t>(cols)), static_cast<float>(i / static_cast<std::size_t>(cols)));
+    grid.emplace_back(static_cast<float>(i % static_cast<std::size_t>(cols)),
+                      static_cast<float>(i / static_cast<std::size_t>(cols)));
   const cv::Mat found = cv::findHomography(grid, middles);
   if (found.empty()) return middles;
   const cv::Matx33d H(found);
@@ -97,8 +100,7 @@ FoundPoints find_circles(const cv::Mat& grey, const Board& board) {
   const auto centres = true_centres(*chosen, areas, board.cols);
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const cv::Point2f p = centres[i];
-    found.corners.push_back(
-        {static_cast<int>(i), {p.x, p.y}, disc_noise(grey, p, std::sqrt(areas[i] / CV_PI), noise)});
+    found.corners.push_back({static_cast<int>(i), {p.x, p.y}, disc_noise(grey, p, std::sqrt(areas[i] / CV_PI), noise)});
   }
   return found;
 }

@@ -22,17 +22,18 @@ namespace foresight {
 
 /// What makes a view worth taking; comparable between views of one board and camera.
 struct ViewQuality {
-  double sharpness = 0;  ///< 1/px: steepest edges over contrast, along the board's blurrier axis; 1 is as sharp as pixels get
-  double tilt_deg = 0;   ///< between the board's normal and the line of sight, for a lens of normal width
-  double turn_deg = 0;   ///< where the far side lies in the image: 0 right, 90 down; of no meaning without tilt
-  double coverage = 0;   ///< share of the image between the outermost points
+  double sharpness =
+      0;  ///< 1/px: steepest edges over contrast, along the board's blurrier axis; 1 is as sharp as pixels get
+  double tilt_deg = 0;  ///< between the board's normal and the line of sight, for a lens of normal width
+  double turn_deg = 0;  ///< where the far side lies in the image: 0 right, 90 down; of no meaning without tilt
+  double coverage = 0;  ///< share of the image between the outermost points
 };
 
 struct FoundBoard {
   std::vector<Corner> corners;  ///< ascending by index, as BoardView wants them
   ViewQuality quality;
-  bool partial = false;     ///< some points are missing; only boards with IDs can be
-  bool ambiguous = false;   ///< the order may be another after half a turn: see above
+  bool partial = false;    ///< some points are missing; only boards with IDs can be
+  bool ambiguous = false;  ///< the order may be another after half a turn: see above
 };
 
 /// A board's finder. One thread at a time; several finders may work at once.

@@ -36,8 +36,7 @@ std::vector<GridPoints> grid_orders(const GridPoints& points, int cols, int rows
   cv::Point2f y;
   for (int col = 0; col < cols; ++col) y += points[at(col, rows - 1, cols)] - points[at(col, 0, cols)];
   if (x.cross(y) < 0)
-    for (int row = 0; row < rows; ++row)
-      std::reverse(upright.begin() + row * cols, upright.begin() + (row + 1) * cols);
+    for (int row = 0; row < rows; ++row) std::reverse(upright.begin() + row * cols, upright.begin() + (row + 1) * cols);
   std::vector<GridPoints> orders{upright, GridPoints(upright.rbegin(), upright.rend())};
   if (cols == rows) {
     orders.push_back(quarter_turn(orders[0], cols));

@@ -23,7 +23,8 @@ constexpr double kBlurred = 0.5;  // of the median sharpness
 
 bool is_picture(const fs::path& file) {
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   static const std::vector<std::string> kKnown{".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".ppm", ".tif", ".tiff"};
   return std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end();
 }
@@ -104,7 +105,9 @@ std::vector<Seen> look_at(const std::vector<fs::path>& files, const Board& board
   });
   for (const Seen& s : seen)
     if (s.size != seen.front().size) {
-      const auto text = [](const Seen& of) { return std::to_string(of.size.width) + "x" + std::to_string(of.size.height); };
+      const auto text = [](const Seen& of) {
+        return std::to_string(of.size.width) + "x" + std::to_string(of.size.height);
+      };
       throw InputError(s.file.string(),
                        "is " + text(s) + " px, " + seen.front().file.filename().string() + " is " + text(seen.front()),
                        "give images of one camera at one resolution");
@@ -117,14 +120,14 @@ void require_found(const std::vector<Seen>& seen, const Board& board, const fs::
   std::vector<fs::path> files;
   for (const Seen& s : seen) files.push_back(s.file);
   throw InputError(folder.string(),
-                   "shows the board in none of " + std::to_string(seen.size()) + " images: " +
-                       explain_nothing_found(board, some_images(files, 3)),
+                   "shows the board in none of " + std::to_string(seen.size()) +
+                       " images: " + explain_nothing_found(board, some_images(files, 3)),
                    "check --board against the print");
 }
 
 std::string not_found_text(const Board& board) {
   return board.kind == BoardKind::charuco || board.kind == BoardKind::apriltag ? "no part of the board found"
-                                                                              : "the whole board was not found";
+                                                                               : "the whole board was not found";
 }
 
 /// Sharpness below which an image counts as blurred, and the median.
@@ -205,7 +208,8 @@ std::vector<fs::path> list_images(const fs::path& folder) {
     if (wanted && is_picture(entry.path()) && entry.is_regular_file()) files.push_back(entry.path());
   }
   if (files.empty())
-    throw InputError(folder.string(), by_pattern ? "names no image" : "holds no image", "give png, jpg, bmp, pgm or tif files");
+    throw InputError(folder.string(), by_pattern ? "names no image" : "holds no image",
+                     "give png, jpg, bmp, pgm or tif files");
   std::sort(files.begin(), files.end(), by_number);
   return files;
 }

@@ -19,9 +19,12 @@ constexpr double kPointsPerMm = 72 / 25.4;
 constexpr double kRimMm = 8;     // what printers cannot reach, and a little
 constexpr double kStripMm = 14;  // for a ruler, left and below
 
-constexpr std::array<std::pair<const char*, std::pair<double, double>>, 6> kPapers{{
-    {"A4", {210, 297}}, {"A3", {297, 420}}, {"A2", {420, 594}}, {"A1", {594, 841}}, {"A0", {841, 1189}},
-    {"letter", {215.9, 279.4}}}};
+constexpr std::array<std::pair<const char*, std::pair<double, double>>, 6> kPapers{{{"A4", {210, 297}},
+                                                                                    {"A3", {297, 420}},
+                                                                                    {"A2", {420, 594}},
+                                                                                    {"A1", {594, 841}},
+                                                                                    {"A0", {841, 1189}},
+                                                                                    {"letter", {215.9, 279.4}}}};
 
 struct Extent {
   double left = 0, top = 0, right = 0, bottom = 0;  // board frame, metres, with the white that it needs
@@ -45,8 +48,9 @@ Extent extent(const Board& board) {
 class Page {
  public:
   Page(double width_mm, double height_mm)
-      : surface_(cairo_pdf_surface_create_for_stream(append, &bytes_, width_mm * kPointsPerMm, height_mm * kPointsPerMm),
-                 cairo_surface_destroy),
+      : surface_(
+            cairo_pdf_surface_create_for_stream(append, &bytes_, width_mm * kPointsPerMm, height_mm * kPointsPerMm),
+            cairo_surface_destroy),
         cairo_(cairo_create(surface_.get()), cairo_destroy) {
     cairo_scale(cairo_.get(), kPointsPerMm, kPointsPerMm);
     cairo_select_font_face(cairo_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
@@ -87,9 +91,9 @@ class Page {
     cairo_show_page(cairo());
     cairo_surface_finish(surface_.get());
     if (cairo_surface_status(surface_.get()) != CAIRO_STATUS_SUCCESS)
-      throw RuntimeFailure("cairo cannot make the PDF: " +
-                               std::string(cairo_status_to_string(cairo_surface_status(surface_.get()))),
-                           "free some memory");
+      throw RuntimeFailure(
+          "cairo cannot make the PDF: " + std::string(cairo_status_to_string(cairo_surface_status(surface_.get()))),
+          "free some memory");
     return bytes_;
   }
 
@@ -197,7 +201,8 @@ Paper parse_paper(std::string_view text) {
     if (w && h && *w >= 50 && *h >= 50 && *w <= 5000 && *h <= 5000)
       return {std::string(text), std::min(*w, *h), std::max(*w, *h)};
   }
-  throw InputError("--paper", in_quotes(text) + " is no paper", "give A4, A3, A2, A1, A0, letter, or WxH in mm such as 600x400");
+  throw InputError("--paper", in_quotes(text) + " is no paper",
+                   "give A4, A3, A2, A1, A0, letter, or WxH in mm such as 600x400");
 }
 
 void write_board_pdf(const std::filesystem::path& file, const Board& board, const Paper& paper) {
@@ -205,7 +210,9 @@ void write_board_pdf(const std::filesystem::path& file, const Board& board, cons
   const Extent e = extent(board);
   const double w = e.width() * 1e3, h = e.height() * 1e3;
   const double across = 2 * kRimMm + kStripMm, along = 2 * kRimMm + kStripMm + 5;
-  const auto scale_on = [&](double width, double height) { return std::min((width - across) / w, (height - along) / h); };
+  const auto scale_on = [&](double width, double height) {
+    return std::min((width - across) / w, (height - along) / h);
+  };
   const bool lying = scale_on(paper.height_mm, paper.width_mm) > scale_on(paper.width_mm, paper.height_mm);
   const double width = lying ? paper.height_mm : paper.width_mm, height = lying ? paper.width_mm : paper.height_mm;
   const double fit = scale_on(width, height);
@@ -213,7 +220,9 @@ void write_board_pdf(const std::filesystem::path& file, const Board& board, cons
     const double size = std::floor(board.size_m * fit * 1e4) / 1e4;
     std::string cure = "take a larger --paper";
     if (size > 0) cure += ", or " + to_string(scaled(board, size / board.size_m));
-    throw InputError("--board", "needs " + in_mm(w, h) + ", " + paper.name + " leaves " + in_mm(width - across, height - along), cure);
+    throw InputError("--board",
+                     "needs " + in_mm(w, h) + ", " + paper.name + " leaves " + in_mm(width - across, height - along),
+                     cure);
   }
   Page page(width, height);
   const double x = kRimMm + kStripMm + (width - across - w) / 2, y = kRimMm + (height - along - h) / 2;
@@ -224,7 +233,8 @@ void write_board_pdf(const std::filesystem::path& file, const Board& board, cons
   const auto length = [](double room) { return std::min(kRulerMm, std::floor(room / 10) * 10); };
   page.ruler(kRimMm + kStripMm, height - kRimMm - 5, length(width - across), false);
   page.ruler(kRimMm + 5, kRimMm, length(height - along), true);
-  page.text(kRimMm + kStripMm, height - kRimMm, "--board " + to_string(board) + "   print at 100 %, not fitted to the page; glue it onto something flat");
+  page.text(kRimMm + kStripMm, height - kRimMm,
+            "--board " + to_string(board) + "   print at 100 %, not fitted to the page; glue it onto something flat");
   write_file_atomically(file, page.finish());
 }
 
@@ -235,10 +245,11 @@ Board measured_board(const Board& board, double x_mm, double y_mm) {
                        "measure both rulers end to end, in mm: --measured 100.2,99.9");
   const double sx = x_mm / kRulerMm, sy = y_mm / kRulerMm;
   if (std::abs(sx / sy - 1) > kMostAnisotropy)
-    throw InputError("--measured",
-                     "x is printed at " + readable(100 * sx, 2) + " %, y at " + readable(100 * sy, 2) +
-                         " %: squares that are none cannot calibrate",
-                     "print without 'fit to page', at the printer's best quality; turn the page, or use another printer");
+    throw InputError(
+        "--measured",
+        "x is printed at " + readable(100 * sx, 2) + " %, y at " + readable(100 * sy, 2) +
+            " %: squares that are none cannot calibrate",
+        "print without 'fit to page', at the printer's best quality; turn the page, or use another printer");
   return scaled(board, (sx + sy) / 2);
 }
 

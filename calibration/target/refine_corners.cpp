@@ -57,8 +57,9 @@ double disc_noise(const cv::Mat& grey, cv::Point2f centre, double radius, double
                                                  static_cast<float>(radius * std::sin(angle)));
     cv::Mat patch;
     cv::getRectSubPix(grey, {3, 3}, rim, patch, CV_32F);
-    steepest += std::hypot(patch.at<float>(1, 2) - patch.at<float>(1, 0), patch.at<float>(2, 1) - patch.at<float>(0, 1)) /
-                (2 * kRays);
+    steepest +=
+        std::hypot(patch.at<float>(1, 2) - patch.at<float>(1, 0), patch.at<float>(2, 1) - patch.at<float>(0, 1)) /
+        (2 * kRays);
   }
   const double along_rim = std::max(4.0, 2 * CV_PI * radius);
   const double sigma = noise / std::max(steepest, 1e-3) * std::sqrt(2 / along_rim);

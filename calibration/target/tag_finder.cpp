@@ -53,8 +53,9 @@ FamilyPtr create_family(const Board& board) {
   const Family& family = family_of(board.family);
   FamilyPtr made(family.create(), family.destroy);
   if (static_cast<int>(made->ncodes) < board.cols * board.rows)
-    throw InputError("--board", board.family + " has " + std::to_string(made->ncodes) + " tags, the board " +
-                                    std::to_string(board.cols * board.rows),
+    throw InputError("--board",
+                     board.family + " has " + std::to_string(made->ncodes) + " tags, the board " +
+                         std::to_string(board.cols * board.rows),
                      "name a larger family, such as tag36h11");
   return made;
 }
@@ -128,8 +129,7 @@ struct TagFinder::Detector {
       apriltag_detection_t* d = nullptr;
       zarray_get(found.get(), i, &d);
       Tag tag{d->id, {}, {d->c[0] - kPixelOffset, d->c[1] - kPixelOffset}, {}};
-      for (std::size_t c = 0; c < 4; ++c)
-        tag.corners[c] = {d->p[c][0] - kPixelOffset, d->p[c][1] - kPixelOffset};
+      for (std::size_t c = 0; c < 4; ++c) tag.corners[c] = {d->p[c][0] - kPixelOffset, d->p[c][1] - kPixelOffset};
       const Eigen::Matrix3d H = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(d->H->data);
       const Eigen::Vector3d offset(-kPixelOffset, -kPixelOffset, 1);
       tag.H = H;
@@ -141,7 +141,7 @@ struct TagFinder::Detector {
 
   FamilyPtr family;
   std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector{apriltag_detector_create(),
-                                                                              apriltag_detector_destroy};
+                                                                                apriltag_detector_destroy};
 };
 
 TagFinder::TagFinder(const Board& board) : board_(board), detector_(std::make_unique<Detector>(board)) {}

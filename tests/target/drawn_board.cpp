@@ -12,7 +12,7 @@ namespace {
 
 struct Print {
   cv::Mat texture;
-  Eigen::Vector2d origin;   // of the texture's corner, board frame, metres
+  Eigen::Vector2d origin;  // of the texture's corner, board frame, metres
   double px_per_metre = 0;
 };
 
@@ -43,15 +43,17 @@ Print print(const Board& board, TagRows rows) {
   for (const Eigen::Vector3d& p : board_points(board)) most = most.cwiseMax(p.head<2>());
   const double rim = board.kind == BoardKind::chessboard || board.kind == BoardKind::charuco ? 2 : 1;
   print.origin = Eigen::Vector2d::Constant(-rim * board.size_m);
-  print.texture = cv::Mat(cvRound(most.y() * k) + cvRound(2 * rim) * kCell, cvRound(most.x() * k) + cvRound(2 * rim) * kCell,
-                          CV_8U, cv::Scalar(230));
+  print.texture = cv::Mat(cvRound(most.y() * k) + cvRound(2 * rim) * kCell,
+                          cvRound(most.x() * k) + cvRound(2 * rim) * kCell, CV_8U, cv::Scalar(230));
   switch (board.kind) {
     case BoardKind::chessboard: draw_chessboard(board, print.texture); break;
     case BoardKind::apriltag: draw_tags(board, rows, print.texture); break;
     case BoardKind::circles:
       for (const Eigen::Vector3d& p : board_points(board))
-        cv::circle(print.texture, cv::Point(cvRound((p.x() + board.size_m) * k * 16 - 8), cvRound((p.y() + board.size_m) * k * 16 - 8)),
-                   kCell * 16 / 4, cv::Scalar(30), cv::FILLED, cv::LINE_AA, 4);
+        cv::circle(
+            print.texture,
+            cv::Point(cvRound((p.x() + board.size_m) * k * 16 - 8), cvRound((p.y() + board.size_m) * k * 16 - 8)),
+            kCell * 16 / 4, cv::Scalar(30), cv::FILLED, cv::LINE_AA, 4);
       break;
     case BoardKind::charuco: {
       const auto layout = cv::aruco::CharucoBoard::create(
@@ -74,7 +76,8 @@ DrawnView draw_board(const Board& board, int width, int height, double roll_deg,
   const double f = width, distance = std::max(w * f / (0.8 * width), h * f / (0.8 * height));
   const Eigen::Vector3d middle(paper.origin.x() + w / 2, paper.origin.y() + h / 2, 0);
   const Eigen::Matrix3d R = (Eigen::AngleAxisd(-tilt_deg * CV_PI / 180, Eigen::Vector3d::UnitY()) *
-                             Eigen::AngleAxisd(roll_deg * CV_PI / 180, Eigen::Vector3d::UnitZ())).toRotationMatrix();
+                             Eigen::AngleAxisd(roll_deg * CV_PI / 180, Eigen::Vector3d::UnitZ()))
+                                .toRotationMatrix();
   const auto pixel = [&](const Eigen::Vector3d& p) -> Eigen::Vector2d {
     const Eigen::Vector3d at = R * (p - middle) + Eigen::Vector3d(0, 0, distance);
     return f * at.hnormalized() + Eigen::Vector2d((width - 1) / 2.0, (height - 1) / 2.0);

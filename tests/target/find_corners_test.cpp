@@ -25,8 +25,7 @@ double worst_error(const FoundBoard& found, const DrawnView& view) {
 
 Eigen::Vector2d mean_error(const FoundBoard& found, const DrawnView& view) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const Corner& corner : found.corners)
-    sum += corner.pixel - view.pixels[static_cast<std::size_t>(corner.index)];
+  for (const Corner& corner : found.corners) sum += corner.pixel - view.pixels[static_cast<std::size_t>(corner.index)];
   return sum / static_cast<double>(found.corners.size());
 }
 
@@ -115,7 +114,8 @@ TEST(FindCorners, SaysWhatFits) {
   EXPECT_THAT(explain_nothing_found(parse_board("charuco:7x5:0.03:0.02:DICT_6X6_250"),
                                     {drawn("charuco:7x5:0.03:0.02:DICT_5X5_100")}),
               HasSubstr("DICT_5X5_50 fits"));
-  EXPECT_THAT(explain_nothing_found(parse_board("circles:8x6:0.03"), {drawn("circles:7x5:0.03")}), HasSubstr("7x5 were"));
+  EXPECT_THAT(explain_nothing_found(parse_board("circles:8x6:0.03"), {drawn("circles:7x5:0.03")}),
+              HasSubstr("7x5 were"));
   cv::Mat mirrored;
   cv::flip(drawn("apriltag:4x3:0.05:0.015"), mirrored, 1);
   EXPECT_THAT(explain_nothing_found(parse_board("apriltag:4x3:0.05:0.015"), {mirrored}), HasSubstr("mirrored"));
@@ -146,7 +146,8 @@ TEST(FindCornersData, OpenCvPicturesAsTheFrozenCorners) {
   double sum = 0, worst = 0;
   for (const auto& [set, side] : {std::pair{&frozen.left, "left"}, {&frozen.right, "right"}})
     for (const BoardView& view : set->views) {
-      const auto found = finder.find(cv::imread((kOpenCvPictures / (side + view.name + ".jpg")).string(), cv::IMREAD_GRAYSCALE));
+      const auto found =
+          finder.find(cv::imread((kOpenCvPictures / (side + view.name + ".jpg")).string(), cv::IMREAD_GRAYSCALE));
       ASSERT_TRUE(found) << side << view.name;
       EXPECT_FALSE(found->ambiguous);
       for (std::size_t i = 0; i < 54; ++i) {

@@ -97,11 +97,22 @@ TEST_F(ImageInput, PairsByNameAndBySorting) {
 TEST(ImageInputData, OpenCvStereoPictures) {
   const std::filesystem::path pictures = "/usr/share/doc/opencv-doc/examples/data";
   if (!std::filesystem::exists(pictures / "left01.jpg")) GTEST_SKIP() << "opencv-doc is not installed";
-  const auto found =
-      find_pairs_in_folders(pictures / "left[01]?.jpg", pictures / "right[01]?.jpg", parse_board("chessboard:9x6:0.025"));
+  const auto found = find_pairs_in_folders(pictures / "left[01]?.jpg", pictures / "right[01]?.jpg",
+                                           parse_board("chessboard:9x6:0.025"));
   EXPECT_EQ(found.corners.left.views.size(), 13u);
   EXPECT_EQ(found.corners.right.views.size(), 13u);
   EXPECT_TRUE(found.dropped.empty()) << found.dropped[0].name << ' ' << found.dropped[0].reason;
+}
+
+TEST(ImageInputData, NothingIsDroppedFromGoodSets) {
+  FORESIGHT_NEED_DATA("rct_arm_handeye");
+  const auto sets = data_folder() / "rct_arm_handeye";
+  const auto circles = find_in_folder(sets / "test_set_10x10/images", parse_board("circles:10x10:0.0254"));
+  EXPECT_EQ(circles.corners.views.size(), 15u);
+  EXPECT_EQ(circles.corners.views[9].name, "9");  // by number
+  const auto charuco =
+      find_in_folder(sets / "test_set_charuco/images", parse_board("charuco:5x7:0.036195:0.018256:DICT_6X6_250"));
+  EXPECT_EQ(charuco.corners.views.size(), 9u);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ TEST_P(PrintedBoard, IsFoundAtTrueScale) {
   const Board board = parse_board(GetParam());
   const TempFolder folder;
   write_board_pdf(folder / "board.pdf", board, parse_paper("A4"));
-  const std::string make = "pdftoppm -gray -r " + std::to_string(kDpi) + " '" + (folder / "board.pdf").string() + "' '" +
-                           (folder / "page").string() + "'";
+  const std::string make = "pdftoppm -gray -r " + std::to_string(kDpi) + " '" + (folder / "board.pdf").string() +
+                           "' '" + (folder / "page").string() + "'";
   ASSERT_EQ(std::system(make.c_str()), 0);
   const cv::Mat page = cv::imread((folder / "page-1.pgm").string(), cv::IMREAD_GRAYSCALE);
   ASSERT_FALSE(page.empty());
@@ -52,9 +52,8 @@ TEST_P(PrintedBoard, IsFoundAtTrueScale) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, PrintedBoard,
                          testing::Values("chessboard:9x6:0.023", "charuco:6x4:0.03:0.022:DICT_4X4_50",
-"charuco:8x5:0.03:0.022:DICT_5X5_100",
-                                         "charuco:5x7:0.03:0.02:DICT_6X6_250", "apriltag:4x3:0.042:0.0126",
-                                         "circles:9x6:0.025"));
+                                         "charuco:8x5:0.03:0.022:DICT_5X5_100", "charuco:5x7:0.03:0.02:DICT_6X6_250",
+                                         "apriltag:4x3:0.042:0.0126", "circles:9x6:0.025"));
 
 template <typename Call>
 std::string message(Call call) {
