@@ -15,7 +15,7 @@ namespace {
 constexpr int kFewestViews = 5;
 constexpr int kFewViews = 10;  // fewer are warned about
 constexpr double kUnsynchronised = 1.4;
-constexpr double kBetter = 0.98;  // a richer lens model must lower the held-out error to this part
+constexpr double kBetter = 0.95;  // a richer lens model must lower the held-out error to this part
 constexpr int kGroups = 10;       // of views left out together where there are many
 constexpr int kTrialGroups = 5;   // the same while choosing a model
 
@@ -140,6 +140,7 @@ class Calibrator {
     for (const Distortion model : {Distortion::radtan5, Distortion::rational, Distortion::equidistant}) {
       try {
         const RigSolution solution = with_model(model);
+        if (!RigUncertainty(result_.views, solution, result_.warp).usable()) continue;
         const HeldOutScore trial = score(solution);
         if (!(trial.joint_px < kBetter * best.joint_px) || trial.cross_px > best.cross_px) continue;
         best = trial;

@@ -11,7 +11,7 @@ namespace foresight {
 
 struct CameraCalibrationOptions {
   /// None: radtan4, or that of radtan5, rational and equidistant whose error on views left out is
-  /// lower by 2 %. Thin-prism is never chosen: nothing else here can draw it.
+  /// lower by 5 %. Thin-prism is never chosen: nothing else here can draw it.
   std::optional<Distortion> model;
   bool warp = true;         ///< estimates the board's warp, from `warp_from_views` on
   int warp_from_views = 8;  ///< fewer cannot tell it from the lens

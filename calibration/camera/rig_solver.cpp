@@ -74,9 +74,9 @@ class Bundle {
     options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (auto& pose : poses_) options.linear_solver_ordering->AddElementToGroup(pose.data(), 0);
     for (double* block : shared_) options.linear_solver_ordering->AddElementToGroup(block, 1);
-    options.max_num_iterations = 200;
+    options.max_num_iterations = 100;
     options.max_trust_region_radius = 1e9;  // weak parameters would make the reduced system singular
-    options.function_tolerance = 1e-10;
+    options.function_tolerance = 1e-9;
     options.parameter_tolerance = 1e-10;
     options.gradient_tolerance = 1e-14;
     options.num_threads = 1;

@@ -170,8 +170,8 @@ double RigUncertainty::rotation_sigma_rad() const {
   if (!impl_->usable || impl_->info.motion_at < 0) return kNone;
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, impl_->scale.size());
   rows.middleCols(impl_->info.motion_at, 3) = 2 * Eigen::Matrix3d::Identity();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(impl_->covariance_of(rows), Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+  const Eigen::MatrixXd covariance = impl_->covariance_of(rows);
+  return std::sqrt(std::max(0.0, covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff()));
 }
 
 Eigen::Vector2d RigUncertainty::warp_sigma_m() const {
