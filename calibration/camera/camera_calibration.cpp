@@ -132,23 +132,40 @@ class Calibrator {
     return n <= options_.most_folds && groups != kTrialGroups ? n : std::min(n, groups);
   }
 
-  void choose_model() {
-    const auto score = [&](const RigSolution& solution) {
-      return leave_out(result_.views, result_.views, solution, solver_, folds(kTrialGroups)).score;
-    };
-    HeldOutScore best = score(result_.solution);
-    for (const Distortion model : {Distortion::radtan5, Distortion::rational, Distortion::equidistant}) {
-      try {
-        const RigSolution solution = with_model(model);
-        if (!RigUncertainty(result_.views, solution, result_.warp).usable()) continue;
-        const HeldOutScore trial = score(solution);
-        if (!(trial.joint_px < kBetter * best.joint_px) || trial.cross_px > best.cross_px) continue;
-        best = trial;
-        result_.solution = solution;
-      } catch (const InputError&) {
-        continue;  // a lens that cannot even be solved for is none to choose
-      }
+  struct Trial {
+    RigSolution solution;
+    HeldOutScore score;
+  };
+
+  std::optional<Trial> try_model(Distortion model) const {
+    try {
+      RigSolution solution = with_model(model);
+      // What does not even fit better cannot predict better.
+      if (!(solution.noise_px < kBetter * result_.solution.noise_px)) return std::nullopt;
+      if (!RigUncertainty(result_.views, solution, result_.warp).usable()) return std::nullopt;
+      return Trial{solution, trial_score(solution)};
+    } catch (const InputError&) {
+      return std::nullopt;  // a lens that cannot even be solved for is none to choose
     }
+  }
+
+  HeldOutScore trial_score(const RigSolution& solution) const {
+    return leave_out(result_.views, result_.views, solution, solver_, folds(kTrialGroups)).score;
+  }
+
+  // Of models that predict alike the one with the fewest parameters.
+  void choose_model() {
+    const auto better = [](const HeldOutScore& a, const HeldOutScore& b) {
+      return a.joint_px < kBetter * b.joint_px && a.cross_px <= b.cross_px;
+    };
+    std::optional<Trial> best;
+    for (const Distortion model : {Distortion::equidistant, Distortion::radtan5, Distortion::rational}) {
+      auto trial = try_model(model);
+      if (!trial) continue;
+      if (!best) best = Trial{result_.solution, trial_score(result_.solution)};
+      if (better(trial->score, best->score)) best = std::move(trial);
+    }
+    if (best) result_.solution = std::move(best->solution);
   }
 
   RigSolution with_model(Distortion model) const {
