@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "apps/bench/calibration_bench.hpp"
 #include "apps/bench/camera_bench.hpp"
 #include "apps/bench/can_bench.hpp"
 #include "apps/bench/extraction.hpp"
@@ -65,6 +66,23 @@ void add_robot(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_robot(*options); }; });
 }
 
+void add_calibration(CLI::App& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("calibration", "CPU time and held-out error of our stereo solver and OpenCV's");
+  auto options = std::make_shared<CalibrationBenchOptions>();
+  command->add_option("CORNERS", options->corners, "Corners of a pair: .vnl, or a folder with cam0/ and cam1/")
+      ->required();
+  command->add_option("--board", options->board, "As in `foresight calibrate stereo`");
+  command->add_option("--size", options->size, "WIDTHxHEIGHT of the images")->capture_default_str();
+  command->add_option("--runs", options->runs, "Of which the median counts")
+      ->check(from_to(1, 100))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers");
+  command->footer(
+      "Example: foresight bench calibration corners.vnl --board chessboard:9x6:0.025\n"
+      "Exit code: 1 where OpenCV predicts the views left out better.");
+  command->callback([options, &action] { action = [options] { return bench_calibration(*options); }; });
+}
+
 void add_camera(CLI::App& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("camera", "CPU time of the mock cameras, rendering and all else apart");
   auto options = std::make_shared<CameraBenchOptions>();
@@ -82,6 +100,7 @@ void add_camera(CLI::App& bench, std::function<int()>& action) {
 void add_bench_command(CLI::App& app, std::function<int()>& action) {
   auto* bench = app.add_subcommand("bench", "Measures, and compares with the pipeline of the thesis");
   bench->require_subcommand(1);
+  add_calibration(*bench, action);
   add_camera(*bench, action);
   add_can(*bench, action);
   add_extraction(*bench, action);

@@ -1,6 +1,9 @@
 #include "apps/calibrate/calibrate_command.hpp"
 
+#include "apps/calibrate/intrinsics_command.hpp"
+#include "apps/calibrate/stereo_command.hpp"
 #include "apps/calibrate/target_command.hpp"
+#include "apps/calibrate/verify_command.hpp"
 
 namespace foresight {
 
@@ -9,6 +12,9 @@ void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   calibrate->require_subcommand(1);
   // In the order of a session.
   add_target(*calibrate, action);
+  add_intrinsics(*calibrate, action);
+  add_stereo(*calibrate, action);
+  add_verify(*calibrate, action);
 }
 
 }  // namespace foresight

@@ -1,0 +1,161 @@
+#include "apps/calibrate/camera_output.hpp"
+
+#include <cstdio>
+
+#include "apps/calibrate/camera_report.hpp"
+#include "calibration/camera/camera_result.hpp"
+#include "common/atomic_file.hpp"
+
+namespace foresight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::size_t cameras(const CameraCalibration& c) {
+  return static_cast<std::size_t>(c.views.cameras);
+}
+
+Json score_json(const HeldOutScore& score, bool pair) {
+  Json json{{"joint_px", score.joint_px}};
+  if (pair) json["cross_px"] = score.cross_px, json["epipolar_px"] = score.epipolar_px;
+  json["views"] = score.views;
+  return json;
+}
+
+Json map_json(const UncertaintyMap& map) {
+  return {{"centre_px", map.centre_px},
+          {"median_px", map.median_px},
+          {"p90_px", map.p90_px},
+          {"worst_corner_px", map.worst_corner_px}};
+}
+
+Json camera_json(const CameraCalibration& c, std::size_t camera) {
+  const CameraModel& model = c.solution.rig.cameras[camera];
+  const auto count = free_parameters(model.distortion).size();
+  return {{"model", to_string(model.distortion)},
+          {"width", model.width},
+          {"height", model.height},
+          {"fx_px", model.lens[0]},
+          {"fy_px", model.lens[1]},
+          {"cx_px", model.lens[2]},
+          {"cy_px", model.lens[3]},
+          {"distortion", std::vector<double>(model.lens.begin() + 4, model.lens.begin() + std::ptrdiff_t(count))},
+          {"uncertainty_at_infinity", map_json(c.at_infinity[camera])},
+          {"uncertainty_at_board", map_json(c.at_board[camera])},
+          {"odd_even_px", c.odd_even_px[camera]}};
+}
+
+void add_pair(const CameraCalibration& c, Json& json) {
+  const Pose& T = c.solution.rig.T_left_right;
+  json["baseline_m"] = T.translation().norm();
+  json["rotation_deg"] = Eigen::AngleAxisd(T.linear()).angle() * 180 / M_PI;
+  const Eigen::Quaterniond q(T.linear());
+  json["T_left_right"] = {{"xyz", {T.translation().x(), T.translation().y(), T.translation().z()}},
+                          {"quaternion", {q.x(), q.y(), q.z(), q.w()}}};
+  json["stereo_over_mono"] = c.stereo_over_mono;
+  json["left"] = camera_json(c, 0);
+  json["right"] = camera_json(c, 1);
+}
+
+ResultHeader header_of(const CameraCalibration& c, const std::vector<std::string>& serials) {
+  ResultHeader header;
+  const bool pair = cameras(c) == 2;
+  header.kind = pair ? "stereo" : "intrinsics";
+  header.date = utc_now();
+  for (std::size_t i = 0; i < std::min(serials.size(), cameras(c)); ++i)
+    header.devices[camera_name(static_cast<int>(i), c.views.cameras)] = serials[i];
+  header.score_name = pair ? "loo_joint_px" : "loo_px";
+  header.score = c.held_out.joint_px;
+  for (const auto& [name, sigma] : c.sigma)
+    if (std::isfinite(sigma)) header.sigma[name] = sigma;
+  return header;
+}
+
+// A ROS camera_info file, as scene/camera_info.hpp reads it.
+std::string camera_info_text(const CameraModel& model, const std::string& name, const Pose* T_left_right) {
+  const Lens::Parameters p = to_lens(model).parameters();
+  const std::size_t count = p.model == LensModel::plumb_bob ? 5 : p.model == LensModel::equidistant ? 4 : 8;
+  YAML::Node yaml;
+  yaml["image_width"] = p.width;
+  yaml["image_height"] = p.height;
+  yaml["camera_name"] = name;
+  const auto matrix = [](int rows, int cols, const std::vector<double>& data) {
+    YAML::Node node;
+    node["rows"] = rows, node["cols"] = cols;
+    for (const double v : data) node["data"].push_back(v);
+    node["data"].SetStyle(YAML::EmitterStyle::Flow);
+    return node;
+  };
+  yaml["camera_matrix"] = matrix(3, 3, {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1});
+  yaml["distortion_model"] = to_string(p.model);
+  yaml["distortion_coefficients"] =
+      matrix(1, static_cast<int>(count), {p.d.begin(), p.d.begin() + static_cast<std::ptrdiff_t>(count)});
+  if (T_left_right) yaml["T_left_right"] = to_yaml(*T_left_right);
+  YAML::Emitter text;
+  text.SetDoublePrecision(17);
+  text << yaml;
+  return std::string(text.c_str()) + "\n";
+}
+
+void write_camera_info(const CameraCalibration& c, const std::filesystem::path& folder) {
+  const Rig& rig = c.solution.rig;
+  const bool pair = cameras(c) == 2;
+  const std::string left = camera_info_text(rig.cameras[0], camera_name(0, c.views.cameras), nullptr);
+  const std::string right = pair ? camera_info_text(rig.cameras[1], "right", &rig.T_left_right) : "";
+  std::filesystem::create_directories(folder);
+  std::vector<FileContent> files{{folder / "camera.yaml", left}};
+  if (pair) files.push_back({folder / "camera_right.yaml", right});
+  write_files_atomically(files);
+}
+
+}  // namespace
+
+void add_camera_output(CLI::App& command, CameraOutput& output) {
+  add_outputs(command, output.files);
+  command.add_option("--camera-info", output.camera_info, "Folder for ROS camera_info files, as a run folder has them");
+  command.add_option("--serials", output.serials, "Serial numbers of the cameras, for the result file")->expected(1, 2);
+}
+
+nlohmann::ordered_json camera_numbers(const CameraCalibration& c) {
+  const bool pair = cameras(c) == 2;
+  const LensParameters& lens = c.solution.rig.cameras[0].lens;
+  Json json{{"usable", c.usable()},
+            {"in_sample_px", c.solution.rms_px},
+            {"rejected_points", c.solution.rejected.size()},
+            {"views", c.views.views.size()}};
+  json[pair ? "loo_joint_px" : "loo_px"] = c.held_out.joint_px;
+  if (pair) json["loo_cross_px"] = c.held_out.cross_px, json["loo_epipolar_px"] = c.held_out.epipolar_px;
+  json["fx_px"] = lens[0];
+  json["fy_px"] = lens[1];
+  json["noise_px"] = c.solution.noise_px;
+  json["points"] = c.solution.points;
+  json["folds"] = c.folds;
+  if (c.unseen) json["unseen"] = score_json(*c.unseen, pair);
+  if (pair)
+    add_pair(c, json);
+  else
+    json["camera"] = camera_json(c, 0);
+  json["board_distance_m"] = c.board_distance_m;
+  if (c.warp) json["board_warp_m"] = {c.solution.rig.warp.x_m, c.solution.rig.warp.y_m};
+  for (const auto& [name, sigma] : c.sigma) json["sigma"][name] = sigma;
+  json["turned_views"] = c.repairs.turned;
+  json["dropped_views"] = c.repairs.dropped;
+  json["notes"] = c.notes;
+  json["not_usable"] = c.unusable;
+  return json;
+}
+
+int deliver(const CameraCalibration& c, const CameraOutput& output) {
+  std::fputs(c.full().c_str(), stdout);
+  write_json(output.files.json, camera_numbers(c));
+  if (output.files.report) camera_report(c).write(*output.files.report);
+  if (!c.usable()) return 1;
+  const Rig& rig = c.solution.rig;
+  const YAML::Node result = cameras(c) == 2 ? to_yaml(StereoModel{rig.cameras[0], rig.cameras[1], rig.T_left_right})
+                                            : to_yaml(rig.cameras[0]);
+  if (output.files.out) write_result(*output.files.out, header_of(c, output.serials), result, output.files.force);
+  if (output.camera_info) write_camera_info(c, *output.camera_info);
+  return 0;
+}
+
+}  // namespace foresight

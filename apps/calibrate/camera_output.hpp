@@ -1,0 +1,27 @@
+// What `intrinsics` and `stereo` deliver: text, numbers, a result file, camera_info files, a report.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "apps/calibrate/outputs.hpp"
+#include "calibration/camera/camera_calibration.hpp"
+
+namespace foresight {
+
+struct CameraOutput {
+  CalibrateOutputs files;
+  std::optional<std::filesystem::path> camera_info;  ///< folder for camera.yaml and camera_right.yaml
+  std::vector<std::string> serials;                  ///< of the cameras, left first
+};
+
+void add_camera_output(CLI::App& command, CameraOutput& output);
+
+/// All numbers under the names of --json.
+nlohmann::ordered_json camera_numbers(const CameraCalibration& calibration);
+
+/// Prints the summary and writes what was asked for; the result and camera_info only where it is
+/// usable. Returns 0, or 1 where it is not.
+int deliver(const CameraCalibration& calibration, const CameraOutput& output);
+
+}  // namespace foresight

@@ -1,0 +1,108 @@
+#include "apps/calibrate/verify_command.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include "apps/calibrate/camera_input.hpp"
+#include "apps/calibrate/outputs.hpp"
+#include "calibration/camera/camera_result.hpp"
+#include "calibration/camera/held_out.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr double kWorseThanScore = 1.5;  // new views differ from those of the session, a moved lens far more
+
+struct VerifyOptions {
+  std::filesystem::path result;
+  CameraInput input;
+  std::optional<double> joint_px, cross_px, epipolar_px;
+  std::optional<std::filesystem::path> json;
+};
+
+struct KnownRig {
+  Rig rig;
+  double score_px = 0;
+};
+
+KnownRig read_rig(const std::filesystem::path& file) {
+  const std::string kind = YamlMap::load(file).text("kind");
+  if (kind != "intrinsics" && kind != "stereo")
+    throw InputError(file.string(), "it holds a result of kind " + in_quotes(kind),
+                     "give one of `foresight calibrate stereo` or `intrinsics`");
+  const ResultFile result = read_result(file, kind);
+  KnownRig known;
+  known.score_px = result.header.score;
+  if (kind == "intrinsics") {
+    known.rig.cameras = {read_camera(result.result)};
+  } else {
+    const StereoModel stereo = read_stereo(result.result);
+    known.rig.cameras = {stereo.left, stereo.right};
+    known.rig.T_left_right = stereo.T_left_right;
+  }
+  return known;
+}
+
+void require_same_size(const Rig& rig, RigViews& views, const std::filesystem::path& file) {
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    const CameraModel& model = rig.cameras[c];
+    if (views.width[c] != 0 && (views.width[c] != model.width || views.height[c] != model.height))
+      throw InputError(file.string(),
+                       "it was calibrated with images of " + std::to_string(model.width) + "x" +
+                           std::to_string(model.height) + ", not " + std::to_string(views.width[c]) + "x" +
+                           std::to_string(views.height[c]),
+                       "verify with images of the same size");
+  }
+}
+
+int verify(const VerifyOptions& options) {
+  const KnownRig known = read_rig(options.result);
+  const bool pair = known.rig.cameras.size() == 2;
+  CameraViewsInput input = read_camera_input(options.input, pair);
+  require_same_size(known.rig, input.train, options.result);
+  const HeldOutScore score = score_views(known.rig, input.train);
+  if (score.views == 0)
+    throw InputError("corners", "the board could be placed in no view",
+                     "check that --board names the board that was shown");
+  bool pass = true;
+  nlohmann::ordered_json json{{"views", score.views}};
+  const auto row = [&](const std::string& name, double value, double limit) {
+    const bool good = value <= limit;
+    pass = pass && good;
+    std::printf("%-9s %s  (limit %s)  %s\n", name.c_str(), readable(value, 4, "px").c_str(), readable(limit, 4).c_str(),
+                good ? "pass" : "FAIL");
+    json[name + "_px"] = value;
+    json[name + "_limit_px"] = limit;
+  };
+  row("joint", score.joint_px, options.joint_px.value_or(kWorseThanScore * known.score_px));
+  if (pair) {
+    // Predicted from one camera alone, errors are larger by about the square root of two.
+    row("cross", score.cross_px, options.cross_px.value_or(kWorseThanScore * M_SQRT2 * known.score_px));
+    row("epipolar", score.epipolar_px, options.epipolar_px.value_or(kWorseThanScore * known.score_px));
+  }
+  json["pass"] = pass;
+  std::printf("%s on %d views\n", pass ? "pass" : "FAIL", score.views);
+  write_json(options.json, json);
+  return pass ? 0 : 1;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& calibrate, std::function<int()>& action) {
+  auto* command = calibrate.add_subcommand("verify", "Errors of a result on views that no solver has seen");
+  auto options = std::make_shared<VerifyOptions>();
+  command->add_option("--result", options->result, "Result file of `stereo` or `intrinsics`")->required();
+  add_camera_input(*command, options->input, true);
+  command->add_option("--joint", options->joint_px, "Limit in px; default: 1.5 times the result's own score");
+  command->add_option("--cross", options->cross_px, "Limit in px; default: 2.1 times the result's own score");
+  command->add_option("--epipolar", options->epipolar_px, "Limit in px; default: 1.5 times the result's own score");
+  command->add_option("--json", options->json, "File for all numbers");
+  command->footer(
+      "Example: foresight calibrate verify --result stereo.yaml --corners new.vnl "
+      "--board chessboard:9x6:0.025\nExit code: 1 where a limit is exceeded.");
+  command->callback([options, &action] { action = [options] { return verify(*options); }; });
+}
+
+}  // namespace foresight

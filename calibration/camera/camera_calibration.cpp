@@ -1,0 +1,283 @@
+#include "calibration/camera/camera_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "calibration/camera/rig_start.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr int kFewestViews = 5;
+constexpr int kFewViews = 10;  // fewer are warned about
+constexpr double kUnsynchronised = 1.4;
+constexpr double kBetter = 0.95;  // a richer lens model must lower the held-out error to this part
+constexpr int kGroups = 10;       // of views left out together where there are many
+constexpr int kTrialGroups = 5;   // the same while choosing a model
+
+class Calibrator {
+ public:
+  Calibrator(const RigViews& train, const RigViews& test, const CameraCalibrationOptions& options)
+      : options_(options), test_(test) {
+    result_.views = train;
+  }
+
+  CameraCalibration run() {
+    check_input();
+    check_orientation(result_.views, result_.repairs);
+    choose_views();
+    solve(options_.model.value_or(Distortion::radtan4));
+    if (!options_.model) choose_model();
+    measure_uncertainty();
+    measure_held_out();
+    judge();
+    return std::move(result_);
+  }
+
+ private:
+  std::size_t cameras() const { return static_cast<std::size_t>(result_.views.cameras); }
+
+  int useful_views() const {
+    int count = 0;
+    for (const RigView& view : result_.views.views) count += cameras() == 1 || view.both();
+    return count;
+  }
+
+  void check_input() {
+    const std::string kind = cameras() == 2 ? "pairs" : "views";
+    const int count = useful_views();
+    if (count < kFewestViews)
+      throw InputError(kind, "there are " + std::to_string(count) + ", and at least 5 are needed",
+                       "take 15 or more, of a board that is tilted and reaches all corners of the image");
+    for (std::size_t c = 0; c < cameras(); ++c) check_size(static_cast<int>(c));
+    if (cameras() == 2 &&
+        (result_.views.width[0] != result_.views.width[1] || result_.views.height[0] != result_.views.height[1]))
+      result_.notes.push_back("the two cameras' images differ in size: " + size_text(0) + " and " + size_text(1));
+  }
+
+  std::string size_text(std::size_t c) const {
+    return std::to_string(result_.views.width[c]) + "x" + std::to_string(result_.views.height[c]);
+  }
+
+  void check_size(int camera) {
+    RigViews& views = result_.views;
+    const auto c = static_cast<std::size_t>(camera);
+    if (views.width[c] <= 0 || views.height[c] <= 0) {
+      const auto size = usual_size(views, camera);
+      views.width[c] = size[0], views.height[c] = size[1];
+      result_.notes.push_back("the size of the " + camera_name(camera, views.cameras) + " image was not given; " +
+                              size_text(c) + " is the smallest usual one that holds all corners");
+    }
+    for (const RigView& view : views.views)
+      for (const Corner& corner : view.corners[c])
+        if (corner.pixel.x() < -0.5 || corner.pixel.y() < -0.5 || corner.pixel.x() > views.width[c] - 0.5 ||
+            corner.pixel.y() > views.height[c] - 0.5)
+          throw InputError(
+              camera_name(camera, views.cameras) + " view " + view.name + ", corner " + std::to_string(corner.index),
+              "lies outside the image of " + size_text(c), "give the size of the images it was found in");
+  }
+
+  // Evenly; the others go to the unseen ones.
+  void choose_views() {
+    const std::size_t n = result_.views.views.size(), most = static_cast<std::size_t>(options_.most_views);
+    if (n <= most) return;
+    std::vector<std::size_t> taken, others;
+    for (std::size_t v = 0; v < n; ++v) ((v + 1) * most / n > v * most / n ? taken : others).push_back(v);
+    unseen_ = subset(result_.views, others);
+    result_.views = subset(result_.views, taken);
+    result_.notes.push_back(std::to_string(most) + " of " + std::to_string(n) +
+                            " views were taken, evenly; the others only score");
+  }
+
+  RigSolution solve_alone(int camera, Distortion distortion) const {
+    const CameraViews views = views_of(result_.views, camera);
+    RigSolverOptions options = options_.solver;
+    options.warp = false;
+    return solve_rig(views.views, start_camera(views.views, distortion), options);
+  }
+
+  void solve(Distortion distortion) {
+    result_.warp = options_.warp && useful_views() >= options_.warp_from_views;
+    solver_ = options_.solver;
+    solver_.warp = result_.warp;
+    RigSolution left = solve_alone(0, distortion);
+    if (cameras() == 1) {
+      result_.solution = solve_rig(result_.views, left, solver_);
+      return;
+    }
+    RigSolution right = solve_alone(1, distortion);
+    const std::size_t before = result_.repairs.turned.size() + result_.repairs.dropped.size();
+    check_pairs(result_.views, left, right, result_.repairs);
+    if (result_.repairs.turned.size() + result_.repairs.dropped.size() > before) {
+      if (useful_views() < kFewestViews)
+        throw InputError(
+            "pairs", "only " + std::to_string(useful_views()) + " belong together; " + result_.repairs.dropped.front(),
+            "take pairs of images at the same instants");
+      left = solve_alone(0, distortion);
+      right = solve_alone(1, distortion);
+    }
+    result_.alone_px = {left.rms_px, right.rms_px};
+    const double alone = std::sqrt(0.5 * (left.noise_px * left.noise_px + right.noise_px * right.noise_px));
+    result_.solution = solve_rig(result_.views, start_pair(result_.views, left, right), solver_);
+    result_.stereo_over_mono = result_.solution.noise_px / std::max(alone, 1e-9);
+  }
+
+  int folds(int groups) const {
+    const int n = static_cast<int>(result_.views.views.size());
+    return n <= options_.most_folds && groups != kTrialGroups ? n : std::min(n, groups);
+  }
+
+  struct Trial {
+    RigSolution solution;
+    HeldOutScore score;
+  };
+
+  std::optional<Trial> try_model(Distortion model) const {
+    try {
+      RigSolution solution = with_model(model);
+      // What does not even fit better cannot predict better.
+      if (!(solution.noise_px < kBetter * result_.solution.noise_px)) return std::nullopt;
+      if (!RigUncertainty(result_.views, solution, result_.warp).usable()) return std::nullopt;
+      return Trial{solution, trial_score(solution)};
+    } catch (const InputError&) {
+      return std::nullopt;  // a lens that cannot even be solved for is none to choose
+    }
+  }
+
+  HeldOutScore trial_score(const RigSolution& solution) const {
+    return leave_out(result_.views, result_.views, solution, solver_, folds(kTrialGroups)).score;
+  }
+
+  // Of models that predict alike the one with the fewest parameters.
+  void choose_model() {
+    const auto better = [](const HeldOutScore& a, const HeldOutScore& b) {
+      return a.joint_px < kBetter * b.joint_px && a.cross_px <= b.cross_px;
+    };
+    std::optional<Trial> best;
+    for (const Distortion model : {Distortion::equidistant, Distortion::radtan5, Distortion::rational}) {
+      auto trial = try_model(model);
+      if (!trial) continue;
+      if (!best) best = Trial{result_.solution, trial_score(result_.solution)};
+      if (better(trial->score, best->score)) best = std::move(trial);
+    }
+    if (best) result_.solution = std::move(best->solution);
+  }
+
+  RigSolution with_model(Distortion model) const {
+    if (model != Distortion::equidistant) {
+      RigSolution start = result_.solution;
+      for (CameraModel& camera : start.rig.cameras) {
+        if (camera.distortion == Distortion::equidistant) return with_model_from_nothing(model);
+        camera.distortion = model;
+      }
+      return solve_rig(result_.views, start, solver_);
+    }
+    return with_model_from_nothing(model);
+  }
+
+  RigSolution with_model_from_nothing(Distortion model) const {
+    const RigSolution left = solve_alone(0, model);
+    if (cameras() == 1) return solve_rig(result_.views, left, solver_);
+    return solve_rig(result_.views, start_pair(result_.views, left, solve_alone(1, model)), solver_);
+  }
+
+  void measure_uncertainty() {
+    const RigUncertainty uncertainty(result_.views, result_.solution, result_.warp);
+    std::vector<double> distances;
+    for (const Pose& T : result_.solution.T_left_board) distances.push_back(T.translation().norm());
+    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2),
+                     distances.end());
+    result_.board_distance_m = distances[distances.size() / 2];
+    for (std::size_t c = 0; c < cameras(); ++c) {
+      result_.at_infinity[c] = uncertainty.map(static_cast<int>(c), std::nullopt);
+      result_.at_board[c] = uncertainty.map(static_cast<int>(c), result_.board_distance_m);
+    }
+    store_sigmas(uncertainty);
+    if (const auto missing = missing_motion(result_.views, result_.solution, uncertainty))
+      result_.unusable.push_back(*missing);
+  }
+
+  void store_sigmas(const RigUncertainty& uncertainty) {
+    for (std::size_t c = 0; c < cameras(); ++c) {
+      static constexpr std::array<const char*, 4> kNames{"fx", "fy", "cx", "cy"};
+      const LensParameters sigma = uncertainty.lens_sigma(static_cast<int>(c));
+      const std::string side = cameras() == 2 ? "_" + camera_name(static_cast<int>(c), 2) : "";
+      for (std::size_t i = 0; i < kNames.size(); ++i) result_.sigma[kNames[i] + side + "_px"] = sigma[i];
+    }
+    if (cameras() == 2) {
+      result_.sigma["baseline_m"] = uncertainty.baseline_sigma_m();
+      result_.sigma["rotation_deg"] = uncertainty.rotation_sigma_rad() * 180 / M_PI;
+    }
+    if (result_.warp) {
+      result_.sigma["warp_x_m"] = uncertainty.warp_sigma_m().x();
+      result_.sigma["warp_y_m"] = uncertainty.warp_sigma_m().y();
+    }
+  }
+
+  void measure_held_out() {
+    const RigViews& scoring = test_.views.empty() ? result_.views : test_;
+    std::set<std::string> names;
+    for (const RigView& view : result_.views.views) names.insert(view.name);
+    for (const RigView& view : test_.views)
+      if (!names.count(view.name)) {
+        if (unseen_.views.empty()) unseen_ = subset(test_, {});
+        unseen_.views.push_back(view);
+      }
+    const LeaveOut left_out = leave_out(result_.views, scoring, result_.solution, solver_, folds(kGroups));
+    result_.held_out = left_out.score;
+    result_.folds = left_out.folds;
+    if (!unseen_.views.empty()) result_.unseen = score_views(result_.solution.rig, unseen_);
+    odd_even();
+  }
+
+  void odd_even() {
+    std::array<RigSolution, 2> halves;
+    for (std::size_t half = 0; half < 2; ++half) {
+      std::vector<std::size_t> kept;
+      RigSolution start = result_.solution;
+      start.T_left_board.clear();
+      start.rejected.clear();
+      for (std::size_t v = half; v < result_.views.views.size(); v += 2) {
+        kept.push_back(v);
+        start.T_left_board.push_back(result_.solution.T_left_board[v]);
+      }
+      halves[half] = solve_rig(subset(result_.views, kept), start, solver_);
+    }
+    for (std::size_t c = 0; c < cameras(); ++c)
+      result_.odd_even_px[c] = lens_difference(halves[0].rig.cameras[c], halves[1].rig.cameras[c]);
+  }
+
+  void judge() {
+    const int count = useful_views();
+    if (count < kFewViews)
+      result_.notes.push_back("only " + std::to_string(count) + (cameras() == 2 ? " pairs" : " views") +
+                              "; take 15 or more for figures that can be trusted");
+    if (result_.stereo_over_mono > kUnsynchronised)
+      result_.unusable.push_back(
+          "the pairs are not synchronised, or the cameras moved against each other: the error is " +
+          readable(result_.stereo_over_mono, 2) +
+          " times that of the cameras alone (1.4 is the limit); trigger both at once, or hold the board still");
+    const auto rejected = static_cast<double>(result_.solution.rejected.size());
+    if (rejected > 0.1 * (result_.solution.points + rejected))
+      result_.notes.push_back("over a tenth of the corners do not fit; look for blurred or wrong views");
+    if (!result_.solution.converged) result_.unusable.push_back("the solver did not converge");
+  }
+
+  const CameraCalibrationOptions& options_;
+  const RigViews& test_;
+  RigSolverOptions solver_;
+  RigViews unseen_;
+  CameraCalibration result_;
+};
+
+}  // namespace
+
+CameraCalibration calibrate_rig(const RigViews& train, const RigViews& test, const CameraCalibrationOptions& options) {
+  return Calibrator(train, test, options).run();
+}
+
+}  // namespace foresight

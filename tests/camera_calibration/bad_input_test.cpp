@@ -1,0 +1,157 @@
+#include <gmock/gmock.h>
+
+#include "calibration/camera/camera_calibration.hpp"
+#include "common/error.hpp"
+#include "tests/camera_calibration/synthetic_rig.hpp"
+
+namespace foresight {
+namespace {
+
+using test::synthetic_rig;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+CameraCalibration calibrate(const RigViews& views) {
+  CameraCalibrationOptions options;
+  options.model = Distortion::radtan4;
+  return calibrate_rig(views, subset(views, {}), options);
+}
+
+std::string refusal(const RigViews& views) {
+  try {
+    calibrate(views);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+void reverse(std::vector<Corner>& corners) {
+  for (Corner& corner : corners) corner.index = 53 - corner.index;
+  std::reverse(corners.begin(), corners.end());
+}
+
+TEST(BadInput, FewViews) {
+  const auto s = synthetic_rig(1, {.views = 9});
+  EXPECT_THAT(refusal(subset(s.views, {0, 1, 2, 3})), HasSubstr("there are 4, and at least 5 are needed"));
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_TRUE(c.usable()) << c.full();
+  EXPECT_THAT(c.notes, Contains(HasSubstr("only 9 pairs")));
+}
+
+TEST(BadInput, ReversedBoardIsTurned) {
+  auto s = synthetic_rig(2, {.views = 12});
+  reverse(s.views.views[4].corners[1]);
+  reverse(s.views.views[7].corners[0]);
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_THAT(c.repairs.turned, testing::ElementsAre("view4", "view7"));
+  EXPECT_THAT(c.repairs.dropped, IsEmpty());
+  EXPECT_LT(c.solution.rms_px, 0.35);
+  EXPECT_THAT(c.full(), HasSubstr("turned: view view4"));
+}
+
+TEST(BadInput, PairThatDoesNotBelongTogetherIsDropped) {
+  auto s = synthetic_rig(3, {.views = 12});
+  s.views.views[5].corners[1] = s.views.views[6].corners[1];
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_THAT(c.repairs.dropped, testing::ElementsAre(HasSubstr("view5: its two images are")));
+  EXPECT_EQ(c.views.views.size(), 11u);
+  EXPECT_TRUE(c.usable()) << c.full();
+}
+
+TEST(BadInput, MirroredCamera) {
+  auto s = synthetic_rig(4, {.views = 10});
+  auto found_anew = s.views;  // a finder numbers the corners of a mirrored image from the left again
+  for (std::size_t v = 0; v < s.views.views.size(); ++v)
+    for (Corner& corner : s.views.views[v].corners[1]) corner.pixel.x() = 639 - corner.pixel.x();
+  EXPECT_THAT(refusal(s.views), AllOf(HasSubstr("right camera"), HasSubstr("mirrored")));
+  for (RigView& view : found_anew.views) {
+    for (Corner& corner : view.corners[1]) {
+      corner.pixel.x() = 639 - corner.pixel.x();
+      corner.index = corner.index / 9 * 9 + 8 - corner.index % 9;
+    }
+    std::sort(view.corners[1].begin(), view.corners[1].end(), [](auto& a, auto& b) { return a.index < b.index; });
+  }
+  EXPECT_THAT(refusal(found_anew), HasSubstr("one of the two cameras delivers mirrored images"));
+}
+
+TEST(BadInput, PairsShiftedByOne) {
+  const auto s = synthetic_rig(5, {.views = 12});
+  for (const int shift : {1, -1}) {
+    RigViews shifted = s.views;
+    for (int v = 0; v < 12; ++v) {
+      const int other = v + shift;
+      shifted.views[std::size_t(v)].corners[1] =
+          other < 0 || other > 11 ? std::vector<Corner>{} : s.views.views[std::size_t(other)].corners[1];
+    }
+    EXPECT_THAT(refusal(shifted), HasSubstr("they are shifted by one")) << shift;
+  }
+}
+
+TEST(BadInput, UnsynchronisedPairs) {
+  auto s = synthetic_rig(6, {.views = 14});
+  std::mt19937 random(1);
+  std::normal_distribution<double> moved(0, 1.0);  // px, between the two exposures
+  for (RigView& view : s.views.views) {
+    const Eigen::Vector2d shift(moved(random), moved(random));
+    for (Corner& corner : view.corners[1]) corner.pixel += shift;
+  }
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_FALSE(c.usable());
+  EXPECT_THAT(c.unusable, Contains(HasSubstr("not synchronised")));
+  EXPECT_GT(c.stereo_over_mono, 1.4);
+}
+
+TEST(BadInput, NamesTheCornerThatIsNotANumber) {
+  const auto s = synthetic_rig(7, {.views = 6, .cameras = 1});
+  CornerSet set{640, 480, s.views.p_board, {}};
+  for (const RigView& view : s.views.views) set.views.push_back({view.name, view.corners[0]});
+  set.views[2].corners[13].pixel.y() = std::nan("");
+  try {
+    rig_views(set);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("view2"), HasSubstr("corner 13"), HasSubstr("not a number")));
+  }
+}
+
+TEST(BadInput, SizesThatDiffer) {
+  auto s = synthetic_rig(8, {.views = 10});
+  s.views.width[1] = 752;
+  EXPECT_THAT(calibrate(s.views).notes, Contains(HasSubstr("640x480 and 752x480")));
+  s.views.width[0] = 320;
+  EXPECT_THAT(refusal(s.views), AllOf(HasSubstr("outside the image of 320x480"), HasSubstr("left view")));
+}
+
+TEST(BadInput, DifferentBoards) {
+  const auto s = synthetic_rig(8, {.views = 6});
+  StereoCorners pair;
+  pair.left.p_board = s.views.p_board;
+  pair.right.p_board = board_points(parse_board("chessboard:8x6:0.03"));
+  EXPECT_THROW(rig_views(pair), InputError);
+}
+
+TEST(MissingMotion, BoardsParallelToTheImage) {
+  const auto s = synthetic_rig(9, {.views = 12, .cameras = 1, .most_tilt = 0});
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_FALSE(c.usable());
+  EXPECT_THAT(c.unusable, Contains(AllOf(HasSubstr("parallel to the image"), HasSubstr("tilt the board")))) << c.full();
+}
+
+TEST(Rejection, TakesOutWhatWasMovedAndNamesIt) {
+  auto s = synthetic_rig(10, {.views = 12});
+  s.views.views[3].corners[0][17].pixel.x() += 15;
+  s.views.views[8].corners[1][50].pixel.y() -= 6;
+  const CameraCalibration c = calibrate(s.views);
+  ASSERT_GE(c.solution.rejected.size(), 2u);
+  EXPECT_EQ(c.solution.rejected[0].view, 3u);
+  EXPECT_EQ(c.solution.rejected[0].index, 17);
+  EXPECT_EQ(c.solution.rejected[1].camera, 1);
+  EXPECT_LE(c.solution.rejected.size(), 3u);
+  EXPECT_THAT(c.full(), HasSubstr("rejected: left view view3, corner 17"));
+}
+
+}  // namespace
+}  // namespace foresight
