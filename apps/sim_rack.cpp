@@ -1,5 +1,7 @@
 #include "apps/sim_rack.hpp"
 
+#include <cmath>
+
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "scene/yaml_fields.hpp"
@@ -41,7 +43,12 @@ sim::NodeConfig read_drive(const YamlMap& map) {
     if (map.has(key)) value = map.number(key);
   };
   const auto integer = [&](const char* key, std::uint32_t& value) {
-    if (map.has(key)) value = static_cast<std::uint32_t>(map.integer(key));
+    if (!map.has(key)) return;
+    const double given = map.number(key);  // all 32 bits are used, which an int does not hold
+    if (given < 0 || given > 4294967295.0 || given != std::floor(given))
+      throw InputError(map.where(key), map.text(key) + " is no identity number",
+                       "give an integer from 0 to 4294967295");
+    value = static_cast<std::uint32_t>(given);
   };
   integer("vendor", out.vendor);
   integer("product", out.product);

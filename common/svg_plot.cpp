@@ -9,8 +9,8 @@ namespace foresight {
 namespace {
 
 // In user units; the page scales the plot to its column.
-constexpr double kWidth = 560, kHeight = 240, kLeft = 44, kRight = 10, kTop = 20, kBottom = 30;
-constexpr double kPlotRight = kWidth - kRight, kPlotBottom = kHeight - kBottom;
+constexpr double kWidth = 560, kHeight = 240, kImageHeight = 420, kLeft = 44, kRight = 10, kTop = 20, kBottom = 30;
+constexpr double kPlotRight = kWidth - kRight;
 
 std::string number(double v) {
   return readable(v, 1);
@@ -34,6 +34,17 @@ SvgPlot::Range drawable(SvgPlot::Range range) {
   if (!std::isfinite(range.min) || !std::isfinite(range.max)) return {0, 1};
   if (range.max - range.min > 1e-12 * std::max(1.0, std::abs(range.max))) return range;
   return {range.min - 0.5, range.min + 0.5};
+}
+
+// The same number of units a pixel on both axes: the one that has room to spare is widened around its middle.
+void equalise(SvgPlot::Range& x, SvgPlot::Range& y, double width, double height) {
+  const double scale = std::max((x.max - x.min) / width, (y.max - y.min) / height);
+  const auto widen = [scale](SvgPlot::Range& range, double length) {
+    const double middle = (range.min + range.max) / 2;
+    range = {middle - scale * length / 2, middle + scale * length / 2};
+  };
+  widen(x, width);
+  widen(y, height);
 }
 
 // Digits after the point that tell neighbouring ticks apart.
@@ -75,8 +86,19 @@ std::vector<double> round_ticks(SvgPlot::Range range, int count) {
   return ticks;
 }
 
-SvgPlot::SvgPlot(const std::string& label, Range x, Range y, const std::string& x_unit, const std::string& y_unit)
-    : label_(label), x_unit_(x_unit), y_unit_(y_unit), x_(drawable(x)), y_(drawable(y)) {}
+SvgPlot::SvgPlot(const std::string& label, Range x, Range y, const std::string& x_unit, const std::string& y_unit,
+                 Shape shape)
+    : label_(label), x_unit_(x_unit), y_unit_(y_unit), x_(drawable(x)), y_(drawable(y)), shape_(shape) {
+  if (shape_ == Shape::image) equalise(x_, y_, kPlotRight - kLeft, bottom() - kTop);
+}
+
+double SvgPlot::height() const {
+  return shape_ == Shape::image ? kImageHeight : kHeight;
+}
+
+double SvgPlot::bottom() const {
+  return height() - kBottom;
+}
 
 double SvgPlot::px(double x) const {
   return kLeft + (x - x_.min) / (x_.max - x_.min) * (kPlotRight - kLeft);
@@ -84,7 +106,8 @@ double SvgPlot::px(double x) const {
 
 double SvgPlot::py(double y) const {
   const double share = std::clamp((y - y_.min) / (y_.max - y_.min), 0.0, 1.0);
-  return kPlotBottom - share * (kPlotBottom - kTop);
+  const double up = shape_ == Shape::image ? 1 - share : share;
+  return bottom() - up * (bottom() - kTop);
 }
 
 std::string SvgPlot::points(std::span<const double> x, std::span<const double> y, std::size_t first,
@@ -123,11 +146,19 @@ void SvgPlot::area(std::span<const double> x, std::span<const double> low, std::
       "<polygon class=\"area " + css_class + "\" points=\"" + forth + points(back_x, back_y, 0, back_x.size()) + "\"/>";
 }
 
+void SvgPlot::dots(std::span<const double> x, std::span<const double> y, const std::string& css_class) {
+  const auto inside = [](double v, const Range& range) { return v >= range.min && v <= range.max; };
+  std::string path;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (inside(x[i], x_) && inside(y[i], y_)) path += "M" + number(px(x[i])) + " " + number(py(y[i])) + "h0";
+  if (!path.empty()) body_ += "<path class=\"dots " + css_class + "\" d=\"" + path + "\"/>";
+}
+
 void SvgPlot::bar(Range x, Range y, const std::string& css_class) {
   if (!std::isfinite(y.min) || !std::isfinite(y.max) || y.max <= y.min) return;
-  const double left = px(x.min), right = px(x.max), top = py(y.max), bottom = py(y.min);
+  const double left = px(x.min), right = px(x.max), top = py(y.max), low = py(y.min);
   body_ += "<rect class=\"area " + css_class + "\"" + attribute("x", left) + " y=\"" + readable(top, 2) + "\"" +
-           attribute("width", std::max(0.5, right - left)) + " height=\"" + readable(bottom - top, 2) + "\"/>";
+           attribute("width", std::max(0.5, right - left)) + " height=\"" + readable(low - top, 2) + "\"/>";
 }
 
 void SvgPlot::mark_y(double y, const std::string& text, const std::string& css_class) {
@@ -139,7 +170,7 @@ void SvgPlot::mark_y(double y, const std::string& text, const std::string& css_c
 void SvgPlot::mark_x(double x, const std::string& text, const std::string& css_class) {
   if (!std::isfinite(x)) return;
   const bool left_half = px(x) < (kLeft + kPlotRight) / 2;
-  body_ += line_between(px(x), kTop, px(x), kPlotBottom, "mark " + css_class) +
+  body_ += line_between(px(x), kTop, px(x), bottom(), "mark " + css_class) +
            text_at(px(x) + (left_half ? 5 : -5), kTop + 9, left_half ? "start" : "end", text);
 }
 
@@ -163,9 +194,9 @@ void SvgPlot::readout(std::span<const double> x, std::span<const Series> series,
 }
 
 std::string SvgPlot::str() const {
-  std::string out =
-      "<svg viewBox=\"0 0 560 240\" role=\"img\" aria-label=\"" + escape_html(label_) + "\"" + readout_ + ">";
-  const auto y_ticks = round_ticks(y_, 4), x_ticks = round_ticks(x_, 6);
+  std::string out = "<svg viewBox=\"0 0 560 " + number(height()) + "\" role=\"img\" aria-label=\"" +
+                    escape_html(label_) + "\"" + readout_ + ">";
+  const auto y_ticks = round_ticks(y_, shape_ == Shape::image ? 7 : 4), x_ticks = round_ticks(x_, 6);
   const int y_digits = y_ticks.size() > 1 ? digits_for(y_ticks[1] - y_ticks[0]) : 1;
   const int x_digits = x_ticks.size() > 1 ? digits_for(x_ticks[1] - x_ticks[0]) : 1;
   std::string labels;
@@ -175,11 +206,11 @@ std::string SvgPlot::str() const {
   }
   for (const double t : x_ticks) {
     if (px(t) > kPlotRight - 24) continue;  // room for the unit
-    labels += text_at(px(t), kPlotBottom + 18, "middle", readable(t, x_digits));
+    labels += text_at(px(t), bottom() + 18, "middle", readable(t, x_digits));
   }
-  labels += text_at(4, kTop - 8, "start", y_unit_) + text_at(kPlotRight, kPlotBottom + 18, "end", x_unit_);
+  labels += text_at(4, kTop - 8, "start", y_unit_) + text_at(kPlotRight, bottom() + 18, "end", x_unit_);
   return out + body_ + "<g class=\"labels\">" + labels + "</g><line class=\"cursor\" y1=\"" + number(kTop) +
-         "\" y2=\"" + number(kPlotBottom) + "\"/></svg>";
+         "\" y2=\"" + number(bottom()) + "\"/></svg>";
 }
 
 }  // namespace foresight

@@ -19,9 +19,15 @@ class SvgPlot {
     double max = 1;
   };
 
+  enum class Shape {
+    wide,   ///< over time and the like
+    image,  ///< places in an image: taller, the same scale on both axes, y down
+  };
+
   /// Widens an empty or non-finite range, so that it can be drawn. `label`: what the plot shows, for
   /// screen readers; `x_unit`, `y_unit`: written at the ends of the axes.
-  SvgPlot(const std::string& label, Range x, Range y, const std::string& x_unit, const std::string& y_unit);
+  SvgPlot(const std::string& label, Range x, Range y, const std::string& x_unit, const std::string& y_unit,
+          Shape shape = Shape::wide);
 
   /// A line through (x[i], y[i]).
   void line(std::span<const double> x, std::span<const double> y, const std::string& css_class);
@@ -29,6 +35,9 @@ class SvgPlot {
   /// The area between two curves over the same x.
   void area(std::span<const double> x, std::span<const double> low, std::span<const double> high,
             const std::string& css_class);
+
+  /// A dot at every (x[i], y[i]) that lies inside both ranges.
+  void dots(std::span<const double> x, std::span<const double> y, const std::string& css_class);
 
   void bar(Range x, Range y, const std::string& css_class);
 
@@ -48,10 +57,13 @@ class SvgPlot {
  private:
   double px(double x) const;
   double py(double y) const;
+  double height() const;
+  double bottom() const;
   std::string points(std::span<const double> x, std::span<const double> y, std::size_t first, std::size_t last) const;
 
   std::string label_, x_unit_, y_unit_, body_, readout_;
   Range x_, y_;
+  Shape shape_;
 };
 
 /// About `count` round values (1, 2 or 5, from 25 on also 2.5, times a power of ten apart) inside the range.

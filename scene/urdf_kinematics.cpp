@@ -27,13 +27,6 @@ void require_settable(const UrdfRobot& robot, const std::string& name, double po
                      "choose from " + std::to_string(joint->lower) + " to " + std::to_string(joint->upper));
 }
 
-Pose motion(const UrdfJoint& joint, double position) {
-  Pose T = Pose::Identity();
-  if (joint.kind == UrdfJoint::Kind::rotating) T.linear() = Eigen::AngleAxisd(position, joint.axis).toRotationMatrix();
-  if (joint.kind == UrdfJoint::Kind::sliding) T.translation() = position * joint.axis;
-  return T;
-}
-
 }  // namespace
 
 void pose_links(UrdfRobot& robot, const std::map<std::string, double>& positions, const std::string& where) {
@@ -42,18 +35,32 @@ void pose_links(UrdfRobot& robot, const std::map<std::string, double>& positions
     const auto given = positions.find(joint.name);
     return given != positions.end() ? given->second : std::clamp(0.0, joint.lower, joint.upper);
   };
-  for (const UrdfJoint& joint : robot.joints) {
-    // A mimic joint may follow another mimic joint; read_urdf has refused circles.
-    double factor = 1, offset = 0;
-    const UrdfJoint* leader = &joint;
-    while (leader->mimic) {
-      offset += factor * leader->mimic->offset;
-      factor *= leader->mimic->multiplier;
-      leader = &robot.joints[static_cast<std::size_t>(leader->mimic->joint)];
-    }
-    const double position = factor * own_position(*leader) + offset;
-    robot.links[static_cast<std::size_t>(joint.child)].T_parent_node = joint.T_parent_joint * motion(joint, position);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const UrdfJoint& joint = robot.joints[j];
+    const JointSource source = source_of(robot, j);
+    const double position =
+        source.factor * own_position(robot.joints[static_cast<std::size_t>(source.joint)]) + source.offset;
+    robot.links[static_cast<std::size_t>(joint.child)].T_parent_node =
+        joint.T_parent_joint * joint_transform(joint, position);
   }
+}
+
+JointSource source_of(const UrdfRobot& robot, std::size_t index) {
+  JointSource source{static_cast<int>(index), 1, 0};
+  while (const auto& mimic = robot.joints[static_cast<std::size_t>(source.joint)].mimic) {
+    source.offset += source.factor * mimic->offset;
+    source.factor *= mimic->multiplier;
+    source.joint = mimic->joint;
+  }
+  return source;
+}
+
+Pose joint_transform(const UrdfJoint& joint, double position) noexcept {
+  Pose T_joint_child = Pose::Identity();
+  if (joint.kind == UrdfJoint::Kind::rotating)
+    T_joint_child.linear() = Eigen::AngleAxisd(position, joint.axis).toRotationMatrix();
+  if (joint.kind == UrdfJoint::Kind::sliding) T_joint_child.translation() = position * joint.axis;
+  return T_joint_child;
 }
 
 }  // namespace foresight

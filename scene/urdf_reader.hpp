@@ -47,4 +47,17 @@ UrdfRobot read_urdf(const std::filesystem::path& file, const std::filesystem::pa
 /// another, a position outside of the limits or not finite.
 void pose_links(UrdfRobot& robot, const std::map<std::string, double>& positions, const std::string& where);
 
+/// Where a joint stands: factor * position of `joint` + offset, in rad or m.
+struct JointSource {
+  int joint = -1;  ///< one that follows no other: the joint itself, or the last of those that it follows
+  double factor = 1;
+  double offset = 0;
+};
+
+/// What joint `index` of the robot follows; read_urdf has refused circles.
+JointSource source_of(const UrdfRobot& robot, std::size_t index);
+
+/// T_joint_child at `position` rad or m. Does not allocate.
+Pose joint_transform(const UrdfJoint& joint, double position) noexcept;
+
 }  // namespace foresight

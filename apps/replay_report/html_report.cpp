@@ -9,6 +9,7 @@
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/report_plots.hpp"
 #include "common/atomic_file.hpp"
+#include "common/html_page.hpp"
 #include "common/svg_plot.hpp"
 #include "common/text.hpp"
 
@@ -35,27 +36,12 @@ std::string fill(std::string_view text, const Fields& fields) {
   }
 }
 
-std::string base64(std::span<const uchar> bytes) {
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = bytes.size() - i;
-    const unsigned three = bytes[i] << 16 | (left > 1 ? bytes[i + 1] : 0) << 8 | (left > 2 ? bytes[i + 2] : 0);
-    out += digits[three >> 18];
-    out += digits[three >> 12 & 63];
-    out += left > 1 ? digits[three >> 6 & 63] : '=';
-    out += left > 2 ? digits[three & 63] : '=';
-  }
-  return out;
-}
-
 std::string image_tag(const cv::Mat& picture, const std::string& view, const std::string& alt) {
   std::vector<uchar> jpeg;
   cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, 88});
   return "<img data-view=\"" + view + "\" width=\"" + std::to_string(picture.cols) + "\" height=\"" +
-         std::to_string(picture.rows) + "\" alt=\"" + escape_html(alt) + "\" src=\"data:image/jpeg;base64," +
-         base64(jpeg) + "\">";
+         std::to_string(picture.rows) + "\" alt=\"" + escape_html(alt) + "\" src=\"" + data_uri("image/jpeg", jpeg) +
+         "\">";
 }
 
 std::string figure(const Instant& instant, const cv::Mat& picture, const std::string& view, const std::string& caption,
@@ -183,7 +169,8 @@ std::string render_html_report(const RunRecord& run, std::span<const Instant> in
   std::vector<double> delays;
   for (const FrameRecord& f : run.frames) delays.push_back(1000 * f.delay_s);
   const double start_s = run.frames.empty() ? 0 : run.frames.front().time_s;
-  return fill(kReportTemplate, {{"run", escape_html(run.run)},
+  return fill(kReportTemplate, {{"style", std::string(page_style())},
+                                {"run", escape_html(run.run)},
                                 {"delay", readable(statistic_of(delays).median, 0, " ms")},
                                 {"headline", headline(summary)},
                                 {"notes", notes_of(run)},

@@ -1,4 +1,5 @@
 // A self-contained HTML page: text, tables, and plots as inline SVG; it needs no network and no script.
+// All text is escaped. Plots that follow each other stand side by side where the page is wide enough.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +16,8 @@ class HtmlReport {
 
   void heading(const std::string& text);
   void paragraph(const std::string& text);
-  /// Every row as many cells as `columns`.
+  /// Columns of figures stand to the right. Throws std::invalid_argument where a row has not as many cells as
+  /// `columns`.
   void table(const std::vector<std::string>& columns, const std::vector<std::vector<std::string>>& rows);
 
   struct Series {
@@ -23,11 +25,12 @@ class HtmlReport {
     std::vector<Eigen::Vector2d> points;
     bool line = false;  ///< joined by a line instead of dots
   };
-  /// Axes with round ticks and units in their labels; `equal_scale` for residuals and places in an image.
+  /// Axes with round ticks and units in their labels. `equal_scale`: for residuals and places in an image,
+  /// y goes down as there. What is not finite leaves a gap.
   void plot(const std::string& caption, const std::string& x_label, const std::string& y_label,
             const std::vector<Series>& series, bool equal_scale = false);
 
-  /// A map over the image (CV_64F, any size, stretched to width x height px) with a colour bar.
+  /// A map over the image (CV_64F, any size, stretched to width x height px) with a colour bar; see heat_map.hpp.
   void heat_map(const std::string& caption, const cv::Mat& values, int width, int height, const std::string& unit);
 
   /// Throws RuntimeFailure where it cannot be written.

@@ -93,18 +93,14 @@ RobotShape::RobotShape(UrdfRobot robot, std::vector<std::string> joints, const P
     if (!joint.empty() && std::find(names.begin(), names.end(), joint) == names.end())
       throw InputError(where, "the URDF has no joint " + in_quotes(joint),
                        "did you mean '" + nearest_word(joint, names) + "'?");
-  for (const UrdfJoint& joint : robot_.joints) {
-    const UrdfJoint* leader = &joint;
-    double factor = 1, offset = 0;
-    while (leader->mimic) {
-      offset += factor * leader->mimic->offset;
-      factor *= leader->mimic->multiplier;
-      leader = &robot_.joints[static_cast<std::size_t>(leader->mimic->joint)];
-    }
-    const auto given = std::find(joints.begin(), joints.end(), leader->name);
+  for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+    const JointSource source = source_of(robot_, j);
+    const UrdfJoint& moved = robot_.joints[static_cast<std::size_t>(source.joint)];
+    const auto given = std::find(joints.begin(), joints.end(), moved.name);
+    const double rest = given == joints.end() ? source.factor * std::clamp(0.0, moved.lower, moved.upper) : 0;
     input_.push_back(given == joints.end() ? -1 : static_cast<int>(given - joints.begin()));
-    factor_.push_back(factor);
-    offset_.push_back(given == joints.end() ? factor * std::clamp(0.0, leader->lower, leader->upper) + offset : offset);
+    factor_.push_back(source.factor);
+    offset_.push_back(rest + source.offset);
   }
   T_world_link_.assign(robot_.links.size(), T_world_root);
   placed_.resize(robot_.links.size());
@@ -129,13 +125,9 @@ void RobotShape::pose(std::span<const double> positions) noexcept {
     const UrdfJoint& joint = robot_.joints[j];
     const int input = input_[j];
     const double q = offset_[j] + (input < 0 ? 0 : factor_[j] * positions[static_cast<std::size_t>(input)]);
-    Pose T_joint_child = Pose::Identity();
-    if (joint.kind == UrdfJoint::Kind::rotating)
-      T_joint_child.linear() = Eigen::AngleAxisd(q, joint.axis).toRotationMatrix();
-    if (joint.kind == UrdfJoint::Kind::sliding) T_joint_child.translation() = q * joint.axis;
     const auto child = static_cast<std::size_t>(joint.child);
-    T_world_link_[child] =
-        T_world_link_[static_cast<std::size_t>(robot_.links[child].parent)] * joint.T_parent_joint * T_joint_child;
+    const auto parent = static_cast<std::size_t>(robot_.links[child].parent);
+    T_world_link_[child] = T_world_link_[parent] * joint.T_parent_joint * joint_transform(joint, q);
   }
   for (std::size_t i = 0; i < links_.size(); ++i)
     placed_[i] = {T_world_link_[i] * links_[i].body.a, T_world_link_[i] * links_[i].body.b, links_[i].body.radius};

@@ -5,6 +5,10 @@
 
 namespace foresight::sim::powercube {
 
+inline constexpr std::uint8_t kConfigWord = 0x39, kMaxDelta = 0x40, kMinPos = 0x45, kMaxPos = 0x46, kMaxVel = 0x48,
+                              kMaxAcc = 0x4A, kMaxCur = 0x4C, kTargetVel = 0x4F, kTargetAcc = 0x50, kHomeOffset = 0x59;
+inline constexpr double kTorquePerAmpere = 5;  ///< Nm
+
 enum class Coding : std::uint8_t { none, real, int32, uint32, int16, uint16, uint8 };
 
 constexpr std::size_t size_of(Coding coding) {

@@ -95,6 +95,8 @@ TEST_F(RobotInput, WrongInputIsNamed) {
   expect({"robot", rig_with("bit_rate: 1000000", "bit_rate: 250000")}, "more than 70 %");
   expect({"robot", rig_with("interface: mock", "interface: can9"), "--stepped"}, "--mock");
   expect({"doctor", "/nowhere.yaml"}, "/nowhere.yaml");
+  const auto rack = folder_.write("rack.yaml", "drives:\n  - {name: a, kind: cia402, node: 1, serial: -3}\n");
+  expect({"sim", "drives", "--can", "vcan0", "--rack", rack.string()}, "-3 is no identity number");
 }
 
 TEST_F(RobotInput, MissingDevicesAreNamed) {
