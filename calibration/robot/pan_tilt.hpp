@@ -35,7 +35,6 @@ Pose camera_pose(const PanTiltModel& model, const PanTiltAngles& angles);
 
 /// The `result` map of a file of kind "pan-tilt". Throws InputError naming file and field.
 PanTiltModel read_pan_tilt(const YamlMap& result);
-YAML::Node to_yaml(const PanTiltModel& model);
 
 struct PanTiltSample {
   std::string name;

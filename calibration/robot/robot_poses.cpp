@@ -213,10 +213,10 @@ MatchedPoses match_poses(const std::vector<NamedPose>& poses, const std::vector<
     throw InputError("--poses", std::to_string(poses.size()) + " poses for " + std::to_string(images.size()) + " images",
                      "give one pose an image, or name the poses as the images");
   std::map<std::string, Pose> by_image;
-  for (std::size_t i = 0; i < images.size(); ++i) by_image[images[i]] = poses[i].pose;
+  for (std::size_t i = 0; i < images.size(); ++i) by_image[stem(images[i])] = poses[i].pose;
   MatchedPoses out{{}, "by order"};
   for (const std::string& view : views) {
-    const auto found = by_image.find(view);
+    const auto found = by_image.find(stem(view));
     if (found == by_image.end())
       throw InputError("view " + view, "is not among the images", "give the folder that the corners come from");
     out.poses.push_back(found->second);
