@@ -2,11 +2,12 @@
 
 #include <csignal>
 #include <cstdio>
+#include <future>
 #include <thread>
 
 #include "apps/robot/keyboard.hpp"
 #include "apps/robot/operators.hpp"
-#include "apps/robot/robot_devices.hpp"
+#include "apps/robot/robot_cameras.hpp"
 #include "apps/robot/service_notify.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
@@ -23,7 +24,8 @@ constexpr int kPriority = 80;  // above the network's and the cameras' threads, 
 struct Arguments {
   std::string rig;
   std::string follow;
-  std::string log;
+  std::string log, record;
+  bool cameras = true;
   bool mock = false, stepped = false, may_home = false, check_only = false;
 };
 
@@ -36,10 +38,12 @@ void say(const std::string& line) {
 /// What goes on beside the control loop: operators, the view, the service's watchdog.
 class Console {
  public:
-  Console(const Rig& rig, const RobotDevices& devices, Robot& robot, const Arguments& arguments)
-      : rig_(rig), devices_(devices), robot_(robot), keys_(rig.gate_options().joints) {
+  /// `cameras`: may be null.
+  Console(const Rig& rig, const RobotDevices& devices, Robot& robot, RobotCameras* cameras, const Arguments& arguments)
+      : rig_(rig), devices_(devices), robot_(robot), cameras_(cameras), keys_(rig.gate_options().joints) {
     if (!arguments.follow.empty())
       follow_.emplace(FollowFile(arguments.follow, rig), rig.joint_names(), arguments.may_home);
+    if (!arguments.record.empty()) joints_.emplace(joint_log_beside(arguments.record), rig);
     if (keyboard_.is_terminal()) say(KeyOperator::help());
   }
 
@@ -54,6 +58,7 @@ class Console {
     if (!follow_ && keyboard_.is_terminal()) wish = keys_.tick(now, status, typed);
     if (wish.request != RobotRequest::none) robot_.ask(wish.request);
     if (wish.command) robot_.submit(*wish.command);
+    if (joints_) joints_->add(status);
     show(now, status);
     notify(now, status);
     return !wish.quit;
@@ -61,18 +66,23 @@ class Console {
 
   /// The last words, and the exit code.
   int finish() {
-    const RobotStatus status = robot_.status();
-    std::fputs(status_text(rig_, status, devices_.buses(), -1).c_str(), stdout);
+    std::fputs(view(robot_.status(), -1).c_str(), stdout);
+    if (const std::string recorded = cameras_ ? cameras_->finish() : ""; !recorded.empty()) say(recorded);
     if (!follow_) return 0;
     say("follow: " + (follow_->outcome().empty() ? "interrupted" : follow_->outcome()));
     return follow_->succeeded() ? 0 : 1;
   }
 
  private:
+  std::string view(const RobotStatus& status, int selected) const {
+    std::string out = status_text(rig_, status, devices_.buses(), selected);
+    if (cameras_) out += camera_text(cameras_->watch().line());
+    return out;
+  }
   void show(RobotTime now, const RobotStatus& status) {
     if (!keyboard_.is_terminal() || now - shown_ < kRedraw) return;
     shown_ = now;
-    std::string text = status_text(rig_, status, devices_.buses(), follow_ ? -1 : static_cast<int>(keys_.selected()));
+    std::string text = view(status, follow_ ? -1 : static_cast<int>(keys_.selected()));
     text += std::string("\n") + KeyOperator::help() + "\n";
     if (keys_.asks_for_consent()) text += "Every joint will look for home, slowly. Is the robot's way clear? y/n\n";
     std::fputs(("\x1b[H\x1b[J" + text).c_str(), stdout);
@@ -90,6 +100,8 @@ class Console {
   const Rig& rig_;
   const RobotDevices& devices_;
   Robot& robot_;
+  RobotCameras* cameras_;
+  std::optional<JointLog> joints_;
   Keyboard keyboard_;
   KeyOperator keys_;
   std::optional<FollowOperator> follow_;
@@ -97,8 +109,10 @@ class Console {
   std::uint64_t cycles_ = 0;
 };
 
-int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices&) {
+int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras) {
+  devices.bring_up(say);
   std::stop_source stop;
+  if (cameras) clock.every(kTick, [cameras](RobotTime) { cameras->watch().step(); });
   clock.every(kTick, [&](RobotTime now) {
     if (!stop.stop_requested() && (!console.tick(now) || stop_signal != 0)) stop.request_stop();
   });
@@ -106,7 +120,7 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevice
   return console.finish();
 }
 
-int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices) {
+int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras) {
   const auto set_up = [&] {
     try {
       devices.bring_up(say);
@@ -115,10 +129,21 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
     }
   };
   {
+    std::promise<void> up;
     std::jthread loop([&](const std::stop_token& stop) {
       if (const std::string refused = make_real_time(kPriority); !refused.empty()) say(refused);
+      // In this thread: the drives' watchdogs would find the bus silent while a new one gets its stack, every page of
+      // which is locked in memory.
+      try {
+        devices.bring_up(say);
+      } catch (...) {
+        return up.set_exception(std::current_exception());
+      }
+      up.set_value();
       robot.run(clock, stop, set_up);
     });
+    up.get_future().get();
+    if (cameras) cameras->watch().start();  // the drives already wait for the loop: that goes first
     notify_service("READY=1");
     for (RobotTime due = clock.now(); stop_signal == 0 && console.tick(due); due = std::max(due + kTick, clock.now()))
       clock.sleep_until(due + kTick);
@@ -128,11 +153,24 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
   return stop_signal == SIGINT ? 130 : code;
 }
 
+/// Null where there are none to run. In stepped time, pictures that nobody keeps are not drawn.
+std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& devices, Clock& clock,
+                                           const Arguments& arguments) {
+  if (!rig.cameras || !arguments.cameras || (arguments.stepped && arguments.record.empty())) return nullptr;
+  RobotCameraOptions options;
+  options.mock = arguments.mock;
+  if (!arguments.record.empty()) options.record = arguments.record;
+  if (options.mock || rig.cameras->mock()) say("lighting the lab");
+  return std::make_unique<RobotCameras>(rig, devices, clock, options);
+}
+
 template <typename ClockKind>
-int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, Robot&, Console&, RobotDevices&)) {
+int run_with(const Rig& rig, const Arguments& arguments,
+             int (*run)(ClockKind&, Robot&, Console&, RobotDevices&, RobotCameras*)) {
   ClockKind clock;
   RobotDeviceOptions options;
   options.mock = arguments.mock;
+  if (!arguments.record.empty()) options.log = can_log_beside(arguments.record);
   if (!arguments.log.empty()) options.log = arguments.log;
   RobotDevices devices(rig, clock, options);
   if (arguments.check_only) {
@@ -142,22 +180,28 @@ int run_with(const Rig& rig, const Arguments& arguments, int (*run)(ClockKind&, 
   const auto shape = rig.shape();
   if (!shape) say("the rig has no robot.urdf: nothing is checked against the surroundings");
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
-  Console console(rig, devices, robot, arguments);
+  const auto cameras = make_cameras(rig, devices, clock, arguments);
+  Console console(rig, devices, robot, cameras.get(), arguments);
   std::signal(SIGINT, [](int signal) { stop_signal = signal; });
   std::signal(SIGTERM, [](int signal) { stop_signal = signal; });
   std::signal(SIGHUP, [](int signal) { stop_signal = signal; });
   if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
-  devices.bring_up(say);
-  return run(clock, robot, console, devices);
+  return run(clock, robot, console, devices, cameras.get());
 }
 
 int run(const Arguments& arguments) {
   const Rig rig = read_rig(arguments.rig);
+  if (!arguments.record.empty() && (!rig.cameras || !arguments.cameras))
+    throw InputError("--record", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
+                     rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
   if (!arguments.stepped) return run_with<MonotonicClock>(rig, arguments, run_real);
   for (const RigBus& bus : rig.buses)
     if (!arguments.mock && bus.interface != "mock")
       throw InputError("--stepped", "bus '" + bus.name + "' is a real one, whose time cannot be stepped",
                        "add --mock, or leave --stepped out");
+  if (!arguments.record.empty() && !arguments.mock && !rig.cameras->mock())
+    throw InputError("--stepped", "the cameras are real ones, whose time cannot be stepped",
+                     "add --mock, or leave --stepped out");
   return run_with<SteppedClock>(rig, arguments, run_stepped);
 }
 
@@ -167,12 +211,17 @@ void add_robot_command(CLI::App& app, std::function<int()>& action) {
   auto* command = app.add_subcommand("robot", "Runs the robot side of a rig: drives behind a safety gate");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->required();
-  command->add_flag("--mock", arguments->mock, "Emulated drives on every bus, whatever the rig says");
+  command->add_flag("--mock", arguments->mock,
+                    "Emulated drives on every bus, and the mock lab before the cameras, whatever the rig says");
   command->add_option("--follow", arguments->follow,
                       "CSV file with the columns time_s and names of joints; enables, follows it and ends");
   command->add_flag("--home", arguments->may_home,
                     "Consent: with --follow, joints that are not homed look for home, slowly");
   command->add_option("--log", arguments->log, "candump log of all frames");
+  command->add_option("--record", arguments->record,
+                      "Writes what the cameras see as a run into this folder, and beside it the CAN logs\n"
+                      "(OUT-can-BUS.log) and the joints (OUT-joints.csv, as --follow reads them)");
+  command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag("--stepped", arguments->stepped,
                     "As fast as the machine can, the same on every run; only with mock drives");
   command->add_flag("--check", arguments->check_only, "Only identify and configure the drives; move nothing");

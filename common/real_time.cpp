@@ -29,4 +29,9 @@ std::string lock_memory() {
          "LimitMEMLOCK=infinity to the systemd unit";
 }
 
+void make_background() noexcept {
+  constexpr int kNiceness = 10;             // about a tenth of a normal thread's share
+  setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread alone, under Linux
+}
+
 }  // namespace foresight

@@ -13,4 +13,8 @@ std::string make_real_time(int priority);
 /// make_real_time().
 std::string lock_memory();
 
+/// Gives the calling thread, and those that it starts from now on, less processor time than others get where all is
+/// busy.
+void make_background() noexcept;
+
 }  // namespace foresight

@@ -58,6 +58,12 @@ std::vector<std::string> YamlMap::keys() const {
   return out;
 }
 
+void YamlMap::refuse_word(const std::string& key, const std::string& word,
+                          const std::vector<std::string>& known) const {
+  throw InputError(where(key), in_quotes(word) + " is not known here",
+                   "did you mean '" + nearest_word(word, known) + "'?");
+}
+
 std::string YamlMap::where(const std::string& key) const {
   const YAML::Node value = node_[key];
   const YAML::Mark mark = value.IsDefined() ? value.Mark() : node_.Mark();
@@ -87,6 +93,20 @@ double YamlMap::finite(const YAML::Node& node, const std::string& key) const {
 
 double YamlMap::number(const std::string& key) const {
   return finite(require(key), key);
+}
+
+double YamlMap::positive(const std::string& key) const {
+  const double value = number(key);
+  if (!(value > 0)) throw InputError(where(key), "is " + std::to_string(value), "give a number above 0");
+  return value;
+}
+
+int YamlMap::integer(const std::string& key, int least, int most) const {
+  const int value = integer(key);
+  if (value < least || value > most)
+    throw InputError(where(key), "is " + std::to_string(value),
+                     "choose from " + std::to_string(least) + " to " + std::to_string(most));
+  return value;
 }
 
 int YamlMap::integer(const std::string& key) const {

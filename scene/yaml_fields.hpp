@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/scene_model.hpp"
@@ -25,13 +26,27 @@ class YamlMap {
   std::vector<std::string> keys() const;
   std::string where(const std::string& key) const;  ///< "file:line: a.b.key", of this map when absent
 
-  std::string text(const std::string& key) const;             ///< a scalar that is not empty
-  double number(const std::string& key) const;                ///< finite
-  int integer(const std::string& key) const;                  ///< within int
+  std::string text(const std::string& key) const;  ///< a scalar that is not empty
+  double number(const std::string& key) const;     ///< finite
+  double positive(const std::string& key) const;   ///< finite, above 0
+  int integer(const std::string& key) const;       ///< within int
+  int integer(const std::string& key, int least, int most) const;
   std::vector<double> numbers(const std::string& key) const;  ///< a list, or {rows, cols, data}; finite
   std::vector<double> numbers(const std::string& key, std::size_t count) const;
   YamlMap map(const std::string& key) const;
   std::vector<YamlMap> maps(const std::string& key) const;  ///< a list of mappings
+
+  /// What stands beside the key's word in `known`; refuses other words, naming the nearest.
+  template <typename T>
+  T choice(const std::string& key, const std::vector<std::pair<std::string, T>>& known) const {
+    const std::string word = text(key);
+    std::vector<std::string> names;
+    for (const auto& [name, value] : known) {
+      if (name == word) return value;
+      names.push_back(name);
+    }
+    refuse_word(key, word, names);
+  }
 
   /// {xyz: [..], quaternion: [x, y, z, w]} (either may be absent), or a rigid 4x4 matrix,
   /// row-major, as a list of 16 or as {rows, cols, data}.
@@ -39,6 +54,8 @@ class YamlMap {
 
  private:
   YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node);
+  [[noreturn]] void refuse_word(const std::string& key, const std::string& word,
+                                const std::vector<std::string>& known) const;
   YAML::Node require(const std::string& key) const;
   double finite(const YAML::Node& node, const std::string& key) const;
 

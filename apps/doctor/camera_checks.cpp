@@ -1,10 +1,26 @@
-// Cameras that V4L2 knows.
+// Cameras that V4L2 and libcamera know.
 #include "apps/doctor/findings.hpp"
 #include "common/clock.hpp"
+#include "drivers/camera/libcamera_session.hpp"
 #include "drivers/camera/v4l2_calls.hpp"
 #include "drivers/camera/v4l2_camera.hpp"
 
 namespace foresight::doctor {
+namespace {
+
+Findings libcamera_cameras() {
+  try {
+    Findings out;
+    for (const std::string& camera : libcam::library().cameras())
+      out.push_back({Verdict::good, "libcamera", camera, ""});
+    if (out.empty()) out.push_back({Verdict::absent, "libcamera", "knows no camera", ""});
+    return out;
+  } catch (const std::exception& error) {
+    return {{Verdict::absent, "libcamera", error.what(), ""}};
+  }
+}
+
+}  // namespace
 
 Findings check_cameras() {
   v4l2::Calls& calls = v4l2::system_calls();
@@ -36,6 +52,8 @@ Findings check_cameras() {
   if (out.empty())
     out.push_back({Verdict::absent, "cameras", "none that V4L2 knows",
                    "plug one in; `foresight synth` and mock cameras work without"});
+  const Findings more = libcamera_cameras();
+  out.insert(out.end(), more.begin(), more.end());
   return out;
 }
 

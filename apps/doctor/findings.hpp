@@ -22,7 +22,9 @@ using Findings = std::vector<Finding>;
 Findings check_can();                   ///< sockets in the kernel, interfaces and their state
 Findings check_buses(const Rig& rig);   ///< the rig's interfaces, bit rates and planned load
 Findings check_drives(const Rig& rig);  ///< identifies every drive; moves nothing
-Findings check_cameras();               ///< takes ten images of each that V4L2 knows
+/// Formats, rates, capture times and bandwidth of the rig's cameras, each alone and as a pair; takes some seconds.
+Findings check_rig_cameras(const StereoConfig& config);
+Findings check_cameras();  ///< takes ten images of each that V4L2 knows; lists those that libcamera knows
 Findings check_real_time();
 Findings check_graphics();
 Findings check_network();

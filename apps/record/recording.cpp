@@ -54,13 +54,16 @@ RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const Recor
     if (pairs == 0 && !result.fault.empty())
       throw RuntimeFailure(result.fault + "; nothing was recorded", "check the cables, and `foresight doctor`");
   }
-  const auto& p = result.cameras.pairing;
-  result.counts = recorder.finish(
-      sim::format("missed_pairs: %llu\nunpaired: [%llu, %llu]\nwrong_times: [%llu, %llu]\ndamaged: [%llu, %llu]\n",
-                  number(result.cameras.dropped), number(p.unpaired[0]), number(p.unpaired[1]), number(p.jumps[0]),
-                  number(p.jumps[1]), number(result.cameras.corrupt[0]), number(result.cameras.corrupt[1])));
+  result.counts = recorder.finish(camera_remarks(result.cameras));
   if (recorder.disk_full()) result.fault = "the disk is nearly full";
   return result;
+}
+
+std::string camera_remarks(const StereoStatus& status) {
+  const auto& p = status.pairing;
+  return sim::format("missed_pairs: %llu\nunpaired: [%llu, %llu]\nwrong_times: [%llu, %llu]\ndamaged: [%llu, %llu]\n",
+                     number(status.dropped), number(p.unpaired[0]), number(p.unpaired[1]), number(p.jumps[0]),
+                     number(p.jumps[1]), number(status.corrupt[0]), number(status.corrupt[1]));
 }
 
 std::string counts_text(const RecordingResult& result) {

@@ -24,6 +24,9 @@ struct RecordingResult {
 RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const RecordingLimits& limits, const Clock& clock,
                        const std::function<bool()>& stop);
 
+/// The cameras' counts as lines of YAML for RunRecorder::finish().
+std::string camera_remarks(const StereoStatus& status);
+
 /// Counts in words, one line each; what is 0 is left out but for the pairs.
 std::string counts_text(const RecordingResult& result);
 

@@ -83,7 +83,8 @@ void RunRecorder::add(const StereoPair& pair) {
     if (pair.right.time != pair.left.time) job.right = options_.poses(pair.right.time);
   }
   {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
+    if (options_.waits) written_.wait(lock, [this] { return stopped() || jobs_.size() < options_.waiting; });
     if (stopped()) return;
     if (jobs_.size() >= options_.waiting) {
       ++counts_.dropped;
@@ -117,6 +118,7 @@ void RunRecorder::run() noexcept {
     lock.lock();
     if (!jobs_.empty()) jobs_.pop_front();
     if (!stopped()) ++counts_.written;
+    written_.notify_one();
   }
 }
 

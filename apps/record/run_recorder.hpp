@@ -37,6 +37,7 @@ struct RecorderOptions {
   /// Writes the scene's files into the folder; empty: the run gets none (`foresight replay --scene`).
   std::function<void(const std::filesystem::path&)> write_scene;
   std::size_t waiting = 8;    ///< pairs in memory, at most; > 0
+  bool waits = false;         ///< add() waits for room instead of dropping: for stepped time, where it costs nothing
   double spare_bytes = 16e6;  ///< of the disk that are left free
   Duration slowed_by{0};      ///< for tests: a disk that takes so much longer for a pair
 };
@@ -57,8 +58,8 @@ class RunRecorder {
   RunRecorder(const std::filesystem::path& out, RecorderOptions options);
   ~RunRecorder();
 
-  /// Never waits for the disk: a pair that finds no room is dropped and counted. Images must have the lenses' sizes,
-  /// and times must ascend: others are InputErrors, which name the side.
+  /// Never waits for the disk, unless told to: a pair that finds no room is dropped and counted. Images must have the
+  /// lenses' sizes, and times must ascend: others are InputErrors, which name the side.
   void add(const StereoPair& pair);
   /// The disk is nearly full, or cannot be written: what comes now is not recorded. finish() tells.
   bool stopped() const { return full_ || failed_; }
@@ -87,7 +88,7 @@ class RunRecorder {
   RobotTime last_left_{INT64_MIN}, last_right_{INT64_MIN}, last_pose_{INT64_MIN};
 
   mutable std::mutex mutex_;  // jobs_, counts_, closing_
-  std::condition_variable changed_;
+  std::condition_variable changed_, written_;
   std::deque<Job> jobs_;
   RecorderCounts counts_;
   bool closing_ = false;

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "common/error.hpp"
+#include "common/real_time.hpp"
 #include "drivers/can/candump_log.hpp"
 #include "drivers/can/metered_bus.hpp"
 #include "drivers/can/recording_bus.hpp"
@@ -16,6 +17,9 @@
 
 namespace foresight {
 namespace {
+
+constexpr int kRackPriority = 70;  // below the control loop
+constexpr Duration kRackStep = std::chrono::milliseconds(1), kRackPatience = std::chrono::milliseconds(50);
 
 /// Writes at once, in the caller's thread: for stepped time, in which nothing may be left out and waiting costs
 /// nothing.
@@ -186,7 +190,10 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
     bus->patient = std::make_unique<PatientBus>(*bus->metered, clock, [this, i] { serve_others(i); });
     bus->network = make_network(*bus->patient, clock, rig, i);
     if (bus->rack && !stepped)
-      bus->rack_thread = std::jthread([rack = bus->rack.get()](std::stop_token stop) { rack->run(std::move(stop)); });
+      bus->rack_thread = std::jthread([rack = bus->rack.get()](std::stop_token stop) {
+        make_real_time(kRackPriority);  // where allowed: real drives do not wait for this machine either
+        rack->run(std::move(stop));
+      });
     buses_.push_back(std::move(bus));
   }
   std::vector<std::size_t> next(rig.buses.size());
@@ -221,6 +228,20 @@ std::vector<DriveNetwork*> RobotDevices::networks() const {
 
 std::vector<Drive*> RobotDevices::drives() const {
   return drives_;
+}
+
+std::optional<double> RobotDevices::shaft_at(std::string_view joint, RobotTime time) const {
+  const auto found =
+      std::ranges::find_if(rig_.joints, [&](const RigJoint& candidate) { return candidate.drive.name == joint; });
+  if (found == rig_.joints.end()) return std::nullopt;
+  const Bus& bus = *buses_[found->bus];
+  const auto place = bus.rack ? bus.rack->find(joint) : std::nullopt;
+  if (!place) return std::nullopt;
+  const bool real_time = bus.rack_thread.joinable();
+  for (const RobotTime limit = clock_.now() + kRackPatience;
+       real_time && bus.rack->known_until() < time && clock_.now() < limit;)
+    clock_.sleep_until(clock_.now() + kRackStep);
+  return found->drive.offset + found->drive.direction * bus.rack->position_at(*place, time);
 }
 
 sim::DriveRack* RobotDevices::rack(std::size_t bus) const {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/robot/status_view.hpp"
@@ -41,6 +42,11 @@ class RobotDevices {
   std::vector<Drive*> drives() const;  ///< in the rig's order
   /// Thread-safe while the loop runs.
   std::vector<BusLine> buses() const;
+
+  /// Where the shaft of a joint on a mock bus truly was at an instant of the last seconds, in the joint's own unit and
+  /// direction; nothing for joints of real buses or that the rig does not have. Any thread; in real time it waits, 50
+  /// ms at most, until the emulated drives have come that far.
+  std::optional<double> shaft_at(std::string_view joint, RobotTime time) const;
 
   /// What is behind a mock bus, for tests: where the shafts are, faults, other ends; null behind a real one.
   sim::DriveRack* rack(std::size_t bus) const;

@@ -16,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_vnl(const fs::path& path) {
-  if (!fs::exists(path)) throw InputError("--corners", path.string() + " does not exist", "give a .vnl file or a folder");
+  if (!fs::exists(path))
+    throw InputError("--corners", path.string() + " does not exist", "give a .vnl file or a folder");
   return !fs::is_directory(path);
 }
 
@@ -107,7 +108,9 @@ std::string nearest_stamps(const CornerSet& left, const CornerSet& right) {
       const auto s = parse_integer(a.name), t = parse_integer(b.name);
       if (s && t) best = std::min(best, std::abs(*s - *t));
     }
-  return best == std::numeric_limits<long long>::max() ? "" : "; the nearest stamps differ by " + std::to_string(best) + " ns";
+  return best == std::numeric_limits<long long>::max()
+             ? ""
+             : "; the nearest stamps differ by " + std::to_string(best) + " ns";
 }
 
 void require_pairs(const StereoCorners& pair, const std::string& where) {
@@ -141,7 +144,8 @@ bool spans_a_plane(const std::vector<Corner>& corners) {
 CornerSet read_corners(const fs::path& path, const std::optional<Board>& board) {
   if (!is_vnl(path)) {
     if (fs::is_directory(path / "cam1") && fs::is_directory(path / "cam0"))
-      throw InputError(path.string(), "holds two cameras", "give " + (path / "cam0").string() + ", or calibrate stereo");
+      throw InputError(path.string(), "holds two cameras",
+                       "give " + (path / "cam0").string() + ", or calibrate stereo");
     const fs::path folder = fs::is_directory(path / "cam0") ? path / "cam0" : path;
     TagPoints points;
     const auto views = read_tag_views(folder, points);

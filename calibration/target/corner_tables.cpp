@@ -70,7 +70,8 @@ class VnlReader {
     if (columns_ != 0) return;
     const auto names = fields_of(text, " \t", false);
     static const std::vector<std::string> kKnown{"filename", "x", "y"};
-    const bool known = names.size() >= 3 && names.size() <= 4 && std::equal(kKnown.begin(), kKnown.end(), names.begin());
+    const bool known =
+        names.size() >= 3 && names.size() <= 4 && std::equal(kKnown.begin(), kKnown.end(), names.begin());
     if (!known || (names.size() == 4 && names[3] != "level" && names[3] != "weight"))
       throw InputError(at_line(file_, line), "has columns " + in_quotes(text), "write '# filename x y level'");
     columns_ = names.size();
@@ -87,7 +88,8 @@ class VnlReader {
     if (fields[1] == "-" || fields[2] == "-" || (fields.size() == 4 && fields[3] == "-")) return;
     if (index >= points_) refuse_count(where, index + 1, " or more");
     const std::string what = " of corner " + std::to_string(index) + " of " + image.name;
-    Corner corner{static_cast<int>(index), {finite(fields[1], where, "x" + what), finite(fields[2], where, "y" + what)}, 1};
+    Corner corner{
+        static_cast<int>(index), {finite(fields[1], where, "x" + what), finite(fields[2], where, "y" + what)}, 1};
     if (fields.size() == 4) {
       const double quality = finite(fields[3], where, (weights_ ? "the weight" : "the level") + what);
       if (quality < 0 || (weights_ && quality == 0)) return;
@@ -124,8 +126,9 @@ class VnlReader {
   std::set<std::string> names_;
 };
 
-constexpr std::array<const char*, 12> kTagColumns{"ts",   "tag_rows", "tag_cols", "tag_size", "tag_spacing", "kp_x",
-                                                  "kp_y", "p_x",      "p_y",      "p_z",      "tag_id",      "corner_idx"};
+constexpr std::array<const char*, 12> kTagColumns{"ts",          "tag_rows", "tag_cols", "tag_size",
+                                                  "tag_spacing", "kp_x",     "kp_y",     "p_x",
+                                                  "p_y",         "p_z",      "tag_id",   "corner_idx"};
 
 /// Where each of kTagColumns stands in the file.
 std::vector<std::size_t> tag_columns(std::vector<std::string> header, const std::string& where) {
@@ -133,7 +136,8 @@ std::vector<std::size_t> tag_columns(std::vector<std::string> header, const std:
   const std::vector<std::string> known(kTagColumns.begin(), kTagColumns.end());
   for (const std::string& name : header)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError(where, "has an unknown column " + in_quotes(name), "did you mean " + nearest_word(name, known) + "?");
+      throw InputError(where, "has an unknown column " + in_quotes(name),
+                       "did you mean " + nearest_word(name, known) + "?");
   std::vector<std::size_t> at;
   for (const std::string& name : known) {
     if (std::count(header.begin(), header.end(), name) != 1)
@@ -174,7 +178,9 @@ std::vector<TagRow> read_tag_table(const fs::path& file) {
     const auto text_of = [&](std::size_t column) -> const std::string& { return fields[at[column]]; };
     TagRow row{where, whole(text_of(10), where, "tag_id"), whole(text_of(11), where, "corner_idx"), {}, {}};
     const std::string corner = " of corner " + std::to_string(row.corner) + " of tag " + std::to_string(row.tag);
-    const auto number = [&](std::size_t column) { return finite(text_of(column), where, kTagColumns[column] + corner); };
+    const auto number = [&](std::size_t column) {
+      return finite(text_of(column), where, kTagColumns[column] + corner);
+    };
     row.pixel = {number(5), number(6)};
     row.p_board = {number(7), number(8), number(9)};
     rows.push_back(std::move(row));

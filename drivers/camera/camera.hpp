@@ -23,6 +23,7 @@ struct CameraSettings {
   double rate = 30;               ///< frames per second, > 0
   PixelFormat format = PixelFormat::yuyv;
   std::map<std::string, std::int64_t> controls;  ///< by name (CameraControl::name), set in order of name
+  Duration exposure{0};                          ///< fixed; 0: as the camera chooses by itself
   /// From the first row's readout to the last one's. Negative: unknown, up to a frame period.
   Duration readout{-1};
 };

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "common/clock.hpp"
@@ -22,8 +23,8 @@ struct StereoStatus {
 };
 
 /// Two threads own a camera each: they wait for its images, convert them and pair them. A slow consumer gets the
-/// newest pair, never a queue of old ones. Needs a clock that may be waited for in several threads (not a
-/// SteppedClock: there, use StereoPairing directly).
+/// newest pair, never a queue of old ones. Needs a clock that may be waited for in several threads; with a
+/// SteppedClock, start_polled() and poll() do the same in the caller's thread.
 class StereoCamera {
  public:
   /// `clock` must outlive this, and be the one of the cameras' capture times.
@@ -33,6 +34,8 @@ class StereoCamera {
 
   /// Starts both; throws what Camera::start() throws, and then none runs.
   void start();
+  void start_polled();   ///< starts both, without threads
+  void poll() noexcept;  ///< takes in what both have now, without waiting; only after start_polled()
   void stop() noexcept;  ///< waits up to 0.1 s and a conversion for the threads
   /// The newest pair not yet taken, waiting `timeout` at most. Any thread.
   std::optional<StereoPair> take(Duration timeout) noexcept { return newest_.take(timeout); }
@@ -40,6 +43,7 @@ class StereoCamera {
 
  private:
   void run(const std::stop_token& stop, Side side) noexcept;
+  CameraStatus look(Side side, Duration timeout) noexcept;
 
   std::array<std::unique_ptr<Camera>, 2> cameras_;
   const Clock& clock_;
@@ -48,7 +52,11 @@ class StereoCamera {
   LatestValue<StereoPair> newest_;
   std::array<std::atomic<CameraStatus>, 2> statuses_{CameraStatus::timeout, CameraStatus::timeout};
   std::array<std::atomic<std::uint64_t>, 2> corrupt_{};
+  bool polled_ = false;
   std::array<std::jthread, 2> threads_;
 };
+
+/// What keeps pairs from coming, in words for the user, such as "the left camera is lost: ..."; "" where nothing does.
+std::string fault_text(const StereoStatus& status);
 
 }  // namespace foresight

@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "drivers/camera/capture_time.hpp"
 
 namespace foresight {
 namespace {
@@ -15,8 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kHangsUntilLost = 3;
-constexpr int kExposureFrames = 30;          // reading a control of a USB camera takes a millisecond
-constexpr Duration kStampUncertainty = 1ms;  // of the interrupt that stamps, and of transfer times
+constexpr int kExposureFrames = 30;  // reading a control of a USB camera takes a millisecond
 
 v4l2_buffer capture_buffer(std::uint32_t index = 0) {
   v4l2_buffer buffer{};
@@ -69,6 +69,7 @@ void V4l2Camera::open() {
     format_ = v4l2::set_format(calls_, device_, settings_, name_);
     settings_.rate = format_.rate;
     for (const auto& [control, value] : settings_.controls) v4l2::set_control(calls_, device_, control, value, name_);
+    if (settings_.exposure.count() > 0) v4l2::set_exposure(calls_, device_, settings_.exposure, name_);
     map_buffers();
     if (!stream_on()) {
       throw RuntimeFailure("camera '" + name_ + "', " + device_.path + ": VIDIOC_STREAMON" + v4l2::errno_text(errno),
@@ -241,23 +242,16 @@ void V4l2Camera::stamp(const v4l2_buffer& buffer, CameraFrame& out) noexcept {
     exposure_ = v4l2::exposure(calls_, device_.fd.get());
     exposure_age_ = kExposureFrames;
   }
-  const Duration period = seconds(1 / settings_.rate);
-  // Unknown: somewhere between nothing and a period.
-  const bool knows_readout = settings_.readout.count() >= 0;
-  const Duration exposure = std::min(exposure_.value_or(period / 2), period);
-  const Duration readout = knows_readout ? settings_.readout : period / 2;
-  const Duration half = (exposure + readout) / 2;
-  out.uncertainty = kStampUncertainty;
-  if (!exposure_) out.uncertainty += period / 4;
-  if (!knows_readout) out.uncertainty += period / 4;
+  const ToMiddle middle = to_middle_of_exposure(exposure_, settings_);
+  out.uncertainty = middle.uncertainty;
   if ((buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) != V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC) {
-    out.time = clock_.now() - half;  // another clock: when we saw it is the best that is left
-    out.uncertainty += period;
+    out.time = clock_.now() - middle.span;  // another clock: when we saw it is the best that is left
+    out.uncertainty += seconds(1 / settings_.rate);
     return;
   }
   const RobotTime stamped{buffer.timestamp.tv_sec * std::int64_t{1'000'000'000} + buffer.timestamp.tv_usec * 1000};
   const bool at_start = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
-  out.time = at_start ? stamped + half : stamped - half;
+  out.time = at_start ? stamped + middle.span : stamped - middle.span;
 }
 
 std::vector<CameraControl> V4l2Camera::controls() {

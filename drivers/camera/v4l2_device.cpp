@@ -34,6 +34,8 @@ constexpr struct {
     {PixelFormat::bgr, V4L2_PIX_FMT_BGR24},
 };
 
+constexpr double kExposureUnit = 1e-4;  // seconds, of V4L2_CID_EXPOSURE_ABSOLUTE
+
 template <std::size_t N>
 std::string text_of(const __u8 (&field)[N]) {
   const char* begin = reinterpret_cast<const char*>(field);
@@ -222,10 +224,25 @@ bool set_control(Calls& calls, const Device& device, const std::string& control,
   return found->type != V4L2_CTRL_TYPE_BUTTON;
 }
 
+void set_exposure(Calls& calls, const Device& device, Duration wanted, const std::string& camera) {
+  const std::string where = "camera '" + camera + "', " + device.path;
+  const int fd = device.fd.get();
+  v4l2_control manual{V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL};
+  calls.ioctl(fd, VIDIOC_S_CTRL, &manual);  // cameras without automatic exposure have no such control
+  const auto count = std::max<std::int64_t>(1, std::llround(to_seconds(wanted) / kExposureUnit));
+  v4l2_control control{V4L2_CID_EXPOSURE_ABSOLUTE, static_cast<__s32>(std::min<std::int64_t>(count, INT32_MAX))};
+  const bool set = calls.ioctl(fd, VIDIOC_S_CTRL, &control) == 0;
+  const auto got = exposure(calls, fd);
+  if (!got) throw InputError(where, "its exposure cannot be set", "leave the exposure out");
+  if (!set || std::chrono::abs(*got - wanted) > wanted / 10 + seconds(kExposureUnit))
+    throw InputError(where, "it does not do an exposure of " + std::to_string(to_seconds(wanted)) + " s",
+                     "it stands at " + std::to_string(to_seconds(*got)) + " s; choose another");
+}
+
 std::optional<Duration> exposure(Calls& calls, int fd) noexcept {
   v4l2_control control{V4L2_CID_EXPOSURE_ABSOLUTE, 0};
   if (calls.ioctl(fd, VIDIOC_G_CTRL, &control) != 0 || control.value <= 0) return std::nullopt;
-  return std::chrono::microseconds(100) * control.value;
+  return seconds(kExposureUnit) * control.value;
 }
 
 }  // namespace foresight::v4l2

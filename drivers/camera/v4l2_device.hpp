@@ -35,6 +35,9 @@ std::vector<CameraControl> list_controls(Calls& calls, const Device& device);
 /// Throws as Camera::set_control(). False: a button was pressed (with 0), and no value stays.
 bool set_control(Calls& calls, const Device& device, const std::string& control, std::int64_t value,
                  const std::string& camera);
+/// Fixes the exposure, ending the automatic one. Throws InputError where the camera has no such control or does not do
+/// that time (more than a tenth away), naming the nearest.
+void set_exposure(Calls& calls, const Device& device, Duration exposure, const std::string& camera);
 /// Of V4L2_CID_EXPOSURE_ABSOLUTE; nothing where the device has none.
 std::optional<Duration> exposure(Calls& calls, int fd) noexcept;
 

@@ -46,6 +46,9 @@ void Module::take(const Message& m, RobotTime time) noexcept {
     if (state_ == DriveState::enabled && (m.short_state & kShortNotOk) != 0) fail("reports that it is not ok");
   } else if (m.kind == Kind::motion_answer && !m.accepted && state_ == DriveState::enabled) {
     fail("refused a set-point");
+  } else if (m.kind == Kind::order_answer && m.accepted && Command{m.code} == Command::home) {
+    // One that stands at home already is done before its state word is asked for again.
+    if (state_ == DriveState::homing) homing_seen_ = true;
   }
 }
 

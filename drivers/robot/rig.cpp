@@ -12,34 +12,8 @@
 namespace foresight {
 namespace {
 
-template <typename T>
-T choice(const YamlMap& map, const std::string& key, const std::vector<std::pair<std::string, T>>& known) {
-  const std::string text = map.text(key);
-  std::vector<std::string> names;
-  for (const auto& [name, value] : known) {
-    if (name == text) return value;
-    names.push_back(name);
-  }
-  throw InputError(map.where(key), in_quotes(text) + " is not known here",
-                   "did you mean '" + nearest_word(text, names) + "'?");
-}
-
 double number(const YamlMap& map, const std::string& key, double fallback) {
   return map.has(key) ? map.number(key) : fallback;
-}
-
-double positive(const YamlMap& map, const std::string& key) {
-  const double value = map.number(key);
-  if (!(value > 0)) throw InputError(map.where(key), "is " + std::to_string(value), "give a number above 0");
-  return value;
-}
-
-int integer_in(const YamlMap& map, const std::string& key, int least, int most) {
-  const int value = map.integer(key);
-  if (value < least || value > most)
-    throw InputError(map.where(key), "is " + std::to_string(value),
-                     "choose from " + std::to_string(least) + " to " + std::to_string(most));
-  return value;
 }
 
 Eigen::AlignedBox3d box(const YamlMap& map, const std::string& key) {
@@ -69,9 +43,9 @@ RigBus read_bus(const YamlMap& map) {
   RigBus bus;
   bus.name = map.text("name");
   bus.interface = map.text("interface");
-  bus.protocol = choice<DriveProtocol>(map, "protocol",
-                                       {{"powercube", DriveProtocol::powercube}, {"cia402", DriveProtocol::cia402}});
-  if (map.has("bit_rate")) bus.bit_rate = integer_in(map, "bit_rate", 10'000, 1'000'000);
+  bus.protocol = map.choice<DriveProtocol>(
+      "protocol", {{"powercube", DriveProtocol::powercube}, {"cia402", DriveProtocol::cia402}});
+  if (map.has("bit_rate")) bus.bit_rate = map.integer("bit_rate", 10'000, 1'000'000);
   return bus;
 }
 
@@ -80,12 +54,12 @@ void read_limits(const YamlMap& map, RigJoint& joint) {
   joint.drive.max_position = map.number("max");
   if (joint.drive.min_position >= joint.drive.max_position)
     throw InputError(map.where("min"), "is not below max", "exchange or correct them");
-  joint.drive.max_velocity = positive(map, "velocity");
-  joint.drive.max_acceleration = positive(map, "acceleration");
-  joint.jerk = positive(map, "jerk");
-  joint.following_error = positive(map, "following_error");
+  joint.drive.max_velocity = map.positive("velocity");
+  joint.drive.max_acceleration = map.positive("acceleration");
+  joint.jerk = map.positive("jerk");
+  joint.following_error = map.positive("following_error");
   joint.drive.homing_velocity =
-      map.has("homing_velocity") ? positive(map, "homing_velocity") : 0.1 * joint.drive.max_velocity;
+      map.has("homing_velocity") ? map.positive("homing_velocity") : 0.1 * joint.drive.max_velocity;
   if (joint.drive.homing_velocity > 0.25 * joint.drive.max_velocity)
     throw InputError(map.where("homing_velocity"), "is more than a quarter of the joint's velocity", "home slowly");
 }
@@ -99,8 +73,8 @@ void read_reference(const YamlMap& map, bool powercube, RigJoint& joint) {
         throw InputError(map.where(key), "is for CiA 402 only; a PowerCube module has its own way home", "remove it");
     return;
   }
-  if (map.has("encoder")) joint.absolute = choice<bool>(map, "encoder", {{"absolute", true}, {"incremental", false}});
-  if (map.has("homing_method")) joint.homing_method = integer_in(map, "homing_method", 1, 37);
+  if (map.has("encoder")) joint.absolute = map.choice<bool>("encoder", {{"absolute", true}, {"incremental", false}});
+  if (map.has("homing_method")) joint.homing_method = map.integer("homing_method", 1, 37);
   if (!joint.absolute && joint.homing_method == 0)
     throw InputError(map.where("encoder"), "joint '" + joint.drive.name + "' has no way to know where it is",
                      "say `encoder: absolute`, or give the homing_method of its switches");
@@ -117,21 +91,21 @@ RigJoint read_joint(const YamlMap& map, const std::vector<RigBus>& buses) {
        "encoder", "vendor", "product",  "serial"});
   RigJoint joint;
   joint.drive.name = map.text("name");
-  joint.group = choice<JointGroup>(
-      map, "group", {{"arm", JointGroup::arm}, {"gripper", JointGroup::gripper}, {"pan_tilt", JointGroup::pan_tilt}});
+  joint.group = map.choice<JointGroup>(
+      "group", {{"arm", JointGroup::arm}, {"gripper", JointGroup::gripper}, {"pan_tilt", JointGroup::pan_tilt}});
   if (!map.has("unit"))
     throw InputError(map.where("unit"), "joint '" + joint.drive.name + "' has no unit",
                      "say `unit: rad`, or `unit: m` where it slides");
-  joint.unit = choice<std::string>(map, "unit", {{"rad", "rad"}, {"m", "m"}});
+  joint.unit = map.choice<std::string>("unit", {{"rad", "rad"}, {"m", "m"}});
   std::vector<std::pair<std::string, std::size_t>> names;
   for (std::size_t i = 0; i < buses.size(); ++i) names.emplace_back(buses[i].name, i);
-  joint.bus = choice<std::size_t>(map, "bus", names);
+  joint.bus = map.choice<std::size_t>("bus", names);
   const bool powercube = buses[joint.bus].protocol == DriveProtocol::powercube;
-  joint.drive.node = integer_in(map, "node", 1, powercube ? 31 : 126);
+  joint.drive.node = map.integer("node", 1, powercube ? 31 : 126);
   if (powercube && map.has("counts_per_unit"))
     throw InputError(map.where("counts_per_unit"), "is not for PowerCube modules, which count in rad or m themselves",
                      "remove it");
-  joint.drive.counts_per_unit = powercube ? 1 : positive(map, "counts_per_unit");
+  joint.drive.counts_per_unit = powercube ? 1 : map.positive("counts_per_unit");
   if (map.has("direction")) {
     joint.drive.direction = map.integer("direction");
     if (std::abs(joint.drive.direction) != 1)
@@ -178,7 +152,7 @@ void check_joints(const YamlMap& map, const Rig& rig) {
 void read_surroundings(const YamlMap& map, Surroundings& out) {
   map.require_known({"workspace_m", "clearance_m", "obstacles"});
   if (map.has("workspace_m")) out.workspace = box(map, "workspace_m");
-  if (map.has("clearance_m")) out.clearance = positive(map, "clearance_m");
+  if (map.has("clearance_m")) out.clearance = map.positive("clearance_m");
   if (!map.has("obstacles")) return;
   for (const YamlMap& obstacle : map.maps("obstacles")) {
     obstacle.require_known({"name", "box_m"});
@@ -247,7 +221,7 @@ std::unique_ptr<RobotShape> Rig::shape() const {
 
 Rig read_rig(const std::filesystem::path& file) {
   const YamlMap map = YamlMap::load(file);
-  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints"});
+  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "cameras"});
   Rig rig;
   rig.name = map.text("name");
   if (map.has("robot")) read_robot(map.map("robot"), rig);
@@ -256,6 +230,7 @@ Rig read_rig(const std::filesystem::path& file) {
   for (const YamlMap& bus : map.maps("buses")) rig.buses.push_back(read_bus(bus));
   for (const YamlMap& joint : map.maps("joints")) rig.joints.push_back(read_joint(joint, rig.buses));
   check_joints(map, rig);
+  if (map.has("cameras")) rig.cameras = read_stereo_config(map.map("cameras"));
   rig.gate_options().validate(file.string());
   return rig;
 }

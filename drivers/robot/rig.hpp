@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/camera/camera_config.hpp"
 #include "drivers/drive/drive.hpp"
 #include "drivers/robot/safety_gate.hpp"
 #include "scene/urdf_reader.hpp"
@@ -44,6 +45,7 @@ struct Rig {
   Surroundings surroundings;
   std::vector<RigBus> buses;
   std::vector<RigJoint> joints;  ///< in the order of the file, which is that of commands
+  std::optional<StereoConfig> cameras;
 
   /// What the safety gate needs of all that.
   GateOptions gate_options() const;
@@ -54,7 +56,7 @@ struct Rig {
 
 /// Reads and checks a rig file (docs/rig-files.md). Throws InputError naming file, line and field: unknown keys with
 /// the nearest known one, a missing unit, limits that contradict each other, a node id used twice on a bus, joints that
-/// the URDF does not have or that it has and the file does not.
+/// the URDF does not have or that it has and the file does not, and what read_stereo_config() refuses.
 Rig read_rig(const std::filesystem::path& file);
 
 }  // namespace foresight

@@ -13,6 +13,7 @@ namespace {
 constexpr Duration kStep = std::chrono::milliseconds(1);
 constexpr int kMostSteps = 100;
 constexpr std::size_t kOutbox = 256;
+constexpr std::size_t kRemembered = 4096;  // steps
 
 }  // namespace
 
@@ -34,6 +35,9 @@ DriveRack::DriveRack(Clock& clock, std::unique_ptr<CanBus> bus, const std::vecto
       slot->node = std::make_unique<PowerCubeNode>(config, send);
     slots_.push_back(std::move(slot));
   }
+  positions_.resize(slots_.size());
+  history_.emplace(slots_.size(), kRemembered);
+  remember();
   if (auto* const stepped = dynamic_cast<SteppedClock*>(&clock))
     stepped->every(kStep, [this, exists = std::weak_ptr(exists_)](RobotTime now) {
       if (!exists.expired()) step(now);
@@ -69,8 +73,24 @@ void DriveRack::step(RobotTime now) {
       flush(*slot);
       slot->node->step(now_, 1e-3);
     }
+    remember();
   }
   take_frames(now);
+}
+
+void DriveRack::remember() {
+  for (std::size_t i = 0; i < slots_.size(); ++i) positions_[i] = slots_[i]->node->shaft().position;
+  history_->add(now_, positions_);
+}
+
+double DriveRack::position_at(std::size_t i, RobotTime time) const {
+  const std::lock_guard lock(mutex_);
+  return history_->at(i, time);
+}
+
+RobotTime DriveRack::known_until() const {
+  const std::lock_guard lock(mutex_);
+  return now_;
 }
 
 void DriveRack::take_frames(RobotTime until) {

@@ -12,10 +12,11 @@
 #include "common/clock.hpp"
 #include "drivers/can/can_bus.hpp"
 #include "sim/drives/drive_node.hpp"
+#include "sim/drives/shaft_history.hpp"
 
 namespace foresight::sim {
 
-/// step() or run() from one thread; shaft(), inject() and forget_extremes() from any. At a SteppedClock it registers
+/// step() or run() from one thread; the others from any. At a SteppedClock it registers
 /// itself for every millisecond, and nobody else calls step(); it may be destroyed before the clock. The bus end
 /// is its own.
 class DriveRack {
@@ -38,6 +39,11 @@ class DriveRack {
   std::optional<std::size_t> find(std::string_view name) const;
   /// What the shaft truly does, whatever the drive tells.
   ShaftState shaft(std::size_t i) const;
+  /// Where the shaft truly was at an instant of the last four seconds, to well below a millisecond's way; outside of
+  /// them, where they begin or end.
+  double position_at(std::size_t i, RobotTime time) const;
+  /// To where the shafts' motion is known; some milliseconds behind the clock in real time.
+  RobotTime known_until() const;
   void forget_extremes(std::size_t i);
   /// `value`: see DriveFault.
   void inject(std::size_t i, DriveFault fault, double value = 0);
@@ -59,13 +65,16 @@ class DriveRack {
   void take_frames(RobotTime until);
   void post(Slot& slot, const CanFrame& frame);
   void flush(Slot& slot);
+  void remember();
 
   Clock& clock_;
   std::unique_ptr<CanBus> bus_;
   std::vector<std::unique_ptr<Slot>> slots_;
   mutable std::mutex mutex_;
   RobotTime now_;
-  std::optional<CanFrame> waiting_;  // came after the step that is due
+  std::optional<ShaftHistory> history_;  // set once the shafts are there
+  std::vector<double> positions_;        // of all shafts at now_
+  std::optional<CanFrame> waiting_;      // came after the step that is due
   std::uint64_t dropped_ = 0;
   std::shared_ptr<const bool> exists_;  // tells the clock's task that `this` is still there
 };

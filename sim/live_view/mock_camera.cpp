@@ -3,13 +3,12 @@
 #include <pthread.h>
 
 #include <cmath>
-#include <deque>
 #include <numbers>
 
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
-#include "gl/context.hpp"
-#include "sim/live_view/live_view.hpp"
+#include "common/real_time.hpp"
+#include "sim/live_view/stereo_renderer.hpp"
 #include "sim/motion.hpp"
 #include "sim/run_files.hpp"
 
@@ -19,7 +18,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kPoll = 1ms;       // for finished images
-constexpr std::size_t kUnderWay = 2;  // pairs: one is drawn while the other is fetched; more would only be older
+constexpr Duration kStopTime = 50ms;  // so long the renderer takes to stop in stepped time
+constexpr Duration kDrawTime = 60s;   // of one pair, on the slowest machine; more is a driver that hangs
+constexpr Duration kExposureUnit = 100us;
 constexpr const char* kControl = "exposure_time_absolute";
 
 void check(const MockCameraOptions& o) {
@@ -33,15 +34,14 @@ void check(const MockCameraOptions& o) {
 
 }  // namespace
 
-struct MockStereo::Shown {
-  RobotTime time;
-  Duration uncertainty;
-  std::uint64_t number;
-};
-
 MockStereo::MockStereo(std::shared_ptr<const LiveLab> world, ShaftsAt shafts, const MockCameraOptions& options,
                        Clock& clock)
-    : world_(std::move(world)), shafts_(std::move(shafts)), options_(options), clock_(clock), epoch_(clock.now()) {
+    : world_(std::move(world)),
+      shafts_(std::move(shafts)),
+      options_(options),
+      clock_(clock),
+      epoch_(clock.now()),
+      stepped_(dynamic_cast<SteppedClock*>(&clock) != nullptr) {
   check(options_);
   light_ = std::make_unique<LightMap>(world_->lab(), options_.light_coarser);
   irradiance_ = light_->lit(world_->true_state(shafts_at_rest, 0));
@@ -63,6 +63,10 @@ double MockStereo::consumers_cpu_s() const {
 
 void MockStereo::open(Side side) {
   const std::lock_guard lock(mutex_);
+  if (!open_[0] && !open_[1]) {
+    opened_ = clock_.now();
+    in_hand_ = {};
+  }
   open_[static_cast<std::size_t>(side)] = true;
   if (thread_.joinable()) return;
   std::promise<void> ready;
@@ -90,8 +94,12 @@ void MockStereo::close(Side side) noexcept {
 }
 
 void MockStereo::render(const std::stop_token& stop, std::promise<void>& ready) noexcept {
+  if (!stepped_) make_background();  // a software renderer takes all that there is
   try {
-    loop(stop, ready);
+    StereoRenderer renderer(world_->lab(), *light_, irradiance_, {options_.left, options_.right, options_.T_left_right},
+                            options_.sensor);
+    ready.set_value();
+    stepped_ ? run_stepped(stop, renderer) : run_real(stop, renderer);
   } catch (...) {
     try {
       ready.set_exception(std::current_exception());
@@ -100,74 +108,69 @@ void MockStereo::render(const std::stop_token& stop, std::promise<void>& ready) 
   }
 }
 
-void MockStereo::loop(const std::stop_token& stop, std::promise<void>& ready) {
-  const auto context = gl::create_headless_context();
-  gl::set_up_context();
-  const auto buffers = std::make_shared<const LabBuffers>(world_->lab(), *light_, irradiance_);
-  std::array<LiveView, 2> views{LiveView(buffers, options_.left, options_.sensor),
-                                LiveView(buffers, options_.right, [&] {
-                                  Sensor other = options_.sensor;
-                                  other.seed += 7919;
-                                  return other;
-                                }())};
-  for (LiveView& view : views) {  // the driver compiles with the first image, which would come too late to be trusted
-    view.draw(T_world_head_left(kHeadAtTable), world_->lab().at_rest(), 1, 0);
-    std::vector<std::uint8_t> unseen(std::size_t{2} * view.lens().width() * view.lens().height());
-    view.take(unseen, true);
-  }
-  ready.set_value();
+bool MockStereo::draw(StereoRenderer& renderer, RobotTime end_of_exposure, std::uint64_t number) {
+  const std::int64_t exposure = exposure_;
+  const RobotTime middle = end_of_exposure - exposure * kExposureUnit / 2;
+  const ShaftPositions shafts = [&](std::string_view joint) { return shafts_(joint, middle); };
+  return renderer.draw(world_->T_world_left(shafts), world_->true_state(shafts, to_seconds(middle - epoch_)),
+                       static_cast<double>(exposure) / kExposure, {middle, number});
+}
 
-  std::deque<Shown> under_way;
-  std::array<std::optional<CameraFrame>, 2> finished;
-  const auto hand_over = [&] {
-    const double before = cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
-    for (std::size_t i = 0; i < 2 && !under_way.empty(); ++i) {
-      if (finished[i] || views[i].under_way() == 0 || !views[i].ready()) continue;
-      const Lens& lens = views[i].lens();
-      CameraFrame& frame = finished[i].emplace();
-      frame.pixels.create(lens.height(), lens.width(), CV_8UC2);
-      frame.bytes = {frame.pixels.data, frame.pixels.total() * 2};
-      views[i].take({frame.pixels.data, frame.bytes.size()}, true);
-      frame.format = PixelFormat::yuyv;
-      frame.width = lens.width();
-      frame.height = lens.height();
-      frame.stride = std::size_t{2} * lens.width();
-      frame.sequence = under_way.front().number;
-      frame.time = under_way.front().time;
-      frame.uncertainty = under_way.front().uncertainty;
-    }
-    if (finished[0] && finished[1]) {
-      for (std::size_t i = 0; i < 2; ++i) newest_[i].put(std::move(*finished[i]));
-      finished = {};
-      under_way.pop_front();
-    }
-    copying_cpu_s_ = copying_cpu_s_ + cpu_seconds(CLOCK_THREAD_CPUTIME_ID) - before;
-  };
+void MockStereo::hand_over(StereoRenderer& renderer, bool wait) {
+  const double before = cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
+  if (auto pair = renderer.take(wait))
+    for (std::size_t i = 0; i < 2; ++i) newest_[i].put(std::move((*pair)[i]));
+  copying_cpu_s_ = copying_cpu_s_ + cpu_seconds(CLOCK_THREAD_CPUTIME_ID) - before;
+}
 
-  const Duration period = seconds(1 / options_.rate);
+void MockStereo::run_real(const std::stop_token& stop, StereoRenderer& renderer) {
   std::uint64_t number = 0;
-  for (RobotTime due = clock_.now() + period; !stop.stop_requested();) {
+  for (RobotTime due = clock_.now() + period(); !stop.stop_requested(); ++number) {
     while (clock_.now() < due && !stop.stop_requested()) {
-      if (!under_way.empty()) hand_over();
-      clock_.sleep_until(under_way.empty() ? due : std::min(due, clock_.now() + kPoll));
+      hand_over(renderer, false);
+      clock_.sleep_until(renderer.under_way() == 0 ? due : std::min(due, clock_.now() + kPoll));
     }
-    if (!under_way.empty()) hand_over();
-    const RobotTime now = clock_.now();
-    const ShaftPositions shafts = [&](std::string_view joint) { return shafts_(joint, now); };
-    const LabState state = world_->true_state(shafts, to_seconds(now - epoch_));
-    const Pose T_world_left = world_->T_world_left(shafts);
-    const Duration uncertainty = clock_.now() - now;
-    if (under_way.size() < kUnderWay) {
-      const double gain = static_cast<double>(exposure_) / kExposure;
-      views[0].draw(T_world_left, state, gain, number);
-      views[1].draw(T_world_left * options_.T_left_right, state, gain, number);
-      under_way.push_back({now, uncertainty, number});
-    } else {
+    hand_over(renderer, false);
+    if (renderer.under_way() < StereoRenderer::kUnderWay)
+      draw(renderer, clock_.now(), number);
+    else
       ++skipped_;
-    }
-    ++number;
-    due = std::max(due + period, clock_.now());
+    due = std::max(due + period(), clock_.now());
   }
+}
+
+void MockStereo::run_stepped(const std::stop_token& stop, StereoRenderer& renderer) {
+  while (!stop.stop_requested()) {
+    const auto number = asked_.take(kStopTime);
+    if (!number) continue;
+    draw(renderer, opened_ + static_cast<std::int64_t>(*number) * period(), *number);
+    hand_over(renderer, true);
+  }
+}
+
+CameraStatus MockStereo::wait_stepped(Side side, std::uint64_t last, Duration timeout, CameraFrame& out) noexcept {
+  const RobotTime next = opened_ + static_cast<std::int64_t>(last + 1) * period(), limit = clock_.now() + timeout;
+  clock_.sleep_until(std::min(std::max(next, clock_.now()), limit));
+  if (clock_.now() < next) return CameraStatus::timeout;
+  const auto index = static_cast<std::size_t>(side);
+  const auto number = static_cast<std::uint64_t>((clock_.now() - opened_) / period());
+  if (in_hand_[index] != number) {
+    for (auto& slot : newest_) slot.take();
+    asked_.put(number);
+    in_hand_ = {number, number};
+  }
+  auto frame = newest_[index].take(kDrawTime);  // of the machine: the clock stands still
+  if (!frame) return CameraStatus::lost;
+  out = std::move(*frame);
+  return CameraStatus::ok;
+}
+
+CameraStatus MockStereo::wait_frame(Side side, std::uint64_t last, Duration timeout, CameraFrame& out) noexcept {
+  if (stepped_) return wait_stepped(side, last, timeout, out);
+  auto frame = newest_[static_cast<std::size_t>(side)].take(timeout);
+  if (!frame) return CameraStatus::timeout;
+  out = std::move(*frame);
+  return CameraStatus::ok;
 }
 
 MockCamera::MockCamera(std::string name, Side side, std::shared_ptr<MockStereo> stereo)
@@ -198,9 +201,8 @@ CameraStatus MockCamera::wait_frame(Duration timeout, CameraFrame& out) noexcept
     clockid_t clock = 0;
     if (pthread_getcpuclockid(pthread_self(), &clock) == 0) stereo_->consumers_[index] = clock;
   }
-  auto frame = stereo_->newest_[index].take(timeout);
-  if (!frame) return CameraStatus::timeout;
-  out = std::move(*frame);
+  const CameraStatus status = stereo_->wait_frame(side_, last_.value_or(0), timeout, out);
+  if (status != CameraStatus::ok) return status;
   if (last_ && out.sequence > *last_ + 1) counters_.gaps += out.sequence - *last_ - 1;
   last_ = out.sequence;
   ++counters_.frames;

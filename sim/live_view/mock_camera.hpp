@@ -1,4 +1,4 @@
-// The cameras of the mock lab: what a stereo head sees of a live world, in real time.
+// The cameras of the mock lab: what a stereo head sees of a live world, in real or in stepped time.
 #pragma once
 
 #include <array>
@@ -19,6 +19,8 @@
 
 namespace foresight::sim {
 
+class StereoRenderer;
+
 /// Position of a joint's shaft at an instant, for the present and shortly before; see ShaftPositions.
 using ShaftsAt = std::function<std::optional<double>(std::string_view joint, RobotTime)>;
 
@@ -30,23 +32,30 @@ struct MockCameraOptions {
   double light_coarser = 4;        ///< LightMap's; fewer triangles to draw
 };
 
-/// The renderer behind both cameras: a thread of its own, with its own OpenGL context, asks the shafts, draws both
-/// images and hands each camera its newest one. The light is that of the world at rest: moving parts carry theirs
-/// along. Both cameras see the same instant; there is no motion blur and no rolling shutter.
+/// The renderer behind both cameras: a thread of its own, with its own OpenGL context, asks where the shafts were in
+/// the middle of the exposure, draws both images and hands each camera its newest one. The light is that of the world
+/// at rest: moving parts carry theirs along. Both cameras see the same instant; there is no motion blur and no rolling
+/// shutter. Any thread.
 ///
-/// Real time only (LatestValue waits by the machine's clock). Any thread.
+/// In real time the renderer goes on by itself, in the background (make_background) lest it disturbs a robot's loop,
+/// and leaves instants out that it has no time for. At a SteppedClock, images belong to instants a period apart since
+/// the cameras started, are drawn when a camera is asked for them, and are the same on every run; a camera that is
+/// asked late gets the newest instant.
 class MockStereo {
  public:
   /// Exposure at which the picture has its right brightness, 100 us units as V4L2 has it.
   static constexpr std::int64_t kExposure = 80, kLongestExposure = 300;
 
-  /// Lights the world, which takes seconds. `shafts` is called on the renderer's thread; `clock` must outlive this.
+  /// Lights the world, which takes seconds. `shafts` is called on the renderer's thread (in stepped time, while the
+  /// clock's own waits for it); `clock` must outlive this.
   /// Throws InputError (rate, odd width, lenses of two sizes).
   MockStereo(std::shared_ptr<const LiveLab> world, ShaftsAt shafts, const MockCameraOptions& options, Clock& clock);
   ~MockStereo();
 
   void set_rate(double rate);  ///< from the next start on
   double rate() const { return options_.rate; }
+  const std::shared_ptr<const LiveLab>& world() const { return world_; }
+  const Pose& T_left_right() const { return options_.T_left_right; }
   const Lens& lens(Side side) const { return side == Side::left ? options_.left : options_.right; }
   /// The world's time 0: T_world_ball and so on.
   RobotTime epoch() const { return epoch_; }
@@ -59,17 +68,23 @@ class MockStereo {
 
  private:
   friend class MockCamera;
-  struct Shown;          // an image pair under way
   void open(Side side);  ///< throws what OpenGL throws
   void close(Side side) noexcept;
+  CameraStatus wait_frame(Side side, std::uint64_t last, Duration timeout, CameraFrame& out) noexcept;
+  CameraStatus wait_stepped(Side side, std::uint64_t last, Duration timeout, CameraFrame& out) noexcept;
+  Duration period() const { return seconds(1 / options_.rate); }
   void render(const std::stop_token& stop, std::promise<void>& ready) noexcept;
-  void loop(const std::stop_token& stop, std::promise<void>& ready);
+  void run_real(const std::stop_token& stop, StereoRenderer& renderer);
+  void run_stepped(const std::stop_token& stop, StereoRenderer& renderer);
+  bool draw(StereoRenderer& renderer, RobotTime end_of_exposure, std::uint64_t number);
+  void hand_over(StereoRenderer& renderer, bool wait);
 
   const std::shared_ptr<const LiveLab> world_;
   const ShaftsAt shafts_;
   MockCameraOptions options_;
   Clock& clock_;
   const RobotTime epoch_;
+  const bool stepped_;
   std::unique_ptr<LightMap> light_;
   LightMap::Irradiance irradiance_;
   std::array<LatestValue<CameraFrame>, 2> newest_;
@@ -79,11 +94,14 @@ class MockStereo {
   std::atomic<std::uint64_t> skipped_ = 0;
   std::mutex mutex_;  // open_, thread_
   std::array<bool, 2> open_{};
+  RobotTime opened_;                        // the first camera, after none was open
+  LatestValue<std::uint64_t> asked_;        // stepped time: number of the instant to draw
+  std::array<std::uint64_t, 2> in_hand_{};  // stepped time: number of the frame in newest_; of the clock's thread
   std::jthread thread_;
 };
 
-/// YUYV. One control: exposure_time_absolute, which both cameras share. CameraFrame::time is the instant at which the
-/// shafts were asked: the true middle of the exposure.
+/// YUYV. One control: exposure_time_absolute, which both cameras share. CameraFrame::time is the instant for
+/// which the shafts were asked: the true middle of the exposure.
 class MockCamera final : public Camera {
  public:
   MockCamera(std::string name, Side side, std::shared_ptr<MockStereo> stereo);
@@ -97,6 +115,10 @@ class MockCamera final : public Camera {
   std::vector<CameraControl> controls() override;
   void set_control(const std::string& control, std::int64_t value) override;
   CameraCounters counters() const noexcept override { return counters_; }
+  /// Of both cameras, to the nearest 100 us. Throws as set_control().
+  void set_exposure(Duration exposure) {
+    set_control("exposure_time_absolute", exposure / std::chrono::microseconds(100));
+  }
 
  private:
   std::string name_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <opencv2/imgcodecs.hpp>
 #include <thread>
 
 #include "tests/apps/program.hpp"
@@ -12,6 +13,7 @@ namespace foresight {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 std::string config(const std::string& name) {
   return std::string(FORESIGHT_SOURCE_DIR) + "/configs/" + name;
@@ -43,7 +45,7 @@ TEST_P(Robot, DoesNotHomeWithoutConsent) {
 }
 
 TEST_P(Robot, StopsUnderControlWhenItIsTerminated) {
-  Program program({"robot", config(GetParam()), "--home", "--follow", motion()});
+  Program program({"robot", config(GetParam()), "--no-cameras", "--home", "--follow", motion()});
   std::this_thread::sleep_for(std::chrono::seconds(4));
   if (!program.running()) {
     const Outcome out = program.wait();
@@ -65,8 +67,48 @@ TEST_P(Robot, DoctorFindsItsDrives) {
   EXPECT_THAT(out.out, HasSubstr("its drives will fill"));
 }
 
+TEST_P(Robot, RecordsWhatItsMockCamerasSee) {
+  // Small pictures: what is tested is not the renderer.
+  std::ifstream stream(config(GetParam()));
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  for (const auto& [what, instead] :
+       {std::pair<std::string, std::string>{"[640, 480]", "[80, 60]"}, {"rate_hz: 30", "rate_hz: 5"}})
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + instead.size()))
+      text.replace(at, what.size(), instead);
+  std::filesystem::copy_file(config("arm.urdf"), folder / "arm.urdf");
+  return folder.write("rig.yaml", text).string();
+}
+
+TEST_P(Robot, RecordsWhatItsMockCamerasSee) {
+  const std::string rig = with_small_cameras(GetParam(), folder_), out = (folder_ / "run").string();
+  const Outcome robot = run_program({"robot", rig, "--stepped", "--home", "--follow", motion(), "--record", out});
+  ASSERT_EQ(robot.exit_code, 0) << robot.err << robot.out;
+  EXPECT_THAT(robot.out, HasSubstr("cameras: 5 pairs/s"));
+  EXPECT_THAT(robot.err, HasSubstr(" pairs\n"));
+  EXPECT_THAT(robot.err, Not(HasSubstr("dropped"))) << "time waits for the disk";
+  EXPECT_GT(std::filesystem::file_size(folder_ / "run-can-arm.log"), 100'000u);
+  const Outcome followed = run_program(
+      {"robot", rig, "--stepped", "--home", "--no-cameras", "--follow", (folder_ / "run-joints.csv").string()});
+  EXPECT_THAT(followed.last_line(), Not(HasSubstr("run-joints.csv"))) << "can be read as a motion";
+  const Outcome replay = run_program({"replay", out, "--delay-ms", "400"});
+  EXPECT_EQ(replay.exit_code, 0) << replay.err;
+}
+
+TEST_P(Robot, RunsItsCamerasInRealTime) {
+  const Outcome out = run_program({"robot", with_small_cameras(GetParam(), folder_), "--home", "--follow", motion()});
+  EXPECT_THAT(out.out, testing::ContainsRegex("cameras: [0-9]+ pairs/s")) << "in the summary";
+  if (out.exit_code != 0) {
+    EXPECT_THAT(out.err, HasSubstr("stopped: ")) << "nothing else may end it";
+    GTEST_SKIP() << "this machine is too busy for real time: " << out.last_line();
+  }
+  EXPECT_THAT(out.out, testing::ContainsRegex("  [0-9]+ pairs, 0 dropped"));
+  EXPECT_THAT(out.out, Not(HasSubstr("  0 pairs, 0 dropped"))) << out.out;
+}
+
 INSTANTIATE_TEST_SUITE_P(Rigs, Robot, testing::Values("minerva.yaml", "cia402.yaml"),
                          [](const auto& i) { return std::string(i.param).substr(0, std::string(i.param).find('.')); });
+
+const std::string kPlace = "T_left_right: {xyz: [0.065, 0, 0]}\n";
 
 class RobotInput : public testing::Test {
  protected:
@@ -107,6 +149,61 @@ TEST_F(RobotInput, MissingDevicesAreNamed) {
   const Outcome doctor = run_program({"doctor", rig});
   EXPECT_EQ(doctor.exit_code, 1);
   EXPECT_THAT(doctor.out, HasSubstr("BAD   bus arm"));
+}
+
+TEST_F(RobotInput, CamerasOfTheRigAreChecked) {
+  for (const char* side : {"left", "right"}) {
+    std::filesystem::create_directory(folder_ / side);
+    for (int i = 0; i < 3; ++i)
+      cv::imwrite((folder_ / side / ("image_" + std::to_string(i) + ".png")).string(),
+                  cv::Mat(12, 16, CV_8UC3, cv::Scalar::all(9)));
+  }
+  const std::string mock = "{driver: mock, size_px: [640, 480], rate_hz: 30, exposure_s: 0.008}";
+  std::string rig = rig_with("  left: " + mock, "  left: {driver: images, device: left, rate_hz: 20}");
+  EXPECT_THAT(run_program({"doctor", rig}).last_line(), HasSubstr("another world"));
+  std::string text = folder_.read("rig.yaml");
+  text.replace(text.find("right: " + mock), mock.size() + 7, "right: {driver: images, device: right, rate_hz: 20}");
+  rig = folder_.write("rig.yaml", text).string();
+  const Outcome fine = run_program({"doctor", rig});
+  EXPECT_EQ(fine.exit_code, 0) << fine.out;
+  EXPECT_THAT(fine.out, testing::ContainsRegex("ok    camera left +16 x 12 bgr, (19|20)\\.[0-9] images per second"));
+  EXPECT_THAT(fine.out, testing::ContainsRegex("ok    camera pair +(1[89]|20|21)\\.[0-9] pairs per second"));
+  std::filesystem::remove_all(folder_ / "right");
+  const Outcome broken = run_program({"doctor", rig});
+  EXPECT_EQ(broken.exit_code, 1);
+  EXPECT_THAT(broken.out, testing::ContainsRegex("BAD   camera right .*right"));
+}
+
+TEST_F(RobotInput, RecordingNeedsCameras) {
+  const std::string out = (folder_ / "run").string();
+  EXPECT_THAT(run_program({"robot", config("cia402.yaml"), "--no-cameras", "--record", out}).last_line(),
+              HasSubstr("--no-cameras"));
+  const std::string lensless = rig_with("driver: mock, size_px: [640, 480]", "driver: images, device: left");
+  EXPECT_THAT(run_program({"robot", lensless, "--record", out}).last_line(), HasSubstr("same device"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(RobotInput, RecordTakesTheCamerasOfARig) {
+  const std::string out = (folder_ / "run").string();
+  const Outcome recorded =
+      run_program({"record", out, "--rig", with_small_cameras("cia402.yaml", folder_), "--count", "3"});
+  EXPECT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_THAT(recorded.err, HasSubstr("3 pairs"));
+  EXPECT_THAT(folder_.read("run/camera.yaml"), HasSubstr("image_width: 80"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "run" / "nodes.txt"));
+  EXPECT_THAT(
+      run_program({"record", out, "--rig", config("cia402.yaml"), "--left", "/dev/video0", "--right", "x"}).last_line(),
+      HasSubstr("beside other cameras"));
+}
+
+TEST_F(RobotInput, LibcameraIsAskedForByName) {
+  const Outcome out =
+      run_program({"record", (folder_ / "run").string(), "--left", "libcamera:no-such-camera", "--right",
+                   "libcamera:nor-this", "--camera", folder_.write("l.yaml", kCamera).string(), "--camera-right",
+                   folder_.write("r.yaml", kCamera + kPlace).string()});
+  EXPECT_NE(out.exit_code, 0);
+  EXPECT_THAT(out.last_line(), testing::AnyOf(HasSubstr("libcamera knows no such camera"),
+                                              HasSubstr("install libcamera-dev and rebuild")));
 }
 
 TEST_F(RobotInput, DoctorIsUsefulWithoutAnyHardware) {

@@ -1,4 +1,4 @@
-#include "fake_v4l2.hpp"
+#include "tests/camera/fake_v4l2.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -114,6 +114,21 @@ TEST_F(V4l2, NamesWhatIsThere) {
   EXPECT_EQ(kernel_.mapped, 0);
 }
 
+TEST_F(V4l2, TheExposureIsFixedOrRefused) {
+  options_.settings.exposure = 5ms;
+  start();
+  EXPECT_EQ(kernel_.controls[V4L2_CID_EXPOSURE_AUTO], V4L2_EXPOSURE_MANUAL);
+  EXPECT_EQ(kernel_.exposure, 50u);
+  ASSERT_EQ(wait(), CameraStatus::ok);
+  EXPECT_EQ(Duration{frame_.time.ns}, 12500us) << "and counts for the capture time";
+  kernel_.failures = {{VIDIOC_S_CTRL, ERANGE}};
+  options_.settings.exposure = 20ms;
+  EXPECT_THAT(error(), AllOf(HasSubstr("0.020000 s"), HasSubstr("stands at 0.005000 s")));
+  kernel_.failures.clear();
+  kernel_.failures = {{VIDIOC_G_CTRL, EINVAL}};
+  EXPECT_THAT(error(), HasSubstr("cannot be set"));
+}
+
 TEST_F(V4l2, SetUpFailuresNameTheCallAndLeaveNothingBehind) {
   for (const unsigned long call : {VIDIOC_REQBUFS, VIDIOC_QUERYBUF, VIDIOC_QBUF, VIDIOC_STREAMON}) {
     kernel_.failures = {{call, EBUSY}};

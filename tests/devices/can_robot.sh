@@ -1,7 +1,7 @@
 #!/bin/bash
-# In the guest: the robot side on the kernel's buses, the drives in processes of their own, PowerCube and CiA 402. The
-# rigs are the examples of configs/ on vcan0 (arm) and vcan1 (head), at 50 Hz: the emulated processor has no time for
-# more. Argument: the folder of the built programs. What was said on the buses goes to /out, for `can explain`, for which
+# In the guest: the robot side on the kernel's buses, the drives in processes of their own. The rigs are the examples of
+# configs/ on vcan0 (arm) and vcan1 (head), at 50 Hz: the emulated processor has no time for more. Arguments: the folder
+# of the built programs, and powercube or cia402. What was said on the buses goes to /out, for `can explain`, for which
 # the emulated processor is slow.
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -29,12 +29,13 @@ yaw=(-0.4 0.4) elbow=(0 0.6) pan=(0 0.9)
   for i in {0..40}; do echo "$((i * 3 / 2)).$((i * 3 % 2 * 5)),${yaw[i % 2]},${elbow[i % 2]},${pan[i % 2]}"; done
 } >sweep.csv
 
-# start_drives: both racks, with lines for them on ${input[..]} and their words in NAME.out.
+# start_drives: both racks, with lines for them on ${input[..]} and their words in NAME.out. In real time, though not
+# before the robot's loop: hardware does not wait for what else this machine does.
 start_drives() {
   local name
   for name in arm head; do
     rm -f $name.in && mkfifo $name.in && : >$name.out
-    "$foresight" sim drives --rig "$rig" --can "${bus[$name]}" <$name.in >>$name.out 2>&1 &
+    chrt --fifo 50 "$foresight" sim drives --rig "$rig" --can "${bus[$name]}" <$name.in >>$name.out 2>&1 &
     drives[$name]=$!
     eval "exec ${input[$name]}>$name.in"
     eventually grep -q "drives on" $name.out
@@ -194,16 +195,15 @@ run_protocol() {
   say "the program is killed"
   check "the arm moves" set_moving
   now_ms && since=$now && kill -9 "$robot"
-  # 0.1 s of watchdog, at most 0.6 rad/s at 2 rad/s^2, and what it takes to ask.
-  check "the drives' watchdogs stop all shafts" rests_within 600
+  # 0.1 s of watchdog, at most 0.6 rad/s at 2 rad/s^2, and what it takes to ask: half of it in a guest that is held up.
+  check "the drives' watchdogs stop all shafts" rests_within 1000
   wait "$robot" 2>/dev/null
   check "  which stay at rest" stays_at_rest
   # A CiA 402 drive holds the joint in the state "quick stop active", without a brake.
   [ "$protocol" = cia402 ] || check "  with brakes closed" all_brakes_closed
   forget && before=$(positions)
-  # CiA 402 drives take where they stand as home (method 35): from there on it is 0.
   { echo "time_s,$(awk '{printf "%s%s", (NR > 1 ? "," : ""), $1}' <<<"$before")"
-    for t in 0 1; do echo "$t,$(awk -v home="$protocol" '{printf "%s%s", (NR > 1 ? "," : ""), (home == "cia402" ? 0 : $2)}' <<<"$before")"; done
+    for t in 0 1; do echo "$t,$(awk '{printf "%s%s", (NR > 1 ? "," : ""), $2}' <<<"$before")"; done
   } >hold.csv
   check "started again, the robot takes over" follows hold.csv
   check "  and holds" says "follow: done"
@@ -263,9 +263,9 @@ run_protocol() {
   stop_drives
 }
 
-# A host's question; an NMT start for all, and SYNC.
-foreign=0C1#0A3C
-run_protocol powercube minerva.yaml
-foreign="000#0100 080#"
-run_protocol cia402 cia402.yaml
+case $2 in
+  powercube) foreign=0C1#0A3C && run_protocol powercube minerva.yaml ;;  # a host's question
+  cia402) foreign="000#0100 080#" && run_protocol cia402 cia402.yaml ;;  # an NMT start for all, and SYNC
+  *) check "protocol $2" false ;;
+esac
 finish

@@ -21,10 +21,10 @@ has() {
   return 1
 }
 
-# eventually COMMAND...: within 5 s.
+# eventually COMMAND...: within $patience seconds, or 5.
 eventually() {
   local try
-  for try in {1..50}; do
+  for ((try = 0; try < ${patience:-5} * 10; ++try)); do
     "$@" >/dev/null 2>&1 && return 0
     sleep 0.1
   done
@@ -60,6 +60,23 @@ exits() {
   printf '      exit code %s instead of %s:\n' "$code" "$expected"
   sed 's/^/      | /' /tmp/exits.log
   return 1
+}
+
+# gtest PROGRAM FILTER: there are such tests, all pass, and none skips.
+gtest() {
+  "$1" --gtest_filter="$2" --gtest_brief=1 >/tmp/gtest.log 2>&1 && ! grep -qE 'SKIPPED|] 0 tests' /tmp/gtest.log &&
+    sed -n 's/^\[==========\] \(.*ran\. .*\)/      \1/p' /tmp/gtest.log && return 0
+  sed 's/^/      | /' /tmp/gtest.log
+  return 1
+}
+
+# recorded FOLDER: what `foresight record` has just written has as many images on both sides as it said, and 8 at least.
+recorded() {
+  local pairs images
+  sed 's/^/      /' /tmp/exits.log
+  pairs=$(sed -n 's/^record: \([0-9]*\) pairs.*/\1/p' /tmp/exits.log)
+  for images in rgb rgb_right; do [ "$(grep -vc '^#' "$1/$images.txt")" = "$pairs" ] || return 1; done
+  [ "$pairs" -ge 8 ]
 }
 
 # finish: ends with what the checks said.

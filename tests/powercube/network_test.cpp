@@ -210,6 +210,18 @@ TEST_F(PowerCube, HomesOnlyWhenAsked) {
   EXPECT_THAT(shoulder_.steps, Each(0.0)) << "holds where homing ended";
 }
 
+TEST_F(PowerCube, OneThatStandsAtHomeMayBeDoneBetweenTwoStateWords) {
+  shoulder_.homing_takes = Duration{0};
+  start();
+  shoulder_.state |= kHomeOk;
+  ask(DriveRequest::enable);
+  ASSERT_EQ(state(), DriveState::enabled);
+  ask(DriveRequest::home, 5);
+  run(400);
+  EXPECT_EQ(shoulder_.homes, 1);
+  EXPECT_EQ(state(), DriveState::enabled) << drive().feedback().fault;
+}
+
 TEST_F(PowerCube, HomingWithoutEndFails) {
   shoulder_.never_ends_homing = true;
   start();

@@ -79,7 +79,12 @@ void ScriptedModule::order(Command what, RobotTime now) {
   } else if (what == Command::home && (state & (kHalted | kError)) == 0) {
     ++homes;
     state = (state & ~kHomeOk) | kInProgress | kMotion;
-    home_end_ = now + 200ms;
+    home_end_ = now + homing_takes;
+    CanFrame out = command(id_, Command::home);
+    out.id = kAnswerId + static_cast<std::uint32_t>(id_);
+    out.data[1] = kAccepted;
+    out.size = 2;
+    bus_->send(out);
   }
 }
 

@@ -11,7 +11,7 @@
 namespace foresight::powercube {
 
 /// Lives on a SteppedClock, with a control cycle of 1 ms. Moves at once to where FSTEP says, at `velocity` by FRAMP and
-/// homes in 200 ms.
+/// homes in `homing_takes`.
 class ScriptedModule {
  public:
   ScriptedModule(InProcessBus& bus, SteppedClock& clock, int id);
@@ -27,6 +27,7 @@ class ScriptedModule {
   std::set<Param> read_only;
   bool deaf_to_reset = false;
   bool never_ends_homing = false;
+  Duration homing_takes = std::chrono::milliseconds(200);
 
   // What it saw.
   std::vector<double> steps, ramps;

@@ -161,6 +161,17 @@ TEST_F(Recording, ASlowDiskDropsPairsAndCountsThem) {
   EXPECT_THAT(folder_.read("run/record.yaml"), HasSubstr("dropped_by_disk: " + std::to_string(counts.dropped)));
 }
 
+TEST_F(Recording, WaitsForASlowDiskWhereItIsToldTo) {
+  options_.slowed_by = 10ms;
+  options_.waiting = 3;
+  options_.waits = true;
+  RunRecorder recorder(folder_ / "run", options_);
+  for (int i = 1; i <= 20; ++i) recorder.add(pair_at(i));
+  const RecorderCounts counts = recorder.finish("");
+  EXPECT_EQ(counts.written, 20u);
+  EXPECT_EQ(counts.dropped, 0u);
+}
+
 TEST_F(Recording, AFullDiskEndsItAndKeepsWhatIsThere) {
   RunRecorder recorder(folder_ / "run", options_);
   recorder.add(pair_at(1));

@@ -15,6 +15,8 @@ TEST(Rig, TheRigsThatComeWithTheProgramAreValid) {
     const Rig rig = read_rig(config(name));
     EXPECT_EQ(rig.joints.size(), 10u) << name;
     EXPECT_EQ(rig.buses.size(), 2u);
+    ASSERT_TRUE(rig.cameras);
+    EXPECT_TRUE(rig.cameras->mock()) << "no hardware needed";
     const auto shape = rig.shape();
     ASSERT_TRUE(shape);
     const GateOptions gate = rig.gate_options();
@@ -95,6 +97,10 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("node: 2", "node: 2, serial: 12g", {"12g", "32-bit"});
   expect("node: 2", "node: 2, serial: 0x100000000", {"32-bit"});
   expect("name: small", "name: small\nrobot: {urdf: none.urdf}", {"none.urdf", "no file"});
+  expect("name: small", "name: small\ncamera: {}", {"camera", "did you mean 'cameras'"});
+  expect("name: small", "name: small\ncameras: {left: {driver: mock}}", {"cameras.right", "missing"});
+  expect("name: small", "name: small\ncameras: {left: {driver: mock}, right: {driver: mokc}}",
+         {"rig.yaml:2: cameras.right.driver", "mokc", "mock"});
 }
 
 TEST_F(BadRig, JointsMustBeThoseOfTheUrdf) {

@@ -1,0 +1,115 @@
+#include "apps/cameras/open_stereo.hpp"
+
+#include "common/error.hpp"
+#include "sim/run_files.hpp"
+#include "sim/synth_run.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+
+Lens lens_of(const StereoConfig& config, Side side) {
+  const CameraConfig& camera = config.camera(side);
+  if (camera.calibration) return camera.calibration->lens;
+  sim::SynthOptions usual;
+  usual.width = camera.settings.width;
+  usual.height = camera.settings.height;
+  return sim::synth_lens(usual, side == Side::right);
+}
+
+std::shared_ptr<sim::MockStereo> make_mock(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock) {
+  sim::MockCameraOptions options;
+  options.left = lens_of(config, Side::left);
+  options.right = lens_of(config, Side::right);
+  const CameraConfig& right = config.camera(Side::right);
+  if (right.calibration && right.calibration->T_left_right) options.T_left_right = *right.calibration->T_left_right;
+  options.rate = config.camera(Side::left).settings.rate;
+  return std::make_shared<sim::MockStereo>(std::make_shared<const sim::LiveLab>(sim::LiveLab::Options{}), shafts,
+                                           options, clock);
+}
+
+std::unique_ptr<Camera> make_mock_camera(Side side, const CameraConfig& config,
+                                         const std::shared_ptr<sim::MockStereo>& stereo) {
+  auto camera = std::make_unique<sim::MockCamera>(side == Side::left ? "left" : "right", side, stereo);
+  for (const auto& [control, value] : config.settings.controls) camera->set_control(control, value);
+  if (config.settings.exposure.count() > 0) camera->set_exposure(config.settings.exposure);
+  return camera;
+}
+
+/// The encoders' word for head and arm. The ball has no encoder: the model leaves it at rest.
+RecordedPoses poses_by_encoders(const sim::LiveLab& world, const sim::ShaftPositions& shafts) {
+  RecordedPoses poses{sim::LiveLab::T_world_left_modelled(shafts), {}};
+  const sim::LabState state = world.modelled_state(shafts);
+  for (std::size_t k = 0; k < state.size(); ++k)
+    if (const sim::Part& part = world.lab().parts[k]; part.moves && part.name != sim::kBall)
+      poses.T_world_node.emplace_back(part.name, state[k]);
+  return poses;
+}
+
+}  // namespace
+
+StereoConfig as_mock(StereoConfig config) {
+  if (config.mock()) return config;
+  for (CameraConfig& camera : config.cameras) {
+    const CameraSettings& s = camera.settings;
+    if (s.width % 2 != 0 || s.width != config.cameras[0].settings.width ||
+        s.height != config.cameras[0].settings.height)
+      throw InputError("mock cameras", "cannot have two sizes, or an odd width", "change size_px in the rig");
+    camera.driver = CameraDriver::mock;
+    camera.device.clear();
+    camera.settings.format = PixelFormat::yuyv;
+    camera.settings.controls.clear();
+  }
+  return config;
+}
+
+OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock) {
+  OpenStereo out;
+  if (config.mock()) out.mock = make_mock(config, shafts, clock);
+  std::array<std::unique_ptr<Camera>, 2> cameras;
+  for (const Side side : {Side::left, Side::right}) {
+    const auto index = static_cast<std::size_t>(side);
+    const char* const name = side == Side::left ? "left" : "right";
+    cameras[index] = out.mock ? make_mock_camera(side, config.camera(side), out.mock)
+                              : make_camera(name, config.camera(side), clock);
+  }
+  out.cameras = std::make_unique<StereoCamera>(std::move(cameras[0]), std::move(cameras[1]), clock, config.pairing);
+  return out;
+}
+
+RecorderOptions recorder_options(const StereoConfig& config, const OpenStereo& opened, const sim::ShaftsAt& shafts) {
+  RecorderOptions out;
+  if (!opened.mock) {
+    const auto& [left, right] = config.cameras;
+    if (!left.calibration || !right.calibration)
+      throw InputError(std::string("the ") + (left.calibration ? "right" : "left") + " camera", "has no calibration",
+                       "give it as `lens` in the rig, or with --camera and --camera-right");
+    if (!right.calibration->T_left_right)
+      throw InputError("the right camera's calibration", "has no T_left_right", "say where the right camera is");
+    out.left = left.calibration->lens;
+    out.right = right.calibration->lens;
+    out.T_left_right = *right.calibration->T_left_right;
+    return out;
+  }
+  out.left = opened.mock->lens(Side::left);
+  out.right = opened.mock->lens(Side::right);
+  out.T_left_right = opened.mock->T_left_right();
+  out.poses = [shafts, world = opened.mock->world()](RobotTime time) {
+    return poses_by_encoders(*world, [&](std::string_view joint) { return shafts(joint, time); });
+  };
+  out.write_scene = [world = opened.mock->world()](const fs::path& folder) {
+    sim::ArmPosition arm;
+    for (std::size_t j = 0; j < arm.joints.size(); ++j) arm.joints[j] = *sim::shafts_at_rest(sim::arm_joints()[j].name);
+    sim::write_scene(folder, world->lab(), arm);
+  };
+  return out;
+}
+
+sim::ShaftsAt moving_shafts(RobotTime start) {
+  return [start](std::string_view joint, RobotTime time) {
+    return sim::shafts_in_motion(joint, to_seconds(time - start));
+  };
+}
+
+}  // namespace foresight

@@ -1,0 +1,35 @@
+// The one place that opens two cameras from a description, real ones or those of the mock lab.
+#pragma once
+
+#include <memory>
+
+#include "apps/record/run_recorder.hpp"
+#include "drivers/camera/camera_config.hpp"
+#include "drivers/camera/stereo_camera.hpp"
+#include "sim/live_view/mock_camera.hpp"
+
+namespace foresight {
+
+/// Two cameras, not yet started, and what mock ones see.
+struct OpenStereo {
+  std::shared_ptr<sim::MockStereo> mock;  ///< null: real cameras
+  std::unique_ptr<StereoCamera> cameras;
+};
+
+/// The same description with the mock lab's cameras in place of its own: size, rate, exposure and lenses stay. Throws
+/// InputError where these cannot be mock ones (two sizes, an odd width).
+StereoConfig as_mock(StereoConfig config);
+
+/// `shafts` is asked by mock cameras only (MockStereo). Blocks some seconds for these: their world is lit. Real
+/// cameras are found when they start. `clock` must outlive the result. Throws what make_camera() throws, and
+/// InputError where a mock camera cannot do what is asked.
+OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock);
+
+/// How a run of these cameras is recorded: lenses, and for mock ones the scene and the poses that encoders tell.
+/// Throws InputError where a real camera has no calibration, or the right one no place.
+RecorderOptions recorder_options(const StereoConfig& config, const OpenStereo& opened, const sim::ShaftsAt& shafts);
+
+/// The motion that a mock lab without drives shows, from `start` on.
+sim::ShaftsAt moving_shafts(RobotTime start);
+
+}  // namespace foresight

@@ -1,0 +1,89 @@
+#include "apps/robot/robot_cameras.hpp"
+
+#include "apps/record/recording.hpp"
+#include "common/error.hpp"
+#include "sim/run_files.hpp"
+
+namespace foresight {
+namespace {
+
+std::filesystem::path beside(std::filesystem::path out, const char* ending) {
+  if (!out.has_filename()) out = out.parent_path();  // "run/"
+  return out.concat(ending);
+}
+
+}  // namespace
+
+JointLog::JointLog(const std::filesystem::path& file, const Rig& rig) : stream_(file), joints_(rig.joints.size()) {
+  if (!stream_) throw RuntimeFailure("cannot write " + file.string(), "choose a folder that can be written");
+  stream_ << "time_s";
+  for (const std::string& joint : rig.joint_names()) stream_ << ',' << joint;
+  stream_ << '\n';
+}
+
+void JointLog::add(const RobotStatus& status) {
+  if (status.time <= last_ || status.feedback[0].time.ns == 0) return;
+  last_ = status.time;
+  stream_ << sim::format("%.9f", to_seconds(status.time - RobotTime{}));
+  for (std::size_t i = 0; i < joints_; ++i) stream_ << sim::format(",%.7f", status.feedback[i].position);
+  stream_ << '\n';
+}
+
+std::filesystem::path can_log_beside(const std::filesystem::path& out) {
+  return beside(out, "-can.log");
+}
+std::filesystem::path joint_log_beside(const std::filesystem::path& out) {
+  return beside(out, "-joints.csv");
+}
+
+struct RobotCameras::Recording {
+  RunRecorder recorder;
+  std::filesystem::path out;
+  std::string fault;  // of the watch's thread
+
+  Recording(RecorderOptions options, const std::filesystem::path& folder)
+      : recorder(folder, std::move(options)), out(folder) {}
+  void add(const StereoPair& pair) noexcept {
+    if (!fault.empty()) return;
+    try {
+      recorder.add(pair);
+    } catch (const std::exception& error) {
+      fault = error.what();
+    }
+  }
+};
+
+RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, Clock& clock, const RobotCameraOptions& options)
+    : devices_(devices), clock_(clock) {
+  const StereoConfig config = options.mock ? as_mock(*rig.cameras) : *rig.cameras;
+  if (config.mock() || options.record) ready_ = open(config);
+  if (options.record) {
+    const sim::ShaftsAt shafts = [this](std::string_view joint, RobotTime t) { return devices_.shaft_at(joint, t); };
+    RecorderOptions recording = recorder_options(config, ready_, shafts);
+    recording.waits = dynamic_cast<SteppedClock*>(&clock) != nullptr;
+    recording_ = std::make_unique<Recording>(std::move(recording), *options.record);
+  }
+  watch_ = std::make_unique<CameraWatch>(
+      [this, config] { return ready_.cameras ? std::move(ready_.cameras) : std::move(open(config).cameras); }, clock,
+      [this](const StereoPair& pair) {
+        if (recording_) recording_->add(pair);
+      });
+}
+
+RobotCameras::~RobotCameras() = default;
+
+OpenStereo RobotCameras::open(const StereoConfig& config) const {
+  const auto shafts = [this](std::string_view joint, RobotTime time) { return devices_.shaft_at(joint, time); };
+  return open_stereo(config, shafts, clock_);
+}
+
+std::string RobotCameras::finish() {
+  watch_->stop();
+  if (!recording_) return "";
+  std::string out = recording_->fault.empty() ? "" : "the recording ended early: " + recording_->fault + "\n";
+  const StereoStatus status = watch_->line().status;
+  const RecorderCounts counts = recording_->recorder.finish(camera_remarks(status));
+  return out + counts_text({counts, status, ""}) + recording_->out.string() + "\n";
+}
+
+}  // namespace foresight

@@ -1,0 +1,112 @@
+// What mock cameras see of a robot in motion, against where its emulated shafts truly were.
+#include <map>
+
+#include "apps/robot/robot_cameras.hpp"
+#include "scene/run_folder.hpp"
+#include "sim/picture.hpp"
+#include "tests/robot_devices/live_robot.hpp"
+#include "tests/scene/test_run.hpp"
+#include "tests/support/headless_test.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+class MockCameras : public HeadlessTest {
+ protected:
+  /// The rig, with small and quick cameras.
+  static Rig small(Rig rig) {
+    for (CameraConfig& camera : rig.cameras->cameras) {
+      camera.settings.width = 160;
+      camera.settings.height = 120;
+      camera.settings.rate = 10;
+    }
+    return rig;
+  }
+
+  void SetUp() override {
+    HeadlessTest::SetUp();
+    if (IsSkipped()) return;
+    context_.reset();
+    live_.get_moving();
+    // Beside the rack's own memory, once per millisecond, at the instants of the racks' steps.
+    live_.clock().sleep_until(RobotTime{(live_.clock().now().ns / 1'000'000 + 1) * 1'000'000});
+    live_.clock().every(1ms, [this](RobotTime now) {
+      for (std::size_t i = 0; i < rig_.joints.size(); ++i) seen_[now].push_back(live_.shaft(i).position);
+    });
+  }
+
+  double shaft(std::size_t joint, RobotTime time) const {
+    const auto after = seen_.upper_bound(time);
+    const auto before = std::prev(after);
+    const double share = to_seconds(time - before->first) / to_seconds(after->first - before->first);
+    return std::lerp(before->second[joint], after->second[joint], share);
+  }
+  sim::ShaftPositions shafts_at(RobotTime time) const {
+    return [this, time](std::string_view name) -> std::optional<double> {
+      const std::size_t joint = live_.joint(std::string(name));
+      return joint < rig_.joints.size() ? std::optional(shaft(joint, time)) : std::nullopt;
+    };
+  }
+
+  LiveRobot live_{"minerva.yaml"};
+  Rig rig_ = small(live_.rig());
+  std::map<RobotTime, std::vector<double>> seen_;
+  TempFolder folder_;
+};
+
+TEST_F(MockCameras, SeeTheShaftsWhereTheyWereInTheMiddleOfTheExposure) {
+  {
+    RobotCameras cameras(rig_, live_.devices(), live_.clock(), {.mock = true, .record = folder_ / "run"});
+    bool on = true;
+    live_.clock().every(10ms, [&](RobotTime) {
+      if (on) cameras.watch().step();
+    });
+    live_.move(1s);
+    on = false;
+    EXPECT_THAT(cameras.finish(), testing::HasSubstr("pairs"));
+    live_.move(20ms);
+  }
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  ASSERT_GE(run.frames().size(), 9u);
+  const sim::LiveLab world(sim::LiveLab::Options{});
+  const sim::LightMap light(world.lab(), 4);
+  const auto irradiance = light.lit(world.true_state(sim::shafts_at_rest, 0));
+  const sim::Renderer renderer(world.lab(), light);
+  const RobotTime epoch = run.frames()[0].left.time - 100ms + 4ms;  // its exposure ended a period after the start
+  double moved = 0;
+  for (const std::size_t i : {std::size_t{2}, std::size_t{7}}) {
+    const RunFrame& frame = run.frames()[i];
+    const RobotTime time = frame.left.time;
+    const auto psnr = [&](Duration late) {
+      const auto truth =
+          renderer.render(sim::RayTable(run.lens_left()), world.T_world_left(shafts_at(time + late)),
+                          world.true_state(shafts_at(time + late), to_seconds(time - epoch)), irradiance);
+      return cv::PSNR(sim::Sensor{.noise = 0}.develop(truth.light, 0, 0), read_run_image(frame.left, run.lens_left()));
+    };
+    const double now = psnr(0ms);
+    EXPECT_GT(now, 25) << "frame " << i;
+    EXPECT_GT(now, psnr(30ms) + 0.5) << "frame " << i;
+    EXPECT_GT(now, psnr(-30ms) + 0.5) << "frame " << i;
+    // What was written down as the encoders' word.
+    const Pose T = sim::LiveLab::T_world_left_modelled(shafts_at(time));
+    EXPECT_LT((T.translation() - frame.left.T_world_camera.translation()).norm(), 1e-5);
+    EXPECT_LT((T.linear() - frame.left.T_world_camera.linear()).norm(), 1e-5);
+    moved += (T.linear() - run.frames()[i - 1].left.T_world_camera.linear()).norm();
+  }
+  EXPECT_GT(moved, 0.01) << "the head moves";
+}
+
+TEST_F(MockCameras, ARigWithoutMotionKnowsItsShafts) {
+  const RobotTime now = live_.clock().now();
+  live_.move(100ms);
+  for (std::size_t i = 0; i < rig_.joints.size(); ++i) {
+    const auto name = rig_.joint_names()[i];
+    EXPECT_NEAR(live_.devices().shaft_at(name, now + 50500us).value(), shaft(i, now + 50500us), 1e-9) << name;
+  }
+  EXPECT_FALSE(live_.devices().shaft_at("tail", now));
+}
+
+}  // namespace
+}  // namespace foresight
