@@ -1,11 +1,18 @@
 #include "apps/calibrate/calibrate_command.hpp"
 
+#include "apps/calibrate/arm_command.hpp"
+#include "apps/calibrate/pan_tilt_command.hpp"
+#include "apps/calibrate/time_command.hpp"
+
 namespace foresight {
 
-void add_calibrate_command(CLI::App& app, [[maybe_unused]] std::function<int()>& action) {
+void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   auto* calibrate = app.add_subcommand("calibrate", "From a printed target to a rig that places every pixel");
   calibrate->require_subcommand(1);
   // In the order of a session.
+  add_pan_tilt(*calibrate, action);
+  add_arm(*calibrate, action);
+  add_time(*calibrate, action);
 }
 
 }  // namespace foresight

@@ -15,7 +15,7 @@ namespace {
 
 struct PanTiltCommandOptions {
   PanTiltInput input;
-  std::string poses_are = "auto";
+  std::string poses_are = "auto", gains = "auto";
   PanTiltOptions solver;
   CalibrateOutputs outputs;
 };
@@ -87,9 +87,11 @@ int run(PanTiltCommandOptions& options) {
   std::vector<std::string> notes;
   const std::vector<PanTiltSample> samples = read_pan_tilt_samples(options.input, notes);
   if (options.poses_are != "auto") options.solver.inverted = options.poses_are == "camera-world";
+  if (options.gains != "auto") options.solver.gains = options.gains == "on";
   PanTiltSummary summary = solve_pan_tilt(samples, options.solver);
   PanTiltOptions plain_options = options.solver;
-  plain_options.robust = plain_options.gains = plain_options.backlash = false;
+  plain_options.robust = plain_options.backlash = false;
+  plain_options.gains = false;
   plain_options.inverted = summary.inverted;
   const PanTiltSummary plain = solve_pan_tilt(samples, plain_options);
   summary.notes.insert(summary.notes.begin(), notes.begin(), notes.end());
@@ -119,7 +121,9 @@ void add_pan_tilt(CLI::App& calibrate, std::function<int()>& action) {
       ->check(CLI::IsMember({"auto", "world-camera", "camera-world"}))
       ->capture_default_str();
   head->add_flag("--in-order", input.in_order, "The rows are in the order in which they were taken: gives the ways");
-  head->add_flag("--gains", options->solver.gains, "Estimate what an angle is worth, too");
+  head->add_option("--gains", options->gains, "Estimate what a reported angle is worth; auto: where the left-out error falls")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->capture_default_str();
   add_outputs(*head, options->outputs);
   head->footer("Example:\n  foresight calibrate pan-tilt --images head --board apriltag:6x6:0.055 --camera left.yaml --angles angles.txt --json head.json");
   head->callback([options, &action] { action = [options] { return run(*options); }; });

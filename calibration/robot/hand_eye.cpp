@@ -48,14 +48,18 @@ HandEyeStart best_start(const HandEyeOptions& options, const HandEyeData& data, 
 // Gives the corners of turned views the order that agrees with the robot.
 void reorder(HandEyeData& data, const std::vector<BoardTurn>& turns, const HandEyeStart& start, HandEyeSummary& summary) {
   if (turns.size() < 2) return;
+  std::string names;
   for (std::size_t v = 0; v < data.corners.views.size(); ++v) {
     const BoardTurn& turn = turns[static_cast<std::size_t>(start.turned[v])];
     summary.views[v].turned = turn.quarter_turns;
     if (turn.quarter_turns == 0) continue;
+    names += (names.empty() ? "" : ", ") + data.corners.views[v].name;
     std::vector<Corner>& corners = data.corners.views[v].corners;
     for (Corner& corner : corners) corner.index = turn.order[static_cast<std::size_t>(corner.index)];
     std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.index < b.index; });
   }
+  if (!names.empty())
+    summary.notes.push_back("the corners of these views were counted from another corner of the board, as the robot says: " + names);
 }
 
 HandEyeState first_state(const HandEyeData& data, const HandEyeOptions& options, const CameraModel& camera,

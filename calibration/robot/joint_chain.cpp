@@ -29,6 +29,15 @@ std::optional<std::vector<int>> joints_between(const UrdfRobot& robot, int base,
   return joints;
 }
 
+// Fingers slide: they do not count.
+int turning_joints(const UrdfRobot& robot, int base, int link) {
+  const auto joints = joints_between(robot, base, link);
+  if (!joints) return 0;
+  return static_cast<int>(std::count_if(joints->begin(), joints->end(), [&](int joint) {
+    return robot.joints[static_cast<std::size_t>(joint)].kind == UrdfJoint::Kind::rotating;
+  }));
+}
+
 }  // namespace
 
 JointChain read_joint_chain(const std::filesystem::path& urdf, const std::string& base, const std::string& flange) {
@@ -38,10 +47,10 @@ JointChain read_joint_chain(const std::filesystem::path& urdf, const std::string
   if (!flange.empty()) {
     chain.flange = find_link(chain.robot, flange, urdf);
   } else {
-    std::size_t most = 0;
+    int most = 0;
     for (std::size_t i = 0; i < chain.robot.links.size(); ++i) {
-      const auto joints = joints_between(chain.robot, chain.base, static_cast<int>(i));
-      if (joints && joints->size() >= most) most = joints->size(), chain.flange = static_cast<int>(i);
+      const int turning = turning_joints(chain.robot, chain.base, static_cast<int>(i));
+      if (turning > most) most = turning, chain.flange = static_cast<int>(i);
     }
   }
   const auto joints = joints_between(chain.robot, chain.base, chain.flange);

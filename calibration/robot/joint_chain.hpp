@@ -16,7 +16,8 @@ struct JointChain {
   std::vector<int> joints;         ///< from base to flange, those that move and follow no other
 };
 
-/// `base`, `flange`: names of links; empty: the root, and the link with the most joints above it.
+/// `base`, `flange`: names of links; empty: the root, and the first link with all the turning
+/// joints of the longest chain above it.
 /// Throws InputError: no such link (with the nearest), no chain between the two, none that moves.
 JointChain read_joint_chain(const std::filesystem::path& urdf, const std::string& base, const std::string& flange);
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kFewestPoses = 8;
 constexpr double kLeastSweep = 0.05;  // rad
+constexpr double kFalls = 0.99;       // by which a left-out error must fall before gains are believed
 constexpr double kFits = 0.1;         // RMS rad: a chain of the wrong order is off by more
 
 double sweep(const std::vector<PanTiltSample>& samples, double PanTiltAngles::*joint) {
@@ -52,8 +53,8 @@ Vector6 off(const PanTiltState& state, const PanTiltSample& sample) {
 }
 
 // Noise from the residuals, then again with it, until both settle.
-void fit_with_noise(const std::vector<PanTiltSample>& samples, PanTiltState& state, int left_out) {
-  for (int round = 0; round < 12; ++round) {
+void fit_with_noise(const std::vector<PanTiltSample>& samples, PanTiltState& state, int left_out, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
     std::vector<double> turns, shifts;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (static_cast<int>(i) == left_out) continue;
@@ -70,9 +71,10 @@ void fit_with_noise(const std::vector<PanTiltSample>& samples, PanTiltState& sta
 }
 
 void fit(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, PanTiltState& state, int left_out) {
+  constexpr int kRounds = 12, kRoundsAgain = 3;  // leaving one out starts from the solution
   state.robust = options.robust;
   fit_pan_tilt(samples, state, left_out);
-  if (options.robust) fit_with_noise(samples, state, left_out);
+  if (options.robust) fit_with_noise(samples, state, left_out, left_out < 0 ? kRounds : kRoundsAgain);
 }
 
 std::vector<PanTiltSample> turned_round(const std::vector<PanTiltSample>& samples, bool inverted) {
@@ -104,7 +106,7 @@ PanTiltState start(std::vector<PanTiltSample>& samples, const PanTiltOptions& op
 void choose_joints(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, PanTiltState& state,
                    std::vector<std::string>& notes) {
   state.held_joints.clear();
-  if (!options.gains) state.held_joints = {0, 1};
+  if (!options.gains.value_or(false)) state.held_joints = {0, 1};
   for (int joint = 0; joint < 2; ++joint) {
     int up = 0, down = 0;
     for (const PanTiltSample& sample : samples) {
@@ -155,6 +157,19 @@ void came_from_order(std::vector<PanTiltSample>& samples, double least_rad) {
 }
 
 PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const PanTiltOptions& options) {
+  if (!options.gains && options.score) {
+    PanTiltOptions choice = options;
+    choice.gains = false;
+    PanTiltSummary without = solve_pan_tilt(given, choice);
+    choice.gains = true;
+    choice.inverted = without.inverted;
+    PanTiltSummary with = solve_pan_tilt(given, choice);
+    const double ratio = (with.loo.mm / without.loo.mm + with.loo.mrad / without.loo.mrad) / 2;
+    PanTiltSummary& better = ratio < kFalls ? with : without;
+    better.notes.push_back("gains of the joints are " + std::string(ratio < kFalls ? "estimated" : "held at 1") +
+                           ": with them the left-out error is " + readable(ratio, 3) + " of that without");
+    return std::move(better);
+  }
   require_sweeps(given);
   std::vector<PanTiltSample> samples = given;
   PanTiltSummary summary;

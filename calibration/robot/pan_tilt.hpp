@@ -43,7 +43,7 @@ struct PanTiltSample {
 };
 
 struct PanTiltOptions {
-  bool gains = false;            ///< estimate gain_pan and gain_tilt
+  std::optional<bool> gains;     ///< estimate gain_pan and gain_tilt; empty: where the left-out error falls by it
   bool backlash = true;          ///< estimate where a joint came from both sides
   bool robust = true;            ///< noise from the residuals and Cauchy's loss; false: plain least squares, 1 rad = 1 m
   std::optional<bool> inverted;  ///< the poses are T_camera_world; empty: what fits
