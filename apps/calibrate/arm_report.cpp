@@ -34,7 +34,8 @@ void plot_residuals(const HandEyeSummary& summary, HtmlReport& report) {
 
 }  // namespace
 
-nlohmann::ordered_json arm_numbers(const HandEyeSummary& s, const ArmNames& names, const std::optional<Pose>& T_head_base) {
+nlohmann::ordered_json arm_numbers(const HandEyeSummary& s, const ArmNames& names,
+                                   const std::optional<Pose>& T_head_base) {
   nlohmann::ordered_json out;
   int unused = 0;
   for (const HandEyeView& view : s.views) unused += !view.used;
@@ -48,8 +49,10 @@ nlohmann::ordered_json arm_numbers(const HandEyeSummary& s, const ArmNames& name
   out["X"] = json_of(s.X), out["X_is"] = name_of_X(s.mount);
   out["Y"] = json_of(s.Y), out["Y_is"] = name_of_Y(s.mount);
   out["board_scale"] = s.board_scale;
-  out["corner_noise_px"] = s.sigma_px, out["robot_noise_mrad"] = 1e3 * s.sigma_robot_rad, out["robot_noise_mm"] = 1e3 * s.sigma_robot_m;
-  for (std::size_t i = 0; i < s.joint_offsets.size() && i < names.joints.size(); ++i) out["joint_offsets"][names.joints[i]] = s.joint_offsets[i];
+  out["corner_noise_px"] = s.sigma_px, out["robot_noise_mrad"] = 1e3 * s.sigma_robot_rad,
+  out["robot_noise_mm"] = 1e3 * s.sigma_robot_m;
+  for (std::size_t i = 0; i < s.joint_offsets.size() && i < names.joints.size(); ++i)
+    out["joint_offsets"][names.joints[i]] = s.joint_offsets[i];
   if (T_head_base) out["T_head_base"] = json_of(*T_head_base);
   out["sigmas"] = sigmas_of(s, names);
   for (const HandEyeView& view : s.views) out["per_view"].push_back(view_numbers(view));
@@ -77,8 +80,11 @@ HtmlReport arm_report(const HandEyeSummary& s, const ArmNames& names) {
   for (const HandEyeView& view : s.views)
     rows.push_back({view.name, view.used ? "yes" : "no", std::to_string(view.points), std::to_string(view.rejected),
                     readable(view.rms_px, 3), readable(view.loo_px, 2), readable(view.loo_mm, 2),
-                    readable(1e3 * view.correction.head<3>().norm(), 2), readable(1e3 * view.correction.tail<3>().norm(), 2)});
-  report.table({"view", "used", "corners", "rejected", "rms / px", "left out / px", "left out / mm", "robot turned / mrad", "robot moved / mm"}, rows);
+                    readable(1e3 * view.correction.head<3>().norm(), 2),
+                    readable(1e3 * view.correction.tail<3>().norm(), 2)});
+  report.table({"view", "used", "corners", "rejected", "rms / px", "left out / px", "left out / mm",
+                "robot turned / mrad", "robot moved / mm"},
+               rows);
   report_sigmas(report, sigmas_of(s, names));
   return report;
 }

@@ -8,7 +8,8 @@
 
 namespace foresight {
 
-nlohmann::ordered_json arm_numbers(const HandEyeSummary& summary, const ArmNames& names, const std::optional<Pose>& T_head_base);
+nlohmann::ordered_json arm_numbers(const HandEyeSummary& summary, const ArmNames& names,
+                                   const std::optional<Pose>& T_head_base);
 HtmlReport arm_report(const HandEyeSummary& summary, const ArmNames& names);
 
 }  // namespace foresight

@@ -21,7 +21,8 @@ struct PanTiltCommandOptions {
 };
 
 nlohmann::ordered_json json_of(const PanTiltErrors& errors) {
-  return {{"mm", errors.mm}, {"mrad", errors.mrad}, {"median_mm", errors.median_mm}, {"median_mrad", errors.median_mrad}};
+  return {
+      {"mm", errors.mm}, {"mrad", errors.mrad}, {"median_mm", errors.median_mm}, {"median_mrad", errors.median_mrad}};
 }
 
 nlohmann::ordered_json numbers_of(const PanTiltSummary& s, const PanTiltSummary& plain, std::size_t poses) {
@@ -34,8 +35,12 @@ nlohmann::ordered_json numbers_of(const PanTiltSummary& s, const PanTiltSummary&
   out["noise_mm"] = s.sigma_mm, out["noise_mrad"] = s.sigma_mrad;
   out["poses_are"] = s.inverted ? "camera-world" : "world-camera";
   const PanTiltModel& m = s.model;
-  out["model"] = {{"T_world_pan", foresight::json_of(m.T_world_pan)}, {"length_m", m.length_m}, {"twist_rad", m.twist_rad},
-                  {"T_tilt_camera", foresight::json_of(m.T_tilt_camera)}, {"gain", m.gain}, {"backlash_rad", m.backlash_rad}};
+  out["model"] = {{"T_world_pan", foresight::json_of(m.T_world_pan)},
+                  {"length_m", m.length_m},
+                  {"twist_rad", m.twist_rad},
+                  {"T_tilt_camera", foresight::json_of(m.T_tilt_camera)},
+                  {"gain", m.gain},
+                  {"backlash_rad", m.backlash_rad}};
   out["sigmas"] = sigmas_of(s);
   out["notes"] = s.notes;
   return out;
@@ -49,15 +54,18 @@ HtmlReport report_of(const PanTiltSummary& s, const PanTiltSummary& plain, const
   HtmlReport report("Pan-tilt calibration");
   report.table({"error of the camera's pose", "RMS / mm", "RMS / mrad", "median / mm", "median / mrad"},
                {error_row("this fit, left out", s.loo), error_row("this fit, in sample", s.in_sample),
-                error_row("plain least squares, left out", plain.loo), error_row("plain least squares, in sample", plain.in_sample)});
+                error_row("plain least squares, left out", plain.loo),
+                error_row("plain least squares, in sample", plain.in_sample)});
   report_notes(report, s.notes);
   report.table({"", ""}, {{"T_world_pan", pose_text(s.model.T_world_pan)},
                           {"distance of the axes, mm", readable(1e3 * s.model.length_m, 3)},
                           {"angle of the axes, degrees", readable(s.model.twist_rad * 57.29577951, 4)},
                           {"T_tilt_camera", pose_text(s.model.T_tilt_camera)},
                           {"gain of pan and tilt", readable(s.model.gain[0], 5) + " " + readable(s.model.gain[1], 5)},
-                          {"backlash of pan and tilt, mrad", readable(1e3 * s.model.backlash_rad[0], 3) + " " + readable(1e3 * s.model.backlash_rad[1], 3)}});
-  HtmlReport::Series pan{"mm", {}, false}, pan_turn{"mrad", {}, false}, tilt{"mm", {}, false}, tilt_turn{"mrad", {}, false};
+                          {"backlash of pan and tilt, mrad", readable(1e3 * s.model.backlash_rad[0], 3) + " " +
+                                                                 readable(1e3 * s.model.backlash_rad[1], 3)}});
+  HtmlReport::Series pan{"mm", {}, false}, pan_turn{"mrad", {}, false}, tilt{"mm", {}, false},
+      tilt_turn{"mrad", {}, false};
   for (std::size_t i = 0; i < s.loo_steps.size(); ++i) {
     const double mm = 1e3 * s.loo_steps[i].tail<3>().norm(), mrad = 1e3 * s.loo_steps[i].head<3>().norm();
     pan.points.emplace_back(samples[i].angles.pan, mm), pan_turn.points.emplace_back(samples[i].angles.pan, mrad);
@@ -71,16 +79,17 @@ HtmlReport report_of(const PanTiltSummary& s, const PanTiltSummary& plain, const
 
 void print(const PanTiltSummary& s, const PanTiltSummary& plain) {
   const auto line = [](const std::string& name, const PanTiltErrors& e) {
-    std::cout << name << readable(e.mm, 3) << " mm, " << readable(e.mrad, 3) << " mrad RMS; median " << readable(e.median_mm, 3) << " mm, "
-              << readable(e.median_mrad, 3) << " mrad\n";
+    std::cout << name << readable(e.mm, 3) << " mm, " << readable(e.mrad, 3) << " mrad RMS; median "
+              << readable(e.median_mm, 3) << " mm, " << readable(e.median_mrad, 3) << " mrad\n";
   };
   line("this fit, left out                ", s.loo);
   line("this fit, in sample               ", s.in_sample);
   line("plain least squares, left out     ", plain.loo);
   line("plain least squares, in sample    ", plain.in_sample);
-  std::cout << "axes " << readable(1e3 * s.model.length_m, 2) << " mm apart, " << readable(s.model.twist_rad * 57.29577951, 3) << " degrees between them\n"
-            << "backlash pan " << readable(1e3 * s.model.backlash_rad[0], 3) << " mrad, tilt " << readable(1e3 * s.model.backlash_rad[1], 3)
-            << " mrad; poses beyond 5 sigma " << s.outliers << "\n";
+  std::cout << "axes " << readable(1e3 * s.model.length_m, 2) << " mm apart, "
+            << readable(s.model.twist_rad * 57.29577951, 3) << " degrees between them\n"
+            << "backlash pan " << readable(1e3 * s.model.backlash_rad[0], 3) << " mrad, tilt "
+            << readable(1e3 * s.model.backlash_rad[1], 3) << " mrad; poses beyond 5 sigma " << s.outliers << "\n";
 }
 
 int run(PanTiltCommandOptions& options) {
@@ -110,9 +119,13 @@ int run(PanTiltCommandOptions& options) {
 void add_pan_tilt(CLI::App& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<PanTiltCommandOptions>();
   PanTiltInput& input = options->input;
-  auto* head = calibrate.add_subcommand("pan-tilt", "Axes, zero angles and backlash of a two-axis head, from poses or views at known angles");
-  head->add_option("--poses", input.poses, "Camera poses in the world: 4x4 rows or x y z qx qy qz qw; or .yaml with angles: NAME: {pose, target_joints}");
-  head->add_option("--angles", input.angles, "Rows [name] pan tilt [pan_way tilt_way], rad; ways +1 or -1: from below or above");
+  auto* head = calibrate.add_subcommand(
+      "pan-tilt", "Axes, zero angles and backlash of a two-axis head, from poses or views at known angles");
+  head->add_option(
+      "--poses", input.poses,
+      "Camera poses in the world: 4x4 rows or x y z qx qy qz qw; or .yaml with angles: NAME: {pose, target_joints}");
+  head->add_option("--angles", input.angles,
+                   "Rows [name] pan tilt [pan_way tilt_way], rad; ways +1 or -1: from below or above");
   head->add_option("--images", input.images, "Views of a board or tag map that stands still, instead of poses");
   head->add_option("--corners", input.corners, "Found corners instead of images");
   head->add_option("--board", input.board, "The board or tag map, such as apriltag:6x6:0.055");
@@ -121,11 +134,14 @@ void add_pan_tilt(CLI::App& calibrate, std::function<int()>& action) {
       ->check(CLI::IsMember({"auto", "world-camera", "camera-world"}))
       ->capture_default_str();
   head->add_flag("--in-order", input.in_order, "The rows are in the order in which they were taken: gives the ways");
-  head->add_option("--gains", options->gains, "Estimate what a reported angle is worth; auto: where the left-out error falls")
+  head->add_option("--gains", options->gains,
+                   "Estimate what a reported angle is worth; auto: where the left-out error falls")
       ->check(CLI::IsMember({"auto", "on", "off"}))
       ->capture_default_str();
   add_outputs(*head, options->outputs);
-  head->footer("Example:\n  foresight calibrate pan-tilt --images head --board apriltag:6x6:0.055 --camera left.yaml --angles angles.txt --json head.json");
+  head->footer(
+      "Example:\n  foresight calibrate pan-tilt --images head --board apriltag:6x6:0.055 --camera left.yaml --angles "
+      "angles.txt --json head.json");
   head->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -15,13 +15,15 @@ namespace {
 PanTiltAngles angles_of(const std::filesystem::path& file, const FieldRow& row) {
   const std::size_t n = row.fields.size(), first = n == 3 || n == 5 ? 1 : 0;
   if (n < 2 || n > 5)
-    throw InputError(at_line(file, row.line), "has " + std::to_string(n) + " fields", "write [name] pan tilt [pan_way tilt_way], rad, ways +1 or -1");
+    throw InputError(at_line(file, row.line), "has " + std::to_string(n) + " fields",
+                     "write [name] pan tilt [pan_way tilt_way], rad, ways +1 or -1");
   PanTiltAngles angles;
   double* const places[] = {&angles.pan, &angles.tilt};
   for (std::size_t i = 0; i < n - first; ++i) {
     const auto value = parse_number(row.fields[first + i]);
     if (!value || !std::isfinite(*value))
-      throw InputError(at_line(file, row.line), in_quotes(row.fields[first + i]) + " is not a number", "write angles in rad");
+      throw InputError(at_line(file, row.line), in_quotes(row.fields[first + i]) + " is not a number",
+                       "write angles in rad");
     if (i < 2)
       *places[i] = *value;
     else
@@ -38,7 +40,8 @@ struct NamedAngles {
 };
 
 std::vector<NamedAngles> read_angles(const std::optional<std::filesystem::path>& file) {
-  if (!file) throw InputError("--angles", "no joint angles are given", "give --angles FILE, rows [name] pan tilt in rad");
+  if (!file)
+    throw InputError("--angles", "no joint angles are given", "give --angles FILE, rows [name] pan tilt in rad");
   std::vector<FieldRow> rows = read_field_rows(*file);
   if (!rows.empty() && !parse_number(rows[0].fields.back())) rows.erase(rows.begin());
   std::vector<NamedAngles> out;
@@ -56,17 +59,20 @@ std::vector<PanTiltSample> from_yaml(const std::filesystem::path& file) {
     for (const char* key : {"camera_joints", "target_joints"})
       if (joints.empty() && entry.has(key)) joints = entry.numbers(key);
     if (joints.size() != 2)
-      throw InputError(entry.where("target_joints"), "has " + std::to_string(joints.size()) + " angles", "write pan and tilt, rad");
+      throw InputError(entry.where("target_joints"), "has " + std::to_string(joints.size()) + " angles",
+                       "write pan and tilt, rad");
     PanTiltSample sample{name, {joints[0], joints[1], {}}, Pose::Identity()};
     const Eigen::Vector4d q(pose.number("qx"), pose.number("qy"), pose.number("qz"), pose.number("qw"));
-    sample.T_world_camera = checked_pose({pose.number("x"), pose.number("y"), pose.number("z")}, q, entry.where("pose"));
+    sample.T_world_camera =
+        checked_pose({pose.number("x"), pose.number("y"), pose.number("z")}, q, entry.where("pose"));
     samples.push_back(std::move(sample));
   }
   return samples;
 }
 
 std::vector<PanTiltSample> from_views(const PanTiltInput& input, std::vector<std::string>& notes) {
-  if (!input.camera) throw InputError("--camera", "is missing", "give the camera's calibrated lens for poses from views");
+  if (!input.camera)
+    throw InputError("--camera", "is missing", "give the camera's calibrated lens for poses from views");
   std::optional<Board> board;
   if (!input.board.empty()) board = parse_board(input.board);
   CornerSet corners;
@@ -74,7 +80,8 @@ std::vector<PanTiltSample> from_views(const PanTiltInput& input, std::vector<std
   if (input.images) {
     if (!board) throw InputError("--board", "is missing", "name the board in the images");
     FoundCorners found = find_in_folder(*input.images, *board);
-    for (const DroppedView& dropped : found.dropped) notes.push_back("view " + dropped.name + " is left out: " + dropped.reason);
+    for (const DroppedView& dropped : found.dropped)
+      notes.push_back("view " + dropped.name + " is left out: " + dropped.reason);
     for (const auto& image : list_images(*input.images)) images.push_back(image.stem().string());
     corners = std::move(found.corners);
   } else {
@@ -83,7 +90,9 @@ std::vector<PanTiltSample> from_views(const PanTiltInput& input, std::vector<std
   }
   const std::vector<NamedAngles> angles = read_angles(input.angles);
   if (angles.size() != images.size())
-    throw InputError("--angles", std::to_string(angles.size()) + " rows for " + std::to_string(images.size()) + " images", "give one row an image");
+    throw InputError("--angles",
+                     std::to_string(angles.size()) + " rows for " + std::to_string(images.size()) + " images",
+                     "give one row an image");
   const CameraModel camera = read_camera_file(*input.camera);
   std::vector<PanTiltSample> samples;
   for (const BoardView& view : corners.views) {
@@ -99,9 +108,12 @@ std::vector<PanTiltSample> from_files(const PanTiltInput& input, std::vector<std
   notes.insert(notes.end(), read.notes.begin(), read.notes.end());
   const std::vector<NamedAngles> angles = read_angles(input.angles);
   if (angles.size() != read.poses.size())
-    throw InputError("--angles", std::to_string(angles.size()) + " rows for " + std::to_string(read.poses.size()) + " poses", "give one row a pose");
+    throw InputError("--angles",
+                     std::to_string(angles.size()) + " rows for " + std::to_string(read.poses.size()) + " poses",
+                     "give one row a pose");
   std::vector<PanTiltSample> samples;
-  for (std::size_t i = 0; i < angles.size(); ++i) samples.push_back({read.poses[i].name, angles[i].angles, read.poses[i].pose});
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    samples.push_back({read.poses[i].name, angles[i].angles, read.poses[i].pose});
   return samples;
 }
 
@@ -113,7 +125,8 @@ std::vector<PanTiltSample> read_pan_tilt_samples(const PanTiltInput& input, std:
     samples = from_views(input, notes);
   } else if (input.poses) {
     const std::string extension = input.poses->extension().string();
-    const bool holds_angles = !input.angles && !std::filesystem::is_directory(*input.poses) && (extension == ".yaml" || extension == ".yml");
+    const bool holds_angles =
+        !input.angles && !std::filesystem::is_directory(*input.poses) && (extension == ".yaml" || extension == ".yml");
     samples = holds_angles ? from_yaml(*input.poses) : from_files(input, notes);
   } else {
     throw InputError("--poses", "neither poses nor views are given", "give --poses, --images or --corners");

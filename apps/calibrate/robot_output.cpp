@@ -17,7 +17,8 @@ nlohmann::ordered_json json_of(const CameraModel& camera) {
   nlohmann::ordered_json out;
   out["model"] = to_string(camera.distortion);
   out["width"] = camera.width, out["height"] = camera.height;
-  for (const int i : free_parameters(camera.distortion)) out["lens"].push_back(camera.lens[static_cast<std::size_t>(i)]);
+  for (const int i : free_parameters(camera.distortion))
+    out["lens"].push_back(camera.lens[static_cast<std::size_t>(i)]);
   return out;
 }
 

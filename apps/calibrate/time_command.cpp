@@ -27,7 +27,8 @@ std::vector<PoseTrack::Sample> encoder_poses(TimeCommandOptions& options, std::v
     notes.insert(notes.end(), stream.notes.begin(), stream.notes.end());
     return std::move(stream.samples);
   }
-  if (!options.joints) throw InputError("--poses", "no motion of the encoders is given", "give --poses FILE, or --joints FILE");
+  if (!options.joints)
+    throw InputError("--poses", "no motion of the encoders is given", "give --poses FILE, or --joints FILE");
   const std::vector<JointRow> rows = read_joint_stream(*options.joints);
   if (!options.urdf) {
     options.solver.rotation_only = true;
@@ -35,7 +36,8 @@ std::vector<PoseTrack::Sample> encoder_poses(TimeCommandOptions& options, std::v
   }
   JointChain chain = read_joint_chain(*options.urdf, options.base, options.flange);
   std::vector<PoseTrack::Sample> samples;
-  for (const JointRow& row : rows) samples.push_back({row.time, flange_pose(chain, row.positions, options.joints->string())});
+  for (const JointRow& row : rows)
+    samples.push_back({row.time, flange_pose(chain, row.positions, options.joints->string())});
   return samples;
 }
 
@@ -73,7 +75,8 @@ HtmlReport report_of(const TimeOffsetSummary& s, bool rotation_only) {
     mrad.points.emplace_back(s.residual_time_s[i], std::min(s.residual_mrad[i], 10 * s.scatter_mrad));
   }
   report.plot("Correlation of the angular speeds", "offset / s", "correlation", {lag});
-  if (!rotation_only) report.plot("Target's distance from its typical place (cut at 10 medians)", "time / s", "mm", {mm});
+  if (!rotation_only)
+    report.plot("Target's distance from its typical place (cut at 10 medians)", "time / s", "mm", {mm});
   report.plot("Target's turn from its typical orientation (cut at 10 medians)", "time / s", "mrad", {mrad});
   if (!rotation_only) report_sigmas(report, sigmas_of(s));
   return report;
@@ -87,17 +90,22 @@ int run(TimeCommandOptions& options) {
   TimeOffsetSummary summary = solve_time_offset(encoder, camera.samples, options.solver);
   summary.notes.insert(summary.notes.begin(), notes.begin(), notes.end());
   const bool turns = options.solver.rotation_only;
-  std::cout << "t_encoder = t_camera " << (summary.offset_s < 0 ? "- " : "+ ") << readable(1e3 * std::abs(summary.offset_s), 2) << " ms, sigma "
+  std::cout << "t_encoder = t_camera " << (summary.offset_s < 0 ? "- " : "+ ")
+            << readable(1e3 * std::abs(summary.offset_s), 2) << " ms, sigma "
             << readable(1e3 * summary.offset_sigma_s, 2) << " ms (" << summary.segments << " stretches)\n"
-            << "correlation of angular speeds " << readable(summary.correlation, 3) << " at " << readable(1e3 * summary.coarse_offset_s, 1) << " ms\n"
+            << "correlation of angular speeds " << readable(summary.correlation, 3) << " at "
+            << readable(1e3 * summary.coarse_offset_s, 1) << " ms\n"
             << "scatter of the target, median: " << (turns ? "" : readable(summary.scatter_mm, 2) + " mm, ")
-            << readable(summary.scatter_mrad, 2) << " mrad over " << summary.samples << " samples, " << summary.outliers << " beyond 5 times that\n";
-  if (!turns) std::cout << "T_hand_camera  " << pose_text(summary.X) << "\nT_base_target  " << pose_text(summary.Y) << "\n";
+            << readable(summary.scatter_mrad, 2) << " mrad over " << summary.samples << " samples, " << summary.outliers
+            << " beyond 5 times that\n";
+  if (!turns)
+    std::cout << "T_hand_camera  " << pose_text(summary.X) << "\nT_base_target  " << pose_text(summary.Y) << "\n";
   print_notes(summary.notes);
   write_json(options.outputs.json, numbers_of(summary, turns));
   if (options.outputs.report) report_of(summary, turns).write(*options.outputs.report);
   if (options.outputs.out)
-    write_result(*options.outputs.out, {"time", utc_now(), {}, "offset_sigma_s", summary.offset_sigma_s, sigmas_of(summary)},
+    write_result(*options.outputs.out,
+                 {"time", utc_now(), {}, "offset_sigma_s", summary.offset_sigma_s, sigmas_of(summary)},
                  to_yaml(summary), options.outputs.force);
   return 0;
 }
@@ -106,21 +114,30 @@ int run(TimeCommandOptions& options) {
 
 void add_time(CLI::App& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<TimeCommandOptions>();
-  auto* time = calibrate.add_subcommand("time", "Offset of the clocks, t_encoder = t_camera + offset, from motion that both saw");
-  auto* poses = time->add_option("--poses", options->poses, "Encoder stream: rows t x y z qx qy qz qw, base to hand, blanks or commas");
-  time->add_option("--camera-poses", options->camera_poses, "Camera stream: the same, target to camera or its inverse")->required();
-  time->add_option("--joints", options->joints, "Encoder log instead: rows t q1 q2 ..., rad; one or two joints of a head, or all of --urdf")
+  auto* time = calibrate.add_subcommand(
+      "time", "Offset of the clocks, t_encoder = t_camera + offset, from motion that both saw");
+  auto* poses = time->add_option("--poses", options->poses,
+                                 "Encoder stream: rows t x y z qx qy qz qw, base to hand, blanks or commas");
+  time->add_option("--camera-poses", options->camera_poses, "Camera stream: the same, target to camera or its inverse")
+      ->required();
+  time->add_option("--joints", options->joints,
+                   "Encoder log instead: rows t q1 q2 ..., rad; one or two joints of a head, or all of --urdf")
       ->excludes(poses);
   time->add_option("--urdf", options->urdf, "The robot of --joints");
   time->add_option("--base-link", options->base, "Link that stands still (default: the root)");
   time->add_option("--flange-link", options->flange, "Link that carries the camera (default: the last)");
-  time->add_option("--around", options->solver.around_s, "Rough offset where the search starts, s")->capture_default_str();
-  time->add_option("--search", options->solver.largest_offset_s, "Search to both sides, s")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
+  time->add_option("--around", options->solver.around_s, "Rough offset where the search starts, s")
+      ->capture_default_str();
+  time->add_option("--search", options->solver.largest_offset_s, "Search to both sides, s")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
   time->add_option("--segment", options->solver.segment_s, "Stretches whose errors count as independent, s")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
   add_outputs(*time, options->outputs);
-  time->footer("Example:\n  foresight calibrate time --poses encoders.csv --camera-poses camera.csv --json time.json --report time.html");
+  time->footer(
+      "Example:\n  foresight calibrate time --poses encoders.csv --camera-poses camera.csv --json time.json --report "
+      "time.html");
   time->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

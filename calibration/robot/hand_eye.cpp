@@ -13,14 +13,15 @@ namespace foresight {
 namespace {
 
 constexpr std::size_t kFewestViews = 5, kFewViews = 10;
-constexpr double kClearly = 0.7;        // of two mounts or orders of corners, the better one's misfit over the other's
-constexpr double kContradicts = 8;      // a robot pose this many times the median correction off is wrong
+constexpr double kClearly = 0.7;    // of two mounts or orders of corners, the better one's misfit over the other's
+constexpr double kContradicts = 8;  // a robot pose this many times the median correction off is wrong
 constexpr double kOpenRad = 0.1, kOpenM = 0.1;  // standard deviations from which a parameter counts as open
 
 void require_views(const HandEyeData& data) {
   const std::size_t views = data.corners.views.size();
   if (data.poses.size() != views)
-    throw InputError("--poses", std::to_string(data.poses.size()) + " robot poses for " + std::to_string(views) + " views",
+    throw InputError("--poses",
+                     std::to_string(data.poses.size()) + " robot poses for " + std::to_string(views) + " views",
                      "give one pose for each view");
   if (views < kFewestViews)
     throw InputError("--images", "the board was found in " + std::to_string(views) + " views only",
@@ -40,13 +41,15 @@ HandEyeStart best_start(const HandEyeOptions& options, const HandEyeData& data, 
   }
   if (starts.size() == 2 && starts[1].misfit_m < starts[0].misfit_m) std::swap(starts[0], starts[1]);
   if (starts.size() == 2 && starts[0].misfit_m > kClearly * starts[1].misfit_m)
-    summary.notes.push_back("a fixed and a moving camera fit about equally well (" + readable(summary.start_mm_fixed, 1) +
-                            " and " + readable(summary.start_mm_moving, 1) + " mm); say which with --camera-mount");
+    summary.notes.push_back("a fixed and a moving camera fit about equally well (" +
+                            readable(summary.start_mm_fixed, 1) + " and " + readable(summary.start_mm_moving, 1) +
+                            " mm); say which with --camera-mount");
   return starts[0];
 }
 
 // Gives the corners of turned views the order that agrees with the robot.
-void reorder(HandEyeData& data, const std::vector<BoardTurn>& turns, const HandEyeStart& start, HandEyeSummary& summary) {
+void reorder(HandEyeData& data, const std::vector<BoardTurn>& turns, const HandEyeStart& start,
+             HandEyeSummary& summary) {
   if (turns.size() < 2) return;
   std::string names;
   for (std::size_t v = 0; v < data.corners.views.size(); ++v) {
@@ -59,7 +62,8 @@ void reorder(HandEyeData& data, const std::vector<BoardTurn>& turns, const HandE
     std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.index < b.index; });
   }
   if (!names.empty())
-    summary.notes.push_back("the corners of these views were counted from another corner of the board, as the robot says: " + names);
+    summary.notes.push_back(
+        "the corners of these views were counted from another corner of the board, as the robot says: " + names);
 }
 
 HandEyeState first_state(const HandEyeData& data, const HandEyeOptions& options, const CameraModel& camera,
@@ -108,7 +112,8 @@ bool reject_view(const HandEyeData& data, const HandEyeState& state, HandEyeSele
   std::vector<std::size_t> views;
   for (std::size_t v = 0; v < data.poses.size(); ++v) {
     if (!selection.used[v]) continue;
-    const Vector6 left = Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
+    const Vector6 left =
+        Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
     turns.push_back(left.head<3>().norm()), shifts.push_back(left.tail<3>().norm());
     views.push_back(v);
   }
@@ -222,7 +227,8 @@ HandEyeSummary solve_hand_eye(const HandEyeData& given, const HandEyeOptions& op
 
   const CameraModel camera = options.camera ? *options.camera : first_lens(data.corners, options.distortion);
   std::vector<Pose> seen;
-  for (const BoardView& view : data.corners.views) seen.push_back(board_pose(camera, data.corners.p_board, view).T_camera_board);
+  for (const BoardView& view : data.corners.views)
+    seen.push_back(board_pose(camera, data.corners.p_board, view).T_camera_board);
   const std::vector<BoardTurn> turns = board_turns(data.corners.p_board, data.cols, data.rows);
   std::vector<Pose> symmetries;
   for (const BoardTurn& turn : turns) symmetries.push_back(turn.T_board_turned);

@@ -47,15 +47,15 @@ struct HandEyeOptions {
 /// What a view contributed, and what it says when it is left out.
 struct HandEyeView {
   std::string name;
-  bool used = true;           ///< false: its robot pose contradicts the others
-  int points = 0;             ///< corners used
-  int rejected = 0;           ///< corners left out
-  double rms_px = 0;          ///< of the used corners, after the solve
-  Vector6 correction;         ///< of the robot pose: rad, m, in the flange frame
-  double loo_px = 0;          ///< RMS per corner of prediction minus found, solved without this view
-  double loo_mm = 0;          ///< RMS over corners of board points by the robot minus by PnP, without this view
-  double loo_across_mm = 0;   ///< the part of it across the line of sight
-  int turned = 0;             ///< quarter turns by which the board's corner order was corrected
+  bool used = true;          ///< false: its robot pose contradicts the others
+  int points = 0;            ///< corners used
+  int rejected = 0;          ///< corners left out
+  double rms_px = 0;         ///< of the used corners, after the solve
+  Vector6 correction;        ///< of the robot pose: rad, m, in the flange frame
+  double loo_px = 0;         ///< RMS per corner of prediction minus found, solved without this view
+  double loo_mm = 0;         ///< RMS over corners of board points by the robot minus by PnP, without this view
+  double loo_across_mm = 0;  ///< the part of it across the line of sight
+  int turned = 0;            ///< quarter turns by which the board's corner order was corrected
   std::vector<Eigen::Vector2d> residuals_px;  ///< of all corners, in their order
 };
 

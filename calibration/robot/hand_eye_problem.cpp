@@ -45,7 +45,8 @@ struct CornerResidual {
   template <typename T>
   bool operator()(const T* lens, const T* X, const T* Y, const T* step, const T* scale, T* residual) const {
     Eigen::Matrix<T, 2, 1> predicted;
-    if (!project(distortion, lens, to_camera(mount, T_base_flange, X, Y, step, scale, p_board), predicted)) return false;
+    if (!project(distortion, lens, to_camera(mount, T_base_flange, X, Y, step, scale, p_board), predicted))
+      return false;
     for (int i = 0; i < 2; ++i) residual[i] = (predicted[i] - T(pixel[i])) * T(weight);
     return true;
   }
@@ -124,8 +125,11 @@ void build(const HandEyeData& data, const HandEyeSelection& selection, HandEyeSt
     for (std::size_t c = 0; c < view.corners.size(); ++c) {
       if (!selection.keep[v][c]) continue;
       const Corner& corner = view.corners[c];
-      auto* functor = new CornerResidual{state.mount, state.camera.distortion, data.poses[v].T_base_flange,
-                                         data.corners.p_board[static_cast<std::size_t>(corner.index)], corner.pixel,
+      auto* functor = new CornerResidual{state.mount,
+                                         state.camera.distortion,
+                                         data.poses[v].T_base_flange,
+                                         data.corners.p_board[static_cast<std::size_t>(corner.index)],
+                                         corner.pixel,
                                          typical / corner.sigma_px / state.sigma_px};
       out.problem.AddResidualBlock(new Cost(functor), nullptr, state.camera.lens.data(), state.X.data(), state.Y.data(),
                                    step, &state.board_scale);
@@ -182,7 +186,8 @@ void update_noise(const ArrowSystem& system, const Adjustment& adjustment, const
   double turn = 0, shift = 0, turn_known = 0, shift_known = 0;
   for (std::size_t i = 0; i < adjustment.views.size(); ++i) {
     const std::size_t v = adjustment.views[i];
-    const Vector6 left = Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
+    const Vector6 left =
+        Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
     turn += left.head<3>().squaredNorm();
     shift += left.tail<3>().squaredNorm();
     turn_known += system.own_covariance[i].topLeftCorner(3, 3).trace() / (state.sigma_rad * state.sigma_rad);
@@ -213,9 +218,9 @@ double corner_cost(const Adjustment& adjustment, const HandEyeData& data, const 
     for (std::size_t c = 0; c < view.corners.size(); ++c) {
       if (!selection.keep[v][c]) continue;
       const Corner& corner = view.corners[c];
-      const Eigen::Vector2d off = predicted_pixel(state, data.poses[v], step,
-                                                  data.corners.p_board[static_cast<std::size_t>(corner.index)]) -
-                                  corner.pixel;
+      const Eigen::Vector2d off =
+          predicted_pixel(state, data.poses[v], step, data.corners.p_board[static_cast<std::size_t>(corner.index)]) -
+          corner.pixel;
       sum += (off * typical / corner.sigma_px / state.sigma_px).squaredNorm();
     }
   }
@@ -235,7 +240,8 @@ HandEyeCovariance covariance_of(const ArrowSystem& system, const HandEyeState& s
   Eigen::Index at = 12;
   if (state.board_sigma > 0) out.board_scale_sigma = sigma[at++];
   if (!state.camera_held)
-    for (const int i : free_parameters(state.camera.distortion)) out.lens_sigma[static_cast<std::size_t>(i)] = sigma[at++];
+    for (const int i : free_parameters(state.camera.distortion))
+      out.lens_sigma[static_cast<std::size_t>(i)] = sigma[at++];
   for (std::size_t j = 0; j < state.joint_offsets.size(); ++j) out.joint_offset_sigma.push_back(sigma[at++]);
   out.corrections = system.own_covariance;
   out.open = static_cast<int>(system.open.size());

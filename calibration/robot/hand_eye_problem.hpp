@@ -13,8 +13,8 @@ struct HandEyeState {
   bool camera_held = false;
   MotionParameters X{0, 0, 0, 1, 0, 0, 0};
   MotionParameters Y{0, 0, 0, 1, 0, 0, 0};
-  double board_scale = 1;     ///< true over stated size of the board
-  double board_sigma = 0.01;  ///< of board_scale before the images; 0 holds it
+  double board_scale = 1;                          ///< true over stated size of the board
+  double board_sigma = 0.01;                       ///< of board_scale before the images; 0 holds it
   std::vector<std::array<double, 6>> corrections;  ///< one per view, zero for views left out
   std::vector<double> joint_offsets;
   double sigma_px = 0.3;

@@ -76,7 +76,8 @@ std::vector<Pose> base_or_flange_boards(CameraMount mount, std::span<const Pose>
   return out;
 }
 
-std::vector<double> misfits(const HandEyeStart& start, std::span<const Pose> T_base_flange, std::span<const Pose> seen) {
+std::vector<double> misfits(const HandEyeStart& start, std::span<const Pose> T_base_flange,
+                            std::span<const Pose> seen) {
   std::vector<double> out;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const Pose predicted = predicted_board(start.mount, T_base_flange[i], start.X, start.Y);
@@ -129,7 +130,8 @@ std::vector<std::size_t> turns_like_robot(CameraMount mount, std::span<const Pos
   return best;
 }
 
-std::vector<Pose> turned(std::span<const Pose> seen, std::span<const Pose> symmetries, const std::vector<std::size_t>& k) {
+std::vector<Pose> turned(std::span<const Pose> seen, std::span<const Pose> symmetries,
+                         const std::vector<std::size_t>& k) {
   std::vector<Pose> out;
   for (std::size_t i = 0; i < seen.size(); ++i) out.push_back(seen[i] * symmetries[k[i]]);
   return out;
@@ -181,7 +183,9 @@ CameraModel first_lens(const CornerSet& corners, Distortion distortion) {
   }
   if (K.empty() || !cv::checkRange(K) || !(K.at<double>(0, 0) > 0) || !(K.at<double>(0, 0) < 1e6))
     throw InputError("lens", "the views do not determine the focal length", "add tilted views, or give --camera FILE");
-  CameraModel camera{corners.width, corners.height, distortion,
+  CameraModel camera{corners.width,
+                     corners.height,
+                     distortion,
                      {K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2), K.at<double>(1, 2)}};
   for (int i = 0; i < 5; ++i) camera.lens[static_cast<std::size_t>(4 + i)] = d.at<double>(i);
   return camera;
@@ -207,7 +211,8 @@ BoardFit board_pose(const CameraModel& camera, const std::vector<Eigen::Vector3d
     double sum = 0;
     for (const Corner& corner : view.corners) {
       Eigen::Vector2d pixel(1e6, 1e6);
-      project<double>(camera.distortion, camera.lens.data(), T * p_board[static_cast<std::size_t>(corner.index)], pixel);
+      project<double>(camera.distortion, camera.lens.data(), T * p_board[static_cast<std::size_t>(corner.index)],
+                      pixel);
       sum += (pixel - corner.pixel).squaredNorm();
     }
     const double rms = std::sqrt(sum / static_cast<double>(view.corners.size()));
@@ -229,8 +234,8 @@ HandEyeStart start_hand_eye(CameraMount mount, std::span<const RobotPose> poses,
   HandEyeStart best = settle(mount, F, T_camera_board, symmetries, std::vector<std::size_t>(F.size(), 0));
   if (symmetries.size() < 2) return best;
   for (std::size_t anchor = 0; anchor < F.size(); anchor += std::max<std::size_t>(1, F.size() / 4)) {
-    HandEyeStart other = settle(mount, F, T_camera_board, symmetries,
-                                turns_like_robot(mount, F, T_camera_board, symmetries, anchor));
+    HandEyeStart other =
+        settle(mount, F, T_camera_board, symmetries, turns_like_robot(mount, F, T_camera_board, symmetries, anchor));
     if (other.misfit_m < 0.7 * best.misfit_m) best = std::move(other);
   }
   return best;

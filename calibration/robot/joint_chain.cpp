@@ -15,7 +15,8 @@ int find_link(const UrdfRobot& robot, const std::string& name, const std::filesy
     if (robot.links[i].name == name) return static_cast<int>(i);
     names.push_back(robot.links[i].name);
   }
-  throw InputError(urdf.string(), "has no link " + in_quotes(name), "did you mean '" + nearest_word(name, names) + "'?");
+  throw InputError(urdf.string(), "has no link " + in_quotes(name),
+                   "did you mean '" + nearest_word(name, names) + "'?");
 }
 
 // Moving joints from `base` to `link`; nothing where `base` is not above it.
@@ -55,7 +56,8 @@ JointChain read_joint_chain(const std::filesystem::path& urdf, const std::string
   }
   const auto joints = joints_between(chain.robot, chain.base, chain.flange);
   if (!joints || joints->empty())
-    throw InputError(urdf.string(), "no moving joint lies between its links for base and flange", "name them by --base-link and --flange-link");
+    throw InputError(urdf.string(), "no moving joint lies between its links for base and flange",
+                     "name them by --base-link and --flange-link");
   chain.joints = *joints;
   return chain;
 }

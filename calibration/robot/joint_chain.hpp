@@ -12,8 +12,8 @@ namespace foresight {
 
 struct JointChain {
   UrdfRobot robot;
-  int base = 0, flange = 0;        ///< links
-  std::vector<int> joints;         ///< from base to flange, those that move and follow no other
+  int base = 0, flange = 0;  ///< links
+  std::vector<int> joints;   ///< from base to flange, those that move and follow no other
 };
 
 /// `base`, `flange`: names of links; empty: the root, and the first link with all the turning

@@ -45,10 +45,11 @@ void require_two_axes(const MotionSpread& spread, const std::string& where, cons
                          " degrees at most; without turns all 3 translations of the hand-eye stay open",
                      "turn the " + body + " by 30 degrees and more about two axes");
   if (spread.second_axis_rad < std::max(kLeastTurn, 0.03 * spread.largest_turn_rad))
-    throw InputError(where,
-                     "the " + body + " turned about one axis only, " + axis_text(spread.main_axis) +
-                         " in its own frame; 2 of 12 parameters stay open: the turn about that axis and the shift along it",
-                     "add poses that turn the " + body + " about another axis");
+    throw InputError(
+        where,
+        "the " + body + " turned about one axis only, " + axis_text(spread.main_axis) +
+            " in its own frame; 2 of 12 parameters stay open: the turn about that axis and the shift along it",
+        "add poses that turn the " + body + " about another axis");
 }
 
 }  // namespace foresight

@@ -9,8 +9,8 @@
 namespace foresight {
 
 struct MotionSpread {
-  double largest_turn_rad = 0;   ///< between any two poses
-  double second_axis_rad = 0;    ///< RMS turn about the best second axis; small: one axis only
+  double largest_turn_rad = 0;                           ///< between any two poses
+  double second_axis_rad = 0;                            ///< RMS turn about the best second axis; small: one axis only
   Eigen::Vector3d main_axis = Eigen::Vector3d::UnitX();  ///< in the frame of the poses' own body
 };
 

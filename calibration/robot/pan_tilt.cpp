@@ -23,13 +23,16 @@ double sweep(const std::vector<PanTiltSample>& samples, double PanTiltAngles::*j
 
 void require_sweeps(const std::vector<PanTiltSample>& samples) {
   if (samples.size() < kFewestPoses)
-    throw InputError("--poses", std::to_string(samples.size()) + " poses", "measure at least 8, better 30, over both joints");
-  const bool pan = sweep(samples, &PanTiltAngles::pan) > kLeastSweep, tilt = sweep(samples, &PanTiltAngles::tilt) > kLeastSweep;
+    throw InputError("--poses", std::to_string(samples.size()) + " poses",
+                     "measure at least 8, better 30, over both joints");
+  const bool pan = sweep(samples, &PanTiltAngles::pan) > kLeastSweep,
+             tilt = sweep(samples, &PanTiltAngles::tilt) > kLeastSweep;
   if (pan && tilt) return;
   if (!pan && !tilt) throw InputError("--angles", "neither joint moved", "sweep both joints");
   const std::string still = pan ? "tilt" : "pan";
   throw InputError("--angles",
-                   "only the " + std::string(pan ? "pan" : "tilt") + " joint moved; 4 of 14 parameters stay open: how the " + still +
+                   "only the " + std::string(pan ? "pan" : "tilt") +
+                       " joint moved; 4 of 14 parameters stay open: how the " + still +
                        " axis points (2) and where it lies (2)",
                    "add poses at other " + still + " angles");
 }
@@ -37,7 +40,8 @@ void require_sweeps(const std::vector<PanTiltSample>& samples) {
 PanTiltErrors errors_of(const std::vector<Vector6>& steps) {
   PanTiltErrors errors;
   std::vector<double> mm, mrad;
-  for (const Vector6& step : steps) mrad.push_back(1e3 * step.head<3>().norm()), mm.push_back(1e3 * step.tail<3>().norm());
+  for (const Vector6& step : steps)
+    mrad.push_back(1e3 * step.head<3>().norm()), mm.push_back(1e3 * step.tail<3>().norm());
   const auto rms = [](const std::vector<double>& values) {
     double sum = 0;
     for (const double value : values) sum += value * value;
@@ -62,8 +66,10 @@ void fit_with_noise(const std::vector<PanTiltSample>& samples, PanTiltState& sta
       for (int k = 0; k < 3; ++k) turns.push_back(step[k]), shifts.push_back(step[3 + k]);
     }
     const double redundancy = std::sqrt(1 - 14.0 / (6.0 * static_cast<double>(samples.size())));
-    const double turn = std::max(1e-9, robust_sigma(turns) / redundancy), shift = std::max(1e-9, robust_sigma(shifts) / redundancy);
-    const bool settled = std::abs(turn - state.sigma_rad) < 1e-3 * turn && std::abs(shift - state.sigma_m) < 1e-3 * shift;
+    const double turn = std::max(1e-9, robust_sigma(turns) / redundancy),
+                 shift = std::max(1e-9, robust_sigma(shifts) / redundancy);
+    const bool settled =
+        std::abs(turn - state.sigma_rad) < 1e-3 * turn && std::abs(shift - state.sigma_m) < 1e-3 * shift;
     state.sigma_rad = turn, state.sigma_m = shift;
     if (settled) return;
     fit_pan_tilt(samples, state, left_out);
@@ -97,8 +103,10 @@ PanTiltState start(std::vector<PanTiltSample>& samples, const PanTiltOptions& op
   std::vector<double> turns;
   for (const PanTiltSample& sample : samples) turns.push_back(off(*best, sample).head<3>().norm());
   if (median(turns) > kFits)
-    throw InputError("--angles", "no two-axis head fits: half of the poses turn " + readable(median(turns) * 57.3, 1) + " degrees away",
-                     "check that angles (rad, pan first) and poses belong together, row by row");
+    throw InputError(
+        "--angles",
+        "no two-axis head fits: half of the poses turn " + readable(median(turns) * 57.3, 1) + " degrees away",
+        "check that angles (rad, pan first) and poses belong together, row by row");
   return *best;
 }
 
@@ -116,8 +124,8 @@ void choose_joints(const std::vector<PanTiltSample>& samples, const PanTiltOptio
     if (options.backlash && up >= 3 && down >= 3) continue;
     state.held_joints.push_back(2 + joint);
     if (options.backlash && up + down > 0)
-      notes.push_back(std::string(joint == 0 ? "pan" : "tilt") + " backlash stays open: come to 3 poses and more from " +
-                      (up < 3 ? "below" : "above") + " too");
+      notes.push_back(std::string(joint == 0 ? "pan" : "tilt") +
+                      " backlash stays open: come to 3 poses and more from " + (up < 3 ? "below" : "above") + " too");
   }
 }
 
@@ -151,8 +159,8 @@ void came_from_order(std::vector<PanTiltSample>& samples, double least_rad) {
     const std::array<double, 2> change{samples[i].angles.pan - samples[i - 1].angles.pan,
                                        samples[i].angles.tilt - samples[i - 1].angles.tilt};
     for (std::size_t joint = 0; joint < 2; ++joint)
-      samples[i].angles.came[joint] = std::abs(change[joint]) < least_rad ? samples[i - 1].angles.came[joint]
-                                                                          : (change[joint] > 0 ? 1 : -1);
+      samples[i].angles.came[joint] =
+          std::abs(change[joint]) < least_rad ? samples[i - 1].angles.came[joint] : (change[joint] > 0 ? 1 : -1);
   }
 }
 
@@ -187,11 +195,13 @@ PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const Pan
   }
   summary.sigma_mm = 1e3 * state.sigma_m, summary.sigma_mrad = 1e3 * state.sigma_rad;
   for (const Vector6& step : steps)
-    summary.outliers += step.head<3>().norm() > 5 * state.sigma_rad * 1.54 || step.tail<3>().norm() > 5 * state.sigma_m * 1.54;
+    summary.outliers +=
+        step.head<3>().norm() > 5 * state.sigma_rad * 1.54 || step.tail<3>().norm() > 5 * state.sigma_m * 1.54;
   int open = 0;
   const Eigen::MatrixXd covariance = pan_tilt_covariance(samples, state, open);
   if (open > 0)
-    throw InputError("--angles", std::to_string(open) + " of the head's parameters stay open", "sweep both joints, each at several angles of the other");
+    throw InputError("--angles", std::to_string(open) + " of the head's parameters stay open",
+                     "sweep both joints, each at several angles of the other");
   name_parameters(state, summary);
   for (Eigen::Index i = 0; i < covariance.rows(); ++i) summary.sigmas.push_back(std::sqrt(covariance(i, i)));
   if (!options.score) return summary;

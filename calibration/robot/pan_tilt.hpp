@@ -19,16 +19,16 @@ namespace foresight {
 
 struct PanTiltModel {
   Pose T_world_pan = Pose::Identity();
-  double length_m = 0;    ///< between the axes, along their common normal
-  double twist_rad = 0;   ///< from the pan axis to the tilt axis, about the common normal
+  double length_m = 0;   ///< between the axes, along their common normal
+  double twist_rad = 0;  ///< from the pan axis to the tilt axis, about the common normal
   Pose T_tilt_camera = Pose::Identity();
-  std::array<double, 2> gain{1, 1};         ///< true over reported angle: pan, tilt
+  std::array<double, 2> gain{1, 1};          ///< true over reported angle: pan, tilt
   std::array<double, 2> backlash_rad{0, 0};  ///< from coming from below to coming from above
 };
 
 struct PanTiltAngles {
-  double pan = 0, tilt = 0;            ///< rad, as the joints report them
-  std::array<int, 2> came{0, 0};       ///< +1: upwards, -1: downwards, 0: unknown
+  double pan = 0, tilt = 0;       ///< rad, as the joints report them
+  std::array<int, 2> came{0, 0};  ///< +1: upwards, -1: downwards, 0: unknown
 };
 
 Pose camera_pose(const PanTiltModel& model, const PanTiltAngles& angles);
@@ -43,27 +43,27 @@ struct PanTiltSample {
 };
 
 struct PanTiltOptions {
-  std::optional<bool> gains;     ///< estimate gain_pan and gain_tilt; empty: where the left-out error falls by it
-  bool backlash = true;          ///< estimate where a joint came from both sides
-  bool robust = true;            ///< noise from the residuals and Cauchy's loss; false: plain least squares, 1 rad = 1 m
+  std::optional<bool> gains;  ///< estimate gain_pan and gain_tilt; empty: where the left-out error falls by it
+  bool backlash = true;       ///< estimate where a joint came from both sides
+  bool robust = true;         ///< noise from the residuals and Cauchy's loss; false: plain least squares, 1 rad = 1 m
   std::optional<bool> inverted;  ///< the poses are T_camera_world; empty: what fits
   bool score = true;             ///< leave-one-pose-out
 };
 
 struct PanTiltErrors {
-  double mm = 0, mrad = 0;          ///< RMS of position and turn
+  double mm = 0, mrad = 0;  ///< RMS of position and turn
   double median_mm = 0, median_mrad = 0;
 };
 
 struct PanTiltSummary {
   PanTiltModel model;
   bool inverted = false;
-  std::vector<std::string> names;   ///< of the estimated parameters, unit as suffix
-  std::vector<double> sigmas;       ///< of each
+  std::vector<std::string> names;       ///< of the estimated parameters, unit as suffix
+  std::vector<double> sigmas;           ///< of each
   double sigma_mm = 0, sigma_mrad = 0;  ///< noise of a pose, per axis
   PanTiltErrors in_sample, loo;
-  int outliers = 0;                 ///< poses beyond 5 robust sigmas; they count in the errors
-  std::vector<Vector6> loo_steps;   ///< per sample: from predicted to measured pose, in the camera; empty without score
+  int outliers = 0;                ///< poses beyond 5 robust sigmas; they count in the errors
+  std::vector<Vector6> loo_steps;  ///< per sample: from predicted to measured pose, in the camera; empty without score
   std::vector<std::string> notes;
 };
 

@@ -39,9 +39,11 @@ struct PanTiltResidual {
     const T pan = joints[0] * angles.pan + joints[2] * (0.5 * angles.came[0]);
     const T tilt = joints[1] * angles.tilt + joints[3] * (0.5 * angles.came[1]);
     const Quaternion q_pan = Eigen::Map<const Quaternion>(world) * turn_about(Eigen::Vector3d::UnitZ(), pan);
-    const Quaternion q_tilt = q_pan * (turn_about(Eigen::Vector3d::UnitX(), link[1]) * turn_about(Eigen::Vector3d::UnitZ(), tilt));
+    const Quaternion q_tilt =
+        q_pan * (turn_about(Eigen::Vector3d::UnitX(), link[1]) * turn_about(Eigen::Vector3d::UnitZ(), tilt));
     const Vector along(link[0], T(0), T(0));
-    const Vector p = Eigen::Map<const Vector>(world + 4) + q_pan * along + q_tilt * Vector(Eigen::Map<const Vector>(camera + 4));
+    const Vector p =
+        Eigen::Map<const Vector>(world + 4) + q_pan * along + q_tilt * Vector(Eigen::Map<const Vector>(camera + 4));
     const Quaternion q = q_tilt * Eigen::Map<const Quaternion>(camera);
     const Quaternion off = q.conjugate() * q_measured.cast<T>();
     const T wxyz[4] = {off.w(), off.x(), off.y(), off.z()};
@@ -55,15 +57,16 @@ struct PanTiltResidual {
   }
 };
 
-void build(const std::vector<PanTiltSample>& samples, PanTiltState& state, int left_out, bool turns_only, ceres::Problem& problem) {
+void build(const std::vector<PanTiltSample>& samples, PanTiltState& state, int left_out, bool turns_only,
+           ceres::Problem& problem) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (static_cast<int>(i) == left_out) continue;
     auto* functor = new PanTiltResidual{samples[i].angles, Eigen::Quaterniond(samples[i].T_world_camera.linear()),
                                         samples[i].T_world_camera.translation(), 1 / state.sigma_rad,
                                         turns_only ? 0 : 1 / state.sigma_m};
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PanTiltResidual, 6, 7, 2, 7, 4>(functor),
-                             state.robust ? new ceres::CauchyLoss(kRobust) : nullptr, state.world.data(), state.link.data(),
-                             state.camera.data(), state.joints.data());
+                             state.robust ? new ceres::CauchyLoss(kRobust) : nullptr, state.world.data(),
+                             state.link.data(), state.camera.data(), state.joints.data());
   }
   problem.SetManifold(state.world.data(), motion_manifold());
   problem.SetManifold(state.camera.data(), motion_manifold());
@@ -79,8 +82,10 @@ std::vector<Eigen::Quaterniond> cube_turns() {
   const double quarter = 1.5707963267948966;
   for (int spin = 0; spin < 4; ++spin) {
     const Eigen::Quaterniond about_z(Eigen::AngleAxisd(spin * quarter, Eigen::Vector3d::UnitZ()));
-    for (int i = 0; i < 4; ++i) turns.push_back(Eigen::Quaterniond(Eigen::AngleAxisd(i * quarter, Eigen::Vector3d::UnitX())) * about_z);
-    for (const int i : {1, 3}) turns.push_back(Eigen::Quaterniond(Eigen::AngleAxisd(i * quarter, Eigen::Vector3d::UnitY())) * about_z);
+    for (int i = 0; i < 4; ++i)
+      turns.push_back(Eigen::Quaterniond(Eigen::AngleAxisd(i * quarter, Eigen::Vector3d::UnitX())) * about_z);
+    for (const int i : {1, 3})
+      turns.push_back(Eigen::Quaterniond(Eigen::AngleAxisd(i * quarter, Eigen::Vector3d::UnitY())) * about_z);
   }
   return turns;
 }
@@ -122,7 +127,8 @@ double fit_pan_tilt(const std::vector<PanTiltSample>& samples, PanTiltState& sta
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (!summary.IsSolutionUsable())
-    throw RuntimeFailure("the pan-tilt fit does not converge (" + summary.message + ")", "check that the angles belong to the poses");
+    throw RuntimeFailure("the pan-tilt fit does not converge (" + summary.message + ")",
+                         "check that the angles belong to the poses");
   return summary.final_cost;
 }
 

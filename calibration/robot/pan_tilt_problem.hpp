@@ -7,11 +7,11 @@
 namespace foresight {
 
 struct PanTiltState {
-  MotionParameters world{0, 0, 0, 1, 0, 0, 0};   ///< T_world_pan
+  MotionParameters world{0, 0, 0, 1, 0, 0, 0};        ///< T_world_pan
   std::array<double, 2> link{0, 1.5707963267948966};  ///< length, twist
-  MotionParameters camera{0, 0, 0, 1, 0, 0, 0};  ///< T_tilt_camera
-  std::array<double, 4> joints{1, 1, 0, 0};      ///< gains, backlashes
-  std::vector<int> held_joints{0, 1, 2, 3};      ///< entries of `joints` that are not estimated
+  MotionParameters camera{0, 0, 0, 1, 0, 0, 0};       ///< T_tilt_camera
+  std::array<double, 4> joints{1, 1, 0, 0};           ///< gains, backlashes
+  std::vector<int> held_joints{0, 1, 2, 3};           ///< entries of `joints` that are not estimated
   double sigma_rad = 1, sigma_m = 1;
   bool robust = false;
 };

@@ -41,7 +41,8 @@ PoseStream read_pose_stream(const std::filesystem::path& file) {
     if (!stream.samples.empty()) require_ascending(row, stream.samples.back().time, time);
     stream.samples.push_back({time, pose_fields(row, 1)});
   }
-  if (repeated > 0) stream.notes.push_back(std::to_string(repeated) + " rows repeat the time before them in " + file.string());
+  if (repeated > 0)
+    stream.notes.push_back(std::to_string(repeated) + " rows repeat the time before them in " + file.string());
   return stream;
 }
 
@@ -53,7 +54,8 @@ std::vector<JointRow> read_joint_stream(const std::filesystem::path& file) {
     for (std::size_t i = 1; i < row.fields.size(); ++i) {
       const auto value = parse_number(row.fields[i]);
       if (!value || !std::isfinite(*value))
-        throw InputError(row.where(), in_quotes(row.fields[i]) + " is not a finite number", "correct or remove the line");
+        throw InputError(row.where(), in_quotes(row.fields[i]) + " is not a finite number",
+                         "correct or remove the line");
       joints.positions.push_back(*value);
     }
     if (joints.positions.empty() || (!rows.empty() && joints.positions.size() != rows[0].positions.size()))

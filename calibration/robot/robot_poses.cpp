@@ -34,7 +34,8 @@ Pose matrix_pose(const std::vector<double>& m, const std::string& where) {
   if (!(off <= kUnrigid) || R.determinant() < 0)
     throw InputError(where,
                      "the 4x4 matrix is no rotation and translation (" +
-                         (R.determinant() < 0 ? std::string("it mirrors") : "R R^T is off by " + readable(off, 3)) + ")",
+                         (R.determinant() < 0 ? std::string("it mirrors") : "R R^T is off by " + readable(off, 3)) +
+                         ")",
                      "write an orthonormal rotation with determinant 1");
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Pose pose = Pose::Identity();
@@ -117,7 +118,8 @@ std::vector<NamedPose> folder_poses(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
-    if (extension == ".yaml" || extension == ".yml" || extension == ".txt" || extension == ".csv") files.push_back(entry);
+    if (extension == ".yaml" || extension == ".yml" || extension == ".txt" || extension == ".csv")
+      files.push_back(entry);
   }
   std::sort(files.begin(), files.end(),
             [](const auto& a, const auto& b) { return natural_less(a.stem().string(), b.stem().string()); });
@@ -158,7 +160,8 @@ std::optional<long long> last_number(const std::string& name) {
   const std::size_t end = text.find_last_of("0123456789");
   if (end == std::string::npos) return std::nullopt;
   const std::size_t before = text.find_last_not_of("0123456789", end);
-  return parse_integer(text.substr(before == std::string::npos ? 0 : before + 1, end - (before == std::string::npos ? 0 : before + 1) + 1));
+  return parse_integer(text.substr(before == std::string::npos ? 0 : before + 1,
+                                   end - (before == std::string::npos ? 0 : before + 1) + 1));
 }
 
 // Poses by a key of their names; nothing where keys repeat or a view finds none.
@@ -180,7 +183,8 @@ std::optional<std::vector<Pose>> match_by(const std::vector<NamedPose>& poses, c
 }  // namespace
 
 RobotPoses read_robot_poses(const std::filesystem::path& path, PoseUnit unit) {
-  if (!std::filesystem::exists(path)) throw InputError(path.string(), "does not exist", "give a file or folder of poses");
+  if (!std::filesystem::exists(path))
+    throw InputError(path.string(), "does not exist", "give a file or folder of poses");
   RobotPoses out;
   if (std::filesystem::is_directory(path))
     out.poses = folder_poses(path);
@@ -198,7 +202,8 @@ RobotPoses read_robot_poses(const std::filesystem::path& path, PoseUnit unit) {
   if (unit == PoseUnit::millimetre)
     for (NamedPose& named : out.poses) named.pose.translation() *= 1e-3;
   if (looks_w_first(out.poses))
-    out.notes.push_back("the first number of every quaternion is near 1: are they written qw qx qy qz? Foresight reads qx qy qz qw");
+    out.notes.push_back(
+        "the first number of every quaternion is near 1: are they written qw qx qy qz? Foresight reads qx qy qz qw");
   return out;
 }
 
@@ -210,7 +215,8 @@ MatchedPoses match_poses(const std::vector<NamedPose>& poses, const std::vector<
     if (const auto found = match_by(poses, views, last_number)) return {*found, "by number"};
   }
   if (poses.size() != images.size())
-    throw InputError("--poses", std::to_string(poses.size()) + " poses for " + std::to_string(images.size()) + " images",
+    throw InputError("--poses",
+                     std::to_string(poses.size()) + " poses for " + std::to_string(images.size()) + " images",
                      "give one pose an image, or name the poses as the images");
   std::map<std::string, Pose> by_image;
   for (std::size_t i = 0; i < images.size(); ++i) by_image[stem(images[i])] = poses[i].pose;

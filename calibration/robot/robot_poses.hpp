@@ -24,11 +24,11 @@ struct RobotPoses {
 
 enum class PoseUnit { automatic, metre, millimetre };
 
-/// A folder with one file a pose (.yaml with x y z qx qy qz qw, or a 4x4 matrix as text), in natural order of their names; or
-/// one text file: 16 numbers a line, 4 lines of 4 (blank lines and a leading count are passed over),
-/// or [name or time] x y z qx qy qz qw. Blanks or commas between. Throws InputError naming file and
-/// line: another form, no rigid matrix (a quaternion with w first is told), not finite.
-/// `unit`: automatic takes a median distance beyond 20 for millimetres and says so.
+/// A folder with one file a pose (.yaml with x y z qx qy qz qw, or a 4x4 matrix as text), in natural order of their
+/// names; or one text file: 16 numbers a line, 4 lines of 4 (blank lines and a leading count are passed over), or [name
+/// or time] x y z qx qy qz qw. Blanks or commas between. Throws InputError naming file and line: another form, no rigid
+/// matrix (a quaternion with w first is told), not finite. `unit`: automatic takes a median distance beyond 20 for
+/// millimetres and says so.
 RobotPoses read_robot_poses(const std::filesystem::path& path, PoseUnit unit);
 
 /// The pose of each of `views`, by name (equal stems, else the number in them) where the poses have

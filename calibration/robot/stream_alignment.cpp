@@ -31,7 +31,8 @@ Speeds speeds_of(const PoseTrack& track, RobotTime zero) {
   const double last = to_seconds(track.samples().back().time - zero);
   std::vector<double> known;
   for (double t = out.first_s; t <= last; t += kStep) {
-    const auto a = track.at(zero + seconds(t - kHalfWindow), Duration{0}), b = track.at(zero + seconds(t + kHalfWindow), Duration{0});
+    const auto a = track.at(zero + seconds(t - kHalfWindow), Duration{0}),
+               b = track.at(zero + seconds(t + kHalfWindow), Duration{0});
     const bool valid = a.status != StateStatus::invalid && b.status != StateStatus::invalid;
     const double turn = valid ? rotation_vector(a.pose.linear().transpose() * b.pose.linear()).norm() : NAN;
     out.values.push_back(turn / (2 * kHalfWindow));
@@ -67,8 +68,9 @@ double correlation(const Speeds& a, const Speeds& b, long shift, std::size_t str
            readable(to_seconds(Duration{track.samples().back().time.ns}), 3) + " s";
   };
   throw InputError("--camera-poses",
-                   "the streams share less than 3 s of known motion: encoders " + span(encoder) + ", camera " + span(camera) + ", offsets up to " +
-                       readable(options.largest_offset_s, 1) + " s around " + readable(options.around_s, 3) + " s",
+                   "the streams share less than 3 s of known motion: encoders " + span(encoder) + ", camera " +
+                       span(camera) + ", offsets up to " + readable(options.largest_offset_s, 1) + " s around " +
+                       readable(options.around_s, 3) + " s",
                    "give streams of one session, or the rough offset by --around");
 }
 
@@ -79,7 +81,8 @@ Eigen::Matrix3d wahba(const std::vector<AlignedPose>& poses) {
     while (poses[j].time_s - poses[i].time_s > 0.3) ++i;
     if (i == j) continue;
     hand.push_back(rotation_vector(poses[i].encoder.linear().transpose() * poses[j].encoder.linear()));
-    camera.push_back(rotation_vector(poses[i].T_camera_target.linear() * poses[j].T_camera_target.linear().transpose()));
+    camera.push_back(
+        rotation_vector(poses[i].T_camera_target.linear() * poses[j].T_camera_target.linear().transpose()));
   }
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   double limit = 1e300;
@@ -122,7 +125,8 @@ Lag correlate_speeds(const PoseTrack& encoder, const PoseTrack& camera, const Ti
   best.offset_s = best.lags_s[i];
   if (i > 0 && i + 1 < best.lags_s.size()) {
     const double l = best.correlations[i - 1], m = best.correlations[i], r = best.correlations[i + 1];
-    if (const double bend = l - 2 * m + r; bend < 0) best.offset_s += kStep * std::clamp(0.5 * (l - r) / bend, -0.5, 0.5);
+    if (const double bend = l - 2 * m + r; bend < 0)
+      best.offset_s += kStep * std::clamp(0.5 * (l - r) / bend, -0.5, 0.5);
   }
   return best;
 }
@@ -166,7 +170,8 @@ StreamHandEye stream_hand_eye(const std::vector<AlignedPose>& poses, bool rotati
   }
   out.Y = typical_pose(targets);
   std::vector<double> off;
-  for (const Pose& target : targets) off.push_back(0.1 * rotation_vector(out.Y.linear().transpose() * target.linear()).norm());
+  for (const Pose& target : targets)
+    off.push_back(0.1 * rotation_vector(out.Y.linear().transpose() * target.linear()).norm());
   out.misfit = median(off);
   return out;
 }

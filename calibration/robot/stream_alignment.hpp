@@ -16,8 +16,8 @@ struct Lag {
 Lag correlate_speeds(const PoseTrack& encoder, const PoseTrack& camera, const TimeOffsetOptions& options);
 
 struct AlignedPose {
-  double time_s = 0;        ///< camera time since the encoder's first sample
-  Pose encoder;             ///< at that time plus the offset
+  double time_s = 0;  ///< camera time since the encoder's first sample
+  Pose encoder;       ///< at that time plus the offset
   Pose T_camera_target;
 };
 

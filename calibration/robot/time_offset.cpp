@@ -37,7 +37,8 @@ struct Track {
       q.emplace_back(sample.pose.linear());
       p.push_back(sample.pose.translation());
     }
-    for (std::size_t i = 0; i + 1 < q.size(); ++i) turn.push_back(rotation_vector((q[i].conjugate() * q[i + 1]).toRotationMatrix()));
+    for (std::size_t i = 0; i + 1 < q.size(); ++i)
+      turn.push_back(rotation_vector((q[i].conjugate() * q[i + 1]).toRotationMatrix()));
   }
 
   std::size_t bracket(double t) const {
@@ -71,7 +72,8 @@ struct StreamResidual {
     const Vector half_way = track.turn[k].cast<T>() * s;
     T q_step[4];
     ceres::AngleAxisToQuaternion(half_way.data(), q_step);
-    const Eigen::Quaternion<T> q_hand = track.q[k].cast<T>() * Eigen::Quaternion<T>(q_step[0], q_step[1], q_step[2], q_step[3]);
+    const Eigen::Quaternion<T> q_hand =
+        track.q[k].cast<T>() * Eigen::Quaternion<T>(q_step[0], q_step[1], q_step[2], q_step[3]);
     const Vector p_hand = track.p[k].cast<T>() + s * (track.p[k + 1] - track.p[k]).cast<T>();
 
     const Eigen::Map<const Eigen::Quaternion<T>> qX(X), qY(Y);
@@ -134,12 +136,14 @@ void refine(const Track& track, const std::vector<AlignedPose>& poses, bool rota
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     if (!summary.IsSolutionUsable())
-      throw RuntimeFailure("the time offset does not converge (" + summary.message + ")", "check that both streams belong together");
+      throw RuntimeFailure("the time offset does not converge (" + summary.message + ")",
+                           "check that both streams belong together");
     const std::vector<double> r = residuals_of(problem, state);
     std::vector<double> turns, shifts;
     for (std::size_t i = 0; i < r.size(); ++i) (i % 6 < 3 ? turns : shifts).push_back(r[i]);
     const double turn = std::max(1e-6, robust_sigma(turns)), shift = std::max(1e-6, robust_sigma(shifts));
-    const bool settled = std::abs(turn - state.sigma_turn) < 0.01 * turn && std::abs(shift - state.sigma_shift) < 0.01 * shift;
+    const bool settled =
+        std::abs(turn - state.sigma_turn) < 0.01 * turn && std::abs(shift - state.sigma_shift) < 0.01 * shift;
     state.sigma_turn = turn, state.sigma_shift = rotation_only ? 1 : shift;
     if (settled) return;
   }
@@ -158,9 +162,13 @@ Eigen::MatrixXd segment_covariance(ceres::Problem& problem, const std::vector<Al
   std::map<long, Eigen::VectorXd> gradients;
   for (std::size_t row = 0; row < r.size(); ++row) {
     Eigen::VectorXd j = Eigen::VectorXd::Zero(J.num_cols);
-    for (int k = J.rows[row]; k < J.rows[row + 1]; ++k) j[J.cols[static_cast<std::size_t>(k)]] = J.values[static_cast<std::size_t>(k)];
+    for (int k = J.rows[row]; k < J.rows[row + 1]; ++k)
+      j[J.cols[static_cast<std::size_t>(k)]] = J.values[static_cast<std::size_t>(k)];
     H += j * j.transpose();
-    auto& g = gradients.try_emplace(std::lround(std::floor(poses[row / 6].time_s / segment_s)), Eigen::VectorXd::Zero(J.num_cols)).first->second;
+    auto& g =
+        gradients
+            .try_emplace(std::lround(std::floor(poses[row / 6].time_s / segment_s)), Eigen::VectorXd::Zero(J.num_cols))
+            .first->second;
     g += j * r[row];
   }
   segments = static_cast<int>(gradients.size());
@@ -172,8 +180,8 @@ Eigen::MatrixXd segment_covariance(ceres::Problem& problem, const std::vector<Al
   return inverse * middle * inverse * (n / std::max(1.0, n - std::min(parameters, n / 2)));
 }
 
-void measure_scatter(const Track& track, const std::vector<AlignedPose>& poses, const PoseTrack& encoder, bool rotation_only,
-                     TimeOffsetSummary& summary) {
+void measure_scatter(const Track& track, const std::vector<AlignedPose>& poses, const PoseTrack& encoder,
+                     bool rotation_only, TimeOffsetSummary& summary) {
   std::vector<Pose> targets;
   for (const AlignedPose& pose : poses) {
     const RobotTime t = encoder.samples().front().time + seconds(pose.time_s + summary.offset_s);
@@ -195,15 +203,17 @@ void measure_scatter(const Track& track, const std::vector<AlignedPose>& poses, 
 
 void require_motion(const std::vector<AlignedPose>& poses, const TimeOffsetOptions& options) {
   if (poses.size() < kFewestSamples)
-    throw InputError("--camera-poses",
-                     "only " + std::to_string(poses.size()) + " camera poses fall into gapless stretches of the encoders",
-                     "record 20 s and more without drop-outs");
+    throw InputError(
+        "--camera-poses",
+        "only " + std::to_string(poses.size()) + " camera poses fall into gapless stretches of the encoders",
+        "record 20 s and more without drop-outs");
   std::vector<Pose> encoder;
   for (const AlignedPose& pose : poses) encoder.push_back(pose.encoder);
   const MotionSpread spread = motion_spread(encoder);
   if (!options.rotation_only) return require_two_axes(spread, "--poses", "hand");
   if (spread.largest_turn_rad < kLeastTurn)
-    throw InputError("--joints", "the joints moved by " + readable(spread.largest_turn_rad * 57.29578, 1) + " degrees at most",
+    throw InputError("--joints",
+                     "the joints moved by " + readable(spread.largest_turn_rad * 57.29578, 1) + " degrees at most",
                      "sweep a joint to and fro by 30 degrees and more");
 }
 

@@ -19,7 +19,7 @@ struct Count {
 
 // 92 to 98 % over 200 rigs; the few of a short run scatter more.
 void expect_honest(const Count& count) {
-  RecordProperty("share", std::to_string(count.share()));
+  testing::Test::RecordProperty("share", std::to_string(count.share()));
   std::printf("inside 2 sigma: %d of %d = %.3f\n", count.inside, count.all, count.share());
   EXPECT_GE(count.share(), long_run() ? 0.92 : 0.85);
   if (long_run()) EXPECT_LE(count.share(), 0.98);
@@ -31,11 +31,13 @@ TEST(Coverage, HandEye) {
   HandEyeOptions options;
   options.score = false;
   for (int i = 0; i < (long_run() ? 200 : 12); ++i) {
-    const HandEyeRig rig = make_rig(random, {.mount = i % 2 == 0 ? CameraMount::fixed : CameraMount::moving, .views = 16});
+    const HandEyeRig rig =
+        make_rig(random, {.mount = i % 2 == 0 ? CameraMount::fixed : CameraMount::moving, .views = 16});
     const HandEyeSummary summary = solve_hand_eye(rig.data, options);
     for (const double off : in_sigmas(summary.X, rig.X, summary.X_sigma)) count.add(off);
     for (const double off : in_sigmas(summary.Y, rig.Y, summary.Y_sigma)) count.add(off);
-    for (std::size_t k = 0; k < 4; ++k) count.add((summary.camera.lens[k] - rig.camera.lens[k]) / summary.lens_sigma[k]);
+    for (std::size_t k = 0; k < 4; ++k)
+      count.add((summary.camera.lens[k] - rig.camera.lens[k]) / summary.lens_sigma[k]);
   }
   expect_honest(count);
 }
@@ -67,12 +69,15 @@ TEST(Coverage, PanTilt) {
     };
     count.add((std::abs(summary.model.length_m) - std::abs(truth.length_m)) / sigma("length_m"));
     for (std::size_t k = 0; k < 2; ++k)
-      count.add((summary.model.backlash_rad[k] - truth.backlash_rad[k]) / sigma(k == 0 ? "backlash_pan_rad" : "backlash_tilt_rad"));
+      count.add((summary.model.backlash_rad[k] - truth.backlash_rad[k]) /
+                sigma(k == 0 ? "backlash_pan_rad" : "backlash_tilt_rad"));
     const bool flipped = summary.model.length_m * truth.length_m < 0;
     if (flipped) continue;  // the same head with its common normal pointing the other way
     count.add((summary.model.twist_rad - truth.twist_rad) / sigma("twist_rad"));
     Vector6 world, camera;
-    for (int k = 0; k < 6; ++k) world[k] = summary.sigmas[static_cast<std::size_t>(k)], camera[k] = summary.sigmas[static_cast<std::size_t>(8 + k)];
+    for (int k = 0; k < 6; ++k)
+      world[k] = summary.sigmas[static_cast<std::size_t>(k)],
+      camera[k] = summary.sigmas[static_cast<std::size_t>(8 + k)];
     for (const double off : in_sigmas(summary.model.T_world_pan, truth.T_world_pan, world)) count.add(off);
     for (const double off : in_sigmas(summary.model.T_tilt_camera, truth.T_tilt_camera, camera)) count.add(off);
   }

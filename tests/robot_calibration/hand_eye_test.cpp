@@ -33,7 +33,8 @@ TEST(HandEye, RecoversARigWithoutNoise) {
 
 TEST(HandEye, FindsNoiseAndBoardSize) {
   Random random(2);
-  HandEyeRig rig = make_rig(random, {.views = 30, .cols = 8, .rows = 6, .noise_px = 0.3, .noise_rad = 1e-3, .noise_m = 5e-4});
+  HandEyeRig rig =
+      make_rig(random, {.views = 30, .cols = 8, .rows = 6, .noise_px = 0.3, .noise_rad = 1e-3, .noise_m = 5e-4});
   for (Eigen::Vector3d& p : rig.data.corners.p_board) p /= 1.006;  // the print is larger than it says
   const HandEyeSummary summary = solve_hand_eye(rig.data, quick());
   EXPECT_NEAR(summary.board_scale, 1.006, 3 * summary.board_scale_sigma);
@@ -97,8 +98,10 @@ TEST(HandEye, ResolvesTheOrderOfSymmetricBoardsByTheRobot) {
 TEST(HandEye, NamesTheMissingMotion) {
   Random random(7);
   for (const CameraMount mount : {CameraMount::fixed, CameraMount::moving})
-    EXPECT_THAT(input_error([&] { solve_hand_eye(make_rig(random, {.mount = mount, .one_axis = true}).data, quick()); }),
-                AllOf(HasSubstr("the wrist turned about one axis only"), HasSubstr("2 of 12"), HasSubstr("about another axis")));
+    EXPECT_THAT(
+        input_error([&] { solve_hand_eye(make_rig(random, {.mount = mount, .one_axis = true}).data, quick()); }),
+        AllOf(HasSubstr("the wrist turned about one axis only"), HasSubstr("2 of 12"),
+              HasSubstr("about another axis")));
   HandEyeRig still = make_rig(random, {});
   for (RobotPose& pose : still.data.poses) pose.T_base_flange.linear().setIdentity();
   EXPECT_THAT(input_error([&] { solve_hand_eye(still.data, quick()); }), HasSubstr("without turns"));
@@ -111,7 +114,8 @@ TEST(HandEye, RefusesTooLittle) {
   HandEyeRig uneven = make_rig(random, {});
   uneven.data.poses.pop_back();
   EXPECT_THAT(input_error([&] { solve_hand_eye(uneven.data, quick()); }), HasSubstr("13 robot poses for 14 views"));
-  EXPECT_THAT(solve_hand_eye(make_rig(random, {.views = 8}).data, quick()).notes, testing::Contains(HasSubstr("only 8 views")));
+  EXPECT_THAT(solve_hand_eye(make_rig(random, {.views = 8}).data, quick()).notes,
+              testing::Contains(HasSubstr("only 8 views")));
 }
 
 // Moving the robot's base, or the flange's frame, moves X and Y with it and changes no residual.

@@ -88,9 +88,11 @@ TEST(JointChain, DerivativesAgreeWithDifferences) {
 }
 
 TEST(JointChain, NamesWhatIsWrong) {
-  EXPECT_THAT(input_error([] { read_joint_chain(arm(), "nowhere", ""); }), AllOf(HasSubstr("no link 'nowhere'"), HasSubstr("did you mean")));
+  EXPECT_THAT(input_error([] { read_joint_chain(arm(), "nowhere", ""); }),
+              AllOf(HasSubstr("no link 'nowhere'"), HasSubstr("did you mean")));
   JointChain chain = read_joint_chain(arm(), "", "");
-  EXPECT_THAT(input_error([&] { flange_pose(chain, {0.1}, "row 3"); }), AllOf(HasSubstr("row 3"), HasSubstr("has 1 joint positions")));
+  EXPECT_THAT(input_error([&] { flange_pose(chain, {0.1}, "row 3"); }),
+              AllOf(HasSubstr("row 3"), HasSubstr("has 1 joint positions")));
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ double worst_prediction(const PanTiltModel& a, const PanTiltModel& b) {
   for (double pan = -1.5; pan < 1.6; pan += 0.5)
     for (double tilt = -0.8; tilt < 0.9; tilt += 0.4)
       for (const int way : {-1, 1})
-        worst = std::max(worst, step_between(camera_pose(a, {pan, tilt, {way, way}}), camera_pose(b, {pan, tilt, {way, way}})).norm());
+        worst = std::max(
+            worst,
+            step_between(camera_pose(a, {pan, tilt, {way, way}}), camera_pose(b, {pan, tilt, {way, way}})).norm());
   return worst;
 }
 
@@ -39,7 +41,8 @@ TEST(PanTilt, RobustFitBearsWildPosesThatPlainLeastSquaresDoesNot) {
   Random random(42);
   const PanTiltModel truth = random_head(random);
   std::vector<PanTiltSample> samples = make_head(random, truth, 60, 1e-3, 5e-4);
-  for (const std::size_t i : {7u, 30u, 44u}) samples[i].T_world_camera = samples[i].T_world_camera * random_pose(random, 0.5, 0.1);
+  for (const std::size_t i : {7u, 30u, 44u})
+    samples[i].T_world_camera = samples[i].T_world_camera * random_pose(random, 0.5, 0.1);
   PanTiltOptions options;
   options.score = false;
   const PanTiltSummary robust = solve_pan_tilt(samples, options);
@@ -55,7 +58,8 @@ TEST(PanTilt, NamesTheMissingMotion) {
   Random random(43);
   std::vector<PanTiltSample> samples = make_head(random, random_head(random), 20, 0, 0);
   for (PanTiltSample& sample : samples) sample.angles.tilt = 0.3;
-  EXPECT_THAT(input_error([&] { solve_pan_tilt(samples, {}); }), AllOf(HasSubstr("only the pan joint moved"), HasSubstr("4 of 14"), HasSubstr("tilt")));
+  EXPECT_THAT(input_error([&] { solve_pan_tilt(samples, {}); }),
+              AllOf(HasSubstr("only the pan joint moved"), HasSubstr("4 of 14"), HasSubstr("tilt")));
   for (PanTiltSample& sample : samples) sample.angles.pan = 0;
   EXPECT_THAT(input_error([&] { solve_pan_tilt(samples, {}); }), HasSubstr("neither joint moved"));
   samples.resize(5);

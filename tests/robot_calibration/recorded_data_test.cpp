@@ -17,7 +17,8 @@ HandEyeData read_session(const std::filesystem::path& folder, const std::string&
   data.corners = find_in_folder(folder / "images", board).corners;
   std::vector<std::string> names;
   for (const BoardView& view : data.corners.views) names.push_back(view.name);
-  for (const Pose& pose : match_poses(read_robot_poses(folder / "poses", PoseUnit::automatic).poses, names, names).poses)
+  for (const Pose& pose :
+       match_poses(read_robot_poses(folder / "poses", PoseUnit::automatic).poses, names, names).poses)
     data.poses.push_back({pose, {}});
   if (board.kind == BoardKind::circles) data.cols = board.cols, data.rows = board.rows;
   return data;
@@ -26,7 +27,8 @@ HandEyeData read_session(const std::filesystem::path& folder, const std::string&
 // Joint bundle adjustment, intrinsics free, each view predicted by the others: 1.75 px, 0.88 mm.
 TEST(RecordedData, CharucoOnAnArmBeforeAFixedCamera) {
   FORESIGHT_NEED_DATA("rct_arm_handeye");
-  const HandEyeData data = read_session(data_folder() / "rct_arm_handeye/test_set_charuco", "charuco:5x7:0.036195:0.018256:DICT_6X6_250");
+  const HandEyeData data =
+      read_session(data_folder() / "rct_arm_handeye/test_set_charuco", "charuco:5x7:0.036195:0.018256:DICT_6X6_250");
   ASSERT_EQ(data.corners.views.size(), 9u);
   const HandEyeSummary summary = solve_hand_eye(data, {});
   EXPECT_EQ(summary.mount, CameraMount::fixed);
@@ -70,7 +72,9 @@ TEST(RecordedData, PositionerOfTwoAxes) {
     const YamlMap entry = file.map(name), pose = entry.map("pose");
     const auto joints = entry.numbers("target_joints", 2);
     const Eigen::Vector4d q(pose.number("qx"), pose.number("qy"), pose.number("qz"), pose.number("qw"));
-    samples.push_back({name, {joints[0], joints[1], {}}, checked_pose({pose.number("x"), pose.number("y"), pose.number("z")}, q, name)});
+    samples.push_back({name,
+                       {joints[0], joints[1], {}},
+                       checked_pose({pose.number("x"), pose.number("y"), pose.number("z")}, q, name)});
   }
   ASSERT_EQ(samples.size(), 205u);
   const PanTiltSummary robust = solve_pan_tilt(samples, {});

@@ -20,9 +20,13 @@ TEST(RobotPoses, ReadsEveryForm) {
   const Pose expected = read(folder, kMatrix).poses.at(0).pose;
   EXPECT_TRUE(expected.translation().isApprox(Eigen::Vector3d(0.1, 0.2, 0.3)));
   EXPECT_TRUE((expected.linear() * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY()));
-  for (const std::string& text : {"2\n" + kMatrix + "\n" + kMatrix, std::string("0,-1,0,0.1,1,0,0,0.2,0,0,1,0.3,0,0,0,1\r\n# a remark\n[0 -1 0 0.1; 1 0 0 0.2; 0 0 1 0.3; 0 0 0 1]\n"),
-                                  std::string("x y z qx qy qz qw\n0.1 0.2 0.3 0 0 0.70710678 0.70710678\n0.1 0.2 0.3 0 0 -0.70710678 -0.70710678"),
-                                  std::string("a.png 0.1 0.2 0.3 0 0 0.70710678 0.70710678\n7,0.1,0.2,0.3,0,0,0.70710678,0.70710678")}) {
+  for (const std::string& text :
+       {"2\n" + kMatrix + "\n" + kMatrix,
+        std::string(
+            "0,-1,0,0.1,1,0,0,0.2,0,0,1,0.3,0,0,0,1\r\n# a remark\n[0 -1 0 0.1; 1 0 0 0.2; 0 0 1 0.3; 0 0 0 1]\n"),
+        std::string(
+            "x y z qx qy qz qw\n0.1 0.2 0.3 0 0 0.70710678 0.70710678\n0.1 0.2 0.3 0 0 -0.70710678 -0.70710678"),
+        std::string("a.png 0.1 0.2 0.3 0 0 0.70710678 0.70710678\n7,0.1,0.2,0.3,0,0,0.70710678,0.70710678")}) {
     const RobotPoses poses = read(folder, text);
     ASSERT_EQ(poses.poses.size(), 2u) << text;
     for (const NamedPose& named : poses.poses) EXPECT_LT(step_between(named.pose, expected).norm(), 1e-7) << text;
@@ -32,7 +36,8 @@ TEST(RobotPoses, ReadsEveryForm) {
 TEST(RobotPoses, ReadsAFolderInNaturalOrder) {
   TempFolder folder;
   for (const int i : {10, 2, 1})
-    folder.write("poses/" + std::to_string(i) + ".yaml", "x: " + std::to_string(i) + "\ny: 0\nz: 0\nqx: 0\nqy: 0\nqz: 0\nqw: 1\n");
+    folder.write("poses/" + std::to_string(i) + ".yaml",
+                 "x: " + std::to_string(i) + "\ny: 0\nz: 0\nqx: 0\nqy: 0\nqz: 0\nqw: 1\n");
   const RobotPoses poses = read_robot_poses(folder / "poses", PoseUnit::automatic);
   ASSERT_EQ(poses.poses.size(), 3u);
   EXPECT_EQ(poses.poses[1].pose.translation().x(), 2);
@@ -53,13 +58,15 @@ TEST(RobotPoses, NamesFileAndLineOfWhatIsWrong) {
   const auto error = [&](const std::string& text) { return input_error([&] { read(folder, text); }); };
   EXPECT_THAT(error("1 2 3 0 0 0 1\n1 2 3 0 0 0\n"), AllOf(HasSubstr("poses.txt:2"), HasSubstr("has 6 fields")));
   EXPECT_THAT(error("1 0 0 0\n0 1 0 0\n0 0 1 0\n"), HasSubstr("the last matrix has 3 rows"));
-  EXPECT_THAT(error("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"), AllOf(HasSubstr("poses.txt:1"), HasSubstr("no rotation and translation")));
+  EXPECT_THAT(error("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"),
+              AllOf(HasSubstr("poses.txt:1"), HasSubstr("no rotation and translation")));
   EXPECT_THAT(error("-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"), HasSubstr("it mirrors"));
   EXPECT_THAT(error("1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n"), HasSubstr("last row"));
   EXPECT_THAT(error("1 2 3 0 0 0 0.5\n"), HasSubstr("quaternion has length 0.5"));
   EXPECT_THAT(error("1 2 nan 0 0 0 1\n"), HasSubstr("not a finite number"));
   EXPECT_THAT(error("# nothing\n"), HasSubstr("holds no pose"));
-  EXPECT_THAT(read(folder, "1 2 3 0.99 0.1 0.1 0\n1 2 3 0.99 0 0.1 0.1\n1 2 3 0.98 0.1 0 0.17\n").notes, testing::Contains(HasSubstr("qw qx qy qz")));
+  EXPECT_THAT(read(folder, "1 2 3 0.99 0.1 0.1 0\n1 2 3 0.99 0 0.1 0.1\n1 2 3 0.98 0.1 0 0.17\n").notes,
+              testing::Contains(HasSubstr("qw qx qy qz")));
 }
 
 TEST(RobotPoses, MatchesByNameNumberAndOrder) {

@@ -22,7 +22,8 @@ struct Wave {
 Wave random_wave(Random& random, double size) {
   Wave wave;
   for (std::size_t i = 0; i < 4; ++i)
-    wave.size[i] = size * uniform(random, 0.3, 1), wave.rate[i] = uniform(random, 0.4, 4), wave.phase[i] = uniform(random, 0, 6.28);
+    wave.size[i] = size * uniform(random, 0.3, 1), wave.rate[i] = uniform(random, 0.4, 4),
+    wave.phase[i] = uniform(random, 0, 6.28);
   return wave;
 }
 
@@ -52,7 +53,11 @@ Pose noisy(const Pose& pose, Random& random, double sigma_rad, double sigma_m) {
 
 HandEyeRig make_rig(Random& random, const HandEyeRigOptions& options) {
   HandEyeRig rig;
-  rig.camera = {1280, 960, Distortion::radtan4, {uniform(random, 900, 1200), uniform(random, 900, 1200), uniform(random, 600, 680), uniform(random, 440, 520)}};
+  rig.camera = {
+      1280,
+      960,
+      Distortion::radtan4,
+      {uniform(random, 900, 1200), uniform(random, 900, 1200), uniform(random, 600, 680), uniform(random, 440, 520)}};
   rig.camera.lens[1] = rig.camera.lens[0] * uniform(random, 0.998, 1.002);
   rig.camera.lens[4] = uniform(random, -0.15, 0), rig.camera.lens[5] = uniform(random, 0, 0.1);
   rig.X = random_pose(random, 3, 0.3), rig.Y = random_pose(random, 3, 0.2);
@@ -64,14 +69,18 @@ HandEyeRig make_rig(Random& random, const HandEyeRigOptions& options) {
   for (int v = 0; v < options.views; ++v) {
     Pose T_camera_board = Pose::Identity();
     const Eigen::Vector3d turn = options.one_axis ? Eigen::Vector3d(axis * uniform(random, -0.7, 0.7))
-                                                  : Eigen::Vector3d(uniform(random, -0.6, 0.6), uniform(random, -0.6, 0.6), uniform(random, -1, 1));
+                                                  : Eigen::Vector3d(uniform(random, -0.6, 0.6),
+                                                                    uniform(random, -0.6, 0.6), uniform(random, -1, 1));
     const double z = uniform(random, 0.5, 0.9);
     T_camera_board.linear() = rotation_of(turn);
-    T_camera_board.translation() = Eigen::Vector3d(uniform(random, -0.2, 0.2) * z, uniform(random, -0.15, 0.15) * z, z) - T_camera_board.linear() * centre;
+    T_camera_board.translation() =
+        Eigen::Vector3d(uniform(random, -0.2, 0.2) * z, uniform(random, -0.15, 0.15) * z, z) -
+        T_camera_board.linear() * centre;
     BoardView view{"view" + std::to_string(v), {}};
     for (std::size_t i = 0; i < rig.data.corners.p_board.size(); ++i) {
       Eigen::Vector2d pixel;
-      project<double>(rig.camera.distortion, rig.camera.lens.data(), T_camera_board * rig.data.corners.p_board[i], pixel);
+      project<double>(rig.camera.distortion, rig.camera.lens.data(), T_camera_board * rig.data.corners.p_board[i],
+                      pixel);
       const double x = normal(random, options.noise_px), y = normal(random, options.noise_px);
       view.corners.push_back({static_cast<int>(i), pixel + Eigen::Vector2d(x, y), 1});
     }
@@ -102,7 +111,8 @@ StreamRig make_streams(Random& random, double length_s, double offset_s, bool ca
     return pose;
   };
   const RobotTime zero{1'487'321'563'180'327'900};
-  for (double t = -1; t < length_s + 1; t += 0.01) rig.encoder.push_back({zero + seconds(t), noisy(hand(t), random, 2e-4, 2e-4)});
+  for (double t = -1; t < length_s + 1; t += 0.01)
+    rig.encoder.push_back({zero + seconds(t), noisy(hand(t), random, 2e-4, 2e-4)});
   for (double t = 0; t < length_s; t += 1 / 30.0) {
     if (t > 0.4 * length_s && t < 0.4 * length_s + 0.5) continue;
     Pose T_target_camera = noisy(rig.Y.inverse() * hand(t + offset_s) * rig.X, random, 4e-3, 2e-3);
@@ -122,11 +132,14 @@ PanTiltModel random_head(Random& random) {
   return model;
 }
 
-std::vector<PanTiltSample> make_head(Random& random, const PanTiltModel& model, int poses, double sigma_rad, double sigma_m) {
+std::vector<PanTiltSample> make_head(Random& random, const PanTiltModel& model, int poses, double sigma_rad,
+                                     double sigma_m) {
   std::vector<PanTiltSample> samples;
   for (int i = 0; i < poses; ++i) {
     PanTiltSample sample{"pose" + std::to_string(i), {}, Pose::Identity()};
-    sample.angles = {uniform(random, -1.5, 1.5), uniform(random, -0.8, 0.8), {uniform(random, -1, 1) > 0 ? 1 : -1, uniform(random, -1, 1) > 0 ? 1 : -1}};
+    sample.angles = {uniform(random, -1.5, 1.5),
+                     uniform(random, -0.8, 0.8),
+                     {uniform(random, -1, 1) > 0 ? 1 : -1, uniform(random, -1, 1) > 0 ? 1 : -1}};
     sample.T_world_camera = noisy(camera_pose(model, sample.angles), random, sigma_rad, sigma_m);
     samples.push_back(std::move(sample));
   }

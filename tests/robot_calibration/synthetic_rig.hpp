@@ -51,7 +51,8 @@ struct StreamRig {
 StreamRig make_streams(Random& random, double seconds, double offset_s, bool camera_inverted = false);
 
 /// Poses of a head at random angles, both ways of approach.
-std::vector<PanTiltSample> make_head(Random& random, const PanTiltModel& model, int poses, double sigma_rad, double sigma_m);
+std::vector<PanTiltSample> make_head(Random& random, const PanTiltModel& model, int poses, double sigma_rad,
+                                     double sigma_m);
 PanTiltModel random_head(Random& random);
 
 inline bool long_run() {

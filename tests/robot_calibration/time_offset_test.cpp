@@ -46,7 +46,8 @@ TEST(TimeOffset, FromSweptJoints) {
     for (double t = 0; t < 30; t += 0.02) rows.push_back({{seconds(1.6e9).count() + seconds(t).count()}, joint(t)});
     for (double t = 0.1; t < 29.9; t += 1 / 30.0) {
       const auto swept = swept_poses({{{0}, joint(t + 0.035)}}, "test");
-      camera.push_back({{seconds(1.6e9).count() + seconds(t).count()}, noisy(Y.inverse() * swept[0].pose * X, random, 3e-3, 2e-3)});
+      camera.push_back(
+          {{seconds(1.6e9).count() + seconds(t).count()}, noisy(Y.inverse() * swept[0].pose * X, random, 3e-3, 2e-3)});
     }
     TimeOffsetOptions options;
     options.rotation_only = true;
@@ -61,7 +62,8 @@ TEST(TimeOffset, SaysWhatStreamsLack) {
   const StreamRig rig = make_streams(random, 30, 0.02);
   StreamRig late = rig;
   for (PoseTrack::Sample& sample : late.camera) sample.time = sample.time + seconds(100);
-  EXPECT_THAT(input_error([&] { solve_time_offset(late.encoder, late.camera, {}); }), AllOf(HasSubstr("share less than 3 s"), HasSubstr("--around")));
+  EXPECT_THAT(input_error([&] { solve_time_offset(late.encoder, late.camera, {}); }),
+              AllOf(HasSubstr("share less than 3 s"), HasSubstr("--around")));
   TimeOffsetOptions around;
   around.around_s = -100;
   EXPECT_NEAR(solve_time_offset(late.encoder, late.camera, around).offset_s, -99.98, 0.005);
@@ -75,18 +77,22 @@ TEST(TimeOffset, SaysWhatStreamsLack) {
       const double t = to_seconds(sample.time - rig.encoder.front().time);
       sample.pose.linear() = rotation_of({0, 0, std::sin(t)});
     }
-  EXPECT_THAT(input_error([&] { solve_time_offset(single.encoder, single.camera, {}); }), HasSubstr("the hand turned about one axis only"));
+  EXPECT_THAT(input_error([&] { solve_time_offset(single.encoder, single.camera, {}); }),
+              HasSubstr("the hand turned about one axis only"));
 }
 
 TEST(PoseStream, KeepsNanosecondsAndNamesLines) {
   TempFolder folder;
   const auto read = [&](const std::string& text) { return read_pose_stream(folder.write("s.csv", text)); };
-  const PoseStream stream = read("t,x,y,z,qx,qy,qz,qw\n1487321563.180327901, 1,2,3, 0,0,0,1\n1487321563.180327902 1 2 3 0 0 0 1\n");
+  const PoseStream stream =
+      read("t,x,y,z,qx,qy,qz,qw\n1487321563.180327901, 1,2,3, 0,0,0,1\n1487321563.180327902 1 2 3 0 0 0 1\n");
   ASSERT_EQ(stream.samples.size(), 2u);
   EXPECT_EQ(stream.samples[0].time.ns, 1'487'321'563'180'327'901);
   EXPECT_EQ(read("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n").notes.size(), 1u);
-  EXPECT_THAT(input_error([&] { read("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"); }), AllOf(HasSubstr("s.csv:2"), HasSubstr("sort the rows")));
-  EXPECT_THAT(input_error([&] { read("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0\n"); }), AllOf(HasSubstr("s.csv:2"), HasSubstr("has 7 fields")));
+  EXPECT_THAT(input_error([&] { read("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"); }),
+              AllOf(HasSubstr("s.csv:2"), HasSubstr("sort the rows")));
+  EXPECT_THAT(input_error([&] { read("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0\n"); }),
+              AllOf(HasSubstr("s.csv:2"), HasSubstr("has 7 fields")));
   EXPECT_THAT(input_error([&] { read("1 0 0 0 0 0 0 2\n"); }), HasSubstr("quaternion has length 2"));
   EXPECT_THAT(input_error([&] { read("1 0 0 nan 0 0 0 1\n"); }), HasSubstr("not a finite number"));
   EXPECT_THAT(input_error([&] { read("\n"); }), HasSubstr("holds no row"));
