@@ -112,37 +112,40 @@ void hold_unused_lens(ceres::Problem& problem, HandEyeState& state) {
   if (!held.empty()) problem.SetManifold(state.camera.lens.data(), new ceres::SubsetManifold(kLensParameters, held));
 }
 
-void build(const HandEyeData& data, const HandEyeSelection& selection, HandEyeState& state, Adjustment& out) {
+void add_view(const HandEyeData& data, const HandEyeSelection& selection, std::size_t v, double typical_px,
+              HandEyeState& state, Adjustment& out) {
   using Cost = ceres::AutoDiffCostFunction<CornerResidual, 2, kLensParameters, 7, 7, 6, 1>;
-  const double typical = typical_sigma(data.corners);
+  double* step = state.corrections[v].data();
+  const BoardView& view = data.corners.views[v];
+  for (std::size_t c = 0; c < view.corners.size(); ++c) {
+    if (!selection.keep[v][c]) continue;
+    const Corner& corner = view.corners[c];
+    auto* functor = new CornerResidual{state.mount,
+                                       state.camera.distortion,
+                                       data.poses[v].T_base_flange,
+                                       data.corners.p_board[static_cast<std::size_t>(corner.index)],
+                                       corner.pixel,
+                                       typical_px / corner.sigma_px / state.sigma_px};
+    out.problem.AddResidualBlock(new Cost(functor), nullptr, state.camera.lens.data(), state.X.data(), state.Y.data(),
+                                 step, &state.board_scale);
+    out.corner_rows += 2;
+  }
   Vector6 weight;
   weight << Eigen::Vector3d::Constant(1 / state.sigma_rad), Eigen::Vector3d::Constant(1 / state.sigma_m);
+  auto* prior = new RobotResidual(weight, data.poses[v].flange_per_joint);
+  if (state.joint_offsets.empty())
+    out.problem.AddResidualBlock(prior, nullptr, step);
+  else
+    out.problem.AddResidualBlock(prior, nullptr, step, state.joint_offsets.data());
+  out.own.push_back(step);
+  out.views.push_back(v);
+}
+
+void build(const HandEyeData& data, const HandEyeSelection& selection, HandEyeState& state, Adjustment& out) {
+  const double typical_px = typical_sigma(data.corners);
   out.shared = {state.X.data(), state.Y.data()};
-  for (std::size_t v = 0; v < data.poses.size(); ++v) {
-    if (!selection.used[v]) continue;
-    double* step = state.corrections[v].data();
-    const BoardView& view = data.corners.views[v];
-    for (std::size_t c = 0; c < view.corners.size(); ++c) {
-      if (!selection.keep[v][c]) continue;
-      const Corner& corner = view.corners[c];
-      auto* functor = new CornerResidual{state.mount,
-                                         state.camera.distortion,
-                                         data.poses[v].T_base_flange,
-                                         data.corners.p_board[static_cast<std::size_t>(corner.index)],
-                                         corner.pixel,
-                                         typical / corner.sigma_px / state.sigma_px};
-      out.problem.AddResidualBlock(new Cost(functor), nullptr, state.camera.lens.data(), state.X.data(), state.Y.data(),
-                                   step, &state.board_scale);
-      out.corner_rows += 2;
-    }
-    auto* prior = new RobotResidual(weight, data.poses[v].flange_per_joint);
-    if (state.joint_offsets.empty())
-      out.problem.AddResidualBlock(prior, nullptr, step);
-    else
-      out.problem.AddResidualBlock(prior, nullptr, step, state.joint_offsets.data());
-    out.own.push_back(step);
-    out.views.push_back(v);
-  }
+  for (std::size_t v = 0; v < data.poses.size(); ++v)
+    if (selection.used[v]) add_view(data, selection, v, typical_px, state, out);
   out.problem.SetManifold(state.X.data(), motion_manifold());
   out.problem.SetManifold(state.Y.data(), motion_manifold());
   hold_unused_lens(out.problem, state);

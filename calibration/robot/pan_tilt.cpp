@@ -141,6 +141,32 @@ void name_parameters(const PanTiltState& state, PanTiltSummary& summary) {
       summary.names.emplace_back(kJoints[i]);
 }
 
+void score_left_out(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, const PanTiltState& state,
+                    PanTiltSummary& summary) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    PanTiltState without = state;
+    if (!options.robust) without.sigma_rad = without.sigma_m = 1;
+    fit(samples, options, without, static_cast<int>(i));
+    summary.loo_steps.push_back(off(without, samples[i]));
+  }
+  summary.loo = errors_of(summary.loo_steps);
+}
+
+// Solves without and with gains; they are believed where the left-out error falls.
+PanTiltSummary choose_gains(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options) {
+  PanTiltOptions choice = options;
+  choice.gains = false;
+  PanTiltSummary without = solve_pan_tilt(samples, choice);
+  choice.gains = true;
+  choice.inverted = without.inverted;
+  PanTiltSummary with = solve_pan_tilt(samples, choice);
+  const double ratio = (with.loo.mm / without.loo.mm + with.loo.mrad / without.loo.mrad) / 2;
+  PanTiltSummary& better = ratio < kFalls ? with : without;
+  better.notes.push_back("gains of the joints are " + std::string(ratio < kFalls ? "estimated" : "held at 1") +
+                         ": with them the left-out error is " + readable(ratio, 3) + " of that without");
+  return std::move(better);
+}
+
 }  // namespace
 
 Pose camera_pose(const PanTiltModel& model, const PanTiltAngles& angles) {
@@ -165,19 +191,7 @@ void came_from_order(std::vector<PanTiltSample>& samples, double least_rad) {
 }
 
 PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const PanTiltOptions& options) {
-  if (!options.gains && options.score) {
-    PanTiltOptions choice = options;
-    choice.gains = false;
-    PanTiltSummary without = solve_pan_tilt(given, choice);
-    choice.gains = true;
-    choice.inverted = without.inverted;
-    PanTiltSummary with = solve_pan_tilt(given, choice);
-    const double ratio = (with.loo.mm / without.loo.mm + with.loo.mrad / without.loo.mrad) / 2;
-    PanTiltSummary& better = ratio < kFalls ? with : without;
-    better.notes.push_back("gains of the joints are " + std::string(ratio < kFalls ? "estimated" : "held at 1") +
-                           ": with them the left-out error is " + readable(ratio, 3) + " of that without");
-    return std::move(better);
-  }
+  if (!options.gains && options.score) return choose_gains(given, options);
   require_sweeps(given);
   std::vector<PanTiltSample> samples = given;
   PanTiltSummary summary;
@@ -204,14 +218,7 @@ PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const Pan
                      "sweep both joints, each at several angles of the other");
   name_parameters(state, summary);
   for (Eigen::Index i = 0; i < covariance.rows(); ++i) summary.sigmas.push_back(std::sqrt(covariance(i, i)));
-  if (!options.score) return summary;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    PanTiltState without = state;
-    if (!options.robust) without.sigma_rad = without.sigma_m = 1;
-    fit(samples, options, without, static_cast<int>(i));
-    summary.loo_steps.push_back(off(without, samples[i]));
-  }
-  summary.loo = errors_of(summary.loo_steps);
+  if (options.score) score_left_out(samples, options, state, summary);
   return summary;
 }
 

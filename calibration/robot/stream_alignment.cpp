@@ -15,10 +15,6 @@ constexpr double kHalfWindow = 0.05;  // over which a speed is measured
 constexpr double kLeastCommon = 3;    // seconds
 constexpr double kMargin = 0.05;      // around a sample in which the offset may still move
 
-RobotTime at_seconds(const PoseTrack& encoder, double s) {
-  return encoder.samples().front().time + seconds(s);
-}
-
 struct Speeds {
   double first_s = 0;
   std::vector<double> values;  // every kStep; NaN where unknown

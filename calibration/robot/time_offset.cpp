@@ -223,7 +223,7 @@ void require_correlation(const Lag& lag, const TimeOffsetOptions& options, TimeO
                      "the angular speeds do not correlate: " + readable(lag.correlation, 2) + " at best",
                      "check that both streams belong to one body and session, and that it turned to and fro");
   if (std::abs(lag.offset_s - options.around_s) > options.largest_offset_s - 0.05)
-    summary.notes.push_back("the offset lies at the edge of the search: widen it by --search");
+    summary.notes.emplace_back("the offset lies at the edge of the search: widen it by --search");
 }
 
 }  // namespace
