@@ -2,6 +2,7 @@
 
 #include "apps/calibrate/arm_command.hpp"
 #include "apps/calibrate/pan_tilt_command.hpp"
+#include "apps/calibrate/target_command.hpp"
 #include "apps/calibrate/time_command.hpp"
 
 namespace foresight {
@@ -10,6 +11,7 @@ void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   auto* calibrate = app.add_subcommand("calibrate", "From a printed target to a rig that places every pixel");
   calibrate->require_subcommand(1);
   // In the order of a session.
+  add_target(*calibrate, action);
   add_pan_tilt(*calibrate, action);
   add_arm(*calibrate, action);
   add_time(*calibrate, action);
