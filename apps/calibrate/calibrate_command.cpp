@@ -4,6 +4,10 @@
 #include "apps/calibrate/stereo_command.hpp"
 #include "apps/calibrate/target_command.hpp"
 #include "apps/calibrate/verify_command.hpp"
+#include "apps/calibrate/arm_command.hpp"
+#include "apps/calibrate/pan_tilt_command.hpp"
+#include "apps/calibrate/target_command.hpp"
+#include "apps/calibrate/time_command.hpp"
 
 namespace foresight {
 
@@ -15,6 +19,9 @@ void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   add_intrinsics(*calibrate, action);
   add_stereo(*calibrate, action);
   add_verify(*calibrate, action);
+  add_pan_tilt(*calibrate, action);
+  add_arm(*calibrate, action);
+  add_time(*calibrate, action);
 }
 
 }  // namespace foresight

@@ -1,0 +1,53 @@
+#include "apps/calibrate/robot_output.hpp"
+
+#include "calibration/camera/camera_result.hpp"
+#include "calibration/result/result_file.hpp"
+#include "common/text.hpp"
+#include "scene/camera_info.hpp"
+
+namespace foresight {
+
+nlohmann::ordered_json json_of(const Pose& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  const Eigen::Vector3d t = pose.translation();
+  return {{"xyz", {t.x(), t.y(), t.z()}}, {"quaternion", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+nlohmann::ordered_json json_of(const CameraModel& camera) {
+  nlohmann::ordered_json out;
+  out["model"] = to_string(camera.distortion);
+  out["width"] = camera.width, out["height"] = camera.height;
+  for (const int i : free_parameters(camera.distortion))
+    out["lens"].push_back(camera.lens[static_cast<std::size_t>(i)]);
+  return out;
+}
+
+std::string pose_text(const Pose& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  std::string out;
+  for (int i = 0; i < 3; ++i) out += readable(pose.translation()[i], 5) + (i < 2 ? " " : " m, turned ");
+  for (int i = 0; i < 4; ++i) out += readable(q.coeffs()[i], 5) + (i < 3 ? " " : " (qx qy qz qw)");
+  return out;
+}
+
+void report_sigmas(HtmlReport& report, const std::map<std::string, double>& sigmas) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [name, sigma] : sigmas) rows.push_back({name, readable(sigma, 6)});
+  report.heading("Standard deviations");
+  report.table({"parameter", "sigma"}, rows);
+}
+
+void report_notes(HtmlReport& report, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) report.paragraph("Note: " + note + ".");
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) std::cout << "note: " << note << "\n";
+}
+
+CameraModel read_camera_file(const std::filesystem::path& file) {
+  if (YamlMap::load(file).has("kind")) return read_camera(read_result(file, "intrinsics").result);
+  return to_camera_model(read_camera_info(file).lens);
+}
+
+}  // namespace foresight

@@ -1,0 +1,31 @@
+// What the arm, time and pan-tilt commands print and write alike.
+#pragma once
+
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "calibration/camera/camera_model.hpp"
+#include "calibration/result/html_report.hpp"
+#include "scene/scene_model.hpp"
+
+namespace foresight {
+
+/// {"xyz": [..], "quaternion": [x, y, z, w]}
+nlohmann::ordered_json json_of(const Pose& pose);
+nlohmann::ordered_json json_of(const CameraModel& camera);
+
+/// "0.123 0.456 0.789 m, turned 0.1 0.2 0.3 0.9 (qx qy qz qw)"
+std::string pose_text(const Pose& pose);
+
+/// A table of standard deviations, and the notes as paragraphs.
+void report_sigmas(HtmlReport& report, const std::map<std::string, double>& sigmas);
+void report_notes(HtmlReport& report, const std::vector<std::string>& notes);
+
+/// One line each on stdout.
+void print_notes(const std::vector<std::string>& notes);
+
+/// The lens in a file: a result of kind "intrinsics", or a ROS camera_info.
+CameraModel read_camera_file(const std::filesystem::path& file);
+
+}  // namespace foresight

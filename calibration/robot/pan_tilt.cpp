@@ -1,0 +1,236 @@
+#include "calibration/robot/pan_tilt.hpp"
+
+#include <algorithm>
+
+#include "calibration/robot/pan_tilt_problem.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr std::size_t kFewestPoses = 8;
+constexpr double kLeastSweep = 0.05;  // rad
+constexpr double kFalls = 0.99;       // by which a left-out error must fall before gains are believed
+constexpr double kFits = 0.1;         // RMS rad: a chain of the wrong order is off by more
+
+double sweep(const std::vector<PanTiltSample>& samples, double PanTiltAngles::*joint) {
+  double low = 1e300, high = -1e300;
+  for (const PanTiltSample& sample : samples)
+    low = std::min(low, sample.angles.*joint), high = std::max(high, sample.angles.*joint);
+  return high - low;
+}
+
+void require_sweeps(const std::vector<PanTiltSample>& samples) {
+  if (samples.size() < kFewestPoses)
+    throw InputError("--poses", std::to_string(samples.size()) + " poses",
+                     "measure at least 8, better 30, over both joints");
+  const bool pan = sweep(samples, &PanTiltAngles::pan) > kLeastSweep,
+             tilt = sweep(samples, &PanTiltAngles::tilt) > kLeastSweep;
+  if (pan && tilt) return;
+  if (!pan && !tilt) throw InputError("--angles", "neither joint moved", "sweep both joints");
+  const std::string still = pan ? "tilt" : "pan";
+  throw InputError("--angles",
+                   "only the " + std::string(pan ? "pan" : "tilt") +
+                       " joint moved; 4 of 14 parameters stay open: how the " + still +
+                       " axis points (2) and where it lies (2)",
+                   "add poses at other " + still + " angles");
+}
+
+PanTiltErrors errors_of(const std::vector<Vector6>& steps) {
+  PanTiltErrors errors;
+  std::vector<double> mm, mrad;
+  for (const Vector6& step : steps)
+    mrad.push_back(1e3 * step.head<3>().norm()), mm.push_back(1e3 * step.tail<3>().norm());
+  const auto rms = [](const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
+  };
+  errors.mm = rms(mm), errors.mrad = rms(mrad);
+  errors.median_mm = median(mm), errors.median_mrad = median(mrad);
+  return errors;
+}
+
+Vector6 off(const PanTiltState& state, const PanTiltSample& sample) {
+  return step_between(camera_pose(to_model(state), sample.angles), sample.T_world_camera);
+}
+
+// Noise from the residuals, then again with it, until both settle.
+void fit_with_noise(const std::vector<PanTiltSample>& samples, PanTiltState& state, int left_out, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> turns, shifts;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (static_cast<int>(i) == left_out) continue;
+      const Vector6 step = off(state, samples[i]);
+      for (int k = 0; k < 3; ++k) turns.push_back(step[k]), shifts.push_back(step[3 + k]);
+    }
+    const double redundancy = std::sqrt(1 - 14.0 / (6.0 * static_cast<double>(samples.size())));
+    const double turn = std::max(1e-9, robust_sigma(turns) / redundancy),
+                 shift = std::max(1e-9, robust_sigma(shifts) / redundancy);
+    const bool settled =
+        std::abs(turn - state.sigma_rad) < 1e-3 * turn && std::abs(shift - state.sigma_m) < 1e-3 * shift;
+    state.sigma_rad = turn, state.sigma_m = shift;
+    if (settled) return;
+    fit_pan_tilt(samples, state, left_out);
+  }
+}
+
+void fit(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, PanTiltState& state, int left_out) {
+  constexpr int kRounds = 12, kRoundsAgain = 3;  // leaving one out starts from the solution
+  state.robust = options.robust;
+  fit_pan_tilt(samples, state, left_out);
+  if (options.robust) fit_with_noise(samples, state, left_out, left_out < 0 ? kRounds : kRoundsAgain);
+}
+
+std::vector<PanTiltSample> turned_round(const std::vector<PanTiltSample>& samples, bool inverted) {
+  std::vector<PanTiltSample> out = samples;
+  if (inverted)
+    for (PanTiltSample& sample : out) sample.T_world_camera = sample.T_world_camera.inverse();
+  return out;
+}
+
+PanTiltState start(std::vector<PanTiltSample>& samples, const PanTiltOptions& options, bool& inverted) {
+  std::optional<PanTiltState> best;
+  double least = 1e300;
+  for (const bool turn_round : {false, true}) {
+    if (options.inverted.value_or(turn_round) != turn_round) continue;
+    PanTiltState state;
+    const double cost = start_pan_tilt(turned_round(samples, turn_round), state);
+    if (cost < least) least = cost, best = state, inverted = turn_round;
+  }
+  samples = turned_round(samples, inverted);
+  std::vector<double> turns;
+  for (const PanTiltSample& sample : samples) turns.push_back(off(*best, sample).head<3>().norm());
+  if (median(turns) > kFits)
+    throw InputError(
+        "--angles",
+        "no two-axis head fits: half of the poses turn " + readable(median(turns) * 57.3, 1) + " degrees away",
+        "check that angles (rad, pan first) and poses belong together, row by row");
+  return *best;
+}
+
+// Which of gains and backlashes are estimated.
+void choose_joints(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, PanTiltState& state,
+                   std::vector<std::string>& notes) {
+  state.held_joints.clear();
+  if (!options.gains.value_or(false)) state.held_joints = {0, 1};
+  for (int joint = 0; joint < 2; ++joint) {
+    int up = 0, down = 0;
+    for (const PanTiltSample& sample : samples) {
+      up += sample.angles.came[static_cast<std::size_t>(joint)] > 0;
+      down += sample.angles.came[static_cast<std::size_t>(joint)] < 0;
+    }
+    if (options.backlash && up >= 3 && down >= 3) continue;
+    state.held_joints.push_back(2 + joint);
+    if (options.backlash && up + down > 0)
+      notes.push_back(std::string(joint == 0 ? "pan" : "tilt") +
+                      " backlash stays open: come to 3 poses and more from " + (up < 3 ? "below" : "above") + " too");
+  }
+}
+
+void name_parameters(const PanTiltState& state, PanTiltSummary& summary) {
+  for (const char* frame : {"world_pan", "tilt_camera"}) {
+    for (const char* part : {"rx", "ry", "rz"}) summary.names.push_back(frame + std::string("_") + part + "_rad");
+    for (const char* part : {"x", "y", "z"}) summary.names.push_back(frame + std::string("_") + part + "_m");
+    if (summary.names.size() == 6) summary.names.insert(summary.names.end(), {"length_m", "twist_rad"});
+  }
+  const char* kJoints[] = {"gain_pan", "gain_tilt", "backlash_pan_rad", "backlash_tilt_rad"};
+  for (int i = 0; i < 4; ++i)
+    if (std::find(state.held_joints.begin(), state.held_joints.end(), i) == state.held_joints.end())
+      summary.names.emplace_back(kJoints[i]);
+}
+
+void score_left_out(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, const PanTiltState& state,
+                    PanTiltSummary& summary) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    PanTiltState without = state;
+    if (!options.robust) without.sigma_rad = without.sigma_m = 1;
+    fit(samples, options, without, static_cast<int>(i));
+    summary.loo_steps.push_back(off(without, samples[i]));
+  }
+  summary.loo = errors_of(summary.loo_steps);
+}
+
+// Solves without and with gains; they are believed where the left-out error falls.
+PanTiltSummary choose_gains(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options) {
+  PanTiltOptions choice = options;
+  choice.gains = false;
+  PanTiltSummary without = solve_pan_tilt(samples, choice);
+  choice.gains = true;
+  choice.inverted = without.inverted;
+  PanTiltSummary with = solve_pan_tilt(samples, choice);
+  const double ratio = (with.loo.mm / without.loo.mm + with.loo.mrad / without.loo.mrad) / 2;
+  PanTiltSummary& better = ratio < kFalls ? with : without;
+  better.notes.push_back("gains of the joints are " + std::string(ratio < kFalls ? "estimated" : "held at 1") +
+                         ": with them the left-out error is " + readable(ratio, 3) + " of that without");
+  return std::move(better);
+}
+
+}  // namespace
+
+Pose camera_pose(const PanTiltModel& model, const PanTiltAngles& angles) {
+  const double pan = model.gain[0] * angles.pan + 0.5 * model.backlash_rad[0] * angles.came[0];
+  const double tilt = model.gain[1] * angles.tilt + 0.5 * model.backlash_rad[1] * angles.came[1];
+  Pose head = Pose::Identity();
+  head.rotate(Eigen::AngleAxisd(pan, Eigen::Vector3d::UnitZ()));
+  head.translate(Eigen::Vector3d(model.length_m, 0, 0));
+  head.rotate(Eigen::AngleAxisd(model.twist_rad, Eigen::Vector3d::UnitX()));
+  head.rotate(Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitZ()));
+  return model.T_world_pan * head * model.T_tilt_camera;
+}
+
+void came_from_order(std::vector<PanTiltSample>& samples, double least_rad) {
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const std::array<double, 2> change{samples[i].angles.pan - samples[i - 1].angles.pan,
+                                       samples[i].angles.tilt - samples[i - 1].angles.tilt};
+    for (std::size_t joint = 0; joint < 2; ++joint)
+      samples[i].angles.came[joint] =
+          std::abs(change[joint]) < least_rad ? samples[i - 1].angles.came[joint] : (change[joint] > 0 ? 1 : -1);
+  }
+}
+
+PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const PanTiltOptions& options) {
+  if (!options.gains && options.score) return choose_gains(given, options);
+  require_sweeps(given);
+  std::vector<PanTiltSample> samples = given;
+  PanTiltSummary summary;
+  PanTiltState state = start(samples, options, summary.inverted);
+  choose_joints(samples, options, state, summary.notes);
+  fit(samples, options, state, -1);
+  summary.model = to_model(state);
+
+  std::vector<Vector6> steps;
+  for (const PanTiltSample& sample : samples) steps.push_back(off(state, sample));
+  summary.in_sample = errors_of(steps);
+  if (!options.robust) {  // the covariance needs a noise; one for both, as the fit assumed
+    state.sigma_rad = summary.in_sample.mrad * 1e-3 / std::sqrt(3);
+    state.sigma_m = summary.in_sample.mm * 1e-3 / std::sqrt(3);
+  }
+  summary.sigma_mm = 1e3 * state.sigma_m, summary.sigma_mrad = 1e3 * state.sigma_rad;
+  for (const Vector6& step : steps)
+    summary.outliers +=
+        step.head<3>().norm() > 5 * state.sigma_rad * 1.54 || step.tail<3>().norm() > 5 * state.sigma_m * 1.54;
+  int open = 0;
+  const Eigen::MatrixXd covariance = pan_tilt_covariance(samples, state, open);
+  if (open > 0)
+    throw InputError("--angles", std::to_string(open) + " of the head's parameters stay open",
+                     "sweep both joints, each at several angles of the other");
+  name_parameters(state, summary);
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) summary.sigmas.push_back(std::sqrt(covariance(i, i)));
+  if (options.score) score_left_out(samples, options, state, summary);
+  return summary;
+}
+
+PanTiltModel read_pan_tilt(const YamlMap& result) {
+  PanTiltModel model;
+  model.T_world_pan = result.pose("T_world_pan");
+  model.T_tilt_camera = result.pose("T_tilt_camera");
+  model.length_m = result.number("length_m");
+  model.twist_rad = result.number("twist_rad");
+  const auto gain = result.numbers("gain", 2), backlash = result.numbers("backlash_rad", 2);
+  model.gain = {gain[0], gain[1]}, model.backlash_rad = {backlash[0], backlash[1]};
+  return model;
+}
+
+}  // namespace foresight

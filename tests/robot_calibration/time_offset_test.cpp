@@ -1,0 +1,102 @@
+#include "calibration/robot/time_offset.hpp"
+
+#include "synthetic_rig.hpp"
+#include "tests/scene/test_run.hpp"
+
+namespace foresight {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(TimeOffset, RecoversOffsetAndHandEye) {
+  Random random(31);
+  for (const bool inverted : {false, true}) {
+    const StreamRig rig = make_streams(random, 40, inverted ? 0.1234 : -0.0456, inverted);
+    const TimeOffsetSummary summary = solve_time_offset(rig.encoder, rig.camera, {});
+    EXPECT_NEAR(summary.offset_s, rig.offset_s, 4 * summary.offset_sigma_s);
+    EXPECT_LT(summary.offset_sigma_s, 2e-3);
+    EXPECT_EQ(summary.camera_inverted, inverted);
+    EXPECT_LT(step_between(summary.X, rig.X).norm(), 5e-3);
+    EXPECT_GE(summary.outliers, 5);
+    EXPECT_LE(summary.outliers, 40);
+  }
+}
+
+// t_encoder = t_camera + offset: stamping the camera's poses later makes the offset smaller.
+TEST(TimeOffset, HasTheSignOfItsDefinition) {
+  Random random(32);
+  StreamRig rig = make_streams(random, 30, 0);
+  const double before = solve_time_offset(rig.encoder, rig.camera, {}).offset_s;
+  for (PoseTrack::Sample& sample : rig.camera) sample.time = sample.time + seconds(0.25);
+  EXPECT_NEAR(solve_time_offset(rig.encoder, rig.camera, {}).offset_s, before - 0.25, 1e-4);
+}
+
+TEST(TimeOffset, FromSweptJoints) {
+  Random random(33);
+  const Pose X = random_pose(random, 3, 0.1), Y = random_pose(random, 3, 0.3);
+  for (const int joints : {1, 2}) {
+    std::vector<JointRow> rows;
+    std::vector<PoseTrack::Sample> camera;
+    const auto joint = [&](double t) {
+      std::vector<double> q{0.6 * std::sin(1.7 * t) + 0.1 * std::sin(5 * t)};
+      if (joints == 2) q.push_back(0.4 * std::sin(1.1 * t + 1));
+      return q;
+    };
+    for (double t = 0; t < 30; t += 0.02) rows.push_back({{seconds(1.6e9).count() + seconds(t).count()}, joint(t)});
+    for (double t = 0.1; t < 29.9; t += 1 / 30.0) {
+      const auto swept = swept_poses({{{0}, joint(t + 0.035)}}, "test");
+      camera.push_back(
+          {{seconds(1.6e9).count() + seconds(t).count()}, noisy(Y.inverse() * swept[0].pose * X, random, 3e-3, 2e-3)});
+    }
+    TimeOffsetOptions options;
+    options.rotation_only = true;
+    const TimeOffsetSummary summary = solve_time_offset(swept_poses(rows, "test"), camera, options);
+    EXPECT_NEAR(summary.offset_s, 0.035, 4 * summary.offset_sigma_s) << joints;
+    EXPECT_LT(summary.offset_sigma_s, 2e-3);
+  }
+}
+
+TEST(TimeOffset, SaysWhatStreamsLack) {
+  Random random(34);
+  const StreamRig rig = make_streams(random, 30, 0.02);
+  StreamRig late = rig;
+  for (PoseTrack::Sample& sample : late.camera) sample.time = sample.time + seconds(100);
+  EXPECT_THAT(input_error([&] { solve_time_offset(late.encoder, late.camera, {}); }),
+              AllOf(HasSubstr("share less than 3 s"), HasSubstr("--around")));
+  TimeOffsetOptions around;
+  around.around_s = -100;
+  EXPECT_NEAR(solve_time_offset(late.encoder, late.camera, around).offset_s, -99.98, 0.005);
+
+  StreamRig other = make_streams(random, 30, 0.02);
+  EXPECT_THAT(input_error([&] { solve_time_offset(rig.encoder, other.camera, {}); }), HasSubstr("do not correlate"));
+
+  StreamRig single = rig;
+  for (auto* stream : {&single.encoder, &single.camera})
+    for (PoseTrack::Sample& sample : *stream) {
+      const double t = to_seconds(sample.time - rig.encoder.front().time);
+      sample.pose.linear() = rotation_of({0, 0, std::sin(t)});
+    }
+  EXPECT_THAT(input_error([&] { solve_time_offset(single.encoder, single.camera, {}); }),
+              HasSubstr("the hand turned about one axis only"));
+}
+
+TEST(PoseStream, KeepsNanosecondsAndNamesLines) {
+  TempFolder folder;
+  const auto read = [&](const std::string& text) { return read_pose_stream(folder.write("s.csv", text)); };
+  const PoseStream stream =
+      read("t,x,y,z,qx,qy,qz,qw\n1487321563.180327901, 1,2,3, 0,0,0,1\n1487321563.180327902 1 2 3 0 0 0 1\n");
+  ASSERT_EQ(stream.samples.size(), 2u);
+  EXPECT_EQ(stream.samples[0].time.ns, 1'487'321'563'180'327'901);
+  EXPECT_EQ(read("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n").notes.size(), 1u);
+  EXPECT_THAT(input_error([&] { read("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"); }),
+              AllOf(HasSubstr("s.csv:2"), HasSubstr("sort the rows")));
+  EXPECT_THAT(input_error([&] { read("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0\n"); }),
+              AllOf(HasSubstr("s.csv:2"), HasSubstr("has 7 fields")));
+  EXPECT_THAT(input_error([&] { read("1 0 0 0 0 0 0 2\n"); }), HasSubstr("quaternion has length 2"));
+  EXPECT_THAT(input_error([&] { read("1 0 0 nan 0 0 0 1\n"); }), HasSubstr("not a finite number"));
+  EXPECT_THAT(input_error([&] { read("\n"); }), HasSubstr("holds no row"));
+}
+
+}  // namespace
+}  // namespace foresight
