@@ -2,6 +2,7 @@
 
 #include "apps/calibrate/intrinsics_command.hpp"
 #include "apps/calibrate/stereo_command.hpp"
+#include "apps/calibrate/target_command.hpp"
 #include "apps/calibrate/verify_command.hpp"
 
 namespace foresight {
@@ -10,6 +11,7 @@ void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   auto* calibrate = app.add_subcommand("calibrate", "From a printed target to a rig that places every pixel");
   calibrate->require_subcommand(1);
   // In the order of a session.
+  add_target(*calibrate, action);
   add_intrinsics(*calibrate, action);
   add_stereo(*calibrate, action);
   add_verify(*calibrate, action);

@@ -95,6 +95,7 @@ void add_verify(CLI::App& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<VerifyOptions>();
   command->add_option("--result", options->result, "Result file of `stereo` or `intrinsics`")->required();
   add_camera_input(*command, options->input, true);
+  command->add_option("--images", options->input.images, "Of one camera: folder of images, or a pattern");
   command->add_option("--joint", options->joint_px, "Limit in px; default: 1.5 times the result's own score");
   command->add_option("--cross", options->cross_px, "Limit in px; default: 2.1 times the result's own score");
   command->add_option("--epipolar", options->epipolar_px, "Limit in px; default: 1.5 times the result's own score");

@@ -22,7 +22,7 @@ JointLog::JointLog(const std::filesystem::path& file, const Rig& rig) : stream_(
 }
 
 void JointLog::add(const RobotStatus& status) {
-  if (status.time <= last_ || status.feedback[0].time.ns == 0) return;
+  if (status.time <= last_ || !status.all_homed) return;
   last_ = status.time;
   stream_ << sim::format("%.9f", to_seconds(status.time - RobotTime{}));
   for (std::size_t i = 0; i < joints_; ++i) stream_ << sim::format(",%.7f", status.feedback[i].position);

@@ -16,7 +16,8 @@ class JointLog {
  public:
   /// Throws RuntimeFailure where the file cannot be written.
   JointLog(const std::filesystem::path& file, const Rig& rig);
-  /// Of the encoders; a state that was logged already is left out.
+  /// Of the encoders, once all joints are homed: before, they tell no position. A state that was logged already is left
+  /// out.
   void add(const RobotStatus& status);
 
  private:

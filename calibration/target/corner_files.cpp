@@ -154,7 +154,7 @@ CornerSet read_corners(const fs::path& path, const std::optional<Board>& board) 
   CornerSet set;
   set.p_board = board_points(needed(board, path));
   std::map<std::string, int> stems;
-  std::map<std::string, std::set<Side>> sides;
+  std::map<std::string, std::set<PairSide>> sides;
   auto images = read_vnl(path, set.p_board.size());
   for (VnlImage& image : images) {
     const SidedName name = split_side(image.name);
@@ -185,7 +185,7 @@ StereoCorners read_stereo_corners(const fs::path& path, const std::optional<Boar
     return pair;
   }
   pair.left.p_board = pair.right.p_board = board_points(needed(board, path));
-  std::map<std::pair<Side, std::string>, std::string> seen;
+  std::map<std::pair<PairSide, std::string>, std::string> seen;
   for (VnlImage& image : read_vnl(path, pair.left.p_board.size())) {
     const SidedName name = split_side(image.name);
     if (!name.side)
@@ -197,7 +197,7 @@ StereoCorners read_stereo_corners(const fs::path& path, const std::optional<Boar
                        in_quotes(image.name) + " is the same view of the same camera as " + in_quotes(at->second),
                        "give every view its own name");
     if (!spans_a_plane(image.corners)) continue;
-    (*name.side == Side::left ? pair.left : pair.right).views.push_back({name.view, std::move(image.corners)});
+    (*name.side == PairSide::left ? pair.left : pair.right).views.push_back({name.view, std::move(image.corners)});
   }
   for (const auto& [set, name] : {std::pair{&pair.left, "left"}, {&pair.right, "right"}})
     if (set->views.empty())

@@ -28,7 +28,7 @@ SidedName split_side(std::string_view path) {
   // The side may stand inside a name: "cal_left_07" is "cal_07", not two folders.
   const auto slash = [](const std::string& text) { return text.find('/') != std::string::npos; };
   if (!slash(name)) rest = std::regex_replace(rest, std::regex("/"), "_");
-  return {left ? Side::left : Side::right, rest.empty() ? name : rest};
+  return {left ? PairSide::left : PairSide::right, rest.empty() ? name : rest};
 }
 
 }  // namespace foresight

@@ -7,11 +7,11 @@
 
 namespace foresight {
 
-enum class Side { left, right };
+enum class PairSide { left, right };
 
 struct SidedName {
-  std::optional<Side> side;  ///< nothing: the name says neither
-  std::string view;          ///< the rest of the name without extension: "left01.jpg" -> "01", "cam1/a_7.png" -> "a_7"
+  std::optional<PairSide> side;  ///< nothing: the name says neither
+  std::string view;  ///< the rest of the name without extension: "left01.jpg" -> "01", "cam1/a_7.png" -> "a_7"
 };
 
 /// Looks for left/right, cam0/cam1, or a separate l/r ("12_l.png"), in any case, last one first;

@@ -1,0 +1,86 @@
+#include "apps/calibrate/target_command.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "apps/calibrate/outputs.hpp"
+#include "calibration/target/find_corners.hpp"
+#include "calibration/target/print_board.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+struct Arguments {
+  std::string board, out, paper = "A4", measured;
+  std::optional<std::filesystem::path> json;
+};
+
+std::pair<double, double> parse_measured(const std::string& text) {
+  const std::size_t comma = text.find_first_of(", ");
+  if (comma != std::string::npos) {
+    const auto x = parse_number(text.substr(0, comma)), y = parse_number(text.substr(comma + 1));
+    if (x && y) return {*x, *y};
+  }
+  throw InputError("--measured", in_quotes(text) + " is not two lengths", "give both rulers in mm, such as 100.2,99.9");
+}
+
+/// Empty where nobody is there to answer, or does not know yet.
+std::string ask() {
+  if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0) return {};
+  std::fputs("Print it at 100 %, then measure the two rulers in mm and type X,Y (Enter: later, with --measured): ", stderr);
+  std::string line;
+  std::getline(std::cin, line);
+  return line;
+}
+
+int run(const Arguments& a) {
+  const Board board = parse_board(a.board);
+  if (a.out.empty() && a.measured.empty())
+    throw InputError("--out", "is missing", "name a .pdf file, or give --measured for a board that is printed");
+  std::string measured = a.measured;
+  if (!a.out.empty()) {
+    if (board.kind == BoardKind::apriltag) BoardFinder{board};  // enough tags in the family?
+    write_board_pdf(a.out, board, parse_paper(a.paper));
+    std::fprintf(stderr, "target: %s holds %s\n", a.out.c_str(), to_string(board).c_str());
+    if (measured.empty()) measured = ask();
+  }
+  nlohmann::ordered_json numbers{{"board", to_string(board)}};
+  if (measured.empty()) {
+    std::fprintf(stderr, "target: measure both rulers, then: foresight calibrate target --board %s --measured X_MM,Y_MM\n",
+                 to_string(board).c_str());
+  } else {
+    const auto [x, y] = parse_measured(measured);
+    const Board printed = measured_board(board, x, y);
+    std::fprintf(stderr, "target: printed at %.2f %% (x) and %.2f %% (y); use from now on:\n", x, y);
+    std::printf("--board %s\n", to_string(printed).c_str());
+    numbers["measured_board"] = to_string(printed);
+    numbers["scale_x"] = x / kRulerMm;
+    numbers["scale_y"] = y / kRulerMm;
+  }
+  write_json(a.json, numbers);
+  return 0;
+}
+
+}  // namespace
+
+void add_target(CLI::App& calibrate, std::function<int()>& action) {
+  auto* command = calibrate.add_subcommand("target", "Print a board at true scale, and check the print");
+  auto a = std::make_shared<Arguments>();
+  command->add_option("--board", a->board, "chessboard|charuco|apriltag|circles:COLSxROWS:SIZE_M[:EXTRA[:FAMILY]]")
+      ->required();
+  command->add_option("--out", a->out, "PDF to write");
+  command->add_option("--paper", a->paper, "A4 (default), A3 .. A0, letter, or WxH in mm");
+  command->add_option("--measured", a->measured, "What the two printed rulers of 100 mm measure: X_MM,Y_MM");
+  command->add_option("--json", a->json, "File for all numbers");
+  command->footer(
+      "Example: foresight calibrate target --board chessboard:9x6:0.025 --paper A3 --out board.pdf\n"
+      "         foresight calibrate target --board chessboard:9x6:0.025 --measured 99.8,99.9");
+  command->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace foresight

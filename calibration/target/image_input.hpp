@@ -1,0 +1,48 @@
+// From folders of pictures to corners: reading, finding and refusing, on all cores.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calibration/target/find_corners.hpp"
+
+namespace foresight {
+
+/// A view that is not used, and why, in words for the user.
+struct DroppedView {
+  std::string name;
+  std::string reason;
+};
+
+struct FoundCorners {
+  Board board;  ///< with what was found from the images
+  CornerSet corners;
+  std::vector<ViewQuality> quality;  ///< one per view
+  std::vector<DroppedView> dropped;
+};
+
+struct FoundStereoCorners {
+  Board board;
+  StereoCorners corners;
+  std::vector<ViewQuality> left_quality, right_quality;  ///< one per view of each camera
+  std::vector<DroppedView> dropped;                      ///< named after the file, or after the pair
+};
+
+/// Pictures of a folder (png jpg jpeg bmp pgm tif tiff), or those that a pattern in the last part of
+/// the path names ("pictures/left*.png"); sorted by the numbers in their names. Throws InputError
+/// where there is none.
+std::vector<std::filesystem::path> list_images(const std::filesystem::path& folder);
+
+/// Views in the order of list_images(), named by the stem of their files. Left out with a reason:
+/// images without the board, and blurred ones (sharpness below half the median). Throws InputError:
+/// no image, unreadable image, sizes that differ (naming two), the board in none (naming what fits).
+FoundCorners find_in_folder(const std::filesystem::path& folder, const Board& board);
+
+/// Pairs by name (split_side() of the path's file name); where no name fits and both folders hold
+/// equally many, by their order. A blurred image drops its pair; a board seen by one camera
+/// stays for that camera's sake. Throws like find_in_folder, and where no pair shows the board.
+FoundStereoCorners find_pairs_in_folders(const std::filesystem::path& left, const std::filesystem::path& right,
+                                         const Board& board);
+
+}  // namespace foresight

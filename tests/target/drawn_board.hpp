@@ -1,0 +1,24 @@
+// Boards drawn into images, with the truth.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "calibration/target/board.hpp"
+
+namespace foresight {
+
+struct DrawnView {
+  cv::Mat grey;
+  std::vector<Eigen::Vector2d> pixels;  ///< of every point of the board
+  double coverage = 0;                  ///< of the image, by the points
+};
+
+enum class TagRows { from_above, from_below };
+
+/// The board in the middle of the image on a grey wall, turned in the image by `roll_deg`
+/// (clockwise), its right side moved away from the camera by `tilt_deg`; 4x4 samples a pixel.
+DrawnView draw_board(const Board& board, int width, int height, double roll_deg, double tilt_deg,
+                     TagRows rows = TagRows::from_above);
+
+}  // namespace foresight
