@@ -77,8 +77,9 @@ void add_calibration(CLI::App& bench, std::function<int()>& action) {
       ->check(from_to(1, 100))
       ->capture_default_str();
   command->add_option("--json", options->json, "File for all numbers");
-  command->footer("Example: foresight bench calibration corners.vnl --board chessboard:9x6:0.025\n"
-                  "Exit code: 1 where OpenCV predicts the views left out better.");
+  command->footer(
+      "Example: foresight bench calibration corners.vnl --board chessboard:9x6:0.025\n"
+      "Exit code: 1 where OpenCV predicts the views left out better.");
   command->callback([options, &action] { action = [options] { return bench_calibration(*options); }; });
 }
 

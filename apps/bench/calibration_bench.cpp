@@ -56,10 +56,10 @@ Rig solve_with_opencv(const RigViews& views) {
     for (int col = 0; col < 3; ++col) T_right_left.linear()(row, col) = R.at<double>(row, col);
     T_right_left.translation()[row] = t.at<double>(row);
   }
-  return {{camera_of(K[0], d[0], views.width[0], views.height[0]),
-           camera_of(K[1], d[1], views.width[1], views.height[1])},
-          T_right_left.inverse(),
-          {}};
+  return {
+      {camera_of(K[0], d[0], views.width[0], views.height[0]), camera_of(K[1], d[1], views.width[1], views.height[1])},
+      T_right_left.inverse(),
+      {}};
 }
 
 Rig solve_with_ours(const RigViews& views) {

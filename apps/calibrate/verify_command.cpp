@@ -71,7 +71,7 @@ int verify(const VerifyOptions& options) {
   const auto row = [&](const std::string& name, double value, double limit) {
     const bool good = value <= limit;
     pass = pass && good;
-    std::printf("%-9s %s  (limit %s)  %s\n", name.c_str(), readable(value, 4, "px").c_str(),
+    std::printf("%-9s %s  (limit %s)  %s\n", name.c_str(), readable(value, 4, " px").c_str(),
                 readable(limit, 4).c_str(), good ? "pass" : "FAIL");
     json[name + "_px"] = value;
     json[name + "_limit_px"] = limit;
@@ -100,8 +100,9 @@ void add_verify(CLI::App& calibrate, std::function<int()>& action) {
   command->add_option("--cross", options->cross_px, "Limit in px; default: 2.1 times the result's own score");
   command->add_option("--epipolar", options->epipolar_px, "Limit in px; default: 1.5 times the result's own score");
   command->add_option("--json", options->json, "File for all numbers");
-  command->footer("Example: foresight calibrate verify --result stereo.yaml --corners new.vnl "
-                  "--board chessboard:9x6:0.025\nExit code: 1 where a limit is exceeded.");
+  command->footer(
+      "Example: foresight calibrate verify --result stereo.yaml --corners new.vnl "
+      "--board chessboard:9x6:0.025\nExit code: 1 where a limit is exceeded.");
   command->callback([options, &action] { action = [options] { return verify(*options); }; });
 }
 

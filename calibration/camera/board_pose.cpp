@@ -46,9 +46,7 @@ bool accumulate(const Rig& rig, const std::vector<Eigen::Vector3d>& p_board, con
 Pose stepped(const Pose& T, const Vector6& step) {
   Pose result = T;
   const double angle = step.head<3>().norm();
-  if (angle > 0)
-    result.linear() =
-        Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() * T.linear();
+  if (angle > 0) result.linear() = Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() * T.linear();
   result.translation() += step.tail<3>();
   return result;
 }

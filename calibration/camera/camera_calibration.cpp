@@ -53,9 +53,10 @@ class Calibrator {
     if (count < kFewestViews)
       throw InputError(kind, "there are " + std::to_string(count) + ", and at least 5 are needed",
                        "take 15 or more, of a board that is tilted and reaches all corners of the image");
+    guess_sizes();
     for (std::size_t c = 0; c < cameras(); ++c) check_size(static_cast<int>(c));
-    if (cameras() == 2 && (result_.views.width[0] != result_.views.width[1] ||
-                           result_.views.height[0] != result_.views.height[1]))
+    if (cameras() == 2 &&
+        (result_.views.width[0] != result_.views.width[1] || result_.views.height[0] != result_.views.height[1]))
       result_.notes.push_back("the two cameras' images differ in size: " + size_text(0) + " and " + size_text(1));
   }
 
@@ -63,22 +64,30 @@ class Calibrator {
     return std::to_string(result_.views.width[c]) + "x" + std::to_string(result_.views.height[c]);
   }
 
+  // One size for both cameras of a pair.
+  void guess_sizes() {
+    RigViews& views = result_.views;
+    if (views.width[0] > 0 && (cameras() == 1 || views.width[1] > 0)) return;
+    RigViews all = views;
+    for (RigView& view : all.views)
+      view.corners[0].insert(view.corners[0].end(), view.corners[1].begin(), view.corners[1].end());
+    const auto size = usual_size(all, 0);
+    for (std::size_t c = 0; c < cameras(); ++c)
+      if (views.width[c] <= 0) views.width[c] = size[0], views.height[c] = size[1];
+    result_.notes.push_back("the size of the images was not given; " + std::to_string(size[0]) + "x" +
+                            std::to_string(size[1]) + " is the smallest usual one that holds all corners");
+  }
+
   void check_size(int camera) {
     RigViews& views = result_.views;
     const auto c = static_cast<std::size_t>(camera);
-    if (views.width[c] <= 0 || views.height[c] <= 0) {
-      const auto size = usual_size(views, camera);
-      views.width[c] = size[0], views.height[c] = size[1];
-      result_.notes.push_back("the size of the " + camera_name(camera, views.cameras) + " image was not given; " +
-                              size_text(c) + " is the smallest usual one that holds all corners");
-    }
     for (const RigView& view : views.views)
       for (const Corner& corner : view.corners[c])
         if (corner.pixel.x() < -0.5 || corner.pixel.y() < -0.5 || corner.pixel.x() > views.width[c] - 0.5 ||
             corner.pixel.y() > views.height[c] - 0.5)
-          throw InputError(camera_name(camera, views.cameras) + " view " + view.name + ", corner " +
-                               std::to_string(corner.index),
-                           "lies outside the image of " + size_text(c), "give the size of the images it was found in");
+          throw InputError(
+              camera_name(camera, views.cameras) + " view " + view.name + ", corner " + std::to_string(corner.index),
+              "lies outside the image of " + size_text(c), "give the size of the images it was found in");
   }
 
   // Evenly; the others go to the unseen ones.
@@ -86,8 +95,7 @@ class Calibrator {
     const std::size_t n = result_.views.views.size(), most = static_cast<std::size_t>(options_.most_views);
     if (n <= most) return;
     std::vector<std::size_t> taken, others;
-    for (std::size_t v = 0; v < n; ++v)
-      ((v + 1) * most / n > v * most / n ? taken : others).push_back(v);
+    for (std::size_t v = 0; v < n; ++v) ((v + 1) * most / n > v * most / n ? taken : others).push_back(v);
     unseen_ = subset(result_.views, others);
     result_.views = subset(result_.views, taken);
     result_.notes.push_back(std::to_string(most) + " of " + std::to_string(n) +
@@ -115,9 +123,9 @@ class Calibrator {
     check_pairs(result_.views, left, right, result_.repairs);
     if (result_.repairs.turned.size() + result_.repairs.dropped.size() > before) {
       if (useful_views() < kFewestViews)
-        throw InputError("pairs", "only " + std::to_string(useful_views()) + " belong together; " +
-                                      result_.repairs.dropped.front(),
-                         "take pairs of images at the same instants");
+        throw InputError(
+            "pairs", "only " + std::to_string(useful_views()) + " belong together; " + result_.repairs.dropped.front(),
+            "take pairs of images at the same instants");
       left = solve_alone(0, distortion);
       right = solve_alone(1, distortion);
     }

@@ -8,15 +8,15 @@
 namespace foresight {
 namespace {
 
-constexpr double kLeastNoise = 0.05;      // px; corners without noise would hide what cannot be told apart
+constexpr double kLeastNoise = 0.05;        // px; corners without noise would hide what cannot be told apart
 constexpr double kVagueFocalLength = 0.02;  // sigma over the focal length
 constexpr double kVagueCentre = 0.05;       // sigma over the image's width
 constexpr double kParallel = 5 * M_PI / 180;
 
 struct Tilts {
-  double to_image = 0;    // largest angle between a board and the image plane
-  double to_another = 0;  // largest angle between two boards
-  double second_axis = 0; // spread of the tilt about the axis that it varies least about
+  double to_image = 0;     // largest angle between a board and the image plane
+  double to_another = 0;   // largest angle between two boards
+  double second_axis = 0;  // spread of the tilt about the axis that it varies least about
 };
 
 Tilts tilts(const std::vector<Pose>& T_camera_board) {
@@ -50,8 +50,7 @@ std::string cure(const RigViews& views, std::size_t c, const Tilts& t) {
            "cannot be told apart";
   if (t.to_another < kParallel)
     return "all boards are parallel to each other: turn the board about both axes by 20 to 40 degrees between views";
-  if (t.second_axis < kParallel / 2)
-    return "the board is tilted about one axis only: tilt it about the other one too";
+  if (t.second_axis < kParallel / 2) return "the board is tilted about one axis only: tilt it about the other one too";
   if (covered(views, c) < 0.4)
     return "the boards reach only " + readable(100 * covered(views, c), 0) +
            " % of the image: bring the board closer, and to all sides";
@@ -77,9 +76,8 @@ std::optional<std::string> missing_motion(const RigViews& views, const RigSoluti
                                              : Pose(solution.rig.T_left_right.inverse() * solution.T_left_board[v]));
     const std::string whose = views.cameras == 2 ? "the " + camera_name(camera, 2) + " camera: " : "";
     return whose + cure(views, c, tilts(T_camera_board)) +
-           (uncertainty.usable() && std::isfinite(focal)
-                ? " (focal length +- " + readable(100 * focal, 1) + " %)"
-                : "");
+           (uncertainty.usable() && std::isfinite(focal) ? " (focal length +- " + readable(100 * focal, 1) + " %)"
+                                                         : "");
   }
   return std::nullopt;
 }
@@ -106,7 +104,8 @@ double lens_difference(const CameraModel& a, const CameraModel& b) {
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int i = 0; i < kCols * kRows; ++i) {
-    const Eigen::Vector2d pixel((a.width - 1.0) * (i % kCols) / (kCols - 1), (a.height - 1.0) * (i / kCols) / (kRows - 1));
+    const Eigen::Vector2d pixel((a.width - 1.0) * (i % kCols) / (kCols - 1),
+                                (a.height - 1.0) * (i / kCols) / (kRows - 1));
     const auto ra = unproject(a, pixel), rb = unproject(b, pixel);
     if (!ra || !rb) continue;
     rays.emplace_back(*ra, *rb);

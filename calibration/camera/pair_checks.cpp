@@ -70,8 +70,8 @@ class Consensus {
   }
 
   const std::vector<Pair>& pairs() const { return pairs_; }
-  const std::vector<double>& errors() const { return errors_; }          // px, of each pair as it is
-  const std::vector<double>& turned_errors() const { return turned_; }   // with the board turned
+  const std::vector<double>& errors() const { return errors_; }         // px, of each pair as it is
+  const std::vector<double>& turned_errors() const { return turned_; }  // with the board turned
   double median_px() const { return median_; }
 
  private:
@@ -176,16 +176,16 @@ bool mirrored_explains(const RigViews& views, const RigSolution& left, const Rig
     const std::string first = shift > 0 ? "right" : "left", last = shift > 0 ? "left" : "right";
     throw InputError("pairs",
                      "they are shifted by one: with the next " + first + " view for each " + last +
-                         " one the error between the cameras falls " + from + readable(shifted, 1, "px"),
+                         " one the error between the cameras falls " + from + readable(shifted, 1, " px"),
                      "drop the first " + first + " image and the last " + last + " one, and name the pairs anew");
   }
   if (mirrored_explains(views, left, right, found / 3))
     throw InputError("pairs", "one of the two cameras delivers mirrored images", "turn its mirroring off");
-  throw InputError("pairs",
-                   "no one place of the right camera explains even half of them: the middle error is " +
-                       readable(found, 1, "px"),
-                   "check that equal names were taken at the same instant, and that the cameras did not move "
-                   "against each other");
+  throw InputError(
+      "pairs",
+      "no one place of the right camera explains even half of them: the middle error is " + readable(found, 1, " px"),
+      "check that equal names were taken at the same instant, and that the cameras did not move "
+      "against each other");
 }
 
 }  // namespace
@@ -234,7 +234,7 @@ void check_pairs(RigViews& views, const RigSolution& left, const RigSolution& ri
       repairs.turned.push_back(view.name);
     } else {
       drop[consensus.pairs()[i].view] = 1;
-      repairs.dropped.push_back(view.name + ": its two images are " + readable(consensus.errors()[i], 0, "px") +
+      repairs.dropped.push_back(view.name + ": its two images are " + readable(consensus.errors()[i], 0, " px") +
                                 " from belonging together");
     }
   }

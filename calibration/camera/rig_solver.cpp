@@ -155,8 +155,7 @@ class Bundle {
       if (c == 0)
         problem_.AddResidualBlock(cost, loss_, lenses_[0].data(), poses_[v].data(), warp_.data());
       else
-        problem_.AddResidualBlock(cost, loss_, lenses_[1].data(), poses_[v].data(), warp_.data(),
-                                  T_left_right_.data());
+        problem_.AddResidualBlock(cost, loss_, lenses_[1].data(), poses_[v].data(), warp_.data(), T_left_right_.data());
     });
   }
 
@@ -188,8 +187,7 @@ std::vector<RejectedCorner> outliers(const RigViews& views, const RigErrors& err
   std::vector<RejectedCorner> found;
   for_each_corner(views, [&](std::size_t v, std::size_t c, std::size_t i, const Corner& corner) {
     const double error = errors[v][c][i].norm();
-    if (!(error * sigma / corner.sigma_px <= limit))
-      found.push_back({v, static_cast<int>(c), corner.index, error});
+    if (!(error * sigma / corner.sigma_px <= limit)) found.push_back({v, static_cast<int>(c), corner.index, error});
   });
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.error_px > b.error_px; });
   return found;

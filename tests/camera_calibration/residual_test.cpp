@@ -11,9 +11,9 @@ namespace {
 class Residual : public testing::TestWithParam<Distortion> {};
 
 TEST_P(Residual, DerivativesMatchDifferences) {
-  const auto s = test::synthetic_rig(3, {.views = 1, .distortion = GetParam() == Distortion::equidistant
-                                                                        ? Distortion::equidistant
-                                                                        : Distortion::radtan4});
+  const auto s = test::synthetic_rig(
+      3, {.views = 1,
+          .distortion = GetParam() == Distortion::equidistant ? Distortion::equidistant : Distortion::radtan4});
   CameraModel camera = s.rig.cameras[1];
   if (GetParam() == Distortion::rational || GetParam() == Distortion::thin_prism)
     camera.lens[9] = 0.05, camera.lens[10] = 0.02, camera.lens[11] = -0.01;
@@ -47,7 +47,8 @@ TEST(Unproject, IsTheInverseOfProject) {
   for (const Distortion distortion : {Distortion::radtan4, Distortion::equidistant}) {
     std::mt19937 random(5);
     const CameraModel camera = test::random_camera(random, distortion);
-    for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(319.5, 239.5), {0, 0}, {639, 10}, {camera.lens[2], camera.lens[3]}}) {
+    for (const Eigen::Vector2d& pixel :
+         {Eigen::Vector2d(319.5, 239.5), {0, 0}, {639, 10}, {camera.lens[2], camera.lens[3]}}) {
       const auto ray = unproject(camera, pixel);
       ASSERT_TRUE(ray);
       EXPECT_LT((*project(camera, *ray) - pixel).norm(), 1e-8);
