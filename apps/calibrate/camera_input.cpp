@@ -1,6 +1,7 @@
 #include "apps/calibrate/camera_input.hpp"
 
 #include "calibration/target/corner_files.hpp"
+#include "calibration/target/image_input.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -27,12 +28,46 @@ RigViews read_file(const std::filesystem::path& path, const CameraInput& input, 
   return views;
 }
 
+void note_dropped(const std::vector<DroppedView>& dropped, std::vector<std::string>& notes) {
+  for (const DroppedView& view : dropped) notes.push_back("view " + view.name + " is not used: " + view.reason);
+}
+
+RigViews find_in_images(const CameraInput& input, std::vector<std::string>& notes) {
+  if (input.board.empty())
+    throw InputError("--board", "is missing", "say what is in the images, such as chessboard:9x6:0.025");
+  const Board board = parse_board(input.board);
+  if (input.images) {
+    const FoundCorners found = find_in_folder(*input.images, board);
+    note_dropped(found.dropped, notes);
+    return rig_views(found.corners);
+  }
+  const FoundStereoCorners found = find_pairs_in_folders(*input.left, *input.right, board);
+  note_dropped(found.dropped, notes);
+  return rig_views(found.corners);
+}
+
+void require_one_source(const CameraInput& input, bool pair) {
+  const bool images = pair ? input.left && input.right : input.images.has_value();
+  const std::string options = pair ? "--left and --right" : "--images";
+  if (pair && input.left.has_value() != input.right.has_value())
+    throw InputError(input.left ? "--right" : "--left", "is missing", "give both folders of the pair");
+  if (input.corners.has_value() == images)
+    throw InputError("--corners", images ? "is given beside " + options : "is missing, and so is " + options,
+                     "give either corners or images");
+}
+
 }  // namespace
 
 void add_camera_input(CLI::App& command, CameraInput& input, bool pair) {
   command.add_option("--corners", input.corners,
                      pair ? "Corners found before: mrcal .vnl, or a folder with cam0/ and cam1/"
                           : "Corners found before: mrcal .vnl, or a folder of .csv");
+  if (pair) {
+    command.add_option("--left", input.left, "Folder of the left images, or a pattern such as 'pictures/left*.jpg'");
+    command.add_option("--right", input.right, "Folder of the right images, or a pattern");
+  } else {
+    command.add_option("--images", input.images, "Folder of images, or a pattern such as 'pictures/left*.jpg'");
+  }
   command.add_option("--board", input.board, "KIND:COLSxROWS:SIZE_M, such as chessboard:9x6:0.025");
   command.add_option("--test-corners", input.test_corners, "Corners that only score, not solve");
   command.add_option("--size", input.size, "WIDTHxHEIGHT of the images, where --corners does not say it");
@@ -40,8 +75,9 @@ void add_camera_input(CLI::App& command, CameraInput& input, bool pair) {
 
 CameraViewsInput read_camera_input(const CameraInput& input, bool pair) {
   if (!input.corners) throw InputError("--corners", "is missing", "give the corners to calibrate from");
+  require_one_source(input, pair);
   CameraViewsInput read;
-  read.train = read_file(*input.corners, input, pair);
+  read.train = input.corners ? read_file(*input.corners, input, pair) : find_in_images(input, read.notes);
   if (input.test_corners) {
     read.test = read_file(*input.test_corners, input, pair);
     const bool same = read.test.p_board.size() == read.train.p_board.size() &&

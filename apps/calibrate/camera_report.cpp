@@ -28,7 +28,7 @@ cv::Mat image_of(const Eigen::MatrixXd& values) {
 void add_scores(const CameraCalibration& c, HtmlReport& report) {
   report.heading("Scores");
   std::vector<std::vector<std::string>> rows;
-  const auto row = [&](const std::string& name, double value) { rows.push_back({name, readable(value, 4, "px")}); };
+  const auto row = [&](const std::string& name, double value) { rows.push_back({name, readable(value, 4, " px")}); };
   row("in sample, RMS per corner", c.solution.rms_px);
   row("left out, joint", c.held_out.joint_px);
   if (cameras(c) == 2) {
@@ -52,7 +52,7 @@ void add_residuals(const CameraCalibration& c, HtmlReport& report) {
       for (std::size_t k = 0; k < corners.size(); ++k) {
         if (!errors[v][i][k].allFinite()) continue;
         clouds[i].points.push_back(errors[v][i][k]);
-        places[i].points.push_back(corners[k].pixel.cwiseProduct(Eigen::Vector2d(1, -1)));
+        places[i].points.push_back(corners[k].pixel);
         sum += errors[v][i][k].squaredNorm();
       }
       if (!corners.empty())
@@ -62,7 +62,7 @@ void add_residuals(const CameraCalibration& c, HtmlReport& report) {
   report.heading("Residuals");
   report.plot("Error of every corner, rejected ones included", "x in px", "y in px", clouds, true);
   report.plot("Error of each view", "view", "RMS in px", by_view);
-  report.plot("Where the corners were seen", "x in px", "-y in px", places, true);
+  report.plot("Where the corners were seen", "x in px", "y in px", places, true);
 }
 
 void add_maps(const CameraCalibration& c, HtmlReport& report) {
@@ -72,7 +72,7 @@ void add_maps(const CameraCalibration& c, HtmlReport& report) {
     const CameraModel& model = c.solution.rig.cameras[i];
     const std::string name = title(camera_name(static_cast<int>(i), c.views.cameras));
     report.heat_map(name + ", at infinity", image_of(c.at_infinity[i].px), model.width, model.height, "px");
-    report.heat_map(name + ", at " + readable(c.board_distance_m, 2, "m"), image_of(c.at_board[i].px), model.width,
+    report.heat_map(name + ", at " + readable(c.board_distance_m, 2, " m"), image_of(c.at_board[i].px), model.width,
                     model.height, "px");
   }
 }

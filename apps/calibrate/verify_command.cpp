@@ -73,6 +73,8 @@ int verify(const VerifyOptions& options) {
     pass = pass && good;
     std::printf("%-9s %s  (limit %s)  %s\n", name.c_str(), readable(value, 4, "px").c_str(), readable(limit, 4).c_str(),
                 good ? "pass" : "FAIL");
+    std::printf("%-9s %s  (limit %s)  %s\n", name.c_str(), readable(value, 4, " px").c_str(),
+                readable(limit, 4).c_str(), good ? "pass" : "FAIL");
     json[name + "_px"] = value;
     json[name + "_limit_px"] = limit;
   };
@@ -95,6 +97,7 @@ void add_verify(CLI::App& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<VerifyOptions>();
   command->add_option("--result", options->result, "Result file of `stereo` or `intrinsics`")->required();
   add_camera_input(*command, options->input, true);
+  command->add_option("--images", options->input.images, "Of one camera: folder of images, or a pattern");
   command->add_option("--joint", options->joint_px, "Limit in px; default: 1.5 times the result's own score");
   command->add_option("--cross", options->cross_px, "Limit in px; default: 2.1 times the result's own score");
   command->add_option("--epipolar", options->epipolar_px, "Limit in px; default: 1.5 times the result's own score");

@@ -24,11 +24,11 @@ void write_uncertainty(std::ostream& out, const CameraCalibration& c, std::size_
   const auto row = [&](const UncertaintyMap& map, const std::string& where) {
     out << "  uncertainty " << where << ": centre " << readable(map.centre_px, 3) << ", middle "
         << readable(map.median_px, 3) << ", 90 % below " << readable(map.p90_px, 3) << ", worst corner "
-        << readable(map.worst_corner_px, 2, "px") << "\n";
+        << readable(map.worst_corner_px, 2, " px") << "\n";
   };
   row(c.at_infinity[camera], "at infinity");
-  row(c.at_board[camera], "at " + readable(c.board_distance_m, 2, "m"));
-  out << "  odd and even views differ by " << readable(c.odd_even_px[camera], 3, "px") << "\n";
+  row(c.at_board[camera], "at " + readable(c.board_distance_m, 2, " m"));
+  out << "  odd and even views differ by " << readable(c.odd_even_px[camera], 3, " px") << "\n";
 }
 
 void write_lists(std::ostream& out, const CameraCalibration& c) {
@@ -39,7 +39,7 @@ void write_lists(std::ostream& out, const CameraCalibration& c) {
   for (std::size_t i = 0; i < std::min(kListed, rejected.size()); ++i)
     out << "rejected: " << camera_name(rejected[i].camera, c.views.cameras) << " view "
         << c.views.views[rejected[i].view].name << ", corner " << rejected[i].index << ", "
-        << readable(rejected[i].error_px, 2, "px") << "\n";
+        << readable(rejected[i].error_px, 2, " px") << "\n";
   if (rejected.size() > kListed) out << "rejected: and " << rejected.size() - kListed << " more\n";
   for (const std::string& note : c.notes) out << "note: " << note << "\n";
   for (const std::string& why : c.unusable) out << "NOT USABLE: " << why << "\n";
@@ -49,12 +49,12 @@ void write_lists(std::ostream& out, const CameraCalibration& c) {
 
 std::string CameraCalibration::brief() const {
   std::ostringstream out;
-  out << (usable() ? "usable" : "NOT USABLE") << ": " << readable(solution.rms_px, 3, "px") << " in sample, ";
+  out << (usable() ? "usable" : "NOT USABLE") << ": " << readable(solution.rms_px, 3, " px") << " in sample, ";
   if (views.cameras == 2)
     out << readable(held_out.joint_px, 3) << " / " << readable(held_out.cross_px, 3) << " / "
-        << readable(held_out.epipolar_px, 3, "px") << " held out (joint / cross / epipolar)";
+        << readable(held_out.epipolar_px, 3, " px") << " held out (joint / cross / epipolar)";
   else
-    out << readable(held_out.joint_px, 3, "px") << " held out";
+    out << readable(held_out.joint_px, 3, " px") << " held out";
   out << ", " << views.views.size() << " views";
   if (!usable()) out << "; " << unusable.front();
   return out.str();
@@ -70,19 +70,19 @@ std::string CameraCalibration::full() const {
   if (views.cameras == 2) {
     const Pose& T = solution.rig.T_left_right;
     out << "T_left_right: baseline " << readable(1000 * T.translation().norm(), 3) << " +- "
-        << readable(1000 * sigma.at("baseline_m"), 3, "mm") << ", turned by "
+        << readable(1000 * sigma.at("baseline_m"), 3, " mm") << ", turned by "
         << readable(Eigen::AngleAxisd(T.linear()).angle() * 180 / M_PI, 4) << " +- "
-        << readable(sigma.at("rotation_deg"), 4, "degrees") << "\n";
+        << readable(sigma.at("rotation_deg"), 4, " degrees") << "\n";
     out << "stereo over mono noise: " << readable(stereo_over_mono, 3) << "\n";
   }
   if (warp)
     out << "board warp: " << readable(1000 * solution.rig.warp.x_m, 3) << " along x, "
-        << readable(1000 * solution.rig.warp.y_m, 3, "mm") << " along y\n";
+        << readable(1000 * solution.rig.warp.y_m, 3, " mm") << " along y\n";
   out << (folds == static_cast<int>(views.views.size()) ? "held out: each view in turn\n"
                                                         : "held out: in " + std::to_string(folds) + " groups\n");
   if (unseen)
     out << "views never used (" << unseen->views << "): " << readable(unseen->joint_px, 3) << " / "
-        << readable(unseen->cross_px, 3) << " / " << readable(unseen->epipolar_px, 3, "px") << "\n";
+        << readable(unseen->cross_px, 3) << " / " << readable(unseen->epipolar_px, 3, " px") << "\n";
   out << "corners: " << solution.points << " used, " << solution.rejected.size() << " rejected\n";
   write_lists(out, *this);
   return out.str();

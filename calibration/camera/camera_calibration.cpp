@@ -53,6 +53,7 @@ class Calibrator {
     if (count < kFewestViews)
       throw InputError(kind, "there are " + std::to_string(count) + ", and at least 5 are needed",
                        "take 15 or more, of a board that is tilted and reaches all corners of the image");
+    guess_sizes();
     for (std::size_t c = 0; c < cameras(); ++c) check_size(static_cast<int>(c));
     if (cameras() == 2 &&
         (result_.views.width[0] != result_.views.width[1] || result_.views.height[0] != result_.views.height[1]))
@@ -63,15 +64,23 @@ class Calibrator {
     return std::to_string(result_.views.width[c]) + "x" + std::to_string(result_.views.height[c]);
   }
 
+  // One size for both cameras of a pair.
+  void guess_sizes() {
+    RigViews& views = result_.views;
+    if (views.width[0] > 0 && (cameras() == 1 || views.width[1] > 0)) return;
+    RigViews all = views;
+    for (RigView& view : all.views)
+      view.corners[0].insert(view.corners[0].end(), view.corners[1].begin(), view.corners[1].end());
+    const auto size = usual_size(all, 0);
+    for (std::size_t c = 0; c < cameras(); ++c)
+      if (views.width[c] <= 0) views.width[c] = size[0], views.height[c] = size[1];
+    result_.notes.push_back("the size of the images was not given; " + std::to_string(size[0]) + "x" +
+                            std::to_string(size[1]) + " is the smallest usual one that holds all corners");
+  }
+
   void check_size(int camera) {
     RigViews& views = result_.views;
     const auto c = static_cast<std::size_t>(camera);
-    if (views.width[c] <= 0 || views.height[c] <= 0) {
-      const auto size = usual_size(views, camera);
-      views.width[c] = size[0], views.height[c] = size[1];
-      result_.notes.push_back("the size of the " + camera_name(camera, views.cameras) + " image was not given; " +
-                              size_text(c) + " is the smallest usual one that holds all corners");
-    }
     for (const RigView& view : views.views)
       for (const Corner& corner : view.corners[c])
         if (corner.pixel.x() < -0.5 || corner.pixel.y() < -0.5 || corner.pixel.x() > views.width[c] - 0.5 ||

@@ -176,7 +176,7 @@ bool mirrored_explains(const RigViews& views, const RigSolution& left, const Rig
     const std::string first = shift > 0 ? "right" : "left", last = shift > 0 ? "left" : "right";
     throw InputError("pairs",
                      "they are shifted by one: with the next " + first + " view for each " + last +
-                         " one the error between the cameras falls " + from + readable(shifted, 1, "px"),
+                         " one the error between the cameras falls " + from + readable(shifted, 1, " px"),
                      "drop the first " + first + " image and the last " + last + " one, and name the pairs anew");
   }
   if (mirrored_explains(views, left, right, found / 3))
@@ -184,6 +184,7 @@ bool mirrored_explains(const RigViews& views, const RigSolution& left, const Rig
   throw InputError(
       "pairs",
       "no one place of the right camera explains even half of them: the middle error is " + readable(found, 1, "px"),
+      "no one place of the right camera explains even half of them: the middle error is " + readable(found, 1, " px"),
       "check that equal names were taken at the same instant, and that the cameras did not move "
       "against each other");
 }
@@ -234,7 +235,7 @@ void check_pairs(RigViews& views, const RigSolution& left, const RigSolution& ri
       repairs.turned.push_back(view.name);
     } else {
       drop[consensus.pairs()[i].view] = 1;
-      repairs.dropped.push_back(view.name + ": its two images are " + readable(consensus.errors()[i], 0, "px") +
+      repairs.dropped.push_back(view.name + ": its two images are " + readable(consensus.errors()[i], 0, " px") +
                                 " from belonging together");
     }
   }

@@ -58,7 +58,7 @@ TEST(SyntheticTruth, ErrorsLieInsideTwoSigma) {
 }
 
 TEST(SyntheticTruth, FindsAFishEyeByItself) {
-  const auto truth = test::synthetic_rig(77, {.views = 20, .distortion = Distortion::equidistant});
+  const auto truth = test::synthetic_rig(77, {.views = 12, .distortion = Distortion::equidistant});
   const CameraCalibration c = calibrate_rig(truth.views, subset(truth.views, {}), {});
   EXPECT_EQ(c.solution.rig.cameras[0].distortion, Distortion::equidistant) << c.full();
   EXPECT_NEAR(c.solution.rig.cameras[0].lens[0], 260, 2);
