@@ -40,10 +40,13 @@ HandEyeStart best_start(const HandEyeOptions& options, const HandEyeData& data, 
     (mount == CameraMount::fixed ? summary.start_mm_fixed : summary.start_mm_moving) = 1e3 * starts.back().misfit_m;
   }
   if (starts.size() == 2 && starts[1].misfit_m < starts[0].misfit_m) std::swap(starts[0], starts[1]);
-  if (starts.size() == 2 && starts[0].misfit_m > kClearly * starts[1].misfit_m)
-    summary.notes.push_back("a fixed and a moving camera fit about equally well (" +
-                            readable(summary.start_mm_fixed, 1) + " and " + readable(summary.start_mm_moving, 1) +
-                            " mm); say which with --camera-mount");
+  if (starts.size() == 2) {
+    const std::string both = readable(summary.start_mm_fixed, 1) + " mm of misfit with a fixed camera, " +
+                             readable(summary.start_mm_moving, 1) + " mm with a moving one";
+    const bool clear = starts[0].misfit_m <= kClearly * starts[1].misfit_m;
+    summary.notes.push_back(clear ? "the camera is taken as " + to_string(starts[0].mount) + ": " + both
+                                  : both + ": too near each other, say which with --camera-mount");
+  }
   return starts[0];
 }
 

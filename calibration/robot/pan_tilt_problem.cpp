@@ -7,6 +7,7 @@
 #include <ceres/solver.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "calibration/robot/arrow_system.hpp"
 #include "common/error.hpp"
@@ -157,7 +158,9 @@ double start_pan_tilt(const std::vector<PanTiltSample>& samples, PanTiltState& s
 
 Eigen::MatrixXd pan_tilt_covariance(const std::vector<PanTiltSample>& samples, PanTiltState& state, int& open) {
   ceres::Problem problem;
+  const bool robust = std::exchange(state.robust, false);  // the loss would count good poses as less than they say
   build(samples, state, -1, false, problem);
+  state.robust = robust;
   std::vector<double*> shared{state.world.data(), state.link.data(), state.camera.data()};
   if (state.held_joints.size() < 4) shared.push_back(state.joints.data());
   ArrowSystem system = arrow_system(problem, shared, {});

@@ -10,10 +10,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kStep = 0.01;        // of the search, seconds
-constexpr double kHalfWindow = 0.05;  // over which a speed is measured
-constexpr double kLeastCommon = 3;    // seconds
-constexpr double kMargin = 0.05;      // around a sample in which the offset may still move
+constexpr double kStep = 0.01;       // of the search, seconds
+constexpr double kHalfWindow = 0.1;  // over which a speed is measured
+constexpr double kLeastCommon = 3;   // seconds
+constexpr double kMargin = 0.05;     // around a sample in which the offset may still move
 
 struct Speeds {
   double first_s = 0;
