@@ -25,10 +25,13 @@ YamlMap::YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node
     : file_(std::move(file)), prefix_(std::move(prefix)), node_(std::move(node)) {}
 
 YamlMap YamlMap::load(const std::filesystem::path& file) {
-  const std::string content = read_file(file);
+  return parse(file, read_file(file));
+}
+
+YamlMap YamlMap::parse(const std::filesystem::path& file, const std::string& text) {
   YAML::Node node;
   try {
-    node = YAML::Load(content);
+    node = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw InputError(at_line(file, error.mark.line + 1), "is not valid YAML (" + error.msg + ")", "correct the line");
   }
@@ -132,7 +135,13 @@ std::vector<double> YamlMap::numbers(const std::string& key) const {
   }
   if (!list.IsSequence()) throw InputError(where(key), "is not a list of numbers", "write [a, b, ...]");
   std::vector<double> out;
-  for (const YAML::Node& entry : list) out.push_back(finite(entry, key));
+  for (const YAML::Node& entry : list) {
+    if (!entry.IsSequence()) out.push_back(finite(entry, key));
+    if (entry.IsSequence() && entry.size() != list[0].size())
+      throw InputError(where(key), "has rows of different lengths", "write as many numbers in every row");
+    if (entry.IsSequence())
+      for (const YAML::Node& number : entry) out.push_back(finite(number, key));
+  }
   return out;
 }
 

@@ -18,6 +18,9 @@ class YamlMap {
   /// Reads the file, whose top level must be a mapping. Refuses what is not YAML.
   static YamlMap load(const std::filesystem::path& file);
 
+  /// The same for the text of `file`, which is only named.
+  static YamlMap parse(const std::filesystem::path& file, const std::string& text);
+
   /// Refuses keys that are not in `known` (naming the nearest that is) and keys given twice.
   void require_known(const std::vector<std::string>& known) const;
 
@@ -32,6 +35,10 @@ class YamlMap {
   int integer(const std::string& key) const;       ///< within int
   int integer(const std::string& key, int least, int most) const;
   std::vector<double> numbers(const std::string& key) const;  ///< a list, or {rows, cols, data}; finite
+  std::string text(const std::string& key) const;             ///< a scalar that is not empty
+  double number(const std::string& key) const;                ///< finite
+  int integer(const std::string& key) const;                  ///< within int
+  std::vector<double> numbers(const std::string& key) const;  ///< a list, a list of rows, or {rows, cols, data}; finite
   std::vector<double> numbers(const std::string& key, std::size_t count) const;
   YamlMap map(const std::string& key) const;
   std::vector<YamlMap> maps(const std::string& key) const;  ///< a list of mappings
@@ -49,7 +56,7 @@ class YamlMap {
   }
 
   /// {xyz: [..], quaternion: [x, y, z, w]} (either may be absent), or a rigid 4x4 matrix,
-  /// row-major, as a list of 16 or as {rows, cols, data}.
+  /// row-major, as a list of 16, of 4 rows, or as {rows, cols, data}.
   Pose pose(const std::string& key) const;
 
  private:

@@ -8,6 +8,10 @@
 #include "apps/calibrate/pan_tilt_command.hpp"
 #include "apps/calibrate/target_command.hpp"
 #include "apps/calibrate/time_command.hpp"
+#include "apps/calibrate/display_command.hpp"
+#include "apps/calibrate/export_command.hpp"
+#include "apps/calibrate/photometric_command.hpp"
+#include "apps/calibrate/scene_command.hpp"
 
 namespace foresight {
 
@@ -22,6 +26,10 @@ void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   add_pan_tilt(*calibrate, action);
   add_arm(*calibrate, action);
   add_time(*calibrate, action);
+  add_photometric_command(*calibrate, action);
+  add_display_command(*calibrate, action);
+  add_scene_command(*calibrate, action);
+  add_calibration_export_command(*calibrate, action);
 }
 
 }  // namespace foresight

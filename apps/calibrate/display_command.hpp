@@ -1,0 +1,11 @@
+// `foresight calibrate display`: the lens of a head display from pictures taken through it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace foresight {
+
+void add_display_command(CLI::App& calibrate, std::function<int()>& action);
+
+}  // namespace foresight

@@ -1,0 +1,209 @@
+#include "apps/calibrate/export_command.hpp"
+
+#include <iostream>
+#include <memory>
+
+#include "apps/calibrate/outputs.hpp"
+#include "calibration/camera/camera_result.hpp"
+#include "calibration/formats/camera_formats.hpp"
+#include "calibration/formats/urdf_offsets.hpp"
+#include "calibration/result/html_report.hpp"
+#include "common/atomic_file.hpp"
+#include "common/error.hpp"
+#include "common/exact_number.hpp"
+#include "common/text.hpp"
+#include "scene/files.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr const char* kLeftLink = "left_camera";
+constexpr const char* kRightLink = "right_camera";
+
+struct ExportOptions {
+  std::filesystem::path input;
+  std::string from = "result";
+  std::string to;
+  std::filesystem::path urdf;  // empty: a new one
+  CalibrateOutputs outputs;
+};
+
+struct Source {
+  std::optional<CalibratedCameras> cameras;
+  UrdfOffsets offsets;
+  std::map<std::string, std::string> devices;
+};
+
+// Results of arms and heads name what a URDF takes: joint_offsets: {NAME: rad or m}, and
+// mounts: [{parent: LINK, child: LINK, pose: {...}}].
+UrdfOffsets read_offsets(const YamlMap& result) {
+  UrdfOffsets offsets;
+  if (result.has("joint_offsets")) {
+    const YamlMap joints = result.map("joint_offsets");
+    for (const std::string& name : joints.keys()) offsets.joints[name] = joints.number(name);
+  }
+  if (result.has("mounts"))
+    for (const YamlMap& mount : result.maps("mounts"))
+      offsets.mounts.push_back({mount.text("parent"), mount.text("child"), mount.pose("pose")});
+  return offsets;
+}
+
+Source read_result_source(const std::filesystem::path& file) {
+  const std::string kind = YamlMap::load(file).text("kind");
+  const ResultFile result = read_result(file, kind);
+  Source source;
+  source.devices = result.header.devices;
+  if (kind == "intrinsics") {
+    source.cameras = CalibratedCameras{read_camera(result.result), {}, Pose::Identity()};
+  } else if (kind == "display") {
+    source.cameras = CalibratedCameras{read_camera(result.result.map("panel")), {}, Pose::Identity()};
+  } else if (kind == "stereo") {
+    const StereoModel stereo = read_stereo(result.result);
+    source.cameras = CalibratedCameras{stereo.left, stereo.right, stereo.T_left_right};
+    source.offsets.mounts.push_back({kLeftLink, kRightLink, stereo.T_left_right});
+  } else {
+    source.offsets = read_offsets(result.result);
+  }
+  return source;
+}
+
+Source read_source(const ExportOptions& options) {
+  if (options.from == "result") return read_result_source(options.input);
+  if (options.from == "urdf") {
+    const UrdfMount mount = read_mount(read_file(options.input), kRightLink, options.input.string());
+    return {std::nullopt, {{mount}, {}}, {}};
+  }
+  Source source;
+  source.cameras = read_cameras(parse_camera_format(options.from), options.input);
+  if (source.cameras->right) source.offsets.mounts.push_back({kLeftLink, kRightLink, source.cameras->T_left_right});
+  return source;
+}
+
+const CalibratedCameras& cameras_of(const Source& source, const ExportOptions& options) {
+  if (!source.cameras)
+    throw InputError(options.input.string(), "it holds no lens",
+                     "give a result of `calibrate intrinsics` or `stereo`, or use --to urdf");
+  return *source.cameras;
+}
+
+ExportSummary write_urdf(const Source& source, const ExportOptions& options) {
+  const std::filesystem::path& out = *options.outputs.out;
+  if (std::filesystem::exists(out) && !options.outputs.force)
+    throw InputError(out.string(), "it exists", "write to another place, or give --force to replace it");
+  if (source.offsets.mounts.empty() && source.offsets.joints.empty())
+    throw InputError(options.input.string(), "it holds nothing that a URDF takes",
+                     "give a result with a pair of cameras, joint_offsets or mounts");
+  if (options.urdf.empty() && !source.offsets.joints.empty())
+    throw InputError("--urdf", "joint offsets need the robot that they belong to", "give --urdf ROBOT.urdf");
+  const std::string before = options.urdf.empty() ? empty_urdf(kLeftLink) : read_file(options.urdf);
+  const std::string where = options.urdf.empty() ? options.input.string() : options.urdf.string();
+  const std::string text = with_offsets(before, source.offsets, where);
+  ExportSummary summary{{out}, 0, 0};
+  for (const UrdfMount& mount : source.offsets.mounts) {
+    const Pose back = read_mount(text, mount.child, out.string()).T_parent_child;
+    CalibratedCameras as_is = source.cameras.value_or(CalibratedCameras{});
+    if (!as_is.right) continue;
+    CalibratedCameras as_read = as_is;
+    as_read.T_left_right = back;
+    summary.rays = kRays;
+    summary.worst_px = worst_ray(as_is, as_read, kRays);
+  }
+  if (!(summary.worst_px <= kMostPx))
+    throw RuntimeFailure("the URDF would differ by " + exact_text(summary.worst_px) + " px", "report this");
+  write_file_atomically(out, text);
+  return summary;
+}
+
+// Its score is named so that no solver's score is ever compared with it.
+ExportSummary write_own(const Source& source, const ExportOptions& options) {
+  const CalibratedCameras& cameras = cameras_of(source, options);
+  ResultHeader header;
+  header.kind = cameras.right ? "stereo" : "intrinsics";
+  header.date = utc_now();
+  header.devices = source.devices;
+  header.score_name = "imported_not_measured";
+  const YAML::Node payload =
+      cameras.right ? to_yaml(StereoModel{cameras.left, *cameras.right, cameras.T_left_right}) : to_yaml(cameras.left);
+  const YamlMap back = YamlMap::parse(*options.outputs.out, YAML::Dump(payload));
+  CalibratedCameras read{cameras.left, {}, Pose::Identity()};
+  if (cameras.right) {
+    const StereoModel stereo = read_stereo(back);
+    read = {stereo.left, stereo.right, stereo.T_left_right};
+  } else {
+    read.left = read_camera(back);
+  }
+  const ExportSummary summary{{*options.outputs.out}, kRays, worst_ray(cameras, read, kRays)};
+  if (!(summary.worst_px <= kMostPx)) throw RuntimeFailure("the result does not read back", "report this");
+  write_result(*options.outputs.out, header, payload, options.outputs.force);
+  return summary;
+}
+
+std::vector<std::vector<std::string>> lens_rows(const CalibratedCameras& cameras) {
+  std::vector<std::vector<std::string>> rows;
+  for (const CameraModel* camera : {&cameras.left, cameras.right ? &*cameras.right : nullptr})
+    if (camera)
+      rows.push_back({rows.empty() ? "left" : "right", to_string(camera->distortion),
+                      std::to_string(camera->width) + " x " + std::to_string(camera->height),
+                      readable(camera->lens[0], 3, " px"), readable(camera->lens[1], 3, " px"),
+                      readable(camera->lens[2], 3, " px"), readable(camera->lens[3], 3, " px")});
+  return rows;
+}
+
+void write_report(const Source& source, const ExportOptions& options, const ExportSummary& summary) {
+  if (!options.outputs.report) return;
+  HtmlReport report("Export to " + options.to);
+  report.paragraph(std::to_string(summary.rays) + " rays per camera, read back from the files, differ by at most " +
+                   exact_text(summary.worst_px) + " px.");
+  std::vector<std::vector<std::string>> files;
+  for (const auto& file : summary.files) files.push_back({file.string()});
+  report.table({"file"}, files);
+  if (source.cameras)
+    report.table({"camera", "lens model", "size", "fx", "fy", "cx", "cy"}, lens_rows(*source.cameras));
+  report.write(*options.outputs.report);
+}
+
+int run_export(const ExportOptions& options) {
+  if (!options.outputs.out) throw InputError("--out", "is missing", "name the file or folder to write");
+  const Source source = read_source(options);
+  const ExportSummary summary = options.to == "urdf" ? write_urdf(source, options)
+                                : options.to == "result"
+                                    ? write_own(source, options)
+                                    : write_cameras(parse_camera_format(options.to), cameras_of(source, options),
+                                                    *options.outputs.out, options.outputs.force);
+  nlohmann::ordered_json numbers{
+      {"from", options.from}, {"to", options.to}, {"rays", summary.rays}, {"worst_px", summary.worst_px}};
+  for (const auto& file : summary.files) {
+    numbers["files"].push_back(file.string());
+    std::cout << file.string() << "\n";
+  }
+  std::cout << summary.rays << " rays per camera agree within " << exact_text(summary.worst_px) << " px\n";
+  write_json(options.outputs.json, numbers);
+  write_report(source, options, summary);
+  return 0;
+}
+
+}  // namespace
+
+void add_calibration_export_command(CLI::App& calibrate, std::function<int()>& action) {
+  const auto options = std::make_shared<ExportOptions>();
+  auto* command = calibrate.add_subcommand("export", "Writes a calibration for other programs, and reads theirs");
+  command->add_option("INPUT", options->input, "Result file, or what --from names")->required();
+  command->add_option("--to", options->to, "camera-info, kalibr, opencv, mrcal, urdf, or result")
+      ->required()
+      ->check(CLI::IsMember({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
+  command->add_option("--from", options->from, "Format of INPUT: one of the same")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
+  command->add_option("--urdf", options->urdf, "With --to urdf: the robot to correct; else a new file");
+  add_outputs(*command, options->outputs);
+  command->footer(
+      "A pair becomes a folder with camera-info and mrcal, one file with the others. What is written is read\n"
+      "back, and 1,000 rays per camera must meet the same pixels within 1e-6 px.\n\n"
+      "Examples:\n"
+      "  foresight calibrate export stereo.yaml --to kalibr --out camchain.yaml\n"
+      "  foresight calibrate export camchain.yaml --from kalibr --to mrcal --out models/\n"
+      "  foresight calibrate export arm_result.yaml --to urdf --urdf arm.urdf --out arm_calibrated.urdf");
+  command->callback([options, &action] { action = [options] { return run_export(*options); }; });
+}
+
+}  // namespace foresight
