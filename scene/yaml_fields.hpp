@@ -34,10 +34,6 @@ class YamlMap {
   double positive(const std::string& key) const;   ///< finite, above 0
   int integer(const std::string& key) const;       ///< within int
   int integer(const std::string& key, int least, int most) const;
-  std::vector<double> numbers(const std::string& key) const;  ///< a list, or {rows, cols, data}; finite
-  std::string text(const std::string& key) const;             ///< a scalar that is not empty
-  double number(const std::string& key) const;                ///< finite
-  int integer(const std::string& key) const;                  ///< within int
   std::vector<double> numbers(const std::string& key) const;  ///< a list, a list of rows, or {rows, cols, data}; finite
   std::vector<double> numbers(const std::string& key, std::size_t count) const;
   YamlMap map(const std::string& key) const;

@@ -1,17 +1,16 @@
 #include "apps/calibrate/calibrate_command.hpp"
 
-#include "apps/calibrate/intrinsics_command.hpp"
-#include "apps/calibrate/stereo_command.hpp"
-#include "apps/calibrate/target_command.hpp"
-#include "apps/calibrate/verify_command.hpp"
 #include "apps/calibrate/arm_command.hpp"
-#include "apps/calibrate/pan_tilt_command.hpp"
-#include "apps/calibrate/target_command.hpp"
-#include "apps/calibrate/time_command.hpp"
 #include "apps/calibrate/display_command.hpp"
 #include "apps/calibrate/export_command.hpp"
+#include "apps/calibrate/intrinsics_command.hpp"
+#include "apps/calibrate/pan_tilt_command.hpp"
 #include "apps/calibrate/photometric_command.hpp"
 #include "apps/calibrate/scene_command.hpp"
+#include "apps/calibrate/stereo_command.hpp"
+#include "apps/calibrate/target_command.hpp"
+#include "apps/calibrate/time_command.hpp"
+#include "apps/calibrate/verify_command.hpp"
 
 namespace foresight {
 
@@ -22,14 +21,14 @@ void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   add_target(*calibrate, action);
   add_intrinsics(*calibrate, action);
   add_stereo(*calibrate, action);
-  add_verify(*calibrate, action);
+  add_photometric(*calibrate, action);
   add_pan_tilt(*calibrate, action);
   add_arm(*calibrate, action);
   add_time(*calibrate, action);
-  add_photometric_command(*calibrate, action);
-  add_display_command(*calibrate, action);
-  add_scene_command(*calibrate, action);
-  add_calibration_export_command(*calibrate, action);
+  add_scene(*calibrate, action);
+  add_display(*calibrate, action);
+  add_verify(*calibrate, action);
+  add_export(*calibrate, action);
 }
 
 }  // namespace foresight

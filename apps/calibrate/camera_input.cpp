@@ -74,7 +74,6 @@ void add_camera_input(CLI::App& command, CameraInput& input, bool pair) {
 }
 
 CameraViewsInput read_camera_input(const CameraInput& input, bool pair) {
-  if (!input.corners) throw InputError("--corners", "is missing", "give the corners to calibrate from");
   require_one_source(input, pair);
   CameraViewsInput read;
   read.train = input.corners ? read_file(*input.corners, input, pair) : find_in_images(input, read.notes);

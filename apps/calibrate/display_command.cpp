@@ -191,7 +191,7 @@ int run_display(const DisplayOptions& options) {
 
 }  // namespace
 
-void add_display_command(CLI::App& calibrate, std::function<int()>& action) {
+void add_display(CLI::App& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<DisplayOptions>();
   auto* command = calibrate.add_subcommand("display", "The lens of a head display, from pictures taken through it");
   command->add_option("--pattern", options->pattern, "PANEL:CORNERS:SQUARE in pixels, such as 1440x1600:9x8:120")

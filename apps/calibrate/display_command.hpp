@@ -6,6 +6,6 @@
 
 namespace foresight {
 
-void add_display_command(CLI::App& calibrate, std::function<int()>& action);
+void add_display(CLI::App& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

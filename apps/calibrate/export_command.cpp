@@ -184,7 +184,7 @@ int run_export(const ExportOptions& options) {
 
 }  // namespace
 
-void add_calibration_export_command(CLI::App& calibrate, std::function<int()>& action) {
+void add_export(CLI::App& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<ExportOptions>();
   auto* command = calibrate.add_subcommand("export", "Writes a calibration for other programs, and reads theirs");
   command->add_option("INPUT", options->input, "Result file, or what --from names")->required();

@@ -6,6 +6,6 @@
 
 namespace foresight {
 
-void add_calibration_export_command(CLI::App& calibrate, std::function<int()>& action);
+void add_export(CLI::App& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

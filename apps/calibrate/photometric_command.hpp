@@ -6,6 +6,6 @@
 
 namespace foresight {
 
-void add_photometric_command(CLI::App& calibrate, std::function<int()>& action);
+void add_photometric(CLI::App& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

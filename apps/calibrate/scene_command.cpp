@@ -116,7 +116,7 @@ int run_scene(const SceneOptions& options) {
 
 }  // namespace
 
-void add_scene_command(CLI::App& calibrate, std::function<int()>& action) {
+void add_scene(CLI::App& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<SceneOptions>();
   auto* command = calibrate.add_subcommand("scene", "Places a model in the world from measured points or tags");
   command->add_option("--points", options->points, "Rows 'x y z X Y Z [sigma]': model, world, in metres");

@@ -6,6 +6,6 @@
 
 namespace foresight {
 
-void add_scene_command(CLI::App& calibrate, std::function<int()>& action);
+void add_scene(CLI::App& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

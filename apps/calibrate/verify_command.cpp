@@ -71,8 +71,6 @@ int verify(const VerifyOptions& options) {
   const auto row = [&](const std::string& name, double value, double limit) {
     const bool good = value <= limit;
     pass = pass && good;
-    std::printf("%-9s %s  (limit %s)  %s\n", name.c_str(), readable(value, 4, "px").c_str(), readable(limit, 4).c_str(),
-                good ? "pass" : "FAIL");
     std::printf("%-9s %s  (limit %s)  %s\n", name.c_str(), readable(value, 4, " px").c_str(),
                 readable(limit, 4).c_str(), good ? "pass" : "FAIL");
     json[name + "_px"] = value;

@@ -183,7 +183,6 @@ bool mirrored_explains(const RigViews& views, const RigSolution& left, const Rig
     throw InputError("pairs", "one of the two cameras delivers mirrored images", "turn its mirroring off");
   throw InputError(
       "pairs",
-      "no one place of the right camera explains even half of them: the middle error is " + readable(found, 1, "px"),
       "no one place of the right camera explains even half of them: the middle error is " + readable(found, 1, " px"),
       "check that equal names were taken at the same instant, and that the cameras did not move "
       "against each other");

@@ -22,7 +22,6 @@ inline MotionParameters to_parameters(const Pose& T) {
 inline Pose to_pose(const MotionParameters& m) {
   Pose T = Pose::Identity();
   T.linear() = Eigen::Quaterniond(m[3], m[0], m[1], m[2]).normalized().toRotationMatrix();
-  T.translation() = Eigen::Vector3d(m[4], m[5], m[6]);
   T.translation() << m[4], m[5], m[6];
   return T;
 }
