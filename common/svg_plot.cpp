@@ -11,6 +11,7 @@ namespace {
 // In user units; the page scales the plot to its column.
 constexpr double kWidth = 560, kHeight = 240, kImageHeight = 420, kLeft = 44, kRight = 10, kTop = 20, kBottom = 30;
 constexpr double kPlotRight = kWidth - kRight;
+constexpr double kCharacter = 6.5;  // usual width, at the style sheet's size
 
 std::string number(double v) {
   return readable(v, 1);
@@ -204,8 +205,9 @@ std::string SvgPlot::str() const {
     out += line_between(kLeft, py(t), kPlotRight, py(t), "grid");
     labels += text_at(kLeft - 7, py(t) + 4, "end", readable(t, y_digits));
   }
+  const double unit_width = std::max(24.0, kCharacter * static_cast<double>(x_unit_.size()) + 16);
   for (const double t : x_ticks) {
-    if (px(t) > kPlotRight - 24) continue;  // room for the unit
+    if (px(t) > kPlotRight - unit_width) continue;
     labels += text_at(px(t), bottom() + 18, "middle", readable(t, x_digits));
   }
   labels += text_at(4, kTop - 8, "start", y_unit_) + text_at(kPlotRight, bottom() + 18, "end", x_unit_);
