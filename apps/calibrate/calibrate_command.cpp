@@ -1,5 +1,6 @@
 #include "apps/calibrate/calibrate_command.hpp"
 
+#include "apps/calibrate/capture_command.hpp"
 #include "apps/calibrate/target_command.hpp"
 
 namespace foresight {
@@ -9,6 +10,7 @@ void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   calibrate->require_subcommand(1);
   // In the order of a session.
   add_target(*calibrate, action);
+  add_capture(*calibrate, action);
 }
 
 }  // namespace foresight

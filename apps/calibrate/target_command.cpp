@@ -32,7 +32,8 @@ std::pair<double, double> parse_measured(const std::string& text) {
 /// Empty where nobody is there to answer, or does not know yet.
 std::string ask() {
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0) return {};
-  std::fputs("Print it at 100 %, then measure the two rulers in mm and type X,Y (Enter: later, with --measured): ", stderr);
+  std::fputs("Print it at 100 %, then measure the two rulers in mm and type X,Y (Enter: later, with --measured): ",
+             stderr);
   std::string line;
   std::getline(std::cin, line);
   return line;
@@ -51,7 +52,8 @@ int run(const Arguments& a) {
   }
   nlohmann::ordered_json numbers{{"board", to_string(board)}};
   if (measured.empty()) {
-    std::fprintf(stderr, "target: measure both rulers, then: foresight calibrate target --board %s --measured X_MM,Y_MM\n",
+    std::fprintf(stderr,
+                 "target: measure both rulers, then: foresight calibrate target --board %s --measured X_MM,Y_MM\n",
                  to_string(board).c_str());
   } else {
     const auto [x, y] = parse_measured(measured);

@@ -71,7 +71,8 @@ std::string CaptureGuide::refusal(const std::optional<FoundBoard>& found, const 
   return {};
 }
 
-CaptureGuide::Verdict CaptureGuide::offer(const std::optional<FoundBoard>& left, const std::optional<FoundBoard>& right) {
+CaptureGuide::Verdict CaptureGuide::offer(const std::optional<FoundBoard>& left,
+                                          const std::optional<FoundBoard>& right) {
   std::string reason = refusal(left, before_[0], sharpest_[0], stereo_ ? " (left)" : "");
   if (reason.empty() && stereo_) reason = refusal(right, before_[1], sharpest_[1], " (right)");
   const std::array<const std::optional<FoundBoard>*, 2> images{&left, &right};
@@ -111,8 +112,7 @@ std::string CaptureGuide::wish() const {
   }
   if (taken_.empty()) return "show the whole board, in the middle of the image";
   const auto side = static_cast<std::size_t>(std::min_element(tilted.begin(), tilted.end()) - tilted.begin());
-  if (tilted[side] == 0)
-    return std::string("tilt the board so that its ") + kSides[side] + " side lies farther away";
+  if (tilted[side] == 0) return std::string("tilt the board so that its ") + kSides[side] + " side lies farther away";
   for (int row = 0; row < options_.rows; ++row)
     for (int column = 0; column < options_.columns; ++column)
       if (seen.at<uchar>(row, column) == 0)

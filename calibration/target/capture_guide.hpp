@@ -18,15 +18,15 @@ namespace foresight {
 class CaptureGuide {
  public:
   struct Options {
-    int views = 15;              ///< at least; fewer than 10 leave the lens to chance
-    int columns = 4, rows = 3;   ///< parts of the image that want a corner each
-    double blurred = 0.6;        ///< of the sharpest view so far
-    double moved_px = 2;         ///< mean, against the frame before; 0: frames are stills, not a film
-    double alike = 0.05;         ///< mean distance of corners to an earlier view's, of the image's width ...
-    double alike_deg = 12;       ///< ... and difference of tilt; both must be smaller to be alike
-    double tilt_deg = 15;        ///< from which on a view counts as tilted
-    double least_points = 0.4;   ///< of the board, where it is partly seen
-    double size_ratio = 1.4;     ///< of the largest to the smallest image of the board
+    int views = 15;             ///< at least; fewer than 10 leave the lens to chance
+    int columns = 4, rows = 3;  ///< parts of the image that want a corner each
+    double blurred = 0.6;       ///< of the sharpest view so far
+    double moved_px = 2;        ///< mean, against the frame before; 0: frames are stills, not a film
+    double alike = 0.05;        ///< mean distance of corners to an earlier view's, of the image's width ...
+    double alike_deg = 12;      ///< ... and difference of tilt; both must be smaller to be alike
+    double tilt_deg = 15;       ///< from which on a view counts as tilted
+    double least_points = 0.4;  ///< of the board, where it is partly seen
+    double size_ratio = 1.4;    ///< of the largest to the smallest image of the board
   };
 
   struct Verdict {

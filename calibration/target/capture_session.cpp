@@ -29,8 +29,10 @@ void write_png(const fs::path& file, const cv::Mat& image) {
 void write_line(cv::Mat& picture, int line, const std::string& text, const cv::Scalar& colour) {
   const double size = picture.cols / 1100.0;
   const cv::Point at(cvRound(12 * size), cvRound((28 + 30 * line) * size));
-  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.8 * size, cv::Scalar::all(0), cvRound(5 * size) + 1, cv::LINE_AA);
-  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.8 * size, colour, cvRound(1.5 * size) + 1, cv::LINE_AA);
+  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.8 * size, cv::Scalar::all(0),
+              std::max(3, cvRound(4 * size)), cv::LINE_AA);
+  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.8 * size, colour, std::max(1, cvRound(1.5 * size)),
+              cv::LINE_AA);
 }
 
 }  // namespace
@@ -69,7 +71,8 @@ CaptureGuide::Verdict CaptureSession::show(const cv::Mat& left, const cv::Mat& r
     write_png(options_.out / "left" / name, left);
     write_png(options_.out / "right" / name, right);
   }
-  if (!options_.pictures.empty()) write_png(options_.pictures / "now.png", capture_picture(left, found[0], *guide_, verdict));
+  if (!options_.pictures.empty())
+    write_png(options_.pictures / "now.png", capture_picture(left, found[0], *guide_, verdict));
   return verdict;
 }
 
@@ -83,8 +86,8 @@ cv::Mat capture_picture(const cv::Mat& image, const std::optional<FoundBoard>& f
   const cv::Scalar green(80, 220, 80), amber(60, 190, 255);
   if (found)
     for (const Corner& corner : found->corners)
-      cv::circle(picture, {cvRound(corner.pixel.x()), cvRound(corner.pixel.y())}, std::max(2, picture.cols / 200), verdict.taken ? green : amber,
-                 cv::FILLED, cv::LINE_AA);
+      cv::circle(picture, {cvRound(corner.pixel.x()), cvRound(corner.pixel.y())}, std::max(2, picture.cols / 200),
+                 verdict.taken ? green : amber, cv::FILLED, cv::LINE_AA);
   if (const cv::Mat map = guide.uncertainty(32, 24); !map.empty()) {
     cv::Mat scaled, colours;
     double least = 0, most = 0;
@@ -93,16 +96,26 @@ cv::Mat capture_picture(const cv::Mat& image, const std::optional<FoundBoard>& f
     cv::applyColorMap(scaled, colours, cv::COLORMAP_VIRIDIS);
     const cv::Size small(picture.cols / 4, picture.rows / 4);
     cv::resize(colours, colours, small, 0, 0, cv::INTER_LINEAR);
-    colours.copyTo(picture(cv::Rect(picture.cols - small.width, picture.rows - small.height, small.width, small.height)));
-    write_line(picture, 3, "uncertainty " + readable(least, 2) + " to " + readable(most, 2) + " px (map: lower right)", cv::Scalar::all(255));
+    colours.copyTo(
+        picture(cv::Rect(picture.cols - small.width, picture.rows - small.height, small.width, small.height)));
+    write_line(picture, 3, "uncertainty " + readable(least, 2) + " to " + readable(most, 2) + " px (map: lower right)",
+               cv::Scalar::all(255));
   }
   if (found)
-    write_line(picture, 2, "sharpness " + readable(found->quality.sharpness, 2) + ", tilt " + readable(found->quality.tilt_deg, 0) + " deg",
+    write_line(picture, 2,
+               "sharpness " + readable(found->quality.sharpness, 2) + ", tilt " + readable(found->quality.tilt_deg, 0) +
+                   " deg",
                cv::Scalar::all(255));
-  write_line(picture, 0, std::to_string(guide.views()) + " views, " + readable(100 * guide.coverage(), 0) + " % of the image; " +
-                             (verdict.taken ? "taken" : verdict.reason), verdict.taken ? green : amber);
+  write_line(picture, 0,
+             std::to_string(guide.views()) + " views, " + readable(100 * guide.coverage(), 0) + " % of the image; " +
+                 (verdict.taken ? "taken" : verdict.reason),
+             verdict.taken ? green : amber);
   const std::string wish = guide.wish();
-  write_line(picture, 1, guide.enough() ? "enough" : wish.empty() ? "a few more views, each another way" : wish, cv::Scalar::all(255));
+  write_line(picture, 1,
+             guide.enough() ? "enough"
+             : wish.empty() ? "a few more views, each another way"
+                            : wish,
+             cv::Scalar::all(255));
   return picture;
 }
 

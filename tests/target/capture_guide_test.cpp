@@ -29,8 +29,7 @@ FoundBoard view(double u, double v, double distance, double tilt_deg = 0, double
   const auto points = board_points(kBoard);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p = R * (points[i] - Eigen::Vector3d(0.1, 0.0625, 0)) + at;
-    found.corners.push_back(
-        {static_cast<int>(i), {640 * p.x() / p.z() + 319.5, 640 * p.y() / p.z() + 239.5}, 0.1});
+    found.corners.push_back({static_cast<int>(i), {640 * p.x() / p.z() + 319.5, 640 * p.y() / p.z() + 239.5}, 0.1});
   }
   found.quality = {0.8, tilt_deg, turn_deg, 0.03 / (distance * distance)};
   return found;
@@ -127,7 +126,8 @@ TEST(CaptureSession, TakenImagesAreASetOfPairs) {
   for (int pass = 0; pass < 2; ++pass)
     for (int i = 1; i < 6; ++i) {
       const std::string name = "0" + std::to_string(i) + ".jpg";
-      const auto verdict = session.show(cv::imread((pictures / ("left" + name)).string()), cv::imread((pictures / ("right" + name)).string()));
+      const auto verdict = session.show(cv::imread((pictures / ("left" + name)).string()),
+                                        cv::imread((pictures / ("right" + name)).string()));
       alike += verdict.reason.starts_with("too like view");
       EXPECT_FALSE(pass == 1 && verdict.taken);
     }
