@@ -1,6 +1,7 @@
 #include "apps/calibrate/calibrate_command.hpp"
 
 #include "apps/calibrate/arm_command.hpp"
+#include "apps/calibrate/capture_command.hpp"
 #include "apps/calibrate/display_command.hpp"
 #include "apps/calibrate/export_command.hpp"
 #include "apps/calibrate/intrinsics_command.hpp"
@@ -19,6 +20,7 @@ void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
   calibrate->require_subcommand(1);
   // In the order of a session.
   add_target(*calibrate, action);
+  add_capture(*calibrate, action);
   add_intrinsics(*calibrate, action);
   add_stereo(*calibrate, action);
   add_photometric(*calibrate, action);

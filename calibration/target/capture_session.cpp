@@ -29,9 +29,10 @@ void write_png(const fs::path& file, const cv::Mat& image) {
 void write_line(cv::Mat& picture, int line, const std::string& text, const cv::Scalar& colour) {
   const double size = picture.cols / 1100.0;
   const cv::Point at(cvRound(12 * size), cvRound((28 + 30 * line) * size));
-  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.8 * size, cv::Scalar::all(0), cvRound(5 * size) + 1,
+  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.8 * size, cv::Scalar::all(0),
+              std::max(3, cvRound(4 * size)), cv::LINE_AA);
+  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.8 * size, colour, std::max(1, cvRound(1.5 * size)),
               cv::LINE_AA);
-  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.8 * size, colour, cvRound(1.5 * size) + 1, cv::LINE_AA);
 }
 
 }  // namespace

@@ -248,7 +248,7 @@ Board measured_board(const Board& board, double x_mm, double y_mm) {
     throw InputError(
         "--measured",
         "x is printed at " + readable(100 * sx, 2) + " %, y at " + readable(100 * sy, 2) +
-            " %: squares that are none cannot calibrate",
+            " %: stretched squares cannot calibrate",
         "print without 'fit to page', at the printer's best quality; turn the page, or use another printer");
   return scaled(board, (sx + sy) / 2);
 }

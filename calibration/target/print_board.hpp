@@ -28,7 +28,7 @@ void write_board_pdf(const std::filesystem::path& file, const Board& board, cons
 
 /// The board as it came out: all sizes times the measured scale. `x_mm`, `y_mm`: what the two rulers
 /// measure. Throws InputError where they cannot be rulers of kRulerMm, and where the axes differ by
-/// more than kMostAnisotropy: no board has squares that are none.
+/// more than kMostAnisotropy, for then the squares are rectangles.
 Board measured_board(const Board& board, double x_mm, double y_mm);
 inline constexpr double kMostAnisotropy = 0.005;
 
