@@ -20,7 +20,7 @@ struct Speeds {
   std::vector<double> values;  // every kStep; NaN where unknown
 };
 
-// Angular speed of a track; what no rig reaches (a jump of the tracker) is cut to the 98th percentile.
+// Angular speed of a track, cut at twice the 80th percentile: jumps of a tracker would outweigh all else.
 Speeds speeds_of(const PoseTrack& track, RobotTime zero) {
   Speeds out;
   out.first_s = to_seconds(track.samples().front().time - zero);
@@ -35,10 +35,10 @@ Speeds speeds_of(const PoseTrack& track, RobotTime zero) {
     if (valid) known.push_back(out.values.back());
   }
   if (known.empty()) return out;
-  const auto cut = known.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(known.size() - 1));
+  const auto cut = known.begin() + static_cast<std::ptrdiff_t>(0.8 * static_cast<double>(known.size() - 1));
   std::nth_element(known.begin(), cut, known.end());
   for (double& value : out.values)
-    if (value > *cut) value = *cut;
+    if (value > 2 * *cut) value = 2 * *cut;
   return out;
 }
 

@@ -21,7 +21,7 @@ namespace foresight {
 namespace {
 
 constexpr std::size_t kFewestSamples = 50;
-constexpr double kLeastCorrelation = 0.3;
+constexpr double kLeastCorrelation = 0.4;
 constexpr double kRobust = 3;       // of Cauchy's loss, standard deviations of a six-vector
 constexpr double kLeastTurn = 0.1;  // rad, of swept joints
 
