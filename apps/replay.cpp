@@ -12,6 +12,7 @@
 
 #include "apps/output_files.hpp"
 #include "apps/replay_outputs.hpp"
+#include "apps/replay_refinement.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/html_report.hpp"
 #include "apps/replay_report/image_metrics.hpp"
@@ -94,6 +95,7 @@ class Replay {
         bar_("replay", "images", run.frames().size(), Clock::now(), ProgressBar::for_stderr()) {
     describe();
     if (options.out) make_folder(*options.out / "predicted");
+    if (options.refine) refinement_.emplace(run, session_, options.textures.margin_px);
   }
 
   int play() {
@@ -135,6 +137,7 @@ class Replay {
     record_.options.push_back({"texture_memory_mb", static_cast<std::int64_t>(t.memory_bytes >> 20)});
     record_.options.push_back({"model_accuracy_m", t.depth_tolerance});
     record_.options.push_back({"real_time", options_.real_time});
+    record_.options.push_back({"refine", options_.refine});
     if (options_.scene) record_.options.push_back({"scene", options_.scene->string()});
     if (run_.unpaired_right())
       record_.notes.push_back(std::to_string(run_.unpaired_right()) +
@@ -147,6 +150,7 @@ class Replay {
       FrameRecord record = new_record(i);
       while (fed < arrived_[i] && !stopped()) {
         PosedFrame frame = session_.load(fed++);
+        if (refinement_) refinement_->refine(fed - 1, frame);
         delayed_ = as_colour(frame.left.pixels);
         delayed_time_ = frame.left.time;
         const auto arrival = Clock::now();
@@ -185,6 +189,7 @@ class Replay {
         PosedFrame frame = session_.load(fed - 1);
         delayed_ = as_colour(frame.left.pixels);
         delayed_time_ = frame.left.time;
+        if (refinement_) refinement_->refine(fed - 1, frame);
         submitted_.emplace_back(Clock::now(), frame.left.time);
         session_.textures().submit(std::move(frame));
       }
@@ -235,14 +240,16 @@ class Replay {
   void show_and_measure(std::size_t i, FrameRecord& record) {
     record.delay_s = to_seconds(run_.frames()[i].left.time - delayed_time_);
     const double before = process_cpu_ms();
-    const cv::Mat predicted = session_.predict(i);
+    const RunImage& image = run_.frames()[i].left;
+    const cv::Mat predicted =
+        session_.predict(refinement_ ? refinement_->predict(i) : image.T_world_camera, run_.state_at(image.time));
     if (predicted.empty()) {  // real time: the first image is still in work
       record.dropped = true;
       record_.frames.push_back(record);
       return;
     }
     const double drawn = process_cpu_ms();
-    const cv::Mat actual = as_colour(read_run_image(run_.frames()[i].left, run_.lens_left()));
+    const cv::Mat actual = as_colour(read_run_image(image, run_.lens_left()));
     const ImageComparison comparison(actual, seen_mask(predicted));
     record.predicted = comparison.measure(predicted);
     record.delayed = comparison.measure(delayed_);
@@ -260,6 +267,8 @@ class Replay {
   }
 
   void note_policy() {
+    if (refinement_)
+      for (std::string& note : refinement_->notes()) record_.notes.push_back(std::move(note));
     if (policy_.evicted_pages)
       record_.notes.push_back("The texture budget was reached: " + std::to_string(policy_.evicted_pages) +
                               " pages out of view, unseen for longest, gave up their place.");
@@ -301,6 +310,7 @@ class Replay {
   ReplaySession session_;
   ProgressBar bar_;
   RunRecord record_;
+  std::optional<ReplayRefinement> refinement_;
   InstantKeeper keeper_{4};
   cv::Mat delayed_;
   RobotTime delayed_time_;
@@ -316,6 +326,9 @@ class Replay {
 int replay(const ReplayOptions& given) {
   if (given.delay_frames && given.delay_ms)
     throw InputError("--delay-ms", "--delay-frames is given too", "give one of the two");
+  if (given.pipeline == ReplayPipeline::thesis && given.refine)
+    throw InputError("--refine", "the thesis' pipeline has no view to align images to",
+                     "leave --refine away, or use --pipeline core");
   if (given.pipeline == ReplayPipeline::thesis && given.real_time)
     throw InputError("--real-time", "the thesis' pipeline draws and extracts in one thread",
                      "leave --real-time away, or use --pipeline core");

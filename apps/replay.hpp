@@ -22,6 +22,7 @@ struct ReplayOptions : RunOptions {
   std::optional<std::filesystem::path> html;    ///< HTML file
   bool window = false;
   bool real_time = false;
+  bool refine = false;  ///< poses, from images that have arrived (replay_refinement.hpp); not with thesis
 };
 
 /// Checks all input before anything is written, then replays. Returns the exit code: 0, or 130

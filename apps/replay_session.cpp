@@ -58,18 +58,30 @@ PosedFrame ReplaySession::load(std::size_t index) const {
 
 cv::Mat ReplaySession::predict(std::size_t index) {
   const RunImage& at = run_.frames()[index].left;
+  return predict(at.T_world_camera, run_.state_at(at.time));
+}
+
+cv::Mat ReplaySession::predict(const Pose& T_world_camera, const SceneState& state) {
   if (thesis_) {
-    thesis_view_->draw(at.T_world_camera, run_.state_at(at.time));
+    thesis_view_->draw(T_world_camera, state);
     return thesis_view_->read();
   }
   // Reading the picture waits for the GPU, so the lease may end with this function.
   const TextureLease textures = thread_->textures().acquire();
   if (!textures) return {};
-  view_->draw(at.T_world_camera, run_.state_at(at.time), *textures);
+  view_->draw(T_world_camera, state, *textures);
   cv::Mat picture = view_->read();
   gl::Fence::insert().wait(kDrawTimeout);
   gl::check_errors("the predicted view");
   return picture;
+}
+
+std::optional<RenderedView> ReplaySession::render(const Pose& T_world_camera, const SceneState& state) {
+  RenderedView view{T_world_camera, predict(T_world_camera, state), {}};
+  if (view.colour.empty()) return std::nullopt;
+  if (!range_) range_.emplace(run_.lens_left(), view_->faces().faces);
+  view.range = range_->read(view_->faces());
+  return view;
 }
 
 bool ReplaySession::show(const cv::Mat& delayed, const cv::Mat& predicted, const cv::Mat& actual,

@@ -4,9 +4,11 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
+#include "calibration/registration/rendered_view.hpp"
 #include "display/comparison_window.hpp"
 #include "display/predicted_view.hpp"
 #include "display/thesis_view.hpp"
+#include "display/view_range.hpp"
 #include "gl/context.hpp"
 #include "gl/glfw_window.hpp"
 #include "scene/run_folder.hpp"
@@ -37,6 +39,13 @@ class ReplaySession {
   /// the core has not published anything yet.
   cv::Mat predict(std::size_t index);
 
+  /// The same from any pose.
+  cv::Mat predict(const Pose& T_world_camera, const SceneState& state);
+
+  /// What a refinement aligns an image to; nothing where the core has not published anything yet.
+  /// Not with `thesis`.
+  std::optional<RenderedView> render(const Pose& T_world_camera, const SceneState& state);
+
   /// Shows the three pictures in the window, if there is one. False: the user closed it.
   bool show(const cv::Mat& delayed, const cv::Mat& predicted, const cv::Mat& actual, const std::string& title);
 
@@ -50,6 +59,7 @@ class ReplaySession {
   gl::DriverInfo driver_;
   std::shared_ptr<const SurfacePatches> surface_;
   std::unique_ptr<PredictedView> view_;
+  std::optional<ViewRange> range_;
   std::unique_ptr<ComparisonWindow> comparison_;
   std::unique_ptr<TextureThread> thread_;  // ends before the context it shares with
   std::unique_ptr<thesis::Pipeline> thesis_;

@@ -14,6 +14,8 @@ struct PosedImage {
   RobotTime time;  ///< mid-exposure of the centre row
   Pose T_world_camera;
   SceneState scene;  ///< at `time`
+  /// TextureOptions::margin_px for this image, where its registration knows better. Range 0 .. 32.
+  std::optional<double> margin_px = std::nullopt;
 };
 
 /// The images of one stereo head, taken together. The right one may be missing.

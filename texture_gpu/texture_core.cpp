@@ -111,7 +111,7 @@ void TextureCore::look(const PosedFrame& frame) {
     raster_(images_[i]->T_world_camera, images_[i]->scene, cameras_[i]->faces());
   clock_.mark("depth");
   for (std::size_t i = 0; i < images_.size(); ++i) {
-    edges_(*cameras_[i], options_.margin_px, options_.depth_tolerance);
+    edges_(*cameras_[i], images_[i]->margin_px.value_or(options_.margin_px), options_.depth_tolerance);
     AtlasView view{&cameras_[i]->lens(), &cameras_[i]->faces().faces, {}};
     const Pose T_camera_world = images_[i]->T_world_camera.inverse();
     for (const Pose& T_world_node : images_[i]->scene.T_world_node)

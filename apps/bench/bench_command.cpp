@@ -8,6 +8,7 @@
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
 #include "apps/bench/margin.hpp"
+#include "apps/bench/registration_bench.hpp"
 #include "apps/bench/robot_bench.hpp"
 #include "apps/run_options.hpp"
 
@@ -83,6 +84,15 @@ void add_calibration(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_calibration(*options); }; });
 }
 
+void add_registration(CLI::App& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("registration", "CPU time and error of the registration of a stereo pair");
+  auto options = std::make_shared<RegistrationBenchOptions>();
+  command->add_option("--pairs", options->pairs, "How many")->check(from_to(2, 1000))->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers");
+  command->footer("Example: foresight bench registration --pairs 40");
+  command->callback([options, &action] { action = [options] { return bench_registration(*options); }; });
+}
+
 void add_camera(CLI::App& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("camera", "CPU time of the mock cameras, rendering and all else apart");
   auto options = std::make_shared<CameraBenchOptions>();
@@ -107,6 +117,7 @@ void add_bench_command(CLI::App& app, std::function<int()>& action) {
   add_figures(*bench, action);
   add_margin(*bench, action);
   add_robot(*bench, action);
+  add_registration(*bench, action);
 }
 
 }  // namespace foresight

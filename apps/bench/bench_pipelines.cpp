@@ -41,13 +41,6 @@ double StageSums::mean_of(const char* name) const {
   return 0;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::vector<std::size_t> spread(std::size_t size, std::size_t count) {
   std::vector<std::size_t> out;
   count = std::min(count, size);

@@ -55,8 +55,6 @@ class StageSums {
   int count_ = 0;
 };
 
-double median(std::vector<double> values);  ///< 0 for none
-
 /// `count` places spread evenly over 0 .. size - 1, without repetition.
 std::vector<std::size_t> spread(std::size_t size, std::size_t count);
 

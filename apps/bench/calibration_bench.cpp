@@ -11,6 +11,7 @@
 #include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {
@@ -96,11 +97,6 @@ RigViews whole_pairs(const RigViews& all) {
   if (kept.size() < 5)
     throw InputError("corners", "fewer than 5 pairs show the whole board", "give corners of a board seen whole");
   return subset(all, kept);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace

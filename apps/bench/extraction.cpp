@@ -11,6 +11,7 @@
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {

@@ -78,7 +78,8 @@ void loop(const Arguments& a, StereoCamera& cameras, CaptureSession& session, co
   const RobotTime begin = clock.now();
   RobotTime heard = begin;
   std::string last;
-  while (interrupted == 0 && !(session.guide() && session.guide()->enough()) && clock.now() - begin < seconds(a.seconds)) {
+  while (interrupted == 0 && !(session.guide() && session.guide()->enough()) &&
+         clock.now() - begin < seconds(a.seconds)) {
     const auto pair = cameras.take(100ms);
     if (!pair) {
       if (clock.now() - heard <= silent_after) continue;
@@ -112,8 +113,8 @@ int report(const Arguments& a, const CaptureSession& session) {
     }
   }
   write_json(a.json, numbers);
-  std::printf("foresight calibrate stereo --board %s --left %s/left --right %s/right\n", to_string(session.board()).c_str(),
-              a.out.c_str(), a.out.c_str());
+  std::printf("foresight calibrate stereo --board %s --left %s/left --right %s/right\n",
+              to_string(session.board()).c_str(), a.out.c_str(), a.out.c_str());
   if (enough) return 0;
   std::fprintf(stderr, "foresight: %d views are not enough; %s\n", views,
                guide && !guide->wish().empty() ? guide->wish().c_str() : "show more views");

@@ -11,6 +11,7 @@
 #include "calibration/camera/corner_residual.hpp"
 #include "calibration/camera/rigid_motion.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {
@@ -18,13 +19,6 @@ namespace {
 constexpr double kSigmaOfMedianLength = 0.8493;  // a coordinate's sigma over the median length of a Gaussian error
 
 using Accepted = std::vector<std::array<std::vector<char>, 2>>;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 template <typename Visit>
 void for_each_corner(const RigViews& views, const Visit& visit) {

@@ -46,14 +46,6 @@ Pose typical_pose(std::span<const Pose> poses) {
   return out;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(values.begin(), middle)) / 2;
-}
-
 double robust_sigma(std::vector<double> values) {
   for (double& value : values) value = std::abs(value);
   return 1.4826 * median(std::move(values));

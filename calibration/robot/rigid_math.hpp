@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/statistics.hpp"
 #include "scene/scene_model.hpp"
 
 namespace foresight {
@@ -26,9 +27,6 @@ Vector6 step_between(const Pose& from, const Pose& to);
 
 /// Chordal mean rotation and median position; at least one pose.
 Pose typical_pose(std::span<const Pose> poses);
-
-/// Median of `values`, which it reorders; 0 of none.
-double median(std::vector<double> values);
 
 /// 1.4826 times the median absolute value: the standard deviation where most values are normal.
 double robust_sigma(std::vector<double> values);

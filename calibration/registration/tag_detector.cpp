@@ -1,0 +1,74 @@
+#include "calibration/registration/tag_detector.hpp"
+
+#include <apriltag/apriltag.h>
+#include <apriltag/tag16h5.h>
+#include <apriltag/tag25h9.h>
+#include <apriltag/tag36h11.h>
+
+#include <algorithm>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+/// AprilTag counts pixels from the corner of the image, we from the centre of its first pixel.
+constexpr double kPixelOffset = 0.5;
+
+using Family = std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)>;
+
+Family create_family(const std::string& name) {
+  if (name == "tag36h11") return {tag36h11_create(), tag36h11_destroy};
+  if (name == "tag25h9") return {tag25h9_create(), tag25h9_destroy};
+  if (name == "tag16h5") return {tag16h5_create(), tag16h5_destroy};
+  const std::vector<std::string> known{"tag36h11", "tag25h9", "tag16h5"};
+  throw InputError("tag family", "there is none called " + in_quotes(name),
+                   "did you mean " + nearest_word(name, known) + "?");
+}
+
+double shortest_side(const DetectedTag& tag) {
+  double shortest = 1e9;
+  for (std::size_t i = 0; i < 4; ++i) shortest = std::min(shortest, (tag.corners[i] - tag.corners[(i + 1) % 4]).norm());
+  return shortest;
+}
+
+}  // namespace
+
+struct TagDetector::Library {
+  explicit Library(const Options& options) : family(create_family(options.family)) {
+    apriltag_detector_add_family_bits(detector.get(), family.get(), 1);
+    detector->nthreads = 1;
+    detector->quad_decimate = static_cast<float>(options.decimate);
+  }
+  Family family;  // outlives the detector
+  std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector{apriltag_detector_create(),
+                                                                                apriltag_detector_destroy};
+};
+
+TagDetector::TagDetector(const Options& options) : options_(options), library_(std::make_unique<Library>(options)) {}
+TagDetector::~TagDetector() = default;
+
+std::vector<DetectedTag> TagDetector::detect(const cv::Mat& grey) {
+  const cv::Mat whole = grey.isContinuous() ? grey : grey.clone();
+  image_u8_t image{whole.cols, whole.rows, static_cast<int32_t>(whole.step), whole.data};
+  const std::unique_ptr<zarray_t, void (*)(zarray_t*)> found(apriltag_detector_detect(library_->detector.get(), &image),
+                                                             apriltag_detections_destroy);
+  std::vector<DetectedTag> tags;
+  for (int i = 0; i < zarray_size(found.get()); ++i) {
+    apriltag_detection_t* d = nullptr;
+    zarray_get(found.get(), i, &d);
+    DetectedTag tag{d->id, {}, d->decision_margin};
+    for (std::size_t c = 0; c < 4; ++c) tag.corners[c] = {d->p[c][0] - kPixelOffset, d->p[c][1] - kPixelOffset};
+    if (tag.margin >= options_.least_margin && shortest_side(tag) >= options_.least_side_px) tags.push_back(tag);
+  }
+  std::sort(tags.begin(), tags.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  std::vector<DetectedTag> once;
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    const bool twice = (i > 0 && tags[i - 1].id == tags[i].id) || (i + 1 < tags.size() && tags[i + 1].id == tags[i].id);
+    if (!twice) once.push_back(tags[i]);
+  }
+  return once;
+}
+
+}  // namespace foresight

@@ -1,0 +1,124 @@
+#include "sim/tag_room.hpp"
+
+#include <apriltag/apriltag.h>
+#include <apriltag/tag36h11.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <random>
+#include <stdexcept>
+
+namespace foresight::sim {
+namespace {
+
+constexpr int kRays = 3;     // along each side of a pixel
+constexpr double kBits = 8;  // of a tag36h11 across its black border
+constexpr double kInk = 25, kPaper = 225, kTable = 120, kWall = 150;
+
+/// libapriltag does not export its own.
+void destroy(image_u8_t* image) {
+  std::free(image->buf);
+  std::free(image);
+}
+
+cv::Mat bits_of(int id) {
+  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(), tag36h11_destroy);
+  if (id < 0 || id >= static_cast<int>(family->ncodes)) throw std::invalid_argument("TagRoom: no such tag");
+  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(family.get(), id), destroy);
+  return cv::Mat(image->height, image->width, CV_8U, image->buf, static_cast<std::size_t>(image->stride)).clone();
+}
+
+Pose on_table(double x, double y, double turn) {
+  Pose T = Pose::Identity();
+  T.translate(Eigen::Vector3d(x, y, 0));
+  T.rotate(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+  // Read from the head's side: right in print is -y of the world, down is -x.
+  T.linear() *= (Eigen::Matrix3d() << 0, -1, 0, -1, 0, 0, 0, 0, -1).finished();
+  return T;
+}
+
+Pose on_wall(double y, double z) {
+  Pose T = Pose::Identity();
+  T.translate(Eigen::Vector3d(0.6, y, z));
+  T.linear() = (Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
+  return T;
+}
+
+}  // namespace
+
+TagRoom::TagRoom(const std::vector<Tag>& tags) {
+  for (const Tag& tag : tags) sheets_.push_back({tag, tag.T_world_tag.inverse(), bits_of(tag.id)});
+}
+
+std::vector<TagRoom::Tag> TagRoom::lab_tags() {
+  std::vector<Tag> tags;
+  for (int i = 0; i < 9; ++i)
+    tags.push_back({i, on_table(-0.35 + 0.28 * (i / 3), -0.36 + 0.36 * (i % 3) + 0.05 * (i / 3), 0.2 * (i - 4)), 0.08});
+  for (int i = 0; i < 8; ++i) tags.push_back({20 + i, on_wall(-0.75 + 0.5 * (i % 4), 0.25 + 0.4 * (i / 4)), 0.12});
+  return tags;
+}
+
+std::map<int, std::array<Eigen::Vector3d, 4>> TagRoom::corners() const {
+  std::map<int, std::array<Eigen::Vector3d, 4>> out;
+  for (const Sheet& sheet : sheets_) {
+    const double s = sheet.tag.size_m / 2;
+    const Pose& T = sheet.tag.T_world_tag;
+    out[sheet.tag.id] = {T * Eigen::Vector3d(-s, s, 0), T * Eigen::Vector3d(s, s, 0), T * Eigen::Vector3d(s, -s, 0),
+                         T * Eigen::Vector3d(-s, -s, 0)};
+  }
+  return out;
+}
+
+double TagRoom::grey(const Eigen::Vector3d& o, const Eigen::Vector3d& d) const {
+  const double to_table = d.z() < 0 ? -o.z() / d.z() : 1e9, to_wall = d.x() > 0 ? (0.6 - o.x()) / d.x() : 1e9;
+  const bool table = to_table < to_wall;
+  const double t = std::min(to_table, to_wall);
+  if (t >= 1e9) return 90;
+  const Eigen::Vector3d p = o + t * d;
+  for (const Sheet& sheet : sheets_) {
+    if ((p - sheet.tag.T_world_tag.translation()).squaredNorm() > sheet.tag.size_m * sheet.tag.size_m) continue;
+    const Eigen::Vector3d at = sheet.T_tag_world * p;
+    if (std::abs(at.z()) > 1e-6) continue;
+    const double bit = sheet.tag.size_m / kBits, half = sheet.bits.cols / 2.0;
+    const int u = static_cast<int>(std::floor(at.x() / bit + half)),
+              v = static_cast<int>(std::floor(at.y() / bit + half));
+    if (u >= 0 && v >= 0 && u < sheet.bits.cols && v < sheet.bits.rows)
+      return sheet.bits.at<std::uint8_t>(v, u) ? kPaper : kInk;
+  }
+  const double a = table ? p.x() : p.z();
+  return (table ? kTable : kWall) + 12 * std::sin(9 * a + 3 * std::sin(5 * p.y()));
+}
+
+cv::Mat TagRoom::corner_rays(const Lens& lens) {
+  cv::Mat rays(lens.height() + 1, lens.width() + 1, CV_64FC3);
+  for (int v = 0; v < rays.rows; ++v)
+    for (int u = 0; u < rays.cols; ++u) {
+      const auto ray = lens.unproject({u - 0.5, v - 0.5});
+      if (!ray) throw std::invalid_argument("TagRoom: the lens does not see all of its image");
+      rays.at<cv::Vec3d>(v, u) = {ray->x(), ray->y(), ray->z()};
+    }
+  return rays;
+}
+
+cv::Mat TagRoom::picture(const cv::Mat& rays, const Pose& T_world_camera, double noise, unsigned seed) const {
+  cv::Mat out(rays.rows - 1, rays.cols - 1, CV_8UC1);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, std::max(noise, 1e-9));
+  const Eigen::Vector3d origin = T_world_camera.translation();
+  const auto ray = [&](int u, int v) -> Eigen::Vector3d {
+    return T_world_camera.linear() * Eigen::Map<const Eigen::Vector3d>(rays.at<cv::Vec3d>(v, u).val);
+  };
+  for (int v = 0; v < out.rows; ++v)
+    for (int u = 0; u < out.cols; ++u) {
+      // The lens is linear enough within a pixel.
+      const Eigen::Vector3d a = ray(u, v), across = ray(u + 1, v) - a, down = ray(u, v + 1) - a;
+      double sum = 0;
+      for (int k = 0; k < kRays * kRays; ++k)
+        sum += grey(origin, a + (k % kRays + 0.5) / kRays * across + (k / kRays + 0.5) / kRays * down);
+      out.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(sum / (kRays * kRays) + normal(random));
+    }
+  return out;
+}
+
+}  // namespace foresight::sim
