@@ -19,6 +19,8 @@ constexpr double kBetter = 0.95;  // a richer lens model must lower the held-out
 constexpr int kGroups = 10;       // of views left out together where there are many
 constexpr int kTrialGroups = 5;   // the same while choosing a model
 
+constexpr double kMovedByWarp = 2;  // the lens by more than so many times the error: not believed
+
 class Calibrator {
  public:
   Calibrator(const RigViews& train, const RigViews& test, const CameraCalibrationOptions& options)
@@ -32,6 +34,7 @@ class Calibrator {
     choose_views();
     solve(options_.model.value_or(Distortion::radtan4));
     if (!options_.model) choose_model();
+    doubt_warp();
     measure_uncertainty();
     measure_held_out();
     judge();
@@ -194,6 +197,27 @@ class Calibrator {
     return solve_rig(result_.views, start_pair(result_.views, left, solve_alone(1, model)), solver_);
   }
 
+  // A bent board and another focal length look alike where boards are little tilted. The warp mends a small part of
+  // the error; where it also moves the lens by more than all of it, the views cannot tell which of the two it is.
+  void doubt_warp() {
+    if (!result_.warp) return;
+    RigSolverOptions flat = solver_;
+    flat.warp = false;
+    RigSolution start = result_.solution;
+    start.rig.warp = {};
+    RigSolution solution = solve_rig(result_.views, start, flat);
+    double moved_px = 0;
+    for (std::size_t c = 0; c < cameras(); ++c)
+      moved_px = std::max(moved_px, lens_difference(solution.rig.cameras[c], result_.solution.rig.cameras[c]));
+    if (moved_px <= kMovedByWarp * solution.rms_px) return;
+    result_.notes.push_back(
+        "the board is taken as flat: its warp moves the lens by " + readable(moved_px, 1) +
+        " px, so that the views cannot tell one from the other; take some with the board tilted more");
+    result_.solution = std::move(solution);
+    result_.warp = false;
+    solver_ = flat;
+  }
+
   void measure_uncertainty() {
     const RigUncertainty uncertainty(result_.views, result_.solution, result_.warp);
     std::vector<double> distances;
@@ -270,10 +294,19 @@ class Calibrator {
           "the pairs are not synchronised, or the cameras moved against each other: the error is " +
           readable(result_.stereo_over_mono, 2) +
           " times that of the cameras alone (1.4 is the limit); trigger both at once, or hold the board still");
+    if (cameras() == 2) judge_baseline();
     const auto rejected = static_cast<double>(result_.solution.rejected.size());
     if (rejected > 0.1 * (result_.solution.points + rejected))
       result_.notes.push_back("over a tenth of the corners do not fit; look for blurred or wrong views");
     if (!result_.solution.converged) result_.unusable.push_back("the solver did not converge");
+  }
+
+  void judge_baseline() {
+    const Eigen::Vector3d t = result_.solution.rig.T_left_right.translation();
+    if (t.norm() < 5 * result_.sigma["baseline_m"])
+      result_.unusable.push_back("both cameras stand at one place: give the images of two cameras, not one's twice");
+    else if (-t.x() > 0.5 * t.norm())
+      result_.notes.push_back("the right camera stands to the left of the left one: are the folders swapped?");
   }
 
   const CameraCalibrationOptions& options_;
