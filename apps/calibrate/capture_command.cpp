@@ -53,6 +53,8 @@ StereoConfig described(const Arguments& a) {
     }
     if (a.rate > 0) camera.settings.rate = a.rate;
   }
+  // Folders are started one after the other; what belongs together is less than half a period apart.
+  if (!a.images.empty()) config.pairing.tolerance = seconds(0.45 / config.cameras[0].settings.rate);
   return a.mock ? as_mock(config) : config;
 }
 
