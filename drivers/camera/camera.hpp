@@ -37,6 +37,7 @@ struct CameraControl {
 struct CameraCounters {
   std::uint64_t frames = 0;    ///< delivered
   std::uint64_t corrupt = 0;   ///< skipped: marked as damaged, or truncated
+  std::uint64_t dropped = 0;   ///< good, but a newer one was there when the caller came
   std::uint64_t gaps = 0;      ///< missing in the camera's own count
   std::uint64_t restarts = 0;  ///< of a stream that hung
   std::uint64_t losses = 0;    ///< times that the device went
@@ -51,8 +52,8 @@ class Camera {
   /// Throws InputError (no such device, format, size or control, naming the nearest) or RuntimeFailure.
   virtual void start() = 0;
   virtual void stop() noexcept = 0;  ///< frames that borrow from the camera end here
-  /// The next frame into `out`, waiting `timeout` at most; `out` is touched only where the status is ok. Ends the
-  /// loan of the frame before.
+  /// The next frame, of a device the newest one, into `out`, waiting `timeout` at most; `out` is touched only where the
+  /// status is ok. Ends the loan of the frame before.
   virtual CameraStatus wait_frame(Duration timeout, CameraFrame& out) noexcept = 0;
   virtual const CameraSettings& settings() const noexcept = 0;  ///< in effect after start()
   virtual std::vector<CameraControl> controls() = 0;

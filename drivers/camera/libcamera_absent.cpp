@@ -8,7 +8,7 @@ namespace {
 class Absent final : public Library {
  public:
   std::vector<std::string> cameras() override { fail(); }
-  std::unique_ptr<Session> open(const std::string&, const CameraSettings&, const std::string&) override { fail(); }
+  std::shared_ptr<Session> open(const std::string&, const CameraSettings&, const std::string&) override { fail(); }
 
  private:
   [[noreturn]] static void fail() {

@@ -87,12 +87,45 @@ CameraStatus LibcameraCamera::nothing_came() noexcept {
   return CameraStatus::timeout;
 }
 
+bool LibcameraCamera::give_back() noexcept {
+  return !lent_ || session_->give_back(*std::exchange(lent_, std::nullopt));
+}
+
 CameraStatus LibcameraCamera::wait_frame(Duration timeout, CameraFrame& out) noexcept {
   if (lost_) return try_reopen(timeout);
   if (!started_) return CameraStatus::lost;
-  if (lent_ && !session_->give_back(*std::exchange(lent_, std::nullopt))) return lose();
-  const auto finished = session_->wait(timeout);
-  return finished ? deliver(*finished, out) : nothing_came();
+  if (!give_back()) return lose();
+  const RobotTime until = clock_.now() + timeout;
+  libcam::Finished finished;
+  std::size_t taken = 0;
+  CameraStatus status = wait_newest(timeout, finished, taken);
+  if (status == CameraStatus::ok && taken > 1 && taken + 1 >= session_->buffers()) {
+    // libcamera had run out of buffers: even the newest may be as old as the caller's pause.
+    ++counters_.dropped;
+    if (!give_back()) return lose();
+    status = wait_newest(std::max(until - clock_.now(), Duration{0}), finished, taken);
+  }
+  if (status != CameraStatus::ok) return status;
+  ++counters_.frames;
+  describe(finished, out);
+  return status;
+}
+
+CameraStatus LibcameraCamera::wait_newest(Duration timeout, libcam::Finished& newest, std::size_t& taken) noexcept {
+  auto finished = session_->wait(timeout);
+  if (!finished) return nothing_came();
+  CameraStatus status = take(*finished);
+  newest = *finished;
+  // Not for ever: a fast camera fills what is given back.
+  for (taken = 1; taken < session_->buffers(); ++taken) {
+    finished = session_->wait(Duration{0});
+    if (!finished) break;
+    if (status == CameraStatus::ok) ++counters_.dropped;
+    if (!give_back()) return lose();
+    status = take(*finished);
+    newest = *finished;
+  }
+  return status;
 }
 
 std::size_t LibcameraCamera::bytes_needed() const noexcept {
@@ -101,7 +134,7 @@ std::size_t LibcameraCamera::bytes_needed() const noexcept {
   return session_->stride() * (settings_.format == PixelFormat::nv12 ? rows * 3 / 2 : rows);
 }
 
-CameraStatus LibcameraCamera::deliver(const libcam::Finished& finished, CameraFrame& out) noexcept {
+CameraStatus LibcameraCamera::take(const libcam::Finished& finished) noexcept {
   last_frame_ = clock_.now();
   lent_ = finished.buffer;
   if (last_sequence_) {
@@ -114,7 +147,10 @@ CameraStatus LibcameraCamera::deliver(const libcam::Finished& finished, CameraFr
     return CameraStatus::corrupt;
   }
   hangs_ = 0;
-  ++counters_.frames;
+  return CameraStatus::ok;
+}
+
+void LibcameraCamera::describe(const libcam::Finished& finished, CameraFrame& out) const noexcept {
   out.format = settings_.format;
   out.width = settings_.width;
   out.height = settings_.height;
@@ -127,7 +163,6 @@ CameraStatus LibcameraCamera::deliver(const libcam::Finished& finished, CameraFr
   const ToMiddle middle = to_middle_of_exposure(finished.exposure ? finished.exposure : fixed, settings_);
   out.time = finished.stamp + middle.span;
   out.uncertainty = middle.uncertainty;
-  return CameraStatus::ok;
 }
 
 std::vector<CameraControl> LibcameraCamera::controls() {

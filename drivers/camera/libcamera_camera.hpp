@@ -13,9 +13,11 @@ namespace foresight {
 /// V4l2Camera. Controls have libcamera's names in lower case ("exposure_time", in us); fractional ones count
 /// thousandths ("analogue_gain_milli").
 ///
+/// After a pause of the caller the newest frame comes, as with V4l2Camera.
+///
 /// libcamera reports no error when a camera goes: it may signal the loss, or just stall. So a watchdog closes and
 /// reopens what delivers nothing; after three times without a frame, or where it cannot be opened, it is lost, and
-/// looked for until it returns under its id.
+/// looked for until it returns under its id, which libcamera learns from udevd.
 class LibcameraCamera final : public Camera {
  public:
   struct Options {
@@ -43,7 +45,10 @@ class LibcameraCamera final : public Camera {
   CameraStatus lose() noexcept;
   CameraStatus try_reopen(Duration timeout) noexcept;
   CameraStatus nothing_came() noexcept;
-  CameraStatus deliver(const libcam::Finished& finished, CameraFrame& out) noexcept;
+  bool give_back() noexcept;
+  CameraStatus wait_newest(Duration timeout, libcam::Finished& newest, std::size_t& taken) noexcept;
+  CameraStatus take(const libcam::Finished& finished) noexcept;
+  void describe(const libcam::Finished& finished, CameraFrame& out) const noexcept;
   std::size_t bytes_needed() const noexcept;
 
   std::string name_;
@@ -51,7 +56,7 @@ class LibcameraCamera final : public Camera {
   CameraSettings settings_;
   Clock& clock_;
   libcam::Library& library_;
-  std::unique_ptr<libcam::Session> session_;
+  std::shared_ptr<libcam::Session> session_;
   bool started_ = false, lost_ = false;
   std::optional<std::size_t> lent_;
   std::optional<std::uint32_t> last_sequence_;

@@ -1,16 +1,18 @@
 #include <libcamera/libcamera.h>
 #include <libcamera/logging.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
 #include <deque>
+#include <filesystem>
 #include <mutex>
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "drivers/camera/libcamera_mapping.hpp"
 #include "drivers/camera/libcamera_session.hpp"
+#include "drivers/camera/libcamera_unplug.hpp"
 #include "drivers/camera/libcamera_values.hpp"
 
 namespace foresight::libcam {
@@ -47,42 +49,16 @@ std::vector<std::string> names(const lc::CameraManager& manager) {
   return out;
 }
 
-/// All planes of a buffer, which must lie in one file, one after the other.
-class Mapping {
- public:
-  Mapping() = default;
-  /// Throws RuntimeFailure.
-  Mapping(const lc::FrameBuffer& buffer, const std::string& where) {
-    const auto& planes = buffer.planes();
-    first_ = planes.front().offset;
-    for (const auto& plane : planes) {
-      if (plane.fd.get() != planes.front().fd.get() || plane.offset != first_ + size_)
-        throw RuntimeFailure(where + ": its planes do not lie side by side", "choose another format");
-      size_ += plane.length;
-    }
-    // mmap wants whole pages.
-    mapped_ = first_ + size_;
-    address_ = mmap(nullptr, mapped_, PROT_READ, MAP_SHARED, planes.front().fd.get(), 0);
-    if (address_ == MAP_FAILED) throw RuntimeFailure(where + ": mmap failed", "see how much memory is left");
-  }
-  Mapping(const Mapping&) = delete;
-  Mapping& operator=(const Mapping&) = delete;
-  ~Mapping() { munmap(address_, mapped_); }
-  std::span<const std::uint8_t> bytes(std::size_t used) const {
-    return {static_cast<const std::uint8_t*>(address_) + first_, std::min(used, size_)};
-  }
-
- private:
-  void* address_ = nullptr;
-  std::size_t first_ = 0, size_ = 0, mapped_ = 0;
-};
-
 /// libcamera calls back on its own thread; wait() and the rest belong to the owner's.
 class OpenCamera final : public Session {
  public:
   OpenCamera(std::shared_ptr<lc::CameraManager> manager, std::shared_ptr<lc::Camera> camera,
              const CameraSettings& settings, std::string where)
-      : manager_(std::move(manager)), camera_(std::move(camera)), where_(std::move(where)), settings_(settings) {
+      : manager_(std::move(manager)),
+        camera_(std::move(camera)),
+        where_(std::move(where)),
+        settings_(settings),
+        interfaces_(usb_interfaces(camera_->id())) {
     if (const int error = camera_->acquire(); error != 0)
       fail("cannot be acquired", error, "see whether another program has it");
     try {
@@ -116,7 +92,15 @@ class OpenCamera final : public Session {
     const std::lock_guard lock(mutex_);
     return gone_;
   }
+  /// Unplugged, but libcamera does not know.
+  bool vanished() const noexcept {
+    std::error_code error;
+    return started_ && !gone() && std::ranges::any_of(interfaces_, [&](const std::filesystem::path& interface) {
+             return !std::filesystem::exists(interface, error);
+           });
+  }
   const CameraSettings& settings() const noexcept override { return settings_; }
+  std::size_t buffers() const noexcept override { return requests_.size(); }
   std::size_t stride() const noexcept override { return stride_; }
 
   std::vector<CameraControl> controls() const override {
@@ -238,6 +222,7 @@ class OpenCamera final : public Session {
   std::shared_ptr<lc::Camera> camera_;
   std::string where_;
   CameraSettings settings_;
+  const std::vector<std::filesystem::path> interfaces_;
   std::unique_ptr<lc::CameraConfiguration> config_;
   std::unique_ptr<lc::FrameBufferAllocator> allocator_;
   std::vector<std::unique_ptr<Mapping>> mappings_;
@@ -252,18 +237,25 @@ class OpenCamera final : public Session {
   bool gone_ = false;
 };
 
+/// libcamera 0.0.3 aborts the whole process where it stops a camera that is gone, unless it was told so.
+void end_or_keep(OpenCamera* camera) {
+  std::unique_ptr<OpenCamera> owned(camera);
+  if (owned->vanished()) vanished_sessions().add(std::move(owned));
+}
+
 class Machine final : public Library {
  public:
   std::vector<std::string> cameras() override { return names(*manager()); }
 
-  std::unique_ptr<Session> open(const std::string& device, const CameraSettings& settings,
+  std::shared_ptr<Session> open(const std::string& device, const CameraSettings& settings,
                                 const std::string& name) override {
+    vanished_sessions().end_those_told();
     const auto all = manager();
     const std::string where = "camera '" + name + "', libcamera:" + device;
     std::vector<std::shared_ptr<lc::Camera>> found;
     for (const auto& camera : all->cameras())
       if (camera->id() == device || model_of(*camera) == device) found.push_back(camera);
-    if (found.size() == 1) return std::make_unique<OpenCamera>(all, found.front(), settings, where);
+    if (found.size() == 1) return {new OpenCamera(all, found.front(), settings, where), end_or_keep};
     const std::string there = listed(names(*all));
     if (found.empty())
       throw InputError(where, "libcamera knows no such camera",

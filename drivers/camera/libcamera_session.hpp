@@ -21,7 +21,7 @@ struct Finished {
   std::span<const std::uint8_t> bytes{};  ///< of all planes, which follow each other; until given back
 };
 
-/// A camera that streams, for one thread; its destructor stops and releases it.
+/// A camera that streams, for one thread and one owner; its end stops and releases it.
 class Session {
  public:
   virtual ~Session() = default;
@@ -30,7 +30,8 @@ class Session {
   virtual bool give_back(std::size_t buffer) noexcept = 0;  ///< false: refused, the camera is of no use any more
   virtual bool gone() const noexcept = 0;                   ///< libcamera says that it was unplugged
   virtual const CameraSettings& settings() const noexcept = 0;
-  virtual std::size_t stride() const noexcept = 0;  ///< bytes per row of the first plane; 0 for mjpeg
+  virtual std::size_t buffers() const noexcept = 0;  ///< that images come in
+  virtual std::size_t stride() const noexcept = 0;   ///< bytes per row of the first plane; 0 for mjpeg
   virtual std::vector<CameraControl> controls() const = 0;
   /// For the images to come. Throws as Camera::set_control().
   virtual void set_control(const std::string& control, std::int64_t value) = 0;
@@ -44,7 +45,7 @@ class Library {
   /// Starts the stream. `device`: a camera's id, or its model where only one has it. `name`: of the rig, for messages.
   /// Throws InputError (no such camera, naming those that are there; no such format, size or control) or
   /// RuntimeFailure.
-  virtual std::unique_ptr<Session> open(const std::string& device, const CameraSettings& settings,
+  virtual std::shared_ptr<Session> open(const std::string& device, const CameraSettings& settings,
                                         const std::string& name) = 0;
 };
 

@@ -183,15 +183,40 @@ CameraStatus V4l2Camera::wait_frame(Duration timeout, CameraFrame& out) noexcept
   if (lost_) return try_reopen(timeout);
   if (!started_) return CameraStatus::lost;
   if (!give_back()) return lose();
+  const RobotTime until = clock_.now() + timeout;
+  v4l2_buffer buffer{};
+  std::size_t taken = 0;
+  CameraStatus status = wait_newest(timeout, buffer, taken);
+  if (status == CameraStatus::ok && taken > 1 && taken + 1 >= buffers_.size()) {
+    // The driver had run out of buffers: even the newest may be as old as the caller's pause.
+    ++counters_.dropped;
+    if (!give_back()) return lose();
+    status = wait_newest(std::max(until - clock_.now(), Duration{0}), buffer, taken);
+  }
+  if (status != CameraStatus::ok) return status;
+  ++counters_.frames;
+  describe(buffer, out);
+  return status;
+}
+
+CameraStatus V4l2Camera::wait_newest(Duration timeout, v4l2_buffer& buffer, std::size_t& taken) noexcept {
   bool broken = false;
   const int ready = calls_.wait(device_.fd.get(), timeout, broken);
   if (ready == 0) return nothing_came(clock_.now());
   if (ready < 0) return lose();
-  return dequeue(out);  // a broken device, too: that says how it is broken
+  CameraStatus status = dequeue(buffer);  // of a broken device, too: that says how it is broken
+  // Not for ever: a fast camera fills what is given back.
+  for (taken = 1; taken < buffers_.size() && lent_; ++taken) {
+    if (calls_.wait(device_.fd.get(), Duration{0}, broken) <= 0 || broken) break;
+    if (status == CameraStatus::ok) ++counters_.dropped;
+    if (!give_back()) return lose();
+    status = dequeue(buffer);
+  }
+  return status;
 }
 
-CameraStatus V4l2Camera::dequeue(CameraFrame& out) noexcept {
-  v4l2_buffer buffer = capture_buffer();
+CameraStatus V4l2Camera::dequeue(v4l2_buffer& buffer) noexcept {
+  buffer = capture_buffer();
   if (calls_.ioctl(device_.fd.get(), VIDIOC_DQBUF, &buffer) != 0) {
     if (errno == EAGAIN) return nothing_came(clock_.now());
     if (errno == ENODEV || errno == ENXIO || errno == EBADF) return lose();
@@ -212,8 +237,6 @@ CameraStatus V4l2Camera::dequeue(CameraFrame& out) noexcept {
     return CameraStatus::corrupt;
   }
   hangs_ = 0;
-  ++counters_.frames;
-  describe(buffer, out);
   return CameraStatus::ok;
 }
 

@@ -21,6 +21,9 @@ namespace foresight {
 ///
 /// A period is the most that unknown parts can take; what is not known widens CameraFrame::uncertainty.
 ///
+/// After a pause of the caller the newest frame comes, not the oldest that waits: those in between are `dropped`, and
+/// all of them where the driver ran out of buffers, as then even the newest may be old.
+///
 /// Damaged or short frames are `corrupt`, counted. A stream that hangs is restarted; a device that goes, or hangs
 /// after restarts, is `lost` and opened again, with all its settings, when it returns under its selector.
 class V4l2Camera final : public Camera {
@@ -62,7 +65,8 @@ class V4l2Camera final : public Camera {
   CameraStatus lose() noexcept;
   CameraStatus try_reopen(Duration timeout) noexcept;
   CameraStatus nothing_came(RobotTime now) noexcept;
-  CameraStatus dequeue(CameraFrame& out) noexcept;
+  CameraStatus wait_newest(Duration timeout, v4l2_buffer& buffer, std::size_t& taken) noexcept;
+  CameraStatus dequeue(v4l2_buffer& buffer) noexcept;
   void describe(const v4l2_buffer& buffer, CameraFrame& out) noexcept;
   void stamp(const v4l2_buffer& buffer, CameraFrame& out) noexcept;
   std::size_t bytes_needed() const noexcept;

@@ -110,7 +110,10 @@ int FakeV4l2::answer(unsigned long request, void* argument) {
     case VIDIOC_EXPBUF:
       static_cast<v4l2_exportbuffer*>(argument)->fd = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
       return 0;
-    case VIDIOC_QBUF: queue_.push_back(static_cast<v4l2_buffer*>(argument)->index); return 0;
+    case VIDIOC_QBUF:
+      if (refuse_after > 0 && --refuse_after == 0) return EINVAL;
+      queue_.push_back(static_cast<v4l2_buffer*>(argument)->index);
+      return 0;
     case VIDIOC_DQBUF: return dequeue(*static_cast<v4l2_buffer*>(argument));
     case VIDIOC_STREAMON: return set_stream(true);
     case VIDIOC_STREAMOFF: return set_stream(false);

@@ -25,6 +25,7 @@ class FakeV4l2 final : public v4l2::Calls {
   std::uint32_t bytes_used = 0;           ///< instead of all; 0: all
   std::uint32_t skip = 0;                 ///< sequence numbers lost before the next frame
   Duration jump{0};                       ///< added to the time stamps
+  int refuse_after = 0;                   ///< so many buffers queued, the last one is refused; 0: never
   std::map<unsigned long, int> failures;  ///< ioctl request to errno
 
   // What it saw and has.

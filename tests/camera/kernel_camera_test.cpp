@@ -123,9 +123,10 @@ TEST_F(Vivid, ADamagedFrameIsSkipped) {
   left->start();
   ASSERT_TRUE(becomes(*left, CameraStatus::ok));
   left->set_control("inject_v4l2_buf_flag_error", 0);
-  EXPECT_TRUE(becomes(*left, CameraStatus::corrupt));
-  EXPECT_TRUE(becomes(*left, CameraStatus::ok));
+  CameraFrame frame;
+  for (int i = 0; i < 20 && left->counters().corrupt == 0; ++i) left->wait_frame(200ms, frame);
   EXPECT_EQ(left->counters().corrupt, 1u);
+  EXPECT_TRUE(becomes(*left, CameraStatus::ok));
   EXPECT_EQ(left->counters().restarts, 0u);
 }
 
@@ -193,19 +194,23 @@ TEST_F(Vivid, MakesStereoPairs) {
                        << status.pairing.jumps[1] << "; dropped " << status.dropped;
 }
 
-TEST_F(Vivid, ZUnplugged) {  // the last one: that device does not come back
+// Vivid comes back when nobody has the old device open any more: when our driver has closed it, and looks again.
+TEST_F(Vivid, ZUnplugged) {
   StereoCamera stereo(camera(0), camera(1), clock_, kPairing);
   stereo.start();
   ASSERT_TRUE(stereo.take(5s)) << stereo.status().reason;
   set(0, "disconnect");
   StereoStatus status = stereo.status();
-  for (int i = 0; i < 50 && (status.cameras[0] != CameraStatus::lost || *status.reason == 0); ++i) {
-    stereo.take(100ms);
+  for (int i = 0; i < 250 && status.cameras[0] != CameraStatus::lost; ++i) {
+    stereo.take(20ms);
     status = stereo.status();
   }
   EXPECT_EQ(status.cameras[0], CameraStatus::lost);
-  EXPECT_THAT(status.reason, HasSubstr("left"));
+  EXPECT_THAT(fault_text(status), HasSubstr("the left camera is lost"));
   EXPECT_NE(status.cameras[1], CameraStatus::lost);
+  while (stereo.take(0ms)) {
+  }
+  EXPECT_TRUE(stereo.take(10s)) << stereo.status().reason;
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 constexpr Duration kPeriod = 40ms;
 
-/// One grey camera of 8x4 at 25 fps in stepped time, with three buffers. Stamps the start of the exposure.
+/// One grey camera of 8x4 at 25 fps in stepped time. Stamps the start of the exposure.
 class FakeLibrary final : public libcam::Library {
  public:
   explicit FakeLibrary(SteppedClock& clock) : clock_(clock) {
@@ -28,6 +28,7 @@ class FakeLibrary final : public libcam::Library {
   bool hangs = false;   ///< until opened anew
   bool incomplete = false, cut = false, refuses = false;
   std::uint32_t skip = 0;
+  std::size_t buffers = 4;  ///< at most 8
   std::optional<Duration> exposure = 10ms;
   int opened = 0, sessions = 0;
   std::map<std::string, std::int64_t> controls;
@@ -35,8 +36,8 @@ class FakeLibrary final : public libcam::Library {
   std::vector<std::string> cameras() override {
     return present ? std::vector<std::string>{"usb-1 (Eye)"} : std::vector<std::string>{};
   }
-  std::unique_ptr<libcam::Session> open_as(const CameraSettings& settings);
-  std::unique_ptr<libcam::Session> open(const std::string& device, const CameraSettings& settings,
+  std::shared_ptr<libcam::Session> open_as(const CameraSettings& settings);
+  std::shared_ptr<libcam::Session> open(const std::string& device, const CameraSettings& settings,
                                         const std::string& name) override {
     if (!present || device != "usb-1") throw InputError("camera '" + name + "'", "there is none", "connect it");
     return open_as(settings);
@@ -46,7 +47,7 @@ class FakeLibrary final : public libcam::Library {
   friend class FakeSession;
   void tick(RobotTime now);
   SteppedClock& clock_;
-  std::array<std::vector<std::uint8_t>, 3> memory_;
+  std::array<std::vector<std::uint8_t>, 8> memory_;
   std::deque<std::size_t> queued_;
   std::deque<libcam::Finished> finished_;
   std::uint32_t sequence_ = 0;
@@ -71,6 +72,7 @@ class FakeSession final : public libcam::Session {
   }
   bool gone() const noexcept override { return !library_.present && library_.signals; }
   const CameraSettings& settings() const noexcept override { return settings_; }
+  std::size_t buffers() const noexcept override { return library_.buffers; }
   std::size_t stride() const noexcept override { return 8; }
   std::vector<CameraControl> controls() const override { return {}; }
   void set_control(const std::string& control, std::int64_t value) override { library_.controls[control] = value; }
@@ -80,17 +82,18 @@ class FakeSession final : public libcam::Session {
   CameraSettings settings_;
 };
 
-std::unique_ptr<libcam::Session> FakeLibrary::open_as(const CameraSettings& settings) {
+std::shared_ptr<libcam::Session> FakeLibrary::open_as(const CameraSettings& settings) {
   EXPECT_EQ(sessions, 0) << "a camera has one owner";
   ++opened;
   ++sessions;
   hangs = refuses = false;
-  queued_ = {0, 1, 2};
+  queued_.clear();
+  for (std::size_t i = 0; i < buffers; ++i) queued_.push_back(i);
   finished_.clear();
   sequence_ = 0;
   for (auto& memory : memory_) memory.assign(32, 0);
   controls = settings.controls;
-  return std::make_unique<FakeSession>(*this, settings);
+  return std::make_shared<FakeSession>(*this, settings);
 }
 
 void FakeLibrary::tick(RobotTime now) {
@@ -172,6 +175,22 @@ TEST_F(Libcamera, DamagedFramesAndGapsAreCounted) {
   EXPECT_EQ(wait(), CameraStatus::ok);
   EXPECT_EQ(camera_->counters().corrupt, 2u);
   EXPECT_EQ(camera_->counters().gaps, 3u);
+}
+
+TEST_F(Libcamera, AfterAPauseTheNewestFrameComes) {
+  library_.buffers = 8;
+  start();
+  ASSERT_EQ(wait(), CameraStatus::ok);
+  clock_.sleep_until(clock_.now() + 130ms);
+  ASSERT_EQ(wait(), CameraStatus::ok);
+  EXPECT_EQ(frame_.sequence, 4u);
+  EXPECT_EQ(frame_.bytes[0], 4) << "its own buffer";
+  EXPECT_EQ(camera_->counters().dropped, 2u);
+  clock_.sleep_until(clock_.now() + 2s);
+  ASSERT_EQ(wait(), CameraStatus::ok);
+  EXPECT_EQ(camera_->counters().dropped, 2u + 7);
+  EXPECT_LT(clock_.now() - frame_.time, 2 * kPeriod) << "all that waited was old";
+  EXPECT_EQ(camera_->counters().frames, 3u);
 }
 
 TEST_F(Libcamera, AStreamThatStallsIsOpenedAnew) {

@@ -1,163 +1,37 @@
-// A pair of USB cameras under the kernel's usbcore and uvcvideo, which are emulated (tests/devices/usb_camera) and show
-// the stereo images of a run. Needs "modprobe vhci-hcd uvcvideo", root, and the run's folder in FORESIGHT_PICTURES.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
+// The V4L2 driver on emulated USB cameras.
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string_view>
 
-#include "drivers/camera/stereo_camera.hpp"
 #include "drivers/camera/v4l2_camera.hpp"
+#include "tests/camera/emulated_cameras.hpp"
 
 namespace foresight {
 namespace {
 
 using namespace std::chrono_literals;
 using namespace std::string_view_literals;
-namespace fs = std::filesystem;
 
 constexpr double kRate = 10;  // frames/s: a guest takes 30 ms for a JPEG
-const char* const kNames[] = {"left", "right"};
 
-/// Plugged in from construction to destruction.
-class EmulatedCamera {
- public:
-  EmulatedCamera(std::size_t side, const fs::path& pictures) {
-    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "usb_camera";
-    const std::string command =
-        program.string() + " " + std::to_string(side) + " " + kNames[side] + " " + pictures.string() + " >/dev/null";
-    process_ = popen(command.c_str(), "we");
-  }
-  ~EmulatedCamera() { pclose(process_); }
-  EmulatedCamera(const EmulatedCamera&) = delete;
-  EmulatedCamera& operator=(const EmulatedCamera&) = delete;
-
-  void disturb(const char* what) {
-    std::fprintf(process_, "%s\n", what);
-    std::fflush(process_);
-  }
-
- private:
-  std::FILE* process_;
-};
-
-std::string selector(std::size_t side) {
-  return std::string("serial:") + kNames[side];
-}
-
-cv::Mat thumbnail(const cv::Mat& image) {
-  cv::Mat out;
-  cv::resize(image, out, {image.cols / 8, image.rows / 8}, 0, 0, cv::INTER_AREA);
-  return out;
-}
-
-class UsbCameras : public testing::Test {
+class UsbCameras : public EmulatedCameras {
  protected:
-  void SetUp() override {
-    const char* const run = std::getenv("FORESIGHT_PICTURES");
-    if (run == nullptr) GTEST_SKIP() << "FORESIGHT_PICTURES names no stereo run; see scripts/test-devices";
-    if (!fs::exists("/sys/devices/platform/vhci_hcd.0/attach")) GTEST_SKIP() << "no vhci_hcd.0; modprobe vhci-hcd";
-    for (std::size_t side : {0, 1}) {
-      folders_[side] = fs::path(run) / (side == 0 ? "rgb" : "rgb_right");
-      std::vector<fs::path> files;
-      for (const auto& entry : fs::directory_iterator(folders_[side])) files.push_back(entry.path());
-      std::sort(files.begin(), files.end());
-      for (const fs::path& file : files) pictures_[side].push_back(cv::imread(file.string()));
-      for (const cv::Mat& picture : pictures_[side]) thumbnails_[side].push_back(thumbnail(picture));
-    }
-    for (std::size_t side : {0, 1})
-      if (!emulated_[side]) plug_in(side);
-  }
-  static void TearDownTestSuite() {
-    for (auto& camera : emulated_) camera.reset();
-  }
-
-  static bool is_there(std::size_t side) {
-    return v4l2::find_device(v4l2::system_calls(), selector(side), "test").has_value();
-  }
-  /// One after the other: the controller takes no second device while it resets the first.
-  void plug_in(std::size_t side) {
-    emulated_[side] = std::make_unique<EmulatedCamera>(side, folders_[side]);
-    for (int i = 0; i < 600 && !is_there(side); ++i) clock_.sleep_until(clock_.now() + 50ms);
-    ASSERT_TRUE(is_there(side)) << "camera " << kNames[side] << " did not appear";
-  }
   std::unique_ptr<V4l2Camera> camera(std::size_t side, PixelFormat format) {
     V4l2Camera::Options options;
     options.device = selector(side);
-    options.settings.width = pictures_[side][0].cols;
-    options.settings.height = pictures_[side][0].rows;
-    options.settings.format = format;
-    options.settings.rate = kRate;
+    options.settings = settings_of(side, format, kRate);
     return std::make_unique<V4l2Camera>(kNames[side], options, clock_);
   }
   std::unique_ptr<StereoCamera> pair_of(PixelFormat format) {
-    PairingOptions options;
-    options.largest_age = 5s;  // a machine that is held up is late
-    return std::make_unique<StereoCamera>(camera(0, format), camera(1, format), clock_, options);
+    return EmulatedCameras::pair_of(camera(0, format), camera(1, format));
   }
-  static bool becomes(V4l2Camera& camera, CameraStatus wanted) {
-    CameraFrame frame;
-    for (int i = 0; i < 100; ++i)
-      if (camera.wait_frame(200ms, frame) == wanted) return true;
-    return false;
-  }
-  /// Until that is true of the pair's status, 10 s at most.
-  template <typename Condition>
-  static bool comes_to(StereoCamera& stereo, Condition condition) {
-    for (int i = 0; i < 100; ++i) {
-      stereo.take(100ms);
-      if (condition(stereo.status())) return true;
-    }
-    return false;
-  }
-  /// The number of the picture that looks most like `image`.
-  std::size_t number_of(std::size_t side, const cv::Mat& image) const {
-    const cv::Mat small = thumbnail(image);
-    std::size_t best = 0;
-    double least = 1e300;
-    for (std::size_t i = 0; i < thumbnails_[side].size(); ++i) {
-      const double difference = cv::norm(small, thumbnails_[side][i], cv::NORM_L1);
-      if (difference < least) {
-        least = difference;
-        best = i;
-      }
-    }
-    return best;
-  }
-
-  MonotonicClock clock_;
-  std::array<fs::path, 2> folders_;
-  std::array<std::vector<cv::Mat>, 2> pictures_, thumbnails_;
-  static std::array<std::unique_ptr<EmulatedCamera>, 2> emulated_;  // of all tests: to plug one in takes seconds
 };
-std::array<std::unique_ptr<EmulatedCamera>, 2> UsbCameras::emulated_;
 
 TEST_F(UsbCameras, ShowTheLabInBothFormats) {
   for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::mjpeg}) {
     const auto left = camera(0, format);
     left->start();
     EXPECT_NEAR(left->settings().rate, kRate, 1e-3);
-    CameraFrame frame;
-    RobotTime last{};
-    std::size_t number = 0;
-    for (int i = 0; i < 10; ++i) {
-      ASSERT_EQ(left->wait_frame(2s, frame), CameraStatus::ok) << to_string(format);
-      EXPECT_GT(frame.time, last);
-      EXPECT_LT(std::chrono::abs(clock_.now() - frame.time), 2s);  // an emulated machine is slow, and may be held up
-      last = frame.time;
-      cv::Mat image;
-      ASSERT_EQ(to_bgr(frame, image), Conversion::ok);
-      const std::size_t shown = number_of(0, image);
-      EXPECT_TRUE(i == 0 || shown != number) << "the picture stands still";
-      number = shown;
-      // Half the colours' resolution, and JPEG's quantisation, cost that much; a wrong matrix or picture far more.
-      EXPECT_GT(cv::PSNR(image, pictures_[0][shown]), 28) << to_string(format) << " picture " << shown;
-    }
+    expect_the_lab(*left, 0, 10);
   }
 }
 

@@ -12,5 +12,5 @@ check "the pair is recorded as a run" exits 0 "$programs/foresight" record /out/
   --left bus:platform:vivid-000 --right bus:platform:vivid-001 --camera $lab/camera.yaml \
   --camera-right $lab/camera_right.yaml --scene $lab/scene.yaml --pose 0 0 0 0 0 0 1 --rate 60 --count 12
 check "  with all images of both sides" recorded /out/vivid
-check "a camera that goes is lost, the other one goes on" gtest "$programs/camera_test" 'Vivid.ZUnplugged'
+check "a camera that goes is lost, the other one goes on, and it returns" gtest "$programs/camera_test" 'Vivid.ZUnplugged'
 finish

@@ -65,7 +65,7 @@ exits() {
 # gtest PROGRAM FILTER: there are such tests, all pass, and none skips.
 gtest() {
   "$1" --gtest_filter="$2" --gtest_brief=1 >/tmp/gtest.log 2>&1 && ! grep -qE 'SKIPPED|] 0 tests' /tmp/gtest.log &&
-    sed -n 's/^\[==========\] \(.*ran\. .*\)/      \1/p' /tmp/gtest.log && return 0
+    sed -n 's/^\[==========\] \(.*ran\. .*\)/      \1/p; s/^noticed /      &/p' /tmp/gtest.log && return 0
   sed 's/^/      | /' /tmp/gtest.log
   return 1
 }
