@@ -54,7 +54,11 @@ StereoConfig described(const Arguments& a) {
     if (a.rate > 0) camera.settings.rate = a.rate;
   }
   // Folders are started one after the other; what belongs together is less than half a period apart.
-  if (!a.images.empty()) config.pairing.tolerance = seconds(0.45 / config.cameras[0].settings.rate);
+  if (!a.images.empty()) {
+    const double period_s = 1 / config.cameras[0].settings.rate;
+    config.pairing.tolerance = seconds(0.45 * period_s);
+    config.pairing.frozen_after = std::max(config.pairing.frozen_after, seconds(3 * period_s));
+  }
   return a.mock ? as_mock(config) : config;
 }
 

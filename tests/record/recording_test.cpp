@@ -81,8 +81,10 @@ class Recording : public testing::Test {
   }
 
   RecordingResult record_from(int left, int right, RecordingLimits limits = {}, Duration offset = 0ns) {
+    PairingOptions pairing;
+    pairing.tolerance = 4ms;  // of a period of 10 ms: an image has one partner only
     StereoCamera cameras(std::make_unique<CountingCamera>(clock_, left),
-                         std::make_unique<CountingCamera>(clock_, right, offset), clock_);
+                         std::make_unique<CountingCamera>(clock_, right, offset), clock_, pairing);
     RunRecorder recorder(folder_ / "run", options_);
     limits.silent_after = 300ms;
     return record(cameras, recorder, limits, clock_, [this] { return stop_; });
