@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "calibration/registration/projection_slope.hpp"
 
 namespace foresight {
 namespace {
 
 constexpr double kHuber = 2;         // sigmas
 constexpr double kConverged = 1e-7;  // rad and m
-constexpr double kStep = 1e-5;       // metres per metre, for the lens's slopes
 
 /// Pixel and its slope by the correction's twist.
 struct Projection {
@@ -23,18 +23,12 @@ std::optional<Projection> project(const Lens& lens, const Pose& T_camera_left, c
   const Eigen::Vector3d p = T_camera_left * p_left;
   const auto pixel = lens.project(p);
   if (!pixel) return std::nullopt;
-  Eigen::Matrix<double, 2, 3> slope;
-  const double step = kStep * p.norm();
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d d = step * Eigen::Vector3d::Unit(axis);
-    const auto after = lens.project(p + d), before = lens.project(p - d);
-    if (!after || !before) return std::nullopt;
-    slope.col(axis) = (*after - *before) / (2 * step);
-  }
+  const auto slope = projection_slope(lens, p);
+  if (!slope) return std::nullopt;
   Eigen::Matrix<double, 3, 6> moved;  // of p_left, when the left camera moves
   moved << 0, -p_left.z(), p_left.y(), -1, 0, 0, p_left.z(), 0, -p_left.x(), 0, -1, 0, -p_left.y(), p_left.x(), 0, 0, 0,
       -1;
-  return Projection{*pixel, slope * T_camera_left.linear() * moved};
+  return Projection{*pixel, *slope * T_camera_left.linear() * moved};
 }
 
 }  // namespace

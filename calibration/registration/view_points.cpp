@@ -2,25 +2,13 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/registration/projection_slope.hpp"
+
 namespace foresight {
 namespace {
 
 constexpr int kBlock = 16;          // px
-constexpr double kStep = 1e-4;      // metres per metre of distance, for the projection's slopes
 constexpr double kSmoothing = 0.7;  // px, before slopes are taken
-
-/// d pixel / d p_camera by central differences; nothing where the lens does not see all of them.
-std::optional<Eigen::Matrix<double, 2, 3>> projection_slope(const Lens& lens, const Eigen::Vector3d& p) {
-  Eigen::Matrix<double, 2, 3> slope;
-  const double step = kStep * p.norm();
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d d = step * Eigen::Vector3d::Unit(axis);
-    const auto after = lens.project(p + d), before = lens.project(p - d);
-    if (!after || !before) return std::nullopt;
-    slope.col(axis) = (*after - *before) / (2 * step);
-  }
-  return slope;
-}
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& p) {
   Eigen::Matrix3d m;
