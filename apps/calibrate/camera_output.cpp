@@ -4,7 +4,7 @@
 
 #include "apps/calibrate/camera_report.hpp"
 #include "calibration/camera/camera_result.hpp"
-#include "common/atomic_file.hpp"
+#include "calibration/formats/camera_formats.hpp"
 
 namespace foresight {
 namespace {
@@ -71,41 +71,13 @@ ResultHeader header_of(const CameraCalibration& c, const std::vector<std::string
   return header;
 }
 
-// A ROS camera_info file, as scene/camera_info.hpp reads it.
-std::string camera_info_text(const CameraModel& model, const std::string& name, const Pose* T_left_right) {
-  const Lens::Parameters p = to_lens(model).parameters();
-  const std::size_t count = p.model == LensModel::plumb_bob ? 5 : p.model == LensModel::equidistant ? 4 : 8;
-  YAML::Node yaml;
-  yaml["image_width"] = p.width;
-  yaml["image_height"] = p.height;
-  yaml["camera_name"] = name;
-  const auto matrix = [](int rows, int cols, const std::vector<double>& data) {
-    YAML::Node node;
-    node["rows"] = rows, node["cols"] = cols;
-    for (const double v : data) node["data"].push_back(v);
-    node["data"].SetStyle(YAML::EmitterStyle::Flow);
-    return node;
-  };
-  yaml["camera_matrix"] = matrix(3, 3, {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1});
-  yaml["distortion_model"] = to_string(p.model);
-  yaml["distortion_coefficients"] =
-      matrix(1, static_cast<int>(count), {p.d.begin(), p.d.begin() + static_cast<std::ptrdiff_t>(count)});
-  if (T_left_right) yaml["T_left_right"] = to_yaml(*T_left_right);
-  YAML::Emitter text;
-  text.SetDoublePrecision(17);
-  text << yaml;
-  return std::string(text.c_str()) + "\n";
-}
-
 void write_camera_info(const CameraCalibration& c, const std::filesystem::path& folder) {
   const Rig& rig = c.solution.rig;
+  CalibratedCameras calibrated{rig.cameras[0], {}, rig.T_left_right};
   const bool pair = cameras(c) == 2;
-  const std::string left = camera_info_text(rig.cameras[0], camera_name(0, c.views.cameras), nullptr);
-  const std::string right = pair ? camera_info_text(rig.cameras[1], "right", &rig.T_left_right) : "";
+  if (pair) calibrated.right = rig.cameras[1];
   std::filesystem::create_directories(folder);
-  std::vector<FileContent> files{{folder / "camera.yaml", left}};
-  if (pair) files.push_back({folder / "camera_right.yaml", right});
-  write_files_atomically(files);
+  write_cameras(CameraFormat::camera_info, calibrated, pair ? folder : folder / "camera.yaml", true);
 }
 
 }  // namespace
