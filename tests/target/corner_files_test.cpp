@@ -24,16 +24,6 @@ class CornerFiles : public testing::Test {
   const Board board_ = parse_board("chessboard:3x2:0.1");
 };
 
-template <typename Read>
-std::string message(Read read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 std::string rows(const std::string& name, double x0 = 10) {
   std::string text;
   for (int i = 0; i < 6; ++i)
@@ -60,7 +50,7 @@ TEST_F(CornerFiles, VnlKeepsOrderAndNoise) {
 TEST_F(CornerFiles, VnlErrorsNameTheRow) {
   const auto refused = [&](const std::string& text) {
     const auto file = write("a.vnl", text);
-    return message([&] { read_corners(file, board_); });
+    return input_error([&] { read_corners(file, board_); });
   };
   EXPECT_THAT(refused("one.png 1 nan\n"), AllOf(HasSubstr("a.vnl:1"), HasSubstr("y of corner 0 of one.png")));
   EXPECT_THAT(refused(rows("one.png") + "two.png 1 2\n"), AllOf(HasSubstr("a.vnl:7"), HasSubstr("1 rows")));
@@ -71,8 +61,8 @@ TEST_F(CornerFiles, VnlErrorsNameTheRow) {
   EXPECT_THAT(refused("# filename x y\n"), HasSubstr("no row"));
   EXPECT_THAT(refused("one.png - - -\n"), HasSubstr("in no image"));
   EXPECT_THAT(refused(rows("left1.png") + rows("right1.png")), HasSubstr("two cameras"));
-  EXPECT_THAT(message([&] { read_corners(write("b.vnl", rows("one.png")), std::nullopt); }), HasSubstr("--board"));
-  EXPECT_THAT(message([&] { read_corners(folder() / "none.vnl", board_); }), HasSubstr("does not exist"));
+  EXPECT_THAT(input_error([&] { read_corners(write("b.vnl", rows("one.png")), std::nullopt); }), HasSubstr("--board"));
+  EXPECT_THAT(input_error([&] { read_corners(folder() / "none.vnl", board_); }), HasSubstr("does not exist"));
 }
 
 TEST_F(CornerFiles, VnlPairsByName) {
@@ -88,7 +78,7 @@ TEST_F(CornerFiles, VnlPairsByName) {
 TEST_F(CornerFiles, VnlPairErrors) {
   const auto refused = [&](const std::string& text) {
     const auto file = write("a.vnl", text);
-    return message([&] { read_stereo_corners(file, board_); });
+    return input_error([&] { read_stereo_corners(file, board_); });
   };
   EXPECT_THAT(refused(rows("left1.png") + rows("x.png")), AllOf(HasSubstr("a.vnl:7"), HasSubstr("neither camera")));
   EXPECT_THAT(refused(rows("left1.png")), HasSubstr("in no right image"));
@@ -128,17 +118,17 @@ TEST_F(CornerFiles, FoldersShareThePointsOfBothCameras) {
 }
 
 TEST_F(CornerFiles, FolderErrors) {
-  EXPECT_THAT(message([&] { read_stereo_corners(folder(), std::nullopt); }), HasSubstr("no folder cam0"));
+  EXPECT_THAT(input_error([&] { read_stereo_corners(folder(), std::nullopt); }), HasSubstr("no folder cam0"));
   write("cam0/17.csv", kHeader + tag(3, 10));
-  EXPECT_THAT(message([&] { read_stereo_corners(folder(), std::nullopt); }), HasSubstr("no folder cam1"));
+  EXPECT_THAT(input_error([&] { read_stereo_corners(folder(), std::nullopt); }), HasSubstr("no folder cam1"));
   write("cam1/20.csv", kHeader + tag(3, 10));
-  EXPECT_THAT(message([&] { read_stereo_corners(folder(), std::nullopt); }),
+  EXPECT_THAT(input_error([&] { read_stereo_corners(folder(), std::nullopt); }),
               AllOf(HasSubstr("no view of both"), HasSubstr("differ by 3 ns")));
-  EXPECT_THAT(message([&] { read_corners(folder(), std::nullopt); }), HasSubstr("two cameras"));
+  EXPECT_THAT(input_error([&] { read_corners(folder(), std::nullopt); }), HasSubstr("two cameras"));
 
   const auto refused = [&](const std::string& text) {
     write("cam1/20.csv", text);
-    return message([&] { read_corners(folder() / "cam1", std::nullopt); });
+    return input_error([&] { read_corners(folder() / "cam1", std::nullopt); });
   };
   EXPECT_THAT(refused(kHeader + tag(3, 10) + tag_row(3, 1, 5, 5)),
               AllOf(HasSubstr("20.csv:6"), HasSubstr("repeats corner 1 of tag 3")));

@@ -28,16 +28,6 @@ class ImageInput : public testing::Test {
   const Board board_ = parse_board("chessboard:7x5:0.03");
 };
 
-template <typename Read>
-std::string message(Read read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST_F(ImageInput, DropsByNameAndReason) {
   for (int i = 0; i < 4; ++i) save("v" + std::to_string(i) + ".png", view(5 * i));
   cv::Mat blurred;
@@ -57,17 +47,17 @@ TEST_F(ImageInput, DropsByNameAndReason) {
 }
 
 TEST_F(ImageInput, RefusesWithNames) {
-  EXPECT_THAT(message([&] { find_in_folder(files_ / "none", board_); }), HasSubstr("is no folder"));
-  EXPECT_THAT(message([&] { find_in_folder(files_.path(), board_); }), HasSubstr("holds no image"));
-  EXPECT_THAT(message([&] { find_in_folder(files_ / "left*.png", board_); }), HasSubstr("names no image"));
+  EXPECT_THAT(input_error([&] { find_in_folder(files_ / "none", board_); }), HasSubstr("is no folder"));
+  EXPECT_THAT(input_error([&] { find_in_folder(files_.path(), board_); }), HasSubstr("holds no image"));
+  EXPECT_THAT(input_error([&] { find_in_folder(files_ / "left*.png", board_); }), HasSubstr("names no image"));
   save("a.png", view(0));
   save("b.png", draw_board(board_, 400, 300, 0, 0).grey);
-  EXPECT_THAT(message([&] { find_in_folder(files_.path(), board_); }),
+  EXPECT_THAT(input_error([&] { find_in_folder(files_.path(), board_); }),
               AllOf(HasSubstr("b.png"), HasSubstr("400x300"), HasSubstr("a.png is 320x240")));
   files_.write("b.png", "not a picture");
-  EXPECT_THAT(message([&] { find_in_folder(files_.path(), board_); }), HasSubstr("b.png"));
+  EXPECT_THAT(input_error([&] { find_in_folder(files_.path(), board_); }), HasSubstr("b.png"));
   std::filesystem::remove(files_ / "b.png");
-  EXPECT_THAT(message([&] { find_in_folder(files_.path(), parse_board("chessboard:8x6:0.03")); }),
+  EXPECT_THAT(input_error([&] { find_in_folder(files_.path(), parse_board("chessboard:8x6:0.03")); }),
               AllOf(HasSubstr("8x6 not found"), HasSubstr("chessboard:7x5:0.03")));
 }
 
@@ -90,7 +80,7 @@ TEST_F(ImageInput, PairsByNameAndBySorting) {
   const auto sorted = find_pairs_in_folders(files_ / "l", files_ / "r", board_);
   EXPECT_EQ(sorted.corners.left.views[0].name, sorted.corners.right.views[0].name);
   save("r/c.png", view(0));
-  EXPECT_THAT(message([&] { find_pairs_in_folders(files_ / "l", files_ / "r", board_); }),
+  EXPECT_THAT(input_error([&] { find_pairs_in_folders(files_ / "l", files_ / "r", board_); }),
               HasSubstr("1 images beside 2"));
 }
 

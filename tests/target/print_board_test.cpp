@@ -55,20 +55,10 @@ INSTANTIATE_TEST_SUITE_P(Kinds, PrintedBoard,
                                          "charuco:8x5:0.03:0.022:DICT_5X5_100", "charuco:5x7:0.03:0.02:DICT_6X6_250",
                                          "apriltag:4x3:0.042:0.0126", "circles:9x6:0.025"));
 
-template <typename Call>
-std::string message(Call call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(PrintBoard, TooLargeNamesWhatFits) {
   const TempFolder folder;
   const auto large = [&](const char* board) {
-    return message([&] { write_board_pdf(folder / "b.pdf", parse_board(board), parse_paper("A4")); });
+    return input_error([&] { write_board_pdf(folder / "b.pdf", parse_board(board), parse_paper("A4")); });
   };
   const std::string text = large("chessboard:9x6:0.05");
   EXPECT_THAT(text, AllOf(HasSubstr("A4 leaves"), HasSubstr("chessboard:9x6:0.02")));
@@ -76,7 +66,7 @@ TEST(PrintBoard, TooLargeNamesWhatFits) {
   const std::size_t at = text.find("chessboard:9x6:0.02");
   EXPECT_EQ(large(text.substr(at, text.find_first_not_of("chesboard:9x60.12345678", at) - at).c_str()), "no error");
   EXPECT_THAT(large("charuco:5x7:0.03"), HasSubstr("charuco:5x7:0.03:0.021:DICT_5X5_1000"));
-  EXPECT_THAT(message([] { parse_paper("A5x"); }), HasSubstr("is no paper"));
+  EXPECT_THAT(input_error([] { parse_paper("A5x"); }), HasSubstr("is no paper"));
   EXPECT_EQ(parse_paper("600x400_mm").height_mm, 600);
 }
 
@@ -85,8 +75,8 @@ TEST(PrintBoard, MeasuredScale) {
   const Board printed = measured_board(board, 99.0, 99.2);
   EXPECT_NEAR(printed.size_m, 0.045 * 0.991, 1e-12);
   EXPECT_NEAR(printed.gap_m, 0.0135 * 0.991, 1e-12);
-  EXPECT_THAT(message([&] { measured_board(board, 100, 99.3); }), HasSubstr("99.30 %"));
-  EXPECT_THAT(message([&] { measured_board(board, 10.0, 9.93); }), HasSubstr("ruler"));
+  EXPECT_THAT(input_error([&] { measured_board(board, 100, 99.3); }), HasSubstr("99.30 %"));
+  EXPECT_THAT(input_error([&] { measured_board(board, 10.0, 9.93); }), HasSubstr("ruler"));
 }
 
 }  // namespace
