@@ -26,17 +26,6 @@ double value_in(const std::filesystem::path& file) {
   return read_result(file, "stereo").result.number("value");
 }
 
-// The message of the InputError that `call` throws; empty where it throws none.
-template <typename Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(ResultFile, ReadsBackWhatWasWritten) {
   const TempFolder folder;
   const double exact = 0.1 + 1e-16;
@@ -55,7 +44,7 @@ TEST(ResultFile, KeepsTheBetterResult) {
   const TempFolder folder;
   const auto file = folder / "stereo.yaml";
   write_result(file, header(0.2), payload(1), false);
-  EXPECT_THAT(refusal([&] { write_result(file, header(0.3), payload(2), false); }),
+  EXPECT_THAT(input_error([&] { write_result(file, header(0.3), payload(2), false); }),
               testing::AllOf(HasSubstr("stereo.yaml"), HasSubstr("0.2"), HasSubstr("0.3"), HasSubstr("--force")));
   EXPECT_EQ(value_in(file), 1);
   write_result(file, header(0.2030), payload(3), false);
@@ -82,7 +71,7 @@ TEST(ResultFile, KeepsTheResultOfOtherDevices) {
   write_result(file, header(0.2), payload(1), false);
   ResultHeader other = header(0.1);
   other.devices["right"] = "40999";
-  EXPECT_THAT(refusal([&] { write_result(file, other, payload(2), false); }),
+  EXPECT_THAT(input_error([&] { write_result(file, other, payload(2), false); }),
               testing::AllOf(HasSubstr("right"), HasSubstr("40127"), HasSubstr("40999")));
   EXPECT_EQ(value_in(file), 1);
 }
@@ -92,11 +81,11 @@ TEST(ResultFile, KeepsOtherKindsAndOtherFiles) {
   ResultHeader intrinsics = header(0.1);
   intrinsics.kind = "intrinsics";
   write_result(folder / "a.yaml", intrinsics, payload(1), false);
-  EXPECT_THAT(refusal([&] { write_result(folder / "a.yaml", header(0.1), payload(2), false); }),
+  EXPECT_THAT(input_error([&] { write_result(folder / "a.yaml", header(0.1), payload(2), false); }),
               HasSubstr("intrinsics"));
   for (const char* text : {"robots: []\n", "not yaml: [", "", "just words"}) {
     const auto file = folder.write("b.yaml", text);
-    EXPECT_THAT(refusal([&] { write_result(file, header(0.1), payload(2), false); }),
+    EXPECT_THAT(input_error([&] { write_result(file, header(0.1), payload(2), false); }),
                 HasSubstr("no calibration result"))
         << text;
     EXPECT_EQ(folder.read("b.yaml"), text);
@@ -112,14 +101,14 @@ TEST(ResultFile, SaysWhatIsWrongWithADamagedFile) {
   const auto message = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     text.replace(text.find(from), from.size(), to);
-    return refusal([&] { read_result(folder.write("bad.yaml", text), "stereo"); });
+    return input_error([&] { read_result(folder.write("bad.yaml", text), "stereo"); });
   };
   EXPECT_THAT(message("loo_joint_px\n  value", "loo_joint_px\n  valve"), HasSubstr("value"));
   EXPECT_THAT(message("value: 0.2", "value: much"), HasSubstr("much"));
   EXPECT_THAT(message("result:", "results:"), HasSubstr("did you mean 'result'"));
   EXPECT_THAT(message("kind: stereo", "kind: arm"), HasSubstr("calibrate stereo"));
   EXPECT_THAT(message("kind: stereo\n", ""), HasSubstr("kind"));
-  EXPECT_THAT(refusal([&] { read_result(folder / "absent.yaml", "stereo"); }), HasSubstr("absent.yaml"));
+  EXPECT_THAT(input_error([&] { read_result(folder / "absent.yaml", "stereo"); }), HasSubstr("absent.yaml"));
 }
 
 TEST(ResultFile, LeavesNothingBehindWhereItCannotWrite) {

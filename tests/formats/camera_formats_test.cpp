@@ -21,16 +21,6 @@ constexpr CameraFormat kAll[] = {CameraFormat::camera_info, CameraFormat::kalibr
 constexpr Distortion kModels[] = {Distortion::radtan4, Distortion::radtan5, Distortion::rational,
                                   Distortion::thin_prism, Distortion::equidistant};
 
-template <typename Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 // What each format can hold, as their own documents say.
 bool holds(CameraFormat format, Distortion model) {
   if (model == Distortion::equidistant) return format != CameraFormat::mrcal;
@@ -49,7 +39,8 @@ TEST(CameraFormats, EveryFormatReadsBackOrRefuses) {
         const auto path = folder / name;
         const auto write = [&] { return write_cameras(format, cameras, path, false); };
         if (!holds(format, model)) {
-          EXPECT_THAT(refusal(write), AllOf(HasSubstr("cannot hold " + to_string(model)), HasSubstr("opencv"))) << name;
+          EXPECT_THAT(input_error(write), AllOf(HasSubstr("cannot hold " + to_string(model)), HasSubstr("opencv")))
+              << name;
           EXPECT_FALSE(std::filesystem::exists(path)) << name;
           continue;
         }
@@ -78,7 +69,7 @@ TEST(CameraFormats, KeepsWhatIsThere) {
   const TempFolder folder;
   const auto file = folder.write("camchain.yaml", "mine");
   const CalibratedCameras cameras = example_pair(Distortion::radtan4);
-  EXPECT_THAT(refusal([&] { write_cameras(CameraFormat::kalibr, cameras, file, false); }), HasSubstr("--force"));
+  EXPECT_THAT(input_error([&] { write_cameras(CameraFormat::kalibr, cameras, file, false); }), HasSubstr("--force"));
   EXPECT_EQ(folder.read("camchain.yaml"), "mine");
   write_cameras(CameraFormat::kalibr, cameras, file, true);
   EXPECT_THAT(folder.read("camchain.yaml"), HasSubstr("T_cn_cnm1"));
@@ -184,7 +175,7 @@ TEST(CameraFormats, SaysWhatIsWrong) {
   const TempFolder folder;
   const auto message = [&](CameraFormat format, const std::string& text) {
     const auto file = folder.write("bad", text);
-    return refusal([&] { read_cameras(format, file); });
+    return input_error([&] { read_cameras(format, file); });
   };
   EXPECT_THAT(message(CameraFormat::mrcal, "{'lensmodel': 'LENSMODEL_CAHVOR', 'intrinsics': [], 'imagersize': []}"),
               HasSubstr("mrcal-convert-lensmodel"));
@@ -197,8 +188,8 @@ TEST(CameraFormats, SaysWhatIsWrong) {
   EXPECT_THAT(message(CameraFormat::opencv, "words and words"), HasSubstr("FileStorage"));
   EXPECT_THAT(message(CameraFormat::opencv, ""), HasSubstr("FileStorage"));
   EXPECT_THAT(message(CameraFormat::camera_info, "image_width: 640"), HasSubstr("image_height"));
-  EXPECT_THAT(refusal([] { parse_camera_format("ros"); }), HasSubstr("use "));
-  EXPECT_THAT(refusal([&] { read_cameras(CameraFormat::mrcal, folder / "absent"); }), HasSubstr("absent"));
+  EXPECT_THAT(input_error([] { parse_camera_format("ros"); }), HasSubstr("use "));
+  EXPECT_THAT(input_error([&] { read_cameras(CameraFormat::mrcal, folder / "absent"); }), HasSubstr("absent"));
 }
 
 }  // namespace
