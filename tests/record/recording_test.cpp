@@ -16,7 +16,8 @@ using testing::HasSubstr;
 
 constexpr int kWidth = 16, kHeight = 12;
 
-/// Frames of one colour at 100 fps; silent after `last` of them. `offset` shifts its clock.
+/// Frames at 100 fps, each of one colour that tells when it was due, so that the two images of a pair show the same
+/// however long a thread was held up; silent after `last` frames. `offset` shifts its clock.
 class CountingCamera final : public Camera {
  public:
   CountingCamera(Clock& clock, int last, Duration offset = 0ns, int width = kWidth)
@@ -31,7 +32,8 @@ class CountingCamera final : public Camera {
     }
     const RobotTime due{(clock_.now().ns / 10'000'000 + 1) * 10'000'000};
     clock_.sleep_until(due);
-    image_.setTo(cv::Scalar::all(++count_));
+    ++count_;
+    image_.setTo(cv::Scalar::all(static_cast<double>(due.ns / 10'000'000 % 256)));
     out = {};
     out.width = image_.cols;
     out.height = image_.rows;
@@ -86,7 +88,6 @@ class Recording : public testing::Test {
     StereoCamera cameras(std::make_unique<CountingCamera>(clock_, left),
                          std::make_unique<CountingCamera>(clock_, right, offset), clock_, pairing);
     RunRecorder recorder(folder_ / "run", options_);
-    limits.silent_after = 300ms;
     return record(cameras, recorder, limits, clock_, [this] { return stop_; });
   }
 
@@ -128,12 +129,14 @@ TEST_F(Recording, IsARunThatCanBeReadBack) {
                 to_seconds(frame.left.time - RobotTime{}), 1e-6);
     const cv::Mat left = read_run_image(frame.left, run.lens_left()),
                   right = read_run_image(*frame.right, run.lens_left());
-    EXPECT_EQ(cv::norm(left, right, cv::NORM_INF), 0);  // both count their frames
+    EXPECT_EQ(cv::norm(left, right, cv::NORM_INF), 0);
   }
 }
 
 TEST_F(Recording, KeepsWhatCameBeforeACameraFellSilent) {
-  const RecordingResult result = record_from(40, 20);
+  RecordingLimits limits;
+  limits.silent_after = 500ms;
+  const RecordingResult result = record_from(40, 20, limits);
   EXPECT_THAT(result.fault, HasSubstr("right camera: timeout"));
   EXPECT_GE(result.counts.written, 1u);
   EXPECT_EQ(RunFolder::open(folder_ / "run", {}).frames().size(), result.counts.written);
@@ -142,8 +145,10 @@ TEST_F(Recording, KeepsWhatCameBeforeACameraFellSilent) {
 }
 
 TEST_F(Recording, LeavesNothingWhereNoPairCame) {
+  RecordingLimits limits;
+  limits.silent_after = 300ms;
   try {
-    record_from(1000, 0);
+    record_from(1000, 0, limits);
     FAIL();
   } catch (const RuntimeFailure& failure) {
     EXPECT_THAT(failure.what(), testing::AllOf(HasSubstr("no pair of images came"), HasSubstr("nothing was recorded")));
