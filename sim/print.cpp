@@ -23,6 +23,7 @@ void destroy(image_u8_t* image) {
 }
 
 Print tag_print(int id, const std::array<Eigen::Vector3d, 4>& c) {
+  const cv::Mat bits = tag_bits(id);
   const Eigen::Vector3d middle = (c[0] + c[1] + c[2] + c[3]) / 4;
   const Eigen::Vector3d right = (c[1] + c[2] - c[0] - c[3]) / 2, down = (c[0] + c[1] - c[2] - c[3]) / 2;
   const double side = (right.norm() + down.norm()) / 2;
@@ -40,7 +41,7 @@ Print tag_print(int id, const std::array<Eigen::Vector3d, 4>& c) {
     throw InputError(out.name, "its corners are not a square's: one is off by " + readable(worst * 1e3, 1) + " mm",
                      "give them as lower left, lower right, upper right, upper left in print");
   out.width_m = out.height_m = side * kTagPaper;
-  cv::resize(tag_bits(id), out.picture, {}, kPixelsPerBit, kPixelsPerBit, cv::INTER_NEAREST);
+  cv::resize(bits, out.picture, {}, kPixelsPerBit, kPixelsPerBit, cv::INTER_NEAREST);
   return out;
 }
 

@@ -13,6 +13,10 @@
 namespace foresight::sim {
 
 /// A sheet without thickness, printed on its front; its back is not drawn. It throws no shadow and receives none.
+///
+/// What the camera's response (sRGB) does to black tags on white it does here too: their corners are found 0.3 px
+/// nearer to the tag's middle, and up to 0.8 px where the paper is overexposed. Corners of a chessboard, centres of
+/// circles and middles of tags are not moved.
 struct Print {
   std::string name;
   /// CV_8UC1, the whole paper from its upper left corner; 0 is ink, 255 bare paper, linear in between (the share of
