@@ -28,7 +28,7 @@ ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options
   }
   driver_ = gl::query_driver();
   gl::set_up_context();
-  if (window_) comparison_ = std::make_unique<ComparisonWindow>(lens.width(), lens.height());
+  if (window_) comparison_ = std::make_unique<ComparisonWindow>();
   if (thesis) {
     thesis_ = std::make_unique<thesis::Pipeline>(run.scene(), lens, run.lens_right(), *thesis, driver_.is_software);
     thesis_view_ = std::make_unique<ThesisView>(*thesis_, lens);

@@ -4,7 +4,7 @@
 // epoxy must come first: it replaces the system's GL header.
 #include <GLFW/glfw3.h>
 
-#include "common/error.hpp"
+#include <utility>
 
 namespace foresight::gl {
 namespace {
@@ -12,8 +12,8 @@ namespace {
 [[noreturn]] void fail(const std::string& what) {
   const char* text = nullptr;
   glfwGetError(&text);
-  throw RuntimeFailure(what + ": " + (text ? text : "unknown reason"),
-                       "check DISPLAY and the graphics driver, or leave out --window");
+  throw NoWindow(what + ": " + (text ? text : "unknown reason"),
+                 "check DISPLAY and the graphics driver, or do without the window");
 }
 
 std::shared_ptr<void> start_library() {
@@ -39,6 +39,13 @@ Window::Window(int width, int height, const std::string& title) : glfw_(start_li
   if (!window_) fail("no window with OpenGL 4.5");
   make_current();
   glfwSwapInterval(1);
+  // By events: a key that was released before anybody asked has been pressed all the same.
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    if (action != GLFW_PRESS) return;
+    if (key == GLFW_KEY_SPACE) static_cast<Window*>(glfwGetWindowUserPointer(window))->space_ = true;
+    if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
+  });
 }
 
 Window::Window(Window& share, int) : glfw_(share.glfw_) {
@@ -71,8 +78,11 @@ void Window::wait_events(double timeout_s) {
 }
 
 bool Window::should_close() const {
-  return glfwWindowShouldClose(window_) || glfwGetKey(window_, GLFW_KEY_ESCAPE) == GLFW_PRESS ||
-         glfwGetKey(window_, GLFW_KEY_Q) == GLFW_PRESS;
+  return glfwWindowShouldClose(window_);
+}
+
+bool Window::take_space() {
+  return std::exchange(space_, false);
 }
 
 void Window::set_title(const std::string& title) {

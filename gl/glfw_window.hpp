@@ -4,18 +4,25 @@
 #include <memory>
 #include <string>
 
+#include "common/error.hpp"
 #include "gl/context.hpp"
 
 struct GLFWwindow;
 
 namespace foresight::gl {
 
+/// No desktop, or no OpenGL 4.5 on it.
+class NoWindow : public RuntimeFailure {
+ public:
+  using RuntimeFailure::RuntimeFailure;
+};
+
 /// A GLFW window. All methods on the main thread (a rule of GLFW); only make_current() of shared
 /// contexts may be called elsewhere.
 class Window final : public Context {
  public:
   /// Opens a window of `width` x `height` screen units, shown at once, its context current.
-  /// Throws RuntimeFailure with GLFW's own description (no display, no OpenGL 4.5).
+  /// Throws NoWindow with GLFW's own description.
   Window(int width, int height, const std::string& title);
   ~Window() override;
   Window(const Window&) = delete;
@@ -29,6 +36,7 @@ class Window final : public Context {
   void present();
   void wait_events(double timeout_s);  ///< handles events, or returns after the time-out
   bool should_close() const;           ///< closed by the user, or Escape or Q pressed
+  bool take_space();                   ///< the space bar was pressed since the last call
   void set_title(const std::string& title);
   void framebuffer_size(int& width, int& height) const;  ///< px
 
@@ -36,6 +44,7 @@ class Window final : public Context {
   Window(Window& share, int);
   std::shared_ptr<void> glfw_;  // glfwTerminate with the last window
   GLFWwindow* window_ = nullptr;
+  bool space_ = false;
 };
 
 }  // namespace foresight::gl

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <opencv2/imgproc.hpp>
 
 #include "common/text.hpp"
 
@@ -35,6 +36,18 @@ Eigen::Vector2d lean(const ViewQuality& quality) {
   return quality.tilt_deg * Eigen::Vector2d(std::cos(turn), std::sin(turn));
 }
 
+/// The hull of the corners.
+std::vector<Eigen::Vector2d> outline(const std::vector<Corner>& corners) {
+  std::vector<cv::Point2f> points, hull;
+  for (const Corner& corner : corners)
+    points.emplace_back(static_cast<float>(corner.pixel.x()), static_cast<float>(corner.pixel.y()));
+  if (points.empty()) return {};
+  cv::convexHull(points, hull);
+  std::vector<Eigen::Vector2d> out;
+  for (const cv::Point2f& p : hull) out.emplace_back(p.x, p.y);
+  return out;
+}
+
 constexpr std::array<const char*, 4> kSides{"right", "lower", "left", "upper"};
 
 }  // namespace
@@ -56,8 +69,9 @@ double CaptureGuide::difference(const std::vector<Corner>& a, const std::vector<
 }
 
 std::string CaptureGuide::refusal(const std::optional<FoundBoard>& found, const std::vector<Corner>& before,
-                                  double sharpest, const std::string& camera) const {
+                                  double sharpest, const std::string& camera, bool at_once) const {
   if (!found) return "no board" + camera;
+  if (at_once) return {};
   if (static_cast<double>(found->corners.size()) < options_.least_points * static_cast<double>(p_board_.size()))
     return "partly seen" + camera + ": " + std::to_string(found->corners.size()) + " of " +
            std::to_string(p_board_.size()) + " points";
@@ -71,14 +85,14 @@ std::string CaptureGuide::refusal(const std::optional<FoundBoard>& found, const 
   return {};
 }
 
-CaptureGuide::Verdict CaptureGuide::offer(const std::optional<FoundBoard>& left,
-                                          const std::optional<FoundBoard>& right) {
-  std::string reason = refusal(left, before_[0], sharpest_[0], stereo_ ? " (left)" : "");
-  if (reason.empty() && stereo_) reason = refusal(right, before_[1], sharpest_[1], " (right)");
+CaptureGuide::Verdict CaptureGuide::offer(const std::optional<FoundBoard>& left, const std::optional<FoundBoard>& right,
+                                          bool at_once) {
+  std::string reason = refusal(left, before_[0], sharpest_[0], stereo_ ? " (left)" : "", at_once);
+  if (reason.empty() && stereo_) reason = refusal(right, before_[1], sharpest_[1], " (right)", at_once);
   const std::array<const std::optional<FoundBoard>*, 2> images{&left, &right};
   for (std::size_t i = 0; i < 2; ++i) before_[i] = *images[i] ? (*images[i])->corners : std::vector<Corner>{};
   if (!reason.empty()) return {false, reason};
-  for (std::size_t i = 0; i < taken_.size(); ++i)
+  for (std::size_t i = 0; i < taken_.size() && !at_once; ++i)
     if (difference(left->corners, taken_[i].corners) < options_.alike * size_.width &&
         (lean(left->quality) - lean(taken_[i].quality)).norm() < options_.alike_deg)
       return {false, "too like view " + std::to_string(i + 1)};
@@ -89,36 +103,75 @@ CaptureGuide::Verdict CaptureGuide::offer(const std::optional<FoundBoard>& left,
   return {true, {}};
 }
 
-double CaptureGuide::coverage() const {
+cv::Mat CaptureGuide::seen() const {
   cv::Mat seen = cv::Mat::zeros(options_.rows, options_.columns, CV_8U);
   for (const View& view : taken_)
     for (const Corner& corner : view.corners)
       seen.at<uchar>(cell(corner.pixel.y(), size_.height, options_.rows),
                      cell(corner.pixel.x(), size_.width, options_.columns)) = 1;
-  return cv::countNonZero(seen) / static_cast<double>(seen.total());
+  return seen;
 }
 
-std::string CaptureGuide::wish() const {
-  cv::Mat seen = cv::Mat::zeros(options_.rows, options_.columns, CV_8U);
+std::array<int, 4> CaptureGuide::tilted() const {
   std::array<int, 4> tilted{};
+  for (const View& view : taken_)
+    if (view.quality.tilt_deg >= options_.tilt_deg) ++tilted[static_cast<std::size_t>(quarter(view.quality.turn_deg))];
+  return tilted;
+}
+
+double CaptureGuide::size_ratio() const {
   double largest = 0, smallest = std::numeric_limits<double>::max();
   for (const View& view : taken_) {
-    if (view.quality.tilt_deg >= options_.tilt_deg) ++tilted[static_cast<std::size_t>(quarter(view.quality.turn_deg))];
     largest = std::max(largest, view.quality.coverage);
     smallest = std::min(smallest, view.quality.coverage);
-    for (const Corner& corner : view.corners)
-      seen.at<uchar>(cell(corner.pixel.y(), size_.height, options_.rows),
-                     cell(corner.pixel.x(), size_.width, options_.columns)) = 1;
   }
-  if (taken_.empty()) return "show the whole board, in the middle of the image";
-  const auto side = static_cast<std::size_t>(std::min_element(tilted.begin(), tilted.end()) - tilted.begin());
-  if (tilted[side] == 0) return std::string("tilt the board so that its ") + kSides[side] + " side lies farther away";
+  return taken_.empty() ? 1 : std::sqrt(largest / smallest);
+}
+
+double CaptureGuide::coverage() const {
+  const cv::Mat parts = seen();
+  return cv::countNonZero(parts) / static_cast<double>(parts.total());
+}
+
+CaptureWish CaptureGuide::next_wish() const {
+  using Kind = CaptureWish::Kind;
+  if (taken_.empty()) return {Kind::first, "show the whole board, in the middle of the image", "", 0, {}};
+  const std::array<int, 4> sides = tilted();
+  const auto side = std::min_element(sides.begin(), sides.end()) - sides.begin();
+  if (sides[static_cast<std::size_t>(side)] == 0) {
+    const std::string name = kSides[static_cast<std::size_t>(side)];
+    return {
+        Kind::tilt, "tilt the board so that its " + name + " side lies farther away", name, static_cast<int>(side), {}};
+  }
+  const cv::Mat parts = seen();
   for (int row = 0; row < options_.rows; ++row)
     for (int column = 0; column < options_.columns; ++column)
-      if (seen.at<uchar>(row, column) == 0)
-        return "nothing in " + place(column, row, options_.columns, options_.rows) + ": move the board there";
-  if (std::sqrt(largest / smallest) < options_.size_ratio) return "show the board from nearer, or from farther away";
+      if (parts.at<uchar>(row, column) == 0) {
+        const std::string where = place(column, row, options_.columns, options_.rows);
+        return {Kind::place, "nothing in " + where + ": move the board there", where, 0, {column, row}};
+      }
+  if (size_ratio() < options_.size_ratio)
+    return {Kind::size, "show the board from nearer, or from farther away", "", 0, {}};
   return {};
+}
+
+CaptureProgress CaptureGuide::progress() const {
+  CaptureProgress out;
+  out.views = views(), out.views_wanted = options_.views;
+  out.seen = seen();
+  const std::array<int, 4> sides = tilted();
+  for (std::size_t i = 0; i < sides.size(); ++i) out.tilted[i] = sides[i] > 0;
+  out.size_ratio = size_ratio(), out.size_ratio_wanted = options_.size_ratio;
+  out.sharpest = sharpest_[0], out.sharp_enough = options_.blurred * sharpest_[0];
+  for (const View& view : taken_) out.outlines.push_back(outline(view.corners));
+  out.uncertainty = uncertainty(32, 24);
+  out.wish = next_wish();
+  out.enough = enough();
+  return out;
+}
+
+double CaptureProgress::coverage() const {
+  return seen.empty() ? 0 : cv::countNonZero(seen) / static_cast<double>(seen.total());
 }
 
 }  // namespace foresight

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,37 @@
 #include "calibration/target/find_corners.hpp"
 
 namespace foresight {
+
+/// The view to show next.
+struct CaptureWish {
+  enum class Kind {
+    none,   ///< nothing is missing but, perhaps, views
+    first,  ///< anything
+    tilt,   ///< `side` farther away: 0 right, 1 lower, 2 left, 3 upper
+    place,  ///< the board in `cell` (column, row) of the raster
+    size,   ///< nearer or farther away
+  };
+  Kind kind = Kind::none;
+  std::string text;   ///< an imperative clause: "tilt the board so that its left side lies farther away"
+  std::string where;  ///< the short of it: "lower", "the upper left corner"
+  int side = 0;
+  cv::Point cell;
+};
+
+/// How far a set has come, as a value that other threads may keep.
+struct CaptureProgress {
+  int views = 0, views_wanted = 0;
+  cv::Mat seen;                  ///< CV_8U, the raster over the left image: 1 where a corner was
+  std::array<bool, 4> tilted{};  ///< sides that were tilted away: right, lower, left, upper
+  double size_ratio = 1, size_ratio_wanted = 1;
+  double sharpest = 0, sharp_enough = 0;               ///< of the left image, 1/px
+  std::vector<std::vector<Eigen::Vector2d>> outlines;  ///< of the views taken, px of the left image
+  cv::Mat uncertainty;                                 ///< CaptureGuide::uncertainty(32, 24)
+  CaptureWish wish;
+  bool enough = false;
+
+  double coverage() const;  ///< share of the raster that was seen
+};
 
 class CaptureGuide {
  public:
@@ -38,12 +70,14 @@ class CaptureGuide {
   CaptureGuide(const Board& board, cv::Size size, bool stereo, const Options& options);
   CaptureGuide(const Board& board, cv::Size size, bool stereo = false) : CaptureGuide(board, size, stereo, Options{}) {}
 
-  /// What the newest frame shows; of a pair, both images. Frames in the order in which they came.
-  Verdict offer(const std::optional<FoundBoard>& left, const std::optional<FoundBoard>& right = std::nullopt);
+  /// What the newest frame shows; of a pair, both images. Frames in the order in which they came. `at_once`: the user
+  /// asks for it, whatever it is worth; only the board must be there.
+  Verdict offer(const std::optional<FoundBoard>& left, const std::optional<FoundBoard>& right = std::nullopt,
+                bool at_once = false);
 
-  /// The view to show next, an imperative clause: "tilt the board so that its left side lies farther
-  /// away"; empty where nothing is missing but, perhaps, views.
-  std::string wish() const;
+  /// CaptureWish::text of the view to show next.
+  std::string wish() const { return next_wish().text; }
+  CaptureProgress progress() const;
   bool enough() const { return views() >= options_.views && wish().empty(); }
   int views() const { return static_cast<int>(taken_.size()); }
 
@@ -60,8 +94,12 @@ class CaptureGuide {
     std::vector<Corner> corners;
     ViewQuality quality;
   };
+  CaptureWish next_wish() const;
+  cv::Mat seen() const;
+  std::array<int, 4> tilted() const;
+  double size_ratio() const;
   std::string refusal(const std::optional<FoundBoard>& found, const std::vector<Corner>& before, double sharpest,
-                      const std::string& camera) const;
+                      const std::string& camera, bool at_once) const;
   double difference(const std::vector<Corner>& a, const std::vector<Corner>& b) const;
 
   Board board_;

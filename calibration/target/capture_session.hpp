@@ -1,4 +1,4 @@
-// Pairs of images in, a folder of views worth solving out.
+// Images in, of one camera or of a pair; a folder of views worth solving out.
 #pragma once
 
 #include <filesystem>
@@ -11,33 +11,38 @@ namespace foresight {
 class CaptureSession {
  public:
   struct Options {
-    std::filesystem::path out;       ///< gets left/NNN.png and right/NNN.png, NNN from 001
-    std::filesystem::path pictures;  ///< gets now.png, what the user should see; empty: none
+    std::filesystem::path out;  ///< gets left/NNN.png and right/NNN.png, of one camera NNN.png; NNN from 001
+    bool stereo = true;
     CaptureGuide::Options guide;
+  };
+
+  /// What an image, or a pair, was worth.
+  struct Outcome {
+    std::array<std::optional<FoundBoard>, 2> found;  ///< of the left (or only) and the right image
+    CaptureGuide::Verdict verdict;
   };
 
   /// Makes the folders. Throws InputError where `out` already holds views: two boards in one set ruin both.
   CaptureSession(const Board& board, const Options& options);
 
-  /// Finds the board in both, judges, and writes what is taken. A ChArUco board's dictionary is
-  /// found from the first images that show it. Throws RuntimeFailure where an image cannot be
-  /// written, InputError where the size changes.
-  CaptureGuide::Verdict show(const cv::Mat& left, const cv::Mat& right);
+  /// Finds the board, judges, and writes what is taken; `right` of a pair only, `at_once` as CaptureGuide::offer(). A
+  /// ChArUco board's dictionary is found from the first images that show it. Throws RuntimeFailure where an image
+  /// cannot be written, InputError where the size changes.
+  Outcome show(const cv::Mat& left, const cv::Mat& right = {}, bool at_once = false);
 
-  const CaptureGuide* guide() const { return guide_ ? &*guide_ : nullptr; }  ///< null before the first pair
+  const CaptureGuide* guide() const { return guide_ ? &*guide_ : nullptr; }  ///< null before the first image
+  CaptureProgress progress() const;                                          ///< also before it
   const Board& board() const { return board_; }
+  bool stereo() const { return options_.stereo; }
 
  private:
+  std::vector<std::filesystem::path> folders() const;
+
   Board board_;
   Options options_;
   std::optional<BoardFinder> finder_;
   std::optional<CaptureGuide> guide_;
-  cv::Size size_;
+  std::array<cv::Size, 2> sizes_;
 };
-
-/// The image with the found points, the parts not seen yet, the uncertainty so far (bar and map) and
-/// the words of the guide.
-cv::Mat capture_picture(const cv::Mat& image, const std::optional<FoundBoard>& found, const CaptureGuide& guide,
-                        const CaptureGuide::Verdict& verdict);
 
 }  // namespace foresight

@@ -214,6 +214,14 @@ std::vector<fs::path> list_images(const fs::path& folder) {
   return files;
 }
 
+std::vector<std::array<fs::path, 2>> list_pairs(const fs::path& left, const fs::path& right) {
+  const auto left_files = list_images(left), right_files = list_images(right);
+  std::vector<std::array<fs::path, 2>> out;
+  for (const auto& [name, files] : pair_up(left_files, right_files))
+    if (files[0] && files[1]) out.push_back({left_files[*files[0]], right_files[*files[1]]});
+  return out;
+}
+
 FoundCorners find_in_folder(const fs::path& folder, const Board& board) {
   const auto files = list_images(folder);
   FoundCorners result;

@@ -1,6 +1,7 @@
 // From folders of pictures to corners: reading, finding and refusing, on all cores.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -33,6 +34,11 @@ struct FoundStereoCorners {
 /// the path names ("pictures/left*.png"); sorted by the numbers in their names. Throws InputError
 /// where there is none.
 std::vector<std::filesystem::path> list_images(const std::filesystem::path& folder);
+
+/// Files of both cameras that belong together, [left, right]: by name (split_side()) or, where no name fits and both
+/// hold equally many, by order. Throws like list_images(), and where nothing fits.
+std::vector<std::array<std::filesystem::path, 2>> list_pairs(const std::filesystem::path& left,
+                                                             const std::filesystem::path& right);
 
 /// Views in the order of list_images(), named by the stem of their files. Left out with a reason:
 /// images without the board, and blurred ones (sharpness below half the median). Throws InputError:
