@@ -1,5 +1,6 @@
 #include "sim/live_lab.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -36,6 +37,7 @@ LiveLab::LiveLab(const Options& options) : lab_(make_lab(options.texel, options.
   check("hidden object_rad", hidden.object_rad, std::numbers::pi);
   check("hidden joint_rad", hidden.joint_rad, 0.2);
   modelled_rest_ = lab_.at_rest();
+  add_prints(options);
   std::mt19937 random(hidden.seed);
   for (double& offset : joint_offsets_) offset = evenly(random, hidden.joint_rad);
   head_offset_ = {evenly(random, hidden.joint_rad), evenly(random, hidden.joint_rad)};
@@ -45,6 +47,30 @@ LiveLab::LiveLab(const Options& options) : lab_(make_lab(options.texel, options.
   const double direction = evenly(random, std::numbers::pi);
   pose.pretranslate(hidden.object_m * Eigen::Vector3d(std::cos(direction), std::sin(direction), 0));
   pose.rotate(Eigen::AngleAxisd(evenly(random, hidden.object_rad), Eigen::Vector3d::UnitZ()));
+}
+
+void LiveLab::add_prints(const Options& options) {
+  prints_ = options.prints;
+  if (options.board) {
+    prints_.push_back(options.board->print);
+    T_board_ = options.board->T_print;
+    if (const std::string& part = options.board->part; !part.empty()) {
+      const auto at = std::find_if(lab_.parts.begin(), lab_.parts.end(), [&](const Part& p) { return p.name == part; });
+      if (at == lab_.parts.end())
+        throw InputError("the board's part", "the lab has no '" + part + "'", "name one of its links");
+      board_part_ = static_cast<int>(at - lab_.parts.begin());
+    }
+  }
+  for (const Print& print : prints_) check(print);
+}
+
+std::vector<Pose> LiveLab::true_prints(const LabState& T_world_part, double t) const {
+  std::vector<Pose> out;
+  for (const Print& print : prints_) out.push_back(print.T_world_print);
+  if (!T_board_) return out;
+  out.back() = T_board_(t);
+  if (board_part_ >= 0) out.back() = T_world_part[static_cast<std::size_t>(board_part_)] * out.back();
+  return out;
 }
 
 LabState LiveLab::with_arm(LabState state, const ShaftPositions& shafts, const std::array<double, 7>& offsets) const {

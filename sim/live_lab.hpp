@@ -10,6 +10,7 @@
 #include "sim/arm.hpp"
 #include "sim/lab.hpp"
 #include "sim/pan_tilt_head.hpp"
+#include "sim/print.hpp"
 
 namespace foresight::sim {
 
@@ -36,20 +37,27 @@ class LiveLab {
     double texel = 0.001;  ///< metres, of the finest pictures
     unsigned seed = 1;     ///< of grain and small print
     HiddenDeviations hidden = {};
+    std::vector<Print> prints = {};  ///< that stand still
+    std::optional<MovingPrint> board = {};
   };
-  /// Throws InputError (a deviation out of range).
+  /// Throws InputError (a deviation out of range; what check() says of a print; a part that the lab does not have).
   explicit LiveLab(const Options& options);
 
   /// The true lab: a displaced object stands where it truly is.
   const Lab& lab() const { return lab_; }
   /// What the robot believes of the parts: rest poses of the model, one per part.
   const LabState& modelled_rest() const { return modelled_rest_; }
+  /// Those that stand still, then the board where there is one. No parts of lab(): they are painted on what stands.
+  const std::vector<Print>& prints() const { return prints_; }
   int displaced() const { return displaced_; }  ///< part that is not where the model has it; -1: none
 
   /// Where every part truly stands `t` seconds after the start. The arm and the ball know nothing of each other.
   LabState true_state(const ShaftPositions& shafts, double t) const;
   /// The same as the encoders tell it: without hidden offsets, the displaced object and the ball at rest.
   LabState modelled_state(const ShaftPositions& shafts) const;
+
+  /// Where every one of prints() is; `T_world_part`: true_state(shafts, t).
+  std::vector<Pose> true_prints(const LabState& T_world_part, double t) const;
 
   Pose T_world_left(const ShaftPositions& shafts) const;            ///< true
   static Pose T_world_left_modelled(const ShaftPositions& shafts);  ///< by the encoders
@@ -58,12 +66,16 @@ class LiveLab {
   static Pose T_world_ball(double t);
 
  private:
+  void add_prints(const Options& options);
   LabState with_arm(LabState state, const ShaftPositions& shafts, const std::array<double, 7>& offsets) const;
 
   Lab lab_;
   LabState modelled_rest_;
   std::array<double, 7> joint_offsets_{};
   PanTilt head_offset_;
+  std::vector<Print> prints_;
+  std::function<Pose(double)> T_board_;  // in the world, or in board_part_
+  int board_part_ = -1;
   int displaced_ = -1;
   int ball_ = 0;
 };

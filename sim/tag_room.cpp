@@ -1,11 +1,6 @@
 #include "sim/tag_room.hpp"
 
-#include <apriltag/apriltag.h>
-#include <apriltag/tag36h11.h>
-
 #include <cmath>
-#include <cstdlib>
-#include <memory>
 #include <random>
 #include <stdexcept>
 
@@ -15,19 +10,6 @@ namespace {
 constexpr int kRays = 3;     // along each side of a pixel
 constexpr double kBits = 8;  // of a tag36h11 across its black border
 constexpr double kInk = 25, kPaper = 225, kTable = 120, kWall = 150;
-
-/// libapriltag does not export its own.
-void destroy(image_u8_t* image) {
-  std::free(image->buf);
-  std::free(image);
-}
-
-cv::Mat bits_of(int id) {
-  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(), tag36h11_destroy);
-  if (id < 0 || id >= static_cast<int>(family->ncodes)) throw std::invalid_argument("TagRoom: no such tag");
-  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(family.get(), id), destroy);
-  return cv::Mat(image->height, image->width, CV_8U, image->buf, static_cast<std::size_t>(image->stride)).clone();
-}
 
 Pose on_table(double x, double y, double turn) {
   Pose T = Pose::Identity();
@@ -48,7 +30,7 @@ Pose on_wall(double y, double z) {
 }  // namespace
 
 TagRoom::TagRoom(const std::vector<Tag>& tags) {
-  for (const Tag& tag : tags) sheets_.push_back({tag, tag.T_world_tag.inverse(), bits_of(tag.id)});
+  for (const Tag& tag : tags) sheets_.push_back({tag, tag.T_world_tag.inverse(), tag_bits(tag.id)});
 }
 
 std::vector<TagRoom::Tag> TagRoom::lab_tags() {
@@ -59,8 +41,8 @@ std::vector<TagRoom::Tag> TagRoom::lab_tags() {
   return tags;
 }
 
-std::map<int, std::array<Eigen::Vector3d, 4>> TagRoom::corners() const {
-  std::map<int, std::array<Eigen::Vector3d, 4>> out;
+TagCorners TagRoom::corners() const {
+  TagCorners out;
   for (const Sheet& sheet : sheets_) {
     const double s = sheet.tag.size_m / 2;
     const Pose& T = sheet.tag.T_world_tag;

@@ -2,12 +2,10 @@
 // the registration.
 #pragma once
 
-#include <array>
-#include <map>
 #include <opencv2/core.hpp>
 
 #include "common/lens.hpp"
-#include "scene/scene_model.hpp"
+#include "sim/print.hpp"
 
 namespace foresight::sim {
 
@@ -27,7 +25,7 @@ class TagRoom {
   static std::vector<Tag> lab_tags();
 
   /// Corners of the black borders, world; lower left, lower right, upper right, upper left in print.
-  std::map<int, std::array<Eigen::Vector3d, 4>> corners() const;
+  TagCorners corners() const;
 
   /// CV_64FC3: rays through the corners of the lens's pixels, one more than pixels each way.
   static cv::Mat corner_rays(const Lens& lens);

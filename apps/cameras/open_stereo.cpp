@@ -18,15 +18,19 @@ Lens lens_of(const StereoConfig& config, Side side) {
   return sim::synth_lens(usual, side == Side::right);
 }
 
-std::shared_ptr<sim::MockStereo> make_mock(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock) {
+std::shared_ptr<sim::MockStereo> make_mock(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock,
+                                           const MockWorld& world) {
   sim::MockCameraOptions options;
   options.left = lens_of(config, Side::left);
   options.right = lens_of(config, Side::right);
   const CameraConfig& right = config.camera(Side::right);
   if (right.calibration && right.calibration->T_left_right) options.T_left_right = *right.calibration->T_left_right;
   options.rate = config.camera(Side::left).settings.rate;
-  return std::make_shared<sim::MockStereo>(std::make_shared<const sim::LiveLab>(sim::LiveLab::Options{}), shafts,
-                                           options, clock);
+  sim::LiveLab::Options lab;
+  lab.hidden = world.hidden;
+  lab.prints = world.prints;
+  lab.board = world.board;
+  return std::make_shared<sim::MockStereo>(std::make_shared<const sim::LiveLab>(lab), shafts, options, clock);
 }
 
 std::unique_ptr<Camera> make_mock_camera(Side side, const CameraConfig& config,
@@ -64,9 +68,9 @@ StereoConfig as_mock(StereoConfig config) {
   return config;
 }
 
-OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock) {
+OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock, const MockWorld& world) {
   OpenStereo out;
-  if (config.mock()) out.mock = make_mock(config, shafts, clock);
+  if (config.mock()) out.mock = make_mock(config, shafts, clock, world);
   std::array<std::unique_ptr<Camera>, 2> cameras;
   for (const Side side : {Side::left, Side::right}) {
     const auto index = static_cast<std::size_t>(side);

@@ -16,14 +16,22 @@ struct OpenStereo {
   std::unique_ptr<StereoCamera> cameras;
 };
 
+/// What stands in the mock lab besides its furniture, and how it differs from what the robot believes.
+struct MockWorld {
+  std::vector<sim::Print> prints;         ///< that stand still, such as sim::tag_prints()
+  std::optional<sim::MovingPrint> board;  ///< before the cameras, or on the arm
+  sim::HiddenDeviations hidden;
+};
+
 /// The same description with the mock lab's cameras in place of its own: size, rate, exposure and lenses stay. Throws
 /// InputError where these cannot be mock ones (two sizes, an odd width).
 StereoConfig as_mock(StereoConfig config);
 
 /// `shafts` is asked by mock cameras only (MockStereo). Blocks some seconds for these: their world is lit. Real
-/// cameras are found when they start. `clock` must outlive the result. Throws what make_camera() throws, and
-/// InputError where a mock camera cannot do what is asked.
-OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock);
+/// cameras are found when they start. `clock` must outlive the result. `world` is for mock cameras. Throws what
+/// make_camera() throws, and InputError where a mock camera, or its world, cannot do what is asked.
+OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock,
+                       const MockWorld& world = {});
 
 /// How a run of these cameras is recorded: lenses, and for mock ones the scene and the poses that encoders tell.
 /// Throws InputError where a real camera has no calibration, or the right one no place.

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/aruco/charuco.hpp>
 
-#include "calibration/target/board_finders.hpp"
+#include "calibration/target/board_drawing.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
@@ -25,25 +24,6 @@ constexpr std::array<std::pair<const char*, std::pair<double, double>>, 6> kPape
                                                                                     {"A1", {594, 841}},
                                                                                     {"A0", {841, 1189}},
                                                                                     {"letter", {215.9, 279.4}}}};
-
-struct Extent {
-  double left = 0, top = 0, right = 0, bottom = 0;  // board frame, metres, with the white that it needs
-  double width() const { return right - left; }
-  double height() const { return bottom - top; }
-};
-
-Extent extent(const Board& board) {
-  const double s = board.size_m;
-  switch (board.kind) {
-    case BoardKind::chessboard: return {-1.2 * s, -1.2 * s, (board.cols + 0.2) * s, (board.rows + 0.2) * s};
-    case BoardKind::charuco: return {-1.2 * s, -1.2 * s, (board.cols - 0.8) * s, (board.rows - 0.8) * s};
-    case BoardKind::circles: return {-s / 2, -s / 2, (board.cols - 0.5) * s, (board.rows - 0.5) * s};
-    default: {
-      const double rim = s / 4, pitch = s + board.gap_m;
-      return {-rim, -rim, board.cols * pitch - board.gap_m + rim, board.rows * pitch - board.gap_m + rim};
-    }
-  }
-}
 
 class Page {
  public:
@@ -108,65 +88,6 @@ class Page {
   std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo_;
 };
 
-/// Dark pixels of `bits` as squares of one path, so that no hairline of white runs between neighbours.
-void fill_bits(cairo_t* cairo, const cv::Mat& bits, double x, double y, double side) {
-  const double bit = side / bits.cols;
-  for (int row = 0; row < bits.rows; ++row)
-    for (int col = 0; col < bits.cols;) {
-      const int begin = col;
-      while (col < bits.cols && bits.at<uchar>(row, col) < 128) ++col;
-      if (col > begin) {
-        // Overlaps the row below by a hair; the sides stay exact.
-        const bool last = row + 1 == bits.rows;
-        cairo_rectangle(cairo, x + begin * bit, y + row * bit, (col - begin) * bit, bit * (last ? 1 : 1.02));
-      } else {
-        ++col;
-      }
-    }
-  cairo_fill(cairo);
-}
-
-/// In mm, the board's origin at (0, 0).
-void draw(cairo_t* cairo, const Board& board) {
-  const double s = board.size_m * 1e3;
-  const auto dark_squares = [&](int cols, int rows) {
-    for (int row = 0; row < rows; ++row)
-      for (int col = 0; col < cols; ++col)
-        if ((row + col) % 2 == 0) cairo_rectangle(cairo, (col - 1) * s, (row - 1) * s, s, s);
-    cairo_fill(cairo);
-  };
-  switch (board.kind) {
-    case BoardKind::chessboard: dark_squares(board.cols + 1, board.rows + 1); break;
-    case BoardKind::circles:
-      for (const Eigen::Vector3d& p : board_points(board)) {
-        cairo_new_sub_path(cairo);
-        cairo_arc(cairo, p.x() * 1e3, p.y() * 1e3, s / 4, 0, 2 * M_PI);
-      }
-      cairo_fill(cairo);
-      break;
-    case BoardKind::apriltag: {
-      const double pitch = (board.size_m + board.gap_m) * 1e3;
-      for (int tag = 0; tag < board.cols * board.rows; ++tag)
-        fill_bits(cairo, tag_image(board.family, tag), tag % board.cols * pitch, tag / board.cols * pitch, s);
-      break;
-    }
-    case BoardKind::charuco: {
-      dark_squares(board.cols, board.rows);
-      const auto dictionary = cv::aruco::getPredefinedDictionary(charuco_dictionary(board.family));
-      const double marker = board.marker_m * 1e3;
-      int id = 0;
-      for (int row = 0; row < board.rows; ++row)
-        for (int col = 0; col < board.cols; ++col) {
-          if ((row + col) % 2 == 0) continue;
-          cv::Mat bits;
-          dictionary->drawMarker(id++, dictionary->markerSize + 2, bits, 1);
-          fill_bits(cairo, bits, (col - 0.5) * s - marker / 2, (row - 0.5) * s - marker / 2, marker);
-        }
-      break;
-    }
-  }
-}
-
 Board scaled(const Board& board, double scale) {
   Board other = board;
   other.size_m *= scale;
@@ -177,15 +98,6 @@ Board scaled(const Board& board, double scale) {
 
 std::string in_mm(double width, double height) {
   return readable(width, 0) + " x " + readable(height, 0) + " mm";
-}
-
-void require_printable(const Board& board) {
-  if (board.kind != BoardKind::charuco || (board.marker_m > 0 && !board.family.empty())) return;
-  Board example = board;
-  if (example.marker_m <= 0) example.marker_m = 0.7 * board.size_m;
-  if (example.family.empty()) example.family = "DICT_5X5_1000";
-  throw InputError("--board", "a ChArUco board is printed with markers of a size and a dictionary",
-                   "give " + to_string(example));
 }
 
 }  // namespace
@@ -207,7 +119,7 @@ Paper parse_paper(std::string_view text) {
 
 void write_board_pdf(const std::filesystem::path& file, const Board& board, const Paper& paper) {
   require_printable(board);
-  const Extent e = extent(board);
+  const BoardExtent e = board_extent(board);
   const double w = e.width() * 1e3, h = e.height() * 1e3;
   const double across = 2 * kRimMm + kStripMm, along = 2 * kRimMm + kStripMm + 5;
   const auto scale_on = [&](double width, double height) {
@@ -228,7 +140,7 @@ void write_board_pdf(const std::filesystem::path& file, const Board& board, cons
   const double x = kRimMm + kStripMm + (width - across - w) / 2, y = kRimMm + (height - along - h) / 2;
   cairo_save(page.cairo());
   cairo_translate(page.cairo(), x - e.left * 1e3, y - e.top * 1e3);
-  draw(page.cairo(), board);
+  draw_board(page.cairo(), board);
   cairo_restore(page.cairo());
   const auto length = [](double room) { return std::min(kRulerMm, std::floor(room / 10) * 10); };
   page.ruler(kRimMm + kStripMm, height - kRimMm - 5, length(width - across), false);

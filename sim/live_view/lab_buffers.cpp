@@ -66,7 +66,9 @@ void add_facet(const Facet& facet, int number, const LightMap& light, const Ligh
 
 }  // namespace
 
-LabBuffers::LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance) {
+LabBuffers::LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance,
+                       std::span<const Print> prints)
+    : prints_(prints.begin(), prints.end()) {
   for (const Material& material : lab.materials) pictures_.push_back(upload(material));
   std::vector<Vertex> vertices;
   std::map<std::tuple<bool, int, int>, std::vector<std::uint32_t>> sorted;  // glossy, part, material

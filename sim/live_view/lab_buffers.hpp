@@ -5,6 +5,7 @@
 
 #include "gl/objects.hpp"
 #include "sim/light_map.hpp"
+#include "sim/live_view/print_pass.hpp"
 
 namespace foresight::sim {
 
@@ -24,10 +25,12 @@ class LabBuffers {
     float gloss = 0;
   };
 
-  LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance);
+  LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance,
+             std::span<const Print> prints = {});
 
   const std::vector<Draw>& draws() const { return draws_; }  ///< ordered by gloss, then by part
   const Picture& picture(int material) const { return pictures_[static_cast<std::size_t>(material)]; }
+  const std::vector<PrintPicture>& prints() const { return prints_; }
   std::size_t triangle_count() const { return triangles_; }
 
   /// Of the current context: attributes 0 place, 1 normal, 2 place on the picture (metres), 3 irradiance.
@@ -35,6 +38,7 @@ class LabBuffers {
 
  private:
   std::vector<Picture> pictures_;
+  std::vector<PrintPicture> prints_;
   std::vector<Draw> draws_;
   gl::Buffer vertices_, indices_;
   std::size_t triangles_ = 0;

@@ -50,6 +50,7 @@ LiveView::LiveView(std::shared_ptr<const LabBuffers> lab, const Lens& lens, cons
       face_target_(gl::create_framebuffer("live face")),
       sensor_target_(gl::create_framebuffer("live sensor")) {
   if (lens.width() % 2) throw std::invalid_argument("a YUYV image needs an even width");
+  if (!lab_->prints().empty()) prints_.emplace();
   for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glTextureParameteri(colour_.name(), filter, GL_LINEAR);
   glNamedFramebufferTexture(face_target_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0);
@@ -109,8 +110,8 @@ void LiveView::draw_parts(const gl::Program& program, bool glossy, const Pose& T
   }
 }
 
-void LiveView::draw_faces(const Pose& T_world_camera, const LabState& T_world_part) const {
-  glBindVertexArray(array_.name());
+void LiveView::draw_faces(const Pose& T_world_camera, const LabState& T_world_part,
+                          std::span<const Pose> T_world_print) const {
   glViewport(0, 0, faces_.width, faces_.height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
@@ -125,6 +126,7 @@ void LiveView::draw_faces(const Pose& T_world_camera, const LabState& T_world_pa
     Pose T_face_camera = Pose::Identity();
     T_face_camera.linear() = gl::Faces::rotation(i);
     const Pose T_face_world = T_face_camera * T_world_camera.inverse();
+    glBindVertexArray(array_.name());
     for (const bool glossy : {false, true}) {
       const gl::Program& program = glossy ? glossy_ : matt_;
       program.use();
@@ -138,15 +140,19 @@ void LiveView::draw_faces(const Pose& T_world_camera, const LabState& T_world_pa
       }
       draw_parts(program, glossy, T_face_world, T_world_part);
     }
+    if (!prints_) continue;
+    glBindVertexArray(nothing_.name());
+    (*prints_)(faces_, T_face_world, lab_->prints(), T_world_print);
   }
   glDisable(GL_CULL_FACE);
   glFrontFace(GL_CCW);
   glDisable(GL_DEPTH_TEST);
 }
 
-bool LiveView::draw(const Pose& T_world_camera, const LabState& T_world_part, double gain, std::uint64_t number) {
+bool LiveView::draw(const Pose& T_world_camera, const LabState& T_world_part, double gain, std::uint64_t number,
+                    std::span<const Pose> T_world_print) {
   if (waiting_.size() == kImages) return false;
-  draw_faces(T_world_camera, T_world_part);
+  draw_faces(T_world_camera, T_world_part, T_world_print);
   sensor_program_.use();
   sensor_program_.set(
       "texel", Eigen::Vector2f(1.0f / static_cast<float>(faces_.width), 1.0f / static_cast<float>(faces_.height)));

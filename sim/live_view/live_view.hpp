@@ -6,6 +6,7 @@
 #include <array>
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "common/lens.hpp"
 #include "gl/faces.hpp"
@@ -25,9 +26,10 @@ class LiveView {
   /// `lens` must have an even width. Throws std::invalid_argument.
   LiveView(std::shared_ptr<const LabBuffers> lab, const Lens& lens, const Sensor& sensor);
 
-  /// Starts an image. `gain`: factor on the light; `number` picks the noise. Returns false, and does nothing, where
-  /// kImages are under way.
-  bool draw(const Pose& T_world_camera, const LabState& T_world_part, double gain, std::uint64_t number);
+  /// Starts an image. `gain`: factor on the light; `number` picks the noise; `T_world_print`: one of each of the lab's
+  /// prints. Returns false, and does nothing, where kImages are under way.
+  bool draw(const Pose& T_world_camera, const LabState& T_world_part, double gain, std::uint64_t number,
+            std::span<const Pose> T_world_print = {});
 
   /// Copies the oldest image under way to `out` (width * height * 2 bytes of YUYV) where it is finished, or, with
   /// `wait`, when it is. False: none, or not yet.
@@ -44,7 +46,7 @@ class LiveView {
     const std::uint8_t* bytes = nullptr;  // mapped for ever
     gl::Fence done;
   };
-  void draw_faces(const Pose& T_world_camera, const LabState& T_world_part) const;
+  void draw_faces(const Pose& T_world_camera, const LabState& T_world_part, std::span<const Pose> T_world_print) const;
   void draw_parts(const gl::Program& program, bool glossy, const Pose& T_face_world,
                   const LabState& T_world_part) const;
   void set_places();
@@ -55,6 +57,7 @@ class LiveView {
   gl::Faces faces_;
   gl::VertexArray array_, nothing_;
   gl::Program matt_, glossy_, sensor_program_;
+  std::optional<PrintPass> prints_;  // where there are any
   gl::Texture colour_, depth_, places_, yuyv_;
   gl::Framebuffer face_target_, sensor_target_;
   std::array<Slot, kImages> slots_;

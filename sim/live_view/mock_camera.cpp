@@ -96,7 +96,7 @@ void MockStereo::close(Side side) noexcept {
 void MockStereo::render(const std::stop_token& stop, std::promise<void>& ready) noexcept {
   if (!stepped_) make_background();  // a software renderer takes all that there is
   try {
-    StereoRenderer renderer(world_->lab(), *light_, irradiance_, {options_.left, options_.right, options_.T_left_right},
+    StereoRenderer renderer(*world_, *light_, irradiance_, {options_.left, options_.right, options_.T_left_right},
                             options_.sensor);
     ready.set_value();
     stepped_ ? run_stepped(stop, renderer) : run_real(stop, renderer);
@@ -112,7 +112,9 @@ bool MockStereo::draw(StereoRenderer& renderer, RobotTime end_of_exposure, std::
   const std::int64_t exposure = exposure_;
   const RobotTime middle = end_of_exposure - exposure * kExposureUnit / 2;
   const ShaftPositions shafts = [&](std::string_view joint) { return shafts_(joint, middle); };
-  return renderer.draw(world_->T_world_left(shafts), world_->true_state(shafts, to_seconds(middle - epoch_)),
+  const double t = to_seconds(middle - epoch_);
+  const LabState state = world_->true_state(shafts, t);
+  return renderer.draw(world_->T_world_left(shafts), state, world_->true_prints(state, t),
                        static_cast<double>(exposure) / kExposure, {middle, number});
 }
 

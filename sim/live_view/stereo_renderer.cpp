@@ -7,23 +7,25 @@ constexpr unsigned kOtherSeed = 7919;  // the eyes' noise must not be the same
 
 }  // namespace
 
-StereoRenderer::StereoRenderer(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance,
+StereoRenderer::StereoRenderer(const LiveLab& world, const LightMap& light, const LightMap::Irradiance& irradiance,
                                const StereoLenses& lenses, const Sensor& sensor)
     : context_(gl::create_headless_context()), T_left_right_(lenses.T_left_right) {
   gl::set_up_context();
-  const auto buffers = std::make_shared<const LabBuffers>(lab, light, irradiance);
+  const auto buffers = std::make_shared<const LabBuffers>(world.lab(), light, irradiance, world.prints());
   Sensor other = sensor;
   other.seed += kOtherSeed;
   views_[0].emplace(buffers, lenses.left, sensor);
   views_[1].emplace(buffers, lenses.right, other);
-  draw(T_world_head_left(kHeadAtTable), lab.at_rest(), 1, {});
+  const LabState state = world.lab().at_rest();
+  draw(T_world_head_left(kHeadAtTable), state, world.true_prints(state, 0), 1, {});
   take(true);
 }
 
-bool StereoRenderer::draw(const Pose& T_world_left, const LabState& T_world_part, double gain, const Instant& instant) {
+bool StereoRenderer::draw(const Pose& T_world_left, const LabState& T_world_part, std::span<const Pose> T_world_print,
+                          double gain, const Instant& instant) {
   if (instants_.size() >= kUnderWay) return false;
-  views_[0]->draw(T_world_left, T_world_part, gain, instant.number);
-  views_[1]->draw(T_world_left * T_left_right_, T_world_part, gain, instant.number);
+  views_[0]->draw(T_world_left, T_world_part, gain, instant.number, T_world_print);
+  views_[1]->draw(T_world_left * T_left_right_, T_world_part, gain, instant.number, T_world_print);
   instants_.push_back(instant);
   return true;
 }

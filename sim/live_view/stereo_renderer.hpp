@@ -29,12 +29,13 @@ class StereoRenderer {
   static constexpr std::size_t kUnderWay = 2;  ///< pairs: one is drawn while the other is fetched
 
   /// Draws a first pair that nobody sees, since drivers compile with it. Throws what OpenGL throws.
-  StereoRenderer(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance,
+  StereoRenderer(const LiveLab& world, const LightMap& light, const LightMap::Irradiance& irradiance,
                  const StereoLenses& lenses, const Sensor& sensor);
 
-  /// Starts a pair, of the parts and the left camera where they are given. `gain`: factor on the light. False, and
-  /// nothing is done, where kUnderWay are.
-  bool draw(const Pose& T_world_left, const LabState& T_world_part, double gain, const Instant& instant);
+  /// Starts a pair, of the parts, the world's prints and the left camera where they are given. `gain`: factor on the
+  /// light. False, and nothing is done, where kUnderWay are.
+  bool draw(const Pose& T_world_left, const LabState& T_world_part, std::span<const Pose> T_world_print, double gain,
+            const Instant& instant);
   /// The oldest pair under way where it is finished or, with `wait`, when it is. Nothing: none, or not yet.
   std::optional<std::array<CameraFrame, 2>> take(bool wait);
   std::size_t under_way() const { return instants_.size(); }
