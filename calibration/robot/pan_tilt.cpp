@@ -10,31 +10,13 @@ namespace foresight {
 namespace {
 
 constexpr std::size_t kFewestPoses = 8;
-constexpr double kLeastSweep = 0.05;  // rad
-constexpr double kFalls = 0.99;       // by which a left-out error must fall before gains are believed
-constexpr double kFits = 0.1;         // RMS rad: a chain of the wrong order is off by more
+constexpr double kFalls = 0.99;  // by which a left-out error must fall before gains are believed
+constexpr double kFits = 0.1;    // RMS rad: a chain of the wrong order is off by more
 
-double sweep(const std::vector<PanTiltSample>& samples, double PanTiltAngles::*joint) {
-  double low = 1e300, high = -1e300;
-  for (const PanTiltSample& sample : samples)
-    low = std::min(low, sample.angles.*joint), high = std::max(high, sample.angles.*joint);
-  return high - low;
-}
-
-void require_sweeps(const std::vector<PanTiltSample>& samples) {
-  if (samples.size() < kFewestPoses)
-    throw InputError("--poses", std::to_string(samples.size()) + " poses",
-                     "measure at least 8, better 30, over both joints");
-  const bool pan = sweep(samples, &PanTiltAngles::pan) > kLeastSweep,
-             tilt = sweep(samples, &PanTiltAngles::tilt) > kLeastSweep;
-  if (pan && tilt) return;
-  if (!pan && !tilt) throw InputError("--angles", "neither joint moved", "sweep both joints");
-  const std::string still = pan ? "tilt" : "pan";
-  throw InputError("--angles",
-                   "only the " + std::string(pan ? "pan" : "tilt") +
-                       " joint moved; 4 of 14 parameters stay open: how the " + still +
-                       " axis points (2) and where it lies (2)",
-                   "add poses at other " + still + " angles");
+std::vector<PanTiltAngles> angles_of(const std::vector<PanTiltSample>& samples) {
+  std::vector<PanTiltAngles> angles;
+  for (const PanTiltSample& sample : samples) angles.push_back(sample.angles);
+  return angles;
 }
 
 PanTiltErrors errors_of(const std::vector<Vector6>& steps) {
@@ -110,37 +92,6 @@ PanTiltState start(std::vector<PanTiltSample>& samples, const PanTiltOptions& op
   return *best;
 }
 
-// Which of gains and backlashes are estimated.
-void choose_joints(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, PanTiltState& state,
-                   std::vector<std::string>& notes) {
-  state.held_joints.clear();
-  if (!options.gains.value_or(false)) state.held_joints = {0, 1};
-  for (int joint = 0; joint < 2; ++joint) {
-    int up = 0, down = 0;
-    for (const PanTiltSample& sample : samples) {
-      up += sample.angles.came[static_cast<std::size_t>(joint)] > 0;
-      down += sample.angles.came[static_cast<std::size_t>(joint)] < 0;
-    }
-    if (options.backlash && up >= 3 && down >= 3) continue;
-    state.held_joints.push_back(2 + joint);
-    if (options.backlash && up + down > 0)
-      notes.push_back(std::string(joint == 0 ? "pan" : "tilt") +
-                      " backlash stays open: come to 3 poses and more from " + (up < 3 ? "below" : "above") + " too");
-  }
-}
-
-void name_parameters(const PanTiltState& state, PanTiltSummary& summary) {
-  for (const char* frame : {"world_pan", "tilt_camera"}) {
-    for (const char* part : {"rx", "ry", "rz"}) summary.names.push_back(frame + std::string("_") + part + "_rad");
-    for (const char* part : {"x", "y", "z"}) summary.names.push_back(frame + std::string("_") + part + "_m");
-    if (summary.names.size() == 6) summary.names.insert(summary.names.end(), {"length_m", "twist_rad"});
-  }
-  const char* kJoints[] = {"gain_pan", "gain_tilt", "backlash_pan_rad", "backlash_tilt_rad"};
-  for (int i = 0; i < 4; ++i)
-    if (std::find(state.held_joints.begin(), state.held_joints.end(), i) == state.held_joints.end())
-      summary.names.emplace_back(kJoints[i]);
-}
-
 void score_left_out(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, const PanTiltState& state,
                     PanTiltSummary& summary) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -192,11 +143,14 @@ void came_from_order(std::vector<PanTiltSample>& samples, double least_rad) {
 
 PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const PanTiltOptions& options) {
   if (!options.gains && options.score) return choose_gains(given, options);
-  require_sweeps(given);
+  if (given.size() < kFewestPoses)
+    throw InputError("--poses", std::to_string(given.size()) + " poses",
+                     "measure at least 8, better 30, over both joints");
+  require_sweeps(angles_of(given));
   std::vector<PanTiltSample> samples = given;
   PanTiltSummary summary;
   PanTiltState state = start(samples, options, summary.inverted);
-  choose_joints(samples, options, state, summary.notes);
+  choose_joints(angles_of(samples), options.gains.value_or(false), options.backlash, state, summary.notes);
   fit(samples, options, state, -1);
   summary.model = to_model(state);
 
@@ -216,7 +170,7 @@ PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const Pan
   if (open > 0)
     throw InputError("--angles", std::to_string(open) + " of the head's parameters stay open",
                      "sweep both joints, each at several angles of the other");
-  name_parameters(state, summary);
+  summary.names = pan_tilt_names(state);
   for (Eigen::Index i = 0; i < covariance.rows(); ++i) summary.sigmas.push_back(std::sqrt(covariance(i, i)));
   if (options.score) score_left_out(samples, options, state, summary);
   return summary;

@@ -6,6 +6,7 @@
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
@@ -16,15 +17,8 @@ namespace foresight {
 namespace {
 
 constexpr double kRobust = 3;
+constexpr double kLeastSweep = 0.05, kLeastOffTheLine = 0.01;  // rad
 constexpr std::size_t kStartSamples = 40, kStarts = 30;
-
-template <typename T>
-Eigen::Quaternion<T> turn_about(const Eigen::Vector3d& axis, const T& angle) {
-  using std::cos;
-  using std::sin;
-  const T s = sin(angle / T(2));
-  return {cos(angle / T(2)), s * axis.x(), s * axis.y(), s * axis.z()};
-}
 
 // Turn (rad) and shift (m) from the predicted to the measured camera, over their noise.
 struct PanTiltResidual {
@@ -39,17 +33,11 @@ struct PanTiltResidual {
     using Quaternion = Eigen::Quaternion<T>;
     const T pan = joints[0] * angles.pan + joints[2] * (0.5 * angles.came[0]);
     const T tilt = joints[1] * angles.tilt + joints[3] * (0.5 * angles.came[1]);
-    const Quaternion q_pan = Eigen::Map<const Quaternion>(world) * turn_about(Eigen::Vector3d::UnitZ(), pan);
-    const Quaternion q_tilt =
-        q_pan * (turn_about(Eigen::Vector3d::UnitX(), link[1]) * turn_about(Eigen::Vector3d::UnitZ(), tilt));
-    const Vector along(link[0], T(0), T(0));
-    const Vector p =
-        Eigen::Map<const Vector>(world + 4) + q_pan * along + q_tilt * Vector(Eigen::Map<const Vector>(camera + 4));
-    const Quaternion q = q_tilt * Eigen::Map<const Quaternion>(camera);
-    const Quaternion off = q.conjugate() * q_measured.cast<T>();
+    const HeadMotion<T> head = head_motion(world, link, camera, pan, tilt);
+    const Quaternion off = head.q.conjugate() * q_measured.cast<T>();
     const T wxyz[4] = {off.w(), off.x(), off.y(), off.z()};
     ceres::QuaternionToAngleAxis(wxyz, residual);
-    const Vector shift = q.conjugate() * Vector(p_measured.cast<T>() - p);
+    const Vector shift = head.q.conjugate() * Vector(p_measured.cast<T>() - head.p);
     for (int i = 0; i < 3; ++i) {
       residual[i] *= T(weight_turn);
       residual[3 + i] = shift[i] * T(weight_shift);
@@ -69,12 +57,7 @@ void build(const std::vector<PanTiltSample>& samples, PanTiltState& state, int l
                              state.robust ? new ceres::CauchyLoss(kRobust) : nullptr, state.world.data(),
                              state.link.data(), state.camera.data(), state.joints.data());
   }
-  problem.SetManifold(state.world.data(), motion_manifold());
-  problem.SetManifold(state.camera.data(), motion_manifold());
-  if (state.held_joints.size() == 4)
-    problem.SetParameterBlockConstant(state.joints.data());
-  else if (!state.held_joints.empty())
-    problem.SetManifold(state.joints.data(), new ceres::SubsetManifold(4, state.held_joints));
+  hold_joints(state, problem);
 }
 
 // The 24 turns that map the axes of a cube onto each other.
@@ -105,7 +88,98 @@ void set_turn(MotionParameters& motion, const Eigen::Quaterniond& q) {
   motion[0] = q.x(), motion[1] = q.y(), motion[2] = q.z(), motion[3] = q.w();
 }
 
+double sweep(const std::vector<PanTiltAngles>& angles, double PanTiltAngles::*joint) {
+  double low = 1e300, high = -1e300;
+  for (const PanTiltAngles& a : angles) low = std::min(low, a.*joint), high = std::max(high, a.*joint);
+  return angles.empty() ? 0 : high - low;
+}
+
+/// Standard deviation across the line that the angles lie nearest to.
+double off_the_line(const std::vector<PanTiltAngles>& angles) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const PanTiltAngles& a : angles) mean += Eigen::Vector2d(a.pan, a.tilt) / static_cast<double>(angles.size());
+  for (const PanTiltAngles& a : angles) {
+    const Eigen::Vector2d d = Eigen::Vector2d(a.pan, a.tilt) - mean;
+    spread += d * d.transpose() / static_cast<double>(angles.size());
+  }
+  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()[0]));
+}
+
 }  // namespace
+
+void hold_joints(PanTiltState& state, ceres::Problem& problem) {
+  problem.SetManifold(state.world.data(), motion_manifold());
+  problem.SetManifold(state.camera.data(), motion_manifold());
+  if (state.held_joints.size() == 4)
+    problem.SetParameterBlockConstant(state.joints.data());
+  else if (!state.held_joints.empty())
+    problem.SetManifold(state.joints.data(), new ceres::SubsetManifold(4, state.held_joints));
+}
+
+void require_sweeps(const std::vector<PanTiltAngles>& angles) {
+  const bool pan = sweep(angles, &PanTiltAngles::pan) > kLeastSweep,
+             tilt = sweep(angles, &PanTiltAngles::tilt) > kLeastSweep;
+  if (!pan && !tilt) throw InputError("--angles", "neither joint moved", "sweep both joints");
+  const std::string still = pan ? "tilt" : "pan";
+  if (!pan || !tilt)
+    throw InputError("--angles",
+                     "only the " + std::string(pan ? "pan" : "tilt") +
+                         " joint moved; 4 of 14 parameters stay open: how the " + still +
+                         " axis points (2) and where it lies (2)",
+                     "add poses at other " + still + " angles");
+  if (off_the_line(angles) < kLeastOffTheLine)
+    throw InputError("--angles", "pan and tilt moved together only, so that nothing tells one joint from the other",
+                     "sweep each joint at several angles of the other");
+}
+
+void choose_joints(const std::vector<PanTiltAngles>& angles, bool gains, bool backlash, PanTiltState& state,
+                   std::vector<std::string>& notes) {
+  state.held_joints.clear();
+  if (!gains) state.held_joints = {0, 1};
+  for (int joint = 0; joint < 2; ++joint) {
+    int up = 0, down = 0;
+    for (const PanTiltAngles& a : angles) {
+      up += a.came[static_cast<std::size_t>(joint)] > 0;
+      down += a.came[static_cast<std::size_t>(joint)] < 0;
+    }
+    if (backlash && up >= 3 && down >= 3) continue;
+    state.held_joints.push_back(2 + joint);
+    if (backlash && up + down > 0)
+      notes.push_back(std::string(joint == 0 ? "pan" : "tilt") +
+                      " backlash stays open: come to 3 poses and more from " + (up < 3 ? "below" : "above") + " too");
+  }
+}
+
+std::vector<std::string> pan_tilt_names(const PanTiltState& state) {
+  std::vector<std::string> names;
+  for (const char* frame : {"world_pan", "tilt_camera"}) {
+    for (const char* part : {"rx", "ry", "rz"}) names.push_back(frame + std::string("_") + part + "_rad");
+    for (const char* part : {"x", "y", "z"}) names.push_back(frame + std::string("_") + part + "_m");
+    if (names.size() == 6) names.insert(names.end(), {"length_m", "twist_rad"});
+  }
+  const char* kJoints[] = {"gain_pan", "gain_tilt", "backlash_pan_rad", "backlash_tilt_rad"};
+  for (int i = 0; i < 4; ++i)
+    if (std::find(state.held_joints.begin(), state.held_joints.end(), i) == state.held_joints.end())
+      names.emplace_back(kJoints[i]);
+  return names;
+}
+
+Eigen::VectorXd pan_tilt_tangent_scale(Eigen::Index size) {
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(size);
+  scale.segment<3>(0).setConstant(2);
+  scale.segment<3>(8).setConstant(2);
+  return scale;
+}
+
+PanTiltState to_state(const PanTiltModel& model) {
+  PanTiltState state;
+  state.world = to_parameters(model.T_world_pan);
+  state.link = {model.length_m, model.twist_rad};
+  state.camera = to_parameters(model.T_tilt_camera);
+  state.joints = {model.gain[0], model.gain[1], model.backlash_rad[0], model.backlash_rad[1]};
+  return state;
+}
 
 PanTiltModel to_model(const PanTiltState& state) {
   PanTiltModel model;
@@ -165,9 +239,7 @@ Eigen::MatrixXd pan_tilt_covariance(const std::vector<PanTiltSample>& samples, P
   if (state.held_joints.size() < 4) shared.push_back(state.joints.data());
   ArrowSystem system = arrow_system(problem, shared, {});
   open = static_cast<int>(system.open.size());
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(system.shared_covariance.rows());
-  scale.segment<3>(0).setConstant(2);  // the manifold of a rotation steps by half angles
-  scale.segment<3>(8).setConstant(2);
+  const Eigen::VectorXd scale = pan_tilt_tangent_scale(system.shared_covariance.rows());
   return scale.asDiagonal() * system.shared_covariance * scale.asDiagonal();
 }
 

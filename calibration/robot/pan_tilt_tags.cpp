@@ -1,0 +1,285 @@
+#include "calibration/robot/pan_tilt_tags.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+
+#include "calibration/robot/pan_tilt_tag_problem.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr std::size_t kFewestViews = 8;
+constexpr double kOutlier = 5;        // robust standard deviations
+constexpr double kStartPx = 4;        // a tag that is farther off from a view's first pose has no part in it
+constexpr double kFalls = 0.99;       // by which a left-out error must fall before gains are believed
+constexpr double kStrange = 0.3;      // share of rejected corners above which the map cannot be right
+constexpr double kWorstCornerPx = 3;  // of a found corner: beyond it, the map is another one
+constexpr double kFirstCornerPx = 1;  // both noises before anything is known
+constexpr double kFirstShaft = 2e-3;  // rad
+constexpr double kLeastShaft = 2e-5;  // rad, a few counts of a good encoder
+
+double rms(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
+}
+
+/// The left camera from one view's tags in one camera, or nothing.
+std::optional<Pose> view_pose(const PanTiltView& view, const Rig& cameras, int camera) {
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> rays;
+  const CameraModel& lens = cameras.cameras[static_cast<std::size_t>(camera)];
+  for (const SeenTag& tag : view.tags)
+    for (std::size_t c = 0; c < 4 && tag.camera == camera; ++c)
+      if (const auto ray = unproject(lens, tag.pixels[c]); ray && ray->z() > 0.05) {
+        points.emplace_back(tag.corners[c].x(), tag.corners[c].y(), tag.corners[c].z());
+        rays.emplace_back(ray->x() / ray->z(), ray->y() / ray->z());
+      }
+  if (points.size() < 8) return std::nullopt;
+  const cv::Matx33d unit = cv::Matx33d::eye();
+  cv::Vec3d r, t;
+  std::vector<int> inliers;
+  try {
+    if (!cv::solvePnPRansac(points, rays, unit, cv::noArray(), r, t, false, 200,
+                            static_cast<float>(kStartPx / lens.lens[0]), 0.999, inliers, cv::SOLVEPNP_SQPNP) ||
+        inliers.size() < 8)
+      return std::nullopt;
+    std::vector<cv::Point3d> near_points;
+    std::vector<cv::Point2d> near_rays;
+    for (const int i : inliers)
+      near_points.push_back(points[static_cast<std::size_t>(i)]),
+          near_rays.push_back(rays[static_cast<std::size_t>(i)]);
+    cv::solvePnP(near_points, near_rays, unit, cv::noArray(), r, t, false, cv::SOLVEPNP_SQPNP);
+    cv::solvePnPRefineLM(near_points, near_rays, unit, cv::noArray(), r, t);
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+  cv::Matx33d R;
+  cv::Rodrigues(r, R);
+  Pose T_camera_world = Pose::Identity();
+  Eigen::Matrix3d turn;
+  cv::cv2eigen(cv::Mat(R), turn);
+  T_camera_world.linear() = turn;
+  T_camera_world.translation() << t[0], t[1], t[2];
+  const Pose T_world_camera = T_camera_world.inverse();
+  return camera == 1 ? Pose(T_world_camera * cameras.T_left_right.inverse()) : T_world_camera;
+}
+
+std::vector<PanTiltSample> start_samples(const std::vector<PanTiltView>& views, const Rig& cameras) {
+  std::vector<PanTiltSample> samples;
+  for (const PanTiltView& view : views) {
+    std::optional<Pose> pose = view_pose(view, cameras, 0);
+    if (!pose && cameras.cameras.size() > 1) pose = view_pose(view, cameras, 1);
+    if (pose) samples.push_back({view.name, view.angles, *pose});
+  }
+  if (samples.size() < kFewestViews)
+    throw InputError("--tags",
+                     "only " + std::to_string(samples.size()) + " of " + std::to_string(views.size()) +
+                         " views give a pose of the camera that agrees with the map",
+                     "see that two and more tags are in view, and that --tags and --camera belong to the pictures");
+  return samples;
+}
+
+std::vector<PanTiltAngles> angles_of(const std::vector<PanTiltView>& views) {
+  std::vector<PanTiltAngles> angles;
+  for (const PanTiltView& view : views) angles.push_back(view.angles);
+  return angles;
+}
+
+std::vector<PanTiltView> with_tags(const std::vector<PanTiltView>& given) {
+  std::vector<PanTiltView> views;
+  for (const PanTiltView& view : given)
+    if (!view.tags.empty()) views.push_back(view);
+  if (views.size() < kFewestViews)
+    throw InputError("--images", std::to_string(views.size()) + " views show tags of the map",
+                     "take at least 8, better 30, over both joints");
+  return views;
+}
+
+// Errors of the corners that count.
+std::vector<double> counting(const PanTiltTagState& state, std::size_t k, const std::vector<double>& errors) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (!state.left_out[k][i / 4]) out.push_back(errors[i]);
+  return out;
+}
+
+Pose fitted_left(const PanTiltTagState& state, const PanTiltView& view, std::size_t k) {
+  PanTiltView moved = view;
+  moved.angles.pan += state.shafts[k][0] / state.head.joints[0];
+  moved.angles.tilt += state.shafts[k][1] / state.head.joints[1];
+  return predicted_left(state, moved);
+}
+
+// Noise of a coordinate from the distances of all corners that count.
+double corner_noise(const std::vector<PanTiltView>& views, const Rig& cameras, const PanTiltTagState& state) {
+  constexpr double kMedianOfDistance = 1.17741;  // of a distance whose two coordinates have sigma 1
+  std::vector<double> all;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const auto some = counting(state, k, corner_errors(cameras, fitted_left(state, views[k], k), views[k]));
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  const double used = (14.0 + 2.0 * static_cast<double>(views.size())) / (2.0 * static_cast<double>(all.size()));
+  return std::max(1e-3, median(all) / kMedianOfDistance / std::sqrt(std::max(0.1, 1 - used)));
+}
+
+void fit_with_noise(const std::vector<PanTiltView>& views, const Rig& cameras, PanTiltTagState& state, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    fit_pan_tilt_tags(views, cameras, state);
+    state.corner_px = corner_noise(views, cameras, state);
+    const PanTiltTagCovariance covariance = pan_tilt_tag_covariance(views, cameras, state);
+    double squares = 0;
+    for (const auto& e : state.shafts) squares += (e[0] * e[0] + e[1] * e[1]) / 2;
+    const double before = state.shaft_rad;
+    state.shaft_rad = std::max(
+        kLeastShaft, std::sqrt(squares / static_cast<double>(state.shafts.size()) + covariance.shaft_variance));
+    if (std::abs(state.shaft_rad - before) < 0.02 * before) return;
+  }
+}
+
+int reject(const std::vector<PanTiltView>& views, const Rig& cameras, PanTiltTagState& state) {
+  int points = 0;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const auto errors = corner_errors(cameras, fitted_left(state, views[k], k), views[k]);
+    for (std::size_t i = 0; i < views[k].tags.size(); ++i) {
+      const double worst = *std::max_element(&errors[4 * i], &errors[4 * i] + 4);
+      state.left_out[k][i] = worst > kOutlier * state.corner_px;
+      points += state.left_out[k][i] ? 4 : 0;
+    }
+  }
+  return points;
+}
+
+PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const Rig& cameras, const PanTiltTagOptions& options,
+                            PanTiltTagSummary& summary) {
+  PanTiltOptions first;
+  first.gains = false, first.score = false, first.inverted = false, first.backlash = options.backlash;
+  PanTiltTagState state;
+  state.head = to_state(solve_pan_tilt(start_samples(views, cameras), first).model);
+  choose_joints(angles_of(views), options.gains.value_or(false), options.backlash, state.head, summary.notes);
+  for (const int joint : state.head.held_joints) state.head.joints[static_cast<std::size_t>(joint)] = joint < 2 ? 1 : 0;
+  state.offset_held = !options.offset;
+  state.shafts.assign(views.size(), {0, 0});
+  for (const PanTiltView& view : views) state.left_out.emplace_back(view.tags.size(), 0);
+  state.corner_px = kFirstCornerPx, state.shaft_rad = kFirstShaft;
+  fit_with_noise(views, cameras, state, 4);
+  state.robust = false;
+  for (int round = 0; round < 2; ++round) {
+    summary.rejected_points = reject(views, cameras, state);
+    fit_with_noise(views, cameras, state, 6);
+  }
+  for (const PanTiltView& view : views) summary.tags += static_cast<int>(view.tags.size());
+  const bool many = summary.rejected_points > kStrange * 4 * summary.tags;
+  if (many || state.corner_px > kWorstCornerPx)
+    throw InputError(
+        "--tags",
+        (many ? std::to_string(summary.rejected_points) + " of " + std::to_string(4 * summary.tags) +
+                    " corners are not where map and head would have them"
+              : "the corners are " + readable(state.corner_px, 1) + " px from where map and head would have them"),
+        "check the order of the corners in the map (lower left, lower right, upper right, upper left of "
+        "the print), and that angles and pictures belong together");
+  return state;
+}
+
+void score_left_out(const std::vector<PanTiltView>& views, const Rig& cameras, const PanTiltTagState& state,
+                    PanTiltTagSummary& summary) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    PanTiltTagState without = state;
+    fit_pan_tilt_tags(views, cameras, without, static_cast<int>(k));
+    const auto errors = counting(state, k, corner_errors(cameras, predicted_left(without, views[k]), views[k]));
+    summary.loo_view_px.push_back(rms(errors));
+    all.insert(all.end(), errors.begin(), errors.end());
+  }
+  summary.loo_px = rms(all);
+}
+
+PanTiltTagSummary choose_gains(const std::vector<PanTiltView>& views, const Rig& cameras,
+                               const PanTiltTagOptions& options) {
+  PanTiltTagOptions choice = options;
+  choice.gains = false;
+  PanTiltTagSummary without = solve_pan_tilt_tags(views, cameras, choice);
+  choice.gains = true;
+  PanTiltTagSummary with = solve_pan_tilt_tags(views, cameras, choice);
+  const double ratio = with.loo_px / without.loo_px;
+  PanTiltTagSummary& better = ratio < kFalls ? with : without;
+  better.notes.push_back("gains of the joints are " + std::string(ratio < kFalls ? "estimated" : "held at 1") +
+                         ": with them the left-out error is " + readable(ratio, 3) + " of that without");
+  return std::move(better);
+}
+
+// The way of a joint decides where its shaft is; without it, a view would pull the model to its own side.
+std::vector<PanTiltView> of_known_ways(const std::vector<PanTiltView>& views, bool backlash,
+                                       std::vector<std::string>& notes) {
+  if (!backlash) return views;
+  PanTiltState chosen;
+  std::vector<std::string> said_later;
+  choose_joints(angles_of(views), false, true, chosen, said_later);
+  std::vector<PanTiltView> out;
+  for (const PanTiltView& view : views) {
+    bool known = true;
+    for (int joint = 0; joint < 2; ++joint) {
+      const auto& held = chosen.held_joints;
+      const bool estimated = std::find(held.begin(), held.end(), 2 + joint) == held.end();
+      known = known && !(estimated && view.angles.came[static_cast<std::size_t>(joint)] == 0);
+    }
+    if (known) out.push_back(view);
+  }
+  if (out.size() < views.size())
+    notes.push_back(std::to_string(views.size() - out.size()) +
+                    " views are left out: nothing tells from which side their joints came");
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> corner_errors(const Rig& cameras, const Pose& T_world_left, const PanTiltView& view) {
+  std::vector<double> errors;
+  const Pose T_left_world = T_world_left.inverse();
+  for (const SeenTag& tag : view.tags)
+    for (std::size_t c = 0; c < 4; ++c) {
+      const auto pixel = project(cameras.cameras[static_cast<std::size_t>(tag.camera)],
+                                 to_camera(cameras, tag.camera, T_left_world * tag.corners[c]));
+      errors.push_back(pixel ? (*pixel - tag.pixels[c]).norm() : std::numeric_limits<double>::infinity());
+    }
+  return errors;
+}
+
+PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, const Rig& cameras,
+                                      const PanTiltTagOptions& options) {
+  if (!options.gains && options.score) return choose_gains(given, cameras, options);
+  PanTiltTagSummary summary;
+  const std::vector<PanTiltView> views = of_known_ways(with_tags(given), options.backlash, summary.notes);
+  require_sweeps(angles_of(views));
+  PanTiltTagState state = solve_state(views, cameras, options, summary);
+  const PanTiltTagCovariance covariance = pan_tilt_tag_covariance(views, cameras, state);
+  if (!covariance.open.empty()) {
+    std::string names;
+    for (const std::string& name : covariance.open) names += (names.empty() ? "" : ", ") + name;
+    throw InputError("--angles", "these parameters of the head stay open: " + names,
+                     "sweep both joints, each at several angles of the other and at several speeds");
+  }
+  summary.model = to_model(state.head);
+  summary.offset_s = state.offset_s;
+  summary.names = pan_tilt_names(state.head);
+  if (options.offset) summary.names.emplace_back("offset_s");
+  for (Eigen::Index i = 0; i < covariance.head.rows(); ++i) summary.sigmas.push_back(std::sqrt(covariance.head(i, i)));
+  summary.corner_px = state.corner_px, summary.shaft_rad = state.shaft_rad;
+  summary.pose_sigma = covariance.pose_sigma;
+  std::vector<double> all;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const auto errors = counting(state, k, corner_errors(cameras, fitted_left(state, views[k], k), views[k]));
+    summary.view_names.push_back(views[k].name), summary.angles.push_back(views[k].angles);
+    summary.view_px.push_back(rms(errors));
+    all.insert(all.end(), errors.begin(), errors.end());
+  }
+  summary.in_sample_px = rms(all);
+  if (options.score) score_left_out(views, cameras, state, summary);
+  return summary;
+}
+
+}  // namespace foresight
