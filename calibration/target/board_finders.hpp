@@ -21,7 +21,11 @@ struct FoundPoints {
 FoundPoints find_chessboard(const cv::Mat& grey, const Board& board);
 FoundPoints find_circles(const cv::Mat& grey, const Board& board);
 
-/// Inner corners of the chessboard in the image, whatever their number; nothing where there is none.
+/// Whether the image shows a chessboard of so many inner corners, whole.
+bool shows_chessboard(const cv::Mat& grey, cv::Size corners);
+
+/// Inner corners of a chessboard in the image, at least of a part of it, whatever their number; nothing where there is
+/// none.
 std::optional<cv::Size> any_chessboard(const cv::Mat& grey);
 
 FoundPoints find_charuco(const cv::Mat& grey, const Board& board);

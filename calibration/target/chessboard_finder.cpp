@@ -18,19 +18,31 @@ cv::Mat reduced(const cv::Mat& grey) {
   return small;
 }
 
+// The finder by quads takes milliseconds where all are seen, but where one of many is missing it tries them in
+// combinations: minutes for an image of a large board.
+constexpr int kMostByQuads = 150;
+
+// The finder by sectors sees through blur and glare, at ten times the cost of a good image's quads. Equalising lifts
+// boards out of the dark, and fills others with noise.
+bool find_by_sectors(const cv::Mat& grey, cv::Size size, GridPoints& points) {
+  return cv::findChessboardCornersSB(grey, size, points, 0) ||
+         cv::findChessboardCornersSB(grey, size, points, cv::CALIB_CB_NORMALIZE_IMAGE);
+}
+
 GridPoints rough_corners(const cv::Mat& grey, cv::Size size) {
   constexpr int kFlags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  const bool by_quads = size.area() <= kMostByQuads;
   const cv::Mat small = reduced(grey);
   GridPoints points;
-  bool found = cv::findChessboardCorners(small, size, points, kFlags);
-  // The sector-based finder sees through blur and glare, at ten times the cost.
-  if (!found) found = cv::findChessboardCornersSB(small, size, points, cv::CALIB_CB_NORMALIZE_IMAGE);
+  bool found = by_quads && cv::findChessboardCorners(small, size, points, kFlags);
+  if (!found) found = find_by_sectors(small, size, points);
   if (found) {
     const float x = static_cast<float>(grey.cols) / static_cast<float>(small.cols);
     const float y = static_cast<float>(grey.rows) / static_cast<float>(small.rows);
     for (cv::Point2f& p : points) p = {(p.x + 0.5f) * x - 0.5f, (p.y + 0.5f) * y - 0.5f};
   } else if (small.size() != grey.size()) {
-    found = cv::findChessboardCorners(grey, size, points, kFlags | cv::CALIB_CB_FAST_CHECK);
+    found = by_quads ? cv::findChessboardCorners(grey, size, points, kFlags | cv::CALIB_CB_FAST_CHECK)
+                     : cv::findChessboardCornersSB(grey, size, points, 0);
   }
   return found ? points : GridPoints{};
 }
@@ -75,13 +87,20 @@ FoundPoints find_chessboard(const cv::Mat& grey, const Board& board) {
   return found;
 }
 
-std::optional<cv::Size> any_chessboard(const cv::Mat& grey) {
+bool shows_chessboard(const cv::Mat& grey, cv::Size corners) {
   GridPoints points;
-  cv::Mat meta;
-  const bool found = cv::findChessboardCornersSB(reduced(grey), {3, 3}, points,
-                                                 cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_LARGER, meta);
-  if (!found || meta.empty()) return std::nullopt;
-  return meta.size();
+  return cv::findChessboardCornersSB(reduced(grey), corners, points, 0);
+}
+
+std::optional<cv::Size> any_chessboard(const cv::Mat& grey) {
+  const cv::Mat small = reduced(grey);
+  for (const int flags : {0, static_cast<int>(cv::CALIB_CB_NORMALIZE_IMAGE)}) {
+    GridPoints points;
+    cv::Mat meta;
+    if (cv::findChessboardCornersSB(small, {3, 3}, points, flags | cv::CALIB_CB_LARGER, meta) && !meta.empty())
+      return meta.size();
+  }
+  return std::nullopt;
 }
 
 }  // namespace foresight

@@ -24,21 +24,34 @@ std::string mirrored_text(const Board& board, const std::vector<cv::Mat>& greys)
   return {};
 }
 
+// Squares are often counted where corners are asked for.
+bool counts_squares(const Board& board, const std::vector<cv::Mat>& greys) {
+  const cv::Size corners(board.cols - 1, board.rows - 1);
+  return corners.height > 1 && corners.width > 1 &&
+         std::any_of(greys.begin(), greys.end(), [&](const cv::Mat& grey) { return shows_chessboard(grey, corners); });
+}
+
+// Of a board that is partly covered a smaller one may be seen: the largest of all images counts.
 std::string other_chessboard(const Board& board, const std::vector<cv::Mat>& greys) {
-  const std::string missing = size_text(board.cols, board.rows) + " not found";
-  for (const cv::Mat& grey : greys) {
-    const auto size = any_chessboard(grey);
-    if (!size || (size->width == board.cols && size->height == board.rows)) continue;
-    if (size->width == board.rows && size->height == board.cols) continue;
-    // In the direction that was asked for: the longer side stays the longer one.
-    const bool swap = (size->width > size->height) != (board.cols > board.rows);
-    Board other = board;
-    other.cols = swap ? size->height : size->width;
-    other.rows = swap ? size->width : size->height;
-    return missing + "; " + size_text(other.cols, other.rows) + " inner corners were: give " + to_string(other) +
-           " if that is the whole board";
+  const std::string asked = size_text(board.cols, board.rows);
+  Board other = board;
+  if (counts_squares(board, greys)) {
+    --other.cols, --other.rows;
+    return asked + " not found; " + asked + " counts its squares, --board counts the " +
+           size_text(other.cols, other.rows) + " corners between them: give " + to_string(other);
   }
-  return missing + ", nor another chessboard; see that the whole board with a white rim is in the image";
+  cv::Size seen;
+  for (const cv::Mat& grey : greys)
+    if (const auto size = any_chessboard(grey); size && size->area() > seen.area()) seen = *size;
+  const bool as_asked = seen == cv::Size(board.cols, board.rows) || seen == cv::Size(board.rows, board.cols);
+  if (seen.empty() || as_asked)
+    return asked + " not found, nor another chessboard; see that the whole board with a white rim is in the image";
+  // In the direction that was asked for: the longer side stays the longer one.
+  if ((seen.width > seen.height) != (board.cols > board.rows)) std::swap(seen.width, seen.height);
+  other.cols = seen.width;
+  other.rows = seen.height;
+  return asked + " not found; " + size_text(other.cols, other.rows) + " inner corners were: give " + to_string(other) +
+         " if that is the whole board";
 }
 
 std::string other_circles(const Board& board, const std::vector<cv::Mat>& greys) {
