@@ -42,9 +42,12 @@ void say(const CaptureMoment& moment, std::string& last) {
       outcome.verdict.taken ? "taken, " + std::to_string(moment.progress.views) + " views" : outcome.verdict.reason;
   const std::string& wish = moment.progress.wish.text;
   if (!moment.progress.enough) text += "; next: " + (wish.empty() ? "another view, turned or moved" : wish);
-  if (text == last) return;
+  std::string kind = text;  // not again because a number changed, but for a view that was taken
+  if (!outcome.verdict.taken)
+    std::erase_if(kind, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+  if (kind == last) return;
   std::fprintf(stderr, "capture: %s\n", text.c_str());
-  last = text;
+  last = std::move(kind);
 }
 
 /// Session and now.png; one thread.
