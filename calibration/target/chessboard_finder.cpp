@@ -19,10 +19,12 @@ cv::Mat reduced(const cv::Mat& grey) {
 }
 
 GridPoints rough_corners(const cv::Mat& grey, cv::Size size) {
-  constexpr int kFlags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  // Equalised grey values find boards in poor light, but lose those before something brighter and move corners.
+  constexpr int kPlain = cv::CALIB_CB_ADAPTIVE_THRESH, kEqualised = kPlain | cv::CALIB_CB_NORMALIZE_IMAGE;
   const cv::Mat small = reduced(grey);
   GridPoints points;
-  bool found = cv::findChessboardCorners(small, size, points, kFlags);
+  bool found = cv::findChessboardCorners(small, size, points, kPlain) ||
+               cv::findChessboardCorners(small, size, points, kEqualised);
   // The sector-based finder sees through blur and glare, at ten times the cost.
   if (!found) found = cv::findChessboardCornersSB(small, size, points, cv::CALIB_CB_NORMALIZE_IMAGE);
   if (found) {
@@ -30,7 +32,7 @@ GridPoints rough_corners(const cv::Mat& grey, cv::Size size) {
     const float y = static_cast<float>(grey.rows) / static_cast<float>(small.rows);
     for (cv::Point2f& p : points) p = {(p.x + 0.5f) * x - 0.5f, (p.y + 0.5f) * y - 0.5f};
   } else if (small.size() != grey.size()) {
-    found = cv::findChessboardCorners(grey, size, points, kFlags | cv::CALIB_CB_FAST_CHECK);
+    found = cv::findChessboardCorners(grey, size, points, kEqualised | cv::CALIB_CB_FAST_CHECK);
   }
   return found ? points : GridPoints{};
 }
