@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/calibrate/capture_loop.hpp"
+#include "apps/calibrate/mock_board.hpp"
 #include "apps/calibrate/outputs.hpp"
 #include "common/error.hpp"
 #include "drivers/robot/rig.hpp"
@@ -19,6 +20,7 @@ struct Arguments {
   double rate = 0;
   int views = CaptureGuide::Options{}.views;
   double seconds = 600;
+  unsigned seed = 1;
   bool window = false, no_window = false;  // neither: where there is a display
   std::optional<std::filesystem::path> json;
 };
@@ -71,15 +73,36 @@ CameraConfig lone_camera(const Arguments& a) {
   return config;
 }
 
-std::unique_ptr<CaptureSource> open_source(const Arguments& a, Clock& clock) {
-  if (!a.images.empty()) return folder_source(a.images);
-  if (!is_stereo(a)) return lone_source(make_camera(a.only.empty() ? "camera" : a.only, lone_camera(a), clock));
-  return pair_source(open_stereo(described(a), moving_shafts(clock.now()), clock));
+bool wants_window(const Arguments& a) {
+  return a.window || (!a.no_window && has_display());
+}
+
+struct Clocks {
+  MonotonicClock real;
+  SteppedClock stepped;
+};
+
+struct Opened {
+  std::unique_ptr<CaptureSource> source;
+  Clock& clock;
+};
+
+/// Mock cameras that nobody watches run in stepped time: repeatable, and as fast as the machine is.
+Opened open_source(const Arguments& a, const Board& board, Clocks& clocks) {
+  if (!a.images.empty()) return {folder_source(a.images), clocks.real};
+  if (!is_stereo(a))
+    return {lone_source(make_camera(a.only.empty() ? "camera" : a.only, lone_camera(a), clocks.real)), clocks.real};
+  StereoConfig config = described(a);
+  if (!config.mock()) return {pair_source(open_stereo(config, {}, clocks.real)), clocks.real};
+  Clock& clock = wants_window(a) ? static_cast<Clock&>(clocks.real) : clocks.stepped;
+  if (!wants_window(a) && a.rate <= 0)
+    for (CameraConfig& camera : config.cameras) camera.settings.rate = MockBoard::kRate;
+  return {mock_board_source(config, board, a.seed, clock), clock};
 }
 
 CaptureEnd capture(const Arguments& a, CaptureSource& source, CaptureSession& session, const Clock& clock) {
   CaptureLoopOptions options{a.pictures, seconds(a.seconds)};
-  if (a.window || (!a.no_window && has_display())) try {
+  if (wants_window(a)) try {
       std::fprintf(stderr, "capture: in a window; Space takes a view, Escape ends\n");
       return capture_with_window(source, session, clock, options);
     } catch (const gl::NoWindow& failure) {
@@ -125,15 +148,16 @@ int report(const Arguments& a, const CaptureSession& session, CaptureEnd end) {
 }
 
 int run(const Arguments& a) {
-  MonotonicClock clock;
+  Clocks clocks;
   require_one_source(a);
-  const std::unique_ptr<CaptureSource> source = open_source(a, clock);
+  const Board board = parse_board(a.board);
+  const auto [source, clock] = open_source(a, board, clocks);
   CaptureSession::Options options;
   options.out = a.out;
   options.stereo = is_stereo(a);
   options.guide.views = a.views;
   if (source->stills()) options.guide.moved_px = 0;
-  CaptureSession session(parse_board(a.board), options);
+  CaptureSession session(board, options);
   return report(a, session, capture(a, *source, session, clock));
 }
 
@@ -157,7 +181,8 @@ void add_capture(CLI::App& calibrate, std::function<int()>& action) {
   command->add_option("--camera", a->camera, "A lone camera: the same forms");
   command->add_option("--images", a->images, "Folders of images instead: DIR of a lone camera, or LEFTDIR RIGHTDIR")
       ->expected(1, 2);
-  command->add_flag("--mock", a->mock, "The mock lab's cameras instead");
+  command->add_flag("--mock", a->mock, "The mock lab's cameras instead, with the board held before them");
+  command->add_option("--seed", a->seed, "Of the mock lab: another way to hold the board");
   command->add_option("--rate", a->rate, "Images per second")->check(CLI::Range(0.1, 1000.0));
   command->add_option("--views", a->views, "Views to take at least")->check(CLI::Range(5, 1000));
   command->add_option("--seconds", a->seconds, "Longest time")->check(CLI::PositiveNumber);

@@ -27,6 +27,25 @@ class PairSource final : public CaptureSource {
   OpenStereo opened_;
 };
 
+class SteppedSource final : public CaptureSource {
+ public:
+  SteppedSource(OpenStereo opened, SteppedClock& clock) : opened_(std::move(opened)), clock_(clock) {}
+  void start() override { opened_.cameras->start_polled(); }
+  void stop() noexcept override { opened_.cameras->stop(); }
+  std::optional<CaptureImages> take(Duration timeout) override {
+    clock_.sleep_until(clock_.now() + timeout);
+    opened_.cameras->poll();
+    auto pair = opened_.cameras->take(Duration{0});
+    if (!pair) return std::nullopt;
+    return CaptureImages{pair->left.bgr, pair->right.bgr};
+  }
+  std::string silent_because() const override { return fault_text(opened_.cameras->status()); }
+
+ private:
+  OpenStereo opened_;
+  SteppedClock& clock_;
+};
+
 class LoneSource final : public CaptureSource {
  public:
   explicit LoneSource(std::unique_ptr<Camera> camera) : camera_(std::move(camera)) {}
@@ -85,6 +104,10 @@ class FolderSource final : public CaptureSource {
 
 std::unique_ptr<CaptureSource> pair_source(OpenStereo opened) {
   return std::make_unique<PairSource>(std::move(opened));
+}
+
+std::unique_ptr<CaptureSource> stepped_source(OpenStereo opened, SteppedClock& clock) {
+  return std::make_unique<SteppedSource>(std::move(opened), clock);
 }
 
 std::unique_ptr<CaptureSource> lone_source(std::unique_ptr<Camera> camera) {

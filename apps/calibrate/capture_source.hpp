@@ -30,6 +30,8 @@ class CaptureSource {
 };
 
 std::unique_ptr<CaptureSource> pair_source(OpenStereo opened);
+/// Mock cameras in stepped time: take() moves `clock`, which they were opened with, and which must outlive the source.
+std::unique_ptr<CaptureSource> stepped_source(OpenStereo opened, SteppedClock& clock);
 std::unique_ptr<CaptureSource> lone_source(std::unique_ptr<Camera> camera);
 
 /// Of one folder, or of two whose images belong together (list_pairs). Throws InputError.

@@ -20,17 +20,12 @@ Lens lens_of(const StereoConfig& config, Side side) {
 
 std::shared_ptr<sim::MockStereo> make_mock(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock,
                                            const MockWorld& world) {
-  sim::MockCameraOptions options;
-  options.left = lens_of(config, Side::left);
-  options.right = lens_of(config, Side::right);
-  const CameraConfig& right = config.camera(Side::right);
-  if (right.calibration && right.calibration->T_left_right) options.T_left_right = *right.calibration->T_left_right;
-  options.rate = config.camera(Side::left).settings.rate;
   sim::LiveLab::Options lab;
   lab.hidden = world.hidden;
   lab.prints = world.prints;
   lab.board = world.board;
-  return std::make_shared<sim::MockStereo>(std::make_shared<const sim::LiveLab>(lab), shafts, options, clock);
+  return std::make_shared<sim::MockStereo>(std::make_shared<const sim::LiveLab>(lab), shafts, mock_options(config),
+                                           clock);
 }
 
 std::unique_ptr<Camera> make_mock_camera(Side side, const CameraConfig& config,
@@ -66,6 +61,16 @@ StereoConfig as_mock(StereoConfig config) {
     camera.settings.controls.clear();
   }
   return config;
+}
+
+sim::MockCameraOptions mock_options(const StereoConfig& config) {
+  sim::MockCameraOptions options;
+  options.left = lens_of(config, Side::left);
+  options.right = lens_of(config, Side::right);
+  const CameraConfig& right = config.camera(Side::right);
+  if (right.calibration && right.calibration->T_left_right) options.T_left_right = *right.calibration->T_left_right;
+  options.rate = config.camera(Side::left).settings.rate;
+  return options;
 }
 
 OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock, const MockWorld& world) {

@@ -27,6 +27,10 @@ struct MockWorld {
 /// InputError where these cannot be mock ones (two sizes, an odd width).
 StereoConfig as_mock(StereoConfig config);
 
+/// What open_stereo() gives mock cameras of this description: lenses (the usual ones of `foresight synth` where it has
+/// none), the right one's place, the rate.
+sim::MockCameraOptions mock_options(const StereoConfig& config);
+
 /// `shafts` is asked by mock cameras only (MockStereo). Blocks some seconds for these: their world is lit. Real
 /// cameras are found when they start. `clock` must outlive the result. `world` is for mock cameras. Throws what
 /// make_camera() throws, and InputError where a mock camera, or its world, cannot do what is asked.

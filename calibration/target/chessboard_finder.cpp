@@ -30,18 +30,20 @@ bool find_by_sectors(const cv::Mat& grey, cv::Size size, GridPoints& points) {
 }
 
 GridPoints rough_corners(const cv::Mat& grey, cv::Size size) {
-  constexpr int kFlags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  // Equalised grey values find boards in poor light, but lose those before something brighter and move corners.
+  constexpr int kPlain = cv::CALIB_CB_ADAPTIVE_THRESH, kEqualised = kPlain | cv::CALIB_CB_NORMALIZE_IMAGE;
   const bool by_quads = size.area() <= kMostByQuads;
   const cv::Mat small = reduced(grey);
   GridPoints points;
-  bool found = by_quads && cv::findChessboardCorners(small, size, points, kFlags);
+  bool found = by_quads && (cv::findChessboardCorners(small, size, points, kPlain) ||
+                            cv::findChessboardCorners(small, size, points, kEqualised));
   if (!found) found = find_by_sectors(small, size, points);
   if (found) {
     const float x = static_cast<float>(grey.cols) / static_cast<float>(small.cols);
     const float y = static_cast<float>(grey.rows) / static_cast<float>(small.rows);
     for (cv::Point2f& p : points) p = {(p.x + 0.5f) * x - 0.5f, (p.y + 0.5f) * y - 0.5f};
   } else if (small.size() != grey.size()) {
-    found = by_quads ? cv::findChessboardCorners(grey, size, points, kFlags | cv::CALIB_CB_FAST_CHECK)
+    found = by_quads ? cv::findChessboardCorners(grey, size, points, kEqualised | cv::CALIB_CB_FAST_CHECK)
                      : cv::findChessboardCornersSB(grey, size, points, 0);
   }
   return found ? points : GridPoints{};
