@@ -68,6 +68,8 @@ StereoConfig described(const Arguments& a) {
     const Rig rig = read_rig(a.rig);
     if (!rig.cameras) throw InputError(a.rig, "the rig has no cameras", "add them (docs/rig-files.md)");
     out = *rig.cameras;
+    if (rig.calibration && !a.mock)
+      std::fputs("record: nobody reads the rig's encoders here; `foresight robot RIG --record` writes poses\n", stderr);
   }
   for (const bool right : {false, true}) {
     CameraConfig& camera = out.cameras[right ? 1 : 0];

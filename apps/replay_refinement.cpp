@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/posed_frames.hpp"
 #include "common/cpu_time.hpp"
 
 namespace foresight {
-namespace {
-
-constexpr double kMarginSigmas = 2;  // of the predicted error, added to the margin of exact poses
-constexpr double kLargestMargin = 8;
-
-}  // namespace
 
 void ReplayRefinement::give(std::size_t index) {
   for (; given_ <= index; ++given_) {
@@ -49,7 +44,7 @@ void ReplayRefinement::refine(std::size_t index, PosedFrame& frame) {
     filter_.add_refined(frame.left.time, frame.left.T_world_camera, Matrix6d::Zero());  // the gauge
   }
   if (frame.right) frame.right->T_world_camera = frame.left.T_world_camera * T_left_right;
-  const double margin = std::min(margin_px_ + kMarginSigmas * sigma_px, kLargestMargin);
+  const double margin = margin_for(margin_px_, sigma_px);
   frame.left.margin_px = margin;
   if (frame.right) frame.right->margin_px = margin;
   margins_ += margin;

@@ -16,7 +16,7 @@ constexpr double kDrawTimeout = 20;  // seconds
 
 ReplaySession::ReplaySession(const RunFolder& run, const TextureOptions& options,
                              const std::optional<thesis::Options>& thesis, bool window)
-    : run_(run) {
+    : run_(run), margin_px_(options.margin_px) {
   const Lens& lens = run.lens_left();
   if (window) {
     const int height = kWindowWidth * lens.height() / (3 * lens.width());
@@ -53,7 +53,12 @@ ExtractionReport ReplaySession::process(PosedFrame frame) {
 }
 
 PosedFrame ReplaySession::load(std::size_t index) const {
-  return load_posed_frame(run_, index);
+  PosedFrame frame = load_posed_frame(run_, index);
+  if (const auto px = run_.frames()[index].left.predicted_px) {
+    frame.left.margin_px = margin_for(margin_px_, *px);
+    if (frame.right) frame.right->margin_px = frame.left.margin_px;
+  }
+  return frame;
 }
 
 cv::Mat ReplaySession::predict(std::size_t index) {

@@ -32,7 +32,8 @@ class ReplaySession {
   /// Extracts one frame and returns when its textures are there.
   ExtractionReport process(PosedFrame frame);
 
-  /// Reads the pixels of frame `index` of the run, with poses and scene. Throws InputError.
+  /// Reads the pixels of frame `index` of the run, with poses and scene, and with a margin for what registration.txt
+  /// expects its pose to be off. Throws InputError.
   PosedFrame load(std::size_t index) const;
 
   /// The view at the pose of frame `index` with the newest textures, CV_8UC4 (BGRA); empty where
@@ -54,6 +55,7 @@ class ReplaySession {
 
  private:
   const RunFolder& run_;
+  double margin_px_;  // of exact poses
   std::unique_ptr<gl::Context> context_;
   gl::Window* window_ = nullptr;  // context_, where it is one
   gl::DriverInfo driver_;

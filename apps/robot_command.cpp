@@ -59,6 +59,7 @@ class Console {
     if (wish.request != RobotRequest::none) robot_.ask(wish.request);
     if (wish.command) robot_.submit(*wish.command);
     if (joints_) joints_->add(status);
+    if (cameras_) cameras_->add_encoders(status);
     show(now, status);
     notify(now, status);
     return !wish.quit;

@@ -76,6 +76,23 @@ void place(ListedImage& listed, const PoseTrack& track, const Pose& T_left_camer
   listed.image.pose_status = answer.status;
 }
 
+// Of images that it names by their time; a registration may know only some.
+void read_predicted_errors(const fs::path& file, std::vector<RunFrame>& frames) {
+  std::map<RobotTime, double> predicted;
+  for_each_row(file, "time quality px", [&](const TextRow& row) {
+    const auto px = parse_number(row.fields[2]);
+    if (!px || !(*px >= 0))
+      throw InputError(row.where(), in_quotes(row.fields[2]) + " is no expected error in px", "remove the line");
+    predicted[time_field(row, 0)] = *px;
+  });
+  for (RunFrame& frame : frames) {
+    const auto found = predicted.find(frame.left.time);
+    if (found == predicted.end()) continue;
+    frame.left.predicted_px = found->second;
+    if (frame.right) frame.right->predicted_px = found->second;
+  }
+}
+
 Duration pairing_window(const std::vector<RunFrame>& frames) {
   if (frames.size() < 2) return RunFrame::kLargestOffset;
   std::vector<Duration> intervals;
@@ -178,6 +195,9 @@ RunFolder RunFolder::open(const fs::path& root, const Options& options) {
     run.unpaired_right_ =
         pair_images(run.frames_, read_images(run.root_, member(run.root_, "rgb_right.txt")), track, run.T_left_right_);
   }
+
+  if (has_member(run.root_, "registration.txt"))
+    read_predicted_errors(member(run.root_, "registration.txt"), run.frames_);
 
   run.scene_ = read_model(run.root_, options);
   if (has_member(run.root_, "nodes.txt"))

@@ -5,6 +5,7 @@
 //   trajectory.txt      time tx ty tz qx qy qz qw                    T_world_camera
 //   scene.ply or scene.yaml                                          scene/scene_reader.hpp
 //   nodes.txt           time node tx ty tz qx qy qz qw               T_world_node; optional
+//   registration.txt    time quality px                              how well a pose is known; optional
 //   camera_right.yaml   camera_info and T_left_right                 optional, with
 //   rgb_right.txt       time file
 #pragma once
@@ -30,6 +31,7 @@ struct RunImage {
   std::string stem;                                ///< file name without folder and extension; unique in its list
   Pose T_world_camera;                             ///< of this camera (left or right) at `time`
   StateStatus pose_status = StateStatus::invalid;  ///< exact or interpolated
+  std::optional<double> predicted_px = {};         ///< expected error of the pose, where registration.txt tells
 };
 
 /// The left image and, where the run has a second camera that saw the same instant, the right one.

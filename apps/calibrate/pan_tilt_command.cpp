@@ -5,6 +5,7 @@
 
 #include "apps/calibrate/outputs.hpp"
 #include "apps/calibrate/pan_tilt_input.hpp"
+#include "apps/calibrate/pan_tilt_tag_command.hpp"
 #include "apps/calibrate/robot_output.hpp"
 #include "calibration/robot/robot_results.hpp"
 #include "common/error.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 struct PanTiltCommandOptions {
   PanTiltInput input;
+  PanTiltTagCommand tags;
   std::string poses_are = "auto", gains = "auto";
   PanTiltOptions solver;
   CalibrateOutputs outputs;
@@ -92,7 +94,20 @@ void print(const PanTiltSummary& s, const PanTiltSummary& plain) {
             << readable(1e3 * s.model.backlash_rad[1], 3) << " mrad; poses beyond 5 sigma " << s.outliers << "\n";
 }
 
+/// A tag map decides: then the corners are solved for, not the poses of views.
+int run_with_tags(PanTiltCommandOptions& options) {
+  if (options.input.poses || options.input.corners || !options.input.board.empty())
+    throw InputError("--tags, --run", "stand beside --poses, --corners or --board", "choose one");
+  PanTiltTagCommand& command = options.tags;
+  command.input.images = options.input.images, command.input.angles = options.input.angles;
+  command.input.camera = options.input.camera, command.input.in_order = options.input.in_order;
+  if (options.gains != "auto") command.solver.gains = options.gains == "on";
+  command.outputs = options.outputs;
+  return calibrate_from_tags(command);
+}
+
 int run(PanTiltCommandOptions& options) {
+  if (options.tags.input.tags || options.tags.input.run) return run_with_tags(options);
   std::vector<std::string> notes;
   const std::vector<PanTiltSample> samples = read_pan_tilt_samples(options.input, notes);
   if (options.poses_are != "auto") options.solver.inverted = options.poses_are == "camera-world";
@@ -126,10 +141,14 @@ void add_pan_tilt(CLI::App& calibrate, std::function<int()>& action) {
       "Camera poses in the world: 4x4 rows or x y z qx qy qz qw; or .yaml with angles: NAME: {pose, target_joints}");
   head->add_option("--angles", input.angles,
                    "Rows [name] pan tilt [pan_way tilt_way], rad; ways +1 or -1: from below or above");
-  head->add_option("--images", input.images, "Views of a board or tag map that stands still, instead of poses");
+  head->add_option("--images", input.images,
+                   "Views of a tag map (--tags) or a board that stands still, instead of poses");
   head->add_option("--corners", input.corners, "Found corners instead of images");
-  head->add_option("--board", input.board, "The board or tag map, such as apriltag:6x6:0.055");
-  head->add_option("--camera", input.camera, "The camera's lens, for views: result of kind intrinsics, or camera_info");
+  head->add_option("--board", input.board, "The board, such as apriltag:6x6:0.055");
+  head->add_option("--camera", input.camera,
+                   "The lens, for views: result of kind intrinsics (with --tags also stereo), or camera_info");
+  add_tag_options(*head, options->tags.input);
+  head->add_option("--time", options->tags.time, "Result of `calibrate time` for --run; else a moving head tells it");
   head->add_option("--poses-are", options->poses_are, "camera to world, or its inverse")
       ->check(CLI::IsMember({"auto", "world-camera", "camera-world"}))
       ->capture_default_str();
@@ -140,8 +159,11 @@ void add_pan_tilt(CLI::App& calibrate, std::function<int()>& action) {
       ->capture_default_str();
   add_outputs(*head, options->outputs);
   head->footer(
-      "Example:\n  foresight calibrate pan-tilt --images head --board apriltag:6x6:0.055 --camera left.yaml --angles "
-      "angles.txt --json head.json");
+      "Examples:\n"
+      "  foresight calibrate pan-tilt --images left --right right --angles angles.txt --tags tags.txt --camera "
+      "stereo.yaml --out head.yaml\n"
+      "  foresight calibrate pan-tilt --run sweep --tags tags.txt --out head.yaml\n"
+      "  foresight calibrate pan-tilt --images head --board apriltag:6x6:0.055 --camera left.yaml --angles angles.txt");
   head->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

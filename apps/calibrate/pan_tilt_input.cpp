@@ -88,16 +88,12 @@ std::vector<PanTiltSample> from_views(const PanTiltInput& input, std::vector<std
     corners = read_corners(*input.corners, board);
     for (const BoardView& view : corners.views) images.push_back(view.name);
   }
-  const std::vector<NamedAngles> angles = read_angles(input.angles);
-  if (angles.size() != images.size())
-    throw InputError("--angles",
-                     std::to_string(angles.size()) + " rows for " + std::to_string(images.size()) + " images",
-                     "give one row an image");
+  const std::vector<PanTiltAngles> angles = read_angles_of(input.angles, images);
   const CameraModel camera = read_camera_file(*input.camera);
   std::vector<PanTiltSample> samples;
   for (const BoardView& view : corners.views) {
     const auto at = std::find(images.begin(), images.end(), view.name) - images.begin();
-    samples.push_back({view.name, angles[static_cast<std::size_t>(at)].angles,
+    samples.push_back({view.name, angles[static_cast<std::size_t>(at)],
                        board_pose(camera, corners.p_board, view).T_camera_board.inverse()});
   }
   return samples;
@@ -118,6 +114,24 @@ std::vector<PanTiltSample> from_files(const PanTiltInput& input, std::vector<std
 }
 
 }  // namespace
+
+std::vector<PanTiltAngles> read_angles_of(const std::optional<std::filesystem::path>& file,
+                                          const std::vector<std::string>& images) {
+  const std::vector<NamedAngles> rows = read_angles(file);
+  const auto of = [&](const std::string& image) {
+    return std::find_if(rows.begin(), rows.end(), [&](const NamedAngles& row) {
+      return row.name == image || std::filesystem::path(row.name).stem() == image;
+    });
+  };
+  std::vector<PanTiltAngles> out;
+  const bool by_name =
+      std::all_of(images.begin(), images.end(), [&](const std::string& image) { return of(image) != rows.end(); });
+  if (!by_name && rows.size() != images.size())
+    throw InputError("--angles", std::to_string(rows.size()) + " rows for " + std::to_string(images.size()) + " images",
+                     "give one row an image");
+  for (std::size_t i = 0; i < images.size(); ++i) out.push_back(by_name ? of(images[i])->angles : rows[i].angles);
+  return out;
+}
 
 std::vector<PanTiltSample> read_pan_tilt_samples(const PanTiltInput& input, std::vector<std::string>& notes) {
   std::vector<PanTiltSample> samples;

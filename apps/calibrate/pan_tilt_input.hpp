@@ -19,4 +19,9 @@ struct PanTiltInput {
 /// Throws InputError naming file and line.
 std::vector<PanTiltSample> read_pan_tilt_samples(const PanTiltInput& input, std::vector<std::string>& notes);
 
+/// Of each image (names without extension): by name where every one has a row of its name, else row by row. Throws
+/// InputError where the numbers differ, or a row is wrong.
+std::vector<PanTiltAngles> read_angles_of(const std::optional<std::filesystem::path>& file,
+                                          const std::vector<std::string>& images);
+
 }  // namespace foresight

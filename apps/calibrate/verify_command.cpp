@@ -5,6 +5,7 @@
 
 #include "apps/calibrate/camera_input.hpp"
 #include "apps/calibrate/outputs.hpp"
+#include "apps/calibrate/pan_tilt_verify.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/camera/held_out.hpp"
 #include "common/error.hpp"
@@ -19,6 +20,7 @@ struct VerifyOptions {
   std::filesystem::path result;
   CameraInput input;
   std::optional<double> joint_px, cross_px, epipolar_px;
+  PanTiltVerify head;
   std::optional<std::filesystem::path> json;
 };
 
@@ -31,7 +33,7 @@ KnownRig read_rig(const std::filesystem::path& file) {
   const std::string kind = YamlMap::load(file).text("kind");
   if (kind != "intrinsics" && kind != "stereo")
     throw InputError(file.string(), "it holds a result of kind " + in_quotes(kind),
-                     "give one of `foresight calibrate stereo` or `intrinsics`");
+                     "give one of `foresight calibrate stereo`, `intrinsics` or `pan-tilt`");
   const ResultFile result = read_result(file, kind);
   KnownRig known;
   known.score_px = result.header.score;
@@ -88,22 +90,50 @@ int verify(const VerifyOptions& options) {
   return pass ? 0 : 1;
 }
 
+int verify_any(const VerifyOptions& options) {
+  if (YamlMap::load(options.result).text("kind") != "pan-tilt") return verify(options);
+  PanTiltVerify head = options.head;
+  head.result = options.result, head.json = options.json;
+  head.input.images = options.input.images ? options.input.images : options.input.left;
+  head.input.right = options.input.right;
+  return verify_head(head);
+}
+
+void add_head_options(CLI::App& command, PanTiltVerify& head) {
+  PanTiltTagInput& input = head.input;
+  auto* group = command.add_option_group("Of a head (result of pan-tilt)");
+  group->add_option("--tags", input.tags, "Map of tags that stand still: rows id corner x y z, world, m");
+  group->add_option("--run", input.run, "A recorded run and its joints, instead of images");
+  group->add_option("--joints", input.joints, "The joints of the run (default: RUN-joints.csv)");
+  group->add_option("--joint-names", input.joint_names, "Of pan and tilt in it")->expected(2)->capture_default_str();
+  group->add_option("--time", head.time, "Result of `calibrate time`");
+  group->add_option("--angles", input.angles, "Of each image: rows [name] pan tilt [pan_way tilt_way]");
+  group->add_option("--camera", input.camera, "Lens: result of stereo or intrinsics, or camera_info");
+  group->add_option("--camera-right", input.camera_right, "The right camera's (camera_info with T_left_right)");
+  group->add_option("--family", input.family, "Of the tags")->capture_default_str();
+  group->add_option("--encoders-px", head.encoders_px, "Limit by encoders alone, RMS")->capture_default_str();
+  group->add_option("--tags-px", head.tags_px, "Limit of tags that others have corrected, RMS")->capture_default_str();
+}
+
 }  // namespace
 
 void add_verify(CLI::App& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand("verify", "Errors of a result on views that no solver has seen");
   auto options = std::make_shared<VerifyOptions>();
-  command->add_option("--result", options->result, "Result file of `stereo` or `intrinsics`")->required();
+  command->add_option("--result", options->result, "Result file of `stereo`, `intrinsics` or `pan-tilt`")->required();
   add_camera_input(*command, options->input, true);
   command->add_option("--images", options->input.images, "Of one camera: folder of images, or a pattern");
+  add_head_options(*command, options->head);
   command->add_option("--joint", options->joint_px, "Limit in px; default: 1.5 times the result's own score");
   command->add_option("--cross", options->cross_px, "Limit in px; default: 2.1 times the result's own score");
   command->add_option("--epipolar", options->epipolar_px, "Limit in px; default: 1.5 times the result's own score");
   command->add_option("--json", options->json, "File for all numbers");
   command->footer(
-      "Example: foresight calibrate verify --result stereo.yaml --corners new.vnl "
-      "--board chessboard:9x6:0.025\nExit code: 1 where a limit is exceeded.");
-  command->callback([options, &action] { action = [options] { return verify(*options); }; });
+      "Examples: foresight calibrate verify --result stereo.yaml --corners new.vnl "
+      "--board chessboard:9x6:0.025\n"
+      "          foresight calibrate verify --result head.yaml --run sweep2 --tags tags.txt\nExit code: 1 where a "
+      "limit is exceeded.");
+  command->callback([options, &action] { action = [options] { return verify_any(*options); }; });
 }
 
 }  // namespace foresight

@@ -38,7 +38,11 @@ RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options)
   if (options_.write_scene) options_.write_scene(folder);
   open_list(rgb_, folder / "rgb.txt", "time[s] file");
   open_list(rgb_right_, folder / "rgb_right.txt", "time[s] file");
-  if (options_.poses)
+  if (options_.tags) fs::copy_file(*options_.tags, folder / "tags.txt");
+  if (options_.registration)
+    open_list(registration_, folder / "registration.txt",
+              "time[s] quality predicted[px]: of the left image's pose, RMS over the image");
+  if (options_.poses || options_.registration)
     open_list(trajectory_, folder / "trajectory.txt",
               "time[s] tx ty tz[m] qx qy qz qw: T_world_camera of the left camera");
   writer_ = std::jthread([this] { run(); });
@@ -77,7 +81,7 @@ void RunRecorder::add(const StereoPair& pair) {
   check(pair.right, options_.right, "right", last_right_);
   last_left_ = pair.left.time;
   last_right_ = pair.right.time;
-  Job job{pair, {}, {}};
+  Job job{pair, {}, {}, options_.registration ? options_.registration() : PairRegistration{}};
   if (options_.poses) {
     job.left = options_.poses(pair.left.time);
     if (pair.right.time != pair.left.time) job.right = options_.poses(pair.right.time);
@@ -132,10 +136,22 @@ void RunRecorder::write(const Job& job) {
   if (options_.slowed_by.count() > 0) std::this_thread::sleep_for(options_.slowed_by);
   write_image("rgb", job.pair.left, rgb_);
   write_image("rgb_right", job.pair.right, rgb_right_);
+  if (job.registration) return write_registered(job);
   const bool right_first = job.right && job.pair.right.time < job.pair.left.time;
   if (right_first) write_poses(job.pair.right.time, *job.right);
   if (job.left) write_poses(job.pair.left.time, *job.left);
   if (job.right && !right_first) write_poses(job.pair.right.time, *job.right);
+}
+
+/// The right image's pose follows from those of the left ones around it.
+void RunRecorder::write_registered(const Job& job) {
+  const RobotTime time = job.pair.left.time;
+  const RegisteredPose found = job.registration(job.pair);
+  registration_ << time_text(time) << ' ' << found.quality << ' ' << sim::format("%.4f", found.predicted_px) << '\n';
+  if (found.quality == "lost") return;
+  RecordedPoses poses = job.left.value_or(RecordedPoses{});
+  poses.T_world_left = found.T_world_left;
+  write_poses(time, poses);
 }
 
 void RunRecorder::write_image(const std::string& folder, const ColourImage& image, std::ofstream& list) {
@@ -163,7 +179,7 @@ RecorderCounts RunRecorder::finish(const std::string& remarks) {
     throw RuntimeFailure(full_ ? "the disk of " + target_.target().string() + " is full: nothing was recorded"
                                : "no pair of images came: nothing was recorded",
                          full_ ? "free some disk space" : "see what `foresight doctor` says of the cameras");
-  for (std::ofstream* list : {&rgb_, &rgb_right_, &trajectory_, &nodes_}) {
+  for (std::ofstream* list : {&rgb_, &rgb_right_, &trajectory_, &nodes_, &registration_}) {
     if (!list->is_open()) continue;
     list->close();
     if (!*list) cannot_write(target_.target(), std::strerror(errno));

@@ -28,12 +28,25 @@ struct RecordedPoses {
   std::vector<std::pair<std::string, Pose>> T_world_node;  ///< of nodes that move, by name
 };
 
+/// What a registration says of a pair's left image.
+struct RegisteredPose {
+  Pose T_world_left = Pose::Identity();
+  double predicted_px = 0;  ///< expected error, RMS over the image
+  std::string quality;      ///< one word; "lost": there is no pose
+};
+using PairRegistration = std::function<RegisteredPose(const StereoPair&)>;
+
 struct RecorderOptions {
   Lens left, right;
   Pose T_left_right = Pose::Identity();
   /// Poses at a capture time; called on the thread of add(). Empty: the run gets no trajectory.txt, and whoever
   /// replays it has to add one.
   std::function<RecordedPoses(RobotTime)> poses;
+  /// Called on the thread of add(), it takes note of what encoders have told so far, and is quick. What it returns is
+  /// called on the writing thread, pair after pair in their order, though not for those that were dropped. Its poses
+  /// go before those of `poses`; of each image there is a line in registration.txt. Empty: poses come from `poses`.
+  std::function<PairRegistration()> registration;
+  std::optional<std::filesystem::path> tags;  ///< map of tags, copied into the run as tags.txt
   /// Writes the scene's files into the folder; empty: the run gets none (`foresight replay --scene`).
   std::function<void(const std::filesystem::path&)> write_scene;
   std::size_t waiting = 8;    ///< pairs in memory, at most; > 0
@@ -74,17 +87,19 @@ class RunRecorder {
   struct Job {
     StereoPair pair;
     std::optional<RecordedPoses> left, right;  // at the capture times of the two
+    PairRegistration registration;
   };
   void check(const ColourImage& image, const Lens& lens, const char* side, RobotTime last) const;
   void run() noexcept;
   void write(const Job& job);
+  void write_registered(const Job& job);
   void write_poses(RobotTime time, const RecordedPoses& poses);
   void write_image(const std::string& folder, const ColourImage& image, std::ofstream& list);
   void join();
 
   RecorderOptions options_;
   sim::TargetFolder target_;
-  std::ofstream rgb_, rgb_right_, trajectory_, nodes_;
+  std::ofstream rgb_, rgb_right_, trajectory_, nodes_, registration_;
   RobotTime last_left_{INT64_MIN}, last_right_{INT64_MIN}, last_pose_{INT64_MIN};
 
   mutable std::mutex mutex_;  // jobs_, counts_, closing_

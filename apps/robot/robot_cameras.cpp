@@ -61,6 +61,12 @@ RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, Clock& c
     const sim::ShaftsAt shafts = [this](std::string_view joint, RobotTime t) { return devices_.shaft_at(joint, t); };
     RecorderOptions recording = recorder_options(config, ready_, shafts);
     recording.waits = dynamic_cast<SteppedClock*>(&clock) != nullptr;
+    if (rig.calibration) {
+      const StereoLenses lenses{recording.left, recording.right, recording.T_left_right};
+      head_ = std::make_unique<HeadRegistration>(rig, lenses);
+      recording.registration = [head = head_.get()] { return head->prepare(); };
+      recording.tags = rig.calibration->tags;
+    }
     recording_ = std::make_unique<Recording>(std::move(recording), *options.record);
   }
   watch_ = std::make_unique<CameraWatch>(

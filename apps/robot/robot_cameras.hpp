@@ -7,6 +7,7 @@
 
 #include "apps/cameras/open_stereo.hpp"
 #include "apps/robot/camera_watch.hpp"
+#include "apps/robot/head_registration.hpp"
 #include "apps/robot/robot_devices.hpp"
 
 namespace foresight {
@@ -41,12 +42,16 @@ struct RobotCameraOptions {
 class RobotCameras {
  public:
   /// Throws what as_mock() does, of mock cameras what open_stereo() does, and, where it records, what
-  /// recorder_options() and RunRecorder do: known before anything moves.
+  /// recorder_options(), RunRecorder and HeadRegistration do: known before anything moves.
   RobotCameras(const Rig& rig, const RobotDevices& devices, Clock& clock, const RobotCameraOptions& options);
   ~RobotCameras();
 
   CameraWatch& watch() { return *watch_; }
   const CameraWatch& watch() const { return *watch_; }
+  /// Where the joints are, for the poses of recorded pairs, where the rig's head is calibrated. Any one thread.
+  void add_encoders(const RobotStatus& status) {
+    if (head_) head_->add(status);
+  }
   /// Stops the cameras and finishes the recording. What there is to say, one line each; empty without a recording.
   /// Throws RuntimeFailure where the recording cannot be finished.
   std::string finish();
@@ -57,7 +62,8 @@ class RobotCameras {
 
   const RobotDevices& devices_;
   Clock& clock_;
-  OpenStereo ready_;  // until the watch takes the cameras
+  OpenStereo ready_;                        // until the watch takes the cameras
+  std::unique_ptr<HeadRegistration> head_;  // outlives the recording, whose thread uses it
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<CameraWatch> watch_;  // the last: its thread uses all above
 };

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/scene_model.hpp"
@@ -46,7 +48,11 @@ std::vector<PointPair> read_point_pairs(const std::filesystem::path& file);
 /// "tag 7 corner 2".
 std::string tag_corner_name(long long tag, long long corner);
 
-/// Rows "id corner x y z", in the order of the tags; p_model is set. Throws InputError naming file and line.
+/// Rows "id corner x y z", corner 0 to 3, metres, by tag and corner. Throws InputError naming file and line: another
+/// form, a corner given twice.
+std::map<std::pair<long long, long long>, Eigen::Vector3d> read_tag_places(const std::filesystem::path& file);
+
+/// The same in the order of the tags; p_model is set. Throws InputError naming file and line.
 std::vector<PointPair> read_tag_corners(const std::filesystem::path& file);
 
 /// Tags: rows "id corner x y z" (corner 0 to 3) of the model and of the world; corners in both become pairs.

@@ -34,10 +34,10 @@ std::size_t field_count(const std::filesystem::path& file) {
   return 0;
 }
 
-using TagCorners = std::map<std::pair<long long, long long>, Eigen::Vector3d>;
+}  // namespace
 
-TagCorners read_corners(const std::filesystem::path& file) {
-  TagCorners corners;
+std::map<std::pair<long long, long long>, Eigen::Vector3d> read_tag_places(const std::filesystem::path& file) {
+  std::map<std::pair<long long, long long>, Eigen::Vector3d> corners;
   for_each_row(file, "id corner x y z", [&](const TextRow& row) {
     const auto id = parse_integer(row.fields[0]), corner = parse_integer(row.fields[1]);
     if (!id || *id < 0 || !corner || *corner < 0 || *corner > 3)
@@ -48,8 +48,6 @@ TagCorners read_corners(const std::filesystem::path& file) {
   });
   return corners;
 }
-
-}  // namespace
 
 std::vector<PointPair> read_point_pairs(const std::filesystem::path& file) {
   const bool with_sigma = field_count(file) == 7;
@@ -69,13 +67,13 @@ std::string tag_corner_name(long long tag, long long corner) {
 
 std::vector<PointPair> read_tag_corners(const std::filesystem::path& file) {
   std::vector<PointPair> points;
-  for (const auto& [key, p] : read_corners(file))
+  for (const auto& [key, p] : read_tag_places(file))
     points.push_back({tag_corner_name(key.first, key.second), p, Eigen::Vector3d::Zero(), 0});
   return points;
 }
 
 std::vector<PointPair> read_tag_pairs(const std::filesystem::path& model, const std::filesystem::path& world) {
-  const TagCorners in_model = read_corners(model), in_world = read_corners(world);
+  const auto in_model = read_tag_places(model), in_world = read_tag_places(world);
   std::vector<PointPair> points;
   for (const auto& [key, p_model] : in_model)
     if (const auto found = in_world.find(key); found != in_world.end())

@@ -11,7 +11,12 @@ Eigen::AngleAxisd about_z(double angle) {
 }
 
 double play(double before, double encoder, double backlash) {
-  return std::clamp(before, encoder - backlash / 2, encoder + backlash / 2);
+  const double half = std::abs(backlash) / 2;
+  return std::clamp(before, encoder - half, encoder + half);
+}
+
+double behind_play(double encoder, double played, double backlash) {
+  return backlash >= 0 ? played : 2 * encoder - played;
 }
 
 HeadAngles mix(const HeadAngles& a, const HeadAngles& b, double s) {
@@ -32,8 +37,11 @@ bool EncoderTrack::add(RobotTime encoder_time, const HeadAngles& encoders) {
     return false;
   played_ = {play(played_.pan, encoders.pan, model_.pan.backlash_rad),
              play(played_.tilt, encoders.tilt, model_.tilt.backlash_rad)};
-  const auto shaft = [](const HeadAxis& axis, double value) { return axis.scale * value + axis.offset_rad; };
-  samples_.push_back({encoder_time, {shaft(model_.pan, played_.pan), shaft(model_.tilt, played_.tilt)}});
+  const auto shaft = [](const HeadAxis& axis, double encoder, double played) {
+    return axis.scale * behind_play(encoder, played, axis.backlash_rad) + axis.offset_rad;
+  };
+  samples_.push_back(
+      {encoder_time, {shaft(model_.pan, encoders.pan, played_.pan), shaft(model_.tilt, encoders.tilt, played_.tilt)}});
   while (to_seconds(encoder_time - samples_.front().time) > options_.kept_s) samples_.pop_front();
   return true;
 }

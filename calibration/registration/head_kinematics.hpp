@@ -4,11 +4,14 @@
 //
 // Rz turns about the axis of the frame before it, by the right hand. A shaft stands where its
 // encoder says, times `scale`, plus `offset`, and follows with play: it rests until the encoder
-// has crossed the backlash (the play operator: shaft in [q - b/2, q + b/2], moved no more than needed).
+// has crossed the backlash (the play operator: shaft in [q - b/2, q + b/2], moved no more than needed). That is
+// play between a motor's encoder and the shaft. A negative backlash is play between the shaft and its encoder, which
+// then follows: the shaft is as far ahead as it lagged behind before.
 #pragma once
 
 #include <deque>
 
+#include "calibration/registration/twist.hpp"
 #include "common/time.hpp"
 #include "scene/scene_model.hpp"
 
@@ -22,7 +25,7 @@ struct HeadAngles {
 struct HeadAxis {
   double scale = 1;         ///< shaft per encoder
   double offset_rad = 0;    ///< shaft where the encoder says zero
-  double backlash_rad = 0;  ///< full width of the play, >= 0
+  double backlash_rad = 0;  ///< full width of the play, in the encoder's angle; below 0: the encoder follows
 };
 
 /// What `calibrate pan-tilt` and `calibrate time` find.
@@ -34,6 +37,8 @@ struct HeadModel {
   double offset_s = 0;        ///< t_encoder = t_camera + offset_s
   double sigma_rad = 0.0005;  ///< of each shaft's angle against the model, > 0
   double sigma_offset_s = 0.001;
+  /// Of the camera's pose by the model's own errors: rotation vector (rad) and place (m), in the camera's frame.
+  Vector6d sigma_pose = Vector6d::Constant(0.01);
 };
 
 /// Left camera, by its shafts (not encoders).

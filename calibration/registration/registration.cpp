@@ -63,7 +63,7 @@ RegistrationResult Registration::register_pair(RobotTime camera_time, const cv::
   return register_tags(camera_time, in_left, detect(right));
 }
 
-/// What the kinematics does not know: the model's own errors, and its speed times the clocks' error.
+/// What the kinematics does not know: the model's own errors, the shafts', and their speed times the clocks' error.
 Matrix6d Registration::kinematic_covariance(const EncoderTrack::Answer& at) const {
   constexpr double kStep = 1e-6;
   const Pose T_camera_world = T_world_camera(head_, at.shafts).inverse();
@@ -72,8 +72,11 @@ Matrix6d Registration::kinematic_covariance(const EncoderTrack::Answer& at) cons
     return Vector6d(to_twist(T_camera_world * T_world_camera(head_, moved)) / kStep);
   };
   const Vector6d pan = slope({1, 0}), tilt = slope({0, 1}), moving = slope(at.rate) * head_.sigma_offset_s;
-  return head_.sigma_rad * head_.sigma_rad * (pan * pan.transpose() + tilt * tilt.transpose()) +
-         moving * moving.transpose();
+  const Matrix6d model = head_.sigma_pose.array().square().matrix().asDiagonal();
+  // What tags last found to be wrong with the model is wrong with it until they say otherwise.
+  const Vector6d found = held_ ? to_twist(held_->summary.T_left_corrected) : Vector6d::Zero();
+  return model + found * found.transpose() + moving * moving.transpose() +
+         head_.sigma_rad * head_.sigma_rad * (pan * pan.transpose() + tilt * tilt.transpose());
 }
 
 double Registration::px(const Matrix6d& covariance) const {
@@ -106,8 +109,7 @@ RegistrationResult Registration::register_tags(RobotTime camera_time, const std:
   result.T_world_left = T_world_camera(head_, at.shafts);
   correction_.add(camera_time, result.T_world_left, left, right);
   if (correction_.newest()) result.tags = correction_.solve(camera_time);
-  const Matrix6d prior = options_.correction.prior_sigma.array().square().matrix().asDiagonal();
-  const Matrix6d kinematic = prior + kinematic_covariance(at);
+  const Matrix6d kinematic = kinematic_covariance(at);
   result.quality = RegistrationQuality::encoders;
   result.covariance = kinematic;
   if (result.tags.usable) {

@@ -16,6 +16,9 @@ namespace {
 /// AprilTag counts pixels from the corner of the image, we from the centre of its first pixel.
 constexpr double kPixelOffset = 0.5;
 
+/// A tag that the border cuts off is found all the same, with corners on the border.
+constexpr double kLeastBorder = 4;  // px
+
 using Family = std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)>;
 
 Family create_family(const std::string& name) {
@@ -31,6 +34,13 @@ double shortest_side(const DetectedTag& tag) {
   double shortest = 1e9;
   for (std::size_t i = 0; i < 4; ++i) shortest = std::min(shortest, (tag.corners[i] - tag.corners[(i + 1) % 4]).norm());
   return shortest;
+}
+
+bool is_inside(const DetectedTag& tag, const cv::Size& size) {
+  return std::all_of(tag.corners.begin(), tag.corners.end(), [&](const Eigen::Vector2d& corner) {
+    return (corner.array() >= kLeastBorder).all() && corner.x() <= size.width - 1 - kLeastBorder &&
+           corner.y() <= size.height - 1 - kLeastBorder;
+  });
 }
 
 }  // namespace
@@ -60,7 +70,9 @@ std::vector<DetectedTag> TagDetector::detect(const cv::Mat& grey) {
     zarray_get(found.get(), i, &d);
     DetectedTag tag{d->id, {}, d->decision_margin};
     for (std::size_t c = 0; c < 4; ++c) tag.corners[c] = {d->p[c][0] - kPixelOffset, d->p[c][1] - kPixelOffset};
-    if (tag.margin >= options_.least_margin && shortest_side(tag) >= options_.least_side_px) tags.push_back(tag);
+    if (tag.margin >= options_.least_margin && shortest_side(tag) >= options_.least_side_px &&
+        is_inside(tag, grey.size()))
+      tags.push_back(tag);
   }
   std::sort(tags.begin(), tags.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   std::vector<DetectedTag> once;

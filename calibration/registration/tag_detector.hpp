@@ -29,7 +29,7 @@ class TagDetector {
   explicit TagDetector(const Options& options);
   ~TagDetector();
 
-  /// Tags of `grey` (CV_8UC1); one that is found twice is left out. Ascending by id.
+  /// Tags of `grey` (CV_8UC1); one that is found twice or touches the border is left out. Ascending by id.
   std::vector<DetectedTag> detect(const cv::Mat& grey);
 
  private:

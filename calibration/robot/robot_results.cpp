@@ -57,6 +57,15 @@ YAML::Node to_yaml(const PanTiltModel& model) {
   return out;
 }
 
+YAML::Node to_yaml(const PanTiltTagSummary& summary, std::optional<double> offset_s) {
+  YAML::Node out = to_yaml(summary.model);
+  if (offset_s) out["offset_s"] = *offset_s;
+  for (const double sigma : summary.pose_sigma) out["pose_sigma"].push_back(sigma);
+  out["shaft_sigma_rad"] = summary.shaft_rad;
+  out["corner_px"] = summary.corner_px;
+  return out;
+}
+
 std::map<std::string, double> sigmas_of(const HandEyeSummary& summary, const ArmNames& names) {
   std::map<std::string, double> out;
   add_motion(name_of_X(summary.mount), summary.X_sigma, out);
@@ -74,6 +83,12 @@ std::map<std::string, double> sigmas_of(const HandEyeSummary& summary, const Arm
 std::map<std::string, double> sigmas_of(const TimeOffsetSummary& summary) {
   std::map<std::string, double> out{{"offset_s", summary.offset_sigma_s}};
   add_motion("T_hand_camera", summary.X_sigma, out);
+  return out;
+}
+
+std::map<std::string, double> sigmas_of(const PanTiltTagSummary& summary) {
+  std::map<std::string, double> out;
+  for (std::size_t i = 0; i < summary.names.size(); ++i) out[summary.names[i]] = summary.sigmas[i];
   return out;
 }
 

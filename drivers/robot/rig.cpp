@@ -177,6 +177,29 @@ void read_robot(const YamlMap& map, Rig& rig) {
   if (map.has("pose")) rig.T_world_robot = map.pose("pose");
 }
 
+RigCalibration read_calibration(const YamlMap& map) {
+  map.require_known({"pan_tilt", "time", "tags"});
+  const auto file = [&](const std::string& key) {
+    std::filesystem::path path = map.file().parent_path() / map.text(key);
+    if (!std::filesystem::is_regular_file(path))
+      throw InputError(map.where(key), "there is no file " + path.string(), "give its path, relative to the rig file");
+    return path;
+  };
+  RigCalibration out{file("pan_tilt"), {}, {}};
+  if (map.has("time")) out.time = file("time");
+  if (map.has("tags")) out.tags = file("tags");
+  return out;
+}
+
+void require_head(const YamlMap& map, const Rig& rig) {
+  const auto joints = std::count_if(rig.joints.begin(), rig.joints.end(),
+                                    [](const RigJoint& joint) { return joint.group == JointGroup::pan_tilt; });
+  if (joints != 2)
+    throw InputError(map.where("calibration"),
+                     "is that of a pan-tilt head, but " + std::to_string(joints) + " joints have the group pan_tilt",
+                     "give pan and tilt, in this order, or remove the section");
+}
+
 }  // namespace
 
 const char* to_string(JointGroup group) {
@@ -221,7 +244,7 @@ std::unique_ptr<RobotShape> Rig::shape() const {
 
 Rig read_rig(const std::filesystem::path& file) {
   const YamlMap map = YamlMap::load(file);
-  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "cameras"});
+  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "cameras", "calibration"});
   Rig rig;
   rig.name = map.text("name");
   if (map.has("robot")) read_robot(map.map("robot"), rig);
@@ -231,6 +254,10 @@ Rig read_rig(const std::filesystem::path& file) {
   for (const YamlMap& joint : map.maps("joints")) rig.joints.push_back(read_joint(joint, rig.buses));
   check_joints(map, rig);
   if (map.has("cameras")) rig.cameras = read_stereo_config(map.map("cameras"));
+  if (map.has("calibration")) {
+    rig.calibration = read_calibration(map.map("calibration"));
+    require_head(map, rig);
+  }
   rig.gate_options().validate(file.string());
   return rig;
 }

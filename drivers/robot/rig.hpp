@@ -37,6 +37,13 @@ struct RigJoint {
   bool absolute = false;       ///< CiA 402: its encoder knows the position from power-on, it needs no homing
 };
 
+/// Results of `foresight calibrate`; whoever uses them reads them.
+struct RigCalibration {
+  std::filesystem::path pan_tilt;             ///< kind "pan-tilt"
+  std::optional<std::filesystem::path> time;  ///< kind "time"
+  std::optional<std::filesystem::path> tags;  ///< map of tags that stand still: rows id corner x y z
+};
+
 struct Rig {
   std::string name;
   std::optional<UrdfRobot> robot;  ///< without it, nothing is checked against the surroundings
@@ -46,6 +53,7 @@ struct Rig {
   std::vector<RigBus> buses;
   std::vector<RigJoint> joints;  ///< in the order of the file, which is that of commands
   std::optional<StereoConfig> cameras;
+  std::optional<RigCalibration> calibration;
 
   /// What the safety gate needs of all that.
   GateOptions gate_options() const;

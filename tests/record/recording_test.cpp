@@ -133,6 +133,35 @@ TEST_F(Recording, IsARunThatCanBeReadBack) {
   }
 }
 
+TEST_F(Recording, TakesThePosesOfARegistrationOnItsOwnThread) {
+  const auto taker = std::this_thread::get_id();
+  int prepared = 0;
+  options_.poses = {};
+  options_.tags = folder_.write("map.txt", "1 0 0 0 0\n");
+  options_.waits = true;
+  options_.registration = [&]() -> PairRegistration {
+    EXPECT_EQ(std::this_thread::get_id(), taker);
+    return [k = ++prepared, taker](const StereoPair& pair) {
+      EXPECT_NE(std::this_thread::get_id(), taker);
+      RegisteredPose found{Pose::Identity(), 0.25 * k, k == 3 ? "lost" : "tags"};
+      found.T_world_left.translation().x() = to_seconds(pair.left.time - RobotTime{});
+      return found;
+    };
+  };
+  RunRecorder recorder(folder_ / "run", options_);
+  for (int i = 1; i <= 5; ++i) recorder.add(pair_at(20 * i));
+  recorder.finish("");
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  ASSERT_EQ(run.frames().size(), 5u);
+  for (const RunFrame& frame : run.frames())
+    EXPECT_NEAR(frame.left.T_world_camera.translation().x(), to_seconds(frame.left.time - RobotTime{}), 1e-6);
+  EXPECT_EQ(run.frames()[2].left.pose_status, StateStatus::interpolated) << "what is lost has no pose of its own";
+  EXPECT_EQ(run.frames()[1].left.pose_status, StateStatus::exact);
+  EXPECT_DOUBLE_EQ(run.frames()[1].left.predicted_px.value(), 0.5);
+  EXPECT_THAT(folder_.read("run/registration.txt"), HasSubstr("lost 0.75"));
+  EXPECT_EQ(folder_.read("run/tags.txt"), "1 0 0 0 0\n");
+}
+
 TEST_F(Recording, KeepsWhatCameBeforeACameraFellSilent) {
   RecordingLimits limits;
   limits.silent_after = 500ms;

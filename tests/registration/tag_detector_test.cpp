@@ -51,6 +51,24 @@ TEST(TagDetector, LeavesOutATagThatIsThereTwice) {
   for (const DetectedTag& tag : detector.detect(picture)) EXPECT_NE(tag.id, tags[4].id);
 }
 
+TEST(TagDetector, LeavesOutATagAtTheBorder) {
+  const cv::Mat picture =
+      sim::TagRoom(sim::TagRoom::lab_tags()).picture(lab_rays(), sim::T_world_head_left({0, 0.55}), 0, 1);
+  TagDetector detector({});
+  for (const DetectedTag& tag : detector.detect(picture)) {
+    double least = 1e9;
+    for (const Eigen::Vector2d& corner : tag.corners) least = std::min(least, corner.x());
+    const auto seen = [&](double beside) {
+      const int first = static_cast<int>(least - beside);
+      const auto tags = detector.detect(picture.colRange(std::max(0, first), picture.cols).clone());
+      return std::any_of(tags.begin(), tags.end(), [&](const DetectedTag& other) { return other.id == tag.id; });
+    };
+    if (least < 60) continue;
+    EXPECT_TRUE(seen(12)) << tag.id;
+    EXPECT_FALSE(seen(2)) << tag.id;
+  }
+}
+
 TEST(TagDetector, NamesTheNearestFamily) {
   try {
     TagDetector detector({.family = "tag36h12"});

@@ -103,6 +103,21 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
          {"rig.yaml:2: cameras.right.driver", "mokc", "mock"});
 }
 
+TEST_F(BadRig, CalibrationNamesItsFiles) {
+  const auto error_of = [&](const std::string& section) {
+    return error_with("name: small", "name: small\ncalibration: {" + section + "}");
+  };
+  using testing::AllOf;
+  using testing::HasSubstr;
+  EXPECT_THAT(error_of("pan_tilt: head.yaml"), AllOf(HasSubstr("calibration.pan_tilt"), HasSubstr("there is no file")));
+  folder_.write("head.yaml", "kind: pan-tilt\n");
+  EXPECT_THAT(error_of("tags: tags.txt"), AllOf(HasSubstr("calibration.pan_tilt"), HasSubstr("missing")));
+  EXPECT_THAT(error_of("pan_tilt: head.yaml, tags: tags.txt"),
+              AllOf(HasSubstr("calibration.tags"), HasSubstr("there is no file")));
+  EXPECT_THAT(error_of("pan_tilt: head.yaml, tag: t"), HasSubstr("did you mean 'tags'"));
+  EXPECT_THAT(error_of("pan_tilt: head.yaml"), HasSubstr("0 joints have the group pan_tilt"));
+}
+
 TEST_F(BadRig, JointsMustBeThoseOfTheUrdf) {
   folder_.write("two.urdf", R"(<robot name='r'><link name='base'/><link name='l1'/><link name='l2'/>
 <joint name='a' type='revolute'><parent link='base'/><child link='l1'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>

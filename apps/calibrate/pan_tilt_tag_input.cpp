@@ -1,0 +1,263 @@
+#include "apps/calibrate/pan_tilt_tag_input.hpp"
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+
+#include "apps/calibrate/pan_tilt_input.hpp"
+#include "apps/calibrate/robot_output.hpp"
+#include "calibration/camera/camera_result.hpp"
+#include "calibration/registration/calibrated_head.hpp"
+#include "calibration/result/result_file.hpp"
+#include "calibration/robot/robot_poses.hpp"
+#include "calibration/target/image_input.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "scene/camera_info.hpp"
+#include "scene/text_table.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Duration kSameInstant{200'000};  // of two cameras: a head at 1 rad/s turns by 0.2 mrad
+
+constexpr Duration kPartner{20'000'000};
+
+struct Picture {
+  fs::path file;
+  int camera = 0;
+};
+
+/// Pictures that were taken at one instant; their view has no tags yet.
+struct Shot {
+  PanTiltView view;
+  RobotTime time;
+  std::vector<Picture> pictures;
+};
+
+fs::path beside(fs::path run, const char* ending) {
+  if (!run.has_filename()) run = run.parent_path();
+  return run.concat(ending);
+}
+
+cv::Mat read_grey(const fs::path& file, const CameraModel& lens) {
+  const cv::Mat grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+  if (grey.empty()) throw InputError(file.string(), "is no picture that can be read", "remove it, or take it anew");
+  if (grey.cols != lens.width || grey.rows != lens.height)
+    throw InputError(file.string(),
+                     "is of " + std::to_string(grey.cols) + "x" + std::to_string(grey.rows) + ", the lens of " +
+                         std::to_string(lens.width) + "x" + std::to_string(lens.height),
+                     "give the --camera that took it");
+  return grey;
+}
+
+TagDetector detector_of(const std::string& family) {
+  TagDetector::Options options;
+  options.family = family;
+  options.decimate = 1;  // there is time
+  return TagDetector(options);
+}
+
+/// Finds what is in the pictures instead of the map's tags.
+std::string explain_no_tags(const std::vector<Shot>& shots, const PanTiltTagInput& input, const TagViews& out,
+                            const std::set<int>& strangers) {
+  if (!strangers.empty()) {
+    std::string ids;
+    for (const int id : strangers) ids += (ids.empty() ? "" : ", ") + std::to_string(id);
+    return "tags " + ids + " are in the pictures, none of them in " + input.tags->string();
+  }
+  std::string best;
+  std::size_t most = 1;
+  for (const std::string family : {"tag36h11", "tag25h9", "tag16h5"}) {
+    if (family == input.family) continue;
+    TagDetector detector = detector_of(family);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < shots.size(); i += std::max<std::size_t>(1, shots.size() / 3))
+      for (const Picture& picture : shots[i].pictures)
+        for (const DetectedTag& tag :
+             detector.detect(read_grey(picture.file, out.cameras.cameras[static_cast<std::size_t>(picture.camera)])))
+          found += out.map.contains(tag.id);
+    if (found > most) most = found, best = family;
+  }
+  return "0 tags of " + input.family + (best.empty() ? ", nor of another family" : "; " + best + " fits");
+}
+
+void find_tags(std::vector<Shot>& shots, const PanTiltTagInput& input, TagViews& out) {
+  TagDetector detector = detector_of(input.family);
+  std::set<int> strangers;
+  std::size_t known = 0;
+  for (Shot& shot : shots)
+    for (const Picture& picture : shot.pictures) {
+      const CameraModel& lens = out.cameras.cameras[static_cast<std::size_t>(picture.camera)];
+      for (const DetectedTag& tag : detector.detect(read_grey(picture.file, lens))) {
+        const auto at = out.map.find(tag.id);
+        if (at == out.map.end()) {
+          strangers.insert(tag.id);
+          continue;
+        }
+        shot.view.tags.push_back({tag.id, picture.camera, at->second, tag.corners});
+        ++known;
+      }
+    }
+  if (known == 0)
+    throw InputError(input.run ? "--run" : "--images", explain_no_tags(shots, input, out, strangers),
+                     "give the --family and the --tags that were in view");
+}
+
+std::vector<Shot> shots_of_images(const PanTiltTagInput& input) {
+  const std::vector<fs::path> left = list_images(*input.images);
+  const std::vector<fs::path> right = input.right ? list_images(*input.right) : std::vector<fs::path>{};
+  if (input.right && right.size() != left.size())
+    throw InputError("--right",
+                     std::to_string(right.size()) + " pictures for " + std::to_string(left.size()) + " left ones",
+                     "give one right picture for each left one, in the same order");
+  std::vector<std::string> names;
+  for (const fs::path& file : left) names.push_back(file.stem().string());
+  const std::vector<PanTiltAngles> angles = read_angles_of(input.angles, names);
+  std::vector<PanTiltSample> samples(left.size());
+  for (std::size_t i = 0; i < left.size(); ++i) samples[i] = {names[i], angles[i], Pose::Identity()};
+  if (input.in_order) came_from_order(samples);
+  std::vector<Shot> shots;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    Shot shot{{names[i], samples[i].angles, {0, 0}, {}}, {}, {{left[i], 0}}};
+    if (input.right) shot.pictures.push_back({right[i], 1});
+    shots.push_back(shot);
+  }
+  return shots;
+}
+
+std::vector<Shot> listed(const fs::path& list, int camera) {
+  std::vector<Shot> out;
+  for_each_row(list, "time file", [&](const TextRow& row) {
+    const fs::path file = list.parent_path() / row.fields[1];
+    out.push_back({{file.stem().string(), {}, {0, 0}, {}}, time_field(row, 0), {{file, camera}}});
+  });
+  return out;
+}
+
+/// Right pictures of the same instant belong to the left one's view, others have one of their own.
+std::vector<Shot> shots_of_run(const PanTiltTagInput& input, bool pair) {
+  std::vector<Shot> all = listed(*input.run / "rgb.txt", 0), right;
+  if (pair) right = listed(*input.run / "rgb_right.txt", 1);
+  std::vector<Shot> some;
+  const std::size_t count = std::min(all.size(), static_cast<std::size_t>(input.most_views));
+  for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * all.size() / count]);
+  const std::size_t lefts = some.size();
+  for (std::size_t i = 0; i < lefts && !right.empty(); ++i) {
+    const auto distance = [&](const Shot& shot) { return std::chrono::abs(shot.time - some[i].time); };
+    const Shot& nearest = *std::min_element(right.begin(), right.end(),
+                                            [&](const Shot& a, const Shot& b) { return distance(a) < distance(b); });
+    if (distance(nearest) <= kSameInstant) {
+      some[i].pictures.push_back(nearest.pictures[0]);
+    } else if (distance(nearest) <= kPartner) {
+      some.push_back(nearest);
+      some.back().view.name += " right";
+    }
+  }
+  return some;
+}
+
+std::vector<JointRow> read_joints(const PanTiltTagInput& input) {
+  const fs::path file = input.joints.value_or(beside(*input.run, "-joints.csv"));
+  if (!fs::exists(file))
+    throw InputError(file.string(), "is missing", "give the recorded joints with --joints: rows time pan tilt");
+  const std::vector<FieldRow> rows = read_field_rows(file);
+  std::vector<JointRow> joints = read_joint_stream(file);
+  std::array<std::size_t, 2> column{0, 1};
+  if (!rows.empty() && !parse_number(rows[0].fields.back())) {
+    const std::vector<std::string> names(rows[0].fields.begin() + 1, rows[0].fields.end());
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto at = std::find(names.begin(), names.end(), input.joint_names.at(i));
+      if (at == names.end())
+        throw InputError(file.string(), "has no joint " + in_quotes(input.joint_names[i]),
+                         "name the head's with --joint-names; the nearest is " +
+                             in_quotes(nearest_word(input.joint_names[i], names)));
+      column[i] = static_cast<std::size_t>(at - names.begin());
+    }
+  } else if (joints[0].positions.size() != 2) {
+    throw InputError(file.string(), "has " + std::to_string(joints[0].positions.size()) + " joints without names",
+                     "begin it with a row of names: time_s,pan,tilt");
+  }
+  for (JointRow& row : joints) row.positions = {row.positions[column[0]], row.positions[column[1]]};
+  return joints;
+}
+
+void require(bool given, const char* option, const char* what) {
+  if (!given) throw InputError(option, "is missing", what);
+}
+
+}  // namespace
+
+Rig read_cameras_file(const fs::path& file, const std::optional<fs::path>& right) {
+  Rig cameras;
+  const YamlMap top = YamlMap::load(file);
+  if (top.has("kind") && top.text("kind") == "stereo") {
+    const StereoModel stereo = read_stereo(read_result(file, "stereo").result);
+    cameras.cameras = {stereo.left, stereo.right};
+    cameras.T_left_right = stereo.T_left_right;
+    return cameras;
+  }
+  cameras.cameras = {read_camera_file(file)};
+  if (!right) return cameras;
+  const CameraInfo info = read_camera_info(*right);
+  if (!info.T_left_right) throw InputError(right->string(), "has no T_left_right", "say where the right camera is");
+  cameras.cameras.push_back(to_camera_model(info.lens));
+  cameras.T_left_right = *info.T_left_right;
+  return cameras;
+}
+
+TagViews read_tag_views(const PanTiltTagInput& given) {
+  PanTiltTagInput input = given;
+  if (input.run.has_value() == input.images.has_value())
+    throw InputError("--images, --run", input.run ? "are both given" : "are both missing",
+                     "give --images DIR with --angles FILE, or --run RUN");
+  if (input.run) {
+    if (!fs::is_regular_file(*input.run / "rgb.txt"))
+      throw InputError((*input.run / "rgb.txt").string(), "is missing",
+                       "give a folder that `foresight robot --record` or `foresight record` wrote");
+    if (!input.camera) {
+      input.camera = *input.run / "camera.yaml";
+      if (const fs::path right = *input.run / "camera_right.yaml"; fs::exists(right)) input.camera_right = right;
+    }
+    if (!input.tags && fs::exists(*input.run / "tags.txt")) input.tags = *input.run / "tags.txt";
+  }
+  require(input.tags.has_value(), "--tags", "give the map of the tags: rows id corner x y z");
+  require(input.camera.has_value(), "--camera", "give the calibrated lens, of `calibrate stereo` or `intrinsics`");
+  TagViews out;
+  out.map = read_tag_map(*input.tags);
+  out.cameras = read_cameras_file(*input.camera, input.camera_right);
+  const bool pair = out.cameras.cameras.size() == 2;
+  if (input.right && !pair)
+    throw InputError("--right", "there is no lens for it", "give a result of `calibrate stereo`, or --camera-right");
+  std::vector<Shot> shots = input.run ? shots_of_run(input, pair) : shots_of_images(input);
+  if (input.run) {
+    out.joints = read_joints(input);
+    out.encoders.emplace(out.joints, HeadEncoders::Options{});
+  }
+  find_tags(shots, input, out);
+  for (Shot& shot : shots) {
+    out.views.push_back(std::move(shot.view));
+    if (input.run) out.times.push_back(shot.time);
+  }
+  return out;
+}
+
+std::vector<PanTiltView> views_at(const TagViews& all, double offset_s) {
+  if (!all.encoders) return all.views;
+  std::vector<PanTiltView> out;
+  for (std::size_t i = 0; i < all.views.size(); ++i) {
+    const auto answer = all.encoders->at(all.times[i] + seconds(offset_s));
+    if (!answer) continue;
+    out.push_back(all.views[i]);
+    out.back().angles = answer->angles;
+    out.back().rate = answer->rate;
+  }
+  if (out.empty())
+    throw InputError("--joints", "the encoders tell nothing of the times of the pictures",
+                     "give the joints that were recorded with them, on the same clock");
+  return out;
+}
+
+}  // namespace foresight

@@ -1,0 +1,124 @@
+#include "apps/calibrate/pan_tilt_verify.hpp"
+
+#include <cstdio>
+#include <numeric>
+
+#include "apps/calibrate/outputs.hpp"
+#include "calibration/camera/camera_model.hpp"
+#include "calibration/registration/calibrated_head.hpp"
+#include "calibration/result/result_file.hpp"
+#include "common/error.hpp"
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+struct Score {
+  double squares = 0;
+  int points = 0;
+
+  double worst = 0;  // px, of a corner
+  std::string worst_tag;
+
+  /// Of the corners of `view`, in the order of its tags.
+  void add(const PanTiltView& view, const std::vector<double>& errors) {
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      squares += errors[i] * errors[i], ++points;
+      const SeenTag& tag = view.tags[i / 4];
+      if (errors[i] > worst)
+        worst = errors[i], worst_tag = "tag " + std::to_string(tag.id) + " in the " +
+                                       (tag.camera == 0 ? "left" : "right") + " picture of view " + view.name;
+    }
+  }
+  double px() const { return std::sqrt(squares / std::max(1, points)); }
+};
+
+struct PosedView {
+  PanTiltView view;
+  Pose T_world_left;  ///< by the encoders
+};
+
+/// Of a run as the registration sees it: the encoders with their play, at the calibrated offset.
+std::vector<PosedView> by_encoders(const PanTiltVerify& options, const TagViews& all) {
+  std::vector<PosedView> out;
+  if (all.joints.empty()) {
+    const PanTiltModel model = read_pan_tilt(read_result(options.result, "pan-tilt").result);
+    for (const PanTiltView& view : all.views) out.push_back({view, camera_pose(model, view.angles)});
+    return out;
+  }
+  const HeadModel head = read_head_model(options.result, options.time);
+  EncoderTrack::Options track_options;
+  track_options.kept_s = 1e9;
+  EncoderTrack track(head, track_options);
+  for (const JointRow& row : all.joints) track.add(row.time, {row.positions[0], row.positions[1]});
+  for (std::size_t i = 0; i < all.views.size(); ++i)
+    if (const auto at = track.at(all.times[i]); at.status != StateStatus::invalid)
+      out.push_back({all.views[i], T_world_camera(head, at.shafts)});
+  return out;
+}
+
+std::vector<DetectedTag> detected(const PanTiltView& view, int camera, const TagMap& of) {
+  std::vector<DetectedTag> tags;
+  for (const SeenTag& tag : view.tags)
+    if (tag.camera == camera && of.contains(tag.id)) tags.push_back({tag.id, tag.pixels, 255});
+  return tags;
+}
+
+/// Adds the errors of the tags outside of `correcting` after those in it have corrected the view; nothing where either
+/// is missing.
+void score_corrected(const PosedView& posed, const TagViews& all, const TagMap& correcting, const StereoLenses& lenses,
+                     const TagCorrectionOptions& options, Score& score) {
+  PanTiltView scored = posed.view;
+  std::erase_if(scored.tags, [&](const SeenTag& tag) { return correcting.contains(tag.id); });
+  TagCorrection correction(lenses, correcting, options);
+  correction.add({}, posed.T_world_left, detected(posed.view, 0, correcting), detected(posed.view, 1, correcting));
+  if (scored.tags.empty() || !correction.newest()) return;
+  const TagCorrectionSummary found = correction.solve({});
+  score.add(scored, corner_errors(all.cameras, posed.T_world_left * found.T_left_corrected, scored));
+}
+
+}  // namespace
+
+int verify_head(const PanTiltVerify& options) {
+  const TagViews all = read_tag_views(options.input);
+  const std::vector<PosedView> views = by_encoders(options, all);
+  if (views.empty())
+    throw InputError("--joints", "the encoders tell nothing of the times of the pictures",
+                     "give the joints that were recorded with them");
+  const Lens left = to_lens(all.cameras.cameras.front()), right = to_lens(all.cameras.cameras.back());
+  const StereoLenses lenses{left, right, all.cameras.T_left_right};
+  TagMap correcting;
+  for (auto tag = all.map.begin(); tag != all.map.end(); ++tag)
+    if (std::distance(all.map.begin(), tag) % 2 == 0) correcting.insert(*tag);
+  const TagCorrectionOptions correction = options_for(read_head_model(options.result, options.time)).correction;
+  Score encoders, tags;
+  for (const PosedView& posed : views) {
+    encoders.add(posed.view, corner_errors(all.cameras, posed.T_world_left, posed.view));
+    score_corrected(posed, all, correcting, lenses, correction, tags);
+  }
+  if (tags.points == 0)
+    throw InputError("--tags", "no view shows two tags, one to correct and one to score",
+                     "verify where more tags are in view");
+  bool pass = true;
+  nlohmann::ordered_json json{{"views", views.size()}};
+  const auto row = [&](const char* name, const Score& score, double limit) {
+    const bool good = score.px() <= limit;
+    pass = pass && good;
+    std::printf("%-9s %s  (limit %s, %d corners)  %s\n", name, readable(score.px(), 3, " px").c_str(),
+                readable(limit, 3).c_str(), score.points, good ? "pass" : "FAIL");
+    if (!good)
+      std::printf("          worst: %s, %s\n", readable(score.worst, 1, " px").c_str(), score.worst_tag.c_str());
+    json[std::string(name) + "_px"] = score.px();
+    json[std::string(name) + "_worst_px"] = score.worst;
+    json[std::string(name) + "_worst"] = score.worst_tag;
+    json[std::string(name) + "_limit_px"] = limit;
+  };
+  row("encoders", encoders, options.encoders_px);
+  row("tags", tags, options.tags_px);
+  json["pass"] = pass;
+  std::printf("%s on %zu views\n", pass ? "pass" : "FAIL", views.size());
+  write_json(options.json, json);
+  return pass ? 0 : 1;
+}
+
+}  // namespace foresight

@@ -1,0 +1,132 @@
+// A mock lab's head that differs from its drawing, before tags on table and wall; sessions that it records.
+#pragma once
+
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <random>
+
+#include "calibration/registration/calibrated_head.hpp"
+#include "sim/pan_tilt_head.hpp"
+#include "sim/run_files.hpp"
+#include "sim/tag_room.hpp"
+#include "tests/calibrate/run_calibrate.hpp"
+
+namespace foresight {
+
+struct MockHead {
+  static constexpr double kClockOffset = 0.013;  ///< t_encoder - t_camera, s
+  static constexpr double kEncoderNoise = 1e-4;  ///< rad
+  static constexpr double kGreyNoise = 2;
+
+  MockHead() {
+    const auto small = [](double a, double b, double c, double x, double y, double z) {
+      return to_motion((Vector6d() << a, b, c, x, y, z).finished());
+    };
+    truth.T_world_pan = sim::T_world_head_foot() * small(0.006, -0.008, 0, 0.004, -0.003, 0.005);
+    truth.T_pan_tilt.translate(Eigen::Vector3d(0.003, 0.001, 0.082));
+    truth.T_pan_tilt.rotate(Eigen::AngleAxisd(-std::acos(-1.0) / 2 + 0.007, Eigen::Vector3d::UnitX()));
+    truth.T_tilt_camera = drawn().T_tilt_camera * small(0.005, -0.004, 0.009, 0.002, -0.004, 0.003);
+    truth.pan = {1, 0.006, 0.0012};
+    truth.tilt = {1, -0.004, 0.0008};
+    truth.offset_s = kClockOffset;
+  }
+
+  static HeadModel drawn() {
+    HeadModel head;
+    head.T_world_pan = sim::T_world_head_foot();
+    head.T_pan_tilt.translate(Eigen::Vector3d(0, 0, 0.08));
+    head.T_pan_tilt.rotate(Eigen::AngleAxisd(-std::acos(-1.0) / 2, Eigen::Vector3d::UnitX()));
+    head.T_tilt_camera = T_world_camera(head, {}).inverse() * sim::T_world_head_left({});
+    return head;
+  }
+
+  static Lens lens() {
+    return Lens({LensModel::plumb_bob, 640, 480, 520, 521, 318, 243, {-0.12, 0.03, 0.0004, -0.0006, 0}});
+  }
+
+  static RobotTime at(double s) { return RobotTime{1'000'000'000} + seconds(s); }
+
+  /// What the drives are told: `session` changes the way.
+  static HeadAngles motors(int session, double t) {
+    return {0.42 * std::sin(0.5 * t + session), 0.5 + 0.17 * std::sin(0.83 * t + 2 * session)};
+  }
+
+  /// Encoders of the motors at 100 Hz on their own clock, and the shafts behind their play.
+  struct Encoders {
+    std::vector<std::pair<RobotTime, HeadAngles>> rows;
+    EncoderTrack shafts;
+  };
+  Encoders move(int session, double length_s) const {
+    std::mt19937 random(static_cast<unsigned>(session));
+    std::normal_distribution<double> noise(0, kEncoderNoise);
+    EncoderTrack::Options all;
+    all.kept_s = 1e9;
+    Encoders out{{}, EncoderTrack(truth, all)};
+    for (double t = -1; t < length_s + 1; t += 0.01) {
+      const HeadAngles q = motors(session, t);
+      const RobotTime encoder_time = at(t + kClockOffset);
+      out.shafts.add(encoder_time, q);
+      out.rows.emplace_back(encoder_time, HeadAngles{q.pan + noise(random), q.tilt + noise(random)});
+    }
+    return out;
+  }
+
+  cv::Mat picture(const Pose& T_world_left, bool right, unsigned seed) const {
+    const Pose T = right ? Pose(T_world_left * sim::T_head_left_right()) : T_world_left;
+    return room.picture(rays, T, kGreyNoise, seed);
+  }
+
+  /// A run as `foresight robot --record` writes it, with the joints beside it and tags.txt inside.
+  void record(const std::filesystem::path& run, int session, int pairs, double every_s) const {
+    for (const char* folder : {"rgb", "rgb_right"}) std::filesystem::create_directories(run / folder);
+    const Pose T_left_right = sim::T_head_left_right();
+    sim::write_text(run / "camera.yaml", sim::camera_yaml(lens(), "left", nullptr));
+    sim::write_text(run / "camera_right.yaml", sim::camera_yaml(lens(), "right", &T_left_right));
+    Encoders encoders = move(session, pairs * every_s);
+    std::ofstream joints(run.string() + "-joints.csv");
+    joints << "time_s,shoulder,pan,tilt\n";
+    for (const auto& [time, q] : encoders.rows)
+      joints << sim::format("%.9f,0.1,%.7f,%.7f\n", to_seconds(time - RobotTime{}), q.pan, q.tilt);
+    std::ofstream left(run / "rgb.txt"), right(run / "rgb_right.txt");
+    for (int i = 0; i < pairs; ++i) {
+      const RobotTime time = at(i * every_s);
+      const Pose T = T_world_camera(truth, encoders.shafts.at(time).shafts);
+      const std::string name = sim::format("%06d.png", i), stamp = sim::format("%.9f ", to_seconds(time - RobotTime{}));
+      cv::imwrite((run / "rgb" / name).string(), picture(T, false, static_cast<unsigned>(1000 * session + 2 * i)));
+      cv::imwrite((run / "rgb_right" / name).string(),
+                  picture(T, true, static_cast<unsigned>(1000 * session + 2 * i + 1)));
+      left << stamp << "rgb/" << name << "\n";
+      right << stamp << "rgb_right/" << name << "\n";
+    }
+    write_tags(run / "tags.txt", room.corners());
+  }
+
+  static void write_tags(const std::filesystem::path& file, const TagMap& map) {
+    std::ofstream out(file);
+    out << "# id corner x y z\n";
+    for (const auto& [id, corners] : map)
+      for (std::size_t c = 0; c < 4; ++c)
+        out << sim::format("%d %d %.9f %.9f %.9f\n", id, static_cast<int>(c), corners[c].x(), corners[c].y(),
+                           corners[c].z());
+  }
+
+  sim::TagRoom room{sim::TagRoom::lab_tags()};
+  cv::Mat rays = sim::TagRoom::corner_rays(lens());
+  HeadModel truth;
+};
+
+/// RMS over the image of how far points 1 m away are off.
+inline double error_px(const Pose& truth, const Pose& found) {
+  const Lens lens = MockHead::lens();
+  double square = 0;
+  int count = 0;
+  for (int v = 40; v < lens.height(); v += 80)
+    for (int u = 40; u < lens.width(); u += 80) {
+      const auto pixel = lens.project(found.inverse() * truth * *lens.unproject({u, v}));
+      square += pixel ? (*pixel - Eigen::Vector2d(u, v)).squaredNorm() : 1e6;
+      ++count;
+    }
+  return std::sqrt(square / count);
+}
+
+}  // namespace foresight
