@@ -82,23 +82,6 @@ std::optional<std::string> missing_motion(const RigViews& views, const RigSoluti
   return std::nullopt;
 }
 
-std::array<int, 2> usual_size(const RigViews& views, int camera) {
-  static constexpr std::array<std::array<int, 2>, 22> kSizes{{
-      {320, 240},   {640, 360},   {512, 512},   {640, 400},   {640, 480},   {752, 480},   {848, 480},   {800, 600},
-      {960, 540},   {1024, 768},  {1280, 720},  {1280, 800},  {1024, 1024}, {1280, 960},  {1280, 1024}, {1440, 1080},
-      {1600, 1200}, {1920, 1080}, {1920, 1200}, {2048, 1536}, {2448, 2048}, {3840, 2160},
-  }};
-  Eigen::Vector2d most = Eigen::Vector2d::Zero();
-  for (const RigView& view : views.views)
-    for (const Corner& corner : view.corners[static_cast<std::size_t>(camera)]) most = most.cwiseMax(corner.pixel);
-  std::array<int, 2> best{static_cast<int>(most.x()) + 1, static_cast<int>(most.y()) + 1};
-  double area = std::numeric_limits<double>::infinity();
-  for (const auto& size : kSizes)
-    if (most.x() < size[0] && most.y() < size[1] && double(size[0]) * size[1] < area)
-      best = size, area = double(size[0]) * size[1];
-  return best;
-}
-
 double lens_difference(const CameraModel& a, const CameraModel& b) {
   constexpr int kCols = 20, kRows = 15;
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays;
