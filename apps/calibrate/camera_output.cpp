@@ -123,8 +123,9 @@ int deliver(const CameraCalibration& c, const CameraOutput& output) {
   if (output.files.report) camera_report(c).write(*output.files.report);
   if (!c.usable()) return 1;
   const Rig& rig = c.solution.rig;
-  const YAML::Node result = cameras(c) == 2 ? to_yaml(StereoModel{rig.cameras[0], rig.cameras[1], rig.T_left_right})
-                                            : to_yaml(rig.cameras[0]);
+  YAML::Node result = cameras(c) == 2 ? to_yaml(StereoModel{rig.cameras[0], rig.cameras[1], rig.T_left_right})
+                                      : to_yaml(rig.cameras[0]);
+  if (c.warp) result["board"] = to_yaml(KnownBoard(c.views.p_board, rig.warp));
   if (output.files.out) write_result(*output.files.out, header_of(c, output.serials), result, output.files.force);
   if (output.camera_info) write_camera_info(c, *output.camera_info);
   return 0;

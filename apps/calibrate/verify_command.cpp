@@ -22,10 +22,12 @@ struct VerifyOptions {
   std::optional<double> joint_px, cross_px, epipolar_px;
   PanTiltVerify head;
   std::optional<std::filesystem::path> json;
+  bool flat = false;
 };
 
 struct KnownRig {
   Rig rig;
+  std::optional<KnownBoard> board;
   double score_px = 0;
 };
 
@@ -37,6 +39,7 @@ KnownRig read_rig(const std::filesystem::path& file) {
   const ResultFile result = read_result(file, kind);
   KnownRig known;
   known.score_px = result.header.score;
+  known.board = read_known_board(result.result);
   if (kind == "intrinsics") {
     known.rig.cameras = {read_camera(result.result)};
   } else {
@@ -59,17 +62,30 @@ void require_same_size(const Rig& rig, RigViews& views, const std::filesystem::p
   }
 }
 
+// The session's board is as bent now as it was then; another one is taken as flat.
+void bend_board(const VerifyOptions& options, const RigViews& views, KnownRig& known) {
+  if (options.flat || !known.board) return;
+  if (known.board->is_laid_out_as(views.p_board)) {
+    known.rig.warp = known.board->warp;
+    std::printf("board as bent as the result says: %s along x, %s along y (--flat: not)\n",
+                readable(1000 * known.rig.warp.x_m, 3).c_str(), readable(1000 * known.rig.warp.y_m, 3, " mm").c_str());
+  } else {
+    std::printf("another board than that of the result: taken as flat\n");
+  }
+}
+
 int verify(const VerifyOptions& options) {
-  const KnownRig known = read_rig(options.result);
+  KnownRig known = read_rig(options.result);
   const bool pair = known.rig.cameras.size() == 2;
   CameraViewsInput input = read_camera_input(options.input, pair);
   require_same_size(known.rig, input.train, options.result);
+  bend_board(options, input.train, known);
   const HeldOutScore score = score_views(known.rig, input.train);
   if (score.views == 0)
     throw InputError("corners", "the board could be placed in no view",
                      "check that --board names the board that was shown");
   bool pass = true;
-  nlohmann::ordered_json json{{"views", score.views}};
+  nlohmann::ordered_json json{{"views", score.views}, {"board_warp_m", {known.rig.warp.x_m, known.rig.warp.y_m}}};
   const auto row = [&](const std::string& name, double value, double limit) {
     const bool good = value <= limit;
     pass = pass && good;
@@ -127,6 +143,7 @@ void add_verify(CLI::App& calibrate, std::function<int()>& action) {
   command->add_option("--joint", options->joint_px, "Limit in px; default: 1.5 times the result's own score");
   command->add_option("--cross", options->cross_px, "Limit in px; default: 2.1 times the result's own score");
   command->add_option("--epipolar", options->epipolar_px, "Limit in px; default: 1.5 times the result's own score");
+  command->add_flag("--flat", options->flat, "Take the board as flat, also where the result knows how it is bent");
   command->add_option("--json", options->json, "File for all numbers");
   command->footer(
       "Examples: foresight calibrate verify --result stereo.yaml --corners new.vnl "

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
+#include "calibration/camera/input_checks.hpp"
+#include "calibration/camera/model_choice.hpp"
 #include "calibration/camera/rig_start.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
@@ -12,13 +13,9 @@
 namespace foresight {
 namespace {
 
-constexpr int kFewestViews = 5;
 constexpr int kFewViews = 10;  // fewer are warned about
 constexpr double kUnsynchronised = 1.4;
-constexpr double kBetter = 0.95;  // a richer lens model must lower the held-out error to this part
-constexpr int kGroups = 10;       // of views left out together where there are many
-constexpr int kTrialGroups = 5;   // the same while choosing a model
-
+constexpr int kGroups = 10;         // of views left out together where there are many
 constexpr double kMovedByWarp = 2;  // the lens by more than so many times the error: not believed
 
 class Calibrator {
@@ -29,11 +26,15 @@ class Calibrator {
   }
 
   CameraCalibration run() {
-    check_input();
+    check_views(result_.views, result_.notes);
     check_orientation(result_.views, result_.repairs);
     choose_views();
-    solve(options_.model.value_or(Distortion::radtan4));
-    if (!options_.model) choose_model();
+    solver_ = options_.solver;
+    const ModelScreening models =
+        options_.model ? ModelScreening{*options_.model, {}} : screen_models(result_.views, solver_);
+    solve(models.simplest);
+    if (auto better = better_model(result_.views, result_.solution, models.richer, solver_))
+      result_.solution = std::move(*better);
     doubt_warp();
     measure_uncertainty();
     measure_held_out();
@@ -43,55 +44,6 @@ class Calibrator {
 
  private:
   std::size_t cameras() const { return static_cast<std::size_t>(result_.views.cameras); }
-
-  int useful_views() const {
-    int count = 0;
-    for (const RigView& view : result_.views.views) count += cameras() == 1 || view.both();
-    return count;
-  }
-
-  void check_input() {
-    const std::string kind = cameras() == 2 ? "pairs" : "views";
-    const int count = useful_views();
-    if (count < kFewestViews)
-      throw InputError(kind, "there are " + std::to_string(count) + ", and at least 5 are needed",
-                       "take 15 or more, of a board that is tilted and reaches all corners of the image");
-    guess_sizes();
-    for (std::size_t c = 0; c < cameras(); ++c) check_size(static_cast<int>(c));
-    if (cameras() == 2 &&
-        (result_.views.width[0] != result_.views.width[1] || result_.views.height[0] != result_.views.height[1]))
-      result_.notes.push_back("the two cameras' images differ in size: " + size_text(0) + " and " + size_text(1));
-  }
-
-  std::string size_text(std::size_t c) const {
-    return std::to_string(result_.views.width[c]) + "x" + std::to_string(result_.views.height[c]);
-  }
-
-  // One size for both cameras of a pair.
-  void guess_sizes() {
-    RigViews& views = result_.views;
-    if (views.width[0] > 0 && (cameras() == 1 || views.width[1] > 0)) return;
-    RigViews all = views;
-    for (RigView& view : all.views)
-      view.corners[0].insert(view.corners[0].end(), view.corners[1].begin(), view.corners[1].end());
-    const auto size = usual_size(all, 0);
-    for (std::size_t c = 0; c < cameras(); ++c)
-      if (views.width[c] <= 0) views.width[c] = size[0], views.height[c] = size[1];
-    result_.notes.push_back("the size of the images was not given; " + std::to_string(size[0]) + "x" +
-                            std::to_string(size[1]) + " is the smallest usual one that holds all corners");
-  }
-
-  void check_size(int camera) {
-    RigViews& views = result_.views;
-    const auto c = static_cast<std::size_t>(camera);
-    for (const RigView& view : views.views)
-      for (const Corner& corner : view.corners[c])
-        if (corner.pixel.x() < -0.5 || corner.pixel.y() < -0.5 || corner.pixel.x() > views.width[c] - 0.5 ||
-            corner.pixel.y() > views.height[c] - 0.5)
-          throw InputError(
-              camera_name(camera, views.cameras) + " view " + view.name + ", corner " + std::to_string(corner.index),
-              "lies outside the image of " + size_text(c), "give the size of the images it was found in");
-  }
 
   // Evenly; the others go to the unseen ones.
   void choose_views() {
@@ -105,32 +57,25 @@ class Calibrator {
                             " views were taken, evenly; the others only score");
   }
 
-  RigSolution solve_alone(int camera, Distortion distortion) const {
-    const CameraViews views = views_of(result_.views, camera);
-    RigSolverOptions options = options_.solver;
-    options.warp = false;
-    return solve_rig(views.views, start_camera(views.views, distortion), options);
-  }
-
   void solve(Distortion distortion) {
-    result_.warp = options_.warp && useful_views() >= options_.warp_from_views;
-    solver_ = options_.solver;
+    result_.warp = options_.warp && useful_views(result_.views) >= options_.warp_from_views;
     solver_.warp = result_.warp;
-    RigSolution left = solve_alone(0, distortion);
+    RigSolution left = solve_alone(result_.views, 0, distortion, solver_);
     if (cameras() == 1) {
       result_.solution = solve_rig(result_.views, left, solver_);
       return;
     }
-    RigSolution right = solve_alone(1, distortion);
+    RigSolution right = solve_alone(result_.views, 1, distortion, solver_);
     const std::size_t before = result_.repairs.turned.size() + result_.repairs.dropped.size();
     check_pairs(result_.views, left, right, result_.repairs);
     if (result_.repairs.turned.size() + result_.repairs.dropped.size() > before) {
-      if (useful_views() < kFewestViews)
-        throw InputError(
-            "pairs", "only " + std::to_string(useful_views()) + " belong together; " + result_.repairs.dropped.front(),
-            "take pairs of images at the same instants");
-      left = solve_alone(0, distortion);
-      right = solve_alone(1, distortion);
+      if (useful_views(result_.views) < kFewestViews)
+        throw InputError("pairs",
+                         "only " + std::to_string(useful_views(result_.views)) + " belong together; " +
+                             result_.repairs.dropped.front(),
+                         "take pairs of images at the same instants");
+      left = solve_alone(result_.views, 0, distortion, solver_);
+      right = solve_alone(result_.views, 1, distortion, solver_);
     }
     result_.alone_px = {left.rms_px, right.rms_px};
     const double alone = std::sqrt(0.5 * (left.noise_px * left.noise_px + right.noise_px * right.noise_px));
@@ -138,63 +83,9 @@ class Calibrator {
     result_.stereo_over_mono = result_.solution.noise_px / std::max(alone, 1e-9);
   }
 
-  int folds(int groups) const {
+  int folds() const {
     const int n = static_cast<int>(result_.views.views.size());
-    return n <= options_.most_folds && groups != kTrialGroups ? n : std::min(n, groups);
-  }
-
-  struct Trial {
-    RigSolution solution;
-    HeldOutScore score;
-  };
-
-  std::optional<Trial> try_model(Distortion model) const {
-    try {
-      RigSolution solution = with_model(model);
-      // What does not even fit better cannot predict better.
-      if (!(solution.noise_px < kBetter * result_.solution.noise_px)) return std::nullopt;
-      if (!RigUncertainty(result_.views, solution, result_.warp).usable()) return std::nullopt;
-      return Trial{solution, trial_score(solution)};
-    } catch (const InputError&) {
-      return std::nullopt;  // a lens that cannot even be solved for is none to choose
-    }
-  }
-
-  HeldOutScore trial_score(const RigSolution& solution) const {
-    return leave_out(result_.views, result_.views, solution, solver_, folds(kTrialGroups)).score;
-  }
-
-  // Of models that predict alike the one with the fewest parameters.
-  void choose_model() {
-    const auto better = [](const HeldOutScore& a, const HeldOutScore& b) {
-      return a.joint_px < kBetter * b.joint_px && a.cross_px <= b.cross_px;
-    };
-    std::optional<Trial> best;
-    for (const Distortion model : {Distortion::equidistant, Distortion::radtan5, Distortion::rational}) {
-      auto trial = try_model(model);
-      if (!trial) continue;
-      if (!best) best = Trial{result_.solution, trial_score(result_.solution)};
-      if (better(trial->score, best->score)) best = std::move(trial);
-    }
-    if (best) result_.solution = std::move(best->solution);
-  }
-
-  RigSolution with_model(Distortion model) const {
-    if (model != Distortion::equidistant) {
-      RigSolution start = result_.solution;
-      for (CameraModel& camera : start.rig.cameras) {
-        if (camera.distortion == Distortion::equidistant) return with_model_from_nothing(model);
-        camera.distortion = model;
-      }
-      return solve_rig(result_.views, start, solver_);
-    }
-    return with_model_from_nothing(model);
-  }
-
-  RigSolution with_model_from_nothing(Distortion model) const {
-    const RigSolution left = solve_alone(0, model);
-    if (cameras() == 1) return solve_rig(result_.views, left, solver_);
-    return solve_rig(result_.views, start_pair(result_.views, left, solve_alone(1, model)), solver_);
+    return n <= options_.most_folds ? n : std::min(n, kGroups);
   }
 
   // A bent board and another focal length look alike where boards are little tilted. The warp mends a small part of
@@ -260,7 +151,7 @@ class Calibrator {
         if (unseen_.views.empty()) unseen_ = subset(test_, {});
         unseen_.views.push_back(view);
       }
-    const LeaveOut left_out = leave_out(result_.views, scoring, result_.solution, solver_, folds(kGroups));
+    const LeaveOut left_out = leave_out(result_.views, scoring, result_.solution, solver_, folds());
     result_.held_out = left_out.score;
     result_.folds = left_out.folds;
     if (!unseen_.views.empty()) result_.unseen = score_views(result_.solution.rig, unseen_);
@@ -285,7 +176,7 @@ class Calibrator {
   }
 
   void judge() {
-    const int count = useful_views();
+    const int count = useful_views(result_.views);
     if (count < kFewViews)
       result_.notes.push_back("only " + std::to_string(count) + (cameras() == 2 ? " pairs" : " views") +
                               "; take 15 or more for figures that can be trusted");

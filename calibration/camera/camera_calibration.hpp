@@ -10,8 +10,7 @@
 namespace foresight {
 
 struct CameraCalibrationOptions {
-  /// None: radtan4, or that of radtan5, rational and equidistant whose error on views left out is
-  /// lower by 5 %. Thin-prism is never chosen: nothing else here can draw it.
+  /// None: radtan4, or that of radtan5, rational and equidistant which model_choice.hpp finds better.
   std::optional<Distortion> model;
   bool warp = true;         ///< estimates the board's warp, from `warp_from_views` on
   int warp_from_views = 8;  ///< fewer cannot tell it from the lens
@@ -54,9 +53,6 @@ CameraCalibration calibrate_rig(const RigViews& train, const RigViews& test, con
 /// "all boards are parallel to the image: ...". Nothing where all is well.
 std::optional<std::string> missing_motion(const RigViews& views, const RigSolution& solution,
                                           const RigUncertainty& uncertainty);
-
-/// The smallest usual image size that holds all corners of a camera.
-std::array<int, 2> usual_size(const RigViews& views, int camera);
 
 /// Middle difference over the image, in px, of where two lenses see one ray, after the turn between
 /// them that makes it smallest.

@@ -9,6 +9,7 @@ namespace foresight {
 namespace {
 
 constexpr double kLargestSide = 32768;  // px, as Lens takes it
+constexpr double kSameExtent = 1e-6;    // relative; a print that was measured anew is another board
 
 template <typename Numbers>
 YAML::Node list_of(const Numbers& numbers) {
@@ -26,7 +27,44 @@ Distortion read_distortion(const YamlMap& yaml) {
   }
 }
 
+CameraModel read_lens(const YamlMap& yaml) {
+  CameraModel camera;
+  camera.distortion = read_distortion(yaml);
+  const auto size = yaml.numbers("size", 2), focal = yaml.numbers("focal_px", 2), centre = yaml.numbers("centre_px", 2);
+  const auto side = [](double v) { return v >= 1 && v <= kLargestSide && v == std::floor(v); };
+  if (!side(size[0]) || !side(size[1]))
+    throw InputError(yaml.where("size"), "is no image size", "write [width, height] in pixels");
+  if (!(focal[0] > 0) || !(focal[1] > 0))
+    throw InputError(yaml.where("focal_px"), "the focal lengths must be positive", "calibrate the camera");
+  camera.width = static_cast<int>(size[0]);
+  camera.height = static_cast<int>(size[1]);
+  const auto coefficients = yaml.numbers("distortion", free_parameters(camera.distortion).size() - 4);
+  camera.lens = {focal[0], focal[1], centre[0], centre[1]};
+  std::copy(coefficients.begin(), coefficients.end(), camera.lens.begin() + 4);
+  return camera;
+}
+
 }  // namespace
+
+KnownBoard::KnownBoard(const std::vector<Eigen::Vector3d>& p_board, const BoardWarp& its_warp)
+    : points(static_cast<int>(p_board.size())), warp(its_warp) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : p_board) box.extend(p);
+  if (!box.isEmpty()) extent_m = box.sizes().head<2>();
+}
+
+bool KnownBoard::is_laid_out_as(const std::vector<Eigen::Vector3d>& p_board) const {
+  const KnownBoard other(p_board, {});
+  return other.points == points && (other.extent_m - extent_m).norm() <= kSameExtent * extent_m.norm();
+}
+
+YAML::Node to_yaml(const KnownBoard& board) {
+  YAML::Node node;
+  node["points"] = board.points;
+  node["extent_m"] = list_of(board.extent_m);
+  node["warp_m"] = list_of(std::array{board.warp.x_m, board.warp.y_m});
+  return node;
+}
 
 YAML::Node to_yaml(const CameraModel& camera) {
   const LensParameters& l = camera.lens;
@@ -56,26 +94,30 @@ YAML::Node to_yaml(const Pose& pose) {
 }
 
 CameraModel read_camera(const YamlMap& yaml) {
-  yaml.require_known({"model", "size", "focal_px", "centre_px", "distortion"});
-  CameraModel camera;
-  camera.distortion = read_distortion(yaml);
-  const auto size = yaml.numbers("size", 2), focal = yaml.numbers("focal_px", 2), centre = yaml.numbers("centre_px", 2);
-  const auto side = [](double v) { return v >= 1 && v <= kLargestSide && v == std::floor(v); };
-  if (!side(size[0]) || !side(size[1]))
-    throw InputError(yaml.where("size"), "is no image size", "write [width, height] in pixels");
-  if (!(focal[0] > 0) || !(focal[1] > 0))
-    throw InputError(yaml.where("focal_px"), "the focal lengths must be positive", "calibrate the camera");
-  camera.width = static_cast<int>(size[0]);
-  camera.height = static_cast<int>(size[1]);
-  const auto coefficients = yaml.numbers("distortion", free_parameters(camera.distortion).size() - 4);
-  camera.lens = {focal[0], focal[1], centre[0], centre[1]};
-  std::copy(coefficients.begin(), coefficients.end(), camera.lens.begin() + 4);
-  return camera;
+  yaml.require_known({"model", "size", "focal_px", "centre_px", "distortion", "board"});
+  return read_lens(yaml);
 }
 
 StereoModel read_stereo(const YamlMap& yaml) {
-  yaml.require_known({"left", "right", "T_left_right"});
-  return {read_camera(yaml.map("left")), read_camera(yaml.map("right")), yaml.pose("T_left_right")};
+  yaml.require_known({"left", "right", "T_left_right", "board"});
+  const auto of = [&](const char* side) {
+    const YamlMap map = yaml.map(side);
+    map.require_known({"model", "size", "focal_px", "centre_px", "distortion"});
+    return read_lens(map);
+  };
+  return {of("left"), of("right"), yaml.pose("T_left_right")};
+}
+
+std::optional<KnownBoard> read_known_board(const YamlMap& result) {
+  if (!result.has("board")) return std::nullopt;
+  const YamlMap map = result.map("board");
+  map.require_known({"points", "extent_m", "warp_m"});
+  KnownBoard board;
+  board.points = map.integer("points");
+  const auto extent = map.numbers("extent_m", 2), warp = map.numbers("warp_m", 2);
+  board.extent_m = {extent[0], extent[1]};
+  board.warp = {warp[0], warp[1]};
+  return board;
 }
 
 }  // namespace foresight

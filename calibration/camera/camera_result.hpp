@@ -6,17 +6,33 @@
 //   result of kind "stereo"          left: {...}               each as above
 //                                    right: {...}
 //                                    T_left_right: {xyz: [..], quaternion: [x, y, z, w]}
+//   both, where the board's warp was estimated:
+//     board: {points: 54, extent_m: [0.2, 0.125], warp_m: [0.0004, -0.0001]}     as KnownBoard
 //
 // Numbers read back exactly as they were, but for the rotation, which reading normalises.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
 
-#include "calibration/camera/camera_model.hpp"
+#include "calibration/camera/rig.hpp"
 #include "scene/yaml_fields.hpp"
 
 namespace foresight {
 
+/// The board that a camera was calibrated with, as far as another session can know it again.
+struct KnownBoard {
+  int points = 0;
+  Eigen::Vector2d extent_m = Eigen::Vector2d::Zero();  ///< between the outermost points, along x and y
+  BoardWarp warp;
+
+  KnownBoard() = default;
+  KnownBoard(const std::vector<Eigen::Vector3d>& p_board, const BoardWarp& warp);
+
+  /// Whether `p_board` has as many points and the same extent: the same board, or another print of it.
+  bool is_laid_out_as(const std::vector<Eigen::Vector3d>& p_board) const;
+};
+
+YAML::Node to_yaml(const KnownBoard& board);
 YAML::Node to_yaml(const CameraModel& camera);
 YAML::Node to_yaml(const StereoModel& stereo);
 
@@ -27,5 +43,8 @@ YAML::Node to_yaml(const Pose& pose);
 /// coefficients that is not the model's, sizes or focal lengths that are not positive.
 CameraModel read_camera(const YamlMap& yaml);
 StereoModel read_stereo(const YamlMap& yaml);
+
+/// Of the result's `board`; nothing where it has none.
+std::optional<KnownBoard> read_known_board(const YamlMap& result);
 
 }  // namespace foresight

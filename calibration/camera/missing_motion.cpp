@@ -11,6 +11,7 @@ namespace {
 constexpr double kLeastNoise = 0.05;        // px; corners without noise would hide what cannot be told apart
 constexpr double kVagueFocalLength = 0.02;  // sigma over the focal length
 constexpr double kVagueCentre = 0.05;       // sigma over the image's width
+constexpr double kVagueRim = 0.02;          // 90 % of the uncertainty over the image, of its width
 constexpr double kParallel = 5 * M_PI / 180;
 
 struct Tilts {
@@ -44,6 +45,10 @@ double covered(const RigViews& views, std::size_t c) {
   return box.isEmpty() ? 0 : box.volume() / (static_cast<double>(views.width[c]) * views.height[c]);
 }
 
+std::string only_covered(const RigViews& views, std::size_t c) {
+  return "the boards reach only " + readable(100 * covered(views, c), 0) + " % of the image";
+}
+
 std::string cure(const RigViews& views, std::size_t c, const Tilts& t) {
   if (t.to_image < kParallel)
     return "all boards are parallel to the image: tilt the board by 20 to 40 degrees; its focal length and distance "
@@ -51,9 +56,7 @@ std::string cure(const RigViews& views, std::size_t c, const Tilts& t) {
   if (t.to_another < kParallel)
     return "all boards are parallel to each other: turn the board about both axes by 20 to 40 degrees between views";
   if (t.second_axis < kParallel / 2) return "the board is tilted about one axis only: tilt it about the other one too";
-  if (covered(views, c) < 0.4)
-    return "the boards reach only " + readable(100 * covered(views, c), 0) +
-           " % of the image: bring the board closer, and to all sides";
+  if (covered(views, c) < 0.4) return only_covered(views, c) + ": bring the board closer, and to all sides";
   return "the views say too little: take more, closer, and with tilts about both axes";
 }
 
@@ -68,35 +71,23 @@ std::optional<std::string> missing_motion(const RigViews& views, const RigSoluti
     const LensParameters sigma = uncertainty.lens_sigma(camera);
     const double focal = scale * std::max(sigma[0] / model.lens[0], sigma[1] / model.lens[1]);
     const double centre = scale * std::max(sigma[2], sigma[3]) / model.width;
-    if (uncertainty.usable() && focal < kVagueFocalLength && centre < kVagueCentre) continue;
+    const std::string whose = views.cameras == 2 ? "the " + camera_name(camera, 2) + " camera: " : "";
+    if (uncertainty.usable() && focal < kVagueFocalLength && centre < kVagueCentre) {
+      const double rim_px = scale * uncertainty.map(camera, std::nullopt, 8, 6).p90_px;
+      if (!(rim_px > kVagueRim * model.width)) continue;
+      return whose + only_covered(views, c) + ", and do not say how it is distorted beyond (+- " + readable(rim_px, 0) +
+             " px): bring the board closer, and to all sides";
+    }
     std::vector<Pose> T_camera_board;
     for (std::size_t v = 0; v < views.views.size(); ++v)
       if (!views.views[v].corners[c].empty())
         T_camera_board.push_back(camera == 0 ? solution.T_left_board[v]
                                              : Pose(solution.rig.T_left_right.inverse() * solution.T_left_board[v]));
-    const std::string whose = views.cameras == 2 ? "the " + camera_name(camera, 2) + " camera: " : "";
     return whose + cure(views, c, tilts(T_camera_board)) +
            (uncertainty.usable() && std::isfinite(focal) ? " (focal length +- " + readable(100 * focal, 1) + " %)"
                                                          : "");
   }
   return std::nullopt;
-}
-
-std::array<int, 2> usual_size(const RigViews& views, int camera) {
-  static constexpr std::array<std::array<int, 2>, 22> kSizes{{
-      {320, 240},   {640, 360},   {512, 512},   {640, 400},   {640, 480},   {752, 480},   {848, 480},   {800, 600},
-      {960, 540},   {1024, 768},  {1280, 720},  {1280, 800},  {1024, 1024}, {1280, 960},  {1280, 1024}, {1440, 1080},
-      {1600, 1200}, {1920, 1080}, {1920, 1200}, {2048, 1536}, {2448, 2048}, {3840, 2160},
-  }};
-  Eigen::Vector2d most = Eigen::Vector2d::Zero();
-  for (const RigView& view : views.views)
-    for (const Corner& corner : view.corners[static_cast<std::size_t>(camera)]) most = most.cwiseMax(corner.pixel);
-  std::array<int, 2> best{static_cast<int>(most.x()) + 1, static_cast<int>(most.y()) + 1};
-  double area = std::numeric_limits<double>::infinity();
-  for (const auto& size : kSizes)
-    if (most.x() < size[0] && most.y() < size[1] && double(size[0]) * size[1] < area)
-      best = size, area = double(size[0]) * size[1];
-  return best;
 }
 
 double lens_difference(const CameraModel& a, const CameraModel& b) {

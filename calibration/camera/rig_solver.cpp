@@ -62,13 +62,13 @@ class Bundle {
     add_residuals(accepted);
   }
 
-  bool solve() {
+  bool solve(int most_iterations) {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_SCHUR;
     options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (auto& pose : poses_) options.linear_solver_ordering->AddElementToGroup(pose.data(), 0);
     for (double* block : shared_) options.linear_solver_ordering->AddElementToGroup(block, 1);
-    options.max_num_iterations = 100;
+    options.max_num_iterations = most_iterations;
     options.max_trust_region_radius = 1e9;  // weak parameters would make the reduced system singular
     options.function_tolerance = 1e-9;
     options.parameter_tolerance = 1e-10;
@@ -238,7 +238,7 @@ RigSolution solve_rig(const RigViews& views, const RigSolution& start, const Rig
     const RigSolution from = solution;
     const double loss_px = from.points > 0 ? options.loss_sigmas * robust_noise(views, rig_errors(views, from)) : 0;
     Bundle bundle(views, from, accepted, options.warp, loss_px);
-    solution.converged = bundle.solve();
+    solution.converged = bundle.solve(options.most_iterations);
     bundle.store(solution);
     count_residuals(views, accepted, options.warp, solution);
     auto found = outliers(views, rig_errors(views, solution), options.reject_sigmas);

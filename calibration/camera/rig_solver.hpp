@@ -16,7 +16,8 @@ struct RigSolverOptions {
   double reject_sigmas = 5;
   /// Beyond so many of them a corner pulls less and less (Cauchy's loss); 0: plain least squares.
   double loss_sigmas = 4;
-  int most_rounds = 8;  ///< of solving and rejecting
+  int most_rounds = 8;        ///< of solving and rejecting
+  int most_iterations = 100;  ///< of each round
 };
 
 struct RejectedCorner {

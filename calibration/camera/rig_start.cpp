@@ -110,4 +110,17 @@ RigSolution start_pair(const RigViews& all, const RigSolution& left, const RigSo
   return start;
 }
 
+RigSolution solve_alone(const RigViews& all, int camera, Distortion distortion, const RigSolverOptions& options) {
+  const CameraViews one = views_of(all, camera);
+  RigSolverOptions flat = options;
+  flat.warp = false;
+  return solve_rig(one.views, start_camera(one.views, distortion), flat);
+}
+
+RigSolution solve_from_nothing(const RigViews& all, Distortion distortion, const RigSolverOptions& options) {
+  const RigSolution left = solve_alone(all, 0, distortion, options);
+  if (all.cameras == 1) return solve_rig(all, left, options);
+  return solve_rig(all, start_pair(all, left, solve_alone(all, 1, distortion, options)), options);
+}
+
 }  // namespace foresight

@@ -22,4 +22,10 @@ CameraViews views_of(const RigViews& all, int camera);
 /// where no view was seen by both.
 RigSolution start_pair(const RigViews& all, const RigSolution& left, const RigSolution& right);
 
+/// One of the cameras on its own, from nothing; the board is taken as flat.
+RigSolution solve_alone(const RigViews& all, int camera, Distortion distortion, const RigSolverOptions& options);
+
+/// All cameras from nothing: each alone, then together. Throws InputError as the steps do.
+RigSolution solve_from_nothing(const RigViews& all, Distortion distortion, const RigSolverOptions& options);
+
 }  // namespace foresight

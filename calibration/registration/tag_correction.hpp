@@ -13,8 +13,8 @@
 #include <deque>
 #include <map>
 
-#include "calibration/registration/tag_detector.hpp"
 #include "calibration/registration/twist.hpp"
+#include "calibration/tags/tag_detector.hpp"
 #include "common/lens.hpp"
 #include "common/time.hpp"
 

@@ -1,12 +1,12 @@
 // One finder a kind of board; find_corners.hpp joins them.
 #pragma once
 
-#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "calibration/tags/tag_detector.hpp"
 #include "calibration/target/board.hpp"
 #include "calibration/target/corner_set.hpp"
 
@@ -39,27 +39,18 @@ std::string fitting_dictionary(const Board& board, const std::vector<cv::Mat>& g
 /// Side of the markers over that of the squares; nothing where no image shows two markers.
 std::optional<double> marker_share(const Board& board, const std::vector<cv::Mat>& greys);
 
-/// libapriltag's detector for one board.
+/// The tags of one board.
 class TagFinder {
  public:
   explicit TagFinder(const Board& board);
-  ~TagFinder();
 
   FoundPoints find(const cv::Mat& grey);
   std::size_t last_tags() const;  ///< of the board, that the last image showed
 
  private:
-  struct Detector;
   Board board_;
-  std::unique_ptr<Detector> detector_;
+  TagDetector detector_;
   std::size_t last_tags_ = 0;
 };
-
-/// Names of AprilTag families, the usual ones first.
-const std::vector<std::string>& tag_families();
-
-/// An image of one tag, one pixel a bit, its white border cut off: what size_m measures is the
-/// width. Throws InputError where the family or the id does not exist.
-cv::Mat tag_image(const std::string& family, int id);
 
 }  // namespace foresight

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <opencv2/core.hpp>
 
+#include "calibration/tags/tag_family.hpp"
 #include "calibration/target/board_finders.hpp"
 #include "calibration/target/find_corners.hpp"
 #include "calibration/target/grid_order.hpp"

@@ -1,4 +1,5 @@
 #include "calibration/target/print_board.hpp"
+#include "calibration/tags/tag_family.hpp"
 
 #include <cairo-pdf.h>
 

@@ -27,7 +27,15 @@ TEST(StereoCommand, OpenCvsPicturesReachTheFrozenFigures) {
   EXPECT_LE(numbers["loo_joint_px"], 0.205);
   EXPECT_LE(numbers["loo_cross_px"], 0.270);
   EXPECT_LE(numbers["loo_epipolar_px"], 0.116);
-  EXPECT_EQ(run_calibrate({"verify", "--result", result, "--corners", frozen, "--board", board}), "0");
+  const std::vector<std::string> verify{"verify", "--result", result, "--corners", frozen, "--board", board};
+  const auto joint_of = [&](const std::vector<std::string>& more) {
+    auto all = verify;
+    all.insert(all.end(), {"--json", folder / "v.json"});
+    all.insert(all.end(), more.begin(), more.end());
+    EXPECT_EQ(run_calibrate(all), "0");
+    return json_of(folder, "v.json")["joint_px"].get<double>();
+  };
+  EXPECT_LT(joint_of({}), joint_of({"--flat"}) - 0.001) << "the board is bent, and the result says how";
   EXPECT_EQ(run_calibrate({"verify", "--result", result, "--corners", frozen, "--board", board, "--cross", "0.1"}),
             "1");
 }

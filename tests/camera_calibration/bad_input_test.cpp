@@ -133,13 +133,6 @@ TEST(BadInput, DifferentBoards) {
   EXPECT_THROW(rig_views(pair), InputError);
 }
 
-TEST(MissingMotion, BoardsParallelToTheImage) {
-  const auto s = synthetic_rig(9, {.views = 12, .cameras = 1, .most_tilt = 0});
-  const CameraCalibration c = calibrate(s.views);
-  EXPECT_FALSE(c.usable());
-  EXPECT_THAT(c.unusable, Contains(AllOf(HasSubstr("parallel to the image"), HasSubstr("tilt the board")))) << c.full();
-}
-
 TEST(Rejection, TakesOutWhatWasMovedAndNamesIt) {
   auto s = synthetic_rig(10, {.views = 12});
   s.views.views[3].corners[0][17].pixel.x() += 15;

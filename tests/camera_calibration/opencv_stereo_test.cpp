@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "calibration/camera/camera_calibration.hpp"
+#include "calibration/camera/input_checks.hpp"
 #include "calibration/target/corner_files.hpp"
 
 namespace foresight {

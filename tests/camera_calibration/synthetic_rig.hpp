@@ -12,8 +12,13 @@ struct SyntheticOptions {
   int views = 15;
   int cameras = 2;
   double noise_px = 0.2;
-  double most_tilt = 0.6;  ///< rad
-  bool turn = true;        ///< rotates the board about its normal
+  double most_tilt = 0.6;                          ///< rad
+  bool turn = true;                                ///< rotates the board about its normal
+  Eigen::Vector3d lean = Eigen::Vector3d::Zero();  ///< rotation vector, common to all boards, rad
+  double one_axis = 1;                             ///< share of most_tilt about the second axis
+  double nearest_m = 0;                            ///< of the boards; 0: 0.35 (fish-eye: 0.2)
+  double depth_m = -1;                             ///< from the nearest to the farthest; -1: 0.4 (fish-eye: 0.2)
+  double spread = 1;                               ///< of the boards over the image; 0: all in its middle
   Distortion distortion = Distortion::radtan4;
 };
 
@@ -58,11 +63,15 @@ inline SyntheticRig synthetic_rig(unsigned seed, const SyntheticOptions& options
   s.views.height = {480, options.cameras == 2 ? 480 : 0};
   s.views.p_board = board_points(parse_board("chessboard:9x6:0.03"));
   const Eigen::Vector3d middle(0.12, 0.075, 0);
+  const bool fish_eye = options.distortion == Distortion::equidistant;
+  const double nearest = options.nearest_m > 0 ? options.nearest_m : fish_eye ? 0.2 : 0.35;
+  const double depth = options.depth_m >= 0 ? options.depth_m : fish_eye ? 0.2 : 0.4;
   while (static_cast<int>(s.views.views.size()) < options.views) {
     const double t = options.most_tilt;
-    Eigen::Vector3d turn(t * u(random), t * u(random), options.turn ? 0.5 * u(random) : 0);
-    const double z = options.distortion == Distortion::equidistant ? 0.3 + 0.1 * u(random) : 0.55 + 0.2 * u(random);
-    const Pose T = pose_of(turn, {0.6 * z * u(random), 0.4 * z * u(random), z});
+    const Eigen::Vector3d turn(t * u(random), options.one_axis * t * u(random), options.turn ? 0.5 * u(random) : 0);
+    const double z = nearest + 0.5 * depth * (1 + u(random));
+    const Pose T = pose_of({0, 0, 0}, {0.6 * options.spread * z * u(random), 0.4 * options.spread * z * u(random), z}) *
+                   pose_of(options.lean, {0, 0, 0}) * pose_of(turn, {0, 0, 0});
     const Pose T_left_board = T * pose_of({0, 0, 0}, -middle);
     RigView view;
     view.name = "view" + std::to_string(s.views.views.size());

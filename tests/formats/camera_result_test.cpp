@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calibration/target/board.hpp"
 #include "common/error.hpp"
 #include "tests/formats/example_cameras.hpp"
 #include "tests/scene/test_run.hpp"
@@ -33,6 +34,22 @@ TEST(CameraResult, ReadsBackAPair) {
   const StereoModel back = read_stereo(parsed(to_yaml(StereoModel{pair.left, *pair.right, pair.T_left_right})));
   EXPECT_EQ(back.right.lens, pair.right->lens);
   EXPECT_LT((back.T_left_right.matrix() - pair.T_left_right.matrix()).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(CameraResult, KnowsTheBoardAgain) {
+  const auto points = board_points(parse_board("chessboard:9x6:0.025"));
+  YAML::Node result = to_yaml(example_camera(Distortion::radtan4));
+  EXPECT_FALSE(read_known_board(parsed(result)));
+  result["board"] = to_yaml(KnownBoard(points, {0.0004, -0.0001}));
+  const auto board = read_known_board(parsed(result));
+  ASSERT_TRUE(board);
+  EXPECT_EQ(board->warp.x_m, 0.0004);
+  EXPECT_EQ(board->warp.y_m, -0.0001);
+  EXPECT_TRUE(board->is_laid_out_as(points));
+  EXPECT_FALSE(board->is_laid_out_as(board_points(parse_board("chessboard:9x6:0.0251"))));
+  EXPECT_FALSE(board->is_laid_out_as(board_points(parse_board("chessboard:6x9:0.025"))));
+  EXPECT_FALSE(board->is_laid_out_as(board_points(parse_board("chessboard:17x11:0.0125"))));
+  EXPECT_EQ(read_camera(parsed(result)).width, example_camera(Distortion::radtan4).width);
 }
 
 TEST(CameraResult, NamesWhatIsWrong) {

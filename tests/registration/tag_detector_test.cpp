@@ -1,4 +1,4 @@
-#include "calibration/registration/tag_detector.hpp"
+#include "calibration/tags/tag_detector.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/tags/tag_family.hpp"
 #include "calibration/target/board_finders.hpp"
 
 namespace foresight {

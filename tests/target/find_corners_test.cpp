@@ -50,7 +50,7 @@ TEST_P(EveryBoard, IsFoundWhereItWasDrawn) {
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryBoard,
                          testing::Values("chessboard:9x6:0.025", "chessboard:7x7:0.025", "chessboard:8x6:0.025",
                                          "charuco:7x5:0.03:0.02:DICT_5X5_100", "apriltag:4x3:0.05:0.015",
-                                         "circles:7x5:0.03"));
+                                         "apriltag:4x3:0.05:0.015:tag36h11b2", "circles:7x5:0.03"));
 
 TEST(FindCorners, LargeImagesAreReducedToFindAndNotToRefine) {
   const Board board = parse_board("chessboard:24x17:0.02");
@@ -111,6 +111,11 @@ TEST(FindCorners, SaysWhatFits) {
               AllOf(HasSubstr("10x7 not found"), HasSubstr("chessboard:9x6:0.025")));
   EXPECT_THAT(explain_nothing_found(parse_board("apriltag:4x3:0.05:0.015"), {drawn("apriltag:4x3:0.05:0.015:tag25h9")}),
               AllOf(HasSubstr("0 tags of tag36h11"), HasSubstr("tag25h9 fits")));
+  EXPECT_THAT(
+      explain_nothing_found(parse_board("apriltag:4x3:0.05:0.015"), {drawn("apriltag:4x3:0.05:0.015:tag36h11b2")}),
+      HasSubstr("tag36h11b2 fits"));
+  EXPECT_THAT(explain_nothing_found(parse_board("chessboard:10x7:0.025"), {drawn("chessboard:9x6:0.025")}),
+              HasSubstr("10x7 counts its squares"));
   EXPECT_THAT(explain_nothing_found(parse_board("charuco:7x5:0.03:0.02:DICT_6X6_250"),
                                     {drawn("charuco:7x5:0.03:0.02:DICT_5X5_100")}),
               HasSubstr("DICT_5X5_50 fits"));

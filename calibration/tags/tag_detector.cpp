@@ -1,14 +1,10 @@
-#include "calibration/registration/tag_detector.hpp"
+#include "calibration/tags/tag_detector.hpp"
 
 #include <apriltag/apriltag.h>
-#include <apriltag/tag16h5.h>
-#include <apriltag/tag25h9.h>
-#include <apriltag/tag36h11.h>
 
 #include <algorithm>
 
-#include "common/error.hpp"
-#include "common/text.hpp"
+#include "calibration/tags/tag_family.hpp"
 
 namespace foresight {
 namespace {
@@ -19,16 +15,7 @@ constexpr double kPixelOffset = 0.5;
 /// A tag that the border cuts off is found all the same, with corners on the border.
 constexpr double kLeastBorder = 4;  // px
 
-using Family = std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)>;
-
-Family create_family(const std::string& name) {
-  if (name == "tag36h11") return {tag36h11_create(), tag36h11_destroy};
-  if (name == "tag25h9") return {tag25h9_create(), tag25h9_destroy};
-  if (name == "tag16h5") return {tag16h5_create(), tag16h5_destroy};
-  const std::vector<std::string> known{"tag36h11", "tag25h9", "tag16h5"};
-  throw InputError("tag family", "there is none called " + in_quotes(name),
-                   "did you mean " + nearest_word(name, known) + "?");
-}
+constexpr std::size_t kLargeImage = 1'500'000;  // px
 
 double shortest_side(const DetectedTag& tag) {
   double shortest = 1e9;
@@ -46,12 +33,11 @@ bool is_inside(const DetectedTag& tag, const cv::Size& size) {
 }  // namespace
 
 struct TagDetector::Library {
-  explicit Library(const Options& options) : family(create_family(options.family)) {
+  explicit Library(const Options& options) : family(create_tag_family(options.family)) {
     apriltag_detector_add_family_bits(detector.get(), family.get(), 1);
     detector->nthreads = 1;
-    detector->quad_decimate = static_cast<float>(options.decimate);
   }
-  Family family;  // outlives the detector
+  TagFamily family;  // outlives the detector
   std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector{apriltag_detector_create(),
                                                                                 apriltag_detector_destroy};
 };
@@ -60,6 +46,8 @@ TagDetector::TagDetector(const Options& options) : options_(options), library_(s
 TagDetector::~TagDetector() = default;
 
 std::vector<DetectedTag> TagDetector::detect(const cv::Mat& grey) {
+  const double automatic = grey.total() > kLargeImage ? 2 : 1;
+  library_->detector->quad_decimate = static_cast<float>(options_.decimate > 0 ? options_.decimate : automatic);
   const cv::Mat whole = grey.isContinuous() ? grey : grey.clone();
   image_u8_t image{whole.cols, whole.rows, static_cast<int32_t>(whole.step), whole.data};
   const std::unique_ptr<zarray_t, void (*)(zarray_t*)> found(apriltag_detector_detect(library_->detector.get(), &image),
@@ -68,7 +56,9 @@ std::vector<DetectedTag> TagDetector::detect(const cv::Mat& grey) {
   for (int i = 0; i < zarray_size(found.get()); ++i) {
     apriltag_detection_t* d = nullptr;
     zarray_get(found.get(), i, &d);
-    DetectedTag tag{d->id, {}, d->decision_margin};
+    DetectedTag tag{d->id, {}, d->decision_margin, Eigen::Matrix3d::Identity()};
+    tag.H = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(d->H->data);
+    tag.H.topRows<2>() -= Eigen::Vector2d::Constant(kPixelOffset) * tag.H.row(2).eval();
     for (std::size_t c = 0; c < 4; ++c) tag.corners[c] = {d->p[c][0] - kPixelOffset, d->p[c][1] - kPixelOffset};
     if (tag.margin >= options_.least_margin && shortest_side(tag) >= options_.least_side_px &&
         is_inside(tag, grey.size()))

@@ -1,6 +1,8 @@
-// AprilTags in live images.
+// AprilTags in images: the one place that calls libapriltag's detector.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
@@ -13,19 +15,23 @@ struct DetectedTag {
   std::array<Eigen::Vector2d, 4>
       corners;        ///< px, pixel centres at integers; lower left, lower right, upper right, upper left of the print
   double margin = 0;  ///< decision margin of libapriltag, 8-bit values
+  Eigen::Matrix3d H =
+      Eigen::Matrix3d::Identity();  ///< from -1..1 across the black square, x right and y down in print, to px
 };
 
-/// libapriltag 3.3 with what suits images that come 30 times a second. One thread.
+/// libapriltag 3.3; the defaults suit images that come 30 times a second. One thread.
 class TagDetector {
  public:
   struct Options {
     std::string family = "tag36h11";
-    double decimate = 2;        ///< quads are looked for in an image so many times smaller; corners in the whole one
+    /// Quads are looked for in an image so many times smaller, corners in the whole one; 0: 2 from 1.5
+    /// megapixels on, else 1.
+    double decimate = 2;
     double least_margin = 25;   ///< weaker detections are dropped
     double least_side_px = 12;  ///< smaller tags are dropped: their corners are worth little
   };
 
-  /// Throws InputError for a family that libapriltag does not have.
+  /// Throws InputError for a family that does not exist (tag_family.hpp).
   explicit TagDetector(const Options& options);
   ~TagDetector();
 
