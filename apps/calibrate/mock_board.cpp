@@ -13,10 +13,13 @@ namespace foresight {
 namespace {
 
 constexpr sim::PanTilt kHead{0.15, -0.2};
-constexpr double kRoom = 1.2;                  // metres from the cameras to what stands before the wall
-constexpr double kRim = 6;                     // px around the board
-constexpr double kStill = 0.7, kBefore = 0.1;  // seconds; so long before its instant it stands already
-constexpr int kColumns = 4, kRows = 3;         // of the image's parts
+constexpr double kRoom = 1.2;                    // metres from the cameras to what stands before the wall
+constexpr double kRim = 6;                       // px around the board
+constexpr double kStill = 0.7, kBefore = 0.1;    // seconds; so long before its instant it stands already
+constexpr int kColumns = 4, kRows = 3;           // of the image's parts
+constexpr double kShares[] = {0.45, 0.6, 0.36};  // of the image's width that the board takes
+// Nearer, the two images would differ by more than this share of their width, and the outer parts of one stay empty.
+constexpr double kMostDisparity = 0.15;
 
 double evenly(std::mt19937& random, double from, double to) {
   return from + (to - from) * (static_cast<double>(random()) / 4294967296.0);
@@ -48,13 +51,17 @@ struct Station {
 /// Puts the board as near to the station's aim as both cameras allow.
 class Placing {
  public:
-  Placing(const Outline& outline, const sim::MockCameraOptions& cameras) : outline_(outline), cameras_(cameras) {}
+  Placing(const Outline& outline, const sim::MockCameraOptions& cameras) : outline_(outline), cameras_(cameras) {
+    const Lens::Parameters& p = cameras_.left.parameters();
+    const double nearest = p.fx * cameras_.T_left_right.translation().norm() / (kMostDisparity * p.width);
+    farther_ = std::max(1.0, nearest / distance(*std::max_element(std::begin(kShares), std::end(kShares))));
+  }
 
   Pose operator()(const Station& station) const {
     const Lens::Parameters& p = cameras_.left.parameters();
     const Eigen::Vector2d middle(p.width / 2.0, p.height / 2.0);
     const Eigen::Vector2d aim(station.aim.x() * p.width, station.aim.y() * p.height);
-    for (double z = p.fx * outline_.width / (station.share * p.width); z < kRoom; z *= 1.08)
+    for (double z = farther_ * distance(station.share); z < kRoom; z *= 1.08)
       for (int step = 0; step <= kSteps; ++step) {
         const Pose T = at(aim + step / double(kSteps) * (middle - aim), z, station);
         if (seen(T)) return T;
@@ -67,6 +74,10 @@ class Placing {
 
  private:
   static constexpr int kSteps = 24;
+
+  double distance(double share) const {
+    return cameras_.left.parameters().fx * outline_.width / (share * cameras_.left.width());
+  }
 
   Pose at(const Eigen::Vector2d& pixel, double z, const Station& s) const {
     const auto ray = cameras_.left.unproject({pixel.x(), pixel.y()});
@@ -95,11 +106,12 @@ class Placing {
 
   const Outline& outline_;
   const sim::MockCameraOptions& cameras_;
+  double farther_ = 1;
 };
 
 std::vector<Station> plan(unsigned seed) {
   constexpr double kDeg = std::numbers::pi / 180;
-  constexpr double kShares[] = {0.45, 0.6, 0.36}, kTilts[] = {25, 40, 15, 33, 45};
+  constexpr double kTilts[] = {25, 40, 15, 33, 45};
   std::mt19937 random(seed);
   std::vector<int> parts;
   std::vector<Station> out;

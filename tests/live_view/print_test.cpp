@@ -4,7 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/registration/tag_detector.hpp"
+#include "calibration/tags/tag_detector.hpp"
 #include "calibration/target/board_drawing.hpp"
 #include "calibration/target/find_corners.hpp"
 #include "drivers/camera/frame.hpp"
