@@ -95,6 +95,10 @@ void add_synth_command(CLI::App& app, std::function<int()>& action) {
       ->add_option("--pose-error-px", options.pose_error_px,
                    "Error of the poses in trajectory.txt: root mean square displacement in the image, in pixels")
       ->capture_default_str();
+  command
+      ->add_option("--pose-error-s", options.pose_error_s,
+                   "Time in s over which these errors stay alike; 0: each image has its own")
+      ->capture_default_str();
   command->add_flag("!--no-truth", options.truth, "Leave out the true depth, node and poses of each image");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

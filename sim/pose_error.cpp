@@ -16,6 +16,24 @@ Pose motion(const Vector6d& rotation_translation) {
   return out;
 }
 
+Vector6d draw(unsigned seed, int number) {
+  std::seed_seq key{seed, static_cast<unsigned>(number), 0x706f7365u};
+  std::mt19937_64 random(key);
+  std::normal_distribution<double> normal;
+  Vector6d out;
+  for (double& x : out) x = normal(random);
+  return out;
+}
+
+/// A first-order autoregression from the infinite past, up to a factor.
+Vector6d direction_of(unsigned seed, int number, double persistence) {
+  constexpr double kForgotten = 1e-3;
+  Vector6d sum = draw(seed, number);
+  double share = persistence;
+  for (int ago = 1; share > kForgotten; ++ago, share *= persistence) sum += share * draw(seed, number - ago);
+  return sum;
+}
+
 }  // namespace
 
 double displacement_px(const Lens& lens, const cv::Mat& depth, const Pose& error) {
@@ -37,14 +55,11 @@ double displacement_px(const Lens& lens, const cv::Mat& depth, const Pose& error
   return count ? std::sqrt(sum / static_cast<double>(count)) : 0;
 }
 
-Pose random_pose_error(const Lens& lens, const cv::Mat& depth, double px, unsigned seed, int number) {
+Pose random_pose_error(const Lens& lens, const cv::Mat& depth, double px, unsigned seed, int number,
+                       double persistence) {
   const double mean_depth = cv::mean(depth, depth > 0)[0];
   if (px == 0 || !(mean_depth > 0)) return Pose::Identity();
-  std::seed_seq key{seed, static_cast<unsigned>(number), 0x706f7365u};
-  std::mt19937_64 random(key);
-  std::normal_distribution<double> normal;
-  Vector6d direction;
-  for (double& x : direction) x = normal(random);
+  Vector6d direction = direction_of(seed, number, persistence);
   direction.tail<3>() *= mean_depth;
   // Almost linear in its size, so that a few steps of the secant reach it.
   double size = px / lens.parameters().fx / direction.head<3>().norm();

@@ -16,7 +16,9 @@ double displacement_px(const Lens& lens, const cv::Mat& depth, const Pose& error
 
 /// A random small motion of the camera, T_camera_wrong, whose displacement_px is `px` to 1e-6 of
 /// it. Rotation and translation have like effects at the mean depth. The same for the same
-/// `seed` and `number`. Identity where no pixel has a depth or `px` is 0.
-Pose random_pose_error(const Lens& lens, const cv::Mat& depth, double px, unsigned seed, int number);
+/// `seed` and `number`. Identity where no pixel has a depth or `px` is 0. `persistence`, 0 .. below 1:
+/// correlation of its direction with that of the number before.
+Pose random_pose_error(const Lens& lens, const cv::Mat& depth, double px, unsigned seed, int number,
+                       double persistence = 0);
 
 }  // namespace foresight::sim

@@ -1,6 +1,7 @@
 #include "sim/synth_run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
 
@@ -59,6 +60,11 @@ class SynthRun {
 
  private:
   double time(int frame) const { return frame / options_.rate; }
+
+  // Of pose errors, from image to image.
+  double persistence() const {
+    return options_.pose_error_s > 0 ? std::exp(-1 / (options_.rate * options_.pose_error_s)) : 0;
+  }
 
   Pose T_world_left(double t) const { return head_path_ ? head_path_->at(t) : T_world_camera_at(t); }
   Pose T_world_eye(double t, bool right) const {
@@ -173,7 +179,7 @@ class SynthRun {
               options_.sensor.develop(picture.light, t, 2 * static_cast<std::uint64_t>(frame) + right));
     if (!right)
       pose_errors_[static_cast<std::size_t>(frame)] =
-          random_pose_error(lenses_[0], picture.depth, options_.pose_error_px, options_.seed, frame);
+          random_pose_error(lenses_[0], picture.depth, options_.pose_error_px, options_.seed, frame, persistence());
     cv::Mat depth(picture.depth.size(), CV_16UC1), node(picture.depth.size(), CV_16UC1);
     std::vector<std::uint8_t> seen(static_cast<std::size_t>(polygons.count), 0);
     for (int v = 0; v < depth.rows; ++v)
@@ -212,7 +218,8 @@ class SynthRun {
         "blur_px: %.9g\nnoise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
         o.sensor.blur, o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s,
         o.shutter.readout_s);
-    text += format("pose_error_px: %.9g\nhead_path: %s\n", o.pose_error_px, o.head_path ? "given" : "built in");
+    text += format("pose_error_px: %.9g\npose_error_s: %.9g\nhead_path: %s\n", o.pose_error_px, o.pose_error_s,
+                   o.head_path ? "given" : "built in");
     text += format("polygons: %d\npolygons_in_view: [%d, %d]\n", summary.polygons, summary.fewest_polygons_in_view,
                    summary.most_polygons_in_view);
     write_text(target_.path() / kMarker, text);
@@ -247,6 +254,7 @@ void check(const SynthOptions& o) {
   range("--motion-blur", "", o.shutter.exposure_s * 1e3, 0, 1000);
   range("--rolling-shutter", "", o.shutter.readout_s * 1e3, 0, 1000);
   range("--pose-error-px", "", o.pose_error_px, 0, 100);
+  range("--pose-error-s", "", o.pose_error_s, 0, 60);
 }
 
 Lens synth_lens(const SynthOptions& options, bool right) {

@@ -24,6 +24,7 @@ struct SynthOptions {
   Shutter shutter = {};      ///< exposure and readout 0 .. 1 s
   Sensor sensor = {};        ///< noise 0 .. 100, shares 0 .. 0.9; its seed is set from `seed`
   double pose_error_px = 0;  ///< root mean square displacement in the image by the errors of trajectory.txt, 0 .. 100
+  double pose_error_s = 0;   ///< correlation time of these errors; 0: each image has its own; 0 .. 60
   std::optional<std::filesystem::path> head_path = {};  ///< instead of the built-in one; sim/head_path.hpp
   bool truth = true;                                    ///< write the true surface of each pixel and the true poses
 };

@@ -1,15 +1,18 @@
 #include "calibration/registration/correction_filter.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
+#include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 namespace foresight {
 namespace {
 
-constexpr double kRidge = 0.02;  // of the mean diagonal, against weights that cancel each other
+constexpr std::size_t kPast = 8;    // refined poses that a prediction looks at
+constexpr std::size_t kSince = 24;  // given poses since
+constexpr double kRidge = 0.02;     // of the mean diagonal, against weights that cancel each other
 
 Vector6d correction(const Pose& given, const Pose& pose) {
   return to_twist(given.inverse() * pose);
@@ -41,10 +44,9 @@ Pose CorrectionFilter::add_refined(RobotTime time, const Pose& T_world_camera, c
   const Vector6d found = correction(entry.given, T_world_camera);
   for (const auto& [lag, candidates] : entry.predicted) {
     const Candidates errors = candidates.colwise() - found;
-    auto sum = products_.try_emplace(lag, prior()).first;
-    sum->second = options_.forgetting * sum->second + errors.transpose() * px_metric * errors;
-    double& weight = weights_.try_emplace(lag, options_.prior_images).first->second;
-    weight = options_.forgetting * weight + 1;
+    Past& past = past_.at(lag);
+    past.products = options_.forgetting * past.products + errors.transpose() * px_metric * errors;
+    past.weight = options_.forgetting * past.weight + 1;
   }
   mean_square_px_ = options_.forgetting * mean_square_px_ + found.dot(px_metric * found);
   mean_weight_ = options_.forgetting * mean_weight_ + 1;
@@ -75,59 +77,105 @@ void CorrectionFilter::compare_roughness(std::size_t at, const Matrix6d& px_metr
   };
   roughness_given_ = options_.forgetting * roughness_given_ + size(given);
   roughness_found_ = options_.forgetting * roughness_found_ + size(found);
+  const double factor = trusted_ ? options_.rougher : options_.smoother;
+  trusted_ = roughness_found_ <= factor * factor * roughness_given_;
 }
 
-CorrectionFilter::Products CorrectionFilter::prior() const {
-  Products out = Products::Zero();
-  out.diagonal().setConstant(options_.other_px * options_.other_px);
-  out(0, 0) = options_.given_px * options_.given_px;
-  return options_.prior_images * out;
+CorrectionFilter::Products CorrectionFilter::prior(const Errors& expected) const {
+  return options_.prior_images * Products(expected.array().square().matrix().asDiagonal());
 }
 
-/// A polynomial in time through the last `images` refined poses and the given ones since, at `at`.
-Vector6d CorrectionFilter::smooth_motion(std::size_t at, std::size_t newest, int degree, std::size_t images,
-                                         double given_weight) const {
+/// What is known of the camera around the entry `at`, seen from the newest refined pose.
+struct CorrectionFilter::Track {
+  Pose origin;
+  Eigen::VectorXd refined_t, given_t;                       // seconds since the newest refined pose
+  Eigen::Matrix<double, 6, Eigen::Dynamic> refined, given;  // motions since then
+  double wanted = 0;
+  Eigen::Index given_since = 0;  // how many of the given poses came later
+};
+
+CorrectionFilter::Track CorrectionFilter::track(std::size_t at, std::size_t newest) const {
   const Entry& origin = entries_[newest];
-  const std::size_t first = newest + 1 > images ? newest + 1 - images : 0;
-  const auto rows = static_cast<Eigen::Index>(at - first + 1);
-  Eigen::MatrixXd A(rows, degree + 1), b(rows, 6);
-  for (std::size_t i = first; i <= at; ++i) {
-    const Entry& e = entries_[i];
-    const auto row = static_cast<Eigen::Index>(i - first);
-    const double weight = e.refined && i <= newest ? 1 : given_weight;
-    const double t = to_seconds(e.time - origin.time) / std::max(1e-9, to_seconds(entries_[at].time - origin.time));
-    const Pose& pose = e.refined && i <= newest ? *e.refined : e.given;
-    b.row(row) = weight * correction(*origin.refined, pose).transpose();
-    for (int power = 0; power <= degree; ++power) A(row, power) = weight * std::pow(t, power);
+  std::vector<std::size_t> refined, given;
+  for (std::size_t i = newest + 1; i-- > 0 && refined.size() < kPast;)
+    if (entries_[i].refined) refined.push_back(i);
+  for (std::size_t i = std::max(newest + 1, at + 1 > kSince ? at + 1 - kSince : 0); i <= at; ++i) given.push_back(i);
+  Track out;
+  out.origin = *origin.refined;
+  out.given_since = static_cast<Eigen::Index>(given.size());
+  given.insert(given.end(), refined.begin(), refined.end());
+  const auto seconds_at = [&](std::size_t i) { return to_seconds(entries_[i].time - origin.time); };
+  const auto n = static_cast<Eigen::Index>(refined.size()), m = static_cast<Eigen::Index>(given.size());
+  out.refined_t.resize(n), out.refined.resize(6, n), out.given_t.resize(m), out.given.resize(6, m);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Entry& entry = entries_[refined[static_cast<std::size_t>(k)]];
+    out.refined_t[k] = seconds_at(refined[static_cast<std::size_t>(k)]);
+    out.refined.col(k) = correction(out.origin, *entry.refined);
   }
-  if (rows < degree + 1) return Vector6d::Zero();
-  const Eigen::MatrixXd x = A.completeOrthogonalDecomposition().solve(b);
-  const Vector6d motion = x.colwise().sum().transpose();  // at t = 1
-  return correction(entries_[at].given, *origin.refined * to_motion(motion));
+  for (Eigen::Index k = 0; k < m; ++k) {
+    out.given_t[k] = seconds_at(given[static_cast<std::size_t>(k)]);
+    out.given.col(k) = correction(out.origin, entries_[given[static_cast<std::size_t>(k)]].given);
+  }
+  out.wanted = seconds_at(at);
+  return out;
 }
 
-CorrectionFilter::Candidates CorrectionFilter::candidates(std::size_t at, std::size_t newest) const {
+/// Corrections of entry `at` that the candidates predict, and the errors that they expect of themselves.
+std::pair<CorrectionFilter::Candidates, CorrectionFilter::Errors> CorrectionFilter::candidates(
+    std::size_t at, std::size_t newest) const {
+  const Pose& given = entries_[at].given;
   Candidates out;
-  out << Vector6d::Zero(), correction(entries_[newest].given, *entries_[newest].refined), mean_correction_,
-      smooth_motion(at, newest, 1, 3, 0.2), smooth_motion(at, newest, 2, 4, 0.1), smooth_motion(at, newest, 2, 4, 0.25),
-      smooth_motion(at, newest, 3, 6, 0.2);
-  return out;
+  Errors expected;
+  out.col(0).setZero();
+  out.col(1) = correction(entries_[newest].given, *entries_[newest].refined);
+  out.col(2) = mean_correction_;
+  expected.head<kPlain>() << options_.given_px, std::numbers::sqrt2 * options_.given_px, options_.given_px;
+  const Track track = this->track(at, newest);
+  for (int c = kPlain; c < kCandidates; ++c) {
+    const MotionModel& model = options_.models[static_cast<std::size_t>(c - kPlain)];
+    // Errors that do not persist: what was given for refined poses tells nothing.
+    const Eigen::Index n = model.persist_s > 0 ? track.given_t.size() : track.given_since;
+    const MotionWeights w = motion_weights(model, track.refined_t, track.given_t.head(n), track.wanted);
+    const Vector6d motion = track.refined * w.refined + track.given.leftCols(n) * w.given;
+    out.col(c) = correction(given, track.origin * to_motion(motion));
+    expected[c] = w.sigma_px;
+  }
+  return {out, expected};
+}
+
+/// Sums to one, none negative, least expected square.
+CorrectionFilter::Errors CorrectionFilter::best_weights(const Products& products) {
+  std::array<int, kCandidates> used;
+  std::iota(used.begin(), used.end(), 0);
+  for (int n = kCandidates;; --n) {
+    const Eigen::Map<const Eigen::VectorXi> rows(used.data(), n);
+    Eigen::MatrixXd part = products(rows, rows);
+    part.diagonal().array() += kRidge * part.diagonal().minCoeff();
+    Eigen::VectorXd weights = part.ldlt().solve(Eigen::VectorXd::Ones(n));
+    weights /= weights.sum();
+    Eigen::Index worst = 0;
+    if (weights.minCoeff(&worst) >= 0) {
+      Errors out = Errors::Zero();
+      out(rows) = weights;
+      return out;
+    }
+    std::rotate(used.begin() + worst, used.begin() + worst + 1, used.begin() + n);
+  }
 }
 
 CorrectionFilter::Prediction CorrectionFilter::predict(RobotTime time) {
   const std::size_t at = index_of(time);
   Entry& entry = entries_[at];
+  if (entry.refined) return {*entry.refined, gauge_px()};
   const auto newest = newest_refined(at);
-  if (!newest || !helps()) return {entry.given, options_.given_px};
+  if (!newest) return {entry.given, options_.given_px};
   const int lag = static_cast<int>(at - *newest);
-  const Candidates all = entry.predicted[lag] = candidates(at, *newest);
-  const auto sum = products_.find(lag);
-  Products products = sum == products_.end() ? prior() : sum->second;
-  products /= sum == products_.end() ? options_.prior_images : weights_.at(lag);
-  Products firm = products;
-  firm.diagonal().array() += kRidge * products.diagonal().minCoeff();
-  Eigen::Matrix<double, kCandidates, 1> weights = firm.ldlt().solve(Eigen::Matrix<double, kCandidates, 1>::Ones());
-  weights /= weights.sum();
+  const auto [all, expected] = candidates(at, *newest);
+  entry.predicted[lag] = all;
+  const Past& past = past_.try_emplace(lag, Past{prior(expected), options_.prior_images}).first->second;
+  const Products products = past.products / past.weight;
+  if (!helps()) return {entry.given, std::sqrt(products(0, 0))};
+  const Errors weights = best_weights(products);
   return {entry.given * to_motion(all * weights), std::sqrt(std::max(0.0, weights.dot(products * weights)))};
 }
 

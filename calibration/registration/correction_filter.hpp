@@ -14,26 +14,34 @@
 //
 // Doubt: where the model is wrong, an alignment follows its errors, which change from view to view. A camera
 // moves smoothly; so refined poses are used only while they do not make its motion rougher (third
-// differences, root mean square in px) than the given ones do.
+// differences, root mean square in px) than the given ones do. A change of mind moves all textures, so that
+// the way back needs a clear difference.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <map>
+#include <optional>
 
+#include "calibration/registration/motion_model.hpp"
 #include "calibration/registration/twist.hpp"
 #include "common/time.hpp"
 
 namespace foresight {
 
 struct CorrectionFilterOptions {
-  double to_given = 0.05;     ///< share of the mean correction that each refined pose gives up; 0 .. 1
-  double mean_share = 0.1;    ///< of the newest correction in the mean one; 0 .. 1
-  double forgetting = 0.95;   ///< weight of past predictions, per image; 0 .. 1
-  double given_px = 2;        ///< expected error of given poses before anything is known
-  double other_px = 2;        ///< the same of the other predictions
-  double prior_images = 0.5;  ///< for how many images the two expectations count
-  double rougher = 1.05;      ///< refined poses are used while they are rougher by no more than this factor
-  std::size_t memory = 32;    ///< images that are kept before the newest refined one
+  double to_given = 0.05;    ///< share of the mean correction that each refined pose gives up; 0 .. 1
+  double mean_share = 0.1;   ///< of the newest correction in the mean one; 0 .. 1
+  double forgetting = 0.95;  ///< weight of past predictions, per image; 0 .. 1
+  double given_px = 2;       ///< expected error of given poses before anything is known
+  double prior_images = 2;   ///< for how many images the expected errors of the predictions count
+  /// How the camera may move and its given poses may err.
+  static constexpr std::size_t kModels = 5;
+  std::array<MotionModel, kModels> models = {
+      {{0.14, 10, 0}, {0.1, 4, 0}, {0.2, 20, 0}, {0.14, 10, 0.3}, {0.14, 10, 3}}};
+  double rougher = 1.05;    ///< refined poses are doubted when they are rougher by more than this factor
+  double smoother = 0.7;    ///< and trusted again when they are smoother by this factor; below 1
+  std::size_t memory = 32;  ///< images that are kept before the newest refined one
 };
 
 /// One thread. Images in ascending order of time.
@@ -57,16 +65,23 @@ class CorrectionFilter {
   /// the refined poses before it.
   Prediction predict(RobotTime time);
 
-  /// Do the refined poses not make the motion rougher? True as long as there are too few of them.
-  bool helps() const { return roughness_given_ == 0 || roughness_found_ < square(options_.rougher) * roughness_given_; }
+  /// Are refined poses in use? True as long as there are too few of them for a doubt.
+  bool helps() const { return trusted_; }
 
   /// Uncertainty of the gauge: how far all refined poses together may be off, px.
   double gauge_px() const;
 
  private:
-  static constexpr int kCandidates = 7;
+  static constexpr int kPlain = 3;  // no correction, the newest one, the mean one; then the models
+  static constexpr int kCandidates = kPlain + static_cast<int>(CorrectionFilterOptions::kModels);
   using Candidates = Eigen::Matrix<double, 6, kCandidates>;  // a correction each
   using Products = Eigen::Matrix<double, kCandidates, kCandidates>;
+  using Errors = Eigen::Matrix<double, kCandidates, 1>;
+  struct Track;
+  struct Past {
+    Products products;  // sum of the candidates' errors times each other, px^2
+    double weight;
+  };
   struct Entry {
     RobotTime time;
     Pose given;
@@ -75,22 +90,22 @@ class CorrectionFilter {
     std::map<int, Candidates> predicted = {};  // by lag: images since the newest refined one
   };
 
-  static double square(double x) { return x * x; }
   void compare_roughness(std::size_t at, const Matrix6d& px_metric);
   std::size_t index_of(RobotTime time) const;
   std::optional<std::size_t> newest_refined(std::size_t before) const;
-  Candidates candidates(std::size_t at, std::size_t newest) const;
-  Vector6d smooth_motion(std::size_t at, std::size_t newest, int degree, std::size_t images, double given_weight) const;
-  Products prior() const;
+  Track track(std::size_t at, std::size_t newest) const;
+  std::pair<Candidates, Errors> candidates(std::size_t at, std::size_t newest) const;
+  static Errors best_weights(const Products& products);
+  Products prior(const Errors& expected) const;
 
   CorrectionFilterOptions options_;
   std::deque<Entry> entries_;
-  std::map<int, Products> products_;  // by lag: sums of the candidates' errors times each other, px^2
-  std::map<int, double> weights_;
+  std::map<int, Past> past_;  // by lag
   Vector6d mean_correction_ = Vector6d::Zero();
   double mean_square_px_ = 0, mean_weight_ = 0;
   double refined_ = 0;
   double roughness_given_ = 0, roughness_found_ = 0;  // sums, px^2
+  bool trusted_ = true;
 };
 
 }  // namespace foresight

@@ -86,6 +86,36 @@ TEST(CorrectionFilter, DoesNotSpoilExactPoses) {
   EXPECT_LT(follow(swaying, exact, 3).predicted, 0.02);
 }
 
+TEST(CorrectionFilter, BridgesOneImageOfASmoothMotion) {
+  const Errors errors = follow(swaying, white, 1);
+  EXPECT_LT(errors.predicted, 0.1 * errors.given);
+}
+
+TEST(CorrectionFilter, GivesTheRefinedPoseOfAnImageThatHasArrived) {
+  CorrectionFilter filter{CorrectionFilterOptions{}};
+  filter.add_given(RobotTime{}, still(0) * white(1));
+  const Pose used = filter.add_refined(RobotTime{}, still(0), kMetric);
+  EXPECT_TRUE(filter.predict(RobotTime{}).T_world_camera.isApprox(used, 1e-12));
+}
+
+TEST(CorrectionFilter, TrustsAgainOnlyWhatIsClearlySmoother) {
+  CorrectionFilter filter{CorrectionFilterOptions{}};
+  const auto play = [&](int first, int last, double given_error, double found_error) {
+    for (int i = first; i < last; ++i) {
+      const RobotTime time = RobotTime{} + seconds(i / 30.0);
+      const auto wrong = [](int seed, double share) { return to_motion(share * to_twist(white(seed))); };
+      filter.add_given(time, swaying(i / 30.0) * wrong(i, given_error));
+      filter.add_refined(time, swaying(i / 30.0) * wrong(1000 + i, found_error), kMetric);
+    }
+  };
+  play(0, 20, 0, 1);
+  EXPECT_FALSE(filter.helps());
+  play(20, 220, 1, 0.9);  // a little smoother
+  EXPECT_FALSE(filter.helps());
+  play(220, 420, 1, 0.1);
+  EXPECT_TRUE(filter.helps());
+}
+
 TEST(CorrectionFilter, KnowsItsError) {
   for (const int lag : {1, 3, 6}) {
     const Errors errors = follow(swaying, white, lag);

@@ -103,6 +103,24 @@ TEST_F(Truth, PoseErrorsAreAsLargeAsAsked) {
   EXPECT_FALSE(errors[0].isApprox(errors[1], 1e-4)) << "each image has its own";
 }
 
+TEST_F(Truth, PoseErrorsStayAlikeAsLongAsAsked) {
+  small_.pose_error_px = 1.5;
+  small_.pose_error_s = 10;  // images are 1 s apart
+  small_.frames = 3;
+  write_synth_run(folder_ / "run", small_);
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  const GroundTruth truth = GroundTruth::open(run);
+  const auto turn = [&](std::size_t frame) {
+    const Eigen::AngleAxisd error(
+        (truth.T_world_camera(frame, false).inverse() * run.frames()[frame].left.T_world_camera).linear());
+    return Eigen::Vector3d(error.angle() * error.axis());
+  };
+  for (std::size_t frame = 1; frame < 3; ++frame) {
+    EXPECT_GT(turn(frame).norm(), 1e-4);
+    EXPECT_GT(turn(frame).normalized().dot(turn(frame - 1).normalized()), 0.5) << frame;
+  }
+}
+
 TEST_F(Truth, WithoutPoseErrorsTheRecordedPosesAreTrue) {
   write_synth_run(folder_ / "run", small_);
   const RunFolder run = RunFolder::open(folder_ / "run", {});

@@ -183,6 +183,7 @@ TEST_F(SynthRun, RefusesSizesAndCountsOutOfRange) {
   refuses({.frames = 0}, "--frames: 0 is outside 1");
   refuses({.rate = 0}, "--rate: 0 is outside 0.1 .. 1000");
   refuses({.pose_error_px = std::nan("")}, "--pose-error-px: nan is outside 0 .. 100");
+  refuses({.pose_error_s = -1}, "--pose-error-s: -1 is outside 0 .. 60");
   refuses({.sensor = {.vignetting = 1}}, "--vignetting: 1 is outside 0 .. 0.9");
   refuses({.shutter = {.exposure_s = -1}}, "--motion-blur: -1000 is outside 0 .. 1000");
 }
