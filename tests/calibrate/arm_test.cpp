@@ -42,7 +42,8 @@ std::string error_of(const std::string& result) {
 class Arm : public testing::Test {
  protected:
   HandEyeRig make(CameraMount mount) {
-    HandEyeRig rig = make_rig(random_, {.mount = mount, .views = 9, .noise_px = 0.05, .noise_rad = 5e-5, .noise_m = 5e-5});
+    HandEyeRig rig =
+        make_rig(random_, {.mount = mount, .views = 9, .noise_px = 0.05, .noise_rad = 5e-5, .noise_m = 5e-5});
     corners_ = folder_.write("corners.vnl", vnl(rig.data.corners));
     return rig;
   }
@@ -104,6 +105,53 @@ TEST_F(Arm, GivesTheArmInTheHeadsFrame) {
   EXPECT_THAT(arm({"--poses", folder_.write("p.txt", rows(moving.data.poses)), "--head", folder_ / "head.yaml",
                    "--head-angles", "0", "0"}),
               HasSubstr("the camera moves with the arm"));
+}
+
+// Encoders in microseconds since power-on, the camera in unix seconds: a swept arm whose camera stamps are 35 ms old.
+TEST(TimeCommand, FromJointsOfAUrdf) {
+  const TempFolder folder;
+  const std::string urdf = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/arm.urdf";
+  JointChain chain = read_joint_chain(urdf, "", "");
+  Random random(72);
+  const Pose X = random_pose(random, 3, 0.1), Y = random_pose(random, 3, 0.3);
+  const auto positions = [&](double t) {
+    std::vector<double> q;
+    for (std::size_t j = 0; j < chain.joints.size(); ++j)
+      q.push_back(0.3 * std::sin((0.7 + 0.31 * static_cast<double>(j)) * t + static_cast<double>(j * j)));
+    return q;
+  };
+  std::string joints = "time", camera;
+  for (std::size_t j = 0; j < chain.joints.size(); ++j) joints += ",q" + std::to_string(j);
+  joints += "\n";
+  for (int i = 0; i < 2500; ++i) {
+    joints += std::to_string(1'000'000 + 10'000 * i);
+    for (const double q : positions(0.01 * i)) joints += "," + std::to_string(q);
+    joints += "\n";
+  }
+  for (int i = 0; i < 600; ++i) {
+    const double t = 0.5 + i / 30.0;
+    const Pose B = noisy(Y.inverse() * flange_pose(chain, positions(t), "test") * X, random, 2e-3, 1e-3);
+    const Eigen::Quaterniond q(B.linear());
+    camera += std::to_string(1 + t - 0.035);
+    for (const double v : {B.translation().x(), B.translation().y(), B.translation().z(), q.x(), q.y(), q.z(), q.w()})
+      camera += " " + std::to_string(v);
+    camera += "\n";
+  }
+  const auto encoder_file = folder.write("joints.csv", joints), camera_file = folder.write("camera.txt", camera);
+  ASSERT_EQ(run_calibrate({"time", "--joints", encoder_file, "--urdf", urdf, "--camera-poses", camera_file, "--json",
+                           folder / "t.json"}),
+            "0");
+  const auto numbers = json_of(folder, "t.json");
+  EXPECT_NEAR(numbers["offset_s"], 0.035, 4 * numbers["offset_sigma_s"].get<double>());
+  EXPECT_LT(numbers["offset_sigma_s"], 2e-3);
+  EXPECT_THAT(numbers["notes"].dump(), HasSubstr("taken as microseconds"));
+  EXPECT_THAT(run_calibrate({"time", "--joints", encoder_file, "--urdf", urdf, "--camera-poses", camera_file,
+                             "--time-unit", "ns"}),
+              HasSubstr("share less than 3 s"));
+  EXPECT_THAT(run_calibrate({"time", "--joints", encoder_file, "--camera-poses", camera_file}), HasSubstr("--urdf"));
+  EXPECT_THAT(run_calibrate({"time", "--camera-poses", camera_file}), HasSubstr("--joints"));
+  EXPECT_THAT(run_calibrate({"time", "--poses", camera_file, "--camera-poses", camera_file, "--time-unit", "week"}),
+              HasSubstr("week"));
 }
 
 TEST_F(Arm, WrongJointsAreNamed) {
