@@ -22,6 +22,7 @@ struct ArmOptions {
   ArmNames names{"", "", "camera", {}};
   std::vector<double> head_angles;
   double board_sigma = 0.01;
+  bool invert = false;
   CalibrateOutputs outputs;
 };
 
@@ -67,7 +68,7 @@ void read_poses(const ArmOptions& options, Inputs& in) {
   in.notes.insert(in.notes.end(), read.notes.begin(), read.notes.end());
   const MatchedPoses matched = match_poses(read.poses, in.images, view_names(in));
   in.notes.push_back("robot poses were matched to the images " + matched.how);
-  for (const Pose& pose : matched.poses) in.data.poses.push_back({pose, {}});
+  for (const Pose& pose : matched.poses) in.data.poses.push_back({options.invert ? pose.inverse() : pose, {}});
 }
 
 // Joint positions of each view, by order of the images; a first field that is no number is a name.
@@ -177,6 +178,7 @@ void add_arm(CLI::App& calibrate, std::function<int()>& action) {
   arm->add_option("--pose-unit", options->unit, "Of the positions")
       ->check(CLI::IsMember({"auto", "m", "mm"}))
       ->capture_default_str();
+  arm->add_flag("--invert-poses", options->invert, "The poses are written from flange to base");
   arm->add_option("--joints", options->joints,
                   "Joint positions instead, rad, one row an image, for --urdf; also gives their offsets");
   arm->add_option("--urdf", options->urdf, "The arm");

@@ -16,6 +16,7 @@ nlohmann::ordered_json view_numbers(const HandEyeView& view) {
           {"loo_mm", view.loo_mm},
           {"correction_mrad", 1e3 * view.correction.head<3>().norm()},
           {"correction_mm", 1e3 * view.correction.tail<3>().norm()},
+          {"robot_pose_weight", view.trust},
           {"quarter_turns", view.turned}};
 }
 

@@ -43,8 +43,7 @@ void say(const CaptureMoment& moment, std::string& last) {
   const std::string& wish = moment.progress.wish.text;
   if (!moment.progress.enough) text += "; next: " + (wish.empty() ? "another view, turned or moved" : wish);
   std::string kind = text;  // not again because a number changed, but for a view that was taken
-  if (!outcome.verdict.taken)
-    std::erase_if(kind, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+  if (!outcome.verdict.taken) std::erase_if(kind, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
   if (kind == last) return;
   std::fprintf(stderr, "capture: %s\n", text.c_str());
   last = std::move(kind);

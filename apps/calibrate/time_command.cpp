@@ -17,19 +17,22 @@ struct TimeCommandOptions {
   std::optional<std::filesystem::path> poses, joints, urdf;
   std::filesystem::path camera_poses;
   std::string base, flange;
+  TimeUnit encoder_unit = TimeUnit::automatic, camera_unit = TimeUnit::automatic;
   TimeOffsetOptions solver;
   CalibrateOutputs outputs;
 };
 
 std::vector<PoseTrack::Sample> encoder_poses(TimeCommandOptions& options, std::vector<std::string>& notes) {
   if (options.poses) {
-    PoseStream stream = read_pose_stream(*options.poses);
+    PoseStream stream = read_pose_stream(*options.poses, options.encoder_unit);
     notes.insert(notes.end(), stream.notes.begin(), stream.notes.end());
     return std::move(stream.samples);
   }
   if (!options.joints)
     throw InputError("--poses", "no motion of the encoders is given", "give --poses FILE, or --joints FILE");
-  const std::vector<JointRow> rows = read_joint_stream(*options.joints);
+  const JointStream stream = read_joint_stream(*options.joints, options.encoder_unit);
+  const std::vector<JointRow>& rows = stream.rows;
+  notes.insert(notes.end(), stream.notes.begin(), stream.notes.end());
   if (!options.urdf) {
     options.solver.rotation_only = true;
     return swept_poses(rows, options.joints->string());
@@ -85,7 +88,7 @@ HtmlReport report_of(const TimeOffsetSummary& s, bool rotation_only) {
 int run(TimeCommandOptions& options) {
   std::vector<std::string> notes;
   const std::vector<PoseTrack::Sample> encoder = encoder_poses(options, notes);
-  const PoseStream camera = read_pose_stream(options.camera_poses);
+  const PoseStream camera = read_pose_stream(options.camera_poses, options.camera_unit);
   notes.insert(notes.end(), camera.notes.begin(), camera.notes.end());
   TimeOffsetSummary summary = solve_time_offset(encoder, camera.samples, options.solver);
   summary.notes.insert(summary.notes.begin(), notes.begin(), notes.end());
@@ -126,6 +129,15 @@ void add_time(CLI::App& calibrate, std::function<int()>& action) {
   time->add_option("--urdf", options->urdf, "The robot of --joints");
   time->add_option("--base-link", options->base, "Link that stands still (default: the root)");
   time->add_option("--flange-link", options->flange, "Link that carries the camera (default: the last)");
+  const std::map<std::string, TimeUnit> units{{"auto", TimeUnit::automatic},
+                                              {"s", TimeUnit::second},
+                                              {"ms", TimeUnit::millisecond},
+                                              {"us", TimeUnit::microsecond},
+                                              {"ns", TimeUnit::nanosecond}};
+  time->add_option("--time-unit", options->encoder_unit, "Of the encoder stream's times: auto, s, ms, us, ns")
+      ->transform(CLI::CheckedTransformer(units));
+  time->add_option("--camera-time-unit", options->camera_unit, "Of the camera stream's times")
+      ->transform(CLI::CheckedTransformer(units));
   time->add_option("--around", options->solver.around_s, "Rough offset where the search starts, s")
       ->capture_default_str();
   time->add_option("--search", options->solver.largest_offset_s, "Search to both sides, s")

@@ -6,6 +6,7 @@
 #include "calibration/robot/hand_eye_score.hpp"
 #include "calibration/robot/hand_eye_start.hpp"
 #include "calibration/robot/motion_check.hpp"
+#include "calibration/robot/pose_reading.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -15,6 +16,9 @@ namespace {
 constexpr std::size_t kFewestViews = 5, kFewViews = 10;
 constexpr double kClearly = 0.7;    // of two mounts or orders of corners, the better one's misfit over the other's
 constexpr double kContradicts = 8;  // a robot pose this many times the median correction off is wrong
+constexpr double kWildPose = 22.5;  // squared, of six coordinates: a normal one in a thousand lies beyond
+constexpr double kHardlyTrusted = 0.4;
+constexpr double kWildFreedom = 8;              // of Student's t: the mildest tail that helped on recorded wild poses
 constexpr double kOpenRad = 0.1, kOpenM = 0.1;  // standard deviations from which a parameter counts as open
 
 void require_views(const HandEyeData& data) {
@@ -44,9 +48,11 @@ HandEyeStart best_start(const HandEyeOptions& options, const HandEyeData& data, 
     const std::string both = readable(summary.start_mm_fixed, 1) + " mm of misfit with a fixed camera, " +
                              readable(summary.start_mm_moving, 1) + " mm with a moving one";
     const bool clear = starts[0].misfit_m <= kClearly * starts[1].misfit_m;
-    summary.notes.push_back(clear ? "the camera is taken as " + to_string(starts[0].mount) + ": " + both
+    summary.notes.push_back(clear ? "the camera is taken as " + to_string(starts[0].mount) + ": " + both +
+                                        "; poses written from flange to base would look the other way round"
                                   : both + ": too near each other, say which with --camera-mount");
   }
+  require_meant(starts[0], options.mount.has_value(), data.poses, seen, symmetries);
   return starts[0];
 }
 
@@ -131,6 +137,20 @@ bool reject_view(const HandEyeData& data, const HandEyeState& state, HandEyeSele
   return true;
 }
 
+// How far each robot pose that is used had to be corrected: squared, over the noises.
+std::vector<double> robot_distances(const HandEyeData& data, const HandEyeSelection& selection,
+                                    const HandEyeState& state) {
+  std::vector<double> out(data.poses.size(), 0.0);
+  for (std::size_t v = 0; v < data.poses.size(); ++v) {
+    if (!selection.used[v]) continue;
+    const Vector6 left =
+        Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
+    out[v] = left.head<3>().squaredNorm() / (state.sigma_rad * state.sigma_rad) +
+             left.tail<3>().squaredNorm() / (state.sigma_m * state.sigma_m);
+  }
+  return out;
+}
+
 HandEyeCovariance robust_solve(const HandEyeData& data, const HandEyeOptions& options, HandEyeSelection& selection,
                                HandEyeState& state) {
   HandEyeCovariance covariance;
@@ -144,6 +164,10 @@ HandEyeCovariance robust_solve(const HandEyeData& data, const HandEyeOptions& op
     rejected = now;
   }
   adjust(data, selection, 20, state, &covariance);
+  const std::vector<double> off = robot_distances(data, selection, state);
+  if (*std::max_element(off.begin(), off.end()) < kWildPose) return covariance;
+  state.robot_freedom = kWildFreedom;
+  adjust(data, selection, 30, state, &covariance);
   return covariance;
 }
 
@@ -212,6 +236,12 @@ void fill(const HandEyeState& state, const HandEyeCovariance& covariance, HandEy
   summary.sigma_px = state.sigma_px;
   summary.sigma_robot_rad = state.sigma_rad;
   summary.sigma_robot_m = state.sigma_m;
+  for (std::size_t v = 0; v < state.trust.size(); ++v) {
+    summary.views[v].trust = state.trust[v];
+    if (state.trust[v] < kHardlyTrusted && summary.views[v].used)
+      summary.notes.push_back("the robot pose of view " + summary.views[v].name + " is far off and counts " +
+                              readable(state.trust[v], 2) + " times as much as a usual one");
+  }
 }
 
 }  // namespace

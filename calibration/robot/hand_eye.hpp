@@ -52,6 +52,7 @@ struct HandEyeView {
   int rejected = 0;          ///< corners left out
   double rms_px = 0;         ///< of the used corners, after the solve
   Vector6 correction;        ///< of the robot pose: rad, m, in the flange frame
+  double trust = 1;          ///< weight of the robot pose; below 1 where the noise has a heavy tail and it lies there
   double loo_px = 0;         ///< RMS per corner of prediction minus found, solved without this view
   double loo_mm = 0;         ///< RMS over corners of board points by the robot minus by PnP, without this view
   double loo_across_mm = 0;  ///< the part of it across the line of sight

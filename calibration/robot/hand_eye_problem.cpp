@@ -132,6 +132,7 @@ void add_view(const HandEyeData& data, const HandEyeSelection& selection, std::s
   }
   Vector6 weight;
   weight << Eigen::Vector3d::Constant(1 / state.sigma_rad), Eigen::Vector3d::Constant(1 / state.sigma_m);
+  if (!state.trust.empty()) weight *= std::sqrt(state.trust[v]);
   auto* prior = new RobotResidual(weight, data.poses[v].flange_per_joint);
   if (state.joint_offsets.empty())
     out.problem.AddResidualBlock(prior, nullptr, step);
@@ -191,10 +192,11 @@ void update_noise(const ArrowSystem& system, const Adjustment& adjustment, const
     const std::size_t v = adjustment.views[i];
     const Vector6 left =
         Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
-    turn += left.head<3>().squaredNorm();
-    shift += left.tail<3>().squaredNorm();
-    turn_known += system.own_covariance[i].topLeftCorner(3, 3).trace() / (state.sigma_rad * state.sigma_rad);
-    shift_known += system.own_covariance[i].bottomRightCorner(3, 3).trace() / (state.sigma_m * state.sigma_m);
+    const double trust = state.trust.empty() ? 1 : state.trust[v];
+    turn += trust * left.head<3>().squaredNorm();
+    shift += trust * left.tail<3>().squaredNorm();
+    turn_known += trust * system.own_covariance[i].topLeftCorner(3, 3).trace() / (state.sigma_rad * state.sigma_rad);
+    shift_known += trust * system.own_covariance[i].bottomRightCorner(3, 3).trace() / (state.sigma_m * state.sigma_m);
   }
   const double terms = 3 * static_cast<double>(adjustment.views.size());
   const double parameters = 2 * terms + static_cast<double>(system.shared_information.rows());
@@ -209,6 +211,24 @@ void update_noise(const ArrowSystem& system, const Adjustment& adjustment, const
   state.sigma_rad = next(turn, turn_known, state.sigma_rad, kLeastRad);
   state.sigma_m = next(shift, shift_known, state.sigma_m, kLeastM);
   state.sigma_px = std::max(kLeastPx, state.sigma_px * std::sqrt(corner_sum / std::max(1.0, corner_redundancy)));
+}
+
+// Expectation step of Student's t: D. Lange, R. Little, J. Taylor, Robust statistical modeling using the t
+// distribution, JASA 84, 1989, for six coordinates.
+void update_trust(const ArrowSystem& system, const Adjustment& adjustment, const HandEyeData& data,
+                  HandEyeState& state) {
+  if (state.robot_freedom <= 0) return;
+  state.trust.resize(data.poses.size(), 1.0);
+  const double turn = 1 / (state.sigma_rad * state.sigma_rad), shift = 1 / (state.sigma_m * state.sigma_m);
+  for (std::size_t i = 0; i < adjustment.views.size(); ++i) {
+    const std::size_t v = adjustment.views[i];
+    const Vector6 left =
+        Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
+    const Eigen::MatrixXd& known = system.own_covariance[i];
+    const double distance = turn * (left.head<3>().squaredNorm() + known.topLeftCorner(3, 3).trace()) +
+                            shift * (left.tail<3>().squaredNorm() + known.bottomRightCorner(3, 3).trace());
+    state.trust[v] = (state.robot_freedom + 6) / (state.robot_freedom + distance);
+  }
 }
 
 double corner_cost(const Adjustment& adjustment, const HandEyeData& data, const HandEyeSelection& selection,
@@ -266,8 +286,12 @@ void adjust(const HandEyeData& data, const HandEyeSelection& selection, int nois
     if (last) return;
     const HandEyeState before = state;
     update_noise(system, adjustment, data, corner_cost(adjustment, data, selection, state), state);
+    update_trust(system, adjustment, data, state);
     const auto settled = [](double a, double b) { return std::abs(a - b) < 1e-3 * a; };
-    if (settled(before.sigma_px, state.sigma_px) && settled(before.sigma_rad, state.sigma_rad) &&
+    bool alike = before.trust.size() == state.trust.size();
+    for (std::size_t v = 0; alike && v < state.trust.size(); ++v)
+      alike = std::abs(before.trust[v] - state.trust[v]) < 0.01;
+    if (alike && settled(before.sigma_px, state.sigma_px) && settled(before.sigma_rad, state.sigma_rad) &&
         settled(before.sigma_m, state.sigma_m))
       return;
   }

@@ -16,6 +16,10 @@ struct HandEyeState {
   double board_scale = 1;                          ///< true over stated size of the board
   double board_sigma = 0.01;                       ///< of board_scale before the images; 0 holds it
   std::vector<std::array<double, 6>> corrections;  ///< one per view, zero for views left out
+  /// Weight of each robot pose, 1 on average; empty: all alike. With `robot_freedom` the noise of robot poses is taken
+  /// as Student's t of so many degrees, and a pose that is far off counts less; 0: normal.
+  std::vector<double> trust;
+  double robot_freedom = 0;
   std::vector<double> joint_offsets;
   double sigma_px = 0.3;
   double sigma_rad = 1e-3;

@@ -1,5 +1,8 @@
 #include "calibration/robot/pose_stream.hpp"
 
+#include <cmath>
+
+#include "calibration/robot/rigid_math.hpp"
 #include "calibration/robot/robot_poses.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
@@ -23,17 +26,81 @@ TextRow text_row(const std::filesystem::path& file, const FieldRow& row) {
   return {file, row.line, {row.fields.begin(), row.fields.end()}};
 }
 
+/// Nanoseconds in one of the unit.
+std::int64_t nanoseconds_in(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::nanosecond: return 1;
+    case TimeUnit::microsecond: return 1'000;
+    case TimeUnit::millisecond: return 1'000'000;
+    default: return 1'000'000'000;
+  }
+}
+
+const char* name_of(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::nanosecond: return "nanoseconds";
+    case TimeUnit::microsecond: return "microseconds";
+    case TimeUnit::millisecond: return "milliseconds";
+    default: return "seconds";
+  }
+}
+
+TimeUnit likely_unit(const std::vector<FieldRow>& rows) {
+  std::vector<double> times, steps;
+  for (const FieldRow& row : rows)
+    if (const auto time = parse_number(row.fields[0]); time && std::isfinite(*time)) times.push_back(*time);
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (times[i] > times[i - 1]) steps.push_back(times[i] - times[i - 1]);
+  if (times.empty()) return TimeUnit::second;
+  constexpr double kUnixEra = 1e8;  // seconds: 1973
+  if (times[0] > 1e9 * kUnixEra) return TimeUnit::nanosecond;
+  if (times[0] > 1e6 * kUnixEra) return TimeUnit::microsecond;
+  if (times[0] > 1e3 * kUnixEra) return TimeUnit::millisecond;
+  if (steps.empty()) return TimeUnit::second;
+  const double step = median(steps);
+  return step < 4     ? TimeUnit::second
+         : step < 4e3 ? TimeUnit::millisecond
+         : step < 4e6 ? TimeUnit::microsecond
+                      : TimeUnit::nanosecond;
+}
+
+RobotTime time_of(const TextRow& row, TimeUnit unit) {
+  if (unit == TimeUnit::second) return time_field(row, 0);
+  constexpr std::int64_t kLatest = kLargestSeconds * 1'000'000'000;
+  const std::string text(row.fields[0]);
+  const std::int64_t scale = nanoseconds_in(unit);
+  if (const auto whole = parse_integer(text); whole && std::abs(*whole) <= kLatest / scale)
+    return RobotTime{*whole * scale};
+  if (const auto time = parse_number(text); time && std::abs(*time) <= static_cast<double>(kLatest / scale))
+    return RobotTime{std::llround(*time * static_cast<double>(scale))};
+  throw InputError(row.where(), "time is " + in_quotes(text) + ", not a number of " + name_of(unit),
+                   "write one unit in every row, or name it by --time-unit");
+}
+
+/// `unit`, or the likely one with a note.
+TimeUnit unit_of(const std::filesystem::path& file, const std::vector<FieldRow>& rows, TimeUnit unit,
+                 std::vector<std::string>& notes) {
+  if (unit != TimeUnit::automatic) return unit;
+  unit = likely_unit(rows);
+  if (unit != TimeUnit::second)
+    notes.push_back("the times of " + file.string() + " are taken as " + name_of(unit) +
+                    "; say --time-unit if that is wrong");
+  return unit;
+}
+
 }  // namespace
 
-PoseStream read_pose_stream(const std::filesystem::path& file) {
+PoseStream read_pose_stream(const std::filesystem::path& file, TimeUnit unit) {
   const std::string form = "t x y z qx qy qz qw";
   PoseStream stream;
   int repeated = 0;
-  for (const FieldRow& fields : timed_rows(file, form)) {
+  const std::vector<FieldRow> rows = timed_rows(file, form);
+  unit = unit_of(file, rows, unit, stream.notes);
+  for (const FieldRow& fields : rows) {
     const TextRow row = text_row(file, fields);
     if (row.fields.size() != 8)
       throw InputError(row.where(), "has " + std::to_string(row.fields.size()) + " fields", "write 8 of them: " + form);
-    const RobotTime time = time_field(row, 0);
+    const RobotTime time = time_of(row, unit);
     if (!stream.samples.empty() && time == stream.samples.back().time) {
       ++repeated;
       continue;
@@ -46,11 +113,14 @@ PoseStream read_pose_stream(const std::filesystem::path& file) {
   return stream;
 }
 
-std::vector<JointRow> read_joint_stream(const std::filesystem::path& file) {
-  std::vector<JointRow> rows;
-  for (const FieldRow& fields : timed_rows(file, "t q1 q2 ...")) {
+JointStream read_joint_stream(const std::filesystem::path& file, TimeUnit unit) {
+  JointStream stream;
+  std::vector<JointRow>& rows = stream.rows;
+  const std::vector<FieldRow> all = timed_rows(file, "t q1 q2 ...");
+  unit = unit_of(file, all, unit, stream.notes);
+  for (const FieldRow& fields : all) {
     const TextRow row = text_row(file, fields);
-    JointRow joints{time_field(row, 0), {}};
+    JointRow joints{time_of(row, unit), {}};
     for (std::size_t i = 1; i < row.fields.size(); ++i) {
       const auto value = parse_number(row.fields[i]);
       if (!value || !std::isfinite(*value))
@@ -65,7 +135,7 @@ std::vector<JointRow> read_joint_stream(const std::filesystem::path& file) {
     if (!rows.empty()) require_ascending(row, rows.back().time, joints.time);
     rows.push_back(std::move(joints));
   }
-  return rows;
+  return stream;
 }
 
 std::vector<PoseTrack::Sample> swept_poses(const std::vector<JointRow>& rows, const std::string& where) {

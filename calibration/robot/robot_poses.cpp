@@ -199,6 +199,10 @@ RobotPoses read_robot_poses(const std::filesystem::path& path, PoseUnit unit) {
     out.notes.push_back("robot positions are taken as millimetres: half of them lie beyond " +
                         readable(median(reach), 0) + "; say --pose-unit m if that is wrong");
   }
+  if (unit == PoseUnit::millimetre && !reach.empty() && median(reach) < kUnlikelyReach)
+    throw InputError(path.string(),
+                     "half of the positions lie within " + readable(median(reach), 2) + " of the base: no millimetres",
+                     "say --pose-unit m");
   if (unit == PoseUnit::millimetre)
     for (NamedPose& named : out.poses) named.pose.translation() *= 1e-3;
   if (looks_w_first(out.poses))

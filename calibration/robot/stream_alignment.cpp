@@ -15,9 +15,12 @@ constexpr double kHalfWindow = 0.1;  // over which a speed is measured
 constexpr double kLeastCommon = 3;   // seconds
 constexpr double kMargin = 0.05;     // around a sample in which the offset may still move
 
+constexpr double kLeastSpeed = 0.01;  // rad/s: a hand that turns less stands still
+
 struct Speeds {
   double first_s = 0;
   std::vector<double> values;  // every kStep; NaN where unknown
+  double high = 0;             // the 80th percentile; 0 where nothing is known
 };
 
 // Angular speed of a track, cut at twice the 80th percentile: jumps of a tracker would outweigh all else.
@@ -37,8 +40,9 @@ Speeds speeds_of(const PoseTrack& track, RobotTime zero) {
   if (known.empty()) return out;
   const auto cut = known.begin() + static_cast<std::ptrdiff_t>(0.8 * static_cast<double>(known.size() - 1));
   std::nth_element(known.begin(), cut, known.end());
+  out.high = *cut;
   for (double& value : out.values)
-    if (value > 2 * *cut) value = 2 * *cut;
+    if (value > 2 * out.high) value = 2 * out.high;
   return out;
 }
 
@@ -68,6 +72,19 @@ double correlation(const Speeds& a, const Speeds& b, long shift, std::size_t str
                        span(camera) + ", offsets up to " + readable(options.largest_offset_s, 1) + " s around " +
                        readable(options.around_s, 3) + " s",
                    "give streams of one session, or the rough offset by --around");
+}
+
+void require_turning(const Speeds& speeds, const PoseTrack& track, const std::string& option, const std::string& name) {
+  const auto& samples = track.samples();
+  if (speeds.high >= kLeastSpeed) return;
+  if (speeds.high > 0 || std::any_of(speeds.values.begin(), speeds.values.end(), [](double v) { return v >= 0; }))
+    throw InputError(option, name + " hardly turn: " + readable(57.29578 * speeds.high, 2) + " degrees/s",
+                     "turn the hand to and fro about two axes, by 30 degrees and more");
+  const double span = to_seconds(samples.back().time - samples.front().time);
+  throw InputError(
+      option,
+      std::to_string(samples.size()) + " rows in " + readable(span, 1) + " s lie more than 0.2 s apart from each other",
+      "give 10 poses a second and more, times in one unit (--time-unit)");
 }
 
 // Rotation of hand <- camera from turns over about 0.3 s, twice without what fits badly.
@@ -102,6 +119,8 @@ Eigen::Matrix3d wahba(const std::vector<AlignedPose>& poses) {
 Lag correlate_speeds(const PoseTrack& encoder, const PoseTrack& camera, const TimeOffsetOptions& options) {
   const RobotTime zero = encoder.samples().front().time;
   const Speeds a = speeds_of(encoder, zero), b = speeds_of(camera, zero);
+  require_turning(a, encoder, "--poses", "the encoders' poses");
+  require_turning(b, camera, "--camera-poses", "the camera's poses");
   const std::size_t stride = std::max<std::size_t>(1, b.values.size() / 60'000);
   const double fraction = (b.first_s - a.first_s) / kStep;
   const long whole = std::lround(fraction);

@@ -95,6 +95,66 @@ TEST(HandEye, ResolvesTheOrderOfSymmetricBoardsByTheRobot) {
   }
 }
 
+// The mount that the user forces must not be the one that the images contradict; poses the other way round look the
+// same.
+TEST(HandEye, RefusesAForcedMountThatContradictsTheImages) {
+  Random random(10);
+  for (const CameraMount mount : {CameraMount::fixed, CameraMount::moving}) {
+    const CameraMount other = mount == CameraMount::fixed ? CameraMount::moving : CameraMount::fixed;
+    HandEyeRig rig = make_rig(random, {.mount = mount});
+    HandEyeOptions options = quick();
+    options.mount = mount;
+    EXPECT_LT(step_between(solve_hand_eye(rig.data, options).X, rig.X).norm(), 0.02);
+    options.mount = other;
+    EXPECT_THAT(input_error([&] { solve_hand_eye(rig.data, options); }),
+                AllOf(HasSubstr("--camera-mount " + to_string(other)), HasSubstr("contradicts"),
+                      HasSubstr("say --camera-mount " + to_string(mount)), HasSubstr("--invert-poses")));
+    for (RobotPose& pose : rig.data.poses) pose.T_base_flange = pose.T_base_flange.inverse();
+    EXPECT_LT(solve_hand_eye(rig.data, options).uncorrected_px, 5);
+    EXPECT_THAT(solve_hand_eye(rig.data, quick()).notes, testing::Contains(HasSubstr("from flange to base")));
+  }
+}
+
+TEST(HandEye, NamesTheReadingOfThePosesThatWasMeant) {
+  Random random(11);
+  for (const CameraMount mount : {CameraMount::fixed, CameraMount::moving}) {
+    const HandEyeRig rig = make_rig(random, {.mount = mount});
+    HandEyeData w_first = rig.data, transposed = rig.data;
+    for (std::size_t v = 0; v < rig.data.poses.size(); ++v) {
+      const Eigen::Quaterniond q(rig.data.poses[v].T_base_flange.linear());
+      w_first.poses[v].T_base_flange.linear() = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix();
+      transposed.poses[v].T_base_flange.linear().transposeInPlace();
+    }
+    EXPECT_THAT(input_error([&] { solve_hand_eye(w_first, quick()); }), HasSubstr("qw qx qy qz"));
+    EXPECT_THAT(input_error([&] { solve_hand_eye(transposed, quick()); }), HasSubstr("transposed"));
+  }
+}
+
+TEST(HandEye, NamesTheOtherUnit) {
+  Random random(12);
+  HandEyeRig rig = make_rig(random, {});
+  HandEyeData millimetres = rig.data;
+  for (RobotPose& pose : millimetres.poses) pose.T_base_flange.translation() *= 1000;
+  EXPECT_THAT(input_error([&] { solve_hand_eye(millimetres, quick()); }), HasSubstr("--pose-unit mm"));
+  for (Eigen::Vector3d& p : rig.data.corners.p_board) p *= 1000;
+  EXPECT_THAT(input_error([&] { solve_hand_eye(rig.data, quick()); }), HasSubstr("--board"));
+}
+
+// Two of 16 poses are 8 times as noisy: too little to be thrown out by name, too much for a normal noise.
+TEST(HandEye, WildRobotPosesCountLess) {
+  Random random(13);
+  HandEyeRig rig = make_rig(random, {.views = 16});
+  for (const std::size_t v : {3u, 9u})
+    rig.data.poses[v].T_base_flange = noisy(rig.data.poses[v].T_base_flange, random, 4e-3, 2e-3);
+  const HandEyeSummary summary = solve_hand_eye(rig.data, quick());
+  for (std::size_t v = 0; v < 16; ++v) {
+    if (!summary.views[v].used) continue;
+    EXPECT_EQ(summary.views[v].trust < 0.5, v == 3 || v == 9) << v << " " << summary.views[v].trust;
+  }
+  const HandEyeSummary usual = solve_hand_eye(make_rig(random, {.views = 16}).data, quick());
+  for (const HandEyeView& view : usual.views) EXPECT_EQ(view.trust, 1);
+}
+
 TEST(HandEye, NamesTheMissingMotion) {
   Random random(7);
   for (const CameraMount mount : {CameraMount::fixed, CameraMount::moving})

@@ -53,6 +53,13 @@ TEST(RobotPoses, TakesMillimetresAndSaysSo) {
   EXPECT_EQ(read_robot_poses(folder / "poses.txt", PoseUnit::metre).poses[0].pose.translation().x(), 500);
 }
 
+TEST(RobotPoses, RefusesMetresThatAreSaidToBeMillimetres) {
+  TempFolder folder;
+  folder.write("poses.txt", "0.5 0.2 0.3 0 0 0 1\n0.5 0.2 0.3 0 0 0 1\n");
+  EXPECT_THAT(input_error([&] { read_robot_poses(folder / "poses.txt", PoseUnit::millimetre); }),
+              AllOf(HasSubstr("poses.txt"), HasSubstr("--pose-unit m")));
+}
+
 TEST(RobotPoses, NamesFileAndLineOfWhatIsWrong) {
   TempFolder folder;
   const auto error = [&](const std::string& text) { return input_error([&] { read(folder, text); }); };

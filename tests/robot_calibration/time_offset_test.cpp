@@ -81,6 +81,97 @@ TEST(TimeOffset, SaysWhatStreamsLack) {
               HasSubstr("the hand turned about one axis only"));
 }
 
+// Cut and thinned: every `nth` sample of those between `from` and `to` seconds after the first.
+std::vector<PoseTrack::Sample> part(const std::vector<PoseTrack::Sample>& all, std::size_t nth, double from,
+                                    double to) {
+  std::vector<PoseTrack::Sample> out;
+  for (std::size_t i = 0; i < all.size(); i += nth) {
+    const double t = to_seconds(all[i].time - all.front().time);
+    if (t >= from && t <= to) out.push_back(all[i]);
+  }
+  return out;
+}
+
+TEST(TimeOffset, LargeOffsetsOfBothSigns) {
+  Random random(35);
+  for (const double offset : {-4.3, -0.5, 0.5, 3.7}) {
+    StreamRig rig = make_streams(random, 30, 0.01);
+    for (PoseTrack::Sample& sample : rig.camera) sample.time = sample.time + seconds(0.01 - offset);
+    const TimeOffsetSummary summary = solve_time_offset(rig.encoder, rig.camera, {});
+    EXPECT_NEAR(summary.offset_s, offset, 4 * summary.offset_sigma_s) << offset;
+    EXPECT_LT(summary.offset_sigma_s, 2e-3);
+  }
+}
+
+TEST(TimeOffset, OtherRatesGapsAndLengths) {
+  Random random(36);
+  const StreamRig rig = make_streams(random, 60, -0.08);
+  struct Case {
+    const char* name;
+    std::vector<PoseTrack::Sample> encoder, camera;
+  };
+  std::vector<Case> cases{
+      {"slow camera", rig.encoder, part(rig.camera, 5, 0, 60)},
+      {"slow encoders", part(rig.encoder, 10, 0, 100), rig.camera},
+      {"short camera", rig.encoder, part(rig.camera, 1, 20, 32)},
+      {"short encoders", part(rig.encoder, 1, 20, 32), rig.camera},
+      {"streams that overlap in the middle", part(rig.encoder, 1, 0, 40), part(rig.camera, 1, 20, 60)},
+      {"gaps", {}, {}}};
+  for (std::size_t i = 0; i < rig.encoder.size(); ++i)
+    if (i / 150 % 4 != 3) cases.back().encoder.push_back(rig.encoder[i]);
+  for (std::size_t i = 0; i < rig.camera.size(); ++i)
+    if (i / 70 % 3 != 1) cases.back().camera.push_back(rig.camera[i]);
+  for (const Case& of : cases) {
+    const TimeOffsetSummary summary = solve_time_offset(of.encoder, of.camera, {});
+    EXPECT_NEAR(summary.offset_s, rig.offset_s, 4 * summary.offset_sigma_s) << of.name;
+    EXPECT_LT(summary.offset_sigma_s, 4e-3) << of.name;
+    EXPECT_LT(step_between(summary.X, rig.X).norm(), 1e-2) << of.name;
+  }
+}
+
+TEST(TimeOffset, NamesAStreamThatStandsStillOrIsTooSparse) {
+  Random random(37);
+  const StreamRig rig = make_streams(random, 30, 0.02);
+  StreamRig still = rig;
+  for (PoseTrack::Sample& sample : still.encoder) sample.pose = rig.encoder.front().pose;
+  EXPECT_THAT(input_error([&] { solve_time_offset(still.encoder, rig.camera, {}); }),
+              AllOf(HasSubstr("--poses"), HasSubstr("hardly turn"), HasSubstr("to and fro")));
+  for (PoseTrack::Sample& sample : still.camera) sample.pose = rig.camera.front().pose;
+  EXPECT_THAT(input_error([&] { solve_time_offset(rig.encoder, still.camera, {}); }),
+              AllOf(HasSubstr("--camera-poses"), HasSubstr("hardly turn")));
+  EXPECT_THAT(input_error([&] { solve_time_offset(rig.encoder, part(rig.camera, 12, 0, 30), {}); }),
+              AllOf(HasSubstr("--camera-poses"), HasSubstr("more than 0.2 s apart")));
+  EXPECT_THAT(input_error([&] { solve_time_offset(rig.encoder, part(rig.camera, 1, 0, 1.2), {}); }),
+              HasSubstr("share less than 3 s"));
+}
+
+TEST(PoseStream, TakesOtherUnitsOfTimeAndSaysSo) {
+  TempFolder folder;
+  const std::string pose = " 0 0 0 0 0 0 1\n";
+  const auto read = [&](const std::string& a, const std::string& b) {
+    return read_pose_stream(folder.write("s.csv", a + pose + b + pose));
+  };
+  const std::int64_t ns = 1'487'321'563'180'327'900;
+  for (const auto& [a, b, note] : {std::tuple{"1487321563.1803279", "1487321563.2136", ""},
+                                   {"1487321563180.3279", "1487321563213.6", "milliseconds"},
+                                   {"1487321563180327.9", "1487321563213600", "microseconds"},
+                                   {"1487321563180327900", "1487321563213600000", "nanoseconds"}}) {
+    const PoseStream stream = read(a, b);
+    EXPECT_NEAR(static_cast<double>(stream.samples[0].time.ns - ns), 0, 500) << a;
+    EXPECT_NEAR(to_seconds(stream.samples[1].time - stream.samples[0].time), 0.0332721, 1e-6) << a;
+    EXPECT_EQ(stream.notes.empty(), std::string(note).empty());
+    if (!stream.notes.empty()) {
+      EXPECT_THAT(stream.notes[0], AllOf(HasSubstr(note), HasSubstr("--time-unit")));
+    }
+  }
+  EXPECT_EQ(read("1487321563180327901", "1487321563180327903").samples[0].time.ns, 1'487'321'563'180'327'901);
+  for (const auto& [a, b] : {std::pair{"0", "0.033"}, {"0", "33"}, {"0", "33000"}, {"0", "33000000"}})
+    EXPECT_NEAR(to_seconds(read(a, b).samples[1].time - read(a, b).samples[0].time), 0.033, 1e-12) << b;
+  EXPECT_EQ(read_pose_stream(folder / "s.csv", TimeUnit::microsecond).samples[1].time.ns, 33'000'000'000);
+  EXPECT_THAT(input_error([&] { read_pose_stream(folder.write("s.csv", "0 0 0 0 0 0 0 1\nx" + pose)); }),
+              HasSubstr("s.csv:2"));
+}
+
 TEST(PoseStream, KeepsNanosecondsAndNamesLines) {
   TempFolder folder;
   const auto read = [&](const std::string& text) { return read_pose_stream(folder.write("s.csv", text)); };
