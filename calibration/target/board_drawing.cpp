@@ -5,6 +5,7 @@
 #include <memory>
 #include <opencv2/aruco/charuco.hpp>
 
+#include "calibration/tags/tag_family.hpp"
 #include "calibration/target/board_finders.hpp"
 #include "common/error.hpp"
 
