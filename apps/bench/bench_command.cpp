@@ -74,12 +74,13 @@ void add_calibration(CLI::App& bench, std::function<int()>& action) {
       ->required();
   command->add_option("--board", options->board, "As in `foresight calibrate stereo`");
   command->add_option("--size", options->size, "WIDTHxHEIGHT of the images")->capture_default_str();
+  command->add_option("--images", options->images, "Folder or pattern: measures finding the corners in them too");
   command->add_option("--runs", options->runs, "Of which the median counts")
       ->check(from_to(1, 100))
       ->capture_default_str();
   command->add_option("--json", options->json, "File for all numbers");
   command->footer(
-      "Example: foresight bench calibration corners.vnl --board chessboard:9x6:0.025\n"
+      "Example: foresight bench calibration corners.vnl --board chessboard:9x6:0.025 --images 'left*.jpg'\n"
       "Exit code: 1 where OpenCV predicts the views left out better.");
   command->callback([options, &action] { action = [options] { return bench_calibration(*options); }; });
 }

@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <random>
 
 #include "apps/calibrate/camera_input.hpp"
 #include "calibration/camera/camera_calibration.hpp"
 #include "calibration/camera/rig_start.hpp"
+#include "calibration/target/find_corners.hpp"
+#include "calibration/target/image_input.hpp"
 #include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
@@ -17,6 +23,7 @@ namespace foresight {
 namespace {
 
 constexpr int kMostViews = 50;
+constexpr double kSimulatedNoise = 0.15;  // px
 
 CameraModel camera_of(const cv::Mat& K, const cv::Mat& d, int width, int height) {
   CameraModel camera{width, height, Distortion::radtan4, {}};
@@ -64,14 +71,7 @@ Rig solve_with_opencv(const RigViews& views) {
 }
 
 Rig solve_with_ours(const RigViews& views) {
-  RigSolverOptions alone;
-  alone.warp = false;
-  std::array<RigSolution, 2> cameras;
-  for (int c = 0; c < 2; ++c) {
-    const CameraViews one = views_of(views, c);
-    cameras[static_cast<std::size_t>(c)] = solve_rig(one.views, start_camera(one.views, Distortion::radtan4), alone);
-  }
-  return solve_rig(views, start_pair(views, cameras[0], cameras[1]), {}).rig;
+  return solve_from_nothing(views, Distortion::radtan4, {}).rig;
 }
 
 template <typename Solve>
@@ -97,6 +97,87 @@ RigViews whole_pairs(const RigViews& all) {
   if (kept.size() < 5)
     throw InputError("corners", "fewer than 5 pairs show the whole board", "give corners of a board seen whole");
   return subset(all, kept);
+}
+
+double cpu_of(const std::function<void()>& work) {
+  const double begin = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
+  work();
+  return cpu_seconds(CLOCK_PROCESS_CPUTIME_ID) - begin;
+}
+
+// The board's places of `solution` with another turn each, as its cameras would see them.
+RigViews simulated_pairs(const RigViews& seen, const RigSolution& solution, int count) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> turn(-0.2, 0.2);
+  std::normal_distribution<double> noise(0, kSimulatedNoise);
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : seen.p_board) middle += p / static_cast<double>(seen.p_board.size());
+  RigViews views = subset(seen, {});
+  for (int tries = 0; static_cast<int>(views.views.size()) < count && tries < 100 * count; ++tries) {
+    Pose T = solution.T_left_board[static_cast<std::size_t>(tries) % solution.T_left_board.size()];
+    const Eigen::Vector3d by(turn(random), turn(random), turn(random));
+    T = T * Eigen::Translation3d(middle) * Eigen::AngleAxisd(by.norm(), by.normalized()) *
+        Eigen::Translation3d(-middle);
+    RigView view{std::to_string(views.views.size()), {}};
+    for (std::size_t i = 0; i < 2 * seen.p_board.size(); ++i) {
+      const std::size_t c = i % 2, index = i / 2;
+      const Eigen::Vector3d p = to_camera(solution.rig, static_cast<int>(c), T * seen.p_board[index]);
+      const auto pixel = project(solution.rig.cameras[c], p);
+      if (!pixel || pixel->minCoeff() < 1 || pixel->x() > seen.width[c] - 2 || pixel->y() > seen.height[c] - 2) break;
+      view.corners[c].push_back({static_cast<int>(index), *pixel + Eigen::Vector2d(noise(random), noise(random)), 1});
+    }
+    if (view.corners[1].size() == seen.p_board.size()) views.views.push_back(std::move(view));
+  }
+  return views;
+}
+
+double baseline_error_mm(const Rig& found, const Rig& truth) {
+  return 1000 * (found.T_left_right.translation() - truth.T_left_right.translation()).norm();
+}
+
+nlohmann::ordered_json bench_simulated(const RigViews& seen) {
+  const RigSolution truth = solve_from_nothing(seen, Distortion::radtan4, {});
+  const RigViews views = simulated_pairs(seen, truth, kMostViews);
+  Rig ours, theirs;
+  const double our_time = cpu_of([&] { ours = solve_with_ours(views); });
+  const double their_time = cpu_of([&] { theirs = solve_with_opencv(views); });
+  const double our_error = baseline_error_mm(ours, truth.rig), their_error = baseline_error_mm(theirs, truth.rig);
+  std::printf("%zu simulated pairs            CPU time    error of the right camera's place\n", views.views.size());
+  std::printf("%-28s %7.3f s  %7.4f mm\n", "foresight", our_time, our_error);
+  std::printf("%-28s %7.3f s  %7.4f mm\n", "cv::stereoCalibrate", their_time, their_error);
+  return {{"views", views.views.size()},
+          {"foresight", {{"cpu_s", our_time}, {"error_mm", our_error}}},
+          {"opencv", {{"cpu_s", their_time}, {"error_mm", their_error}}}};
+}
+
+bool find_with_opencv(const cv::Mat& grey, const Board& board) {
+  std::vector<cv::Point2f> corners;
+  if (!cv::findChessboardCorners(grey, {board.cols, board.rows}, corners)) return false;
+  cv::cornerSubPix(grey, corners, {11, 11}, {-1, -1}, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-4});
+  return true;
+}
+
+nlohmann::ordered_json bench_detection(const std::filesystem::path& images, const Board& board) {
+  if (board.kind != BoardKind::chessboard)
+    throw InputError("--images", "are compared with OpenCV on chessboards only",
+                     "give --board chessboard:COLSxROWS:SIZE_M");
+  BoardFinder finder(board);
+  std::array<double, 2> time{};
+  std::array<int, 2> found{};
+  const auto files = list_images(images);
+  for (const auto& file : files) {
+    const cv::Mat grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+    if (grey.empty()) throw InputError(file.string(), "is no image that can be read", "remove it, or copy it again");
+    time[0] += cpu_of([&] { found[0] += finder.find(grey).has_value(); });
+    time[1] += cpu_of([&] { found[1] += find_with_opencv(grey, board); });
+  }
+  const auto n = static_cast<double>(files.size());
+  std::printf("%zu images                     CPU time an image    boards found\n", files.size());
+  std::printf("%-28s %7.3f s  %4d\n", "foresight", time[0] / n, found[0]);
+  std::printf("%-28s %7.3f s  %4d\n", "cv::findChessboardCorners", time[1] / n, found[1]);
+  return {{"images", files.size()},
+          {"foresight", {{"cpu_s", time[0] / n}, {"found", found[0]}}},
+          {"opencv", {{"cpu_s", time[1] / n}, {"found", found[1]}}}};
 }
 
 }  // namespace
@@ -126,6 +207,9 @@ int bench_calibration(const CalibrationBenchOptions& options) {
   row("foresight", median(ours), a);
   row("cv::stereoCalibrate", median(theirs), b);
   std::printf("OpenCV takes %.1f times as long\n", ratio);
+  const auto simulated = bench_simulated(views);
+  nlohmann::ordered_json detection;
+  if (options.images) detection = bench_detection(*options.images, parse_board(options.board));
   if (options.json) {
     const auto json = [](double seconds, const HeldOutScore& s) {
       return nlohmann::ordered_json{{"cpu_s", seconds},
@@ -133,10 +217,12 @@ int bench_calibration(const CalibrationBenchOptions& options) {
                                     {"loo_cross_px", s.cross_px},
                                     {"loo_epipolar_px", s.epipolar_px}};
     };
-    const nlohmann::ordered_json all{{"views", views.views.size()},
-                                     {"foresight", json(median(ours), a)},
-                                     {"opencv", json(median(theirs), b)},
-                                     {"time_ratio", ratio}};
+    nlohmann::ordered_json all{{"views", views.views.size()},
+                               {"foresight", json(median(ours), a)},
+                               {"opencv", json(median(theirs), b)},
+                               {"time_ratio", ratio},
+                               {"simulated", simulated}};
+    if (options.images) all["detection"] = detection;
     write_file_atomically(*options.json, all.dump(2) + "\n");
   }
   return a.joint_px <= b.joint_px ? 0 : 1;

@@ -12,6 +12,7 @@ constexpr double kLeastNoise = 0.05;        // px; corners without noise would h
 constexpr double kVagueFocalLength = 0.02;  // sigma over the focal length
 constexpr double kVagueCentre = 0.05;       // sigma over the image's width
 constexpr double kVagueRim = 0.02;          // 90 % of the uncertainty over the image, of its width
+constexpr double kWellCovered = 0.4;        // of the image; a fish-eye has dark corners that no board reaches
 constexpr double kParallel = 5 * M_PI / 180;
 
 struct Tilts {
@@ -56,7 +57,7 @@ std::string cure(const RigViews& views, std::size_t c, const Tilts& t) {
   if (t.to_another < kParallel)
     return "all boards are parallel to each other: turn the board about both axes by 20 to 40 degrees between views";
   if (t.second_axis < kParallel / 2) return "the board is tilted about one axis only: tilt it about the other one too";
-  if (covered(views, c) < 0.4) return only_covered(views, c) + ": bring the board closer, and to all sides";
+  if (covered(views, c) < kWellCovered) return only_covered(views, c) + ": bring the board closer, and to all sides";
   return "the views say too little: take more, closer, and with tilts about both axes";
 }
 
@@ -74,7 +75,7 @@ std::optional<std::string> missing_motion(const RigViews& views, const RigSoluti
     const std::string whose = views.cameras == 2 ? "the " + camera_name(camera, 2) + " camera: " : "";
     if (uncertainty.usable() && focal < kVagueFocalLength && centre < kVagueCentre) {
       const double rim_px = scale * uncertainty.map(camera, std::nullopt, 8, 6).p90_px;
-      if (!(rim_px > kVagueRim * model.width)) continue;
+      if (covered(views, c) >= kWellCovered || !(rim_px > kVagueRim * model.width)) continue;
       return whose + only_covered(views, c) + ", and do not say how it is distorted beyond (+- " + readable(rim_px, 0) +
              " px): bring the board closer, and to all sides";
     }
