@@ -80,7 +80,6 @@ std::unique_ptr<CaptureSource> open_source(const Arguments& a, Clock& clock) {
 CaptureEnd capture(const Arguments& a, CaptureSource& source, CaptureSession& session, const Clock& clock) {
   CaptureLoopOptions options{a.pictures, seconds(a.seconds)};
   if (a.window || (!a.no_window && has_display())) try {
-      std::fprintf(stderr, "capture: in a window; Space takes a view, Escape ends\n");
       return capture_with_window(source, session, clock, options);
     } catch (const gl::NoWindow& failure) {
       if (a.window) throw;
