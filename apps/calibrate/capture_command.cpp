@@ -103,7 +103,6 @@ Opened open_source(const Arguments& a, const Board& board, Clocks& clocks) {
 CaptureEnd capture(const Arguments& a, CaptureSource& source, CaptureSession& session, const Clock& clock) {
   CaptureLoopOptions options{a.pictures, seconds(a.seconds)};
   if (wants_window(a)) try {
-      std::fprintf(stderr, "capture: in a window; Space takes a view, Escape ends\n");
       return capture_with_window(source, session, clock, options);
     } catch (const gl::NoWindow& failure) {
       if (a.window) throw;

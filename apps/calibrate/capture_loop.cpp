@@ -227,6 +227,7 @@ CaptureEnd capture_with_pictures(CaptureSource& source, CaptureSession& session,
 CaptureEnd capture_with_window(CaptureSource& source, CaptureSession& session, const Clock& clock,
                                const CaptureLoopOptions& options) {
   LiveWindow live;
+  std::fprintf(stderr, "capture: in a window; Space takes a view, Escape ends\n");
   catch_signals();
   JudgeThread judge(session, options.pictures);
   const Running running(source);

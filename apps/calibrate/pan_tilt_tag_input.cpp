@@ -164,7 +164,7 @@ std::vector<JointRow> read_joints(const PanTiltTagInput& input) {
   if (!fs::exists(file))
     throw InputError(file.string(), "is missing", "give the recorded joints with --joints: rows time pan tilt");
   const std::vector<FieldRow> rows = read_field_rows(file);
-  std::vector<JointRow> joints = read_joint_stream(file);
+  std::vector<JointRow> joints = read_joint_stream(file, TimeUnit::second).rows;
   std::array<std::size_t, 2> column{0, 1};
   if (!rows.empty() && !parse_number(rows[0].fields.back())) {
     const std::vector<std::string> names(rows[0].fields.begin() + 1, rows[0].fields.end());

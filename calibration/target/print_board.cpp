@@ -137,15 +137,17 @@ void write_board_pdf(const std::filesystem::path& file, const Board& board, cons
                      "needs " + in_mm(w, h) + ", " + paper.name + " leaves " + in_mm(width - across, height - along),
                      cure);
   }
+  if (std::min(width - across, height - along) < kRulerMm)
+    throw InputError("--paper", paper.name + " has no room for both rulers of " + readable(kRulerMm, 0) + " mm",
+                     "take a larger one: without both, nobody knows how large the print became");
   Page page(width, height);
   const double x = kRimMm + kStripMm + (width - across - w) / 2, y = kRimMm + (height - along - h) / 2;
   cairo_save(page.cairo());
   cairo_translate(page.cairo(), x - e.left * 1e3, y - e.top * 1e3);
   draw_board(page.cairo(), board);
   cairo_restore(page.cairo());
-  const auto length = [](double room) { return std::min(kRulerMm, std::floor(room / 10) * 10); };
-  page.ruler(kRimMm + kStripMm, height - kRimMm - 5, length(width - across), false);
-  page.ruler(kRimMm + 5, kRimMm, length(height - along), true);
+  page.ruler(kRimMm + kStripMm, height - kRimMm - 5, kRulerMm, false);
+  page.ruler(kRimMm + 5, kRimMm, kRulerMm, true);
   page.text(kRimMm + kStripMm, height - kRimMm,
             "--board " + to_string(board) + "   print at 100 %, not fitted to the page; glue it onto something flat");
   write_file_atomically(file, page.finish());

@@ -147,7 +147,7 @@ TEST(TimeCommand, FromJointsOfAUrdf) {
   EXPECT_THAT(numbers["notes"].dump(), HasSubstr("taken as microseconds"));
   EXPECT_THAT(run_calibrate({"time", "--joints", encoder_file, "--urdf", urdf, "--camera-poses", camera_file,
                              "--time-unit", "ns"}),
-              HasSubstr("share less than 3 s"));
+              AllOf(HasSubstr("--poses"), HasSubstr("too short a stream"), HasSubstr("--time-unit")));
   EXPECT_THAT(run_calibrate({"time", "--joints", encoder_file, "--camera-poses", camera_file}), HasSubstr("--urdf"));
   EXPECT_THAT(run_calibrate({"time", "--camera-poses", camera_file}), HasSubstr("--joints"));
   EXPECT_THAT(run_calibrate({"time", "--poses", camera_file, "--camera-poses", camera_file, "--time-unit", "week"}),

@@ -55,7 +55,9 @@ TEST(EncoderTrack, ShaftsFollowWithPlay) {
   for (int i = 0; i < 7; ++i) {
     track.add(at(0.01 * i), {way[i], 0});
     shaft = track.at(at(0.01 * i)).shafts.pan;
-    if (i > 0) EXPECT_NEAR(shaft, 1.01 * play[i] + 0.2, 1e-12) << i;
+    if (i > 0) {
+      EXPECT_NEAR(shaft, 1.01 * play[i] + 0.2, 1e-12) << i;
+    }
   }
 }
 

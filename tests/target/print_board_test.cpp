@@ -67,6 +67,11 @@ TEST(PrintBoard, TooLargeNamesWhatFits) {
   EXPECT_EQ(large(text.substr(at, text.find_first_not_of("chesboard:9x60.12345678", at) - at).c_str()), "no error");
   EXPECT_THAT(large("charuco:5x7:0.03"), HasSubstr("charuco:5x7:0.03:0.021:DICT_5X5_1000"));
   EXPECT_THAT(input_error([] { parse_paper("A5x"); }), HasSubstr("is no paper"));
+  EXPECT_THAT(input_error([&] {
+                write_board_pdf(folder / "small.pdf", parse_board("chessboard:3x4:0.008"), parse_paper("150x120"));
+              }),
+              AllOf(HasSubstr("--paper"), HasSubstr("both rulers")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "small.pdf"));
   EXPECT_EQ(parse_paper("600x400_mm").height_mm, 600);
 }
 
