@@ -33,7 +33,7 @@ CameraModel camera_of(const cv::Mat& K, const cv::Mat& d, int width, int height)
 }
 
 // The way of OpenCV's own sample: each camera, then both; k3 held at zero as in radtan4.
-Rig solve_with_opencv(const RigViews& views) {
+CameraRig solve_with_opencv(const RigViews& views) {
   std::vector<std::vector<cv::Point3f>> object;
   std::array<std::vector<std::vector<cv::Point2f>>, 2> image;
   for (const RigView& view : views.views) {
@@ -70,7 +70,7 @@ Rig solve_with_opencv(const RigViews& views) {
       {}};
 }
 
-Rig solve_with_ours(const RigViews& views) {
+CameraRig solve_with_ours(const RigViews& views) {
   return solve_from_nothing(views, Distortion::radtan4, {}).rig;
 }
 
@@ -131,14 +131,14 @@ RigViews simulated_pairs(const RigViews& seen, const RigSolution& solution, int 
   return views;
 }
 
-double baseline_error_mm(const Rig& found, const Rig& truth) {
+double baseline_error_mm(const CameraRig& found, const CameraRig& truth) {
   return 1000 * (found.T_left_right.translation() - truth.T_left_right.translation()).norm();
 }
 
 nlohmann::ordered_json bench_simulated(const RigViews& seen) {
   const RigSolution truth = solve_from_nothing(seen, Distortion::radtan4, {});
   const RigViews views = simulated_pairs(seen, truth, kMostViews);
-  Rig ours, theirs;
+  CameraRig ours, theirs;
   const double our_time = cpu_of([&] { ours = solve_with_ours(views); });
   const double their_time = cpu_of([&] { theirs = solve_with_opencv(views); });
   const double our_error = baseline_error_mm(ours, truth.rig), their_error = baseline_error_mm(theirs, truth.rig);
@@ -183,7 +183,7 @@ nlohmann::ordered_json bench_detection(const std::filesystem::path& images, cons
 }  // namespace
 
 int bench_calibration(const CalibrationBenchOptions& options) {
-  CameraInput input;
+  CornerInput input;
   input.corners = options.corners;
   input.board = options.board;
   input.size = options.size;

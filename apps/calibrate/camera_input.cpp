@@ -18,7 +18,7 @@ std::array<int, 2> parse_size(const std::string& text) {
   return {static_cast<int>(*w), static_cast<int>(*h)};
 }
 
-RigViews read_file(const std::filesystem::path& path, const CameraInput& input, bool pair) {
+RigViews read_file(const std::filesystem::path& path, const CornerInput& input, bool pair) {
   const std::optional<Board> board =
       input.board.empty() ? std::nullopt : std::optional<Board>(parse_board(input.board));
   RigViews views = pair ? rig_views(read_stereo_corners(path, board)) : rig_views(read_corners(path, board));
@@ -32,7 +32,7 @@ void note_dropped(const std::vector<DroppedView>& dropped, std::vector<std::stri
   for (const DroppedView& view : dropped) notes.push_back("view " + view.name + " is not used: " + view.reason);
 }
 
-RigViews find_in_images(const CameraInput& input, std::vector<std::string>& notes) {
+RigViews find_in_images(const CornerInput& input, std::vector<std::string>& notes) {
   if (input.board.empty())
     throw InputError("--board", "is missing", "say what is in the images, such as chessboard:9x6:0.025");
   const Board board = parse_board(input.board);
@@ -46,7 +46,7 @@ RigViews find_in_images(const CameraInput& input, std::vector<std::string>& note
   return rig_views(found.corners);
 }
 
-void require_one_source(const CameraInput& input, bool pair) {
+void require_one_source(const CornerInput& input, bool pair) {
   const bool images = pair ? input.left && input.right : input.images.has_value();
   const std::string options = pair ? "--left and --right" : "--images";
   if (pair && input.left.has_value() != input.right.has_value())
@@ -58,7 +58,7 @@ void require_one_source(const CameraInput& input, bool pair) {
 
 }  // namespace
 
-void add_camera_input(CLI::App& command, CameraInput& input, bool pair) {
+void add_camera_input(CLI::App& command, CornerInput& input, bool pair) {
   command.add_option("--corners", input.corners,
                      pair ? "Corners found before: mrcal .vnl, or a folder with cam0/ and cam1/"
                           : "Corners found before: mrcal .vnl, or a folder of .csv");
@@ -73,7 +73,7 @@ void add_camera_input(CLI::App& command, CameraInput& input, bool pair) {
   command.add_option("--size", input.size, "WIDTHxHEIGHT of the images, where --corners does not say it");
 }
 
-CameraViewsInput read_camera_input(const CameraInput& input, bool pair) {
+CameraViewsInput read_camera_input(const CornerInput& input, bool pair) {
   require_one_source(input, pair);
   CameraViewsInput read;
   read.train = input.corners ? read_file(*input.corners, input, pair) : find_in_images(input, read.notes);

@@ -11,7 +11,7 @@
 
 namespace foresight {
 
-struct CameraInput {
+struct CornerInput {
   std::optional<std::filesystem::path> corners;       ///< .vnl, or a folder
   std::optional<std::filesystem::path> images;        ///< of one camera
   std::optional<std::filesystem::path> left, right;   ///< of a pair
@@ -21,7 +21,7 @@ struct CameraInput {
 };
 
 /// The options of one camera, or of a pair.
-void add_camera_input(CLI::App& command, CameraInput& input, bool pair);
+void add_camera_input(CLI::App& command, CornerInput& input, bool pair);
 
 struct CameraViewsInput {
   RigViews train;
@@ -30,6 +30,6 @@ struct CameraViewsInput {
 };
 
 /// Throws InputError: no or two sources, what the readers and finders throw.
-CameraViewsInput read_camera_input(const CameraInput& input, bool pair);
+CameraViewsInput read_camera_input(const CornerInput& input, bool pair);
 
 }  // namespace foresight

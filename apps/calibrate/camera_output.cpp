@@ -72,7 +72,7 @@ ResultHeader header_of(const CameraCalibration& c, const std::vector<std::string
 }
 
 void write_camera_info(const CameraCalibration& c, const std::filesystem::path& folder) {
-  const Rig& rig = c.solution.rig;
+  const CameraRig& rig = c.solution.rig;
   CalibratedCameras calibrated{rig.cameras[0], {}, rig.T_left_right};
   const bool pair = cameras(c) == 2;
   if (pair) calibrated.right = rig.cameras[1];
@@ -122,7 +122,7 @@ int deliver(const CameraCalibration& c, const CameraOutput& output) {
   write_json(output.files.json, camera_numbers(c));
   if (output.files.report) camera_report(c).write(*output.files.report);
   if (!c.usable()) return 1;
-  const Rig& rig = c.solution.rig;
+  const CameraRig& rig = c.solution.rig;
   YAML::Node result = cameras(c) == 2 ? to_yaml(StereoModel{rig.cameras[0], rig.cameras[1], rig.T_left_right})
                                       : to_yaml(rig.cameras[0]);
   if (c.warp) result["board"] = to_yaml(KnownBoard(c.views.p_board, rig.warp));

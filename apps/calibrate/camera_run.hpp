@@ -7,7 +7,7 @@
 namespace foresight {
 
 struct CameraRun {
-  CameraInput input;
+  CornerInput input;
   CameraOutput output;
   std::string model = "auto";
   bool warp = true;

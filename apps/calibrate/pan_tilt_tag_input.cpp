@@ -190,8 +190,8 @@ void require(bool given, const char* option, const char* what) {
 
 }  // namespace
 
-Rig read_cameras_file(const fs::path& file, const std::optional<fs::path>& right) {
-  Rig cameras;
+CameraRig read_cameras_file(const fs::path& file, const std::optional<fs::path>& right) {
+  CameraRig cameras;
   const YamlMap top = YamlMap::load(file);
   if (top.has("kind") && top.text("kind") == "stereo") {
     const StereoModel stereo = read_stereo(read_result(file, "stereo").result);

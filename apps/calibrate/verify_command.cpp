@@ -18,7 +18,7 @@ constexpr double kWorseThanScore = 1.5;  // new views differ from those of the s
 
 struct VerifyOptions {
   std::filesystem::path result;
-  CameraInput input;
+  CornerInput input;
   std::optional<double> joint_px, cross_px, epipolar_px;
   PanTiltVerify head;
   std::optional<std::filesystem::path> json;
@@ -26,7 +26,7 @@ struct VerifyOptions {
 };
 
 struct KnownRig {
-  Rig rig;
+  CameraRig rig;
   std::optional<KnownBoard> board;
   double score_px = 0;
 };
@@ -50,7 +50,7 @@ KnownRig read_rig(const std::filesystem::path& file) {
   return known;
 }
 
-void require_same_size(const Rig& rig, RigViews& views, const std::filesystem::path& file) {
+void require_same_size(const CameraRig& rig, RigViews& views, const std::filesystem::path& file) {
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const CameraModel& model = rig.cameras[c];
     if (views.width[c] != 0 && (views.width[c] != model.width || views.height[c] != model.height))

@@ -18,8 +18,8 @@ struct Normal {
 };
 
 // Normal equations after a small turn about the board's origin and a shift, both in left coordinates.
-bool accumulate(const Rig& rig, const std::vector<Eigen::Vector3d>& p_board, const RigView& view, int first, int last,
-                const Pose& T_left_board, Normal& normal) {
+bool accumulate(const CameraRig& rig, const std::vector<Eigen::Vector3d>& p_board, const RigView& view, int first,
+                int last, const Pose& T_left_board, Normal& normal) {
   const Eigen::Matrix3d R_right_left = rig.T_left_right.linear().transpose();
   for (int camera = first; camera <= last; ++camera) {
     const auto c = static_cast<std::size_t>(camera);
@@ -84,7 +84,7 @@ std::vector<Pose> planar_starts(const CameraModel& camera, const std::vector<Eig
 
 }  // namespace
 
-std::optional<BoardPose> refine_board_pose(const Rig& rig, const std::vector<Eigen::Vector3d>& p_board,
+std::optional<BoardPose> refine_board_pose(const CameraRig& rig, const std::vector<Eigen::Vector3d>& p_board,
                                            const RigView& view, int first, int last, const Pose& start) {
   Pose T = start;
   Normal at;
@@ -109,7 +109,7 @@ std::optional<BoardPose> refine_board_pose(const Rig& rig, const std::vector<Eig
   return BoardPose{T, at.sum, at.corners};
 }
 
-std::optional<BoardPose> find_board_pose(const Rig& rig, const std::vector<Eigen::Vector3d>& p_board,
+std::optional<BoardPose> find_board_pose(const CameraRig& rig, const std::vector<Eigen::Vector3d>& p_board,
                                          const RigView& view, int first, int last) {
   const auto c = static_cast<std::size_t>(first);
   std::optional<BoardPose> best;

@@ -20,7 +20,8 @@ struct Sums {
 };
 
 // As if the board stood in one camera only, predicted in the other.
-void add_cross(const Rig& rig, const std::vector<Eigen::Vector3d>& points, const RigView& view, int from, Sums& sums) {
+void add_cross(const CameraRig& rig, const std::vector<Eigen::Vector3d>& points, const RigView& view, int from,
+               Sums& sums) {
   const auto pose = find_board_pose(rig, points, view, from, from);
   if (!pose) return;
   const int to = 1 - from;
@@ -46,7 +47,7 @@ double distance_px(const CameraModel& camera, const Eigen::Vector3d& ray, const 
   return std::abs(line.dot(K * (ray / ray.z()))) / line.head<2>().norm();
 }
 
-void add_epipolar(const Rig& rig, const RigView& view, Sums& sums) {
+void add_epipolar(const CameraRig& rig, const RigView& view, Sums& sums) {
   std::map<int, Eigen::Vector2d> right;
   for (const Corner& corner : view.corners[1]) right[corner.index] = corner.pixel;
   const Pose& T = rig.T_left_right;
@@ -64,7 +65,7 @@ void add_epipolar(const Rig& rig, const RigView& view, Sums& sums) {
   }
 }
 
-void add_view(const Rig& rig, const std::vector<Eigen::Vector3d>& points, const RigView& view, Sums& sums) {
+void add_view(const CameraRig& rig, const std::vector<Eigen::Vector3d>& points, const RigView& view, Sums& sums) {
   const int first = view.corners[0].empty() ? 1 : 0;
   const int last = view.both() ? 1 : first;
   const auto joint = find_board_pose(rig, points, view, first, last);
@@ -88,7 +89,7 @@ RigSolution without_views(const RigSolution& all, const std::vector<std::size_t>
 
 }  // namespace
 
-HeldOutScore score_views(const Rig& rig, const RigViews& test) {
+HeldOutScore score_views(const CameraRig& rig, const RigViews& test) {
   Sums sums;
   const auto points = warped(test.p_board, rig.warp);
   for (const RigView& view : test.views) add_view(rig, points, view, sums);

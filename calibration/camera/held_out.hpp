@@ -18,7 +18,7 @@ struct HeldOutScore {
 };
 
 /// How a rig explains views, each on its own.
-HeldOutScore score_views(const Rig& rig, const RigViews& test);
+HeldOutScore score_views(const CameraRig& rig, const RigViews& test);
 
 struct LeaveOut {
   HeldOutScore score;

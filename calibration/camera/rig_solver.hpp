@@ -29,7 +29,7 @@ struct RejectedCorner {
 
 /// An estimate, and before the solution the start for one.
 struct RigSolution {
-  Rig rig;
+  CameraRig rig;
   std::vector<Pose> T_left_board;  ///< of every view
   std::vector<RejectedCorner> rejected;
   double rms_px = 0;    ///< sqrt(mean(dx^2 + dy^2)) over the accepted corners

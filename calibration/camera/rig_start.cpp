@@ -15,7 +15,7 @@ constexpr std::size_t kTrialViews = 12;
 // An error beyond this says no more than that it is wrong.
 constexpr double kCap = 0.05;  // of the image's width
 
-double misfit(const Rig& rig, const RigViews& views, const std::vector<std::size_t>& trial) {
+double misfit(const CameraRig& rig, const RigViews& views, const std::vector<std::size_t>& trial) {
   double sum = 0;
   const double cap = kCap * views.width[0];
   for (const std::size_t v : trial) {
@@ -54,7 +54,7 @@ RigSolution start_camera(const RigViews& views, Distortion distortion) {
   double best = std::numeric_limits<double>::infinity();
   RigSolution start;
   for (double f = 0.2; f < 6; f *= 1.25) {
-    Rig rig{{plain_camera(views, distortion, f * views.width[0])}, Pose::Identity(), {}};
+    CameraRig rig{{plain_camera(views, distortion, f * views.width[0])}, Pose::Identity(), {}};
     const double error = misfit(rig, views, trial);
     if (error < best) best = error, start.rig = rig;
   }

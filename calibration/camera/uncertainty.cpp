@@ -46,7 +46,7 @@ double quantile(std::vector<double> values, double part) {
 }  // namespace
 
 struct RigUncertainty::Impl {
-  Rig rig;
+  CameraRig rig;
   std::vector<Pose> T_left_board;
   RigInformation info;
   double noise_px = 0;

@@ -29,7 +29,7 @@ double rms(const std::vector<double>& values) {
 }
 
 /// The left camera from one view's tags in one camera, or nothing.
-std::optional<Pose> view_pose(const PanTiltView& view, const Rig& cameras, int camera) {
+std::optional<Pose> view_pose(const PanTiltView& view, const CameraRig& cameras, int camera) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> rays;
   const CameraModel& lens = cameras.cameras[static_cast<std::size_t>(camera)];
@@ -69,7 +69,7 @@ std::optional<Pose> view_pose(const PanTiltView& view, const Rig& cameras, int c
   return camera == 1 ? Pose(T_world_camera * cameras.T_left_right.inverse()) : T_world_camera;
 }
 
-std::vector<PanTiltSample> start_samples(const std::vector<PanTiltView>& views, const Rig& cameras) {
+std::vector<PanTiltSample> start_samples(const std::vector<PanTiltView>& views, const CameraRig& cameras) {
   std::vector<PanTiltSample> samples;
   for (const PanTiltView& view : views) {
     std::optional<Pose> pose = view_pose(view, cameras, 0);
@@ -116,7 +116,7 @@ Pose fitted_left(const PanTiltTagState& state, const PanTiltView& view, std::siz
 }
 
 // Noise of a coordinate from the distances of all corners that count.
-double corner_noise(const std::vector<PanTiltView>& views, const Rig& cameras, const PanTiltTagState& state) {
+double corner_noise(const std::vector<PanTiltView>& views, const CameraRig& cameras, const PanTiltTagState& state) {
   constexpr double kMedianOfDistance = 1.17741;  // of a distance whose two coordinates have sigma 1
   std::vector<double> all;
   for (std::size_t k = 0; k < views.size(); ++k) {
@@ -127,7 +127,8 @@ double corner_noise(const std::vector<PanTiltView>& views, const Rig& cameras, c
   return std::max(1e-3, median(all) / kMedianOfDistance / std::sqrt(std::max(0.1, 1 - used)));
 }
 
-void fit_with_noise(const std::vector<PanTiltView>& views, const Rig& cameras, PanTiltTagState& state, int rounds) {
+void fit_with_noise(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state,
+                    int rounds) {
   for (int round = 0; round < rounds; ++round) {
     fit_pan_tilt_tags(views, cameras, state);
     state.corner_px = corner_noise(views, cameras, state);
@@ -141,7 +142,7 @@ void fit_with_noise(const std::vector<PanTiltView>& views, const Rig& cameras, P
   }
 }
 
-int reject(const std::vector<PanTiltView>& views, const Rig& cameras, PanTiltTagState& state) {
+int reject(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state) {
   int points = 0;
   for (std::size_t k = 0; k < views.size(); ++k) {
     const auto errors = corner_errors(cameras, fitted_left(state, views[k], k), views[k]);
@@ -154,8 +155,8 @@ int reject(const std::vector<PanTiltView>& views, const Rig& cameras, PanTiltTag
   return points;
 }
 
-PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const Rig& cameras, const PanTiltTagOptions& options,
-                            PanTiltTagSummary& summary) {
+PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const CameraRig& cameras,
+                            const PanTiltTagOptions& options, PanTiltTagSummary& summary) {
   PanTiltOptions first;
   first.gains = false, first.score = false, first.inverted = false, first.backlash = options.backlash;
   PanTiltTagState state;
@@ -185,7 +186,7 @@ PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const Rig& ca
   return state;
 }
 
-void score_left_out(const std::vector<PanTiltView>& views, const Rig& cameras, const PanTiltTagState& state,
+void score_left_out(const std::vector<PanTiltView>& views, const CameraRig& cameras, const PanTiltTagState& state,
                     PanTiltTagSummary& summary) {
   std::vector<double> all;
   for (std::size_t k = 0; k < views.size(); ++k) {
@@ -198,7 +199,7 @@ void score_left_out(const std::vector<PanTiltView>& views, const Rig& cameras, c
   summary.loo_px = rms(all);
 }
 
-PanTiltTagSummary choose_gains(const std::vector<PanTiltView>& views, const Rig& cameras,
+PanTiltTagSummary choose_gains(const std::vector<PanTiltView>& views, const CameraRig& cameras,
                                const PanTiltTagOptions& options) {
   PanTiltTagOptions choice = options;
   choice.gains = false;
@@ -237,7 +238,7 @@ std::vector<PanTiltView> of_known_ways(const std::vector<PanTiltView>& views, bo
 
 }  // namespace
 
-std::vector<double> corner_errors(const Rig& cameras, const Pose& T_world_left, const PanTiltView& view) {
+std::vector<double> corner_errors(const CameraRig& cameras, const Pose& T_world_left, const PanTiltView& view) {
   std::vector<double> errors;
   const Pose T_left_world = T_world_left.inverse();
   for (const SeenTag& tag : view.tags)
@@ -249,7 +250,7 @@ std::vector<double> corner_errors(const Rig& cameras, const Pose& T_world_left, 
   return errors;
 }
 
-PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, const Rig& cameras,
+PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, const CameraRig& cameras,
                                       const PanTiltTagOptions& options) {
   if (!options.gains && options.score) return choose_gains(given, cameras, options);
   PanTiltTagSummary summary;

@@ -23,7 +23,7 @@ struct SyntheticOptions {
 };
 
 struct SyntheticRig {
-  Rig rig;
+  CameraRig rig;
   std::vector<Pose> T_left_board;
   RigViews views;
 };

@@ -82,7 +82,7 @@ struct TagRing {
     return std::sqrt(sum / static_cast<double>(n));
   }
 
-  Rig cameras;
+  CameraRig cameras;
   PanTiltModel truth;
   std::map<int, std::array<Eigen::Vector3d, 4>> map;
 };
