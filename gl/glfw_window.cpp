@@ -13,7 +13,7 @@ namespace {
   const char* text = nullptr;
   glfwGetError(&text);
   throw NoWindow(what + ": " + (text ? text : "unknown reason"),
-                 "check DISPLAY and the graphics driver, or do without the window");
+                 "check DISPLAY and the graphics driver, or leave out --window");
 }
 
 std::shared_ptr<void> start_library() {
