@@ -1,6 +1,10 @@
 // What `replay --refine` wins on poses that are wrong by a known number of pixels.
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 
+#include "sim/pan_tilt_head.hpp"
+#include "sim/run_files.hpp"
+#include "sim/tag_room.hpp"
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
@@ -10,9 +14,65 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 struct Shown {
   double psnr_db = 0, sharpness = 0;
+};
+
+/// A head that turns before tags on table and wall. Given poses of the first images are off by one and the same turn.
+class TagRun : public TempFolder {
+ public:
+  TagRun(int wrong_images, double wrong_px) {
+    const Lens lens({LensModel::plumb_bob, 480, 360, 390, 391, 238, 182, {-0.12, 0.03, 0.0004, -0.0006, 0}});
+    const sim::TagRoom room(sim::TagRoom::lab_tags());
+    const cv::Mat rays = sim::TagRoom::corner_rays(lens);
+    const Pose off(Eigen::AngleAxisd(wrong_px / 390, Eigen::Vector3d::UnitY()));
+    std::filesystem::create_directories(path() / "rgb");
+    std::string list, trajectory;
+    for (int i = 0; i < kImages; ++i) {
+      const Pose T = sim::T_world_head_left({0.006 * i, 0.5});
+      const std::string file = sim::format("rgb/%06d.png", i), time = sim::format("%.6f ", i / 30.0);
+      cv::imwrite(path() / file, room.picture(rays, T, 2, static_cast<unsigned>(i)));
+      list += time + file + "\n";
+      trajectory += time + sim::pose_text(i < wrong_images ? Pose(T * off) : T) + "\n";
+    }
+    write("rgb.txt", list);
+    write("trajectory.txt", trajectory);
+    write("camera.yaml", sim::camera_yaml(lens, "left", nullptr));
+    write("scene.ply", kRoom);
+    std::string tags;
+    for (const auto& [id, corners] : room.corners())
+      for (std::size_t c = 0; c < 4; ++c)
+        tags += sim::format("%d %zu %.9f %.9f %.9f\n", id, c, corners[c].x(), corners[c].y(), corners[c].z());
+    write("tags.txt", tags);
+  }
+
+  static constexpr int kImages = 10;
+
+ private:
+  static constexpr const char* kRoom = R"(ply
+format ascii 1.0
+element vertex 8
+property float x
+property float y
+property float z
+element face 4
+property list uchar int vertex_indices
+end_header
+-2 -2 0
+0.6 -2 0
+0.6 2 0
+-2 2 0
+0.6 -2 0
+0.6 -2 2
+0.6 2 2
+0.6 2 0
+3 0 1 2
+3 0 2 3
+3 4 5 6
+3 4 6 7
+)";
 };
 
 class Refine : public testing::Test {
@@ -89,10 +149,46 @@ TEST_F(Refine, GoesWithTwoCamerasAndByTheClockButNotWithTheThesis) {
   const Outcome stereo = replay(run.path(), {"--refine"});
   EXPECT_EQ(stereo.exit_code, 0) << stereo.err;
   EXPECT_THAT(stereo.out, HasSubstr("Poses refined of"));
+  EXPECT_GT(read_json(report_)["refinement"]["refined_images"], 0);
   EXPECT_EQ(replay(run.path(), {"--refine", "--real-time"}).exit_code, 0);
   const Outcome refused = replay(run.path(), {"--refine", "--pipeline", "thesis"});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.last_line(), HasSubstr("--pipeline core"));
+}
+
+TEST_F(Refine, TagsVetoPosesThatFollowWrongTextures) {
+  // Textures of the first images lie 6 px off, and the first images that are given right align to them.
+  const TagRun run(4, 6);
+  const Outcome vetoed = replay(run.path(), {"--refine"});
+  ASSERT_EQ(vetoed.exit_code, 0) << vetoed.err;
+  const json with = read_json(report_)["refinement"];
+  EXPECT_GT(with["vetoed_images"], 0) << with;
+  EXPECT_GT(with["images_with_tags"], 4) << with;
+  EXPECT_THAT(vetoed.out, HasSubstr("vetoed " + with["vetoed_images"].dump() + " of these"));
+
+  fs::remove(run / "tags.txt");
+  const Outcome free = replay(run.path(), {"--refine"});
+  EXPECT_THAT(free.out, Not(HasSubstr("Tags were seen")));
+  const json without = read_json(report_)["refinement"];
+  EXPECT_EQ(without["vetoed_images"], 0);
+  EXPECT_EQ(without["images_with_tags"], 0);
+  EXPECT_EQ(without["refined_images"], with["refined_images"].get<int>() + with["vetoed_images"].get<int>());
+}
+
+TEST_F(Refine, TagsDoNotVetoGoodPoses) {
+  const TagRun run(0, 0);
+  ASSERT_EQ(replay(run.path(), {"--refine"}).exit_code, 0);
+  const json did = read_json(report_)["refinement"];
+  EXPECT_GT(did["images_with_tags"], 4) << did;
+  EXPECT_EQ(did["vetoed_images"], 0) << did;
+  EXPECT_EQ(replay(run.path(), {}).exit_code, 0);
+  EXPECT_FALSE(read_json(report_).contains("refinement"));
+
+  run.write("tags.txt", "4 0 0 0 0\n4 1 1 0 0\n");
+  const Outcome broken = replay(run.path(), {"--refine"});
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_THAT(broken.last_line(), HasSubstr("tag 4 has 2 corners"));
+  EXPECT_EQ(run_program({"replay", run.path(), "--report", run / "tags.txt"}).exit_code, 2);
 }
 
 }  // namespace
