@@ -23,7 +23,7 @@ struct Shown {
 /// A head that turns before tags on table and wall. Given poses of the first images are off by one and the same turn.
 class TagRun : public TempFolder {
  public:
-  TagRun(int wrong_images, double wrong_px) {
+  TagRun(int wrong_images, double wrong_px, double interval_s = 1 / 30.0) {
     const Lens lens({LensModel::plumb_bob, 480, 360, 390, 391, 238, 182, {-0.12, 0.03, 0.0004, -0.0006, 0}});
     const sim::TagRoom room(sim::TagRoom::lab_tags());
     const cv::Mat rays = sim::TagRoom::corner_rays(lens);
@@ -32,7 +32,7 @@ class TagRun : public TempFolder {
     std::string list, trajectory;
     for (int i = 0; i < kImages; ++i) {
       const Pose T = sim::T_world_head_left({0.006 * i, 0.5});
-      const std::string file = sim::format("rgb/%06d.png", i), time = sim::format("%.6f ", i / 30.0);
+      const std::string file = sim::format("rgb/%06d.png", i), time = sim::format("%.6f ", i * interval_s);
       cv::imwrite(path() / file, room.picture(rays, T, 2, static_cast<unsigned>(i)));
       list += time + file + "\n";
       trajectory += time + sim::pose_text(i < wrong_images ? Pose(T * off) : T) + "\n";
@@ -48,7 +48,7 @@ class TagRun : public TempFolder {
     write("tags.txt", tags);
   }
 
-  static constexpr int kImages = 10;
+  static constexpr int kImages = 8;
 
  private:
   static constexpr const char* kRoom = R"(ply
@@ -79,7 +79,7 @@ class Refine : public testing::Test {
  protected:
   fs::path synth(const std::string& name, const std::vector<std::string>& more) const {
     const fs::path run = folder_ / name;
-    std::vector<std::string> words{"synth", run, "--frames", "16", "--size", "240x180", "--pose-error-px", "2"};
+    std::vector<std::string> words{"synth", run, "--size", "240x180", "--pose-error-px", "2"};
     words.insert(words.end(), more.begin(), more.end());
     const Outcome outcome = run_program(words);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -123,7 +123,7 @@ class Refine : public testing::Test {
 };
 
 TEST_F(Refine, WinsBackMostOfWhatWrongPosesLose) {
-  const fs::path run = synth("run", {"--seed", "4"});
+  const fs::path run = synth("run", {"--frames", "16", "--seed", "4"});
   for (const char* delay : {"0", "1"}) {
     SCOPED_TRACE(delay);
     const Shown given = shown(run, {"--delay-frames", delay}),
@@ -139,21 +139,30 @@ TEST_F(Refine, WinsBackMostOfWhatWrongPosesLose) {
 }
 
 TEST_F(Refine, ErrorsThatLastAreBridgedOverLongDelays) {
-  const fs::path run = synth("run", {"--seed", "4", "--pose-error-s", "3"});
+  const fs::path run = synth("run", {"--frames", "16", "--seed", "4", "--pose-error-s", "3"});
   const Shown given = shown(run, {"--delay-frames", "3"}), refined = shown(run, {"--delay-frames", "3", "--refine"});
   EXPECT_GT(refined.psnr_db, given.psnr_db + 1);
 }
 
 TEST_F(Refine, GoesWithTwoCamerasAndByTheClockButNotWithTheThesis) {
-  const SmallRun run("--stereo");
-  const Outcome stereo = replay(run.path(), {"--refine"});
+  const fs::path run = synth("stereo", {"--stereo", "--frames", "5"});
+  const Outcome stereo = replay(run, {"--refine"});
   EXPECT_EQ(stereo.exit_code, 0) << stereo.err;
   EXPECT_THAT(stereo.out, HasSubstr("Poses refined of"));
   EXPECT_GT(read_json(report_)["refinement"]["refined_images"], 0);
-  EXPECT_EQ(replay(run.path(), {"--refine", "--real-time"}).exit_code, 0);
-  const Outcome refused = replay(run.path(), {"--refine", "--pipeline", "thesis"});
+  EXPECT_EQ(replay(run, {"--refine", "--real-time"}).exit_code, 0);
+  const Outcome refused = replay(run, {"--refine", "--pipeline", "thesis"});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.last_line(), HasSubstr("--pipeline core"));
+}
+
+TEST_F(Refine, RefinesByTheClockToo) {
+  // Slow enough that only a stall of seconds could leave every image out.
+  const TagRun run(0, 0, 0.5);
+  const Outcome outcome = replay(run.path(), {"--refine", "--real-time"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json did = read_json(report_)["refinement"];
+  EXPECT_GT(did["refined_images"], 0) << outcome.out;
 }
 
 TEST_F(Refine, TagsVetoPosesThatFollowWrongTextures) {
