@@ -67,7 +67,7 @@ std::set<fs::path> input_files(const RunFolder& run, const RunOptions& options) 
   std::error_code ignored;
   const auto add = [&](const fs::path& file) { files.insert(fs::weakly_canonical(file, ignored)); };
   for (const char* name : {"camera.yaml", "camera_right.yaml", "rgb.txt", "rgb_right.txt", "trajectory.txt",
-                           "nodes.txt", "scene.ply", "scene.yaml"})
+                           "nodes.txt", "scene.ply", "scene.yaml", "registration.txt", "tags.txt"})
     add(run.root() / name);
   for (const RunFrame& frame : run.frames()) {
     add(frame.left.file);

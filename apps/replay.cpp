@@ -267,6 +267,7 @@ class Replay {
   }
 
   void note_policy() {
+    if (refinement_) record_.refinement = refinement_->record();
     if (refinement_)
       for (std::string& note : refinement_->notes()) record_.notes.push_back(std::move(note));
     if (policy_.evicted_pages)

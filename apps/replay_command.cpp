@@ -25,8 +25,10 @@ void add_replay_command(CLI::App& app, std::function<int()>& action) {
   command->add_option("--html", options->html, "HTML file with pictures and plots, self-contained");
   command->add_flag("--window", options->window, "Show delayed, predicted and actual side by side");
   command->add_flag("--real-time", options->real_time, "Play by the clock and drop what comes too late");
-  command->add_flag("--refine", options->refine,
-                    "Improve the poses by aligning each image that has arrived to the textured model");
+  command->add_flag(
+      "--refine", options->refine,
+      "Improve the poses by aligning each image that has arrived to the textured model; tags of the run's tags.txt "
+      "may veto that");
   command->footer(
       "Pictures are RGBA; alpha 255: colour from a camera image, 128: filled hole, 64: model without colour,\n"
       "0: no model. Image times before the first delayed image arrives are left out.\n\n"

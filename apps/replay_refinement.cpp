@@ -1,12 +1,33 @@
 #include "apps/replay_refinement.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstdio>
 
 #include "apps/posed_frames.hpp"
+#include "calibration/registration/calibrated_head.hpp"
 #include "common/cpu_time.hpp"
 
 namespace foresight {
+namespace {
+
+std::optional<TagVeto> veto_for(const RunFolder& run) {
+  const std::filesystem::path tags = run.root() / "tags.txt";
+  if (!std::filesystem::exists(tags)) return std::nullopt;
+  return std::optional<TagVeto>(
+      std::in_place, StereoLenses{run.lens_left(), run.lens_right().value_or(run.lens_left()), run.T_left_right()},
+      read_tag_map(tags), TagDetector::Options{});
+}
+
+/// How sure a refined pose is once its gauge counts too.
+Matrix6d with_gauge(const RefinementSummary& found, double gauge_px) {
+  return found.covariance + gauge_px * gauge_px / 6 * found.px_metric.ldlt().solve(Matrix6d::Identity());
+}
+
+}  // namespace
+
+ReplayRefinement::ReplayRefinement(const RunFolder& run, ReplaySession& session, double margin_px)
+    : run_(run), session_(session), margin_px_(margin_px), veto_(veto_for(run)) {}
 
 void ReplayRefinement::give(std::size_t index) {
   for (; given_ <= index; ++given_) {
@@ -31,13 +52,9 @@ void ReplayRefinement::refine(std::size_t index, PosedFrame& frame) {
   if (const auto view = session_.render(prediction.T_world_camera, frame.left.scene)) {
     const RefinementSummary found = refine_pose(run_.lens_left(), *view, frame.left.pixels, {});
     if (found.accepted) {
-      frame.left.T_world_camera = filter_.add_refined(frame.left.time, found.T_world_camera, found.px_metric);
-      ++refined_;
-      moved_px_ += found.moved_px;
-      sigma_px_ += found.sigma_px;
-      sigma_px = std::hypot(found.sigma_px, filter_.gauge_px());
+      sigma_px = use(index, found, frame);
     } else {
-      ++refused_;
+      ++record_.refused;
       ++reasons_[found.reason];
     }
   } else {
@@ -51,18 +68,45 @@ void ReplayRefinement::refine(std::size_t index, PosedFrame& frame) {
   cpu_ms_ += process_cpu_ms() - before;
 }
 
+bool ReplayRefinement::vetoed(std::size_t index, const RefinementSummary& found, const PosedFrame& frame) {
+  if (!veto_) return false;
+  const RefinedPose pose{run_.frames()[index].left.T_world_camera, found.T_world_camera,
+                         with_gauge(found, filter_.gauge_px())};
+  const TagVerdict verdict = veto_->judge(pose, frame.left.pixels, frame.right ? frame.right->pixels : cv::Mat());
+  if (verdict != TagVerdict::unseen) ++record_.with_tags;
+  return verdict == TagVerdict::object;
+}
+
+/// Sets the left pose; returns its expected error in px. A vetoed one tells the filter that the given pose was right.
+double ReplayRefinement::use(std::size_t index, const RefinementSummary& found, PosedFrame& frame) {
+  const bool refused = vetoed(index, found, frame);
+  const Pose& used = refused ? run_.frames()[index].left.T_world_camera : found.T_world_camera;
+  frame.left.T_world_camera = filter_.add_refined(frame.left.time, used, found.px_metric);
+  if (refused) {
+    ++record_.vetoed;
+    return run_.frames()[index].left.predicted_px.value_or(0);
+  }
+  ++record_.refined;
+  moved_px_ += found.moved_px;
+  sigma_px_ += found.sigma_px;
+  return std::hypot(found.sigma_px, filter_.gauge_px());
+}
+
 std::vector<std::string> ReplayRefinement::notes() const {
   std::vector<std::string> out;
   char text[256];
-  const double n = std::max<double>(1, static_cast<double>(refined_));
+  const double n = std::max<double>(1, static_cast<double>(record_.refined));
   std::snprintf(text, sizeof text,
                 "Poses refined of %zu images, by %.2f px from their prediction, sigma %.2f px; %zu refused; mean "
                 "margin %.1f px; %.0f CPU-ms each.",
-                refined_, moved_px_ / n, sigma_px_ / n, refused_,
-                margins_ / static_cast<double>(std::max<std::size_t>(1, refined_ + refused_ + 1)), cpu_ms_ / n);
+                record_.refined, moved_px_ / n, sigma_px_ / n, record_.refused,
+                margins_ / static_cast<double>(record_.refined + record_.refused + record_.vetoed + 1), cpu_ms_ / n);
   out.emplace_back(text);
-  if (refined_ > 0 && !filter_.helps())
+  if (record_.refined > 0 && !filter_.helps())
     out.emplace_back("In the end the refined poses were not used: they made the motion rougher.");
+  if (veto_)
+    out.push_back("Tags were seen in " + std::to_string(record_.with_tags) + " images with a refined pose and vetoed " +
+                  std::to_string(record_.vetoed) + " of these: the given ones were used.");
   for (const auto& [reason, count] : reasons_)
     out.push_back("Refused, " + std::to_string(count) + " images: " + reason + ".");
   return out;

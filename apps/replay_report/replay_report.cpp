@@ -202,6 +202,11 @@ Json to_json(const RunRecord& run) {
                  {"renderer", run.renderer}};
   json["options"] = json_of_options(run.options);
   json["summary"] = json_of(run, summarise(run));
+  if (run.refinement)
+    json["refinement"] = {{"refined_images", run.refinement->refined},
+                          {"refused_images", run.refinement->refused},
+                          {"vetoed_images", run.refinement->vetoed},
+                          {"images_with_tags", run.refinement->with_tags}};
   json["notes"] = run.notes;
   json["frames"] = Json::array();
   for (const FrameRecord& frame : run.frames) json["frames"].push_back(json_of(frame));

@@ -52,6 +52,14 @@ struct OptionRecord {
   std::variant<bool, std::int64_t, double, std::string> value;
 };
 
+/// What `replay --refine` did, in images.
+struct RefinementRecord {
+  std::uint64_t refined = 0;    ///< at a refined pose
+  std::uint64_t refused = 0;    ///< that could not be aligned: at their predicted pose
+  std::uint64_t vetoed = 0;     ///< whose refined pose contradicted tags: at their given pose
+  std::uint64_t with_tags = 0;  ///< refined or vetoed, with a tag of the run's tags.txt in sight
+};
+
 struct RunRecord {
   std::string run;  ///< name of the run folder
   int image_width_px = 0;
@@ -66,9 +74,10 @@ struct RunRecord {
   std::string renderer;  ///< GL_RENDERER
   std::string version;   ///< of this program
   std::vector<FrameRecord> frames;
-  std::uint64_t drops = 0;         ///< images that never became textures
-  std::vector<std::string> notes;  ///< full sentences, such as what the memory policy did
-  bool complete = true;            ///< false after Ctrl-C
+  std::uint64_t drops = 0;                     ///< images that never became textures
+  std::vector<std::string> notes;              ///< full sentences, such as what the memory policy did
+  std::optional<RefinementRecord> refinement;  ///< with --refine
+  bool complete = true;                        ///< false after Ctrl-C
 };
 
 /// Of the finite values only; all NaN where there is none. `p99` and `median` interpolate linearly

@@ -1,6 +1,10 @@
 // What `replay --refine` wins on poses that are wrong by a known number of pixels.
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 
+#include "sim/pan_tilt_head.hpp"
+#include "sim/run_files.hpp"
+#include "sim/tag_room.hpp"
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
@@ -10,16 +14,72 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 struct Shown {
   double psnr_db = 0, sharpness = 0;
+};
+
+/// A head that turns before tags on table and wall. Given poses of the first images are off by one and the same turn.
+class TagRun : public TempFolder {
+ public:
+  TagRun(int wrong_images, double wrong_px, double interval_s = 1 / 30.0) {
+    const Lens lens({LensModel::plumb_bob, 480, 360, 390, 391, 238, 182, {-0.12, 0.03, 0.0004, -0.0006, 0}});
+    const sim::TagRoom room(sim::TagRoom::lab_tags());
+    const cv::Mat rays = sim::TagRoom::corner_rays(lens);
+    const Pose off(Eigen::AngleAxisd(wrong_px / 390, Eigen::Vector3d::UnitY()));
+    std::filesystem::create_directories(path() / "rgb");
+    std::string list, trajectory;
+    for (int i = 0; i < kImages; ++i) {
+      const Pose T = sim::T_world_head_left({0.006 * i, 0.5});
+      const std::string file = sim::format("rgb/%06d.png", i), time = sim::format("%.6f ", i * interval_s);
+      cv::imwrite(path() / file, room.picture(rays, T, 2, static_cast<unsigned>(i)));
+      list += time + file + "\n";
+      trajectory += time + sim::pose_text(i < wrong_images ? Pose(T * off) : T) + "\n";
+    }
+    write("rgb.txt", list);
+    write("trajectory.txt", trajectory);
+    write("camera.yaml", sim::camera_yaml(lens, "left", nullptr));
+    write("scene.ply", kRoom);
+    std::string tags;
+    for (const auto& [id, corners] : room.corners())
+      for (std::size_t c = 0; c < 4; ++c)
+        tags += sim::format("%d %zu %.9f %.9f %.9f\n", id, c, corners[c].x(), corners[c].y(), corners[c].z());
+    write("tags.txt", tags);
+  }
+
+  static constexpr int kImages = 8;
+
+ private:
+  static constexpr const char* kRoom = R"(ply
+format ascii 1.0
+element vertex 8
+property float x
+property float y
+property float z
+element face 4
+property list uchar int vertex_indices
+end_header
+-2 -2 0
+0.6 -2 0
+0.6 2 0
+-2 2 0
+0.6 -2 0
+0.6 -2 2
+0.6 2 2
+0.6 2 0
+3 0 1 2
+3 0 2 3
+3 4 5 6
+3 4 6 7
+)";
 };
 
 class Refine : public testing::Test {
  protected:
   fs::path synth(const std::string& name, const std::vector<std::string>& more) const {
     const fs::path run = folder_ / name;
-    std::vector<std::string> words{"synth", run, "--frames", "16", "--size", "240x180", "--pose-error-px", "2"};
+    std::vector<std::string> words{"synth", run, "--size", "240x180", "--pose-error-px", "2"};
     words.insert(words.end(), more.begin(), more.end());
     const Outcome outcome = run_program(words);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -63,7 +123,7 @@ class Refine : public testing::Test {
 };
 
 TEST_F(Refine, WinsBackMostOfWhatWrongPosesLose) {
-  const fs::path run = synth("run", {"--seed", "4"});
+  const fs::path run = synth("run", {"--frames", "16", "--seed", "4"});
   for (const char* delay : {"0", "1"}) {
     SCOPED_TRACE(delay);
     const Shown given = shown(run, {"--delay-frames", delay}),
@@ -79,20 +139,65 @@ TEST_F(Refine, WinsBackMostOfWhatWrongPosesLose) {
 }
 
 TEST_F(Refine, ErrorsThatLastAreBridgedOverLongDelays) {
-  const fs::path run = synth("run", {"--seed", "4", "--pose-error-s", "3"});
+  const fs::path run = synth("run", {"--frames", "16", "--seed", "4", "--pose-error-s", "3"});
   const Shown given = shown(run, {"--delay-frames", "3"}), refined = shown(run, {"--delay-frames", "3", "--refine"});
   EXPECT_GT(refined.psnr_db, given.psnr_db + 1);
 }
 
 TEST_F(Refine, GoesWithTwoCamerasAndByTheClockButNotWithTheThesis) {
-  const SmallRun run("--stereo");
-  const Outcome stereo = replay(run.path(), {"--refine"});
+  const fs::path run = synth("stereo", {"--stereo", "--frames", "5"});
+  const Outcome stereo = replay(run, {"--refine"});
   EXPECT_EQ(stereo.exit_code, 0) << stereo.err;
   EXPECT_THAT(stereo.out, HasSubstr("Poses refined of"));
-  EXPECT_EQ(replay(run.path(), {"--refine", "--real-time"}).exit_code, 0);
-  const Outcome refused = replay(run.path(), {"--refine", "--pipeline", "thesis"});
+  EXPECT_GT(read_json(report_)["refinement"]["refined_images"], 0);
+  EXPECT_EQ(replay(run, {"--refine", "--real-time"}).exit_code, 0);
+  const Outcome refused = replay(run, {"--refine", "--pipeline", "thesis"});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.last_line(), HasSubstr("--pipeline core"));
+}
+
+TEST_F(Refine, RefinesByTheClockToo) {
+  // Slow enough that only a stall of seconds could leave every image out.
+  const TagRun run(0, 0, 0.5);
+  const Outcome outcome = replay(run.path(), {"--refine", "--real-time"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json did = read_json(report_)["refinement"];
+  EXPECT_GT(did["refined_images"], 0) << outcome.out;
+}
+
+TEST_F(Refine, TagsVetoPosesThatFollowWrongTextures) {
+  // Textures of the first images lie 6 px off, and the first images that are given right align to them.
+  const TagRun run(4, 6);
+  const Outcome vetoed = replay(run.path(), {"--refine"});
+  ASSERT_EQ(vetoed.exit_code, 0) << vetoed.err;
+  const json with = read_json(report_)["refinement"];
+  EXPECT_GT(with["vetoed_images"], 0) << with;
+  EXPECT_GT(with["images_with_tags"], 4) << with;
+  EXPECT_THAT(vetoed.out, HasSubstr("vetoed " + with["vetoed_images"].dump() + " of these"));
+
+  fs::remove(run / "tags.txt");
+  const Outcome free = replay(run.path(), {"--refine"});
+  EXPECT_THAT(free.out, Not(HasSubstr("Tags were seen")));
+  const json without = read_json(report_)["refinement"];
+  EXPECT_EQ(without["vetoed_images"], 0);
+  EXPECT_EQ(without["images_with_tags"], 0);
+  EXPECT_EQ(without["refined_images"], with["refined_images"].get<int>() + with["vetoed_images"].get<int>());
+}
+
+TEST_F(Refine, TagsDoNotVetoGoodPoses) {
+  const TagRun run(0, 0);
+  ASSERT_EQ(replay(run.path(), {"--refine"}).exit_code, 0);
+  const json did = read_json(report_)["refinement"];
+  EXPECT_GT(did["images_with_tags"], 4) << did;
+  EXPECT_EQ(did["vetoed_images"], 0) << did;
+  EXPECT_EQ(replay(run.path(), {}).exit_code, 0);
+  EXPECT_FALSE(read_json(report_).contains("refinement"));
+
+  run.write("tags.txt", "4 0 0 0 0\n4 1 1 0 0\n");
+  const Outcome broken = replay(run.path(), {"--refine"});
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_THAT(broken.last_line(), HasSubstr("tag 4 has 2 corners"));
+  EXPECT_EQ(run_program({"replay", run.path(), "--report", run / "tags.txt"}).exit_code, 2);
 }
 
 }  // namespace
