@@ -76,8 +76,8 @@ void add_epipolar(const CameraRig& rig, const RigView& view, Sums& sums) {
   }
 }
 
-std::optional<BoardPose> add_view(const CameraRig& rig, const std::vector<Eigen::Vector3d>& points,
-                                  const RigView& view, Sums& sums) {
+std::optional<BoardPose> add_view(const CameraRig& rig, const std::vector<Eigen::Vector3d>& points, const RigView& view,
+                                  Sums& sums) {
   const auto joint = find_joint_pose(rig, points, view);
   if (!joint) return joint;
   ++sums.views;

@@ -78,8 +78,8 @@ void check_size(RigViews& views, int camera, std::vector<std::string>& notes) {
                      "give the size of the images they were found in (--size)");
   for (std::size_t i = 0; i < std::min(count, kListed); ++i)
     notes.push_back(outside.corners[i] + " lies outside the image of " + size_text(views, c) + " and is not used");
-  notes.push_back(of_all + " of the " + camera_name(camera, views.cameras) +
-                  (views.cameras == 2 ? " camera" : "") + " lie outside the image and are not used");
+  notes.push_back(of_all + " of the " + camera_name(camera, views.cameras) + (views.cameras == 2 ? " camera" : "") +
+                  " lie outside the image and are not used");
 }
 
 void drop_empty_views(RigViews& views) {
