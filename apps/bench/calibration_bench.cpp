@@ -85,7 +85,10 @@ HeldOutScore left_out(const RigViews& views, const Solve& solve) {
     joint += score.joint_px * score.joint_px, cross += score.cross_px * score.cross_px, epipolar += score.epipolar_px;
   }
   const auto n = static_cast<double>(views.views.size());
-  return {std::sqrt(joint / n), std::sqrt(cross / n), epipolar / n, static_cast<int>(n)};
+  HeldOutScore score;
+  score.joint_px = std::sqrt(joint / n), score.cross_px = std::sqrt(cross / n), score.epipolar_px = epipolar / n;
+  score.views = static_cast<int>(n);
+  return score;
 }
 
 // Views that both cameras saw whole: what OpenCV's call takes.

@@ -18,6 +18,9 @@ std::size_t cameras(const CameraCalibration& c) {
 Json score_json(const HeldOutScore& score, bool pair) {
   Json json{{"joint_px", score.joint_px}};
   if (pair) json["cross_px"] = score.cross_px, json["epipolar_px"] = score.epipolar_px;
+  json["joint_inlier_px"] = score.joint_inlier_px;
+  if (pair) json["cross_inlier_px"] = score.cross_inlier_px, json["epipolar_inlier_px"] = score.epipolar_inlier_px;
+  json["rejected_points"] = score.rejected_points;
   json["views"] = score.views;
   return json;
 }
@@ -97,6 +100,12 @@ nlohmann::ordered_json camera_numbers(const CameraCalibration& c) {
             {"views", c.views.views.size()}};
   json[pair ? "loo_joint_px" : "loo_px"] = c.held_out.joint_px;
   if (pair) json["loo_cross_px"] = c.held_out.cross_px, json["loo_epipolar_px"] = c.held_out.epipolar_px;
+  json[pair ? "loo_joint_inlier_px" : "loo_inlier_px"] = c.held_out.joint_inlier_px;
+  if (pair) {
+    json["loo_cross_inlier_px"] = c.held_out.cross_inlier_px;
+    json["loo_epipolar_inlier_px"] = c.held_out.epipolar_inlier_px;
+  }
+  json["loo_rejected_points"] = c.held_out.rejected_points;
   json["fx_px"] = lens[0];
   json["fy_px"] = lens[1];
   json["noise_px"] = c.solution.noise_px;

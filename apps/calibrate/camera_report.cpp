@@ -35,6 +35,12 @@ void add_scores(const CameraCalibration& c, HtmlReport& report) {
     row("left out, cross", c.held_out.cross_px);
     row("left out, epipolar (mean)", c.held_out.epipolar_px);
   }
+  const std::string without = ", without " + std::to_string(c.held_out.rejected_points) + " outliers";
+  row("left out, joint" + without, c.held_out.joint_inlier_px);
+  if (cameras(c) == 2) {
+    row("left out, cross" + without, c.held_out.cross_inlier_px);
+    row("left out, epipolar (mean)" + without, c.held_out.epipolar_inlier_px);
+  }
   for (std::size_t i = 0; i < cameras(c); ++i)
     row("odd and even views, " + camera_name(static_cast<int>(i), c.views.cameras), c.odd_even_px[i]);
   report.table({"what", "error"}, rows);

@@ -100,6 +100,12 @@ int verify(const VerifyOptions& options) {
     row("cross", score.cross_px, options.cross_px.value_or(kWorseThanScore * M_SQRT2 * known.score_px));
     row("epipolar", score.epipolar_px, options.epipolar_px.value_or(kWorseThanScore * known.score_px));
   }
+  json["joint_inlier_px"] = score.joint_inlier_px;
+  if (pair) json["cross_inlier_px"] = score.cross_inlier_px, json["epipolar_inlier_px"] = score.epipolar_inlier_px;
+  json["rejected_points"] = score.rejected_points;
+  if (score.rejected_points > 0)
+    std::printf("joint without %d outliers: %s\n", score.rejected_points,
+                readable(score.joint_inlier_px, 4, " px").c_str());
   json["pass"] = pass;
   std::printf("%s on %d views\n", pass ? "pass" : "FAIL", score.views);
   write_json(options.json, json);

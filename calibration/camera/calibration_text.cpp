@@ -80,6 +80,11 @@ std::string CameraCalibration::full() const {
         << readable(1000 * solution.rig.warp.y_m, 3, " mm") << " along y\n";
   out << (folds == static_cast<int>(views.views.size()) ? "held out: each view in turn\n"
                                                         : "held out: in " + std::to_string(folds) + " groups\n");
+  out << "held out, without " << held_out.rejected_points
+      << (held_out.rejected_points == 1 ? " outlier: " : " outliers: ") << readable(held_out.joint_inlier_px, 3);
+  if (views.cameras == 2)
+    out << " / " << readable(held_out.cross_inlier_px, 3) << " / " << readable(held_out.epipolar_inlier_px, 3);
+  out << " px\n";
   if (unseen)
     out << "views never used (" << unseen->views << "): " << readable(unseen->joint_px, 3) << " / "
         << readable(unseen->cross_px, 3) << " / " << readable(unseen->epipolar_px, 3, " px") << "\n";

@@ -176,12 +176,11 @@ double robust_noise(const RigViews& views, const RigErrors& errors) {
 
 // Sorted by size, largest first.
 std::vector<RejectedCorner> outliers(const RigViews& views, const RigErrors& errors, double reject_sigmas) {
-  const double sigma = median_sigma(views);
-  const double limit = reject_sigmas * robust_noise(views, errors);
+  const OutlierBound bound = outlier_bound(views, errors, reject_sigmas);
   std::vector<RejectedCorner> found;
   for_each_corner(views, [&](std::size_t v, std::size_t c, std::size_t i, const Corner& corner) {
     const double error = errors[v][c][i].norm();
-    if (!(error * sigma / corner.sigma_px <= limit)) found.push_back({v, static_cast<int>(c), corner.index, error});
+    if (!(bound.weighted_px(corner, error) <= bound.px)) found.push_back({v, static_cast<int>(c), corner.index, error});
   });
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.error_px > b.error_px; });
   return found;
@@ -218,6 +217,10 @@ void count_residuals(const RigViews& views, const Accepted& accepted, bool warp,
 }
 
 }  // namespace
+
+OutlierBound outlier_bound(const RigViews& views, const RigErrors& errors, double reject_sigmas) {
+  return {reject_sigmas * robust_noise(views, errors), median_sigma(views)};
+}
 
 RigErrors rig_errors(const RigViews& views, const RigSolution& solution) {
   RigErrors errors(views.views.size());

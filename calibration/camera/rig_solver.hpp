@@ -47,6 +47,18 @@ RigSolution solve_rig(const RigViews& views, const RigSolution& start, const Rig
 using RigErrors = std::vector<std::array<std::vector<Eigen::Vector2d>, 2>>;
 RigErrors rig_errors(const RigViews& views, const RigSolution& solution);
 
+/// A corner whose weighted error is larger than `px` counts as an outlier.
+struct OutlierBound {
+  double px = 0;
+  double sigma_px = 1;  ///< the median one
+
+  /// The error as if the corner were of median sigma_px.
+  double weighted_px(const Corner& corner, double error_px) const { return error_px * sigma_px / corner.sigma_px; }
+};
+
+/// `reject_sigmas` as in RigSolverOptions: times the deviation that the median of all errors has.
+OutlierBound outlier_bound(const RigViews& views, const RigErrors& errors, double reject_sigmas);
+
 /// What the accepted corners say about the parameters: J^T W J at `solution`, symmetric, W in units of
 /// the noise of a corner of median sigma_px. Rows in this order: each camera's free lens parameters;
 /// T_left_right (6, of a pair); warp (2, where estimated); the pose of each view (6). Motions as

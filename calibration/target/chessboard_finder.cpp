@@ -1,16 +1,14 @@
 #include <algorithm>
-#include <array>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/target/board_finders.hpp"
 #include "calibration/target/grid_order.hpp"
-#include "calibration/target/refine_corners.hpp"
+#include "calibration/target/refine_grid.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr double kDoubtful = 0.1;   // of the neighbour spacing, between a rough corner and what its neighbours say
 constexpr int kReducedSide = 1000;  // px: finding takes a tenth of a second, refining sees all pixels
 
 cv::Mat reduced(const cv::Mat& grey) {
@@ -69,45 +67,6 @@ bool starts_dark(const cv::Mat& grey, const GridPoints& p, int cols) {
   return sum > 0;
 }
 
-/// Where the neighbours in line with point (col, row) say that it lies: the median over up to four directions.
-cv::Point2f foretold(const GridPoints& p, int cols, int rows, int col, int row) {
-  std::array<std::vector<float>, 2> guesses;
-  for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-    const int far_col = col + 2 * dx, far_row = row + 2 * dy;
-    if (far_col < 0 || far_col >= cols || far_row < 0 || far_row >= rows) continue;
-    const auto at = [&](int c, int r) { return p[static_cast<std::size_t>(r * cols + c)]; };
-    const cv::Point2f guess = 2 * at(col + dx, row + dy) - at(far_col, far_row);
-    guesses[0].push_back(guess.x);
-    guesses[1].push_back(guess.y);
-  }
-  if (guesses[0].empty()) return p[static_cast<std::size_t>(row * cols + col)];
-  for (auto& some : guesses) std::sort(some.begin(), some.end());
-  const auto middle = [](const std::vector<float>& some) {
-    return (some[(some.size() - 1) / 2] + some[some.size() / 2]) / 2;
-  };
-  return {middle(guesses[0]), middle(guesses[1])};
-}
-
-struct Refined {
-  cv::Point2f at;
-  double noise = 0;
-};
-
-/// Along the rim, OpenCV may have guessed a corner from squares that it did not find: out of the refinement's reach.
-/// `sure`: the neighbours are where they belong.
-Refined refined(const cv::Mat& grey, cv::Point2f rough, cv::Point2f guess, float spacing, bool sure) {
-  const int window = refinement_half_window(spacing);
-  const auto from = [&](cv::Point2f start) {
-    const cv::Point2f p = refine_corner(grey, start, window);
-    return Refined{p, corner_noise(grey, p, window)};
-  };
-  const Refined usual = from(rough);
-  if (cv::norm(rough - guess) < kDoubtful * spacing) return usual;
-  const Refined other = from(guess);
-  const bool better = sure ? cv::norm(other.at - guess) < cv::norm(usual.at - guess) : other.noise < usual.noise;
-  return better ? other : usual;
-}
-
 }  // namespace
 
 FoundPoints find_chessboard(const cv::Mat& grey, const Board& board) {
@@ -122,18 +81,9 @@ FoundPoints find_chessboard(const cv::Mat& grey, const Board& board) {
   FoundPoints found;
   found.ambiguous = dark != 1;
   if (chosen.empty()) chosen = orders.front();
-  const auto spacing = neighbour_spacing(chosen, board.cols, board.rows);
-  std::vector<Refined> corners(chosen.size());
-  for (const bool sure : {false, true})
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      const int k = static_cast<int>(i);
-      const cv::Point2f guess = foretold(chosen, board.cols, board.rows, k % board.cols, k / board.cols);
-      if (sure && cv::norm(chosen[i] - guess) < kDoubtful * spacing[i]) continue;
-      corners[i] = refined(grey, chosen[i], guess, spacing[i], sure);
-      chosen[i] = corners[i].at;
-    }
+  const auto corners = refine_grid(grey, chosen, board.cols, board.rows);
   for (std::size_t i = 0; i < corners.size(); ++i)
-    found.corners.push_back({static_cast<int>(i), {corners[i].at.x, corners[i].at.y}, corners[i].noise});
+    found.corners.push_back({static_cast<int>(i), {corners[i].at.x, corners[i].at.y}, corners[i].noise_px});
   return found;
 }
 

@@ -72,6 +72,7 @@ TEST_F(MockSession, FindsLensesAndPlaceFromCaptureToExport) {
             "0");
   const auto numbers = json_of(folder_, "s.json");
   EXPECT_LT(numbers["in_sample_px"], 0.1);
+  EXPECT_EQ(numbers["rejected_points"], 0);
   const StereoModel found = model_in(result);
   const sim::MockCameraOptions true_pair = truth();
   for (const bool second : {false, true}) {

@@ -125,6 +125,39 @@ TEST(BadInput, SizesThatDiffer) {
   EXPECT_THAT(refusal(s.views), AllOf(HasSubstr("outside the image of 320x480"), HasSubstr("left view")));
 }
 
+TEST(BadInput, SingleCornersOutsideTheImageAreDroppedByName) {
+  auto s = synthetic_rig(9, {.views = 12});
+  s.views.views[2].corners[0][7].pixel = {-30, 20};
+  s.views.views[6].corners[0][40].pixel = {320, 4000};
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_TRUE(c.usable()) << c.full();
+  EXPECT_THAT(c.notes, Contains(HasSubstr("left view view2, corner 7 lies outside the image of 640x480")));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("left view view6, corner 40 lies outside")));
+  EXPECT_THAT(c.notes, Contains("2 of 648 corners of the left camera lie outside the image and are not used"));
+  EXPECT_EQ(c.views.views[2].corners[0].size(), 53u);
+  EXPECT_LT(c.held_out.joint_px, 0.35);
+}
+
+TEST(BadInput, ManyCornersOutsideTheImageAreRefused) {
+  auto few = synthetic_rig(9, {.views = 12});
+  for (std::size_t v = 0; v < 7; ++v) few.views.views[v].corners[1][v].pixel.x() = 700;
+  EXPECT_THAT(refusal(few.views), AllOf(HasSubstr("right view view0, corner 0"), HasSubstr("7 of 648 corners")));
+  auto one_view = synthetic_rig(9, {.views = 12});
+  for (std::size_t i = 0; i < 4; ++i) one_view.views.views[5].corners[0][i].pixel.y() = -40;
+  EXPECT_THAT(refusal(one_view.views), AllOf(HasSubstr("left view view5, corner 0"), HasSubstr("4 of 648")));
+}
+
+TEST(BadInput, OneWrongCornerDoesNotChangeTheGuessedSize) {
+  auto s = synthetic_rig(9, {.views = 12});
+  s.views.width = s.views.height = {0, 0};
+  s.views.views[3].corners[1][20].pixel = {3000, 1500};
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_EQ(c.views.width, (std::array{640, 640}));
+  EXPECT_EQ(c.views.height, (std::array{480, 480}));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("the size of the images was not given; 640x480")));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("right view view3, corner 20 lies outside")));
+}
+
 TEST(BadInput, DifferentBoards) {
   const auto s = synthetic_rig(8, {.views = 6});
   StereoCorners pair;
@@ -144,6 +177,36 @@ TEST(Rejection, TakesOutWhatWasMovedAndNamesIt) {
   EXPECT_EQ(c.solution.rejected[1].camera, 1);
   EXPECT_LE(c.solution.rejected.size(), 3u);
   EXPECT_THAT(c.full(), HasSubstr("rejected: left view view3, corner 17"));
+}
+
+TEST(HeldOut, InlierFiguresAreThoseOfTheViewsWithoutWrongCorners) {
+  auto s = synthetic_rig(11, {.views = 12});
+  const CameraCalibration clean = calibrate(s.views);
+  EXPECT_LE(clean.held_out.rejected_points, 1);
+  auto& views = s.views.views;
+  views[3].corners[0][17].pixel.x() += 60;
+  views[3].corners[0][40].pixel.y() += 9;
+  views[8].corners[1][50].pixel.y() -= 12;
+  const HeldOutScore score = calibrate(s.views).held_out;
+  EXPECT_EQ(score.rejected_points, clean.held_out.rejected_points + 3);
+  EXPECT_GT(score.joint_px, 3 * clean.held_out.joint_px);
+  EXPECT_NEAR(score.joint_inlier_px, clean.held_out.joint_inlier_px, 0.01);
+  EXPECT_NEAR(score.cross_inlier_px, clean.held_out.cross_inlier_px, 0.02);
+  EXPECT_NEAR(score.epipolar_inlier_px, clean.held_out.epipolar_inlier_px, 0.01);
+}
+
+TEST(HeldOut, AViewThatIsWrongAsAWholeIsNotHidden) {
+  auto s = synthetic_rig(12, {.views = 12});
+  RigViews test = s.views;
+  std::mt19937 random(3);
+  std::normal_distribution<double> shaken(0, 6);
+  for (Corner& corner : test.views[4].corners[0]) corner.pixel += Eigen::Vector2d(shaken(random), shaken(random));
+  for (Corner& corner : test.views[4].corners[1]) corner.pixel += Eigen::Vector2d(shaken(random), shaken(random));
+  CameraCalibrationOptions options;
+  options.model = Distortion::radtan4;
+  const HeldOutScore score = calibrate_rig(s.views, test, options).held_out;
+  EXPECT_GT(score.joint_px, 1.5);
+  EXPECT_NEAR(score.joint_inlier_px, score.joint_px, 0.1 * score.joint_px);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/target/corner_files.hpp"
+#include "calibration/target/refine_grid.hpp"
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/target/drawn_board.hpp"
@@ -58,6 +59,20 @@ TEST(FindCorners, LargeImagesAreReducedToFindAndNotToRefine) {
   const auto found = BoardFinder(board).find(view.grey);
   ASSERT_TRUE(found);
   EXPECT_LT(worst_error(*found, view), 0.15);
+}
+
+// As OpenCV guesses them where it did not find the squares of a rim.
+TEST(RefineGrid, MendsGuessesSideBySide) {
+  const Board board = parse_board("chessboard:9x6:0.025");
+  const DrawnView view = draw_board(board, 320, 240, 4, 30);
+  GridPoints rough;
+  for (const Eigen::Vector2d& p : view.pixels) rough.emplace_back(float(p.x()), float(p.y()));
+  const float spacing = neighbour_spacing(rough, 9, 6)[0];
+  const std::array<cv::Point2f, 3> guesses{{{0.14f, 0.23f}, {-0.13f, 0.18f}, {0.16f, 0.20f}}};  // of the spacing
+  for (std::size_t i = 0; i < guesses.size(); ++i) rough[i] += 1.2f * spacing * guesses[i];
+  const auto corners = refine_grid(view.grey, rough, 9, 6);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    EXPECT_LT(std::hypot(corners[i].at.x - view.pixels[i].x(), corners[i].at.y - view.pixels[i].y()), 0.2) << i;
 }
 
 TEST(FindCorners, TiltAndTurnSayHowTheBoardLies) {
