@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include "gl/x_connection.hpp"
+
 namespace foresight::gl {
 namespace {
 
@@ -18,6 +20,7 @@ namespace {
 
 std::shared_ptr<void> start_library() {
   if (!glfwInit()) fail("no desktop to open a window on");
+  end_with_x_server();
   return {nullptr, [](void*) { glfwTerminate(); }};
 }
 

@@ -1,6 +1,8 @@
 #include "apps/calibrate/arm_command.hpp"
 
+#include <algorithm>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "apps/calibrate/arm_report.hpp"
@@ -71,28 +73,49 @@ void read_poses(const ArmOptions& options, Inputs& in) {
   for (const Pose& pose : matched.poses) in.data.poses.push_back({options.invert ? pose.inverse() : pose, {}});
 }
 
-// Joint positions of each view, by order of the images; a first field that is no number is a name.
-std::vector<std::vector<double>> read_joints(const std::filesystem::path& file, std::size_t joints, const Inputs& in) {
-  std::vector<std::vector<double>> rows;
+struct JointRow {
+  std::string name;  // of the image, or empty
+  std::vector<double> positions;
+};
+
+// A first field more than the joints is a name.
+std::vector<JointRow> read_joint_rows(const std::filesystem::path& file, std::size_t joints) {
+  std::vector<JointRow> rows;
   for (const FieldRow& row : read_field_rows(file)) {
-    std::vector<double> positions;
+    JointRow out;
+    if (row.fields.size() == joints + 1) out.name = std::filesystem::path(row.fields[0]).stem().string();
     for (std::size_t i = row.fields.size() > joints ? 1 : 0; i < row.fields.size(); ++i) {
       const auto value = parse_number(row.fields[i]);
       if (!value)
         throw InputError(at_line(file, row.line), in_quotes(row.fields[i]) + " is not a number",
                          "write joint positions in rad");
-      positions.push_back(*value);
+      out.positions.push_back(*value);
     }
-    rows.push_back(std::move(positions));
+    rows.push_back(std::move(out));
   }
-  if (rows.size() != in.images.size())
+  return rows;
+}
+
+// Joint positions of each view: by the rows' names where these are the images', else by order of the images.
+std::vector<std::vector<double>> read_joints(const std::filesystem::path& file, std::size_t joints, Inputs& in) {
+  const std::vector<JointRow> rows = read_joint_rows(file, joints);
+  std::map<std::string, std::size_t> by_name;
+  for (std::size_t i = 0; i < rows.size(); ++i) by_name.emplace(rows[i].name, i);
+  const std::vector<std::string> views = view_names(in);
+  const bool named = by_name.size() == rows.size() && std::all_of(views.begin(), views.end(), [&](const auto& view) {
+                       return by_name.contains(std::filesystem::path(view).stem().string());
+                     });
+  if (!named && rows.size() != in.images.size())
     throw InputError("--joints",
                      std::to_string(rows.size()) + " rows for " + std::to_string(in.images.size()) + " images",
-                     "give one row an image");
+                     "give one row an image, or name the rows as the images");
+  in.notes.push_back("joint positions were matched to the images by " + std::string(named ? "name" : "order"));
   std::vector<std::vector<double>> out;
-  for (const std::string& view : view_names(in))
-    out.push_back(
-        rows[static_cast<std::size_t>(std::find(in.images.begin(), in.images.end(), view) - in.images.begin())]);
+  for (const std::string& view : views) {
+    const auto place =
+        static_cast<std::size_t>(std::find(in.images.begin(), in.images.end(), view) - in.images.begin());
+    out.push_back(rows[named ? by_name.at(std::filesystem::path(view).stem().string()) : place].positions);
+  }
   return out;
 }
 
@@ -180,7 +203,7 @@ void add_arm(CLI::App& calibrate, std::function<int()>& action) {
       ->capture_default_str();
   arm->add_flag("--invert-poses", options->invert, "The poses are written from flange to base");
   arm->add_option("--joints", options->joints,
-                  "Joint positions instead, rad, one row an image, for --urdf; also gives their offsets");
+                  "Joint positions instead, rad, rows [name] q1 q2 ..., for --urdf; also gives their offsets");
   arm->add_option("--urdf", options->urdf, "The arm");
   arm->add_option("--base-link", options->names.base, "Link that stands still (default: the root)");
   arm->add_option("--flange-link", options->names.flange, "Link that carries camera or board (default: the last)");

@@ -55,6 +55,7 @@ Pictures find_all(const DisplayOptions& options, const PanelPattern& pattern, co
     throw InputError(options.images.string(), "holds no images", "name a folder of PNG or JPEG images");
   for (const auto& file : files) {
     const cv::Mat image = cv::imread(file.string(), options.colours ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
+    if (image.empty()) throw InputError(file.string(), "cannot be read as an image", "remove it, or take it anew");
     if (image.cols != eye.width || image.rows != eye.height)
       throw InputError(file.string(),
                        "is " + std::to_string(image.cols) + " x " + std::to_string(image.rows) +

@@ -29,6 +29,16 @@ std::pair<double, double> parse_measured(const std::string& text) {
   throw InputError("--measured", in_quotes(text) + " is not two lengths", "give both rulers in mm, such as 100.2,99.9");
 }
 
+struct Printed {
+  double x_mm, y_mm;  // of the rulers
+  Board board;
+};
+
+Printed printed_board(const Board& board, const std::string& measured) {
+  const auto [x, y] = parse_measured(measured);
+  return {x, y, measured_board(board, x, y)};
+}
+
 /// Empty where nobody is there to answer, or does not know yet.
 std::string ask() {
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0) return {};
@@ -43,26 +53,27 @@ int run(const Arguments& a) {
   const Board board = parse_board(a.board);
   if (a.out.empty() && a.measured.empty())
     throw InputError("--out", "is missing", "name a .pdf file, or give --measured for a board that is printed");
-  std::string measured = a.measured;
+  std::optional<Printed> printed;  // refused before a file is written
+  if (!a.measured.empty()) printed = printed_board(board, a.measured);
   if (!a.out.empty()) {
     if (board.kind == BoardKind::apriltag) BoardFinder{board};  // enough tags in the family?
     write_board_pdf(a.out, board, parse_paper(a.paper));
     std::fprintf(stderr, "target: %s holds %s\n", a.out.c_str(), to_string(board).c_str());
-    if (measured.empty()) measured = ask();
+    if (!printed)
+      if (const std::string answer = ask(); !answer.empty()) printed = printed_board(board, answer);
   }
   nlohmann::ordered_json numbers{{"board", to_string(board)}};
-  if (measured.empty()) {
+  if (!printed) {
     std::fprintf(stderr,
                  "target: measure both rulers, then: foresight calibrate target --board %s --measured X_MM,Y_MM\n",
                  to_string(board).c_str());
   } else {
-    const auto [x, y] = parse_measured(measured);
-    const Board printed = measured_board(board, x, y);
-    std::fprintf(stderr, "target: printed at %.2f %% (x) and %.2f %% (y); use from now on:\n", x, y);
-    std::printf("--board %s\n", to_string(printed).c_str());
-    numbers["measured_board"] = to_string(printed);
-    numbers["scale_x"] = x / kRulerMm;
-    numbers["scale_y"] = y / kRulerMm;
+    std::fprintf(stderr, "target: printed at %.2f %% (x) and %.2f %% (y); use from now on:\n", printed->x_mm,
+                 printed->y_mm);
+    std::printf("--board %s\n", to_string(printed->board).c_str());
+    numbers["measured_board"] = to_string(printed->board);
+    numbers["scale_x"] = printed->x_mm / kRulerMm;
+    numbers["scale_y"] = printed->y_mm / kRulerMm;
   }
   write_json(a.json, numbers);
   return 0;

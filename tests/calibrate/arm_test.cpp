@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "calibration/formats/camera_formats.hpp"
 #include "calibration/robot/joint_chain.hpp"
 #include "calibration/robot/robot_results.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
@@ -152,6 +153,40 @@ TEST(TimeCommand, FromJointsOfAUrdf) {
   EXPECT_THAT(run_calibrate({"time", "--camera-poses", camera_file}), HasSubstr("--joints"));
   EXPECT_THAT(run_calibrate({"time", "--poses", camera_file, "--camera-poses", camera_file, "--time-unit", "week"}),
               HasSubstr("week"));
+}
+
+TEST_F(Arm, FindsJointOffsets) {
+  const std::string urdf = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/arm.urdf";
+  JointChain chain = read_joint_chain(urdf, "", "");
+  const std::vector<double> offsets{0, -0.008, 0.012, 0.006, -0.01, 0.009, 0};
+  JointRig made = make_joint_rig(chain, offsets, random_);
+  const std::size_t views = long_run() ? 25 : 16;
+  made.rows.resize(views), made.rig.data.corners.views.resize(views);
+  write_cameras(CameraFormat::camera_info, {made.rig.camera, {}, Pose::Identity()}, folder_ / "camera.yaml", true);
+  corners_ = folder_.write("corners.vnl", vnl(made.rig.data.corners));
+  std::string joints;  // named rows may come in any order
+  for (std::size_t i = made.rows.size(); i-- > 0;) {
+    joints += made.rig.data.corners.views[i].name + ".png";
+    for (const double q : made.rows[i]) joints += " " + std::to_string(q);
+    joints += "\n";
+  }
+  const auto rows = folder_.write("joints.txt", joints);
+  ASSERT_EQ(error_of(arm({"--urdf", urdf, "--joints", rows, "--camera-mount", "fixed", "--board-sigma", "0", "--camera",
+                          folder_ / "camera.yaml"})),
+            "no error");
+  const auto numbers = json_of(folder_, "a.json");
+  ASSERT_EQ(numbers["joint_offsets"].size(), offsets.size());
+  double squares = 0;
+  for (std::size_t i = 1; i + 1 < offsets.size(); ++i) {
+    const std::string name = chain.robot.joints[static_cast<std::size_t>(chain.joints[i])].name;
+    const double sigma = numbers["sigmas"][name + "_offset"];
+    const double off = (numbers["joint_offsets"][name].get<double>() - offsets[i]) / sigma;
+    EXPECT_LT(std::abs(off), 3) << name;
+    EXPECT_LT(std::abs(off * sigma), 4e-3) << name;
+    EXPECT_LT(sigma, views == 25 ? 3e-3 : 8e-3) << name;
+    squares += off * off;
+  }
+  RecordProperty("sum_of_squares_in_sigmas", std::to_string(squares));
 }
 
 TEST_F(Arm, WrongJointsAreNamed) {

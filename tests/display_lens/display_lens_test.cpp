@@ -18,33 +18,6 @@ DisplayLensOptions options_for(const SimulatedDisplay& display) {
   return options;
 }
 
-bool seen(const SimulatedDisplay& display, const Eigen::Vector3d& direction) {
-  const Lens eye = to_lens(display.eye);
-  for (const Pose& T : display.T_display_camera) {
-    const auto pixel = eye.project(T.linear().transpose() * direction);
-    if (pixel && pixel->x() > 20 && pixel->y() > 20 && pixel->x() < 1260 && pixel->y() < 1004) return true;
-  }
-  return false;
-}
-
-// Largest distance between the true and the found panel pixel over directions of which the solver has seen none,
-// within the field that the pictures cover.
-double worst_unseen(const SimulatedDisplay& display, const CameraModel& found, const Eigen::Matrix3d& R_found_true) {
-  const Lens truth = to_lens(display.panel);
-  double worst = 0;
-  int count = 0;
-  for (double u = 100; u < 1340; u += 37)
-    for (double v = 100; v < 1500; v += 41) {
-      const auto direction = truth.unproject({u, v});
-      if (!direction || !seen(display, *direction)) continue;
-      Eigen::Vector2d pixel;
-      if (!project<double>(found.distortion, found.lens.data(), R_found_true * *direction, pixel)) return INFINITY;
-      worst = std::max(worst, (pixel - Eigen::Vector2d(u, v)).norm());
-      ++count;
-    }
-  return count > 500 ? worst : INFINITY;
-}
-
 TEST(DisplayLens, UnseenPointsLieWithinAPixel) {
   const SimulatedDisplay display;
   const DisplayLensSummary summary = solve_display_lens(display.points(0.15, 1), display.eye, options_for(display));

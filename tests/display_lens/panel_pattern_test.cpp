@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <opencv2/imgproc.hpp>
-
 #include "common/error.hpp"
 #include "tests/display_lens/simulated_display.hpp"
 #include "tests/scene/test_run.hpp"
@@ -13,24 +11,6 @@ namespace foresight {
 namespace {
 
 using testing::HasSubstr;
-
-// What the eye camera takes of the panel: every camera pixel is traced to the panel.
-cv::Mat picture_of(const SimulatedDisplay& display, const cv::Mat& panel, std::size_t picture) {
-  const Lens lens = to_lens(display.panel), eye = to_lens(display.eye);
-  cv::Mat soft;
-  cv::GaussianBlur(panel, soft, {7, 7}, 1.2);  // a camera pixel covers more than one of the panel's
-  cv::Mat map(display.eye.height, display.eye.width, CV_32FC2), out;
-  for (int v = 0; v < map.rows; ++v)
-    for (int u = 0; u < map.cols; ++u) {
-      const auto ray = eye.unproject({u, v});
-      const auto pixel = ray ? lens.project(display.T_display_camera[picture].linear() * *ray) : std::nullopt;
-      map.at<cv::Vec2f>(v, u) =
-          pixel ? cv::Vec2f(static_cast<float>(pixel->x()), static_cast<float>(pixel->y())) : cv::Vec2f(-100, -100);
-    }
-  cv::remap(soft, out, map, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(30));
-  cv::GaussianBlur(out, out, {5, 5}, 0.8);
-  return out;
-}
 
 TEST(PanelPattern, CornersAreWhereTheSquaresMeet) {
   const PanelPattern pattern = parse_pattern("640x480:9x6:40");

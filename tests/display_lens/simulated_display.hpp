@@ -49,4 +49,16 @@ struct SimulatedDisplay {
   }
 };
 
+/// What the eye camera takes of the panel that shows `panel`: every camera pixel is traced to the panel.
+cv::Mat picture_of(const SimulatedDisplay& display, const cv::Mat& panel, std::size_t picture);
+
+struct PanelArea {
+  double left = 100, top = 100, right = 1340, bottom = 1500;  ///< panel px
+};
+
+/// Largest distance in px between the true and the found panel pixel over directions in `area` of which the solver has
+/// seen none, where the pictures show it; infinite where there are hardly any.
+double worst_unseen(const SimulatedDisplay& display, const CameraModel& found, const Eigen::Matrix3d& R_found_true,
+                    const PanelArea& area = {});
+
 }  // namespace foresight

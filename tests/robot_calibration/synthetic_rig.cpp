@@ -92,6 +92,39 @@ HandEyeRig make_rig(Random& random, const HandEyeRigOptions& options) {
   return rig;
 }
 
+JointRig make_joint_rig(JointChain& chain, const std::vector<double>& offsets, Random& random) {
+  JointRig out{make_rig(random, {.views = 1}), {}};
+  HandEyeRig& rig = out.rig;
+  rig.data.corners.views.clear(), rig.data.poses.clear();
+  const std::size_t n = chain.joints.size();
+  const auto true_pose = [&](std::vector<double> q) {
+    for (std::size_t i = 0; i < n; ++i) q[i] += offsets[i];
+    return flange_pose(chain, q, "test");
+  };
+  const std::vector<double> home(n, 0.4);
+  Pose T_camera_board = Pose::Identity();
+  T_camera_board.translation() = Eigen::Vector3d(-0.07, -0.05, 0.8);
+  rig.X = true_pose(home) * rig.Y * T_camera_board.inverse();
+  std::uniform_real_distribution<double> step(-0.5, 0.5);
+  for (int tries = 0; tries < 20000 && out.rows.size() < 25; ++tries) {
+    std::vector<double> q = home;
+    for (double& value : q) value += step(random);
+    const Pose T = rig.X.inverse() * true_pose(q) * rig.Y;
+    BoardView view{"view" + std::to_string(out.rows.size()), {}};
+    for (std::size_t i = 0; i < rig.data.corners.p_board.size(); ++i) {
+      Eigen::Vector2d pixel(-1, -1);
+      project<double>(rig.camera.distortion, rig.camera.lens.data(), T * rig.data.corners.p_board[i], pixel);
+      if (pixel.minCoeff() < 0 || pixel.x() > 1280 || pixel.y() > 960) break;
+      const double x = normal(random, 0.1), y = normal(random, 0.1);
+      view.corners.push_back({static_cast<int>(i), pixel + Eigen::Vector2d(x, y), 1});
+    }
+    if (view.corners.size() < rig.data.corners.p_board.size() || T.linear()(2, 2) < 0.6) continue;
+    rig.data.corners.views.push_back(view);
+    out.rows.push_back(q);
+  }
+  return out;
+}
+
 Vector6 in_sigmas(const Pose& found, const Pose& truth, const Vector6& sigma) {
   Vector6 off;
   off << rotation_vector(found.linear() * truth.linear().transpose()), found.translation() - truth.translation();

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "calibration/robot/hand_eye.hpp"
+#include "calibration/robot/joint_chain.hpp"
 #include "calibration/robot/pan_tilt.hpp"
 #include "calibration/robot/pose_stream.hpp"
 
@@ -35,6 +36,15 @@ struct HandEyeRigOptions {
 
 /// A camera of 1280x960 px, 0.5 to 0.9 m before the board, that is turned by up to 35 degrees.
 HandEyeRig make_rig(Random& random, const HandEyeRigOptions& options);
+
+struct JointRig {
+  HandEyeRig rig;
+  std::vector<std::vector<double>> rows;  ///< what the joints report, rad, one row a view
+};
+
+/// A fixed camera before an arm whose joints stand `offsets` away from what they report: up to 25 views, corners with
+/// a noise of 0.1 px.
+JointRig make_joint_rig(JointChain& chain, const std::vector<double>& offsets, Random& random);
 
 /// Differences of a result to the truth over their standard deviations: turn about and shift along
 /// the parent's axes, six numbers.

@@ -69,22 +69,13 @@ Print print(const Board& board, TagRows rows) {
   return print;
 }
 
-}  // namespace
-
-DrawnView draw_board(const Board& board, int width, int height, double roll_deg, double tilt_deg, TagRows rows) {
-  const Print paper = print(board, rows);
-  const double w = paper.texture.cols / paper.px_per_metre, h = paper.texture.rows / paper.px_per_metre;
-  const double f = width, distance = std::max(w * f / (0.8 * width), h * f / (0.8 * height));
-  const Eigen::Vector3d middle(paper.origin.x() + w / 2, paper.origin.y() + h / 2, 0);
-  const Eigen::Matrix3d R = (Eigen::AngleAxisd(-tilt_deg * CV_PI / 180, Eigen::Vector3d::UnitY()) *
-                             Eigen::AngleAxisd(roll_deg * CV_PI / 180, Eigen::Vector3d::UnitZ()))
-                                .toRotationMatrix();
+DrawnView draw(const Board& board, const Print& paper, int width, int height, const Pose& T_camera_board) {
+  const double f = width;
   const auto pixel = [&](const Eigen::Vector3d& p) -> Eigen::Vector2d {
-    const Eigen::Vector3d at = R * (p - middle) + Eigen::Vector3d(0, 0, distance);
-    return f * at.hnormalized() + Eigen::Vector2d((width - 1) / 2.0, (height - 1) / 2.0);
+    return f * (T_camera_board * p).hnormalized() + Eigen::Vector2d((width - 1) / 2.0, (height - 1) / 2.0);
   };
   Eigen::Matrix3d plane;  // plane coordinates to the ray's direction
-  plane << R.col(0), R.col(1), R * -middle + Eigen::Vector3d(0, 0, distance);
+  plane << T_camera_board.linear().leftCols<2>(), T_camera_board.translation();
   const Eigen::Matrix3d inverse = plane.inverse();
   constexpr int kSamples = 4;
   cv::Mat x(height * kSamples, width * kSamples, CV_32F), y(x.size(), CV_32F), fine;
@@ -114,6 +105,25 @@ DrawnView draw_board(const Board& board, int width, int height, double roll_deg,
   cv::convexHull(points, hull);
   view.coverage = cv::contourArea(hull) / (width * height);
   return view;
+}
+
+}  // namespace
+
+DrawnView draw_board(const Board& board, int width, int height, double roll_deg, double tilt_deg, TagRows rows) {
+  const Print paper = print(board, rows);
+  const double w = paper.texture.cols / paper.px_per_metre, h = paper.texture.rows / paper.px_per_metre;
+  const double distance = std::max(w / 0.8, h * width / (0.8 * height));
+  Pose T = Pose::Identity();
+  T.linear() = (Eigen::AngleAxisd(-tilt_deg * CV_PI / 180, Eigen::Vector3d::UnitY()) *
+                Eigen::AngleAxisd(roll_deg * CV_PI / 180, Eigen::Vector3d::UnitZ()))
+                   .toRotationMatrix();
+  T.translation() = Eigen::Vector3d(0, 0, distance) -
+                    T.linear() * Eigen::Vector3d(paper.origin.x() + w / 2, paper.origin.y() + h / 2, 0);
+  return draw(board, paper, width, height, T);
+}
+
+DrawnView draw_board_at(const Board& board, int width, int height, const Pose& T_camera_board) {
+  return draw(board, print(board, TagRows::from_above), width, height, T_camera_board);
 }
 
 }  // namespace foresight
