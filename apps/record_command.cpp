@@ -62,13 +62,20 @@ void check(const Arguments& a) {
     throw InputError("--camera-right", "is missing", "give the right camera's calibration, with T_left_right in it");
 }
 
-StereoConfig described(const Arguments& a) {
+struct Described {
+  StereoConfig cameras;
+  std::optional<fs::path> tags;  // of the rig
+};
+
+Described described(const Arguments& a) {
   StereoConfig out;
+  std::optional<fs::path> tags;
   if (!a.rig.empty()) {
     const Rig rig = read_rig(a.rig);
+    if (rig.calibration) tags = rig.calibration->tags;
     if (!rig.cameras) throw InputError(a.rig, "the rig has no cameras", "add them (docs/rig-files.md)");
     out = *rig.cameras;
-    if (rig.calibration && !a.mock)
+    if (rig.calibration && rig.calibration->pan_tilt && !a.mock)
       std::fputs("record: nobody reads the rig's encoders here; `foresight robot RIG --record` writes poses\n", stderr);
   }
   for (const bool right : {false, true}) {
@@ -89,12 +96,12 @@ StereoConfig described(const Arguments& a) {
     camera.settings.rate = a.rate;
     camera.settings.format = parse_pixel_format(a.format, "--format");
   }
-  if (!a.mock) return out;
+  if (!a.mock) return {out, tags};
   if (!a.camera.empty()) {  // both cameras alike
     out.cameras[1].calibration = CameraInfo{out.cameras[0].calibration->lens, {}};
     out.cameras[1].settings = out.cameras[0].settings;
   }
-  return as_mock(out);
+  return {as_mock(out), tags};
 }
 
 void add_options(const Arguments& a, RecorderOptions& options) {
@@ -129,13 +136,16 @@ int record_and_report(const Arguments& a, StereoCamera& cameras, RecorderOptions
 int run(const Arguments& a) {
   MonotonicClock clock;
   check(a);
-  const StereoConfig config = described(a);
-  const sim::ShaftsAt shafts = moving_shafts(clock.now());
+  const auto [config, tags] = described(a);
+  const RobotTime start = clock.now();
+  const sim::ShaftsAt shafts = moving_shafts(start);
   if (config.mock()) std::fputs("record: lighting the lab\n", stderr);
-  const OpenStereo opened = open_stereo(config, shafts, clock);
+  const OpenStereo opened = open_stereo(config, shafts, clock, config.mock() ? mock_world(tags) : MockWorld{});
   RecorderOptions options = recorder_options(config, opened, shafts);
+  options.tags = tags;
   add_options(a, options);
   const int code = record_and_report(a, *opened.cameras, std::move(options), clock);
+  if (opened.mock) write_head_joints(beside_run(a.out, "-joints.csv"), shafts, start, clock.now());
   if (const std::uint64_t skipped = opened.mock ? opened.mock->skipped() : 0)
     std::fprintf(stderr, "record: %llu instants not rendered: this machine is too slow for %g Hz at that size\n",
                  static_cast<unsigned long long>(skipped), opened.mock->rate());

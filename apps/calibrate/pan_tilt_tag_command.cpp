@@ -123,6 +123,8 @@ void add_tag_options(CLI::App& command, PanTiltTagInput& input) {
       ->capture_default_str();
   command.add_option("--right", input.right, "Pictures of the right camera, as many as --images has");
   command.add_option("--camera-right", input.camera_right, "The right camera's lens (camera_info with T_left_right)");
+  command.add_option("--photometric", input.photometric,
+                     "Result of `calibrate photometric`: corners of tags are found in the light");
   command.add_option("--family", input.family, "Of the tags")->capture_default_str();
   command.add_option("--most-views", input.most_views, "Of a run, spread over its time")
       ->check(CLI::Range(8, 2000))

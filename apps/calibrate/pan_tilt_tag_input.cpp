@@ -6,6 +6,7 @@
 
 #include "apps/calibrate/pan_tilt_input.hpp"
 #include "apps/calibrate/robot_output.hpp"
+#include "apps/record/run_recorder.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/registration/calibrated_head.hpp"
 #include "calibration/result/result_file.hpp"
@@ -37,11 +38,6 @@ struct Shot {
   std::vector<Picture> pictures;
 };
 
-fs::path beside(fs::path run, const char* ending) {
-  if (!run.has_filename()) run = run.parent_path();
-  return run.concat(ending);
-}
-
 cv::Mat read_grey(const fs::path& file, const CameraModel& lens) {
   const cv::Mat grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   if (grey.empty()) throw InputError(file.string(), "is no picture that can be read", "remove it, or take it anew");
@@ -53,9 +49,10 @@ cv::Mat read_grey(const fs::path& file, const CameraModel& lens) {
   return grey;
 }
 
-TagDetector detector_of(const std::string& family) {
+TagDetector detector_of(const PanTiltTagInput& input, const std::string& family) {
   TagDetector::Options options;
   options.family = family;
+  if (input.photometric) options.inverse_response = read_inverse_response(*input.photometric);
   options.decimate = 1;  // there is time
   return TagDetector(options);
 }
@@ -72,7 +69,7 @@ std::string explain_no_tags(const std::vector<Shot>& shots, const PanTiltTagInpu
   std::size_t most = 1;
   for (const std::string family : {"tag36h11", "tag25h9", "tag16h5"}) {
     if (family == input.family) continue;
-    TagDetector detector = detector_of(family);
+    TagDetector detector = detector_of(input, family);
     std::size_t found = 0;
     for (std::size_t i = 0; i < shots.size(); i += std::max<std::size_t>(1, shots.size() / 3))
       for (const Picture& picture : shots[i].pictures)
@@ -85,7 +82,7 @@ std::string explain_no_tags(const std::vector<Shot>& shots, const PanTiltTagInpu
 }
 
 void find_tags(std::vector<Shot>& shots, const PanTiltTagInput& input, TagViews& out) {
-  TagDetector detector = detector_of(input.family);
+  TagDetector detector = detector_of(input, input.family);
   std::set<int> strangers;
   std::size_t known = 0;
   for (Shot& shot : shots)
@@ -160,7 +157,7 @@ std::vector<Shot> shots_of_run(const PanTiltTagInput& input, bool pair) {
 }
 
 std::vector<JointRow> read_joints(const PanTiltTagInput& input) {
-  const fs::path file = input.joints.value_or(beside(*input.run, "-joints.csv"));
+  const fs::path file = input.joints.value_or(beside_run(*input.run, "-joints.csv"));
   if (!fs::exists(file))
     throw InputError(file.string(), "is missing", "give the recorded joints with --joints: rows time pan tilt");
   const std::vector<FieldRow> rows = read_field_rows(file);

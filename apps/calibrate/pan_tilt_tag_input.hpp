@@ -15,6 +15,7 @@ struct PanTiltTagInput {
       angles;                                        ///< one folder of pictures a camera, a row of angles each
   std::optional<std::filesystem::path> run, joints;  ///< or a recording and its joints
   std::optional<std::filesystem::path> tags, camera, camera_right;
+  std::optional<std::filesystem::path> photometric;  ///< corners are found in the light that it tells of
   std::string family = "tag36h11";
   std::vector<std::string> joint_names{"pan", "tilt"};
   int most_views = 60;  ///< of a run, spread evenly over its time

@@ -132,6 +132,8 @@ void add_head_options(CLI::App& command, PanTiltVerify& head) {
   group->add_option("--angles", input.angles, "Of each image: rows [name] pan tilt [pan_way tilt_way]");
   group->add_option("--camera", input.camera, "Lens: result of stereo or intrinsics, or camera_info");
   group->add_option("--camera-right", input.camera_right, "The right camera's (camera_info with T_left_right)");
+  group->add_option("--photometric", input.photometric,
+                    "Result of `calibrate photometric`: corners of tags are found in the light");
   group->add_option("--family", input.family, "Of the tags")->capture_default_str();
   group->add_option("--encoders-px", head.encoders_px, "Limit by encoders alone, RMS")->capture_default_str();
   group->add_option("--tags-px", head.tags_px, "Limit of tags that others have corrected, RMS")->capture_default_str();

@@ -1,5 +1,8 @@
 #include "apps/cameras/open_stereo.hpp"
 
+#include <fstream>
+
+#include "calibration/registration/calibrated_head.hpp"
 #include "common/error.hpp"
 #include "sim/run_files.hpp"
 #include "sim/synth_run.hpp"
@@ -47,6 +50,12 @@ RecordedPoses poses_by_encoders(const sim::LiveLab& world, const sim::ShaftPosit
 }
 
 }  // namespace
+
+MockWorld mock_world(const std::optional<fs::path>& tags) {
+  MockWorld out;
+  if (tags) out.prints = sim::tag_prints(read_tag_map(*tags));
+  return out;
+}
 
 StereoConfig as_mock(StereoConfig config) {
   if (config.mock()) return config;
@@ -119,6 +128,16 @@ sim::ShaftsAt moving_shafts(RobotTime start) {
   return [start](std::string_view joint, RobotTime time) {
     return sim::shafts_in_motion(joint, to_seconds(time - start));
   };
+}
+
+void write_head_joints(const fs::path& file, const sim::ShaftsAt& shafts, RobotTime from, RobotTime to) {
+  std::ofstream out(file);
+  out << "time_s,pan,tilt\n";
+  for (RobotTime t = from; t <= to; t = t + std::chrono::milliseconds(10))
+    out << sim::format("%.9f,%.7f,%.7f\n", to_seconds(t - RobotTime{}),
+                       shafts("pan", t).value_or(sim::kHeadAtTable.pan),
+                       shafts("tilt", t).value_or(sim::kHeadAtTable.tilt));
+  if (!out.flush()) throw RuntimeFailure("cannot write " + file.string(), "choose a folder that can be written");
 }
 
 }  // namespace foresight

@@ -23,6 +23,10 @@ struct MockWorld {
   sim::HiddenDeviations hidden;
 };
 
+/// What a rig with this map of tags sees in the mock lab: the tags, of the family tag36h11; none without a map. Throws
+/// what read_tag_map() and sim::tag_prints() do.
+MockWorld mock_world(const std::optional<std::filesystem::path>& tags);
+
 /// The same description with the mock lab's cameras in place of its own: size, rate, exposure and lenses stay. Throws
 /// InputError where these cannot be mock ones (two sizes, an odd width).
 StereoConfig as_mock(StereoConfig config);
@@ -43,5 +47,9 @@ RecorderOptions recorder_options(const StereoConfig& config, const OpenStereo& o
 
 /// The motion that a mock lab without drives shows, from `start` on.
 sim::ShaftsAt moving_shafts(RobotTime start);
+
+/// What encoders of the mock head say from `from` to `to`, 100 times a second, as `calibrate pan-tilt --run` reads it.
+/// Throws RuntimeFailure where the file cannot be written.
+void write_head_joints(const std::filesystem::path& file, const sim::ShaftsAt& shafts, RobotTime from, RobotTime to);
 
 }  // namespace foresight

@@ -28,6 +28,11 @@ void open_list(std::ofstream& stream, const fs::path& file, const char* heading)
 
 }  // namespace
 
+fs::path beside_run(fs::path out, const char* ending) {
+  if (!out.has_filename()) out = out.parent_path();
+  return out.concat(ending);
+}
+
 RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options)
     : options_(std::move(options)), target_(out, kMarker, kMarkerLine) {
   target_.require_space(options_.spare_bytes);

@@ -55,6 +55,9 @@ struct RecorderOptions {
   Duration slowed_by{0};      ///< for tests: a disk that takes so much longer for a pair
 };
 
+/// What is recorded beside the folder `out`: "run/" and "-joints.csv" give "run-joints.csv".
+std::filesystem::path beside_run(std::filesystem::path out, const char* ending);
+
 struct RecorderCounts {
   std::uint64_t written = 0;  ///< pairs
   std::uint64_t dropped = 0;  ///< pairs that came while `waiting` others waited for the disk

@@ -10,9 +10,11 @@ namespace {
 constexpr std::size_t kMostRows = 6000;  // a minute; more are of a time when nothing was recorded
 
 Registration make_registration(const RigCalibration& calibration, const StereoLenses& lenses) {
-  const HeadModel head = read_head_model(calibration.pan_tilt, calibration.time);
+  const HeadModel head = read_head_model(calibration.pan_tilt.value(), calibration.time);
   const TagMap tags = calibration.tags ? read_tag_map(*calibration.tags) : TagMap{};
-  return {head, lenses, tags, options_for(head)};
+  RegistrationOptions options = options_for(head);
+  if (calibration.photometric) options.detector.inverse_response = read_inverse_response(*calibration.photometric);
+  return {head, lenses, tags, options};
 }
 
 cv::Mat grey(const ColourImage& image) {

@@ -16,7 +16,8 @@ namespace foresight {
 /// the control loop and the cameras.
 class HeadRegistration {
  public:
-  /// Reads the rig's calibration. Throws InputError naming the file that is of another kind or damaged.
+  /// Reads the rig's calibration, which has a pan_tilt. Throws InputError naming the file that is of another kind or
+  /// damaged.
   HeadRegistration(const Rig& rig, const StereoLenses& lenses);
 
   /// Of the head's joints, once all are homed; a state that was added already is left out.

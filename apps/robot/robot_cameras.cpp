@@ -5,14 +5,6 @@
 #include "sim/run_files.hpp"
 
 namespace foresight {
-namespace {
-
-std::filesystem::path beside(std::filesystem::path out, const char* ending) {
-  if (!out.has_filename()) out = out.parent_path();  // "run/"
-  return out.concat(ending);
-}
-
-}  // namespace
 
 JointLog::JointLog(const std::filesystem::path& file, const Rig& rig) : stream_(file), joints_(rig.joints.size()) {
   if (!stream_) throw RuntimeFailure("cannot write " + file.string(), "choose a folder that can be written");
@@ -30,10 +22,10 @@ void JointLog::add(const RobotStatus& status) {
 }
 
 std::filesystem::path can_log_beside(const std::filesystem::path& out) {
-  return beside(out, "-can.log");
+  return beside_run(out, "-can.log");
 }
 std::filesystem::path joint_log_beside(const std::filesystem::path& out) {
-  return beside(out, "-joints.csv");
+  return beside_run(out, "-joints.csv");
 }
 
 struct RobotCameras::Recording {
@@ -56,19 +48,9 @@ struct RobotCameras::Recording {
 RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, Clock& clock, const RobotCameraOptions& options)
     : devices_(devices), clock_(clock) {
   const StereoConfig config = options.mock ? as_mock(*rig.cameras) : *rig.cameras;
+  if (config.mock() && rig.calibration) world_ = mock_world(rig.calibration->tags);
   if (config.mock() || options.record) ready_ = open(config);
-  if (options.record) {
-    const sim::ShaftsAt shafts = [this](std::string_view joint, RobotTime t) { return devices_.shaft_at(joint, t); };
-    RecorderOptions recording = recorder_options(config, ready_, shafts);
-    recording.waits = dynamic_cast<SteppedClock*>(&clock) != nullptr;
-    if (rig.calibration) {
-      const StereoLenses lenses{recording.left, recording.right, recording.T_left_right};
-      head_ = std::make_unique<HeadRegistration>(rig, lenses);
-      recording.registration = [head = head_.get()] { return head->prepare(); };
-      recording.tags = rig.calibration->tags;
-    }
-    recording_ = std::make_unique<Recording>(std::move(recording), *options.record);
-  }
+  if (options.record) start_recording(rig, config, *options.record);
   watch_ = std::make_unique<CameraWatch>(
       [this, config] { return ready_.cameras ? std::move(ready_.cameras) : std::move(open(config).cameras); }, clock,
       [this](const StereoPair& pair) {
@@ -76,11 +58,24 @@ RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, Clock& c
       });
 }
 
+void RobotCameras::start_recording(const Rig& rig, const StereoConfig& config, const std::filesystem::path& out) {
+  const sim::ShaftsAt shafts = [this](std::string_view joint, RobotTime t) { return devices_.shaft_at(joint, t); };
+  RecorderOptions recording = recorder_options(config, ready_, shafts);
+  recording.waits = dynamic_cast<SteppedClock*>(&clock_) != nullptr;
+  if (rig.calibration) recording.tags = rig.calibration->tags;
+  if (rig.calibration && rig.calibration->pan_tilt) {
+    const StereoLenses lenses{recording.left, recording.right, recording.T_left_right};
+    head_ = std::make_unique<HeadRegistration>(rig, lenses);
+    recording.registration = [head = head_.get()] { return head->prepare(); };
+  }
+  recording_ = std::make_unique<Recording>(std::move(recording), out);
+}
+
 RobotCameras::~RobotCameras() = default;
 
 OpenStereo RobotCameras::open(const StereoConfig& config) const {
   const auto shafts = [this](std::string_view joint, RobotTime time) { return devices_.shaft_at(joint, time); };
-  return open_stereo(config, shafts, clock_);
+  return open_stereo(config, shafts, clock_, world_);
 }
 
 std::string RobotCameras::finish() {

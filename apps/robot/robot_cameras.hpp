@@ -41,7 +41,7 @@ struct RobotCameraOptions {
 /// emulated drives in motion could not spare. `rig` (which has cameras), `devices` and `clock` must outlive this.
 class RobotCameras {
  public:
-  /// Throws what as_mock() does, of mock cameras what open_stereo() does, and, where it records, what
+  /// Throws what as_mock() does, of mock cameras what open_stereo() and mock_world() do, and, where it records, what
   /// recorder_options(), RunRecorder and HeadRegistration do: known before anything moves.
   RobotCameras(const Rig& rig, const RobotDevices& devices, Clock& clock, const RobotCameraOptions& options);
   ~RobotCameras();
@@ -59,9 +59,11 @@ class RobotCameras {
  private:
   struct Recording;
   OpenStereo open(const StereoConfig& config) const;
+  void start_recording(const Rig& rig, const StereoConfig& config, const std::filesystem::path& out);
 
   const RobotDevices& devices_;
   Clock& clock_;
+  MockWorld world_;
   OpenStereo ready_;                        // until the watch takes the cameras
   std::unique_ptr<HeadRegistration> head_;  // outlives the recording, whose thread uses it
   std::unique_ptr<Recording> recording_;

@@ -67,6 +67,11 @@ RegistrationOptions options_for(const HeadModel& head) {
   return options;
 }
 
+std::vector<double> read_inverse_response(const std::filesystem::path& photometric) {
+  const YamlMap result = read_result(photometric, "photometric").result;
+  return result.map(result.has("camera") ? "camera" : "left").numbers("inverse_response", 256);
+}
+
 TagMap read_tag_map(const std::filesystem::path& file) {
   std::map<int, std::map<long long, Eigen::Vector3d>> tags;
   for (const auto& [key, corner] : read_tag_places(file)) {

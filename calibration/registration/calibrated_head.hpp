@@ -25,6 +25,10 @@ HeadModel read_head_model(const std::filesystem::path& pan_tilt, const std::opti
 /// would turn a good pose by more than it corrects.
 RegistrationOptions options_for(const HeadModel& head);
 
+/// TagDetector::Options::inverse_response from a result of `foresight calibrate photometric`: the left camera's, or the
+/// only one's; the right camera, of the same kind, is taken to answer alike. Throws InputError naming file and field.
+std::vector<double> read_inverse_response(const std::filesystem::path& photometric);
+
 /// Rows "id corner x y z" in the world. Throws InputError naming file and line, or the tag: a corner is missing, or
 /// they do not stand in their order around it.
 TagMap read_tag_map(const std::filesystem::path& file);

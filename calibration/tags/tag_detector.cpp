@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "calibration/tags/tag_family.hpp"
+#include "common/error.hpp"
 
 namespace foresight {
 namespace {
@@ -30,6 +31,18 @@ bool is_inside(const DetectedTag& tag, const cv::Size& size) {
   });
 }
 
+cv::Mat light_of_levels(const std::vector<double>& inverse_response) {
+  if (inverse_response.empty()) return {};
+  if (inverse_response.size() != 256 || !(inverse_response.back() > 0))
+    throw InputError("the response", "has " + std::to_string(inverse_response.size()) + " levels, or a dark last one",
+                     "give the 256 of `calibrate photometric`");
+  cv::Mat out(1, 256, CV_8UC1);
+  for (int v = 0; v < 256; ++v)
+    out.at<std::uint8_t>(v) =
+        cv::saturate_cast<std::uint8_t>(255 * inverse_response[static_cast<std::size_t>(v)] / inverse_response.back());
+  return out;
+}
+
 }  // namespace
 
 struct TagDetector::Library {
@@ -42,13 +55,17 @@ struct TagDetector::Library {
                                                                                 apriltag_detector_destroy};
 };
 
-TagDetector::TagDetector(const Options& options) : options_(options), library_(std::make_unique<Library>(options)) {}
+TagDetector::TagDetector(const Options& options)
+    : options_(options),
+      light_(light_of_levels(options.inverse_response)),
+      library_(std::make_unique<Library>(options)) {}
 TagDetector::~TagDetector() = default;
 
 std::vector<DetectedTag> TagDetector::detect(const cv::Mat& grey) {
   const double automatic = grey.total() > kLargeImage ? 2 : 1;
   library_->detector->quad_decimate = static_cast<float>(options_.decimate > 0 ? options_.decimate : automatic);
-  const cv::Mat whole = grey.isContinuous() ? grey : grey.clone();
+  cv::Mat whole = grey.isContinuous() ? grey : grey.clone();
+  if (!light_.empty()) cv::LUT(grey, light_, whole = cv::Mat());
   image_u8_t image{whole.cols, whole.rows, static_cast<int32_t>(whole.step), whole.data};
   const std::unique_ptr<zarray_t, void (*)(zarray_t*)> found(apriltag_detector_detect(library_->detector.get(), &image),
                                                              apriltag_detections_destroy);

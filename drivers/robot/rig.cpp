@@ -178,16 +178,19 @@ void read_robot(const YamlMap& map, Rig& rig) {
 }
 
 RigCalibration read_calibration(const YamlMap& map) {
-  map.require_known({"pan_tilt", "time", "tags"});
+  map.require_known({"pan_tilt", "time", "tags", "photometric"});
   const auto file = [&](const std::string& key) {
     std::filesystem::path path = map.file().parent_path() / map.text(key);
     if (!std::filesystem::is_regular_file(path))
       throw InputError(map.where(key), "there is no file " + path.string(), "give its path, relative to the rig file");
     return path;
   };
-  RigCalibration out{file("pan_tilt"), {}, {}};
+  RigCalibration out;
+  if (map.has("time") || !map.has("tags")) out.pan_tilt = file("pan_tilt");
+  if (map.has("pan_tilt")) out.pan_tilt = file("pan_tilt");
   if (map.has("time")) out.time = file("time");
   if (map.has("tags")) out.tags = file("tags");
+  if (map.has("photometric")) out.photometric = file("photometric");
   return out;
 }
 
@@ -256,7 +259,7 @@ Rig read_rig(const std::filesystem::path& file) {
   if (map.has("cameras")) rig.cameras = read_stereo_config(map.map("cameras"));
   if (map.has("calibration")) {
     rig.calibration = read_calibration(map.map("calibration"));
-    require_head(map, rig);
+    if (rig.calibration->pan_tilt) require_head(map, rig);
   }
   rig.gate_options().validate(file.string());
   return rig;

@@ -39,9 +39,10 @@ struct RigJoint {
 
 /// Results of `foresight calibrate`; whoever uses them reads them.
 struct RigCalibration {
-  std::filesystem::path pan_tilt;             ///< kind "pan-tilt"
-  std::optional<std::filesystem::path> time;  ///< kind "time"
-  std::optional<std::filesystem::path> tags;  ///< map of tags that stand still: rows id corner x y z
+  std::optional<std::filesystem::path> pan_tilt;  ///< kind "pan-tilt"; without it, no image has a pose by the encoders
+  std::optional<std::filesystem::path> time;      ///< kind "time"; only beside pan_tilt
+  std::optional<std::filesystem::path> tags;      ///< map of tags that stand still: rows id corner x y z
+  std::optional<std::filesystem::path> photometric;  ///< kind "photometric": corners of tags are found in the light
 };
 
 struct Rig {

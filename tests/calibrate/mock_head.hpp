@@ -116,8 +116,7 @@ struct MockHead {
 };
 
 /// RMS over the image of how far points 1 m away are off.
-inline double error_px(const Pose& truth, const Pose& found) {
-  const Lens lens = MockHead::lens();
+inline double error_px(const Lens& lens, const Pose& truth, const Pose& found) {
   double square = 0;
   int count = 0;
   for (int v = 40; v < lens.height(); v += 80)
@@ -127,6 +126,9 @@ inline double error_px(const Pose& truth, const Pose& found) {
       ++count;
     }
   return std::sqrt(square / count);
+}
+inline double error_px(const Pose& truth, const Pose& found) {
+  return error_px(MockHead::lens(), truth, found);
 }
 
 }  // namespace foresight

@@ -111,11 +111,13 @@ TEST_F(BadRig, CalibrationNamesItsFiles) {
   using testing::HasSubstr;
   EXPECT_THAT(error_of("pan_tilt: head.yaml"), AllOf(HasSubstr("calibration.pan_tilt"), HasSubstr("there is no file")));
   folder_.write("head.yaml", "kind: pan-tilt\n");
-  EXPECT_THAT(error_of("tags: tags.txt"), AllOf(HasSubstr("calibration.pan_tilt"), HasSubstr("missing")));
+  EXPECT_THAT(error_of("time: time.yaml"), AllOf(HasSubstr("calibration.pan_tilt"), HasSubstr("missing")));
   EXPECT_THAT(error_of("pan_tilt: head.yaml, tags: tags.txt"),
               AllOf(HasSubstr("calibration.tags"), HasSubstr("there is no file")));
   EXPECT_THAT(error_of("pan_tilt: head.yaml, tag: t"), HasSubstr("did you mean 'tags'"));
   EXPECT_THAT(error_of("pan_tilt: head.yaml"), HasSubstr("0 joints have the group pan_tilt"));
+  folder_.write("tags.txt", "");
+  EXPECT_EQ(error_of("tags: tags.txt"), "no error") << "tags alone: what the head is to be calibrated with";
 }
 
 TEST_F(BadRig, JointsMustBeThoseOfTheUrdf) {

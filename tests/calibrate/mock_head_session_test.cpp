@@ -1,0 +1,158 @@
+// A head whose joints are off: calibrated from the mock lab's own pictures, then registered where nobody has looked.
+#include <gmock/gmock.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "apps/cameras/open_stereo.hpp"
+#include "calibration/result/result_file.hpp"
+#include "tests/calibrate/mock_head.hpp"
+#include "tests/support/headless_test.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr double kEvery = 0.9;  // s; beyond the window of the tags' correction: each pose stands on its own tags
+
+const std::string kMap = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/lab_tags.txt";
+
+/// What the mock lab's cameras took, and how it was.
+struct Session {
+  std::vector<StereoPair> pairs;
+  std::vector<Pose> true_left;
+  std::vector<std::pair<RobotTime, HeadAngles>> encoders;
+};
+
+class MockLabHead : public HeadlessTest {
+ protected:
+  void SetUp() override {
+    HeadlessTest::SetUp();
+    if (IsSkipped()) return;
+    context_.reset();
+    MockWorld world = mock_world(kMap);
+    world.hidden.joint_rad = 0.005;
+    StereoConfig config = as_mock({});
+    for (CameraConfig& camera : config.cameras) camera.settings.rate = 1 / kEvery;
+    opened_ = open_stereo(
+        config, [this](auto joint, RobotTime t) { return shaft(joint, t); }, clock_, world);
+  }
+
+  std::optional<double> shaft(std::string_view joint, RobotTime t) const {
+    const HeadAngles q = MockHead::motors(session_, to_seconds(t - started_));
+    if (joint == "pan") return q.pan;
+    if (joint == "tilt") return q.tilt;
+    return sim::shafts_at_rest(joint);
+  }
+
+  Session look(int session, int pairs) {
+    session_ = session;
+    started_ = clock_.now();
+    Session out;
+    opened_.cameras->start_polled();
+    while (static_cast<int>(out.pairs.size()) < pairs) {
+      clock_.sleep_until(clock_.now() + seconds(kEvery));
+      opened_.cameras->poll();
+      if (auto pair = opened_.cameras->take(Duration{0})) out.pairs.push_back(std::move(*pair));
+      if (clock_.now() - started_ > seconds(2 * pairs)) throw RuntimeFailure("the mock cameras gave no pairs", "");
+    }
+    opened_.cameras->stop();
+    for (const StereoPair& pair : out.pairs)
+      out.true_left.push_back(
+          opened_.mock->world()->T_world_left([&](std::string_view joint) { return shaft(joint, pair.left.time); }));
+    std::mt19937 random(static_cast<unsigned>(session));
+    std::normal_distribution<double> noise(0, MockHead::kEncoderNoise);
+    for (RobotTime t = started_ - seconds(1); t < clock_.now() + seconds(1); t = t + seconds(0.01))
+      out.encoders.emplace_back(t + seconds(MockHead::kClockOffset),
+                                HeadAngles{*shaft("pan", t) + noise(random), *shaft("tilt", t) + noise(random)});
+    return out;
+  }
+
+  /// As `foresight robot --record` does.
+  void write(const std::string& name, const Session& session) {
+    RecorderOptions options = recorder_options(as_mock({}), opened_, {});
+    options.poses = {};
+    options.tags = kMap;
+    options.waits = true;
+    RunRecorder recorder(folder_ / name, options);
+    for (const StereoPair& pair : session.pairs) recorder.add(pair);
+    recorder.finish("");
+    std::ofstream joints(folder_ / (name + "-joints.csv"));
+    joints << "time_s,pan,tilt\n";
+    for (const auto& [time, q] : session.encoders)
+      joints << sim::format("%.9f,%.7f,%.7f\n", to_seconds(time - RobotTime{}), q.pan, q.tilt);
+  }
+
+  /// What `calibrate photometric` would find of the mock cameras: the inverse of sim/sensor.cpp's response.
+  std::string response() {
+    YAML::Node node;
+    for (int v = 0; v < 256; ++v) {
+      const double y = v / 255.0, light = y < 0.04045 ? y / 12.92 : std::pow((y + 0.055) / 1.055, 2.4);
+      const double exposure = light < 0.55 ? light : 0.55 - 0.45 * std::log(1 - std::min((light - 0.55) / 0.45, 0.98));
+      node["left"]["inverse_response"].push_back(exposure);
+    }
+    const std::string file = folder_ / "photometric.yaml";
+    write_result(file, {"photometric", "2020-01-01T00:00:00Z", {}, "rms_levels", 0, {}}, node, true);
+    return file;
+  }
+
+  const TempFolder folder_;
+  SteppedClock clock_;
+  int session_ = 0;
+  RobotTime started_;
+  OpenStereo opened_;
+};
+
+cv::Mat grey(const ColourImage& image) {
+  cv::Mat out;
+  cv::cvtColor(image.bgr, out, cv::COLOR_BGR2GRAY);
+  return out;
+}
+
+TEST_F(MockLabHead, IsCalibratedByTheLabsOwnPictures) {
+  const std::string head_file = folder_ / "head.yaml";
+  write("sweep", look(1, 32));
+  ASSERT_EQ(run_calibrate({"pan-tilt", "--run", folder_ / "sweep", "--photometric", response(), "--json",
+                           folder_ / "head.json", "--out", head_file}),
+            "0");
+  const auto numbers = json_of(folder_, "head.json");
+  const HeadModel head = read_head_model(head_file, {});
+  EXPECT_NEAR(head.offset_s, MockHead::kClockOffset, 0.001);
+
+  const Session unseen = look(7, 12);
+  const StereoLenses lenses{opened_.mock->lens(Side::left), opened_.mock->lens(Side::right),
+                            opened_.mock->T_left_right()};
+  Registration blind(head, lenses, {}, {});
+  RegistrationOptions options = options_for(head);
+  options.detector.inverse_response = read_inverse_response(response());
+  Registration seeing(head, lenses, read_tag_map(kMap), options);
+  std::size_t fed = 0;
+  double by_encoders = 0, with_tags = 0, drawn = 0;
+  for (std::size_t i = 0; i < unseen.pairs.size(); ++i) {
+    const RobotTime time = unseen.pairs[i].left.time;
+    for (; fed < unseen.encoders.size() && unseen.encoders[fed].first < time + seconds(0.05); ++fed) {
+      blind.add_encoders(unseen.encoders[fed].first, unseen.encoders[fed].second);
+      seeing.add_encoders(unseen.encoders[fed].first, unseen.encoders[fed].second);
+    }
+    const Pose& truth = unseen.true_left[i];
+    const auto without = blind.register_pair(time, {}, {});
+    const auto with = seeing.register_pair(time, grey(unseen.pairs[i].left), grey(unseen.pairs[i].right));
+    ASSERT_EQ(without.quality, RegistrationQuality::encoders);
+    EXPECT_EQ(with.quality, RegistrationQuality::tags);
+    const auto square = [&](const Pose& found) {
+      return std::pow(error_px(lenses.left, truth, found), 2) / static_cast<double>(unseen.pairs.size());
+    };
+    by_encoders += square(without.T_world_left);
+    with_tags += square(with.T_world_left);
+    drawn += square(sim::LiveLab::T_world_left_modelled([&](std::string_view joint) { return shaft(joint, time); }));
+  }
+  std::printf("unseen: drawing %.2f px, encoders %.3f px, with tags %.3f px; loo %.3f px\n", std::sqrt(drawn),
+              std::sqrt(by_encoders), std::sqrt(with_tags), numbers["loo_px"].get<double>());
+  EXPECT_LE(std::sqrt(by_encoders), 1.0);
+  EXPECT_LE(std::sqrt(with_tags), 0.3);
+  EXPECT_GT(std::sqrt(drawn), 2) << "or nothing was hidden";
+  write("second", unseen);
+  EXPECT_EQ(run_calibrate({"verify", "--result", head_file, "--run", folder_ / "second", "--photometric", response()}),
+            "0");
+}
+
+}  // namespace
+}  // namespace foresight
