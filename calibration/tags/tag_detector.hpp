@@ -32,7 +32,7 @@ class TagDetector {
     /// Relative exposure of the levels 0 to 255, ascending (the inverse response that `calibrate photometric` finds):
     /// corners are found in the picture's light. Empty: in its levels, where a camera's usual response puts corners of
     /// black on white 0.3 px too near to the tag's middle.
-    std::vector<double> inverse_response;
+    std::vector<double> inverse_response = {};
   };
 
   /// Throws InputError for a family that does not exist (tag_family.hpp), and a response that has not 256 levels.

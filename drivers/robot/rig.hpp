@@ -42,7 +42,8 @@ struct RigCalibration {
   std::optional<std::filesystem::path> pan_tilt;  ///< kind "pan-tilt"; without it, no image has a pose by the encoders
   std::optional<std::filesystem::path> time;      ///< kind "time"; only beside pan_tilt
   std::optional<std::filesystem::path> tags;      ///< map of tags that stand still: rows id corner x y z
-  std::optional<std::filesystem::path> photometric;  ///< kind "photometric": corners of tags are found in the light
+  std::optional<std::filesystem::path> photometric =
+      {};  ///< kind "photometric": corners of tags are found in the light
 };
 
 struct Rig {
