@@ -71,6 +71,7 @@ std::string counts_text(const RecordingResult& result) {
   const auto line = [&text](std::uint64_t n, const char* what) {
     if (n) text += sim::format("%llu %s\n", number(n), what);
   };
+  line(result.counts.without_pose, "pairs of these have no pose: they are in without_pose.txt, not in the run");
   line(result.counts.dropped, "pairs dropped: the disk was too slow");
   line(result.cameras.dropped, "pairs missed: this machine was too slow");
   const char* const sides[] = {"left", "right"};

@@ -139,24 +139,33 @@ void RunRecorder::write(const Job& job) {
     return;
   }
   if (options_.slowed_by.count() > 0) std::this_thread::sleep_for(options_.slowed_by);
-  write_image("rgb", job.pair.left, rgb_);
-  write_image("rgb_right", job.pair.right, rgb_right_);
-  if (job.registration) return write_registered(job);
+  const bool placed = job.registration ? write_registered(job) : write_given(job);
+  write_image("rgb", job.pair.left, placed ? rgb_ : unplaced_);
+  write_image("rgb_right", job.pair.right, placed ? rgb_right_ : unplaced_);
+  if (placed) return;
+  const std::lock_guard lock(mutex_);
+  ++counts_.without_pose;
+}
+
+bool RunRecorder::write_given(const Job& job) {
   const bool right_first = job.right && job.pair.right.time < job.pair.left.time;
   if (right_first) write_poses(job.pair.right.time, *job.right);
   if (job.left) write_poses(job.pair.left.time, *job.left);
   if (job.right && !right_first) write_poses(job.pair.right.time, *job.right);
+  return true;
 }
 
-/// The right image's pose follows from those of the left ones around it.
-void RunRecorder::write_registered(const Job& job) {
+/// The right image's pose follows from those of the left ones around it: the first pair's has none where it came first.
+bool RunRecorder::write_registered(const Job& job) {
   const RobotTime time = job.pair.left.time;
+  const bool first = last_pose_.ns == INT64_MIN;
   const RegisteredPose found = job.registration(job.pair);
   registration_ << time_text(time) << ' ' << found.quality << ' ' << sim::format("%.4f", found.predicted_px) << '\n';
-  if (found.quality == "lost") return;
+  if (found.quality == "lost") return false;
   RecordedPoses poses = job.left.value_or(RecordedPoses{});
   poses.T_world_left = found.T_world_left;
   write_poses(time, poses);
+  return !first || job.pair.right.time >= time;
 }
 
 void RunRecorder::write_image(const std::string& folder, const ColourImage& image, std::ofstream& list) {
@@ -164,6 +173,8 @@ void RunRecorder::write_image(const std::string& folder, const ColourImage& imag
   std::vector<std::uint8_t> bytes;
   cv::imencode(".png", image.bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1});  // more takes longer than 33 ms
   sim::write_bytes(target_.path() / name, bytes.data(), bytes.size());
+  if (!list.is_open())
+    open_list(list, target_.path() / "without_pose.txt", "time[s] file: of pairs for which there is no pose");
   list << time_text(image.time) << ' ' << name << '\n';
 }
 
@@ -184,14 +195,15 @@ RecorderCounts RunRecorder::finish(const std::string& remarks) {
     throw RuntimeFailure(full_ ? "the disk of " + target_.target().string() + " is full: nothing was recorded"
                                : "no pair of images came: nothing was recorded",
                          full_ ? "free some disk space" : "see what `foresight doctor` says of the cameras");
-  for (std::ofstream* list : {&rgb_, &rgb_right_, &trajectory_, &nodes_, &registration_}) {
+  for (std::ofstream* list : {&rgb_, &rgb_right_, &unplaced_, &trajectory_, &nodes_, &registration_}) {
     if (!list->is_open()) continue;
     list->close();
     if (!*list) cannot_write(target_.target(), std::strerror(errno));
   }
-  sim::write_text(target_.path() / kMarker, sim::format("%s\npairs: %llu\ndropped_by_disk: %llu\n", kMarkerLine,
-                                                        static_cast<unsigned long long>(counts_.written),
-                                                        static_cast<unsigned long long>(counts_.dropped)) +
+  sim::write_text(target_.path() / kMarker, sim::format("%s\npairs: %llu\ndropped_by_disk: %llu\nwithout_pose: %llu\n",
+                                                        kMarkerLine, static_cast<unsigned long long>(counts_.written),
+                                                        static_cast<unsigned long long>(counts_.dropped),
+                                                        static_cast<unsigned long long>(counts_.without_pose)) +
                                                 remarks);
   try {
     target_.commit();

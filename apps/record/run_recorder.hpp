@@ -61,6 +61,9 @@ std::filesystem::path beside_run(std::filesystem::path out, const char* ending);
 struct RecorderCounts {
   std::uint64_t written = 0;  ///< pairs
   std::uint64_t dropped = 0;  ///< pairs that came while `waiting` others waited for the disk
+  /// Of the written ones, those for which the registration had no pose: they are in without_pose.txt, and no frames of
+  /// the run.
+  std::uint64_t without_pose = 0;
 };
 
 /// add() and finish() from one thread; a thread of its own encodes and writes. All goes into a neighbour folder that
@@ -95,14 +98,16 @@ class RunRecorder {
   void check(const ColourImage& image, const Lens& lens, const char* side, RobotTime last) const;
   void run() noexcept;
   void write(const Job& job);
-  void write_registered(const Job& job);
+  /// False: the pair has no pose.
+  bool write_registered(const Job& job);
+  bool write_given(const Job& job);
   void write_poses(RobotTime time, const RecordedPoses& poses);
   void write_image(const std::string& folder, const ColourImage& image, std::ofstream& list);
   void join();
 
   RecorderOptions options_;
   sim::TargetFolder target_;
-  std::ofstream rgb_, rgb_right_, trajectory_, nodes_, registration_;
+  std::ofstream rgb_, rgb_right_, unplaced_, trajectory_, nodes_, registration_;
   RobotTime last_left_{INT64_MIN}, last_right_{INT64_MIN}, last_pose_{INT64_MIN};
 
   mutable std::mutex mutex_;  // jobs_, counts_, closing_

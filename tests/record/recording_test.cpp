@@ -152,10 +152,12 @@ TEST_F(Recording, TakesThePosesOfARegistrationOnItsOwnThread) {
   for (int i = 1; i <= 5; ++i) recorder.add(pair_at(20 * i));
   recorder.finish("");
   const RunFolder run = RunFolder::open(folder_ / "run", {});
-  ASSERT_EQ(run.frames().size(), 5u);
+  ASSERT_EQ(run.frames().size(), 4u) << "what is lost has no pose, and is no frame";
   for (const RunFrame& frame : run.frames())
     EXPECT_NEAR(frame.left.T_world_camera.translation().x(), to_seconds(frame.left.time - RobotTime{}), 1e-6);
-  EXPECT_EQ(run.frames()[2].left.pose_status, StateStatus::interpolated) << "what is lost has no pose of its own";
+  EXPECT_THAT(folder_.read("run/without_pose.txt"),
+              testing::AllOf(HasSubstr("0.060000000 rgb/000002.png"), HasSubstr("0.060000000 rgb_right/000002.png")));
+  EXPECT_EQ(recorder.counts().without_pose, 1u);
   EXPECT_EQ(run.frames()[1].left.pose_status, StateStatus::exact);
   EXPECT_DOUBLE_EQ(run.frames()[1].left.predicted_px.value(), 0.5);
   EXPECT_THAT(folder_.read("run/registration.txt"), HasSubstr("lost 0.75"));
