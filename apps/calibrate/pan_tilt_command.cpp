@@ -59,13 +59,7 @@ HtmlReport report_of(const PanTiltSummary& s, const PanTiltSummary& plain, const
                 error_row("plain least squares, left out", plain.loo),
                 error_row("plain least squares, in sample", plain.in_sample)});
   report_notes(report, s.notes);
-  report.table({"", ""}, {{"T_world_pan", pose_text(s.model.T_world_pan)},
-                          {"distance of the axes, mm", readable(1e3 * s.model.length_m, 3)},
-                          {"angle of the axes, degrees", readable(s.model.twist_rad * 57.29577951, 4)},
-                          {"T_tilt_camera", pose_text(s.model.T_tilt_camera)},
-                          {"gain of pan and tilt", readable(s.model.gain[0], 5) + " " + readable(s.model.gain[1], 5)},
-                          {"backlash of pan and tilt, mrad", readable(1e3 * s.model.backlash_rad[0], 3) + " " +
-                                                                 readable(1e3 * s.model.backlash_rad[1], 3)}});
+  report_model(report, s.model);
   HtmlReport::Series pan{"mm", {}, false}, pan_turn{"mrad", {}, false}, tilt{"mm", {}, false},
       tilt_turn{"mrad", {}, false};
   for (std::size_t i = 0; i < s.loo_steps.size(); ++i) {

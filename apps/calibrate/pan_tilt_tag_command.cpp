@@ -77,13 +77,7 @@ HtmlReport report_of(const Solved& solved) {
                 {"corners left out", std::to_string(s.rejected_points)},
                 {"t_encoder - t_camera, ms", solved.offset_s ? readable(1e3 * *solved.offset_s, 2) : "-"}});
   report_notes(report, s.notes);
-  report.table({"", ""}, {{"T_world_pan", pose_text(s.model.T_world_pan)},
-                          {"distance of the axes, mm", readable(1e3 * s.model.length_m, 3)},
-                          {"angle of the axes, degrees", readable(s.model.twist_rad * 57.29577951, 4)},
-                          {"T_tilt_camera", pose_text(s.model.T_tilt_camera)},
-                          {"gain of pan and tilt", readable(s.model.gain[0], 5) + " " + readable(s.model.gain[1], 5)},
-                          {"backlash of pan and tilt, mrad", readable(1e3 * s.model.backlash_rad[0], 3) + " " +
-                                                                 readable(1e3 * s.model.backlash_rad[1], 3)}});
+  report_model(report, s.model);
   HtmlReport::Series pan{"left out", {}, false}, tilt{"left out", {}, false};
   for (std::size_t i = 0; i < s.loo_view_px.size(); ++i) {
     pan.points.emplace_back(s.angles[i].pan, s.loo_view_px[i]);

@@ -30,6 +30,16 @@ std::string pose_text(const Pose& pose) {
   return out;
 }
 
+void report_model(HtmlReport& report, const PanTiltModel& model) {
+  report.table({"", ""}, {{"T_world_pan", pose_text(model.T_world_pan)},
+                          {"distance of the axes, mm", readable(1e3 * model.length_m, 3)},
+                          {"angle of the axes, degrees", readable(model.twist_rad * 57.29577951, 4)},
+                          {"T_tilt_camera", pose_text(model.T_tilt_camera)},
+                          {"gain of pan and tilt", readable(model.gain[0], 5) + " " + readable(model.gain[1], 5)},
+                          {"backlash of pan and tilt, mrad",
+                           readable(1e3 * model.backlash_rad[0], 3) + " " + readable(1e3 * model.backlash_rad[1], 3)}});
+}
+
 void report_sigmas(HtmlReport& report, const std::map<std::string, double>& sigmas) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& [name, sigma] : sigmas) rows.push_back({name, readable(sigma, 6)});

@@ -193,14 +193,6 @@ class Scores {
   std::vector<PlacedView> placed_;
 };
 
-RigSolution without_views(const RigSolution& all, const std::vector<std::size_t>& kept) {
-  RigSolution some = all;
-  some.rejected.clear();
-  some.T_left_board.clear();
-  for (const std::size_t v : kept) some.T_left_board.push_back(all.T_left_board[v]);
-  return some;
-}
-
 }  // namespace
 
 HeldOutScore score_views(const CameraRig& rig, const RigViews& test, double reject_sigmas) {
@@ -221,7 +213,7 @@ LeaveOut leave_out(const RigViews& train, const RigViews& test, const RigSolutio
     for (std::size_t v = 0; v < n; ++v)
       if (v % folds != fold) kept.push_back(v);
     const RigViews some = subset(train, kept);
-    const CameraRig rig = solve_rig(some, without_views(solution, kept), options).rig;
+    const CameraRig rig = solve_rig(some, subset(solution, kept), options).rig;
     for (std::size_t v = fold; v < n; v += folds)
       if (const auto found = tests.find(train.views[v].name); found != tests.end()) scores.add(rig, *found->second);
   }

@@ -83,14 +83,6 @@ RigSolution with_model(const RigViews& views, const RigSolution& solution, Disto
   return solve_rig(views, start, options);
 }
 
-RigSolution part_of(const RigSolution& all, const std::vector<std::size_t>& indices) {
-  RigSolution part = all;
-  part.rejected.clear();
-  part.T_left_board.clear();
-  for (const std::size_t v : indices) part.T_left_board.push_back(all.T_left_board[v]);
-  return part;
-}
-
 struct Trial {
   RigSolution solution;
   HeldOutScore score;
@@ -104,7 +96,7 @@ class Trials {
     if (views.views.size() > kTrialViews) {
       const auto indices = spread_views(views, kTrialViews);
       views_ = subset(views, indices);
-      base_.solution = solve_rig(views_, part_of(solution, indices), options);
+      base_.solution = solve_rig(views_, subset(solution, indices), options);
     }
   }
 

@@ -253,6 +253,14 @@ RigSolution solve_rig(const RigViews& views, const RigSolution& start, const Rig
   return solution;
 }
 
+RigSolution subset(const RigSolution& all, const std::vector<std::size_t>& indices) {
+  RigSolution some = all;
+  some.rejected.clear();
+  some.T_left_board.clear();
+  for (const std::size_t v : indices) some.T_left_board.push_back(all.T_left_board[v]);
+  return some;
+}
+
 RigInformation rig_information(const RigViews& views, const RigSolution& solution, bool warp) {
   return Bundle(views, solution, accepted_corners(views, solution.rejected), warp, 0).information();
 }

@@ -39,6 +39,9 @@ struct RigSolution {
   bool converged = false;
 };
 
+/// The boards at `indices`, in their order, as a start: nothing is rejected yet.
+RigSolution subset(const RigSolution& all, const std::vector<std::size_t>& indices);
+
 /// Solves from `start`, whose rig names the lens models and sizes. Its `rejected` is where the
 /// first round begins. Throws InputError where the start puts a board behind a camera.
 RigSolution solve_rig(const RigViews& views, const RigSolution& start, const RigSolverOptions& options);

@@ -42,7 +42,7 @@ TEST_F(HeadSession, ARealResultReachesBothBarsAtUnseenPoses) {
   const HeadModel head = read_head_model(*folder_ / "head.yaml", {});
   EXPECT_NEAR(head.offset_s, MockHead::kClockOffset, 0.001);
 
-  const StereoLenses lenses{MockHead::lens(), MockHead::lens(), sim::T_head_left_right()};
+  const StereoLenses lenses = lab_lenses();
   const TagMap map = read_tag_map(*folder_ / "sweep/tags.txt");
   constexpr int kUnseen = 8;
   constexpr double kEvery = 0.9;  // beyond the window of the correction: each pose stands on its own tags
@@ -64,7 +64,7 @@ TEST_F(HeadSession, ARealResultReachesBothBarsAtUnseenPoses) {
     ASSERT_EQ(with.quality, RegistrationQuality::tags);
     by_encoders += std::pow(error_px(truth, without.T_world_left), 2) / kUnseen;
     with_tags += std::pow(error_px(truth, with.T_world_left), 2) / kUnseen;
-    drawn += std::pow(error_px(truth, T_world_camera(MockHead::drawn(), MockHead::motors(7, i * kEvery))), 2) / kUnseen;
+    drawn += std::pow(error_px(truth, T_world_camera(lab_head(), MockHead::motors(7, i * kEvery))), 2) / kUnseen;
     predicted += std::pow(without.predicted_px, 2) / kUnseen;
   }
   RecordProperty("encoders_px", std::to_string(std::sqrt(by_encoders)));

@@ -10,6 +10,7 @@
 #include "sim/run_files.hpp"
 #include "sim/tag_room.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
+#include "tests/registration/lab_head.hpp"
 
 namespace foresight {
 
@@ -25,23 +26,10 @@ struct MockHead {
     truth.T_world_pan = sim::T_world_head_foot() * small(0.006, -0.008, 0, 0.004, -0.003, 0.005);
     truth.T_pan_tilt.translate(Eigen::Vector3d(0.003, 0.001, 0.082));
     truth.T_pan_tilt.rotate(Eigen::AngleAxisd(-std::acos(-1.0) / 2 + 0.007, Eigen::Vector3d::UnitX()));
-    truth.T_tilt_camera = drawn().T_tilt_camera * small(0.005, -0.004, 0.009, 0.002, -0.004, 0.003);
+    truth.T_tilt_camera = lab_head().T_tilt_camera * small(0.005, -0.004, 0.009, 0.002, -0.004, 0.003);
     truth.pan = {1, 0.006, 0.0012};
     truth.tilt = {1, -0.004, 0.0008};
     truth.offset_s = kClockOffset;
-  }
-
-  static HeadModel drawn() {
-    HeadModel head;
-    head.T_world_pan = sim::T_world_head_foot();
-    head.T_pan_tilt.translate(Eigen::Vector3d(0, 0, 0.08));
-    head.T_pan_tilt.rotate(Eigen::AngleAxisd(-std::acos(-1.0) / 2, Eigen::Vector3d::UnitX()));
-    head.T_tilt_camera = T_world_camera(head, {}).inverse() * sim::T_world_head_left({});
-    return head;
-  }
-
-  static Lens lens() {
-    return Lens({LensModel::plumb_bob, 640, 480, 520, 521, 318, 243, {-0.12, 0.03, 0.0004, -0.0006, 0}});
   }
 
   static RobotTime at(double s) { return RobotTime{1'000'000'000} + seconds(s); }
@@ -80,8 +68,8 @@ struct MockHead {
   void record(const std::filesystem::path& run, int session, int pairs, double every_s) const {
     for (const char* folder : {"rgb", "rgb_right"}) std::filesystem::create_directories(run / folder);
     const Pose T_left_right = sim::T_head_left_right();
-    sim::write_text(run / "camera.yaml", sim::camera_yaml(lens(), "left", nullptr));
-    sim::write_text(run / "camera_right.yaml", sim::camera_yaml(lens(), "right", &T_left_right));
+    sim::write_text(run / "camera.yaml", sim::camera_yaml(lab_lens(), "left", nullptr));
+    sim::write_text(run / "camera_right.yaml", sim::camera_yaml(lab_lens(), "right", &T_left_right));
     Encoders encoders = move(session, pairs * every_s);
     std::ofstream joints(run.string() + "-joints.csv");
     joints << "time_s,shoulder,pan,tilt\n";
@@ -111,7 +99,7 @@ struct MockHead {
   }
 
   sim::TagRoom room{sim::TagRoom::lab_tags()};
-  cv::Mat rays = sim::TagRoom::corner_rays(lens());
+  cv::Mat rays = sim::TagRoom::corner_rays(lab_lens());
   HeadModel truth;
 };
 
@@ -128,7 +116,7 @@ inline double error_px(const Lens& lens, const Pose& truth, const Pose& found) {
   return std::sqrt(square / count);
 }
 inline double error_px(const Pose& truth, const Pose& found) {
-  return error_px(MockHead::lens(), truth, found);
+  return error_px(lab_lens(), truth, found);
 }
 
 }  // namespace foresight
