@@ -4,12 +4,13 @@
 #include <cstdio>
 #include <memory>
 
-#include "apps/cameras/open_stereo.hpp"
-#include "apps/record/recording.hpp"
 #include "apps/run_options.hpp"
 #include "common/error.hpp"
-#include "drivers/robot/rig.hpp"
+#include "rig/open_stereo.hpp"
+#include "rig/rig.hpp"
 #include "scene/scene_reader.hpp"
+#include "session/recorder_options.hpp"
+#include "session/recording.hpp"
 #include "sim/run_files.hpp"
 
 namespace foresight {

@@ -7,10 +7,10 @@
 
 #include "apps/robot/keyboard.hpp"
 #include "apps/robot/operators.hpp"
-#include "apps/robot/robot_cameras.hpp"
 #include "apps/robot/service_notify.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
+#include "session/robot_cameras.hpp"
 
 namespace foresight {
 namespace {

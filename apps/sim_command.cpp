@@ -10,11 +10,11 @@
 #include <sstream>
 #include <thread>
 
-#include "apps/robot/robot_devices.hpp"
 #include "apps/sim_rack.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "drivers/can/socket_can_bus.hpp"
+#include "rig/robot_devices.hpp"
 #include "sim/drives/drive_rack.hpp"
 #include "sim/drives/rack_presets.hpp"
 

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "apps/robot/robot_devices.hpp"
 #include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "common/real_time.hpp"
 #include "drivers/robot/robot.hpp"
+#include "rig/robot_devices.hpp"
 
 namespace foresight {
 namespace {

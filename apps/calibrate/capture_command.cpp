@@ -7,8 +7,8 @@
 #include "apps/calibrate/mock_board.hpp"
 #include "apps/calibrate/outputs.hpp"
 #include "common/error.hpp"
-#include "drivers/robot/rig.hpp"
 #include "gl/glfw_window.hpp"
+#include "rig/rig.hpp"
 
 namespace foresight {
 namespace {

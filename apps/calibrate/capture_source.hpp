@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/cameras/open_stereo.hpp"
+#include "rig/open_stereo.hpp"
 
 namespace foresight {
 

@@ -6,7 +6,6 @@
 
 #include "apps/calibrate/pan_tilt_input.hpp"
 #include "apps/calibrate/robot_output.hpp"
-#include "apps/record/run_recorder.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/registration/calibrated_head.hpp"
 #include "calibration/result/result_file.hpp"
@@ -16,6 +15,7 @@
 #include "common/text.hpp"
 #include "scene/camera_info.hpp"
 #include "scene/text_table.hpp"
+#include "session/run_recorder.hpp"
 
 namespace foresight {
 namespace {

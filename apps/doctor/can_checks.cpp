@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "apps/doctor/findings.hpp"
-#include "apps/robot/robot_devices.hpp"
 #include "common/error.hpp"
 #include "drivers/can/can_interfaces.hpp"
-#include "drivers/robot/bus_plan.hpp"
+#include "rig/bus_plan.hpp"
+#include "rig/robot_devices.hpp"
 
 namespace foresight::doctor {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/robot/rig.hpp"
+#include "rig/rig.hpp"
 
 namespace foresight::doctor {
 

@@ -1,9 +1,9 @@
 // The cameras of a rig: each alone, then both as a pair.
 #include <cmath>
 
-#include "apps/cameras/open_stereo.hpp"
 #include "apps/doctor/findings.hpp"
 #include "common/clock.hpp"
+#include "rig/open_stereo.hpp"
 #include "sim/run_files.hpp"
 
 namespace foresight::doctor {

@@ -4,18 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "drivers/robot/rig.hpp"
 #include "drivers/robot/robot.hpp"
+#include "rig/robot_devices.hpp"
 
 namespace foresight {
-
-/// A bus as the view shows it.
-struct BusLine {
-  std::string name;
-  CanBusState state = CanBusState::active;
-  CanCounters counters;
-  double load = 0;  ///< share of its bit rate in use, 0 .. 1
-};
 
 /// Several lines: phase and reason, a line per joint, a line per bus, punctuality of the loop. `selected`: the joint
 /// that the keys move, or -1.

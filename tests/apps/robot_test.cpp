@@ -8,6 +8,7 @@
 
 #include "tests/apps/program.hpp"
 #include "tests/scene/test_run.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
@@ -16,7 +17,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string config(const std::string& name) {
-  return std::string(FORESIGHT_SOURCE_DIR) + "/configs/" + name;
+  return (source_folder() / "configs" / name).string();
 }
 
 class Robot : public testing::TestWithParam<const char*> {

@@ -8,6 +8,7 @@
 #include "calibration/robot/robot_results.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/robot_calibration/synthetic_rig.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
@@ -111,7 +112,7 @@ TEST_F(Arm, GivesTheArmInTheHeadsFrame) {
 // Encoders in microseconds since power-on, the camera in unix seconds: a swept arm whose camera stamps are 35 ms old.
 TEST(TimeCommand, FromJointsOfAUrdf) {
   const TempFolder folder;
-  const std::string urdf = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/arm.urdf";
+  const std::string urdf = source_folder() / "configs/arm.urdf";
   JointChain chain = read_joint_chain(urdf, "", "");
   Random random(72);
   const Pose X = random_pose(random, 3, 0.1), Y = random_pose(random, 3, 0.3);
@@ -156,7 +157,7 @@ TEST(TimeCommand, FromJointsOfAUrdf) {
 }
 
 TEST_F(Arm, FindsJointOffsets) {
-  const std::string urdf = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/arm.urdf";
+  const std::string urdf = source_folder() / "configs/arm.urdf";
   JointChain chain = read_joint_chain(urdf, "", "");
   const std::vector<double> offsets{0, -0.008, 0.012, 0.006, -0.01, 0.009, 0};
   JointRig made = make_joint_rig(chain, offsets, random_);
@@ -191,7 +192,7 @@ TEST_F(Arm, FindsJointOffsets) {
 
 TEST_F(Arm, WrongJointsAreNamed) {
   const HandEyeRig rig = make(CameraMount::fixed);
-  const std::string urdf = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/arm.urdf";
+  const std::string urdf = source_folder() / "configs/arm.urdf";
   EXPECT_THAT(arm({"--urdf", urdf}), HasSubstr("--joints"));
   EXPECT_THAT(arm({"--urdf", urdf, "--joints", folder_.write("j.txt", "0 0 0 0 0 0 0\n")}),
               HasSubstr("1 rows for 9 images"));

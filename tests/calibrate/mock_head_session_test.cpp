@@ -3,9 +3,11 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "apps/cameras/open_stereo.hpp"
 #include "calibration/result/result_file.hpp"
+#include "rig/open_stereo.hpp"
+#include "session/recorder_options.hpp"
 #include "tests/calibrate/mock_head.hpp"
+#include "tests/support/folders.hpp"
 #include "tests/support/headless_test.hpp"
 
 namespace foresight {
@@ -13,7 +15,7 @@ namespace {
 
 constexpr double kEvery = 0.9;  // s; beyond the window of the tags' correction: each pose stands on its own tags
 
-const std::string kMap = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/lab_tags.txt";
+const std::string kMap = source_folder() / "configs/lab_tags.txt";
 
 /// What the mock lab's cameras took, and how it was.
 struct Session {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "apps/calibrate/mock_board.hpp"
-#include "apps/cameras/open_stereo.hpp"
 #include "calibration/camera/camera_result.hpp"
+#include "rig/open_stereo.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/support/headless_test.hpp"
 

@@ -6,15 +6,13 @@
 #include "calibration/camera/camera_calibration.hpp"
 #include "calibration/camera/input_checks.hpp"
 #include "calibration/target/corner_files.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
 
 std::filesystem::path corner_folder() {
-  const char* set = std::getenv("FORESIGHT_DATA");
-  const std::filesystem::path data =
-      set ? std::filesystem::path(set) : std::filesystem::path(FORESIGHT_SOURCE_DIR) / "../shared/data";
-  return data / "opencv_stereo_corners";
+  return data_folder() / "opencv_stereo_corners";
 }
 
 RigViews read(const std::string& name) {

@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "tests/can/frames.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
@@ -142,8 +143,7 @@ TEST(CandumpReader, NamesFileAndLine) {
 }
 
 TEST(CandumpReader, ReadsTracesOfRealDrives) {
-  const char* data = std::getenv("FORESIGHT_DATA");
-  const auto folder = std::filesystem::path(data ? data : FORESIGHT_SOURCE_DIR "/../shared/data") / "can/cia402_traces";
+  const auto folder = data_folder() / "can/cia402_traces";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here; set FORESIGHT_DATA";
   const std::pair<const char*, int> files[] = {
       {"abb_cm588_boot.log", 3}, {"maxon_epos_pdo_enable.log", 9}, {"epos_ros_canopen_259.log", 15}};

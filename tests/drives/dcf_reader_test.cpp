@@ -10,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "sim/drives/generic_402.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight::sim {
 namespace {
@@ -92,9 +93,7 @@ TEST(DcfReader, SurvivesAnything) {
 }
 
 TEST(DcfReader, ReadsTheMakersFiles) {
-  const char* const data = std::getenv("FORESIGHT_DATA");
-  const std::filesystem::path root =
-      std::filesystem::path(data != nullptr ? data : FORESIGHT_SOURCE_DIR "/../shared/data") / "can/schunk_canopen";
+  const std::filesystem::path root = data_folder() / "can/schunk_canopen";
   if (!std::filesystem::exists(root)) GTEST_SKIP() << "no recorded data at " << root << "; set FORESIGHT_DATA";
   for (const char* file :
        {"schunk_lwa4d/Schunk_0_63.dcf", "schunk_lwa4p/Schunk_0_63.dcf", "schunk_pg70/Schunk_0_63.dcf"}) {

@@ -7,13 +7,13 @@
 #include <sstream>
 
 #include "tests/drives/wire.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight::sim {
 namespace {
 
 std::filesystem::path traces() {
-  const char* const data = std::getenv("FORESIGHT_DATA");
-  return std::filesystem::path(data != nullptr ? data : FORESIGHT_SOURCE_DIR "/../shared/data") / "can/cia402_traces";
+  return data_folder() / "can/cia402_traces";
 }
 
 // The frames of a candump or of lines "dir id#data", in order.

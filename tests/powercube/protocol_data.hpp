@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/folders.hpp"
+
 namespace foresight::powercube {
 
 inline std::filesystem::path can_data(const std::string& file) {
-  const char* folder = std::getenv("FORESIGHT_DATA");
-  const std::filesystem::path root = folder != nullptr ? std::filesystem::path(folder)
-                                                       : std::filesystem::path(FORESIGHT_SOURCE_DIR) / "../shared/data";
-  return root / "can" / file;
+  return data_folder() / "can" / file;
 }
 
 /// Rows of a CSV file without comments and header; fields may be quoted.

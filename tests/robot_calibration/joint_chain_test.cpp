@@ -2,6 +2,7 @@
 
 #include "synthetic_rig.hpp"
 #include "tests/scene/test_run.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
@@ -10,7 +11,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 std::filesystem::path arm() {
-  return std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/arm.urdf";
+  return source_folder() / "configs/arm.urdf";
 }
 
 TEST(JointChain, RecoversJointOffsets) {

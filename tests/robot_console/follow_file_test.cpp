@@ -1,6 +1,7 @@
 #include "apps/robot/follow_file.hpp"
 
 #include "tests/scene/test_run.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
@@ -12,7 +13,7 @@ class FollowFileTest : public testing::Test {
     return input_error([&] { FollowFile(file, rig_); });
   }
   TempFolder folder_;
-  Rig rig_ = read_rig(std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/minerva.yaml");
+  Rig rig_ = read_rig(source_folder() / "configs/minerva.yaml");
 };
 
 TEST_F(FollowFileTest, GoesStraightBetweenItsRows) {

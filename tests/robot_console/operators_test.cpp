@@ -3,6 +3,7 @@
 #include "apps/robot/status_view.hpp"
 #include "tests/robot/prompt_drive.hpp"
 #include "tests/scene/test_run.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
@@ -28,7 +29,7 @@ class OperatorsTest : public testing::Test {
     }
     return !wish.quit;
   }
-  Rig rig_ = read_rig(std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs/minerva.yaml");
+  Rig rig_ = read_rig(source_folder() / "configs/minerva.yaml");
   std::vector<PromptDrive> drives_{std::vector<PromptDrive>(rig_.joints.size())};
   PromptNetwork network_{drives_};
   std::unique_ptr<Robot> robot_;

@@ -2,9 +2,9 @@
 // wrong. The cameras' own driver runs, above a kernel that is made up.
 #include <gmock/gmock.h>
 
-#include "apps/robot/camera_watch.hpp"
 #include "common/error.hpp"
 #include "drivers/camera/v4l2_camera.hpp"
+#include "session/camera_watch.hpp"
 #include "tests/camera/fake_v4l2.hpp"
 #include "tests/robot_devices/live_robot.hpp"
 

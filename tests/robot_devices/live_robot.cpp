@@ -1,4 +1,5 @@
 #include "tests/robot_devices/live_robot.hpp"
+#include "tests/support/folders.hpp"
 
 #include <cmath>
 
@@ -6,8 +7,7 @@ namespace foresight {
 
 using namespace std::chrono_literals;
 
-LiveRobot::LiveRobot(const std::string& rig_file)
-    : rig_(read_rig(std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs" / rig_file)) {
+LiveRobot::LiveRobot(const std::string& rig_file) : rig_(read_rig(source_folder() / "configs" / rig_file)) {
   RobotDeviceOptions options;
   options.mock = true;
   options.mock_without_limits = true;

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "apps/robot/robot_devices.hpp"
 #include "drivers/robot/robot.hpp"
+#include "rig/robot_devices.hpp"
 
 namespace foresight {
 

@@ -4,6 +4,7 @@
 #include "tests/robot_devices/live_robot.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/allocations.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
@@ -32,7 +33,7 @@ TEST_P(Loop, AllocatesNothingAfterItsStart) {
 
 TEST_P(Loop, ADriveThatIsAnotherThanTheRigSaysIsNeverEnabled) {
   SteppedClock clock;
-  Rig rig = read_rig(std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs" / GetParam());
+  Rig rig = read_rig(source_folder() / "configs" / GetParam());
   rig.joints[3].drive.serial = 4711;
   RobotDeviceOptions options;
   options.mock = true;
@@ -53,7 +54,7 @@ TEST_P(Loop, ADriveThatIsAnotherThanTheRigSaysIsNeverEnabled) {
 /// A session, its log of both buses as one text.
 std::string session(const char* rig_file, const std::filesystem::path& folder) {
   SteppedClock clock;
-  const Rig rig = read_rig(std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs" / rig_file);
+  const Rig rig = read_rig(source_folder() / "configs" / rig_file);
   RobotDeviceOptions options;
   options.mock = true;
   options.log = folder / "session.log";

@@ -1,8 +1,8 @@
 // What mock cameras see of a robot in motion, against where its emulated shafts truly were.
 #include <map>
 
-#include "apps/robot/robot_cameras.hpp"
 #include "scene/run_folder.hpp"
+#include "session/robot_cameras.hpp"
 #include "sim/picture.hpp"
 #include "tests/robot_devices/live_robot.hpp"
 #include "tests/scene/test_run.hpp"

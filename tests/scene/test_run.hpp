@@ -13,6 +13,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 
@@ -113,12 +114,6 @@ class TestRun : public TempFolder {
     write("rgb/c.jpg", encoded(".jpg", test_pixels()));
   }
 };
-
-/// The folder of recorded data: FORESIGHT_DATA, else ../shared/data beside the project.
-inline std::filesystem::path data_folder() {
-  const char* set = std::getenv("FORESIGHT_DATA");
-  return set ? std::filesystem::path(set) : std::filesystem::path(FORESIGHT_SOURCE_DIR) / "../shared/data";
-}
 
 /// Skips the test where `folder` is absent.
 #define FORESIGHT_NEED_DATA(folder)                     \

@@ -1,4 +1,5 @@
 #include "tests/support/golden.hpp"
+#include "tests/support/folders.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -8,7 +9,7 @@ namespace foresight {
 
 testing::AssertionResult matches_golden(const cv::Mat& made, const std::string& name,
                                         const GoldenTolerance& tolerance) {
-  const std::filesystem::path file = std::filesystem::path(FORESIGHT_SOURCE_DIR) / "tests/golden" / (name + ".png");
+  const std::filesystem::path file = source_folder() / "tests/golden" / (name + ".png");
   const char* update = std::getenv("FORESIGHT_UPDATE_GOLDEN");
   if (update && std::string(update) == "1") {
     cv::imwrite(file.string(), made, {cv::IMWRITE_PNG_COMPRESSION, 9});

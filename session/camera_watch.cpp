@@ -1,4 +1,4 @@
-#include "apps/robot/camera_watch.hpp"
+#include "session/camera_watch.hpp"
 
 #include <cstdio>
 

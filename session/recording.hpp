@@ -1,8 +1,8 @@
 // The loop of `foresight record`: from a stereo camera into a recorder, until enough came or none comes.
 #pragma once
 
-#include "apps/record/run_recorder.hpp"
 #include "drivers/camera/stereo_camera.hpp"
+#include "session/run_recorder.hpp"
 
 namespace foresight {
 

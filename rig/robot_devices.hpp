@@ -9,10 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/robot/status_view.hpp"
 #include "common/clock.hpp"
 #include "drivers/can/in_process_bus.hpp"
-#include "drivers/robot/rig.hpp"
+#include "rig/rig.hpp"
 #include "sim/drives/drive_rack.hpp"
 
 namespace foresight {
@@ -20,6 +19,14 @@ namespace foresight {
 /// The drives that a bus of a rig needs, emulated, as their own shafts see them. PowerCube modules start a little off
 /// home.
 std::vector<sim::NodeConfig> emulated_drives(const Rig& rig, std::size_t bus);
+
+/// A bus as a view shows it.
+struct BusLine {
+  std::string name;
+  CanBusState state = CanBusState::active;
+  CanCounters counters;
+  double load = 0;  ///< share of its bit rate in use, 0 .. 1
+};
 
 struct RobotDeviceOptions {
   bool mock = false;                         ///< every bus with emulated drives, whatever the rig says

@@ -1,4 +1,4 @@
-#include "drivers/robot/bus_plan.hpp"
+#include "rig/bus_plan.hpp"
 
 #include <algorithm>
 #include <cmath>

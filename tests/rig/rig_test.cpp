@@ -1,13 +1,14 @@
-#include "drivers/robot/rig.hpp"
+#include "rig/rig.hpp"
 
-#include "drivers/robot/bus_plan.hpp"
+#include "rig/bus_plan.hpp"
 #include "tests/scene/test_run.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
 
 std::filesystem::path config(const char* name) {
-  return std::filesystem::path(FORESIGHT_SOURCE_DIR) / "configs" / name;
+  return source_folder() / "configs" / name;
 }
 
 TEST(Rig, TheRigsThatComeWithTheProgramAreValid) {

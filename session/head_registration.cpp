@@ -1,4 +1,4 @@
-#include "apps/robot/head_registration.hpp"
+#include "session/head_registration.hpp"
 
 #include <opencv2/imgproc.hpp>
 

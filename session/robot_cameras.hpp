@@ -5,10 +5,10 @@
 #include <fstream>
 #include <memory>
 
-#include "apps/cameras/open_stereo.hpp"
-#include "apps/robot/camera_watch.hpp"
-#include "apps/robot/head_registration.hpp"
-#include "apps/robot/robot_devices.hpp"
+#include "rig/open_stereo.hpp"
+#include "rig/robot_devices.hpp"
+#include "session/camera_watch.hpp"
+#include "session/head_registration.hpp"
 
 namespace foresight {
 

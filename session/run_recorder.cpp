@@ -1,4 +1,4 @@
-#include "apps/record/run_recorder.hpp"
+#include "session/run_recorder.hpp"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,7 +1,7 @@
 // How busy a rig's buses will be.
 #pragma once
 
-#include "drivers/robot/rig.hpp"
+#include "rig/rig.hpp"
 
 namespace foresight {
 

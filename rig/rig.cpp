@@ -1,4 +1,4 @@
-#include "drivers/robot/rig.hpp"
+#include "rig/rig.hpp"
 
 #include <algorithm>
 #include <charconv>

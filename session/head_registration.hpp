@@ -5,10 +5,10 @@
 #include <memory>
 #include <mutex>
 
-#include "apps/record/run_recorder.hpp"
 #include "calibration/registration/registration.hpp"
-#include "drivers/robot/rig.hpp"
 #include "drivers/robot/robot.hpp"
+#include "rig/rig.hpp"
+#include "session/run_recorder.hpp"
 
 namespace foresight {
 

@@ -1,4 +1,4 @@
-#include "apps/robot/robot_devices.hpp"
+#include "rig/robot_devices.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "drivers/can/socket_can_bus.hpp"
 #include "drivers/canopen/canopen_network.hpp"
 #include "drivers/powercube/network.hpp"
-#include "drivers/robot/bus_plan.hpp"
+#include "rig/bus_plan.hpp"
 
 namespace foresight {
 namespace {

@@ -1,9 +1,10 @@
 // The one place that opens two cameras from a description, real ones or those of the mock lab.
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 
-#include "apps/record/run_recorder.hpp"
 #include "drivers/camera/camera_config.hpp"
 #include "drivers/camera/stereo_camera.hpp"
 #include "sim/live_view/mock_camera.hpp"
@@ -40,10 +41,6 @@ sim::MockCameraOptions mock_options(const StereoConfig& config);
 /// make_camera() throws, and InputError where a mock camera, or its world, cannot do what is asked.
 OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock,
                        const MockWorld& world = {});
-
-/// How a run of these cameras is recorded: lenses, and for mock ones the scene and the poses that encoders tell.
-/// Throws InputError where a real camera has no calibration, or the right one no place.
-RecorderOptions recorder_options(const StereoConfig& config, const OpenStereo& opened, const sim::ShaftsAt& shafts);
 
 /// The motion that a mock lab without drives shows, from `start` on.
 sim::ShaftsAt moving_shafts(RobotTime start);

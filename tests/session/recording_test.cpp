@@ -1,4 +1,4 @@
-#include "apps/record/recording.hpp"
+#include "session/recording.hpp"
 
 #include <thread>
 

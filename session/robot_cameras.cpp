@@ -1,7 +1,8 @@
-#include "apps/robot/robot_cameras.hpp"
+#include "session/robot_cameras.hpp"
 
-#include "apps/record/recording.hpp"
 #include "common/error.hpp"
+#include "session/recorder_options.hpp"
+#include "session/recording.hpp"
 #include "sim/run_files.hpp"
 
 namespace foresight {
