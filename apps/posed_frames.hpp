@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "scene/posed_frame.hpp"
 #include "scene/run_folder.hpp"
-#include "texture_gpu/posed_image.hpp"
 #include "texture_gpu/surface_patches.hpp"
 
 namespace foresight {

@@ -5,7 +5,7 @@
 
 #include "gl/camera_block.hpp"
 #include "gl/raster_pass.hpp"
-#include "texture_gpu/posed_image.hpp"
+#include "scene/posed_frame.hpp"
 
 namespace foresight {
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "scene/ground_truth.hpp"
-#include "texture_gpu/posed_image.hpp"
+#include "scene/posed_frame.hpp"
 #include "texture_gpu/texture_readback.hpp"
 #include "texture_gpu/thesis/polygon_textures.hpp"
 

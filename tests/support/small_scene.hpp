@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/lens.hpp"
+#include "scene/posed_frame.hpp"
 #include "scene/scene_model.hpp"
-#include "texture_gpu/posed_image.hpp"
 
 namespace foresight {
 
