@@ -8,13 +8,13 @@
 namespace foresight {
 namespace {
 
-void add_scan(CLI::App& can, std::function<int()>& action) {
+void add_scan(Command& can, std::function<int()>& action) {
   auto* command = can.add_subcommand("scan", "Lists the CAN interfaces with their bit rate and state");
   command->footer("Exit code: 0 where an interface can be used, 1 where none is there or all are down or bus-off.");
   command->callback([&action] { action = [] { return scan_can(); }; });
 }
 
-void add_dump(CLI::App& can, std::function<int()>& action) {
+void add_dump(Command& can, std::function<int()>& action) {
   auto* command = can.add_subcommand("dump", "Prints the frames on a bus, in can-utils' log form");
   auto options = std::make_shared<CanDumpOptions>();
   command->add_option("IF", options->interface, "Interface, such as can0")->required();
@@ -27,7 +27,7 @@ void add_dump(CLI::App& can, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return dump_can(*options); }; });
 }
 
-void add_send(CLI::App& can, std::function<int()>& action) {
+void add_send(Command& can, std::function<int()>& action) {
   auto* command = can.add_subcommand("send", "Sends one frame");
   auto options = std::make_shared<CanSendOptions>();
   command->add_option("IF", options->interface, "Interface, such as can0")->required();
@@ -35,7 +35,7 @@ void add_send(CLI::App& can, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return send_can(*options); }; });
 }
 
-void add_replay(CLI::App& can, std::function<int()>& action) {
+void add_replay(Command& can, std::function<int()>& action) {
   auto* command = can.add_subcommand("replay", "Sends what a log holds, at its pace");
   auto options = std::make_shared<CanReplayOptions>();
   command->add_option("FILE", options->file, "A log of `foresight can dump --log` or candump -l")->required();
@@ -47,23 +47,23 @@ void add_replay(CLI::App& can, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return replay_can(*options); }; });
 }
 
-void add_explain(CLI::App& can, std::function<int()>& action) {
+void add_explain(Command& can, std::function<int()>& action) {
   auto* command = can.add_subcommand("explain", "Prints a log's frames with what they say in words");
   auto options = std::make_shared<CanExplainOptions>();
   command->add_option("FILE", options->file, "A log of `foresight can dump --log`, `robot --log` or candump -l")
       ->required();
   command->add_option("--protocol", options->protocol, "What the bus speaks: cia402 or powercube")
       ->required()
-      ->check(CLI::IsMember({"cia402", "powercube"}));
+      ->check(one_of({"cia402", "powercube"}));
   command->footer("Exit code: 0 where all frames are known, 1 where some are not.");
   command->callback([options, &action] { action = [options] { return explain_can(*options); }; });
 }
 
 }  // namespace
 
-void add_can_command(CLI::App& app, std::function<int()>& action) {
+void add_can_command(Command& app, std::function<int()>& action) {
   auto* can = app.add_subcommand("can", "Looks at CAN buses, records them, and talks to them by hand");
-  can->require_subcommand(1);
+  can->require_subcommand();
   add_scan(*can, action);
   add_dump(*can, action);
   add_send(*can, action);

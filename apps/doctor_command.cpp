@@ -48,7 +48,7 @@ int run(const std::string& rig_file) {
 
 }  // namespace
 
-void add_doctor_command(CLI::App& app, std::function<int()>& action) {
+void add_doctor_command(Command& app, std::function<int()>& action) {
   auto* command =
       app.add_subcommand("doctor", "Checks devices and permissions, and says what to type where something is missing");
   auto rig = std::make_shared<std::string>();

@@ -6,7 +6,7 @@
 
 namespace foresight {
 
-void add_export_command(CLI::App& app, std::function<int()>& action) {
+void add_export_command(Command& app, std::function<int()>& action) {
   auto* command = app.add_subcommand("export", "Writes the model of a run with its textures as a glTF 2.0 file");
   auto options = std::make_shared<ExportOptions>();
   add_run_options(*command, *options);

@@ -1,12 +1,13 @@
 // The options of `foresight export`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
 /// Adds the subcommand; when it is given, `action` becomes what to do, returning the exit code.
-void add_export_command(CLI::App& app, std::function<int()>& action);
+void add_export_command(Command& app, std::function<int()>& action);
 
 }  // namespace foresight

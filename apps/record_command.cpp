@@ -155,7 +155,7 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-void add_record_command(CLI::App& app, std::function<int()>& action) {
+void add_record_command(Command& app, std::function<int()>& action) {
   auto* command = app.add_subcommand("record", "Write what two cameras see as a run");
   auto a = std::make_shared<Arguments>();
   command->add_option("OUT", a->out, "Folder to write; an earlier recording in it is replaced")->required();

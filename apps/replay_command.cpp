@@ -6,7 +6,7 @@
 #include "apps/replay.hpp"
 
 namespace foresight {
-void add_replay_command(CLI::App& app, std::function<int()>& action) {
+void add_replay_command(Command& app, std::function<int()>& action) {
   auto* command =
       app.add_subcommand("replay", "Plays a recorded run with a delay and shows what the operator would have seen");
   auto options = std::make_shared<ReplayOptions>();
@@ -17,8 +17,9 @@ void add_replay_command(CLI::App& app, std::function<int()>& action) {
       ->check(from_to(0.0, 1e7));
   const std::map<std::string, ReplayPipeline> pipelines{{"core", ReplayPipeline::core},
                                                         {"thesis", ReplayPipeline::thesis}};
-  command->add_option("--pipeline", options->pipeline, "Who extracts the textures: core, or thesis (the baseline)")
-      ->transform(CLI::CheckedTransformer(pipelines))
+  command
+      ->add_choice("--pipeline", options->pipeline, pipelines,
+                   "Who extracts the textures: core, or thesis (the baseline)")
       ->default_str("core");
   command->add_option("--out", options->out, "Folder for predicted/*.png and contact_sheet.png");
   command->add_option("--report", options->report, "JSON file with all measurements");

@@ -208,7 +208,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_robot_command(CLI::App& app, std::function<int()>& action) {
+void add_robot_command(Command& app, std::function<int()>& action) {
   auto* command = app.add_subcommand("robot", "Runs the robot side of a rig: drives behind a safety gate");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->required();

@@ -1,11 +1,12 @@
 // `foresight robot`: runs the robot side of a rig.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_robot_command(CLI::App& app, std::function<int()>& action);
+void add_robot_command(Command& app, std::function<int()>& action);
 
 }  // namespace foresight

@@ -10,22 +10,7 @@
 
 namespace foresight {
 
-CLI::Validator from_to(double low, double high) {
-  const auto text = [](double value) {
-    std::ostringstream stream;
-    stream << std::setprecision(8) << value;
-    return stream.str();
-  };
-  const std::string range = "from " + text(low) + " to " + text(high);
-  const auto check = [low, high, range](const std::string& given) {
-    const auto value = parse_number(given);
-    return value && *value >= low && *value <= high ? std::string()
-                                                    : in_quotes(given) + " is not a number " + range + "; give one";
-  };
-  return CLI::Validator(check, range, "range");
-}
-
-void add_run_options(CLI::App& command, RunOptions& options) {
+void add_run_options(Command& command, RunOptions& options) {
   command
       .add_option("RUN", options.run, "Folder with camera.yaml, rgb.txt, trajectory.txt and scene.ply or scene.yaml")
       ->required();
@@ -37,7 +22,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--max-texture", options.textures.max_texture, "Most texels along a side of a flat polygon")
       ->check(from_to(16, 4096));
   command
-      .add_option_function<std::uint64_t>(
+      .add_number(
           "--texture-memory-mb", [&options](std::uint64_t mb) { options.textures.memory_bytes = mb << 20; },
           "Memory for textures, both generations")
       ->check(from_to(1, 65536))

@@ -1,10 +1,10 @@
 // What every command that turns a run into textures asks for, and how it opens the run.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 
+#include "apps/command_line/command_line.hpp"
 #include "scene/run_folder.hpp"
 #include "texture_gpu/options.hpp"
 
@@ -18,10 +18,7 @@ struct RunOptions {
 };
 
 /// Adds RUN, --scene, and the options of the textures. `options` must live as long as `command`.
-void add_run_options(CLI::App& command, RunOptions& options);
-
-/// A number of the closed range; unlike CLI::Range it refuses "nan" too.
-CLI::Validator from_to(double low, double high);
+void add_run_options(Command& command, RunOptions& options);
 
 /// Reads and checks all of the run but its pixels, and sets options.textures.depth_tolerance by the
 /// model. Throws InputError.

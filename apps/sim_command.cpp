@@ -123,21 +123,21 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sim_command(CLI::App& app, std::function<int()>& action) {
-  CLI::App* const sim = app.add_subcommand("sim", "Emulated hardware");
-  sim->require_subcommand(1);
-  CLI::App* const command = sim->add_subcommand("drives", "Emulated drives on a CAN interface, for any master");
+void add_sim_command(Command& app, std::function<int()>& action) {
+  Command* const sim = app.add_subcommand("sim", "Emulated hardware");
+  sim->require_subcommand();
+  Command* const command = sim->add_subcommand("drives", "Emulated drives on a CAN interface, for any master");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("--can", arguments->can, "CAN interface, such as can0 or vcan0")->required();
   command->add_option("--rack", arguments->rack, "YAML file with a list of drives, instead of the built-in ones")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   command->add_option("--rig", arguments->rig, "Rig file: the drives that it has on this interface")
-      ->check(CLI::ExistingFile)
+      ->check(existing_file())
       ->excludes("--rack");
   command
       ->add_option("--profile", arguments->profile,
                    "Built-in drives: powercube (ids 1 to 9) or cia402 (nodes 3 to 11): an arm of seven and a pan-tilt")
-      ->check(CLI::IsMember({"powercube", "cia402"}))
+      ->check(one_of({"powercube", "cia402"}))
       ->capture_default_str();
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

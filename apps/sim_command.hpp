@@ -1,12 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
 /// `foresight sim drives --can IF`: emulated drives on a CAN interface, for any master. When it is chosen, `action`
 /// becomes what main() is to run.
-void add_sim_command(CLI::App& app, std::function<int()>& action);
+void add_sim_command(Command& app, std::function<int()>& action);
 
 }  // namespace foresight

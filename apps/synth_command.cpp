@@ -62,9 +62,8 @@ int run(Arguments arguments) {
 
 }  // namespace
 
-void add_synth_command(CLI::App& app, std::function<int()>& action) {
-  CLI::App* command =
-      app.add_subcommand("synth", "Write a synthetic run: a lab with a moving arm, and its exact truth");
+void add_synth_command(Command& app, std::function<int()>& action) {
+  Command* command = app.add_subcommand("synth", "Write a synthetic run: a lab with a moving arm, and its exact truth");
   const auto arguments = std::make_shared<Arguments>();
   sim::SynthOptions& options = arguments->options;
   command->add_option("OUT", arguments->out, "Folder to write; an earlier synthetic run in it is replaced")->required();

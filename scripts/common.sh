@@ -16,9 +16,10 @@ jobs() {
   echo "${FORESIGHT_JOBS:-$((cores < memory ? cores : memory))}"
 }
 
-# build_preset NAME: configures and builds the CMake preset NAME.
+# build_preset NAME [TARGET]: configures the CMake preset NAME and builds it, or one target of it.
 build_preset() {
-  say "building preset $1 with $(jobs) jobs"
-  (cd "$root" && cmake --preset "$1" >/dev/null && cmake --build --preset "$1" --parallel "$(jobs)") ||
+  say "building ${2:-all} of preset $1 with $(jobs) jobs"
+  (cd "$root" && cmake --preset "$1" >/dev/null &&
+    cmake --build --preset "$1" --parallel "$(jobs)" ${2:+--target "$2"}) ||
     fail "the build of preset $1 failed; the first error above says why"
 }

@@ -15,7 +15,7 @@
 namespace foresight {
 namespace {
 
-void add_figures(CLI::App& bench, std::function<int()>& action) {
+void add_figures(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("figures", "Draws what each step of the thesis' pipeline does");
   auto options = std::make_shared<FigureOptions>();
   command->add_option("RUN", options->run, "A run, best one of `foresight synth --no-distortion`")->required();
@@ -23,7 +23,7 @@ void add_figures(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return draw_figures(*options); }; });
 }
 
-void add_extraction(CLI::App& bench, std::function<int()>& action) {
+void add_extraction(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("extraction", "CPU time of the core and of the thesis' pipeline");
   auto options = std::make_shared<ExtractionBenchOptions>();
   command->add_option("RUN", options->run, "A run; the thesis' own scale: `foresight synth RUN --no-distortion`")
@@ -35,7 +35,7 @@ void add_extraction(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_extraction(*options); }; });
 }
 
-void add_margin(CLI::App& bench, std::function<int()>& action) {
+void add_margin(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("margin", "Counts what registration errors paint wrong, by truth");
   auto options = std::make_shared<MarginBenchOptions>();
   command->add_option("RUN", options->run, "A run of `foresight synth --no-distortion`, with truth")->required();
@@ -47,7 +47,7 @@ void add_margin(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_margin(*options); }; });
 }
 
-void add_can(CLI::App& bench, std::function<int()>& action) {
+void add_can(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("can", "CPU time of our share of CAN beside what a wire can carry");
   auto options = std::make_shared<CanBenchOptions>();
   command->add_option("--json", options->json, "File for all numbers");
@@ -55,19 +55,17 @@ void add_can(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_can(*options); }; });
 }
 
-void add_robot(CLI::App& bench, std::function<int()>& action) {
+void add_robot(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("robot", "Punctuality and CPU time of the control loop, with emulated drives");
   auto options = std::make_shared<RobotBenchOptions>();
   command->add_option("RIG", options->rig, "Rig file; its buses are taken as mock ones")->required();
-  command->add_option("--seconds", options->seconds, "How long")
-      ->check(CLI::Range(1.0, 86400.0))
-      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "How long")->check(from_to(1.0, 86400.0))->capture_default_str();
   command->add_option("--json", options->json, "File for all numbers");
   command->footer("Exit code: 1 where the robot did not follow to the end.");
   command->callback([options, &action] { action = [options] { return bench_robot(*options); }; });
 }
 
-void add_calibration(CLI::App& bench, std::function<int()>& action) {
+void add_calibration(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("calibration", "CPU time and held-out error of our stereo solver and OpenCV's");
   auto options = std::make_shared<CalibrationBenchOptions>();
   command->add_option("CORNERS", options->corners, "Corners of a pair: .vnl, or a folder with cam0/ and cam1/")
@@ -85,7 +83,7 @@ void add_calibration(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_calibration(*options); }; });
 }
 
-void add_registration(CLI::App& bench, std::function<int()>& action) {
+void add_registration(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("registration", "CPU time and error of the registration of a stereo pair");
   auto options = std::make_shared<RegistrationBenchOptions>();
   command->add_option("--pairs", options->pairs, "How many")->check(from_to(2, 1000))->capture_default_str();
@@ -94,7 +92,7 @@ void add_registration(CLI::App& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_registration(*options); }; });
 }
 
-void add_camera(CLI::App& bench, std::function<int()>& action) {
+void add_camera(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("camera", "CPU time of the mock cameras, rendering and all else apart");
   auto options = std::make_shared<CameraBenchOptions>();
   command->add_option("--width", options->width, "Pixels")->check(from_to(16, 4096))->capture_default_str();
@@ -108,9 +106,9 @@ void add_camera(CLI::App& bench, std::function<int()>& action) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, std::function<int()>& action) {
+void add_bench_command(Command& app, std::function<int()>& action) {
   auto* bench = app.add_subcommand("bench", "Measures, and compares with the pipeline of the thesis");
-  bench->require_subcommand(1);
+  bench->require_subcommand();
   add_calibration(*bench, action);
   add_camera(*bench, action);
   add_can(*bench, action);

@@ -189,7 +189,7 @@ int run(ArmOptions& options) {
 
 }  // namespace
 
-void add_arm(CLI::App& calibrate, std::function<int()>& action) {
+void add_arm(Command& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<ArmOptions>();
   auto* arm = calibrate.add_subcommand("arm", "Hand-eye of a camera on an arm, or of an arm before a camera");
   arm->add_option("--images", options->images, "Folder of images");
@@ -199,7 +199,7 @@ void add_arm(CLI::App& calibrate, std::function<int()>& action) {
   arm->add_option("--poses", options->poses,
                   "Robot poses, base to flange: 4x4 rows, x y z qx qy qz qw, or a folder with one file each");
   arm->add_option("--pose-unit", options->unit, "Of the positions")
-      ->check(CLI::IsMember({"auto", "m", "mm"}))
+      ->check(one_of({"auto", "m", "mm"}))
       ->capture_default_str();
   arm->add_flag("--invert-poses", options->invert, "The poses are written from flange to base");
   arm->add_option("--joints", options->joints,
@@ -211,10 +211,10 @@ void add_arm(CLI::App& calibrate, std::function<int()>& action) {
                   "Known lens: result of kind intrinsics, or camera_info; else it is estimated");
   arm->add_option("--model", options->model, "Lens model that is estimated")->capture_default_str();
   arm->add_option("--camera-mount", options->mount, "Camera fixed beside the arm, or moving with it")
-      ->check(CLI::IsMember({"auto", "fixed", "moving"}))
+      ->check(one_of({"auto", "fixed", "moving"}))
       ->capture_default_str();
   arm->add_option("--board-sigma", options->board_sigma, "Doubt about the board's stated size, relative; 0: exact")
-      ->check(CLI::Range(0.0, 0.2))
+      ->check(from_to(0.0, 0.2))
       ->capture_default_str();
   auto* head = arm->add_option("--head", options->head,
                                "Result of kind pan-tilt of the head that carries the camera: arm to head");

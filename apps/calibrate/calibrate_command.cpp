@@ -15,9 +15,9 @@
 
 namespace foresight {
 
-void add_calibrate_command(CLI::App& app, std::function<int()>& action) {
+void add_calibrate_command(Command& app, std::function<int()>& action) {
   auto* calibrate = app.add_subcommand("calibrate", "From a printed target to a rig that places every pixel");
-  calibrate->require_subcommand(1);
+  calibrate->require_subcommand();
   // In the order of a session.
   add_target(*calibrate, action);
   add_capture(*calibrate, action);

@@ -1,11 +1,12 @@
 // `foresight calibrate COMMAND`: one file per command beside this one.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_calibrate_command(CLI::App& app, std::function<int()>& action);
+void add_calibrate_command(Command& app, std::function<int()>& action);
 
 }  // namespace foresight

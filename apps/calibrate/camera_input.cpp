@@ -58,7 +58,7 @@ void require_one_source(const CornerInput& input, bool pair) {
 
 }  // namespace
 
-void add_camera_input(CLI::App& command, CornerInput& input, bool pair) {
+void add_camera_input(Command& command, CornerInput& input, bool pair) {
   command.add_option("--corners", input.corners,
                      pair ? "Corners found before: mrcal .vnl, or a folder with cam0/ and cam1/"
                           : "Corners found before: mrcal .vnl, or a folder of .csv");

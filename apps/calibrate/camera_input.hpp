@@ -1,12 +1,12 @@
 // What `intrinsics`, `stereo` and `verify` read: corners from files, or found in images.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/command_line/command_line.hpp"
 #include "calibration/camera/rig.hpp"
 
 namespace foresight {
@@ -21,7 +21,7 @@ struct CornerInput {
 };
 
 /// The options of one camera, or of a pair.
-void add_camera_input(CLI::App& command, CornerInput& input, bool pair);
+void add_camera_input(Command& command, CornerInput& input, bool pair);
 
 struct CameraViewsInput {
   RigViews train;

@@ -85,7 +85,7 @@ void write_camera_info(const CameraCalibration& c, const std::filesystem::path& 
 
 }  // namespace
 
-void add_camera_output(CLI::App& command, CameraOutput& output) {
+void add_camera_output(Command& command, CameraOutput& output) {
   add_outputs(command, output.files);
   command.add_option("--camera-info", output.camera_info, "Folder for ROS camera_info files, as a run folder has them");
   command.add_option("--serials", output.serials, "Serial numbers of the cameras, for the result file")->expected(1, 2);

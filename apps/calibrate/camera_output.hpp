@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "apps/calibrate/outputs.hpp"
+#include "apps/command_line/command_line.hpp"
 #include "calibration/camera/camera_calibration.hpp"
 
 namespace foresight {
@@ -15,7 +16,7 @@ struct CameraOutput {
   std::vector<std::string> serials;                  ///< of the cameras, left first
 };
 
-void add_camera_output(CLI::App& command, CameraOutput& output);
+void add_camera_output(Command& command, CameraOutput& output);
 
 /// All numbers under the names of --json.
 nlohmann::ordered_json camera_numbers(const CameraCalibration& calibration);

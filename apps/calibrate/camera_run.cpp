@@ -2,7 +2,7 @@
 
 namespace foresight {
 
-void add_camera_run(CLI::App& command, CameraRun& run, bool pair) {
+void add_camera_run(Command& command, CameraRun& run, bool pair) {
   add_camera_input(command, run.input, pair);
   command
       .add_option("--model", run.model,

@@ -3,6 +3,7 @@
 
 #include "apps/calibrate/camera_input.hpp"
 #include "apps/calibrate/camera_output.hpp"
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
@@ -13,7 +14,7 @@ struct CameraRun {
   bool warp = true;
 };
 
-void add_camera_run(CLI::App& command, CameraRun& run, bool pair);
+void add_camera_run(Command& command, CameraRun& run, bool pair);
 
 /// Reads, solves, delivers. Returns 1 where the result should not be used.
 int calibrate_cameras(const CameraRun& run, bool pair);

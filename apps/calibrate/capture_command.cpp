@@ -162,7 +162,7 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-void add_capture(CLI::App& calibrate, std::function<int()>& action) {
+void add_capture(Command& calibrate, std::function<int()>& action) {
   auto* command =
       calibrate.add_subcommand("capture", "Take images of a board by one or two cameras, until they are enough");
   auto a = std::make_shared<Arguments>();
@@ -174,7 +174,7 @@ void add_capture(CLI::App& calibrate, std::function<int()>& action) {
   auto* window = command->add_flag("--window", a->window, "Open a window (default: where there is a display)");
   command->add_flag("--no-window", a->no_window, "Open none")->excludes(window);
   command->add_option("--rig", a->rig, "Rig file with both cameras");
-  command->add_option("--only", a->only, "Of --rig, this camera alone")->check(CLI::IsMember({"left", "right"}));
+  command->add_option("--only", a->only, "Of --rig, this camera alone")->check(one_of({"left", "right"}));
   command->add_option("--left", a->left, "Device: a path, serial:..., bus:... or libcamera:...");
   command->add_option("--right", a->right, "The right camera's");
   command->add_option("--camera", a->camera, "A lone camera: the same forms");
@@ -182,9 +182,9 @@ void add_capture(CLI::App& calibrate, std::function<int()>& action) {
       ->expected(1, 2);
   command->add_flag("--mock", a->mock, "The mock lab's cameras instead, with the board held before them");
   command->add_option("--seed", a->seed, "Of the mock lab: another way to hold the board");
-  command->add_option("--rate", a->rate, "Images per second")->check(CLI::Range(0.1, 1000.0));
-  command->add_option("--views", a->views, "Views to take at least")->check(CLI::Range(5, 1000));
-  command->add_option("--seconds", a->seconds, "Longest time")->check(CLI::PositiveNumber);
+  command->add_option("--rate", a->rate, "Images per second")->check(from_to(0.1, 1000.0));
+  command->add_option("--views", a->views, "Views to take at least")->check(from_to(5, 1000));
+  command->add_option("--seconds", a->seconds, "Longest time")->check(from_to(1e-9, 1e9));
   command->add_option("--json", a->json, "File for all numbers");
   command->footer(
       "Example: foresight calibrate capture --rig configs/minerva.yaml --board charuco:8x5:0.03:0.022:DICT_5X5_100 "

@@ -1,11 +1,12 @@
 // `foresight calibrate capture`: takes pairs of images of a board from live cameras.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_capture(CLI::App& calibrate, std::function<int()>& action);
+void add_capture(Command& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

@@ -192,7 +192,7 @@ int run_display(const DisplayOptions& options) {
 
 }  // namespace
 
-void add_display(CLI::App& calibrate, std::function<int()>& action) {
+void add_display(Command& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<DisplayOptions>();
   auto* command = calibrate.add_subcommand("display", "The lens of a head display, from pictures taken through it");
   command->add_option("--pattern", options->pattern, "PANEL:CORNERS:SQUARE in pixels, such as 1440x1600:9x8:120")
@@ -204,7 +204,7 @@ void add_display(CLI::App& calibrate, std::function<int()>& action) {
   command
       ->add_option("--virtual-distance-m", options->virtual_distance_m,
                    "Distance of the virtual image; then the eye camera's positions are found too")
-      ->check(CLI::Range(0.05, 100.0));
+      ->check(from_to(0.05, 100.0));
   command->add_flag("--colours", options->colours, "Lenses of red and blue too; pictures must be in colour");
   add_outputs(*command, options->outputs);
   command->footer(

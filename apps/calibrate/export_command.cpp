@@ -184,16 +184,16 @@ int run_export(const ExportOptions& options) {
 
 }  // namespace
 
-void add_export(CLI::App& calibrate, std::function<int()>& action) {
+void add_export(Command& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<ExportOptions>();
   auto* command = calibrate.add_subcommand("export", "Writes a calibration for other programs, and reads theirs");
   command->add_option("INPUT", options->input, "Result file, or what --from names")->required();
   command->add_option("--to", options->to, "camera-info, kalibr, opencv, mrcal, urdf, or result")
       ->required()
-      ->check(CLI::IsMember({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
+      ->check(one_of({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
   command->add_option("--from", options->from, "Format of INPUT: one of the same")
       ->capture_default_str()
-      ->check(CLI::IsMember({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
+      ->check(one_of({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
   command->add_option("--urdf", options->urdf, "With --to urdf: the robot to correct; else a new file");
   add_outputs(*command, options->outputs);
   command->footer(

@@ -1,11 +1,12 @@
 // `foresight calibrate export`: calibrated cameras in the files of other programs, and back.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_export(CLI::App& calibrate, std::function<int()>& action);
+void add_export(Command& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

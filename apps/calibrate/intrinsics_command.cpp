@@ -6,7 +6,7 @@
 
 namespace foresight {
 
-void add_intrinsics(CLI::App& calibrate, std::function<int()>& action) {
+void add_intrinsics(Command& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand("intrinsics", "The lens of one camera, from views of a board");
   auto run = std::make_shared<CameraRun>();
   add_camera_run(*command, *run, false);

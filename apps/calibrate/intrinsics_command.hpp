@@ -1,11 +1,12 @@
 // `foresight calibrate intrinsics`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_intrinsics(CLI::App& calibrate, std::function<int()>& action);
+void add_intrinsics(Command& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

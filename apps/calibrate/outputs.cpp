@@ -4,7 +4,7 @@
 
 namespace foresight {
 
-void add_outputs(CLI::App& command, CalibrateOutputs& outputs) {
+void add_outputs(Command& command, CalibrateOutputs& outputs) {
   command.add_option("--json", outputs.json, "File for all numbers");
   command.add_option("--out", outputs.out, "Result file, YAML; a better one in its place is kept");
   command.add_option("--report", outputs.report, "Report, one HTML page");

@@ -1,11 +1,11 @@
 // What every `foresight calibrate` command may write: numbers, a result file, a report.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/command_line/command_line.hpp"
 #include "calibration/result/result_file.hpp"
 
 namespace foresight {
@@ -18,7 +18,7 @@ struct CalibrateOutputs {
 };
 
 /// --json, --out, --report, --force.
-void add_outputs(CLI::App& command, CalibrateOutputs& outputs);
+void add_outputs(Command& command, CalibrateOutputs& outputs);
 
 /// Writes to `file` where there is one; throws RuntimeFailure where it cannot be written.
 void write_json(const std::optional<std::filesystem::path>& file, const nlohmann::ordered_json& numbers);

@@ -125,7 +125,7 @@ int run(PanTiltCommandOptions& options) {
 
 }  // namespace
 
-void add_pan_tilt(CLI::App& calibrate, std::function<int()>& action) {
+void add_pan_tilt(Command& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<PanTiltCommandOptions>();
   PanTiltInput& input = options->input;
   auto* head = calibrate.add_subcommand(
@@ -144,12 +144,12 @@ void add_pan_tilt(CLI::App& calibrate, std::function<int()>& action) {
   add_tag_options(*head, options->tags.input);
   head->add_option("--time", options->tags.time, "Result of `calibrate time` for --run; else a moving head tells it");
   head->add_option("--poses-are", options->poses_are, "camera to world, or its inverse")
-      ->check(CLI::IsMember({"auto", "world-camera", "camera-world"}))
+      ->check(one_of({"auto", "world-camera", "camera-world"}))
       ->capture_default_str();
   head->add_flag("--in-order", input.in_order, "The rows are in the order in which they were taken: gives the ways");
   head->add_option("--gains", options->gains,
                    "Estimate what a reported angle is worth; auto: where the left-out error falls")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->check(one_of({"auto", "on", "off"}))
       ->capture_default_str();
   add_outputs(*head, options->outputs);
   head->footer(

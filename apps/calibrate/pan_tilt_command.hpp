@@ -1,11 +1,12 @@
 // `foresight calibrate pan-tilt`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_pan_tilt(CLI::App& calibrate, std::function<int()>& action);
+void add_pan_tilt(Command& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

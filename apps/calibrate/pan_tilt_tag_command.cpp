@@ -107,7 +107,7 @@ void print(const Solved& solved) {
 
 }  // namespace
 
-void add_tag_options(CLI::App& command, PanTiltTagInput& input) {
+void add_tag_options(Command& command, PanTiltTagInput& input) {
   command.add_option("--tags", input.tags,
                      "Map of tags that stand still: rows id corner x y z, world, m (tags.txt of RUN)");
   command.add_option("--run", input.run, "A recorded run and its joints (RUN-joints.csv), instead of images");
@@ -121,7 +121,7 @@ void add_tag_options(CLI::App& command, PanTiltTagInput& input) {
                      "Result of `calibrate photometric`: corners of tags are found in the light");
   command.add_option("--family", input.family, "Of the tags")->capture_default_str();
   command.add_option("--most-views", input.most_views, "Of a run, spread over its time")
-      ->check(CLI::Range(8, 2000))
+      ->check(from_to(8, 2000))
       ->capture_default_str();
 }
 

@@ -3,6 +3,7 @@
 
 #include "apps/calibrate/outputs.hpp"
 #include "apps/calibrate/pan_tilt_tag_input.hpp"
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
@@ -14,7 +15,7 @@ struct PanTiltTagCommand {
 };
 
 /// What is not shared with the other ways to give poses.
-void add_tag_options(CLI::App& command, PanTiltTagInput& input);
+void add_tag_options(Command& command, PanTiltTagInput& input);
 
 /// Solves, prints and writes; returns the exit code. Throws what reading and solving do.
 int calibrate_from_tags(PanTiltTagCommand& command);

@@ -200,7 +200,7 @@ int run_photometric(const PhotometricCommandOptions& options) {
 
 }  // namespace
 
-void add_photometric(CLI::App& calibrate, std::function<int()>& action) {
+void add_photometric(Command& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<PhotometricCommandOptions>();
   auto* command = calibrate.add_subcommand("photometric", "Response, vignetting, gain between two cameras");
   command->add_option("--images", options->one.series, "Folder: a still scene at several exposure times");

@@ -1,11 +1,12 @@
 // `foresight calibrate photometric`: response, vignetting and gain from exposure series.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_photometric(CLI::App& calibrate, std::function<int()>& action);
+void add_photometric(Command& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

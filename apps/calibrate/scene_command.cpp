@@ -116,7 +116,7 @@ int run_scene(const SceneOptions& options) {
 
 }  // namespace
 
-void add_scene(CLI::App& calibrate, std::function<int()>& action) {
+void add_scene(Command& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<SceneOptions>();
   auto* command = calibrate.add_subcommand("scene", "Places a model in the world from measured points or tags");
   command->add_option("--points", options->points, "Rows 'x y z X Y Z [sigma]': model, world, in metres");
@@ -127,11 +127,11 @@ void add_scene(CLI::App& calibrate, std::function<int()>& action) {
   command->add_option("--camera-poses", options->camera_poses,
                       "With --seen: rows 'image tx ty tz qx qy qz qw', camera to world");
   command->add_option("--sigma-px", options->sigma_px, "With --seen: standard deviation of a corner")
-      ->check(CLI::Range(1e-3, 20.0))
+      ->check(from_to(1e-3, 20.0))
       ->capture_default_str();
   command->add_option("--model", options->model, "Mesh or scene.yaml: checks that the points can be its points");
   command->add_option("--sigma-m", options->placement.sigma_m, "Standard deviation of a measured coordinate")
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(from_to(1e-6, 1.0))
       ->capture_default_str();
   add_outputs(*command, options->outputs);
   command->footer(

@@ -1,11 +1,12 @@
 // `foresight calibrate scene`: places a model in the world.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_scene(CLI::App& calibrate, std::function<int()>& action);
+void add_scene(Command& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

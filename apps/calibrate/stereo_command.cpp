@@ -6,7 +6,7 @@
 
 namespace foresight {
 
-void add_stereo(CLI::App& calibrate, std::function<int()>& action) {
+void add_stereo(Command& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand("stereo", "Both lenses of a pair, and the right camera's place");
   auto run = std::make_shared<CameraRun>();
   add_camera_run(*command, *run, true);

@@ -81,7 +81,7 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-void add_target(CLI::App& calibrate, std::function<int()>& action) {
+void add_target(Command& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand("target", "Print a board at true scale, and check the print");
   auto a = std::make_shared<Arguments>();
   command->add_option("--board", a->board, "chessboard|charuco|apriltag|circles:COLSxROWS:SIZE_M[:EXTRA[:FAMILY]]")

@@ -115,7 +115,7 @@ int run(TimeCommandOptions& options) {
 
 }  // namespace
 
-void add_time(CLI::App& calibrate, std::function<int()>& action) {
+void add_time(Command& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<TimeCommandOptions>();
   auto* time = calibrate.add_subcommand(
       "time", "Offset of the clocks, t_encoder = t_camera + offset, from motion that both saw");
@@ -134,17 +134,15 @@ void add_time(CLI::App& calibrate, std::function<int()>& action) {
                                               {"ms", TimeUnit::millisecond},
                                               {"us", TimeUnit::microsecond},
                                               {"ns", TimeUnit::nanosecond}};
-  time->add_option("--time-unit", options->encoder_unit, "Of the encoder stream's times: auto, s, ms, us, ns")
-      ->transform(CLI::CheckedTransformer(units));
-  time->add_option("--camera-time-unit", options->camera_unit, "Of the camera stream's times")
-      ->transform(CLI::CheckedTransformer(units));
+  time->add_choice("--time-unit", options->encoder_unit, units, "Of the encoder stream's times: auto, s, ms, us, ns");
+  time->add_choice("--camera-time-unit", options->camera_unit, units, "Of the camera stream's times");
   time->add_option("--around", options->solver.around_s, "Rough offset where the search starts, s")
       ->capture_default_str();
   time->add_option("--search", options->solver.largest_offset_s, "Search to both sides, s")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(from_to(0.1, 3600.0))
       ->capture_default_str();
   time->add_option("--segment", options->solver.segment_s, "Stretches whose errors count as independent, s")
-      ->check(CLI::Range(0.1, 60.0))
+      ->check(from_to(0.1, 60.0))
       ->capture_default_str();
   add_outputs(*time, options->outputs);
   time->footer(

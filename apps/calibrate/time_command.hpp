@@ -1,11 +1,12 @@
 // `foresight calibrate time`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/command_line/command_line.hpp"
 
 namespace foresight {
 
-void add_time(CLI::App& calibrate, std::function<int()>& action);
+void add_time(Command& calibrate, std::function<int()>& action);
 
 }  // namespace foresight

@@ -121,7 +121,7 @@ int verify_any(const VerifyOptions& options) {
   return verify_head(head);
 }
 
-void add_head_options(CLI::App& command, PanTiltVerify& head) {
+void add_head_options(Command& command, PanTiltVerify& head) {
   PanTiltTagInput& input = head.input;
   auto* group = command.add_option_group("Of a head (result of pan-tilt)");
   group->add_option("--tags", input.tags, "Map of tags that stand still: rows id corner x y z, world, m");
@@ -141,7 +141,7 @@ void add_head_options(CLI::App& command, PanTiltVerify& head) {
 
 }  // namespace
 
-void add_verify(CLI::App& calibrate, std::function<int()>& action) {
+void add_verify(Command& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand("verify", "Errors of a result on views that no solver has seen");
   auto options = std::make_shared<VerifyOptions>();
   command->add_option("--result", options->result, "Result file of `stereo`, `intrinsics` or `pan-tilt`")->required();

@@ -1,0 +1,174 @@
+#include "apps/command_line/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "common/text.hpp"
+
+namespace foresight {
+namespace {
+
+// What is wrong with the command line, and what to do about it.
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  std::vector<std::string> jobs;
+  for (const CLI::App* job : app.get_subcommands({})) jobs.push_back(job->get_name());
+  const auto chosen = app.get_subcommands();
+  const auto unknown = app.remaining();
+  if (chosen.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
+    return "there is no subcommand " + in_quotes(unknown.front()) + "; did you mean '" +
+           nearest_word(unknown.front(), jobs) + "'? See `foresight --help`";
+  return error.what() + ("; see `foresight " + (chosen.empty() ? "" : chosen.front()->get_name() + " ")) + "--help`";
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+}  // namespace
+
+OptionCheck from_to(double low, double high) {
+  const auto text = [](double value) {
+    std::ostringstream stream;
+    stream << std::setprecision(8) << value;
+    return stream.str();
+  };
+  const std::string range = "from " + text(low) + " to " + text(high);
+  const auto fault = [low, high, range](const std::string& given) {
+    const auto value = parse_number(given);
+    return value && *value >= low && *value <= high ? std::string()
+                                                    : in_quotes(given) + " is not a number " + range + "; give one";
+  };
+  return {fault, range};
+}
+
+OptionCheck one_of(std::vector<std::string> words) {
+  const std::string all = joined(words);
+  return {[words = std::move(words), all](const std::string& given) {
+            return std::find(words.begin(), words.end(), given) != words.end()
+                       ? std::string()
+                       : in_quotes(given) + " is none of " + all + "; did you mean '" + nearest_word(given, words) +
+                             "'?";
+          },
+          "one of " + all};
+}
+
+OptionCheck existing_file() {
+  return {[](const std::string& given) {
+            std::error_code ignored;
+            return std::filesystem::is_regular_file(given, ignored) ? std::string()
+                                                                    : in_quotes(given) + " is not there, or no file";
+          },
+          "file"};
+}
+
+Option* Option::required() {
+  option_->required();
+  return this;
+}
+Option* Option::check(OptionCheck check) {
+  option_->check(CLI::Validator(std::move(check.fault), std::move(check.expects)));
+  return this;
+}
+Option* Option::expected(int words) {
+  option_->expected(words);
+  return this;
+}
+Option* Option::expected(int least, int most) {
+  option_->expected(least, most);
+  return this;
+}
+Option* Option::capture_default_str() {
+  option_->capture_default_str();
+  return this;
+}
+Option* Option::default_str(const std::string& text) {
+  option_->default_str(text);
+  return this;
+}
+Option* Option::excludes(const Option* other) {
+  option_->excludes(other->option_);
+  return this;
+}
+Option* Option::needs(const Option* other) {
+  option_->needs(other->option_);
+  return this;
+}
+
+Command::Command(CLI::App& app) : app_(app) {}
+Command::~Command() = default;
+
+Command* Command::add_subcommand(const std::string& name, const std::string& help) {
+  return &commands_.emplace_back(*app_.add_subcommand(name, help));
+}
+void Command::require_subcommand() {
+  app_.require_subcommand(1);
+}
+Command* Command::add_option_group(const std::string& name) {
+  return &commands_.emplace_back(*app_.add_option_group(name));
+}
+
+Option* Command::keep(CLI::Option* option) {
+  return &options_.emplace_back(option);
+}
+
+template <typename T>
+Option* Command::add_option(const std::string& names, T& target, const std::string& help) {
+  return keep(app_.add_option(names, target, help));
+}
+template Option* Command::add_option(const std::string&, int&, const std::string&);
+template Option* Command::add_option(const std::string&, std::int64_t&, const std::string&);
+template Option* Command::add_option(const std::string&, std::uint32_t&, const std::string&);
+template Option* Command::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option* Command::add_option(const std::string&, double&, const std::string&);
+template Option* Command::add_option(const std::string&, std::string&, const std::string&);
+template Option* Command::add_option(const std::string&, std::filesystem::path&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<int>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<double>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<std::filesystem::path>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::vector<int>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::vector<double>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::vector<std::filesystem::path>&, const std::string&);
+
+Option* Command::add_flag(const std::string& names, bool& target, const std::string& help) {
+  return keep(app_.add_flag(names, target, help));
+}
+Option* Command::add_number(const std::string& names, std::function<void(std::uint64_t)> take,
+                            const std::string& help) {
+  return keep(app_.add_option_function<std::uint64_t>(names, take, help));
+}
+Option* Command::add_word(const std::string& names, std::vector<std::string> words,
+                          std::function<void(const std::string&)> take, const std::string& help) {
+  return keep(app_.add_option_function<std::string>(names, take, help))->check(one_of(std::move(words)));
+}
+
+void Command::footer(const std::string& text) {
+  app_.footer(text);
+}
+void Command::callback(std::function<void()> then) {
+  app_.callback(std::move(then));
+}
+
+std::optional<int> read_command_line(int argc, char** argv, const std::string& help, const std::string& version,
+                                     const std::function<void(Command&)>& define) {
+  CLI::App app{help};
+  app.set_version_flag("--version", version);
+  Command root(app);
+  define(root);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    std::cerr << "foresight: " << explain(app, error) << "\n";
+    return 2;
+  }
+  return std::nullopt;
+}
+
+}  // namespace foresight

@@ -1,0 +1,102 @@
+// The words of a command line and the variables that they fill. CLI11 does the work; it is compiled here, once, because
+// each of its users would spend ten seconds on it.
+//
+// One thread. Commands and options live as long as the CommandLine that they belong to.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace foresight {
+
+/// What the words of an option must be.
+struct OptionCheck {
+  std::function<std::string(const std::string&)> fault;  ///< what is wrong with a word; "" where nothing is
+  std::string expects;                                   ///< for the help text
+};
+
+/// A number of the closed range; "nan" is none.
+OptionCheck from_to(double low, double high);
+/// One of these words.
+OptionCheck one_of(std::vector<std::string> words);
+OptionCheck existing_file();
+
+/// One option. Each method returns the option.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+  Option* required();
+  Option* check(OptionCheck check);
+  Option* expected(int words);
+  Option* expected(int least, int most);
+  Option* capture_default_str();  ///< the help text shows what the variable holds now
+  Option* default_str(const std::string& text);
+  Option* excludes(const Option* other);
+  Option* needs(const Option* other);
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A command or subcommand.
+class Command {
+ public:
+  explicit Command(CLI::App& app);
+  ~Command();
+  Command(const Command&) = delete;
+
+  Command* add_subcommand(const std::string& name, const std::string& help);
+  void require_subcommand();  ///< exactly one
+  /// Options of a heading of their own in the help text.
+  Command* add_option_group(const std::string& name);
+
+  /// `names`: "--long", "-s,--long", or "POSITIONAL". `target` must outlive the parsing. T: bool, int, std::int64_t,
+  /// std::uint64_t, double, std::string, std::filesystem::path, std::optional or std::vector of such (command_line.cpp
+  /// has the list); others do not link.
+  template <typename T>
+  Option* add_option(const std::string& names, T& target, const std::string& help);
+  Option* add_flag(const std::string& names, bool& target, const std::string& help);
+  /// A number that goes through a function.
+  Option* add_number(const std::string& names, std::function<void(std::uint64_t)> take, const std::string& help);
+  /// One of the words of `choices`.
+  template <typename E>
+  Option* add_choice(const std::string& names, E& target, const std::map<std::string, E>& choices,
+                     const std::string& help) {
+    std::vector<std::string> words;
+    for (const auto& [word, value] : choices) words.push_back(word);
+    return add_word(
+        names, words, [&target, choices](const std::string& word) { target = choices.at(word); }, help);
+  }
+
+  void footer(const std::string& text);
+  /// Called once all words were read, where this command is the one that is asked for.
+  void callback(std::function<void()> then);
+
+ private:
+  Option* add_word(const std::string& names, std::vector<std::string> words,
+                   std::function<void(const std::string&)> take, const std::string& help);
+  Option* keep(CLI::Option* option);
+
+  CLI::App& app_;
+  std::deque<Option> options_;
+  std::deque<Command> commands_;
+};
+
+/// Reads the command line. `define` adds the subcommands. The exit code where there is nothing left to do (help,
+/// version, a mistake, which is explained on stderr); nothing where the chosen command's callback was called.
+std::optional<int> read_command_line(int argc, char** argv, const std::string& help, const std::string& version,
+                                     const std::function<void(Command&)>& define);
+
+}  // namespace foresight
