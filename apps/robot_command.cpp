@@ -8,6 +8,7 @@
 #include "apps/robot/keyboard.hpp"
 #include "apps/robot/operators.hpp"
 #include "apps/robot/service_notify.hpp"
+#include "apps/robot/status_view.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
 #include "session/robot_cameras.hpp"

@@ -129,11 +129,12 @@ void add_sim_command(Command& app, std::function<int()>& action) {
   Command* const command = sim->add_subcommand("drives", "Emulated drives on a CAN interface, for any master");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("--can", arguments->can, "CAN interface, such as can0 or vcan0")->required();
-  command->add_option("--rack", arguments->rack, "YAML file with a list of drives, instead of the built-in ones")
-      ->check(existing_file());
+  const Option* const rack =
+      command->add_option("--rack", arguments->rack, "YAML file with a list of drives, instead of the built-in ones")
+          ->check(existing_file());
   command->add_option("--rig", arguments->rig, "Rig file: the drives that it has on this interface")
       ->check(existing_file())
-      ->excludes("--rack");
+      ->excludes(rack);
   command
       ->add_option("--profile", arguments->profile,
                    "Built-in drives: powercube (ids 1 to 9) or cia402 (nodes 3 to 11): an arm of seven and a pan-tilt")
