@@ -8,6 +8,7 @@
 #include "calibration/camera/model_choice.hpp"
 #include "calibration/camera/rig_start.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -77,7 +78,6 @@ class Calibrator {
       left = solve_alone(result_.views, 0, distortion, solver_);
       right = solve_alone(result_.views, 1, distortion, solver_);
     }
-    result_.alone_px = {left.rms_px, right.rms_px};
     const double alone = std::sqrt(0.5 * (left.noise_px * left.noise_px + right.noise_px * right.noise_px));
     result_.solution = solve_rig(result_.views, start_pair(result_.views, left, right), solver_);
     result_.stereo_over_mono = result_.solution.noise_px / std::max(alone, 1e-9);
@@ -113,9 +113,7 @@ class Calibrator {
     const RigUncertainty uncertainty(result_.views, result_.solution, result_.warp);
     std::vector<double> distances;
     for (const Pose& T : result_.solution.T_left_board) distances.push_back(T.translation().norm());
-    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2),
-                     distances.end());
-    result_.board_distance_m = distances[distances.size() / 2];
+    result_.board_distance_m = median(std::move(distances));
     for (std::size_t c = 0; c < cameras(); ++c) {
       result_.at_infinity[c] = uncertainty.map(static_cast<int>(c), std::nullopt);
       result_.at_board[c] = uncertainty.map(static_cast<int>(c), result_.board_distance_m);

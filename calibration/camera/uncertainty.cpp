@@ -1,14 +1,13 @@
 #include "calibration/camera/uncertainty.hpp"
 
-#include <ceres/jet.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "calibration/camera/lens_projection.hpp"
+#include "calibration/camera/lens_slopes.hpp"
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {
@@ -23,24 +22,10 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 }
 
 Eigen::Matrix<double, 2, kLensParameters> after_lens(const CameraModel& camera, const Eigen::Vector3d& p_camera) {
-  using Jet = ceres::Jet<double, kLensParameters>;
-  std::array<Jet, kLensParameters> lens;
-  for (int i = 0; i < kLensParameters; ++i)
-    lens[static_cast<std::size_t>(i)] = Jet(camera.lens[static_cast<std::size_t>(i)], i);
-  const Eigen::Matrix<Jet, 3, 1> p = p_camera.cast<Jet>();
-  Eigen::Matrix<Jet, 2, 1> pixel;
-  project<Jet>(camera.distortion, lens.data(), p, pixel);
-  Eigen::Matrix<double, 2, kLensParameters> d;
-  d.row(0) = pixel[0].v.transpose();
-  d.row(1) = pixel[1].v.transpose();
-  return d;
-}
-
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return kNone;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  Eigen::Vector2d pixel;
+  LensSlopes slopes;
+  if (!project_with_slopes(camera.distortion, camera.lens.data(), p_camera, pixel, slopes)) slopes.lens.setZero();
+  return slopes.lens;
 }
 
 }  // namespace
@@ -142,8 +127,8 @@ UncertaintyMap RigUncertainty::map(int camera, std::optional<double> distance_m,
       if (std::isfinite(map.px(row, col))) seen.push_back(map.px(row, col));
     }
   map.centre_px = at(camera, {0.5 * w, 0.5 * h}, distance_m);
-  map.median_px = quantile(seen, 0.5);
-  map.p90_px = quantile(seen, 0.9);
+  map.median_px = seen.empty() ? kNone : median(seen);
+  map.p90_px = seen.empty() ? kNone : quantile(seen, 0.9);
   map.worst_corner_px = kNone;
   for (const double corner : {map.px(0, 0), map.px(0, cols - 1), map.px(rows - 1, 0), map.px(rows - 1, cols - 1)})
     map.worst_corner_px = std::fmax(map.worst_corner_px, corner);

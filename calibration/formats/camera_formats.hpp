@@ -13,7 +13,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,21 +21,12 @@
 
 namespace foresight {
 
-struct CalibratedCameras {
-  CameraModel left;  ///< or the only one
-  std::optional<CameraModel> right;
-  Pose T_left_right = Pose::Identity();  ///< right camera to left camera coordinates
-};
-
 enum class CameraFormat { camera_info, kalibr, opencv, mrcal };
 
 std::string to_string(CameraFormat format);
 
 /// Throws InputError naming the nearest format.
 CameraFormat parse_camera_format(std::string_view name);
-
-/// Whether a pair is a folder of two files.
-bool pair_is_folder(CameraFormat format);
 
 /// Throws InputError naming file and field: missing, damaged, a lens model or a projection that we
 /// do not know, coefficients that our models cannot hold, a pair without its pose.

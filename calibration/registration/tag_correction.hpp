@@ -13,20 +13,15 @@
 #include <deque>
 #include <map>
 
-#include "calibration/registration/twist.hpp"
+#include "calibration/camera/twist.hpp"
 #include "calibration/tags/tag_detector.hpp"
-#include "common/lens.hpp"
 #include "common/time.hpp"
+#include "scene/stereo_lenses.hpp"
 
 namespace foresight {
 
 /// Corners of the tags that stand still, world frame, metres, in DetectedTag's order; by id.
 using TagMap = std::map<int, std::array<Eigen::Vector3d, 4>>;
-
-struct StereoLenses {
-  Lens left, right;
-  Pose T_left_right = Pose::Identity();
-};
 
 struct TagCorrectionOptions {
   double lag_s = 0.4;           ///< window
@@ -77,6 +72,7 @@ class TagCorrection {
   struct Problem;
 
   StereoLenses lenses_;
+  Pose T_right_left_;
   TagMap map_;
   TagCorrectionOptions options_;
   std::deque<Image> images_;

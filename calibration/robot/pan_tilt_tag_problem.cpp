@@ -3,11 +3,12 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "calibration/camera/lens_slopes.hpp"
+#include "calibration/camera/minimise.hpp"
 #include "calibration/robot/arrow_system.hpp"
 #include "common/error.hpp"
 
@@ -32,14 +33,13 @@ struct TagResidual {
     const T tilt = joints[1] * (a.tilt + view->rate[1] * offset[0]) + joints[3] * (0.5 * a.came[1]) + shaft[1];
     HeadMotion<T> head = head_motion(world, link, camera, pan, tilt);
     T motion[7] = {head.q.x(), head.q.y(), head.q.z(), head.q.w(), head.p.x(), head.p.y(), head.p.z()};
-    T right[7], lens_values[kLensParameters];
+    T right[7];
     for (std::size_t i = 0; i < 7; ++i) right[i] = T(T_left_camera[i]);
-    for (std::size_t i = 0; i < kLensParameters; ++i) lens_values[i] = T(lens->lens[i]);
     for (std::size_t c = 0; c < 4; ++c) {
       Eigen::Matrix<T, 3, 1> p = inverse_transform(motion, Eigen::Matrix<T, 3, 1>(tag->corners[c].cast<T>()));
       if (tag->camera == 1) p = inverse_transform(right, p);
       Eigen::Matrix<T, 2, 1> pixel;
-      if (!project(lens->distortion, lens_values, p, pixel)) return false;
+      if (!project_by_slopes(lens->distortion, lens->lens, p, pixel)) return false;
       residual[2 * c] = T(weight) * (pixel.x() - tag->pixels[c].x());
       residual[2 * c + 1] = T(weight) * (pixel.y() - tag->pixels[c].y());
     }
@@ -61,8 +61,8 @@ bool counts(const PanTiltTagState& state, std::size_t view) {
   return std::any_of(state.left_out[view].begin(), state.left_out[view].end(), [](char out) { return !out; });
 }
 
-void add_view(const std::vector<PanTiltView>& views, std::size_t k, const CameraRig& cameras, PanTiltTagState& state,
-              ceres::Problem& problem) {
+void add_view(const std::vector<PanTiltView>& views, std::size_t k, const CalibratedCameras& cameras,
+              PanTiltTagState& state, ceres::Problem& problem) {
   PanTiltState& head = state.head;
   double* const shaft = state.shafts[k].data();
   for (std::size_t i = 0; i < views[k].tags.size(); ++i) {
@@ -78,7 +78,7 @@ void add_view(const std::vector<PanTiltView>& views, std::size_t k, const Camera
                            nullptr, shaft);
 }
 
-void build(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state, int without,
+void build(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras, PanTiltTagState& state, int without,
            ceres::Problem& problem) {
   for (std::size_t k = 0; k < views.size(); ++k)
     if (static_cast<int>(k) != without && counts(state, k)) add_view(views, k, cameras, state, problem);
@@ -89,7 +89,7 @@ void build(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanT
 // The state with parameter `index` of its tangent, in the order of pan_tilt_names() and then offset_s, moved by `step`.
 PanTiltTagState nudged(PanTiltTagState state, Eigen::Index index, double step) {
   const auto nudge_motion = [&](MotionParameters& motion, Eigen::Index i) {
-    Vector6 delta = Vector6::Zero();
+    Vector6d delta = Vector6d::Zero();
     delta[i] = i < 3 ? step / 2 : step;  // the manifold of a rotation steps by half angles
     MotionParameters out{};
     const std::unique_ptr<ceres::Manifold> manifold(motion_manifold());
@@ -115,10 +115,10 @@ PanTiltTagState nudged(PanTiltTagState state, Eigen::Index index, double step) {
   return state;
 }
 
-Vector6 pose_sigma(const std::vector<PanTiltView>& views, const PanTiltTagState& state,
-                   const Eigen::MatrixXd& covariance) {
+Vector6d pose_sigma(const std::vector<PanTiltView>& views, const PanTiltTagState& state,
+                    const Eigen::MatrixXd& covariance) {
   constexpr double kStep = 1e-6;
-  Vector6 variance = Vector6::Zero();
+  Vector6d variance = Vector6d::Zero();
   for (const PanTiltView& view : views) {
     Eigen::MatrixXd slope(6, covariance.rows());
     for (Eigen::Index i = 0; i < covariance.rows(); ++i)
@@ -137,30 +137,20 @@ Pose predicted_left(const PanTiltTagState& state, const PanTiltView& view) {
   return camera_pose(to_model(state.head), angles);
 }
 
-void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state,
+void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras, PanTiltTagState& state,
                        int without) {
   ceres::Problem problem;
   build(views, cameras, state, without, problem);
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  std::vector<double*> blocks;
-  problem.GetParameterBlocks(&blocks);
-  for (double* block : blocks) {
-    const bool own = std::any_of(state.shafts.begin(), state.shafts.end(), [&](auto& s) { return s.data() == block; });
-    options.linear_solver_ordering->AddElementToGroup(block, own ? 0 : 1);
-  }
-  options.max_num_iterations = 60;
+  MinimiseOptions options;
+  options.solver = ceres::DENSE_SCHUR;
+  for (auto& shaft : state.shafts) options.eliminated.push_back(shaft.data());
+  options.most_iterations = 60;
   options.function_tolerance = 1e-8;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable())
-    throw RuntimeFailure("the pan-tilt fit does not converge (" + summary.message + ")",
-                         "check that angles, pictures and the map of the tags belong together");
+  minimise_or_throw(problem, options, "the pan-tilt fit",
+                    "check that angles, pictures and the map of the tags belong together");
 }
 
-PanTiltTagCovariance pan_tilt_tag_covariance(const std::vector<PanTiltView>& views, const CameraRig& cameras,
+PanTiltTagCovariance pan_tilt_tag_covariance(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                                              PanTiltTagState& state) {
   ceres::Problem problem;
   const bool robust = std::exchange(state.robust, false);

@@ -48,7 +48,7 @@ struct PanTiltTagSummary {
   double shaft_rad = 0;            ///< noise of a shaft's angle against the model
   /// Of the camera's pose by the parameters' covariance, RMS over the views: rotation vector (rad) and place (m), in
   /// the camera's frame. shaft_rad comes on top.
-  Vector6 pose_sigma = Vector6::Zero();
+  Vector6d pose_sigma = Vector6d::Zero();
   double in_sample_px = 0;              ///< RMS distance of a corner, shafts as fitted
   double loo_px = 0;                    ///< RMS of corners of a view left out, by its encoders alone
   std::vector<std::string> view_names;  ///< that took part
@@ -61,11 +61,11 @@ struct PanTiltTagSummary {
 /// `cameras`: lenses, and where the right camera stands; they stay as they are.
 /// Throws InputError: fewer than 8 views with tags, a joint that did not move or only with the other (naming what
 /// stays open), angles or a map that fit no two-axis head.
-PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& views, const CameraRig& cameras,
+PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                                       const PanTiltTagOptions& options);
 
 /// Distances, px, from the predicted to the seen corners of `view`, in the order of its tags. A corner that the model
 /// puts behind a camera is infinitely far.
-std::vector<double> corner_errors(const CameraRig& cameras, const Pose& T_world_left, const PanTiltView& view);
+std::vector<double> corner_errors(const CalibratedCameras& cameras, const Pose& T_world_left, const PanTiltView& view);
 
 }  // namespace foresight

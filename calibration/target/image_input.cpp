@@ -12,6 +12,7 @@
 
 #include "calibration/target/view_names.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -136,9 +137,7 @@ struct BlurRule {
     std::vector<double> all;
     for (const Seen& s : seen)
       if (s.found) all.push_back(s.found->quality.sharpness);
-    if (all.empty()) return;
-    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
-    median = all[all.size() / 2];
+    median = foresight::median(std::move(all));
   }
   bool blurred(const FoundBoard& found) const { return found.quality.sharpness < kBlurred * median; }
   std::string text(const FoundBoard& found) const {
@@ -238,7 +237,6 @@ FoundCorners find_in_folder(const fs::path& folder, const Board& board) {
       result.dropped.push_back({name, blur.text(*s.found)});
     } else {
       result.corners.views.push_back({s.file.stem().string(), s.found->corners});
-      result.quality.push_back(s.found->quality);
     }
   }
   return result;
@@ -277,7 +275,6 @@ FoundStereoCorners find_pairs_in_folders(const fs::path& left, const fs::path& r
     for (int i = 0; i < 2; ++i) {
       if (!sides[i] || !sides[i]->found) continue;
       (i == 0 ? result.corners.left : result.corners.right).views.push_back({name, sides[i]->found->corners});
-      (i == 0 ? result.left_quality : result.right_quality).push_back(sides[i]->found->quality);
     }
   }
   if (!any)
