@@ -9,12 +9,12 @@
 namespace foresight {
 namespace {
 
-Registration make_registration(const RigCalibration& calibration, const StereoLenses& lenses) {
+std::unique_ptr<Registration> make_registration(const RigCalibration& calibration, const StereoLenses& lenses) {
   const HeadModel head = read_head_model(calibration.pan_tilt.value(), calibration.time);
   const TagMap tags = calibration.tags ? read_tag_map(*calibration.tags) : TagMap{};
   RegistrationOptions options = options_for(head);
   if (calibration.photometric) options.detector.inverse_response = read_inverse_response(*calibration.photometric);
-  return {head, lenses, tags, options};
+  return std::make_unique<Registration>(head, lenses, tags, options);
 }
 
 cv::Mat grey(const ColourImage& image) {
@@ -25,28 +25,6 @@ cv::Mat grey(const ColourImage& image) {
 
 }  // namespace
 
-// --- JointTracks ----------------------------------------------------------------------------------------------------
-
-void JointTracks::add(const RobotCycle& cycle) {
-  for (std::size_t i = 0; i < std::min(tracks_.size(), cycle.joints); ++i)
-    if (const JointCycle& joint = cycle.joint[i]; joint.homed && joint.time.ns != 0)
-      tracks_[i].add(joint.time, joint.position);
-}
-
-JointState JointTracks::at(RobotTime encoder_time) const {
-  JointState out{encoder_time, StateStatus::exact, {}};
-  for (const ShaftTrack& track : tracks_) {
-    const ShaftTrack::Answer answer = track.at(encoder_time);
-    out.status = std::max(out.status, answer.status);  // the enumeration goes from best to worst
-    out.positions.push_back(answer.shaft);
-  }
-  return out;
-}
-
-bool JointTracks::know(RobotTime encoder_time) const {
-  return std::ranges::all_of(tracks_, [&](const ShaftTrack& track) { return track.knows(encoder_time); });
-}
-
 // --- EncoderPoses ---------------------------------------------------------------------------------------------------
 
 EncoderPoses::EncoderPoses(const Rig& rig, std::shared_ptr<const LiveScene> scene, Cycles cycles)
@@ -55,7 +33,7 @@ EncoderPoses::EncoderPoses(const Rig& rig, std::shared_ptr<const LiveScene> scen
   if (!scene_->lenses())
     throw InputError(rig.calibration->pan_tilt->string(), "is of a head whose cameras' lenses are not calibrated",
                      "give them as `lens` in the rig");
-  registration_.emplace(make_registration(*rig.calibration, *scene_->lenses()));
+  registration_ = make_registration(*rig.calibration, *scene_->lenses());
   std::vector<std::size_t> head;
   for (std::size_t i = 0; i < rig.joints.size(); ++i)
     if (rig.joints[i].group == JointGroup::pan_tilt) head.push_back(i);

@@ -3,30 +3,15 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "calibration/registration/registration.hpp"
 #include "drivers/robot/robot.hpp"
 #include "rig/rig.hpp"
+#include "session/joint_tracks.hpp"
 #include "session/live_frames.hpp"
 #include "session/live_scene.hpp"
 
 namespace foresight {
-
-/// All joints of a robot, each with the instants at which its own drive told its positions. One thread.
-class JointTracks {
- public:
-  explicit JointTracks(std::size_t joints) : tracks_(joints, ShaftTrack({})) {}
-  /// Only of joints that are homed: before, they tell no position.
-  void add(const RobotCycle& cycle);
-  /// On the encoders' clock.
-  JointState at(RobotTime encoder_time) const;
-  /// Have all joints told of that instant?
-  bool know(RobotTime encoder_time) const;
-
- private:
-  std::vector<ShaftTrack> tracks_;
-};
 
 /// Takes what the control loop hands out when it is asked for a pose. Where the rig's head is calibrated, cameras stand
 /// where the registration finds them; mock cameras, else, where the encoders say by the lab's drawing; real ones are
@@ -55,8 +40,8 @@ class EncoderPoses final : public PoseSource {
   Cycles cycles_;
   std::vector<std::string> names_;
   JointTracks joints_;
-  std::size_t pan_ = 0, tilt_ = 0;  // indices of the rig's joints; only with a registration
-  std::optional<Registration> registration_;
+  std::size_t pan_ = 0, tilt_ = 0;              // indices of the rig's joints; only with a registration
+  std::unique_ptr<Registration> registration_;  // null: the head is not calibrated
 };
 
 /// Poses that somebody else gives, such as of a camera that stands still: asked for the instant of each image.

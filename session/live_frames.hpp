@@ -18,15 +18,9 @@
 #include "common/clock.hpp"
 #include "drivers/camera/stereo_pairing.hpp"
 #include "scene/posed_frame.hpp"
+#include "session/joint_tracks.hpp"
 
 namespace foresight {
-
-/// Where all joints of a robot were at one instant, each interpolated from its own stamped samples.
-struct JointState {
-  RobotTime time;                             ///< on the encoders' clock: the cameras' with the calibrated offset
-  StateStatus status = StateStatus::invalid;  ///< of the worst joint; `invalid`: positions say nothing
-  std::vector<double> positions;              ///< rad or m, in the rig's order; empty without a robot
-};
 
 /// What is known of where cameras and scene were when a pair was taken.
 struct PairPoses {

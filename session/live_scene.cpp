@@ -29,7 +29,10 @@ bool has_triangles(const std::vector<Node>& nodes) {
 
 }  // namespace
 
-LiveScene::LiveScene(const sim::MockStereo& mock) : lenses_(lenses_of(mock)), lab_(mock.world()) {
+LiveScene::LiveScene(const sim::MockStereo& mock) : LiveScene(mock.world(), lenses_of(mock)) {}
+
+LiveScene::LiveScene(std::shared_ptr<const sim::LiveLab> world, const StereoLenses& lenses)
+    : lenses_(lenses), lab_(std::move(world)) {
   const sim::Lab& lab = lab_->lab();
   model_ = std::make_shared<const SceneModel>(sim::model_of(lab, lab_->modelled_rest()));
   for (const sim::Part& part : lab.parts) moves_.push_back(part.moves && part.name != sim::kBall);  // it has no encoder

@@ -22,6 +22,7 @@ class LiveScene {
  public:
   /// Of a mock lab: its own lenses and parts as the robot believes them to be, arm and ball at rest.
   explicit LiveScene(const sim::MockStereo& mock);
+  LiveScene(std::shared_ptr<const sim::LiveLab> lab, const StereoLenses& lenses);
   /// Of real cameras: their calibrations; the scene of `scene_file` (scene/scene_reader.hpp), and the rig's robot,
   /// whose links are the nodes of their names, or come as further nodes where the scene has none. `rig` may be null.
   /// Throws what read_scene() does; InputError where the right camera's calibration has no T_left_right, or where the

@@ -82,7 +82,6 @@ void RunRecorder::write(const LiveFrame& frame) {
     full_ = true;
     return;
   }
-  if (options_.slowed_by.count() > 0) std::this_thread::sleep_for(options_.slowed_by);
   check(frame.pair.left, options_.lenses.left, "left", last_left_);
   check(frame.pair.right, options_.lenses.right, "right", last_right_);
   last_left_ = frame.pair.left.time;

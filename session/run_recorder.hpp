@@ -27,7 +27,6 @@ struct RecorderOptions {
   bool posed = true;
   std::optional<std::filesystem::path> tags = {};  ///< map of tags, copied into the run as tags.txt
   double spare_bytes = 16e6;                       ///< of the disk that are left free
-  Duration slowed_by{0};                           ///< for tests: a disk that takes so much longer for a pair
 };
 
 /// What is recorded beside the folder `out`: "run/" and "-joints.csv" give "run-joints.csv".
