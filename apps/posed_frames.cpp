@@ -17,14 +17,7 @@ std::vector<ExpectedView> some_views(const RunFolder& run) {
   return views;
 }
 
-constexpr double kMarginSigmas = 2;
-constexpr double kLargestMargin = 8;
-
 }  // namespace
-
-double margin_for(double margin_px, double predicted_px) {
-  return std::max(margin_px, std::min(margin_px + kMarginSigmas * predicted_px, kLargestMargin));
-}
 
 PosedFrame load_posed_frame(const RunFolder& run, std::size_t index) {
   const auto posed = [&](const RunImage& image, const Lens& lens) {

@@ -12,9 +12,6 @@ namespace foresight {
 /// Reads the pixels of frame `index` of the run, with poses and scene. Throws InputError.
 PosedFrame load_posed_frame(const RunFolder& run, std::size_t index);
 
-/// Margin for an image whose pose is expected to be off by `predicted_px`: `margin_px` is that of exact poses.
-double margin_for(double margin_px, double predicted_px);
-
 /// The model's surface, cut into charts of a size that suits the run's views.
 std::shared_ptr<const SurfacePatches> surface_for(const RunFolder& run);
 

@@ -11,6 +11,7 @@
 #include "apps/robot/status_view.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
+#include "session/joint_log.hpp"
 #include "session/robot_cameras.hpp"
 
 namespace foresight {
@@ -44,7 +45,7 @@ class Console {
       : rig_(rig), devices_(devices), robot_(robot), cameras_(cameras), keys_(rig.gate_options().joints) {
     if (!arguments.follow.empty())
       follow_.emplace(FollowFile(arguments.follow, rig), rig.joint_names(), arguments.may_home);
-    if (!arguments.record.empty()) joints_.emplace(joint_log_beside(arguments.record), rig);
+    if (!arguments.record.empty()) joints_.emplace(joint_log_beside(arguments.record), rig, robot.cycles());
     if (keyboard_.is_terminal()) say(KeyOperator::help());
   }
 
@@ -59,8 +60,7 @@ class Console {
     if (!follow_ && keyboard_.is_terminal()) wish = keys_.tick(now, status, typed);
     if (wish.request != RobotRequest::none) robot_.ask(wish.request);
     if (wish.command) robot_.submit(*wish.command);
-    if (joints_) joints_->add(status);
-    if (cameras_) cameras_->add_encoders(status);
+    if (joints_) joints_->write();
     show(now, status);
     notify(now, status);
     return !wish.quit;
@@ -114,7 +114,7 @@ class Console {
 int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras) {
   devices.bring_up(say);
   std::stop_source stop;
-  if (cameras) clock.every(kTick, [cameras](RobotTime) { cameras->watch().step(); });
+  if (cameras) clock.every(kTick, [cameras](RobotTime) { cameras->step(); });
   clock.every(kTick, [&](RobotTime now) {
     if (!stop.stop_requested() && (!console.tick(now) || stop_signal != 0)) stop.request_stop();
   });
@@ -145,7 +145,7 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
       robot.run(clock, stop, set_up);
     });
     up.get_future().get();
-    if (cameras) cameras->watch().start();  // the drives already wait for the loop: that goes first
+    if (cameras) cameras->start();  // the drives already wait for the loop: that goes first
     notify_service("READY=1");
     for (RobotTime due = clock.now(); stop_signal == 0 && console.tick(due); due = std::max(due + kTick, clock.now()))
       clock.sleep_until(due + kTick);
@@ -156,14 +156,14 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
 }
 
 /// Null where there are none to run. In stepped time, pictures that nobody keeps are not drawn.
-std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& devices, Clock& clock,
-                                           const Arguments& arguments) {
+std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& devices, const Robot& robot,
+                                           Clock& clock, const Arguments& arguments) {
   if (!rig.cameras || !arguments.cameras || (arguments.stepped && arguments.record.empty())) return nullptr;
   RobotCameraOptions options;
   options.mock = arguments.mock;
   if (!arguments.record.empty()) options.record = arguments.record;
   if (options.mock || rig.cameras->mock()) say("lighting the lab");
-  return std::make_unique<RobotCameras>(rig, devices, clock, options);
+  return std::make_unique<RobotCameras>(rig, devices, robot, clock, options);
 }
 
 template <typename ClockKind>
@@ -182,7 +182,7 @@ int run_with(const Rig& rig, const Arguments& arguments,
   const auto shape = rig.shape();
   if (!shape) say("the rig has no robot.urdf: nothing is checked against the surroundings");
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
-  const auto cameras = make_cameras(rig, devices, clock, arguments);
+  const auto cameras = make_cameras(rig, devices, robot, clock, arguments);
   Console console(rig, devices, robot, cameras.get(), arguments);
   std::signal(SIGINT, [](int signal) { stop_signal = signal; });
   std::signal(SIGTERM, [](int signal) { stop_signal = signal; });
