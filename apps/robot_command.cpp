@@ -6,11 +6,12 @@
 #include <thread>
 
 #include "apps/robot/keyboard.hpp"
-#include "apps/robot/operators.hpp"
 #include "apps/robot/service_notify.hpp"
 #include "apps/robot/status_view.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
+#include "operators/follow_operator.hpp"
+#include "operators/key_operator.hpp"
 #include "session/joint_log.hpp"
 #include "session/robot_cameras.hpp"
 
@@ -42,28 +43,31 @@ class Console {
  public:
   /// `cameras`: may be null.
   Console(const Rig& rig, const RobotDevices& devices, Robot& robot, RobotCameras* cameras, const Arguments& arguments)
-      : rig_(rig), devices_(devices), robot_(robot), cameras_(cameras), keys_(rig.gate_options().joints) {
-    if (!arguments.follow.empty())
+      : rig_(rig),
+        devices_(devices),
+        robot_(robot),
+        cameras_(cameras),
+        // The keyboard can always stop and quit; it drives only where no file does.
+        keys_(rig.gate_options().joints,
+              arguments.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops) {
+    if (!arguments.follow.empty()) {
       follow_.emplace(FollowFile(arguments.follow, rig), rig.joint_names(), arguments.may_home);
+      commanders_.push_back(&*follow_);
+    }
+    if (keyboard_.is_terminal()) commanders_.push_back(&keys_);
     if (!arguments.record.empty()) joints_.emplace(joint_log_beside(arguments.record), rig, robot.cycles());
     if (keyboard_.is_terminal()) say(KeyOperator::help());
   }
 
   /// False: the program shall end.
   bool tick(RobotTime now) {
+    keys_.press(keyboard_.pressed());
+    const bool goes_on = serve(commanders_, robot_, now);
     const RobotStatus status = robot_.status();
-    OperatorWish wish = follow_ ? follow_->tick(now, status) : OperatorWish{};
-    const std::string typed = keyboard_.pressed();
-    // The keyboard can always stop and quit; it drives only where no file does.
-    if (follow_ && typed.find(' ') != std::string::npos) wish.request = RobotRequest::emergency_stop;
-    if (follow_ && typed.find('q') != std::string::npos) wish.quit = true;
-    if (!follow_ && keyboard_.is_terminal()) wish = keys_.tick(now, status, typed);
-    if (wish.request != RobotRequest::none) robot_.ask(wish.request);
-    if (wish.command) robot_.submit(*wish.command);
     if (joints_) joints_->write();
     show(now, status);
     notify(now, status);
-    return !wish.quit;
+    return goes_on;
   }
 
   /// The last words, and the exit code.
@@ -93,9 +97,7 @@ class Console {
   void notify(RobotTime now, const RobotStatus& status) {
     const auto period = service_watchdog_period();
     if (!period || now - notified_ < *period / 2) return;
-    // Only while the loop goes on.
-    if (status.loop.cycles() != cycles_) notify_service("WATCHDOG=1");
-    cycles_ = status.loop.cycles();
+    if (life_.goes_on(now, status)) notify_service("WATCHDOG=1");
     notified_ = now;
   }
 
@@ -107,8 +109,9 @@ class Console {
   Keyboard keyboard_;
   KeyOperator keys_;
   std::optional<FollowOperator> follow_;
+  std::vector<Commander*> commanders_;
+  LoopLife life_;
   RobotTime shown_, notified_;
-  std::uint64_t cycles_ = 0;
 };
 
 int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras) {

@@ -89,7 +89,7 @@ class BroadcastRing {
     Words words;
     for (std::size_t i = 0; i < kWords; ++i) words[i] = slot.words[i].load(std::memory_order_acquire);
     if (slot.number.load(std::memory_order_relaxed) != number) return false;
-    std::memcpy(&value, words.data(), sizeof value);
+    std::memcpy(static_cast<void*>(&value), words.data(), sizeof value);
     return true;
   }
 

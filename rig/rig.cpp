@@ -156,7 +156,7 @@ void read_surroundings(const YamlMap& map, Surroundings& out) {
   if (!map.has("obstacles")) return;
   for (const YamlMap& obstacle : map.maps("obstacles")) {
     obstacle.require_known({"name", "box_m"});
-    out.obstacles.push_back(box(obstacle, "box_m"));
+    out.obstacles.push_back({obstacle.has("name") ? obstacle.text("name") : "", box(obstacle, "box_m")});
   }
 }
 

@@ -108,7 +108,13 @@ sim::NodeConfig emulated(const RigJoint& joint, DriveProtocol protocol) {
   // Not quite at home, where it can be looked for.
   const double home = std::clamp(0.0, d.min_position, d.max_position);
   out.home_position = at_drive(home);
-  out.motor.start = at_drive(powercube ? std::min(home + 0.02 * room, d.max_position) : home);
+  out.motor.start = at_drive(powercube && !joint.absolute ? std::min(home + 0.02 * room, d.max_position) : home);
+  // By a limit switch (CiA 402, methods 17 and 18), home is where the switch is.
+  if (!powercube && !joint.absolute && (joint.homing_method == 17 || joint.homing_method == 18)) {
+    const bool low = joint.homing_method == 17;
+    (low ? out.low_switch : out.high_switch) = out.home_position;
+    out.motor.start = out.home_position + (low ? 0.02 : -0.02) * room;
+  }
   out.motor.min_stop = out.min_position - 0.05 * room;
   out.motor.max_stop = out.max_position + 0.05 * room;
   out.motor.max_velocity = 1.5 * d.max_velocity;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "common/text.hpp"
 
@@ -33,6 +34,11 @@ std::optional<Duration> service_watchdog_period() {
   const auto us = text == nullptr ? std::nullopt : parse_integer(text);
   if (!us || *us <= 0 || *us > 86'400'000'000) return std::nullopt;
   return Duration{*us * 500};
+}
+
+bool LoopLife::goes_on(RobotTime now, const RobotStatus& status) noexcept {
+  const bool sets_up = status.phase == RobotPhase::setting_up && now - status.time <= kSetUpWithin;
+  return std::exchange(cycles_, status.loop.cycles()) != status.loop.cycles() || sets_up;
 }
 
 }  // namespace foresight

@@ -17,6 +17,7 @@ const char* to_string(GateState state) {
   switch (state) {
     case GateState::idle: return "idle";
     case GateState::following: return "following";
+    case GateState::homing: return "homing";
     case GateState::stopping: return "stopping";
     case GateState::stopped: return "stopped";
   }
@@ -43,6 +44,7 @@ const char* to_string(GateReason reason) {
     case GateReason::feedback_lost: return "no position from the drive in time";
     case GateReason::feedback_not_finite: return "the drive's position is not a number";
     case GateReason::feedback_frozen: return "the drive's position does not change while it should";
+    case GateReason::feedback_jumps: return "the drive's position jumps";
     case GateReason::drive_fault: return "the drive reports a fault";
     case GateReason::drive_offline: return "the drive does not answer";
     case GateReason::drive_not_enabled: return "the drive is no longer enabled";

@@ -15,6 +15,11 @@ constexpr Duration kRestWithin = 3s;
 bool is_enabled(const DriveFeedback& f) {
   return f.state == DriveState::enabled;
 }
+std::vector<double> velocities(const GateOptions& options) {
+  std::vector<double> out;
+  for (const GateJoint& joint : options.joints) out.push_back(joint.limits.velocity);
+  return out;
+}
 bool is_faulty(const DriveFeedback& f) {
   return f.state == DriveState::fault;
 }
@@ -28,12 +33,14 @@ const char* to_string(RobotPhase phase) {
     case RobotPhase::ready: return "ready";
     case RobotPhase::homing: return "homing";
     case RobotPhase::stopped: return "stopped";
+    case RobotPhase::setting_up: return "setting up";
   }
   return "?";
 }
 
 Robot::Robot(GateOptions options, RobotShape* shape, std::vector<DriveNetwork*> networks, std::vector<Drive*> drives)
     : gate_(std::move(options), shape),
+      rest_(velocities(gate_.options()), gate_.options().feedback_age_s),
       networks_(std::move(networks)),
       drives_(std::move(drives)),
       feedback_(drives_.size()) {
@@ -45,11 +52,15 @@ void Robot::submit(const MotionCommand& command) {
   commands_.put(command);
 }
 
-void Robot::ask(RobotRequest request) noexcept {
-  if (request == RobotRequest::emergency_stop)
-    stop_asked_ = true;  // no later request may take its place
-  else
-    request_ = request;
+void Robot::ask(RobotRequest request, std::uint64_t operator_id) noexcept {
+  if (request == RobotRequest::none) return;
+  if (request == RobotRequest::emergency_stop) {
+    stop_asked_by_ = operator_id;
+    stop_asked_ = true;
+    return;
+  }
+  const std::lock_guard lock(writers_);
+  requests_.put({request, operator_id});
 }
 
 RobotStatus Robot::status() const {
@@ -58,16 +69,20 @@ RobotStatus Robot::status() const {
   return last_;
 }
 
-void Robot::enter(RobotPhase phase, RobotTime now) noexcept {
+void Robot::enter(RobotPhase phase, RobotTime now, int waiting_for) noexcept {
   phase_ = phase;
   phase_since_ = now;
-  waiting_for_ = -1;
+  waiting_for_ = waiting_for;
 }
 
-// A gripper keeps its last set-point and with it its grip.
+bool Robot::at_rest() const noexcept {
+  return gate_.set_points_rest() && rest_.at_rest();
+}
+
+// A gripper keeps its last set-point and with it its grip, but not one that moves on its own to look for home.
 void Robot::stop_all() noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i)
-    if (!gate_.options().joints[i].keeps_grip) drives_[i]->request(DriveRequest::quick_stop);
+    if (!gate_.options().joints[i].keeps_grip || !gate_.has_set_point(i)) drives_[i]->request(DriveRequest::quick_stop);
 }
 
 // The gripper stays as it is here too: what it holds must not fall because the robot rests.
@@ -82,10 +97,28 @@ bool Robot::all_disabled() const noexcept {
   return true;
 }
 
-void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
-  const GateState gate = gate_.status().state;
-  const bool free = gate == GateState::idle || (gate == GateState::stopped && gate_.at_rest());
+// The request is read before the stop: who asked for it after the stop made the stop visible, too.
+void Robot::take_requests(RobotTime now) noexcept {
+  const auto asked = new_requests_.take();
+  if (stop_asked_.exchange(false)) {
+    for (std::size_t i = 0; i < kRequestsKept && new_requests_.take(); ++i) {
+    }
+    last_request_ = {RobotRequest::emergency_stop, stop_asked_by_};
+    refused_ = asked ? "an emergency stop came: what else was asked for is dropped" : "";
+    if (phase_ == RobotPhase::enabling) stop_all();
+    gate_.emergency_stop("asked for");
+    if (phase_ == RobotPhase::enabling) enter(RobotPhase::stopped, now);
+    return;
+  }
+  if (!asked || ending_) return;
+  last_request_ = *asked;
   refused_ = "";
+  follow(asked->what, now);
+}
+
+void Robot::follow(RobotRequest request, RobotTime now) noexcept {
+  const GateState gate = gate_.status().state;
+  const bool free = (gate == GateState::idle || gate == GateState::stopped) && at_rest();
   switch (request) {
     case RobotRequest::none:
     case RobotRequest::emergency_stop: return;
@@ -94,7 +127,7 @@ void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
       break;
     case RobotRequest::reset:
       if (phase_ != RobotPhase::stopped) return void(refused_ = "reset: nothing is stopped");
-      if (!gate_.at_rest()) return void(refused_ = "reset: wait until the robot is at rest");
+      if (!at_rest()) return void(refused_ = "reset: wait until the robot is at rest");
       for (std::size_t i = 0; i < drives_.size(); ++i) {
         drives_[i]->request(DriveRequest::reset_fault);
         reset_asked_[i] = is_faulty(feedback_[i]);
@@ -102,7 +135,7 @@ void Robot::follow_request(RobotRequest request, RobotTime now) noexcept {
       ask_again_ = now;
       return enter(RobotPhase::enabling, now);
     case RobotRequest::set_up:
-      if ((phase_ != RobotPhase::disabled && phase_ != RobotPhase::stopped) || !gate_.at_rest())
+      if ((phase_ != RobotPhase::disabled && phase_ != RobotPhase::stopped) || !at_rest())
         return void(refused_ = "set up: only while disabled or stopped, and at rest");
       set_up_asked_ = true;
       return;
@@ -147,67 +180,67 @@ void Robot::advance_enabling(RobotTime now) noexcept {
   if (now - phase_since_ < kEnableWithin) return;
   refused_ = "a drive did not get enabled in time";
   stop_all();
-  const int joint = waiting_for_;
-  enter(RobotPhase::stopped, now);
-  waiting_for_ = joint;
+  enter(RobotPhase::stopped, now, waiting_for_);
 }
 
+// After the gate has looked at all drives: if it stopped, nothing goes on here.
 void Robot::advance_homing(RobotTime now) noexcept {
-  const DriveFeedback& f = feedback_[homing_];
   waiting_for_ = static_cast<int>(homing_);
-  const bool failed =
-      f.state == DriveState::fault || f.state == DriveState::offline || now - phase_since_ > kHomeWithin;
-  if (failed) {
-    gate_.emergency_stop("homing failed");
-    stop_all();
-    const int joint = waiting_for_;
-    enter(RobotPhase::stopped, now);
-    waiting_for_ = joint;
-    return;
-  }
   if (!homing_asked_) {
+    if (!gate_.begin_homing(homing_, now)) return;
     drives_[homing_]->request(DriveRequest::home);
     homing_asked_ = true;
     phase_since_ = now;
     return;
   }
+  if (now - phase_since_ > kHomeWithin) return gate_.emergency_stop("homing takes too long");
   // The drive needs a few cycles to say that it has begun.
+  const DriveFeedback& f = feedback_[homing_];
   if (now - phase_since_ < 200ms || !f.homed || f.state != DriveState::enabled) return;
+  gate_.end_homing(f, now);
   homing_asked_ = false;
   if (++homing_ < drives_.size()) return;
   if (gate_.reset(feedback_, now)) return enter(RobotPhase::ready, now);
   gate_.emergency_stop("homing ended beyond the limits");
-  enter(RobotPhase::stopped, now);
+}
+
+/// How many of taken_ there are now.
+std::size_t Robot::take_commands() noexcept {
+  std::size_t count = 0;
+  while (count < taken_.size()) {
+    const auto command = new_commands_.take();
+    if (!command) break;
+    taken_[count++] = *command;
+  }
+  return count;
+}
+
+void Robot::let_gate_step(RobotTime now) noexcept {
+  const std::size_t commands = take_commands();
+  if (phase_ != RobotPhase::ready && phase_ != RobotPhase::homing && phase_ != RobotPhase::stopped) return;
+  const bool may_move = phase_ == RobotPhase::ready && all_homed();
+  if (phase_ == RobotPhase::ready && !may_move && commands > 0)
+    refused_ = "not all joints know where they are: home first";
+  gate_.step(now, {taken_.data(), may_move ? commands : 0}, feedback_);
+  if (phase_ == RobotPhase::homing && gate_.status().state != GateState::stopped) advance_homing(now);
+  if (phase_ != RobotPhase::stopped && gate_.status().state == GateState::stopped)
+    enter(RobotPhase::stopped, now, waiting_for_);
+  // Once for all that goes wrong until the next start, and whenever it does: a drive may fail while others still brake.
+  if (gate_.wants_quick_stop() && !told_to_stop_) stop_all();
+  told_to_stop_ = gate_.wants_quick_stop();
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    if (gate_.has_set_point(i)) drives_[i]->set_point(gate_.set_point(i).position, gate_.set_point(i).velocity);
 }
 
 void Robot::cycle(RobotTime now) noexcept {
   for (DriveNetwork* network : networks_) network->receive(now);
   for (std::size_t i = 0; i < drives_.size(); ++i) feedback_[i] = drives_[i]->feedback();
+  rest_.see(feedback_, now);
   for (DriveNetwork* network : networks_)
     if (!network->healthy() && phase_ != RobotPhase::disabled) gate_.bus_fault(network->reason());
-  const auto command = commands_.take();
-  if (stop_asked_.exchange(false)) {
-    gate_.emergency_stop("asked for");
-    if (phase_ == RobotPhase::homing || phase_ == RobotPhase::enabling) stop_all();
-    if (phase_ != RobotPhase::disabled) enter(RobotPhase::stopped, now);
-  }
-  const RobotRequest request = request_.exchange(RobotRequest::none);
-  if (request != RobotRequest::none) follow_request(request, now);
-
+  take_requests(now);
   if (phase_ == RobotPhase::enabling) advance_enabling(now);
-  if (phase_ == RobotPhase::homing) advance_homing(now);
-  if (phase_ == RobotPhase::ready || phase_ == RobotPhase::stopped) {
-    const bool may_move = phase_ == RobotPhase::ready && all_homed();
-    if (phase_ == RobotPhase::ready && !may_move && command)
-      refused_ = "not all joints know where they are: home first";
-    gate_.step(now, may_move ? command : std::nullopt, feedback_);
-    if (gate_.status().state == GateState::stopped && phase_ == RobotPhase::ready) {
-      if (gate_.wants_quick_stop()) stop_all();
-      enter(RobotPhase::stopped, now);
-    }
-    for (std::size_t i = 0; i < drives_.size(); ++i)
-      drives_[i]->set_point(gate_.set_point(i).position, gate_.set_point(i).velocity);
-  }
+  let_gate_step(now);
   for (DriveNetwork* network : networks_) network->send(now);
   publish(now);
 }
@@ -228,6 +261,7 @@ void Robot::publish(RobotTime now) noexcept {
     }
   status.all_homed = all_homed();
   status.waiting_for = waiting_for_;
+  status.last_request = last_request_;
   status.refused = refused_;
   std::copy(feedback_.begin(), feedback_.end(), status.feedback.begin());
   for (std::size_t i = 0; i < drives_.size(); ++i) status.set_point[i] = gate_.set_point(i);
@@ -261,6 +295,8 @@ void Robot::run(Clock& clock, std::stop_token stop, const std::function<void()>&
     loop_.count(late, period);
     cycle(clock.now());
     if (std::exchange(set_up_asked_, false) && set_up) {
+      enter(RobotPhase::setting_up, clock.now());
+      publish(clock.now());
       set_up();
       enter(RobotPhase::disabled, clock.now());
       due = clock.now();
@@ -278,13 +314,15 @@ void Robot::shut_down(Clock& clock, RobotTime due) noexcept {
     cycle(clock.now());
     due = clock.now() + period;
   };
+  ending_ = true;
+  if (phase_ == RobotPhase::enabling) stop_all();
   gate_.emergency_stop("the program ends");
-  if (phase_ == RobotPhase::homing || phase_ == RobotPhase::enabling) stop_all();
   if (phase_ != RobotPhase::disabled) enter(RobotPhase::stopped, clock.now());
   const RobotTime until = clock.now() + kRestWithin;
   do cycle_once();
-  while (!gate_.at_rest() && clock.now() < until);
-  ask(RobotRequest::disable);
+  while (!at_rest() && clock.now() < until);
+  disable_all();
+  enter(RobotPhase::disabled, clock.now());
   const RobotTime disabled_until = clock.now() + 1s;
   do cycle_once();
   while (!all_disabled() && clock.now() < disabled_until);

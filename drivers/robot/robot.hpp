@@ -1,8 +1,14 @@
 // The arm, the gripper and the pan-tilt head behind the safety gate: what drives them, cycle by cycle.
 //
 //   disabled --enable--> enabling --> ready --home--> homing --> ready
-//       ^                   |           |               |
-//       +---disable---------+-- stopped <---------------+     stopped: latched, with a reason, until reset
+//     ^ ^ |                 |           |               |
+//     | +-|----disable------+-- stopped <---------------+     stopped: latched, with a reason, until reset
+//     |   |                        |
+//     |   +--set up--> setting_up <-+
+//     +--------------------+
+//
+// The gate watches all drives while one homes as it does in any other motion. "At rest" means that set-points and
+// measured positions stand still (RestWatch): no torque is taken away before.
 #pragma once
 
 #include <atomic>
@@ -17,11 +23,19 @@
 #include "common/triple_buffer.hpp"
 #include "drivers/drive/drive.hpp"
 #include "drivers/robot/loop_statistics.hpp"
+#include "drivers/robot/rest_watch.hpp"
 #include "drivers/robot/safety_gate.hpp"
 
 namespace foresight {
 
-enum class RobotPhase : std::uint8_t { disabled, enabling, ready, homing, stopped };
+enum class RobotPhase : std::uint8_t {
+  disabled,
+  enabling,
+  ready,
+  homing,
+  stopped,
+  setting_up,  ///< drives are configured anew; no cycles meanwhile
+};
 const char* to_string(RobotPhase phase);
 
 enum class RobotRequest : std::uint8_t {
@@ -36,6 +50,12 @@ enum class RobotRequest : std::uint8_t {
   emergency_stop,  ///< any time
 };
 
+/// A request, and who made it.
+struct AskedRequest {
+  RobotRequest what = RobotRequest::none;
+  std::uint64_t operator_id = 0;  ///< 0: nobody in particular
+};
+
 struct RobotStatus {
   RobotTime time;
   RobotPhase phase = RobotPhase::disabled;
@@ -43,8 +63,9 @@ struct RobotStatus {
   bool bus_healthy = true;
   const char* bus_reason = "";
   bool all_homed = false;
-  int waiting_for = -1;      ///< enabling, homing: the joint that is not there yet
-  const char* refused = "";  ///< why the last request was not followed; static text
+  int waiting_for = -1;       ///< enabling, homing: the joint that is not there yet
+  AskedRequest last_request;  ///< that was taken up, followed or not
+  const char* refused = "";   ///< why it was not followed; static text
   std::array<DriveFeedback, kMostJoints> feedback{};
   std::array<JointMotion, kMostJoints> set_point{};
   LoopStatistics loop;
@@ -72,6 +93,7 @@ struct RobotCycle {
   std::array<JointCycle, kMostJoints> joint{};
 };
 
+inline constexpr std::size_t kCommandsKept = 64, kRequestsKept = 64;
 /// How many cycles a reader may be behind: 4 s at 250 Hz.
 inline constexpr std::size_t kCyclesKept = 1024;
 
@@ -82,10 +104,14 @@ class Robot {
   /// outlive the robot.
   Robot(GateOptions options, RobotShape* shape, std::vector<DriveNetwork*> networks, std::vector<Drive*> drives);
 
-  /// The newest command wins; one that is replaced before a cycle saw it is never followed.
+  /// Judged in the next cycle, those of all operators in the order in which they came: so of one operator's, the
+  /// newest wins. More than kCommandsKept between two cycles: the oldest go.
   void submit(const MotionCommand& command);
-  /// Followed in the next cycle if the phase allows; status().refused says why not.
-  void ask(RobotRequest request) noexcept;
+  /// Requests are followed in the order in which they came, one a cycle, each if the phase allows it then;
+  /// status().refused says why not. Before all of them goes an emergency stop: it counts in the next cycle, and what
+  /// was asked for before that cycle is dropped, whether it came before the stop or after. So nothing that was asked
+  /// for without having seen the stop can undo it.
+  void ask(RobotRequest request, std::uint64_t operator_id = 0) noexcept;
   RobotStatus status() const;
   /// Hands out every cycle from now on, to any number of readers, of which each is for one thread. The loop never
   /// waits for them: who falls behind by more than kCyclesKept misses the oldest, and counts them.
@@ -96,15 +122,19 @@ class Robot {
 
   /// Cycles at absolute deadlines until `stop`, then shuts down: stops under control, closes the brakes. In
   /// real time or in stepped time.
-  /// `set_up` follows RobotRequest::set_up between two cycles; it may block, throws nothing, and leaves all drives
-  /// disabled.
+  /// `set_up` follows RobotRequest::set_up between two cycles, in phase setting_up; it may block, throws nothing, and
+  /// leaves all drives disabled.
   void run(Clock& clock, std::stop_token stop, const std::function<void()>& set_up = {}) noexcept;
 
  private:
-  void follow_request(RobotRequest request, RobotTime now) noexcept;
+  std::size_t take_commands() noexcept;
+  void take_requests(RobotTime now) noexcept;
+  void follow(RobotRequest request, RobotTime now) noexcept;
+  void let_gate_step(RobotTime now) noexcept;
   void advance_enabling(RobotTime now) noexcept;
   void advance_homing(RobotTime now) noexcept;
-  void enter(RobotPhase phase, RobotTime now) noexcept;
+  void enter(RobotPhase phase, RobotTime now, int waiting_for = -1) noexcept;
+  bool at_rest() const noexcept;
   void stop_all() noexcept;
   void publish(RobotTime now) noexcept;
   void hand_out(const RobotStatus& status) noexcept;
@@ -114,6 +144,7 @@ class Robot {
   bool all_homed() const noexcept;
 
   SafetyGate gate_;
+  RestWatch rest_;
   std::vector<DriveNetwork*> networks_;
   std::vector<Drive*> drives_;
   std::vector<DriveFeedback> feedback_;
@@ -122,16 +153,23 @@ class Robot {
   std::size_t homing_ = 0;
   bool homing_asked_ = false;
   bool set_up_asked_ = false;
+  bool told_to_stop_ = false;  // the drives, for what the gate has latched
+  bool ending_ = false;
   std::array<bool, kMostJoints> reset_asked_{};  // since enabling began
   RobotTime ask_again_;
+  AskedRequest last_request_;
   const char* refused_ = "";
   int waiting_for_ = -1;
   LoopStatistics loop_;
 
-  std::mutex writers_;  // of commands; the loop never takes it
-  TripleBuffer<MotionCommand> commands_;
-  std::atomic<RobotRequest> request_{RobotRequest::none};
+  std::mutex writers_;  // of commands and requests; the loop never takes it
+  BroadcastRing<MotionCommand> commands_{kCommandsKept};
+  BroadcastRing<MotionCommand>::Reader new_commands_ = commands_.reader();
+  BroadcastRing<AskedRequest> requests_{kRequestsKept};
+  BroadcastRing<AskedRequest>::Reader new_requests_ = requests_.reader();
+  std::array<MotionCommand, kCommandsKept> taken_{};
   std::atomic<bool> stop_asked_{false};
+  std::atomic<std::uint64_t> stop_asked_by_{0};
   std::uint64_t cycle_number_ = 0;
   BroadcastRing<RobotCycle> cycles_{kCyclesKept};
   mutable std::mutex readers_;  // of statuses

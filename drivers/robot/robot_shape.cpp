@@ -71,6 +71,12 @@ int joints_between(const std::vector<Node>& links, std::size_t one, std::size_t 
   return apart;
 }
 
+/// Negative inside: the way to the nearest face.
+double signed_distance(const Eigen::Vector3d& p, const Eigen::AlignedBox3d& box) {
+  if (!box.contains(p)) return box.exteriorDistance(p);
+  return -std::min((p - box.min()).minCoeff(), (box.max() - p).minCoeff());
+}
+
 }  // namespace
 
 double distance(const Capsule& one, const Capsule& other) {
@@ -80,7 +86,7 @@ double distance(const Capsule& one, const Capsule& other) {
 double distance(const Capsule& capsule, const Eigen::AlignedBox3d& box) {
   double least = 1e30;
   for (int i = 0; i <= kSamples; ++i)
-    least = std::min(least, box.exteriorDistance(capsule.a + i * (1.0 / kSamples) * (capsule.b - capsule.a)));
+    least = std::min(least, signed_distance(capsule.a + i * (1.0 / kSamples) * (capsule.b - capsule.a), box));
   return least - capsule.radius - 0.5 * (capsule.b - capsule.a).norm() / kSamples;
 }
 
@@ -111,13 +117,27 @@ RobotShape::RobotShape(UrdfRobot robot, std::vector<std::string> joints, const P
     link.has_body = !node.mesh.vertices.empty();
     if (link.has_body) link.body = capsule_around(node.mesh);
     link.moves = node.parent >= 0 && (input_[i - 1] >= 0 || links_[static_cast<std::size_t>(node.parent)].moves);
-    link.leaves = "link '" + node.name + "' leaves the workspace";
-    link.hits_obstacle = "link '" + node.name + "' comes too close to an obstacle";
-    for (std::size_t k = 0; k < i; ++k)
-      if (link.has_body && links_[k].has_body && (link.moves || links_[k].moves) &&
-          joints_between(robot_.links, i, k) > 2)
-        pairs_.push_back({i, k, "link '" + node.name + "' comes too close to link '" + robot_.links[k].name + "'"});
   }
+  surround({});
+}
+
+void RobotShape::surround(const Surroundings& surroundings) {
+  surroundings_ = surroundings;
+  couples_.clear();
+  const auto link_name = [this](std::size_t i) { return "link '" + robot_.links[i].name + "'"; };
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (!links_[i].has_body || !links_[i].moves) continue;
+    if (!surroundings_.workspace.isEmpty())
+      couples_.push_back({Against::workspace, i, 0, link_name(i) + " leaves the workspace"});
+    for (std::size_t k = 0; k < surroundings_.obstacles.size(); ++k)
+      couples_.push_back({Against::obstacle, i, k,
+                          link_name(i) + " comes too close to obstacle '" + surroundings_.obstacles[k].name + "'"});
+  }
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (links_[i].has_body && links_[k].has_body && (links_[i].moves || links_[k].moves) &&
+          joints_between(robot_.links, i, k) > 2)
+        couples_.push_back({Against::link, i, k, link_name(i) + " comes too close to " + link_name(k)});
 }
 
 void RobotShape::pose(std::span<const double> positions) noexcept {
@@ -133,21 +153,29 @@ void RobotShape::pose(std::span<const double> positions) noexcept {
     placed_[i] = {T_world_link_[i] * links_[i].body.a, T_world_link_[i] * links_[i].body.b, links_[i].body.radius};
 }
 
-const char* RobotShape::obstructed(std::span<const double> positions, const Surroundings& surroundings) noexcept {
-  pose(positions);
-  const Eigen::AlignedBox3d& space = surroundings.workspace;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (!links_[i].has_body || !links_[i].moves) continue;
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(placed_[i].radius);
-    const bool inside =
-        space.isEmpty() || (space.contains(placed_[i].a - reach) && space.contains(placed_[i].a + reach) &&
-                            space.contains(placed_[i].b - reach) && space.contains(placed_[i].b + reach));
-    if (!inside) return links_[i].leaves.c_str();
-    for (const Eigen::AlignedBox3d& obstacle : surroundings.obstacles)
-      if (distance(placed_[i], obstacle) < surroundings.clearance) return links_[i].hits_obstacle.c_str();
+double RobotShape::margin(const Couple& couple) const noexcept {
+  const Capsule& body = placed_[couple.link];
+  switch (couple.what) {
+    case Against::workspace: {
+      const Eigen::AlignedBox3d& space = surroundings_.workspace;
+      const Eigen::Vector3d low = body.a.cwiseMin(body.b) - space.min(), high = space.max() - body.a.cwiseMax(body.b);
+      return std::min(low.minCoeff(), high.minCoeff()) - body.radius;
+    }
+    case Against::obstacle: return distance(body, surroundings_.obstacles[couple.other].box) - surroundings_.clearance;
+    case Against::link: return distance(body, placed_[couple.other]) - surroundings_.clearance;
   }
-  for (const Pair& pair : pairs_)
-    if (distance(placed_[pair.one], placed_[pair.other]) < surroundings.clearance) return pair.message.c_str();
+  return 0;
+}
+
+void RobotShape::margins(std::span<const double> positions, std::span<double> out) noexcept {
+  pose(positions);
+  for (std::size_t i = 0; i < couples_.size(); ++i) out[i] = margin(couples_[i]);
+}
+
+const char* RobotShape::obstructed(std::span<const double> positions) noexcept {
+  pose(positions);
+  for (const Couple& couple : couples_)
+    if (margin(couple) < 0) return couple.message.c_str();
   return nullptr;
 }
 

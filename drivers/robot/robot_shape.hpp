@@ -21,14 +21,19 @@ struct Capsule {
 double distance(const Capsule& one, const Capsule& other);
 
 /// Least distance between a capsule's surface and a box, metres, never too large: the segment is sampled, and half of
-/// a step is taken off. Negative where they overlap.
+/// a step is taken off. Negative where they overlap, the more the deeper.
 double distance(const Capsule& capsule, const Eigen::AlignedBox3d& box);
+
+struct Obstacle {
+  std::string name;
+  Eigen::AlignedBox3d box;
+};
 
 /// Where the links may be. World frame, metres.
 struct Surroundings {
-  Eigen::AlignedBox3d workspace;               ///< no link that moves leaves it; empty: anywhere
-  std::vector<Eigen::AlignedBox3d> obstacles;  ///< tables, walls, the stand
-  double clearance = 0.02;                     ///< kept from obstacles and between links; > 0
+  Eigen::AlignedBox3d workspace;    ///< no link that moves leaves it; empty: anywhere
+  std::vector<Obstacle> obstacles;  ///< tables, walls, the stand
+  double clearance = 0.02;          ///< kept from obstacles and between links; > 0
 };
 
 /// A robot's links as capsules around their meshes. Thread: one at a time.
@@ -39,21 +44,34 @@ class RobotShape {
   /// joint that the robot does not have.
   RobotShape(UrdfRobot robot, std::vector<std::string> joints, const Pose& T_world_root, const std::string& where);
 
-  /// What keeps the robot from standing there, such as "link 'arm_5' leaves the workspace"; nullptr where nothing does.
-  /// Does not allocate. Links that are one or two joints apart are not compared: their neighbours' covers overlap.
-  const char* obstructed(std::span<const double> positions, const Surroundings& surroundings) noexcept;
+  /// What it must stay clear of from now on; of a new shape, only its own links. Allocates.
+  void surround(const Surroundings& surroundings);
+
+  /// How many couples of parts must stay apart: links and the workspace's walls, links and obstacles, links and other
+  /// links. Those that are one or two joints apart are not compared: their neighbours' covers overlap.
+  std::size_t couples() const { return couples_.size(); }
+  /// Of each couple, by how much it is farther apart than it must be, metres; negative: too close. `out`: couples() of
+  /// them. Does not allocate.
+  void margins(std::span<const double> positions, std::span<double> out) noexcept;
+  /// Both parts of a couple in words, such as "link 'arm_5' leaves the workspace"; valid until the next surround().
+  const char* message(std::size_t couple) const { return couples_[couple].message.c_str(); }
+
+  /// What keeps the robot from standing there, as message(); nullptr where nothing does. Does not allocate.
+  const char* obstructed(std::span<const double> positions) noexcept;
 
  private:
   struct Link {
     Capsule body;  ///< in the link's frame
     bool has_body = false, moves = false;
-    std::string leaves, hits_obstacle;  ///< messages
   };
-  struct Pair {
-    std::size_t one, other;
+  enum class Against : std::uint8_t { workspace, obstacle, link };
+  struct Couple {
+    Against what;
+    std::size_t link, other;  ///< `other`: index of the obstacle or link
     std::string message;
   };
   void pose(std::span<const double> positions) noexcept;
+  double margin(const Couple& couple) const noexcept;
 
   UrdfRobot robot_;
   std::vector<int> input_;  ///< per URDF joint, the index of its position, or -1
@@ -61,7 +79,8 @@ class RobotShape {
   std::vector<Pose> T_world_link_;
   std::vector<Link> links_;
   std::vector<Capsule> placed_;
-  std::vector<Pair> pairs_;
+  Surroundings surroundings_;
+  std::vector<Couple> couples_;
 };
 
 }  // namespace foresight

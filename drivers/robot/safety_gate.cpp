@@ -10,17 +10,27 @@ constexpr double kFirstSpeed = 0.1;    // of the ramp
 constexpr double kFrozenAfter = 0.25;  // seconds without any change of a position that should change
 constexpr double kFrozenWay = 0.25;    // share of the following error that the set-point moved meanwhile
 constexpr int kSamplesToRest = 4;      // poses checked on the way to where the robot would stop
+constexpr double kRetreatSpeed = 0.1;  // away from what the robot stands too close to
+constexpr double kSameMargin = 1e-9;   // metres, rounding
+// A drive that homes opens its brake first, and rests for a moment where it turns round at its switch.
+constexpr double kHomingFrozenAfter = 1;  // seconds
+constexpr int kHomingJumps = 1;           // where it sets its zero
 
 }  // namespace
 
 SafetyGate::SafetyGate(GateOptions options, RobotShape* shape)
     : options_(std::move(options)), shape_(shape), count_(options_.joints.size()) {
   options_.validate("safety gate");
+  if (shape_ != nullptr) {
+    shape_->surround(options_.surroundings);
+    here_.resize(shape_->couples());
+    there_.resize(shape_->couples());
+  }
   latch(GateReason::emergency_stop, -1, "not started yet", false);
 }
 
 bool SafetyGate::reset(std::span<const DriveFeedback> feedback, RobotTime now) noexcept {
-  if (status_.state == GateState::following || status_.state == GateState::stopping || feedback.size() != count_)
+  if ((status_.state != GateState::idle && status_.state != GateState::stopped) || feedback.size() != count_)
     return false;
   for (std::size_t i = 0; i < count_; ++i) {
     const JointLimits& limits = options_.joints[i].limits;
@@ -36,7 +46,7 @@ bool SafetyGate::reset(std::span<const DriveFeedback> feedback, RobotTime now) n
   for (std::size_t i = 0; i < count_; ++i) {
     motion_[i] = {feedback[i].position, 0, 0};
     target_[i] = feedback[i].position;
-    watched_[i] = {feedback[i].position, feedback[i].position, now};
+    watched_[i] = {feedback[i].position, feedback[i].position, now, feedback[i].time};
   }
   status_.state = GateState::idle;
   status_.reason = GateReason::none;
@@ -45,8 +55,31 @@ bool SafetyGate::reset(std::span<const DriveFeedback> feedback, RobotTime now) n
   status_.operator_id = 0;
   status_.speed = 0;
   quick_stop_ = false;
-  released_ = false;
+  homing_.reset();
+  operators_.forget_released();
   return true;
+}
+
+bool SafetyGate::begin_homing(std::size_t joint, RobotTime now) noexcept {
+  if (status_.state != GateState::idle || joint >= count_) return false;
+  status_.state = GateState::homing;
+  status_.reason = GateReason::none;
+  status_.joint = -1;
+  status_.detail = "";
+  homing_ = joint;
+  jumps_ = 0;
+  watched_[joint].since = now;
+  operators_.forget_released();
+  return true;
+}
+
+void SafetyGate::end_homing(const DriveFeedback& feedback, RobotTime now) noexcept {
+  if (status_.state != GateState::homing) return;
+  motion_[*homing_] = {feedback.position, 0, 0};
+  target_[*homing_] = feedback.position;
+  watched_[*homing_] = {feedback.position, feedback.position, now, feedback.time};
+  homing_.reset();
+  status_.state = GateState::idle;
 }
 
 void SafetyGate::emergency_stop(const char* why) noexcept {
@@ -57,7 +90,8 @@ void SafetyGate::bus_fault(const char* why) noexcept {
 }
 
 void SafetyGate::latch(GateReason reason, int joint, const char* detail, bool quick_stop) noexcept {
-  quick_stop_ = quick_stop_ || quick_stop;
+  // No set-point slows down a joint that looks for home: only its drive can.
+  quick_stop_ = quick_stop_ || quick_stop || status_.state == GateState::homing;
   if (status_.state == GateState::stopped) return;  // the first reason is the one that helps
   status_.state = GateState::stopped;
   status_.reason = reason;
@@ -71,18 +105,16 @@ void SafetyGate::stop(GateReason reason) noexcept {
   status_.reason = reason;
   status_.joint = -1;
   status_.detail = "";
-  released_ = reason == GateReason::deadman_released;
+  operators_.of(status_.operator_id, status_.operator_id).released = reason == GateReason::deadman_released;
 }
 
-GateReason SafetyGate::judge(const MotionCommand& command, RobotTime now) noexcept {
-  status_.joint = status_.state == GateState::stopped ? status_.joint : -1;
+GateReason SafetyGate::judge(const MotionCommand& command, const OperatorRecord& who, RobotTime now) const noexcept {
   if (command.joints != count_) return GateReason::wrong_joint_count;
   const std::int64_t most = seconds(options_.command_age_s).count();
   if (command.time.ns < now.ns - most) return GateReason::expired;
   if (command.time.ns > now.ns + most) return GateReason::from_the_future;
-  if (command.operator_id == 0 || (status_.operator_id != 0 && command.operator_id != status_.operator_id))
-    return GateReason::second_operator;
-  if (command.operator_id == last_operator_ && command.sequence <= last_sequence_) return GateReason::out_of_order;
+  if (command.session < who.session || (command.session == who.session && command.sequence <= who.sequence))
+    return GateReason::out_of_order;
   for (std::size_t i = 0; i < count_; ++i) {
     const JointLimits& limits = options_.joints[i].limits;
     // A little beyond, as rounding makes it, means the limit.
@@ -94,59 +126,107 @@ GateReason SafetyGate::judge(const MotionCommand& command, RobotTime now) noexce
   return GateReason::none;
 }
 
+void SafetyGate::drop(GateReason why) noexcept {
+  ++status_.dropped;
+  status_.last_dropped = why;
+}
+
 void SafetyGate::take(const MotionCommand& command, RobotTime now) noexcept {
-  const GateReason wrong = judge(command, now);
-  if (wrong != GateReason::none) {
-    ++status_.dropped;
-    status_.last_dropped = wrong;
-    return;
+  if (status_.state != GateState::stopped) status_.joint = -1;
+  if (command.operator_id == 0) return drop(GateReason::second_operator);
+  OperatorRecord& who = operators_.of(command.operator_id, status_.operator_id);
+  if (const GateReason wrong = judge(command, who, now); wrong != GateReason::none) return drop(wrong);
+  const bool in_charge = status_.operator_id == command.operator_id;
+  if (command.session != who.session) {
+    // Started anew: what it held before, it does not hold now.
+    who.released = false;
+    if (in_charge && status_.state == GateState::following) stop(GateReason::operator_lost);
+  }
+  who.session = command.session;
+  who.sequence = command.sequence;
+  if (status_.operator_id != 0 && !in_charge) {
+    // Whoever presses the switch while another one is in charge must let go of it before taking over.
+    who.released = !command.deadman;
+    return drop(GateReason::second_operator);
   }
   ++status_.accepted;
-  last_operator_ = command.operator_id;
-  last_sequence_ = command.sequence;
-  last_command_ = command.time;
   if (!command.deadman) {
-    released_ = true;
+    who.released = true;
     if (status_.state == GateState::following) stop(GateReason::deadman_released);
     return;
   }
-  if (status_.state == GateState::idle && released_) {
+  if (status_.state == GateState::idle && who.released) {
     status_.state = GateState::following;
     status_.reason = GateReason::none;
     status_.operator_id = command.operator_id;
     engaged_ = now;
   }
-  if (status_.state == GateState::following) std::copy_n(command.position.begin(), count_, target_.begin());
+  if (status_.state != GateState::following) return;
+  last_command_ = command.time;
+  std::copy_n(command.position.begin(), count_, target_.begin());
 }
 
+// A robot that stands is not watched but for faults: it is enabled and disabled, and moved by hand.
 void SafetyGate::watch(std::span<const DriveFeedback> feedback, RobotTime now) noexcept {
   if (status_.state == GateState::stopped && quick_stop_) return;
-  const bool moving = status_.state == GateState::following || status_.state == GateState::stopping;
+  const bool moving = status_.state == GateState::stopped ? !set_points_rest() : status_.state != GateState::idle;
   for (std::size_t i = 0; i < count_; ++i) {
     const DriveFeedback& f = feedback[i];
     const auto joint = static_cast<int>(i);
     if (f.state == DriveState::fault) return latch(GateReason::drive_fault, joint, f.fault, true);
     if (!moving) continue;
-    if (f.state == DriveState::offline) return latch(GateReason::drive_offline, joint, "", true);
-    if (f.state != DriveState::enabled)
-      return latch(GateReason::drive_not_enabled, joint, foresight::to_string(f.state), true);
-    if (f.time.ns == 0 || now - f.time > seconds(options_.feedback_age_s))
-      return latch(GateReason::feedback_lost, joint, "", true);
-    if (!std::isfinite(f.position)) return latch(GateReason::feedback_not_finite, joint, "", true);
-    if (std::abs(f.position - motion_[i].position) > options_.joints[i].following_error)
-      return latch(GateReason::following_error, joint, "", true);
-    Watched& w = watched_[i];
-    if (f.position != w.position) {
-      w = {f.position, motion_[i].position, now};
-    } else if (now - w.since > seconds(kFrozenAfter) &&
-               std::abs(motion_[i].position - w.set_point) > kFrozenWay * options_.joints[i].following_error) {
-      return latch(GateReason::feedback_frozen, joint, "", true);
-    }
+    const GateReason wrong = wrong_with(i, f, now);
+    const char* detail = wrong == GateReason::drive_not_enabled ? foresight::to_string(f.state) : "";
+    if (wrong != GateReason::none) return latch(wrong, joint, detail, true);
   }
 }
 
-const char* SafetyGate::obstructed(const std::array<JointMotion, kMostJoints>& next, double dt) noexcept {
-  if (shape_ == nullptr) return nullptr;
+GateReason SafetyGate::wrong_with(std::size_t joint, const DriveFeedback& f, RobotTime now) noexcept {
+  if (f.state == DriveState::offline) return GateReason::drive_offline;
+  const bool homing = homing_ == joint;
+  // Before and after, it takes the drive some cycles to change its mode.
+  const bool may_home = homing && (f.state == DriveState::homing || f.state == DriveState::enabling);
+  if (f.state != DriveState::enabled && !may_home) return GateReason::drive_not_enabled;
+  if (f.time.ns == 0 || now - f.time > seconds(options_.feedback_age_s)) return GateReason::feedback_lost;
+  if (!std::isfinite(f.position)) return GateReason::feedback_not_finite;
+  if (homing) return wrong_while_homing(joint, f, now);
+  const double allowed = options_.joints[joint].following_error;
+  if (std::abs(f.position - motion_[joint].position) > allowed) return GateReason::following_error;
+  Watched& w = watched_[joint];
+  if (f.position != w.position) {
+    w = {f.position, motion_[joint].position, now, f.time};
+  } else if (now - w.since > seconds(kFrozenAfter) &&
+             std::abs(motion_[joint].position - w.set_point) > kFrozenWay * allowed) {
+    return GateReason::feedback_frozen;
+  }
+  return GateReason::none;
+}
+
+// Where it is, nobody knows yet; but it moves, steadily, and once gets a new zero.
+GateReason SafetyGate::wrong_while_homing(std::size_t joint, const DriveFeedback& f, RobotTime now) noexcept {
+  Watched& w = watched_[joint];
+  const double cycle = 1 / options_.rate_hz;
+  const double most = options_.joints[joint].limits.velocity * (to_seconds(f.time - w.told) + cycle);
+  if (std::abs(f.position - w.position) > most && ++jumps_ > kHomingJumps) return GateReason::feedback_jumps;
+  if (f.position != w.position || f.state != DriveState::homing)
+    w.since = now;
+  else if (now - w.since > seconds(kHomingFrozenAfter))
+    return GateReason::feedback_frozen;
+  w.position = f.position;
+  w.told = f.time;
+  return GateReason::none;
+}
+
+SafetyGate::Motions SafetyGate::towards_target(double speed, double dt) const noexcept {
+  Motions next = motion_;
+  for (std::size_t i = 0; i < count_; ++i)
+    next[i] = approach(motion_[i], target_[i], options_.joints[i].limits, speed, dt);
+  return next;
+}
+
+/// `check` looks at the margins (there_) of poses from the next one to where the robot would stop after it.
+template <typename Check>
+bool SafetyGate::all_to_rest(const Motions& next, double dt, Check&& check) noexcept {
   JointValues here{}, rest{}, between{};
   for (std::size_t i = 0; i < count_; ++i) {
     here[i] = next[i].position;
@@ -155,9 +235,40 @@ const char* SafetyGate::obstructed(const std::array<JointMotion, kMostJoints>& n
   for (int k = 0; k <= kSamplesToRest; ++k) {
     const double share = static_cast<double>(k) / kSamplesToRest;
     for (std::size_t i = 0; i < count_; ++i) between[i] = here[i] + share * (rest[i] - here[i]);
-    if (const char* what = shape_->obstructed({between.data(), count_}, options_.surroundings)) return what;
+    shape_->margins({between.data(), count_}, there_);
+    if (!check()) return false;
   }
-  return nullptr;
+  return true;
+}
+
+/// The couple of parts that would come too close.
+std::optional<std::size_t> SafetyGate::blocking(const Motions& next, double dt) noexcept {
+  std::optional<std::size_t> out;
+  if (shape_ == nullptr) return out;
+  all_to_rest(next, dt, [&] {
+    const auto least = std::min_element(there_.begin(), there_.end());
+    if (least == there_.end() || *least >= 0) return true;
+    out = static_cast<std::size_t>(least - there_.begin());
+    return false;
+  });
+  return out;
+}
+
+/// From here, where some parts are too close: these only ever part, the closest of them for certain, and no others come
+/// too close.
+bool SafetyGate::retreats(const Motions& next, double dt) noexcept {
+  JointValues now{};
+  for (std::size_t i = 0; i < count_; ++i) now[i] = motion_[i].position;
+  shape_->margins({now.data(), count_}, here_);
+  const double least = *std::min_element(here_.begin(), here_.end());
+  if (least >= 0) return false;
+  const bool only_part = all_to_rest(next, dt, [this] {
+    for (std::size_t c = 0; c < there_.size(); ++c)
+      if (there_[c] < 0 && there_[c] < here_[c] - kSameMargin) return false;
+    std::swap(here_, there_);
+    return true;
+  });
+  return only_part && *std::min_element(here_.begin(), here_.end()) > least + kSameMargin;
 }
 
 void SafetyGate::halt(double dt) noexcept {
@@ -165,24 +276,27 @@ void SafetyGate::halt(double dt) noexcept {
 }
 
 void SafetyGate::move(double dt) noexcept {
-  auto next = motion_;
-  for (std::size_t i = 0; i < count_; ++i)
-    next[i] = approach(motion_[i], target_[i], options_.joints[i].limits, status_.speed, dt);
-  const char* what = obstructed(next, dt);
-  status_.reason = what != nullptr ? GateReason::obstructed : GateReason::none;
-  status_.detail = what != nullptr ? what : "";
-  if (what != nullptr)
-    halt(dt);
-  else
+  const Motions next = towards_target(status_.speed, dt);
+  const auto blocked = blocking(next, dt);
+  status_.reason = blocked ? GateReason::obstructed : GateReason::none;
+  status_.detail = blocked ? shape_->message(*blocked) : "";
+  if (!blocked) {
     motion_ = next;
+    return;
+  }
+  const Motions slow = towards_target(std::min(status_.speed, kRetreatSpeed), dt);
+  if (retreats(slow, dt))
+    motion_ = slow;
+  else
+    halt(dt);
 }
 
-void SafetyGate::step(RobotTime now, const std::optional<MotionCommand>& command,
+void SafetyGate::step(RobotTime now, std::span<const MotionCommand> commands,
                       std::span<const DriveFeedback> feedback) noexcept {
   const double dt = 1 / options_.rate_hz;
   if (feedback.size() != count_) return latch(GateReason::feedback_lost, -1, "feedback of too few joints", true);
   watch(feedback, now);
-  if (command) take(*command, now);
+  for (const MotionCommand& command : commands) take(command, now);
   if (status_.state == GateState::following && now - last_command_ > seconds(options_.command_age_s))
     stop(GateReason::operator_lost);
   if (status_.state == GateState::following) {
@@ -192,14 +306,14 @@ void SafetyGate::step(RobotTime now, const std::optional<MotionCommand>& command
     return;
   }
   halt(dt);
-  if (status_.state == GateState::stopping && at_rest()) {
+  if (status_.state == GateState::stopping && set_points_rest()) {
     status_.state = GateState::idle;
     status_.operator_id = 0;
     status_.speed = 0;
   }
 }
 
-bool SafetyGate::at_rest() const noexcept {
+bool SafetyGate::set_points_rest() const noexcept {
   return std::all_of(motion_.begin(), motion_.begin() + static_cast<std::ptrdiff_t>(count_),
                      [](const JointMotion& m) { return m.velocity == 0 && m.acceleration == 0; });
 }

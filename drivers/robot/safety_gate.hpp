@@ -6,16 +6,25 @@
 //
 // A set-point is only ever a cycle's continuation of the one before it: from each of them the robot
 // can stop within all limits, clear of everything, which the gate checks before it takes the step.
+// Where it stands too close to something already, only a slow motion that takes it away from there is let through.
+//
+// A joint that looks for home moves by its drive's own orders, so the gate makes it no set-points; it watches it like
+// all others, and whatever is wrong with any of them asks for a quick stop.
+//
+//   idle --engaged--> following --let go, lost--> stopping --at rest--> idle       any --> stopped: until reset()
+//   idle --begin_homing()--> homing --end_homing()--> idle
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "drivers/drive/drive.hpp"
 #include "drivers/robot/joint_motion.hpp"
+#include "drivers/robot/operator_records.hpp"
 #include "drivers/robot/robot_shape.hpp"
 
 namespace foresight {
@@ -31,6 +40,7 @@ struct MotionCommand {
   bool deadman = false;           ///< the operator holds the switch
   std::size_t joints = 0;         ///< how many positions follow; all that the rig has
   JointValues position{};         ///< rad or m, in the rig's order
+  std::uint64_t session = 0;      ///< grows with every start of the operator, which counts `sequence` anew
 };
 
 struct GateJoint {
@@ -54,6 +64,7 @@ struct GateOptions {
 enum class GateState : std::uint8_t {
   idle,       ///< nobody has engaged; set-points stay
   following,  ///< goes where the operator asks
+  homing,     ///< one joint looks for home, all others hold
   stopping,   ///< slows down to rest, then idle; the reason says why
   stopped,    ///< latched; needs reset()
 };
@@ -79,6 +90,7 @@ enum class GateReason : std::uint8_t {
   feedback_lost,
   feedback_not_finite,
   feedback_frozen,
+  feedback_jumps,
   drive_fault,
   drive_offline,
   drive_not_enabled,
@@ -101,7 +113,8 @@ struct GateStatus {
 /// One thread: the control loop's. Nothing throws or allocates after construction.
 class SafetyGate {
  public:
-  /// `shape` (may be null: then nothing is checked against the surroundings) gets positions in the order of the joints.
+  /// `shape` (may be null: then nothing is checked against the surroundings) gets positions in the order of the joints,
+  /// and is told the surroundings.
   SafetyGate(GateOptions options, RobotShape* shape);
 
   /// Starts anew from where the robot stands, at rest. Only while idle or stopped and with all feedback
@@ -113,43 +126,61 @@ class SafetyGate {
   /// As emergency_stop(), for what the bus reports.
   void bus_fault(const char* why) noexcept;
 
-  /// One cycle. `command`: the newest one that arrived since the last cycle, if any. `feedback`: one per joint.
-  /// Afterwards set_point(i) is what to send.
-  void step(RobotTime now, const std::optional<MotionCommand>& command,
-            std::span<const DriveFeedback> feedback) noexcept;
+  /// Joint `joint` moves by its drive's own orders from now on, and looks for home. Only while idle; otherwise false.
+  bool begin_homing(std::size_t joint, RobotTime now) noexcept;
+  /// It has found it, and holds where `feedback` says. Idle again.
+  void end_homing(const DriveFeedback& feedback, RobotTime now) noexcept;
+
+  /// One cycle. `commands`: those that arrived since the last cycle, oldest first. `feedback`: one per joint.
+  /// Afterwards set_point(i) is what to send, but not where has_set_point(i) says no.
+  void step(RobotTime now, std::span<const MotionCommand> commands, std::span<const DriveFeedback> feedback) noexcept;
 
   const JointMotion& set_point(std::size_t joint) const { return motion_[joint]; }
-  bool at_rest() const noexcept;
+  /// Not of a joint from the begin of its homing until its end, or until reset() where it did not end.
+  bool has_set_point(std::size_t joint) const noexcept { return homing_ != joint; }
+  /// All set-points stand still. The robot itself may still move: see RestWatch.
+  bool set_points_rest() const noexcept;
   /// The drives must be told to stop on their own too: their feedback cannot be trusted to follow set-points.
   bool wants_quick_stop() const noexcept { return quick_stop_; }
   GateStatus status() const noexcept { return status_; }
   const GateOptions& options() const { return options_; }
 
  private:
-  GateReason judge(const MotionCommand& command, RobotTime now) noexcept;
+  GateReason judge(const MotionCommand& command, const OperatorRecord& who, RobotTime now) const noexcept;
   void take(const MotionCommand& command, RobotTime now) noexcept;
+  void drop(GateReason why) noexcept;
   void watch(std::span<const DriveFeedback> feedback, RobotTime now) noexcept;
+  GateReason wrong_with(std::size_t joint, const DriveFeedback& f, RobotTime now) noexcept;
+  GateReason wrong_while_homing(std::size_t joint, const DriveFeedback& f, RobotTime now) noexcept;
   void latch(GateReason reason, int joint, const char* detail, bool quick_stop) noexcept;
   void stop(GateReason reason) noexcept;
   void move(double dt) noexcept;
   void halt(double dt) noexcept;
-  const char* obstructed(const std::array<JointMotion, kMostJoints>& next, double dt) noexcept;
+  using Motions = std::array<JointMotion, kMostJoints>;
+  Motions towards_target(double speed, double dt) const noexcept;
+  template <typename Check>
+  bool all_to_rest(const Motions& next, double dt, Check&& check) noexcept;
+  std::optional<std::size_t> blocking(const Motions& next, double dt) noexcept;
+  bool retreats(const Motions& next, double dt) noexcept;
 
   GateOptions options_;
   RobotShape* shape_;
   std::size_t count_;
   GateStatus status_;
   bool quick_stop_ = false;
-  std::array<JointMotion, kMostJoints> motion_{};
+  Motions motion_{};
   JointValues target_{};
   RobotTime engaged_, last_command_;
-  std::uint64_t last_operator_ = 0, last_sequence_ = 0;
-  bool released_ = true;  // the deadman was seen open since the last stop
+  OperatorRecords operators_;
   struct Watched {
     double position = 0, set_point = 0;
-    RobotTime since;
+    RobotTime since;  // by the gate's time
+    RobotTime told;   // by the drive's
   };
   std::array<Watched, kMostJoints> watched_{};
+  std::optional<std::size_t> homing_;  // a joint without a set-point
+  int jumps_ = 0;                      // of its position
+  std::vector<double> here_, there_;   // margins of the shape's couples
 };
 
 }  // namespace foresight

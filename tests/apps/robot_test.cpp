@@ -45,20 +45,28 @@ TEST_P(Robot, DoesNotHomeWithoutConsent) {
   EXPECT_THAT(out.err, HasSubstr("give --home"));
 }
 
+// In stepped time, so that nothing but the signal can end it. How far it came is counted by what it wrote down.
 TEST_P(Robot, StopsUnderControlWhenItIsTerminated) {
-  Program program({"robot", config(GetParam()), "--no-cameras", "--home", "--follow", motion()});
-  std::this_thread::sleep_for(std::chrono::seconds(4));
-  if (!program.running()) {
+  const std::string endless =
+      folder_.write("endless.csv", "time_s,elbow,pan\n0,0.2,0\n1,0.6,0.5\n1000000,0.6,0.5\n").string();
+  for (const double written : {0.3e6, 20e6}) {  // while it homes, where it has to; while it follows
+    const auto log = folder_ / ("s" + std::to_string(static_cast<int>(written)) + ".log");
+    auto arm = log;
+    arm.replace_extension().concat("-arm.log");
+    Program program({"robot", config(GetParam()), "--stepped", "--no-cameras", "--home", "--follow", endless, "--log",
+                     log.string()});
+    std::error_code none;
+    while (program.running() &&
+           (!std::filesystem::exists(arm) || static_cast<double>(std::filesystem::file_size(arm, none)) < written))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ASSERT_TRUE(program.running()) << program.wait().err;
+    kill(program.pid(), SIGTERM);
     const Outcome out = program.wait();
-    EXPECT_EQ(out.exit_code, 1);
-    EXPECT_THAT(out.err, HasSubstr("stopped: ")) << "nothing else may end it";
-    GTEST_SKIP() << "this machine is too busy for real time: " << out.last_line();
+    EXPECT_EQ(out.exit_code, 1) << "the motion was not finished";
+    EXPECT_THAT(out.out, HasSubstr(": disabled")) << "brakes closed";
+    EXPECT_THAT(out.out, HasSubstr(" 0 overruns"));
+    EXPECT_THAT(out.err, HasSubstr("follow: interrupted")) << "and no stop of the gate's";
   }
-  kill(program.pid(), SIGTERM);
-  const Outcome out = program.wait();
-  EXPECT_EQ(out.exit_code, 1) << "the motion was not finished";
-  EXPECT_THAT(out.out, HasSubstr("disabled")) << "brakes closed";
-  EXPECT_THAT(out.err, HasSubstr("interrupted"));
 }
 
 TEST_P(Robot, DoctorFindsItsDrives) {
@@ -95,13 +103,25 @@ TEST_P(Robot, RecordsWhatItsMockCamerasSee) {
   EXPECT_EQ(replay.exit_code, 0) << replay.err;
 }
 
+/// Nothing but a machine that is too busy may stop this: threads that came too late, and only where that was counted or
+/// told by what waited for them.
+bool came_too_late(const Outcome& out) {
+  return testing::Matches(testing::ContainsRegex("[1-9][0-9]* overruns"))(out.out) ||
+         testing::Matches(testing::ContainsRegex(
+             "stopped: (no command in time|no position from the drive in time|the drive does not answer|"
+             "the drive reports a fault: (halted without our asking|does not answer|life guarding|RPDO timeout))"))(
+             out.err);
+}
+
 TEST_P(Robot, RunsItsCamerasInRealTime) {
   const Outcome out = run_program({"robot", with_small_cameras(GetParam(), folder_), "--home", "--follow", motion()});
   EXPECT_THAT(out.out, testing::ContainsRegex("cameras: [0-9]+ pairs/s")) << "in the summary";
   if (out.exit_code != 0) {
-    EXPECT_THAT(out.err, HasSubstr("stopped: ")) << "nothing else may end it";
+    EXPECT_EQ(out.exit_code, 1);
+    ASSERT_TRUE(came_too_late(out)) << out.err << out.out;
     GTEST_SKIP() << "this machine is too busy for real time: " << out.last_line();
   }
+  EXPECT_THAT(out.err, HasSubstr("follow: done"));
   EXPECT_THAT(out.out, testing::ContainsRegex("  [0-9]+ pairs, 0 dropped"));
   EXPECT_THAT(out.out, Not(HasSubstr("  0 pairs, 0 dropped"))) << out.out;
 }

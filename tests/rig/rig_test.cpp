@@ -21,12 +21,13 @@ TEST(Rig, TheRigsThatComeWithTheProgramAreValid) {
     const auto shape = rig.shape();
     ASSERT_TRUE(shape);
     const GateOptions gate = rig.gate_options();
+    shape->surround(gate.surroundings);
     const std::vector<double> home(10, 0);
-    EXPECT_EQ(shape->obstructed(home, gate.surroundings), nullptr) << "stretched upwards";
+    EXPECT_EQ(shape->obstructed(home), nullptr) << "stretched upwards";
     std::vector<double> down(10, 0);
     down[1] = 1.9;
     down[3] = 1.2;
-    EXPECT_NE(shape->obstructed(down, gate.surroundings), nullptr) << "into the table";
+    EXPECT_NE(shape->obstructed(down), nullptr) << "into the table";
     EXPECT_TRUE(gate.joints[7].keeps_grip);
     EXPECT_FALSE(gate.joints[0].keeps_grip);
   }

@@ -21,17 +21,20 @@ class PromptDrive final : public Drive {
     if (state.state == DriveState::fault) return;
     if (what == DriveRequest::enable) state.state = DriveState::enabled;
     if (what == DriveRequest::disable || what == DriveRequest::quick_stop) state.state = DriveState::disabled;
-    if (what == DriveRequest::home) state.homed = true;
+    if (what == DriveRequest::home) state.homed = !homes_slowly;
+    if (what == DriveRequest::home && homes_slowly) state.state = DriveState::homing;
   }
   void set_point(double position, double) noexcept override {
-    if (state.state == DriveState::enabled) state.position = position;
+    if (state.state == DriveState::enabled && coast == 0) state.position = position;
   }
   DriveFeedback feedback() const noexcept override { return state; }
   bool asked(DriveRequest what) const { return std::find(requests.begin(), requests.end(), what) != requests.end(); }
 
   DriveFeedback state{{}, 0, 0, DriveState::disabled};
   std::vector<DriveRequest> requests;
-  bool stuck = false;  ///< ignores requests
+  bool stuck = false;         ///< ignores requests
+  bool homes_slowly = false;  ///< moves by itself until `coast` and `state` are set
+  double coast = 0;           ///< way per cycle that the shaft makes, whatever is asked of it
 
  private:
   DriveConfig config_;
@@ -43,7 +46,10 @@ class PromptNetwork final : public DriveNetwork {
   explicit PromptNetwork(std::vector<PromptDrive>& drives) : drives_(drives) {}
   std::span<Drive* const> drives() const noexcept override { return {}; }
   void receive(RobotTime now) noexcept override {
-    for (PromptDrive& drive : drives_) drive.state.time = now;
+    for (PromptDrive& drive : drives_) {
+      drive.state.time = now;
+      drive.state.position += drive.coast;
+    }
   }
   void send(RobotTime) noexcept override {}
   bool healthy() const noexcept override { return fault == nullptr; }

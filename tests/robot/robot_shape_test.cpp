@@ -43,7 +43,10 @@ UrdfRobot rods(const std::filesystem::path& folder) {
 
 class RobotShapeTest : public testing::Test {
  protected:
-  const char* obstructed(std::vector<double> positions) { return shape_.obstructed(positions, surroundings_); }
+  const char* obstructed(std::vector<double> positions) {
+    shape_.surround(surroundings_);
+    return shape_.obstructed(positions);
+  }
   TempFolder folder_;
   RobotShape shape_{rods(folder_.path()), {"turn_1", "turn_2", "turn_3", "turn_4"}, Pose::Identity(), "rig.yaml"};
   Surroundings surroundings_;
@@ -61,9 +64,9 @@ TEST_F(RobotShapeTest, NamesTheLinkThatLeavesTheWorkspace) {
 }
 
 TEST_F(RobotShapeTest, NamesTheLinkThatTouchesTheTable) {
-  surroundings_.obstacles = {{Eigen::Vector3d(-3, -3, -1), Eigen::Vector3d(3, 3, -0.125)}};
+  surroundings_.obstacles = {{"table", {Eigen::Vector3d(-3, -3, -1), Eigen::Vector3d(3, 3, -0.125)}}};
   EXPECT_EQ(obstructed({1.5, 0, 0, 0}), nullptr);
-  EXPECT_STREQ(obstructed({1.7, 0, 0, 0}), "link 'rod_2' comes too close to an obstacle");
+  EXPECT_STREQ(obstructed({1.7, 0, 0, 0}), "link 'rod_2' comes too close to obstacle 'table'");
 }
 
 TEST_F(RobotShapeTest, NamesTheLinksThatMeet) {

@@ -1,6 +1,7 @@
 // The robot's phases, with drives that answer at once.
 #include "drivers/robot/robot.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -203,6 +204,141 @@ TEST_F(RobotTest, RunStopsUnderControlAtTheEnd) {
   EXPECT_EQ(drives_[1].state.state, DriveState::enabled) << "the grip";
   EXPECT_GT(robot_.status().loop.cycles(), 200u);
   EXPECT_EQ(robot_.status().loop.overruns(), 0u);
+}
+
+TEST_F(RobotTest, AResetOfTheSameCycleDoesNotUndoAnEmergencyStop) {
+  for (const bool stop_first : {true, false}) {
+    make_ready();
+    run(100);  // at rest: a reset would be followed at once
+    if (stop_first) robot_.ask(RobotRequest::emergency_stop, 2);
+    robot_.ask(RobotRequest::reset, 1);
+    if (!stop_first) robot_.ask(RobotRequest::emergency_stop, 2);
+    run(10);
+    EXPECT_EQ(robot_.status().phase, RobotPhase::stopped) << stop_first;
+    EXPECT_EQ(robot_.status().last_request.what, RobotRequest::emergency_stop);
+    EXPECT_EQ(robot_.status().last_request.operator_id, 2u);
+    EXPECT_STRNE(robot_.status().refused, "") << "the reset was dropped";
+    robot_.ask(RobotRequest::reset);
+    run(5);
+    EXPECT_EQ(robot_.status().phase, RobotPhase::ready) << "who has seen the stop may reset it";
+    robot_.ask(RobotRequest::disable);
+    run(3);
+    ASSERT_EQ(robot_.status().phase, RobotPhase::disabled);
+  }
+}
+
+TEST_F(RobotTest, RequestsAreFollowedInTheirOrder) {
+  make_ready();
+  run(100);
+  robot_.ask(RobotRequest::disable, 1);
+  robot_.ask(RobotRequest::enable, 2);
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::disabled);
+  EXPECT_EQ(robot_.status().last_request.operator_id, 1u);
+  run(3);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
+  EXPECT_EQ(robot_.status().last_request.operator_id, 2u);
+}
+
+// A shaft that coasts on while set-points stand still.
+TEST_F(RobotTest, NothingIsDisabledOrResetBeforeTheShaftsRest) {
+  make_ready();
+  run(100);
+  drives_[0].coast = 1e-4;
+  run(10);
+  robot_.ask(RobotRequest::disable);
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
+  EXPECT_THAT(robot_.status().refused, testing::HasSubstr("rest"));
+  EXPECT_FALSE(drives_[0].asked(DriveRequest::disable));
+  robot_.ask(RobotRequest::emergency_stop);
+  run(5);
+  robot_.ask(RobotRequest::reset);
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
+  drives_[0].coast = 0;
+  run(50);
+  robot_.ask(RobotRequest::disable);
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::disabled);
+}
+
+TEST_F(RobotTest, AFaultWhileItBrakesStopsTheDrivesToo) {
+  get_moving();
+  robot_.ask(RobotRequest::emergency_stop);
+  run(5);
+  ASSERT_FALSE(drives_[0].asked(DriveRequest::quick_stop)) << "it brakes along set-points";
+  drives_[1].state.state = DriveState::fault;
+  run(2);
+  EXPECT_TRUE(drives_[0].asked(DriveRequest::quick_stop));
+}
+
+class HomingRobotTest : public RobotTest {
+ protected:
+  void SetUp() override {
+    for (PromptDrive& drive : drives_) {
+      drive.state.homed = false;
+      drive.homes_slowly = true;
+    }
+    drives_[1].state.position = 0.05;
+    make_ready();
+    robot_.ask(RobotRequest::home);
+    move(0);
+  }
+  /// Joint i on its way.
+  void move(std::size_t i) {
+    run(2);
+    ASSERT_EQ(drives_[i].state.state, DriveState::homing);
+    drives_[i].coast = 1e-4;
+    run(100);
+    ASSERT_EQ(robot_.status().phase, RobotPhase::homing) << to_string(robot_.status().gate.reason);
+    ASSERT_EQ(robot_.status().waiting_for, static_cast<int>(i));
+  }
+  void arrive(std::size_t i) {
+    drives_[i].coast = 0;
+    drives_[i].state.homed = true;
+    drives_[i].state.state = DriveState::enabled;
+  }
+};
+
+TEST_F(HomingRobotTest, EndsReadyWithAllHomed) {
+  arrive(0);
+  move(1);
+  arrive(1);
+  run(5);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
+  EXPECT_TRUE(robot_.status().all_homed);
+}
+
+TEST_F(HomingRobotTest, AFaultOfAnotherDriveStopsIt) {
+  drives_[1].state.state = DriveState::fault;
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
+  EXPECT_EQ(robot_.status().waiting_for, 0);
+  EXPECT_TRUE(drives_[0].asked(DriveRequest::quick_stop));
+}
+
+TEST_F(HomingRobotTest, ABusFaultStopsIt) {
+  network_.fault = "bus-off";
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
+  EXPECT_TRUE(drives_[0].asked(DriveRequest::quick_stop));
+}
+
+TEST_F(HomingRobotTest, AGripperThatHomesIsStoppedLikeAllOthers) {
+  arrive(0);
+  move(1);
+  drives_[0].state.state = DriveState::fault;
+  run(1);
+  EXPECT_TRUE(drives_[1].asked(DriveRequest::quick_stop));
+}
+
+TEST_F(HomingRobotTest, DisableIsRefused) {
+  robot_.ask(RobotRequest::disable);
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::homing);
+  EXPECT_THAT(robot_.status().refused, testing::HasSubstr("rest"));
+  EXPECT_FALSE(drives_[0].asked(DriveRequest::disable));
 }
 
 TEST_F(RobotTest, EveryCycleIsHandedOutToEveryReader) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "common/error.hpp"
+#include "tests/scene/test_run.hpp"
 
 namespace foresight {
 namespace {
@@ -40,7 +41,7 @@ class SafetyGateTest : public testing::Test {
       feedback_[i].time = now_;
       feedback_[i].position = before[i].position;
     }
-    gate_.step(now_, what, feedback_);
+    gate_.step(now_, {what ? &*what : nullptr, what ? 1u : 0u}, feedback_);
     for (std::size_t i = 0; i < 2; ++i) {
       const JointMotion& m = gate_.set_point(i);
       const JointLimits& l = gate_.options().joints[i].limits;
@@ -66,7 +67,7 @@ class SafetyGateTest : public testing::Test {
     EXPECT_EQ(gate_.status().state, GateState::stopped);
     EXPECT_EQ(gate_.status().reason, reason) << to_string(gate_.status().reason);
     for (int i = 0; i < 300; ++i) cycle(command(-1, -1));
-    EXPECT_TRUE(gate_.at_rest());
+    EXPECT_TRUE(gate_.set_points_rest());
     EXPECT_EQ(gate_.status().reason, reason) << "it stays visible";
     EXPECT_EQ(gate_.status().state, GateState::stopped);
   }
@@ -158,7 +159,7 @@ TEST_F(SafetyGateTest, ABurstOfOldCommandsAfterAReconnectMovesNothing) {
     held.push_back(command(-1.8, -1));
     cycle(std::nullopt);
   }
-  ASSERT_TRUE(gate_.at_rest());
+  ASSERT_TRUE(gate_.set_points_rest());
   const double stood = gate_.set_point(0).position;
   for (const MotionCommand& old : held) cycle(old);
   EXPECT_EQ(gate_.set_point(0).position, stood);
@@ -170,7 +171,7 @@ TEST_F(SafetyGateTest, ReleasingTheDeadmanStops) {
   EXPECT_EQ(gate_.status().state, GateState::stopping);
   for (int i = 0; i < 200; ++i) cycle(command(1.8, 0, false));
   EXPECT_EQ(gate_.status().state, GateState::idle);
-  EXPECT_TRUE(gate_.at_rest());
+  EXPECT_TRUE(gate_.set_points_rest());
 }
 
 TEST_F(SafetyGateTest, AnEmergencyStopLatchesUntilReset) {
@@ -206,7 +207,7 @@ TEST_F(SafetyGateTest, FeedbackThatIsNoNumberLatches) {
   now_ = now_ + seconds(kDt);
   for (DriveFeedback& f : feedback_) f.time = now_;
   feedback_[0].position = std::nan("");
-  gate_.step(now_, command(1.8, 0), feedback_);
+  gate_.step(now_, std::array{command(1.8, 0)}, feedback_);
   EXPECT_EQ(gate_.status().reason, GateReason::feedback_not_finite);
 }
 
@@ -217,7 +218,7 @@ TEST_F(SafetyGateTest, FrozenFeedbackLatchesBeforeTheFollowingErrorIsUsedUp) {
     now_ = now_ + seconds(kDt);
     feedback_[0].time = feedback_[1].time = now_;
     feedback_[1].position = gate_.set_point(1).position;
-    gate_.step(now_, command(0.11, 0), feedback_);
+    gate_.step(now_, std::array{command(0.11, 0)}, feedback_);
     stuck = gate_.set_point(0).position;
   }
   EXPECT_EQ(gate_.status().reason, GateReason::feedback_frozen);
@@ -230,7 +231,7 @@ TEST_F(SafetyGateTest, AJointThatDoesNotFollowLatches) {
     now_ = now_ + seconds(kDt);
     feedback_[0] = {now_, feedback_[0].position + 1e-5, 0, DriveState::enabled};
     feedback_[1] = {now_, gate_.set_point(1).position, 0, DriveState::enabled};
-    gate_.step(now_, command(1.8, 0), feedback_);
+    gate_.step(now_, std::array{command(1.8, 0)}, feedback_);
   }
   EXPECT_EQ(gate_.status().reason, GateReason::following_error);
   EXPECT_EQ(gate_.status().joint, 0);
@@ -272,6 +273,272 @@ TEST_F(SafetyGateTest, KeepsAllLimitsUnderAnyCommands) {
     moved += gate_.set_point(0).velocity != 0;
   }
   EXPECT_GT(moved, 5'000);
+}
+
+TEST_F(SafetyGateTest, AReleasedSwitchEngagesNobodyElse) {
+  MotionCommand other = command(1, 0);
+  other.operator_id = 8;
+  cycle(command(0, 0, false));
+  for (int i = 0; i < 100; ++i) {
+    other.time = now_;
+    ++other.sequence;
+    cycle(other);
+  }
+  EXPECT_EQ(gate_.status().state, GateState::idle) << "operator 7 let go, operator 8 never did";
+  EXPECT_EQ(gate_.set_point(0).position, 0);
+  engage();
+  EXPECT_EQ(gate_.status().operator_id, 7u);
+}
+
+TEST_F(SafetyGateTest, WhoPressesWhileAnotherIsInChargeMustLetGoFirst) {
+  MotionCommand other = command(-1, 0, false);
+  other.operator_id = 8;
+  const auto others = [&](bool deadman) {
+    other.time = now_;
+    other.deadman = deadman;
+    ++other.sequence;
+    return other;
+  };
+  cycle(others(false));
+  get_moving();
+  cycle(others(true));
+  EXPECT_EQ(gate_.status().last_dropped, GateReason::second_operator);
+  cycle(command(0, 0, false));
+  const double stood = gate_.set_point(0).position;
+  for (int i = 0; i < 300; ++i) cycle(others(true));
+  EXPECT_EQ(gate_.status().state, GateState::idle);
+  EXPECT_GE(gate_.set_point(0).position, stood);
+  cycle(others(false));
+  cycle(others(true));
+  EXPECT_EQ(gate_.status().operator_id, 8u);
+}
+
+TEST_F(SafetyGateTest, AnOperatorThatStartsAnewCountsAnew) {
+  get_moving();
+  MotionCommand anew = command(1.8, 0.5);
+  anew.session = 1;
+  anew.sequence = 1;
+  cycle(anew);
+  EXPECT_EQ(gate_.status().dropped, 0u);
+  EXPECT_EQ(gate_.status().state, GateState::stopping) << "whether its switch is held is not known";
+  EXPECT_EQ(gate_.status().reason, GateReason::operator_lost);
+  for (int i = 0; i < 300; ++i) {
+    anew.time = now_;
+    ++anew.sequence;
+    cycle(anew);
+  }
+  EXPECT_EQ(gate_.status().state, GateState::idle) << "not engaged";
+  for (const bool held : {false, true}) {
+    anew.time = now_;
+    ++anew.sequence;
+    anew.deadman = held;
+    cycle(anew);
+  }
+  EXPECT_EQ(gate_.status().state, GateState::following);
+  EXPECT_EQ(gate_.status().dropped, 0u);
+  cycle(command(1, 0));
+  EXPECT_EQ(gate_.status().last_dropped, GateReason::out_of_order) << "of the session before";
+}
+
+TEST_F(SafetyGateTest, EveryCommandOfACycleIsJudged) {
+  get_moving();
+  now_ = now_ + seconds(kDt);
+  for (std::size_t i = 0; i < 2; ++i) feedback_[i] = {now_, gate_.set_point(i).position, 0, DriveState::enabled};
+  const std::array all{command(1.8, 0), command(1.8, 0, false), command(1.8, 0)};
+  gate_.step(now_, all, feedback_);
+  EXPECT_EQ(gate_.status().reason, GateReason::deadman_released) << "though it was pressed again at once";
+}
+
+// While joint 0 looks for home.
+class HomingGateTest : public SafetyGateTest {
+ protected:
+  void SetUp() override { ASSERT_TRUE(gate_.begin_homing(0, now_)); }
+  /// `way`: of joint 0 in a cycle.
+  void home(int cycles, double way = 0.0004) {
+    for (int i = 0; i < cycles; ++i) {
+      now_ = now_ + seconds(kDt);
+      feedback_[0] = {now_, feedback_[0].position + way, 0, DriveState::homing};
+      feedback_[1].time = now_;
+      gate_.step(now_, {}, feedback_);
+    }
+  }
+  void expect_stopped(GateReason reason, int joint) {
+    EXPECT_EQ(gate_.status().state, GateState::stopped);
+    EXPECT_EQ(gate_.status().reason, reason) << to_string(gate_.status().reason);
+    EXPECT_EQ(gate_.status().joint, joint);
+    EXPECT_TRUE(gate_.wants_quick_stop()) << "only its drive can stop it";
+    EXPECT_FALSE(gate_.has_set_point(0));
+  }
+};
+
+TEST_F(HomingGateTest, ItMayMoveAndGetANewZero) {
+  home(500);
+  home(1, -1.5);
+  home(10, 0);
+  EXPECT_EQ(gate_.status().state, GateState::homing) << to_string(gate_.status().reason);
+  gate_.end_homing(feedback_[0], now_);
+  EXPECT_EQ(gate_.status().state, GateState::idle);
+  EXPECT_EQ(gate_.set_point(0).position, feedback_[0].position);
+  EXPECT_TRUE(gate_.has_set_point(0));
+}
+
+TEST_F(HomingGateTest, FollowsNobody) {
+  for (int i = 0; i < 10; ++i) cycle(command(1, 1, i >= 5), false);
+  EXPECT_EQ(gate_.status().state, GateState::homing);
+  EXPECT_EQ(gate_.set_point(1).position, 0);
+  EXPECT_FALSE(gate_.reset(feedback_, now_));
+}
+
+TEST_F(HomingGateTest, ItsOwnFaultStops) {
+  home(100);
+  feedback_[0].state = DriveState::fault;
+  gate_.step(now_, {}, feedback_);
+  expect_stopped(GateReason::drive_fault, 0);
+}
+
+TEST_F(HomingGateTest, AFaultOfAnotherDriveStops) {
+  home(100);
+  feedback_[1].state = DriveState::fault;
+  gate_.step(now_, {}, feedback_);
+  expect_stopped(GateReason::drive_fault, 1);
+}
+
+TEST_F(HomingGateTest, AnotherJointThatIsPushedAwayStops) {
+  home(100);
+  feedback_[1].position = 0.3;
+  home(1);
+  expect_stopped(GateReason::following_error, 1);
+}
+
+TEST_F(HomingGateTest, ABusFaultStops) {
+  home(100);
+  gate_.bus_fault("bus-off");
+  expect_stopped(GateReason::bus_fault, -1);
+}
+
+TEST_F(HomingGateTest, AnEmergencyStopIsTheDrivesToFollow) {
+  home(100);
+  gate_.emergency_stop("test");
+  expect_stopped(GateReason::emergency_stop, -1);
+}
+
+TEST_F(HomingGateTest, OldFeedbackStops) {
+  home(100);
+  now_ = now_ + seconds(0.06);
+  gate_.step(now_, {}, feedback_);
+  expect_stopped(GateReason::feedback_lost, 0);
+}
+
+TEST_F(HomingGateTest, AJointThatDoesNotMoveStops) {
+  home(100);
+  home(260, 0);
+  expect_stopped(GateReason::feedback_frozen, 0);
+}
+
+TEST_F(HomingGateTest, PositionsThatJumpAboutStop) {
+  home(100);
+  home(1, 3);
+  EXPECT_EQ(gate_.status().state, GateState::homing) << "its new zero";
+  home(1, -3);
+  expect_stopped(GateReason::feedback_jumps, 0);
+}
+
+TEST_F(HomingGateTest, ADriveThatLeavesHomingStops) {
+  home(100);
+  feedback_[0].state = DriveState::stopping;
+  gate_.step(now_, {}, feedback_);
+  expect_stopped(GateReason::drive_not_enabled, 0);
+}
+
+/// A rod of 0.4 m upright on a plate, that turns about y; the plate's edge is something it must stay clear of.
+class ClearanceTest : public testing::Test {
+ protected:
+  ClearanceTest() {
+    const std::string text =
+        "<robot name='rod'><link name='base'/><link name='rod'><visual><origin xyz='0 0 0.2'/><geometry>"
+        "<box size='0.04 0.04 0.4'/></geometry></visual></link><joint name='turn' type='revolute'>"
+        "<parent link='base'/><child link='rod'/><axis xyz='0 1 0'/>"
+        "<limit lower='-2' upper='2' effort='1' velocity='1'/></joint>"
+        "<link name='flag'><visual><geometry><box size='0.01 0.01 0.01'/></geometry></visual></link>"
+        "<joint name='wave' type='revolute'><parent link='base'/><child link='flag'/><origin xyz='0 0 1'/>"
+        "<axis xyz='0 0 1'/><limit lower='-2' upper='2' effort='1' velocity='1'/></joint></robot>";
+    const auto file = folder_.write("rod.urdf", text);
+    shape_.emplace(read_urdf(file, folder_.path()), std::vector<std::string>{"turn", "wave"}, Pose::Identity(), "rig");
+    GateOptions options = two_joints();
+    options.surroundings.obstacles = {{"shelf", {Eigen::Vector3d(0.3, -1, -1), Eigen::Vector3d(1, 1, 1)}}};
+    gate_.emplace(options, &*shape_);
+  }
+  /// Where the rod begins to be too close to the shelf.
+  double edge() {
+    double low = 0, high = 2;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      (shape_->obstructed(std::array{middle, 0.0}) ? high : low) = middle;
+    }
+    return low;
+  }
+  double margin(double position) {
+    std::vector<double> all(shape_->couples());
+    shape_->margins(std::array{position, 0.0}, all);
+    return *std::min_element(all.begin(), all.end());
+  }
+  void stand_at(double position) {
+    for (DriveFeedback& f : feedback_) f = {now_, 0, 0, DriveState::enabled};
+    feedback_[0].position = position;
+    ASSERT_TRUE(gate_->reset(feedback_, now_));
+    go(position, 0, 1, false);
+  }
+  void go(double turn, double wave, int cycles, bool deadman = true) {
+    for (int i = 0; i < cycles; ++i) {
+      now_ = now_ + seconds(kDt);
+      for (std::size_t k = 0; k < 2; ++k) feedback_[k] = {now_, gate_->set_point(k).position, 0, DriveState::enabled};
+      MotionCommand c{7, ++sequence_, now_, deadman, 2, {turn, wave}};
+      gate_->step(now_, {&c, 1}, feedback_);
+      fastest_ = std::max(fastest_, std::abs(gate_->set_point(0).velocity));
+      least_ = std::min(least_, margin(gate_->set_point(0).position));
+    }
+  }
+  TempFolder folder_;
+  std::optional<RobotShape> shape_;
+  std::optional<SafetyGate> gate_;
+  RobotTime now_{1'000'000'000};
+  std::uint64_t sequence_ = 0;
+  std::array<DriveFeedback, 2> feedback_;
+  double fastest_ = 0, least_ = 1;
+};
+
+// As after a stop by the drives' own ramps, which knows nothing of obstacles.
+TEST_F(ClearanceTest, FromInsideThereIsAWayOutAndOnlyOut) {
+  double inside = edge();
+  while (margin(inside) > -0.001) inside += 1e-4;
+  stand_at(inside);
+  const double began = margin(inside);
+  ASSERT_NEAR(began, -0.001, 1e-4);
+  go(inside + 0.5, 0, 200);
+  EXPECT_EQ(gate_->set_point(0).position, inside) << "not farther in";
+  EXPECT_EQ(gate_->status().reason, GateReason::obstructed);
+  EXPECT_STREQ(gate_->status().detail, "link 'rod' comes too close to obstacle 'shelf'");
+  go(inside, 0.5, 200);
+  EXPECT_EQ(gate_->set_point(1).position, 0) << "what leads nowhere stays refused";
+  go(0, 0, 5);
+  EXPECT_EQ(gate_->status().reason, GateReason::obstructed) << "it says why it is slow";
+  for (int i = 0; i < 2000 && margin(gate_->set_point(0).position) < 0; ++i) go(0, 0, 1);
+  EXPECT_GE(margin(gate_->set_point(0).position), 0);
+  EXPECT_LE(fastest_, 0.101) << "slowly, but for the last cycle";
+  EXPECT_GE(least_, began - 1e-9) << "never closer than it stood";
+  go(0, 0, 1500);
+  EXPECT_EQ(gate_->status().reason, GateReason::none);
+  EXPECT_NEAR(gate_->set_point(0).position, 0, 1e-3);
+  EXPECT_GT(fastest_, 0.3);
+}
+
+TEST_F(ClearanceTest, FromDeepInsideThereIsAWayOutToo) {
+  const double inside = edge() + 0.3;
+  stand_at(inside);
+  go(inside + 0.2, 0, 100);
+  EXPECT_EQ(gate_->set_point(0).position, inside);
+  go(0, 0, 4000);
+  EXPECT_NEAR(gate_->set_point(0).position, 0, 1e-3);
 }
 
 TEST(GateOptions, RefusesWhatContradictsItself) {

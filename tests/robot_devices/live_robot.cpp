@@ -7,7 +7,9 @@ namespace foresight {
 
 using namespace std::chrono_literals;
 
-LiveRobot::LiveRobot(const std::string& rig_file) : rig_(read_rig(source_folder() / "configs" / rig_file)) {
+LiveRobot::LiveRobot(const std::string& rig_file) : LiveRobot(read_rig(source_folder() / "configs" / rig_file)) {}
+
+LiveRobot::LiveRobot(Rig rig) : rig_(std::move(rig)) {
   RobotDeviceOptions options;
   options.mock = true;
   options.mock_without_limits = true;

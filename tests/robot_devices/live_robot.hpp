@@ -14,6 +14,7 @@ namespace foresight {
 class LiveRobot {
  public:
   explicit LiveRobot(const std::string& rig_file);
+  explicit LiveRobot(Rig rig);
 
   /// Lets time pass; the control loop runs unless `frozen`.
   void run(Duration time, bool frozen = false);

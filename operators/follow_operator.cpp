@@ -1,4 +1,4 @@
-#include "apps/robot/operators.hpp"
+#include "operators/follow_operator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint64_t kFileOperator = 1, kKeyOperator = 2;
 constexpr Duration kPatience = 20s;      // for enabling
 constexpr Duration kReleasedFor = 50ms;  // before engaging
-constexpr Duration kKeyHeldFor = 600ms;  // terminals begin to repeat a key after up to half a second
-constexpr double kJogSpeed = 0.3;        // share of the joint's velocity
 
 }  // namespace
 
@@ -31,7 +28,7 @@ void FollowOperator::enter(Step step, RobotTime now) {
 }
 
 OperatorWish FollowOperator::command(RobotTime now, bool deadman) {
-  return {.command = MotionCommand{kFileOperator, ++sequence_, now, deadman, joints_, target_}};
+  return {.command = counter_.command(now, deadman, joints_, target_)};
 }
 
 OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
@@ -48,6 +45,11 @@ OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
     }
     return end("stopped: " + why);
   }
+  // Whoever was in charge and is not any more, though nobody let go, has lost the robot: it does not follow.
+  const bool in_charge = status.gate.state == GateState::following && status.gate.operator_id == kId;
+  if (engaged_ && !in_charge && (step_ == Step::approach || step_ == Step::follow))
+    return end(std::string("stopped: ") + to_string(status.gate.reason));
+  engaged_ = engaged_ || in_charge;
   switch (step_) {
     case Step::enable:
       if (status.phase == RobotPhase::ready) {
@@ -74,11 +76,13 @@ OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
       }
       return command(now, false);
     case Step::approach: {
-      if (status.gate.reason == GateReason::obstructed && now - since_ > 5s)
-        return end(std::string("cannot reach where the file begins: ") + status.gate.detail);
-      double farthest = 0;
-      for (std::size_t i = 0; i < joints_; ++i)
+      double farthest = 0, fastest = 0;
+      for (std::size_t i = 0; i < joints_; ++i) {
         farthest = std::max(farthest, std::abs(status.set_point[i].position - target_[i]));
+        fastest = std::max(fastest, std::abs(status.set_point[i].velocity));
+      }
+      if (status.gate.reason == GateReason::obstructed && fastest == 0 && now - since_ > 5s)
+        return end(std::string("cannot reach where the file begins: ") + status.gate.detail);
       if (farthest < 1e-3) enter(Step::follow, now);
       return command(now, true);
     }
@@ -93,66 +97,6 @@ OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
       return command(now, false);
   }
   return {};
-}
-
-KeyOperator::KeyOperator(std::vector<GateJoint> joints) : joints_(std::move(joints)) {}
-
-const char* KeyOperator::help() {
-  return "e enable  h home  1-9 0 joint  +/- move (hold)  space STOP  r reset  c configure anew  d disable  q quit";
-}
-
-RobotRequest KeyOperator::request_for(char key) {
-  const bool consents = std::exchange(consent_, key == 'h');
-  switch (key) {
-    case 'e': return RobotRequest::enable;
-    case 'd': return RobotRequest::disable;
-    case 'r': return RobotRequest::reset;
-    case 'c': return RobotRequest::set_up;
-    case ' ': return RobotRequest::emergency_stop;
-    case 'y': return consents ? RobotRequest::home : RobotRequest::none;
-    default: return RobotRequest::none;
-  }
-}
-
-void KeyOperator::jog(int direction, RobotTime now) {
-  direction_ = direction;
-  jogged_ = now;
-}
-
-OperatorWish KeyOperator::tick(RobotTime now, const RobotStatus& status, const std::string& keys) {
-  OperatorWish wish;
-  for (char key : keys) {
-    if (const RobotRequest request = request_for(key);
-        request != RobotRequest::none && wish.request != RobotRequest::emergency_stop)
-      wish.request = request;
-    if (key == 'q') wish.quit = true;
-    if (key == '+' || key == '=') jog(1, now);
-    if (key == '-') jog(-1, now);
-    if (key >= '0' && key <= '9') {
-      const std::size_t joint = key == '0' ? 9 : static_cast<std::size_t>(key - '1');
-      if (joint < joints_.size()) {
-        selected_ = joint;
-        direction_ = 0;
-      }
-    }
-  }
-  const bool held = direction_ != 0 && now - jogged_ < kKeyHeldFor && status.phase == RobotPhase::ready;
-  // Starts from where the robot stands, each time anew.
-  if (!held || !engaged_)
-    for (std::size_t i = 0; i < joints_.size(); ++i) target_[i] = status.set_point[i].position;
-  if (held && engaged_) {
-    const JointLimits& limits = joints_[selected_].limits;
-    const double step = direction_ * kJogSpeed * limits.velocity * std::min(0.1, to_seconds(now - last_tick_));
-    // Not far ahead of the robot: it must stop soon after the key is released.
-    const double ahead = 0.2 * limits.velocity, here = status.set_point[selected_].position;
-    target_[selected_] = std::clamp(std::clamp(target_[selected_] + step, here - ahead, here + ahead),
-                                    limits.min_position, limits.max_position);
-  }
-  last_tick_ = now;
-  if (status.phase == RobotPhase::ready)
-    wish.command = MotionCommand{kKeyOperator, ++sequence_, now, held && engaged_, joints_.size(), target_};
-  engaged_ = held;
-  return wish;
 }
 
 }  // namespace foresight

@@ -1,4 +1,4 @@
-#include "apps/robot/follow_file.hpp"
+#include "operators/follow_file.hpp"
 
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"

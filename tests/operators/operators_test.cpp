@@ -1,6 +1,5 @@
-#include "apps/robot/operators.hpp"
-
-#include "apps/robot/status_view.hpp"
+#include "operators/follow_operator.hpp"
+#include "operators/key_operator.hpp"
 #include "tests/robot/prompt_drive.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
@@ -18,16 +17,13 @@ class OperatorsTest : public testing::Test {
     robot_ = std::make_unique<Robot>(rig_.gate_options(), nullptr, std::vector<DriveNetwork*>{&network_}, drives);
   }
   /// 10 ms of the operator's, two and a half cycles of the robot's.
-  template <typename Tick>
-  bool tick(Tick&& tick) {
-    const OperatorWish wish = tick(now_, robot_->status());
-    if (wish.request != RobotRequest::none) robot_->ask(wish.request);
-    if (wish.command) robot_->submit(*wish.command);
+  bool tick(std::initializer_list<Commander*> who) {
+    const bool goes_on = serve({who.begin(), who.size()}, *robot_, now_);
     for (int i = 0; i < 5; ++i) {
       now_ = now_ + 2ms;
       if (now_.ns / 2'000'000 % 2 == 0) robot_->cycle(now_);
     }
-    return !wish.quit;
+    return goes_on;
   }
   Rig rig_ = read_rig(source_folder() / "configs/minerva.yaml");
   std::vector<PromptDrive> drives_{std::vector<PromptDrive>(rig_.joints.size())};
@@ -43,7 +39,7 @@ class FollowOperatorTest : public OperatorsTest {
     FollowOperator who(FollowFile(folder_.write("m.csv", "time_s,elbow,finger\n0,0.5,0\n2,1.0,0.02\n"), rig_),
                        rig_.joint_names(), may_home);
     for (int i = 0; i < 3000; ++i) {
-      if (!tick([&](RobotTime now, const RobotStatus& status) { return who.tick(now, status); })) break;
+      if (!tick({&who})) break;
       highest_ = std::max(highest_, drives_[3].state.position);
       if (meanwhile) meanwhile();
     }
@@ -75,11 +71,20 @@ TEST_F(FollowOperatorTest, SaysWhyItWasStopped) {
   EXPECT_LT(highest_, 0.9);
 }
 
+// As where this program's own threads came too late: what is left of the file is not followed, and that is no success.
+TEST_F(FollowOperatorTest, IsNotDoneWhereTheRobotLostIt) {
+  const std::string outcome = follow(true, [&] {
+    if (drives_[3].state.position < 0.6) return;
+    for (int i = 0; i < 50; ++i) robot_->cycle(now_ = now_ + 4ms);
+  });
+  EXPECT_THAT(outcome, testing::AllOf(testing::HasSubstr("stopped"), testing::HasSubstr("lost")));
+}
+
 class KeyOperatorTest : public OperatorsTest {
  protected:
   void type(const std::string& keys, int ticks = 1) {
-    for (int i = 0; i < ticks; ++i)
-      tick([&](RobotTime now, const RobotStatus& status) { return who_.tick(now, status, i == 0 ? keys : ""); });
+    who_.press(keys);
+    for (int i = 0; i < ticks; ++i) tick({&who_});
   }
   KeyOperatorTest() {
     for (PromptDrive& drive : drives_) drive.state.homed = true;
@@ -121,15 +126,36 @@ TEST_F(KeyOperatorTest, HomingAsksForConsent) {
   EXPECT_TRUE(drives_[0].asked(DriveRequest::home));
 }
 
-TEST_F(KeyOperatorTest, TheViewShowsWhatAnOperatorMustKnow) {
+TEST_F(KeyOperatorTest, BesideAFileKeysOnlyStopAndQuit) {
+  KeyOperator keys(rig_.gate_options().joints, KeyOperator::Rights::only_stops);
+  FollowOperator file(FollowFile(folder_.write("m.csv", "time_s,elbow\n0,0.5\n2,1.0\n"), rig_), rig_.joint_names(),
+                      true);
+  for (int i = 0; i < 200; ++i) {
+    keys.press("d+");
+    ASSERT_TRUE(tick({&file, &keys}));
+  }
+  EXPECT_EQ(robot_->status().gate.operator_id, FollowOperator::kId);
+  EXPECT_EQ(robot_->status().gate.dropped, 0u) << "the keyboard commands nothing";
+  keys.press(" ");
+  tick({&file, &keys});
+  EXPECT_EQ(robot_->status().phase, RobotPhase::stopped);
+  EXPECT_EQ(robot_->status().last_request.operator_id, KeyOperator::kId);
+  keys.press("q");
+  EXPECT_FALSE(tick({&file, &keys}));
+}
+
+TEST_F(KeyOperatorTest, AnOperatorThatStartsAnewIsHeardAtOnce) {
   type("e", 10);
-  drives_[5].state.state = DriveState::fault;
-  drives_[5].state.fault = "following error";
-  type("", 5);
-  const std::string text = status_text(rig_, robot_->status(), {{"can0", CanBusState::bus_off, {}, 0.31}}, 2);
-  for (const char* words :
-       {"stopped", "the drive reports a fault (wrist_pitch): following error", ">", "bus-off", "31 %", "overruns"})
-    EXPECT_THAT(text, testing::HasSubstr(words));
+  for (int i = 0; i < 100; ++i) type("+");
+  type("", 200);
+  KeyOperator again(rig_.gate_options().joints);
+  const double before = drives_[0].state.position;
+  for (int i = 0; i < 100; ++i) {
+    again.press("+");
+    tick({&again});
+  }
+  EXPECT_EQ(robot_->status().gate.dropped, 0u) << to_string(robot_->status().gate.last_dropped);
+  EXPECT_GT(drives_[0].state.position, before);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "apps/robot/follow_file.hpp"
+#include "operators/follow_file.hpp"
 
 #include <algorithm>
 #include <cmath>
