@@ -24,4 +24,7 @@ struct PosedFrame {
   std::optional<PosedImage> right;
 };
 
+/// Margin for an image whose pose is expected to be off by `predicted_px`: `margin_px` is that of exact poses.
+double margin_for(double margin_px, double predicted_px);
+
 }  // namespace foresight
