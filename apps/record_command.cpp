@@ -8,10 +8,9 @@
 #include "common/error.hpp"
 #include "rig/open_stereo.hpp"
 #include "rig/rig.hpp"
-#include "scene/scene_reader.hpp"
+#include "session/encoder_poses.hpp"
 #include "session/recorder_options.hpp"
 #include "session/recording.hpp"
-#include "sim/run_files.hpp"
 
 namespace foresight {
 namespace {
@@ -105,27 +104,36 @@ Described described(const Arguments& a) {
   return {as_mock(out), tags};
 }
 
-void add_options(const Arguments& a, RecorderOptions& options) {
-  if (!a.pose.empty()) options.poses = [pose = parse_pose(a.pose)](RobotTime) { return RecordedPoses{pose, {}}; };
-  if (!a.scene.empty()) {
-    const fs::path file = fs::absolute(a.scene);
-    options.write_scene = [scene = read_scene(file, file.parent_path())](const fs::path& folder) {
-      sim::write_model(folder, scene);
-    };
+LiveScene scene_of(const Arguments& a, const StereoConfig& config, const OpenStereo& opened) {
+  if (opened.mock) return LiveScene(*opened.mock);
+  if (a.scene.empty()) {
+    std::fputs("record: no --scene, so that `foresight replay` will need one\n", stderr);
+    return LiveScene(config, nullptr, std::nullopt);
   }
-  if (!options.write_scene) std::fputs("record: no --scene, so that `foresight replay` will need one\n", stderr);
-  if (!options.poses)
-    std::fputs("record: no --pose, so that the run needs a trajectory.txt before it can be replayed\n", stderr);
+  return LiveScene(config, nullptr, a.scene);
 }
 
-int record_and_report(const Arguments& a, StereoCamera& cameras, RecorderOptions options, Clock& clock) {
-  RunRecorder recorder(a.out, std::move(options));
+GivenPoses poses_of(const Arguments& a, const std::shared_ptr<const LiveScene>& scene, const sim::ShaftsAt& shafts) {
+  if (scene->is_mock())
+    return {scene,
+            [scene, shafts](RobotTime t) {
+              return scene->T_world_left([&](std::string_view joint) { return shafts(joint, t); });
+            },
+            shafts};
+  if (!a.pose.empty()) return {scene, [pose = parse_pose(a.pose)](RobotTime) { return pose; }};
+  std::fputs("record: no --pose, so that the run needs a trajectory.txt before it can be replayed\n", stderr);
+  return {scene, {}};
+}
+
+int record_and_report(const Arguments& a, StereoCamera& cameras, LiveFrames& frames, RecorderOptions options,
+                      Clock& clock) {
+  RunRecorder recorder(a.out, std::move(options), frames.subscribe(RunRecorder::kRoom));
   RecordingLimits limits;
   limits.count = a.count;
   if (a.seconds) limits.length = seconds(*a.seconds);
   if (!a.images.empty()) limits.silent_after = std::chrono::seconds(1);  // the end of the files
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = 1; });
-  const RecordingResult result = record(cameras, recorder, limits, clock, [] { return interrupted != 0; });
+  const RecordingResult result = record(cameras, frames, recorder, limits, clock, [] { return interrupted != 0; });
   std::fprintf(stderr, "record: %s", counts_text(result).c_str());
   std::printf("%s\n", a.out.c_str());
   const bool all_played = !a.images.empty() && !recorder.disk_full();
@@ -142,10 +150,12 @@ int run(const Arguments& a) {
   const sim::ShaftsAt shafts = moving_shafts(start);
   if (config.mock()) std::fputs("record: lighting the lab\n", stderr);
   const OpenStereo opened = open_stereo(config, shafts, clock, config.mock() ? mock_world(tags) : MockWorld{});
-  RecorderOptions options = recorder_options(config, opened, shafts);
+  const auto scene = std::make_shared<const LiveScene>(scene_of(a, config, opened));
+  RecorderOptions options = recorder_options(*scene);
+  options.posed = opened.mock || !a.pose.empty();
   options.tags = tags;
-  add_options(a, options);
-  const int code = record_and_report(a, *opened.cameras, std::move(options), clock);
+  LiveFrames frames(std::make_shared<GivenPoses>(poses_of(a, scene, shafts)), clock);
+  const int code = record_and_report(a, *opened.cameras, frames, std::move(options), clock);
   if (opened.mock) write_head_joints(beside_run(a.out, "-joints.csv"), shafts, start, clock.now());
   if (const std::uint64_t skipped = opened.mock ? opened.mock->skipped() : 0)
     std::fprintf(stderr, "record: %llu instants not rendered: this machine is too slow for %g Hz at that size\n",

@@ -5,6 +5,8 @@
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "scene/number_text.hpp"
+#include "scene/scene_writer.hpp"
 #include "scene/yaml_fields.hpp"
 
 namespace foresight {
@@ -22,6 +24,16 @@ const std::vector<std::string> kKeys = {"image_width",
                                         "binning_y",
                                         "roi",
                                         "T_left_right"};
+
+/// How many coefficients the model has, at most.
+std::size_t coefficients_of(LensModel model) {
+  switch (model) {
+    case LensModel::plumb_bob: return 5;
+    case LensModel::rational_polynomial: return 8;
+    case LensModel::equidistant: return 4;
+  }
+  return 0;
+}
 
 LensModel read_model(const YamlMap& yaml) {
   // Names that other calibration tools use for one of the three.
@@ -63,7 +75,7 @@ void read_coefficients(const YamlMap& yaml, Lens::Parameters& p) {
   const std::string key = "distortion_coefficients";
   std::vector<double> d = yaml.numbers(key);
   const std::size_t given = d.size();
-  const std::size_t most = p.model == LensModel::plumb_bob ? 5 : p.model == LensModel::equidistant ? 4 : 8;
+  const std::size_t most = coefficients_of(p.model);
   const std::size_t least = p.model == LensModel::plumb_bob ? 4 : most;
   // Zeros at the end say nothing, and a list of zeros means the same at every length.
   const bool zeros = std::all_of(d.begin(), d.end(), [](double c) { return c == 0; });
@@ -116,6 +128,21 @@ CameraInfo read_camera_info(const std::filesystem::path& file) {
   }
   if (yaml.has("T_left_right")) info.T_left_right = yaml.pose("T_left_right");
   return info;
+}
+
+std::string camera_info_text(const CameraInfo& camera, const std::string& name) {
+  const auto& p = camera.lens.parameters();
+  const auto exact = [](double value) { return number_text(value, 17); };
+  const std::size_t count = coefficients_of(p.model);
+  std::string coefficients;
+  for (std::size_t i = 0; i < count; ++i) coefficients += (i ? ", " : "") + exact(p.d[i]);
+  std::string text =
+      "image_width: " + std::to_string(p.width) + "\nimage_height: " + std::to_string(p.height) +
+      "\ncamera_name: " + name + "\ncamera_matrix:\n  rows: 3\n  cols: 3\n  data: [" + exact(p.fx) + ", 0, " +
+      exact(p.cx) + ", 0, " + exact(p.fy) + ", " + exact(p.cy) + ", 0, 0, 1]\ndistortion_model: " + to_string(p.model) +
+      "\ndistortion_coefficients:\n  rows: 1\n  cols: " + std::to_string(count) + "\n  data: [" + coefficients + "]\n";
+  if (camera.T_left_right) text += "T_left_right: " + pose_yaml(*camera.T_left_right) + "\n";
+  return text;
 }
 
 }  // namespace foresight

@@ -1,4 +1,4 @@
-// Reads camera.yaml: a ROS camera_info file (sensor_msgs/CameraInfo as camera_calibration writes it).
+// Reads and writes camera.yaml: a ROS camera_info file (sensor_msgs/CameraInfo as camera_calibration writes it).
 #pragma once
 
 #include <filesystem>
@@ -21,5 +21,8 @@ struct CameraInfo {
 /// images and are ignored, but a binning or region of interest that would change the image is
 /// refused. Throws InputError naming file, line and field.
 CameraInfo read_camera_info(const std::filesystem::path& file);
+
+/// The text of such a file: read_camera_info() gives back the same lens, to the last bit, and the same T_left_right.
+std::string camera_info_text(const CameraInfo& camera, const std::string& name);
 
 }  // namespace foresight

@@ -41,6 +41,18 @@ std::string read_file(const fs::path& file) {
                    "check its permissions and the disk");
 }
 
+void write_bytes(const fs::path& file, const void* data, std::size_t size) {
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+  stream.close();
+  if (!stream)
+    throw RuntimeFailure("cannot write " + file.string() + " (" + std::strerror(errno) + ")", "free some disk space");
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  write_bytes(file, text.data(), text.size());
+}
+
 fs::path resolve_inside(const fs::path& root, const fs::path& folder, std::string_view name, const std::string& where) {
   const std::string shown = in_quotes(name);
   const bool odd = std::any_of(name.begin(), name.end(), [](char c) { return (c >= 0 && c < 32) || c == 127; });

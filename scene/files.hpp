@@ -1,4 +1,4 @@
-// Files of a run folder: read whole, and never from outside the folder.
+// Files of a run folder: read and written whole, and never from outside the folder.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,10 @@ void require_regular_file(const std::filesystem::path& file);
 
 /// The whole content. Throws like require_regular_file, and where it cannot be read.
 std::string read_file(const std::filesystem::path& file);
+
+/// Both throw RuntimeFailure where the file cannot be written whole.
+void write_bytes(const std::filesystem::path& file, const void* data, std::size_t size);
+void write_text(const std::filesystem::path& file, const std::string& text);
 
 /// `folder / name` for a `name` written in a file of the run. `root` is canonical, and `folder`
 /// lies in it. Throws InputError at `where` when the name is empty, absolute, or leads out of

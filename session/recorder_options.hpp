@@ -1,13 +1,13 @@
-// What a recorder has to know of a rig's cameras.
+// What a recorder has to know of live cameras.
 #pragma once
 
-#include "rig/open_stereo.hpp"
+#include "session/live_scene.hpp"
 #include "session/run_recorder.hpp"
 
 namespace foresight {
 
-/// How a run of these cameras is recorded: lenses, and for mock ones the scene and the poses that encoders tell.
-/// Throws InputError where a real camera has no calibration, or the right one no place.
-RecorderOptions recorder_options(const StereoConfig& config, const OpenStereo& opened, const sim::ShaftsAt& shafts);
+/// How a run of these cameras is recorded: lenses, model, and which of its nodes move. Throws InputError where a camera
+/// has no calibration.
+RecorderOptions recorder_options(const LiveScene& scene);
 
 }  // namespace foresight

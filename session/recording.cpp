@@ -23,17 +23,22 @@ std::string why_silent(const StereoStatus& status, Duration silent) {
 
 struct Stopping {  // also where something throws
   StereoCamera& cameras;
-  ~Stopping() { cameras.stop(); }
+  LiveFrames& frames;
+  ~Stopping() {
+    cameras.stop();
+    frames.stop();
+  }
 };
 
 }  // namespace
 
-RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const RecordingLimits& limits, const Clock& clock,
-                       const std::function<bool()>& stop) {
+RecordingResult record(StereoCamera& cameras, LiveFrames& frames, RunRecorder& recorder, const RecordingLimits& limits,
+                       const Clock& clock, const std::function<bool()>& stop) {
   RecordingResult result;
   cameras.start();
+  frames.start();
   {
-    const Stopping stopping{cameras};
+    const Stopping stopping{cameras, frames};
     std::uint64_t pairs = 0;
     std::optional<RobotTime> first;
     RobotTime heard = clock.now();
@@ -47,14 +52,15 @@ RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const Recor
       heard = clock.now();
       if (!first) first = pair->left.time;
       if (limits.length && pair->left.time - *first >= *limits.length) break;
-      recorder.add(*pair);
+      frames.add(*pair);
       ++pairs;
     }
     result.cameras = cameras.status();
     if (pairs == 0 && !result.fault.empty())
       throw RuntimeFailure(result.fault + "; nothing was recorded", "check the cables, and `foresight doctor`");
   }
-  result.counts = recorder.finish(camera_remarks(result.cameras));
+  result.unregistered = frames.dropped();
+  result.counts = recorder.finish(camera_remarks(result.cameras) + registration_remarks(frames));
   if (recorder.disk_full()) result.fault = "the disk is nearly full";
   return result;
 }
@@ -66,6 +72,10 @@ std::string camera_remarks(const StereoStatus& status) {
                      number(p.jumps[1]), number(status.corrupt[0]), number(status.corrupt[1]));
 }
 
+std::string registration_remarks(const LiveFrames& frames) {
+  return "unregistered: " + std::to_string(frames.dropped()) + "\n";
+}
+
 std::string counts_text(const RecordingResult& result) {
   std::string text = sim::format("%llu pairs\n", number(result.counts.written));
   const auto line = [&text](std::uint64_t n, const char* what) {
@@ -73,6 +83,7 @@ std::string counts_text(const RecordingResult& result) {
   };
   line(result.counts.without_pose, "pairs of these have no pose: they are in without_pose.txt, not in the run");
   line(result.counts.dropped, "pairs dropped: the disk was too slow");
+  line(result.unregistered, "pairs dropped: their registration was too slow");
   line(result.cameras.dropped, "pairs missed: this machine was too slow");
   const char* const sides[] = {"left", "right"};
   for (std::size_t i = 0; i < 2; ++i) {

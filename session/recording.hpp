@@ -1,4 +1,4 @@
-// The loop of `foresight record`: from a stereo camera into a recorder, until enough came or none comes.
+// The loop of `foresight record`: from a stereo camera to a recorder, until enough came or none comes.
 #pragma once
 
 #include "drivers/camera/stereo_camera.hpp"
@@ -15,17 +15,19 @@ struct RecordingLimits {
 struct RecordingResult {
   RecorderCounts counts;
   StereoStatus cameras;
-  std::string fault;  ///< why it ended early: a silent camera, a full disk; "" where it did not
+  std::uint64_t unregistered = 0;  ///< pairs for which the registration was too slow
+  std::string fault;               ///< why it ended early: a silent camera, a full disk; "" where it did not
 };
 
-/// Starts `cameras`, records, stops them and finishes `recorder`. What was recorded before a fault is kept. Blocks;
-/// `stop` is polled at least every 0.1 s. Throws what StereoCamera::start, RunRecorder::add and finish do;
-/// RuntimeFailure where not one pair came, saying why.
-RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const RecordingLimits& limits, const Clock& clock,
-                       const std::function<bool()>& stop);
+/// Starts `cameras` and `frames`, to which `recorder` has subscribed, hands the pairs over, stops them and finishes
+/// `recorder`. What was recorded before a fault is kept. Blocks; `stop` is polled at least every 0.1 s. Throws what
+/// StereoCamera::start and RunRecorder::finish do; RuntimeFailure where not one pair came, saying why.
+RecordingResult record(StereoCamera& cameras, LiveFrames& frames, RunRecorder& recorder, const RecordingLimits& limits,
+                       const Clock& clock, const std::function<bool()>& stop);
 
 /// The cameras' counts as lines of YAML for RunRecorder::finish().
 std::string camera_remarks(const StereoStatus& status);
+std::string registration_remarks(const LiveFrames& frames);
 
 /// Counts in words, one line each; what is 0 is left out but for the pairs.
 std::string counts_text(const RecordingResult& result);

@@ -3,24 +3,8 @@
 #include "common/error.hpp"
 #include "session/recorder_options.hpp"
 #include "session/recording.hpp"
-#include "sim/run_files.hpp"
 
 namespace foresight {
-
-JointLog::JointLog(const std::filesystem::path& file, const Rig& rig) : stream_(file), joints_(rig.joints.size()) {
-  if (!stream_) throw RuntimeFailure("cannot write " + file.string(), "choose a folder that can be written");
-  stream_ << "time_s";
-  for (const std::string& joint : rig.joint_names()) stream_ << ',' << joint;
-  stream_ << '\n';
-}
-
-void JointLog::add(const RobotStatus& status) {
-  if (status.time <= last_ || !status.all_homed) return;
-  last_ = status.time;
-  stream_ << sim::format("%.9f", to_seconds(status.time - RobotTime{}));
-  for (std::size_t i = 0; i < joints_; ++i) stream_ << sim::format(",%.7f", status.feedback[i].position);
-  stream_ << '\n';
-}
 
 std::filesystem::path can_log_beside(const std::filesystem::path& out) {
   return beside_run(out, "-can.log");
@@ -29,47 +13,35 @@ std::filesystem::path joint_log_beside(const std::filesystem::path& out) {
   return beside_run(out, "-joints.csv");
 }
 
-struct RobotCameras::Recording {
-  RunRecorder recorder;
-  std::filesystem::path out;
-  std::string fault;  // of the watch's thread
-
-  Recording(RecorderOptions options, const std::filesystem::path& folder)
-      : recorder(folder, std::move(options)), out(folder) {}
-  void add(const StereoPair& pair) noexcept {
-    if (!fault.empty()) return;
-    try {
-      recorder.add(pair);
-    } catch (const std::exception& error) {
-      fault = error.what();
-    }
-  }
-};
-
-RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, Clock& clock, const RobotCameraOptions& options)
+RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, const Robot& robot, Clock& clock,
+                           const RobotCameraOptions& options)
     : devices_(devices), clock_(clock) {
   const StereoConfig config = options.mock ? as_mock(*rig.cameras) : *rig.cameras;
   if (config.mock() && rig.calibration) world_ = mock_world(rig.calibration->tags);
   if (config.mock() || options.record) ready_ = open(config);
-  if (options.record) start_recording(rig, config, *options.record);
+  if (options.frames || options.record) {
+    scene_ = ready_.mock ? std::make_shared<const LiveScene>(*ready_.mock)
+                         : std::make_shared<const LiveScene>(config, &rig, options.scene);
+    auto poses = std::make_shared<EncoderPoses>(rig, scene_, robot.cycles());
+    const bool posed = poses->has_poses();
+    frames_ = std::make_unique<LiveFrames>(std::move(poses), clock, options.live);
+    if (options.record) start_recording(rig, *options.record, posed);
+  }
   watch_ = std::make_unique<CameraWatch>(
       [this, config] { return ready_.cameras ? std::move(ready_.cameras) : std::move(open(config).cameras); }, clock,
       [this](const StereoPair& pair) {
-        if (recording_) recording_->add(pair);
+        if (frames_) frames_->add(pair);
       });
 }
 
-void RobotCameras::start_recording(const Rig& rig, const StereoConfig& config, const std::filesystem::path& out) {
-  const sim::ShaftsAt shafts = [this](std::string_view joint, RobotTime t) { return devices_.shaft_at(joint, t); };
-  RecorderOptions recording = recorder_options(config, ready_, shafts);
-  recording.waits = dynamic_cast<SteppedClock*>(&clock_) != nullptr;
-  if (rig.calibration) recording.tags = rig.calibration->tags;
-  if (rig.calibration && rig.calibration->pan_tilt) {
-    const StereoLenses lenses{recording.left, recording.right, recording.T_left_right};
-    head_ = std::make_unique<HeadRegistration>(rig, lenses);
-    recording.registration = [head = head_.get()] { return head->prepare(); };
-  }
-  recording_ = std::make_unique<Recording>(std::move(recording), out);
+void RobotCameras::start_recording(const Rig& rig, const std::filesystem::path& out, bool posed) {
+  RecorderOptions options = recorder_options(*scene_);
+  options.posed = posed;
+  if (rig.calibration) options.tags = rig.calibration->tags;
+  const bool stepped = dynamic_cast<SteppedClock*>(&clock_) != nullptr;
+  recorder_ =
+      std::make_unique<RunRecorder>(out, std::move(options), frames_->subscribe(RunRecorder::kRoom, /*waits=*/stepped));
+  out_ = out;
 }
 
 RobotCameras::~RobotCameras() = default;
@@ -79,13 +51,23 @@ OpenStereo RobotCameras::open(const StereoConfig& config) const {
   return open_stereo(config, shafts, clock_, world_);
 }
 
+void RobotCameras::start() {
+  if (frames_) frames_->start();
+  watch_->start();
+}
+
+void RobotCameras::step() noexcept {
+  watch_->step();
+  if (frames_) frames_->step();
+}
+
 std::string RobotCameras::finish() {
   watch_->stop();
-  if (!recording_) return "";
-  std::string out = recording_->fault.empty() ? "" : "the recording ended early: " + recording_->fault + "\n";
+  if (frames_) frames_->stop();
+  if (!recorder_) return "";
   const StereoStatus status = watch_->line().status;
-  const RecorderCounts counts = recording_->recorder.finish(camera_remarks(status));
-  return out + counts_text({counts, status, ""}) + recording_->out.string() + "\n";
+  const RecorderCounts counts = recorder_->finish(camera_remarks(status) + registration_remarks(*frames_));
+  return counts_text({counts, status, frames_->dropped(), ""}) + out_.string() + "\n";
 }
 
 }  // namespace foresight

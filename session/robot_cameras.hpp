@@ -1,31 +1,17 @@
-// The cameras of a running robot: real ones, or mock ones that see the emulated drives' shafts; recorded on request.
+// The cameras of a running robot: real ones, or mock ones that see the emulated drives' shafts; with the poses of their
+// pairs for whoever wants them, and recorded on request.
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "rig/open_stereo.hpp"
 #include "rig/robot_devices.hpp"
 #include "session/camera_watch.hpp"
-#include "session/head_registration.hpp"
+#include "session/encoder_poses.hpp"
+#include "session/run_recorder.hpp"
 
 namespace foresight {
-
-/// Positions of all joints over time, as --follow reads them: time_s on the robot's clock, then the joints.
-class JointLog {
- public:
-  /// Throws RuntimeFailure where the file cannot be written.
-  JointLog(const std::filesystem::path& file, const Rig& rig);
-  /// Of the encoders, once all joints are homed: before, they tell no position. A state that was logged already is left
-  /// out.
-  void add(const RobotStatus& status);
-
- private:
-  std::ofstream stream_;
-  std::size_t joints_;
-  RobotTime last_{INT64_MIN};
-};
 
 /// Names of what is recorded beside the folder OUT: OUT-can.log (OUT-can-BUS.log where there are more) and
 /// OUT-joints.csv.
@@ -33,40 +19,49 @@ std::filesystem::path can_log_beside(const std::filesystem::path& out);
 std::filesystem::path joint_log_beside(const std::filesystem::path& out);
 
 struct RobotCameraOptions {
-  bool mock = false;                            ///< the mock lab's, whatever the rig says
-  std::optional<std::filesystem::path> record;  ///< folder for a run (RunRecorder) of all pairs
+  bool mock = false;                                 ///< the mock lab's, whatever the rig says
+  std::optional<std::filesystem::path> record = {};  ///< folder for a run (RunRecorder) of all pairs
+  bool frames = false;                               ///< frames() is wanted; also where it records
+  std::optional<std::filesystem::path> scene = {};   ///< what real cameras look at, but for the robot; frames only
+  LiveFrameOptions live = {};
 };
 
 /// Real cameras are opened when the watch starts. The mock lab is lit at once, which takes seconds of all cores that
-/// emulated drives in motion could not spare. `rig` (which has cameras), `devices` and `clock` must outlive this.
+/// emulated drives in motion could not spare. `rig` (which has cameras), `devices`, `robot` and `clock` must outlive
+/// this.
 class RobotCameras {
  public:
-  /// Throws what as_mock() does, of mock cameras what open_stereo() and mock_world() do, and, where it records, what
-  /// recorder_options(), RunRecorder and HeadRegistration do: known before anything moves.
-  RobotCameras(const Rig& rig, const RobotDevices& devices, Clock& clock, const RobotCameraOptions& options);
+  /// Throws what as_mock() does, of mock cameras what open_stereo() and mock_world() do, with frames what LiveScene and
+  /// EncoderPoses do, and, where it records, what RunRecorder does, and InputError where a camera's lens is not
+  /// calibrated: known before anything moves.
+  RobotCameras(const Rig& rig, const RobotDevices& devices, const Robot& robot, Clock& clock,
+               const RobotCameraOptions& options);
   ~RobotCameras();
 
-  CameraWatch& watch() { return *watch_; }
+  void start();          ///< threads for the cameras and the registration
+  void step() noexcept;  ///< in stepped time, instead of start(): looks at the cameras and registers, without waiting
+
   const CameraWatch& watch() const { return *watch_; }
-  /// Where the joints are, for the poses of recorded pairs, where the rig's head is calibrated. Any one thread.
-  void add_encoders(const RobotStatus& status) {
-    if (head_) head_->add(status);
-  }
-  /// Stops the cameras and finishes the recording. What there is to say, one line each; empty without a recording.
-  /// Throws RuntimeFailure where the recording cannot be finished.
+  /// Only with RobotCameraOptions::frames or ::record.
+  LiveFrames& frames() { return *frames_; }
+  const LiveScene& scene() const { return *scene_; }
+
+  /// Stops the cameras and the registration, closes all subscribers' queues and finishes the recording. What there is
+  /// to say, one line each; empty without a recording. Throws RuntimeFailure where the recording cannot be finished.
   std::string finish();
 
  private:
-  struct Recording;
   OpenStereo open(const StereoConfig& config) const;
-  void start_recording(const Rig& rig, const StereoConfig& config, const std::filesystem::path& out);
+  void start_recording(const Rig& rig, const std::filesystem::path& out, bool posed);
 
   const RobotDevices& devices_;
   Clock& clock_;
   MockWorld world_;
-  OpenStereo ready_;                        // until the watch takes the cameras
-  std::unique_ptr<HeadRegistration> head_;  // outlives the recording, whose thread uses it
-  std::unique_ptr<Recording> recording_;
+  OpenStereo ready_;  // until the watch takes the cameras
+  std::shared_ptr<const LiveScene> scene_;
+  std::unique_ptr<LiveFrames> frames_;
+  std::unique_ptr<RunRecorder> recorder_;
+  std::filesystem::path out_;
   std::unique_ptr<CameraWatch> watch_;  // the last: its thread uses all above
 };
 

@@ -1,30 +1,17 @@
 #include "session/run_recorder.hpp"
 
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <opencv2/imgcodecs.hpp>
-
 #include "common/error.hpp"
-#include "sim/run_files.hpp"
+#include "scene/files.hpp"
+#include "scene/scene_writer.hpp"
 
 namespace foresight {
 namespace fs = std::filesystem;
 namespace {
 
-std::string time_text(RobotTime time) {
-  return sim::format("%lld.%09lld", static_cast<long long>(time.ns / 1'000'000'000),
-                     static_cast<long long>(time.ns % 1'000'000'000));
-}
+using namespace std::chrono_literals;
 
-void open_list(std::ofstream& stream, const fs::path& file, const char* heading) {
-  stream.open(file);
-  stream << "# " << heading << "\n";
-}
-
-[[noreturn]] void cannot_write(const fs::path& target, const char* why) {
-  throw RuntimeFailure("cannot write " + target.string() + " (" + why + ")", "free some disk space");
-}
+constexpr Duration kLook = 100ms;
+constexpr int kCompression = 1;  // more takes longer than 33 ms
 
 }  // namespace
 
@@ -33,184 +20,128 @@ fs::path beside_run(fs::path out, const char* ending) {
   return out.concat(ending);
 }
 
-RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options)
-    : options_(std::move(options)), target_(out, kMarker, kMarkerLine) {
+RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options, std::shared_ptr<FrameQueue> frames)
+    : options_(std::move(options)),
+      frames_(std::move(frames)),
+      target_(out, kMarker, kMarkerLine),
+      run_(target_.path(), options_.lenses.left, "left") {
   target_.require_space(options_.spare_bytes);
-  const fs::path& folder = target_.path();
-  for (const char* images : {"rgb", "rgb_right"}) fs::create_directory(folder / images);
-  sim::write_text(folder / "camera.yaml", sim::camera_yaml(options_.left, "left", nullptr));
-  sim::write_text(folder / "camera_right.yaml", sim::camera_yaml(options_.right, "right", &options_.T_left_right));
-  if (options_.write_scene) options_.write_scene(folder);
-  open_list(rgb_, folder / "rgb.txt", "time[s] file");
-  open_list(rgb_right_, folder / "rgb_right.txt", "time[s] file");
-  if (options_.tags) fs::copy_file(*options_.tags, folder / "tags.txt");
-  if (options_.registration)
-    open_list(registration_, folder / "registration.txt",
-              "time[s] quality predicted[px]: of the left image's pose, RMS over the image");
-  if (options_.poses || options_.registration)
-    open_list(trajectory_, folder / "trajectory.txt",
-              "time[s] tx ty tz[m] qx qy qz qw: T_world_camera of the left camera");
+  run_.add_right_camera(options_.lenses.right, options_.lenses.T_left_right, "right");
+  if (options_.scene) write_model(target_.path(), *options_.scene);
+  if (options_.tags) fs::copy_file(*options_.tags, target_.path() / "tags.txt");
   writer_ = std::jthread([this] { run(); });
 }
 
 RunRecorder::~RunRecorder() {
-  {
-    const std::lock_guard lock(mutex_);
-    jobs_.clear();
-  }
+  failed_ = true;  // nobody wants what still waits
   join();
 }
 
 void RunRecorder::join() {
-  {
-    const std::lock_guard lock(mutex_);
-    closing_ = true;
-  }
-  changed_.notify_one();
+  frames_->close();
   if (writer_.joinable()) writer_.join();
 }
 
 void RunRecorder::check(const ColourImage& image, const Lens& lens, const char* side, RobotTime last) const {
   if (image.bgr.cols != lens.width() || image.bgr.rows != lens.height())
     throw InputError(std::string("the ") + side + " camera",
-                     sim::format("delivers %d x %d px, but its lens was calibrated at %d x %d", image.bgr.cols,
-                                 image.bgr.rows, lens.width(), lens.height()),
+                     "delivers " + std::to_string(image.bgr.cols) + " x " + std::to_string(image.bgr.rows) +
+                         " px, but its lens was calibrated at " + std::to_string(lens.width()) + " x " +
+                         std::to_string(lens.height()),
                      "set the camera to the size of its calibration, or calibrate it anew");
   if (image.time <= last)
     throw InputError(std::string("the ") + side + " camera", "delivers images whose times do not ascend",
                      "check the clock of the camera's driver");
 }
 
-void RunRecorder::add(const StereoPair& pair) {
-  check(pair.left, options_.left, "left", last_left_);
-  check(pair.right, options_.right, "right", last_right_);
-  last_left_ = pair.left.time;
-  last_right_ = pair.right.time;
-  Job job{pair, {}, {}, options_.registration ? options_.registration() : PairRegistration{}};
-  if (options_.poses) {
-    job.left = options_.poses(pair.left.time);
-    if (pair.right.time != pair.left.time) job.right = options_.poses(pair.right.time);
-  }
-  {
-    std::unique_lock lock(mutex_);
-    if (options_.waits) written_.wait(lock, [this] { return stopped() || jobs_.size() < options_.waiting; });
-    if (stopped()) return;
-    if (jobs_.size() >= options_.waiting) {
-      ++counts_.dropped;
-      return;
-    }
-    jobs_.push_back(std::move(job));
-  }
-  changed_.notify_one();
-}
-
 RecorderCounts RunRecorder::counts() const {
   const std::lock_guard lock(mutex_);
-  return counts_;
+  RecorderCounts out = counts_;
+  out.dropped = frames_->dropped();
+  return out;
 }
 
 void RunRecorder::run() noexcept {
   for (;;) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return closing_ || !jobs_.empty(); });
-    if (jobs_.empty()) return;
-    const Job job = jobs_.front();  // keeps its place, so that `waiting` counts it
-    lock.unlock();
-    if (!stopped()) {
-      try {
-        write(job);
-      } catch (...) {
-        failure_ = std::current_exception();
-        failed_ = true;
-      }
+    const auto frame = frames_->take(kLook);
+    if (!frame && frames_->closed()) return;
+    if (!frame || stopped()) continue;  // what waits goes all the same: nobody may wait for room for ever
+    try {
+      write(**frame);
+    } catch (...) {
+      failure_ = std::current_exception();
+      failed_ = true;
     }
-    lock.lock();
-    if (!jobs_.empty()) jobs_.pop_front();
-    if (!stopped()) ++counts_.written;
-    written_.notify_one();
   }
 }
 
-void RunRecorder::write(const Job& job) {
+void RunRecorder::write(const LiveFrame& frame) {
   std::error_code error;
   const fs::space_info space = fs::space(target_.path(), error);
   if (!error && static_cast<double>(space.available) < options_.spare_bytes) {
     full_ = true;
     return;
   }
-  if (options_.slowed_by.count() > 0) std::this_thread::sleep_for(options_.slowed_by);
-  const bool placed = job.registration ? write_registered(job) : write_given(job);
-  write_image("rgb", job.pair.left, placed ? rgb_ : unplaced_);
-  write_image("rgb_right", job.pair.right, placed ? rgb_right_ : unplaced_);
-  if (placed) return;
+  check(frame.pair.left, options_.lenses.left, "left", last_left_);
+  check(frame.pair.right, options_.lenses.right, "right", last_right_);
+  last_left_ = frame.pair.left.time;
+  last_right_ = frame.pair.right.time;
+  const bool placed = frame.posed || !options_.posed;
+  if (options_.posed && frame.predicted_px)
+    run_.add_registration(frame.pair.left.time, frame.quality, *frame.predicted_px);
+  if (frame.posed && options_.posed) write_poses(*frame.posed);
+  const std::uint64_t number = counts().written;
+  for (const bool right : {false, true}) {
+    const ColourImage& image = right ? frame.pair.right : frame.pair.left;
+    const std::string name = RunWriter::image_name(right, number);
+    run_.write_image(name, image.bgr, kCompression);
+    placed ? run_.add_image(right, image.time, name) : run_.add_unplaced(image.time, name);
+  }
   const std::lock_guard lock(mutex_);
-  ++counts_.without_pose;
+  ++counts_.written;
+  if (!placed) ++counts_.without_pose;
 }
 
-bool RunRecorder::write_given(const Job& job) {
-  const bool right_first = job.right && job.pair.right.time < job.pair.left.time;
-  if (right_first) write_poses(job.pair.right.time, *job.right);
-  if (job.left) write_poses(job.pair.left.time, *job.left);
-  if (job.right && !right_first) write_poses(job.pair.right.time, *job.right);
-  return true;
+/// Of both instants, where they differ: a reader then has the right image's pose without guessing between two left
+/// ones.
+void RunRecorder::write_poses(const PosedFrame& frame) {
+  const PosedImage &left = frame.left, &right = frame.right.value();
+  const Pose T_right_left = options_.lenses.T_left_right.inverse();
+  const bool right_first = right.time < left.time;
+  if (right_first) write_poses(right.time, right.T_world_camera * T_right_left, right.scene);
+  write_poses(left.time, left.T_world_camera, left.scene);
+  if (!right_first) write_poses(right.time, right.T_world_camera * T_right_left, right.scene);
 }
 
-/// The right image's pose follows from those of the left ones around it: the first pair's has none where it came first.
-bool RunRecorder::write_registered(const Job& job) {
-  const RobotTime time = job.pair.left.time;
-  const bool first = last_pose_.ns == INT64_MIN;
-  const RegisteredPose found = job.registration(job.pair);
-  registration_ << time_text(time) << ' ' << found.quality << ' ' << sim::format("%.4f", found.predicted_px) << '\n';
-  if (found.quality == "lost") return false;
-  RecordedPoses poses = job.left.value_or(RecordedPoses{});
-  poses.T_world_left = found.T_world_left;
-  write_poses(time, poses);
-  return !first || job.pair.right.time >= time;
-}
-
-void RunRecorder::write_image(const std::string& folder, const ColourImage& image, std::ofstream& list) {
-  const std::string name = folder + sim::format("/%06llu.png", static_cast<unsigned long long>(counts().written));
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", image.bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1});  // more takes longer than 33 ms
-  sim::write_bytes(target_.path() / name, bytes.data(), bytes.size());
-  if (!list.is_open())
-    open_list(list, target_.path() / "without_pose.txt", "time[s] file: of pairs for which there is no pose");
-  list << time_text(image.time) << ' ' << name << '\n';
-}
-
-void RunRecorder::write_poses(RobotTime time, const RecordedPoses& poses) {
+void RunRecorder::write_poses(RobotTime time, const Pose& T_world_left, const SceneState& scene) {
   if (time <= last_pose_) return;  // readers want ascending times
   last_pose_ = time;
-  trajectory_ << time_text(time) << ' ' << sim::pose_text(poses.T_world_left) << '\n';
-  if (!poses.T_world_node.empty() && !nodes_.is_open())
-    open_list(nodes_, target_.path() / "nodes.txt", "time[s] node tx ty tz[m] qx qy qz qw: T_world_node");
-  for (const auto& [node, pose] : poses.T_world_node)
-    nodes_ << time_text(time) << ' ' << node << ' ' << sim::pose_text(pose) << '\n';
+  run_.add_pose(time, T_world_left);
+  if (!options_.scene) return;
+  const auto& nodes = options_.scene->nodes();
+  for (std::size_t i = 0; i < std::min({nodes.size(), options_.moves.size(), scene.T_world_node.size()}); ++i)
+    if (options_.moves[i]) run_.add_node(time, nodes[i].name, scene.T_world_node[i]);
 }
 
 RecorderCounts RunRecorder::finish(const std::string& remarks) {
   join();
   if (failure_) std::rethrow_exception(failure_);
-  if (counts_.written == 0)
+  const RecorderCounts counts = this->counts();
+  if (counts.written == 0)
     throw RuntimeFailure(full_ ? "the disk of " + target_.target().string() + " is full: nothing was recorded"
                                : "no pair of images came: nothing was recorded",
                          full_ ? "free some disk space" : "see what `foresight doctor` says of the cameras");
-  for (std::ofstream* list : {&rgb_, &rgb_right_, &unplaced_, &trajectory_, &nodes_, &registration_}) {
-    if (!list->is_open()) continue;
-    list->close();
-    if (!*list) cannot_write(target_.target(), std::strerror(errno));
-  }
-  sim::write_text(target_.path() / kMarker, sim::format("%s\npairs: %llu\ndropped_by_disk: %llu\nwithout_pose: %llu\n",
-                                                        kMarkerLine, static_cast<unsigned long long>(counts_.written),
-                                                        static_cast<unsigned long long>(counts_.dropped),
-                                                        static_cast<unsigned long long>(counts_.without_pose)) +
-                                                remarks);
+  run_.finish();
+  write_text(target_.path() / kMarker, std::string(kMarkerLine) + "\npairs: " + std::to_string(counts.written) +
+                                           "\ndropped_by_disk: " + std::to_string(counts.dropped) +
+                                           "\nwithout_pose: " + std::to_string(counts.without_pose) + "\n" + remarks);
   try {
     target_.commit();
   } catch (const fs::filesystem_error& e) {
-    cannot_write(target_.target(), e.code().message().c_str());
+    throw RuntimeFailure("cannot write " + target_.target().string() + " (" + e.code().message() + ")",
+                         "free some disk space");
   }
-  return counts_;
+  return counts;
 }
 
 }  // namespace foresight

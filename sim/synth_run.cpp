@@ -6,14 +6,16 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/error.hpp"
+#include "scene/files.hpp"
+#include "scene/run_writer.hpp"
 #include "scene/scene_reader.hpp"
+#include "scene/target_folder.hpp"
 #include "sim/head_path.hpp"
 #include "sim/motion.hpp"
 #include "sim/parallel.hpp"
 #include "sim/polygons.hpp"
 #include "sim/pose_error.hpp"
 #include "sim/run_files.hpp"
-#include "sim/target_folder.hpp"
 
 namespace foresight::sim {
 namespace {
@@ -24,8 +26,8 @@ constexpr const char* kMarker = "synth.yaml";  // tells our folders from those o
 constexpr const char* kMarkerLine = "generator: foresight synth";
 constexpr double kDepthUnit = 1e-4;  // metres
 
-std::string image_name(const std::string& folder, int frame) {
-  return folder + format("/%06d.png", frame);
+std::string image_name(bool right, int frame) {
+  return RunWriter::image_name(right, static_cast<std::uint64_t>(frame));
 }
 
 void write_png(const fs::path& file, const cv::Mat& image) {
@@ -60,6 +62,8 @@ class SynthRun {
 
  private:
   double time(int frame) const { return frame / options_.rate; }
+  static RobotTime at(double t) { return RobotTime{} + seconds(t); }
+  fs::path truth_folder(bool right) const { return target_.path() / (right ? "truth_right" : "truth"); }
 
   // Of pose errors, from image to image.
   double persistence() const {
@@ -74,13 +78,16 @@ class SynthRun {
   SynthSummary write_all(const std::function<void(int, int)>& progress) {
     const Lab lab = make_lab(0.0005 * std::clamp(relative_, 0.6, 8.0), options_.seed);
     if (head_path_) check_head(lab);
+    RunWriter run(target_.path(), lenses_[0], "synth_left");
+    if (options_.stereo) run.add_right_camera(lenses_[1], T_left_right(), "synth_right");
     write_scene(target_.path(), lab, arm_position_at(0));
     node_of_facet(lab);
-    write_node_track(lab);
-    for (int eye = 0; eye <= int{options_.stereo}; ++eye) write_camera(eye == 1);
+    add_node_track(run, lab);
+    for (int eye = 0; eye <= int{options_.stereo}; ++eye) add_images(run, eye == 1);
     const Polygons polygons = polygons_of(lab);
-    const SynthSummary summary = write_images(lab, polygons, progress);
-    write_trajectories();
+    const SynthSummary summary = write_images(run, lab, polygons, progress);
+    add_trajectory(run);
+    run.finish();
     write_marker(summary);
     target_.commit();
     return summary;
@@ -116,36 +123,28 @@ class SynthRun {
     return out;
   }
 
-  void write_node_track(const Lab& lab) const {
-    std::string text = "# time[s] node tx ty tz[m] qx qy qz qw: T_world_node\n";
+  void add_node_track(RunWriter& run, const Lab& lab) const {
     for (const double t : track_times()) {
       const LabState state = lab_state_at(lab, t);
       for (std::size_t k = 0; k < lab.parts.size(); ++k)
-        if (lab.parts[k].moves) text += format("%.9f ", t) + lab.parts[k].name + " " + pose_text(state[k]) + "\n";
+        if (lab.parts[k].moves) run.add_node(at(t), lab.parts[k].name, state[k]);
     }
-    write_text(target_.path() / "nodes.txt", text);
   }
 
-  void write_camera(bool right) const {
-    const std::string images = right ? "rgb_right" : "rgb";
-    fs::create_directory(target_.path() / images);
-    std::string list = "# time[s] file\n";
-    for (int i = 0; i < options_.frames; ++i) list += format("%.9f ", time(i)) + image_name(images, i) + "\n";
-    write_text(target_.path() / (images + ".txt"), list);
-    const Pose T = T_left_right();
-    write_text(target_.path() / (right ? "camera_right.yaml" : "camera.yaml"),
-               camera_yaml(lenses_[right], right ? "synth_right" : "synth_left", right ? &T : nullptr));
+  void add_images(RunWriter& run, bool right) const {
+    for (int i = 0; i < options_.frames; ++i) run.add_image(right, at(time(i)), image_name(right, i));
     if (!options_.truth) return;
-    const fs::path truth = target_.path() / (right ? "truth_right" : "truth");
+    const fs::path truth = truth_folder(right);
     for (const char* kind : {"depth", "node"}) fs::create_directories(truth / kind);
     std::string trajectory = "# time[s] tx ty tz[m] qx qy qz qw: true T_world_camera of this camera\n";
-    for (const double t : track_times()) trajectory += format("%.9f ", t) + pose_text(T_world_eye(t, right)) + "\n";
+    for (const double t : track_times()) trajectory += time_text(at(t)) + " " + pose_text(T_world_eye(t, right)) + "\n";
     write_text(truth / "trajectory.txt", trajectory);
     write_text(truth / "truth.yaml", format("depth_unit_m: %g\nreadout_s: %.9g\nnodes: %d\n", kDepthUnit,
                                             options_.shutter.readout_s, node_count_));
   }
 
-  SynthSummary write_images(const Lab& lab, const Polygons& polygons, const std::function<void(int, int)>& progress) {
+  SynthSummary write_images(const RunWriter& run, const Lab& lab, const Polygons& polygons,
+                            const std::function<void(int, int)>& progress) {
     std::mutex mutex;
     int done = 0;
     const int total = options_.frames * static_cast<int>(lenses_.size());
@@ -159,7 +158,7 @@ class SynthRun {
     SynthSummary summary{polygons.count, polygons.count, 0};
     parallel_for(options_.frames, [&](std::size_t frame) {
       for (std::size_t eye = 0; eye < rays.size(); ++eye) {
-        const int in_view = write_image(renderer, rays[eye], polygons, static_cast<int>(frame), eye == 1);
+        const int in_view = write_image(run, renderer, rays[eye], polygons, static_cast<int>(frame), eye == 1);
         const std::scoped_lock lock(mutex);
         summary.fewest_polygons_in_view = std::min(summary.fewest_polygons_in_view, in_view);
         summary.most_polygons_in_view = std::max(summary.most_polygons_in_view, in_view);
@@ -170,13 +169,14 @@ class SynthRun {
   }
 
   // Returns the number of polygons in view.
-  int write_image(const Renderer& renderer, const RayTable& rays, const Polygons& polygons, int frame, bool right) {
+  int write_image(const RunWriter& run, const Renderer& renderer, const RayTable& rays, const Polygons& polygons,
+                  int frame, bool right) {
     const double t = time(frame);
     const Motion motion{[&](double at) { return T_world_eye(at, right); },
                         [&](double at) { return lab_state_at(renderer.lab(), at); }};
     const Picture picture = expose(renderer, rays, motion, options_.shutter, t);
-    write_png(target_.path() / image_name(right ? "rgb_right" : "rgb", frame),
-              options_.sensor.develop(picture.light, t, 2 * static_cast<std::uint64_t>(frame) + right));
+    run.write_image(image_name(right, frame),
+                    options_.sensor.develop(picture.light, t, 2 * static_cast<std::uint64_t>(frame) + right));
     if (!right)
       pose_errors_[static_cast<std::size_t>(frame)] =
           random_pose_error(lenses_[0], picture.depth, options_.pose_error_px, options_.seed, frame, persistence());
@@ -193,19 +193,16 @@ class SynthRun {
         if (facet >= 0) seen[static_cast<std::size_t>(polygons.of_facet[static_cast<std::size_t>(facet)])] = 1;
       }
     if (options_.truth) {
-      const fs::path truth = target_.path() / (right ? "truth_right" : "truth");
-      write_png(truth / image_name("depth", frame), depth);
-      write_png(truth / image_name("node", frame), node);
+      const std::string file = fs::path(image_name(false, frame)).filename();
+      write_png(truth_folder(right) / "depth" / file, depth);
+      write_png(truth_folder(right) / "node" / file, node);
     }
     return static_cast<int>(std::count(seen.begin(), seen.end(), 1));
   }
 
-  void write_trajectories() const {
-    std::string text = "# time[s] tx ty tz[m] qx qy qz qw: T_world_camera of the left camera\n";
+  void add_trajectory(RunWriter& run) const {
     for (int i = 0; i < options_.frames; ++i)
-      text += format("%.9f ", time(i)) + pose_text(T_world_left(time(i)) * pose_errors_[static_cast<std::size_t>(i)]) +
-              "\n";
-    write_text(target_.path() / "trajectory.txt", text);
+      run.add_pose(at(time(i)), T_world_left(time(i)) * pose_errors_[static_cast<std::size_t>(i)]);
   }
 
   void write_marker(const SynthSummary& summary) const {

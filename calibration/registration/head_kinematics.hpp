@@ -44,39 +44,70 @@ struct HeadModel {
 /// Left camera, by its shafts (not encoders).
 Pose T_world_camera(const HeadModel& model, const HeadAngles& shafts);
 
-/// The encoders' recent past. One thread.
+/// What is known of the past: options of ShaftTrack and EncoderTrack.
+struct EncoderTrackOptions {
+  double largest_gap_s = 0.1;  ///< a larger one between two samples is not interpolated
+  double most_ahead_s = 0.02;  ///< beyond the newest sample its speed carries on for so long
+  double kept_s = 5;
+};
+
+/// One encoder's recent past, and the shaft behind it. One thread.
+class ShaftTrack {
+ public:
+  struct Answer {
+    double shaft = 0;  ///< rad, or m
+    double rate = 0;   ///< per second
+    StateStatus status = StateStatus::invalid;
+  };
+
+  explicit ShaftTrack(const HeadAxis& axis, const EncoderTrackOptions& options = {}) : axis_(axis), options_(options) {}
+
+  /// The encoder's position at an instant of its own stamps. Ignores, and returns false for, a sample that is not newer
+  /// than the one before or not finite.
+  bool add(RobotTime encoder_time, double encoder);
+
+  /// The shaft at an instant of the encoders' clock; interpolated linearly. `invalid` before the first sample, in a
+  /// gap, or too far ahead.
+  Answer at(RobotTime encoder_time) const;
+
+  /// Are there samples up to that instant?
+  bool knows(RobotTime encoder_time) const { return !samples_.empty() && samples_.back().time >= encoder_time; }
+
+ private:
+  struct Sample {
+    RobotTime time;
+    double shaft;  // with play, scale and offset
+  };
+  HeadAxis axis_;
+  EncoderTrackOptions options_;
+  std::deque<Sample> samples_;
+  double played_ = 0;  // encoder value behind the play
+};
+
+/// The recent past of a head's two encoders, each with its own instants. One thread.
 class EncoderTrack {
  public:
-  struct Options {
-    double largest_gap_s = 0.1;  ///< a larger one between two samples is not interpolated
-    double most_ahead_s = 0.02;  ///< beyond the newest sample its speed carries on for so long
-    double kept_s = 5;
-  };
+  using Options = EncoderTrackOptions;
   struct Answer {
     HeadAngles shafts;
     HeadAngles rate;  ///< rad/s
     StateStatus status = StateStatus::invalid;
   };
 
-  EncoderTrack(const HeadModel& model, const Options& options) : model_(model), options_(options) {}
+  EncoderTrack(const HeadModel& model, const Options& options)
+      : offset_s_(model.offset_s), pan_(model.pan, options), tilt_(model.tilt, options) {}
 
-  /// Encoder positions at an instant of the encoders' own stamps. Ignores, and returns false for,
-  /// a sample that is not newer than the one before or not finite.
+  /// As ShaftTrack::add(). The first: positions of both at one instant; ignored, too, where one is not finite.
   bool add(RobotTime encoder_time, const HeadAngles& encoders);
+  bool add_pan(RobotTime encoder_time, double encoder) { return pan_.add(encoder_time, encoder); }
+  bool add_tilt(RobotTime encoder_time, double encoder) { return tilt_.add(encoder_time, encoder); }
 
-  /// Shafts at an image's capture instant; interpolated linearly. `invalid` before the first
-  /// sample, in a gap, or too far ahead.
+  /// Both shafts at an image's capture instant; the status is the worse of the two.
   Answer at(RobotTime camera_time) const;
 
  private:
-  struct Sample {
-    RobotTime time;
-    HeadAngles shafts;  // with play, scale and offset
-  };
-  HeadModel model_;
-  Options options_;
-  std::deque<Sample> samples_;
-  HeadAngles played_;  // encoder values behind the play
+  double offset_s_;
+  ShaftTrack pan_, tilt_;
 };
 
 }  // namespace foresight

@@ -126,6 +126,13 @@ RegistrationResult Registration::register_tags(RobotTime camera_time, const std:
   return result;
 }
 
+std::optional<Pose> Registration::moved(RobotTime camera_time, const Pose& T_world_left, RobotTime other_time) const {
+  if (other_time == camera_time) return T_world_left;
+  const EncoderTrack::Answer before = track_.at(camera_time), after = track_.at(other_time);
+  if (before.status == StateStatus::invalid || after.status == StateStatus::invalid) return std::nullopt;
+  return T_world_camera(head_, after.shafts) * T_world_camera(head_, before.shafts).inverse() * T_world_left;
+}
+
 bool Registration::agrees_with_tags(const RegistrationResult& result, const Pose& refined, const Matrix6d& covariance) {
   if (!result.tags.usable) return true;
   const Vector6d difference = to_twist(result.T_world_left.inverse() * refined);

@@ -39,8 +39,8 @@ struct RegistrationResult {
   TagCorrectionSummary tags;  ///< of the last moments; see its `usable`
 };
 
-/// One thread. Encoders may come at any rate, also later than the images they belong to, as long as
-/// they are there when the images are registered.
+/// One thread. Encoders may come at any rate, each with its own instants, also later than the images they belong to, as
+/// long as they are there when the images are registered.
 class Registration {
  public:
   /// Throws InputError for what the detector refuses.
@@ -48,6 +48,9 @@ class Registration {
                const RegistrationOptions& options);
 
   bool add_encoders(RobotTime encoder_time, const HeadAngles& encoders) { return track_.add(encoder_time, encoders); }
+  /// Encoders that tell their positions at instants of their own.
+  bool add_pan(RobotTime encoder_time, double encoder) { return track_.add_pan(encoder_time, encoder); }
+  bool add_tilt(RobotTime encoder_time, double encoder) { return track_.add_tilt(encoder_time, encoder); }
 
   /// CV_8UC1 of the lenses' sizes; an empty one is a camera without an image. Times ascend.
   RegistrationResult register_pair(RobotTime camera_time, const cv::Mat& left, const cv::Mat& right);
@@ -55,6 +58,12 @@ class Registration {
   /// The same from tags that are found already.
   RegistrationResult register_tags(RobotTime camera_time, const std::vector<DetectedTag>& left,
                                    const std::vector<DetectedTag>& right);
+
+  /// Where the left camera is at another instant, if at `camera_time` it was at `T_world_left`: moved as the encoders
+  /// say. Nothing where they do not know.
+  std::optional<Pose> moved(RobotTime camera_time, const Pose& T_world_left, RobotTime other_time) const;
+
+  const HeadModel& head() const { return head_; }
 
   /// Is `refined` within what `result` can tell from tags (chi-square of six, 99.9 %, with the
   /// refinement's own covariance)? Always where no tags helped.

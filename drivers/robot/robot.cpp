@@ -233,6 +233,23 @@ void Robot::publish(RobotTime now) noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) status.set_point[i] = gate_.set_point(i);
   status.loop = loop_;
   published_.put(status);
+  if (now.ns != 0) hand_out(status);
+}
+
+void Robot::hand_out(const RobotStatus& status) noexcept {
+  RobotCycle out;
+  out.number = ++cycle_number_;
+  out.time = status.time;
+  out.phase = status.phase;
+  out.gate = status.gate.state;
+  out.reason = status.gate.reason;
+  out.all_homed = status.all_homed;
+  out.joints = drives_.size();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const DriveFeedback& f = feedback_[i];
+    out.joint[i] = {f.time, f.position, f.velocity, status.set_point[i], f.state, f.homed};
+  }
+  cycles_.put(out);
 }
 
 void Robot::run(Clock& clock, std::stop_token stop, const std::function<void()>& set_up) noexcept {

@@ -12,6 +12,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "common/broadcast_ring.hpp"
 #include "common/clock.hpp"
 #include "common/triple_buffer.hpp"
 #include "drivers/drive/drive.hpp"
@@ -49,7 +50,32 @@ struct RobotStatus {
   LoopStatistics loop;
 };
 
-/// Owns the control of all drives. submit(), ask() and status() from any thread; run() or cycle() in one.
+/// A joint in one cycle.
+struct JointCycle {
+  RobotTime time;                                              ///< of `position`: DriveFeedback::time; 0: never
+  double position = std::numeric_limits<double>::quiet_NaN();  ///< measured, at `time`; true only where homed
+  double velocity = std::numeric_limits<double>::quiet_NaN();  ///< measured; the newest that the drive has told
+  JointMotion set_point;                                       ///< sent in this cycle, for the next one
+  DriveState drive = DriveState::offline;
+  bool homed = false;
+};
+
+/// What the control loop saw and did in one cycle. A plain value.
+struct RobotCycle {
+  std::uint64_t number = 0;  ///< of the cycle, from 1 on; one that is missing between two was dropped
+  RobotTime time;            ///< when the cycle began
+  RobotPhase phase = RobotPhase::disabled;
+  GateState gate = GateState::idle;
+  GateReason reason = GateReason::none;
+  bool all_homed = false;
+  std::size_t joints = 0;  ///< how many of `joint` there are
+  std::array<JointCycle, kMostJoints> joint{};
+};
+
+/// How many cycles a reader may be behind: 4 s at 250 Hz.
+inline constexpr std::size_t kCyclesKept = 1024;
+
+/// Owns the control of all drives. submit(), ask(), status() and cycles() from any thread; run() or cycle() in one.
 class Robot {
  public:
   /// `drives`: in the order of the gate's joints, all of them in one of the `networks`, identified and configured. All
@@ -61,6 +87,9 @@ class Robot {
   /// Followed in the next cycle if the phase allows; status().refused says why not.
   void ask(RobotRequest request) noexcept;
   RobotStatus status() const;
+  /// Hands out every cycle from now on, to any number of readers, of which each is for one thread. The loop never
+  /// waits for them: who falls behind by more than kCyclesKept misses the oldest, and counts them.
+  BroadcastRing<RobotCycle>::Reader cycles() const noexcept { return cycles_.reader(); }
 
   /// One cycle at `now`. Does not allocate, block or throw.
   void cycle(RobotTime now) noexcept;
@@ -78,6 +107,7 @@ class Robot {
   void enter(RobotPhase phase, RobotTime now) noexcept;
   void stop_all() noexcept;
   void publish(RobotTime now) noexcept;
+  void hand_out(const RobotStatus& status) noexcept;
   void shut_down(Clock& clock, RobotTime due) noexcept;
   void disable_all() noexcept;
   bool all_disabled() const noexcept;
@@ -102,6 +132,8 @@ class Robot {
   TripleBuffer<MotionCommand> commands_;
   std::atomic<RobotRequest> request_{RobotRequest::none};
   std::atomic<bool> stop_asked_{false};
+  std::uint64_t cycle_number_ = 0;
+  BroadcastRing<RobotCycle> cycles_{kCyclesKept};
   mutable std::mutex readers_;  // of statuses
   mutable TripleBuffer<RobotStatus> published_;
   mutable RobotStatus last_;

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "scene/run_writer.hpp"
 #include "sim/pan_tilt_head.hpp"
 #include "sim/run_files.hpp"
 #include "sim/tag_room.hpp"
@@ -28,18 +29,16 @@ class TagRun : public TempFolder {
     const sim::TagRoom room(sim::TagRoom::lab_tags());
     const cv::Mat rays = sim::TagRoom::corner_rays(lens);
     const Pose off(Eigen::AngleAxisd(wrong_px / 390, Eigen::Vector3d::UnitY()));
-    std::filesystem::create_directories(path() / "rgb");
-    std::string list, trajectory;
+    RunWriter run(path(), lens, "left");
     for (int i = 0; i < kImages; ++i) {
       const Pose T = sim::T_world_head_left({0.006 * i, 0.5});
-      const std::string file = sim::format("rgb/%06d.png", i), time = sim::format("%.6f ", i * interval_s);
-      cv::imwrite(path() / file, room.picture(rays, T, 2, static_cast<unsigned>(i)));
-      list += time + file + "\n";
-      trajectory += time + sim::pose_text(i < wrong_images ? Pose(T * off) : T) + "\n";
+      const RobotTime time = RobotTime{} + seconds(i * interval_s);
+      const std::string file = RunWriter::image_name(false, static_cast<std::uint64_t>(i));
+      run.write_image(file, room.picture(rays, T, 2, static_cast<unsigned>(i)));
+      run.add_image(false, time, file);
+      run.add_pose(time, i < wrong_images ? Pose(T * off) : T);
     }
-    write("rgb.txt", list);
-    write("trajectory.txt", trajectory);
-    write("camera.yaml", sim::camera_yaml(lens, "left", nullptr));
+    run.finish();
     write("scene.ply", kRoom);
     std::string tags;
     for (const auto& [id, corners] : room.corners())

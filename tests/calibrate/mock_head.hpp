@@ -2,10 +2,10 @@
 #pragma once
 
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 
 #include "calibration/registration/calibrated_head.hpp"
+#include "scene/run_writer.hpp"
 #include "sim/pan_tilt_head.hpp"
 #include "sim/run_files.hpp"
 #include "sim/tag_room.hpp"
@@ -66,26 +66,24 @@ struct MockHead {
 
   /// A run as `foresight robot --record` writes it, with the joints beside it and tags.txt inside.
   void record(const std::filesystem::path& run, int session, int pairs, double every_s) const {
-    for (const char* folder : {"rgb", "rgb_right"}) std::filesystem::create_directories(run / folder);
-    const Pose T_left_right = sim::T_head_left_right();
-    sim::write_text(run / "camera.yaml", sim::camera_yaml(lab_lens(), "left", nullptr));
-    sim::write_text(run / "camera_right.yaml", sim::camera_yaml(lab_lens(), "right", &T_left_right));
+    std::filesystem::create_directories(run);
+    RunWriter writer(run, lab_lens(), "left");
+    writer.add_right_camera(lab_lens(), sim::T_head_left_right(), "right");
     Encoders encoders = move(session, pairs * every_s);
     std::ofstream joints(run.string() + "-joints.csv");
     joints << "time_s,shoulder,pan,tilt\n";
     for (const auto& [time, q] : encoders.rows)
       joints << sim::format("%.9f,0.1,%.7f,%.7f\n", to_seconds(time - RobotTime{}), q.pan, q.tilt);
-    std::ofstream left(run / "rgb.txt"), right(run / "rgb_right.txt");
     for (int i = 0; i < pairs; ++i) {
       const RobotTime time = at(i * every_s);
       const Pose T = T_world_camera(truth, encoders.shafts.at(time).shafts);
-      const std::string name = sim::format("%06d.png", i), stamp = sim::format("%.9f ", to_seconds(time - RobotTime{}));
-      cv::imwrite((run / "rgb" / name).string(), picture(T, false, static_cast<unsigned>(1000 * session + 2 * i)));
-      cv::imwrite((run / "rgb_right" / name).string(),
-                  picture(T, true, static_cast<unsigned>(1000 * session + 2 * i + 1)));
-      left << stamp << "rgb/" << name << "\n";
-      right << stamp << "rgb_right/" << name << "\n";
+      for (const bool eye : {false, true}) {
+        const std::string name = RunWriter::image_name(eye, static_cast<std::uint64_t>(i));
+        writer.write_image(name, picture(T, eye, static_cast<unsigned>(1000 * session + 2 * i + eye)));
+        writer.add_image(eye, time, name);
+      }
     }
+    writer.finish();
     write_tags(run / "tags.txt", room.corners());
   }
 

@@ -5,6 +5,7 @@
 
 #include "calibration/result/result_file.hpp"
 #include "rig/open_stereo.hpp"
+#include "session/encoder_poses.hpp"
 #include "session/recorder_options.hpp"
 #include "tests/calibrate/mock_head.hpp"
 #include "tests/support/folders.hpp"
@@ -70,12 +71,16 @@ class MockLabHead : public HeadlessTest {
 
   /// As `foresight robot --record` does.
   void write(const std::string& name, const Session& session) {
-    RecorderOptions options = recorder_options(as_mock({}), opened_, {});
-    options.poses = {};
+    const auto scene = std::make_shared<const LiveScene>(*opened_.mock);
+    RecorderOptions options = recorder_options(*scene);
+    options.posed = false;
     options.tags = kMap;
-    options.waits = true;
-    RunRecorder recorder(folder_ / name, options);
-    for (const StereoPair& pair : session.pairs) recorder.add(pair);
+    LiveFrames frames(std::make_shared<GivenPoses>(scene, nullptr), clock_);
+    RunRecorder recorder(folder_ / name, options, frames.subscribe(RunRecorder::kRoom, true));
+    for (const StereoPair& pair : session.pairs) {
+      frames.add(pair);
+      frames.step();
+    }
     recorder.finish("");
     std::ofstream joints(folder_ / (name + "-joints.csv"));
     joints << "time_s,pan,tilt\n";

@@ -205,6 +205,36 @@ TEST_F(RobotTest, RunStopsUnderControlAtTheEnd) {
   EXPECT_EQ(robot_.status().loop.overruns(), 0u);
 }
 
+TEST_F(RobotTest, EveryCycleIsHandedOutToEveryReader) {
+  auto quick = robot_.cycles(), slow = robot_.cycles();
+  make_ready();
+  command(0, 0.05, false);
+  run(1);
+  std::uint64_t last = 0;
+  while (const auto cycle = quick.take()) last = cycle->number;
+  EXPECT_EQ(last, 4u);
+  RobotTime before = now_;
+  for (int i = 0; i < 300; ++i) {
+    command(1.9, 0.05);
+    run(1);
+    const auto cycle = quick.take();
+    ASSERT_TRUE(cycle && !quick.take());
+    EXPECT_EQ(cycle->number, ++last);
+    EXPECT_EQ(cycle->time, before + 4ms);
+    EXPECT_EQ(cycle->joints, 2u);
+    EXPECT_EQ(cycle->joint[0].time, drives_[0].state.time);
+    EXPECT_EQ(cycle->joint[0].set_point.position, robot_.status().set_point[0].position);
+    before = now_;
+  }
+  EXPECT_EQ(robot_.status().gate.state, GateState::following);
+  run(static_cast<int>(kCyclesKept));
+  std::uint64_t taken = 0;
+  while (slow.take()) ++taken;
+  EXPECT_EQ(taken, kCyclesKept);
+  EXPECT_EQ(slow.dropped(), 304u);
+  EXPECT_EQ(quick.dropped(), 0u);
+}
+
 TEST(LoopStatistics, CountsLatenessAndOverruns) {
   LoopStatistics loop;
   for (int i = 0; i < 990; ++i) loop.count(50us, 4ms);

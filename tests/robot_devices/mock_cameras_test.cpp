@@ -58,10 +58,11 @@ class MockCameras : public HeadlessTest {
 
 TEST_F(MockCameras, SeeTheShaftsWhereTheyWereInTheMiddleOfTheExposure) {
   {
-    RobotCameras cameras(rig_, live_.devices(), live_.clock(), {.mock = true, .record = folder_ / "run"});
+    RobotCameras cameras(rig_, live_.devices(), live_.robot(), live_.clock(),
+                         {.mock = true, .record = folder_ / "run"});
     bool on = true;
     live_.clock().every(10ms, [&](RobotTime) {
-      if (on) cameras.watch().step();
+      if (on) cameras.step();
     });
     live_.move(1s);
     on = false;
@@ -91,8 +92,8 @@ TEST_F(MockCameras, SeeTheShaftsWhereTheyWereInTheMiddleOfTheExposure) {
     EXPECT_GT(now, psnr(-30ms) + 0.5) << "frame " << i;
     // What was written down as the encoders' word.
     const Pose T = sim::LiveLab::T_world_left_modelled(shafts_at(time));
-    EXPECT_LT((T.translation() - frame.left.T_world_camera.translation()).norm(), 1e-5);
-    EXPECT_LT((T.linear() - frame.left.T_world_camera.linear()).norm(), 1e-5);
+    EXPECT_LT((T.translation() - frame.left.T_world_camera.translation()).norm(), 1e-3);
+    EXPECT_LT((T.linear() - frame.left.T_world_camera.linear()).norm(), 2e-3);
     moved += (T.linear() - run.frames()[i - 1].left.T_world_camera.linear()).norm();
   }
   EXPECT_GT(moved, 0.01) << "the head moves";
@@ -113,12 +114,12 @@ TEST_F(MockCameras, ACalibratedHeadGivesThePosesOfARecording) {
   rig_.calibration =
       RigCalibration{drawn_head(folder_), {}, folder_.write("map.txt", "1 0 0 0 0\n1 1 1 0 0\n1 2 1 1 0\n1 3 0 1 0\n")};
   {
-    RobotCameras cameras(rig_, live_.devices(), live_.clock(), {.mock = true, .record = folder_ / "run"});
+    RobotCameras cameras(rig_, live_.devices(), live_.robot(), live_.clock(),
+                         {.mock = true, .record = folder_ / "run"});
     bool on = true;
     live_.clock().every(10ms, [&](RobotTime) {
       if (!on) return;
-      cameras.add_encoders(live_.robot().status());
-      cameras.watch().step();
+      cameras.step();
     });
     live_.move(1s);
     on = false;
@@ -132,13 +133,11 @@ TEST_F(MockCameras, ACalibratedHeadGivesThePosesOfARecording) {
     const RunImage& image = run.frames()[i].left;
     ASSERT_TRUE(image.predicted_px);
     EXPECT_LT(*image.predicted_px, 2);
-    // The drives report where they were some milliseconds ago, which this rig has no calibration for.
-    const auto off = [&](Duration late) {
-      const Pose T = sim::LiveLab::T_world_left_modelled(shafts_at(image.time + late));
-      return (T.linear() - image.T_world_camera.linear()).norm() +
-             (T.translation() - image.T_world_camera.translation()).norm();
-    };
-    EXPECT_LT(std::min({off(0ms), off(-4ms), off(-8ms)}), 2e-3) << i;
+    const Pose T = sim::LiveLab::T_world_left_modelled(shafts_at(image.time));
+    EXPECT_LT((T.linear() - image.T_world_camera.linear()).norm() +
+                  (T.translation() - image.T_world_camera.translation()).norm(),
+              2e-3)
+        << i;
     moved += (image.T_world_camera.linear() - run.frames()[i - 1].left.T_world_camera.linear()).norm();
   }
   EXPECT_GT(moved, 0.01) << "the head moves";

@@ -4,7 +4,6 @@
 
 #include "scene/run_folder.hpp"
 #include "scene/scene_reader.hpp"
-#include "sim/run_files.hpp"
 #include "tests/scene/test_run.hpp"
 
 namespace foresight {
@@ -56,6 +55,36 @@ class CountingCamera final : public Camera {
   CameraSettings settings_;
 };
 
+/// The camera and the ball both move along x with time; pairs in `lost` (counted from 1) have no pose.
+class AlongX final : public PoseSource {
+ public:
+  explicit AlongX(std::optional<int> lost = {}) : lost_(lost) {}
+  PairPoses poses_of(const StereoPair& pair) override {
+    PairPoses out;
+    ++count_;
+    out.predicted_px = 0.25 * count_;
+    out.quality = count_ == lost_ ? "lost" : "tags";
+    if (count_ == lost_) return out;
+    Pose right = at(pair.right.time);
+    right.translation().x() += 0.065;
+    out.T_world_camera = {at(pair.left.time), right};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const RobotTime time = i ? pair.right.time : pair.left.time;
+      out.scene[i] = {time, StateStatus::exact, {Pose::Identity(), at(time)}};
+    }
+    return out;
+  }
+
+ private:
+  static Pose at(RobotTime time) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = to_seconds(time - RobotTime{});
+    return pose;
+  }
+  std::optional<int> lost_;
+  int count_ = 0;
+};
+
 class Recording : public testing::Test {
  protected:
   Recording() {
@@ -65,21 +94,16 @@ class Recording : public testing::Test {
     p.fx = p.fy = 20;
     p.cx = 7.5;
     p.cy = 5.5;
-    options_.left = options_.right = Lens(p);
-    options_.T_left_right.translation().x() = 0.065;
-    options_.poses = [](RobotTime time) {
-      RecordedPoses poses;
-      poses.T_world_left.translation().x() = to_seconds(time - RobotTime{});
-      poses.T_world_node.emplace_back("ball", poses.T_world_left);
-      return poses;
-    };
+    options_.lenses.left = options_.lenses.right = Lens(p);
+    options_.lenses.T_left_right.translation().x() = 0.065;
     Mesh triangle;
     triangle.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     triangle.triangles = {{0, 1, 2}};
     Pose above = Pose::Identity();
     above.translation().z() = 2;
-    const SceneModel scene({{"o'table", triangle, -1, above}, {"ball", triangle, 0, above}}, 0.007);
-    options_.write_scene = [scene](const fs::path& folder) { sim::write_model(folder, scene); };
+    options_.scene = std::make_shared<const SceneModel>(
+        std::vector<Node>{{"o'table", triangle, -1, above}, {"ball", triangle, 0, above}}, 0.007);
+    options_.moves = {false, true};
   }
 
   RecordingResult record_from(int left, int right, RecordingLimits limits = {}, Duration offset = 0ns) {
@@ -87,8 +111,24 @@ class Recording : public testing::Test {
     pairing.tolerance = 4ms;  // of a period of 10 ms: an image has one partner only
     StereoCamera cameras(std::make_unique<CountingCamera>(clock_, left),
                          std::make_unique<CountingCamera>(clock_, right, offset), clock_, pairing);
-    RunRecorder recorder(folder_ / "run", options_);
-    return record(cameras, recorder, limits, clock_, [this] { return stop_; });
+    LiveFrames frames(std::make_shared<AlongX>(), clock_);
+    RunRecorder recorder(folder_ / "run", options_, frames.subscribe(RunRecorder::kRoom));
+    return record(cameras, frames, recorder, limits, clock_, [this] { return stop_; });
+  }
+
+  /// What the recorder gets of pairs that come without a pose, or with one of `poses`.
+  std::shared_ptr<FrameQueue> queue_of(const std::vector<StereoPair>& pairs, std::shared_ptr<PoseSource> poses = {},
+                                       std::size_t room = 100) {
+    LiveFrames frames(poses ? poses : std::make_shared<AlongX>(), clock_);
+    auto queue = frames.subscribe(room);
+    for (const StereoPair& pair : pairs) {
+      frames.add(pair);
+      frames.step();
+    }
+    return queue;
+  }
+  RecorderCounts write(std::shared_ptr<FrameQueue> queue) {
+    return RunRecorder(folder_ / "run", options_, std::move(queue)).finish("");
   }
 
   StereoPair pair_at(std::int64_t ms, int width = kWidth) const {
@@ -133,35 +173,61 @@ TEST_F(Recording, IsARunThatCanBeReadBack) {
   }
 }
 
-TEST_F(Recording, TakesThePosesOfARegistrationOnItsOwnThread) {
-  const auto taker = std::this_thread::get_id();
-  int prepared = 0;
-  options_.poses = {};
+TEST_F(Recording, KeepsWhatTheRegistrationSays) {
   options_.tags = folder_.write("map.txt", "1 0 0 0 0\n");
-  options_.waits = true;
-  options_.registration = [&]() -> PairRegistration {
-    EXPECT_EQ(std::this_thread::get_id(), taker);
-    return [k = ++prepared, taker](const StereoPair& pair) {
-      EXPECT_NE(std::this_thread::get_id(), taker);
-      RegisteredPose found{Pose::Identity(), 0.25 * k, k == 3 ? "lost" : "tags"};
-      found.T_world_left.translation().x() = to_seconds(pair.left.time - RobotTime{});
-      return found;
-    };
-  };
-  RunRecorder recorder(folder_ / "run", options_);
-  for (int i = 1; i <= 5; ++i) recorder.add(pair_at(20 * i));
-  recorder.finish("");
+  std::vector<StereoPair> pairs;
+  for (int i = 1; i <= 5; ++i) pairs.push_back(pair_at(20 * i));
+  const RecorderCounts counts = write(queue_of(pairs, std::make_shared<AlongX>(3)));
+  EXPECT_EQ(counts.written, 5u);
+  EXPECT_EQ(counts.without_pose, 1u);
   const RunFolder run = RunFolder::open(folder_ / "run", {});
   ASSERT_EQ(run.frames().size(), 4u) << "what is lost has no pose, and is no frame";
   for (const RunFrame& frame : run.frames())
     EXPECT_NEAR(frame.left.T_world_camera.translation().x(), to_seconds(frame.left.time - RobotTime{}), 1e-6);
   EXPECT_THAT(folder_.read("run/without_pose.txt"),
               testing::AllOf(HasSubstr("0.060000000 rgb/000002.png"), HasSubstr("0.060000000 rgb_right/000002.png")));
-  EXPECT_EQ(recorder.counts().without_pose, 1u);
   EXPECT_EQ(run.frames()[1].left.pose_status, StateStatus::exact);
   EXPECT_DOUBLE_EQ(run.frames()[1].left.predicted_px.value(), 0.5);
   EXPECT_THAT(folder_.read("run/registration.txt"), HasSubstr("lost 0.75"));
   EXPECT_EQ(folder_.read("run/tags.txt"), "1 0 0 0 0\n");
+}
+
+TEST_F(Recording, TheRightImagesPoseIsOfItsOwnInstant) {
+  StereoPair early = pair_at(50), late = pair_at(90);
+  early.right.time = RobotTime{45'000'000};  // before the first pose of a left one
+  late.right.time = RobotTime{97'000'000};
+  write(queue_of({early, late}));
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  ASSERT_EQ(run.frames().size(), 2u);
+  for (const RunFrame& frame : run.frames()) {
+    EXPECT_EQ(frame.right.value().pose_status, StateStatus::exact);
+    EXPECT_NEAR(frame.right->T_world_camera.translation().x(), 0.065 + to_seconds(frame.right->time - RobotTime{}),
+                1e-9);
+  }
+}
+
+TEST_F(Recording, WithoutPosesLeavesTheTrajectoryToOthers) {
+  options_.posed = false;
+  EXPECT_EQ(write(queue_of({pair_at(1), pair_at(2)}, std::make_shared<AlongX>(1))).without_pose, 0u);
+  EXPECT_FALSE(fs::exists(folder_ / "run/trajectory.txt"));
+  EXPECT_THAT(folder_.read("run/rgb.txt"), HasSubstr("0.001000000 rgb/000000.png"));
+}
+
+TEST_F(Recording, KeepsEveryLens) {
+  for (const LensModel model : {LensModel::plumb_bob, LensModel::rational_polynomial, LensModel::equidistant}) {
+    Lens::Parameters p = options_.lenses.left.parameters();
+    p.model = model;
+    p.d = {-0.11, 0.012, 0.0003, -0.0004};
+    if (model != LensModel::equidistant) p.d[4] = 0.0017;
+    if (model == LensModel::rational_polynomial) p.d[5] = 0.21, p.d[6] = -0.013, p.d[7] = 1.0 / 3;
+    options_.lenses.left = options_.lenses.right = Lens(p);
+    write(queue_of({pair_at(1)}));
+    const RunFolder run = RunFolder::open(folder_ / "run", {});
+    for (const Lens& lens : {run.lens_left(), run.lens_right().value()}) {
+      EXPECT_EQ(lens.parameters().model, model);
+      EXPECT_EQ(lens.parameters().d, p.d) << to_string(model);
+    }
+  }
 }
 
 TEST_F(Recording, KeepsWhatCameBeforeACameraFellSilent) {
@@ -188,38 +254,43 @@ TEST_F(Recording, LeavesNothingWhereNoPairCame) {
 }
 
 TEST_F(Recording, ASlowDiskDropsPairsAndCountsThem) {
-  options_.slowed_by = 50ms;
-  options_.waiting = 3;
-  RunRecorder recorder(folder_ / "run", options_);
-  for (int i = 1; i <= 20; ++i) recorder.add(pair_at(i));
-  const RecorderCounts counts = recorder.finish("");
-  EXPECT_EQ(counts.written + counts.dropped, 20u);
-  EXPECT_GE(counts.dropped, 15u);
-  EXPECT_EQ(RunFolder::open(folder_ / "run", {}).frames().size(), counts.written);
-  EXPECT_THAT(folder_.read("run/record.yaml"), HasSubstr("dropped_by_disk: " + std::to_string(counts.dropped)));
+  std::vector<StereoPair> pairs;
+  for (int i = 1; i <= 20; ++i) pairs.push_back(pair_at(i));
+  const auto queue = queue_of(pairs, {}, 3);  // so slow that it begins when all have come
+  const RecorderCounts counts = write(queue);
+  EXPECT_EQ(counts.written, 3u);
+  EXPECT_EQ(counts.dropped, 17u);
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  ASSERT_EQ(run.frames().size(), 3u);
+  EXPECT_EQ(run.frames()[0].left.time, RobotTime{18'000'000}) << "the oldest go";
+  EXPECT_THAT(folder_.read("run/record.yaml"), HasSubstr("dropped_by_disk: 17"));
 }
 
 TEST_F(Recording, WaitsForASlowDiskWhereItIsToldTo) {
-  options_.slowed_by = 10ms;
-  options_.waiting = 3;
-  options_.waits = true;
-  RunRecorder recorder(folder_ / "run", options_);
-  for (int i = 1; i <= 20; ++i) recorder.add(pair_at(i));
+  LiveFrames frames(std::make_shared<AlongX>(), clock_);
+  const auto queue = frames.subscribe(3, /*waits=*/true);
+  std::jthread camera([&] {
+    for (int i = 1; i <= 20; ++i) {
+      frames.add(pair_at(i));
+      frames.step();
+    }
+  });
+  RunRecorder recorder(folder_ / "run", options_, queue);
+  camera.join();
   const RecorderCounts counts = recorder.finish("");
   EXPECT_EQ(counts.written, 20u);
   EXPECT_EQ(counts.dropped, 0u);
 }
 
 TEST_F(Recording, AFullDiskEndsItAndKeepsWhatIsThere) {
-  RunRecorder recorder(folder_ / "run", options_);
-  recorder.add(pair_at(1));
+  RunRecorder recorder(folder_ / "run", options_, queue_of({pair_at(1)}));
   while (recorder.counts().written == 0) std::this_thread::sleep_for(1ms);
   EXPECT_FALSE(recorder.stopped());
   EXPECT_EQ(recorder.finish("").written, 1u);
 
   options_.spare_bytes = 1e18;
   try {
-    RunRecorder(folder_ / "other", options_);
+    RunRecorder(folder_ / "other", options_, queue_of({}));
     FAIL();
   } catch (const RuntimeFailure& failure) {
     EXPECT_THAT(failure.what(), HasSubstr("free some disk space"));
@@ -229,25 +300,25 @@ TEST_F(Recording, AFullDiskEndsItAndKeepsWhatIsThere) {
 
 TEST_F(Recording, AFailingWriteLeavesNothing) {
   {
-    RunRecorder recorder(folder_ / "run", options_);
+    const auto queue = std::make_shared<FrameQueue>(1);
+    RunRecorder recorder(folder_ / "run", options_, queue);
     for (const auto& entry : fs::directory_iterator(folder_.path())) fs::remove_all(entry.path() / "rgb_right");
-    recorder.add(pair_at(1));
+    queue->put(*queue_of({pair_at(1)})->take(0ns));
     EXPECT_THROW(recorder.finish(""), RuntimeFailure);
   }
   EXPECT_THAT(left_behind(), testing::IsEmpty());
 }
 
 TEST_F(Recording, RefusesImagesOfAnotherSizeAndTimesThatGoBack) {
-  RunRecorder recorder(folder_ / "run", options_);
-  EXPECT_THAT(input_error([&] { recorder.add(pair_at(1, 20)); }),
+  EXPECT_THAT(input_error([&] { write(queue_of({pair_at(1, 20)})); }),
               testing::AllOf(HasSubstr("left camera"), HasSubstr("20 x 12"), HasSubstr("16 x 12")));
-  recorder.add(pair_at(5));
-  EXPECT_THAT(input_error([&] { recorder.add(pair_at(5)); }), HasSubstr("do not ascend"));
+  EXPECT_THAT(input_error([&] { write(queue_of({pair_at(5), pair_at(5)})); }), HasSubstr("do not ascend"));
+  EXPECT_THAT(left_behind(), testing::IsEmpty());
 }
 
 TEST_F(Recording, DoesNotTouchFoldersOfOthers) {
   folder_.write("run/mine.txt", "x");
-  EXPECT_THAT(input_error([&] { RunRecorder(folder_ / "run", options_); }), HasSubstr("not empty"));
+  EXPECT_THAT(input_error([&] { RunRecorder(folder_ / "run", options_, queue_of({})); }), HasSubstr("not empty"));
   EXPECT_EQ(folder_.read("run/mine.txt"), "x");
 }
 

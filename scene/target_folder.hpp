@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace foresight::sim {
+namespace foresight {
 
 /// All is written into path(), a neighbour of the target, which commit() gives the target's name.
 /// Without commit() nothing stays. One thread.
@@ -29,4 +29,4 @@ class TargetFolder {
   std::filesystem::path target_, partial_;
 };
 
-}  // namespace foresight::sim
+}  // namespace foresight

@@ -1,4 +1,4 @@
-#include "sim/target_folder.hpp"
+#include "scene/target_folder.hpp"
 
 #include <unistd.h>
 
@@ -6,7 +6,7 @@
 
 #include "common/error.hpp"
 
-namespace foresight::sim {
+namespace foresight {
 namespace fs = std::filesystem;
 namespace {
 
@@ -60,4 +60,4 @@ void TargetFolder::commit() {
   partial_.clear();
 }
 
-}  // namespace foresight::sim
+}  // namespace foresight

@@ -1,0 +1,94 @@
+#include "scene/run_writer.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+
+#include "common/error.hpp"
+#include "scene/files.hpp"
+#include "scene/number_text.hpp"
+
+namespace foresight {
+namespace fs = std::filesystem;
+
+std::string time_text(RobotTime time) {
+  const std::uint64_t ns = time.ns < 0 ? -static_cast<std::uint64_t>(time.ns) : static_cast<std::uint64_t>(time.ns);
+  const std::string digits = std::to_string(ns % 1'000'000'000);
+  return (time.ns < 0 ? "-" : "") + std::to_string(ns / 1'000'000'000) + "." + std::string(9 - digits.size(), '0') +
+         digits;
+}
+
+std::string pose_text(const Pose& pose) {
+  const Eigen::Vector3d p = pose.translation();
+  const Eigen::Vector4d q = Eigen::Quaterniond(pose.linear()).coeffs();  // x y z w
+  std::string out;
+  for (const double value : p) out += number_text(value, 12) + " ";
+  for (const double value : q) out += number_text(value, 15) + " ";
+  out.pop_back();
+  return out;
+}
+
+RunWriter::RunWriter(fs::path folder, const Lens& left, const std::string& name) : folder_(std::move(folder)) {
+  fs::create_directory(folder_ / "rgb");
+  write_text(folder_ / "camera.yaml", camera_info_text({left, {}}, name));
+}
+
+void RunWriter::add_right_camera(const Lens& right, const Pose& T_left_right, const std::string& name) {
+  fs::create_directory(folder_ / "rgb_right");
+  write_text(folder_ / "camera_right.yaml", camera_info_text({right, T_left_right}, name));
+}
+
+std::string RunWriter::image_name(bool right, std::uint64_t number) {
+  const std::string digits = std::to_string(number);
+  return (right ? "rgb_right/" : "rgb/") + std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits +
+         ".png";
+}
+
+void RunWriter::write_image(const std::string& name, const cv::Mat& pixels, std::optional<int> compression) const {
+  std::vector<std::uint8_t> bytes;
+  std::vector<int> options;
+  if (compression) options = {cv::IMWRITE_PNG_COMPRESSION, *compression};
+  cv::imencode(".png", pixels, bytes, options);
+  write_bytes(folder_ / name, bytes.data(), bytes.size());
+}
+
+std::ofstream& RunWriter::row(List& list, RobotTime time) {
+  if (!list.stream.is_open()) {
+    list.stream.open(folder_ / list.file);
+    list.stream << "# " << list.heading << "\n";
+  }
+  list.stream << time_text(time) << ' ';
+  return list.stream;
+}
+
+void RunWriter::add_image(bool right, RobotTime time, const std::string& name) {
+  row(right ? right_ : left_, time) << name << '\n';
+}
+
+void RunWriter::add_unplaced(RobotTime time, const std::string& name) {
+  row(unplaced_, time) << name << '\n';
+}
+
+void RunWriter::add_pose(RobotTime time, const Pose& T_world_left) {
+  row(trajectory_, time) << pose_text(T_world_left) << '\n';
+}
+
+void RunWriter::add_node(RobotTime time, const std::string& node, const Pose& T_world_node) {
+  row(nodes_, time) << node << ' ' << pose_text(T_world_node) << '\n';
+}
+
+void RunWriter::add_registration(RobotTime time, std::string_view quality, double predicted_px) {
+  row(registration_, time) << quality << ' ' << number_text(predicted_px, 6) << '\n';
+}
+
+void RunWriter::finish() {
+  for (List* list : {&left_, &right_, &unplaced_, &trajectory_, &nodes_, &registration_}) {
+    if (!list->stream.is_open()) continue;
+    list->stream.close();
+    if (!list->stream)
+      throw RuntimeFailure("cannot write " + (folder_ / list->file).string() + " (" + std::strerror(errno) + ")",
+                           "free some disk space");
+  }
+}
+
+}  // namespace foresight

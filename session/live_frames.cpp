@@ -1,0 +1,209 @@
+#include "session/live_frames.hpp"
+
+#include <exception>
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kLook = 100ms;    // so long a stop may take
+constexpr Duration kAskAgain = 2ms;  // for encoders that have not come yet
+
+/// The same everywhere: a margin follows the left camera's error, from which the right one's pose follows too.
+PosedFrame posed_frame(const StereoPair& pair, const PairPoses& poses, double margin_px) {
+  const auto posed = [&](const ColourImage& image, std::size_t side) {
+    PosedImage out{image.bgr, image.time, (*poses.T_world_camera)[side], poses.scene[side]};
+    if (poses.predicted_px) out.margin_px = margin_for(margin_px, *poses.predicted_px);
+    return out;
+  };
+  return {posed(pair.left, 0), posed(pair.right, 1)};
+}
+
+}  // namespace
+
+// --- FrameQueue -----------------------------------------------------------------------------------------------------
+
+void FrameQueue::put(LiveFramePtr frame) noexcept {
+  LiveFramePtr oldest;  // goes without the lock
+  {
+    std::unique_lock lock(mutex_);
+    if (waits_) taken_.wait(lock, [this] { return closed_ || frames_.size() < room_; });
+    if (closed_) return;
+    if (frames_.size() >= room_) {
+      oldest = std::move(frames_.front());
+      frames_.pop_front();
+      ++dropped_;
+    }
+    frames_.push_back(std::move(frame));
+  }
+  arrived_.notify_one();
+}
+
+std::optional<LiveFramePtr> FrameQueue::take(Duration timeout) noexcept {
+  std::optional<LiveFramePtr> out;
+  {
+    std::unique_lock lock(mutex_);
+    if (timeout.count() > 0) arrived_.wait_for(lock, timeout, [this] { return closed_ || !frames_.empty(); });
+    if (frames_.empty()) return std::nullopt;
+    out = std::move(frames_.front());
+    frames_.pop_front();
+  }
+  taken_.notify_one();
+  return out;
+}
+
+std::optional<LiveFramePtr> FrameQueue::take_newest(Duration timeout) noexcept {
+  std::deque<LiveFramePtr> all;
+  {
+    std::unique_lock lock(mutex_);
+    if (timeout.count() > 0) arrived_.wait_for(lock, timeout, [this] { return closed_ || !frames_.empty(); });
+    if (frames_.empty()) return std::nullopt;
+    all.swap(frames_);
+    dropped_ += all.size() - 1;
+  }
+  taken_.notify_one();
+  return std::move(all.back());
+}
+
+void FrameQueue::close() noexcept {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  arrived_.notify_all();
+  taken_.notify_all();
+}
+
+bool FrameQueue::closed() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return closed_;
+}
+
+std::uint64_t FrameQueue::dropped() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return dropped_;
+}
+
+// --- LiveFrames -----------------------------------------------------------------------------------------------------
+
+LiveFrames::LiveFrames(std::shared_ptr<PoseSource> poses, const Clock& clock, const LiveFrameOptions& options)
+    : poses_(std::move(poses)), clock_(clock), options_(options) {}
+
+std::shared_ptr<FrameQueue> LiveFrames::subscribe(std::size_t room, bool waits) {
+  auto queue = std::make_shared<FrameQueue>(room, waits);
+  const std::lock_guard lock(mutex_);
+  if (stopped_) queue->close();
+  subscribers_.push_back(queue);
+  return queue;
+}
+
+void LiveFrames::add(const StereoPair& pair) noexcept {
+  std::optional<Waiting> oldest;  // goes without the lock
+  {
+    const std::lock_guard lock(mutex_);
+    ++number_;
+    if (stopped_) return;
+    if (waiting_.size() >= options_.waiting) {
+      oldest = std::move(waiting_.front());
+      waiting_.pop_front();
+      ++dropped_;
+    }
+    waiting_.push_back({number_, pair, clock_.now()});
+  }
+  arrived_.notify_one();
+}
+
+void LiveFrames::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void LiveFrames::run(const std::stop_token& stop) noexcept {
+  while (!stop.stop_requested()) {
+    if (process(false)) continue;
+    std::unique_lock lock(mutex_);
+    arrived_.wait_for(lock, stop, current_ ? kAskAgain : kLook, [this] { return !current_ && !waiting_.empty(); });
+  }
+}
+
+void LiveFrames::step() noexcept {
+  while (process(false)) {
+  }
+}
+
+void LiveFrames::stop() noexcept {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+  while (process(true)) {
+  }
+  std::vector<std::weak_ptr<FrameQueue>> subscribers;
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    subscribers.swap(subscribers_);
+  }
+  for (const auto& subscriber : subscribers)
+    if (const auto queue = subscriber.lock()) queue->close();
+}
+
+void LiveFrames::take_next() noexcept {
+  const std::lock_guard lock(mutex_);
+  if (current_ || waiting_.empty()) return;
+  current_ = std::move(waiting_.front());
+  waiting_.pop_front();
+}
+
+bool LiveFrames::is_due() noexcept {
+  return poses_->is_ready(current_->pair) || clock_.now() - current_->came >= options_.patience;
+}
+
+bool LiveFrames::process(bool all) noexcept {
+  take_next();
+  if (!current_ || (!all && !is_due())) return false;
+  hand_out(registered(*current_));
+  current_.reset();
+  return true;
+}
+
+LiveFramePtr LiveFrames::registered(const Waiting& waiting) noexcept {
+  auto frame = std::make_shared<LiveFrame>();
+  frame->number = waiting.number;
+  frame->pair = waiting.pair;
+  std::string fault;
+  try {
+    PairPoses poses = poses_->poses_of(waiting.pair);
+    if (poses.T_world_camera) frame->posed = posed_frame(waiting.pair, poses, options_.margin_px);
+    frame->joints = std::move(poses.joints);
+    frame->quality = std::move(poses.quality);
+    frame->predicted_px = poses.predicted_px;
+  } catch (const std::exception& error) {
+    fault = error.what();
+    frame->quality = "lost";
+  }
+  const std::lock_guard lock(mutex_);
+  fault_ = std::move(fault);
+  return frame;
+}
+
+void LiveFrames::hand_out(const LiveFramePtr& frame) noexcept {
+  std::vector<std::shared_ptr<FrameQueue>> queues;
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(subscribers_, [](const auto& subscriber) { return subscriber.expired(); });
+    for (const auto& subscriber : subscribers_)
+      if (auto queue = subscriber.lock()) queues.push_back(std::move(queue));
+  }
+  for (const auto& queue : queues) queue->put(frame);
+}
+
+std::uint64_t LiveFrames::dropped() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return dropped_;
+}
+
+std::string LiveFrames::fault() const {
+  const std::lock_guard lock(mutex_);
+  return fault_;
+}
+
+}  // namespace foresight

@@ -1,0 +1,56 @@
+// What live cameras look at, as the robot knows it: lenses, and the model with its nodes that move.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "calibration/registration/tag_correction.hpp"
+#include "rig/open_stereo.hpp"
+#include "rig/rig.hpp"
+#include "scene/scene_model.hpp"
+
+namespace foresight {
+
+/// Position of a joint by name, rad or m; nothing for one that is not known: it stays at rest.
+using JointPositions = std::function<std::optional<double>(std::string_view joint)>;
+
+/// Immutable; safe to share between threads.
+class LiveScene {
+ public:
+  /// Of a mock lab: its own lenses and parts as the robot believes them to be, arm and ball at rest.
+  explicit LiveScene(const sim::MockStereo& mock);
+  LiveScene(std::shared_ptr<const sim::LiveLab> lab, const StereoLenses& lenses);
+  /// Of real cameras: their calibrations; the scene of `scene_file` (scene/scene_reader.hpp), and the rig's robot,
+  /// whose links are the nodes of their names, or come as further nodes where the scene has none. `rig` may be null.
+  /// Throws what read_scene() does; InputError where the right camera's calibration has no T_left_right, or where the
+  /// scene has some of the robot's links and not all.
+  LiveScene(const StereoConfig& cameras, const Rig* rig, const std::optional<std::filesystem::path>& scene_file);
+
+  /// Nothing where a camera has no calibration.
+  const std::optional<StereoLenses>& lenses() const { return lenses_; }
+  /// Null: nothing is known of the scene.
+  const std::shared_ptr<const SceneModel>& model() const { return model_; }
+  /// Of all nodes of the model; `status` as told. Without a model there are none.
+  SceneState state_at(RobotTime time, const JointPositions& joints, StateStatus status) const;
+  /// By the lab's drawing: where the left camera stands on its head. Only of a mock lab.
+  Pose T_world_left(const JointPositions& joints) const;
+  bool is_mock() const { return lab_ != nullptr; }
+  /// Does this node move with joints?
+  bool moves(std::size_t node) const { return moves_[node]; }
+
+ private:
+  void add_robot(std::vector<Node>& nodes);
+
+  std::optional<StereoLenses> lenses_;
+  std::shared_ptr<const SceneModel> model_;
+  std::vector<bool> moves_;  // of each node
+  std::shared_ptr<const sim::LiveLab> lab_;
+  std::optional<UrdfRobot> robot_;
+  Pose T_world_robot_ = Pose::Identity();
+  std::vector<std::size_t> node_of_link_;
+};
+
+}  // namespace foresight
