@@ -1,7 +1,6 @@
 #include "apps/live_view.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <exception>
 
@@ -9,7 +8,7 @@
 #include "common/error.hpp"
 #include "display/live_source.hpp"
 #include "display/view_window.hpp"
-#include "sim/pan_tilt_head.hpp"
+#include "sim/live_lab.hpp"
 
 namespace foresight {
 namespace {
