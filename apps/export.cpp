@@ -8,10 +8,11 @@
 
 #include "apps/output_files.hpp"
 #include "apps/replay_report/progress_bar.hpp"
-#include "apps/replay_session.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "display/recorded_source.hpp"
+#include "display/view_session.hpp"
 #include "texture_gpu/gltf_scene.hpp"
 
 namespace foresight {
@@ -61,13 +62,13 @@ std::size_t image_count(const RunFolder& run, const ExportOptions& options) {
 }
 
 /// False: stopped by Ctrl-C.
-bool extract(ReplaySession& session, std::size_t count) {
+bool extract(ViewSession& session, const RunFolder& run, std::size_t count, double margin_px) {
   const auto now = [] { return std::chrono::steady_clock::now(); };
   ProgressBar bar("export", "images", count, now(), ProgressBar::for_stderr());
   ChartAtlas::Policy policy;
   for (std::size_t i = 0; i < count; ++i) {
     if (interrupted) return false;
-    policy = session.textures().process(session.load(i)).policy;
+    policy = session.process(load_posed_frame(run, i, margin_px)).policy;
     std::cerr << bar.update(i + 1, now()) << std::flush;
   }
   std::cerr << bar.finish(count, now());
@@ -106,12 +107,13 @@ int export_model(const ExportOptions& given) {
     std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C ends the program even where a driver hangs
   });
 
-  ReplaySession session(run, options.textures, std::nullopt, false);
-  if (!extract(session, count)) {
+  const auto context = gl::create_headless_context();
+  ViewSession session(*context, view_setup(run, options.textures));
+  if (!extract(session, run, count, options.textures.margin_px)) {
     std::cerr << "\nforesight: stopped by Ctrl-C, nothing was written\n";
     return 130;
   }
-  const TextureLease lease = session.textures().textures().acquire();
+  const TextureLease lease = session.textures();
   const BakedAtlas atlas = bake_atlas(TextureReadback(*lease, session.surface()), options.max_atlas);
   GltfModel model;
   model.generator = "Foresight " FORESIGHT_VERSION;

@@ -1,10 +1,10 @@
 // `foresight replay`: plays a recorded run through a texture pipeline and measures the prediction.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
 #include "apps/run_options.hpp"
+#include "apps/view_outputs.hpp"
 
 namespace foresight {
 
@@ -15,11 +15,9 @@ enum class ReplayPipeline {
 
 struct ReplayOptions : RunOptions {
   ReplayPipeline pipeline = ReplayPipeline::core;
-  std::optional<int> delay_frames;              ///< not with delay_ms
-  std::optional<double> delay_ms;               ///< not with delay_frames; without either: 0
-  std::optional<std::filesystem::path> out;     ///< folder for pictures
-  std::optional<std::filesystem::path> report;  ///< JSON file
-  std::optional<std::filesystem::path> html;    ///< HTML file
+  std::optional<int> delay_frames;  ///< not with delay_ms
+  std::optional<double> delay_ms;   ///< not with delay_frames; without either: 0
+  ViewOutputs outputs;
   bool window = false;
   bool real_time = false;
   bool refine = false;  ///< poses, from images that have arrived (replay_refinement.hpp); not with thesis

@@ -21,9 +21,7 @@ void add_replay_command(Command& app, std::function<int()>& action) {
       ->add_choice("--pipeline", options->pipeline, pipelines,
                    "Who extracts the textures: core, or thesis (the baseline)")
       ->default_str("core");
-  command->add_option("--out", options->out, "Folder for predicted/*.png and contact_sheet.png");
-  command->add_option("--report", options->report, "JSON file with all measurements");
-  command->add_option("--html", options->html, "HTML file with pictures and plots, self-contained");
+  add_view_outputs(*command, options->outputs);
   command->add_flag("--window", options->window, "Show delayed, predicted and actual side by side");
   command->add_flag("--real-time", options->real_time, "Play by the clock and drop what comes too late");
   command->add_flag(

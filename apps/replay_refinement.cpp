@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/posed_frames.hpp"
 #include "calibration/registration/calibrated_head.hpp"
-#include "common/cpu_time.hpp"
+#include "texture_gpu/stage_clock.hpp"
 
 namespace foresight {
 namespace {
@@ -26,8 +25,26 @@ Matrix6d with_gauge(const RefinementSummary& found, double gauge_px) {
 
 }  // namespace
 
-ReplayRefinement::ReplayRefinement(const RunFolder& run, ReplaySession& session, double margin_px)
-    : run_(run), session_(session), margin_px_(margin_px), veto_(veto_for(run)) {}
+ReplayRefinement::ReplayRefinement(const RunFolder& run, RecordedSource& source, ViewSession& session, double margin_px)
+    : run_(run), source_(source), session_(session), margin_px_(margin_px), veto_(veto_for(run)) {}
+
+std::optional<PosedFrame> ReplayRefinement::arrived() {
+  std::optional<PosedFrame> frame = source_.arrived();
+  if (frame) refine(source_.handed_out(), *frame);
+  return frame;
+}
+
+ViewPlace ReplayRefinement::place() {
+  return {predict(source_.index()), source_.place().scene};
+}
+
+/// What an image is aligned to; nothing where the core has not published anything yet.
+std::optional<RenderedView> ReplayRefinement::render(const Pose& T_world_camera, const SceneState& state) {
+  if (!session_.draw(T_world_camera, state)) return std::nullopt;
+  RenderedView view{T_world_camera, session_.read(), {}};
+  view.range = session_.read_range();
+  return view;
+}
 
 void ReplayRefinement::give(std::size_t index) {
   for (; given_ <= index; ++given_) {
@@ -49,7 +66,7 @@ void ReplayRefinement::refine(std::size_t index, PosedFrame& frame) {
       frame.right ? frame.left.T_world_camera.inverse() * frame.right->T_world_camera : Pose::Identity();
   double sigma_px = prediction.sigma_px;
   frame.left.T_world_camera = prediction.T_world_camera;
-  if (const auto view = session_.render(prediction.T_world_camera, frame.left.scene)) {
+  if (const auto view = render(prediction.T_world_camera, frame.left.scene)) {
     const RefinementSummary found = refine_pose(run_.lens_left(), *view, frame.left.pixels, {});
     if (found.accepted) {
       sigma_px = use(index, found, frame);
@@ -90,6 +107,11 @@ double ReplayRefinement::use(std::size_t index, const RefinementSummary& found, 
   moved_px_ += found.moved_px;
   sigma_px_ += found.sigma_px;
   return std::hypot(found.sigma_px, filter_.gauge_px());
+}
+
+void ReplayRefinement::report(RunRecord& record) const {
+  record.refinement = record_;
+  for (std::string& note : notes()) record.notes.push_back(std::move(note));
 }
 
 std::vector<std::string> ReplayRefinement::notes() const {

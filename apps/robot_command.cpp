@@ -1,12 +1,15 @@
 #include "apps/robot_command.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <future>
 #include <thread>
 
+#include "apps/live_view.hpp"
 #include "apps/robot/keyboard.hpp"
 #include "apps/robot/service_notify.hpp"
+#include "apps/run_options.hpp"
 #include "apps/robot/status_view.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
@@ -30,9 +33,13 @@ struct Arguments {
   std::string log, record;
   bool cameras = true;
   bool mock = false, stepped = false, may_home = false, check_only = false;
+  bool view = false, window = false;  // the rest only with `view`
+  std::optional<double> delay_ms;
+  std::string scene;
+  ViewOutputs outputs;
 };
 
-volatile std::sig_atomic_t stop_signal = 0;
+std::atomic<int> stop_signal = 0;
 
 void say(const std::string& line) {
   std::fprintf(stderr, "robot: %s\n", line.c_str());
@@ -114,18 +121,23 @@ class Console {
   RobotTime shown_, notified_;
 };
 
-int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras) {
+int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras,
+                LiveView* view) {
   devices.bring_up(say);
   std::stop_source stop;
   if (cameras) clock.every(kTick, [cameras](RobotTime) { cameras->step(); });
   clock.every(kTick, [&](RobotTime now) {
+    if (view && !view->step()) stop.request_stop();
     if (!stop.stop_requested() && (!console.tick(now) || stop_signal != 0)) stop.request_stop();
   });
   robot.run(clock, stop.get_token());
-  return console.finish();
+  const int code = console.finish();
+  if (view) view->finish(stop_signal == 0);
+  return code;
 }
 
-int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras) {
+int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras,
+             LiveView* view) {
   const auto set_up = [&] {
     try {
       devices.bring_up(say);
@@ -150,28 +162,55 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
     up.get_future().get();
     if (cameras) cameras->start();  // the drives already wait for the loop: that goes first
     notify_service("READY=1");
-    for (RobotTime due = clock.now(); stop_signal == 0 && console.tick(due); due = std::max(due + kTick, clock.now()))
-      clock.sleep_until(due + kTick);
+    std::atomic<bool> ended = false, unseen = false;
+    const auto tick_on = [&] {
+      for (RobotTime due = clock.now(); stop_signal == 0 && !unseen && console.tick(due);
+           due = std::max(due + kTick, clock.now()))
+        clock.sleep_until(due + kTick);
+      ended = true;
+    };
+    if (view) {  // its window wants the main thread, and drawing must not make commands late
+      std::jthread ticks(tick_on);
+      view->run([&] { return ended.load(); });
+      unseen = true;
+    } else {
+      tick_on();
+    }
     notify_service("STOPPING=1");
   }
   const int code = console.finish();
+  if (view) view->finish(stop_signal == 0);
   return stop_signal == SIGINT ? 130 : code;
 }
 
 /// Null where there are none to run. In stepped time, pictures that nobody keeps are not drawn.
 std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& devices, const Robot& robot,
                                            Clock& clock, const Arguments& arguments) {
-  if (!rig.cameras || !arguments.cameras || (arguments.stepped && arguments.record.empty())) return nullptr;
+  if (!rig.cameras || !arguments.cameras || (arguments.stepped && arguments.record.empty() && !arguments.view))
+    return nullptr;
   RobotCameraOptions options;
   options.mock = arguments.mock;
   if (!arguments.record.empty()) options.record = arguments.record;
+  options.frames = arguments.view;
+  if (!arguments.scene.empty()) options.scene = arguments.scene;
   if (options.mock || rig.cameras->mock()) say("lighting the lab");
   return std::make_unique<RobotCameras>(rig, devices, robot, clock, options);
 }
 
+/// Null without --view.
+std::unique_ptr<LiveView> make_view(const Rig& rig, RobotCameras* cameras, const Clock& clock,
+                                    const Arguments& arguments) {
+  if (!arguments.view || !cameras) return nullptr;
+  constexpr std::size_t kRoom = 64;
+  const LiveViewOptions options{rig.name, arguments.delay_ms.value_or(0), arguments.outputs,
+                                arguments.window || !arguments.outputs.any(), arguments.stepped};
+  const auto trouble = [cameras] { return cameras->watch().line().fault; };
+  return std::make_unique<LiveView>(cameras->scene(), cameras->frames().subscribe(kRoom), trouble, clock, options);
+}
+
 template <typename ClockKind>
 int run_with(const Rig& rig, const Arguments& arguments,
-             int (*run)(ClockKind&, Robot&, Console&, RobotDevices&, RobotCameras*)) {
+             int (*run)(ClockKind&, Robot&, Console&, RobotDevices&, RobotCameras*, LiveView*)) {
   ClockKind clock;
   RobotDeviceOptions options;
   options.mock = arguments.mock;
@@ -186,16 +225,50 @@ int run_with(const Rig& rig, const Arguments& arguments,
   if (!shape) say("the rig has no robot.urdf: nothing is checked against the surroundings");
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
   const auto cameras = make_cameras(rig, devices, robot, clock, arguments);
+  const auto view = make_view(rig, cameras.get(), clock, arguments);
   Console console(rig, devices, robot, cameras.get(), arguments);
   std::signal(SIGINT, [](int signal) { stop_signal = signal; });
   std::signal(SIGTERM, [](int signal) { stop_signal = signal; });
   std::signal(SIGHUP, [](int signal) { stop_signal = signal; });
   if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
-  return run(clock, robot, console, devices, cameras.get());
+  return run(clock, robot, console, devices, cameras.get(), view.get());
+}
+
+/// A recording takes the place of its whole folder, and a view of another's files would be refused.
+bool overlap(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto inside = [](const std::filesystem::path& outer, const std::filesystem::path& inner) {
+    const std::string way = inner.lexically_relative(outer).string();
+    return !way.empty() && !way.starts_with("..");
+  };
+  const auto whole_a = std::filesystem::weakly_canonical(a), whole_b = std::filesystem::weakly_canonical(b);
+  return inside(whole_a, whole_b) || inside(whole_b, whole_a);
+}
+
+void check_view(const Rig& rig, const Arguments& arguments) {
+  const bool asked[] = {arguments.delay_ms.has_value(),
+                        arguments.outputs.out.has_value(),
+                        arguments.outputs.report.has_value(),
+                        arguments.outputs.html.has_value(),
+                        arguments.window,
+                        !arguments.scene.empty()};
+  const char* const names[] = {"--delay-ms", "--out", "--report", "--html", "--window", "--scene"};
+  if (!arguments.view) {
+    for (std::size_t i = 0; i < std::size(asked); ++i)
+      if (asked[i]) throw InputError(names[i], "belongs to --view", "add --view, or leave it out");
+    return;
+  }
+  if (!rig.cameras || !arguments.cameras)
+    throw InputError("--view", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
+                     rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
+  if (arguments.outputs.out && !arguments.record.empty() && overlap(*arguments.outputs.out, arguments.record))
+    throw InputError("--out " + arguments.outputs.out->string(), "and --record share a folder",
+                     "give each a folder of its own");
+  check_live_outputs(arguments.outputs, {std::filesystem::weakly_canonical(arguments.rig)});
 }
 
 int run(const Arguments& arguments) {
   const Rig rig = read_rig(arguments.rig);
+  check_view(rig, arguments);
   if (!arguments.record.empty() && (!rig.cameras || !arguments.cameras))
     throw InputError("--record", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
@@ -204,7 +277,7 @@ int run(const Arguments& arguments) {
     if (!arguments.mock && bus.interface != "mock")
       throw InputError("--stepped", "bus '" + bus.name + "' is a real one, whose time cannot be stepped",
                        "add --mock, or leave --stepped out");
-  if (!arguments.record.empty() && !arguments.mock && !rig.cameras->mock())
+  if ((arguments.view || !arguments.record.empty()) && !arguments.mock && !rig.cameras->mock())
     throw InputError("--stepped", "the cameras are real ones, whose time cannot be stepped",
                      "add --mock, or leave --stepped out");
   return run_with<SteppedClock>(rig, arguments, run_stepped);
@@ -226,6 +299,14 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   command->add_option("--record", arguments->record,
                       "Writes what the cameras see as a run into this folder, and beside it the CAN logs\n"
                       "(OUT-can-BUS.log) and the joints (OUT-joints.csv, as --follow reads them)");
+  command->add_flag("--view", arguments->view,
+                    "Shows the live scene beside the camera's image; its textures are as old as --delay-ms says");
+  command->add_option("--delay-ms", arguments->delay_ms, "With --view: delay of images in milliseconds (default 0)")
+      ->check(from_to(0.0, 1e4));
+  add_view_outputs(*command, arguments->outputs);
+  command->add_flag("--window", arguments->window, "With --view: a window also where pictures or reports are written");
+  command->add_option("--scene", arguments->scene,
+                      "With --view: the model of what real cameras see, but for the robot");
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag("--stepped", arguments->stepped,
                     "As fast as the machine can, the same on every run; only with mock drives");

@@ -15,7 +15,10 @@ class ThesisView {
 
   void draw(const Pose& T_world_camera, const SceneState& state);
 
-  /// Waits for the GPU; CV_8UC4 (BGRA) with alpha as in PredictedView::picture().
+  /// RGBA8 with alpha as in PredictedView::picture(), row 0 at the top.
+  const gl::Texture& picture() const { return picture_ ? picture_ : drawn_; }
+
+  /// Waits for the GPU; CV_8UC4 (BGRA).
   cv::Mat read() const;
 
  private:

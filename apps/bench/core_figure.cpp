@@ -5,9 +5,10 @@
 #include "apps/bench/figure_subjects.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/image_metrics.hpp"
-#include "apps/replay_session.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "display/recorded_source.hpp"
+#include "display/view_session.hpp"
 
 namespace foresight {
 namespace {
@@ -34,9 +35,12 @@ Instants choose_instants(const RunFolder& run) {
 
 cv::Mat view_of(const RunFolder& run, const TextureOptions& core, const std::optional<thesis::Options>& thesis,
                 const Instants& instants) {
-  ReplaySession session(run, core, thesis, false);
-  for (std::size_t i = 0; i < instants.arrived; ++i) session.process(session.load(i));
-  return session.predict(instants.shown);
+  const auto context = gl::create_headless_context();
+  ViewSession session(*context, view_setup(run, core, thesis));
+  for (std::size_t i = 0; i < instants.arrived; ++i) session.process(load_posed_frame(run, i, core.margin_px));
+  const RunImage& shown = run.frames()[instants.shown].left;
+  session.draw(shown.T_world_camera, run.state_at(shown.time));
+  return session.read();
 }
 
 /// Where the actual image has most structure: a detail that favours nobody.

@@ -7,11 +7,11 @@
 
 #include "apps/bench/extraction_tables.hpp"
 #include "apps/output_files.hpp"
-#include "apps/posed_frames.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/statistics.hpp"
+#include "display/recorded_source.hpp"
 
 namespace foresight {
 namespace {

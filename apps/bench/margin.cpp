@@ -8,10 +8,10 @@
 #include "apps/bench/margin_plot.hpp"
 #include "apps/bench/texel_truth.hpp"
 #include "apps/output_files.hpp"
-#include "apps/posed_frames.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "display/recorded_source.hpp"
 #include "sim/pose_error.hpp"
 
 namespace foresight {

@@ -10,7 +10,7 @@
 #include "calibration/target/capture_picture.hpp"
 #include "common/error.hpp"
 #include "common/latest_value.hpp"
-#include "display/window_picture.hpp"
+#include "display/view_window.hpp"
 #include "gl/glfw_window.hpp"
 
 namespace foresight {
@@ -167,17 +167,20 @@ class LiveWindow {
 
   /// Blocks for one display frame at most.
   void draw(const Scene& scene) {
-    int width = 0, height = 0;
-    window_.framebuffer_size(width, height);
-    begin_window(width, height);
-    if (!scene.empty()) picture_.draw(scene.picture(), {0, 0, width, height});
+    const ViewTarget whole = window_target(window_);
+    clear_behind_pictures(whole);
+    if (!scene.empty()) {
+      picture_.upload(scene.picture());
+      copy_(picture_.texture(), fitted(whole, picture_.texture().width(), picture_.texture().height()));
+    }
     window_.present();
   }
   gl::Window& window() { return window_; }
 
  private:
   gl::Window window_;
-  WindowPicture picture_;
+  UploadedPicture picture_;
+  PictureCopy copy_;
 };
 
 void linger(LiveWindow& live, const Scene& scene, const Clock& clock) {

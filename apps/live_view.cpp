@@ -1,0 +1,223 @@
+#include "apps/live_view.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "apps/view_measures.hpp"
+#include "common/error.hpp"
+#include "display/live_source.hpp"
+#include "display/view_window.hpp"
+#include "sim/live_lab.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWindowWidth = 1280;
+
+LiveFeed feed_from(std::shared_ptr<FrameQueue> frames, std::function<std::string()> trouble) {
+  return {[frames](Duration timeout) -> std::optional<LiveImage> {
+            const auto frame = frames->take(timeout);
+            if (!frame) return std::nullopt;
+            return LiveImage{(*frame)->number, (*frame)->posed};
+          },
+          [frames] { return frames->closed(); }, std::move(trouble)};
+}
+
+/// What will be looked at, for the size of charts.
+std::vector<ExpectedView> expected_views(const LiveScene& scene) {
+  if (!scene.is_mock()) return {};
+  const JointPositions at_rest = [](std::string_view joint) { return sim::shafts_at_rest(joint); };
+  return {{scene.T_world_left(at_rest), scene.state_at({}, at_rest, StateStatus::predicted)}};
+}
+
+ViewSetup live_setup(const LiveScene& scene) {
+  if (!scene.lenses())
+    throw InputError("--view", "the cameras have no calibration", "give it as `lens` in the rig (docs/rig-files.md)");
+  if (!scene.model()) throw InputError("--view", "there is no model of what the cameras see", "give one with --scene");
+  ViewSetup setup;
+  setup.scene = scene.model();
+  setup.left = scene.lenses()->left;
+  setup.right = scene.lenses()->right;
+  setup.surface = surface_for(*setup.scene, setup.left, expected_views(scene));
+  setup.textures.depth_tolerance = setup.scene->accuracy().value_or(setup.textures.depth_tolerance);
+  return setup;
+}
+
+std::unique_ptr<gl::Window> open_window(const Lens& lens) {
+  const int height = std::max(kWindowWidth * lens.height() / (2 * lens.width()), 120);
+  try {
+    return std::make_unique<gl::Window>(kWindowWidth, height, "Foresight");
+  } catch (const gl::NoWindow& error) {
+    throw RuntimeFailure(std::string("--view: ") + error.what(), "or do without a window: give --out or --report");
+  }
+}
+
+/// Says on stderr when images stop and when they come again.
+class StallLog final : public ViewObserver {
+ public:
+  void stepped(const ViewStep& /*step*/, FrameSource& /*source*/, ViewSession& /*session*/) override {
+    if (!fault_.empty()) std::fprintf(stderr, "robot: view: images again; it was: %s\n", fault_.c_str());
+    fault_.clear();
+  }
+  void waiting(FrameSource& source, ViewSession& /*session*/) override {
+    const std::string fault = source.fault();
+    if (fault.empty()) return;
+    if (fault_.empty()) {
+      ++stalls_;
+      std::fprintf(stderr, "robot: view: %s\n", fault.c_str());
+    }
+    fault_ = fault;
+  }
+  int stalls() const { return stalls_; }
+
+ private:
+  std::string fault_;
+  int stalls_ = 0;
+};
+
+RunRecord described(const ViewSession& session, const ViewSetup& setup, const LiveViewOptions& options) {
+  RunRecord record = describe(session, setup);
+  record.run = options.rig;
+  record.options.push_back({"delay_ms", options.delay_ms});
+  add_texture_options(record, setup.textures);
+  record.options.push_back({"real_time", !options.stepped});
+  record.options.push_back({"refine", false});
+  return record;
+}
+
+bool is_picture(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  return file.extension() == ".png" && stem.size() >= 6 &&
+         std::ranges::all_of(stem, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool is_of_a_view(const fs::directory_entry& entry) {
+  if (entry.path().filename() == "contact_sheet.png") return entry.is_regular_file();
+  return entry.path().filename() == "predicted" && entry.is_directory() &&
+         std::ranges::all_of(fs::directory_iterator(entry.path()),
+                             [](const fs::directory_entry& file) { return is_picture(file.path()); });
+}
+
+void remove_old_pictures(const fs::path& out) {
+  std::error_code ignored;  // what cannot be removed cannot be written either, which is told then
+  fs::remove(out / "contact_sheet.png", ignored);
+  fs::remove_all(out / "predicted", ignored);
+}
+
+}  // namespace
+
+void check_live_outputs(const ViewOutputs& outputs, const std::set<fs::path>& inputs) {
+  check_outputs(outputs, inputs, {});
+  if (!outputs.out || !fs::is_directory(*outputs.out)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(*outputs.out))
+    if (!is_of_a_view(entry))
+      throw InputError("--out " + outputs.out->string(),
+                       "holds " + entry.path().filename().string() + ", which is not of an earlier view",
+                       "give a new folder or an empty one");
+}
+
+struct LiveView::Work {
+  LiveViewOptions options;
+  std::shared_ptr<FrameQueue> frames;
+  ViewSetup setup;
+  std::unique_ptr<gl::Window> window;
+  std::unique_ptr<gl::Context> headless;
+  std::unique_ptr<ViewSession> session;
+  LiveSource source;
+  StallLog stalls;
+  std::optional<ViewMeasures> measures;
+  std::optional<ViewWindow> shown;
+  std::function<bool()> stopped = [] { return false; };
+  std::optional<ViewLoop> loop;
+  std::exception_ptr failure;
+
+  Work(const LiveScene& scene, std::shared_ptr<FrameQueue> queue, std::function<std::string()> trouble,
+       const Clock& clock, const LiveViewOptions& given)
+      : options(given),
+        frames(std::move(queue)),
+        setup(live_setup(scene)),
+        window(options.window ? open_window(setup.left) : nullptr),
+        headless(window ? nullptr : gl::create_headless_context()),
+        session(std::make_unique<ViewSession>(window ? static_cast<gl::Context&>(*window) : *headless, setup)),
+        source(feed_from(frames, std::move(trouble)), clock,
+               {.delay = seconds(options.delay_ms * 1e-3), .real_time = !options.stepped}) {
+    std::vector<ViewObserver*> observers{&stalls};
+    if (options.outputs.any()) {
+      if (options.outputs.out) remove_old_pictures(*options.outputs.out);
+      measures.emplace(described(*session, setup, options), options.outputs, setup.textures);
+      observers.push_back(&*measures);
+    }
+    if (window) {
+      shown.emplace(*window, ViewWindowOptions{.title = [this](const ViewStep&) { return title(); }});
+      observers.push_back(&*shown);
+    }
+    loop.emplace(*session, source, std::move(observers), [this] { return stopped(); });
+  }
+
+  std::string title() const {
+    char text[160];
+    std::snprintf(text, sizeof text, "Foresight %s: camera, %.0f ms ago | predicted view", options.rig.c_str(),
+                  options.delay_ms);
+    return text;
+  }
+
+  /// False: the view has ended.
+  template <typename Action>
+  bool guarded(const Action& action) noexcept {
+    try {
+      if (!failure) action();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    return !failure && (!shown || shown->wants_more());
+  }
+
+  void note() {
+    RunRecord& record = measures->record();
+    const auto add = [&](std::uint64_t count, const char* what) {
+      if (count > 0) record.notes.push_back(std::to_string(count) + what);
+    };
+    add(source.counts().unposed, " images had no pose: they were neither shown nor used.");
+    add(source.counts().forgotten, " images were given up on their way: the delay is too long.");
+    add(frames->dropped(), " images came while the view was busy, and were left out.");
+    add(static_cast<std::uint64_t>(stalls.stalls()), " times no image came, or none with a pose, for a while.");
+    record.drops += frames->dropped() + source.counts().forgotten;
+  }
+};
+
+LiveView::LiveView(const LiveScene& scene, std::shared_ptr<FrameQueue> frames, std::function<std::string()> trouble,
+                   const Clock& clock, const LiveViewOptions& options)
+    : work_(std::make_unique<Work>(scene, std::move(frames), std::move(trouble), clock, options)) {}
+
+LiveView::~LiveView() = default;
+
+bool LiveView::step() noexcept {
+  return work_->guarded([&] {
+    while (work_->loop->step() == SourceState::ready) {
+    }
+  });
+}
+
+bool LiveView::run(const std::function<bool()>& stopped) noexcept {
+  return work_->guarded([&] {
+    work_->stopped = stopped;
+    work_->loop->run();
+    work_->stopped = [] { return false; };
+  });
+}
+
+void LiveView::finish(bool complete) {
+  if (work_->options.stepped) step();
+  if (work_->measures) {
+    work_->note();
+    work_->measures->record().complete = complete && !work_->failure;
+    work_->measures->finish(work_->source, *work_->session, "Foresight, live view of " + work_->options.rig);
+    print_summary(work_->measures->record());
+  }
+  if (work_->failure) std::rethrow_exception(work_->failure);
+}
+
+}  // namespace foresight

@@ -1,0 +1,150 @@
+#include "apps/view_measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "apps/output_files.hpp"
+#include "apps/replay_report/image_metrics.hpp"
+#include "common/atomic_file.hpp"
+#include "texture_gpu/stage_clock.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+
+cv::Mat as_colour(const cv::Mat& pixels) {
+  if (pixels.channels() == 3) return pixels;
+  cv::Mat colour;
+  cv::cvtColor(pixels, colour, cv::COLOR_GRAY2BGR);
+  return colour;
+}
+
+void write_png(const fs::path& file, const cv::Mat& picture) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace
+
+RunRecord describe(const ViewSession& session, const ViewSetup& setup) {
+  RunRecord record;
+  record.image_width_px = setup.left.width();
+  record.image_height_px = setup.left.height();
+  record.cameras = setup.right ? 2 : 1;
+  record.lens_model = to_string(setup.left.model());
+  record.scene_triangles = setup.scene->triangle_count();
+  for (const Node& node : setup.scene->nodes()) record.degenerate_triangles += node.mesh.dropped_degenerate;
+  record.charts = session.surface_count();
+  record.renderer = session.driver().renderer + ", OpenGL " + session.driver().version;
+  record.version = FORESIGHT_VERSION;
+  record.options.push_back({"pipeline", std::string(setup.thesis ? "thesis" : "core")});
+  return record;
+}
+
+void add_texture_options(RunRecord& record, const TextureOptions& textures) {
+  record.options.push_back({"margin_px", textures.margin_px});
+  record.options.push_back({"texels_per_metre", textures.texels_per_metre});
+  record.options.push_back({"max_texture", std::int64_t{textures.max_texture}});
+  record.options.push_back({"texture_memory_mb", static_cast<std::int64_t>(textures.memory_bytes >> 20)});
+  record.options.push_back({"model_accuracy_m", textures.depth_tolerance});
+}
+
+ViewMeasures::ViewMeasures(RunRecord record, ViewOutputs outputs, const TextureOptions& textures)
+    : record_(std::move(record)), outputs_(std::move(outputs)), textures_(textures) {
+  if (outputs_.out) make_folder(*outputs_.out / "predicted");
+}
+
+void ViewMeasures::arrived(const PosedFrame& frame) {
+  delayed_ = as_colour(frame.left.pixels);
+  delayed_time_ = frame.left.time;
+}
+
+void ViewMeasures::stepped(const ViewStep& step, FrameSource& source, ViewSession& session) {
+  FrameRecord record = new_record(step.instant);
+  for (const ExtractionReport& report : step.reports) take(report, record);
+  if (step.instant.blind) return;
+  record.arrival_to_publish_ms = step.arrival_to_publish_ms;
+  if (!step.instant.late) record.delay_s = to_seconds(step.instant.time - delayed_time_);
+  if (step.drawn)
+    measure(record, step.draw_cpu_ms, source, session);
+  else
+    record.dropped = true;  // late, or the first image is still in work
+  record_.frames.push_back(std::move(record));
+}
+
+FrameRecord ViewMeasures::new_record(const ShownInstant& instant) const {
+  FrameRecord record;
+  record.stem = instant.name;
+  record.time_s = static_cast<double>(instant.time.ns) * 1e-9;
+  record.texture_bytes_used = bytes_used_;
+  record.texture_bytes_budget = textures_.memory_bytes;
+  record.gain = gain_;
+  return record;
+}
+
+void ViewMeasures::take(const ExtractionReport& report, FrameRecord& record) {
+  if (!report.published) {
+    ++record_.drops;
+    return;
+  }
+  for (const StageCost& cost : report.stages)
+    record.stages.push_back({cost.name, cost.cpu_ms, cost.gpu_ms, StagePart::texture});
+  record.texture_bytes_used = bytes_used_ = report.bytes_in_use;
+  record.gain = gain_ = std::exp(2.2 * report.log_gain);  // from 8-bit values to linear light
+  record_.texels = std::max(record_.texels, report.texels_resident);
+  policy_ = report.policy;
+}
+
+void ViewMeasures::measure(FrameRecord& record, double draw_cpu_ms, FrameSource& source, ViewSession& session) {
+  const double before = process_cpu_ms();
+  const cv::Mat predicted = session.read();
+  const double drawn = process_cpu_ms();
+  const cv::Mat actual = as_colour(source.actual());
+  const ImageComparison comparison(actual, seen_mask(predicted));
+  record.predicted = comparison.measure(predicted);
+  record.delayed = comparison.measure(delayed_);
+  record.coverage = measure_coverage(predicted);
+  if (outputs_.out) write_png(*outputs_.out / "predicted" / (record.stem + ".png"), predicted);
+  record.stages.push_back({"view", draw_cpu_ms + drawn - before, std::nullopt, StagePart::view});
+  record.stages.push_back({"measure", process_cpu_ms() - drawn, std::nullopt, StagePart::measure});
+  keeper_.offer(record, delayed_, predicted, actual);
+}
+
+void ViewMeasures::note_policy() {
+  if (policy_.evicted_pages)
+    record_.notes.push_back("The texture budget was reached: " + std::to_string(policy_.evicted_pages) +
+                            " pages out of view, unseen for longest, gave up their place.");
+  if (policy_.steps_down)
+    record_.notes.push_back("The view did not fit the texture budget: all resolutions were lowered " +
+                            std::to_string(policy_.steps_down) + " times and raised " +
+                            std::to_string(policy_.steps_up) + " times by a factor of 1.19; now " +
+                            std::to_string(policy_.bias) + " steps.");
+}
+
+void ViewMeasures::finish(const FrameSource& source, const ViewSession& session, const std::string& title) {
+  record_.drops += source.overtaken() + session.replaced();
+  note_policy();
+  write_reports(outputs_, record_, keeper_.instants(), title);
+}
+
+void print_summary(const RunRecord& record) {
+  const Summary s = summarise(record);
+  if (s.frames == 0) {
+    std::printf("no image time was shown\n");
+    return;
+  }
+  std::printf("%zu image times: predicted %.2f dB, delayed image %.2f dB on the same pixels\n", s.frames,
+              s.predicted.psnr_db.mean, s.delayed.psnr_db.mean);
+  std::printf("seen %.3f, filled %.3f, empty %.3f of the image; sharpness %.2f of the real image's\n", s.coverage.seen,
+              s.coverage.filled, s.coverage.empty(), s.predicted.sharpness.mean);
+  std::printf("%.1f images per core-second, %.1f CPU-ms per image; renderer: %s\n", s.images_per_core_second,
+              s.texture_cpu_ms, record.renderer.c_str());
+  for (const std::string& note : record.notes) std::printf("%s\n", note.c_str());
+}
+
+}  // namespace foresight

@@ -1,0 +1,96 @@
+#include "display/view_session.hpp"
+
+#include <algorithm>
+namespace foresight {
+namespace {
+
+constexpr double kDrawTimeout = 20;       // seconds
+constexpr std::size_t kMostDrawings = 2;  // in work at once: more would only make the picture older
+
+}  // namespace
+
+std::shared_ptr<const SurfacePatches> surface_for(const SceneModel& scene, const Lens& lens,
+                                                  std::span<const ExpectedView> views) {
+  PatchOptions patches;
+  patches.chart_extent = chart_extent_for(scene, lens, views);
+  return std::make_shared<const SurfacePatches>(find_surface_patches(scene, patches));
+}
+
+ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
+    : driver_(gl::query_driver()), lens_(setup.left), surface_(setup.surface) {
+  gl::set_up_context();
+  if (setup.thesis) {
+    thesis_ =
+        std::make_unique<thesis::Pipeline>(setup.scene, setup.left, setup.right, *setup.thesis, driver_.is_software);
+    thesis_view_ = std::make_unique<ThesisView>(*thesis_, setup.left);
+    return;
+  }
+  thread_ = std::make_unique<TextureThread>(
+      context.create_shared(),
+      TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures});
+  context.make_current();
+  buffers_ = std::make_shared<const gl::SceneBuffers>(*setup.scene);
+  records_ = std::make_shared<const SurfaceRecords>(*setup.surface);
+  view_ = std::make_unique<PredictedView>(buffers_, records_, setup.left);
+}
+
+std::size_t ViewSession::surface_count() const {
+  if (thesis_) return thesis_->textures().polygons().size();
+  return static_cast<std::size_t>(
+      std::ranges::count_if(surface_->charts, [](const Chart& chart) { return chart.radius > 0; }));
+}
+
+ExtractionReport ViewSession::process(PosedFrame frame) {
+  if (thesis_) return thesis_->process(frame);
+  finish_drawings();
+  return thread_->process(std::move(frame));
+}
+
+void ViewSession::submit(PosedFrame frame) {
+  thread_->submit(std::move(frame));
+}
+
+std::optional<ExtractionReport> ViewSession::take_report() {
+  give_back();
+  return thread_->take_report();
+}
+
+bool ViewSession::draw(const Pose& T_world_camera, const SceneState& state) {
+  if (!thesis_) return draw(*view_, T_world_camera, state);
+  thesis_view_->draw(T_world_camera, state);
+  return true;
+}
+
+bool ViewSession::draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state) {
+  give_back();
+  if (drawings_.size() >= kMostDrawings) finish_drawings();
+  TextureLease textures = thread_->textures().acquire();
+  if (!textures) return false;
+  view.draw(T_world_camera, state, *textures);
+  drawings_.push_back({std::move(textures), gl::Fence::insert()});
+  gl::check_errors("the predicted view");
+  return true;
+}
+
+cv::Mat ViewSession::read() {
+  if (thesis_) return thesis_view_->read();
+  cv::Mat picture = view_->read();
+  finish_drawings();
+  return picture;
+}
+
+cv::Mat ViewSession::read_range() {
+  if (!range_) range_.emplace(lens_, view_->faces().faces);
+  return range_->read(view_->faces());
+}
+
+void ViewSession::give_back() {
+  while (!drawings_.empty() && drawings_.front().end.signalled()) drawings_.pop_front();
+}
+
+void ViewSession::finish_drawings() {
+  for (const Drawing& drawing : drawings_) drawing.end.wait(kDrawTimeout);
+  drawings_.clear();
+}
+
+}  // namespace foresight

@@ -1,0 +1,94 @@
+// What a view needs between its images: the texture thread, its published textures, and what draws them.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "display/predicted_view.hpp"
+#include "display/thesis_view.hpp"
+#include "display/view_range.hpp"
+#include "display/view_target.hpp"
+#include "gl/context.hpp"
+#include "texture_gpu/chart_extent.hpp"
+#include "texture_gpu/texture_thread.hpp"
+
+namespace foresight {
+
+struct ViewSetup {
+  std::shared_ptr<const SceneModel> scene;
+  std::shared_ptr<const SurfacePatches> surface;  ///< of that scene; not needed with `thesis`
+  Lens left;                                      ///< the view is drawn through it, too
+  std::optional<Lens> right;
+  TextureOptions textures;
+  std::optional<thesis::Options> thesis;  ///< that pipeline replaces the texture core
+};
+
+/// The model's surface, cut into charts of a size that suits such views.
+std::shared_ptr<const SurfacePatches> surface_for(const SceneModel& scene, const Lens& lens,
+                                                  std::span<const ExpectedView> views);
+
+/// One thread, on which its context is current all the time; the texture core has a thread of its own.
+class ViewSession {
+ public:
+  /// `context`: a window's, or one without; current, and outlives this. Blocks until the core is built. Throws
+  /// InputError (a lens that the thesis cannot do), RuntimeFailure.
+  ViewSession(gl::Context& context, const ViewSetup& setup);
+
+  const gl::DriverInfo& driver() const { return driver_; }
+  /// Surfaces with a texture of their own: the core's charts, the thesis' polygons.
+  std::size_t surface_count() const;
+  const std::shared_ptr<const SurfacePatches>& surface() const { return surface_; }
+
+  /// Extracts one frame and returns when its textures are there.
+  ExtractionReport process(PosedFrame frame);
+
+  /// TextureThread::submit, take_report and replaced: for real time. Not with `thesis`.
+  void submit(PosedFrame frame);
+  std::optional<ExtractionReport> take_report();
+  std::uint64_t replaced() const { return thread_ ? thread_->replaced() : 0; }
+
+  /// The newest textures, or an empty lease before the first. Not with `thesis`.
+  TextureLease textures() const { return thread_->textures().acquire(); }
+
+  /// Draws the view from `T_world_camera` into picture(), with the newest textures. Does not wait for the GPU. False:
+  /// the core has not published anything yet.
+  bool draw(const Pose& T_world_camera, const SceneState& state);
+  /// RGBA8, straight alpha as PredictedView has it, row 0 at the top.
+  const gl::Texture& picture() const { return thesis_ ? thesis_view_->picture() : view_->picture(); }
+
+  /// Another view of the same textures, such as that of an eye through its own lens. Not with `thesis`.
+  PredictedView make_view(const Lens& lens) const { return {buffers_, records_, lens}; }
+  /// The same for such a view.
+  bool draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state);
+
+  /// For whoever measures. Both wait for the GPU. picture() as CV_8UC4 (BGRA); ViewRange::read() of the last draw(),
+  /// not with `thesis`.
+  cv::Mat read();
+  cv::Mat read_range();
+
+  /// Gives back textures that the GPU has finished drawing with. To be called while nothing else is: the texture core
+  /// waits for them.
+  void give_back();
+
+ private:
+  struct Drawing {
+    TextureLease textures;
+    gl::Fence end;
+  };
+  void finish_drawings();
+
+  gl::DriverInfo driver_;
+  Lens lens_;
+  std::shared_ptr<const SurfacePatches> surface_;
+  std::shared_ptr<const gl::SceneBuffers> buffers_;
+  std::shared_ptr<const SurfaceRecords> records_;
+  std::unique_ptr<TextureThread> thread_;
+  std::unique_ptr<PredictedView> view_;
+  std::optional<ViewRange> range_;
+  std::deque<Drawing> drawings_;  // that the GPU may not have finished
+  std::unique_ptr<thesis::Pipeline> thesis_;
+  std::unique_ptr<ThesisView> thesis_view_;
+};
+
+}  // namespace foresight

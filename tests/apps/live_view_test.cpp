@@ -1,0 +1,118 @@
+// `foresight robot --view`: the live, textured scene, measured against what the mock cameras truly see.
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/apps/program.hpp"
+#include "tests/apps/runs.hpp"
+#include "tests/support/folders.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string config(const std::string& name) {
+  return (source_folder() / "configs" / name).string();
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class LiveView : public testing::TestWithParam<const char*> {
+ protected:
+  /// With small pictures: what is tested is not the renderer.
+  std::string rig(const std::string& name) const {
+    std::string text = text_of(config(name));
+    for (const auto& [what, instead] :
+         {std::pair<std::string, std::string>{"[320, 240]", "[160, 120]"}, {"rate_hz: 10", "rate_hz: 5"}})
+      for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + instead.size()))
+        text.replace(at, what.size(), instead);
+    fs::copy_file(config("arm.urdf"), folder_ / "arm.urdf", fs::copy_options::overwrite_existing);
+    return folder_.write("rig.yaml", text).string();
+  }
+  std::string motion() const {
+    return folder_
+        .write("motion.csv",
+               "time_s,elbow,shoulder_yaw,pan,tilt\n0,0.2,0,0,0.6\n1,0.6,0.3,0.15,0.5\n2,0.2,0,-0.1,0.6\n")
+        .string();
+  }
+  Outcome view(const std::string& out, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"robot",
+                                   rig(GetParam()),
+                                   "--stepped",
+                                   "--home",
+                                   "--follow",
+                                   motion(),
+                                   "--view",
+                                   "--out",
+                                   folder_ / out,
+                                   "--report",
+                                   folder_ / (out + ".json")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  }
+  TempFolder folder_;
+};
+for (const std::string& name : names_in(folder_ / "out/predicted")) all[name] = folder_.read("out/predicted/" + name);
+return all;
+};
+ASSERT_EQ(view("out", {"--delay-ms", "200"}).exit_code, 0);
+const auto first = contents();
+const json report = without_times(read_json(folder_ / "out.json"));
+EXPECT_GT(first.size(), 8u);
+folder_.write("out/predicted/999999.png", "of a longer session");
+ASSERT_EQ(view("out", {"--delay-ms", "200"}).exit_code, 0);
+EXPECT_TRUE(contents() == first);
+EXPECT_EQ(without_times(read_json(folder_ / "out.json")), report);
+}
+
+TEST_P(LiveView, ReportsAsReplayDoes) {
+  ASSERT_EQ(view("out").exit_code, 0);
+  const SmallRun run;
+  ASSERT_EQ(run_program({"replay", run.path(), "--delay-ms", "40", "--report", folder_ / "replay.json"}).exit_code, 0);
+  EXPECT_EQ(keys_of(read_json(folder_ / "out.json")), keys_of(read_json(folder_ / "replay.json")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Rigs, LiveView, testing::Values("minerva.yaml", "cia402.yaml"),
+                         [](const auto& i) { return std::string(i.param).substr(0, std::string(i.param).find('.')); });
+
+TEST(LiveViewInput, WrongInputIsNamed) {
+  const TempFolder folder;
+  const std::string rig = config("cia402.yaml");
+  const auto expect = [&](std::vector<std::string> more, const std::vector<std::string>& words) {
+    more.insert(more.begin(), {"robot", rig, "--stepped"});
+    const Outcome out = run_program(more);
+    EXPECT_EQ(out.exit_code, 2) << out.err;
+    for (const std::string& word : words) EXPECT_THAT(out.last_line(), HasSubstr(word));
+  };
+  expect({"--delay-ms", "100"}, {"--delay-ms", "--view"});
+  expect({"--report", folder / "r.json"}, {"--report", "--view"});
+  expect({"--view", "--no-cameras"}, {"--view", "--no-cameras"});
+  expect({"--view", "--delay-ms", "-5"}, {"--delay-ms", "-5"});
+  folder.write("mine/notes.txt", "mine");
+  expect({"--view", "--out", folder / "mine"}, {"notes.txt", "new folder"});
+  folder.write("theirs/predicted/notes.txt", "mine");
+  expect({"--view", "--out", folder / "theirs"}, {"predicted", "new folder"});
+  expect({"--view", "--record", folder / "run", "--out", folder / "run/view"}, {"--out", "--record"});
+  expect({"--view", "--html", folder / "x", "--report", folder / "x"}, {"--html", "--report"});
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("mine", "theirs"));
+  EXPECT_EQ(folder.read("mine/notes.txt"), "mine");
+
+  std::string text = text_of(rig);
+  const auto from = text.find("\ncameras:"), to = text.find("\njoints:");
+  ASSERT_NE(from, std::string::npos);
+  text.erase(from, to - from);
+  fs::copy_file(config("arm.urdf"), folder / "arm.urdf");
+  const std::string blind = folder.write("rig.yaml", text).string();
+  const Outcome out = run_program({"robot", blind, "--stepped", "--view", "--out", folder / "out"});
+  EXPECT_EQ(out.exit_code, 2);
+  EXPECT_THAT(out.last_line(), testing::AllOf(HasSubstr("--view"), HasSubstr("no cameras")));
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+}  // namespace
+}  // namespace foresight
