@@ -138,7 +138,6 @@ void RunRecorder::write(const Job& job) {
     full_ = true;
     return;
   }
-  if (options_.slowed_by.count() > 0) std::this_thread::sleep_for(options_.slowed_by);
   const bool placed = job.registration ? write_registered(job) : write_given(job);
   write_image("rgb", job.pair.left, placed ? rgb_ : unplaced_);
   write_image("rgb_right", job.pair.right, placed ? rgb_right_ : unplaced_);

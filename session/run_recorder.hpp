@@ -52,7 +52,6 @@ struct RecorderOptions {
   std::size_t waiting = 8;    ///< pairs in memory, at most; > 0
   bool waits = false;         ///< add() waits for room instead of dropping: for stepped time, where it costs nothing
   double spare_bytes = 16e6;  ///< of the disk that are left free
-  Duration slowed_by{0};      ///< for tests: a disk that takes so much longer for a pair
 };
 
 /// What is recorded beside the folder `out`: "run/" and "-joints.csv" give "run-joints.csv".

@@ -23,8 +23,7 @@ TEST(RealTime, PlaysByTheClock) {
       run_program({"replay", run.path(), "--real-time", "--delay-ms", "300", "--report", out / "report.json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_GE(outcome.seconds, 15 * 0.15);
-  EXPECT_GE(played_seconds(outcome), 2);
-  EXPECT_LE(played_seconds(outcome), 8);
+  EXPECT_GE(played_seconds(outcome), 2) << "not quicker; how late a busy machine ends says nothing";
   const json report = read_json(out / "report.json");
   EXPECT_EQ(report["summary"]["frames"].get<int>() + report["summary"]["dropped_frames"].get<int>(), 14);
   EXPECT_GE(report["summary"]["frames"], 1);
@@ -32,7 +31,7 @@ TEST(RealTime, PlaysByTheClock) {
 }
 
 TEST(RealTime, DropsWhatComesTooLateAndCountsIt) {
-  const LoopedRun run(200, 0.001);
+  const LoopedRun run(200, 1e-4);  // quicker than any machine draws
   const TempFolder out;
   const Outcome outcome = run_program({"replay", run.path(), "--real-time", "--report", out / "report.json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
