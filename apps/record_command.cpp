@@ -118,14 +118,15 @@ void add_options(const Arguments& a, RecorderOptions& options) {
     std::fputs("record: no --pose, so that the run needs a trajectory.txt before it can be replayed\n", stderr);
 }
 
-int record_and_report(const Arguments& a, StereoCamera& cameras, RecorderOptions options, Clock& clock) {
+int record_and_report(const Arguments& a, const OpenStereo& opened, RecorderOptions options, Clock& clock) {
   RunRecorder recorder(a.out, std::move(options));
   RecordingLimits limits;
   limits.count = a.count;
   if (a.seconds) limits.length = seconds(*a.seconds);
   if (!a.images.empty()) limits.silent_after = std::chrono::seconds(1);  // the end of the files
+  if (opened.mock) limits.silent_after = std::chrono::minutes(2);        // a renderer may be slow; it is not unplugged
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = 1; });
-  const RecordingResult result = record(cameras, recorder, limits, clock, [] { return interrupted != 0; });
+  const RecordingResult result = record(*opened.cameras, recorder, limits, clock, [] { return interrupted != 0; });
   std::fprintf(stderr, "record: %s", counts_text(result).c_str());
   std::printf("%s\n", a.out.c_str());
   const bool all_played = !a.images.empty() && !recorder.disk_full();
@@ -145,7 +146,7 @@ int run(const Arguments& a) {
   RecorderOptions options = recorder_options(config, opened, shafts);
   options.tags = tags;
   add_options(a, options);
-  const int code = record_and_report(a, *opened.cameras, std::move(options), clock);
+  const int code = record_and_report(a, opened, std::move(options), clock);
   if (opened.mock) write_head_joints(beside_run(a.out, "-joints.csv"), shafts, start, clock.now());
   if (const std::uint64_t skipped = opened.mock ? opened.mock->skipped() : 0)
     std::fprintf(stderr, "record: %llu instants not rendered: this machine is too slow for %g Hz at that size\n",
