@@ -37,7 +37,7 @@ struct Progress {
 /// A test that runs longer hangs. Not a judgement of how quick it is: typical ones take 0.1 s.
 unsigned hangs_after_s() {
   const char* const given = std::getenv("FORESIGHT_TEST_HANGS_AFTER_S");
-  return given ? static_cast<unsigned>(std::atoi(given)) : 300;
+  return given ? static_cast<unsigned>(std::atoi(given)) : 600;
 }
 
 class Reporter final : public testing::EmptyTestEventListener {
