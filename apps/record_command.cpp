@@ -125,15 +125,17 @@ GivenPoses poses_of(const Arguments& a, const std::shared_ptr<const LiveScene>& 
   return {scene, {}};
 }
 
-int record_and_report(const Arguments& a, StereoCamera& cameras, LiveFrames& frames, RecorderOptions options,
+int record_and_report(const Arguments& a, const OpenStereo& opened, LiveFrames& frames, RecorderOptions options,
                       Clock& clock) {
   RunRecorder recorder(a.out, std::move(options), frames.subscribe(RunRecorder::kRoom));
   RecordingLimits limits;
   limits.count = a.count;
   if (a.seconds) limits.length = seconds(*a.seconds);
   if (!a.images.empty()) limits.silent_after = std::chrono::seconds(1);  // the end of the files
+  if (opened.mock) limits.silent_after = std::chrono::minutes(2);        // a renderer may be slow; it is not unplugged
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = 1; });
-  const RecordingResult result = record(cameras, frames, recorder, limits, clock, [] { return interrupted != 0; });
+  const RecordingResult result =
+      record(*opened.cameras, frames, recorder, limits, clock, [] { return interrupted != 0; });
   std::fprintf(stderr, "record: %s", counts_text(result).c_str());
   std::printf("%s\n", a.out.c_str());
   const bool all_played = !a.images.empty() && !recorder.disk_full();
@@ -155,7 +157,7 @@ int run(const Arguments& a) {
   options.posed = opened.mock || !a.pose.empty();
   options.tags = tags;
   LiveFrames frames(std::make_shared<GivenPoses>(poses_of(a, scene, shafts)), clock);
-  const int code = record_and_report(a, *opened.cameras, frames, std::move(options), clock);
+  const int code = record_and_report(a, opened, frames, std::move(options), clock);
   if (opened.mock) write_head_joints(beside_run(a.out, "-joints.csv"), shafts, start, clock.now());
   if (const std::uint64_t skipped = opened.mock ? opened.mock->skipped() : 0)
     std::fprintf(stderr, "record: %llu instants not rendered: this machine is too slow for %g Hz at that size\n",

@@ -23,7 +23,7 @@ void check_folder(const fs::path& out, const std::set<fs::path>& inputs, std::sp
 
 }  // namespace
 
-void add_view_outputs(CLI::App& command, ViewOutputs& outputs) {
+void add_view_outputs(Command& command, ViewOutputs& outputs) {
   command.add_option("--out", outputs.out, "Folder for predicted/*.png and contact_sheet.png");
   command.add_option("--report", outputs.report, "JSON file with all measurements");
   command.add_option("--html", outputs.html, "HTML file with pictures and plots, self-contained");

@@ -1,13 +1,13 @@
 // What commands that show views leave behind: pictures, a report for programs and one for people.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 
+#include "apps/command_line/command_line.hpp"
 #include "apps/replay_report/instants.hpp"
 #include "apps/replay_report/replay_report.hpp"
 
@@ -21,7 +21,7 @@ struct ViewOutputs {
 };
 
 /// Adds --out, --report and --html. `outputs` must live as long as `command`.
-void add_view_outputs(CLI::App& command, ViewOutputs& outputs);
+void add_view_outputs(Command& command, ViewOutputs& outputs);
 
 /// Refuses outputs that cannot be written, that are each other, or that are one of `inputs` (output_files.hpp).
 /// `pictures`: names of those that are known already. Throws InputError naming the option, the path, the reason and

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/clock.hpp"
 #include "rig/rig.hpp"
 
 namespace foresight::doctor {
@@ -22,6 +23,8 @@ using Findings = std::vector<Finding>;
 Findings check_can();                   ///< sockets in the kernel, interfaces and their state
 Findings check_buses(const Rig& rig);   ///< the rig's interfaces, bit rates and planned load
 Findings check_drives(const Rig& rig);  ///< identifies every drive; moves nothing
+/// Format, rate and capture times of one of the rig's cameras, over two seconds of `clock`, which may be a stepped one.
+Findings check_camera(const StereoConfig& config, Side side, Clock& clock);
 /// Formats, rates, capture times and bandwidth of the rig's cameras, each alone and as a pair; takes some seconds.
 Findings check_rig_cameras(const StereoConfig& config);
 Findings check_cameras();  ///< takes ten images of each that V4L2 knows; lists those that libcamera knows

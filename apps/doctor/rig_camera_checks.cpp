@@ -92,21 +92,6 @@ void judge(const Seen& seen, const CameraSettings& settings, const PairingOption
                               "sudo modprobe -r uvcvideo; sudo modprobe uvcvideo hwtimestamps=0"});
 }
 
-bool check_alone(const StereoConfig& config, Side side, Findings& out) {
-  const std::string subject = std::string("camera ") + side_name(side);
-  try {
-    MonotonicClock clock;
-    const auto camera = make_camera(side_name(side), config.camera(side), clock);
-    camera->start();
-    const Seen seen = look(*camera, clock);
-    judge(seen, camera->settings(), config.pairing, subject, out);
-    return seen.frames > 0;
-  } catch (const std::exception& error) {
-    out.push_back({Verdict::bad, subject, error.what(), ""});
-    return false;
-  }
-}
-
 void check_pairs(const StereoConfig& config, Findings& out) {
   try {
     MonotonicClock clock;
@@ -134,13 +119,29 @@ void check_pairs(const StereoConfig& config, Findings& out) {
 
 }  // namespace
 
+Findings check_camera(const StereoConfig& config, Side side, Clock& clock) {
+  const std::string subject = std::string("camera ") + side_name(side);
+  try {
+    const auto camera = make_camera(side_name(side), config.camera(side), clock);
+    camera->start();
+    Findings out;
+    judge(look(*camera, clock), camera->settings(), config.pairing, subject, out);
+    return out;
+  } catch (const std::exception& error) {
+    return {{Verdict::bad, subject, error.what(), ""}};
+  }
+}
+
 Findings check_rig_cameras(const StereoConfig& config) {
   if (config.mock()) return {{Verdict::good, "cameras", "mock", ""}};
   Findings out;
   double bytes = 0;
   bool both = true;
   for (const Side side : {Side::left, Side::right}) {
-    both = check_alone(config, side, out) && both;
+    MonotonicClock clock;
+    const Findings found = check_camera(config, side, clock);
+    both = both && found.front().verdict != Verdict::bad;
+    out.insert(out.end(), found.begin(), found.end());
     const CameraDriver driver = config.camera(side).driver;
     if (driver != CameraDriver::images) bytes += bytes_per_second(config.camera(side).settings);
   }

@@ -164,7 +164,7 @@ TEST_F(Export, AFullDiskLeavesTheOldFiles) {
 }
 
 TEST_F(Export, CtrlCLeavesNothing) {
-  const LoopedRun run(200, 0.1);
+  const LoopedRun run(2000, 0.1);  // longer than the wait on any machine
   Program program({"export", run.path(), "--out", out_ / "model.glb"});
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   program.interrupt();

@@ -38,7 +38,7 @@ class Program {
   void interrupt() const;  ///< SIGINT, as Ctrl-C sends it
 
   /// Waits; kills it and reports exit code 137 after `timeout`.
-  Outcome wait(std::chrono::seconds timeout = std::chrono::seconds(240));
+  Outcome wait(std::chrono::seconds timeout = std::chrono::seconds(540));
 
  private:
   std::string read(const char* name) const;

@@ -19,20 +19,24 @@ double played_seconds(const Outcome& outcome) {
 TEST(RealTime, PlaysByTheClock) {
   const LoopedRun run(16, 0.15);
   const TempFolder out;
-  const Outcome outcome =
-      run_program({"replay", run.path(), "--real-time", "--delay-ms", "300", "--report", out / "report.json"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_GE(outcome.seconds, 15 * 0.15);
-  EXPECT_GE(played_seconds(outcome), 2);
-  EXPECT_LE(played_seconds(outcome), 8);
-  const json report = read_json(out / "report.json");
-  EXPECT_EQ(report["summary"]["frames"].get<int>() + report["summary"]["dropped_frames"].get<int>(), 14);
-  EXPECT_GE(report["summary"]["frames"], 1);
-  for (const json& frame : report["frames"]) EXPECT_TRUE(frame["dropped"] || frame["delay_s"] >= 0.299) << frame;
+  // A driver that compiles its shaders for the first time, or a machine with other work, may be late for all of a run.
+  int shown = 0;
+  for (int attempt = 0; attempt < 5 && shown == 0; ++attempt) {
+    const Outcome outcome =
+        run_program({"replay", run.path(), "--real-time", "--delay-ms", "300", "--report", out / "report.json"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_GE(outcome.seconds, 15 * 0.15);
+    EXPECT_GE(played_seconds(outcome), 2) << "not quicker; how late a busy machine ends says nothing";
+    const json report = read_json(out / "report.json");
+    shown = report["summary"]["frames"];
+    EXPECT_EQ(shown + report["summary"]["dropped_frames"].get<int>(), 14);
+    for (const json& frame : report["frames"]) EXPECT_TRUE(frame["dropped"] || frame["delay_s"] >= 0.299) << frame;
+  }
+  EXPECT_GE(shown, 1);
 }
 
 TEST(RealTime, DropsWhatComesTooLateAndCountsIt) {
-  const LoopedRun run(200, 0.001);
+  const LoopedRun run(200, 1e-4);  // quicker than any machine draws
   const TempFolder out;
   const Outcome outcome = run_program({"replay", run.path(), "--real-time", "--report", out / "report.json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

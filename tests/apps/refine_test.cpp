@@ -156,12 +156,16 @@ TEST_F(Refine, GoesWithTwoCamerasAndByTheClockButNotWithTheThesis) {
 }
 
 TEST_F(Refine, RefinesByTheClockToo) {
-  // Slow enough that only a stall of seconds could leave every image out.
+  // Slow enough that only a stall of seconds leaves every image out; while shaders are compiled for the first time
+  // there may be one.
   const TagRun run(0, 0, 0.5);
-  const Outcome outcome = replay(run.path(), {"--refine", "--real-time"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const json did = read_json(report_)["refinement"];
-  EXPECT_GT(did["refined_images"], 0) << outcome.out;
+  int refined = 0;
+  for (int attempt = 0; attempt < 3 && refined == 0; ++attempt) {
+    const Outcome outcome = replay(run.path(), {"--refine", "--real-time"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    refined = read_json(report_)["refinement"]["refined_images"];
+  }
+  EXPECT_GT(refined, 0);
 }
 
 TEST_F(Refine, TagsVetoPosesThatFollowWrongTextures) {
