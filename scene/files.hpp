@@ -1,17 +1,13 @@
-// Files of a run folder: read whole, and never from outside the folder.
+// Files of a run folder: never from outside the folder.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 
+#include "common/read_file.hpp"
+
 namespace foresight {
-
-/// Throws InputError naming the file: missing, a folder, a device.
-void require_regular_file(const std::filesystem::path& file);
-
-/// The whole content. Throws like require_regular_file, and where it cannot be read.
-std::string read_file(const std::filesystem::path& file);
 
 /// `folder / name` for a `name` written in a file of the run. `root` is canonical, and `folder`
 /// lies in it. Throws InputError at `where` when the name is empty, absolute, or leads out of
