@@ -1,4 +1,6 @@
 // What `replay --refine` wins on poses that are wrong by a known number of pixels.
+#include <fmt/core.h>
+
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
@@ -32,7 +34,7 @@ class TagRun : public TempFolder {
     std::string list, trajectory;
     for (int i = 0; i < kImages; ++i) {
       const Pose T = sim::T_world_head_left({0.006 * i, 0.5});
-      const std::string file = sim::format("rgb/%06d.png", i), time = sim::format("%.6f ", i * interval_s);
+      const std::string file = fmt::format("rgb/{:06}.png", i), time = fmt::format("{:.6f} ", i * interval_s);
       cv::imwrite(path() / file, room.picture(rays, T, 2, static_cast<unsigned>(i)));
       list += time + file + "\n";
       trajectory += time + sim::pose_text(i < wrong_images ? Pose(T * off) : T) + "\n";
@@ -44,7 +46,7 @@ class TagRun : public TempFolder {
     std::string tags;
     for (const auto& [id, corners] : room.corners())
       for (std::size_t c = 0; c < 4; ++c)
-        tags += sim::format("%d %zu %.9f %.9f %.9f\n", id, c, corners[c].x(), corners[c].y(), corners[c].z());
+        tags += fmt::format("{} {} {:.9f} {:.9f} {:.9f}\n", id, c, corners[c].x(), corners[c].y(), corners[c].z());
     write("tags.txt", tags);
   }
 
