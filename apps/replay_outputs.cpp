@@ -5,6 +5,7 @@
 
 #include "apps/output_files.hpp"
 #include "common/error.hpp"
+#include "common/plot_data.hpp"
 
 namespace foresight {
 namespace {
@@ -28,6 +29,8 @@ void check_outputs(const ReplayOptions& options, const RunFolder& run) {
   if (options.out) check_folder(*options.out, run, inputs);
   if (options.report) check_output_file("--report", *options.report, inputs);
   if (options.html) check_output_file("--html", *options.html, inputs);
+  if (const auto data = options.html ? plot_data_file(*options.html) : std::nullopt)
+    check_output_file("--html", *data, inputs);
   std::error_code ignored;
   if (options.report && options.html &&
       fs::weakly_canonical(*options.report, ignored) == fs::weakly_canonical(*options.html, ignored))
