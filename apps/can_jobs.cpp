@@ -1,5 +1,7 @@
 #include "apps/can_jobs.hpp"
 
+#include <fmt/core.h>
+
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -38,11 +40,7 @@ void print_interface(const CanInterface& interface) {
   std::string line = interface.name + ": " + to_string(interface.state) + ", " + interface.kind;
   if (interface.bit_rate) line += ", " + rate_text(*interface.bit_rate);
   if (interface.data_bit_rate) line += " (data " + rate_text(*interface.data_bit_rate) + ")";
-  if (interface.sample_point) {
-    char text[32];
-    std::snprintf(text, sizeof text, ", sampled at %.1f %%", *interface.sample_point * 100);
-    line += text;
-  }
+  if (interface.sample_point) line += fmt::format(", sampled at {:.1f} %", *interface.sample_point * 100);
   line += interface.fd ? ", FD" : ", classic";
   if (interface.restart_ms)
     line += *interface.restart_ms > 0 ? ", restarts " + std::to_string(*interface.restart_ms) + " ms after bus-off"
@@ -174,9 +172,9 @@ int replay_can(const CanReplayOptions& options) {
   stop_on_interrupt();
   CandumpReader log(options.file);
   const ReplayLogSummary done = replay_log(log, bus, clock, replay, [] { return interrupted != 0; });
-  std::printf("%llu frames sent, at most %.3f ms late; %llu failed, %llu error frames left out\n",
-              static_cast<unsigned long long>(done.sent), to_seconds(done.worst_delay) * 1e3,
-              static_cast<unsigned long long>(done.failed), static_cast<unsigned long long>(done.error_frames));
+  std::cout << fmt::format("{} frames sent, at most {:.3f} ms late; {} failed, {} error frames left out\n", done.sent,
+                           to_seconds(done.worst_delay) * 1e3, done.failed, done.error_frames)
+            << std::flush;
   if (interrupted) return 130;
   if (done.failed > 0)
     throw RuntimeFailure(bus.name() + ": " + std::to_string(done.failed) + " frames could not be sent",

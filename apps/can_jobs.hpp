@@ -39,7 +39,8 @@ int replay_can(const CanReplayOptions& options);
 
 struct CanExplainOptions {
   std::filesystem::path file;
-  std::string protocol;  ///< "cia402" or "powercube"
+  std::string protocol;          ///< "cia402", "powercube" or "schunk-motion"
+  std::vector<std::string> eds;  ///< "FILE" or "NODE=FILE": data sheets, which name the objects; cia402 only
 };
 /// Prints each frame of a log with what it says in words, and how many say nothing known. Returns 1 where there are
 /// any.

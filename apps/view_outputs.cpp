@@ -6,6 +6,7 @@
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/html_report.hpp"
 #include "common/error.hpp"
+#include "common/plot_data.hpp"
 
 namespace foresight {
 namespace {
@@ -34,6 +35,8 @@ void check_outputs(const ViewOutputs& outputs, const std::set<fs::path>& inputs,
   if (outputs.out) check_folder(*outputs.out, inputs, pictures);
   if (outputs.report) check_output_file("--report", *outputs.report, inputs);
   if (outputs.html) check_output_file("--html", *outputs.html, inputs);
+  if (const auto data = outputs.html ? plot_data_file(*outputs.html) : std::nullopt)
+    check_output_file("--html", *data, inputs);
   std::error_code ignored;
   if (outputs.report && outputs.html &&
       fs::weakly_canonical(*outputs.report, ignored) == fs::weakly_canonical(*outputs.html, ignored))

@@ -11,6 +11,7 @@ namespace {
 // In user units; the page scales the plot to its column.
 constexpr double kWidth = 560, kHeight = 240, kImageHeight = 420, kLeft = 44, kRight = 10, kTop = 20, kBottom = 30;
 constexpr double kPlotRight = kWidth - kRight;
+constexpr const char* kBars = "bars";
 constexpr double kCharacter = 6.5;  // usual width, at the style sheet's size
 
 std::string number(double v) {
@@ -118,7 +119,10 @@ std::string SvgPlot::points(std::span<const double> x, std::span<const double> y
   return out;
 }
 
-void SvgPlot::line(std::span<const double> x, std::span<const double> y, const std::string& css_class) {
+void SvgPlot::line(std::span<const double> x, std::span<const double> y, const std::string& css_class,
+                   const std::string& name) {
+  series_.push_back(
+      {name.empty() ? css_class : name, "line", {x.begin(), x.end()}, {y.begin(), y.end()}, {}, {}, {}, {}});
   std::size_t first = 0;
   while (first < x.size()) {
     std::size_t last = first;
@@ -133,7 +137,15 @@ void SvgPlot::line(std::span<const double> x, std::span<const double> y, const s
 }
 
 void SvgPlot::area(std::span<const double> x, std::span<const double> low, std::span<const double> high,
-                   const std::string& css_class) {
+                   const std::string& css_class, const std::string& name) {
+  series_.push_back({name.empty() ? css_class : name,
+                     "area",
+                     {x.begin(), x.end()},
+                     {},
+                     {},
+                     {},
+                     {low.begin(), low.end()},
+                     {high.begin(), high.end()}});
   std::vector<double> back_x, back_y;
   std::string forth;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -147,7 +159,10 @@ void SvgPlot::area(std::span<const double> x, std::span<const double> low, std::
       "<polygon class=\"area " + css_class + "\" points=\"" + forth + points(back_x, back_y, 0, back_x.size()) + "\"/>";
 }
 
-void SvgPlot::dots(std::span<const double> x, std::span<const double> y, const std::string& css_class) {
+void SvgPlot::dots(std::span<const double> x, std::span<const double> y, const std::string& css_class,
+                   const std::string& name) {
+  series_.push_back(
+      {name.empty() ? css_class : name, "dots", {x.begin(), x.end()}, {y.begin(), y.end()}, {}, {}, {}, {}});
   const auto inside = [](double v, const Range& range) { return v >= range.min && v <= range.max; };
   std::string path;
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -155,7 +170,13 @@ void SvgPlot::dots(std::span<const double> x, std::span<const double> y, const s
   if (!path.empty()) body_ += "<path class=\"dots " + css_class + "\" d=\"" + path + "\"/>";
 }
 
-void SvgPlot::bar(Range x, Range y, const std::string& css_class) {
+void SvgPlot::bar(Range x, Range y, const std::string& css_class, const std::string& name) {
+  const std::string& called = name.empty() ? css_class : name;
+  if (series_.empty() || series_.back().kind != kBars || series_.back().name != called)
+    series_.push_back({called, kBars, {}, {}, {}, {}, {}, {}});
+  PlotSeries& bars = series_.back();
+  bars.left.push_back(x.min), bars.right.push_back(x.max);
+  bars.low.push_back(y.min), bars.high.push_back(y.max);
   if (!std::isfinite(y.min) || !std::isfinite(y.max) || y.max <= y.min) return;
   const double left = px(x.min), right = px(x.max), top = py(y.max), low = py(y.min);
   body_ += "<rect class=\"area " + css_class + "\"" + attribute("x", left) + " y=\"" + readable(top, 2) + "\"" +
@@ -164,12 +185,14 @@ void SvgPlot::bar(Range x, Range y, const std::string& css_class) {
 
 void SvgPlot::mark_y(double y, const std::string& text, const std::string& css_class) {
   if (!std::isfinite(y)) return;
+  marks_.push_back({"y", y, text});
   body_ += line_between(kLeft, py(y), kPlotRight, py(y), "mark " + css_class) +
            text_at(kPlotRight - 4, py(y) - 5, "end", text);
 }
 
 void SvgPlot::mark_x(double x, const std::string& text, const std::string& css_class) {
   if (!std::isfinite(x)) return;
+  marks_.push_back({"x", x, text});
   const bool left_half = px(x) < (kLeft + kPlotRight) / 2;
   body_ += line_between(px(x), kTop, px(x), bottom(), "mark " + css_class) +
            text_at(px(x) + (left_half ? 5 : -5), kTop + 9, left_half ? "start" : "end", text);
@@ -192,6 +215,10 @@ void SvgPlot::readout(std::span<const double> x, std::span<const Series> series,
              escape_html("{\"unit\":\"" + unit + "\",\"at\":" + list(at, 4) + ",\"x\":" + list(x, 3) + ",\"names\":[" +
                          names + "],\"rows\":[" + rows + "]}") +
              "\"";
+}
+
+std::string SvgPlot::data() const {
+  return plot_json(label_, {x_unit_, x_.min, x_.max}, {y_unit_, y_.min, y_.max}, series_, marks_);
 }
 
 std::string SvgPlot::str() const {

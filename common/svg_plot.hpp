@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/plot_data.hpp"
+
 namespace foresight {
 
 /// `text` with & < > " ' replaced, for use as HTML text or attribute value.
@@ -29,17 +31,20 @@ class SvgPlot {
   SvgPlot(const std::string& label, Range x, Range y, const std::string& x_unit, const std::string& y_unit,
           Shape shape = Shape::wide);
 
-  /// A line through (x[i], y[i]).
-  void line(std::span<const double> x, std::span<const double> y, const std::string& css_class);
+  /// A line through (x[i], y[i]). `name`: of the series in data(), here and below; without one, its class.
+  void line(std::span<const double> x, std::span<const double> y, const std::string& css_class,
+            const std::string& name = "");
 
   /// The area between two curves over the same x.
   void area(std::span<const double> x, std::span<const double> low, std::span<const double> high,
-            const std::string& css_class);
+            const std::string& css_class, const std::string& name = "");
 
   /// A dot at every (x[i], y[i]) that lies inside both ranges.
-  void dots(std::span<const double> x, std::span<const double> y, const std::string& css_class);
+  void dots(std::span<const double> x, std::span<const double> y, const std::string& css_class,
+            const std::string& name = "");
 
-  void bar(Range x, Range y, const std::string& css_class);
+  /// Bars of one name are one series.
+  void bar(Range x, Range y, const std::string& css_class, const std::string& name = "");
 
   /// A dashed line across the plot, with a text at its end.
   void mark_y(double y, const std::string& text, const std::string& css_class);
@@ -53,6 +58,8 @@ class SvgPlot {
   void readout(std::span<const double> x, std::span<const Series> series, int digits, const std::string& unit);
 
   std::string str() const;
+  /// What was drawn, all of it, as JSON (plot_data.hpp).
+  std::string data() const;
 
  private:
   double px(double x) const;
@@ -64,6 +71,8 @@ class SvgPlot {
   std::string label_, x_unit_, y_unit_, body_, readout_;
   Range x_, y_;
   Shape shape_;
+  std::vector<PlotSeries> series_;
+  std::vector<PlotMark> marks_;
 };
 
 /// About `count` round values (1, 2 or 5, from 25 on also 2.5, times a power of ten apart) inside the range.

@@ -1,7 +1,7 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <fmt/core.h>
 
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -16,9 +16,7 @@ constexpr EGLint kContextAttributes[] = {
     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
 
 std::string egl_error() {
-  char text[32];
-  std::snprintf(text, sizeof text, "EGL error 0x%04x", static_cast<unsigned>(eglGetError()));
-  return text;
+  return fmt::format("EGL error 0x{:04x}", eglGetError());
 }
 
 /// A display connection shared by all contexts on it; terminated with the last.

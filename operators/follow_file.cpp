@@ -2,42 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "common/text_rows.hpp"
 
 namespace foresight {
 namespace {
 
-std::vector<std::string> fields_of(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> out;
-  for (std::size_t at = 0;;) {
-    const std::size_t end = std::min(line.find(',', at), line.size());
-    const std::size_t first = std::min(line.find_first_not_of(" \t", at), end);
-    std::size_t last = end;
-    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '\t')) --last;
-    out.push_back(line.substr(first, last - first));
-    if (end == line.size()) return out;
-    at = end + 1;
-  }
-}
-
-std::vector<std::size_t> columns_of(const std::vector<std::string>& names, const Rig& rig, const std::string& where) {
+std::vector<std::size_t> columns_of(const TextRow& row, const Rig& rig) {
   const std::vector<std::string> known = rig.joint_names();
+  const auto& names = row.fields;
   if (names.size() < 2 || names.front() != "time_s")
-    throw InputError(where, "the first line is no heading",
+    throw InputError(row.where(), "the first line is no heading",
                      "begin with `time_s,` and names of joints, such as " + known.front());
   std::vector<std::size_t> out;
   for (std::size_t i = 1; i < names.size(); ++i) {
     const auto found = std::find(known.begin(), known.end(), names[i]);
     if (found == known.end())
-      throw InputError(where, "the rig has no joint " + in_quotes(names[i]),
+      throw InputError(row.where(i), "the rig has no joint " + in_quotes(names[i]),
                        "did you mean '" + nearest_word(names[i], known) + "'?");
     const auto joint = static_cast<std::size_t>(found - known.begin());
     if (std::find(out.begin(), out.end(), joint) != out.end())
-      throw InputError(where, "joint " + in_quotes(names[i]) + " has two columns", "remove one");
+      throw InputError(row.where(i), "joint " + in_quotes(names[i]) + " has two columns", "remove one");
     out.push_back(joint);
   }
   return out;
@@ -46,48 +33,42 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& names, const
 }  // namespace
 
 FollowFile::FollowFile(const std::filesystem::path& file, const Rig& rig) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string(), "cannot be read", "give a CSV file with the columns time_s and joints");
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    if (line.empty() || line[0] == '#' || line == "\r") continue;
-    const std::string where = at_line(file, number);
-    const auto fields = fields_of(line);
-    if (joints_.empty()) {
-      joints_ = columns_of(fields, rig, where);
-      continue;
-    }
-    if (fields.size() != joints_.size() + 1)
-      throw InputError(where, "has " + std::to_string(fields.size()) + " fields",
-                       "give " + std::to_string(joints_.size() + 1));
-    std::vector<double> values;
-    for (const std::string& field : fields) {
-      const auto value = parse_number(field);
-      if (!value || !std::isfinite(*value)) throw InputError(where, in_quotes(field) + " is no number", "correct it");
-      values.push_back(*value);
-    }
-    if (!times_.empty() && values[0] <= times_.back())
-      throw InputError(where, "its time does not lie after the row before", "sort the rows by time_s");
-    for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const RigJoint& joint = rig.joints[joints_[i]];
-      const double q = values[i + 1];
-      if (q < joint.drive.min_position || q > joint.drive.max_position)
-        throw InputError(
-            where, "joint '" + joint.drive.name + "' at " + fields[i + 1] + " " + joint.unit + " is beyond its limits",
-            "choose from " + std::to_string(joint.drive.min_position) + " to " +
-                std::to_string(joint.drive.max_position));
-      if (!rows_.empty() &&
-          std::abs(q - rows_.back()[i]) > 1.001 * joint.drive.max_velocity * (values[0] - times_.back()))
-        throw InputError(where,
-                         "joint '" + joint.drive.name + "' would move faster than " +
-                             std::to_string(joint.drive.max_velocity) + " " + joint.unit + "/s",
-                         "give it more time");
-    }
-    times_.push_back(values[0]);
-    rows_.emplace_back(values.begin() + 1, values.end());
-  }
+  for_each_row(file, {RowForm::Between::commas}, [&](const TextRow& row) {
+    if (joints_.empty())
+      joints_ = columns_of(row, rig);
+    else
+      add(row, rig);
+  });
   if (rows_.empty())
     throw InputError(file.string(), "has no positions", "give rows of a time and positions below the heading");
+}
+
+void FollowFile::add(const TextRow& row, const Rig& rig) {
+  if (row.fields.size() != joints_.size() + 1)
+    throw InputError(row.where(), "has " + std::to_string(row.fields.size()) + " fields",
+                     "give " + std::to_string(joints_.size() + 1));
+  const double time = finite_field(row, 0, "time_s");
+  if (!times_.empty() && time <= times_.back())
+    throw InputError(row.where(), "its time does not lie after the row before", "sort the rows by time_s");
+  std::vector<double> positions;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const RigJoint& joint = rig.joints[joints_[i]];
+    const double q = finite_field(row, i + 1, joint.drive.name);
+    if (q < joint.drive.min_position || q > joint.drive.max_position)
+      throw InputError(row.where(i + 1),
+                       "joint '" + joint.drive.name + "' at " + std::string(row.fields[i + 1]) + " " + joint.unit +
+                           " is beyond its limits",
+                       "choose from " + std::to_string(joint.drive.min_position) + " to " +
+                           std::to_string(joint.drive.max_position));
+    if (!rows_.empty() && std::abs(q - rows_.back()[i]) > 1.001 * joint.drive.max_velocity * (time - times_.back()))
+      throw InputError(row.where(i + 1),
+                       "joint '" + joint.drive.name + "' would move faster than " +
+                           std::to_string(joint.drive.max_velocity) + " " + joint.unit + "/s",
+                       "give it more time");
+    positions.push_back(q);
+  }
+  times_.push_back(time);
+  rows_.push_back(std::move(positions));
 }
 
 void FollowFile::at(double seconds, JointValues& positions) const {

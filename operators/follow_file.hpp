@@ -8,6 +8,8 @@
 
 namespace foresight {
 
+struct TextRow;
+
 /// Positions over time, straight between the rows. Immutable.
 class FollowFile {
  public:
@@ -22,6 +24,8 @@ class FollowFile {
   void at(double seconds, JointValues& positions) const;
 
  private:
+  void add(const TextRow& row, const Rig& rig);
+
   std::vector<std::size_t> joints_;  // of each column, its joint
   std::vector<double> times_;
   std::vector<std::vector<double>> rows_;

@@ -1,10 +1,11 @@
 #include "rig/open_stereo.hpp"
 
+#include <fmt/core.h>
+
 #include <fstream>
 
 #include "calibration/registration/calibrated_head.hpp"
 #include "common/error.hpp"
-#include "sim/run_files.hpp"
 #include "sim/synth_run.hpp"
 
 namespace foresight {
@@ -97,7 +98,7 @@ void write_head_joints(const fs::path& file, const sim::ShaftsAt& shafts, RobotT
   std::ofstream out(file);
   out << "time_s,pan,tilt\n";
   for (RobotTime t = from; t <= to; t = t + std::chrono::milliseconds(10))
-    out << sim::format("%.9f,%.7f,%.7f\n", to_seconds(t - RobotTime{}),
+    out << fmt::format("{:.9f},{:.7f},{:.7f}\n", to_seconds(t - RobotTime{}),
                        shafts("pan", t).value_or(sim::kHeadAtTable.pan),
                        shafts("tilt", t).value_or(sim::kHeadAtTable.tilt));
   if (!out.flush()) throw RuntimeFailure("cannot write " + file.string(), "choose a folder that can be written");

@@ -18,29 +18,6 @@ bool is_inside(const fs::path& root, const fs::path& path) {
 
 }  // namespace
 
-void require_regular_file(const fs::path& file) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) throw InputError(file.string(), "no such file", "put it there or correct the name");
-  // Reading a device or a pipe could wait forever or never end.
-  if (!fs::is_regular_file(status)) throw InputError(file.string(), "is not a regular file", "name a file");
-}
-
-std::string read_file(const fs::path& file) {
-  require_regular_file(file);
-  std::error_code error;
-  std::ifstream stream(file, std::ios::binary);
-  std::string content;
-  const auto size = fs::file_size(file, error);
-  if (stream && !error) {
-    content.resize(size);
-    stream.read(content.data(), static_cast<std::streamsize>(size));
-    if (static_cast<std::uintmax_t>(stream.gcount()) == size) return content;
-  }
-  throw InputError(file.string(), std::string("cannot be read (") + std::strerror(errno) + ")",
-                   "check its permissions and the disk");
-}
-
 void write_bytes(const fs::path& file, const void* data, std::size_t size) {
   std::ofstream stream(file, std::ios::binary);
   stream.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));

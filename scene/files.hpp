@@ -5,13 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "common/read_file.hpp"
+
 namespace foresight {
-
-/// Throws InputError naming the file: missing, a folder, a device.
-void require_regular_file(const std::filesystem::path& file);
-
-/// The whole content. Throws like require_regular_file, and where it cannot be read.
-std::string read_file(const std::filesystem::path& file);
 
 /// Both throw RuntimeFailure where the file cannot be written whole.
 void write_bytes(const std::filesystem::path& file, const void* data, std::size_t size);

@@ -1,6 +1,7 @@
 #include "scene/image_structure.hpp"
 
-#include <array>
+#include <zlib.h>
+
 #include <cstdint>
 
 #include "common/error.hpp"
@@ -10,21 +11,8 @@ namespace {
 
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 
-constexpr std::array<std::uint32_t, 256> make_crc_table() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t n = 0; n < 256; ++n) {
-    std::uint32_t c = n;
-    for (int k = 0; k < 8; ++k) c = (c & 1) ? 0xEDB88320u ^ (c >> 1) : c >> 1;
-    table[n] = c;
-  }
-  return table;
-}
-constexpr auto kCrcTable = make_crc_table();
-
 std::uint32_t crc(std::string_view bytes) {
-  std::uint32_t c = 0xFFFFFFFFu;
-  for (char b : bytes) c = kCrcTable[(c ^ static_cast<std::uint8_t>(b)) & 0xFF] ^ (c >> 8);
-  return ~c;
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 class Walk {

@@ -1,5 +1,6 @@
 #include "scene/target_folder.hpp"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -48,10 +49,9 @@ void TargetFolder::require_space(double bytes) const {
   std::error_code error;
   const fs::space_info space = fs::space(partial_, error);
   if (error || static_cast<double>(space.available) >= bytes) return;
-  char text[96];
-  std::snprintf(text, sizeof text, " needs at least %.3g MB, but its disk has only %.3g MB left", bytes / 1e6,
-                static_cast<double>(space.available) / 1e6);
-  throw RuntimeFailure(target_.string() + text, "free some disk space, or ask for fewer or smaller images");
+  throw RuntimeFailure(fmt::format("{} needs at least {:.3g} MB, but its disk has only {:.3g} MB left",
+                                   target_.string(), bytes / 1e6, static_cast<double>(space.available) / 1e6),
+                       "free some disk space, or ask for fewer or smaller images");
 }
 
 void TargetFolder::commit() {

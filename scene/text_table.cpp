@@ -4,61 +4,34 @@
 
 #include "common/error.hpp"
 #include "common/text.hpp"
-#include "scene/files.hpp"
 
 namespace foresight {
 namespace {
 
-std::vector<std::string_view> split(std::string_view line) {
-  constexpr std::string_view kBlank = " \t\r\v\f";
-  std::vector<std::string_view> fields;
-  for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
-    fields.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBlank, end);
-  }
-  return fields;
-}
-
-double number_field(const TextRow& row, std::size_t index, const char* name) {
-  const auto value = parse_number(row.fields[index]);
-  if (!value || !std::isfinite(*value))
-    throw InputError(row.where(), std::string(name) + " is " + in_quotes(row.fields[index]) + ", not a finite number",
-                     "correct or remove the line");
-  return *value;
+std::size_t words_in(std::string_view form) {
+  return 1 + static_cast<std::size_t>(std::count(form.begin(), form.end(), ' '));
 }
 
 }  // namespace
 
-std::string TextRow::where() const {
-  return at_line(file, line);
-}
-
 void for_each_row(const std::filesystem::path& file, const std::string& form,
                   const std::function<void(const TextRow&)>& visit) {
-  const std::string content = read_file(file);
-  const std::size_t expected = split(form).size();
-  std::string_view rest = content;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  const std::size_t expected = words_in(form);
   bool any = false;
-  for (TextRow row{file, 1, {}}; !rest.empty(); ++row.line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    row.fields = split(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (row.fields.empty() || row.fields[0][0] == '#') continue;
+  for_each_row(file, RowForm{}, [&](const TextRow& row) {
     if (row.fields.size() != expected)
       throw InputError(row.where(), "has " + std::to_string(row.fields.size()) + " fields",
                        "write " + std::to_string(expected) + ", with blanks between: " + form);
     any = true;
     visit(row);
-  }
+  });
   if (!any) throw InputError(file.string(), "holds no row", "write at least one line: " + form);
 }
 
 RobotTime time_field(const TextRow& row, std::size_t index) {
   const auto time = parse_seconds(row.fields[index]);
   if (!time)
-    throw InputError(row.where(),
+    throw InputError(row.where(index),
                      "time is " + in_quotes(row.fields[index]) + ", not a number of seconds up to " +
                          std::to_string(kLargestSeconds),
                      "write decimal seconds");
@@ -68,7 +41,7 @@ RobotTime time_field(const TextRow& row, std::size_t index) {
 Pose pose_fields(const TextRow& row, std::size_t first) {
   static constexpr const char* kNames[] = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   double v[7];
-  for (std::size_t i = 0; i < 7; ++i) v[i] = number_field(row, first + i, kNames[i]);
+  for (std::size_t i = 0; i < 7; ++i) v[i] = finite_field(row, first + i, kNames[i]);
   return checked_pose({v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}, row.where());
 }
 

@@ -4,25 +4,15 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <string_view>
-#include <vector>
 
+#include "common/text_rows.hpp"
 #include "scene/scene_model.hpp"
 
 namespace foresight {
 
-/// A row while it is visited; its views end with the visit.
-struct TextRow {
-  const std::filesystem::path& file;
-  int line = 0;                          ///< from 1
-  std::vector<std::string_view> fields;  ///< as many as the form names
-
-  std::string where() const;  ///< "file:line"
-};
-
-/// Visits every row of `file`. `form` names the fields ("time tx ty"); lines that are blank or
-/// start with '#' are passed over; a byte-order mark and CRLF are accepted. Throws InputError
-/// naming file and line where a row has another number of fields, and where there is no row.
+/// Visits every row of `file`, as common/text_rows.hpp has them. `form` names the fields, one blank between them
+/// ("time tx ty"). Throws InputError naming file and line where a row has another number of fields, and where there is
+/// no row.
 void for_each_row(const std::filesystem::path& file, const std::string& form,
                   const std::function<void(const TextRow&)>& visit);
 

@@ -1,5 +1,7 @@
 #include "sim/head_path.hpp"
 
+#include <fmt/core.h>
+
 #include "common/error.hpp"
 #include "scene/text_table.hpp"
 #include "sim/tracer.hpp"
@@ -14,9 +16,7 @@ const Eigen::AlignedBox3d kRoom(Eigen::Vector3d(-2.1, -2.9, -0.73), Eigen::Vecto
 constexpr float kClearance = 0.01f;  // metres between the eye and any surface
 
 std::string seconds_text(double s) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", s);
-  return text;
+  return fmt::format("{:.3f} s", s);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "sim/live_lab.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,7 +9,6 @@
 
 #include "common/error.hpp"
 #include "sim/motion.hpp"
-#include "sim/run_files.hpp"
 
 namespace foresight::sim {
 namespace {
@@ -22,7 +23,7 @@ double evenly(std::mt19937& random, double size) {
 
 void check(const char* field, double value, double most) {
   if (!(value >= 0 && value <= most))
-    throw InputError(field, format("%.9g is outside 0 .. %.9g", value, most), "choose a value inside");
+    throw InputError(field, fmt::format("{:.9g} is outside 0 .. {:.9g}", value, most), "choose a value inside");
 }
 
 PanTilt head_shafts(const ShaftPositions& shafts) {

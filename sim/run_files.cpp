@@ -1,5 +1,7 @@
 #include "sim/run_files.hpp"
 
+#include <fmt/core.h>
+
 #include <cstdarg>
 #include <cstdio>
 
@@ -32,8 +34,8 @@ void write_scene(const fs::path& folder, const Lab& lab, const ArmPosition& arm)
   }
   text += "robots:\n  - urdf: arm.urdf\n    pose: " + pose_yaml(T_world_stand()) + "\n    joints: {";
   for (std::size_t j = 0; j < arm.joints.size(); ++j)
-    text += format("%s: %.12g, ", arm_joints()[j].name, arm.joints[j]);
-  text += format("%s: %.12g}\n", arm_joints()[arm.joints.size()].name, arm.opening);
+    text += fmt::format("{}: {:.12g}, ", arm_joints()[j].name, arm.joints[j]);
+  text += fmt::format("{}: {:.12g}}}\n", arm_joints()[arm.joints.size()].name, arm.opening);
   write_text(folder / "arm.urdf", arm_urdf());
   write_text(folder / "scene.yaml", text);
 }

@@ -1,5 +1,7 @@
 #include "sim/synth_run.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -101,7 +103,7 @@ class SynthRun {
         const std::string fault = room.fault(T_world_eye(t, eye == 1).translation(), lab_state_at(lab, t));
         if (!fault.empty())
           throw InputError(options_.head_path->string(),
-                           format("at %.3f s the %s camera ", t, eye ? "right" : "left") + fault,
+                           fmt::format("at {:.3f} s the {} camera ", t, eye ? "right" : "left") + fault,
                            "lead the path through the free space of the lab");
       }
   }
@@ -139,8 +141,8 @@ class SynthRun {
     std::string trajectory = "# time[s] tx ty tz[m] qx qy qz qw: true T_world_camera of this camera\n";
     for (const double t : track_times()) trajectory += time_text(at(t)) + " " + pose_text(T_world_eye(t, right)) + "\n";
     write_text(truth / "trajectory.txt", trajectory);
-    write_text(truth / "truth.yaml", format("depth_unit_m: %g\nreadout_s: %.9g\nnodes: %d\n", kDepthUnit,
-                                            options_.shutter.readout_s, node_count_));
+    write_text(truth / "truth.yaml", fmt::format("depth_unit_m: {:g}\nreadout_s: {:.9g}\nnodes: {}\n", kDepthUnit,
+                                                 options_.shutter.readout_s, node_count_));
   }
 
   SynthSummary write_images(const RunWriter& run, const Lab& lab, const Polygons& polygons,
@@ -207,18 +209,19 @@ class SynthRun {
 
   void write_marker(const SynthSummary& summary) const {
     const auto& o = options_;
-    std::string text = format("%s\n", kMarkerLine);
-    text += format("size: [%d, %d]\nframes: %d\nrate_hz: %.9g\nstereo: %s\nlens: %s\nseed: %u\n", o.width, o.height,
-                   o.frames, o.rate, o.stereo ? "true" : "false",
-                   o.fisheye ? "fisheye" : (o.distortion ? "distorted" : "pinhole"), o.seed);
-    text += format(
-        "blur_px: %.9g\nnoise: %.9g\nexposure_drift: %.9g\nvignetting: %.9g\nexposure_s: %.9g\nreadout_s: %.9g\n",
+    std::string text = fmt::format("{}\n", kMarkerLine);
+    text += fmt::format("size: [{}, {}]\nframes: {}\nrate_hz: {:.9g}\nstereo: {}\nlens: {}\nseed: {}\n", o.width,
+                        o.height, o.frames, o.rate, o.stereo ? "true" : "false",
+                        o.fisheye ? "fisheye" : (o.distortion ? "distorted" : "pinhole"), o.seed);
+    text += fmt::format(
+        "blur_px: {:.9g}\nnoise: {:.9g}\nexposure_drift: {:.9g}\nvignetting: {:.9g}\nexposure_s: {:.9g}\nreadout_s: "
+        "{:.9g}\n",
         o.sensor.blur, o.sensor.noise, o.sensor.exposure_drift, o.sensor.vignetting, o.shutter.exposure_s,
         o.shutter.readout_s);
-    text += format("pose_error_px: %.9g\npose_error_s: %.9g\nhead_path: %s\n", o.pose_error_px, o.pose_error_s,
-                   o.head_path ? "given" : "built in");
-    text += format("polygons: %d\npolygons_in_view: [%d, %d]\n", summary.polygons, summary.fewest_polygons_in_view,
-                   summary.most_polygons_in_view);
+    text += fmt::format("pose_error_px: {:.9g}\npose_error_s: {:.9g}\nhead_path: {}\n", o.pose_error_px, o.pose_error_s,
+                        o.head_path ? "given" : "built in");
+    text += fmt::format("polygons: {}\npolygons_in_view: [{}, {}]\n", summary.polygons, summary.fewest_polygons_in_view,
+                        summary.most_polygons_in_view);
     write_text(target_.path() / kMarker, text);
   }
 
@@ -237,7 +240,7 @@ class SynthRun {
 void check(const SynthOptions& o) {
   const auto range = [](const char* option, const char* what, double value, double low, double high) {
     if (!(value >= low && value <= high))
-      throw InputError(option, format("%s%.9g is outside %.9g .. %.9g", what, value, low, high),
+      throw InputError(option, fmt::format("{}{:.9g} is outside {:.9g} .. {:.9g}", what, value, low, high),
                        "choose a value inside");
   };
   range("--size", "a width of ", o.width, 16, 8192);

@@ -40,7 +40,7 @@ void add_margin(Command& bench, std::function<int()>& action) {
   auto options = std::make_shared<MarginBenchOptions>();
   command->add_option("RUN", options->run, "A run of `foresight synth --no-distortion`, with truth")->required();
   command->add_option("--json", options->json, "File for all numbers");
-  command->add_option("--plot", options->plot, "SVG file");
+  command->add_option("--plot", options->plot, "SVG file; its series go to FILE.plots.json beside it");
   command->add_option("--images", options->images, "Images of the run, evenly spread")
       ->check(from_to(1, 1024))
       ->capture_default_str();

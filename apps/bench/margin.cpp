@@ -11,6 +11,7 @@
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/plot_data.hpp"
 #include "display/recorded_source.hpp"
 #include "sim/pose_error.hpp"
 
@@ -153,7 +154,7 @@ int bench_margin(const MarginBenchOptions& options) {
   all["images"] = frames.size();
   for (const MarginRow& row : rows) all["errors"].push_back(to_json(row));
   if (options.json) write_file_atomically(*options.json, all.dump(2) + "\n");
-  if (options.plot) write_file_atomically(*options.plot, margin_plot(rows));
+  if (options.plot) write_page(*options.plot, margin_plot(rows), "bench margin", margin_plot_data(rows));
   return 0;
 }
 

@@ -19,5 +19,7 @@ std::string core_with_margin();
 
 /// A self-contained SVG: wrong texels on the left (logarithmic), right ones lost on the right.
 std::string margin_plot(const std::vector<MarginRow>& rows);
+/// Its two diagrams as JSON (common/plot_data.hpp).
+std::vector<std::string> margin_plot_data(const std::vector<MarginRow>& rows);
 
 }  // namespace foresight

@@ -1,10 +1,11 @@
 // The cameras of a rig: each alone, then both as a pair.
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "apps/doctor/findings.hpp"
 #include "common/clock.hpp"
 #include "rig/open_stereo.hpp"
-#include "sim/run_files.hpp"
 
 namespace foresight::doctor {
 namespace {
@@ -20,7 +21,7 @@ const char* side_name(Side side) {
 }
 
 std::string description(const CameraSettings& s) {
-  return sim::format("%d x %d %s", s.width, s.height, to_string(s.format));
+  return fmt::format("{} x {} {}", s.width, s.height, to_string(s.format));
 }
 
 /// What is left of an uncompressed stream on the way to us; 0 for mjpeg, which takes what it needs.
@@ -77,15 +78,15 @@ void judge(const Seen& seen, const CameraSettings& settings, const PairingOption
   }
   const bool often = seen.rate >= kOftenEnough * settings.rate;
   out.push_back({often ? Verdict::good : Verdict::poor, subject,
-                 description(settings) + sim::format(", %.1f images per second", seen.rate),
+                 description(settings) + fmt::format(", {:.1f} images per second", seen.rate),
                  often ? "" : "give more light or a shorter exposure_s, use mjpeg, or ask for a lower rate_hz"});
   if (seen.corrupt > 0)
     out.push_back({Verdict::poor, subject,
-                   sim::format("%llu damaged images", static_cast<unsigned long long>(seen.corrupt)),
+                   fmt::format("{} damaged images", static_cast<unsigned long long>(seen.corrupt)),
                    "use another cable or port, or mjpeg"});
   const bool true_times = seen.backwards == 0 && seen.youngest > -100ms && seen.oldest < pairing.largest_age;
   out.push_back({true_times ? Verdict::good : Verdict::bad, subject,
-                 sim::format("its images are %.0f to %.0f ms old when they come%s", 1e3 * to_seconds(seen.youngest),
+                 fmt::format("its images are {:.0f} to {:.0f} ms old when they come{}", 1e3 * to_seconds(seen.youngest),
                              1e3 * to_seconds(seen.oldest), seen.backwards ? ", and their times go back" : ""),
                  true_times ? ""
                             : "its driver's clock is wrong: use another driver, or for uvcvideo "
@@ -104,7 +105,7 @@ void check_pairs(const StereoConfig& config, Findings& out) {
     const double rate = static_cast<double>(status.pairing.pairs - before) / to_seconds(kLook);
     const std::string fault = fault_text(status);
     const bool often = rate >= kOftenEnough * config.camera(Side::left).settings.rate;
-    const std::string what = sim::format("%.1f pairs per second", rate) + (fault.empty() ? "" : "; " + fault);
+    const std::string what = fmt::format("{:.1f} pairs per second", rate) + (fault.empty() ? "" : "; " + fault);
     const char* const cure = rate == 0 ? "trigger both together, or raise pairing_tolerance_s"
                                        : "use mjpeg, or put each camera on a USB controller of its own (lsusb -t)";
     out.push_back({rate == 0 ? Verdict::bad
@@ -147,7 +148,7 @@ Findings check_rig_cameras(const StereoConfig& config) {
   }
   if (bytes > 0)
     out.push_back({bytes > kUsb2 ? Verdict::poor : Verdict::good, "camera bandwidth",
-                   sim::format("%.0f MB/s uncompressed", bytes / 1e6),
+                   fmt::format("{:.0f} MB/s uncompressed", bytes / 1e6),
                    bytes > kUsb2 ? "more than one USB 2 controller carries: use mjpeg, USB 3 or two controllers" : ""});
   if (both) check_pairs(config, out);
   return out;

@@ -8,8 +8,8 @@
 
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/report_plots.hpp"
-#include "common/atomic_file.hpp"
 #include "common/html_page.hpp"
+#include "common/plot_data.hpp"
 #include "common/svg_plot.hpp"
 #include "common/text.hpp"
 
@@ -100,9 +100,9 @@ std::string key_figures(const RunRecord& run, const Summary& s) {
   return out;
 }
 
-std::string plot_cards(const RunRecord& run, const Summary& summary) {
+std::string plot_cards(std::span<const ReportPlot> plots) {
   std::string out;
-  for (const ReportPlot& plot : plots_of(run, summary))
+  for (const ReportPlot& plot : plots)
     out += "<section class=\"card plot\"><h3>" + escape_html(plot.title) + "</h3>" + plot.body + "</section>\n";
   return out;
 }
@@ -162,10 +162,8 @@ std::string headline(const Summary& s) {
          "</b> closer to the actual image than the delayed one.";
 }
 
-}  // namespace
-
-std::string render_html_report(const RunRecord& run, std::span<const Instant> instants) {
-  const Summary summary = summarise(run);
+std::string render(const RunRecord& run, const Summary& summary, std::span<const ReportPlot> plots,
+                   std::span<const Instant> instants) {
   std::vector<double> delays;
   for (const FrameRecord& f : run.frames) delays.push_back(1000 * f.delay_s);
   const double start_s = run.frames.empty() ? 0 : run.frames.front().time_s;
@@ -176,14 +174,25 @@ std::string render_html_report(const RunRecord& run, std::span<const Instant> in
                                 {"notes", notes_of(run)},
                                 {"key_figures", key_figures(run, summary)},
                                 {"instants", instant_rows(instants, start_s)},
-                                {"plots", plot_cards(run, summary)},
+                                {"plots", plot_cards(plots)},
                                 {"stages", stage_rows(summary)},
                                 {"facts", fact_rows(run)},
                                 {"error_range", readable(kErrorRange, 0)}});
 }
 
+}  // namespace
+
+std::string render_html_report(const RunRecord& run, std::span<const Instant> instants) {
+  const Summary summary = summarise(run);
+  return render(run, summary, plots_of(run, summary), instants);
+}
+
 void write_html_report(const RunRecord& run, std::span<const Instant> instants, const std::filesystem::path& file) {
-  write_file_atomically(file, render_html_report(run, instants));
+  const Summary summary = summarise(run);
+  const std::vector<ReportPlot> plots = plots_of(run, summary);
+  std::vector<std::string> data;
+  for (const ReportPlot& plot : plots) data.push_back(plot.data);
+  write_page(file, render(run, summary, plots, instants), run.run, data);
 }
 
 }  // namespace foresight

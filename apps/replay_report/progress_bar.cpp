@@ -1,11 +1,11 @@
 #include "apps/replay_report/progress_bar.hpp"
 
+#include <fmt/core.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace foresight {
 namespace {
@@ -14,9 +14,7 @@ constexpr const char* kClearLine = "\r\x1b[K";
 constexpr int kMaxBar = 40, kMinBar = 8;
 
 std::string format_rate(double rate) {
-  char text[32];
-  std::snprintf(text, sizeof text, rate < 10 ? "%.1f" : "%.0f", rate);
-  return text;
+  return fmt::format("{:.{}f}", rate, rate < 10 ? 1 : 0);
 }
 
 }  // namespace
@@ -79,14 +77,9 @@ std::string ProgressBar::line(std::size_t done, Instant now) const {
 
 std::string readable_duration(std::chrono::duration<double> duration) {
   const auto s = static_cast<long>(std::ceil(std::clamp(duration.count(), 0.0, 3.6e8) - 1e-6));
-  char text[48];
-  if (s < 60)
-    std::snprintf(text, sizeof text, "%ld s", s);
-  else if (s < 3600)
-    std::snprintf(text, sizeof text, "%ld min %02ld s", s / 60, s % 60);
-  else
-    std::snprintf(text, sizeof text, "%ld h %02ld min", s / 3600, s / 60 % 60);
-  return text;
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
 }
 
 }  // namespace foresight

@@ -82,11 +82,11 @@ ReportPlot quality_plot(const Columns& columns, const std::string& title, const 
   const double low = least({predicted, delayed}), high = largest({predicted, delayed});
   const double pad = std::isfinite(high - low) ? 0.12 * (high - low) : 0;
   SvgPlot plot(title, columns.span(), {low - pad, high + pad}, "s", unit);
-  plot.line(columns.time(), delayed, "s-delayed");
-  plot.line(columns.time(), predicted, "s-predicted");
+  plot.line(columns.time(), delayed, "s-delayed", "delayed");
+  plot.line(columns.time(), predicted, "s-predicted", "predicted");
   const SvgPlot::Series series[] = {{"predicted", predicted}, {"delayed", delayed}};
   plot.readout(columns.time(), series, digits, unit);
-  return {title, legend({{"s-predicted", "predicted view"}, {"s-delayed", "delayed image"}}) + plot.str()};
+  return {title, legend({{"s-predicted", "predicted view"}, {"s-delayed", "delayed image"}}) + plot.str(), plot.data()};
 }
 
 ReportPlot coverage_plot(const Columns& columns) {
@@ -106,13 +106,13 @@ ReportPlot coverage_plot(const Columns& columns) {
     const auto shares =
         columns.means([&](const FrameRecord& f) { return f.dropped ? kNaN : 100 * f.coverage.*layer.share; });
     for (std::size_t i = 0; i < shares.size(); ++i) high[i] = low[i] + shares[i];
-    plot.area(columns.time(), low, high, layer.key.css_class);
+    plot.area(columns.time(), low, high, layer.key.css_class, layer.key.text);
     low = high;
     keys.push_back(layer.key);
     series.push_back({layer.key.text, shares});
   }
   plot.readout(columns.time(), series, 1, "%");
-  return {"What the predicted view is made of", legend(keys) + plot.str()};
+  return {"What the predicted view is made of", legend(keys) + plot.str(), plot.data()};
 }
 
 ReportPlot stage_plot(const Columns& columns, const Summary& summary) {
@@ -141,11 +141,12 @@ ReportPlot stage_plot(const Columns& columns, const Summary& summary) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (!std::isfinite(stages[s][i])) continue;
       const double middle = columns.time()[i];
-      plot.bar({middle - 0.42 * step, middle + 0.42 * step}, {base[i], base[i] + stages[s][i]}, keys[s].css_class);
+      plot.bar({middle - 0.42 * step, middle + 0.42 * step}, {base[i], base[i] + stages[s][i]}, keys[s].css_class,
+               keys[s].text);
       base[i] += stages[s][i];
     }
   plot.readout(columns.time(), series, 1, "ms");
-  return {"CPU time per image, image to texture", legend(keys) + plot.str()};
+  return {"CPU time per image, image to texture", legend(keys) + plot.str(), plot.data()};
 }
 
 ReportPlot latency_plot(const RunRecord& run, const Summary& summary) {
@@ -161,12 +162,12 @@ ReportPlot latency_plot(const RunRecord& run, const Summary& summary) {
   for (int i = 0; i < kBins; ++i) {
     const double from = high * i / kBins;
     plot.bar({from + 0.06 * high / kBins, from + 0.94 * high / kBins}, {0, counts[static_cast<std::size_t>(i)]},
-             "s-predicted");
+             "s-predicted", "images");
   }
   plot.mark_x(all.median, "p50 " + readable(all.median, 1, " ms"), "m-strong");
   // Where the two texts would overlap, the tail matters less than a readable plot.
   if (all.p99 - all.median > 0.02 * high) plot.mark_x(all.p99, "p99 " + readable(all.p99, 1, " ms"), "m-strong");
-  return {"From an image's arrival to its textures", legend({{"s-predicted", "images"}}) + plot.str()};
+  return {"From an image's arrival to its textures", legend({{"s-predicted", "images"}}) + plot.str(), plot.data()};
 }
 
 ReportPlot memory_plot(const Columns& columns, const Summary& summary) {
@@ -177,23 +178,23 @@ ReportPlot memory_plot(const Columns& columns, const Summary& summary) {
   const bool near = budget < 4 * most;
   SvgPlot plot("Texture memory", columns.span(), {0, 1.15 * std::fmax(near ? budget : 0, std::fmax(most, 1e-3))}, "s",
                "MiB");
-  plot.area(columns.time(), std::vector<double>(used.size(), 0), used, "a-soft");
-  plot.line(columns.time(), used, "s-predicted");
+  plot.area(columns.time(), std::vector<double>(used.size(), 0), used, "a-soft", "in use");
+  plot.line(columns.time(), used, "s-predicted", "in use");
   if (near && budget > 0) plot.mark_y(budget, "budget " + readable(budget, 0, " MiB"), "m-strong");
   const SvgPlot::Series series[] = {{"used", used}};
   plot.readout(columns.time(), series, 1, "MiB");
   const std::string title = "Texture memory" + (near ? "" : " (budget " + readable(budget, 0, " MiB)"));
-  return {title, legend({{"s-predicted", "in use, both generations"}}) + plot.str()};
+  return {title, legend({{"s-predicted", "in use, both generations"}}) + plot.str(), plot.data()};
 }
 
 ReportPlot gain_plot(const Columns& columns) {
   const auto gain = columns.means([](const FrameRecord& f) { return f.gain; });
   const double low = std::fmin(0.9, least({gain})), high = std::fmax(1.1, largest({gain}));
   SvgPlot plot("Exposure gain", columns.span(), {low - 0.02, high + 0.02}, "s", "factor, linear light");
-  plot.line(columns.time(), gain, "s-predicted");
+  plot.line(columns.time(), gain, "s-predicted", "gain");
   const SvgPlot::Series series[] = {{"gain", gain}};
   plot.readout(columns.time(), series, 3, "");
-  return {"Exposure gain of the newest image", legend({{"s-predicted", "gain"}}) + plot.str()};
+  return {"Exposure gain of the newest image", legend({{"s-predicted", "gain"}}) + plot.str(), plot.data()};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace foresight {
 struct ReportPlot {
   std::string title;
   std::string body;  ///< HTML
+  std::string data;  ///< JSON (common/plot_data.hpp)
 };
 
 /// Long runs are averaged into at most kPlotColumns columns.

@@ -1,11 +1,9 @@
 #include <array>
 #include <map>
-#include <sstream>
 
 #include "calibration/placement/placement.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
-#include "scene/files.hpp"
 #include "scene/text_table.hpp"
 
 namespace foresight {
@@ -14,7 +12,7 @@ namespace {
 double number(const TextRow& row, std::size_t i) {
   const auto value = parse_number(row.fields[i]);
   if (!value || !(std::abs(*value) <= kFarthest))
-    throw InputError(row.where(), in_quotes(row.fields[i]) + " is no coordinate in metres", "write a decimal number");
+    throw InputError(row.where(i), in_quotes(row.fields[i]) + " is no coordinate in metres", "write a decimal number");
   return *value;
 }
 
@@ -22,16 +20,13 @@ Eigen::Vector3d point(const TextRow& row, std::size_t first) {
   return {number(row, first), number(row, first + 1), number(row, first + 2)};
 }
 
-// Of the first row that is no comment.
+// Of the first row.
 std::size_t field_count(const std::filesystem::path& file) {
-  std::istringstream lines(read_file(file));
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::size_t count = 0;
-    for (std::string word; words >> word && word[0] != '#';) ++count;
-    if (count) return count;
-  }
-  return 0;
+  std::size_t count = 0;
+  for_each_row(file, RowForm{}, [&](const TextRow& row) {
+    if (count == 0) count = row.fields.size();
+  });
+  return count;
 }
 
 }  // namespace

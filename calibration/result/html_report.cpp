@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "calibration/result/heat_map.hpp"
-#include "common/atomic_file.hpp"
 #include "common/html_page.hpp"
 #include "common/svg_plot.hpp"
 #include "common/text.hpp"
@@ -92,28 +91,31 @@ void HtmlReport::plot(const std::string& caption, const std::string& x_label, co
       y.push_back(p.allFinite() ? p.y() : NAN);
     }
     if (series[i].line)
-      plot.line(x, y, kColours[i % kColours.size()]);
+      plot.line(x, y, kColours[i % kColours.size()], series[i].name);
     else
-      plot.dots(x, y, kColours[i % kColours.size()]);
+      plot.dots(x, y, kColours[i % kColours.size()], series[i].name);
   }
   body_ += card(caption, legend(series) + plot.str());
+  plots_.push_back(plot.data());
 }
 
 void HtmlReport::heat_map(const std::string& caption, const cv::Mat& values, int width, int height,
                           const std::string& unit) {
   body_ += card(caption, heat_map_svg(caption, values, width, height, unit));
+  const std::vector<double> cells(values.begin<double>(), values.end<double>());
+  plots_.push_back(map_json(caption, unit, cells, static_cast<std::size_t>(values.cols), width, height));
 }
 
 void HtmlReport::write(const std::filesystem::path& file) const {
   const std::string title = escape_html(title_);
-  write_file_atomically(file,
-                        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                        "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
-                            title + "</title>\n<style>\n" + std::string(page_style()) +
-                            "</style>\n</head>\n<body>\n<main>\n<header>\n<small>foresight calibrate</small>\n<h1>" +
-                            title + "</h1>\n</header>\n<div class=\"sheet\">\n" + body_ +
-                            "</div>\n</main>\n</body>\n</html>\n");
+  write_page(file,
+             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+             "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
+                 title + "</title>\n<style>\n" + std::string(page_style()) +
+                 "</style>\n</head>\n<body>\n<main>\n<header>\n<small>foresight calibrate</small>\n<h1>" + title +
+                 "</h1>\n</header>\n<div class=\"sheet\">\n" + body_ + "</div>\n</main>\n</body>\n</html>\n",
+             title_, plots_);
 }
 
 }  // namespace foresight

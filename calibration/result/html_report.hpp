@@ -33,7 +33,8 @@ class HtmlReport {
   /// A map over the image (CV_64F, any size, stretched to width x height px) with a colour bar; see heat_map.hpp.
   void heat_map(const std::string& caption, const cv::Mat& values, int width, int height, const std::string& unit);
 
-  /// Throws RuntimeFailure where it cannot be written.
+  /// Writes the page, and where it has plots their series beside it (common/plot_data.hpp), both or none. Throws
+  /// RuntimeFailure where that cannot be.
   void write(const std::filesystem::path& file) const;
 
   const std::string& body() const { return body_; }
@@ -41,6 +42,7 @@ class HtmlReport {
  private:
   std::string title_;
   std::string body_;
+  std::vector<std::string> plots_;  // JSON
 };
 
 }  // namespace foresight

@@ -8,7 +8,6 @@
 #include "calibration/robot/rigid_math.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
-#include "scene/files.hpp"
 #include "scene/text_table.hpp"
 #include "scene/yaml_fields.hpp"
 
@@ -235,29 +234,10 @@ MatchedPoses match_poses(const std::vector<NamedPose>& poses, const std::vector<
 }
 
 std::vector<FieldRow> read_field_rows(const std::filesystem::path& file) {
-  const std::string content = read_file(file);
   std::vector<FieldRow> rows;
-  FieldRow row{1, {}};
-  std::string field;
-  const auto end_field = [&] {
-    if (!field.empty()) row.fields.push_back(std::move(field));
-    field.clear();
-  };
-  const auto end_row = [&] {
-    end_field();
-    if (!row.fields.empty() && row.fields[0][0] != '#') rows.push_back(row);
-    row = {row.line + 1, {}};
-  };
-  const std::size_t start = content.starts_with("\xEF\xBB\xBF") ? 3 : 0;
-  for (std::size_t i = start; i < content.size(); ++i) {
-    if (content[i] == '\n')
-      end_row();
-    else if (std::string_view(" \t\r\v\f,;[]").find(content[i]) != std::string_view::npos)
-      end_field();
-    else
-      field += content[i];
-  }
-  end_row();
+  for_each_row(file, {RowForm::Between::loose}, [&](const TextRow& row) {
+    rows.push_back({row.line, {row.fields.begin(), row.fields.end()}});
+  });
   return rows;
 }
 

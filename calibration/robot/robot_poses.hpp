@@ -40,7 +40,7 @@ struct MatchedPoses {
 MatchedPoses match_poses(const std::vector<NamedPose>& poses, const std::vector<std::string>& images,
                          const std::vector<std::string>& views);
 
-/// A text file's rows of fields, blanks or commas between; lines that are blank or start with '#' are passed over.
+/// A text file's rows of fields, blanks, commas and brackets between; common/text_rows.hpp says what is passed over.
 struct FieldRow {
   int line = 0;
   std::vector<std::string> fields;

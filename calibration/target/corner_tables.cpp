@@ -3,62 +3,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include "common/error.hpp"
 #include "common/text.hpp"
-#include "scene/files.hpp"
+#include "common/text_rows.hpp"
 
 namespace foresight {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> fields_of(std::string_view line, std::string_view separators, bool keep_empty) {
-  std::vector<std::string> fields;
-  while (true) {
-    const std::size_t end = std::min(line.find_first_of(separators), line.size());
-    std::string_view field = line.substr(0, end);
-    while (!field.empty() && std::isspace(static_cast<unsigned char>(field.front()))) field.remove_prefix(1);
-    while (!field.empty() && std::isspace(static_cast<unsigned char>(field.back()))) field.remove_suffix(1);
-    if (keep_empty || !field.empty()) fields.emplace_back(field);
-    if (end == line.size()) return fields;
-    line.remove_prefix(end + 1);
-  }
-}
-
-void for_each_line(const fs::path& file, const std::function<void(std::string_view, int)>& visit) {
-  const std::string content = read_file(file);
-  std::string_view rest = content;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-  for (int line = 1; !rest.empty(); ++line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view text = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.remove_suffix(1);
-    if (!text.empty()) visit(text, line);
-  }
-}
-
-double finite(const std::string& text, const std::string& where, const std::string& what) {
-  const auto value = parse_number(text);
-  if (!value || !std::isfinite(*value))
-    throw InputError(where, what + " is " + in_quotes(text) + ", not a finite number", "correct or remove it");
-  return *value;
-}
-
 class VnlReader {
  public:
   VnlReader(const fs::path& file, std::size_t points) : file_(file), points_(points) {}
 
   std::vector<VnlImage> read() {
-    for_each_line(file_, [this](std::string_view text, int line) {
-      if (text.starts_with("##")) return;
-      if (text.starts_with("#"))
-        legend(text.substr(1), line);
+    for_each_row(file_, {RowForm::Between::blanks, true}, [this](const TextRow& row) {
+      if (row.text.starts_with("##")) return;
+      if (row.text.starts_with("#"))
+        legend(row);
       else
-        row(fields_of(text, " \t", false), line);
+        read_row(row);
     });
     finish_image();
     if (images_.empty()) throw InputError(file_.string(), "holds no row", "write lines: filename x y level");
@@ -66,32 +32,33 @@ class VnlReader {
   }
 
  private:
-  void legend(std::string_view text, int line) {
+  void legend(const TextRow& row) {
     if (columns_ != 0) return;
-    const auto names = fields_of(text, " \t", false);
-    static const std::vector<std::string> kKnown{"filename", "x", "y"};
+    auto names = row.fields;
+    names[0].remove_prefix(1);  // the sign may stand by itself or not
+    if (names[0].empty()) names.erase(names.begin());
+    static constexpr std::array<std::string_view, 3> kKnown{"filename", "x", "y"};
     const bool known =
         names.size() >= 3 && names.size() <= 4 && std::equal(kKnown.begin(), kKnown.end(), names.begin());
     if (!known || (names.size() == 4 && names[3] != "level" && names[3] != "weight"))
-      throw InputError(at_line(file_, line), "has columns " + in_quotes(text), "write '# filename x y level'");
+      throw InputError(row.where(), "has columns " + in_quotes(row.text.substr(1)), "write '# filename x y level'");
     columns_ = names.size();
     weights_ = columns_ == 4 && names[3] == "weight";
   }
 
-  void row(const std::vector<std::string>& fields, int line) {
-    const std::string where = at_line(file_, line);
+  void read_row(const TextRow& row) {
+    const auto& fields = row.fields;
     if (fields.size() < 3 || fields.size() > 4)
-      throw InputError(where, "has " + std::to_string(fields.size()) + " fields", "write: filename x y level");
-    if (images_.empty() || images_.back().name != fields[0]) start_image(fields[0], where, line);
+      throw InputError(row.where(), "has " + std::to_string(fields.size()) + " fields", "write: filename x y level");
+    if (images_.empty() || images_.back().name != fields[0]) start_image(std::string(fields[0]), row.where(), row.line);
     VnlImage& image = images_.back();
     const std::size_t index = rows_++;
     if (fields[1] == "-" || fields[2] == "-" || (fields.size() == 4 && fields[3] == "-")) return;
-    if (index >= points_) refuse_count(where, index + 1, " or more");
+    if (index >= points_) refuse_count(row.where(), index + 1, " or more");
     const std::string what = " of corner " + std::to_string(index) + " of " + image.name;
-    Corner corner{
-        static_cast<int>(index), {finite(fields[1], where, "x" + what), finite(fields[2], where, "y" + what)}, 1};
+    Corner corner{static_cast<int>(index), {finite_field(row, 1, "x" + what), finite_field(row, 2, "y" + what)}, 1};
     if (fields.size() == 4) {
-      const double quality = finite(fields[3], where, (weights_ ? "the weight" : "the level") + what);
+      const double quality = finite_field(row, 3, (weights_ ? "the weight" : "the level") + what);
       if (quality < 0 || (weights_ && quality == 0)) return;
       corner.sigma_px = weights_ ? 1 / quality : std::exp2(quality);
     }
@@ -131,26 +98,29 @@ constexpr std::array<const char*, 12> kTagColumns{"ts",          "tag_rows", "ta
                                                   "p_y",         "p_z",      "tag_id",   "corner_idx"};
 
 /// Where each of kTagColumns stands in the file.
-std::vector<std::size_t> tag_columns(std::vector<std::string> header, const std::string& where) {
-  if (!header.empty() && header[0].starts_with("#")) header[0] = fields_of(header[0].substr(1), ",", true)[0];
+std::vector<std::size_t> tag_columns(const TextRow& row) {
+  auto header = row.fields;
+  if (header[0].starts_with("#"))
+    header[0].remove_prefix(std::min(header[0].find_first_not_of("# \t"), header[0].size()));
   const std::vector<std::string> known(kTagColumns.begin(), kTagColumns.end());
-  for (const std::string& name : header)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError(where, "has an unknown column " + in_quotes(name),
-                       "did you mean " + nearest_word(name, known) + "?");
+  for (std::size_t i = 0; i < header.size(); ++i)
+    if (std::find(known.begin(), known.end(), header[i]) == known.end())
+      throw InputError(row.where(i), "has an unknown column " + in_quotes(header[i]),
+                       "did you mean " + nearest_word(header[i], known) + "?");
   std::vector<std::size_t> at;
   for (const std::string& name : known) {
     if (std::count(header.begin(), header.end(), name) != 1)
-      throw InputError(where, "needs the column " + name + " once", "write the twelve columns ts,...,corner_idx");
+      throw InputError(row.where(), "needs the column " + name + " once", "write the twelve columns ts,...,corner_idx");
     at.push_back(static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin()));
   }
   return at;
 }
 
-long long whole(const std::string& text, const std::string& where, const char* name) {
-  const double value = finite(text, where, name);
+long long whole(const TextRow& row, std::size_t column, const char* name) {
+  const double value = finite_field(row, column, name);
   if (value != std::floor(value) || std::abs(value) > 1e9)
-    throw InputError(where, std::string(name) + " is " + in_quotes(text) + ", not a whole number", "correct it");
+    throw InputError(row.where(column),
+                     std::string(name) + " is " + in_quotes(row.fields[column]) + ", not a whole number", "correct it");
   return static_cast<long long>(value);
 }
 
@@ -163,27 +133,23 @@ std::vector<VnlImage> read_vnl(const fs::path& file, std::size_t points) {
 std::vector<TagRow> read_tag_table(const fs::path& file) {
   std::vector<TagRow> rows;
   std::vector<std::size_t> at;
-  for_each_line(file, [&](std::string_view text, int line) {
-    const std::string where = at_line(file, line);
-    const auto fields = fields_of(text, ",", true);
-    if (at.empty() && !parse_number(fields[0])) {
-      at = tag_columns(fields, where);
+  for_each_row(file, {RowForm::Between::commas, true}, [&](const TextRow& row) {
+    if (at.empty() && !parse_number(row.fields[0])) {
+      at = tag_columns(row);
       return;
     }
-    if (text.starts_with("#")) return;
+    if (row.text.starts_with("#")) return;
     if (at.empty())
       for (std::size_t i = 0; i < kTagColumns.size(); ++i) at.push_back(i);
-    if (fields.size() != at.size())
-      throw InputError(where, "has " + std::to_string(fields.size()) + " fields", "write 12, with commas between");
-    const auto text_of = [&](std::size_t column) -> const std::string& { return fields[at[column]]; };
-    TagRow row{where, whole(text_of(10), where, "tag_id"), whole(text_of(11), where, "corner_idx"), {}, {}};
-    const std::string corner = " of corner " + std::to_string(row.corner) + " of tag " + std::to_string(row.tag);
-    const auto number = [&](std::size_t column) {
-      return finite(text_of(column), where, kTagColumns[column] + corner);
-    };
-    row.pixel = {number(5), number(6)};
-    row.p_board = {number(7), number(8), number(9)};
-    rows.push_back(std::move(row));
+    if (row.fields.size() != at.size())
+      throw InputError(row.where(), "has " + std::to_string(row.fields.size()) + " fields",
+                       "write 12, with commas between");
+    TagRow out{row.where(), whole(row, at[10], "tag_id"), whole(row, at[11], "corner_idx"), {}, {}};
+    const std::string corner = " of corner " + std::to_string(out.corner) + " of tag " + std::to_string(out.tag);
+    const auto number = [&](std::size_t column) { return finite_field(row, at[column], kTagColumns[column] + corner); };
+    out.pixel = {number(5), number(6)};
+    out.p_board = {number(7), number(8), number(9)};
+    rows.push_back(std::move(out));
   });
   return rows;
 }

@@ -1,17 +1,20 @@
 #include "drivers/can/can_interfaces.hpp"
 
-#include <linux/can/netlink.h>
-#include <linux/if.h>
-#include <linux/if_link.h>
 #include <linux/rtnetlink.h>
+#include <net/if.h>
+#include <netlink/errno.h>
+#include <netlink/handlers.h>
+#include <netlink/msg.h>
+#include <netlink/netlink.h>
+#include <netlink/route/link.h>
+#include <netlink/route/link/can.h>
+#include <netlink/socket.h>
 #include <sys/socket.h>
-#include <sys/time.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
+#include <exception>
+#include <new>
 #include <utility>
 
 #include "common/error.hpp"
@@ -21,72 +24,60 @@
 namespace foresight {
 namespace {
 
-using Buffer = std::array<char, 32768>;  // a dumped link has at most that, by the kernel's own limit
-
-/// A request on links with room for a few attributes.
-struct Request {
-  nlmsghdr header{};
-  ifinfomsg link{};
-  std::array<char, 128> attributes{};
-
-  Request(int type, int flags) {
-    header.nlmsg_len = NLMSG_LENGTH(sizeof link);
-    header.nlmsg_type = static_cast<std::uint16_t>(type);
-    header.nlmsg_flags = static_cast<std::uint16_t>(NLM_F_REQUEST | flags);
-    link.ifi_family = AF_UNSPEC;
-  }
-  /// Appends an attribute and returns it; its length may be raised by appending inside it.
-  rtattr* add(unsigned short type, const void* data, std::size_t size) {
-    auto* attribute = reinterpret_cast<rtattr*>(reinterpret_cast<char*>(this) + NLMSG_ALIGN(header.nlmsg_len));
-    attribute->rta_type = type;
-    attribute->rta_len = static_cast<unsigned short>(RTA_LENGTH(size));
-    if (size > 0) std::memcpy(RTA_DATA(attribute), data, size);
-    header.nlmsg_len = NLMSG_ALIGN(header.nlmsg_len) + RTA_ALIGN(attribute->rta_len);
-    return attribute;
-  }
-  void close(rtattr* outer) {
-    outer->rta_len =
-        static_cast<unsigned short>(reinterpret_cast<char*>(this) + header.nlmsg_len - reinterpret_cast<char*>(outer));
-  }
+struct Listing {
+  std::vector<CanInterface> found;
+  std::exception_ptr error;  // libnl is C: nothing may be thrown through it
 };
 
-/// A socket on which no answer takes longer than a second; -1 with errno where there is none.
-UniqueFd open_route_socket() {
-  UniqueFd socket(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE));
-  const timeval limit{1, 0};
-  if (socket) setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-  return socket;
-}
-
-/// Sends and hands every answering message to visit. 0 or an errno.
-template <typename Visit>
-int talk(int socket, const Request& request, Buffer& buffer, Visit&& visit) {
-  if (::send(socket, &request, request.header.nlmsg_len, 0) < 0) return errno;
-  while (true) {
-    const ssize_t got = recv(socket, buffer.data(), buffer.size(), 0);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return errno == EAGAIN ? ETIMEDOUT : errno;
-    auto left = static_cast<unsigned>(got);
-    for (auto* message = reinterpret_cast<nlmsghdr*>(buffer.data()); NLMSG_OK(message, left);
-         message = NLMSG_NEXT(message, left)) {
-      if (message->nlmsg_type == NLMSG_DONE) return 0;
-      if (message->nlmsg_type == NLMSG_ERROR) return -static_cast<const nlmsgerr*>(NLMSG_DATA(message))->error;
-      visit(*message);
-    }
+int note_link(nl_msg* message, void* listing) noexcept {
+  auto& out = *static_cast<Listing*>(listing);
+  try {
+    if (auto link = read_can_interface(*nlmsg_hdr(message))) out.found.push_back(std::move(*link));
+    return NL_OK;
+  } catch (...) {
+    out.error = std::current_exception();
+    return NL_STOP;
   }
 }
 
-int change(int socket, const Request& request) noexcept {
-  alignas(nlmsghdr) Buffer buffer;
-  return talk(socket, request, buffer, [](const nlmsghdr&) {});
+/// A request to change link `index` as `fill` says, ready to be sent.
+template <typename Fill>
+NetlinkMessage change_request(int index, Fill&& fill) {
+  struct Release {
+    void operator()(rtnl_link* link) const noexcept { rtnl_link_put(link); }
+  };
+  const std::unique_ptr<rtnl_link, Release> link(rtnl_link_alloc()), changes(rtnl_link_alloc());
+  if (!link || !changes) throw std::bad_alloc();
+  rtnl_link_set_ifindex(link.get(), index);
+  rtnl_link_set_ifindex(changes.get(), index);
+  fill(changes.get());
+  nl_msg* message = nullptr;
+  if (const int error = rtnl_link_build_change_request(link.get(), changes.get(), NLM_F_ACK, &message); error < 0)
+    throw RuntimeFailure(std::string("a request to restart a CAN controller: ") + nl_geterror(error),
+                         "report this as a mistake in Foresight");
+  return NetlinkMessage(message);
 }
 
-int set_up(int socket, int index, bool up) noexcept {
-  Request request(RTM_NEWLINK, NLM_F_ACK);
-  request.link.ifi_index = index;
-  request.link.ifi_change = IFF_UP;
-  request.link.ifi_flags = up ? IFF_UP : 0;
-  return change(socket, request);
+/// Sends a request and waits for the kernel's answer. 0 or an errno. Does not allocate.
+int ask(nl_sock* socket, nl_msg* request, std::uint32_t number) noexcept {
+  nlmsghdr& header = *nlmsg_hdr(request);
+  header.nlmsg_flags |= NLM_F_REQUEST | NLM_F_ACK;
+  header.nlmsg_seq = number;
+  const int fd = nl_socket_get_fd(socket);
+  if (::send(fd, &header, header.nlmsg_len, 0) < 0) return errno;
+  alignas(nlmsghdr) std::array<char, 4096> buffer;
+  while (true) {
+    const ssize_t got = ::recv(fd, buffer.data(), buffer.size(), 0);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno == EAGAIN ? ETIMEDOUT : errno;
+    auto left = static_cast<int>(got);
+    for (auto* answer = reinterpret_cast<nlmsghdr*>(buffer.data()); nlmsg_ok(answer, left);
+         answer = nlmsg_next(answer, &left))
+      // An answer that came too late for an earlier request is passed over.
+      if (answer->nlmsg_type == NLMSG_ERROR && answer->nlmsg_seq == number &&
+          nlmsg_datalen(answer) >= static_cast<int>(sizeof(int)))
+        return -static_cast<const nlmsgerr*>(nlmsg_data(answer))->error;
+  }
 }
 
 }  // namespace
@@ -96,18 +87,17 @@ bool has_can_sockets() noexcept {
 }
 
 std::vector<CanInterface> can_interfaces() {
-  const UniqueFd socket = open_route_socket();
-  std::vector<CanInterface> out;
-  Request request(RTM_GETLINK, NLM_F_DUMP);
-  const auto buffer = std::make_unique<Buffer>();
-  const int error = !socket ? errno : talk(socket.get(), request, *buffer, [&](const nlmsghdr& message) {
-    if (auto link = read_can_interface(message)) out.push_back(std::move(*link));
-  });
-  if (error != 0)
-    throw RuntimeFailure(
-        std::string("the list of network interfaces (rtnetlink, RTM_GETLINK) cannot be read: ") + std::strerror(error),
-        "check that this process may open network sockets");
-  return out;
+  const char* purpose = "the list of network interfaces (RTM_GETLINK) cannot be read";
+  const NetlinkSocket socket = open_route_socket(purpose);
+  Listing out;
+  nl_socket_modify_cb(socket.get(), NL_CB_VALID, NL_CB_CUSTOM, note_link, &out);
+  int error = nl_rtgen_request(socket.get(), RTM_GETLINK, AF_UNSPEC, NLM_F_DUMP);
+  if (error >= 0) error = nl_recvmsgs_default(socket.get());
+  if (out.error) std::rethrow_exception(out.error);
+  if (error < 0)
+    throw RuntimeFailure(std::string(purpose) + ": rtnetlink: " + nl_geterror(error),
+                         "check that this process may open network sockets");
+  return std::move(out.found);
 }
 
 std::optional<CanInterface> find_can_interface(const std::string& name) {
@@ -116,23 +106,22 @@ std::optional<CanInterface> find_can_interface(const std::string& name) {
   return std::nullopt;
 }
 
-int restart_can_interface(int index) noexcept {
-  const UniqueFd socket = open_route_socket();
-  if (!socket) return errno;
-  Request request(RTM_NEWLINK, NLM_F_ACK);
-  request.link.ifi_index = index;
-  rtattr* info = request.add(IFLA_LINKINFO, nullptr, 0);
-  request.add(IFLA_INFO_KIND, "can", 3);
-  rtattr* data = request.add(IFLA_INFO_DATA, nullptr, 0);
-  const std::uint32_t yes = 1;
-  request.add(IFLA_CAN_RESTART, &yes, sizeof yes);
-  request.close(data);
-  request.close(info);
-  const int error = change(socket.get(), request);
+CanRestart::CanRestart(int index)
+    : socket_(open_route_socket("a socket to restart a CAN controller")),
+      restart_(change_request(index,
+                              [](rtnl_link* link) {
+                                rtnl_link_set_type(link, "can");
+                                rtnl_link_can_restart(link);
+                              })),
+      down_(change_request(index, [](rtnl_link* link) { rtnl_link_unset_flags(link, IFF_UP); })),
+      up_(change_request(index, [](rtnl_link* link) { rtnl_link_set_flags(link, IFF_UP); })) {}
+
+int CanRestart::operator()() noexcept {
+  const int error = ask(socket_.get(), restart_.get(), ++requests_);
   if (error != EOPNOTSUPP) return error;
   // slcan cannot restart, but starts afresh when it is opened again.
-  if (const int down = set_up(socket.get(), index, false); down != 0) return down;
-  return set_up(socket.get(), index, true);
+  if (const int down = ask(socket_.get(), down_.get(), ++requests_); down != 0) return down;
+  return ask(socket_.get(), up_.get(), ++requests_);
 }
 
 std::string how_to_bring_up(const CanInterface& interface) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/can/can_bus.hpp"
+#include "drivers/can/netlink.hpp"
 
 namespace foresight {
 
@@ -42,10 +43,22 @@ std::vector<CanInterface> can_interfaces();
 /// The one called `name`; nothing where there is none.
 std::optional<CanInterface> find_can_interface(const std::string& name);
 
-/// Brings a controller back from bus-off: asks its driver, or, where that cannot, takes the
-/// interface down and up. Needs CAP_NET_ADMIN. 0, or an errno. Waits for the kernel, 1 s at most;
-/// does not allocate.
-int restart_can_interface(int index) noexcept;
+/// Brings a controller back from bus-off: asks its driver, or, where that cannot, takes the interface down and up.
+/// One thread. What that needs is made beforehand, so that a control loop may do it.
+class CanRestart {
+ public:
+  /// Throws RuntimeFailure where rtnetlink cannot be reached.
+  explicit CanRestart(int index);
+
+  /// Needs CAP_NET_ADMIN. 0, or an errno. Waits for the kernel, some ms, 1 s at most for each of three requests; does
+  /// not allocate.
+  int operator()() noexcept;
+
+ private:
+  NetlinkSocket socket_;
+  NetlinkMessage restart_, down_, up_;
+  std::uint32_t requests_ = 0;
+};
 
 /// What to type for an interface that is down.
 std::string how_to_bring_up(const CanInterface& interface);

@@ -9,7 +9,7 @@
 
 namespace foresight {
 
-/// What a message says of a link's life; read without allocation.
+/// What a message says of a link's life.
 struct LinkState {
   int index = 0;
   bool gone = false;
@@ -17,7 +17,9 @@ struct LinkState {
   std::optional<CanBusState> state;  ///< of the controller, where the message has it
 };
 
-/// Of an RTM_NEWLINK or RTM_DELLINK message; nothing for others and for links that are not CAN.
+/// Both read a message of which all nlmsg_len bytes are there, and nothing beyond them, whatever it says of itself.
+/// Of an RTM_NEWLINK or RTM_DELLINK message; nothing for others and for links that are not CAN. Does not allocate:
+/// control loops call it.
 std::optional<LinkState> read_link_state(const nlmsghdr& message) noexcept;
 /// All of an RTM_NEWLINK message.
 std::optional<CanInterface> read_can_interface(const nlmsghdr& message);

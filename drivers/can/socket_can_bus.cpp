@@ -4,7 +4,8 @@
 #include <linux/can/raw.h>
 #include <linux/errqueue.h>
 #include <linux/net_tstamp.h>
-#include <linux/rtnetlink.h>
+#include <netlink/msg.h>
+#include <netlink/socket.h>
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -89,7 +90,10 @@ SocketCanBus::SocketCanBus(const std::string& interface, const SocketCanOptions&
   interface_ = usable_interface(interface, options_.fd);
   state_ = interface_.state;
   open_can();
-  open_link_events();
+  const std::string purpose = "CAN interface " + in_quotes(interface) + ": listen to link changes";
+  link_events_ = open_link_events(purpose.c_str());
+  link_fd_ = nl_socket_get_fd(link_events_.get());
+  if (options_.restart_after_bus_off) restart_.emplace(interface_.index);
   if (state_ == CanBusState::bus_off) enter(CanBusState::bus_off);
 }
 
@@ -124,15 +128,6 @@ void SocketCanBus::set_filters() {
   if (setsockopt(can_.get(), SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
                  static_cast<socklen_t>(filters.size() * sizeof(can_filter))) != 0)
     fail(name(), "set the filters (CAN_RAW_FILTER)", errno, "give fewer filters");
-}
-
-void SocketCanBus::open_link_events() {
-  link_ = UniqueFd(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE));
-  sockaddr_nl address{};
-  address.nl_family = AF_NETLINK;
-  address.nl_groups = RTMGRP_LINK;
-  if (!link_ || bind(link_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    fail(name(), "listen to link changes (rtnetlink)", errno, "check that this process may open network sockets");
 }
 
 CanSend SocketCanBus::send(const CanFrame& frame) noexcept {
@@ -173,7 +168,7 @@ std::optional<CanFrame> SocketCanBus::receive(Duration timeout) noexcept {
 bool SocketCanBus::wait(RobotTime until) noexcept {
   const Duration left = std::max(until - MonotonicClock().now(), Duration{0});
   const timespec limit{left.count() / 1'000'000'000, left.count() % 1'000'000'000};
-  pollfd sockets[] = {{can_.get(), POLLIN, 0}, {link_.get(), POLLIN, 0}};
+  pollfd sockets[] = {{can_.get(), POLLIN, 0}, {link_fd_, POLLIN, 0}};
   return ppoll(sockets, 2, &limit, nullptr) > 0;
 }
 
@@ -254,11 +249,11 @@ void SocketCanBus::enter(CanBusState state) noexcept {
 void SocketCanBus::read_link_events() noexcept {
   alignas(nlmsghdr) std::array<char, 8192> buffer;
   while (true) {
-    const ssize_t got = recv(link_.get(), buffer.data(), buffer.size(), 0);
+    const ssize_t got = recv(link_fd_, buffer.data(), buffer.size(), 0);
     if (got < 0) return;  // nothing more; what ENOBUFS lost is made up for by the next event or error frame
-    auto left = static_cast<unsigned>(got);
-    for (auto* message = reinterpret_cast<nlmsghdr*>(buffer.data()); NLMSG_OK(message, left);
-         message = NLMSG_NEXT(message, left)) {
+    auto left = static_cast<int>(got);
+    for (auto* message = reinterpret_cast<nlmsghdr*>(buffer.data()); nlmsg_ok(message, left);
+         message = nlmsg_next(message, &left)) {
       const auto link = read_link_state(*message);
       if (!link || link->index != interface_.index) continue;
       const bool was_up = std::exchange(up_, link->up && !link->gone);
@@ -273,7 +268,7 @@ void SocketCanBus::read_link_events() noexcept {
 void SocketCanBus::restart_if_due(RobotTime now) noexcept {
   if (restart_at_.ns == 0 || now < restart_at_) return;
   restart_at_ = {};
-  restart_error_ = restart_can_interface(interface_.index);
+  restart_error_ = (*restart_)();
   if (restart_error_ != 0) restart_at_ = now + std::max(options_.restart_delay, Duration(std::chrono::seconds(1)));
 }
 

@@ -58,7 +58,6 @@ class SocketCanBus final : public CanBus {
  private:
   void open_can();
   void set_filters();
-  void open_link_events();
   bool wait(RobotTime until) noexcept;
   void read_link_events() noexcept;
   std::optional<CanFrame> read_frame() noexcept;
@@ -69,7 +68,10 @@ class SocketCanBus final : public CanBus {
 
   CanInterface interface_;
   SocketCanOptions options_;
-  UniqueFd can_, link_;
+  UniqueFd can_;
+  NetlinkSocket link_events_;
+  int link_fd_ = -1;                   // of link_events_
+  std::optional<CanRestart> restart_;  // where it may restart
   CanBusState state_;
   bool up_ = true;
   CanCounters counters_;

@@ -1,8 +1,9 @@
 // The part of Cia402Drive that waits: who it is, and what it has to know before it may move.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "common/error.hpp"
 #include "drivers/canopen/cia402_drive.hpp"
@@ -24,9 +25,7 @@ std::int64_t whole_ms(Duration d) {
 }
 
 std::string hex(std::int64_t value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%llX", static_cast<unsigned long long>(value));
-  return text;
+  return fmt::format("0x{:X}", static_cast<std::uint64_t>(value));
 }
 
 void need_identity(const std::string& device, const char* what, std::int64_t is, std::optional<std::uint32_t> wanted) {

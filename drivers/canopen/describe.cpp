@@ -1,7 +1,8 @@
 #include "drivers/canopen/describe.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 
 #include "drivers/canopen/abort_code.hpp"
 #include "drivers/canopen/cia402.hpp"
@@ -42,16 +43,9 @@ constexpr ObjectName kObjects[] = {
     {0x60FF, 0, "target velocity"},
 };
 
-template <typename... Values>
-std::string print(const char* format, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 std::string bytes_text(std::span<const std::uint8_t> bytes) {
   std::string out;
-  for (std::uint8_t b : bytes) out += print(out.empty() ? "%02X" : " %02X", unsigned{b});
+  for (std::uint8_t b : bytes) out += fmt::format("{}{:02X}", out.empty() ? "" : " ", b);
   return out.empty() ? "no data" : out;
 }
 
@@ -74,20 +68,20 @@ std::string status_text(std::uint16_t status) {
 
 // A value of `bytes` valid bytes as the object means it.
 std::string value_text(std::uint16_t index, std::uint64_t value, int bytes) {
-  const std::string hex = print("0x%0*llX", 2 * bytes, static_cast<unsigned long long>(value));
+  const std::string hex = fmt::format("0x{:0{}X}", value, 2 * bytes);
   const auto number = static_cast<long long>(sign_extended(value, 8 * bytes));
   switch (index) {
     case 0x6040: return hex + " (" + to_string(command_of(static_cast<std::uint16_t>(value))) + ")";
     case 0x6041: return hex + " (" + status_text(static_cast<std::uint16_t>(value)) + ")";
     case 0x6060:
-    case 0x6061: return print("%lld (%s)", number, to_string(static_cast<OperationMode>(number)));
+    case 0x6061: return fmt::format("{} ({})", number, to_string(static_cast<OperationMode>(number)));
     case 0x6064:
     case 0x606C:
     case 0x607A:
     case 0x607D:
-    case 0x60FF: return print("%s (%lld)", hex.c_str(), number);
-    case 0x1000: return print("%s (profile %u)", hex.c_str(), static_cast<unsigned>(value & 0xffff));
-    case 0x1017: return print("%s (%lld ms)", hex.c_str(), static_cast<long long>(value));
+    case 0x60FF: return fmt::format("{} ({})", hex, number);
+    case 0x1000: return fmt::format("{} (profile {})", hex, value & 0xffff);
+    case 0x1017: return fmt::format("{} ({} ms)", hex, value);
     default: return hex;
   }
 }
@@ -109,12 +103,12 @@ std::string sdo_text(const CanFrame& frame, bool answer, const Vocabulary& words
   const std::string segment_text = bytes_text(frame.payload().subspan(1, static_cast<std::size_t>(segment))) + toggle +
                                    (command & 1 ? ", last" : "");
   const auto size = [&] {
-    return command & 1 ? print(", %u bytes follow", static_cast<unsigned>(load(frame.payload().subspan(4), 4)))
+    return command & 1 ? fmt::format(", {} bytes follow", load(frame.payload().subspan(4), 4))
                        : std::string(", segments follow");
   };
   if (specifier == 4) {
     const auto code = static_cast<std::uint32_t>(load(frame.payload().subspan(4), 4));
-    return "abort " + object + print(", 0x%08X %s", code, abort_name(code));
+    return "abort " + object + fmt::format(", 0x{:08X} {}", code, abort_name(code));
   }
   if (specifier == 5 || specifier == 6) return "block transfer";
   if (answer) {
@@ -147,10 +141,10 @@ std::string pdo_text(const CanFrame& frame, const Vocabulary& words) {
       std::find_if(words.pdos.begin(), words.pdos.end(), [&](const Pdo& p) { return p.cob_id() == frame.id; });
   const bool from_node = frame.id & 0x80;
   const unsigned node = frame.id & 0x7f, number = frame.id / 0x100 - (from_node ? 0u : 1u);
-  std::string head = print(from_node ? "TPDO%u of node %u: " : "RPDO%u to node %u: ", number, node);
+  std::string head = fmt::format("{}PDO{} {} node {}: ", from_node ? "T" : "R", number, from_node ? "of" : "to", node);
   if (known != words.pdos.end()) {
     head = known->name() +
-           print(known->direction() == PdoDirection::from_node ? " of node %d: " : " to node %d: ", known->node());
+           fmt::format(" {} node {}: ", known->direction() == PdoDirection::from_node ? "of" : "to", known->node());
     if (!known->carried_by(frame)) return head + bytes_text(frame.payload()) + ", too short";
     return head + pdo_values(*known, frame, words);
   }
@@ -170,23 +164,24 @@ std::string describe(const CanFrame& frame, const Vocabulary& words) {
   if (frame.id == kNmtId) {
     const std::string command = frame.size == 2 ? to_string(static_cast<NmtCommand>(frame.data[0])) : "?";
     if (command == "?" || frame.data[1] > kLargestNode) return "unknown";
-    return "NMT " + command + (frame.data[1] == 0 ? ", all nodes" : print(", node %u", unsigned{frame.data[1]}));
+    return "NMT " + command + (frame.data[1] == 0 ? ", all nodes" : fmt::format(", node {}", frame.data[1]));
   }
   if (frame.id == kSyncId)
-    return frame.size == 0 ? "SYNC" : frame.size == 1 ? print("SYNC, counter %u", unsigned{frame.data[0]}) : "unknown";
+    return frame.size == 0 ? "SYNC" : frame.size == 1 ? fmt::format("SYNC, counter {}", frame.data[0]) : "unknown";
   if (frame.id == kTimeId) return frame.size == 6 ? "TIME " + bytes_text(frame.payload()) : "unknown";
   if (const auto emergency = parse_emergency(frame))
-    return print("EMCY of node %u: 0x%04X %s, error register 0x%02X", node, unsigned{emergency->code},
-                 emergency_name(emergency->code), unsigned{emergency->error_register}) +
+    return fmt::format("EMCY of node {}: 0x{:04X} {}, error register 0x{:02X}", node, emergency->code,
+                       emergency_name(emergency->code), emergency->error_register) +
            (emergency->error_register ? " (" + error_register_text(emergency->error_register) + ")" : "");
   if (const auto heartbeat = parse_heartbeat(frame))
-    return heartbeat->state == NmtState::boot_up ? print("boot-up of node %u", node)
-                                                 : print("heartbeat of node %u: %s", node, to_string(heartbeat->state));
+    return heartbeat->state == NmtState::boot_up
+               ? fmt::format("boot-up of node {}", node)
+               : fmt::format("heartbeat of node {}: {}", node, to_string(heartbeat->state));
   if (node == 0) return "unknown";
   if (frame.id > kSdoAnswerId && frame.id < kSdoRequestId)
-    return print("SDO answer of node %u: ", node) + sdo_text(frame, true, words);
+    return fmt::format("SDO answer of node {}: ", node) + sdo_text(frame, true, words);
   if (frame.id > kSdoRequestId && frame.id <= kSdoRequestId + kLargestNode)
-    return print("SDO request to node %u: ", node) + sdo_text(frame, false, words);
+    return fmt::format("SDO request to node {}: ", node) + sdo_text(frame, false, words);
   return frame.id > kTpdo1Id && frame.id < kSdoAnswerId ? pdo_text(frame, words) : "unknown";
 }
 

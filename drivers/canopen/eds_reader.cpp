@@ -1,13 +1,13 @@
 #include "drivers/canopen/eds_reader.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/read_file.hpp"
 #include "common/text.hpp"
 #include "drivers/canopen/wire.hpp"
 
@@ -161,11 +161,9 @@ class Reader {
   }
 
   void read_object(std::uint16_t index, int listed) {
-    char name[8];
-    std::snprintf(name, sizeof name, "%04x", unsigned{index});
+    const std::string name = fmt::format("{:04x}", index);
     const auto it = sections_.find(name);
-    if (it == sections_.end())
-      fail(listed, std::string("object ") + name + " has no section", std::string("expected a section [") + name + "]");
+    if (it == sections_.end()) fail(listed, "object " + name + " has no section", "expected a section [" + name + "]");
     const Section& object = it->second;
     const std::int64_t kind = integer_or(object, "objecttype", "ObjectType", 0, 9, 7);
     const std::int64_t subs = integer_or(object, "subnumber", "SubNumber", 0, 255, 0);
@@ -324,10 +322,8 @@ ObjectDictionary parse_eds(std::string_view text, const std::filesystem::path& f
 }
 
 ObjectDictionary read_eds(const std::filesystem::path& file, int node) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string(), "the file cannot be opened", "give an EDS or DCF file");
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) throw InputError(file.string(), "the file cannot be read", "give an EDS or DCF file");
+  constexpr std::uintmax_t kLargestFile = 16 << 20;
+  const std::string text = read_file(file, kLargestFile);
   return parse_eds(text, file, node);
 }
 

@@ -1,6 +1,6 @@
 #include "drivers/canopen/object_dictionary.hpp"
 
-#include <cstdio>
+#include <fmt/core.h>
 
 namespace foresight::canopen {
 namespace {
@@ -64,9 +64,7 @@ bool ObjectDictionary::has(std::uint16_t index) const {
 }
 
 std::string object_name(std::uint16_t index, std::uint8_t sub) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%04X:%02X", unsigned{index}, unsigned{sub});
-  return text;
+  return fmt::format("{:04X}:{:02X}", index, sub);
 }
 
 }  // namespace foresight::canopen

@@ -1,8 +1,9 @@
 #include "drivers/canopen/sdo_access.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "common/error.hpp"
 #include "drivers/canopen/object_dictionary.hpp"
@@ -12,9 +13,7 @@ namespace foresight::canopen {
 namespace {
 
 std::string hex(std::uint64_t value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%llX", static_cast<unsigned long long>(value));
-  return text;
+  return fmt::format("0x{:X}", value);
 }
 
 std::uint64_t cut(std::int64_t value, int bytes) {

@@ -1,4 +1,4 @@
-#include <cstdio>
+#include <fmt/core.h>
 
 #include "drivers/powercube/protocol.hpp"
 #include "drivers/powercube/tables.hpp"
@@ -7,9 +7,7 @@ namespace foresight::powercube {
 namespace {
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
+  return fmt::format("{:.9g}", value);
 }
 
 std::string motion_text(const Message& m) {

@@ -1,4 +1,6 @@
 // Set-up of a module: what it is, its limits, its watchdog.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,14 +10,8 @@
 namespace foresight::powercube {
 namespace {
 
-std::string text(double value) {
-  char out[32];
-  std::snprintf(out, sizeof out, "%.7g", value);
-  return out;
-}
-
 void need(bool fine, const std::string& who, const char* field, double value, const char* cure) {
-  if (!fine) throw InputError(who, std::string(field) + " = " + text(value), cure);
+  if (!fine) throw InputError(who, fmt::format("{} = {:.7g}", field, value), cure);
 }
 
 }  // namespace

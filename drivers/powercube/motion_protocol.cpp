@@ -1,8 +1,8 @@
 #include "drivers/powercube/motion_protocol.hpp"
 
-#include <algorithm>
+#include <fmt/core.h>
+
 #include <bit>
-#include <cstdio>
 
 namespace foresight::powercube {
 namespace {
@@ -111,34 +111,6 @@ bool read(Shape shape, Bytes b, MotionMessage& out) {
   return true;
 }
 
-void append_number(std::vector<std::uint8_t>& out, float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  for (int i = 0; i < 4; ++i) out.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
-}
-
-void append(Shape shape, const MotionMessage& m, std::vector<std::uint8_t>& out) {
-  const bool has_number =
-      shape == Shape::number || shape == Shape::period_mask || shape == Shape::state || shape == Shape::number_bytes;
-  if (has_number) append_number(out, m.value.value_or(0));
-  if (shape == Shape::ok) out.insert(out.end(), std::begin(kOk), std::end(kOk));
-  const bool has_mask = shape == Shape::period_mask || shape == Shape::two_bytes || shape == Shape::number_bytes;
-  if (has_mask) out.push_back(m.mask.value_or(0));
-  const bool has_state = shape == Shape::state || shape == Shape::two_bytes || shape == Shape::number_bytes;
-  if (has_state) out.push_back(m.state.value_or(0));
-  const bool has_code = shape == Shape::state || shape == Shape::byte_code || shape == Shape::word_code;
-  if (has_code) out.push_back(static_cast<std::uint8_t>(m.code.value_or(0)));
-  if (shape == Shape::word_code) out.push_back(static_cast<std::uint8_t>(m.code.value_or(0) >> 8));
-}
-
-std::uint16_t crc16(Bytes bytes) {
-  unsigned crc = 0;
-  for (std::uint8_t byte : bytes) {
-    crc ^= byte;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xA001u : 0u);
-  }
-  return static_cast<std::uint16_t>(crc);
-}
-
 // Index: MotionSender.
 constexpr std::uint8_t kGroups[] = {0x05, 0x07, 0x03};
 
@@ -169,42 +141,6 @@ std::optional<MotionMessage> decode_motion(const CanFrame& frame) {
   return decode_motion(*sender, static_cast<int>(frame.id & 0x7f), frame.payload());
 }
 
-std::optional<MotionMessage> decode_motion_serial(Bytes bytes) {
-  if (bytes.size() < 6) return std::nullopt;
-  const std::uint16_t crc = crc16(bytes.first(bytes.size() - 2));
-  if (bytes[bytes.size() - 2] != (crc & 0xff) || bytes.back() != crc >> 8) return std::nullopt;
-  const auto sender = sender_of_group(bytes[0]);
-  if (!sender) return std::nullopt;
-  return decode_motion(*sender, bytes[1], bytes.subspan(2, bytes.size() - 4));
-}
-
-std::vector<std::uint8_t> encode_motion(const MotionMessage& message) {
-  std::vector<std::uint8_t> out{0, static_cast<std::uint8_t>(message.command)};
-  const Row* row = find_row(out[1], message.sender != MotionSender::master);
-  if (row != nullptr) append(row->shape, message, out);
-  out[0] = static_cast<std::uint8_t>(out.size() - 1);
-  return out;
-}
-
-CanFrame to_can(const MotionMessage& message) {
-  CanFrame frame;
-  frame.id = std::uint32_t{kGroups[static_cast<std::size_t>(message.sender)]} << 8 |
-             (static_cast<std::uint32_t>(message.module) & 0x7f);
-  for (std::uint8_t byte : encode_motion(message)) frame.data[frame.size++] = byte;
-  return frame;
-}
-
-std::vector<std::uint8_t> to_serial(const MotionMessage& message) {
-  std::vector<std::uint8_t> out{kGroups[static_cast<std::size_t>(message.sender)],
-                                static_cast<std::uint8_t>(message.module)};
-  const auto body = encode_motion(message);
-  out.insert(out.end(), body.begin(), body.end());
-  const std::uint16_t crc = crc16(out);
-  out.push_back(static_cast<std::uint8_t>(crc));
-  out.push_back(static_cast<std::uint8_t>(crc >> 8));
-  return out;
-}
-
 const char* motion_code(std::uint16_t code) noexcept {
   for (const auto& row : kCodes)
     if (row.code == code) return row.words;
@@ -216,16 +152,9 @@ std::string describe(const MotionMessage& m) {
   if (row == nullptr) return "unknown";
   std::string out = (m.sender == MotionSender::master ? "to module " : "module ") + std::to_string(m.module) + ": ";
   out += row->words;
-  char text[48];
-  if (m.value) {
-    std::snprintf(text, sizeof text, " %.7g", static_cast<double>(*m.value));
-    out += text;
-  }
+  if (m.value) out += fmt::format(" {:.7g}", *m.value);
   if (m.command == MotionCommand::get_state && m.state) out += (*m.state & 0x02) != 0 ? ", moving" : ", not moving";
-  if (m.code) {
-    std::snprintf(text, sizeof text, "%s 0x%02X ", m.value ? "," : "", unsigned{*m.code});
-    out += text + std::string(motion_code(*m.code));
-  }
+  if (m.code) out += fmt::format("{} 0x{:02X} {}", m.value ? "," : "", *m.code, motion_code(*m.code));
   if (m.ok) out += ": ok";
   if (m.wrong_length) out += " (wrong length byte)";
   return out;

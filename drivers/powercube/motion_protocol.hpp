@@ -2,14 +2,13 @@
 //
 // A message is [D-Len][command][parameters], D-Len counting command and parameters; little-endian, floats binary32.
 // On CAN the identifier is 0x500 + module (master to module), 0x700 + module (module to master) or 0x300 + module
-// (errors). On a serial line [group][module] stands in front (group 05, 07, 03) and a CRC16 follows: reflected
-// polynomial 0xA001, initial value 0, over all bytes before it, low byte first. Messages of more than 8 bytes (longer
-// states), which CAN splits, are not read. Source: SCHUNK Motion Protocol 1.41, and the byte examples of its manual.
+// (errors). Messages of more than 8 bytes (longer states), which CAN splits, are not read. Only understood, for logs of
+// their buses; no drive of a rig speaks it. Source: SCHUNK Motion Protocol 1.41, and the byte examples of its manual.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "drivers/can/can_frame.hpp"
 
@@ -35,7 +34,7 @@ enum class MotionSender : std::uint8_t { master, module, module_error };
 /// Positions and velocities in the module's unit: mm or degrees.
 struct MotionMessage {
   MotionSender sender = MotionSender::master;
-  int module = 0;  ///< 0 .. 255; on CAN 0 .. 127
+  int module = 0;  ///< 0 .. 127
   MotionCommand command = MotionCommand::acknowledge;
   std::optional<float> value{};         ///< see MotionCommand
   std::optional<std::uint8_t> mask{};   ///< get_state: 01 position, 02 velocity, 04 current; check: first test byte
@@ -50,13 +49,6 @@ struct MotionMessage {
 /// [D-Len][command][parameters] (and nothing else) as `sender` sent it; nothing: not a message listed above.
 std::optional<MotionMessage> decode_motion(MotionSender sender, int module, std::span<const std::uint8_t> bytes);
 std::optional<MotionMessage> decode_motion(const CanFrame& frame);
-/// A serial frame with its CRC; nothing where that is wrong.
-std::optional<MotionMessage> decode_motion_serial(std::span<const std::uint8_t> bytes);
-
-/// D-Len is always right in what we make. The fields that the command needs must be there.
-std::vector<std::uint8_t> encode_motion(const MotionMessage& message);
-CanFrame to_can(const MotionMessage& message);
-std::vector<std::uint8_t> to_serial(const MotionMessage& message);
 
 /// "ERROR MOTOR VOLTAGE LOW"; "unknown code" for codes that our source does not name. Static text.
 const char* motion_code(std::uint16_t code) noexcept;

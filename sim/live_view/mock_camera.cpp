@@ -1,5 +1,6 @@
 #include "sim/live_view/mock_camera.hpp"
 
+#include <fmt/core.h>
 #include <pthread.h>
 
 #include <cmath>
@@ -10,7 +11,6 @@
 #include "common/real_time.hpp"
 #include "sim/live_view/stereo_renderer.hpp"
 #include "sim/motion.hpp"
-#include "sim/run_files.hpp"
 
 namespace foresight::sim {
 namespace {
@@ -25,10 +25,10 @@ constexpr const char* kControl = "exposure_time_absolute";
 
 void check(const MockCameraOptions& o) {
   if (!(o.rate > 0 && o.rate <= 1000))
-    throw InputError("mock camera: rate", format("%.9g is outside 0 .. 1000", o.rate), "choose a value inside");
+    throw InputError("mock camera: rate", fmt::format("{:.9g} is outside 0 .. 1000", o.rate), "choose a value inside");
   for (const Lens* lens : {&o.lenses.left, &o.lenses.right})
     if (lens->width() <= 0 || lens->width() % 2)
-      throw InputError("mock camera: lens", format("an image %d px wide cannot be YUYV", lens->width()),
+      throw InputError("mock camera: lens", fmt::format("an image {} px wide cannot be YUYV", lens->width()),
                        "take an even width");
 }
 
@@ -220,8 +220,8 @@ void MockCamera::set_control(const std::string& control, std::int64_t value) {
                      std::string("did you mean '") + kControl + "'?");
   if (value < 1 || value > MockStereo::kLongestExposure)
     throw InputError("camera '" + name_ + "': " + kControl,
-                     format("%lld is outside 1 .. %lld", static_cast<long long>(value),
-                            static_cast<long long>(MockStereo::kLongestExposure)),
+                     fmt::format("{} is outside 1 .. {}", static_cast<long long>(value),
+                                 static_cast<long long>(MockStereo::kLongestExposure)),
                      "choose a value inside");
   stereo_->exposure_ = value;
 }

@@ -53,6 +53,10 @@ TEST_F(Bench, MarginCountsByTruth) {
     EXPECT_LT(row["core"]["wrong"], row["thesis"]["wrong"]) << row;
   }
   EXPECT_TRUE(std::filesystem::file_size(plot) > 1000);
+  const nlohmann::json plots = read_json(plot + ".plots.json")["plots"];
+  ASSERT_EQ(plots.size(), 2u);
+  ASSERT_EQ(plots[0]["series"].size(), 4u);
+  EXPECT_EQ(plots[0]["series"][1]["y"][4].get<double>(), off["core"]["wrong"].get<double>() / 1e3);
 }
 
 TEST_F(Bench, WrongInputIsRefused) {

@@ -45,8 +45,10 @@ class ExplainedLog {
     std::ofstream(file_) << text;
   }
   ~ExplainedLog() { std::filesystem::remove(file_); }
-  Outcome as(const char* protocol) const {
-    return run_program({"can", "explain", file_.string(), "--protocol", protocol});
+  Outcome as(const char* protocol, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"can", "explain", file_.string(), "--protocol", protocol};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
   }
 
  private:
@@ -67,6 +69,35 @@ TEST(Can, ExplainSaysEachFrameInWords) {
   EXPECT_THAT(powercube.out, HasSubstr("0E3#00  to module 3: "));
   EXPECT_THAT(powercube.out, HasSubstr("100#07  to all: "));
   EXPECT_THAT(powercube.out, HasSubstr("2 frames, 0 unknown\n"));
+}
+
+TEST(Can, ExplainUsesTheNamesOfDataSheets) {
+  const auto sheet = [](const char* name, const std::string& object) {
+    const auto file = std::filesystem::temp_directory_path() / (name + std::to_string(getpid()));
+    std::ofstream(file) << "[OptionalObjects]\nSupportedObjects=1\n1=0x6064\n[6064]\nParameterName=" << object
+                        << "\nDataType=4\nAccessType=ro\n";
+    return file.string();
+  };
+  const std::string axis = sheet("foresight-axis-eds-", "Shaft angle"), grip = sheet("foresight-grip-eds-", "Opening");
+  const ExplainedLog log("(1) can0 602#4064600000000000\n(1) can0 60C#4064600000000000\n");
+  const Outcome out = log.as("cia402", {"--eds", axis, "--eds", "12=" + grip});
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_THAT(out.out, HasSubstr("SDO request to node 2: upload 6064:00 Shaft angle\n"));
+  EXPECT_THAT(out.out, HasSubstr("SDO request to node 12: upload 6064:00 Opening\n"));
+  EXPECT_THAT(log.as("cia402").out, HasSubstr("upload 6064:00 actual position\n"));
+  EXPECT_THAT(log.as("powercube", {"--eds", axis}).last_line(), HasSubstr("--eds: there are none with powercube"));
+  EXPECT_THAT(log.as("cia402", {"--eds", "/nowhere.eds"}).last_line(), HasSubstr("/nowhere.eds: no such file"));
+  EXPECT_THAT(log.as("cia402", {"--eds", "200=" + axis}).last_line(), HasSubstr("node id 200"));
+  EXPECT_THAT(log.as("cia402", {"--eds", axis, "--eds", grip}).last_line(), HasSubstr("is a second one"));
+  std::filesystem::remove(axis);
+  std::filesystem::remove(grip);
+}
+
+TEST(Can, ExplainKnowsTheSchunkMotionProtocol) {
+  const Outcome out = ExplainedLog("(1) can0 501#05B000002041\n(1) can0 701#028874\n").as("schunk-motion");
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_THAT(out.out, HasSubstr("  to module 1: move to position 10\n"));
+  EXPECT_THAT(out.out, HasSubstr("  module 1: error 0x74 ERROR MOTOR VOLTAGE LOW\n2 frames, 0 unknown\n"));
 }
 
 TEST(Can, ExplainCountsWhatItDoesNotKnow) {

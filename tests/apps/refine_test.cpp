@@ -1,4 +1,6 @@
 // What `replay --refine` wins on poses that are wrong by a known number of pixels.
+#include <fmt/core.h>
+
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
@@ -43,7 +45,7 @@ class TagRun : public TempFolder {
     std::string tags;
     for (const auto& [id, corners] : room.corners())
       for (std::size_t c = 0; c < 4; ++c)
-        tags += sim::format("%d %zu %.9f %.9f %.9f\n", id, c, corners[c].x(), corners[c].y(), corners[c].z());
+        tags += fmt::format("{} {} {:.9f} {:.9f} {:.9f}\n", id, c, corners[c].x(), corners[c].y(), corners[c].z());
     write("tags.txt", tags);
   }
 

@@ -1,5 +1,7 @@
 #include "tests/apps/runs.hpp"
 
+#include <fmt/core.h>
+
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
@@ -70,12 +72,9 @@ LoopedRun::LoopedRun(int images, double interval_s) {
   for (int i = 0; i < images; ++i) {
     const int turn = i % (2 * count - 2);
     const auto source = static_cast<std::size_t>(turn < count ? turn : 2 * count - 2 - turn);
-    char text[64];
-    std::snprintf(text, sizeof text, "%.6f ", i * interval_s);
-    const std::string time = text;
-    std::snprintf(text, sizeof text, "rgb/%06d.png", i);
-    fs::create_hard_link(run / files[source], path() / text);
-    list += time + text + "\n";
+    const std::string time = fmt::format("{:.6f} ", i * interval_s), name = fmt::format("rgb/{:06}.png", i);
+    fs::create_hard_link(run / files[source], path() / name);
+    list += time + name + "\n";
     trajectory += time + poses[source] + "\n";
     for (std::size_t k = 0; k < movers; ++k) nodes += time + tracks[source * instants_per_image * movers + k] + "\n";
   }

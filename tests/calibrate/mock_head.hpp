@@ -1,6 +1,8 @@
 // A mock lab's head that differs from its drawing, before tags on table and wall; sessions that it records.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <fstream>
 #include <random>
 
@@ -73,7 +75,7 @@ struct MockHead {
     std::ofstream joints(run.string() + "-joints.csv");
     joints << "time_s,shoulder,pan,tilt\n";
     for (const auto& [time, q] : encoders.rows)
-      joints << sim::format("%.9f,0.1,%.7f,%.7f\n", to_seconds(time - RobotTime{}), q.pan, q.tilt);
+      joints << fmt::format("{:.9f},0.1,{:.7f},{:.7f}\n", to_seconds(time - RobotTime{}), q.pan, q.tilt);
     for (int i = 0; i < pairs; ++i) {
       const RobotTime time = at(i * every_s);
       const Pose T = T_world_camera(truth, encoders.shafts.at(time).shafts);
@@ -92,7 +94,7 @@ struct MockHead {
     out << "# id corner x y z\n";
     for (const auto& [id, corners] : map)
       for (std::size_t c = 0; c < 4; ++c)
-        out << sim::format("%d %d %.9f %.9f %.9f\n", id, static_cast<int>(c), corners[c].x(), corners[c].y(),
+        out << fmt::format("{} {} {:.9f} {:.9f} {:.9f}\n", id, static_cast<int>(c), corners[c].x(), corners[c].y(),
                            corners[c].z());
   }
 

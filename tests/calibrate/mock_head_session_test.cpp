@@ -1,4 +1,5 @@
 // A head whose joints are off: calibrated from the mock lab's own pictures, then registered where nobody has looked.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <opencv2/imgproc.hpp>
@@ -85,7 +86,7 @@ class MockLabHead : public HeadlessTest {
     std::ofstream joints(folder_ / (name + "-joints.csv"));
     joints << "time_s,pan,tilt\n";
     for (const auto& [time, q] : session.encoders)
-      joints << sim::format("%.9f,%.7f,%.7f\n", to_seconds(time - RobotTime{}), q.pan, q.tilt);
+      joints << fmt::format("{:.9f},{:.7f},{:.7f}\n", to_seconds(time - RobotTime{}), q.pan, q.tilt);
   }
 
   /// What `calibrate photometric` would find of the mock cameras: the inverse of sim/sensor.cpp's response.

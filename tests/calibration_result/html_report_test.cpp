@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
@@ -51,6 +52,27 @@ TEST(HtmlReport, IsWellFormedSelfContainedAndEscaped) {
   EXPECT_THAT(html, HasSubstr("prefers-color-scheme: dark"));
   EXPECT_THAT(html, Not(HasSubstr("<img src=x>")));
   EXPECT_THAT(html, HasSubstr("a &lt; b &amp; c &gt; d"));
+}
+
+TEST(HtmlReport, TheSeriesOfItsPlotsLieBesideIt) {
+  const TempFolder folder;
+  example().write(folder / "report.html");
+  const auto all = nlohmann::json::parse(folder.read("report.html.plots.json"));
+  EXPECT_EQ(all["title"], "left <4021> & right");
+  ASSERT_EQ(all["plots"].size(), 2u);
+  const auto& kept = all["plots"][0]["series"][0];
+  EXPECT_EQ(kept["name"], "kept");
+  EXPECT_EQ(kept["kind"], "dots");
+  EXPECT_EQ(kept["x"], (std::vector<double>{0.1, -0.3}));
+  EXPECT_EQ(all["plots"][0]["series"][1]["y"], (std::vector<double>{0, 0.5}));
+  const auto& map = all["plots"][1];
+  EXPECT_EQ(map["size_px"], (std::vector<int>{640, 480}));
+  ASSERT_EQ(map["cells"].size(), 12u);
+  EXPECT_TRUE(map["cells"][0][0].is_null());
+  EXPECT_DOUBLE_EQ(map["cells"][11][15].get<double>(), 0.1 + 0.001 * 49);
+  HtmlReport words("words");
+  words.write(folder / "words.html");
+  EXPECT_FALSE(std::filesystem::exists(folder / "words.html.plots.json")) << "it has no plot";
 }
 
 TEST(HtmlReport, FiguresStandToTheRight) {

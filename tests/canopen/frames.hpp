@@ -1,7 +1,8 @@
 // Frames in tests: made, kept and read from lines of text.
 #pragma once
 
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -30,13 +31,8 @@ inline CanFrame frame(std::string_view text) {
 }
 
 inline std::string to_text(const CanFrame& f) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%03X#", unsigned{f.id});
-  std::string out = text;
-  for (std::uint8_t b : f.payload()) {
-    std::snprintf(text, sizeof text, "%02X", unsigned{b});
-    out += text;
-  }
+  std::string out = fmt::format("{:03X}#", f.id);
+  for (std::uint8_t b : f.payload()) out += fmt::format("{:02X}", b);
   return out;
 }
 

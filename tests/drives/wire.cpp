@@ -1,9 +1,9 @@
 #include "tests/drives/wire.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cstdio>
 
 #include "sim/drives/object_dictionary.hpp"
 
@@ -21,13 +21,8 @@ std::vector<std::uint8_t> bytes_of(const CanFrame& frame) {
 }
 
 std::string text_of(const CanFrame& frame) {
-  char text[8];
-  std::snprintf(text, sizeof text, "%03X#", frame.id);
-  std::string out = text;
-  for (std::uint8_t b : frame.payload()) {
-    std::snprintf(text, sizeof text, "%02X", b);
-    out += text;
-  }
+  std::string out = fmt::format("{:03X}#", frame.id);
+  for (std::uint8_t b : frame.payload()) out += fmt::format("{:02X}", b);
   return out;
 }
 

@@ -46,12 +46,13 @@ TEST_F(FollowFileTest, EveryMistakeHasItsMessage) {
   expect("time_s,elbo\n0,1\n", {"motion.csv:1", "elbo", "'elbow'"});
   expect("time_s,elbow,elbow\n0,1,1\n", {"two columns"});
   expect("time_s,elbow\n0,1,2\n", {"motion.csv:2", "3 fields", "give 2"});
-  expect("time_s,elbow\n0,one\n", {"motion.csv:2", "'one'"});
+  expect("time_s,elbow\n0,one\n", {"motion.csv:2:3", "elbow is 'one'"});
   expect("time_s,elbow\n0,nan\n", {"motion.csv:2", "nan"});
   expect("time_s,elbow\n0,0\n0,0\n", {"motion.csv:3", "after the row before"});
-  expect("time_s,elbow\n0,3\n", {"motion.csv:2", "elbow", "beyond its limits"});
+  expect("time_s,elbow\n0,3\n", {"motion.csv:2:3", "elbow", "beyond its limits"});
   expect("time_s,elbow\n0,0\n0.1,1\n", {"motion.csv:3", "faster than"});
   EXPECT_THAT(input_error([&] { FollowFile("none.csv", rig_); }), testing::HasSubstr("none.csv"));
+  EXPECT_THAT(input_error([&] { FollowFile("/dev/null", rig_); }), testing::HasSubstr("not a regular file"));
 }
 
 }  // namespace

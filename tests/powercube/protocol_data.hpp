@@ -3,10 +3,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "common/text_rows.hpp"
 #include "tests/support/folders.hpp"
 
 namespace foresight::powercube {
@@ -15,26 +15,12 @@ inline std::filesystem::path can_data(const std::string& file) {
   return data_folder() / "can" / file;
 }
 
-/// Rows of a CSV file without comments and header; fields may be quoted.
+/// Rows of a CSV file without its header.
 inline std::vector<std::vector<std::string>> read_rows(const std::filesystem::path& file) {
   std::vector<std::vector<std::string>> out;
-  std::ifstream in(file);
-  bool header = true;
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    if (std::exchange(header, false)) continue;
-    std::vector<std::string> fields(1);
-    bool quoted = false;
-    for (char c : line) {
-      if (c == '"')
-        quoted = !quoted;
-      else if (c == ',' && !quoted)
-        fields.emplace_back();
-      else if (c != '\r')
-        fields.back() += c;
-    }
-    out.push_back(fields);
-  }
+  for_each_row(file, {RowForm::Between::commas},
+               [&](const TextRow& row) { out.emplace_back(row.fields.begin(), row.fields.end()); });
+  if (!out.empty()) out.erase(out.begin());
   return out;
 }
 

@@ -2,14 +2,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "apps/replay_report/report_plots.hpp"
 #include "common/error.hpp"
 #include "common/svg_plot.hpp"
 #include "tests/replay_report/example_run.hpp"
+#include "tests/scene/test_run.hpp"
 #include "tests/support/html_check.hpp"
 
 namespace foresight {
@@ -89,10 +92,60 @@ TEST(HtmlReport, UnwritableFolderIsAFailureThatNamesTheFile) {
   }
 }
 
+TEST(HtmlReport, TheSeriesOfItsPlotsLieBesideIt) {
+  const TempFolder folder;
+  RunRecord run = example_run(4);
+  run.run = "a \"run\"\xff";
+  run.frames[2].dropped = true;
+  write_html_report(run, example_instants(run), folder / "report.html");
+  const auto all = nlohmann::json::parse(folder.read("report.html.plots.json"));
+  ASSERT_EQ(all["plots"].size(), 8u);
+  const auto& quality = all["plots"][0];
+  EXPECT_EQ(quality["y"]["unit"], "dB");
+  for (const auto& series : quality["series"]) {
+    const bool predicted = series["name"] == "predicted";
+    EXPECT_TRUE(predicted || series["name"] == "delayed") << series["name"];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const FrameRecord& f = run.frames[i];
+      EXPECT_NEAR(series["x"][i].get<double>(), f.time_s - run.frames[0].time_s, 1e-9);
+      if (f.dropped)
+        EXPECT_TRUE(series["y"][i].is_null()) << "not measured";
+      else
+        EXPECT_DOUBLE_EQ(series["y"][i].get<double>(), (predicted ? f.predicted : f.delayed).psnr_db.value());
+    }
+  }
+  for (const auto& plot : all["plots"]) EXPECT_FALSE(plot["series"].empty()) << plot["title"];
+}
+
+TEST(HtmlReport, APipeGetsThePageOnly) {
+  const TempFolder folder;
+  const auto pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_FALSE(plot_data_file(pipe));
+  EXPECT_EQ(plot_data_file(folder / "a.html"), folder / "a.html.plots.json");
+}
+
 TEST(RoundTicks, AreRoundAndInsideTheRange) {
   EXPECT_THAT(round_ticks({0, 100}, 4), ElementsAre(0, 25, 50, 75, 100));
   EXPECT_THAT(round_ticks({-0.9, 2.1}, 3), ElementsAre(0, 1, 2));
   EXPECT_THAT(round_ticks({7.3, 23}, 4), ElementsAre(10, 15, 20));
+}
+
+TEST(SvgPlot, DataIsWhatWasDrawn) {
+  SvgPlot plot("p", {0, 4}, {0, 1}, "s", "dB");
+  const double x[] = {0, 1}, y[] = {0.1, NAN}, high[] = {0.5, 0.75};
+  plot.line(x, y, "k0", "measured");
+  plot.area(x, x, high, "k1");
+  plot.bar({0, 1}, {0, 0.25}, "k2", "bars");
+  plot.bar({1, 2}, {0, 0.5}, "k2", "bars");
+  plot.mark_x(3, "p50", "m");
+  const auto data = nlohmann::json::parse(plot.data());
+  EXPECT_EQ(data, nlohmann::json::parse(R"({"title": "p", "x": {"unit": "s", "range": [0, 4]},
+      "y": {"unit": "dB", "range": [0, 1]}, "series": [
+        {"name": "measured", "kind": "line", "x": [0, 1], "y": [0.1, null]},
+        {"name": "k1", "kind": "area", "x": [0, 1], "low": [0, 1], "high": [0.5, 0.75]},
+        {"name": "bars", "kind": "bars", "left": [0, 1], "right": [1, 2], "low": [0, 0], "high": [0.25, 0.5]}],
+      "marks": [{"axis": "x", "at": 3, "text": "p50"}]})"));
 }
 
 TEST(SvgPlot, LeavesGapsAndDrawsLonelyPoints) {

@@ -269,6 +269,21 @@ TEST(MeshReader, RefusesADamagedColladaBeforeAssimpSeesIt) {
   EXPECT_EQ(error("m.dae", replaced(list, "<p>", "<vcount> 3 </vcount><p>")), "no error");
   EXPECT_THAT(error("m.dae", replaced(kCollada, "<COLLADA", "<collada")),
               says("m.dae:1", "no COLLADA element", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "</geometry>", "</geom>")),
+              says("m.dae:7", "is no whole XML: Start-end tags mismatch", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "</scene></COLLADA>", "")),
+              says("m.dae:9", "is no whole XML", "export"));
+}
+
+// Attributes and text as XML means them: references, quotes of both kinds, comments, and a '>' inside of a value.
+TEST(MeshReader, ReadsAColladaAsXmlMeansIt) {
+  EXPECT_EQ(error("m.dae", replaced(kCollada, "0 1 2</p>", "0 1 &#50;</p>")), "no error");
+  EXPECT_EQ(error("m.dae", replaced(kCollada, "count=\"9\"", "name='a > b' count='9'")), "no error");
+  EXPECT_EQ(error("m.dae", replaced(kCollada, "<p>", "<!-- <p>x</p> --><p>")), "no error");
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "count=\"9\"", "name='a > b' count='8'")),
+              says("m.dae:4", "reads beyond its array of 8", "export"));
+  EXPECT_THAT(error("m.dae", replaced(kCollada, "count=\"9\"", "name='>' count='&#56;'")),
+              says("m.dae:4", "reads beyond its array of 8", "export"));
 }
 
 TEST(MeshReader, RefusesWhatIsNoMesh) {

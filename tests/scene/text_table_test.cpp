@@ -14,6 +14,17 @@ std::vector<std::string> rows_of(const std::string& content) {
   return out;
 }
 
+// Fields with '|' between, rows with '/'.
+std::string fields_of(const std::string& content, const RowForm& form) {
+  TempFolder folder;
+  std::string out;
+  for_each_row(folder.write("t.csv", content), form, [&](const TextRow& row) {
+    if (!out.empty()) out += " / ";
+    for (std::size_t i = 0; i < row.fields.size(); ++i) out += (i ? "|" : "") + std::string(row.fields[i]);
+  });
+  return out;
+}
+
 Pose pose_of(const std::string& line) {
   TempFolder folder;
   Pose pose;
@@ -46,6 +57,46 @@ TEST(TextTable, ReadsManyLines) {
   EXPECT_EQ(rows_of(content).size(), 200'000u);
 }
 
+TEST(TextRows, SplitAtCommasAsCsvDoes) {
+  const RowForm csv{RowForm::Between::commas};
+  EXPECT_EQ(fields_of("a, b ,c\r\n\n# no\n1,,3\n,\n", csv), "a|b|c / 1||3 / |");
+  EXPECT_EQ(fields_of("\"x, y\", \"say \"\"ho\"\"\" ,z\n\"\",2\n", csv), "x, y|say \"ho\"|z / |2");
+  EXPECT_EQ(fields_of("5\" disk,b\n", csv), "5\" disk|b") << "a quote inside of a field is one of its characters";
+  EXPECT_THAT(input_error([&] { fields_of("a,b\n 1, \"b\n", csv); }),
+              says("t.csv:2:5", "a quote is not closed", "double"));
+  EXPECT_THAT(input_error([&] { fields_of("\"a\"b,c\n", csv); }),
+              says("t.csv:1:4", "follows a closing quote", "double"));
+}
+
+TEST(TextRows, SplitAtWhatProgramsPutAroundNumbers) {
+  EXPECT_EQ(fields_of("[[1, 0; 2]\n#x\n [3,4]]\n", {RowForm::Between::loose}), "1|0|2 / 3|4");
+  EXPECT_EQ(fields_of("# a b\n1 2\n", {RowForm::Between::blanks, true}), "#|a|b / 1|2");
+}
+
+TEST(TextRows, NameTheColumnOfAWrongNumber) {
+  const auto read = [](const std::string& content) {
+    TempFolder folder;
+    for_each_row(folder.write("t.csv", content), {RowForm::Between::commas},
+                 [](const TextRow& row) { finite_field(row, row.fields.size() - 1, "v"); });
+  };
+  EXPECT_THAT(input_error([&] { read("1,2\n  3 , x\n"); }),
+              says("t.csv:2:7: v is 'x', not a finite number", "", "line"));
+  EXPECT_THAT(input_error([&] { read("\xEF\xBB\xBFinf\n"); }), says("t.csv:1:1: v is 'inf'", "", "correct"));
+}
+
+// A device or a pipe would be waited for, or never end.
+TEST(TextRows, AreOfRegularFilesOfSensibleSize) {
+  TempFolder folder;
+  const auto refused = [](const std::filesystem::path& file) {
+    return input_error([&] { for_each_row(file, RowForm{}, [](const TextRow&) {}); });
+  };
+  EXPECT_THAT(refused(folder.path()), says("", "is not a regular file", "name a file"));
+  EXPECT_THAT(refused("/dev/zero"), says("/dev/zero", "is not a regular file", "name a file"));
+  const auto large = folder.write("large.txt", "1\n");
+  std::filesystem::resize_file(large, (std::uintmax_t{1} << 30) + 1);  // a hole
+  EXPECT_THAT(refused(large), says("large.txt", "more than the 1073741824", "right one"));
+}
+
 TEST(PoseFields, NormalisesWhatIsRounded) {
   const Pose pose = pose_of("1 2 3 0 0 0.7071 0.7071");
   EXPECT_EQ(pose.translation(), Eigen::Vector3d(1, 2, 3));
@@ -58,7 +109,7 @@ TEST(PoseFields, NormalisesWhatIsRounded) {
 TEST(PoseFields, RefusesWhatIsNoPose) {
   EXPECT_THAT(pose_error("0 0 0 0 0 0 1.0011"), says("t.txt:1", "the quaternion has length 1.0011", "qx qy qz qw"));
   EXPECT_THAT(pose_error("0 0 0 0 0 0 0"), says("t.txt:1", "the quaternion has length 0", "unit quaternion"));
-  EXPECT_THAT(pose_error("0 nan 0 0 0 0 1"), says("t.txt:1", "ty is 'nan'", "correct or remove the line"));
+  EXPECT_THAT(pose_error("0 nan 0 0 0 0 1"), says("t.txt:1:3", "ty is 'nan'", "correct or remove the line"));
   EXPECT_THAT(pose_error("0 0 0 0 inf 0 1"), says("t.txt:1", "qy is 'inf'", "correct"));
   EXPECT_THAT(pose_error("0 0 x 0 0 0 1"), says("t.txt:1", "tz is 'x', not a finite number", "correct"));
   EXPECT_THAT(pose_error("2e6 0 0 0 0 0 1"), says("t.txt:1", "more than 1e6 m", "in metres"));

@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "scene/run_folder.hpp"
 #include "sim/motion.hpp"
+#include "sim/run_files.hpp"
 #include "sim/tracer.hpp"
 
 namespace foresight::sim {
@@ -208,6 +209,13 @@ TEST_F(SynthRun, LeavesNothingWhenStopped) {
   EXPECT_THROW(write_synth_run(folder_ / "run", tiny_, [](int, int) { throw std::runtime_error("stop"); }),
                std::runtime_error);
   EXPECT_THAT(left_behind(), ::testing::IsEmpty());
+}
+
+// Texts of any length come out whole.
+TEST(RunFiles, LongNamesAreWrittenWhole) {
+  const std::string name(2000, 'n');
+  const std::string yaml = camera_yaml(Lens(), name, nullptr);
+  EXPECT_NE(yaml.find("camera_name: " + name + "\n"), std::string::npos);
 }
 
 }  // namespace
