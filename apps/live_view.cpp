@@ -1,5 +1,7 @@
 #include "apps/live_view.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -158,10 +160,7 @@ struct LiveView::Work {
   }
 
   std::string title() const {
-    char text[160];
-    std::snprintf(text, sizeof text, "Foresight %s: camera, %.0f ms ago | predicted view", options.rig.c_str(),
-                  options.delay_ms);
-    return text;
+    return fmt::format("Foresight {}: camera, {:.0f} ms ago | predicted view", options.rig, options.delay_ms);
   }
 
   /// False: the view has ended.

@@ -1,5 +1,7 @@
 #include "apps/replay.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -96,10 +98,8 @@ std::unique_ptr<gl::Window> open_window(const Lens& lens) {
 std::string window_title(const RunRecord& record) {
   if (record.frames.empty()) return "Foresight replay";
   const FrameRecord& frame = record.frames.back();
-  char title[160];
-  std::snprintf(title, sizeof title, "Foresight replay: %.0f ms delayed %.1f dB | predicted %.1f dB | actual",
-                frame.delay_s * 1e3, frame.delayed.psnr_db.value_or(0), frame.predicted.psnr_db.value_or(0));
-  return title;
+  return fmt::format("Foresight replay: {:.0f} ms delayed {:.1f} dB | predicted {:.1f} dB | actual",
+                     frame.delay_s * 1e3, frame.delayed.psnr_db.value_or(0), frame.predicted.psnr_db.value_or(0));
 }
 
 int play(const RunFolder& run, const ReplayOptions& options, std::vector<std::size_t> arrived) {

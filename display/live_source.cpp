@@ -1,5 +1,7 @@
 #include "display/live_source.hpp"
 
+#include <fmt/core.h>
+
 #include <cstdio>
 
 namespace foresight {
@@ -67,8 +69,7 @@ std::optional<PosedFrame> LiveSource::arrived() {
 
 std::string LiveSource::fault() const {
   if (const Duration silent = clock_.now() - heard_; silent > options_.silent_after) {
-    char text[48];
-    std::snprintf(text, sizeof text, "NO IMAGE for %.1f s", to_seconds(silent));
+    const std::string text = fmt::format("NO IMAGE for {:.1f} s", to_seconds(silent));
     const std::string trouble = feed_.trouble ? feed_.trouble() : "";
     return trouble.empty() ? text : text + (": " + trouble);
   }

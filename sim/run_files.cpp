@@ -2,24 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <cstdarg>
-#include <cstdio>
-
 #include "scene/files.hpp"
 #include "scene/number_text.hpp"
 #include "scene/scene_writer.hpp"
 
 namespace foresight::sim {
 namespace fs = std::filesystem;
-
-std::string format(const char* pattern, ...) {
-  char buffer[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(buffer, sizeof buffer, pattern, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 void write_scene(const fs::path& folder, const Lab& lab, const ArmPosition& arm) {
   fs::create_directory(folder / "meshes");

@@ -9,9 +9,6 @@
 
 namespace foresight::sim {
 
-/// printf into a string; up to 511 characters.
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
-
 /// Writes scene.yaml, arm.urdf and meshes/ into `folder`; the robot's `joints` are those of `arm`.
 void write_scene(const std::filesystem::path& folder, const Lab& lab, const ArmPosition& arm);
 
