@@ -4,6 +4,7 @@
 #include <map>
 
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 #include "scene/camera_info.hpp"
 #include "scene/files.hpp"
@@ -95,11 +96,10 @@ void read_predicted_errors(const fs::path& file, std::vector<RunFrame>& frames) 
 
 Duration pairing_window(const std::vector<RunFrame>& frames) {
   if (frames.size() < 2) return RunFrame::kLargestOffset;
-  std::vector<Duration> intervals;
-  for (std::size_t i = 1; i < frames.size(); ++i) intervals.push_back(frames[i].left.time - frames[i - 1].left.time);
-  const auto median = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), median, intervals.end());
-  return std::min(*median / 2, RunFrame::kLargestOffset);
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    intervals.push_back(to_seconds(frames[i].left.time - frames[i - 1].left.time));
+  return std::min(seconds(median(std::move(intervals)) / 2), RunFrame::kLargestOffset);
 }
 
 // The index of the frame whose left image is nearest to `time`.

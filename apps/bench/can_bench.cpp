@@ -8,6 +8,7 @@
 #include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "drivers/can/can_bits.hpp"
 #include "drivers/can/candump_log.hpp"
 #include "drivers/can/kernel_frame.hpp"
@@ -38,11 +39,6 @@ struct Step {
   bool of_a_bus;                       ///< needed for every frame while a bus is read and recorded
   std::function<std::uint64_t()> run;  ///< over all frames; returns something of each, so that nothing is left out
   std::vector<double> ns_per_frame;
-
-  double median() {
-    std::nth_element(ns_per_frame.begin(), ns_per_frame.begin() + kRounds / 2, ns_per_frame.end());
-    return ns_per_frame[kRounds / 2];
-  }
 };
 
 /// The frames in all the forms that the steps take.
@@ -142,7 +138,7 @@ int bench_can(const CanBenchOptions& options) {
       "%zu frames, median of %d rounds, CPU time          ns per frame   frames per s   of a core on a full bus\n",
       kFrames, kRounds);
   for (Step& step : steps) {
-    const double ns = step.median();
+    const double ns = median(step.ns_per_frame);
     if (step.of_a_bus) per_frame += ns;
     std::printf("%-50s %12.1f %14.0f   %10.3f %%\n", step.name, ns, 1e9 / ns, ns * most * 1e-7);
     all["steps"][step.name] = {{"ns_per_frame", ns}, {"frames_per_second", 1e9 / ns}};

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/atomic_file.hpp"
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {
@@ -18,13 +19,6 @@ Json number(double value) {
 }
 Json number(const std::optional<double>& value) {
   return number(value.value_or(kNaN));
-}
-
-double percentile(const std::vector<double>& sorted, double share) {
-  const double rank = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(rank);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], rank - static_cast<double>(below));
 }
 
 template <typename Get>
@@ -160,11 +154,9 @@ std::string to_string(StagePart part) {
 Statistic statistic_of(std::vector<double> values) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return {sum / static_cast<double>(values.size()), percentile(values, 0.5), values.front(), values.back(),
-          percentile(values, 0.99)};
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return {mean, median(values), *least, *most, quantile(values, 0.99)};
 }
 
 Summary summarise(const RunRecord& run) {

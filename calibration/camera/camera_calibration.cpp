@@ -8,6 +8,7 @@
 #include "calibration/camera/model_choice.hpp"
 #include "calibration/camera/rig_start.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -113,9 +114,7 @@ class Calibrator {
     const RigUncertainty uncertainty(result_.views, result_.solution, result_.warp);
     std::vector<double> distances;
     for (const Pose& T : result_.solution.T_left_board) distances.push_back(T.translation().norm());
-    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2),
-                     distances.end());
-    result_.board_distance_m = distances[distances.size() / 2];
+    result_.board_distance_m = median(std::move(distances));
     for (std::size_t c = 0; c < cameras(); ++c) {
       result_.at_infinity[c] = uncertainty.map(static_cast<int>(c), std::nullopt);
       result_.at_board[c] = uncertainty.map(static_cast<int>(c), result_.board_distance_m);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "calibration/camera/camera_calibration.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -111,9 +112,7 @@ double lens_difference(const CameraModel& a, const CameraModel& b) {
     if (there && here) differences.push_back((*there - *here).norm());
   }
   if (differences.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle;
+  return median(std::move(differences));
 }
 
 }  // namespace foresight

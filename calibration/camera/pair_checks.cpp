@@ -9,6 +9,7 @@
 #include "calibration/camera/board_pose.hpp"
 #include "calibration/camera/rig_start.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -94,10 +95,9 @@ class Consensus {
       turned.push_back(turnable_ ? error(predicted, p.T_right_turned) : kWorst);
       smaller.push_back(std::min(as_is.back(), turned.back()));
     }
-    const auto middle = smaller.begin() + static_cast<std::ptrdiff_t>(smaller.size() / 2);
-    std::nth_element(smaller.begin(), middle, smaller.end());
-    if (*middle >= median_) return;
-    median_ = *middle;
+    const double middle = median(std::move(smaller));
+    if (middle >= median_) return;
+    median_ = middle;
     errors_ = std::move(as_is);
     turned_ = std::move(turned);
   }

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "calibration/camera/lens_projection.hpp"
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {
@@ -34,13 +35,6 @@ Eigen::Matrix<double, 2, kLensParameters> after_lens(const CameraModel& camera, 
   d.row(0) = pixel[0].v.transpose();
   d.row(1) = pixel[1].v.transpose();
   return d;
-}
-
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return kNone;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 }  // namespace
@@ -142,8 +136,8 @@ UncertaintyMap RigUncertainty::map(int camera, std::optional<double> distance_m,
       if (std::isfinite(map.px(row, col))) seen.push_back(map.px(row, col));
     }
   map.centre_px = at(camera, {0.5 * w, 0.5 * h}, distance_m);
-  map.median_px = quantile(seen, 0.5);
-  map.p90_px = quantile(seen, 0.9);
+  map.median_px = seen.empty() ? kNone : median(seen);
+  map.p90_px = seen.empty() ? kNone : quantile(seen, 0.9);
   map.worst_corner_px = kNone;
   for (const double corner : {map.px(0, 0), map.px(0, cols - 1), map.px(rows - 1, 0), map.px(rows - 1, cols - 1)})
     map.worst_corner_px = std::fmax(map.worst_corner_px, corner);

@@ -8,6 +8,7 @@
 #include "calibration/camera/rigid_motion.hpp"
 #include "common/error.hpp"
 #include "common/lens.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -199,10 +200,8 @@ std::vector<double> held_out(const std::vector<Ray>& rays, Distortion model, con
 }
 
 std::vector<Ray> without_outliers(const std::vector<Ray>& rays, const std::vector<double>& distances, double sigmas) {
-  std::vector<double> sorted = distances;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
   // The median of a Rayleigh distribution is 1.1774 sigma.
-  const double limit = sigmas * std::max(kFloor, sorted[sorted.size() / 2] / 1.1774);
+  const double limit = sigmas * std::max(kFloor, median(distances) / 1.1774);
   std::vector<Ray> kept;
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (distances[i] <= limit) kept.push_back(rays[i]);

@@ -10,6 +10,7 @@
 
 #include "calibration/camera/rigid_motion.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -72,8 +73,7 @@ double scale_of(const std::vector<PointPair>& points) {
       const double model = (points[i].p_model - points[j].p_model).norm();
       if (model > 0) ratios.push_back((points[i].p_world - points[j].p_world).norm() / model);
     }
-  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
-  return ratios[ratios.size() / 2];
+  return median(std::move(ratios));
 }
 
 void require_scale(double scale, const std::vector<PointPair>& points, const PlacementOptions& options) {

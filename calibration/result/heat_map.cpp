@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/html_page.hpp"
+#include "common/statistics.hpp"
 #include "common/svg_plot.hpp"
 #include "common/text.hpp"
 
@@ -24,10 +25,9 @@ SvgPlot::Range range_of(const cv::Mat& values) {
   for (auto it = values.begin<double>(); it != values.end<double>(); ++it)
     if (std::isfinite(*it)) finite.push_back(*it);
   if (finite.empty()) return {0, 1};
-  std::sort(finite.begin(), finite.end());
-  const double most = finite[static_cast<std::size_t>(0.98 * static_cast<double>(finite.size() - 1) + 0.5)];
-  if (most - finite.front() > kSmallest) return {finite.front(), most};
-  return {finite.front(), finite.front() + std::max(kSmallest, std::abs(finite.front()))};
+  const double least = *std::min_element(finite.begin(), finite.end()), most = quantile(std::move(finite), 0.98);
+  if (most - least > kSmallest) return {least, most};
+  return {least, least + std::max(kSmallest, std::abs(least))};
 }
 
 cv::Mat coloured(const cv::Mat& values, SvgPlot::Range range) {

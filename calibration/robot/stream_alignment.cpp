@@ -5,6 +5,7 @@
 
 #include "calibration/robot/hand_eye_start.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -38,9 +39,7 @@ Speeds speeds_of(const PoseTrack& track, RobotTime zero) {
     if (valid) known.push_back(out.values.back());
   }
   if (known.empty()) return out;
-  const auto cut = known.begin() + static_cast<std::ptrdiff_t>(0.8 * static_cast<double>(known.size() - 1));
-  std::nth_element(known.begin(), cut, known.end());
-  out.high = *cut;
+  out.high = quantile(std::move(known), 0.8);
   for (double& value : out.values)
     if (value > 2 * out.high) value = 2 * out.high;
   return out;

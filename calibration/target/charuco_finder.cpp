@@ -10,6 +10,7 @@
 #include "calibration/target/grid_order.hpp"
 #include "calibration/target/refine_corners.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -160,8 +161,7 @@ std::optional<double> marker_share(const Board& board, const std::vector<cv::Mat
     }
   }
   if (shares.empty()) return std::nullopt;
-  std::nth_element(shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2), shares.end());
-  return std::clamp(shares[shares.size() / 2], 0.1, 0.95);
+  return std::clamp(median(std::move(shares)), 0.1, 0.95);
 }
 
 }  // namespace foresight

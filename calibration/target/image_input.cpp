@@ -12,6 +12,7 @@
 
 #include "calibration/target/view_names.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -136,9 +137,7 @@ struct BlurRule {
     std::vector<double> all;
     for (const Seen& s : seen)
       if (s.found) all.push_back(s.found->quality.sharpness);
-    if (all.empty()) return;
-    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
-    median = all[all.size() / 2];
+    median = foresight::median(std::move(all));
   }
   bool blurred(const FoundBoard& found) const { return found.quality.sharpness < kBlurred * median; }
   std::string text(const FoundBoard& found) const {

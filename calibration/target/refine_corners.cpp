@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "common/statistics.hpp"
+
 namespace foresight {
 namespace {
 
@@ -74,10 +76,7 @@ double pixel_noise(const cv::Mat& grey) {
   sizes.reserve(second.total() / 4 + 1);
   for (int y = 1; y < second.rows - 1; y += 2)
     for (int x = 1; x < second.cols - 1; x += 2) sizes.push_back(std::abs(second.at<float>(y, x)));
-  if (sizes.empty()) return 0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle / 0.6745 / 6;  // the filter's norm is 6
+  return median(std::move(sizes)) / 0.6745 / 6;  // the filter's norm is 6
 }
 
 }  // namespace foresight

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "calibration/target/refine_corners.hpp"
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {
@@ -29,11 +30,7 @@ cv::Point2f foretold(const GridPoints& p, int cols, int rows, int col, int row, 
     return others ? foretold(p, cols, rows, col, row, std::vector<char>(p.size(), 0))
                   : p[static_cast<std::size_t>(row * cols + col)];
   }
-  for (auto& some : guesses) std::sort(some.begin(), some.end());
-  const auto middle = [](const std::vector<float>& some) {
-    return (some[(some.size() - 1) / 2] + some[some.size() / 2]) / 2;
-  };
-  return {middle(guesses[0]), middle(guesses[1])};
+  return {median(std::move(guesses[0])), median(std::move(guesses[1]))};
 }
 
 /// Along the rim, OpenCV may have guessed a corner from squares that it did not find: out of the refinement's reach.

@@ -1,18 +1,15 @@
 #include "calibration/target/view_quality.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {
-
-double quantile(std::vector<float>& values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// Gradients across the images of the board's x and y axis, over the contrast.
 double sharpness(const cv::Mat& grey, const std::vector<cv::Point2f>& hull, const cv::Matx33d& H,
@@ -47,7 +44,7 @@ double sharpness(const cv::Mat& grey, const std::vector<cv::Point2f>& hull, cons
     }
   if (values.size() < 16) return 0;
   const double contrast = quantile(values, 0.95) - quantile(values, 0.05);
-  const double slope = std::min(quantile(slopes[0], 0.97), quantile(slopes[1], 0.97));
+  const double slope = std::min(quantile(std::move(slopes[0]), 0.97), quantile(std::move(slopes[1]), 0.97));
   return contrast > 1 ? 2 * slope / contrast : 0;
 }
 
