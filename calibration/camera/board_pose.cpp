@@ -1,54 +1,36 @@
 #include "calibration/camera/board_pose.hpp"
 
-#include <Eigen/Cholesky>
-#include <limits>
 #include <opencv2/calib3d.hpp>
+
+#include "calibration/camera/pose_solver.hpp"
 
 namespace foresight {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-struct Normal {
-  Matrix6 A = Matrix6::Zero();
-  Vector6 b = Vector6::Zero();
-  double sum = 0;
-  int corners = 0;
-};
-
-// Normal equations after a small turn about the board's origin and a shift, both in left coordinates.
-bool accumulate(const CameraRig& rig, const std::vector<Eigen::Vector3d>& p_board, const RigView& view, int first,
-                int last, const Pose& T_left_board, Normal& normal) {
-  const Eigen::Matrix3d R_right_left = rig.T_left_right.linear().transpose();
+// Adds what the corners say; `T` is T_left_board.
+bool add_corners(const CameraRig& rig, const std::vector<Eigen::Vector3d>& p_board, const RigView& view, int first,
+                 int last, const Pose& T, bool derivatives, PoseEquations<0>& sum) {
   for (int camera = first; camera <= last; ++camera) {
     const auto c = static_cast<std::size_t>(camera);
+    const Eigen::Matrix3d R_camera_board =
+        camera == 1 ? Eigen::Matrix3d(rig.T_left_right.linear().transpose() * T.linear()) : Eigen::Matrix3d(T.linear());
     for (const Corner& corner : view.corners[c]) {
-      const Eigen::Vector3d turned = T_left_board.linear() * p_board[static_cast<std::size_t>(corner.index)];
-      const Eigen::Vector3d p_left = turned + T_left_board.translation();
+      const Eigen::Vector3d& p = p_board[static_cast<std::size_t>(corner.index)];
       Eigen::Matrix<double, 2, 3> d;
-      const auto pixel = project(rig.cameras[c], to_camera(rig, camera, p_left), &d);
+      const auto pixel = project(rig.cameras[c], to_camera(rig, camera, T * p), derivatives ? &d : nullptr);
       if (!pixel) return false;
-      if (camera == 1) d = (d * R_right_left).eval();
-      Eigen::Matrix<double, 2, 6> J;
-      for (int row = 0; row < 2; ++row) J.row(row).head<3>() = turned.cross(d.row(row).transpose()).transpose();
-      J.rightCols<3>() = d;
       const Eigen::Vector2d error = *pixel - corner.pixel;
-      normal.A.noalias() += J.transpose() * J;
-      normal.b.noalias() += J.transpose() * error;
-      normal.sum += error.squaredNorm();
-      ++normal.corners;
+      sum.cost += error.squaredNorm() / 2;
+      if (!derivatives) continue;
+      d = (d * R_camera_board).eval();
+      Eigen::Matrix<double, 2, 6> J;
+      for (int row = 0; row < 2; ++row) J.row(row).head<3>() = p.cross(d.row(row).transpose()).transpose();
+      J.rightCols<3>() = d;
+      sum.H.noalias() += J.transpose() * J;
+      sum.g.noalias() += J.transpose() * error;
     }
   }
   return true;
-}
-
-Pose stepped(const Pose& T, const Vector6& step) {
-  Pose result = T;
-  const double angle = step.head<3>().norm();
-  if (angle > 0) result.linear() = Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() * T.linear();
-  result.translation() += step.tail<3>();
-  return result;
 }
 
 std::vector<Pose> planar_starts(const CameraModel& camera, const std::vector<Eigen::Vector3d>& p_board,
@@ -86,27 +68,20 @@ std::vector<Pose> planar_starts(const CameraModel& camera, const std::vector<Eig
 
 std::optional<BoardPose> refine_board_pose(const CameraRig& rig, const std::vector<Eigen::Vector3d>& p_board,
                                            const RigView& view, int first, int last, const Pose& start) {
-  Pose T = start;
-  Normal at;
-  if (!accumulate(rig, p_board, view, first, last, T, at) || at.corners == 0) return std::nullopt;
-  double damping = 1e-6;
-  for (int i = 0; i < 60; ++i) {
-    Matrix6 A = at.A;
-    A.diagonal() *= 1 + damping;
-    const Vector6 step = -A.ldlt().solve(at.b);
-    const Pose trial = stepped(T, step);
-    Normal next;
-    if (step.allFinite() && accumulate(rig, p_board, view, first, last, trial, next) && next.sum <= at.sum) {
-      const bool done = at.sum - next.sum <= 1e-12 * at.sum;
-      T = trial, at = next;
-      damping = std::max(damping * 0.1, 1e-12);
-      if (done) break;
-    } else {
-      damping *= 30;
-      if (damping > 1e9) break;
-    }
-  }
-  return BoardPose{T, at.sum, at.corners};
+  int corners = 0;
+  for (int camera = first; camera <= last; ++camera)
+    corners += static_cast<int>(view.corners[static_cast<std::size_t>(camera)].size());
+  const auto problem = [&](const PoseEstimate<0>& at, bool derivatives, PoseEquations<0>& sum) {
+    return add_corners(rig, p_board, view, first, last, at.T, derivatives, sum);
+  };
+  PoseSolverOptions<0> options;
+  options.base = start;
+  options.most_iterations = 60;
+  const PoseSolution<0> found = solve_pose<0>({start, {}}, problem, options);
+  if (corners == 0 || !found.usable) return std::nullopt;
+  PoseEquations<0> end;
+  problem(found.at, false, end);
+  return BoardPose{found.at.T, 2 * end.cost, corners};
 }
 
 std::optional<BoardPose> find_board_pose(const CameraRig& rig, const std::vector<Eigen::Vector3d>& p_board,

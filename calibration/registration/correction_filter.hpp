@@ -23,8 +23,8 @@
 #include <map>
 #include <optional>
 
+#include "calibration/camera/twist.hpp"
 #include "calibration/registration/motion_model.hpp"
-#include "calibration/registration/twist.hpp"
 #include "common/time.hpp"
 
 namespace foresight {

@@ -11,7 +11,7 @@
 
 #include <deque>
 
-#include "calibration/registration/twist.hpp"
+#include "calibration/camera/twist.hpp"
 #include "common/time.hpp"
 #include "scene/scene_model.hpp"
 

@@ -1,13 +1,14 @@
 #include "calibration/registration/photometric_refinement.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "calibration/camera/pose_solver.hpp"
 #include "calibration/registration/view_points.hpp"
+#include "common/statistics.hpp"
 
 namespace foresight {
 namespace {
@@ -19,13 +20,15 @@ constexpr double kHuber = 1.345;      // scales; 95 % as efficient as least squa
 constexpr double kBeyond = 5;         // scales; further out it is another surface, a shadow, a highlight
 constexpr double kLeastScale = 0.5;   // 8-bit values: rounding
 constexpr double kConverged = 0.003;  // px
-constexpr double kTiny = 0.3;         // px: below this the judging blocks' noise decides, so they may only not object
+constexpr std::size_t kFewestOfLevel = 12;
+constexpr double kTiny = 0.3;  // px: below this the judging blocks' noise decides, so they may only not object
 
-/// What is being estimated.
-struct Estimate {
-  Pose T_view_image = Pose::Identity();
-  double gain = 1, bias = 0;
-};
+/// T_view_image; gain and bias of the image.
+using Estimate = PoseEstimate<2>;
+
+Estimate estimate(const Pose& T_view_image, double gain, double bias) {
+  return {T_view_image, {gain, bias}};
+}
 
 /// One level of the problem.
 struct Level {
@@ -40,23 +43,22 @@ struct Level {
     if (!pixel) return std::nullopt;
     const auto value = sample(image, to_level(*pixel, level));
     if (!value) return std::nullopt;
-    return *value - at.gain * point.value - at.bias;
+    return *value - at.extra[0] * point.value - at.extra[1];
   }
 };
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// Of all points, NaN outside the image.
+std::vector<double> residuals_of(const Level& level, const Estimate& at) {
+  const Pose T_image_view = at.T.inverse();
+  std::vector<double> out;
+  out.reserve(level.points.size());
+  for (const ViewPoint& point : level.points) out.push_back(level.residual(point, at, T_image_view).value_or(NAN));
+  return out;
 }
 
-double scale_of(const Level& level, const Estimate& at) {
-  const Pose T_image_view = at.T_view_image.inverse();
-  std::vector<double> sizes;
-  for (const ViewPoint& point : level.points)
-    if (const auto r = level.residual(point, at, T_image_view)) sizes.push_back(std::abs(*r));
-  return std::max(1.4826 * median_of(std::move(sizes)), kLeastScale);
+double scale_of(std::vector<double> residuals) {
+  std::erase_if(residuals, [](double r) { return !std::isfinite(r); });
+  return std::max(robust_sigma(std::move(residuals)), kLeastScale);
 }
 
 double weight_of(double r, double scale) {
@@ -71,53 +73,47 @@ double loss(double r, double scale) {
 
 /// Gain and bias from medians of the values where the pose cannot be trusted yet.
 void start_exposure(const Level& level, Estimate& at) {
-  const Pose T_image_view = at.T_view_image.inverse();
+  const std::vector<double> all = residuals_of(level, estimate(at.T, 0, 0));
   std::vector<double> seen, drawn;
-  for (const ViewPoint& point : level.points) {
-    const auto r = level.residual(point, {at.T_view_image, 0, 0}, T_image_view);
-    if (r) seen.push_back(*r), drawn.push_back(point.value);
-  }
-  const double a = median_of(seen), b = median_of(drawn);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (std::isfinite(all[i])) seen.push_back(all[i]), drawn.push_back(level.points[i].value);
+  const double a = median(seen), b = median(drawn);
   for (double& x : seen) x = std::abs(x - a);
   for (double& x : drawn) x = std::abs(x - b);
-  const double spread = median_of(drawn);
-  at.gain = spread > 1 ? std::clamp(median_of(seen) / spread, 0.4, 2.5) : 1;
-  at.bias = a - at.gain * b;
+  const double spread = median(std::move(drawn));
+  const double gain = spread > 1 ? std::clamp(median(std::move(seen)) / spread, 0.4, 2.5) : 1;
+  at.extra = {gain, a - gain * b};
 }
 
-struct NormalEquations {
-  Matrix8d H = Matrix8d::Zero();
-  Vector8d g = Vector8d::Zero();
-  std::map<int, Vector8d> by_block;  // g of each block
-  std::size_t count = 0;
-};
+/// One level, as the solver asks for it. Each time it asks for derivatives, the scale is found anew; the costs that it
+/// compares with one another are of one scale.
+struct LevelProblem {
+  const Level& level;
+  double scale = 1;
+  std::size_t count = 0;                // points with a weight
+  std::map<int, Vector8d>* by_block{};  // g of each block, where wanted
 
-NormalEquations normal_equations(const Level& level, const Estimate& at, double scale) {
-  NormalEquations out;
-  const Pose T_image_view = at.T_view_image.inverse();
-  for (const ViewPoint& point : level.points) {
-    if (judges(point.block)) continue;
-    const auto r = level.residual(point, at, T_image_view);
-    if (!r) continue;
-    const double w = weight_of(*r, scale) / (scale * scale);
-    if (w == 0) continue;
-    Vector8d j;
-    j << at.gain * point.slope.transpose(), -point.value, -1;
-    out.H.noalias() += w * j * j.transpose();
-    const Vector8d g = w * *r * j;
-    out.g += g;
-    out.by_block.try_emplace(point.block, Vector8d::Zero()).first->second += g;
-    ++out.count;
+  bool operator()(const Estimate& at, bool derivatives, PoseEquations<2>& sum) {
+    const std::vector<double> residuals = residuals_of(level, at);
+    if (derivatives) scale = scale_of(residuals), count = 0;
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      const ViewPoint& point = level.points[i];
+      const double r = residuals[i];
+      if (judges(point.block)) continue;
+      sum.cost += std::isfinite(r) ? loss(r, scale) : loss(kBeyond * scale, scale);
+      const double w = std::isfinite(r) ? weight_of(r, scale) / (scale * scale) : 0;
+      if (!derivatives || w == 0) continue;
+      Vector8d j;
+      j << at.extra[0] * point.slope.transpose(), -point.value, -1;
+      sum.H.noalias() += w * j * j.transpose();
+      const Vector8d g = w * r * j;
+      sum.g += g;
+      if (by_block) by_block->try_emplace(point.block, Vector8d::Zero()).first->second += g;
+      ++count;
+    }
+    return !derivatives || count >= kFewestOfLevel;
   }
-  return out;
-}
-
-/// Scaled to a unit diagonal: metres, radians and grey values have nothing to do with each other.
-Vector8d solve(const Matrix8d& H, const Vector8d& g) {
-  const Vector8d s = H.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  const Matrix8d unit = s.asDiagonal() * H * s.asDiagonal() + 1e-9 * Matrix8d::Identity();
-  return s.asDiagonal() * unit.ldlt().solve(s.asDiagonal() * g);
-}
+};
 
 Matrix6d px_metric_of(const std::vector<ViewPoint>& points) {
   Matrix6d metric = Matrix6d::Zero();
@@ -129,24 +125,17 @@ double size_px(const Matrix6d& metric, const Vector6d& twist) {
   return std::sqrt(std::max(0.0, twist.dot(metric * twist)));
 }
 
-void iterate(const Level& level, const RefinementOptions& options, const Matrix6d& metric, Estimate& at) {
-  for (int i = 0; i < options.iterations; ++i) {
-    NormalEquations n = normal_equations(level, at, scale_of(level, at));
-    if (n.count < 12) return;
-    n.H.topLeftCorner<6, 6>() += options.prior_information;
-    n.g.head<6>() += options.prior_information * to_twist(at.T_view_image);
-    const Vector8d step = -solve(n.H, n.g);
-    const Vector6d twist = step.head<6>();
-    at.T_view_image = at.T_view_image * to_motion(twist);
-    at.gain += step[6];
-    at.bias += step[7];
-    if (size_px(metric, twist) < kConverged) return;
-  }
+void refine(const Level& level, const RefinementOptions& options, const Matrix6d& metric, Estimate& at) {
+  PoseSolverOptions<2> solver;
+  solver.prior.topLeftCorner<6, 6>() = options.prior_information;
+  solver.most_iterations = options.iterations;
+  solver.step_metric = metric / (kConverged * kConverged);
+  at = solve_pose<2>(at, LevelProblem{level}, solver).at;
 }
 
 /// Mean loss on the judging blocks, with gain and bias as they are.
 double judge(const Level& level, const Estimate& at, double scale) {
-  const Pose T_image_view = at.T_view_image.inverse();
+  const Pose T_image_view = at.T.inverse();
   double sum = 0;
   std::size_t count = 0;
   for (const ViewPoint& point : level.points) {
@@ -159,12 +148,15 @@ double judge(const Level& level, const Estimate& at, double scale) {
 }
 
 /// The residuals of neighbouring pixels are alike: blocks, not pixels, are the independent draws.
-Matrix6d covariance_of(const Level& level, const Estimate& at, double scale, const RefinementOptions& options) {
-  NormalEquations n = normal_equations(level, at, scale);
+Matrix6d covariance_of(const Level& level, const Estimate& at, const RefinementOptions& options) {
+  std::map<int, Vector8d> by_block;
+  PoseEquations<2> n;
+  LevelProblem{level, 1, 0, &by_block}(at, true, n);
   n.H.topLeftCorner<6, 6>() += options.prior_information;
   Matrix8d middle = Matrix8d::Zero();
-  for (const auto& [block, g] : n.by_block) middle += g * g.transpose();
+  for (const auto& [block, g] : by_block) middle += g * g.transpose();
   middle.topLeftCorner<6, 6>() += options.prior_information;
+  // Scaled to a unit diagonal: metres, radians and grey values have nothing to do with each other.
   const Vector8d s = n.H.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
   const Matrix8d unit = s.asDiagonal() * n.H * s.asDiagonal() + 1e-9 * Matrix8d::Identity();
   const Matrix8d inverse = s.asDiagonal() * unit.inverse() * s.asDiagonal();
@@ -198,7 +190,7 @@ RefinementSummary refine_pose(const Lens& lens, const RenderedView& view, const 
   RefinementSummary out;
   out.T_world_camera = view.T_world_camera;
   out.covariance = Matrix6d::Zero();
-  Estimate at, before;
+  Estimate at = estimate(Pose::Identity(), 1, 0), before = at;
   for (int l = options.coarsest_level; l >= 0; --l) {
     const auto k = static_cast<std::size_t>(l);
     cv::Mat mask;
@@ -207,22 +199,21 @@ RefinementSummary refine_pose(const Lens& lens, const RenderedView& view, const 
     const Level level{lens, images[k], find_view_points(lens, view, views[k], mask, l, options), l};
     if (l == options.coarsest_level) start_exposure(level, at);
     out.px_metric = px_metric_of(level.points);
-    iterate(level, options, out.px_metric, at);
+    refine(level, options, out.px_metric, at);
     if (l > 0) continue;
     out.points = level.points.size();
-    const double scale = scale_of(level, at);
+    const double scale = scale_of(residuals_of(level, at));
     start_exposure(level, before);
-    out.error_before = std::min(judge(level, before, scale), judge(level, {Pose::Identity(), at.gain, at.bias}, scale));
+    out.error_before = std::min(judge(level, before, scale), judge(level, {Pose::Identity(), at.extra}, scale));
     out.error_after = judge(level, at, scale);
-    out.covariance = covariance_of(level, at, scale, options);
+    out.covariance = covariance_of(level, at, options);
   }
-  out.moved_px = size_px(out.px_metric, to_twist(at.T_view_image));
+  out.moved_px = size_px(out.px_metric, to_twist(at.T));
   out.sigma_px = std::sqrt(std::max(0.0, (out.px_metric * out.covariance).trace()));
-  out.gain = at.gain;
-  out.bias = at.bias;
+  out.gain = at.extra[0], out.bias = at.extra[1];
   out.reason = objection(out, options);
   out.accepted = out.reason.empty();
-  if (out.accepted) out.T_world_camera = view.T_world_camera * at.T_view_image;
+  if (out.accepted) out.T_world_camera = view.T_world_camera * at.T;
   return out;
 }
 

@@ -14,8 +14,8 @@
 
 #include <string>
 
+#include "calibration/camera/twist.hpp"
 #include "calibration/registration/rendered_view.hpp"
-#include "calibration/registration/twist.hpp"
 #include "common/lens.hpp"
 
 namespace foresight {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "calibration/camera/pose_solver.hpp"
 #include "calibration/registration/projection_slope.hpp"
 
 namespace foresight {
@@ -12,23 +14,15 @@ namespace {
 constexpr double kHuber = 2;         // sigmas
 constexpr double kConverged = 1e-7;  // rad and m
 
-/// Pixel and its slope by the correction's twist.
-struct Projection {
-  Eigen::Vector2d pixel;
-  Eigen::Matrix<double, 2, 6> slope;
-};
-
-/// `p_left`: corner in the corrected left camera's frame.
-std::optional<Projection> project(const Lens& lens, const Pose& T_camera_left, const Eigen::Vector3d& p_left) {
-  const Eigen::Vector3d p = T_camera_left * p_left;
-  const auto pixel = lens.project(p);
-  if (!pixel) return std::nullopt;
-  const auto slope = projection_slope(lens, p);
+/// Slope of the pixel by the correction's twist. `p_left`: corner in the corrected left camera's frame.
+std::optional<Eigen::Matrix<double, 2, 6>> slope_of(const Lens& lens, const Pose& T_camera_left,
+                                                    const Eigen::Vector3d& p_left) {
+  const auto slope = projection_slope(lens, T_camera_left * p_left);
   if (!slope) return std::nullopt;
   Eigen::Matrix<double, 3, 6> moved;  // of p_left, when the left camera moves
   moved << 0, -p_left.z(), p_left.y(), -1, 0, 0, p_left.z(), 0, -p_left.x(), 0, -1, 0, -p_left.y(), p_left.x(), 0, 0, 0,
       -1;
-  return Projection{*pixel, *slope * T_camera_left.linear() * moved};
+  return *slope * T_camera_left.linear() * moved;
 }
 
 }  // namespace
@@ -38,43 +32,41 @@ struct TagCorrection::Problem {
   const TagCorrection& of;
   RobotTime now;
   Pose D = Pose::Identity();
+  Matrix6d information = Matrix6d::Zero();  // of D
   std::vector<const Observation*> left_out{};
-  Matrix6d H = Matrix6d::Zero();
-  Vector6d g = Vector6d::Zero();
-  double square_px = 0;
-  int tags = 0;
 
   double variance(const Image& image) const {
     const double age = std::max(0.0, to_seconds(now - image.time));
     return std::pow(of.options_.corner_px, 2) + std::pow(of.options_.drift_px_per_s, 2) * age;
   }
 
-  /// Chi-square of one tag; its normal equations are added where asked for. Infinite where the lens
-  /// does not see it.
-  double add(const Image& image, const Observation& seen, bool to_equations) {
-    const Pose T_left_world = (image.T_world_left * D).inverse();
+  /// Chi-square of one tag, infinite where the lens does not see it. Loss and, where `derivatives`, normal equations of
+  /// its corners are added to `sum`.
+  double add(const Image& image, const Observation& seen, const Pose& T_left_world, bool derivatives,
+             PoseEquations<0>& sum) const {
     const Lens& lens = seen.right ? of.lenses_.right : of.lenses_.left;
-    const Pose T_camera_left = seen.right ? of.lenses_.T_left_right.inverse() : Pose::Identity();
-    const double var = variance(image);
+    const Pose T_camera_left = seen.right ? of.T_right_left_ : Pose::Identity();
+    const double var = variance(image), sigma = std::sqrt(var);
     double chi2 = 0;
-    Matrix6d h = Matrix6d::Zero();
-    Vector6d b = Vector6d::Zero();
+    PoseEquations<0> tag;
     for (std::size_t c = 0; c < 4; ++c) {
-      const auto at = project(lens, T_camera_left, T_left_world * (*seen.corners)[c]);
-      if (!at) return std::numeric_limits<double>::infinity();
-      const Eigen::Vector2d r = at->pixel - seen.pixels[c];
-      const double size = r.norm() / std::sqrt(var);
-      const double w = (size > kHuber ? kHuber / size : 1) / var;
+      const Eigen::Vector3d p_left = T_left_world * (*seen.corners)[c];
+      const auto pixel = lens.project(T_camera_left * p_left);
+      const auto slope = pixel && derivatives ? slope_of(lens, T_camera_left, p_left) : std::nullopt;
+      if (!pixel || (derivatives && !slope)) {
+        sum.cost += of.options_.gate / 2;  // no step is for the better because it loses a tag
+        return std::numeric_limits<double>::infinity();
+      }
+      const Eigen::Vector2d r = *pixel - seen.pixels[c];
+      const double size = r.norm() / sigma;
       chi2 += size * size;
-      h.noalias() += w * at->slope.transpose() * at->slope;
-      b.noalias() += w * at->slope.transpose() * r;
+      tag.cost += size > kHuber ? kHuber * (size - kHuber / 2) : size * size / 2;
+      if (!derivatives) continue;
+      const double w = (size > kHuber ? kHuber / size : 1) / var;
+      tag.H.noalias() += w * slope->transpose() * *slope;
+      tag.g.noalias() += w * slope->transpose() * r;
     }
-    if (to_equations) {
-      H += h;
-      g += b;
-      square_px += chi2 * var / 4;
-      ++tags;
-    }
+    sum.H += tag.H, sum.g += tag.g, sum.cost += tag.cost;
     return chi2;
   }
 
@@ -83,35 +75,47 @@ struct TagCorrection::Problem {
   }
 
   void minimise() {
-    const Vector6d information = of.options_.prior_sigma.array().square().inverse();
-    for (int i = 0; i < of.options_.iterations; ++i) {
-      H = information.asDiagonal();
-      g = information.asDiagonal() * to_twist(D);
-      square_px = tags = 0;
-      for (const Image& image : of.images_)
+    PoseSolverOptions<0> options;
+    options.prior = Vector6d(of.options_.prior_sigma.array().square().inverse()).asDiagonal();
+    options.most_iterations = of.options_.iterations;
+    options.step_metric = Matrix6d::Identity() / (kConverged * kConverged);
+    const auto problem = [this](const PoseEstimate<0>& at, bool derivatives, PoseEquations<0>& sum) {
+      for (const Image& image : of.images_) {
+        const Pose T_left_world = (image.T_world_left * at.T).inverse();
         for (const Observation& seen : image.observations)
-          if (!is_left_out(seen)) add(image, seen, true);
-      const Vector6d step = -H.ldlt().solve(g);
-      D = D * to_motion(step);
-      if (step.norm() < kConverged) break;
+          if (!is_left_out(seen)) add(image, seen, T_left_world, derivatives, sum);
+      }
+      return true;
+    };
+    const PoseSolution<0> found = solve_pose<0>({D, {}}, problem, options);
+    D = found.at.T;
+    information = found.equations.H;
+  }
+
+  /// Calls `use` with each tag that counts, its image and its chi-square.
+  template <typename Use>
+  void judge(Use use) const {
+    for (const Image& image : of.images_) {
+      const Pose T_left_world = (image.T_world_left * D).inverse();
+      for (const Observation& seen : image.observations) {
+        PoseEquations<0> unused;
+        if (!is_left_out(seen)) use(seen, image, add(image, seen, T_left_world, false, unused));
+      }
     }
   }
 
   /// Leaves out the tags that the solution does not explain; true where there was a new one.
   bool gate() {
-    bool any = false;
-    for (const Image& image : of.images_)
-      for (const Observation& seen : image.observations) {
-        if (is_left_out(seen) || add(image, seen, false) <= of.options_.gate) continue;
-        left_out.push_back(&seen);
-        any = true;
-      }
-    return any;
+    const std::size_t before = left_out.size();
+    judge([this](const Observation& seen, const Image&, double chi2) {
+      if (chi2 > of.options_.gate) left_out.push_back(&seen);
+    });
+    return left_out.size() > before;
   }
 };
 
 TagCorrection::TagCorrection(const StereoLenses& lenses, const TagMap& map, const TagCorrectionOptions& options)
-    : lenses_(lenses), map_(map), options_(options) {}
+    : lenses_(lenses), T_right_left_(lenses.T_left_right.inverse()), map_(map), options_(options) {}
 
 void TagCorrection::add(RobotTime time, const Pose& T_world_left, const std::vector<DetectedTag>& left,
                         const std::vector<DetectedTag>& right) {
@@ -135,15 +139,20 @@ std::optional<RobotTime> TagCorrection::newest() const {
 
 TagCorrectionSummary TagCorrection::solve(RobotTime now) const {
   Problem problem{*this, now};
+  TagCorrectionSummary out;
   problem.minimise();
   for (int round = 0; round < 3 && problem.gate(); ++round) problem.minimise();
-  TagCorrectionSummary out;
+  double square_px = 0;
+  problem.judge([&](const Observation&, const Image& image, double chi2) {
+    if (!std::isfinite(chi2)) return;
+    square_px += chi2 * problem.variance(image) / 4;
+    ++out.tags;
+  });
   out.T_left_corrected = problem.D;
-  out.covariance = problem.H.ldlt().solve(Matrix6d::Identity());
-  out.tags = problem.tags;
+  out.covariance = problem.information.ldlt().solve(Matrix6d::Identity());
   out.gated = static_cast<int>(problem.left_out.size());
-  out.usable = problem.tags > 0;
-  out.rms_px = out.usable ? std::sqrt(problem.square_px / problem.tags) : 0;
+  out.usable = out.tags > 0;
+  out.rms_px = out.usable ? std::sqrt(square_px / out.tags) : 0;
   return out;
 }
 

@@ -13,7 +13,7 @@
 #include <deque>
 #include <map>
 
-#include "calibration/registration/twist.hpp"
+#include "calibration/camera/twist.hpp"
 #include "calibration/tags/tag_detector.hpp"
 #include "common/lens.hpp"
 #include "common/time.hpp"
@@ -77,6 +77,7 @@ class TagCorrection {
   struct Problem;
 
   StereoLenses lenses_;
+  Pose T_right_left_;
   TagMap map_;
   TagCorrectionOptions options_;
   std::deque<Image> images_;
