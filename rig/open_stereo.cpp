@@ -64,10 +64,11 @@ StereoConfig as_mock(StereoConfig config) {
 
 sim::MockCameraOptions mock_options(const StereoConfig& config) {
   sim::MockCameraOptions options;
-  options.left = lens_of(config, Side::left);
-  options.right = lens_of(config, Side::right);
+  options.lenses.left = lens_of(config, Side::left);
+  options.lenses.right = lens_of(config, Side::right);
   const CameraConfig& right = config.camera(Side::right);
-  if (right.calibration && right.calibration->T_left_right) options.T_left_right = *right.calibration->T_left_right;
+  if (right.calibration && right.calibration->T_left_right)
+    options.lenses.T_left_right = *right.calibration->T_left_right;
   options.rate = config.camera(Side::left).settings.rate;
   return options;
 }

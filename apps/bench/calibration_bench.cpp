@@ -65,8 +65,8 @@ CameraRig solve_with_opencv(const RigViews& views) {
     T_right_left.translation()[row] = t.at<double>(row);
   }
   return {
-      {camera_of(K[0], d[0], views.width[0], views.height[0]), camera_of(K[1], d[1], views.width[1], views.height[1])},
-      T_right_left.inverse(),
+      {{camera_of(K[0], d[0], views.width[0], views.height[0]), camera_of(K[1], d[1], views.width[1], views.height[1])},
+       T_right_left.inverse()},
       {}};
 }
 

@@ -76,11 +76,8 @@ ResultHeader header_of(const CameraCalibration& c, const std::vector<std::string
 
 void write_camera_info(const CameraCalibration& c, const std::filesystem::path& folder) {
   const CameraRig& rig = c.solution.rig;
-  CalibratedCameras calibrated{rig.cameras[0], {}, rig.T_left_right};
-  const bool pair = cameras(c) == 2;
-  if (pair) calibrated.right = rig.cameras[1];
   std::filesystem::create_directories(folder);
-  write_cameras(CameraFormat::camera_info, calibrated, pair ? folder : folder / "camera.yaml", true);
+  write_cameras(CameraFormat::camera_info, rig, rig.pair() ? folder : folder / "camera.yaml", true);
 }
 
 }  // namespace
@@ -132,8 +129,7 @@ int deliver(const CameraCalibration& c, const CameraOutput& output) {
   if (output.files.report) camera_report(c).write(*output.files.report);
   if (!c.usable()) return 1;
   const CameraRig& rig = c.solution.rig;
-  YAML::Node result = cameras(c) == 2 ? to_yaml(StereoModel{rig.cameras[0], rig.cameras[1], rig.T_left_right})
-                                      : to_yaml(rig.cameras[0]);
+  YAML::Node result = to_yaml(rig);
   if (c.warp) result["board"] = to_yaml(KnownBoard(c.views.p_board, rig.warp));
   if (output.files.out) write_result(*output.files.out, header_of(c, output.serials), result, output.files.force);
   if (output.camera_info) write_camera_info(c, *output.camera_info);

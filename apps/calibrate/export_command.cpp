@@ -48,22 +48,24 @@ UrdfOffsets read_offsets(const YamlMap& result) {
   return offsets;
 }
 
+void add_pair(Source& source) {
+  if (source.cameras && source.cameras->pair())
+    source.offsets.mounts.push_back({kLeftLink, kRightLink, source.cameras->T_left_right});
+}
+
 Source read_result_source(const std::filesystem::path& file) {
   const std::string kind = YamlMap::load(file).text("kind");
   const ResultFile result = read_result(file, kind);
   Source source;
   source.devices = result.header.devices;
-  if (kind == "intrinsics") {
-    source.cameras = CalibratedCameras{read_camera(result.result), {}, Pose::Identity()};
+  if (kind == "intrinsics" || kind == "stereo") {
+    source.cameras = read_calibrated_cameras(result.result);
   } else if (kind == "display") {
-    source.cameras = CalibratedCameras{read_camera(result.result.map("panel")), {}, Pose::Identity()};
-  } else if (kind == "stereo") {
-    const StereoModel stereo = read_stereo(result.result);
-    source.cameras = CalibratedCameras{stereo.left, stereo.right, stereo.T_left_right};
-    source.offsets.mounts.push_back({kLeftLink, kRightLink, stereo.T_left_right});
+    source.cameras = CalibratedCameras{{read_camera(result.result.map("panel"))}, Pose::Identity()};
   } else {
     source.offsets = read_offsets(result.result);
   }
+  add_pair(source);
   return source;
 }
 
@@ -75,7 +77,7 @@ Source read_source(const ExportOptions& options) {
   }
   Source source;
   source.cameras = read_cameras(parse_camera_format(options.from), options.input);
-  if (source.cameras->right) source.offsets.mounts.push_back({kLeftLink, kRightLink, source.cameras->T_left_right});
+  add_pair(source);
   return source;
 }
 
@@ -101,12 +103,11 @@ ExportSummary write_urdf(const Source& source, const ExportOptions& options) {
   ExportSummary summary{{out}, 0, 0};
   for (const UrdfMount& mount : source.offsets.mounts) {
     const Pose back = read_mount(text, mount.child, out.string()).T_parent_child;
-    CalibratedCameras as_is = source.cameras.value_or(CalibratedCameras{});
-    if (!as_is.right) continue;
-    CalibratedCameras as_read = as_is;
+    if (!source.cameras || !source.cameras->pair()) continue;
+    CalibratedCameras as_read = *source.cameras;
     as_read.T_left_right = back;
     summary.rays = kRays;
-    summary.worst_px = worst_ray(as_is, as_read, kRays);
+    summary.worst_px = worst_ray(*source.cameras, as_read, kRays);
   }
   if (!(summary.worst_px <= kMostPx))
     throw RuntimeFailure("the URDF would differ by " + exact_text(summary.worst_px) + " px", "report this");
@@ -118,20 +119,12 @@ ExportSummary write_urdf(const Source& source, const ExportOptions& options) {
 ExportSummary write_own(const Source& source, const ExportOptions& options) {
   const CalibratedCameras& cameras = cameras_of(source, options);
   ResultHeader header;
-  header.kind = cameras.right ? "stereo" : "intrinsics";
+  header.kind = cameras.pair() ? "stereo" : "intrinsics";
   header.date = utc_now();
   header.devices = source.devices;
   header.score_name = "imported_not_measured";
-  const YAML::Node payload =
-      cameras.right ? to_yaml(StereoModel{cameras.left, *cameras.right, cameras.T_left_right}) : to_yaml(cameras.left);
-  const YamlMap back = YamlMap::parse(*options.outputs.out, YAML::Dump(payload));
-  CalibratedCameras read{cameras.left, {}, Pose::Identity()};
-  if (cameras.right) {
-    const StereoModel stereo = read_stereo(back);
-    read = {stereo.left, stereo.right, stereo.T_left_right};
-  } else {
-    read.left = read_camera(back);
-  }
+  const YAML::Node payload = to_yaml(cameras);
+  const CalibratedCameras read = read_calibrated_cameras(YamlMap::parse(*options.outputs.out, YAML::Dump(payload)));
   const ExportSummary summary{{*options.outputs.out}, kRays, worst_ray(cameras, read, kRays)};
   if (!(summary.worst_px <= kMostPx)) throw RuntimeFailure("the result does not read back", "report this");
   write_result(*options.outputs.out, header, payload, options.outputs.force);
@@ -140,12 +133,11 @@ ExportSummary write_own(const Source& source, const ExportOptions& options) {
 
 std::vector<std::vector<std::string>> lens_rows(const CalibratedCameras& cameras) {
   std::vector<std::vector<std::string>> rows;
-  for (const CameraModel* camera : {&cameras.left, cameras.right ? &*cameras.right : nullptr})
-    if (camera)
-      rows.push_back({rows.empty() ? "left" : "right", to_string(camera->distortion),
-                      std::to_string(camera->width) + " x " + std::to_string(camera->height),
-                      readable(camera->lens[0], 3, " px"), readable(camera->lens[1], 3, " px"),
-                      readable(camera->lens[2], 3, " px"), readable(camera->lens[3], 3, " px")});
+  for (const CameraModel& camera : cameras.cameras)
+    rows.push_back({rows.empty() ? "left" : "right", to_string(camera.distortion),
+                    std::to_string(camera.width) + " x " + std::to_string(camera.height),
+                    readable(camera.lens[0], 3, " px"), readable(camera.lens[1], 3, " px"),
+                    readable(camera.lens[2], 3, " px"), readable(camera.lens[3], 3, " px")});
   return rows;
 }
 

@@ -51,7 +51,7 @@ struct Station {
 /// Puts the board as near to the station's aim as both cameras allow.
 class Placing {
  public:
-  Placing(const Outline& outline, const sim::MockCameraOptions& cameras) : outline_(outline), cameras_(cameras) {
+  Placing(const Outline& outline, const StereoLenses& cameras) : outline_(outline), cameras_(cameras) {
     const Lens::Parameters& p = cameras_.left.parameters();
     const double nearest = p.fx * cameras_.T_left_right.translation().norm() / (kMostDisparity * p.width);
     farther_ = std::max(1.0, nearest / distance(*std::max_element(std::begin(kShares), std::end(kShares))));
@@ -105,7 +105,7 @@ class Placing {
   }
 
   const Outline& outline_;
-  const sim::MockCameraOptions& cameras_;
+  const StereoLenses& cameras_;
   double farther_ = 1;
 };
 
@@ -144,7 +144,7 @@ Pose between(const Pose& a, const Pose& b, double share) {
 
 }  // namespace
 
-MockBoard::MockBoard(const Board& board, const sim::MockCameraOptions& cameras, unsigned seed) {
+MockBoard::MockBoard(const Board& board, const StereoLenses& cameras, unsigned seed) {
   const BoardPicture picture = board_picture(board);
   T_board_print_.translation() =
       Eigen::Vector3d(picture.width_m / 2 - picture.origin_m.x(), picture.height_m / 2 - picture.origin_m.y(), 0);
@@ -177,7 +177,7 @@ std::unique_ptr<CaptureSource> mock_board_source(const StereoConfig& config, con
                                                  Clock& clock) {
   auto* const stepped = dynamic_cast<SteppedClock*>(&clock);
   MockWorld world;
-  world.board = MockBoard(board, mock_options(config), seed).print();
+  world.board = MockBoard(board, mock_options(config).lenses, seed).print();
   const auto shafts = [](std::string_view joint, RobotTime) { return MockBoard::shafts(joint); };
   OpenStereo opened = open_stereo(config, shafts, clock, world);
   return stepped ? stepped_source(std::move(opened), *stepped) : pair_source(std::move(opened));

@@ -23,7 +23,7 @@ class MockBoard {
 
   /// `cameras`: lenses and place of the right one. Throws InputError: a board that both cameras cannot see whole at
   /// any distance, or only from so far that the lab has no room; what board_picture() throws.
-  MockBoard(const Board& board, const sim::MockCameraOptions& cameras, unsigned seed);
+  MockBoard(const Board& board, const StereoLenses& cameras, unsigned seed);
 
   /// For MockWorld.
   sim::MovingPrint print() const;

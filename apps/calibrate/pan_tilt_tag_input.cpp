@@ -187,15 +187,11 @@ void require(bool given, const char* option, const char* what) {
 
 }  // namespace
 
-CameraRig read_cameras_file(const fs::path& file, const std::optional<fs::path>& right) {
-  CameraRig cameras;
+CalibratedCameras read_cameras_file(const fs::path& file, const std::optional<fs::path>& right) {
+  CalibratedCameras cameras;
   const YamlMap top = YamlMap::load(file);
-  if (top.has("kind") && top.text("kind") == "stereo") {
-    const StereoModel stereo = read_stereo(read_result(file, "stereo").result);
-    cameras.cameras = {stereo.left, stereo.right};
-    cameras.T_left_right = stereo.T_left_right;
-    return cameras;
-  }
+  if (top.has("kind") && top.text("kind") == "stereo")
+    return read_calibrated_cameras(read_result(file, "stereo").result);
   cameras.cameras = {read_camera_file(file)};
   if (!right) return cameras;
   const CameraInfo info = read_camera_info(*right);

@@ -24,7 +24,7 @@ struct PanTiltTagInput {
 
 /// Pictures in which tags were found, and what gives their angles.
 struct TagViews {
-  CameraRig cameras;
+  CalibratedCameras cameras;
   TagMap map;
   std::vector<PanTiltView> views;        ///< of images: with their angles
   std::vector<RobotTime> times;          ///< of a run: of each view
@@ -42,6 +42,7 @@ std::vector<PanTiltView> views_at(const TagViews& all, double offset_s);
 
 /// A result of kind "stereo" or "intrinsics", or a camera_info (and another one for the right camera, with
 /// T_left_right).
-CameraRig read_cameras_file(const std::filesystem::path& file, const std::optional<std::filesystem::path>& right);
+CalibratedCameras read_cameras_file(const std::filesystem::path& file,
+                                    const std::optional<std::filesystem::path>& right);
 
 }  // namespace foresight

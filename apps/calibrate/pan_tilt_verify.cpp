@@ -85,8 +85,7 @@ int verify_head(const PanTiltVerify& options) {
   if (views.empty())
     throw InputError("--joints", "the encoders tell nothing of the times of the pictures",
                      "give the joints that were recorded with them");
-  const Lens left = to_lens(all.cameras.cameras.front()), right = to_lens(all.cameras.cameras.back());
-  const StereoLenses lenses{left, right, all.cameras.T_left_right};
+  const StereoLenses lenses = to_lenses(all.cameras);
   TagMap correcting;
   for (auto tag = all.map.begin(); tag != all.map.end(); ++tag)
     if (std::distance(all.map.begin(), tag) % 2 == 0) correcting.insert(*tag);

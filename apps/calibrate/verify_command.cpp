@@ -40,13 +40,7 @@ KnownRig read_rig(const std::filesystem::path& file) {
   KnownRig known;
   known.score_px = result.header.score;
   known.board = read_known_board(result.result);
-  if (kind == "intrinsics") {
-    known.rig.cameras = {read_camera(result.result)};
-  } else {
-    const StereoModel stereo = read_stereo(result.result);
-    known.rig.cameras = {stereo.left, stereo.right};
-    known.rig.T_left_right = stereo.T_left_right;
-  }
+  known.rig = {read_calibrated_cameras(result.result), {}};
   return known;
 }
 

@@ -24,7 +24,7 @@ std::optional<BoardPose> find_board_pose(const CameraRig& rig, const std::vector
 
 /// T_left_board in camera coordinates of `camera` as if it were alone.
 inline CameraRig alone(const CameraRig& rig, int camera) {
-  return {{rig.cameras[static_cast<std::size_t>(camera)]}, Pose::Identity(), rig.warp};
+  return {{{rig.cameras[static_cast<std::size_t>(camera)]}, Pose::Identity()}, rig.warp};
 }
 
 }  // namespace foresight

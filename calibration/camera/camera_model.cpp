@@ -31,6 +31,10 @@ Lens to_lens(const CameraModel& camera) {
   return Lens(p);
 }
 
+StereoLenses to_lenses(const CalibratedCameras& cameras) {
+  return {to_lens(cameras.left()), to_lens(cameras.cameras.back()), cameras.T_left_right};
+}
+
 CameraModel to_camera_model(const Lens& lens) {
   const Lens::Parameters& p = lens.parameters();
   CameraModel camera{p.width, p.height, Distortion::radtan4, {p.fx, p.fy, p.cx, p.cy}};

@@ -78,11 +78,12 @@ YAML::Node to_yaml(const CameraModel& camera) {
   return node;
 }
 
-YAML::Node to_yaml(const StereoModel& stereo) {
+YAML::Node to_yaml(const CalibratedCameras& cameras) {
+  if (!cameras.pair()) return to_yaml(cameras.left());
   YAML::Node node;
-  node["left"] = to_yaml(stereo.left);
-  node["right"] = to_yaml(stereo.right);
-  node["T_left_right"] = to_yaml(stereo.T_left_right);
+  node["left"] = to_yaml(cameras.left());
+  node["right"] = to_yaml(cameras.right());
+  node["T_left_right"] = to_yaml(cameras.T_left_right);
   return node;
 }
 
@@ -98,14 +99,15 @@ CameraModel read_camera(const YamlMap& yaml) {
   return read_lens(yaml);
 }
 
-StereoModel read_stereo(const YamlMap& yaml) {
+CalibratedCameras read_calibrated_cameras(const YamlMap& yaml) {
+  if (!yaml.has("left")) return {{read_camera(yaml)}, Pose::Identity()};
   yaml.require_known({"left", "right", "T_left_right", "board"});
   const auto of = [&](const char* side) {
     const YamlMap map = yaml.map(side);
     map.require_known({"model", "size", "focal_px", "centre_px", "distortion"});
     return read_lens(map);
   };
-  return {of("left"), of("right"), yaml.pose("T_left_right")};
+  return {{of("left"), of("right")}, yaml.pose("T_left_right")};
 }
 
 std::optional<KnownBoard> read_known_board(const YamlMap& result) {

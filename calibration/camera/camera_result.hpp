@@ -34,7 +34,7 @@ struct KnownBoard {
 
 YAML::Node to_yaml(const KnownBoard& board);
 YAML::Node to_yaml(const CameraModel& camera);
-YAML::Node to_yaml(const StereoModel& stereo);
+YAML::Node to_yaml(const CalibratedCameras& cameras);  ///< as "intrinsics" or "stereo", by their number
 
 /// {xyz: [..], quaternion: [x, y, z, w]}, the form that YamlMap::pose reads.
 YAML::Node to_yaml(const Pose& pose);
@@ -42,7 +42,7 @@ YAML::Node to_yaml(const Pose& pose);
 /// Throws InputError naming file, line and field: unknown or missing keys, a number of
 /// coefficients that is not the model's, sizes or focal lengths that are not positive.
 CameraModel read_camera(const YamlMap& yaml);
-StereoModel read_stereo(const YamlMap& yaml);
+CalibratedCameras read_calibrated_cameras(const YamlMap& result);  ///< of kind "intrinsics" or "stereo"
 
 /// Of the result's `board`; nothing where it has none.
 std::optional<KnownBoard> read_known_board(const YamlMap& result);

@@ -116,7 +116,7 @@ RigViews subset(const RigViews& all, const std::vector<std::size_t>& indices) {
   return some;
 }
 
-Eigen::Vector3d to_camera(const CameraRig& rig, int camera, const Eigen::Vector3d& p_left) {
+Eigen::Vector3d to_camera(const CalibratedCameras& rig, int camera, const Eigen::Vector3d& p_left) {
   return camera == 0 ? p_left : rig.T_left_right.inverse() * p_left;
 }
 

@@ -27,10 +27,8 @@ std::vector<Eigen::Vector3d> warped(const std::vector<Eigen::Vector3d>& p_board,
 /// The factors of BoardWarp's two numbers at each point.
 std::vector<Eigen::Vector2d> warp_weights(const std::vector<Eigen::Vector3d>& p_board);
 
-/// One camera, or left and right.
-struct CameraRig {
-  std::vector<CameraModel> cameras;
-  Pose T_left_right = Pose::Identity();  ///< right camera to left camera coordinates
+/// Cameras, and the board that they were calibrated with.
+struct CameraRig : CalibratedCameras {
   BoardWarp warp;
 };
 
@@ -62,7 +60,7 @@ RigViews subset(const RigViews& all, const std::vector<std::size_t>& indices);
 std::string camera_name(int camera, int cameras);
 
 /// Point of the board frame in coordinates of camera 0 or 1, from the left camera's.
-Eigen::Vector3d to_camera(const CameraRig& rig, int camera, const Eigen::Vector3d& p_left);
+Eigen::Vector3d to_camera(const CalibratedCameras& rig, int camera, const Eigen::Vector3d& p_left);
 
 /// Pixel of a point in camera coordinates, and its derivative after that point where wanted.
 std::optional<Eigen::Vector2d> project(const CameraModel& camera, const Eigen::Vector3d& p_camera,

@@ -54,7 +54,7 @@ RigSolution start_camera(const RigViews& views, Distortion distortion) {
   double best = std::numeric_limits<double>::infinity();
   RigSolution start;
   for (double f = 0.2; f < 6; f *= 1.25) {
-    CameraRig rig{{plain_camera(views, distortion, f * views.width[0])}, Pose::Identity(), {}};
+    CameraRig rig{{{plain_camera(views, distortion, f * views.width[0])}, Pose::Identity()}, {}};
     const double error = misfit(rig, views, trial);
     if (error < best) best = error, start.rig = rig;
   }
@@ -98,7 +98,7 @@ RigSolution start_pair(const RigViews& all, const RigSolution& left, const RigSo
     throw InputError("pairs", "no view was seen by both cameras", "show the board where both cameras see it");
   distance /= static_cast<double>(motions.size());
   RigSolution start;
-  start.rig = {{left.rig.cameras[0], right.rig.cameras[0]}, Pose::Identity(), left.rig.warp};
+  start.rig = {{{left.rig.cameras[0], right.rig.cameras[0]}, Pose::Identity()}, left.rig.warp};
   double best = std::numeric_limits<double>::infinity();
   for (const Pose& candidate : motions) {
     double sum = 0;

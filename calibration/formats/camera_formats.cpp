@@ -41,8 +41,8 @@ bool can_hold(const Format& format, const CameraModel& camera) {
 }
 
 bool can_hold(const Format& format, const CalibratedCameras& cameras) {
-  if (!cameras.right) return can_hold(format, cameras.left);
-  const CameraModel &a = cameras.left, &b = *cameras.right;
+  if (!cameras.pair()) return can_hold(format, cameras.left());
+  const CameraModel &a = cameras.left(), &b = cameras.right();
   const bool alike = a.width == b.width && a.height == b.height &&
                      (a.distortion == Distortion::equidistant) == (b.distortion == Distortion::equidistant);
   return can_hold(format, a) && can_hold(format, b) && (alike || format.sizes_may_differ);
@@ -54,7 +54,7 @@ void require_held(CameraFormat format, const CalibratedCameras& cameras) {
   for (const Format& other : kFormats)
     if (can_hold(other, cameras)) others += (others.empty() ? "" : " or ") + std::string(other.name);
   const std::string models =
-      to_string(cameras.left.distortion) + (cameras.right ? " and " + to_string(cameras.right->distortion) : "");
+      to_string(cameras.left().distortion) + (cameras.pair() ? " and " + to_string(cameras.right().distortion) : "");
   throw InputError("--to " + to_string(format),
                    "this format cannot hold " + models + " of these sizes and coefficients",
                    others.empty() ? "export the cameras one by one" : "use --to " + others);
@@ -153,17 +153,16 @@ std::vector<CameraFileText> format_cameras(CameraFormat format, const Calibrated
 }
 
 double worst_ray(const CalibratedCameras& a, const CalibratedCameras& b, int count) {
-  if (!same_size(a.left, b.left) || a.right.has_value() != b.right.has_value()) return INFINITY;
-  if (a.right && !same_size(*a.right, *b.right)) return INFINITY;
+  if (!std::equal(a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(), same_size)) return INFINITY;
   double worst = 0;
   for (int i = 0; i < count; ++i) {
     const double depth = 0.3 * std::pow(10 / 0.3, (i + 0.5) / count);
-    const Eigen::Vector3d p_left = depth * direction(a.left, spread(i));
-    worst = std::max(worst, distance(a.left, b.left, p_left, p_left));
-    if (!a.right) continue;
-    const Eigen::Vector3d p_right = depth * direction(*a.right, spread(i));
+    const Eigen::Vector3d p_left = depth * direction(a.left(), spread(i));
+    worst = std::max(worst, distance(a.left(), b.left(), p_left, p_left));
+    if (!a.pair()) continue;
+    const Eigen::Vector3d p_right = depth * direction(a.right(), spread(i));
     worst =
-        std::max(worst, distance(*a.right, *b.right, p_right, b.T_left_right.inverse() * (a.T_left_right * p_right)));
+        std::max(worst, distance(a.right(), b.right(), p_right, b.T_left_right.inverse() * (a.T_left_right * p_right)));
   }
   return worst;
 }

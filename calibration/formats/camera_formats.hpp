@@ -13,7 +13,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,12 +20,6 @@
 #include "calibration/camera/camera_model.hpp"
 
 namespace foresight {
-
-struct CalibratedCameras {
-  CameraModel left;  ///< or the only one
-  std::optional<CameraModel> right;
-  Pose T_left_right = Pose::Identity();  ///< right camera to left camera coordinates
-};
 
 enum class CameraFormat { camera_info, kalibr, opencv, mrcal };
 

@@ -30,20 +30,20 @@ std::string camera_text(const CameraModel& camera, const std::string& name) {
 }  // namespace
 
 CalibratedCameras read_camera_info_files(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return {to_camera_model(read_camera_info(path).lens), {}, Pose::Identity()};
+  if (!std::filesystem::is_directory(path)) return {{to_camera_model(read_camera_info(path).lens)}, Pose::Identity()};
   const CameraInfo right = read_camera_info(path / kRight);
   if (!right.T_left_right)
     throw InputError((path / kRight).string(), "has no T_left_right", "add the pose of the right camera");
-  return {to_camera_model(read_camera_info(path / kLeft).lens), to_camera_model(right.lens), *right.T_left_right};
+  return {{to_camera_model(read_camera_info(path / kLeft).lens), to_camera_model(right.lens)}, *right.T_left_right};
 }
 
 std::vector<CameraFileText> camera_info_text(const CalibratedCameras& cameras) {
-  if (!cameras.right) return {{"", camera_text(cameras.left, "camera")}};
+  if (!cameras.pair()) return {{"", camera_text(cameras.left(), "camera")}};
   const Eigen::Vector3d t = cameras.T_left_right.translation();
   const Eigen::Vector4d q = Eigen::Quaterniond(cameras.T_left_right.linear()).coeffs();
   const std::string pose =
       "T_left_right: {xyz: " + list({t.begin(), t.end()}) + ", quaternion: " + list({q.begin(), q.end()}) + "}\n";
-  return {{kLeft, camera_text(cameras.left, "left")}, {kRight, camera_text(*cameras.right, "right") + pose}};
+  return {{kLeft, camera_text(cameras.left(), "left")}, {kRight, camera_text(cameras.right(), "right") + pose}};
 }
 
 }  // namespace foresight::formats

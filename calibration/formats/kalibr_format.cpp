@@ -42,25 +42,25 @@ std::string camera_text(const CameraModel& camera, int index) {
 CalibratedCameras read_kalibr(const std::filesystem::path& file) {
   const YamlMap yaml = YamlMap::load(file);
   CalibratedCameras cameras;
-  cameras.left = read_one(yaml.map("cam0"));
+  cameras.cameras = {read_one(yaml.map("cam0"))};
   if (yaml.has("cam2"))
     throw InputError(yaml.where("cam2"), "there are more than two cameras", "keep cam0 and cam1 in the file");
   if (!yaml.has("cam1")) return cameras;
   const YamlMap right = yaml.map("cam1");
-  cameras.right = read_one(right);
+  cameras.cameras.push_back(read_one(right));
   cameras.T_left_right = right.pose("T_cn_cnm1").inverse();
   return cameras;
 }
 
 std::vector<CameraFileText> kalibr_text(const CalibratedCameras& cameras) {
-  std::string text = "cam0:\n" + camera_text(cameras.left, 0);
-  if (cameras.right) {
+  std::string text = "cam0:\n" + camera_text(cameras.left(), 0);
+  if (cameras.pair()) {
     text += "cam1:\n  T_cn_cnm1:\n";
     const Eigen::Matrix4d T_right_left = cameras.T_left_right.inverse().matrix();
     for (int row = 0; row < 4; ++row)
       text += "  - " + list({T_right_left(row, 0), T_right_left(row, 1), T_right_left(row, 2), T_right_left(row, 3)}) +
               "\n";
-    std::string own = camera_text(*cameras.right, 1);
+    std::string own = camera_text(cameras.right(), 1);
     text += own.replace(own.find("[]"), 2, "[0]");
     text.replace(text.find("[]"), 2, "[1]");
   }

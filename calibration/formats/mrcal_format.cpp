@@ -74,15 +74,15 @@ std::string camera_text(const CameraModel& camera, const Pose& T_camera_referenc
 }  // namespace
 
 CalibratedCameras read_mrcal(const fs::path& path) {
-  if (!fs::is_directory(path)) return {read_one(path).camera, {}, Pose::Identity()};
+  if (!fs::is_directory(path)) return {{read_one(path).camera}, Pose::Identity()};
   const PosedCamera left = read_one(path / kLeft), right = read_one(path / kRight);
-  return {left.camera, right.camera, left.T_camera_reference * right.T_camera_reference.inverse()};
+  return {{left.camera, right.camera}, left.T_camera_reference * right.T_camera_reference.inverse()};
 }
 
 std::vector<CameraFileText> mrcal_text(const CalibratedCameras& cameras) {
-  if (!cameras.right) return {{"", camera_text(cameras.left, Pose::Identity())}};
-  return {{kLeft, camera_text(cameras.left, Pose::Identity())},
-          {kRight, camera_text(*cameras.right, cameras.T_left_right.inverse())}};
+  if (!cameras.pair()) return {{"", camera_text(cameras.left(), Pose::Identity())}};
+  return {{kLeft, camera_text(cameras.left(), Pose::Identity())},
+          {kRight, camera_text(cameras.right(), cameras.T_left_right.inverse())}};
 }
 
 }  // namespace foresight::formats

@@ -41,10 +41,9 @@ CameraModel read_one(const cv::FileStorage& storage, const std::string& matrix, 
 
 CalibratedCameras read_storage(const cv::FileStorage& storage, const fs::path& file) {
   if (storage["M1"].empty())
-    return {read_one(storage, "camera_matrix", "distortion_coefficients", file), {}, Pose::Identity()};
+    return {{read_one(storage, "camera_matrix", "distortion_coefficients", file)}, Pose::Identity()};
   CalibratedCameras cameras;
-  cameras.left = read_one(storage, "M1", "D1", file);
-  cameras.right = read_one(storage, "M2", "D2", file);
+  cameras.cameras = {read_one(storage, "M1", "D1", file), read_one(storage, "M2", "D2", file)};
   const auto R = numbers(storage, "R", file), T = numbers(storage, "T", file);
   if (R.size() != 9 || T.size() != 3)
     throw InputError(file.string(), "R and T are no rotation and translation", "write 3x3 and 3x1 numbers");
@@ -84,12 +83,12 @@ CalibratedCameras read_opencv(const fs::path& file) {
 std::vector<CameraFileText> opencv_text(const CalibratedCameras& cameras, const fs::path& file) {
   const std::string ending = file.extension() == ".xml" || file.extension() == ".json" ? file.extension() : ".yml";
   cv::FileStorage storage(ending, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-  storage << "image_width" << cameras.left.width << "image_height" << cameras.left.height;
-  if (cameras.left.distortion == Distortion::equidistant) storage << "fisheye_model" << 1;
-  write_one(storage, cameras.left, cameras.right ? "M1" : "camera_matrix",
-            cameras.right ? "D1" : "distortion_coefficients");
-  if (cameras.right) {
-    write_one(storage, *cameras.right, "M2", "D2");
+  storage << "image_width" << cameras.left().width << "image_height" << cameras.left().height;
+  if (cameras.left().distortion == Distortion::equidistant) storage << "fisheye_model" << 1;
+  write_one(storage, cameras.left(), cameras.pair() ? "M1" : "camera_matrix",
+            cameras.pair() ? "D1" : "distortion_coefficients");
+  if (cameras.pair()) {
+    write_one(storage, cameras.right(), "M2", "D2");
     const Pose T_right_left = cameras.T_left_right.inverse();
     cv::Matx33d R;
     for (int i = 0; i < 9; ++i) R.val[i] = T_right_left.linear()(i / 3, i % 3);

@@ -15,18 +15,13 @@
 
 #include "calibration/camera/twist.hpp"
 #include "calibration/tags/tag_detector.hpp"
-#include "common/lens.hpp"
 #include "common/time.hpp"
+#include "scene/stereo_lenses.hpp"
 
 namespace foresight {
 
 /// Corners of the tags that stand still, world frame, metres, in DetectedTag's order; by id.
 using TagMap = std::map<int, std::array<Eigen::Vector3d, 4>>;
-
-struct StereoLenses {
-  Lens left, right;
-  Pose T_left_right = Pose::Identity();
-};
 
 struct TagCorrectionOptions {
   double lag_s = 0.4;           ///< window

@@ -61,8 +61,8 @@ bool counts(const PanTiltTagState& state, std::size_t view) {
   return std::any_of(state.left_out[view].begin(), state.left_out[view].end(), [](char out) { return !out; });
 }
 
-void add_view(const std::vector<PanTiltView>& views, std::size_t k, const CameraRig& cameras, PanTiltTagState& state,
-              ceres::Problem& problem) {
+void add_view(const std::vector<PanTiltView>& views, std::size_t k, const CalibratedCameras& cameras,
+              PanTiltTagState& state, ceres::Problem& problem) {
   PanTiltState& head = state.head;
   double* const shaft = state.shafts[k].data();
   for (std::size_t i = 0; i < views[k].tags.size(); ++i) {
@@ -78,7 +78,7 @@ void add_view(const std::vector<PanTiltView>& views, std::size_t k, const Camera
                            nullptr, shaft);
 }
 
-void build(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state, int without,
+void build(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras, PanTiltTagState& state, int without,
            ceres::Problem& problem) {
   for (std::size_t k = 0; k < views.size(); ++k)
     if (static_cast<int>(k) != without && counts(state, k)) add_view(views, k, cameras, state, problem);
@@ -137,7 +137,7 @@ Pose predicted_left(const PanTiltTagState& state, const PanTiltView& view) {
   return camera_pose(to_model(state.head), angles);
 }
 
-void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state,
+void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras, PanTiltTagState& state,
                        int without) {
   ceres::Problem problem;
   build(views, cameras, state, without, problem);
@@ -160,7 +160,7 @@ void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CameraRig& c
                          "check that angles, pictures and the map of the tags belong together");
 }
 
-PanTiltTagCovariance pan_tilt_tag_covariance(const std::vector<PanTiltView>& views, const CameraRig& cameras,
+PanTiltTagCovariance pan_tilt_tag_covariance(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                                              PanTiltTagState& state) {
   ceres::Problem problem;
   const bool robust = std::exchange(state.robust, false);

@@ -20,7 +20,7 @@ struct PanTiltTagState {
 Pose predicted_left(const PanTiltTagState& state, const PanTiltView& view);
 
 /// Minimises from `state`; view `without` does not count (-1: all do). Throws RuntimeFailure.
-void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state,
+void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras, PanTiltTagState& state,
                        int without = -1);
 
 struct PanTiltTagCovariance {
@@ -30,7 +30,7 @@ struct PanTiltTagCovariance {
   double shaft_variance = 0;             ///< mean over views and joints of the variance of e_k
 };
 
-PanTiltTagCovariance pan_tilt_tag_covariance(const std::vector<PanTiltView>& views, const CameraRig& cameras,
+PanTiltTagCovariance pan_tilt_tag_covariance(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                                              PanTiltTagState& state);
 
 }  // namespace foresight

@@ -29,7 +29,7 @@ double rms(const std::vector<double>& values) {
 }
 
 /// The left camera from one view's tags in one camera, or nothing.
-std::optional<Pose> view_pose(const PanTiltView& view, const CameraRig& cameras, int camera) {
+std::optional<Pose> view_pose(const PanTiltView& view, const CalibratedCameras& cameras, int camera) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> rays;
   const CameraModel& lens = cameras.cameras[static_cast<std::size_t>(camera)];
@@ -69,7 +69,7 @@ std::optional<Pose> view_pose(const PanTiltView& view, const CameraRig& cameras,
   return camera == 1 ? Pose(T_world_camera * cameras.T_left_right.inverse()) : T_world_camera;
 }
 
-std::vector<PanTiltSample> start_samples(const std::vector<PanTiltView>& views, const CameraRig& cameras) {
+std::vector<PanTiltSample> start_samples(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras) {
   std::vector<PanTiltSample> samples;
   for (const PanTiltView& view : views) {
     std::optional<Pose> pose = view_pose(view, cameras, 0);
@@ -116,7 +116,8 @@ Pose fitted_left(const PanTiltTagState& state, const PanTiltView& view, std::siz
 }
 
 // Noise of a coordinate from the distances of all corners that count.
-double corner_noise(const std::vector<PanTiltView>& views, const CameraRig& cameras, const PanTiltTagState& state) {
+double corner_noise(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
+                    const PanTiltTagState& state) {
   constexpr double kMedianOfDistance = 1.17741;  // of a distance whose two coordinates have sigma 1
   std::vector<double> all;
   for (std::size_t k = 0; k < views.size(); ++k) {
@@ -127,7 +128,7 @@ double corner_noise(const std::vector<PanTiltView>& views, const CameraRig& came
   return std::max(1e-3, median(all) / kMedianOfDistance / std::sqrt(std::max(0.1, 1 - used)));
 }
 
-void fit_with_noise(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state,
+void fit_with_noise(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras, PanTiltTagState& state,
                     int rounds) {
   for (int round = 0; round < rounds; ++round) {
     fit_pan_tilt_tags(views, cameras, state);
@@ -142,7 +143,7 @@ void fit_with_noise(const std::vector<PanTiltView>& views, const CameraRig& came
   }
 }
 
-int reject(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanTiltTagState& state) {
+int reject(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras, PanTiltTagState& state) {
   int points = 0;
   for (std::size_t k = 0; k < views.size(); ++k) {
     const auto errors = corner_errors(cameras, fitted_left(state, views[k], k), views[k]);
@@ -155,7 +156,7 @@ int reject(const std::vector<PanTiltView>& views, const CameraRig& cameras, PanT
   return points;
 }
 
-PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const CameraRig& cameras,
+PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                             const PanTiltTagOptions& options, PanTiltTagSummary& summary) {
   PanTiltOptions first;
   first.gains = false, first.score = false, first.inverted = false, first.backlash = options.backlash;
@@ -186,8 +187,8 @@ PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const CameraR
   return state;
 }
 
-void score_left_out(const std::vector<PanTiltView>& views, const CameraRig& cameras, const PanTiltTagState& state,
-                    PanTiltTagSummary& summary) {
+void score_left_out(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
+                    const PanTiltTagState& state, PanTiltTagSummary& summary) {
   std::vector<double> all;
   for (std::size_t k = 0; k < views.size(); ++k) {
     PanTiltTagState without = state;
@@ -199,7 +200,7 @@ void score_left_out(const std::vector<PanTiltView>& views, const CameraRig& came
   summary.loo_px = rms(all);
 }
 
-PanTiltTagSummary choose_gains(const std::vector<PanTiltView>& views, const CameraRig& cameras,
+PanTiltTagSummary choose_gains(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                                const PanTiltTagOptions& options) {
   PanTiltTagOptions choice = options;
   choice.gains = false;
@@ -238,7 +239,7 @@ std::vector<PanTiltView> of_known_ways(const std::vector<PanTiltView>& views, bo
 
 }  // namespace
 
-std::vector<double> corner_errors(const CameraRig& cameras, const Pose& T_world_left, const PanTiltView& view) {
+std::vector<double> corner_errors(const CalibratedCameras& cameras, const Pose& T_world_left, const PanTiltView& view) {
   std::vector<double> errors;
   const Pose T_left_world = T_world_left.inverse();
   for (const SeenTag& tag : view.tags)
@@ -250,7 +251,7 @@ std::vector<double> corner_errors(const CameraRig& cameras, const Pose& T_world_
   return errors;
 }
 
-PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, const CameraRig& cameras,
+PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, const CalibratedCameras& cameras,
                                       const PanTiltTagOptions& options) {
   if (!options.gains && options.score) return choose_gains(given, cameras, options);
   PanTiltTagSummary summary;

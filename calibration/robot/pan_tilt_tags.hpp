@@ -61,11 +61,11 @@ struct PanTiltTagSummary {
 /// `cameras`: lenses, and where the right camera stands; they stay as they are.
 /// Throws InputError: fewer than 8 views with tags, a joint that did not move or only with the other (naming what
 /// stays open), angles or a map that fit no two-axis head.
-PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& views, const CameraRig& cameras,
+PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                                       const PanTiltTagOptions& options);
 
 /// Distances, px, from the predicted to the seen corners of `view`, in the order of its tags. A corner that the model
 /// puts behind a camera is infinitely far.
-std::vector<double> corner_errors(const CameraRig& cameras, const Pose& T_world_left, const PanTiltView& view);
+std::vector<double> corner_errors(const CalibratedCameras& cameras, const Pose& T_world_left, const PanTiltView& view);
 
 }  // namespace foresight

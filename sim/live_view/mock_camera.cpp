@@ -26,7 +26,7 @@ constexpr const char* kControl = "exposure_time_absolute";
 void check(const MockCameraOptions& o) {
   if (!(o.rate > 0 && o.rate <= 1000))
     throw InputError("mock camera: rate", format("%.9g is outside 0 .. 1000", o.rate), "choose a value inside");
-  for (const Lens* lens : {&o.left, &o.right})
+  for (const Lens* lens : {&o.lenses.left, &o.lenses.right})
     if (lens->width() <= 0 || lens->width() % 2)
       throw InputError("mock camera: lens", format("an image %d px wide cannot be YUYV", lens->width()),
                        "take an even width");
@@ -96,8 +96,7 @@ void MockStereo::close(Side side) noexcept {
 void MockStereo::render(const std::stop_token& stop, std::promise<void>& ready) noexcept {
   if (!stepped_) make_background();  // a software renderer takes all that there is
   try {
-    StereoRenderer renderer(*world_, *light_, irradiance_, {options_.left, options_.right, options_.T_left_right},
-                            options_.sensor);
+    StereoRenderer renderer(*world_, *light_, irradiance_, options_.lenses, options_.sensor);
     ready.set_value();
     stepped_ ? run_stepped(stop, renderer) : run_real(stop, renderer);
   } catch (...) {

@@ -13,6 +13,7 @@
 #include "common/lens.hpp"
 #include "drivers/camera/camera.hpp"
 #include "drivers/camera/stereo_pairing.hpp"
+#include "scene/stereo_lenses.hpp"
 #include "sim/light_map.hpp"
 #include "sim/live_lab.hpp"
 #include "sim/sensor.hpp"
@@ -25,11 +26,10 @@ class StereoRenderer;
 using ShaftsAt = std::function<std::optional<double>(std::string_view joint, RobotTime)>;
 
 struct MockCameraOptions {
-  Lens left, right;  ///< of even width
-  Pose T_left_right = T_head_left_right();
-  double rate = 30;                ///< frames per second, > 0
-  Sensor sensor = {.noise = 1.5};  ///< its exposure drift is not used
-  double light_coarser = 4;        ///< LightMap's; fewer triangles to draw
+  StereoLenses lenses{{}, {}, T_head_left_right()};  ///< of even width
+  double rate = 30;                                  ///< frames per second, > 0
+  Sensor sensor = {.noise = 1.5};                    ///< its exposure drift is not used
+  double light_coarser = 4;                          ///< LightMap's; fewer triangles to draw
 };
 
 /// The renderer behind both cameras: a thread of its own, with its own OpenGL context, asks where the shafts were in
@@ -55,8 +55,9 @@ class MockStereo {
   void set_rate(double rate);  ///< from the next start on
   double rate() const { return options_.rate; }
   const std::shared_ptr<const LiveLab>& world() const { return world_; }
-  const Pose& T_left_right() const { return options_.T_left_right; }
-  const Lens& lens(Side side) const { return side == Side::left ? options_.left : options_.right; }
+  const StereoLenses& lenses() const { return options_.lenses; }
+  const Pose& T_left_right() const { return lenses().T_left_right; }
+  const Lens& lens(Side side) const { return side == Side::left ? lenses().left : lenses().right; }
   /// The world's time 0: T_world_ball and so on.
   RobotTime epoch() const { return epoch_; }
 

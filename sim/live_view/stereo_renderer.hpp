@@ -8,16 +8,12 @@
 
 #include "drivers/camera/camera.hpp"
 #include "gl/context.hpp"
+#include "scene/stereo_lenses.hpp"
 #include "sim/light_map.hpp"
 #include "sim/live_lab.hpp"
 #include "sim/live_view/live_view.hpp"
 
 namespace foresight::sim {
-
-struct StereoLenses {
-  Lens left, right;  ///< of even width and one size
-  Pose T_left_right = Pose::Identity();
-};
 
 /// Has an OpenGL context of its own: one thread makes, uses and destroys it. The same arguments give the same images.
 class StereoRenderer {
@@ -28,7 +24,8 @@ class StereoRenderer {
   };
   static constexpr std::size_t kUnderWay = 2;  ///< pairs: one is drawn while the other is fetched
 
-  /// Draws a first pair that nobody sees, since drivers compile with it. Throws what OpenGL throws.
+  /// `lenses`: of even width and one size. Draws a first pair that nobody sees, since drivers compile with it. Throws
+  /// what OpenGL throws.
   StereoRenderer(const LiveLab& world, const LightMap& light, const LightMap::Irradiance& irradiance,
                  const StereoLenses& lenses, const Sensor& sensor);
 

@@ -22,7 +22,7 @@ std::string stereo_result(const TempFolder& folder, Distortion model) {
   const CalibratedCameras pair = example_pair(model);
   ResultHeader header{"stereo", utc_now(), {{"left", "1"}}, "loo_joint_px", 0.2, {}};
   const auto file = folder / "stereo.yaml";
-  write_result(file, header, to_yaml(StereoModel{pair.left, *pair.right, pair.T_left_right}), true);
+  write_result(file, header, to_yaml(pair), true);
   return file.string();
 }
 
@@ -39,9 +39,9 @@ TEST(ExportCommand, GoesThroughAllFormatsAndBack) {
     EXPECT_EQ(malformed(folder.read("r.html")), "");
     from = to, file = out;
   }
-  const StereoModel back = read_stereo(read_result(file, "stereo").result);
+  const CalibratedCameras back = read_calibrated_cameras(read_result(file, "stereo").result);
   const CalibratedCameras pair = example_pair(Distortion::radtan4);
-  EXPECT_LT(worst_ray(pair, {back.left, back.right, back.T_left_right}, 1000), 1e-9);
+  EXPECT_LT(worst_ray(pair, back, 1000), 1e-9);
 }
 
 TEST(ExportCommand, WritesUrdf) {

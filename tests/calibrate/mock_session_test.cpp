@@ -18,12 +18,12 @@ using testing::HasSubstr;
 const std::string kBoard = "chessboard:9x6:0.025";
 
 /// Of mock cameras without calibration: the usual lenses.
-sim::MockCameraOptions truth() {
-  return mock_options(as_mock({}));
+StereoLenses truth() {
+  return mock_options(as_mock({})).lenses;
 }
 
-StereoModel model_in(const std::string& result) {
-  return read_stereo(YamlMap::load(result).map("result"));
+CalibratedCameras model_in(const std::string& result) {
+  return read_calibrated_cameras(YamlMap::load(result).map("result"));
 }
 
 /// Over the image, how far what the true lens sees at a pixel lies from it through `found`; px, ascending. What a turn
@@ -73,11 +73,11 @@ TEST_F(MockSession, FindsLensesAndPlaceFromCaptureToExport) {
   const auto numbers = json_of(folder_, "s.json");
   EXPECT_LT(numbers["in_sample_px"], 0.1);
   EXPECT_EQ(numbers["rejected_points"], 0);
-  const StereoModel found = model_in(result);
-  const sim::MockCameraOptions true_pair = truth();
+  const CalibratedCameras found = model_in(result);
+  const StereoLenses true_pair = truth();
   for (const bool second : {false, true}) {
     const std::vector<double> off =
-        differences(second ? true_pair.right : true_pair.left, to_lens(second ? found.right : found.left));
+        differences(second ? true_pair.right : true_pair.left, to_lens(second ? found.right() : found.left()));
     const auto said = numbers[second ? "right" : "left"]["uncertainty_at_infinity"];
     std::printf("%s: %.3f px off at the median (%.3f said), %.3f at 90 %% (%.3f), %.3f at worst (%.3f)\n",
                 second ? "right" : "left", off[off.size() / 2], said["median_px"].get<double>(),
@@ -101,7 +101,7 @@ TEST_F(MockSession, FindsLensesAndPlaceFromCaptureToExport) {
     const std::string file = folder_ / (form + ".yaml"), back = folder_ / (form + "_back.yaml");
     ASSERT_EQ(run_calibrate({"export", result, "--to", form, "--out", file}), "0") << form;
     ASSERT_EQ(run_calibrate({"export", file, "--from", form, "--to", "result", "--out", back}), "0") << form;
-    EXPECT_LT(differences(to_lens(found.left), to_lens(model_in(back).left)).back(), 1e-6) << form;
+    EXPECT_LT(differences(to_lens(found.left()), to_lens(model_in(back).left())).back(), 1e-6) << form;
     EXPECT_TRUE(model_in(back).T_left_right.isApprox(found.T_left_right, 1e-9)) << form;
   }
 }
@@ -117,7 +117,7 @@ TEST_F(MockSession, ABoardOfTheWrongSizeIsRefused) {
 // No pictures: every station of every kind of board is wholly inside of both images, and of any size that the lab
 // takes.
 TEST(MockBoardPath, ShowsTheWholeBoardToBothCameras) {
-  const sim::MockCameraOptions cameras = truth();
+  const StereoLenses cameras = truth();
   for (const char* text : {"chessboard:9x6:0.025", "charuco:5x7:0.04:0.03:DICT_5X5_100", "apriltag:6x6:0.055",
                            "circles:10x10:0.02", "chessboard:7x5:0.012"}) {
     SCOPED_TRACE(text);

@@ -34,7 +34,7 @@ TEST(CameraFormats, EveryFormatReadsBackOrRefuses) {
     for (const Distortion model : kModels)
       for (const bool pair : {false, true}) {
         CalibratedCameras cameras = example_pair(model);
-        if (!pair) cameras.right.reset();
+        if (!pair) cameras.cameras.pop_back();
         const std::string name = to_string(format) + "_" + to_string(model) + (pair ? "_pair" : "");
         const auto path = folder / name;
         const auto write = [&] { return write_cameras(format, cameras, path, false); };
@@ -49,7 +49,7 @@ TEST(CameraFormats, EveryFormatReadsBackOrRefuses) {
         EXPECT_LT(summary.worst_px, 1e-9) << name;
         EXPECT_EQ(summary.files.size(), pair && pair_is_folder(format) ? 2u : 1u);
         const CalibratedCameras back = read_cameras(format, path);
-        EXPECT_EQ(back.right.has_value(), pair);
+        EXPECT_EQ(back.pair(), pair);
         EXPECT_LT(worst_ray(cameras, back, 500), 1e-9) << name;
       }
 }
@@ -79,13 +79,13 @@ TEST(CameraFormats, RaysTellSmallDifferences) {
   const CalibratedCameras a = example_pair(Distortion::radtan4);
   CalibratedCameras b = a;
   EXPECT_LT(worst_ray(a, b, 1000), 1e-12);
-  b.left.lens[0] += 1e-4;
+  b.cameras[0].lens[0] += 1e-4;
   EXPECT_NEAR(worst_ray(a, b, 1000), 1e-4 * 341 / 533, 3e-5);
   b = a;
   b.T_left_right.translation().x() += 1e-6;
   EXPECT_NEAR(worst_ray(a, b, 1000), 1e-6 * 533 / 0.3, 5e-4) << "seen best by the nearest point";
   b = a;
-  b.right->width = 320;
+  b.cameras[1].width = 320;
   EXPECT_TRUE(std::isinf(worst_ray(a, b, 10)));
 }
 
@@ -130,8 +130,8 @@ cam1:
   timeshift_cam_imu: 0.01
 )");
   const CalibratedCameras cameras = read_cameras(CameraFormat::kalibr, file);
-  EXPECT_EQ(cameras.left.distortion, Distortion::radtan4);
-  EXPECT_EQ(cameras.right->distortion, Distortion::equidistant);
+  EXPECT_EQ(cameras.left().distortion, Distortion::radtan4);
+  EXPECT_EQ(cameras.right().distortion, Distortion::equidistant);
   EXPECT_NEAR(cameras.T_left_right.translation().x(), 0.11, 1e-15);
 }
 
@@ -153,19 +153,19 @@ TEST(CameraFormats, ReadsMrcalAsMrcalWritesIt) {
     'optimization_inputs': b'P)h>@6aWAK2mk;8{}Apmx#&:0{\\!|~',
 }
 )");
-  const CameraModel camera = read_cameras(CameraFormat::mrcal, file).left;
+  const CameraModel camera = read_cameras(CameraFormat::mrcal, file).left();
   EXPECT_EQ(camera.distortion, Distortion::rational);
   EXPECT_EQ(camera.width, 4000);
   EXPECT_EQ(camera.lens[9], 0.21);
   const auto pinhole = folder.write(
       "p.cameramodel", "{'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [1,2,3,4], 'imagersize': [10,20]}");
-  EXPECT_EQ(read_cameras(CameraFormat::mrcal, pinhole).left.lens[1], 2);
+  EXPECT_EQ(read_cameras(CameraFormat::mrcal, pinhole).left().lens[1], 2);
 }
 
 TEST(CameraFormats, ReadsOpenCvsOwnExample) {
   const std::filesystem::path file = "/usr/share/doc/opencv-doc/examples/data/left_intrinsics.yml";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here; install opencv-doc";
-  const CameraModel camera = read_cameras(CameraFormat::opencv, file).left;
+  const CameraModel camera = read_cameras(CameraFormat::opencv, file).left();
   EXPECT_EQ(camera.width, 640);
   EXPECT_EQ(camera.height, 480);
   EXPECT_NEAR(camera.lens[0], 535, 5);

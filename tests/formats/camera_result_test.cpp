@@ -31,8 +31,8 @@ TEST(CameraResult, ReadsBackEveryModelExactly) {
 
 TEST(CameraResult, ReadsBackAPair) {
   const CalibratedCameras pair = example_pair(Distortion::radtan4);
-  const StereoModel back = read_stereo(parsed(to_yaml(StereoModel{pair.left, *pair.right, pair.T_left_right})));
-  EXPECT_EQ(back.right.lens, pair.right->lens);
+  const CalibratedCameras back = read_calibrated_cameras(parsed(to_yaml(pair)));
+  EXPECT_EQ(back.right().lens, pair.right().lens);
   EXPECT_LT((back.T_left_right.matrix() - pair.T_left_right.matrix()).cwiseAbs().maxCoeff(), 1e-15);
 }
 

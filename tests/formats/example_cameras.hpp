@@ -17,8 +17,8 @@ inline CameraModel example_camera(Distortion model) {
 }
 
 inline CalibratedCameras example_pair(Distortion model) {
-  CalibratedCameras pair{example_camera(model), example_camera(model), Pose::Identity()};
-  for (std::size_t i = 0; i < 5; ++i) pair.right->lens[i] *= 1.003;
+  CalibratedCameras pair{{example_camera(model), example_camera(model)}, Pose::Identity()};
+  for (std::size_t i = 0; i < 5; ++i) pair.cameras[1].lens[i] *= 1.003;
   pair.T_left_right.linear() = Eigen::AngleAxisd(0.031, Eigen::Vector3d(0.2, 1, -0.3).normalized()).toRotationMatrix();
   pair.T_left_right.translation() = Eigen::Vector3d(0.0731 / 3, -1e-3, 4e-4);
   return pair;

@@ -22,8 +22,8 @@ class MockCameraTest : public HeadlessTest {
     SynthOptions size;
     size.width = 160;
     size.height = 120;
-    options_.left = synth_lens(size, false);
-    options_.right = synth_lens(size, true);
+    options_.lenses.left = synth_lens(size, false);
+    options_.lenses.right = synth_lens(size, true);
     options_.sensor.noise = 0;
     options_.light_coarser = 8;
     options_.rate = 20;
@@ -64,12 +64,12 @@ TEST_F(MockCameraTest, PairsShowTheWorldAtTheirCaptureTime) {
                           world_->true_state(shafts, to_seconds(image.time + late - stereo_->epoch())), irradiance);
       return cv::PSNR(options_.sensor.develop(truth.light, 0, 0), image.bgr);
     };
-    const double left = psnr(pair->left, options_.left, Pose::Identity(), 0ns);
-    const double right = psnr(pair->right, options_.right, options_.T_left_right, 0ns);
+    const double left = psnr(pair->left, options_.lenses.left, Pose::Identity(), 0ns);
+    const double right = psnr(pair->right, options_.lenses.right, options_.lenses.T_left_right, 0ns);
     EXPECT_GT(left, 27);
     EXPECT_GT(right, 27);
-    EXPECT_GT(left, psnr(pair->left, options_.left, Pose::Identity(), 50ms) + 1);
-    EXPECT_GT(left, psnr(pair->left, options_.left, Pose::Identity(), -50ms) + 1);
+    EXPECT_GT(left, psnr(pair->left, options_.lenses.left, Pose::Identity(), 50ms) + 1);
+    EXPECT_GT(left, psnr(pair->left, options_.lenses.left, Pose::Identity(), -50ms) + 1);
   }
   cameras.stop();
   EXPECT_STREQ(cameras.status().reason, "");
@@ -107,7 +107,7 @@ TEST_F(MockCameraTest, RefusesWhatCannotBe) {
   odd = options_;
   SynthOptions size;
   size.width = 161;
-  odd.left = synth_lens(size, false);
+  odd.lenses.left = synth_lens(size, false);
   EXPECT_THROW(MockStereo(world_, shafts, odd, clock_), InputError);
 }
 

@@ -32,8 +32,8 @@ class SteppedCamera : public HeadlessTest {
     SynthOptions size;
     size.width = 80;
     size.height = 60;
-    options_.left = synth_lens(size, false);
-    options_.right = synth_lens(size, true);
+    options_.lenses.left = synth_lens(size, false);
+    options_.lenses.right = synth_lens(size, true);
     options_.light_coarser = 16;
     options_.rate = 20;
     lab_ = std::make_shared<const LiveLab>(LiveLab::Options{0.008, 1, {}});

@@ -82,7 +82,7 @@ struct TagRing {
     return std::sqrt(sum / static_cast<double>(n));
   }
 
-  CameraRig cameras;
+  CalibratedCameras cameras;
   PanTiltModel truth;
   std::map<int, std::array<Eigen::Vector3d, 4>> map;
 };
