@@ -43,6 +43,11 @@ double robust_sigma(std::vector<double> values) {
   return kSigmaOfMedian * median(std::move(values));
 }
 
+double robust_sigma_of_lengths(std::vector<double> lengths) {
+  constexpr double kMedianLength = 1.1774100225154747;  // sqrt(2 log 2)
+  return median(std::move(lengths)) / kMedianLength;
+}
+
 double root_mean_square(std::span<const double> values) {
   if (values.empty()) return 0;
   double sum = 0;

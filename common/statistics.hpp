@@ -18,6 +18,10 @@ float median(std::vector<float> values);
 /// be wrong.
 double robust_sigma(std::vector<double> values);
 
+/// Standard deviation of each of two coordinates, by the lengths of normal errors in the plane: their median over that
+/// of Rayleigh's distribution.
+double robust_sigma_of_lengths(std::vector<double> lengths);
+
 double root_mean_square(std::span<const double> values);
 
 }  // namespace foresight

@@ -16,8 +16,6 @@
 namespace foresight {
 namespace {
 
-constexpr double kSigmaOfMedianLength = 0.8493;  // a coordinate's sigma over the median length of a Gaussian error
-
 using Accepted = std::vector<std::array<std::vector<char>, 2>>;
 
 template <typename Visit>
@@ -171,7 +169,7 @@ double robust_noise(const RigViews& views, const RigErrors& errors) {
   for_each_corner(views, [&](std::size_t v, std::size_t c, std::size_t i, const Corner& corner) {
     lengths.push_back(errors[v][c][i].norm() * sigma / corner.sigma_px);
   });
-  return kSigmaOfMedianLength * median(lengths);
+  return robust_sigma_of_lengths(std::move(lengths));
 }
 
 // Sorted by size, largest first.

@@ -1,10 +1,14 @@
 #include "calibration/display_lens/display_lens.hpp"
 
-#include <ceres/ceres.h>
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/covariance.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "calibration/camera/minimise.hpp"
 #include "calibration/camera/rigid_motion.hpp"
 #include "common/error.hpp"
 #include "common/lens.hpp"
@@ -83,15 +87,9 @@ class Solver {
   }
 
   bool run(Unknowns& x, const std::vector<int>& free, bool poses) const {
-    const auto problem = build(x, free, poses);
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_QR;
-    solver.max_num_iterations = 200;
-    solver.function_tolerance = 1e-10;
-    solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, problem.get(), &summary);
-    return summary.IsSolutionUsable();
+    MinimiseOptions solver;
+    solver.most_iterations = 200;
+    return minimise(*build(x, free, poses), solver).usable;
   }
 
   std::vector<double> distances(const Unknowns& x, const std::vector<Ray>& rays) const {
@@ -178,12 +176,6 @@ bool fit(const std::vector<Ray>& rays, Distortion model, const DisplayLensOption
   return solver.run(x, first, true) && solver.run(x, free_parameters(model), true);
 }
 
-double rms(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v * v;
-  return values.empty() ? NAN : std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 // Each point once by a solve that has not seen it.
 std::vector<double> held_out(const std::vector<Ray>& rays, Distortion model, const DisplayLensOptions& options,
                              const Unknowns& start) {
@@ -200,8 +192,7 @@ std::vector<double> held_out(const std::vector<Ray>& rays, Distortion model, con
 }
 
 std::vector<Ray> without_outliers(const std::vector<Ray>& rays, const std::vector<double>& distances, double sigmas) {
-  // The median of a Rayleigh distribution is 1.1774 sigma.
-  const double limit = sigmas * std::max(kFloor, median(distances) / 1.1774);
+  const double limit = sigmas * std::max(kFloor, robust_sigma_of_lengths(distances));
   std::vector<Ray> kept;
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (distances[i] <= limit) kept.push_back(rays[i]);
@@ -250,7 +241,7 @@ DisplayLensSummary solve_display_lens(const std::vector<PanelPoint>& points, con
     if (!fit(rays, candidate, options, x)) continue;
     const auto kept =
         without_outliers(rays, Solver(rays, candidate, options).distances(x, rays), options.outlier_sigmas);
-    const double score = rms(held_out(kept, candidate, options, x));
+    const double score = root_mean_square(held_out(kept, candidate, options, x));
     summary.tried.emplace_back(candidate, score);
     if (score < kClearlyBetter * best) best = score, model = candidate;
   }
@@ -264,9 +255,9 @@ DisplayLensSummary solve_display_lens(const std::vector<PanelPoint>& points, con
   const Solver solver(rays, model, options);
   summary.panel = {options.panel_width, options.panel_height, model, x.lens};
   for (const MotionParameters& motion : x.motions) summary.T_display_camera.push_back(to_pose(motion));
-  summary.rms_px = rms(solver.distances(x, rays));
+  summary.rms_px = root_mean_square(solver.distances(x, rays));
   const auto unseen = held_out(rays, model, options, x);
-  summary.held_out_px = rms(unseen);
+  summary.held_out_px = root_mean_square(unseen);
   summary.held_out_worst_px = *std::max_element(unseen.begin(), unseen.end());
   summary.points = static_cast<int>(rays.size());
   summary.rejected = static_cast<int>(before - rays.size());

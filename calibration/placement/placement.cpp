@@ -1,6 +1,9 @@
 #include "calibration/placement/placement.hpp"
 
-#include <ceres/ceres.h>
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/covariance.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -8,6 +11,7 @@
 #include <array>
 #include <random>
 
+#include "calibration/camera/minimise.hpp"
 #include "calibration/camera/rigid_motion.hpp"
 #include "common/error.hpp"
 #include "common/statistics.hpp"
@@ -160,13 +164,10 @@ Pose refine(const Pose& T, const std::vector<PointPair>& points, const Placement
                                  new PointResidual{p.p_model - centre, p.p_world, sigma_of(p, options)}),
                              new ceres::CauchyLoss(kCauchy), motion.data());
   problem.SetManifold(motion.data(), motion_manifold());
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
+  MinimiseOptions solver;
+  solver.most_iterations = 50;
   solver.function_tolerance = 1e-12;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary report;
-  ceres::Solve(solver, &problem, &report);
-  if (!report.IsSolutionUsable()) throw RuntimeFailure("the placement does not converge", "check the points");
+  minimise_or_throw(problem, solver, "the placement", "check the points");
   if (summary) {
     ceres::Covariance covariance(ceres::Covariance::Options{});
     Eigen::Matrix<double, 6, 6, Eigen::RowMajor> c;

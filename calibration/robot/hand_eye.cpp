@@ -97,14 +97,14 @@ int reject_corners(const HandEyeData& data, const HandEyeState& state, double si
   std::vector<std::vector<double>> sizes(data.poses.size());
   for (std::size_t v = 0; v < data.poses.size(); ++v) {
     if (!selection.used[v]) continue;
-    const Vector6 step = Eigen::Map<const Vector6>(state.corrections[v].data());
+    const Vector6d step = Eigen::Map<const Vector6d>(state.corrections[v].data());
     for (const Corner& corner : data.corners.views[v].corners) {
       const auto& p = data.corners.p_board[static_cast<std::size_t>(corner.index)];
       sizes[v].push_back((predicted_pixel(state, data.poses[v], step, p) - corner.pixel).norm() / corner.sigma_px);
       all.push_back(sizes[v].back());
     }
   }
-  const double limit = sigmas * median(all) / 1.1774;  // median of a Rayleigh distribution
+  const double limit = sigmas * robust_sigma_of_lengths(std::move(all));
   int rejected = 0;
   for (std::size_t v = 0; v < data.poses.size(); ++v) {
     for (std::size_t c = 0; c < sizes[v].size(); ++c) {
@@ -121,8 +121,8 @@ bool reject_view(const HandEyeData& data, const HandEyeState& state, HandEyeSele
   std::vector<std::size_t> views;
   for (std::size_t v = 0; v < data.poses.size(); ++v) {
     if (!selection.used[v]) continue;
-    const Vector6 left =
-        Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
+    const Vector6d left =
+        Eigen::Map<const Vector6d>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
     turns.push_back(left.head<3>().norm()), shifts.push_back(left.tail<3>().norm());
     views.push_back(v);
   }
@@ -143,8 +143,8 @@ std::vector<double> robot_distances(const HandEyeData& data, const HandEyeSelect
   std::vector<double> out(data.poses.size(), 0.0);
   for (std::size_t v = 0; v < data.poses.size(); ++v) {
     if (!selection.used[v]) continue;
-    const Vector6 left =
-        Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
+    const Vector6d left =
+        Eigen::Map<const Vector6d>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
     out[v] = left.head<3>().squaredNorm() / (state.sigma_rad * state.sigma_rad) +
              left.tail<3>().squaredNorm() / (state.sigma_m * state.sigma_m);
   }
@@ -172,7 +172,7 @@ HandEyeCovariance robust_solve(const HandEyeData& data, const HandEyeOptions& op
 }
 
 void require_determined(const HandEyeCovariance& covariance, HandEyeSummary& summary) {
-  const auto open = [&](const char* name, const Vector6& sigma) {
+  const auto open = [&](const char* name, const Vector6d& sigma) {
     const double turn = sigma.head<3>().maxCoeff(), shift = sigma.tail<3>().maxCoeff();
     if (turn > kOpenRad)
       summary.notes.push_back(std::string(name) + " turn is open to " + readable(turn, 2) +
@@ -195,8 +195,8 @@ void fill_views(const HandEyeData& data, const HandEyeSelection& selection, cons
   for (std::size_t v = 0; v < data.poses.size(); ++v) {
     HandEyeView& view = summary.views[v];
     view.used = selection.used[v];
-    view.correction = Eigen::Map<const Vector6>(state.corrections[v].data());
-    const Vector6 plain = joint_correction(state, data.poses[v]);
+    view.correction = Eigen::Map<const Vector6d>(state.corrections[v].data());
+    const Vector6d plain = joint_correction(state, data.poses[v]);
     double view_sum = 0;
     for (std::size_t c = 0; c < data.corners.views[v].corners.size(); ++c) {
       const Corner& corner = data.corners.views[v].corners[c];

@@ -51,7 +51,7 @@ struct HandEyeView {
   int points = 0;            ///< corners used
   int rejected = 0;          ///< corners left out
   double rms_px = 0;         ///< of the used corners, after the solve
-  Vector6 correction;        ///< of the robot pose: rad, m, in the flange frame
+  Vector6d correction;       ///< of the robot pose: rad, m, in the flange frame
   double trust = 1;          ///< weight of the robot pose; below 1 where the noise has a heavy tail and it lies there
   double loo_px = 0;         ///< RMS per corner of prediction minus found, solved without this view
   double loo_mm = 0;         ///< RMS over corners of board points by the robot minus by PnP, without this view
@@ -67,7 +67,7 @@ struct HandEyeSummary {
   bool camera_given = false;
   Pose X = Pose::Identity();  ///< T_base_camera (fixed) or T_flange_camera (moving)
   Pose Y = Pose::Identity();  ///< T_flange_board (fixed) or T_base_board (moving)
-  Vector6 X_sigma, Y_sigma;   ///< turn (rad) about and shift (m) along the axes of the parent frame
+  Vector6d X_sigma, Y_sigma;  ///< turn (rad) about and shift (m) along the axes of the parent frame
   double board_scale = 1;     ///< true over stated size of the board, by the robot's measure
   double board_scale_sigma = 0;
   LensParameters lens_sigma{};

@@ -3,8 +3,8 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
-#include <ceres/solver.h>
 
+#include "calibration/camera/minimise.hpp"
 #include "calibration/robot/arrow_system.hpp"
 #include "calibration/robot/hand_eye_start.hpp"
 #include "common/error.hpp"
@@ -65,15 +65,15 @@ struct ScaleResidual {
 // (correction - offsets through the joints) over the noise of the robot: linear.
 class RobotResidual : public ceres::CostFunction {
  public:
-  RobotResidual(const Vector6& weight, const Eigen::MatrixXd& per_joint) : weight_(weight), per_joint_(per_joint) {
+  RobotResidual(const Vector6d& weight, const Eigen::MatrixXd& per_joint) : weight_(weight), per_joint_(per_joint) {
     set_num_residuals(6);
     mutable_parameter_block_sizes()->push_back(6);
     if (per_joint.cols() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(per_joint.cols()));
   }
 
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    Eigen::Map<Vector6> r(residuals);
-    r = Eigen::Map<const Vector6>(parameters[0]);
+    Eigen::Map<Vector6d> r(residuals);
+    r = Eigen::Map<const Vector6d>(parameters[0]);
     if (per_joint_.cols() > 0) r -= per_joint_ * Eigen::Map<const Eigen::VectorXd>(parameters[1], per_joint_.cols());
     r = r.cwiseProduct(weight_);
     if (jacobians == nullptr) return true;
@@ -85,7 +85,7 @@ class RobotResidual : public ceres::CostFunction {
   }
 
  private:
-  Vector6 weight_;
+  Vector6d weight_;
   Eigen::MatrixXd per_joint_;
 };
 
@@ -130,7 +130,7 @@ void add_view(const HandEyeData& data, const HandEyeSelection& selection, std::s
                                  step, &state.board_scale);
     out.corner_rows += 2;
   }
-  Vector6 weight;
+  Vector6d weight;
   weight << Eigen::Vector3d::Constant(1 / state.sigma_rad), Eigen::Vector3d::Constant(1 / state.sigma_m);
   if (!state.trust.empty()) weight *= std::sqrt(state.trust[v]);
   auto* prior = new RobotResidual(weight, data.poses[v].flange_per_joint);
@@ -163,25 +163,13 @@ void build(const HandEyeData& data, const HandEyeSelection& selection, HandEyeSt
 }
 
 void minimise(Adjustment& adjustment) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_SCHUR;
-  options.max_num_iterations = 100;
-  options.function_tolerance = 1e-10;
+  MinimiseOptions options;
+  options.solver = ceres::SPARSE_SCHUR;
+  options.eliminated = adjustment.own;
   options.parameter_tolerance = 1e-12;
-  options.num_threads = 2;
-  options.logging_type = ceres::SILENT;
-  auto* ordering = new ceres::ParameterBlockOrdering;
-  for (double* block : adjustment.own) ordering->AddElementToGroup(block, 0);
-  std::vector<double*> blocks;
-  adjustment.problem.GetParameterBlocks(&blocks);
-  for (double* block : blocks)
-    if (!ordering->IsMember(block)) ordering->AddElementToGroup(block, 1);
-  options.linear_solver_ordering.reset(ordering);
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &adjustment.problem, &summary);
-  if (!summary.IsSolutionUsable())
-    throw RuntimeFailure("the hand-eye adjustment does not converge (" + summary.message + ")",
-                         "check that the poses belong to the images and that their unit is the metre");
+  options.threads = 2;
+  minimise_or_throw(adjustment.problem, options, "the hand-eye adjustment",
+                    "check that the poses belong to the images and that their unit is the metre");
 }
 
 // Helmert: each noise is scaled by its squared residuals over its redundancy.
@@ -190,8 +178,8 @@ void update_noise(const ArrowSystem& system, const Adjustment& adjustment, const
   double turn = 0, shift = 0, turn_known = 0, shift_known = 0;
   for (std::size_t i = 0; i < adjustment.views.size(); ++i) {
     const std::size_t v = adjustment.views[i];
-    const Vector6 left =
-        Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
+    const Vector6d left =
+        Eigen::Map<const Vector6d>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
     const double trust = state.trust.empty() ? 1 : state.trust[v];
     turn += trust * left.head<3>().squaredNorm();
     shift += trust * left.tail<3>().squaredNorm();
@@ -222,8 +210,8 @@ void update_trust(const ArrowSystem& system, const Adjustment& adjustment, const
   const double turn = 1 / (state.sigma_rad * state.sigma_rad), shift = 1 / (state.sigma_m * state.sigma_m);
   for (std::size_t i = 0; i < adjustment.views.size(); ++i) {
     const std::size_t v = adjustment.views[i];
-    const Vector6 left =
-        Eigen::Map<const Vector6>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
+    const Vector6d left =
+        Eigen::Map<const Vector6d>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
     const Eigen::MatrixXd& known = system.own_covariance[i];
     const double distance = turn * (left.head<3>().squaredNorm() + known.topLeftCorner(3, 3).trace()) +
                             shift * (left.tail<3>().squaredNorm() + known.bottomRightCorner(3, 3).trace());
@@ -236,7 +224,7 @@ double corner_cost(const Adjustment& adjustment, const HandEyeData& data, const 
   const double typical = typical_sigma(data.corners);
   double sum = 0;
   for (const std::size_t v : adjustment.views) {
-    const Vector6 step = Eigen::Map<const Vector6>(state.corrections[v].data());
+    const Vector6d step = Eigen::Map<const Vector6d>(state.corrections[v].data());
     const BoardView& view = data.corners.views[v];
     for (std::size_t c = 0; c < view.corners.size(); ++c) {
       if (!selection.keep[v][c]) continue;
@@ -254,7 +242,7 @@ HandEyeCovariance covariance_of(const ArrowSystem& system, const HandEyeState& s
   HandEyeCovariance out;
   const Eigen::VectorXd sigma = system.shared_covariance.diagonal().cwiseMax(0).cwiseSqrt();
   const auto motion = [&](int block) {
-    Vector6 s = sigma.segment<6>(6 * block);
+    Vector6d s = sigma.segment<6>(6 * block);
     s.head<3>() *= 2;  // Eigen's quaternion manifold steps by half angles
     return s;
   };
@@ -301,7 +289,7 @@ Eigen::Vector3d scaled_point(const HandEyeState& state, const Eigen::Vector3d& p
   return state.board_scale * p_board;
 }
 
-Eigen::Vector2d predicted_pixel(const HandEyeState& state, const RobotPose& robot, const Vector6& correction,
+Eigen::Vector2d predicted_pixel(const HandEyeState& state, const RobotPose& robot, const Vector6d& correction,
                                 const Eigen::Vector3d& p_board) {
   Eigen::Vector2d pixel(1e6, 1e6);
   const Eigen::Vector3d p = to_camera<double>(state.mount, robot.T_base_flange, state.X.data(), state.Y.data(),
@@ -310,8 +298,8 @@ Eigen::Vector2d predicted_pixel(const HandEyeState& state, const RobotPose& robo
   return pixel;
 }
 
-Vector6 joint_correction(const HandEyeState& state, const RobotPose& robot) {
-  if (state.joint_offsets.empty()) return Vector6::Zero();
+Vector6d joint_correction(const HandEyeState& state, const RobotPose& robot) {
+  if (state.joint_offsets.empty()) return Vector6d::Zero();
   return robot.flange_per_joint *
          Eigen::Map<const Eigen::VectorXd>(state.joint_offsets.data(), robot.flange_per_joint.cols());
 }

@@ -27,7 +27,7 @@ struct HandEyeState {
 };
 
 struct HandEyeCovariance {
-  Vector6 X_sigma, Y_sigma;
+  Vector6d X_sigma, Y_sigma;
   LensParameters lens_sigma{};
   double board_scale_sigma = 0;
   std::vector<double> joint_offset_sigma;
@@ -50,10 +50,10 @@ void adjust(const HandEyeData& data, const HandEyeSelection& selection, int nois
 Eigen::Vector3d scaled_point(const HandEyeState& state, const Eigen::Vector3d& p_board);
 
 /// Pixel that `state` predicts, for a robot pose moved by `correction`; far outside where it lies behind the camera.
-Eigen::Vector2d predicted_pixel(const HandEyeState& state, const RobotPose& robot, const Vector6& correction,
+Eigen::Vector2d predicted_pixel(const HandEyeState& state, const RobotPose& robot, const Vector6d& correction,
                                 const Eigen::Vector3d& p_board);
 
 /// Correction that the joint offsets alone make to a robot pose.
-Vector6 joint_correction(const HandEyeState& state, const RobotPose& robot);
+Vector6d joint_correction(const HandEyeState& state, const RobotPose& robot);
 
 }  // namespace foresight

@@ -19,7 +19,7 @@ BoardView kept_corners(const BoardView& view, const std::vector<bool>& keep) {
 
 Sums predict(const HandEyeData& data, const BoardView& view, std::size_t v, const HandEyeState& state) {
   Sums sums;
-  const Vector6 step = joint_correction(state, data.poses[v]);
+  const Vector6d step = joint_correction(state, data.poses[v]);
   const Pose T_robot =
       predicted_board(state.mount, moved(data.poses[v].T_base_flange, step), to_pose(state.X), to_pose(state.Y));
   std::vector<Eigen::Vector3d> p_board;

@@ -3,38 +3,26 @@
 #include <algorithm>
 
 #include "calibration/robot/pan_tilt_problem.hpp"
+#include "calibration/robot/pan_tilt_scoring.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr std::size_t kFewestPoses = 8;
-constexpr double kFalls = 0.99;  // by which a left-out error must fall before gains are believed
-constexpr double kFits = 0.1;    // RMS rad: a chain of the wrong order is off by more
+constexpr double kFits = 0.1;  // RMS rad: a chain of the wrong order is off by more
 
-std::vector<PanTiltAngles> angles_of(const std::vector<PanTiltSample>& samples) {
-  std::vector<PanTiltAngles> angles;
-  for (const PanTiltSample& sample : samples) angles.push_back(sample.angles);
-  return angles;
-}
-
-PanTiltErrors errors_of(const std::vector<Vector6>& steps) {
+PanTiltErrors errors_of(const std::vector<Vector6d>& steps) {
   PanTiltErrors errors;
   std::vector<double> mm, mrad;
-  for (const Vector6& step : steps)
+  for (const Vector6d& step : steps)
     mrad.push_back(1e3 * step.head<3>().norm()), mm.push_back(1e3 * step.tail<3>().norm());
-  const auto rms = [](const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values) sum += value * value;
-    return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
-  };
-  errors.mm = rms(mm), errors.mrad = rms(mrad);
+  errors.mm = root_mean_square(mm), errors.mrad = root_mean_square(mrad);
   errors.median_mm = median(mm), errors.median_mrad = median(mrad);
   return errors;
 }
 
-Vector6 off(const PanTiltState& state, const PanTiltSample& sample) {
+Vector6d off(const PanTiltState& state, const PanTiltSample& sample) {
   return step_between(camera_pose(to_model(state), sample.angles), sample.T_world_camera);
 }
 
@@ -44,14 +32,13 @@ void fit_with_noise(const std::vector<PanTiltSample>& samples, PanTiltState& sta
     std::vector<double> turns, shifts;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (static_cast<int>(i) == left_out) continue;
-      const Vector6 step = off(state, samples[i]);
+      const Vector6d step = off(state, samples[i]);
       for (int k = 0; k < 3; ++k) turns.push_back(step[k]), shifts.push_back(step[3 + k]);
     }
-    const double redundancy = std::sqrt(1 - 14.0 / (6.0 * static_cast<double>(samples.size())));
-    const double turn = std::max(1e-9, robust_sigma(turns) / redundancy),
-                 shift = std::max(1e-9, robust_sigma(shifts) / redundancy);
-    const bool settled =
-        std::abs(turn - state.sigma_rad) < 1e-3 * turn && std::abs(shift - state.sigma_m) < 1e-3 * shift;
+    const double redundant = redundancy(kHeadParameters, 6.0 * static_cast<double>(samples.size()));
+    const double turn = std::max(1e-9, robust_sigma(turns) / redundant),
+                 shift = std::max(1e-9, robust_sigma(shifts) / redundant);
+    const bool settled = has_settled(turn, state.sigma_rad, 1e-3) && has_settled(shift, state.sigma_m, 1e-3);
     state.sigma_rad = turn, state.sigma_m = shift;
     if (settled) return;
     fit_pan_tilt(samples, state, left_out);
@@ -94,28 +81,25 @@ PanTiltState start(std::vector<PanTiltSample>& samples, const PanTiltOptions& op
 
 void score_left_out(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options, const PanTiltState& state,
                     PanTiltSummary& summary) {
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    PanTiltState without = state;
-    if (!options.robust) without.sigma_rad = without.sigma_m = 1;
-    fit(samples, options, without, static_cast<int>(i));
-    summary.loo_steps.push_back(off(without, samples[i]));
-  }
+  PanTiltState full = state;
+  if (!options.robust) full.sigma_rad = full.sigma_m = 1;
+  leave_each_out(
+      samples.size(), full, [&](PanTiltState& without, int i) { fit(samples, options, without, i); },
+      [&](std::size_t i, const PanTiltState& without) { summary.loo_steps.push_back(off(without, samples[i])); });
   summary.loo = errors_of(summary.loo_steps);
 }
 
-// Solves without and with gains; they are believed where the left-out error falls.
-PanTiltSummary choose_gains(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options) {
-  PanTiltOptions choice = options;
-  choice.gains = false;
-  PanTiltSummary without = solve_pan_tilt(samples, choice);
-  choice.gains = true;
-  choice.inverted = without.inverted;
-  PanTiltSummary with = solve_pan_tilt(samples, choice);
-  const double ratio = (with.loo.mm / without.loo.mm + with.loo.mrad / without.loo.mrad) / 2;
-  PanTiltSummary& better = ratio < kFalls ? with : without;
-  better.notes.push_back("gains of the joints are " + std::string(ratio < kFalls ? "estimated" : "held at 1") +
-                         ": with them the left-out error is " + readable(ratio, 3) + " of that without");
-  return std::move(better);
+PanTiltSummary with_gains_if_better(const std::vector<PanTiltSample>& samples, const PanTiltOptions& options) {
+  std::optional<bool> inverted = options.inverted;
+  const auto solve = [&](PanTiltOptions choice) {
+    choice.inverted = inverted;
+    PanTiltSummary summary = solve_pan_tilt(samples, choice);
+    inverted = summary.inverted;
+    return summary;
+  };
+  return choose_gains(options, solve, [](const PanTiltSummary& with, const PanTiltSummary& without) {
+    return (with.loo.mm / without.loo.mm + with.loo.mrad / without.loo.mrad) / 2;
+  });
 }
 
 }  // namespace
@@ -142,8 +126,8 @@ void came_from_order(std::vector<PanTiltSample>& samples, double least_rad) {
 }
 
 PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const PanTiltOptions& options) {
-  if (!options.gains && options.score) return choose_gains(given, options);
-  if (given.size() < kFewestPoses)
+  if (!options.gains && options.score) return with_gains_if_better(given, options);
+  if (given.size() < kFewestHeadViews)
     throw InputError("--poses", std::to_string(given.size()) + " poses",
                      "measure at least 8, better 30, over both joints");
   require_sweeps(angles_of(given));
@@ -154,7 +138,7 @@ PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const Pan
   fit(samples, options, state, -1);
   summary.model = to_model(state);
 
-  std::vector<Vector6> steps;
+  std::vector<Vector6d> steps;
   for (const PanTiltSample& sample : samples) steps.push_back(off(state, sample));
   summary.in_sample = errors_of(steps);
   if (!options.robust) {  // the covariance needs a noise; one for both, as the fit assumed
@@ -162,7 +146,7 @@ PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const Pan
     state.sigma_m = summary.in_sample.mm * 1e-3 / std::sqrt(3);
   }
   summary.sigma_mm = 1e3 * state.sigma_m, summary.sigma_mrad = 1e3 * state.sigma_rad;
-  for (const Vector6& step : steps)
+  for (const Vector6d& step : steps)
     summary.outliers +=
         step.head<3>().norm() > 5 * state.sigma_rad * 1.54 || step.tail<3>().norm() > 5 * state.sigma_m * 1.54;
   int open = 0;
@@ -171,7 +155,7 @@ PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const Pan
     throw InputError("--angles", std::to_string(open) + " of the head's parameters stay open",
                      "sweep both joints, each at several angles of the other");
   summary.names = pan_tilt_names(state);
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) summary.sigmas.push_back(std::sqrt(covariance(i, i)));
+  summary.sigmas = sigmas_of(covariance);
   if (options.score) score_left_out(samples, options, state, summary);
   return summary;
 }

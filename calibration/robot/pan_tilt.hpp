@@ -62,8 +62,8 @@ struct PanTiltSummary {
   std::vector<double> sigmas;           ///< of each
   double sigma_mm = 0, sigma_mrad = 0;  ///< noise of a pose, per axis
   PanTiltErrors in_sample, loo;
-  int outliers = 0;                ///< poses beyond 5 robust sigmas; they count in the errors
-  std::vector<Vector6> loo_steps;  ///< per sample: from predicted to measured pose, in the camera; empty without score
+  int outliers = 0;                 ///< poses beyond 5 robust sigmas; they count in the errors
+  std::vector<Vector6d> loo_steps;  ///< per sample: from predicted to measured pose, in the camera; empty without score
   std::vector<std::string> notes;
 };
 

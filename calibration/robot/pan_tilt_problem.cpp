@@ -4,12 +4,12 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
-#include <ceres/solver.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
+#include "calibration/camera/minimise.hpp"
 #include "calibration/robot/arrow_system.hpp"
 #include "common/error.hpp"
 
@@ -194,17 +194,9 @@ PanTiltModel to_model(const PanTiltState& state) {
 double fit_pan_tilt(const std::vector<PanTiltSample>& samples, PanTiltState& state, int left_out, bool turns_only) {
   ceres::Problem problem;
   build(samples, state, left_out, turns_only, problem);
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 100;
-  options.function_tolerance = 1e-10;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable())
-    throw RuntimeFailure("the pan-tilt fit does not converge (" + summary.message + ")",
-                         "check that the angles belong to the poses");
-  return summary.final_cost;
+  MinimiseOptions options;
+  options.solver = ceres::DENSE_NORMAL_CHOLESKY;
+  return minimise_or_throw(problem, options, "the pan-tilt fit", "check that the angles belong to the poses");
 }
 
 double start_pan_tilt(const std::vector<PanTiltSample>& samples, PanTiltState& state) {

@@ -3,11 +3,11 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "calibration/camera/minimise.hpp"
 #include "calibration/robot/arrow_system.hpp"
 #include "common/error.hpp"
 
@@ -89,7 +89,7 @@ void build(const std::vector<PanTiltView>& views, const CalibratedCameras& camer
 // The state with parameter `index` of its tangent, in the order of pan_tilt_names() and then offset_s, moved by `step`.
 PanTiltTagState nudged(PanTiltTagState state, Eigen::Index index, double step) {
   const auto nudge_motion = [&](MotionParameters& motion, Eigen::Index i) {
-    Vector6 delta = Vector6::Zero();
+    Vector6d delta = Vector6d::Zero();
     delta[i] = i < 3 ? step / 2 : step;  // the manifold of a rotation steps by half angles
     MotionParameters out{};
     const std::unique_ptr<ceres::Manifold> manifold(motion_manifold());
@@ -115,10 +115,10 @@ PanTiltTagState nudged(PanTiltTagState state, Eigen::Index index, double step) {
   return state;
 }
 
-Vector6 pose_sigma(const std::vector<PanTiltView>& views, const PanTiltTagState& state,
-                   const Eigen::MatrixXd& covariance) {
+Vector6d pose_sigma(const std::vector<PanTiltView>& views, const PanTiltTagState& state,
+                    const Eigen::MatrixXd& covariance) {
   constexpr double kStep = 1e-6;
-  Vector6 variance = Vector6::Zero();
+  Vector6d variance = Vector6d::Zero();
   for (const PanTiltView& view : views) {
     Eigen::MatrixXd slope(6, covariance.rows());
     for (Eigen::Index i = 0; i < covariance.rows(); ++i)
@@ -141,23 +141,13 @@ void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CalibratedCa
                        int without) {
   ceres::Problem problem;
   build(views, cameras, state, without, problem);
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  std::vector<double*> blocks;
-  problem.GetParameterBlocks(&blocks);
-  for (double* block : blocks) {
-    const bool own = std::any_of(state.shafts.begin(), state.shafts.end(), [&](auto& s) { return s.data() == block; });
-    options.linear_solver_ordering->AddElementToGroup(block, own ? 0 : 1);
-  }
-  options.max_num_iterations = 60;
+  MinimiseOptions options;
+  options.solver = ceres::DENSE_SCHUR;
+  for (auto& shaft : state.shafts) options.eliminated.push_back(shaft.data());
+  options.most_iterations = 60;
   options.function_tolerance = 1e-8;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable())
-    throw RuntimeFailure("the pan-tilt fit does not converge (" + summary.message + ")",
-                         "check that angles, pictures and the map of the tags belong together");
+  minimise_or_throw(problem, options, "the pan-tilt fit",
+                    "check that angles, pictures and the map of the tags belong together");
 }
 
 PanTiltTagCovariance pan_tilt_tag_covariance(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,

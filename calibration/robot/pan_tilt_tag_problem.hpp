@@ -26,8 +26,8 @@ void fit_pan_tilt_tags(const std::vector<PanTiltView>& views, const CalibratedCa
 struct PanTiltTagCovariance {
   Eigen::MatrixXd head;           ///< of the estimated parameters in the order of pan_tilt_names(), then offset_s
   std::vector<std::string> open;  ///< parameters along which no corner tells anything
-  Vector6 pose_sigma = Vector6::Zero();  ///< PanTiltTagSummary::pose_sigma
-  double shaft_variance = 0;             ///< mean over views and joints of the variance of e_k
+  Vector6d pose_sigma = Vector6d::Zero();  ///< PanTiltTagSummary::pose_sigma
+  double shaft_variance = 0;               ///< mean over views and joints of the variance of e_k
 };
 
 PanTiltTagCovariance pan_tilt_tag_covariance(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,

@@ -5,6 +5,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
+#include "calibration/robot/pan_tilt_scoring.hpp"
 #include "calibration/robot/pan_tilt_tag_problem.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
@@ -12,21 +13,13 @@
 namespace foresight {
 namespace {
 
-constexpr std::size_t kFewestViews = 8;
 constexpr double kOutlier = 5;        // robust standard deviations
 constexpr double kStartPx = 4;        // a tag that is farther off from a view's first pose has no part in it
-constexpr double kFalls = 0.99;       // by which a left-out error must fall before gains are believed
 constexpr double kStrange = 0.3;      // share of rejected corners above which the map cannot be right
 constexpr double kWorstCornerPx = 3;  // of a found corner: beyond it, the map is another one
 constexpr double kFirstCornerPx = 1;  // both noises before anything is known
 constexpr double kFirstShaft = 2e-3;  // rad
 constexpr double kLeastShaft = 2e-5;  // rad, a few counts of a good encoder
-
-double rms(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
-}
 
 /// The left camera from one view's tags in one camera, or nothing.
 std::optional<Pose> view_pose(const PanTiltView& view, const CalibratedCameras& cameras, int camera) {
@@ -76,7 +69,7 @@ std::vector<PanTiltSample> start_samples(const std::vector<PanTiltView>& views, 
     if (!pose && cameras.cameras.size() > 1) pose = view_pose(view, cameras, 1);
     if (pose) samples.push_back({view.name, view.angles, *pose});
   }
-  if (samples.size() < kFewestViews)
+  if (samples.size() < kFewestHeadViews)
     throw InputError("--tags",
                      "only " + std::to_string(samples.size()) + " of " + std::to_string(views.size()) +
                          " views give a pose of the camera that agrees with the map",
@@ -84,17 +77,11 @@ std::vector<PanTiltSample> start_samples(const std::vector<PanTiltView>& views, 
   return samples;
 }
 
-std::vector<PanTiltAngles> angles_of(const std::vector<PanTiltView>& views) {
-  std::vector<PanTiltAngles> angles;
-  for (const PanTiltView& view : views) angles.push_back(view.angles);
-  return angles;
-}
-
 std::vector<PanTiltView> with_tags(const std::vector<PanTiltView>& given) {
   std::vector<PanTiltView> views;
   for (const PanTiltView& view : given)
     if (!view.tags.empty()) views.push_back(view);
-  if (views.size() < kFewestViews)
+  if (views.size() < kFewestHeadViews)
     throw InputError("--images", std::to_string(views.size()) + " views show tags of the map",
                      "take at least 8, better 30, over both joints");
   return views;
@@ -118,14 +105,14 @@ Pose fitted_left(const PanTiltTagState& state, const PanTiltView& view, std::siz
 // Noise of a coordinate from the distances of all corners that count.
 double corner_noise(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                     const PanTiltTagState& state) {
-  constexpr double kMedianOfDistance = 1.17741;  // of a distance whose two coordinates have sigma 1
   std::vector<double> all;
   for (std::size_t k = 0; k < views.size(); ++k) {
     const auto some = counting(state, k, corner_errors(cameras, fitted_left(state, views[k], k), views[k]));
     all.insert(all.end(), some.begin(), some.end());
   }
-  const double used = (14.0 + 2.0 * static_cast<double>(views.size())) / (2.0 * static_cast<double>(all.size()));
-  return std::max(1e-3, median(all) / kMedianOfDistance / std::sqrt(std::max(0.1, 1 - used)));
+  const double unknowns = kHeadParameters + 2.0 * static_cast<double>(views.size());
+  const double redundant = redundancy(unknowns, 2.0 * static_cast<double>(all.size()));
+  return std::max(1e-3, robust_sigma_of_lengths(std::move(all)) / redundant);
 }
 
 void fit_with_noise(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras, PanTiltTagState& state,
@@ -139,7 +126,7 @@ void fit_with_noise(const std::vector<PanTiltView>& views, const CalibratedCamer
     const double before = state.shaft_rad;
     state.shaft_rad = std::max(
         kLeastShaft, std::sqrt(squares / static_cast<double>(state.shafts.size()) + covariance.shaft_variance));
-    if (std::abs(state.shaft_rad - before) < 0.02 * before) return;
+    if (has_settled(before, state.shaft_rad, 0.02)) return;
   }
 }
 
@@ -190,28 +177,21 @@ PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const Calibra
 void score_left_out(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                     const PanTiltTagState& state, PanTiltTagSummary& summary) {
   std::vector<double> all;
-  for (std::size_t k = 0; k < views.size(); ++k) {
-    PanTiltTagState without = state;
-    fit_pan_tilt_tags(views, cameras, without, static_cast<int>(k));
-    const auto errors = counting(state, k, corner_errors(cameras, predicted_left(without, views[k]), views[k]));
-    summary.loo_view_px.push_back(rms(errors));
-    all.insert(all.end(), errors.begin(), errors.end());
-  }
-  summary.loo_px = rms(all);
+  leave_each_out(
+      views.size(), state, [&](PanTiltTagState& without, int k) { fit_pan_tilt_tags(views, cameras, without, k); },
+      [&](std::size_t k, const PanTiltTagState& without) {
+        const auto errors = counting(state, k, corner_errors(cameras, predicted_left(without, views[k]), views[k]));
+        summary.loo_view_px.push_back(root_mean_square(errors));
+        all.insert(all.end(), errors.begin(), errors.end());
+      });
+  summary.loo_px = root_mean_square(all);
 }
 
-PanTiltTagSummary choose_gains(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
-                               const PanTiltTagOptions& options) {
-  PanTiltTagOptions choice = options;
-  choice.gains = false;
-  PanTiltTagSummary without = solve_pan_tilt_tags(views, cameras, choice);
-  choice.gains = true;
-  PanTiltTagSummary with = solve_pan_tilt_tags(views, cameras, choice);
-  const double ratio = with.loo_px / without.loo_px;
-  PanTiltTagSummary& better = ratio < kFalls ? with : without;
-  better.notes.push_back("gains of the joints are " + std::string(ratio < kFalls ? "estimated" : "held at 1") +
-                         ": with them the left-out error is " + readable(ratio, 3) + " of that without");
-  return std::move(better);
+PanTiltTagSummary with_gains_if_better(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
+                                       const PanTiltTagOptions& options) {
+  return choose_gains(
+      options, [&](const PanTiltTagOptions& choice) { return solve_pan_tilt_tags(views, cameras, choice); },
+      [](const PanTiltTagSummary& with, const PanTiltTagSummary& without) { return with.loo_px / without.loo_px; });
 }
 
 // The way of a joint decides where its shaft is; without it, a view would pull the model to its own side.
@@ -253,7 +233,7 @@ std::vector<double> corner_errors(const CalibratedCameras& cameras, const Pose& 
 
 PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, const CalibratedCameras& cameras,
                                       const PanTiltTagOptions& options) {
-  if (!options.gains && options.score) return choose_gains(given, cameras, options);
+  if (!options.gains && options.score) return with_gains_if_better(given, cameras, options);
   PanTiltTagSummary summary;
   const std::vector<PanTiltView> views = of_known_ways(with_tags(given), options.backlash, summary.notes);
   require_sweeps(angles_of(views));
@@ -269,17 +249,17 @@ PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, con
   summary.offset_s = state.offset_s;
   summary.names = pan_tilt_names(state.head);
   if (options.offset) summary.names.emplace_back("offset_s");
-  for (Eigen::Index i = 0; i < covariance.head.rows(); ++i) summary.sigmas.push_back(std::sqrt(covariance.head(i, i)));
+  summary.sigmas = sigmas_of(covariance.head);
   summary.corner_px = state.corner_px, summary.shaft_rad = state.shaft_rad;
   summary.pose_sigma = covariance.pose_sigma;
   std::vector<double> all;
   for (std::size_t k = 0; k < views.size(); ++k) {
     const auto errors = counting(state, k, corner_errors(cameras, fitted_left(state, views[k], k), views[k]));
     summary.view_names.push_back(views[k].name), summary.angles.push_back(views[k].angles);
-    summary.view_px.push_back(rms(errors));
+    summary.view_px.push_back(root_mean_square(errors));
     all.insert(all.end(), errors.begin(), errors.end());
   }
-  summary.in_sample_px = rms(all);
+  summary.in_sample_px = root_mean_square(all);
   if (options.score) score_left_out(views, cameras, state, summary);
   return summary;
 }

@@ -48,7 +48,7 @@ struct PanTiltTagSummary {
   double shaft_rad = 0;            ///< noise of a shaft's angle against the model
   /// Of the camera's pose by the parameters' covariance, RMS over the views: rotation vector (rad) and place (m), in
   /// the camera's frame. shaft_rad comes on top.
-  Vector6 pose_sigma = Vector6::Zero();
+  Vector6d pose_sigma = Vector6d::Zero();
   double in_sample_px = 0;              ///< RMS distance of a corner, shafts as fitted
   double loo_px = 0;                    ///< RMS of corners of a view left out, by its encoders alone
   std::vector<std::string> view_names;  ///< that took part

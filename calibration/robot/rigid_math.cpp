@@ -16,18 +16,12 @@ Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R) {
   return turn.angle() * turn.axis();
 }
 
-Pose moved(const Pose& T, const Vector6& step) {
-  Pose out = Pose::Identity();
-  out.linear() = T.linear() * rotation_of(step.head<3>());
-  out.translation() = T.translation() + T.linear() * step.tail<3>();
-  return out;
+Pose moved(const Pose& T, const Vector6d& step) {
+  return T * to_motion(step);
 }
 
-Vector6 step_between(const Pose& from, const Pose& to) {
-  Vector6 step;
-  step.head<3>() = rotation_vector(from.linear().transpose() * to.linear());
-  step.tail<3>() = from.linear().transpose() * (to.translation() - from.translation());
-  return step;
+Vector6d step_between(const Pose& from, const Pose& to) {
+  return to_twist(from.inverse() * to);
 }
 
 Pose typical_pose(std::span<const Pose> poses) {
@@ -44,11 +38,6 @@ Pose typical_pose(std::span<const Pose> poses) {
   out.linear() = svd.matrixU() * flip * svd.matrixV().transpose();
   out.translation() = Eigen::Vector3d(median(t[0]), median(t[1]), median(t[2]));
   return out;
-}
-
-double robust_sigma(std::vector<double> values) {
-  for (double& value : values) value = std::abs(value);
-  return 1.4826 * median(std::move(values));
 }
 
 }  // namespace foresight

@@ -5,7 +5,7 @@
 namespace foresight {
 namespace {
 
-void add_motion(const std::string& name, const Vector6& sigma, std::map<std::string, double>& out) {
+void add_motion(const std::string& name, const Vector6d& sigma, std::map<std::string, double>& out) {
   const char* kParts[] = {"_rx_rad", "_ry_rad", "_rz_rad", "_x_m", "_y_m", "_z_m"};
   for (int i = 0; i < 6; ++i) out[name + kParts[i]] = sigma[i];
 }

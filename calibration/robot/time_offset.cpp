@@ -5,11 +5,11 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <map>
 
+#include "calibration/camera/minimise.hpp"
 #include "calibration/camera/rigid_motion.hpp"
 #include "calibration/robot/arrow_system.hpp"
 #include "calibration/robot/motion_check.hpp"
@@ -128,16 +128,12 @@ void refine(const Track& track, const std::vector<AlignedPose>& poses, bool rota
   for (int round = 0; round < 10; ++round) {
     ceres::Problem problem;
     build(track, poses, rotation_only, state, problem);
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-    options.max_num_iterations = 60;
-    options.num_threads = 2;
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    if (!summary.IsSolutionUsable())
-      throw RuntimeFailure("the time offset does not converge (" + summary.message + ")",
-                           "check that both streams belong together");
+    MinimiseOptions options;
+    options.solver = ceres::DENSE_NORMAL_CHOLESKY;
+    options.most_iterations = 60;
+    options.function_tolerance = 1e-6;
+    options.threads = 2;
+    minimise_or_throw(problem, options, "the time offset", "check that both streams belong together");
     const std::vector<double> r = residuals_of(problem, state);
     std::vector<double> turns, shifts;
     for (std::size_t i = 0; i < r.size(); ++i) (i % 6 < 3 ? turns : shifts).push_back(r[i]);

@@ -24,15 +24,15 @@ struct TimeOffsetOptions {
 
 struct TimeOffsetSummary {
   double offset_s = 0;
-  double offset_sigma_s = 0;          ///< from the scatter between segments
-  double coarse_offset_s = 0;         ///< by correlation
-  double correlation = 0;             ///< of the angular speeds at that offset
-  bool camera_inverted = false;       ///< the camera stream gives target in camera, not camera in target
-  Pose X = Pose::Identity();          ///< T_hand_camera
-  Pose Y = Pose::Identity();          ///< T_base_target
-  Vector6 X_sigma = Vector6::Zero();  ///< turn (rad) and shift (m) along the axes of the hand
-  double scatter_mm = 0;              ///< median distance of the target's position in the base from its typical one
-  double scatter_mrad = 0;            ///< the same of its orientation
+  double offset_sigma_s = 0;            ///< from the scatter between segments
+  double coarse_offset_s = 0;           ///< by correlation
+  double correlation = 0;               ///< of the angular speeds at that offset
+  bool camera_inverted = false;         ///< the camera stream gives target in camera, not camera in target
+  Pose X = Pose::Identity();            ///< T_hand_camera
+  Pose Y = Pose::Identity();            ///< T_base_target
+  Vector6d X_sigma = Vector6d::Zero();  ///< turn (rad) and shift (m) along the axes of the hand
+  double scatter_mm = 0;                ///< median distance of the target's position in the base from its typical one
+  double scatter_mrad = 0;              ///< the same of its orientation
   int samples = 0, outliers = 0, segments = 0;
   std::vector<double> residual_time_s, residual_mm, residual_mrad;  ///< per sample: time since the first
   std::vector<double> lag_s, lag_correlation;                       ///< of the search

@@ -83,7 +83,7 @@ TEST_F(PanTiltBoard, TheAxesComeBack) {
   EXPECT_LT(degrees_between(found.T_world_pan.linear().col(2), truth_.T_world_pan.linear().col(2)), 0.3);
   for (const double tilt : {-0.1, 0.1}) {
     const PanTiltAngles unseen{0.11, tilt, {}};
-    const Vector6 step = step_between(camera_pose(truth_, unseen), camera_pose(found, unseen));
+    const Vector6d step = step_between(camera_pose(truth_, unseen), camera_pose(found, unseen));
     EXPECT_LT(step.tail<3>().norm(), 5e-4);
     EXPECT_LT(step.head<3>().norm(), 1e-3);
   }

@@ -63,6 +63,14 @@ TEST(Statistics, RobustSigmaIsThatOfNormalValuesAndForgivesWrongOnes) {
   EXPECT_GT(root_mean_square(values), 1e8);
 }
 
+TEST(Statistics, LengthsInThePlaneTellTheSigmaOfACoordinate) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise(0, 0.4);
+  Values lengths(20000);
+  for (double& length : lengths) length = std::hypot(noise(random), noise(random));
+  EXPECT_NEAR(robust_sigma_of_lengths(lengths), 0.4, 0.01);
+}
+
 TEST(Statistics, RootMeanSquare) {
   EXPECT_DOUBLE_EQ(root_mean_square(Values{3, -4}), std::sqrt(12.5));
 }

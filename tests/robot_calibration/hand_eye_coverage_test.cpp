@@ -74,7 +74,7 @@ TEST(Coverage, PanTilt) {
     const bool flipped = summary.model.length_m * truth.length_m < 0;
     if (flipped) continue;  // the same head with its common normal pointing the other way
     count.add((summary.model.twist_rad - truth.twist_rad) / sigma("twist_rad"));
-    Vector6 world, camera;
+    Vector6d world, camera;
     for (int k = 0; k < 6; ++k)
       world[k] = summary.sigmas[static_cast<std::size_t>(k)],
       camera[k] = summary.sigmas[static_cast<std::size_t>(8 + k)];

@@ -44,7 +44,7 @@ TEST(JointChain, DerivativesAgreeWithDifferences) {
   for (std::size_t i = 1; i + 1 < n; ++i) {
     std::vector<double> offset = none;
     offset[i] = 1e-3;
-    const Vector6 step = step_between(robot.T_base_flange, jointed_pose(chain, q, offset, "test").T_base_flange);
+    const Vector6d step = step_between(robot.T_base_flange, jointed_pose(chain, q, offset, "test").T_base_flange);
     EXPECT_LT((step - 1e-3 * robot.flange_per_joint.col(static_cast<Eigen::Index>(i) - 1)).norm(), 3e-6) << i;
   }
 }

@@ -141,7 +141,7 @@ TEST(PanTiltTags, ErrorsLieWithinTheirSigmas) {
   for (int i = 0; i < 8; ++i) {
     const PanTiltTagSummary found = solve_pan_tilt_tags(ring.views(random, 25, 0.15, 3e-4), ring.cameras, options);
     const PanTiltView probe{"", {0.2, 0.1, {1, 1}}, {0, 0}, {}};
-    const Vector6 off = step_between(camera_pose(found.model, probe.angles), camera_pose(ring.truth, probe.angles));
+    const Vector6d off = step_between(camera_pose(found.model, probe.angles), camera_pose(ring.truth, probe.angles));
     square += off.cwiseQuotient(found.pose_sigma).squaredNorm();
     count += 6;
   }

@@ -46,7 +46,7 @@ Pose random_pose(Random& random, double turn, double shift) {
 }
 
 Pose noisy(const Pose& pose, Random& random, double sigma_rad, double sigma_m) {
-  Vector6 step;
+  Vector6d step;
   step << normal3(random, sigma_rad), normal3(random, sigma_m);
   return moved(pose, step);
 }
@@ -125,8 +125,8 @@ JointRig make_joint_rig(JointChain& chain, const std::vector<double>& offsets, R
   return out;
 }
 
-Vector6 in_sigmas(const Pose& found, const Pose& truth, const Vector6& sigma) {
-  Vector6 off;
+Vector6d in_sigmas(const Pose& found, const Pose& truth, const Vector6d& sigma) {
+  Vector6d off;
   off << rotation_vector(found.linear() * truth.linear().transpose()), found.translation() - truth.translation();
   return off.cwiseQuotient(sigma);
 }

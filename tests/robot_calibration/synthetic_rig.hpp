@@ -48,7 +48,7 @@ JointRig make_joint_rig(JointChain& chain, const std::vector<double>& offsets, R
 
 /// Differences of a result to the truth over their standard deviations: turn about and shift along
 /// the parent's axes, six numbers.
-Vector6 in_sigmas(const Pose& found, const Pose& truth, const Vector6& sigma);
+Vector6d in_sigmas(const Pose& found, const Pose& truth, const Vector6d& sigma);
 
 struct StreamRig {
   std::vector<PoseTrack::Sample> encoder, camera;
