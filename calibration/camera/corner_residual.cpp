@@ -1,7 +1,6 @@
 #include "calibration/camera/corner_residual.hpp"
 
-#include <ceres/jet.h>
-
+#include "calibration/camera/lens_slopes.hpp"
 #include "calibration/camera/rigid_motion.hpp"
 
 namespace foresight {
@@ -83,20 +82,14 @@ class CornerCost final : public ceres::CostFunction {
  private:
   bool project_with_derivatives(const double* lens_values, const Eigen::Vector3d& p_values, double* residuals,
                                 double* after_lens, Eigen::Matrix<double, 2, 3>& after_point) const {
-    using Jet = ceres::Jet<double, kLensParameters + 3>;
-    std::array<Jet, kLensParameters> lens;
-    for (int i = 0; i < kLensParameters; ++i) lens[static_cast<std::size_t>(i)] = Jet(lens_values[i], i);
-    Eigen::Matrix<Jet, 3, 1> p;
-    for (int i = 0; i < 3; ++i) p[i] = Jet(p_values[i], kLensParameters + i);
-    Eigen::Matrix<Jet, 2, 1> pixel;
-    if (!project(r_.distortion, lens.data(), p, pixel)) return false;
-    for (int row = 0; row < 2; ++row) {
-      residuals[row] = r_.weight * (pixel[row].a - r_.pixel[row]);
-      after_point.row(row) = r_.weight * pixel[row].v.tail<3>().transpose();
-      if (after_lens)
-        Eigen::Map<Eigen::RowVectorXd>(after_lens + row * kLensParameters, kLensParameters) =
-            r_.weight * pixel[row].v.head<kLensParameters>().transpose();
-    }
+    Eigen::Vector2d pixel;
+    LensSlopes slopes;
+    if (!project_with_slopes(r_.distortion, lens_values, p_values, pixel, slopes)) return false;
+    Eigen::Map<Eigen::Vector2d> r(residuals);
+    r = r_.weight * (pixel - r_.pixel);
+    after_point = r_.weight * slopes.point;
+    if (after_lens)
+      Eigen::Map<Eigen::Matrix<double, 2, kLensParameters, Eigen::RowMajor>>{after_lens} = r_.weight * slopes.lens;
     return true;
   }
 

@@ -1,14 +1,12 @@
 #include "calibration/camera/uncertainty.hpp"
 
-#include <ceres/jet.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "calibration/camera/lens_projection.hpp"
+#include "calibration/camera/lens_slopes.hpp"
 #include "common/statistics.hpp"
 
 namespace foresight {
@@ -24,17 +22,10 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 }
 
 Eigen::Matrix<double, 2, kLensParameters> after_lens(const CameraModel& camera, const Eigen::Vector3d& p_camera) {
-  using Jet = ceres::Jet<double, kLensParameters>;
-  std::array<Jet, kLensParameters> lens;
-  for (int i = 0; i < kLensParameters; ++i)
-    lens[static_cast<std::size_t>(i)] = Jet(camera.lens[static_cast<std::size_t>(i)], i);
-  const Eigen::Matrix<Jet, 3, 1> p = p_camera.cast<Jet>();
-  Eigen::Matrix<Jet, 2, 1> pixel;
-  project<Jet>(camera.distortion, lens.data(), p, pixel);
-  Eigen::Matrix<double, 2, kLensParameters> d;
-  d.row(0) = pixel[0].v.transpose();
-  d.row(1) = pixel[1].v.transpose();
-  return d;
+  Eigen::Vector2d pixel;
+  LensSlopes slopes;
+  if (!project_with_slopes(camera.distortion, camera.lens.data(), p_camera, pixel, slopes)) slopes.lens.setZero();
+  return slopes.lens;
 }
 
 }  // namespace

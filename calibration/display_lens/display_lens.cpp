@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "calibration/camera/lens_slopes.hpp"
 #include "calibration/camera/minimise.hpp"
 #include "calibration/camera/rigid_motion.hpp"
 #include "common/error.hpp"
@@ -51,7 +52,7 @@ struct PanelResidual {
       p = (eye + p * ((T(distance) - eye.z()) / p.z())).eval();
     }
     Eigen::Matrix<T, 2, 1> pixel;
-    if (!project(model, lens, p, pixel)) return false;
+    if (!project_by_slopes(model, lens, p, pixel)) return false;
     residual[0] = pixel.x() - panel.x();
     residual[1] = pixel.y() - panel.y();
     return true;

@@ -4,6 +4,7 @@
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
 
+#include "calibration/camera/lens_slopes.hpp"
 #include "calibration/camera/minimise.hpp"
 #include "calibration/robot/arrow_system.hpp"
 #include "calibration/robot/hand_eye_start.hpp"
@@ -45,8 +46,8 @@ struct CornerResidual {
   template <typename T>
   bool operator()(const T* lens, const T* X, const T* Y, const T* step, const T* scale, T* residual) const {
     Eigen::Matrix<T, 2, 1> predicted;
-    if (!project(distortion, lens, to_camera(mount, T_base_flange, X, Y, step, scale, p_board), predicted))
-      return false;
+    const Eigen::Matrix<T, 3, 1> p = to_camera(mount, T_base_flange, X, Y, step, scale, p_board);
+    if (!project_by_slopes(distortion, lens, p, predicted)) return false;
     for (int i = 0; i < 2; ++i) residual[i] = (predicted[i] - T(pixel[i])) * T(weight);
     return true;
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "calibration/camera/lens_slopes.hpp"
 #include "calibration/camera/minimise.hpp"
 #include "calibration/robot/arrow_system.hpp"
 #include "common/error.hpp"
@@ -32,14 +33,13 @@ struct TagResidual {
     const T tilt = joints[1] * (a.tilt + view->rate[1] * offset[0]) + joints[3] * (0.5 * a.came[1]) + shaft[1];
     HeadMotion<T> head = head_motion(world, link, camera, pan, tilt);
     T motion[7] = {head.q.x(), head.q.y(), head.q.z(), head.q.w(), head.p.x(), head.p.y(), head.p.z()};
-    T right[7], lens_values[kLensParameters];
+    T right[7];
     for (std::size_t i = 0; i < 7; ++i) right[i] = T(T_left_camera[i]);
-    for (std::size_t i = 0; i < kLensParameters; ++i) lens_values[i] = T(lens->lens[i]);
     for (std::size_t c = 0; c < 4; ++c) {
       Eigen::Matrix<T, 3, 1> p = inverse_transform(motion, Eigen::Matrix<T, 3, 1>(tag->corners[c].cast<T>()));
       if (tag->camera == 1) p = inverse_transform(right, p);
       Eigen::Matrix<T, 2, 1> pixel;
-      if (!project(lens->distortion, lens_values, p, pixel)) return false;
+      if (!project_by_slopes(lens->distortion, lens->lens, p, pixel)) return false;
       residual[2 * c] = T(weight) * (pixel.x() - tag->pixels[c].x());
       residual[2 * c + 1] = T(weight) * (pixel.y() - tag->pixels[c].y());
     }
