@@ -15,7 +15,6 @@ using Duration = std::chrono::nanoseconds;
 
 struct RobotClock {};     ///< monotonic clock of the robot's host; stamps images and joints
 struct OperatorClock {};  ///< monotonic clock of the operator's host; stamps commands and frames
-struct SimClock {};       ///< stepped clock of the mock lab
 
 /// An instant on one clock, as nanoseconds since that clock's own (arbitrary) epoch.
 template <typename Clock>

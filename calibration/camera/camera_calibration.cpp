@@ -78,7 +78,6 @@ class Calibrator {
       left = solve_alone(result_.views, 0, distortion, solver_);
       right = solve_alone(result_.views, 1, distortion, solver_);
     }
-    result_.alone_px = {left.rms_px, right.rms_px};
     const double alone = std::sqrt(0.5 * (left.noise_px * left.noise_px + right.noise_px * right.noise_px));
     result_.solution = solve_rig(result_.views, start_pair(result_.views, left, right), solver_);
     result_.stereo_over_mono = result_.solution.noise_px / std::max(alone, 1e-9);

@@ -30,9 +30,8 @@ struct CameraCalibration {
   HeldOutScore held_out;  ///< views left out
   int folds = 0;
   std::optional<HeldOutScore>
-      unseen;  ///< views that were never used: test corners of other names, or more than most_views
-  std::array<double, 2> alone_px{};     ///< RMS of each camera of a pair when solved alone
-  double stereo_over_mono = 1;          ///< noise of the pair over that of its cameras alone
+      unseen;                   ///< views that were never used: test corners of other names, or more than most_views
+  double stereo_over_mono = 1;  ///< noise of the pair over that of its cameras alone
   std::array<double, 2> odd_even_px{};  ///< middle difference between solutions of every second view
   std::array<UncertaintyMap, 2> at_infinity;
   std::array<UncertaintyMap, 2> at_board;  ///< at board_distance_m

@@ -128,10 +128,6 @@ CameraFormat parse_camera_format(std::string_view name) {
   throw InputError("format", "there is no camera format " + in_quotes(name), "use " + nearest_word(name, names));
 }
 
-bool pair_is_folder(CameraFormat format) {
-  return format == CameraFormat::camera_info || format == CameraFormat::mrcal;
-}
-
 CalibratedCameras read_cameras(CameraFormat format, const fs::path& path) {
   switch (format) {
     case CameraFormat::camera_info: return formats::read_camera_info_files(path);

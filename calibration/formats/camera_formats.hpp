@@ -28,9 +28,6 @@ std::string to_string(CameraFormat format);
 /// Throws InputError naming the nearest format.
 CameraFormat parse_camera_format(std::string_view name);
 
-/// Whether a pair is a folder of two files.
-bool pair_is_folder(CameraFormat format);
-
 /// Throws InputError naming file and field: missing, damaged, a lens model or a projection that we
 /// do not know, coefficients that our models cannot hold, a pair without its pose.
 CalibratedCameras read_cameras(CameraFormat format, const std::filesystem::path& path);

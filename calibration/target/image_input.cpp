@@ -237,7 +237,6 @@ FoundCorners find_in_folder(const fs::path& folder, const Board& board) {
       result.dropped.push_back({name, blur.text(*s.found)});
     } else {
       result.corners.views.push_back({s.file.stem().string(), s.found->corners});
-      result.quality.push_back(s.found->quality);
     }
   }
   return result;
@@ -276,7 +275,6 @@ FoundStereoCorners find_pairs_in_folders(const fs::path& left, const fs::path& r
     for (int i = 0; i < 2; ++i) {
       if (!sides[i] || !sides[i]->found) continue;
       (i == 0 ? result.corners.left : result.corners.right).views.push_back({name, sides[i]->found->corners});
-      (i == 0 ? result.left_quality : result.right_quality).push_back(sides[i]->found->quality);
     }
   }
   if (!any)

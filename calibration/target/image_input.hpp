@@ -19,15 +19,13 @@ struct DroppedView {
 struct FoundCorners {
   Board board;  ///< with what was found from the images
   CornerSet corners;
-  std::vector<ViewQuality> quality;  ///< one per view
   std::vector<DroppedView> dropped;
 };
 
 struct FoundStereoCorners {
   Board board;
   StereoCorners corners;
-  std::vector<ViewQuality> left_quality, right_quality;  ///< one per view of each camera
-  std::vector<DroppedView> dropped;                      ///< named after the file, or after the pair
+  std::vector<DroppedView> dropped;  ///< named after the file, or after the pair
 };
 
 /// Pictures of a folder (png jpg jpeg bmp pgm tif tiff), or those that a pattern in the last part of

@@ -20,7 +20,7 @@ TEST(Time, ClocksDoNotMix) {
   static_assert(Subtractable<RobotTime, RobotTime> && Comparable<RobotTime, RobotTime>);
   static_assert(!Subtractable<RobotTime, Time<OperatorClock>>);
   static_assert(!Comparable<RobotTime, Time<OperatorClock>>);
-  static_assert(!std::is_convertible_v<Time<SimClock>, RobotTime>);
+  static_assert(!std::is_convertible_v<Time<OperatorClock>, RobotTime>);
 }
 
 TEST(Time, AddsAndSubtractsToTheNanosecond) {
