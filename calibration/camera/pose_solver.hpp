@@ -59,7 +59,9 @@ template <int Extra>
 PoseSolution<Extra> solve_pose(const PoseEstimate<Extra>& start, const PoseProblem<Extra>& problem,
                                const PoseSolverOptions<Extra>& options);
 
-extern template PoseSolution<0> solve_pose(const PoseEstimate<0>&, const PoseProblem<0>&, const PoseSolverOptions<0>&);
-extern template PoseSolution<2> solve_pose(const PoseEstimate<2>&, const PoseProblem<2>&, const PoseSolverOptions<2>&);
+template <>
+PoseSolution<0> solve_pose(const PoseEstimate<0>&, const PoseProblem<0>&, const PoseSolverOptions<0>&);
+template <>
+PoseSolution<2> solve_pose(const PoseEstimate<2>&, const PoseProblem<2>&, const PoseSolverOptions<2>&);
 
 }  // namespace foresight

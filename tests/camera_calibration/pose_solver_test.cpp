@@ -118,6 +118,22 @@ TEST(PoseSolver, TakesNoStepToWhereNothingCanBeSaid) {
   EXPECT_FALSE(solve_pose<0>({}, problem, {}).usable);
 }
 
+TEST(PoseSolver, StaysWhereDerivativesCease) {
+  // The cost is known everywhere, its slopes only at the start.
+  const Points points(far_pose(), 0, 8);
+  int with_derivatives = 0;
+  const auto problem = [&](const PoseEstimate<0>& at, bool derivatives, PoseEquations<0>& sum) {
+    points.add(at.T, derivatives, sum);
+    return !derivatives || ++with_derivatives == 1;
+  };
+  const Pose near = far_pose() * to_motion(Vector6d::Constant(0.05));
+  const auto found = solve_pose<0>({near, {}}, problem, {});
+  ASSERT_TRUE(found.usable);
+  EXPECT_EQ(with_derivatives, 2);
+  const auto off = [](const Pose& T) { return to_twist(far_pose().inverse() * T).norm(); };
+  EXPECT_LT(off(found.at.T), off(near) / 5);
+}
+
 TEST(PoseSolver, ASmallStepEndsIt) {
   const Points points(far_pose(), 0.1, 5);
   int with_derivatives = 0;
