@@ -1,5 +1,7 @@
 #include "apps/replay.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -260,10 +262,10 @@ class Replay {
     keeper_.offer(record, delayed_, predicted, actual);
     record_.frames.push_back(record);
     std::cerr << bar_.update(i + 1, Clock::now()) << std::flush;
-    char title[160];
-    std::snprintf(title, sizeof title, "Foresight replay: %.0f ms delayed %.1f dB | predicted %.1f dB | actual",
-                  record.delay_s * 1e3, record.delayed.psnr_db.value_or(0), record.predicted.psnr_db.value_or(0));
-    closed_ = !session_.show(delayed_, predicted, actual, title);
+    closed_ = !session_.show(
+        delayed_, predicted, actual,
+        fmt::format("Foresight replay: {:.0f} ms delayed {:.1f} dB | predicted {:.1f} dB | actual",
+                    record.delay_s * 1e3, record.delayed.psnr_db.value_or(0), record.predicted.psnr_db.value_or(0)));
   }
 
   void note_policy() {

@@ -1,8 +1,9 @@
 #include "apps/replay_refinement.hpp"
 
+#include <fmt/core.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cstdio>
 
 #include "apps/posed_frames.hpp"
 #include "calibration/registration/calibrated_head.hpp"
@@ -94,14 +95,12 @@ double ReplayRefinement::use(std::size_t index, const RefinementSummary& found, 
 
 std::vector<std::string> ReplayRefinement::notes() const {
   std::vector<std::string> out;
-  char text[256];
   const double n = std::max<double>(1, static_cast<double>(record_.refined));
-  std::snprintf(text, sizeof text,
-                "Poses refined of %zu images, by %.2f px from their prediction, sigma %.2f px; %zu refused; mean "
-                "margin %.1f px; %.0f CPU-ms each.",
-                record_.refined, moved_px_ / n, sigma_px_ / n, record_.refused,
-                margins_ / static_cast<double>(record_.refined + record_.refused + record_.vetoed + 1), cpu_ms_ / n);
-  out.emplace_back(text);
+  out.push_back(fmt::format(
+      "Poses refined of {} images, by {:.2f} px from their prediction, sigma {:.2f} px; {} refused; mean margin {:.1f} "
+      "px; {:.0f} CPU-ms each.",
+      record_.refined, moved_px_ / n, sigma_px_ / n, record_.refused,
+      margins_ / static_cast<double>(record_.refined + record_.refused + record_.vetoed + 1), cpu_ms_ / n));
   if (record_.refined > 0 && !filter_.helps())
     out.emplace_back("In the end the refined poses were not used: they made the motion rougher.");
   if (veto_)

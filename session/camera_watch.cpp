@@ -1,6 +1,6 @@
 #include "session/camera_watch.hpp"
 
-#include <cstdio>
+#include <fmt/core.h>
 
 namespace foresight {
 namespace {
@@ -11,10 +11,6 @@ constexpr Duration kTryEvery = 5s;
 constexpr Duration kLook = 100ms;     // so long a stop may take
 constexpr Duration kNoPairs = 500ms;  // both cameras deliver, and nothing pairs
 constexpr const char* kStarting = "starting";
-
-unsigned long long number(std::uint64_t n) {
-  return n;
-}
 
 }  // namespace
 
@@ -116,27 +112,22 @@ CameraLine CameraWatch::line() const {
     out.pairs_per_s = static_cast<double>(n - 1) / to_seconds(now - *first);
   if (newest_) out.age = now - *newest_;
   if (last_ended_ && line_.fault.empty()) {
-    char ago[32];
-    std::snprintf(ago, sizeof ago, ", until %.0f s ago", to_seconds(now - *last_ended_));
-    out.last_fault = cause_ + ago;
+    out.last_fault = fmt::format("{}, until {:.0f} s ago", cause_, to_seconds(now - *last_ended_));
   }
   return out;
 }
 
 std::string camera_text(const CameraLine& line) {
   const StereoStatus& s = line.status;
-  char text[256];
-  std::snprintf(text, sizeof text, "  cameras: %.0f pairs/s, newest %s%s old", line.pairs_per_s,
-                line.age ? std::to_string(*line.age / 1ms).c_str() : "-", line.age ? " ms" : "");
-  std::string out = text;
+  std::string out = fmt::format("  cameras: {:.0f} pairs/s, newest {} old", line.pairs_per_s,
+                                line.age ? std::to_string(*line.age / 1ms) + " ms" : "-");
   out += line.fault.empty() ? (line.last_fault.empty() ? "" : "; before: " + line.last_fault) : ": " + line.fault;
-  std::snprintf(text, sizeof text,
-                "\n    %llu pairs, %llu dropped; left, right: %llu, %llu unpaired, %llu, %llu damaged, %llu, %llu with "
-                "a wrong time, lost %llu, %llu times\n",
-                number(s.pairing.pairs), number(s.dropped), number(s.pairing.unpaired[0]),
-                number(s.pairing.unpaired[1]), number(s.corrupt[0]), number(s.corrupt[1]), number(s.pairing.jumps[0]),
-                number(s.pairing.jumps[1]), number(line.losses[0]), number(line.losses[1]));
-  return out + text;
+  return out +
+         fmt::format(
+             "\n    {} pairs, {} dropped; left, right: {}, {} unpaired, {}, {} damaged, {}, {} with a wrong time, "
+             "lost {}, {} times\n",
+             s.pairing.pairs, s.dropped, s.pairing.unpaired[0], s.pairing.unpaired[1], s.corrupt[0], s.corrupt[1],
+             s.pairing.jumps[0], s.pairing.jumps[1], line.losses[0], line.losses[1]);
 }
 
 }  // namespace foresight

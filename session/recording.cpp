@@ -1,7 +1,8 @@
 #include "session/recording.hpp"
 
+#include <fmt/core.h>
+
 #include "common/error.hpp"
-#include "sim/run_files.hpp"
 
 namespace foresight {
 namespace {
@@ -13,11 +14,11 @@ unsigned long long number(std::uint64_t n) {
 }
 
 std::string why_silent(const StereoStatus& status, Duration silent) {
-  std::string text = sim::format("no pair of images came for %.3g s", to_seconds(silent));
+  std::string text = fmt::format("no pair of images came for {:.3g} s", to_seconds(silent));
   if (*status.reason) text += std::string(": ") + status.reason;
   for (std::size_t i = 0; i < 2; ++i)
     if (status.cameras[i] != CameraStatus::ok)
-      text += sim::format(", %s camera: %s", i ? "right" : "left", to_string(status.cameras[i]));
+      text += fmt::format(", {} camera: {}", i ? "right" : "left", to_string(status.cameras[i]));
   return text;
 }
 
@@ -61,24 +62,24 @@ RecordingResult record(StereoCamera& cameras, RunRecorder& recorder, const Recor
 
 std::string camera_remarks(const StereoStatus& status) {
   const auto& p = status.pairing;
-  return sim::format("missed_pairs: %llu\nunpaired: [%llu, %llu]\nwrong_times: [%llu, %llu]\ndamaged: [%llu, %llu]\n",
+  return fmt::format("missed_pairs: {}\nunpaired: [{}, {}]\nwrong_times: [{}, {}]\ndamaged: [{}, {}]\n",
                      number(status.dropped), number(p.unpaired[0]), number(p.unpaired[1]), number(p.jumps[0]),
                      number(p.jumps[1]), number(status.corrupt[0]), number(status.corrupt[1]));
 }
 
 std::string counts_text(const RecordingResult& result) {
-  std::string text = sim::format("%llu pairs\n", number(result.counts.written));
+  std::string text = fmt::format("{} pairs\n", number(result.counts.written));
   const auto line = [&text](std::uint64_t n, const char* what) {
-    if (n) text += sim::format("%llu %s\n", number(n), what);
+    if (n) text += fmt::format("{} {}\n", number(n), what);
   };
   line(result.counts.without_pose, "pairs of these have no pose: they are in without_pose.txt, not in the run");
   line(result.counts.dropped, "pairs dropped: the disk was too slow");
   line(result.cameras.dropped, "pairs missed: this machine was too slow");
   const char* const sides[] = {"left", "right"};
   for (std::size_t i = 0; i < 2; ++i) {
-    line(result.cameras.pairing.unpaired[i], sim::format("%s images without a partner", sides[i]).c_str());
-    line(result.cameras.pairing.jumps[i], sim::format("%s images with a wrong time", sides[i]).c_str());
-    line(result.cameras.corrupt[i], sim::format("%s images were damaged", sides[i]).c_str());
+    line(result.cameras.pairing.unpaired[i], fmt::format("{} images without a partner", sides[i]).c_str());
+    line(result.cameras.pairing.jumps[i], fmt::format("{} images with a wrong time", sides[i]).c_str());
+    line(result.cameras.corrupt[i], fmt::format("{} images were damaged", sides[i]).c_str());
   }
   return text;
 }

@@ -1,9 +1,10 @@
 #include "session/robot_cameras.hpp"
 
+#include <fmt/core.h>
+
 #include "common/error.hpp"
 #include "session/recorder_options.hpp"
 #include "session/recording.hpp"
-#include "sim/run_files.hpp"
 
 namespace foresight {
 
@@ -17,8 +18,8 @@ JointLog::JointLog(const std::filesystem::path& file, const Rig& rig) : stream_(
 void JointLog::add(const RobotStatus& status) {
   if (status.time <= last_ || !status.all_homed) return;
   last_ = status.time;
-  stream_ << sim::format("%.9f", to_seconds(status.time - RobotTime{}));
-  for (std::size_t i = 0; i < joints_; ++i) stream_ << sim::format(",%.7f", status.feedback[i].position);
+  stream_ << fmt::format("{:.9f}", to_seconds(status.time - RobotTime{}));
+  for (std::size_t i = 0; i < joints_; ++i) stream_ << fmt::format(",{:.7f}", status.feedback[i].position);
   stream_ << '\n';
 }
 

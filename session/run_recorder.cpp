@@ -1,5 +1,7 @@
 #include "session/run_recorder.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -13,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string time_text(RobotTime time) {
-  return sim::format("%lld.%09lld", static_cast<long long>(time.ns / 1'000'000'000),
+  return fmt::format("{}.{:09}", static_cast<long long>(time.ns / 1'000'000'000),
                      static_cast<long long>(time.ns % 1'000'000'000));
 }
 
@@ -73,7 +75,7 @@ void RunRecorder::join() {
 void RunRecorder::check(const ColourImage& image, const Lens& lens, const char* side, RobotTime last) const {
   if (image.bgr.cols != lens.width() || image.bgr.rows != lens.height())
     throw InputError(std::string("the ") + side + " camera",
-                     sim::format("delivers %d x %d px, but its lens was calibrated at %d x %d", image.bgr.cols,
+                     fmt::format("delivers {} x {} px, but its lens was calibrated at {} x {}", image.bgr.cols,
                                  image.bgr.rows, lens.width(), lens.height()),
                      "set the camera to the size of its calibration, or calibrate it anew");
   if (image.time <= last)
@@ -160,7 +162,7 @@ bool RunRecorder::write_registered(const Job& job) {
   const RobotTime time = job.pair.left.time;
   const bool first = last_pose_.ns == INT64_MIN;
   const RegisteredPose found = job.registration(job.pair);
-  registration_ << time_text(time) << ' ' << found.quality << ' ' << sim::format("%.4f", found.predicted_px) << '\n';
+  registration_ << time_text(time) << ' ' << found.quality << ' ' << fmt::format("{:.4f}", found.predicted_px) << '\n';
   if (found.quality == "lost") return false;
   RecordedPoses poses = job.left.value_or(RecordedPoses{});
   poses.T_world_left = found.T_world_left;
@@ -169,7 +171,7 @@ bool RunRecorder::write_registered(const Job& job) {
 }
 
 void RunRecorder::write_image(const std::string& folder, const ColourImage& image, std::ofstream& list) {
-  const std::string name = folder + sim::format("/%06llu.png", static_cast<unsigned long long>(counts().written));
+  const std::string name = folder + fmt::format("/{:06}.png", static_cast<unsigned long long>(counts().written));
   std::vector<std::uint8_t> bytes;
   cv::imencode(".png", image.bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1});  // more takes longer than 33 ms
   sim::write_bytes(target_.path() / name, bytes.data(), bytes.size());
@@ -200,7 +202,7 @@ RecorderCounts RunRecorder::finish(const std::string& remarks) {
     list->close();
     if (!*list) cannot_write(target_.target(), std::strerror(errno));
   }
-  sim::write_text(target_.path() / kMarker, sim::format("%s\npairs: %llu\ndropped_by_disk: %llu\nwithout_pose: %llu\n",
+  sim::write_text(target_.path() / kMarker, fmt::format("{}\npairs: {}\ndropped_by_disk: {}\nwithout_pose: {}\n",
                                                         kMarkerLine, static_cast<unsigned long long>(counts_.written),
                                                         static_cast<unsigned long long>(counts_.dropped),
                                                         static_cast<unsigned long long>(counts_.without_pose)) +

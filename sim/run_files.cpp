@@ -3,8 +3,6 @@
 #include <fmt/core.h>
 
 #include <cerrno>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 
@@ -32,15 +30,6 @@ std::string ply(const Mesh& mesh) {
 }
 
 }  // namespace
-
-std::string format(const char* pattern, ...) {
-  char buffer[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(buffer, sizeof buffer, pattern, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 void write_bytes(const fs::path& file, const void* data, std::size_t size) {
   std::ofstream stream(file, std::ios::binary);

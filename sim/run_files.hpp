@@ -11,9 +11,6 @@
 
 namespace foresight::sim {
 
-/// printf into a string; up to 511 characters.
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
-
 /// Both throw RuntimeFailure where the file cannot be written whole.
 void write_bytes(const std::filesystem::path& file, const void* data, std::size_t size);
 void write_text(const std::filesystem::path& file, const std::string& text);

@@ -1,6 +1,7 @@
 #include "calibration/target/capture_session.hpp"
 
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -63,8 +64,7 @@ CaptureSession::Outcome CaptureSession::show(const cv::Mat& left, const cv::Mat&
     for (std::size_t i = 0; i < count; ++i) outcome.found[i] = finder_->find(greys[i]);
   outcome.verdict = guide_->offer(outcome.found[0], outcome.found[1], at_once);
   if (!outcome.verdict.taken) return outcome;
-  char name[16];
-  std::snprintf(name, sizeof name, "%03d.png", guide_->views());
+  const std::string name = fmt::format("{:03}.png", guide_->views());
   const auto out = folders();
   for (std::size_t i = 0; i < count; ++i) write_picture(out[i] / name, *images[i]);
   return outcome;
