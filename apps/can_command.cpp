@@ -55,10 +55,8 @@ void add_explain(Command& can, std::function<int()>& action) {
   command->add_option("--protocol", options->protocol, "What the bus speaks: cia402, powercube or schunk-motion")
       ->required()
       ->check(one_of({"cia402", "powercube", "schunk-motion"}));
-  command
-      ->add_option("--eds", options->eds,
-                   "EDS or DCF file of all nodes, or NODE=FILE of one: objects and PDOs by the names that it gives")
-      ->allow_extra_args(false);
+  command->add_option("--eds", options->eds,
+                      "EDS or DCF file of all nodes, or NODE=FILE of one: objects and PDOs by the names that it gives");
   command->footer(
       "Example: foresight can explain session.log --protocol cia402 --eds axis.eds --eds 12=gripper.dcf\n"
       "Exit code: 0 where all frames are known, 1 where some are not.");

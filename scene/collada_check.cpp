@@ -1,5 +1,7 @@
 #include "scene/collada_check.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -57,7 +59,7 @@ class ColladaCheck final : public pugi::xml_tree_walker {
     const auto value = attribute ? parse_integer(attribute.value()) : otherwise;
     // No array of a readable file is longer than the file; this also keeps the products small.
     if (!value || *value < 0 || *value > static_cast<long long>(text_.size()))
-      fail(node, std::string("an array or accessor has no valid ") + name);
+      fail(node, fmt::format("an array or accessor has no valid {}", name));
     return *value;
   }
 

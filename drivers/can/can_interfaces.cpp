@@ -8,6 +8,7 @@
 #include <netlink/netlink.h>
 #include <netlink/route/link.h>
 #include <netlink/route/link/can.h>
+#include <netlink/route/rtnl.h>
 #include <netlink/socket.h>
 #include <sys/socket.h>
 

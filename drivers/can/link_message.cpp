@@ -2,10 +2,10 @@
 
 #include <linux/can.h>
 #include <linux/can/netlink.h>
+#include <linux/if.h>
 #include <linux/if_arp.h>
 #include <linux/if_link.h>
 #include <linux/rtnetlink.h>
-#include <net/if.h>
 #include <netlink/attr.h>
 #include <netlink/msg.h>
 

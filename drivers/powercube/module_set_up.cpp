@@ -10,8 +10,12 @@
 namespace foresight::powercube {
 namespace {
 
+std::string text(double value) {
+  return fmt::format("{:.7g}", value);
+}
+
 void need(bool fine, const std::string& who, const char* field, double value, const char* cure) {
-  if (!fine) throw InputError(who, fmt::format("{} = {:.7g}", field, value), cure);
+  if (!fine) throw InputError(who, std::string(field) + " = " + text(value), cure);
 }
 
 }  // namespace

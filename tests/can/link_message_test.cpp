@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 #include <linux/can.h>
 #include <linux/can/netlink.h>
+#include <linux/if.h>
 #include <linux/if_arp.h>
 #include <linux/rtnetlink.h>
-#include <net/if.h>
 
 #include <cerrno>
 #include <cstring>
