@@ -1,6 +1,8 @@
 // The atlas in GPU memory, reserved once.
 #pragma once
 
+#include <memory>
+
 #include "gl/objects.hpp"
 #include "texture_gpu/chart_atlas.hpp"
 
@@ -10,7 +12,8 @@ namespace foresight {
 /// where the GPU cannot hold them.
 struct AtlasStore {
   explicit AtlasStore(const ChartAtlas& atlas);
-  gl::Texture colours;  ///< RGBA8 array, atlas::kLevels levels
+  /// RGBA8 array, atlas::kLevels levels; published generations own it too.
+  std::shared_ptr<const gl::Texture> colours;
   gl::Texture heights;  ///< R16UI array
 };
 

@@ -79,7 +79,7 @@ void ExtractPass::relevel(std::span<const PageJob> jobs, const gl::BufferTexture
   glBindTextureUnit(7, relevel_jobs_.texture());
   glBindTextureUnit(8, charts.texture());
   published.bind();
-  glBindImageTexture(0, store.colours.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
   dispatch_groups(relevel_, 4 * jobs.size());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
@@ -143,8 +143,8 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   holes_.reserve(4 * work.jobs.size() * sizeof(std::uint32_t));
   holes_.buffer().clear_to_zero();
   glBindTextureUnit(9, store.heights.name());
-  glBindTextureUnit(11, store.colours.name());
-  glBindImageTexture(0, store.colours.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  glBindTextureUnit(11, store.colours->name());
+  glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
   for (std::size_t size = 0; size < kSizes; ++size) run(size, inputs, depth_tolerance, worse);
 

@@ -67,15 +67,15 @@ void FillPass::operator()(const ExtractPass& extracted, const Work& work, const 
 
 void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
   if (job_count == 0) return;
-  glBindTextureUnit(11, store.colours.name());
+  glBindTextureUnit(11, store.colours->name());
   push_.use();
-  bind_level(0, store.colours, 1, GL_WRITE_ONLY);
+  bind_level(0, *store.colours, 1, GL_WRITE_ONLY);
   dispatch_groups(push_, job_count);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   push_rest_.use();
   push_rest_.set("job_count", static_cast<int>(job_count));
   for (int level = 2; level <= 4; ++level)
-    bind_level(static_cast<GLuint>(level - 2), store.colours, level, GL_WRITE_ONLY);
+    bind_level(static_cast<GLuint>(level - 2), *store.colours, level, GL_WRITE_ONLY);
   glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
@@ -94,7 +94,7 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   glBindTextureUnit(7, dirty_.texture());
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
-  glBindTextureUnit(11, store.colours.name());
+  glBindTextureUnit(11, store.colours->name());
   glBindImageTexture(0, next.coarse.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
   glBindImageTexture(1, next.means.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
   empty_pages_.start(work.chart_of_page.size());
@@ -133,7 +133,7 @@ void FillPass::list_holes(const gl::Program& program, std::size_t job_count, std
   program.set("turn", turn_);
   program.set("refresh", kRefresh);
   glBindTextureUnit(10, holes.texture());
-  glBindTextureUnit(11, store.colours.name());
+  glBindTextureUnit(11, store.colours->name());
   with_holes_.start(most);
   glDispatchCompute(gl::groups(static_cast<int>(most), 64), 1, 1);
   with_holes_.finish();
@@ -149,8 +149,8 @@ void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const
   for (int level = 3; level >= 0; --level) {
     if (level == 0) list_holes(hole_tiles_, job_count, 4 * job_count, holes, store);
     pull_[static_cast<std::size_t>(level)].use();
-    bind_level(0, store.colours, level, GL_READ_WRITE);
-    bind_level(1, store.colours, level + 1, GL_READ_ONLY);
+    bind_level(0, *store.colours, level, GL_READ_WRITE);
+    bind_level(1, *store.colours, level + 1, GL_READ_ONLY);
     with_holes_.dispatch();
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   }

@@ -226,7 +226,7 @@ TextureCore::Generation TextureCore::next_generation() {
   fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
   fresh->coarse = gl::BufferTexture(GL_R32UI, 16, "page means");
   fresh->means = gl::BufferTexture(GL_R32UI, 16, "chart means");
-  fresh->colours = &store_.colours;
+  fresh->colours = store_.colours;
   return fresh;
 }
 

@@ -30,7 +30,7 @@ std::shared_ptr<PublishedTextures> PassBench::fresh_generation() const {
   fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
   fresh->coarse = gl::BufferTexture(GL_R32UI, 16, "page means");
   fresh->means = gl::BufferTexture(GL_R32UI, surface->charts.size() * 4, "chart means");
-  fresh->colours = &store.colours;
+  fresh->colours = store.colours;
   return fresh;
 }
 
