@@ -81,7 +81,7 @@ void PassBench::relevel() {
 void PassBench::extract(double minify_above) {
   std::vector<Eigen::Vector4f> geometry;
   atlas.write_job_geometry(allocation.jobs, views, geometry);
-  extraction.extract({allocation.jobs, allocation.masks, geometry, minify_above}, inputs, store,
+  extraction.extract({allocation.jobs, allocation.masks, geometry, 0, minify_above}, inputs, store,
                      options.depth_tolerance, options.worse);
 }
 
