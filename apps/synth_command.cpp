@@ -16,6 +16,7 @@ struct Arguments {
   std::string out;
   std::string size = "751x570";
   std::string head_path;
+  bool auto_exposure = false;
   double motion_blur_ms = 0, rolling_shutter_ms = 0;
   sim::SynthOptions options;
 };
@@ -36,6 +37,7 @@ int run(Arguments arguments) {
   parse_size(arguments.size, arguments.options);
   arguments.options.shutter.exposure_s = arguments.motion_blur_ms * 1e-3;
   arguments.options.shutter.readout_s = arguments.rolling_shutter_ms * 1e-3;
+  if (arguments.auto_exposure) arguments.options.auto_exposure.emplace();
   if (!arguments.head_path.empty()) arguments.options.head_path = arguments.head_path;
   std::signal(SIGINT, [](int) { interrupted = 1; });
   const std::size_t images =
@@ -85,6 +87,12 @@ void add_synth_command(Command& app, std::function<int()>& action) {
   command
       ->add_option("--exposure-drift", options.sensor.exposure_drift, "Share by which the exposure swings up and down")
       ->capture_default_str();
+  command
+      ->add_option("--exposure", options.sensor.exposure, "Factor on the light; from about 1.5 on highlights are white")
+      ->capture_default_str();
+  command->add_flag("--auto-exposure", arguments->auto_exposure,
+                    "The exposure follows what the camera sees as a webcam's does: late, in steps, within two stops");
+  command->add_flag("--still", options.still, "The arm stands still, only the cameras move");
   command->add_option("--vignetting", options.sensor.vignetting, "Share of the light that the corners lose")
       ->capture_default_str();
   command->add_option("--motion-blur", arguments->motion_blur_ms, "Exposure time in ms")->capture_default_str();

@@ -55,7 +55,7 @@ std::uint8_t encode(float light) {
 }
 
 double Sensor::gain(double t) const {
-  return 1 + exposure_drift * std::sin(2 * std::numbers::pi * t / kDriftPeriod);
+  return exposure * (1 + exposure_drift * std::sin(2 * std::numbers::pi * t / kDriftPeriod));
 }
 
 double Sensor::falloff(double u, double v, cv::Size size) const {
@@ -64,7 +64,7 @@ double Sensor::falloff(double u, double v, cv::Size size) const {
   return 1 - vignetting * 4 * (x * x + y * y) / (w * w + h * h);
 }
 
-cv::Mat Sensor::develop(const cv::Mat& light, double t, std::uint64_t number) const {
+cv::Mat Sensor::develop(const cv::Mat& light, double t, std::uint64_t number, double factor) const {
   const float mid = linear_from_srgb(128 / 255.0f);
   const float slope = (srgb_from_linear(mid * 1.001f) - srgb_from_linear(mid)) / (mid * 0.001f);
   const float variance = std::pow(static_cast<float>(noise) / 255 / slope, 2.0f);
@@ -75,7 +75,7 @@ cv::Mat Sensor::develop(const cv::Mat& light, double t, std::uint64_t number) co
   for (int v = 0; v < light.rows; ++v) {
     Noise random((number << 20) + static_cast<std::uint64_t>(v) + (std::uint64_t{seed} << 52));
     for (int u = 0; u < light.cols; ++u) {
-      cv::Vec3f value = spread.at<cv::Vec3f>(v, u) * static_cast<float>(gain(t) * falloff(u, v, light.size()));
+      cv::Vec3f value = spread.at<cv::Vec3f>(v, u) * static_cast<float>(factor * gain(t) * falloff(u, v, light.size()));
       if (noise > 0) {
         const auto a = random.normal(), b = random.normal();
         const float normal[] = {a[0], a[1], b[0]};

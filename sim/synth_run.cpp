@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kMarker = "synth.yaml";  // tells our folders from those of others
 constexpr const char* kMarkerLine = "generator: foresight synth";
 constexpr double kDepthUnit = 1e-4;  // metres
+constexpr int kMeterSide = 64;       // px, of the longer side of the pictures that are metered
 
 std::string image_name(bool right, int frame) {
   return RunWriter::image_name(right, static_cast<std::uint64_t>(frame));
@@ -66,6 +67,7 @@ class SynthRun {
   double time(int frame) const { return frame / options_.rate; }
   static RobotTime at(double t) { return RobotTime{} + seconds(t); }
   fs::path truth_folder(bool right) const { return target_.path() / (right ? "truth_right" : "truth"); }
+  LabState lab_state(const Lab& lab, double t) const { return lab_state_at(lab, options_.still ? 0 : t); }
 
   // Of pose errors, from image to image.
   double persistence() const {
@@ -100,7 +102,7 @@ class SynthRun {
     for (int i = 0; i < options_.frames; ++i)
       for (int eye = 0; eye <= int{options_.stereo}; ++eye) {
         const double t = time(i);
-        const std::string fault = room.fault(T_world_eye(t, eye == 1).translation(), lab_state_at(lab, t));
+        const std::string fault = room.fault(T_world_eye(t, eye == 1).translation(), lab_state(lab, t));
         if (!fault.empty())
           throw InputError(options_.head_path->string(),
                            fmt::format("at {:.3f} s the {} camera ", t, eye ? "right" : "left") + fault,
@@ -127,7 +129,7 @@ class SynthRun {
 
   void add_node_track(RunWriter& run, const Lab& lab) const {
     for (const double t : track_times()) {
-      const LabState state = lab_state_at(lab, t);
+      const LabState state = lab_state(lab, t);
       for (std::size_t k = 0; k < lab.parts.size(); ++k)
         if (lab.parts[k].moves) run.add_node(at(t), lab.parts[k].name, state[k]);
     }
@@ -156,6 +158,7 @@ class SynthRun {
     });
     const Renderer renderer(lab, light);
     std::vector<RayTable> rays(lenses_.begin(), lenses_.end());
+    meter(renderer, progress, total);
     pose_errors_.assign(options_.frames, Pose::Identity());
     SynthSummary summary{polygons.count, polygons.count, 0};
     parallel_for(options_.frames, [&](std::size_t frame) {
@@ -170,15 +173,41 @@ class SynthRun {
     return summary;
   }
 
+  // What an exposure control would choose for each image: it meters small pictures of the same views.
+  void meter(const Renderer& renderer, const std::function<void(int, int)>& progress, int total) {
+    exposure_.assign(static_cast<std::size_t>(options_.frames), 1);
+    if (!options_.auto_exposure) return;
+    SynthOptions small = options_;
+    small.width = std::max(16, options_.width * kMeterSide / std::max(options_.width, options_.height));
+    small.height = std::max(16, options_.height * kMeterSide / std::max(options_.width, options_.height));
+    const RayTable rays(synth_lens(small, false));
+    std::vector<cv::Mat> light(exposure_.size());
+    std::mutex mutex;
+    parallel_for(options_.frames, [&](std::size_t frame) {
+      const double t = time(static_cast<int>(frame));
+      const LabState state = lab_state(renderer.lab(), t);
+      light[frame] = renderer.render(rays, T_world_left(t), state, renderer.light().lit(state)).light;
+      const std::scoped_lock lock(mutex);
+      if (progress) progress(0, total);
+    });
+    Sensor sensor = options_.sensor;
+    sensor.blur = sensor.noise = 0;
+    exposure_ = run_auto_exposure(*options_.auto_exposure, options_.frames, [&](int image, double factor) {
+      const cv::Scalar mean = cv::mean(sensor.develop(light[static_cast<std::size_t>(image)], time(image), 0, factor));
+      return (0.114 * mean[0] + 0.587 * mean[1] + 0.299 * mean[2]) / 255;
+    });
+  }
+
   // Returns the number of polygons in view.
   int write_image(const RunWriter& run, const Renderer& renderer, const RayTable& rays, const Polygons& polygons,
                   int frame, bool right) {
     const double t = time(frame);
     const Motion motion{[&](double at) { return T_world_eye(at, right); },
-                        [&](double at) { return lab_state_at(renderer.lab(), at); }};
+                        [&](double at) { return lab_state(renderer.lab(), at); }};
     const Picture picture = expose(renderer, rays, motion, options_.shutter, t);
     run.write_image(image_name(right, frame),
-                    options_.sensor.develop(picture.light, t, 2 * static_cast<std::uint64_t>(frame) + right));
+                    options_.sensor.develop(picture.light, t, 2 * static_cast<std::uint64_t>(frame) + right,
+                                            exposure_[static_cast<std::size_t>(frame)]));
     if (!right)
       pose_errors_[static_cast<std::size_t>(frame)] =
           random_pose_error(lenses_[0], picture.depth, options_.pose_error_px, options_.seed, frame, persistence());
@@ -220,6 +249,8 @@ class SynthRun {
         o.shutter.readout_s);
     text += fmt::format("pose_error_px: {:.9g}\npose_error_s: {:.9g}\nhead_path: {}\n", o.pose_error_px, o.pose_error_s,
                         o.head_path ? "given" : "built in");
+    text += fmt::format("exposure: {:.9g}\nauto_exposure: {}\nstill: {}\n", o.sensor.exposure,
+                        o.auto_exposure ? "true" : "false", o.still ? "true" : "false");
     text += fmt::format("polygons: {}\npolygons_in_view: [{}, {}]\n", summary.polygons, summary.fewest_polygons_in_view,
                         summary.most_polygons_in_view);
     write_text(target_.path() / kMarker, text);
@@ -233,6 +264,7 @@ class SynthRun {
   std::vector<int> node_;  // of each facet
   int node_count_ = 0;
   std::vector<Pose> pose_errors_;
+  std::vector<double> exposure_;  // factor on the light of each image
 };
 
 }  // namespace
@@ -249,6 +281,7 @@ void check(const SynthOptions& o) {
   range("--rate", "", o.rate, 0.1, 1000);
   range("--blur", "", o.sensor.blur, 0, 10);
   range("--noise", "", o.sensor.noise, 0, 100);
+  range("--exposure", "", o.sensor.exposure, 0.1, 10);
   range("--exposure-drift", "", o.sensor.exposure_drift, 0, 0.9);
   range("--vignetting", "", o.sensor.vignetting, 0, 0.9);
   range("--motion-blur", "", o.shutter.exposure_s * 1e3, 0, 1000);

@@ -7,22 +7,25 @@
 #include <optional>
 
 #include "common/lens.hpp"
+#include "sim/auto_exposure.hpp"
 #include "sim/sensor.hpp"
 #include "sim/shutter.hpp"
 
 namespace foresight::sim {
 
 struct SynthOptions {
-  int width = 751;           ///< px, 16 .. 8192
-  int height = 570;          ///< px, 16 .. 8192
-  int frames = 320;          ///< 1 .. 1,000,000
-  double rate = 30;          ///< images per second, 0.1 .. 1000
-  bool stereo = false;       ///< a second camera, 65 mm to the right
-  bool fisheye = false;      ///< an equidistant lens of 150 degrees along the diagonal, instead of the other two
-  bool distortion = true;    ///< a plumb_bob lens with strong barrel distortion; else an ideal pinhole
-  unsigned seed = 1;         ///< varies wood grain, small print, noise and pose errors
-  Shutter shutter = {};      ///< exposure and readout 0 .. 1 s
-  Sensor sensor = {};        ///< noise 0 .. 100, shares 0 .. 0.9; its seed is set from `seed`
+  int width = 751;         ///< px, 16 .. 8192
+  int height = 570;        ///< px, 16 .. 8192
+  int frames = 320;        ///< 1 .. 1,000,000
+  double rate = 30;        ///< images per second, 0.1 .. 1000
+  bool stereo = false;     ///< a second camera, 65 mm to the right
+  bool fisheye = false;    ///< an equidistant lens of 150 degrees along the diagonal, instead of the other two
+  bool distortion = true;  ///< a plumb_bob lens with strong barrel distortion; else an ideal pinhole
+  unsigned seed = 1;       ///< varies wood grain, small print, noise and pose errors
+  Shutter shutter = {};    ///< exposure and readout 0 .. 1 s
+  Sensor sensor = {};      ///< noise 0 .. 100, exposure 0.1 .. 10, shares 0 .. 0.9; its seed is set from `seed`
+  std::optional<AutoExposure> auto_exposure = {};  ///< of all cameras alike, metered by the left one
+  bool still = false;                              ///< the arm stands; only the cameras move
   double pose_error_px = 0;  ///< root mean square displacement in the image by the errors of trajectory.txt, 0 .. 100
   double pose_error_s = 0;   ///< correlation time of these errors; 0: each image has its own; 0 .. 60
   std::optional<std::filesystem::path> head_path = {};  ///< instead of the built-in one; sim/head_path.hpp

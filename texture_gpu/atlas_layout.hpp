@@ -16,8 +16,10 @@ inline constexpr int kSlotsPerLayer = kSlotsPerRow * kRowsPerLayer;
 inline constexpr int kLevels = 5;  ///< 16, 8, 4, 2, 1 texels a side: the hole filling's pyramid
 inline constexpr std::uint32_t kNoSlot = 0xffffffffu;
 
-/// Bytes of one page's colours with its pyramid: RGBA8 times 4/3.
-inline constexpr std::uint64_t kColourBytes = 4 * (256 + 64 + 16 + 4 + 1);
+/// Of a colour: four halves (atlas_store.hpp).
+inline constexpr std::uint64_t kTexelBytes = 8;
+/// Bytes of one page's colours with its pyramid: 4/3 of level 0.
+inline constexpr std::uint64_t kColourBytes = kTexelBytes * (256 + 64 + 16 + 4 + 1);
 /// Bytes of one page's heights.
 inline constexpr std::uint64_t kHeightBytes = 2 * 256;
 

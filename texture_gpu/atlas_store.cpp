@@ -24,9 +24,10 @@ void require_pages(const ChartAtlas& atlas) {
 
 AtlasStore::AtlasStore(const ChartAtlas& atlas) {
   require_pages(atlas);
-  colours = reserve(GL_RGBA8, atlas.colour_capacity(), atlas::kLevels, "atlas colours");
+  colours = std::make_shared<const gl::Texture>(
+      reserve(atlas::kColourFormat, atlas.colour_capacity(), atlas::kLevels, "atlas colours"));
   heights = reserve(GL_R16UI, atlas.height_capacity(), 1, "atlas heights");
-  glTextureParameteri(colours.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+  glTextureParameteri(colours->name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
   gl::check_errors("the reservation of texture memory");
 }
 

@@ -184,7 +184,6 @@ BakedAtlas bake_atlas(const TextureReadback& textures, int most) {
     out.places.push_back({rectangle, Eigen::Vector2d(rectangle.x + kGuard, rectangle.y + kGuard), px_per_metre});
     draw_patch(textures, patches[i], px_per_metre, out.colours(rectangle));
   }
-  out.colours.convertTo(out.colours, -1, textures.display_gain());
   return out;
 }
 

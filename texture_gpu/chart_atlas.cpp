@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/error.hpp"
 
@@ -94,6 +95,24 @@ void ChartAtlas::drop_page(AtlasPage& page) {
   page.height = page.colour = atlas::kNoSlot;
 }
 
+/// What `old` pages, laid out as `before`, knew of their brightness, for the pages that now lie there. Without it the
+/// gain of an image could not be told when the camera comes closer and many resolutions change at once.
+void ChartAtlas::hand_on_exposure(const std::vector<AtlasPage>& old, const ChartRaster& before,
+                                  const Eigen::Vector2i& pages, AtlasChart& chart) {
+  if (old.empty()) return;
+  for (int y = 0; y < chart.pages.y(); ++y)
+    for (int x = 0; x < chart.pages.x(); ++x) {
+      const Eigen::Vector2d middle = Eigen::Vector2d(x + 0.5, y + 0.5) * atlas::kPage - Eigen::Vector2d(0.5, 0.5);
+      const Eigen::Vector2d uv = chart.raster.uv0 + middle.cwiseQuotient(chart.raster.density);
+      const Eigen::Array2d at = ((uv - before.uv0).cwiseProduct(before.density).array() + 0.5) / atlas::kPage;
+      const Eigen::Array2i place = at.floor().cast<int>().max(0).min(pages.array() - 1);
+      PageExposure& exposure = chart.page[static_cast<std::size_t>(y * chart.pages.x() + x)].exposure;
+      exposure = old[static_cast<std::size_t>(place.y() * pages.x() + place.x())].exposure;
+      // Of another area of the surface: to be renewed with the first image that shows the page.
+      exposure.rough = true;
+    }
+}
+
 void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
   AtlasChart& chart = charts_[static_cast<std::size_t>(index)];
   if (!chart.before && chart.level.x() != AtlasChart::kNoLevel) {
@@ -107,11 +126,14 @@ void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
   chart.relevelled = true;
   Eigen::Vector2d density = density_of(level);
   if (options_.texels_per_metre > 0) density = density.cwiseMin(options_.texels_per_metre);  // no step of a level
-  chart.raster = raster_chart(*surface_, index, density);
+  const ChartRaster raster_before = std::exchange(chart.raster, raster_chart(*surface_, index, density));
+  const Eigen::Vector2i pages_before = chart.pages;
+  const std::vector<AtlasPage> page_before = std::move(chart.page);
   chart.pages = {(chart.raster.width + atlas::kPage - 1) / atlas::kPage,
                  (chart.raster.height + atlas::kPage - 1) / atlas::kPage};
   chart.page.assign(static_cast<std::size_t>(chart.pages.prod()), {});
   describe_pages(*surface_, index, chart);
+  hand_on_exposure(page_before, raster_before, pages_before, chart);
 }
 
 void ChartAtlas::lay_out() {

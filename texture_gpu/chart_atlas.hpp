@@ -34,7 +34,9 @@ struct PageExposure {
   float log_brightness = 0;
   float radius2 = 0;
   float log_gain = 0;
+  std::uint32_t epoch = 0;  ///< of the bend that the gain was found with (ResponseBend)
   std::int64_t image = -1;  ///< -1: none yet
+  bool rough = false;       ///< of a somewhat other area of the surface: to be renewed at once
 };
 
 struct AtlasPage {
@@ -150,6 +152,8 @@ class ChartAtlas {
   bool make_room(std::size_t heights_needed, std::int64_t image);
   bool lower_resolution();
   void drop_page(AtlasPage& page);
+  static void hand_on_exposure(const std::vector<AtlasPage>& old, const ChartRaster& before,
+                               const Eigen::Vector2i& pages, AtlasChart& chart);
   int page_index(const PageRecord& r) const;
 
   std::shared_ptr<const SurfacePatches> surface_;

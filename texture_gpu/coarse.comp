@@ -9,8 +9,8 @@ layout(binding = 7) uniform usamplerBuffer dirty;  // charts that changed
 layout(binding = 8) uniform samplerBuffer charts;
 layout(binding = 9) uniform usamplerBuffer table;
 layout(binding = 11) uniform sampler2DArray colours;
-layout(binding = 0, r32ui) uniform writeonly uimageBuffer coarse;
-layout(binding = 1, r32ui) uniform writeonly uimageBuffer means;
+layout(binding = 0, rgba16f) uniform writeonly imageBuffer coarse;
+layout(binding = 1, rgba16f) uniform writeonly imageBuffer means;
 uniform int first_group;
 shared vec4 sums[16];
 
@@ -28,12 +28,12 @@ void main() {
     vec4 c = slot == kNoSlot ? vec4(0.0) : texelFetch(colours, slot_origin(slot & 0xffffffu, 4), 4);
     sum += vec4(c.rgb * c.a, c.a);
     if (c.a < kFirm) append_work(uint(chart.first_page + i));
-    imageStore(coarse, chart.first_page + i, uvec4(c.a > 0.0 ? packUnorm4x8(vec4(c.rgb, 1.0)) : 0u));
+    imageStore(coarse, chart.first_page + i, c.a > 0.0 ? vec4(c.rgb, 1.0) : vec4(0.0));
   }
   sums[lane] = sum;
   barrier();
   if (lane != 0) return;
   vec4 total = vec4(0.0);
   for (int i = 0; i < 16; ++i) total += sums[i];
-  imageStore(means, index, uvec4(total.a > 0.0 ? packUnorm4x8(vec4(total.rgb / total.a, 1.0)) : 0u));
+  imageStore(means, index, total.a > 0.0 ? vec4(total.rgb / total.a, 1.0) : vec4(0.0));
 }

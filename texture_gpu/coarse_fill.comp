@@ -8,9 +8,9 @@ layout(local_size_x = 64) in;
 layout(binding = 7) uniform usamplerBuffer chart_of_page;
 layout(binding = 8) uniform samplerBuffer charts;
 layout(binding = 9) uniform usamplerBuffer table;
-layout(binding = 10) uniform usamplerBuffer means;
+layout(binding = 10) uniform samplerBuffer means;
 layout(binding = 11) uniform sampler2DArray colours;
-layout(binding = 0, r32ui) uniform writeonly uimageBuffer coarse;
+layout(binding = 0, rgba16f) uniform writeonly imageBuffer coarse;
 
 const int kReach = 3;  // pages
 
@@ -21,7 +21,7 @@ void main() {
   ChartRecord chart = read_chart(charts, chart_index);
   int local = int(page_index) - chart.first_page;
   ivec2 page = ivec2(local % chart.pages.x, local / chart.pages.x);
-  vec4 mean = unpackUnorm4x8(texelFetch(means, chart_index).r);
+  vec4 mean = texelFetch(means, chart_index);
   vec4 sum = 1e-4 * mean.a * vec4(mean.rgb, 1.0);
   for (int y = -kReach; y <= kReach; ++y)
     for (int x = -kReach; x <= kReach; ++x) {
@@ -34,5 +34,5 @@ void main() {
       float weight = inside && slot != kNoSlot ? c.a / (d2 * d2 + 1.0) : 0.0;
       sum += weight * vec4(c.rgb, 1.0);
     }
-  if (sum.a > 0.0) imageStore(coarse, int(page_index), uvec4(packUnorm4x8(vec4(sum.rgb / sum.a, 1.0))));
+  if (sum.a > 0.0) imageStore(coarse, int(page_index), vec4(sum.rgb / sum.a, 1.0));
 }

@@ -4,7 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 10) uniform usamplerBuffer tiles;  // job << 4 | tile << 2
 layout(binding = 11) uniform sampler2DArray old_colours;
-layout(binding = 0, rgba8) uniform writeonly image2DArray colours;
+layout(binding = 0, rgba16f) uniform writeonly image2DArray colours;
 #include "holes.glsl"
 layout(binding = 9) uniform usampler2DArray heights;
 uniform int first_group;

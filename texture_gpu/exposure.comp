@@ -8,7 +8,8 @@ layout(local_size_x = 64) in;
 layout(binding = 7) uniform usamplerBuffer pages;  // as in cull.comp
 layout(binding = 8) uniform samplerBuffer charts;
 layout(binding = 9) uniform usampler2DArray heights;
-layout(binding = 0, std430) writeonly buffer Samples { vec2 samples[]; };  // brightness 0..1 or -1; squared radius
+layout(binding = 0, std430) writeonly buffer Samples { vec2 samples[]; };  // ExposureSample (exposure.hpp)
+const float kWhitest = 0.97, kSaturated = 2.0;
 uniform int page_count;
 uniform int camera;
 uniform int first_page;  // the pages first_page, first_page + stride, ... are asked about
@@ -43,9 +44,8 @@ void main() {
     center += pixel;
     count += 1.0;
   }
-  // Fewer points than this are an edge of the page or of the view; saturated ones carry no ratio.
-  if (count < 12.0 || highest > 0.97) return;
+  if (count < 12.0) return;  // an edge of the page or of the view
   vec2 half_size = 0.5 * (cameras[camera].size.xy - 1.0);
   vec2 offset = (center / count - half_size) / length(half_size);
-  samples[sample_index] = vec2(sum / count, dot(offset, offset));
+  samples[sample_index] = vec2(sum / count + (highest > kWhitest ? kSaturated : 0.0), dot(offset, offset));
 }

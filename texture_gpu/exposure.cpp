@@ -9,31 +9,53 @@ namespace {
 
 constexpr std::size_t kFewestSamples = 30;
 constexpr std::int64_t kReferenceAge = 30;  // images; long enough for pages to cross the picture
-constexpr double kLargestLogGain = 1.4;     // a factor of four
+constexpr double kLargestLogGain = 6;       // a factor of 400: from a dark image's noise to a flash
 constexpr float kDarkest = 0.04f;           // below, noise and black level rule the ratio
+constexpr float kLeast = 0.5f / 255;        // what a value of 0 may be
+constexpr float kBrightest = 0.99f;         // what the bend is undone for: beyond, noise rules
+constexpr double kSurelyBrighter = 0.75;    // quantile of the least ratios, where white pages are most
 constexpr double kForgetting = 0.995;       // per image
 
+/// Where responses are closest to a power law: below, black level and toe, above, the bend to white.
+bool middle(double brightness) {
+  return brightness >= 0.1 && brightness <= 0.75;
+}
+
+double quantile(std::vector<double> values, double share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
 double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return quantile(std::move(values), 0.5);
 }
 
 }  // namespace
 
 void ExposureEstimator::update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages,
-                               std::int64_t image) {
-  std::vector<double> ratios;
+                               std::int64_t image, ResponseBend& bend, bool learn_bend) {
+  std::vector<double> ratios, middle_ratios, at_least, dark;
   std::vector<std::size_t> used;
+  std::vector<ResponseBend::Pair> pairs;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples[i].brightness < kDarkest || !pages[i] || pages[i]->exposure.image < 0) continue;
+    if (samples[i].brightness < 0 || !pages[i] || pages[i]->exposure.image < 0) continue;
     const PageExposure& ref = pages[i]->exposure;
-    const double log_t = ref.log_brightness - ref.log_gain - vignetting_log(ref.radius2);
-    ratios.push_back(std::log(samples[i].brightness) - vignetting_log(samples[i].radius2) - log_t);
-    used.push_back(i);
+    const double then_gain = bend.carried_over(ref.log_gain, ref.epoch);
+    const double then = std::exp(ref.log_brightness);
+    const double log_t = log_light(then, bend.value()) - then_gain - vignetting_log(ref.radius2);
+    const bool white = samples[i].white();
+    const float brightness = white ? samples[i].brightness - ExposureSample::kWhite : samples[i].brightness;
+    const double now = std::clamp(brightness, kLeast, kBrightest);
+    const double ratio = log_light(now, bend.value()) - vignetting_log(samples[i].radius2) - log_t;
+    (white ? at_least : brightness < kDarkest ? dark : ratios).push_back(ratio);
+    if (!white && middle(now) && middle(then)) middle_ratios.push_back(ratio);
+    if (!white && brightness >= kDarkest)
+      used.push_back(i),
+          pairs.push_back({now, then, then_gain, vignetting_log(samples[i].radius2) - vignetting_log(ref.radius2)});
   }
   if (ratios.size() >= kFewestSamples) {
-    const double gain = median(ratios);
+    const double gain = median(middle_ratios.size() >= kFewestSamples ? middle_ratios : ratios);
     std::vector<double> deviations = ratios;
     for (double& d : deviations) d = std::abs(d - gain);
     const double sigma = std::max(0.005, 1.4826 * median(deviations));
@@ -43,16 +65,29 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
       const ExposureSample& s = samples[used[k]];
       const PageExposure& ref = pages[used[k]]->exposure;
       const double r = s.radius2, q = ref.radius2;
-      const double residual = std::log(s.brightness) - ref.log_brightness - (log_gain_ - ref.log_gain);
+      const double residual = log_light(pairs[k].now, bend.value()) - log_light(pairs[k].then, bend.value()) -
+                              (log_gain_ - pairs[k].log_gain);
       if (std::abs(ratios[k] - gain) < 3 * sigma) rows.emplace_back(r - q, r * r - q * q, residual);
     }
     learn_vignetting(rows, sigma);
+    if (learn_bend) bend.update(pairs, log_gain_);
+  } else if (at_least.size() + dark.size() >= kFewestSamples) {
+    // A flash or a covered lens: what it shows must not pass for the surfaces' own brightness. A rough
+    // gain is enough, as white and black texels do not replace older ones that agree (extract.comp).
+    if (at_least.size() > dark.size())
+      log_gain_ = std::clamp(quantile(at_least, kSurelyBrighter), log_gain_, kLargestLogGain);
+    else
+      log_gain_ = std::clamp(median(dark), -kLargestLogGain, log_gain_);
+    return;
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples[i].brightness < kDarkest || !pages[i]) continue;
+    if (samples[i].brightness < kDarkest || samples[i].white() || !pages[i]) continue;
     PageExposure& ref = pages[i]->exposure;
-    if (ref.image >= 0 && image - ref.image < kReferenceAge) continue;
-    ref = {std::log(samples[i].brightness), samples[i].radius2, static_cast<float>(log_gain_), image};
+    // References of bright images would hand on what the bend does to them.
+    const bool better = middle(samples[i].brightness), good = middle(std::exp(ref.log_brightness));
+    const bool old = ref.rough || image - ref.image >= kReferenceAge;
+    if (ref.image >= 0 && !(better ? old || !good : old && !good)) continue;
+    ref = {std::log(samples[i].brightness), samples[i].radius2, static_cast<float>(log_gain_), bend.epoch(), image};
   }
 }
 

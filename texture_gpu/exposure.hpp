@@ -1,8 +1,9 @@
 // Evens out exposure: the gain of each image and the vignetting of each lens.
 //
 // Camera responses are close to a power law, so a factor in linear light is a factor in the
-// 8-bit values too (g^(1/gamma)); all gains here are natural logarithms of that factor. An image
-// is modelled as   log I(x) = log T(x) + g + v(r),   v(r) = a r^2 + b r^4,
+// 8-bit values too (g^(1/gamma)), but for a bend at their upper end (response_bend.hpp); all gains
+// here are natural logarithms of that factor. An image is modelled, with I taken through the bend, as
+//     log I(x) = log T(x) + g + v(r),   v(r) = a r^2 + b r^4,
 // T the surface's brightness at the reference exposure (the first image's), r the distance from
 // the image's centre in half diagonals.
 #pragma once
@@ -12,23 +13,32 @@
 #include <vector>
 
 #include "texture_gpu/chart_atlas.hpp"
+#include "texture_gpu/response_bend.hpp"
 
 namespace foresight {
 
-/// One page as exposure.comp saw it: brightness 0..1, or -1 where it did not; squared radius.
+/// One page as exposure.comp saw it.
 struct ExposureSample {
+  /// Mean, 0..1; -1: not seen; kWhite + mean where some of it is white: at least so bright.
   float brightness = -1;
-  float radius2 = 0;
+  float radius2 = 0;  ///< squared distance from the image's centre
+  static constexpr float kWhite = 2;
+  bool white() const { return brightness >= kWhite; }
 };
 
 /// For one camera. One thread.
 class ExposureEstimator {
  public:
   /// Estimates the gain of a new image from its samples against the pages' references (`pages`,
-  /// same order; nullptr allowed), the median of their log ratios; keeps the last gain where fewer
-  /// than 30 pages can be compared. Also refines the vignetting. Then renews references that are
-  /// missing or older than 30 images.
-  void update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages, std::int64_t image);
+  /// same order; nullptr allowed), the median of their log ratios, of pages of middle brightness where
+  /// there are enough. White pages and nearly black ones
+  /// do not count, but where hardly any others are left: a gain that is at least so large, or so
+  /// small, is then better than the last. Keeps the last gain where fewer than 30 pages can be
+  /// compared. Also refines the vignetting. Then renews references that are missing or older than
+  /// 30 images, but those of middle brightness only by others of that kind.
+  /// `bend`: of the cameras' response, used and, with `learn_bend`, refined.
+  void update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages, std::int64_t image,
+              ResponseBend& bend, bool learn_bend = true);
 
   double log_gain() const { return log_gain_; }
   /// (a, b); zero until it is known well enough to help: v(1) beyond three of its own sigma.

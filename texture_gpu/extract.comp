@@ -8,14 +8,16 @@
 #include "camera.glsl"
 #include "seen.glsl"
 #include "atlas.glsl"
+#include "response.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform samplerBuffer geometry;  // per job and camera four texels (ChartAtlas::write_job_geometry)
 layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 10) uniform usamplerBuffer tiles;  // job << 4 | tile << 2 | cameras that may see it
 layout(binding = 11) uniform sampler2DArray old_colours;
-layout(binding = 0, rgba8) uniform writeonly image2DArray colours;
+layout(binding = 0, rgba16f) uniform writeonly image2DArray colours;
 #include "holes.glsl"
 uniform int first_group, tile_count;
+const float kBeyondWhite = 0.35;
 uniform float worse;  // new colours below this share of the old resolution do not replace them
 
 // Factor from the image's values to the reference exposure (exposure.hpp).
@@ -69,6 +71,20 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
 #endif
 }
 
+// What `value` of an image (0..1) says of a texel, at the reference exposure, which is `factor` away;
+// `old`: what was known, or -1. White pixels tell only that the surface is at least so bright, black
+// ones that it is at most so bright: an older value that agrees is better, and at the exposure
+// of this image it looks the same. Where there is none, white is taken as a third brighter than the
+// least that it can be: while the camera closes by a stop it stays white.
+const float kWhite = 249.5 / 255.0, kBlack = 1.5 / 255.0;
+vec3 fused(vec3 old, vec3 value, float factor) {
+  vec3 fresh = light_of(value) * factor;
+  vec3 guess = fresh * (1.0 + kBeyondWhite * clamp((value - kWhite) / (1.0 - kWhite), 0.0, 1.0));
+  vec3 white = step(kWhite, value) * step(0.97 * fresh, old);
+  vec3 black = step(value, vec3(kBlack)) * step(0.0, old.r);
+  return mix(mix(guess, max(old, fresh), white), min(old, vec3(kBlack * factor)), black);
+}
+
 // Four texels below each other: what one camera needs to know of them.
 struct View {
   vec3 first, down, height;  // camera frame: the first texel's foot, the next one's offset, a unit of height
@@ -91,18 +107,21 @@ void extract_texel(Column column, int row) {
   float before = colour.a;
   float best_quality = 0.0;
   vec4 best = vec4(0.0);
+  float best_tone = 1.0;
   for (int c = 0; c < CAMERAS; ++c) {
     View view = column.views[c];
     vec2 pixel;
     bool seen = is_seen(c, view.first + float(row) * view.down + height * view.height, pixel) && raw != 0u;
     if (seen && view.quality > best_quality) {
       best_quality = view.quality;
-      best = vec4(sample_image(c, pixel, view.axes) * tone(c, pixel), encode_quality(view.quality));
+      best = vec4(sample_image(c, pixel, view.axes), encode_quality(view.quality));
+      best_tone = tone(c, pixel);
     }
   }
   // The newest wins. What is clearly worse waits; the old colour's claim ages by one step
   // (1/32 of a doubling) for each image that would have replaced it.
   bool take = colour.a < kSeen || best.a >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
+  best.rgb = fused(colour.a < kSeen ? vec3(-1.0) : colour.rgb, best.rgb, best_tone);
   if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
   if (raw == 0u) colour = vec4(0.0);
   note_hole(int(column.tile >> 2), raw, before, colour.a);

@@ -23,7 +23,7 @@ gl::Program hole_program(int tiles) {
 }
 
 void bind_level(GLuint unit, const gl::Texture& colours, int level, GLenum access) {
-  glBindImageTexture(unit, colours.name(), level, GL_TRUE, 0, access, GL_RGBA8);
+  glBindImageTexture(unit, colours.name(), level, GL_TRUE, 0, access, atlas::kColourFormat);
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ FillPass::FillPass(const SurfacePatches& surface)
       neighbours_(GL_R32UI, 16, "neighbours"),
       dirty_(GL_R32UI, 16, "dirty charts"),
       chart_of_page_(GL_R32UI, 16, "charts of pages"),
-      spare_means_(GL_R32UI, surface.charts.size() * sizeof(std::uint32_t), "spare chart means"),
+      spare_means_(atlas::kColourFormat, surface.charts.size() * atlas::kTexelBytes, "spare chart means"),
       with_holes_("pages or tiles with holes"),
       empty_pages_("pages without colour", 64),
       chart_count_(static_cast<int>(surface.charts.size())) {
@@ -67,22 +67,22 @@ void FillPass::operator()(const ExtractPass& extracted, const Work& work, const 
 
 void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
   if (job_count == 0) return;
-  glBindTextureUnit(11, store.colours.name());
+  glBindTextureUnit(11, store.colours->name());
   push_.use();
-  bind_level(0, store.colours, 1, GL_WRITE_ONLY);
+  bind_level(0, *store.colours, 1, GL_WRITE_ONLY);
   dispatch_groups(push_, job_count);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   push_rest_.use();
   push_rest_.set("job_count", static_cast<int>(job_count));
   for (int level = 2; level <= 4; ++level)
-    bind_level(static_cast<GLuint>(level - 2), store.colours, level, GL_WRITE_ONLY);
+    bind_level(static_cast<GLuint>(level - 2), *store.colours, level, GL_WRITE_ONLY);
   glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 void FillPass::means(const Work& work, const AtlasStore& store, const PublishedTextures& previous,
                      PublishedTextures& next) {
-  constexpr auto kEntry = static_cast<GLintptr>(sizeof(GLuint));
+  constexpr auto kEntry = static_cast<GLintptr>(atlas::kTexelBytes);
   glCopyNamedBufferSubData(previous.means.buffer().name(), next.means.buffer().name(), 0, 0, chart_count_ * kEntry);
   for (const auto& [before, now, count] : work.kept)
     glCopyNamedBufferSubData(previous.coarse.buffer().name(), next.coarse.buffer().name(), before * kEntry,
@@ -94,9 +94,9 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   glBindTextureUnit(7, dirty_.texture());
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
-  glBindTextureUnit(11, store.colours.name());
-  glBindImageTexture(0, next.coarse.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
-  glBindImageTexture(1, next.means.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+  glBindTextureUnit(11, store.colours->name());
+  glBindImageTexture(0, next.coarse.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
+  glBindImageTexture(1, next.means.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
   empty_pages_.start(work.chart_of_page.size());
   dispatch_groups(coarse_, work.dirty.size());
   empty_pages_.finish();
@@ -120,7 +120,7 @@ void FillPass::spread(const PublishedTextures& next) const {
   const gl::BufferTexture* to = &spare_means_;
   for (int round = 0; round < kSpreadRounds; ++round, std::swap(from, to)) {  // even: ends in next.means
     glBindTextureUnit(9, from->texture());
-    glBindImageTexture(0, to->texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+    glBindImageTexture(0, to->texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
     glDispatchCompute(gl::groups(chart_count_, 64), 1, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   }
@@ -133,7 +133,7 @@ void FillPass::list_holes(const gl::Program& program, std::size_t job_count, std
   program.set("turn", turn_);
   program.set("refresh", kRefresh);
   glBindTextureUnit(10, holes.texture());
-  glBindTextureUnit(11, store.colours.name());
+  glBindTextureUnit(11, store.colours->name());
   with_holes_.start(most);
   glDispatchCompute(gl::groups(static_cast<int>(most), 64), 1, 1);
   with_holes_.finish();
@@ -149,8 +149,8 @@ void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const
   for (int level = 3; level >= 0; --level) {
     if (level == 0) list_holes(hole_tiles_, job_count, 4 * job_count, holes, store);
     pull_[static_cast<std::size_t>(level)].use();
-    bind_level(0, store.colours, level, GL_READ_WRITE);
-    bind_level(1, store.colours, level + 1, GL_READ_ONLY);
+    bind_level(0, *store.colours, level, GL_READ_WRITE);
+    bind_level(1, *store.colours, level + 1, GL_READ_ONLY);
     with_holes_.dispatch();
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   }

@@ -1,9 +1,11 @@
-// Colours of a published generation at a point of a chart. Needs chart_record.glsl, atlas.glsl.
+// Colours of a published generation at a point of a chart. Needs chart_record.glsl, atlas.glsl, and
+// BRIGHTEST: the texel value that is white at the exposure shown. Texels may be brighter, a camera's
+// pixels may not; cut off before the filter, what is white bleeds no more than it does in an image.
 layout(binding = 11) uniform usamplerBuffer published_table;   // slot of each page, kNoSlot: none
 layout(binding = 12) uniform samplerBuffer published_charts;
 layout(binding = 13) uniform sampler2DArray published_colours;
-layout(binding = 14) uniform usamplerBuffer published_coarse;  // filled mean colour of each page, RGBA8
-layout(binding = 15) uniform usamplerBuffer published_means;   // filled mean colour of each chart, RGBA8
+layout(binding = 14) uniform samplerBuffer published_coarse;  // filled mean colour of each page
+layout(binding = 15) uniform samplerBuffer published_means;   // filled mean colour of each chart
 
 struct Taps {
   vec4 seen;     // rgb times weight, weight; of texels that a camera saw
@@ -27,6 +29,7 @@ Taps gather_taps(ChartRecord chart, vec2 texel, int level) {
     uint slot = texelFetch(published_table, chart.first_page + page.y * chart.pages.x + page.x).r;
     if (slot == kNoSlot) continue;
     vec4 c = texelFetch(published_colours, slot_origin(slot, level) + ivec3(t & in_page, 0), level);
+    c.rgb = min(c.rgb, vec3(BRIGHTEST));
     float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
     // Level 0 tells seen from filled by the code; above, alpha is the share of seen texels.
     float seen = level == 0 ? step(kSeen, c.a) : step(1.5 / 255.0, c.a) * c.a;
@@ -69,6 +72,7 @@ Taps gather_sharp_taps(ChartRecord chart, vec2 texel) {
       uint slot = page.y == 0 ? (page.x == 0 ? slots[0] : slots[1]) : (page.x == 0 ? slots[2] : slots[3]);
       vec4 c = slot == kNoSlot ? vec4(0.0)
                                : texelFetch(published_colours, slot_origin(slot & 0xffffffu, 0) + ivec3(t & 15, 0), 0);
+      c.rgb = min(c.rgb, vec3(BRIGHTEST));
       float seen = step(kSeen, c.a);
       all_seen *= seen;
       cubic += wx[i] * wy[j] * vec4(c.rgb, 1.0);
@@ -78,7 +82,7 @@ Taps gather_sharp_taps(ChartRecord chart, vec2 texel) {
       taps.quality += w * seen * c.a;
       taps.filled += w * (1.0 - seen) * step(0.5 / 255.0, c.a) * vec4(c.rgb, 1.0);
     }
-  if (all_seen > 0.5) taps.seen = vec4(clamp(mix(taps.seen.rgb, cubic.rgb / cubic.a, kSharp), 0.0, 1.0), 1.0);
+  if (all_seen > 0.5) taps.seen = vec4(clamp(mix(taps.seen.rgb, cubic.rgb / cubic.a, kSharp), 0.0, BRIGHTEST), 1.0);
   return taps;
 }
 
@@ -99,9 +103,9 @@ vec4 coarse_colour(ChartRecord chart, int chart_index, vec2 texel) {
   for (int i = 0; i < 4; ++i) {
     ivec2 o = ivec2(i & 1, i >> 1);
     ivec2 page = clamp(base + o, ivec2(0), chart.pages - 1);
-    vec4 c = unpackUnorm4x8(texelFetch(published_coarse, chart.first_page + page.y * chart.pages.x + page.x).r);
+    vec4 c = texelFetch(published_coarse, chart.first_page + page.y * chart.pages.x + page.x);
     float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
     sum += w * c.a * vec4(c.rgb, 1.0);
   }
-  return sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : unpackUnorm4x8(texelFetch(published_means, chart_index).r);
+  return sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : texelFetch(published_means, chart_index);
 }

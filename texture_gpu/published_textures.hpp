@@ -22,17 +22,19 @@ struct ChartPlace {
 };
 
 /// Everything needed to draw the scene with the textures of one instant. Written by the texture
-/// thread before it is published, then left alone until no lease is out.
+/// thread before it is published, then left alone until no lease is out. Owns all that it shows: a
+/// lease outlives the core that made it, and the end of its thread by an error.
 struct PublishedTextures {
-  std::uint64_t number = 0;              ///< counts up with each publish
-  RobotTime newest_image;                ///< capture instant of the newest image in it
-  float display_gain = 1;                ///< factor on colours that shows the newest image's exposure
-  gl::BufferTexture table;               ///< R32UI: colour slot of each page
-  gl::BufferTexture charts;              ///< RGBA32F: five texels a chart (chart_record.glsl)
-  gl::BufferTexture coarse;              ///< R32UI, packed RGBA8: filled mean of each page
-  gl::BufferTexture means;               ///< R32UI, packed RGBA8: filled mean of each chart
-  std::vector<ChartPlace> places;        ///< one per chart
-  const gl::Texture* colours = nullptr;  ///< the atlas, shared by all generations
+  std::uint64_t number = 0;                    ///< counts up with each publish
+  RobotTime newest_image;                      ///< capture instant of the newest image in it
+  float display_gain = 1;                      ///< factor on colours that shows the newest image's exposure
+  float display_bend = 0;                      ///< then bent towards white (response_bend.hpp)
+  gl::BufferTexture table;                     ///< R32UI: colour slot of each page
+  gl::BufferTexture charts;                    ///< RGBA32F: five texels a chart (chart_record.glsl)
+  gl::BufferTexture coarse;                    ///< RGBA16F: filled mean of each page
+  gl::BufferTexture means;                     ///< RGBA16F: filled mean of each chart
+  std::vector<ChartPlace> places;              ///< one per chart
+  std::shared_ptr<const gl::Texture> colours;  ///< the atlas, shared by all generations
 
   /// Bind for lookup.glsl: units 11 to 15.
   void bind() const;
@@ -41,7 +43,8 @@ struct PublishedTextures {
 };
 
 /// Keeps one generation from being written over. Hold it until the GPU has finished the commands
-/// that read it (a fence has passed), not only until they are issued.
+/// that read it (a fence has passed), not only until they are issued. The last one may delete
+/// textures: let go of it where a context of their share group is current.
 class TextureLease {
  public:
   TextureLease() = default;

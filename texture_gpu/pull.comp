@@ -13,9 +13,9 @@ layout(local_size_x = 16 >> LEVEL, local_size_y = 16 >> LEVEL) in;  // one group
 layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 8) uniform samplerBuffer charts;
 layout(binding = 9) uniform usamplerBuffer table;
-layout(binding = 14) uniform usamplerBuffer coarse;
-layout(binding = 0, rgba8) uniform image2DArray colours;
-layout(binding = 1, rgba8) uniform readonly image2DArray above;
+layout(binding = 14) uniform samplerBuffer coarse;
+layout(binding = 0, rgba16f) uniform image2DArray colours;
+layout(binding = 1, rgba16f) uniform readonly image2DArray above;
 
 const int kSide = 16 >> LEVEL;  // texels of a page at this level
 
@@ -29,7 +29,7 @@ vec4 parent(ChartRecord chart, ivec2 at) {
   uint slot = texelFetch(table, index).r;
   if (slot != kNoSlot) c = imageLoad(above, slot_origin(slot, LEVEL + 1) + ivec3(at & ((1 << shift) - 1), 0));
 #endif
-  return c.a > 0.0 ? c : unpackUnorm4x8(texelFetch(coarse, index).r);
+  return c.a > 0.0 ? c : texelFetch(coarse, index);
 }
 
 void main() {

@@ -5,7 +5,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 11) uniform sampler2DArray colours;
-layout(binding = 0, rgba8) uniform writeonly image2DArray level1;
+layout(binding = 0, rgba16f) uniform writeonly image2DArray level1;
 uniform int first_group;
 
 void main() {

@@ -4,9 +4,9 @@
 layout(local_size_x = 64) in;
 layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 11) uniform sampler2DArray colours;
-layout(binding = 0, rgba8) uniform writeonly image2DArray level2;
-layout(binding = 1, rgba8) uniform writeonly image2DArray level3;
-layout(binding = 2, rgba8) uniform writeonly image2DArray level4;
+layout(binding = 0, rgba16f) uniform writeonly image2DArray level2;
+layout(binding = 1, rgba16f) uniform writeonly image2DArray level3;
+layout(binding = 2, rgba16f) uniform writeonly image2DArray level4;
 uniform int job_count;
 
 // Mean of `seen` texels weighted by their share, which stays visible in eight bits; where there are

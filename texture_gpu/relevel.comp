@@ -3,11 +3,12 @@
 #include "chart_record.glsl"
 #include "atlas.glsl"
 #include "jobs.glsl"
+#define BRIGHTEST 65504.0  // all that a texel can hold
 #include "lookup.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 8) uniform samplerBuffer charts;      // at the new resolution
-layout(binding = 0, rgba8) uniform writeonly image2DArray colours;
+layout(binding = 0, rgba16f) uniform writeonly image2DArray colours;
 uniform int first_group;
 
 void main() {

@@ -41,7 +41,7 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
   atlas_.write_charts(chart_rows_);
   current_->table.assign(std::span<const std::uint32_t>(table_));
   current_->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
-  current_->means.reserve(surface->charts.size() * sizeof(std::uint32_t));
+  current_->means.reserve(surface->charts.size() * atlas::kTexelBytes);
   current_->means.buffer().clear_to_zero();
   current_->coarse.buffer().clear_to_zero();
 }
@@ -66,14 +66,15 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
   clock_.mark("prepare");
   atlas_.write_job_geometry(allocation.jobs, views_, geometry_);
-  extract_.extract({allocation.jobs, allocation.masks, geometry_}, inputs_, store_, options_.depth_tolerance,
-                   options_.worse);
+  extract_.extract({allocation.jobs, allocation.masks, geometry_, bend_.value()}, inputs_, store_,
+                   options_.depth_tolerance, options_.worse);
   clock_.mark("extract");
   fill_and_finish(allocation, *next);
 
   next->number = ++number_;
   next->newest_image = frame.left.time;
   next->display_gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
+  next->display_bend = static_cast<float>(bend_.value());
   atlas_.commit();
   retired_.push_back({current_, std::move(allocation.retired)});
   current_ = next;
@@ -152,7 +153,7 @@ void TextureCore::estimate_exposure() {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     exposures_[i].update(
         survey_.brightness(inputs_, charts_, store_, static_cast<int>(i), options_.depth_tolerance, first, stride),
-        pages, image_);
+        pages, image_, bend_, i == 0);
     tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
                        exposures_[i].vignetting().y());
   }
@@ -187,8 +188,8 @@ void TextureCore::list_fill_work(const ChartAtlas::Allocation& allocation) {
 
 void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next) {
   list_fill_work(allocation);
-  next.coarse.reserve(static_cast<std::size_t>(atlas_.page_count()) * sizeof(std::uint32_t));
-  next.means.reserve(atlas_.charts().size() * sizeof(std::uint32_t));
+  next.coarse.reserve(static_cast<std::size_t>(atlas_.page_count()) * atlas::kTexelBytes);
+  next.means.reserve(atlas_.charts().size() * atlas::kTexelBytes);
   fill_(extract_, {allocation.jobs.size(), dirty_, chart_of_page_, kept_}, store_, *current_, next);
   // The flip must not show what the GPU has not finished.
   gl::Fence::insert().wait(kGpuTimeout);
@@ -224,9 +225,9 @@ TextureCore::Generation TextureCore::next_generation() {
   auto fresh = std::make_shared<PublishedTextures>();
   fresh->table = gl::BufferTexture(GL_R32UI, 16, "page table");
   fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
-  fresh->coarse = gl::BufferTexture(GL_R32UI, 16, "page means");
-  fresh->means = gl::BufferTexture(GL_R32UI, 16, "chart means");
-  fresh->colours = &store_.colours;
+  fresh->coarse = gl::BufferTexture(atlas::kColourFormat, 16, "page means");
+  fresh->means = gl::BufferTexture(atlas::kColourFormat, 16, "chart means");
+  fresh->colours = store_.colours;
   return fresh;
 }
 

@@ -5,6 +5,7 @@
 
 #include "gl/context.hpp"
 #include "texture_gpu/atlas_layout.hpp"
+#include "texture_gpu/response_bend.hpp"
 
 namespace foresight {
 namespace {
@@ -16,17 +17,28 @@ Eigen::Vector2i page_grid(const Eigen::Vector2i& texels) {
   return (texels.array() + atlas::kPage - 1) / atlas::kPage;
 }
 
-/// Packed RGBA8, as shaders pack it.
-cv::Vec4b unpack(std::uint32_t rgba) {
-  if (rgba >> 24 == 0) return {0, 0, 0, kBare};
-  const auto byte = [&](int shift) { return static_cast<std::uint8_t>(rgba >> shift & 255); };
-  return {byte(16), byte(8), byte(0), kFilled};
+/// Pixels of three colours and alpha to 8 bits as a display shows them.
+cv::Mat shown(const cv::Mat& texels, const PublishedTextures& textures) {
+  cv::Mat_<cv::Vec4f> light;
+  texels.convertTo(light, CV_32F);
+  const auto value = [&](float texel) {
+    return static_cast<float>(value_of_light(std::max(0.0f, texel * textures.display_gain), textures.display_bend));
+  };
+  for (cv::Vec4f& c : light) c = {value(c[0]), value(c[1]), value(c[2]), c[3]};
+  cv::Mat out;
+  light.convertTo(out, CV_8U, 255);
+  return out;
 }
 
-template <typename T>
-std::vector<T> read(const gl::BufferTexture& buffer, std::size_t count) {
-  std::vector<T> out(count);
-  if (count) buffer.buffer().read(std::span<T>(out));
+/// Means of pages or charts.
+std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t count,
+                                  const PublishedTextures& textures) {
+  cv::Mat halves(1, static_cast<int>(count), CV_16FC4);
+  if (count == 0) return {};
+  buffer.buffer().read(std::span(halves.ptr<std::uint64_t>(), count));
+  std::vector<cv::Vec4b> out;
+  for (const cv::Vec4b& c : cv::Mat_<cv::Vec4b>(shown(halves, textures)))
+    out.push_back(c[3] == 0 ? cv::Vec4b(0, 0, 0, kBare) : cv::Vec4b(c[2], c[1], c[0], kFilled));
   return out;
 }
 
@@ -55,15 +67,17 @@ std::optional<Eigen::Vector3d> ChartTexels::point(int x, int y) const {
 }
 
 TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_ptr<const SurfacePatches> surface)
-    : surface_(std::move(surface)), display_gain_(textures.display_gain), places_(textures.places) {
+    : surface_(std::move(surface)), places_(textures.places) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < places_.size(); ++i) {
     if (places_[i].density.x() <= 0) continue;
     const int pages = page_grid(chart_size(surface_->charts[i], places_[i].density)).prod();
     count = std::max(count, static_cast<std::size_t>(places_[i].first_page + pages));
   }
-  const auto table = read<std::uint32_t>(textures.table, count), coarse = read<std::uint32_t>(textures.coarse, count);
-  means_ = read<std::uint32_t>(textures.means, places_.size());
+  std::vector<std::uint32_t> table(count);
+  if (count) textures.table.buffer().read(std::span(table));
+  const auto coarse = read_means(textures.coarse, count, textures);
+  means_ = read_means(textures.means, places_.size(), textures);
   for (std::size_t i = 0; i < count; ++i) pages_.push_back({table[i], coarse[i]});
 
   const gl::Texture& colours = *textures.colours;
@@ -73,9 +87,10 @@ TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_
     const auto layer = static_cast<int>(page.slot / atlas::kSlotsPerLayer);
     cv::Mat& pixels = layers_[static_cast<std::size_t>(layer)];
     if (!pixels.empty()) continue;
-    pixels.create(colours.height(), colours.width(), CV_8UC4);
-    glGetTextureSubImage(colours.name(), 0, 0, 0, layer, pixels.cols, pixels.rows, 1, GL_BGRA, GL_UNSIGNED_BYTE,
-                         static_cast<GLsizei>(pixels.total() * 4), pixels.data);
+    cv::Mat texels(colours.height(), colours.width(), CV_16FC4);
+    glGetTextureSubImage(colours.name(), 0, 0, 0, layer, texels.cols, texels.rows, 1, GL_BGRA, GL_HALF_FLOAT,
+                         static_cast<GLsizei>(texels.total() * texels.elemSize()), texels.data);
+    pixels = shown(texels, textures);
   }
   gl::check_errors("reading textures back");
 }
@@ -90,7 +105,7 @@ Eigen::Vector2d TextureReadback::resolution(int index) const {
 }
 
 cv::Vec4b TextureReadback::mean(int index) const {
-  return unpack(means_[static_cast<std::size_t>(index)]);
+  return means_[static_cast<std::size_t>(index)];
 }
 
 std::optional<ChartTexels> TextureReadback::chart(int index) const {
@@ -137,7 +152,7 @@ cv::Vec4b TextureReadback::stand_in(int chart, const Page* pages, const Eigen::V
   for (int i = 0; i < 4; ++i) {
     const Eigen::Array2i page =
         (base.cast<int>() + Eigen::Vector2i(i & 1, i >> 1)).array().max(0).min(size.array() - 1);
-    const cv::Vec4b c = unpack(pages[page.y() * size.x() + page.x()].coarse);
+    const cv::Vec4b& c = pages[page.y() * size.x() + page.x()].coarse;
     if (c[3] != kFilled) continue;
     const double w = (i & 1 ? part.x() : 1 - part.x()) * (i >> 1 ? part.y() : 1 - part.y());
     sum += w * Eigen::Vector3d(c[0], c[1], c[2]);

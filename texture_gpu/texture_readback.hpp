@@ -20,9 +20,9 @@ struct ChartTexels {
   int chart = 0;
   Patch patch;         ///< its plane, and its node
   ChartRaster raster;  ///< its grid and heights
-  /// CV_8UC4, BGRA, as stored: values at the exposure of the first image; a display multiplies them
-  /// by PublishedTextures::display_gain. Alpha 255: seen by a camera, 128: filled from around it,
-  /// 64: no colour (BGR 0), 0: no surface (BGR 0).
+  /// CV_8UC4, BGRA, at the exposure of the newest image, as a display shows them: what is brighter than
+  /// its white is cut off. Alpha 255: seen by a camera, 128: filled from around it, 64: no colour
+  /// (BGR 0), 0: no surface (BGR 0).
   cv::Mat colours;
   /// Row-major: index in the scene of the triangle under a core texel's centre; -1: not core.
   std::vector<int> triangle;
@@ -61,7 +61,6 @@ class TextureReadback {
   TextureReadback(const PublishedTextures& textures, std::shared_ptr<const SurfacePatches> surface);
 
   const SurfacePatches& surface() const { return *surface_; }
-  float display_gain() const { return display_gain_; }
 
   /// Nothing for a chart that never came into view: mean() stands in for it.
   std::optional<ChartTexels> chart(int index) const;
@@ -69,22 +68,22 @@ class TextureReadback {
   /// Texels per metre along u and v of a chart that has pages with colours; 0 for any other.
   Eigen::Vector2d resolution(int index) const;
 
-  /// Mean colour of a chart, handed on from its neighbours where it was never seen: BGR as stored,
-  /// alpha 128; all 0 but alpha 64 where there is none.
+  /// Mean colour of a chart, handed on from its neighbours where it was never seen: BGR as
+  /// ChartTexels::colours, alpha 128; all 0 but alpha 64 where there is none.
   cv::Vec4b mean(int index) const;
 
  private:
   struct Page {
-    std::uint32_t slot, coarse;
+    std::uint32_t slot;
+    cv::Vec4b coarse;
   };
   cv::Vec4b stored(std::uint32_t slot, int x, int y) const;
   cv::Vec4b stand_in(int chart, const Page* pages, const Eigen::Vector2i& size, int x, int y) const;
 
   std::shared_ptr<const SurfacePatches> surface_;
-  float display_gain_ = 1;
   std::vector<ChartPlace> places_;
   std::vector<Page> pages_;
-  std::vector<std::uint32_t> means_;
+  std::vector<cv::Vec4b> means_;
   std::vector<cv::Mat> layers_;  // BGRA; empty where no page of the generation lies in it
 };
 

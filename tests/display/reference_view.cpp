@@ -86,7 +86,7 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
     out.rgba << rgb, alpha;
     return out;
   };
-  Eigen::Vector4d fallback = unpack(generation_.means[index]);
+  Eigen::Vector4d fallback = generation_.means[index];
   if (chart.density.x() > 0) {
     const Eigen::Vector2d texel = (uv - chart.uv0).cwiseProduct(chart.density);
     const Eigen::Vector3d sight = (T_node_world.linear() * ray).normalized();
@@ -131,14 +131,14 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
 /// What stands in for pages without texels: their means, between the centres of the pages.
 Eigen::Vector4d View::coarse(const ChartCopy& chart, std::size_t index, const Eigen::Vector2d& texel) const {
   Eigen::Vector4d sum(0, 0, 0, 0);
-  bilinear((texel + Eigen::Vector2d(0.5, 0.5)) / 16 - Eigen::Vector2d(0.5, 0.5), [&](const Eigen::Vector2i& at,
-                                                                                     double weight) {
-    const Eigen::Array2i page = at.array().max(0).min(chart.pages.array() - 1);
-    const Eigen::Vector4d c =
-        unpack(generation_.coarse[static_cast<std::size_t>(chart.first_page + page.y() * chart.pages.x() + page.x())]);
-    sum += weight * c.w() * Eigen::Vector4d(c.x(), c.y(), c.z(), 1);
-  });
-  return sum.w() > 0 ? (sum / sum.w()).eval() : unpack(generation_.means[index]);
+  bilinear((texel + Eigen::Vector2d(0.5, 0.5)) / 16 - Eigen::Vector2d(0.5, 0.5),
+           [&](const Eigen::Vector2i& at, double weight) {
+             const Eigen::Array2i page = at.array().max(0).min(chart.pages.array() - 1);
+             const Eigen::Vector4d c =
+                 generation_.coarse[static_cast<std::size_t>(chart.first_page + page.y() * chart.pages.x() + page.x())];
+             sum += weight * c.w() * Eigen::Vector4d(c.x(), c.y(), c.z(), 1);
+           });
+  return sum.w() > 0 ? (sum / sum.w()).eval() : generation_.means[index];
 }
 
 }  // namespace foresight::reference

@@ -119,6 +119,38 @@ TEST_F(SynthRun, SameOptionsGiveTheSameBytes) {
 
 // Follows surface points from the first image to the last through what was written: lens, poses, meshes, node
 // tracks. They must look the same there, and must not three pixels beside.
+// What a webcam would do: a lab that is lit eight times too bright is hardly brighter in its images.
+TEST_F(SynthRun, AutomaticExposureEvensOutTheLight) {
+  SynthOptions options = tiny_;
+  const auto mean = [&](const char* name) {
+    write_synth_run(folder_ / name, options);
+    const RunFolder run = RunFolder::open(folder_ / name, {});
+    const cv::Scalar sum = cv::mean(read_run_image(run.frames()[1].left, run.lens_left()));
+    return (sum[0] + sum[1] + sum[2]) / 3;
+  };
+  const double normal = mean("normal");
+  options.sensor.exposure = 3;
+  const double bright = mean("bright");
+  EXPECT_GT(bright, normal + 40);
+  options.auto_exposure.emplace();
+  const double even = mean("even");
+  EXPECT_LT(even, bright - 25);
+  EXPECT_NEAR(even, 255 * options.auto_exposure->target, 15);
+  EXPECT_EQ(mean("again"), even);
+}
+
+TEST_F(SynthRun, NothingMovesInAStillRun) {
+  SynthOptions options = tiny_;
+  options.frames = 20;
+  options.still = true;
+  write_synth_run(folder_ / "run", options);
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  const auto first = run.state_at(run.frames().front().left.time), last = run.state_at(run.frames().back().left.time);
+  for (std::size_t k = 0; k < first.T_world_node.size(); ++k)
+    EXPECT_TRUE(first.T_world_node[k].isApprox(last.T_world_node[k], 1e-12)) << k;
+  EXPECT_FALSE(run.frames().front().left.T_world_camera.isApprox(run.frames().back().left.T_world_camera, 1e-3));
+}
+
 TEST_F(SynthRun, ModelAndPicturesAgree) {
   SynthOptions options;
   options.width = 240;

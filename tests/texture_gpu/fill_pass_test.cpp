@@ -70,8 +70,7 @@ class FillOfCharts : public FillTest, public testing::WithParamInterface<double>
     for (std::size_t i = 0; i < before.size(); ++i) {
       const AtlasChart& chart = bench_->atlas.charts()[i];
       for (std::size_t page = 0; page < chart.page.size(); ++page) {
-        const Eigen::Vector4d coarse =
-            reference::unpack(generation.coarse[static_cast<std::size_t>(chart.first_page) + page]);
+        const Eigen::Vector4d coarse = generation.coarse[static_cast<std::size_t>(chart.first_page) + page];
         out.coarse = std::max(out.coarse, 255 * (coarse - expected[i].coarse[page]).cwiseAbs().maxCoeff());
         if (before[i].resident[page]) compare_page(chart, page, expected[i], after, out);
       }
@@ -120,7 +119,7 @@ TEST_P(FillOfCharts, EveryLevelIsThatOfTheReference) {
   double worst_mean = 0;
   int handed_on = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const Eigen::Vector4d mean = reference::unpack(generation.means[i]);
+    const Eigen::Vector4d mean = generation.means[i];
     EXPECT_NEAR(mean.w(), expected[i].mean.w(), 1e-6) << "chart " << i;
     if (mean.w() > 0) worst_mean = std::max(worst_mean, 255 * (mean - expected[i].mean).cwiseAbs().maxCoeff());
     handed_on += mean.w() > 0 && mean.w() < 1;

@@ -30,7 +30,7 @@ std::shared_ptr<PublishedTextures> PassBench::fresh_generation() const {
   fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
   fresh->coarse = gl::BufferTexture(GL_R32UI, 16, "page means");
   fresh->means = gl::BufferTexture(GL_R32UI, surface->charts.size() * 4, "chart means");
-  fresh->colours = &store.colours;
+  fresh->colours = store.colours;
   return fresh;
 }
 
@@ -81,7 +81,7 @@ void PassBench::relevel() {
 void PassBench::extract(double minify_above) {
   std::vector<Eigen::Vector4f> geometry;
   atlas.write_job_geometry(allocation.jobs, views, geometry);
-  extraction.extract({allocation.jobs, allocation.masks, geometry, minify_above}, inputs, store,
+  extraction.extract({allocation.jobs, allocation.masks, geometry, 0, minify_above}, inputs, store,
                      options.depth_tolerance, options.worse);
 }
 

@@ -38,7 +38,7 @@ class PassBench {
   /// What the reference needs of camera `i`, its depth and edges as the GPU found them.
   reference::Camera camera(std::size_t i) const;
   std::vector<Eigen::Vector2f> blocks(std::size_t i) const;
-  reference::AtlasPixels pixels() const { return reference::AtlasPixels(store.colours); }
+  reference::AtlasPixels pixels() const { return reference::AtlasPixels(*store.colours); }
   reference::Generation generation() const { return {*current, surface->charts.size()}; }
 
   /// True where all cameras see all triangles of a solid's chart from behind: its texels count as

@@ -1,5 +1,7 @@
 #include "tests/texture_gpu/reference/atlas_pixels.hpp"
 
+#include <opencv2/core.hpp>
+
 namespace foresight::reference {
 namespace {
 
@@ -7,6 +9,16 @@ std::vector<std::uint32_t> read_words(const gl::BufferTexture& buffer, std::size
   std::vector<std::uint32_t> words(count);
   buffer.buffer().read(std::span<std::uint32_t>(words));
   return words;
+}
+
+/// Halves to values 0 .. 1.
+std::vector<Eigen::Vector4d> read_means(const gl::BufferTexture& buffer, std::size_t count) {
+  cv::Mat halves(1, static_cast<int>(count), CV_16FC4), values;
+  buffer.buffer().read(std::span(halves.ptr<std::uint64_t>(), count));
+  halves.convertTo(values, CV_32F);
+  std::vector<Eigen::Vector4d> out;
+  for (const cv::Vec4f& v : cv::Mat_<cv::Vec4f>(values)) out.emplace_back(v[0], v[1], v[2], v[3]);
+  return out;
 }
 
 }  // namespace
@@ -50,12 +62,8 @@ Generation::Generation(const PublishedTextures& published, std::size_t count) : 
     charts.push_back(chart);
   }
   table = read_words(published.table, static_cast<std::size_t>(pages));
-  coarse = read_words(published.coarse, static_cast<std::size_t>(pages));
-  means = read_words(published.means, count);
-}
-
-Eigen::Vector4d unpack(std::uint32_t v) {
-  return Eigen::Vector4d(v & 255, v >> 8 & 255, v >> 16 & 255, v >> 24) / 255;
+  coarse = read_means(published.coarse, static_cast<std::size_t>(pages));
+  means = read_means(published.means, count);
 }
 
 Eigen::Vector4d to_vector(const Texel& t) {

@@ -13,7 +13,8 @@ namespace foresight::reference {
 
 using Texel = std::array<std::uint8_t, 4>;  ///< R, G, B, and the code of atlas.glsl
 
-/// All levels of the atlas's colours. Slots lie 8 to a row, 512 rows to a layer.
+/// All levels of the atlas's colours, in steps of 255; what is brighter than 255 counts as 255. Slots lie
+/// 8 to a row, 512 rows to a layer.
 struct AtlasPixels {
   explicit AtlasPixels(const gl::Texture& colours);
 
@@ -38,12 +39,11 @@ struct Generation {
   /// `charts`: how many the surface has.
   Generation(const PublishedTextures& published, std::size_t charts);
   std::vector<ChartCopy> charts;
-  std::vector<std::uint32_t> table, coarse, means;
+  std::vector<std::uint32_t> table;
+  std::vector<Eigen::Vector4d> coarse, means;
   float display_gain = 1;
 };
 
-/// Packed RGBA8 to values 0 .. 1.
-Eigen::Vector4d unpack(std::uint32_t rgba);
 Eigen::Vector4d to_vector(const Texel& texel);
 
 }  // namespace foresight::reference

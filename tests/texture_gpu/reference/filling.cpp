@@ -102,7 +102,7 @@ void spread(const std::vector<FillChart>& charts, std::vector<FilledChart>& out)
       Mean mean;
       for (int n : charts[i].neighbours)
         if (const Vector4d& c = before[static_cast<std::size_t>(n)]; c.w() > 0) mean.add(c, c.w() == 1 ? 4 : 1);
-      if (!mean.empty()) out[i].mean = mean.over(1), out[i].mean.w() = 128.0 / 255;
+      if (!mean.empty()) out[i].mean = mean.over(1), out[i].mean.w() = 0.5;
     }
   }
 }

@@ -24,7 +24,7 @@ struct FillChart {
 struct FilledChart {
   std::array<std::vector<Eigen::Vector4d>, atlas::kLevels> levels;
   std::vector<Eigen::Vector4d> coarse;             ///< of each page; alpha 1: has a colour
-  Eigen::Vector4d mean = Eigen::Vector4d::Zero();  ///< alpha 1: of its own texels, 128/255 handed on
+  Eigen::Vector4d mean = Eigen::Vector4d::Zero();  ///< alpha 1: of its own texels, 1/2 handed on
 };
 
 /// No chart means are left from an earlier generation.
