@@ -182,7 +182,9 @@ struct LiveView::Work {
     add(source.counts().unposed, " images had no pose: they were neither shown nor used.");
     add(source.counts().forgotten, " images were given up on their way: the delay is too long.");
     add(frames->dropped(), " images came while the view was busy, and were left out.");
-    add(static_cast<std::uint64_t>(stalls.stalls()), " times no image came, or none with a pose, for a while.");
+    if (stalls.stalls() > 0)
+      record.notes.push_back(
+          fmt::format("Images with a pose stayed away for a while (occasions: {}).", stalls.stalls()));
     record.drops += frames->dropped() + source.counts().forgotten;
   }
 };
