@@ -1,5 +1,7 @@
 #include "session/run_recorder.hpp"
 
+#include <sstream>
+
 #include "common/error.hpp"
 #include "scene/files.hpp"
 #include "scene/scene_writer.hpp"
@@ -132,9 +134,11 @@ RecorderCounts RunRecorder::finish(const std::string& remarks) {
                                : "no pair of images came: nothing was recorded",
                          full_ ? "free some disk space" : "see what `foresight doctor` says of the cameras");
   run_.finish();
-  write_text(target_.path() / kMarker, std::string(kMarkerLine) + "\npairs: " + std::to_string(counts.written) +
-                                           "\ndropped_by_disk: " + std::to_string(counts.dropped) +
-                                           "\nwithout_pose: " + std::to_string(counts.without_pose) + "\n" + remarks);
+  std::ostringstream text;
+  text << kMarkerLine << "\npairs: " << counts.written << "\ndropped_by_disk: " << counts.dropped
+       << "\nwithout_pose: " << counts.without_pose << "\n"
+       << remarks;
+  write_text(target_.path() / kMarker, text.str());
   try {
     target_.commit();
   } catch (const fs::filesystem_error& e) {
