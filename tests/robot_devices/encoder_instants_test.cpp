@@ -94,7 +94,7 @@ TEST_P(EncoderInstants, PutTheCameraWhereItWas) {
       "%s at %g rad/s, 640 x 480: RMS %.2f px by the cycles' time, %.2f px (worst %.2f) by the joints' own; "
       "positions up to %.1f ms old\n",
       live_.rig().name.c_str(), kSpeed, before, after, worst, oldest_ms);
-  EXPECT_LT(after, 0.6);
+  EXPECT_LT(after, 0.8) << "what a bus and a drive's own cycle of 1 ms cost";
   EXPECT_LT(worst, 1.2);
   EXPECT_GT(before, 2 * after) << "or there is nothing to mend";
 }

@@ -92,8 +92,9 @@ TEST_F(MockCameras, SeeTheShaftsWhereTheyWereInTheMiddleOfTheExposure) {
     EXPECT_GT(now, psnr(-30ms) + 0.5) << "frame " << i;
     // What was written down as the encoders' word.
     const Pose T = sim::LiveLab::T_world_left_modelled(shafts_at(time));
+    // A millisecond from shaft to stamp, at up to 1.5 rad/s.
     EXPECT_LT((T.translation() - frame.left.T_world_camera.translation()).norm(), 1e-3);
-    EXPECT_LT((T.linear() - frame.left.T_world_camera.linear()).norm(), 2e-3);
+    EXPECT_LT((T.linear() - frame.left.T_world_camera.linear()).norm(), 4e-3);
     moved += (T.linear() - run.frames()[i - 1].left.T_world_camera.linear()).norm();
   }
   EXPECT_GT(moved, 0.01) << "the head moves";
@@ -136,7 +137,7 @@ TEST_F(MockCameras, ACalibratedHeadGivesThePosesOfARecording) {
     const Pose T = sim::LiveLab::T_world_left_modelled(shafts_at(image.time));
     EXPECT_LT((T.linear() - image.T_world_camera.linear()).norm() +
                   (T.translation() - image.T_world_camera.translation()).norm(),
-              2e-3)
+              4e-3)
         << i;
     moved += (image.T_world_camera.linear() - run.frames()[i - 1].left.T_world_camera.linear()).norm();
   }

@@ -66,8 +66,12 @@ TEST(LiveScene, ARealRobotsLinksFollowItsJoints) {
   arm.opening = 0.02;
   const auto links = sim::arm_links_at(arm);
   for (std::size_t i = 0; i < links.size(); ++i) {
-    EXPECT_TRUE(state.T_world_node[i].isApprox(links[i], 1e-9)) << scene.model()->nodes()[i].name;
-    EXPECT_EQ(scene.moves(i), i > 0);
+    const std::string name = i == 0 ? sim::kArmStand : sim::arm_joints()[i - 1].child;
+    const auto node = scene.model()->find(name);
+    ASSERT_TRUE(node) << name;
+    const auto at = static_cast<std::size_t>(*node);
+    EXPECT_TRUE(state.T_world_node[at].isApprox(links[i], 1e-9)) << name;
+    EXPECT_EQ(scene.moves(at), i > 0) << name;
   }
 }
 

@@ -151,8 +151,10 @@ class Recording : public testing::Test {
     Film film({left, right});
     StereoCamera cameras(std::make_unique<FilmCamera>(film, Side::left, 0ns),
                          std::make_unique<FilmCamera>(film, Side::right, offset), film, pairing);
-    LiveFrames frames(std::make_shared<AlongX>(), film);
-    RunRecorder recorder(folder_ / "run", options_, frames.subscribe(RunRecorder::kRoom));
+    LiveFrameOptions room_for_all;  // however late a thread gets its turn
+    room_for_all.waiting = 1000;
+    LiveFrames frames(std::make_shared<AlongX>(), film, room_for_all);
+    RunRecorder recorder(folder_ / "run", options_, frames.subscribe(1000));
     return record(cameras, frames, recorder, limits, film, [this] { return stop_; });
   }
 
