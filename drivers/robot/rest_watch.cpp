@@ -14,7 +14,8 @@ constexpr double kSlow = 0.01;  // share of the largest velocity
 }  // namespace
 
 RestWatch::RestWatch(std::vector<double> velocities, double feedback_age_s) : feedback_age_(seconds(feedback_age_s)) {
-  for (const double velocity : velocities) joints_.push_back({.velocity = velocity});
+  joints_.resize(velocities.size());
+  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].velocity = velocities[i];
 }
 
 void RestWatch::see(std::span<const DriveFeedback> feedback, RobotTime now) noexcept {
