@@ -54,8 +54,8 @@ int bench_camera(const CameraBenchOptions& options) {
   synth.width = options.width;
   synth.height = options.height;
   sim::MockCameraOptions mock;
-  mock.left = sim::synth_lens(synth, false);
-  mock.right = sim::synth_lens(synth, true);
+  mock.lenses.left = sim::synth_lens(synth, false);
+  mock.lenses.right = sim::synth_lens(synth, true);
   const auto world = std::make_shared<const sim::LiveLab>(sim::LiveLab::Options{});
   const RobotTime start = clock.now();
   const auto stereo = std::make_shared<sim::MockStereo>(
