@@ -48,7 +48,6 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
 
   program_.use();
   program_.set("gain", textures.display_gain);
-  program_.set("bend", textures.display_bend);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   glBindTextureUnit(0, node_poses_.texture());
   glBindTextureUnit(1, faces_.surface.name());

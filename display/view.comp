@@ -3,8 +3,7 @@
 #include "chart_record.glsl"
 #include "atlas.glsl"
 uniform float gain;
-#include "response.glsl"
-#define BRIGHTEST (brightest_light() / gain)
+#define BRIGHTEST (1.0 / gain)
 #include "lookup.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
@@ -67,14 +66,14 @@ vec4 shade(vec3 ray) {
       taps = gather_sharp_taps(chart, texel);
     else
       taps = gather_taps(chart, texel, level);
-    if (taps.seen.a >= kSeenShare) return vec4(value_of(taps.seen.rgb / taps.seen.a * gain), 1.0);
+    if (taps.seen.a >= kSeenShare) return vec4(min(taps.seen.rgb / taps.seen.a * gain, vec3(1.0)), 1.0);
     if (taps.seen.a + taps.filled.a > 0.0)
-      return vec4(value_of((taps.seen.rgb + taps.filled.rgb) / (taps.seen.a + taps.filled.a) * gain), 128.0 / 255.0);
+      return vec4(min((taps.seen.rgb + taps.filled.rgb) / (taps.seen.a + taps.filled.a) * gain, vec3(1.0)), 128.0 / 255.0);
     fallback = coarse_colour(chart, chart_index, texel);
   } else {
     fallback = texelFetch(published_means, chart_index);
   }
-  return fallback.a > 0.0 ? vec4(value_of(fallback.rgb * gain), 128.0 / 255.0) : vec4(vec3(0.0), 64.0 / 255.0);
+  return fallback.a > 0.0 ? vec4(min(fallback.rgb * gain, vec3(1.0)), 128.0 / 255.0) : vec4(vec3(0.0), 64.0 / 255.0);
 }
 
 void main() {

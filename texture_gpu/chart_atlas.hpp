@@ -34,7 +34,6 @@ struct PageExposure {
   float log_brightness = 0;
   float radius2 = 0;
   float log_gain = 0;
-  std::uint32_t epoch = 0;  ///< of the bend that the gain was found with (ResponseBend)
   std::int64_t image = -1;  ///< -1: none yet
   bool rough = false;       ///< of a somewhat other area of the surface: to be renewed at once
 };

@@ -12,7 +12,6 @@ constexpr std::int64_t kReferenceAge = 30;  // images; long enough for pages to 
 constexpr double kLargestLogGain = 6;       // a factor of 400: from a dark image's noise to a flash
 constexpr float kDarkest = 0.04f;           // below, noise and black level rule the ratio
 constexpr float kLeast = 0.5f / 255;        // what a value of 0 may be
-constexpr float kBrightest = 0.99f;         // what the bend is undone for: beyond, noise rules
 constexpr double kSurelyBrighter = 0.75;    // quantile of the least ratios, where white pages are most
 constexpr double kForgetting = 0.995;       // per image
 
@@ -34,25 +33,21 @@ double median(std::vector<double> values) {
 }  // namespace
 
 void ExposureEstimator::update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages,
-                               std::int64_t image, ResponseBend& bend, bool learn_bend) {
+                               std::int64_t image) {
+  if (rough_) log_gain_ = steady_;  // the last image told only where the gain was not
+  rough_ = false;
   std::vector<double> ratios, middle_ratios, at_least, dark;
   std::vector<std::size_t> used;
-  std::vector<ResponseBend::Pair> pairs;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples[i].brightness < 0 || !pages[i] || pages[i]->exposure.image < 0) continue;
     const PageExposure& ref = pages[i]->exposure;
-    const double then_gain = bend.carried_over(ref.log_gain, ref.epoch);
-    const double then = std::exp(ref.log_brightness);
-    const double log_t = log_light(then, bend.value()) - then_gain - vignetting_log(ref.radius2);
+    const double log_t = ref.log_brightness - ref.log_gain - vignetting_log(ref.radius2);
     const bool white = samples[i].white();
     const float brightness = white ? samples[i].brightness - ExposureSample::kWhite : samples[i].brightness;
-    const double now = std::clamp(brightness, kLeast, kBrightest);
-    const double ratio = log_light(now, bend.value()) - vignetting_log(samples[i].radius2) - log_t;
+    const double ratio = std::log(std::max(brightness, kLeast)) - vignetting_log(samples[i].radius2) - log_t;
     (white ? at_least : brightness < kDarkest ? dark : ratios).push_back(ratio);
-    if (!white && middle(now) && middle(then)) middle_ratios.push_back(ratio);
-    if (!white && brightness >= kDarkest)
-      used.push_back(i),
-          pairs.push_back({now, then, then_gain, vignetting_log(samples[i].radius2) - vignetting_log(ref.radius2)});
+    if (!white && middle(brightness) && middle(std::exp(ref.log_brightness))) middle_ratios.push_back(ratio);
+    if (!white && brightness >= kDarkest) used.push_back(i);
   }
   if (ratios.size() >= kFewestSamples) {
     const double gain = median(middle_ratios.size() >= kFewestSamples ? middle_ratios : ratios);
@@ -65,15 +60,15 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
       const ExposureSample& s = samples[used[k]];
       const PageExposure& ref = pages[used[k]]->exposure;
       const double r = s.radius2, q = ref.radius2;
-      const double residual = log_light(pairs[k].now, bend.value()) - log_light(pairs[k].then, bend.value()) -
-                              (log_gain_ - pairs[k].log_gain);
+      const double residual = std::log(s.brightness) - ref.log_brightness - (log_gain_ - ref.log_gain);
       if (std::abs(ratios[k] - gain) < 3 * sigma) rows.emplace_back(r - q, r * r - q * q, residual);
     }
     learn_vignetting(rows, sigma);
-    if (learn_bend) bend.update(pairs, log_gain_);
   } else if (at_least.size() + dark.size() >= kFewestSamples) {
     // A flash or a covered lens: what it shows must not pass for the surfaces' own brightness. A rough
     // gain is enough, as white and black texels do not replace older ones that agree (extract.comp).
+    steady_ = log_gain_;
+    rough_ = true;
     if (at_least.size() > dark.size())
       log_gain_ = std::clamp(quantile(at_least, kSurelyBrighter), log_gain_, kLargestLogGain);
     else
@@ -83,11 +78,11 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples[i].brightness < kDarkest || samples[i].white() || !pages[i]) continue;
     PageExposure& ref = pages[i]->exposure;
-    // References of bright images would hand on what the bend does to them.
+    // References of bright pages would hand on what the bend of the response does to them.
     const bool better = middle(samples[i].brightness), good = middle(std::exp(ref.log_brightness));
     const bool old = ref.rough || image - ref.image >= kReferenceAge;
     if (ref.image >= 0 && !(better ? old || !good : old && !good)) continue;
-    ref = {std::log(samples[i].brightness), samples[i].radius2, static_cast<float>(log_gain_), bend.epoch(), image};
+    ref = {std::log(samples[i].brightness), samples[i].radius2, static_cast<float>(log_gain_), image, false};
   }
 }
 

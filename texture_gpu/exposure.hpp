@@ -1,9 +1,8 @@
 // Evens out exposure: the gain of each image and the vignetting of each lens.
 //
 // Camera responses are close to a power law, so a factor in linear light is a factor in the
-// 8-bit values too (g^(1/gamma)), but for a bend at their upper end (response_bend.hpp); all gains
-// here are natural logarithms of that factor. An image is modelled, with I taken through the bend, as
-//     log I(x) = log T(x) + g + v(r),   v(r) = a r^2 + b r^4,
+// 8-bit values too (g^(1/gamma)); all gains here are natural logarithms of that factor. An image
+// is modelled as   log I(x) = log T(x) + g + v(r),   v(r) = a r^2 + b r^4,
 // T the surface's brightness at the reference exposure (the first image's), r the distance from
 // the image's centre in half diagonals.
 #pragma once
@@ -13,7 +12,6 @@
 #include <vector>
 
 #include "texture_gpu/chart_atlas.hpp"
-#include "texture_gpu/response_bend.hpp"
 
 namespace foresight {
 
@@ -36,9 +34,7 @@ class ExposureEstimator {
   /// small, is then better than the last. Keeps the last gain where fewer than 30 pages can be
   /// compared. Also refines the vignetting. Then renews references that are missing or older than
   /// 30 images, but those of middle brightness only by others of that kind.
-  /// `bend`: of the cameras' response, used and, with `learn_bend`, refined.
-  void update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages, std::int64_t image,
-              ResponseBend& bend, bool learn_bend = true);
+  void update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages, std::int64_t image);
 
   double log_gain() const { return log_gain_; }
   /// (a, b); zero until it is known well enough to help: v(1) beyond three of its own sigma.
@@ -48,7 +44,8 @@ class ExposureEstimator {
  private:
   void learn_vignetting(const std::vector<Eigen::Vector3d>& rows, double sigma);
 
-  double log_gain_ = 0;
+  double log_gain_ = 0, steady_ = 0;
+  bool rough_ = false;  // log_gain_ is a bound; steady_ is the last before
   Eigen::Vector2d applied_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d information_ = Eigen::Matrix2d::Zero();
   Eigen::Vector2d moment_ = Eigen::Vector2d::Zero();

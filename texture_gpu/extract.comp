@@ -8,7 +8,6 @@
 #include "camera.glsl"
 #include "seen.glsl"
 #include "atlas.glsl"
-#include "response.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform samplerBuffer geometry;  // per job and camera four texels (ChartAtlas::write_job_geometry)
 layout(binding = 9) uniform usampler2DArray heights;
@@ -78,7 +77,7 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
 // least that it can be: while the camera closes by a stop it stays white.
 const float kWhite = 249.5 / 255.0, kBlack = 1.5 / 255.0;
 vec3 fused(vec3 old, vec3 value, float factor) {
-  vec3 fresh = light_of(value) * factor;
+  vec3 fresh = value * factor;
   vec3 guess = fresh * (1.0 + kBeyondWhite * clamp((value - kWhite) / (1.0 - kWhite), 0.0, 1.0));
   vec3 white = step(kWhite, value) * step(0.97 * fresh, old);
   vec3 black = step(value, vec3(kBlack)) * step(0.0, old.r);

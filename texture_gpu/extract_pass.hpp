@@ -28,7 +28,6 @@ class ExtractPass {
     std::span<const PageJob> jobs;
     std::span<const std::uint8_t> masks;        ///< of each job (ChartAtlas::Allocation)
     std::span<const Eigen::Vector4f> geometry;  ///< ChartAtlas::write_job_geometry()
-    double bend = 0;                            ///< of the cameras' response (response_bend.hpp)
     /// Texels of more pixels than this along a side take the mean of what they cover: up to four
     /// times as many from the image, beyond from its coarser levels.
     double minify_above = 1.5;
@@ -48,7 +47,7 @@ class ExtractPass {
   static constexpr std::size_t kSizes = 4;       // of texels in pixels, as TEXELS in extract.comp
   std::array<gl::Program, 2 * kSizes> extract_;  // kSizes * (cameras - 1) + size
   void sort_tiles(const Work& work, const SeenInputs& inputs);
-  void run(std::size_t size, const Work& work, const SeenInputs& inputs, double depth_tolerance, double worse);
+  void run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse);
 
   gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_[kSizes], copy_tiles_, holes_, staged_, slots_;
   std::array<std::vector<std::uint32_t>, kSizes> seen_tiles_;  // by size; job << 4 | tile << 2 | cameras

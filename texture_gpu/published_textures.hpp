@@ -28,7 +28,6 @@ struct PublishedTextures {
   std::uint64_t number = 0;                    ///< counts up with each publish
   RobotTime newest_image;                      ///< capture instant of the newest image in it
   float display_gain = 1;                      ///< factor on colours that shows the newest image's exposure
-  float display_bend = 0;                      ///< then bent towards white (response_bend.hpp)
   gl::BufferTexture table;                     ///< R32UI: colour slot of each page
   gl::BufferTexture charts;                    ///< RGBA32F: five texels a chart (chart_record.glsl)
   gl::BufferTexture coarse;                    ///< RGBA16F: filled mean of each page

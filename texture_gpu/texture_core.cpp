@@ -66,15 +66,14 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
   clock_.mark("prepare");
   atlas_.write_job_geometry(allocation.jobs, views_, geometry_);
-  extract_.extract({allocation.jobs, allocation.masks, geometry_, bend_.value()}, inputs_, store_,
-                   options_.depth_tolerance, options_.worse);
+  extract_.extract({allocation.jobs, allocation.masks, geometry_}, inputs_, store_, options_.depth_tolerance,
+                   options_.worse);
   clock_.mark("extract");
   fill_and_finish(allocation, *next);
 
   next->number = ++number_;
   next->newest_image = frame.left.time;
   next->display_gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
-  next->display_bend = static_cast<float>(bend_.value());
   atlas_.commit();
   retired_.push_back({current_, std::move(allocation.retired)});
   current_ = next;
@@ -153,7 +152,7 @@ void TextureCore::estimate_exposure() {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     exposures_[i].update(
         survey_.brightness(inputs_, charts_, store_, static_cast<int>(i), options_.depth_tolerance, first, stride),
-        pages, image_, bend_, i == 0);
+        pages, image_);
     tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
                        exposures_[i].vignetting().y());
   }

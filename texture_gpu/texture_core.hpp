@@ -45,7 +45,6 @@ class TextureCore {
   AtlasStore store_;
   std::vector<std::unique_ptr<CameraInput>> cameras_;
   std::vector<ExposureEstimator> exposures_;
-  ResponseBend bend_;  // of all cameras: they are of one kind
   gl::RasterPass raster_;
   EdgePass edges_;
   SurveyPass survey_;

@@ -5,7 +5,6 @@
 
 #include "gl/context.hpp"
 #include "texture_gpu/atlas_layout.hpp"
-#include "texture_gpu/response_bend.hpp"
 
 namespace foresight {
 namespace {
@@ -18,26 +17,20 @@ Eigen::Vector2i page_grid(const Eigen::Vector2i& texels) {
 }
 
 /// Pixels of three colours and alpha to 8 bits as a display shows them.
-cv::Mat shown(const cv::Mat& texels, const PublishedTextures& textures) {
-  cv::Mat_<cv::Vec4f> light;
-  texels.convertTo(light, CV_32F);
-  const auto value = [&](float texel) {
-    return static_cast<float>(value_of_light(std::max(0.0f, texel * textures.display_gain), textures.display_bend));
-  };
-  for (cv::Vec4f& c : light) c = {value(c[0]), value(c[1]), value(c[2]), c[3]};
+cv::Mat shown(const cv::Mat& texels, double gain) {
   cv::Mat out;
-  light.convertTo(out, CV_8U, 255);
+  texels.convertTo(out, CV_32F);
+  cv::multiply(out, cv::Scalar(gain, gain, gain, 1), out, 255, CV_8U);
   return out;
 }
 
 /// Means of pages or charts.
-std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t count,
-                                  const PublishedTextures& textures) {
+std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t count, double gain) {
   cv::Mat halves(1, static_cast<int>(count), CV_16FC4);
   if (count == 0) return {};
   buffer.buffer().read(std::span(halves.ptr<std::uint64_t>(), count));
   std::vector<cv::Vec4b> out;
-  for (const cv::Vec4b& c : cv::Mat_<cv::Vec4b>(shown(halves, textures)))
+  for (const cv::Vec4b& c : cv::Mat_<cv::Vec4b>(shown(halves, gain)))
     out.push_back(c[3] == 0 ? cv::Vec4b(0, 0, 0, kBare) : cv::Vec4b(c[2], c[1], c[0], kFilled));
   return out;
 }
@@ -76,8 +69,8 @@ TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_
   }
   std::vector<std::uint32_t> table(count);
   if (count) textures.table.buffer().read(std::span(table));
-  const auto coarse = read_means(textures.coarse, count, textures);
-  means_ = read_means(textures.means, places_.size(), textures);
+  const auto coarse = read_means(textures.coarse, count, textures.display_gain);
+  means_ = read_means(textures.means, places_.size(), textures.display_gain);
   for (std::size_t i = 0; i < count; ++i) pages_.push_back({table[i], coarse[i]});
 
   const gl::Texture& colours = *textures.colours;
@@ -90,7 +83,7 @@ TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_
     cv::Mat texels(colours.height(), colours.width(), CV_16FC4);
     glGetTextureSubImage(colours.name(), 0, 0, 0, layer, texels.cols, texels.rows, 1, GL_BGRA, GL_HALF_FLOAT,
                          static_cast<GLsizei>(texels.total() * texels.elemSize()), texels.data);
-    pixels = shown(texels, textures);
+    pixels = shown(texels, textures.display_gain);
   }
   gl::check_errors("reading textures back");
 }

@@ -32,7 +32,6 @@ class Drift {
   }
 
   double true_gain(int image) const { return options_.swing * std::sin(2 * M_PI * image / options_.period); }
-  double bend() const { return bend_.value(); }
 
   void show(ExposureEstimator& estimator, int image) {
     std::normal_distribution<double> noise(0, options_.noise);
@@ -49,12 +48,11 @@ class Drift {
       if (value > 0.97) value = ExposureSample::kWhite + std::min(value, 1.0);
       samples.push_back({static_cast<float>(value), static_cast<float>(r2)});
     }
-    estimator.update(samples, pointers_, image, bend_);
+    estimator.update(samples, pointers_, image);
   }
 
  private:
   Options options_;
-  ResponseBend bend_;
   std::mt19937 random_{11};
   std::vector<AtlasPage> pages_;
   std::vector<AtlasPage*> pointers_;
@@ -105,45 +103,29 @@ TEST(ExposureEstimator, InventsNoVignetting) {
   }
 }
 
-TEST(ResponseBend, LightAndBack) {
-  for (const double s : ResponseBend::kBends)
-    for (double v = 0.01; v <= 1; v += 0.01) EXPECT_NEAR(value_of_light(std::exp(log_light(v, s)), s), v, 1e-4) << s;
-  EXPECT_EQ(value_of_light(3, 0.4), 1);
-}
-
-TEST(ExposureEstimator, FindsHowTheResponseBends) {
-  for (const double bend : {0.0, 0.75}) {
-    Drift drift({.noise = 0.02, .outliers = 0.1, .swing = 0.5, .bend = bend});
-    ExposureEstimator estimator;
-    for (int image = 0; image < 300; ++image) drift.show(estimator, image);
-    if (bend > 0)
-      EXPECT_GT(drift.bend(), 0.1);
-    else
-      EXPECT_EQ(drift.bend(), 0);
-  }
-}
-
-// White pages drop out and come back, references are handed on a hundred times: no gain creeps in.
+// White pages drop out and come back, references are handed on a hundred times: no gain creeps in, nor
+// with a response that bends towards white.
 TEST(ExposureEstimator, DoesNotDrift) {
-  for (const double bend : {0.0, 0.75}) {
-    Drift drift({.noise = 0.02, .outliers = 0.1, .swing = 0.5, .bend = bend, .period = 90});
+  for (const double bend : {0.0, 0.5}) {
+    Drift drift({.noise = 0.02, .outliers = 0.02, .swing = 0.5, .bend = bend, .period = 97});
     ExposureEstimator estimator;
-    for (int image = 0; image < 900; ++image) drift.show(estimator, image);
-    const double before = estimator.log_gain() - drift.true_gain(899);  // what learning the bend has cost
-    for (int image = 900; image < 3600; ++image) drift.show(estimator, image);
-    EXPECT_NEAR(estimator.log_gain() - drift.true_gain(3599), before, 0.03) << bend;
+    double worst = 0;
+    for (int image = 0; image < 3000; ++image) {
+      drift.show(estimator, image);
+      worst = std::max(worst, std::abs(estimator.log_gain() - drift.true_gain(image)));
+    }
+    EXPECT_LT(worst, bend > 0 ? 0.2 : 0.06) << bend;
   }
 }
 
 TEST(ExposureEstimator, WhiteAndBlackImagesAreKnownForWhatTheyAre) {
   for (const bool white : {true, false}) {
     ExposureEstimator estimator;
-    ResponseBend bend;
     std::vector<AtlasPage> pages(200);
     std::vector<AtlasPage*> pointers;
     for (AtlasPage& page : pages) pointers.push_back(&page);
     const auto show = [&](float brightness, std::int64_t image) {
-      estimator.update(std::vector<ExposureSample>(200, {brightness, 0}), pointers, image, bend);
+      estimator.update(std::vector<ExposureSample>(200, {brightness, 0}), pointers, image);
     };
     show(0.3f, 0);
     show(0.3f, 1);
@@ -160,7 +142,6 @@ TEST(ExposureEstimator, WhiteAndBlackImagesAreKnownForWhatTheyAre) {
 
 TEST(ExposureEstimator, KeepsTheLastGainWhereFewPagesCompare) {
   ExposureEstimator estimator;
-  ResponseBend bend;
   Drift drift({});
   drift.show(estimator, 0);
   drift.show(estimator, 20);
@@ -169,23 +150,22 @@ TEST(ExposureEstimator, KeepsTheLastGainWhereFewPagesCompare) {
   std::vector<AtlasPage> few(29);
   std::vector<AtlasPage*> pointers;
   for (AtlasPage& page : few) pointers.push_back(&page), page.exposure = {std::log(0.2f), 0, 0, 0};
-  estimator.update(std::vector<ExposureSample>(29, {0.8f, 0}), pointers, 21, bend);
+  estimator.update(std::vector<ExposureSample>(29, {0.8f, 0}), pointers, 21);
   EXPECT_EQ(estimator.log_gain(), gain);
   // What is too dark, was not seen, or is no page does not count either.
   std::vector<AtlasPage*> mixed(100, nullptr);
   for (std::size_t i = 0; i < 29; ++i) mixed[i] = pointers[i];
-  estimator.update(std::vector<ExposureSample>(100, {0.8f, 0}), mixed, 22, bend);
+  estimator.update(std::vector<ExposureSample>(100, {0.8f, 0}), mixed, 22);
   EXPECT_EQ(estimator.log_gain(), gain);
 }
 
 TEST(ExposureEstimator, RenewsReferencesAfterThirtyImages) {
   ExposureEstimator estimator;
-  ResponseBend bend;
   AtlasPage page;
   AtlasPage* pointer = &page;
   const auto show = [&](float brightness, std::int64_t image) {
     const ExposureSample sample{brightness, 0.3f};
-    estimator.update(std::span(&sample, 1), std::span(&pointer, 1), image, bend);
+    estimator.update(std::span(&sample, 1), std::span(&pointer, 1), image);
   };
   show(0.4f, 5);
   EXPECT_EQ(page.exposure.image, 5);

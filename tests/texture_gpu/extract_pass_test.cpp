@@ -9,7 +9,7 @@ namespace {
 
 using reference::Answer;
 
-constexpr std::uint64_t kMemory = 6 << 20;
+constexpr std::uint64_t kMemory = 12 << 20;
 
 /// How far the GPU's texels are from the reference.
 struct Agreement {

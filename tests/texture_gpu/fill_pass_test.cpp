@@ -12,7 +12,7 @@ class FillTest : public HeadlessTest {
  protected:
   /// `chart_extent` in metres, 0: as usual, one to four pages a chart.
   void make(double chart_extent = 0) {
-    bench_ = std::make_unique<PassBench>(small_scene(), std::vector{lens_}, TextureOptions{.memory_bytes = 6 << 20},
+    bench_ = std::make_unique<PassBench>(small_scene(), std::vector{lens_}, TextureOptions{.memory_bytes = 12 << 20},
                                          PatchOptions{.chart_extent = chart_extent});
   }
   void extract(const Pose& T_world_camera) {

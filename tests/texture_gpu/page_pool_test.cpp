@@ -30,7 +30,7 @@ TEST(AtlasLayout, APageIsCountedWithItsPyramid) {
   std::uint64_t texels = 0;
   for (int level = 0, side = atlas::kPage; level < atlas::kLevels; ++level, side /= 2)
     texels += static_cast<std::uint64_t>(side * side);
-  EXPECT_EQ(atlas::kColourBytes, 4 * texels);
+  EXPECT_EQ(atlas::kColourBytes, atlas::kTexelBytes * texels);
   EXPECT_EQ(atlas::kHeightBytes, 2u * atlas::kPage * atlas::kPage);
 }
 

@@ -28,8 +28,8 @@ std::shared_ptr<PublishedTextures> PassBench::fresh_generation() const {
   auto fresh = std::make_shared<PublishedTextures>();
   fresh->table = gl::BufferTexture(GL_R32UI, 16, "page table");
   fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
-  fresh->coarse = gl::BufferTexture(GL_R32UI, 16, "page means");
-  fresh->means = gl::BufferTexture(GL_R32UI, surface->charts.size() * 4, "chart means");
+  fresh->coarse = gl::BufferTexture(atlas::kColourFormat, 16, "page means");
+  fresh->means = gl::BufferTexture(atlas::kColourFormat, surface->charts.size() * atlas::kTexelBytes, "chart means");
   fresh->colours = store.colours;
   return fresh;
 }
@@ -81,7 +81,7 @@ void PassBench::relevel() {
 void PassBench::extract(double minify_above) {
   std::vector<Eigen::Vector4f> geometry;
   atlas.write_job_geometry(allocation.jobs, views, geometry);
-  extraction.extract({allocation.jobs, allocation.masks, geometry, 0, minify_above}, inputs, store,
+  extraction.extract({allocation.jobs, allocation.masks, geometry, minify_above}, inputs, store,
                      options.depth_tolerance, options.worse);
 }
 
@@ -93,7 +93,7 @@ void PassBench::fill() {
     if (count) dirty.push_back(static_cast<std::uint32_t>(i));
     chart_of_page.insert(chart_of_page.end(), count, static_cast<std::uint32_t>(i));
   }
-  next->coarse.reserve(chart_of_page.size() * 4);
+  next->coarse.reserve(chart_of_page.size() * atlas::kTexelBytes);
   filling(extraction, {allocation.jobs.size(), dirty, chart_of_page, {}}, store, *current, *next);
   glFinish();
   atlas.commit();

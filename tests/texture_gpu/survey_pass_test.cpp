@@ -14,7 +14,7 @@ class SurveyOfLenses : public HeadlessTest, public testing::WithParamInterface<c
   void look(const Pose& T_world_camera, double gain = 1) {
     const Lens lens = small_lens(GetParam());
     if (!bench_)
-      bench_ = std::make_unique<PassBench>(small_scene(), std::vector{lens}, TextureOptions{.memory_bytes = 6 << 20});
+      bench_ = std::make_unique<PassBench>(small_scene(), std::vector{lens}, TextureOptions{.memory_bytes = 12 << 20});
     bench_->look({posed_photograph(*bench_->scene, state_of(*bench_->scene), lens, T_world_camera, gain)});
   }
   std::unique_ptr<PassBench> bench_;

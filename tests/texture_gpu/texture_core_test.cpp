@@ -16,7 +16,7 @@ namespace {
 
 class TextureCoreTest : public HeadlessTest {
  protected:
-  void make(TextureOptions options = {.memory_bytes = 6 << 20}) {
+  void make(TextureOptions options = {.memory_bytes = 12 << 20}) {
     core_.reset();
     latest_ = std::make_unique<LatestTextures>();
     core_ = std::make_unique<TextureCore>(scene_, surface_, lens_, std::nullopt, options, driver_.is_software);
@@ -187,7 +187,8 @@ TEST_F(TextureCoreTest, IdenticalRunsGiveIdenticalTextures) {
 }
 
 TEST_F(TextureCoreTest, SmallBudgetsAreKept) {
-  for (std::uint64_t budget : {std::uint64_t{620} << 10, std::uint64_t{1} << 20, std::uint64_t{16} << 20}) {
+  constexpr std::uint64_t kTight = 1150 << 10, kSome = 1900 << 10, kPlenty = 30 << 20;
+  for (const std::uint64_t budget : {kTight, kSome, kPlenty}) {
     make({.memory_bytes = budget});
     ExtractionReport report;
     std::uint64_t most = 0;
@@ -200,10 +201,10 @@ TEST_F(TextureCoreTest, SmallBudgetsAreKept) {
     EXPECT_LE(report.bytes_reserved, budget);
     EXPECT_LE(most, report.bytes_reserved);
     EXPECT_GT(report.bytes_reserved, budget / 2);
-    if (budget < 1 << 20) {
+    if (budget == kTight) {
       EXPECT_GT(report.policy.evicted_pages + static_cast<std::uint64_t>(report.policy.steps_down), 0u);
     }
-    if (budget > 1 << 20) {
+    if (budget == kPlenty) {
       EXPECT_EQ(report.policy.steps_down, 0);
       EXPECT_EQ(report.policy.evicted_pages, 0u);
     }
@@ -228,7 +229,7 @@ TEST_F(TextureCoreTest, AnAbsurdBudgetFailsWithACure) {
 
 // A display that never gives back its textures stalls the extraction, but does not break it.
 TEST_F(TextureCoreTest, DropsAnImageWhereTheDisplayHoldsEverything) {
-  make({.memory_bytes = 1 << 20});
+  make({.memory_bytes = 1900 << 10});
   std::vector<TextureLease> held;
   bool dropped = false;
   for (int i = 0; i < 6 && !dropped; ++i) {
@@ -254,7 +255,7 @@ TEST_F(TextureCoreTest, FollowsTheGainOfTheImages) {
   int count = 0;
   const auto [mean, worst] = paint_error(kTable, count);
   EXPECT_LT(mean, 4) << "textures stay at the first image's exposure";
-  make({.memory_bytes = 6 << 20, .even_exposure = false});
+  make({.memory_bytes = 12 << 20, .even_exposure = false});
   for (int i = 0; i < 3; ++i) EXPECT_EQ(process(frame(orbit(0), 0, 1 - 0.2 * i)).log_gain, 0);
 }
 
