@@ -15,24 +15,23 @@ namespace foresight {
 
 /// The exit code, or the message of the error that main() would print.
 inline std::string run_calibrate(std::vector<std::string> arguments) {
-  CLI::App app;
   std::function<int()> action;
-  add_calibrate_command(app, action);
-  arguments.insert(arguments.begin(), "calibrate");
-  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  arguments.insert(arguments.begin(), {"foresight", "calibrate"});
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   std::string out;
   try {
-    app.parse(arguments);
-    out = std::to_string(action());
-  } catch (const CLI::ParseError& error) {
-    out = error.what();
+    const auto ended = read_command_line(static_cast<int>(words.size()), words.data(), "", "",
+                                         [&action](Command& app) { add_calibrate_command(app, action); });
+    if (!ended) out = std::to_string(action());
   } catch (const std::exception& error) {
     out = error.what();
   }
   testing::internal::GetCapturedStdout();
-  testing::internal::GetCapturedStderr();
+  const std::string told = testing::internal::GetCapturedStderr();
+  if (out.empty()) out = told;
   return out;
 }
 

@@ -58,7 +58,7 @@ TEST_F(ViewTargetTest, WindowsBeginAtTheBottomAndOurPicturesAtTheTop) {
 TEST_F(ViewTargetTest, TwoEyesFitIntoForeignTextures) {
   UploadedPicture left("left"), right("right");
   left.upload(fields());
-  right.upload(255 - fields());
+  right.upload(cv::Scalar::all(255) - fields());
   const PictureCopy copy;
   const gl::Texture layers(GL_RGBA8, 2, 2, 2, 1, "two layers");
   copy(left.texture(), TextureTarget(layers.name(), 2, 2, 0).whole());

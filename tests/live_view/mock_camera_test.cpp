@@ -149,7 +149,7 @@ TEST_F(MockCameraTest, RefusesWhatCannotBe) {
   odd = options_;
   SynthOptions size;
   size.width = 161;
-  odd.left = synth_lens(size, false);
+  odd.lenses.left = synth_lens(size, false);
   EXPECT_THROW(MockStereo(world(), shafts, odd, clock), InputError);
 }
 

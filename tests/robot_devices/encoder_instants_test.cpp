@@ -43,7 +43,7 @@ class EncoderInstants : public testing::TestWithParam<const char*> {
   }
 
   /// RMS over the image of how far points 1 m away are off.
-  double error_px(const JointTracks& joints, RobotTime time) const {
+  double error_px(const JointTracks& joints, RobotTime time) {
     const JointState state = joints.at(time);
     if (state.status == StateStatus::invalid) return 1e3;
     const auto names = live_.rig().joint_names();

@@ -238,7 +238,7 @@ TEST_F(Recording, KeepsWhatTheRegistrationSays) {
 TEST_F(Recording, TheRightImagesPoseIsOfItsOwnInstant) {
   StereoPair early = pair_at(50), late = pair_at(90);
   early.right.time = RobotTime{45'000'000};  // before the first pose of a left one
-  late.right.time = RobotTime{97'000'000};
+  late.right.time = RobotTime{94'000'000};
   write(queue_of({early, late}));
   const RunFolder run = RunFolder::open(folder_ / "run", {});
   ASSERT_EQ(run.frames().size(), 2u);

@@ -243,12 +243,5 @@ TEST_F(SynthRun, LeavesNothingWhenStopped) {
   EXPECT_THAT(left_behind(), ::testing::IsEmpty());
 }
 
-// Texts of any length come out whole.
-TEST(RunFiles, LongNamesAreWrittenWhole) {
-  const std::string name(2000, 'n');
-  const std::string yaml = camera_yaml(Lens(), name, nullptr);
-  EXPECT_NE(yaml.find("camera_name: " + name + "\n"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace foresight::sim

@@ -38,7 +38,6 @@ TEST_F(ImageInput, DropsByNameAndReason) {
   const FoundCorners found = find_in_folder(files_.path(), board_);
   EXPECT_EQ(found.corners.width, 320);
   ASSERT_EQ(found.corners.views.size(), 4u);
-  EXPECT_EQ(found.quality.size(), 4u);
   EXPECT_EQ(found.corners.views[3].name, "v3");
   ASSERT_EQ(found.dropped.size(), 2u);
   EXPECT_EQ(found.dropped[0].name, "v9.png");
