@@ -141,8 +141,8 @@ std::optional<Pose> head_of_arm(const ArmOptions& options, const HandEyeSummary&
 void print(const HandEyeSummary& s) {
   std::cout << "camera is " << to_string(s.mount) << "; views " << s.views.size() << ", corners rejected "
             << s.rejected_points << "\n"
-            << name_of_X(s.mount) << "  " << pose_text(s.X) << "\n"
-            << name_of_Y(s.mount) << "  " << pose_text(s.Y) << "\n"
+            << name_of_X(s.mount) << "  " << readable_pose(s.X) << "\n"
+            << name_of_Y(s.mount) << "  " << readable_pose(s.Y) << "\n"
             << "focal length " << readable(s.camera.lens[0], 2) << " " << readable(s.camera.lens[1], 2) << " px, board "
             << readable(100 * (s.board_scale - 1), 2) << " +/- " << readable(100 * s.board_scale_sigma, 2)
             << " % larger than stated\n"
@@ -176,7 +176,7 @@ int run(ArmOptions& options) {
   summary.notes.insert(summary.notes.begin(), in.notes.begin(), in.notes.end());
   const std::optional<Pose> T_head_base = head_of_arm(options, summary);
   print(summary);
-  if (T_head_base) std::cout << "T_head_base  " << pose_text(*T_head_base) << "\n";
+  if (T_head_base) std::cout << "T_head_base  " << readable_pose(*T_head_base) << "\n";
   print_notes(summary.notes);
   write_json(options.outputs.json, arm_numbers(summary, options.names, T_head_base));
   if (options.outputs.report) arm_report(summary, options.names).write(*options.outputs.report);

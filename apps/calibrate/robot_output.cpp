@@ -22,7 +22,7 @@ nlohmann::ordered_json json_of(const CameraModel& camera) {
   return out;
 }
 
-std::string pose_text(const Pose& pose) {
+std::string readable_pose(const Pose& pose) {
   const Eigen::Quaterniond q(pose.linear());
   std::string out;
   for (int i = 0; i < 3; ++i) out += readable(pose.translation()[i], 5) + (i < 2 ? " " : " m, turned ");
@@ -31,10 +31,10 @@ std::string pose_text(const Pose& pose) {
 }
 
 void report_model(HtmlReport& report, const PanTiltModel& model) {
-  report.table({"", ""}, {{"T_world_pan", pose_text(model.T_world_pan)},
+  report.table({"", ""}, {{"T_world_pan", readable_pose(model.T_world_pan)},
                           {"distance of the axes, mm", readable(1e3 * model.length_m, 3)},
                           {"angle of the axes, degrees", readable(model.twist_rad * 57.29577951, 4)},
-                          {"T_tilt_camera", pose_text(model.T_tilt_camera)},
+                          {"T_tilt_camera", readable_pose(model.T_tilt_camera)},
                           {"gain of pan and tilt", readable(model.gain[0], 5) + " " + readable(model.gain[1], 5)},
                           {"backlash of pan and tilt, mrad",
                            readable(1e3 * model.backlash_rad[0], 3) + " " + readable(1e3 * model.backlash_rad[1], 3)}});

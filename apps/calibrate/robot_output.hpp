@@ -17,7 +17,7 @@ nlohmann::ordered_json json_of(const Pose& pose);
 nlohmann::ordered_json json_of(const CameraModel& camera);
 
 /// "0.123 0.456 0.789 m, turned 0.1 0.2 0.3 0.9 (qx qy qz qw)"
-std::string pose_text(const Pose& pose);
+std::string readable_pose(const Pose& pose);
 
 /// Tables of the model and of standard deviations, and the notes as paragraphs.
 void report_model(HtmlReport& report, const PanTiltModel& model);

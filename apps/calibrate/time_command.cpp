@@ -102,7 +102,7 @@ int run(TimeCommandOptions& options) {
             << readable(summary.scatter_mrad, 2) << " mrad over " << summary.samples << " samples, " << summary.outliers
             << " beyond 5 times that\n";
   if (!turns)
-    std::cout << "T_hand_camera  " << pose_text(summary.X) << "\nT_base_target  " << pose_text(summary.Y) << "\n";
+    std::cout << "T_hand_camera  " << readable_pose(summary.X) << "\nT_base_target  " << readable_pose(summary.Y) << "\n";
   print_notes(summary.notes);
   write_json(options.outputs.json, numbers_of(summary, turns));
   if (options.outputs.report) report_of(summary, turns).write(*options.outputs.report);

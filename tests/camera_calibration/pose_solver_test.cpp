@@ -135,7 +135,7 @@ TEST(PoseSolver, StaysWhereDerivativesCease) {
 }
 
 TEST(PoseSolver, ASmallStepEndsIt) {
-  const Points points(far_pose(), 0.1, 5);
+  const Points points(far_pose(), 1e-3, 5);
   int with_derivatives = 0;
   const auto problem = [&](const PoseEstimate<0>& at, bool derivatives, PoseEquations<0>& sum) {
     with_derivatives += derivatives;
