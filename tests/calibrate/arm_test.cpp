@@ -163,7 +163,7 @@ TEST_F(Arm, FindsJointOffsets) {
   JointRig made = make_joint_rig(chain, offsets, random_);
   const std::size_t views = long_run() ? 25 : 16;
   made.rows.resize(views), made.rig.data.corners.views.resize(views);
-  write_cameras(CameraFormat::camera_info, {made.rig.camera, {}, Pose::Identity()}, folder_ / "camera.yaml", true);
+  write_cameras(CameraFormat::camera_info, {{made.rig.camera}}, folder_ / "camera.yaml", true);
   corners_ = folder_.write("corners.vnl", vnl(made.rig.data.corners));
   std::string joints;  // named rows may come in any order
   for (std::size_t i = made.rows.size(); i-- > 0;) {

@@ -25,7 +25,7 @@ class DisplayImages : public testing::Test {
     display_.pattern = parse_pattern(kPattern);
     // Turned so little that every picture shows the whole pattern.
     for (Pose& T : display_.T_display_camera) T.linear() = rotation_of(0.45 * rotation_vector(T.linear()));
-    write_cameras(CameraFormat::camera_info, {display_.eye, {}, Pose::Identity()}, folder_ / "eye.yaml", false);
+    write_cameras(CameraFormat::camera_info, {{display_.eye}}, folder_ / "eye.yaml", false);
     std::filesystem::create_directories(folder_ / "pictures");
   }
   std::string solve(const std::vector<std::string>& more = {}) const {

@@ -90,7 +90,7 @@ TEST(SceneCommand, PlacesAModelAndRefusesAnother) {
 TEST(DisplayCommand, WritesThePatternAndSolvesFromPoints) {
   const TempFolder folder;
   const SimulatedDisplay display;
-  write_cameras(CameraFormat::camera_info, {display.eye, {}, Pose::Identity()}, folder / "eye.yaml", false);
+  write_cameras(CameraFormat::camera_info, {{display.eye}}, folder / "eye.yaml", false);
   std::string rows;
   for (const PanelPoint& p : display.points(0.1, 3))
     rows += std::to_string(p.picture) + " " + std::to_string(p.camera_pixel.x()) + " " +

@@ -38,7 +38,7 @@ PanTiltModel head_before_board() {
 class PanTiltBoard : public testing::Test {
  protected:
   PanTiltBoard() {
-    write_cameras(CameraFormat::camera_info, {kCamera640, {}, Pose::Identity()}, folder_ / "camera.yaml", false);
+    write_cameras(CameraFormat::camera_info, {{kCamera640}}, folder_ / "camera.yaml", false);
     std::filesystem::create_directories(folder_ / "views");
   }
   // A picture, and its row; the rows come in another order than the pictures.
