@@ -2,6 +2,8 @@
 #include <epoxy/gl.h>
 #include <fmt/core.h>
 
+#include <map>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -19,16 +21,35 @@ std::string egl_error() {
   return fmt::format("EGL error 0x{:04x}", eglGetError());
 }
 
-/// A display connection shared by all contexts on it; terminated with the last.
+/// A display connection shared by all contexts on it; terminated with the last. EGL knows one connection per device in
+/// the whole process, and to terminate it ends the contexts of all who opened it: hence the count.
 class Display {
  public:
-  explicit Display(EGLDisplay display) : display_(display) {}
-  ~Display() { eglTerminate(display_); }
+  /// Null where EGL refuses; eglGetError() says why.
+  static std::shared_ptr<Display> open(EGLDisplay display) {
+    const std::scoped_lock lock(opened().mutex);
+    if (!eglInitialize(display, nullptr, nullptr)) return nullptr;
+    ++opened().times[display];
+    return std::shared_ptr<Display>(new Display(display));
+  }
+  ~Display() {
+    const std::scoped_lock lock(opened().mutex);
+    if (--opened().times[display_] == 0) eglTerminate(display_);
+  }
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
   EGLDisplay get() const { return display_; }
 
  private:
+  explicit Display(EGLDisplay display) : display_(display) {}
+  struct Opened {
+    std::mutex mutex;
+    std::map<EGLDisplay, int> times;
+  };
+  static Opened& opened() {
+    static Opened all;
+    return all;
+  }
   EGLDisplay display_;
 };
 
@@ -92,8 +113,8 @@ std::unique_ptr<Context> try_display(EGLDisplay handle, const std::string& name,
     return nullptr;
   };
   if (handle == EGL_NO_DISPLAY) return fail("no display");
-  if (!eglInitialize(handle, nullptr, nullptr)) return fail(egl_error());
-  auto display = std::make_shared<Display>(handle);
+  const auto display = Display::open(handle);
+  if (!display) return fail(egl_error());
   const EGLContext context = create_context(handle, EGL_NO_CONTEXT);
   if (context == EGL_NO_CONTEXT) return fail(found_instead(display));
   auto result = std::make_unique<EglContext>(display, context);

@@ -35,6 +35,23 @@ TEST_F(ContextTest, SharesObjectsWithASecondContextOnAnotherThread) {
   EXPECT_EQ(received, sent);
 }
 
+// Mock cameras and a view each open the device for themselves.
+TEST_F(ContextTest, EndsWithoutEndingOthersOnTheSameDevice) {
+  {
+    auto other = create_headless_context();
+    other->make_current();
+    other->release();
+  }
+  context_->make_current();
+  Buffer buffer(16, "after the other");
+  const std::array<int, 4> sent{1, 2, 3, 4};
+  buffer.write(std::span<const int>(sent));
+  std::array<int, 4> received{};
+  buffer.read(std::span<int>(received));
+  check_errors("the first context");
+  EXPECT_EQ(received, sent);
+}
+
 TEST_F(ContextTest, ErrorsNameTheCaller) {
   glEnable(0xffff);
   try {
