@@ -47,7 +47,7 @@ class Display {
     std::map<EGLDisplay, int> times;
   };
   static Opened& opened() {
-    static Opened all;
+    static Opened& all = *new Opened;  // outlives every static context
     return all;
   }
   EGLDisplay display_;

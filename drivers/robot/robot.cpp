@@ -326,6 +326,7 @@ void Robot::shut_down(Clock& clock, RobotTime due) noexcept {
   const RobotTime disabled_until = clock.now() + 1s;
   do cycle_once();
   while (!all_disabled() && clock.now() < disabled_until);
+  ending_ = false;
 }
 
 }  // namespace foresight

@@ -156,7 +156,7 @@ TEST_P(HomingFaults, TheEndOfTheProgramTakesNoTorqueFromAShaftInMotion) {
   stop.request_stop();
   ASSERT_TRUE(moves());
   live_->robot().run(live_->clock(), stop.get_token());
-  EXPECT_GT(watched, 100) << "rest is measured for some time";
+  EXPECT_GT(watched, 50) << "rest is measured over 0.1 s, of which the last of a slow motion may be a part";
   EXPECT_LT(fastest, 0.02) << "brakes closed at once by PowerCubes below 1 mrad/s, or mm/s";
   EXPECT_STREQ(to_string(live_->robot().status().phase), "disabled");
   live_->expect_at_rest("ended");
