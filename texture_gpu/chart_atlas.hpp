@@ -29,13 +29,14 @@ struct PageJob {
   std::uint32_t height_slot, table_index, covered, unused = 0;
 };
 
-/// Brightness of a page when it was last taken as a reference (exposure.hpp).
+/// What a page's brightness in new images is compared with (exposure.hpp).
 struct PageExposure {
-  float log_brightness = 0;
-  float radius2 = 0;
-  float log_gain = 0;
-  std::int64_t image = -1;  ///< -1: none yet
-  bool rough = false;       ///< of a somewhat other area of the surface: to be renewed at once
+  float log_brightness = 0;        ///< when it was last taken as a reference
+  float log_surface = 0;           ///< mean over all such images: log brightness less the image's gain
+  float radius2 = 0, radius4 = 0;  ///< means of r^2 and r^4 there, r the distance from the image's centre
+  std::int64_t image = -1;         ///< the last of them; -1: none yet
+  int count = 0;                   ///< how many, up to a limit
+  bool rough = false;              ///< of a somewhat other area of the surface: to be renewed at once
 };
 
 struct AtlasPage {

@@ -13,6 +13,8 @@ constexpr double kLargestLogGain = 6;       // a factor of 400: from a dark imag
 constexpr float kDarkest = 0.04f;           // below, noise and black level rule the ratio
 constexpr float kLeast = 0.5f / 255;        // what a value of 0 may be
 constexpr double kSurelyBrighter = 0.75;    // quantile of the least ratios, where white pages are most
+constexpr double kSameSurface = 0.2;        // a page's brightness changes by more: log of the factor
+constexpr int kMostImages = 100;            // that a reference is the mean of
 constexpr double kForgetting = 0.995;       // per image
 
 /// Where responses are closest to a power law: below, black level and toe, above, the bend to white.
@@ -41,10 +43,9 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples[i].brightness < 0 || !pages[i] || pages[i]->exposure.image < 0) continue;
     const PageExposure& ref = pages[i]->exposure;
-    const double log_t = ref.log_brightness - ref.log_gain - vignetting_log(ref.radius2);
     const bool white = samples[i].white();
     const float brightness = white ? samples[i].brightness - ExposureSample::kWhite : samples[i].brightness;
-    const double ratio = std::log(std::max(brightness, kLeast)) - vignetting_log(samples[i].radius2) - log_t;
+    const double ratio = std::log(std::max(brightness, kLeast)) - vignetting_log(samples[i].radius2) - surface_log(ref);
     (white ? at_least : brightness < kDarkest ? dark : ratios).push_back(ratio);
     if (!white && middle(brightness) && middle(std::exp(ref.log_brightness))) middle_ratios.push_back(ratio);
     if (!white && brightness >= kDarkest) used.push_back(i);
@@ -59,9 +60,8 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
     for (std::size_t k = 0; k < used.size(); ++k) {
       const ExposureSample& s = samples[used[k]];
       const PageExposure& ref = pages[used[k]]->exposure;
-      const double r = s.radius2, q = ref.radius2;
-      const double residual = std::log(s.brightness) - ref.log_brightness - (log_gain_ - ref.log_gain);
-      if (std::abs(ratios[k] - gain) < 3 * sigma) rows.emplace_back(r - q, r * r - q * q, residual);
+      const double r = s.radius2, residual = std::log(s.brightness) - ref.log_surface - log_gain_;
+      if (std::abs(ratios[k] - gain) < 3 * sigma) rows.emplace_back(r - ref.radius2, r * r - ref.radius4, residual);
     }
     learn_vignetting(rows, sigma);
   } else if (at_least.size() + dark.size() >= kFewestSamples) {
@@ -82,8 +82,27 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
     const bool better = middle(samples[i].brightness), good = middle(std::exp(ref.log_brightness));
     const bool old = ref.rough || image - ref.image >= kReferenceAge;
     if (ref.image >= 0 && !(better ? old || !good : old && !good)) continue;
-    ref = {std::log(samples[i].brightness), samples[i].radius2, static_cast<float>(log_gain_), image, false};
+    renew(ref, samples[i], image);
   }
+}
+
+/// The mean of what was seen of the page so far: replaced each time, the references of all pages would walk away
+/// together. Where the page looks otherwise than before, something else lies there now.
+void ExposureEstimator::renew(PageExposure& ref, const ExposureSample& sample, std::int64_t image) const {
+  const double r2 = sample.radius2, log_brightness = std::log(sample.brightness);
+  const double surface = log_brightness - log_gain_;
+  const bool same =
+      ref.image >= 0 && !ref.rough && std::abs(surface - vignetting_log(r2) - surface_log(ref)) < kSameSurface;
+  ref.count = same ? std::min(ref.count + 1, kMostImages) : 1;
+  const auto mean = [&](float& value, double now) {
+    value = static_cast<float>(same ? value + (now - value) / ref.count : now);
+  };
+  mean(ref.log_surface, surface);
+  mean(ref.radius2, r2);
+  mean(ref.radius4, r2 * r2);
+  ref.log_brightness = static_cast<float>(log_brightness);
+  ref.image = image;
+  ref.rough = false;
 }
 
 /// Least squares over all images, each with its own mean taken out: the mean is the gain's.

@@ -44,6 +44,12 @@ class ExposureEstimator {
  private:
   void learn_vignetting(const std::vector<Eigen::Vector3d>& rows, double sigma);
 
+  void renew(PageExposure& ref, const ExposureSample& sample, std::int64_t image) const;
+  /// Of the surface at the reference exposure, vignetting taken out.
+  double surface_log(const PageExposure& ref) const {
+    return ref.log_surface - ref.radius2 * applied_.x() - ref.radius4 * applied_.y();
+  }
+
   double log_gain_ = 0, steady_ = 0;
   bool rough_ = false;  // log_gain_ is a bound; steady_ is the last before
   Eigen::Vector2d applied_ = Eigen::Vector2d::Zero();

@@ -17,15 +17,17 @@ Eigen::Vector2i page_grid(const Eigen::Vector2i& texels) {
 }
 
 /// Pixels of three colours and alpha to 8 bits as a display shows them.
-cv::Mat shown(const cv::Mat& texels, double gain) {
+cv::Mat shown(const cv::Mat& texels, float gain) {
+  cv::Mat_<cv::Vec4f> values;
+  texels.convertTo(values, CV_32F);
+  for (cv::Vec4f& value : values) value = {gain * value[0], gain * value[1], gain * value[2], value[3]};
   cv::Mat out;
-  texels.convertTo(out, CV_32F);
-  cv::multiply(out, cv::Scalar(gain, gain, gain, 1), out, 255, CV_8U);
+  values.convertTo(out, CV_8U, 255);
   return out;
 }
 
 /// Means of pages or charts.
-std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t count, double gain) {
+std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t count, float gain) {
   cv::Mat halves(1, static_cast<int>(count), CV_16FC4);
   if (count == 0) return {};
   buffer.buffer().read(std::span(halves.ptr<std::uint64_t>(), count));

@@ -185,7 +185,7 @@ TEST_F(ChangingExposure, TheGainDoesNotDrift) {
   for (int i = 0; i < 240; ++i) {
     const double gain = 1.2 + 0.7 * std::sin(0.11 * i);
     const ExtractionReport report = process(frame(orbit(i % 7), gain));
-    if (i % 20 == 19) EXPECT_NEAR(report.log_gain, std::log(gain / 1.2), 0.02) << i;
+    if (i % 20 == 19) EXPECT_NEAR(report.log_gain, std::log(gain / 1.2), 0.05) << i;
   }
 }
 

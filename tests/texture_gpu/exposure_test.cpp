@@ -149,7 +149,9 @@ TEST(ExposureEstimator, KeepsTheLastGainWhereFewPagesCompare) {
   ASSERT_GT(gain, 0.1);
   std::vector<AtlasPage> few(29);
   std::vector<AtlasPage*> pointers;
-  for (AtlasPage& page : few) pointers.push_back(&page), page.exposure = {std::log(0.2f), 0, 0, 0};
+  for (AtlasPage& page : few)
+    pointers.push_back(&page),
+        page.exposure = {.log_brightness = std::log(0.2f), .log_surface = std::log(0.2f), .image = 0};
   estimator.update(std::vector<ExposureSample>(29, {0.8f, 0}), pointers, 21);
   EXPECT_EQ(estimator.log_gain(), gain);
   // What is too dark, was not seen, or is no page does not count either.
