@@ -79,33 +79,41 @@ double least_mobility(const ArmChain& chain, const DescentGoal& goal, const TipC
 
 DescentEnd descend(const ArmChain& chain, const DescentGoal& goal, const DescentLimits& limits,
                    const JointVector& from) noexcept {
-  TipChange change;
-  JointVector q = from;
-  Vector6 e = weighted_error(chain.tip_pose(q, change), goal);
-  DescentEnd best{q, e.norm(), 0};
-  double error = best.error, stiffness = 1, error_then = error;
-  for (int step = 1; step <= limits.steps && error > limits.tolerance; ++step) {
-    const double mu = 0.5 * stiffness * error * error + 1e-14;
-    JointVector dq = damped_step(chain, goal, change, e, mu, q, limits.lower, limits.upper);
+  TipChange change, next_change;
+  DescentEnd at{from, 0, 0};
+  Vector6 e = weighted_error(chain.tip_pose(at.q, change), goal);
+  at.error = e.norm();
+  double stiffness = 1, error_then = at.error;
+  int hardly = 0;
+  while (at.steps < limits.steps && at.error > limits.tolerance) {
+    ++at.steps;
+    const double mu = 0.5 * stiffness * at.error * at.error + 1e-14;
+    JointVector dq = damped_step(chain, goal, change, e, mu, at.q, limits.lower, limits.upper);
     const double longest = dq.cwiseAbs().maxCoeff();
     if (!(longest > 0)) break;
     if (longest > kLongestStep) dq *= kLongestStep / longest;
     // Rounding of q + (limit - q) must not leave the limit.
-    q = (q + dq).cwiseMax(limits.lower).cwiseMin(limits.upper);
-    e = weighted_error(chain.tip_pose(q, change), goal);
-    const double now = e.norm();
-    if (!(now == now)) break;
-    best.steps = step;
-    if (now < best.error) best.q = q, best.error = now;
-    stiffness = now < error ? std::max(stiffness * 0.3, 1e-3) : std::min(stiffness * 4, 1e4);
-    error = now;
-    if (step % 6 == 0) {
-      const double enough = limits.give_up_early ? 0.7 : 1 - 1e-9;
-      if (best.error > enough * error_then) break;
-      error_then = best.error;
+    const JointVector q = (at.q + dq).cwiseMax(limits.lower).cwiseMin(limits.upper);
+    const Vector6 e_next = weighted_error(chain.tip_pose(q, next_change), goal);
+    const double error = e_next.norm();
+    if (!(error < at.error)) {
+      stiffness *= 6;
+      if (stiffness > 1e8 || error != error) break;
+      continue;
+    }
+    hardly = error > (1 - 1e-10) * at.error ? hardly + 1 : 0;
+    stiffness = std::max(stiffness * 0.3, 1e-6);
+    at.q = q;
+    at.error = error;
+    e = e_next;
+    change = next_change;
+    if (hardly == 3) break;
+    if (limits.give_up_early && at.steps % 6 == 0) {
+      if (at.error > 0.7 * error_then) break;
+      error_then = at.error;
     }
   }
-  return best;
+  return at;
 }
 
 }  // namespace foresight

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <limits>
 
 namespace foresight {
 namespace {
@@ -131,7 +132,8 @@ double PathFollower::reach_part(const Pose& target, const Cycle& cycle, JointVec
   for (int round = 0; round < 9; ++round) {
     JointVector there;
     if (reach(pose_between(hand_, target, part), cycle, there)) {
-      done = part, q = there;
+      done = part;
+      q = there;
       if (failed - done < 0.1 * failed) break;
       part = failed < 1 || round > 2 ? 0.5 * (done + failed) : std::min(1.6 * part, 0.5 * (part + 1));
     } else {
@@ -184,17 +186,20 @@ void PathFollower::name_reason(const Cycle& cycle, const JointVector& before, Fo
   for (Eigen::Index i = 0; i < step.q.size(); ++i) {
     const double room = std::max(cycle.upper[i] - before[i], before[i] - cycle.lower[i]);
     const double used = std::abs(step.q[i] - before[i]) / std::max(room, 1e-300);
-    if (used > fastest) fastest = used, at_speed = static_cast<int>(i);
+    if (used > fastest) {
+      fastest = used;
+      at_speed = static_cast<int>(i);
+    }
     if (step.q[i] <= chain_.lower()[i] + 1e-9 || step.q[i] >= chain_.upper()[i] - 1e-9) at_limit = static_cast<int>(i);
   }
-  if (fastest < 0.5 && at_limit >= 0)
-    step.reason = FollowReason::joint_limit, step.joint = at_limit;
-  else if (least_mobility(chain_, cycle.goal, change) < options_.singular)
+  const bool slow = fastest < 0.5;
+  if (!(slow && at_limit >= 0) && least_mobility(chain_, cycle.goal, change) < options_.singular) {
     step.reason = FollowReason::singularity;
-  else if (at_limit >= 0 && !step.on_line)
-    step.reason = FollowReason::joint_limit, step.joint = at_limit;
-  else
-    step.reason = FollowReason::joint_speed, step.joint = at_speed;
+    return;
+  }
+  const bool limited = at_limit >= 0 && (slow || !step.on_line);
+  step.reason = limited ? FollowReason::joint_limit : FollowReason::joint_speed;
+  step.joint = limited ? at_limit : at_speed;
 }
 
 FollowStep PathFollower::finish(const Pose& target, const Cycle& cycle, const JointVector& q) noexcept {
@@ -232,7 +237,7 @@ FollowStep PathFollower::step(const Pose& target, double dt) noexcept {
     if (way_round(target, cycle, q, why)) {
       FollowStep step = finish(target, cycle, q);
       step.on_line = false;
-      step.reason = why;
+      step.reason = weighted_error(hand_, cycle.goal).norm() <= kOnLine ? FollowReason::none : why;
       return step;
     }
   }
@@ -251,7 +256,10 @@ FollowStep PathFollower::step(const Pose& target, double dt) noexcept {
   const DescentEnd end = descend(chain_, cycle.goal, limits, q_);
   FollowReason why = FollowReason::none;
   const bool nearer = end.error < cycle.error - kGain;
-  if (nearer) q = end.q;
+  if (nearer) {
+    q = end.q;
+    stuck_target_.reset();
+  }
   const bool round = !nearer && way_round(target, cycle, q, why);
   FollowStep step = finish(target, cycle, nearer || round ? q : before);
   step.on_line = false;

@@ -99,7 +99,7 @@ double SphericalArm::distance_at(double q4) const noexcept {
 }
 
 double SphericalArm::elbow_bend(double q4) const noexcept {
-  return std::asin(std::min(std::abs(std::sin(q4 - q4_longest_)), 1.0));
+  return std::abs(std::sin(q4 - q4_longest_));
 }
 
 std::optional<SphericalArm::Elbow> SphericalArm::elbow(const Pose& T, double sign) const noexcept {
@@ -141,14 +141,41 @@ JointVector SphericalArm::joints(const Elbow& e, double psi, BallSide shoulder, 
   return q;
 }
 
-namespace {
-
-// Both balls' better sides at one swivel angle.
-struct Scored {
+// Both balls' sides at one swivel angle, and their margin.
+struct SphericalArm::Scored {
   double score = -std::numeric_limits<double>::infinity();
   double psi = 0;
   BallSide shoulder = BallSide::positive, wrist = BallSide::positive;
 };
+
+SwivelAngles SphericalArm::limit_angles(const Elbow& e) const noexcept {
+  SwivelAngles angles;
+  shoulder_.add_limits(e.shoulder, angles);
+  wrist_.add_limits(e.wrist, angles);
+  angles.sort();
+  return angles;
+}
+
+// The better sides. Where the shoulder alone is no better than `enough`, the wrist is not looked at.
+SphericalArm::Scored SphericalArm::score(const Elbow& e, double psi, double enough) const noexcept {
+  const double cosine = std::cos(psi), sine = std::sin(psi);
+  const auto s = shoulder_.margins(e.shoulder, cosine, sine);
+  const std::size_t i = s[1] > s[0];
+  if (s[i] <= enough) return {};
+  const auto w = wrist_.margins(e.wrist, cosine, sine);
+  const std::size_t k = w[1] > w[0];
+  return {std::min(s[i], w[k]), psi, static_cast<BallSide>(i), static_cast<BallSide>(k)};
+}
+
+SphericalArm::Scored SphericalArm::score_on(const Elbow& e, double psi, BallSide shoulder,
+                                            BallSide wrist) const noexcept {
+  const double cosine = std::cos(psi), sine = std::sin(psi);
+  const double s = shoulder_.margins(e.shoulder, cosine, sine)[static_cast<std::size_t>(shoulder)];
+  const double w = wrist_.margins(e.wrist, cosine, sine)[static_cast<std::size_t>(wrist)];
+  return {std::min(s, w), psi, shoulder, wrist};
+}
+
+namespace {
 
 // Between neighbours of `angles`, going around; the whole circle where there is none.
 template <typename Visit>
@@ -160,19 +187,23 @@ void visit_between(const SwivelAngles& angles, const Visit& visit) {
   }
 }
 
-// The largest value of a function that rises and falls once, to a hundredth of the interval.
-template <typename Score>
+// The largest value of a function that rises and falls once, to a twentieth of the interval (golden section).
+template <typename Scored, typename Score>
 Scored climb(const Score& score, Scored best, double low, double high) {
   constexpr double kGolden = 0.6180339887498949;
   double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
   Scored at_a = score(a), at_b = score(b);
-  for (int step = 0; step < 8; ++step) {
+  for (int step = 0; step < 5; ++step) {
     if (at_a.score > at_b.score) {
-      high = b, b = a, at_b = at_a;
+      high = b;
+      b = a;
+      at_b = at_a;
       a = high - kGolden * (high - low);
       at_a = score(a);
     } else {
-      low = a, a = b, at_a = at_b;
+      low = a;
+      a = b;
+      at_a = at_b;
       b = low + kGolden * (high - low);
       at_b = score(b);
     }
@@ -182,17 +213,30 @@ Scored climb(const Score& score, Scored best, double low, double high) {
   return best;
 }
 
-constexpr std::size_t kSamples = 12;  // of the whole circle; every interval between limits gets one of its own
-const std::array<Eigen::Vector2d, kSamples> kCircle = [] {
-  std::array<Eigen::Vector2d, kSamples> circle;
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    const double psi = -kPi + 2 * kPi * static_cast<double>(i) / kSamples;
-    circle[i] = {std::cos(psi), std::sin(psi)};
-  }
-  return circle;
-}();
+constexpr std::size_t kSamples = 12;  // of a circle that limits divide less often
 
 }  // namespace
+
+// The swivel angle with the largest margin: of each interval between limits the middle, then up from the best of these.
+SphericalArm::Scored SphericalArm::best_swivel(const Elbow& e) const noexcept {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const SwivelAngles angles = limit_angles(e);
+  Scored best;
+  double width = 2 * kPi / kSamples;
+  const auto consider = [&](double psi, double room) {
+    const Scored s = score(e, psi, best.score);
+    if (s.score <= best.score) return;
+    best = s;
+    width = std::min(room, 2 * kPi / kSamples);
+  };
+  visit_between(angles, [&](double low, double high) { consider(0.5 * (low + high), 0.5 * (high - low)); });
+  if (angles.size() < kSamples)
+    for (std::size_t i = 0; i < kSamples; ++i) consider(2 * kPi * static_cast<double>(i) / kSamples, kPi);
+  if (best.score < 0)  // an interval of one angle alone, where limits touch
+    for (std::size_t i = 0; i < angles.size(); ++i) consider(angles[i], 0);
+  if (best.score < -kLimitRounding || width == 0) return best;
+  return climb([&](double psi) { return score(e, psi, -infinity); }, best, best.psi - width, best.psi + width);
+}
 
 std::optional<SphericalArm::Answer> SphericalArm::solve(const Pose& T) const noexcept {
   std::optional<Elbow> chosen;
@@ -200,40 +244,25 @@ std::optional<SphericalArm::Answer> SphericalArm::solve(const Pose& T) const noe
   double best_total = -std::numeric_limits<double>::infinity();
   for (const double sign : {1.0, -1.0}) {
     const auto e = elbow(T, sign);
-    if (!e) continue;
-    const auto score_at = [&](double psi, double cosine, double sine) {
-      const auto s = shoulder_.margins(e->shoulder, cosine, sine), w = wrist_.margins(e->wrist, cosine, sine);
-      const std::size_t i = s[1] > s[0], k = w[1] > w[0];
-      return Scored{std::min(s[i], w[k]), psi, static_cast<BallSide>(i), static_cast<BallSide>(k)};
-    };
-    const auto score = [&](double psi) { return score_at(psi, std::cos(psi), std::sin(psi)); };
-    Scored here;
-    double width = 2 * kPi / kSamples;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const Scored s = score_at(-kPi + 2 * kPi * static_cast<double>(i) / kSamples, kCircle[i].x(), kCircle[i].y());
-      if (s.score > here.score) here = s;
-    }
-    SwivelAngles angles;
-    shoulder_.add_limits(e->shoulder, angles);
-    wrist_.add_limits(e->wrist, angles);
-    angles.sort();
-    visit_between(angles, [&](double low, double high) {
-      const Scored s = score(0.5 * (low + high));
-      if (s.score > here.score) here = s, width = std::min(0.5 * (high - low), 2 * kPi / kSamples);
-    });
-    if (here.score < 0)  // an interval of one angle alone, where limits touch
-      for (std::size_t i = 0; i < angles.size(); ++i) {
-        const Scored s = score(angles[i]);
-        if (s.score > here.score) here = s, width = 0;
-      }
-    if (here.score < -kLimitRounding) continue;
-    // The score of a joint that the swivel does not move would level all others: it has a say, not the last word.
-    const auto total = [&](const Scored& s) { return std::min(s.score, e->margin) + 0.25 * s.score; };
-    if (width > 0) here = climb(score, here, here.psi - width, here.psi + width);
-    if (total(here) > best_total) best = here, best_total = total(here), chosen = e;
+    // The margin of a joint that the swivel does not move would level all others: it has a say, not the last word.
+    const auto total = [&](double score) { return std::min(score, e->margin) + 0.25 * score; };
+    if (!e || total(1.0) <= best_total) continue;  // no score exceeds 1
+    const Scored here = best_swivel(*e);
+    if (here.score < -kLimitRounding || total(here.score) <= best_total) continue;
+    best = here;
+    best_total = total(here.score);
+    chosen = e;
   }
   if (!chosen) return std::nullopt;
   return Answer{joints(*chosen, best.psi, best.shoulder, best.wrist), std::min(best.score, chosen->margin)};
+}
+
+// The swivel angle that turns R0 nearest to the last shoulder: the largest trace(R_last' rot(n, psi) R0).
+double SphericalArm::nearest_swivel(const Elbow& e, const Eigen::Matrix3d& R_last) {
+  const Eigen::Matrix3d M = e.R0 * R_last.transpose();
+  const double c = M.trace() - e.n.dot(M * e.n);
+  const double s = e.n.dot(Eigen::Vector3d(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0)));
+  return std::atan2(s, c);
 }
 
 std::optional<SphericalArm::Answer> SphericalArm::solve_near(const Pose& T, const JointVector& last,
@@ -245,48 +274,41 @@ std::optional<SphericalArm::Answer> SphericalArm::solve_near(const Pose& T, cons
   for (const double sign : {1.0, -1.0}) {
     const auto e = elbow(T, sign);
     if (!e) continue;
-    // The swivel angle that turns R0 nearest to the last shoulder: the largest trace(R_last' rot(n, psi) R0).
-    const Eigen::Matrix3d M = e->R0 * R_last.transpose();
-    const double c = M.trace() - e->n.dot(M * e->n);
-    const double s = e->n.dot(Eigen::Vector3d(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0)));
-    const double psi_last = std::atan2(s, c);
-    SwivelAngles angles;
-    shoulder_.add_limits(e->shoulder, angles);
-    wrist_.add_limits(e->wrist, angles);
-    angles.sort();
+    const SwivelAngles angles = limit_angles(*e);
+    const double wanted = nearest_swivel(*e, R_last);
     for (std::size_t branch = 0; branch < 4; ++branch) {
-      const auto i = branch % 2, k = branch / 2;
-      const auto score = [&](double psi) {
-        const double cosine = std::cos(psi), sine = std::sin(psi);
-        const double margin =
-            std::min(shoulder_.margins(e->shoulder, cosine, sine)[i], wrist_.margins(e->wrist, cosine, sine)[k]);
-        return Scored{margin, psi, static_cast<BallSide>(i), static_cast<BallSide>(k)};
-      };
+      const auto i = static_cast<BallSide>(branch % 2), k = static_cast<BallSide>(branch / 2);
       const auto consider = [&](double psi, double from, double to) {
-        const Scored at = score(psi);
-        if (at.score < -kLimitRounding) return;
-        const JointVector q = turned_towards(last, joints(*e, psi, at.shoulder, at.wrist));
-        const double far = (q - last).cwiseAbs().maxCoeff();
-        if (far < nearest) nearest = far, best = at, chosen = e, low = from, high = to;
+        const Scored at = score_on(*e, psi, i, k);
+        if (at.score < -kLimitRounding) return false;
+        const double far = (turned_towards(last, joints(*e, psi, i, k)) - last).cwiseAbs().maxCoeff();
+        if (far >= nearest) return true;
+        nearest = far;
+        best = at;
+        chosen = e;
+        low = from;
+        high = to;
+        return true;
       };
+      // In the last joints' own interval; only where that is closed, in the others, at their ends nearest to it.
+      bool inside = false;
       visit_between(angles, [&](double from, double to) {
-        if (score(0.5 * (from + to)).score < 0) return;
-        const double psi = nearest_turn(psi_last, 0.5 * (from + to));
-        consider(std::clamp(psi, from, to), from, to);
+        const double psi = nearest_turn(wanted, 0.5 * (from + to));
+        if (psi >= from && psi <= to) inside |= consider(psi, from, to);
+      });
+      if (inside) continue;
+      visit_between(angles, [&](double from, double to) {
+        if (score_on(*e, 0.5 * (from + to), i, k).score >= 0)
+          consider(std::clamp(nearest_turn(wanted, 0.5 * (from + to)), from, to), from, to);
       });
       for (std::size_t a = 0; a < angles.size() && !chosen; ++a) consider(angles[a], angles[a], angles[a]);
     }
   }
   if (!chosen) return std::nullopt;
-  if (swivel > 0 && high > low) {
-    const auto score = [&](double psi) {
-      const double cosine = std::cos(psi), sine = std::sin(psi);
-      return Scored{std::min(shoulder_.margins(chosen->shoulder, cosine, sine)[static_cast<std::size_t>(best.shoulder)],
-                             wrist_.margins(chosen->wrist, cosine, sine)[static_cast<std::size_t>(best.wrist)]),
-                    psi, best.shoulder, best.wrist};
-    };
-    best = climb(score, best, std::max(low, best.psi - swivel), std::min(high, best.psi + swivel));
-  }
+  best.psi = nearest_turn(best.psi, 0.5 * (low + high));
+  if (swivel > 0 && high > low)
+    best = climb([&](double psi) { return score_on(*chosen, psi, best.shoulder, best.wrist); }, best,
+                 std::max(low, best.psi - swivel), std::min(high, best.psi + swivel));
   return Answer{turned_towards(last, joints(*chosen, best.psi, best.shoulder, best.wrist)),
                 std::min(best.score, chosen->margin)};
 }

@@ -45,16 +45,22 @@ class SphericalArm {
   /// The pose with the tip's orientation kept whose wrist is within reach of the shoulder, nearest to T_base_tip.
   Pose pulled_within_reach(const Pose& T_base_tip) const noexcept;
 
-  /// How far joint 4 is from the angle at which |SW| is longest or shortest, rad: 0 .. pi/2.
+  /// The sine of how far joint 4 is from the angle at which |SW| is longest or shortest, >= 0.
   double elbow_bend(double q4) const noexcept;
 
  private:
   struct Elbow;
+  struct Scored;
 
   SphericalArm() = default;
   std::optional<Elbow> elbow(const Pose& T_base_tip, double sign) const noexcept;
   double distance_at(double q4) const noexcept;
   JointVector joints(const Elbow& elbow, double psi, BallSide shoulder, BallSide wrist) const noexcept;
+  SwivelAngles limit_angles(const Elbow& elbow) const noexcept;
+  Scored score(const Elbow& elbow, double psi, double enough) const noexcept;
+  Scored score_on(const Elbow& elbow, double psi, BallSide shoulder, BallSide wrist) const noexcept;
+  Scored best_swivel(const Elbow& elbow) const noexcept;
+  static double nearest_swivel(const Elbow& elbow, const Eigen::Matrix3d& R_last);
   /// q, but each joint at the turn nearest to `last` that its limits allow.
   JointVector turned_towards(const JointVector& last, JointVector q) const noexcept;
   std::array<double, 2> distances_within_limits() const noexcept;  ///< |SW|: shortest, longest

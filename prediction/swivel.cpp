@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace foresight {
@@ -16,22 +17,20 @@ double rough_acos(double x) {
   return x < 0 ? kPi - r : r;
 }
 
-// half - acos(x) and half - acos(-x)
-std::array<double, 2> distances(double half, double x) {
-  x = std::clamp(x, -1.0, 1.0);
-  const double angle = rough_acos(x);
-  std::array<double, 2> d{half - angle, half - kPi + angle};
-  if (std::abs(d[0]) < 1e-3 || std::abs(d[1]) < 1e-3) {
-    const double exact = std::acos(x);
-    d = {half - exact, half - kPi + exact};
-  }
-  return d;
+// An angle's distance from a limit to either side of a middle, where `cosine` and `sine` are those of the angle from
+// the middle, times the same factor > 0 (`scale` is one over it).
+double distance(double half, double cosine, double sine, double scale) {
+  const double d = half - rough_acos(std::clamp(scale * cosine, -1.0, 1.0));
+  return std::abs(d) < 1e-3 ? half - std::atan2(std::abs(sine), cosine) : d;
 }
 
-double distance(double half, double x) {
-  x = std::clamp(x, -1.0, 1.0);
-  const double d = half - rough_acos(x);
-  return std::abs(d) < 1e-3 ? half - std::acos(x) : d;
+// The same of the angle, and of that half a turn on.
+std::array<double, 2> distances(double half, double cosine, double sine, double scale) {
+  const double angle = rough_acos(std::clamp(scale * cosine, -1.0, 1.0));
+  std::array<double, 2> d{half - angle, half - kPi + angle};
+  if (std::abs(d[0]) < 1e-3) d[0] = half - std::atan2(std::abs(sine), cosine);
+  if (std::abs(d[1]) < 1e-3) d[1] = half - std::atan2(std::abs(sine), -cosine);
+  return d;
 }
 
 Eigen::Vector3d turned(const Eigen::Vector3d& v, const Eigen::Vector3d& axis, double angle) {
@@ -100,12 +99,15 @@ std::array<double, 2> BallJoint::margins(const BallTurn& turn, double cosine, do
   const double c3 = turn.cos_last.at(cosine, sine), s3 = turn.sin_last.at(cosine, sine);
   const double rho = std::sqrt(c1 * c1 + s1 * s1);
   const double scale = rho > 1e-300 ? 1 / rho : 0;
-  const auto first = distances(half_[0], scale * (c1 * cos_middle_[0] + s1 * sin_middle_[0]));
-  const auto last = distances(half_[2], scale * (c3 * cos_middle_[2] + s3 * sin_middle_[2]));
+  const auto first =
+      distances(half_[0], c1 * cos_middle_[0] + s1 * sin_middle_[0], s1 * cos_middle_[0] - c1 * sin_middle_[0], scale);
+  const auto last =
+      distances(half_[2], c3 * cos_middle_[2] + s3 * sin_middle_[2], s3 * cos_middle_[2] - c3 * sin_middle_[2], scale);
   std::array<double, 2> out;
   for (std::size_t side = 0; side < 2; ++side) {
     const double sign = side == 0 ? 1 : -1;
-    const double middle = distance(half_[1], x * cos_middle_[1] + sign * rho * sin_middle_[1]);
+    const double middle = distance(half_[1], x * cos_middle_[1] + sign * rho * sin_middle_[1],
+                                   sign * rho * cos_middle_[1] - x * sin_middle_[1], 1);
     out[side] = std::min(std::min(first[side], last[side]), std::min(middle, rho));
   }
   return out;

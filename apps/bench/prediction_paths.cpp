@@ -185,12 +185,13 @@ FollowFigures follow(const InverseKinematics& kinematics, const std::vector<Hand
         figures.largest_step_over_limit =
             std::max(figures.largest_step_over_limit, std::abs(step.q[at] - before[at]) / allowed);
       }
-      if (step.reason == FollowReason::none)
+      const bool moved = step.q != before;
+      if (step.reason == FollowReason::none) {
         ++figures.exact;
-      else if ((step.q - before).cwiseAbs().maxCoeff() > 0)
-        ++figures.slowed, ++figures.slowed_by[name_of(step.reason)];
-      else
-        ++figures.stopped, ++figures.stopped_by[name_of(step.reason)];
+      } else {
+        ++(moved ? figures.slowed : figures.stopped);
+        ++(moved ? figures.slowed_by : figures.stopped_by)[name_of(step.reason)];
+      }
       if (i % 10 == 0 && path.T_base_tip[i].matrix().allFinite()) {
         ++figures.asked;
         figures.reachable += kinematics.solve(path.T_base_tip[i]).status == IkStatus::solved;
