@@ -10,7 +10,6 @@ namespace {
 constexpr double kThere = 1e-12;        // weighted error at which the hand is at its target
 constexpr double kOnLine = 2e-10;       // weighted error at which a point of the line is reached
 constexpr double kSmallestPart = 1e-3;  // of the way, in one cycle: slower, the hand leaves its line instead
-constexpr double kFreedomGain = 0.02;   // of the wish, per cycle: it settles where the wish has no part left to follow
 constexpr double kGain = 1e-9;          // weighted error that a step must take away to count as one
 
 bool is_rigid(const Pose& T) {
@@ -83,18 +82,13 @@ JointVector PathFollower::freedom(const TipChange& change) const noexcept {
     const double half = 0.5 * (chain_.upper()[at] - chain_.lower()[at]);
     if (!std::isfinite(half)) continue;
     const double off = (q_[at] - chain_.middle()[at]) / half;
-    wish[at] -= 4 * off * off * off / std::max(1.1 - std::abs(off), 0.1) * 0.25;
+    wish[at] -= 4 * off * off * off / std::max(1.02 - std::abs(off), 0.02) * 0.25;
   }
   return wish;
 }
 
+// Newton's method for one pose, within what the cycle allows.
 bool PathFollower::reach(const Pose& pose, const Cycle& cycle, JointVector& q) const noexcept {
-  // What joints do for themselves must not hold the hand up.
-  return reach(pose, cycle, options_.freedom, q) || (options_.freedom > 0 && reach(pose, cycle, 0, q));
-}
-
-// Newton's method for one pose, within what the cycle allows. `share`: of FollowOptions::freedom's kind.
-bool PathFollower::reach(const Pose& pose, const Cycle& cycle, double share, JointVector& q) const noexcept {
   DescentGoal goal = cycle.goal;
   goal.T_base_tip = pose;
   TipChange change;
@@ -107,16 +101,13 @@ bool PathFollower::reach(const Pose& pose, const Cycle& cycle, double share, Joi
     if (error <= kOnLine && (round > 0 || error <= kThere)) return true;
     const double mu = 1e-3 * error * error + 1e-14;
     JointVector dq = damped_step(chain_, goal, change, e, mu, q, cycle.lower, cycle.upper);
-    if (round == 0 && redundant > 0 && share > 0) {
-      // What the hand does not feel of the wish, no faster than the motion that the hand asks for.
-      const JointVector wish = freedom(change);
-      const double endless = std::numeric_limits<double>::infinity();
-      const JointVector low = JointVector::Constant(q.size(), -endless),
-                        high = JointVector::Constant(q.size(), endless);
-      JointVector self = damped_step(chain_, goal, change, Vector6::Zero(), 1e-8, q, low, high, &wish);
-      const double wanted = self.cwiseAbs().maxCoeff(), allowed = share * dq.cwiseAbs().maxCoeff();
-      if (wanted > 0) self *= std::min(allowed / wanted, kFreedomGain);
-      dq = damped_step(chain_, goal, change, e, mu, q, cycle.lower, cycle.upper, &self);
+    if (round == 0 && redundant > 0 && options_.freedom > 0) {
+      JointVector wish = freedom(change);
+      const double wanted = wish.cwiseAbs().maxCoeff(), own = options_.freedom * dq.cwiseAbs().maxCoeff();
+      if (wanted > 0) {
+        wish *= std::min(own / wanted, 0.05);
+        dq = damped_step(chain_, goal, change, e, mu, q, cycle.lower, cycle.upper, &wish);
+      }
     }
     q = (q + dq).cwiseMax(cycle.lower).cwiseMin(cycle.upper);
   }

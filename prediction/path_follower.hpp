@@ -32,7 +32,7 @@ const char* name_of(FollowReason reason) noexcept;
 
 struct FollowOptions {
   double singular = 0.06;  ///< least mobility of the hand (m / length or rad, per rad) below which that is the reason
-  double freedom = 1;  ///< largest share of the motion that the hand asks for that joints add to get away from limits
+  double freedom = 0.5;    ///< largest share of its own motion that the arm adds to get away from limits
   double way_round = 1.2;  ///< rad: how far joints may go to leave a place where the hand is stuck
 };
 
@@ -61,7 +61,6 @@ class PathFollower {
  private:
   struct Cycle;
   bool reach(const Pose& pose, const Cycle& cycle, JointVector& q) const noexcept;
-  bool reach(const Pose& pose, const Cycle& cycle, double share, JointVector& q) const noexcept;
   double reach_part(const Pose& target, const Cycle& cycle, JointVector& q) const noexcept;
   JointVector freedom(const TipChange& change) const noexcept;
   bool way_round(const Pose& target, const Cycle& cycle, JointVector& q, FollowReason& why) noexcept;
