@@ -82,7 +82,8 @@ urdf::ModelInterfaceSharedPtr parse(const fs::path& file) {
 
 class RobotBuilder {
  public:
-  RobotBuilder(const fs::path& file, const fs::path& root) : file_(file), root_(root), model_(parse(file)) {}
+  RobotBuilder(const fs::path& file, const fs::path& root, UrdfVisuals visuals)
+      : file_(file), root_(root), visuals_(visuals), model_(parse(file)) {}
 
   UrdfRobot build() {
     robot_.name = model_->getName();
@@ -106,7 +107,7 @@ class RobotBuilder {
     std::vector<Eigen::Affine3d> T;
     const std::string where = file_.string() + ": link " + in_quotes(link.name);
     for (const auto& visual : link.visual_array) {
-      if (!visual || !visual->geometry) continue;
+      if (!visual || !visual->geometry || visuals_ == UrdfVisuals::leave_out) continue;
       Eigen::Vector3d scale(1, 1, 1);
       parts.push_back(read_geometry(*visual->geometry, where, scale));
       T.push_back(Eigen::Affine3d(to_pose(visual->origin, where).matrix()) * Eigen::Scaling(scale));
@@ -184,6 +185,7 @@ class RobotBuilder {
       const bool endless = from.type == urdf::Joint::CONTINUOUS || !from.limits;
       joint.lower = endless ? -std::numeric_limits<double>::infinity() : from.limits->lower;
       joint.upper = endless ? std::numeric_limits<double>::infinity() : from.limits->upper;
+      if (from.limits && std::isfinite(from.limits->velocity)) joint.velocity = std::max(from.limits->velocity, 0.0);
       if (!(joint.lower <= joint.upper))
         throw InputError(where, "its lower limit exceeds the upper one", "swap lower and upper");
     }
@@ -218,6 +220,7 @@ class RobotBuilder {
 
   const fs::path& file_;
   const fs::path& root_;
+  const UrdfVisuals visuals_;
   urdf::ModelInterfaceSharedPtr model_;
   UrdfRobot robot_;
   std::set<std::string> seen_;
@@ -225,8 +228,8 @@ class RobotBuilder {
 
 }  // namespace
 
-UrdfRobot read_urdf(const fs::path& file, const fs::path& root) {
-  return RobotBuilder(file, root).build();
+UrdfRobot read_urdf(const fs::path& file, const fs::path& root, UrdfVisuals visuals) {
+  return RobotBuilder(file, root, visuals).build();
 }
 
 }  // namespace foresight

@@ -24,6 +24,7 @@ struct UrdfJoint {
   Pose T_parent_joint = Pose::Identity();  ///< parent link to joint frame at position 0
   Eigen::Vector3d axis{1, 0, 0};           ///< unit vector, in the joint frame
   double lower = 0, upper = 0;             ///< rad or m; infinite for a continuous joint
+  double velocity = 0;                     ///< largest, rad/s or m/s; 0 where the file says none
   std::optional<Mimic> mimic;
 };
 
@@ -33,13 +34,17 @@ struct UrdfRobot {
   std::vector<UrdfJoint> joints;  ///< joint i moves link i + 1
 };
 
+/// Whether a robot is read to be seen, or for its joints alone: then links are empty, and missing meshes no error.
+enum class UrdfVisuals { read, leave_out };
+
 /// Reads links, joints and visual geometry: meshes (with their scale), boxes, cylinders and
 /// spheres; all visuals of a link become its one mesh. A mesh named package://NAME/... or by a
 /// relative path is looked for in the folder of the URDF and in those above it, up to `root`.
 /// Links stand at joint positions 0. Floating and planar joints count as fixed. Throws InputError
 /// naming the file and the link or joint: not a URDF, no single tree, a missing mesh, a size or
 /// axis that is no such thing.
-UrdfRobot read_urdf(const std::filesystem::path& file, const std::filesystem::path& root);
+UrdfRobot read_urdf(const std::filesystem::path& file, const std::filesystem::path& root,
+                    UrdfVisuals visuals = UrdfVisuals::read);
 
 /// Joint positions in rad or m, by name. Sets T_parent_node of all links but the root. Joints
 /// that are not named stand at 0 or their nearest limit; mimic joints follow theirs. Throws

@@ -8,6 +8,7 @@
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
 #include "apps/bench/margin.hpp"
+#include "apps/bench/prediction_bench.hpp"
 #include "apps/bench/registration_bench.hpp"
 #include "apps/bench/robot_bench.hpp"
 #include "apps/run_options.hpp"
@@ -115,6 +116,7 @@ void add_bench_command(Command& app, std::function<int()>& action) {
   add_extraction(*bench, action);
   add_figures(*bench, action);
   add_margin(*bench, action);
+  add_prediction_benches(*bench, action);
   add_robot(*bench, action);
   add_registration(*bench, action);
 }

@@ -1,0 +1,44 @@
+#include "apps/bench/prediction_bench.hpp"
+
+#include <memory>
+
+#include "apps/bench/prediction_ik.hpp"
+
+namespace foresight {
+namespace {
+
+void add_ik(Command& prediction, std::function<int()>& action) {
+  auto* command = prediction.add_subcommand("ik", "Inverse kinematics of an arm: solved, CPU time, paths followed");
+  auto options = std::make_shared<PredictionIkOptions>();
+  command->add_option("--urdf", options->urdf, "Robot; its meshes are not needed")->required();
+  command->add_option("--tip", options->tip, "Link that is to reach the poses")->required();
+  command->add_option("--base", options->base, "Link that the poses are relative to; else the root");
+  command->add_option("--poses", options->poses, "Uniform joint vectors whose poses are asked for")
+      ->check(from_to(1, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--kdl-poses", options->kdl_poses, "How many of them, the first ones, KDL gets too; 0: none")
+      ->check(from_to(0, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--paths", options->paths, "Random straight paths to follow")
+      ->check(from_to(0, 1'000'000))
+      ->capture_default_str();
+  command->add_option(
+      "--path", options->path,
+      "CSV with time_s and x y z qx qy qz qw, perhaps after prefixes: followed instead, moved and scaled "
+      "into the workspace");
+  command->add_option("--json", options->json, "File for all numbers");
+  command->footer(
+      "Example: foresight bench prediction ik --urdf configs/arm.urdf --tip arm_7 --json ik.json\n"
+      "Exit code: 1 where a joint stepped farther than its velocity allows.");
+  command->callback([options, &action] { action = [options] { return bench_prediction_ik(*options); }; });
+}
+
+}  // namespace
+
+void add_prediction_benches(Command& bench, std::function<int()>& action) {
+  auto* prediction = bench.add_subcommand("prediction", "How well the robot that will be is predicted");
+  prediction->require_subcommand();
+  add_ik(*prediction, action);
+}
+
+}  // namespace foresight

@@ -1,0 +1,85 @@
+// The joints between a robot's base and its tool, in the form that inverse kinematics works on.
+//
+// The pose of the tip is a product of exponentials (Brockett 1984; Lynch and Park, Modern Robotics, section 4.1):
+//
+//   T_base_tip(q) = exp(s_1 q_1) ... exp(s_n q_n) T_base_tip(0)
+//
+// where s_i is the line that joint i turns about (or the direction that it slides in) while all joints stand at 0.
+// Which frames a URDF puts between the joints, and which way its axes point, is then of no more importance.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/urdf_reader.hpp"
+
+namespace foresight {
+
+inline constexpr std::size_t kMostJoints = 12;
+
+/// One number per joint, in rad or m. Never allocates.
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMostJoints), 1>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+struct ArmJoint {
+  std::string name;
+  bool slides = false;
+  Eigen::Vector3d axis{0, 0, 1};   ///< unit vector, in the base frame, with all joints at 0
+  Eigen::Vector3d point{0, 0, 0};  ///< on that axis, in the base frame, with all joints at 0
+  double lower = 0, upper = 0;     ///< rad or m; infinite for a continuous joint
+  double velocity = 0;             ///< largest, rad/s or m/s, > 0
+  bool velocity_known = true;      ///< false: the URDF says none, and kAssumedVelocity stands in
+};
+
+inline constexpr double kAssumedVelocity = 1;  ///< rad/s or m/s
+
+/// Change of the tip per change of each joint: of the tip's position (m), then of its rotation vector (rad), both in
+/// the base frame.
+using TipChange = std::array<Vector6, kMostJoints>;
+
+/// Immutable; any thread. No method but the constructor allocates or throws.
+class ArmChain {
+ public:
+  /// Throws InputError at `where`: no joint or more than kMostJoints, numbers that are not finite, lower >= upper, a
+  /// velocity <= 0.
+  ArmChain(std::vector<ArmJoint> joints, const Pose& T_base_tip_at_zero, const std::string& where);
+
+  std::size_t size() const noexcept { return joints_.size(); }
+  std::span<const ArmJoint> joints() const noexcept { return joints_; }
+  const JointVector& lower() const noexcept { return lower_; }
+  const JointVector& upper() const noexcept { return upper_; }
+  const Pose& tip_at_zero() const noexcept { return T_base_tip_at_zero_; }
+  /// The middle of each joint's range; 0, or the limit nearest to it, where the range has no end.
+  const JointVector& middle() const noexcept { return middle_; }
+  /// No point of the tip is farther than this from the first axis' point, m (sliding joints: fully out).
+  double reach() const noexcept { return reach_; }
+
+  /// T_base_tip at `q`, of size() finite numbers.
+  Pose tip_pose(const JointVector& q) const noexcept;
+  /// The same, and how it changes with each joint. The first size() entries of `change` are set.
+  Pose tip_pose(const JointVector& q, TipChange& change) const noexcept;
+  bool within_limits(const JointVector& q, double tolerance = 0) const noexcept;
+
+ private:
+  std::vector<ArmJoint> joints_;
+  Pose T_base_tip_at_zero_;
+  JointVector lower_, upper_, middle_;
+  double reach_ = 0;
+};
+
+/// The joints from link `base` (empty: the root) to link `tip`. Visuals are not read: a URDF without its meshes will
+/// do. Throws InputError naming file, link or joint: what read_urdf refuses; no such link (with the nearest); a tip
+/// that is not below the base, or with no moving joint between the two, or more than kMostJoints; a joint on the way
+/// that follows another, whose limits leave it no way to move, or whose numbers are not finite.
+ArmChain read_arm_chain(const std::filesystem::path& urdf, const std::string& tip, const std::string& base = "");
+
+/// What lies between two poses of the tip, in the base frame: position, then rotation vector. exp(step) * now = then.
+Vector6 pose_difference(const Pose& now, const Pose& then) noexcept;
+
+/// The pose a share of the way from one to another: position and rotation each go straight and evenly.
+Pose pose_between(const Pose& from, const Pose& to, double share) noexcept;
+
+}  // namespace foresight

@@ -1,0 +1,144 @@
+#include "prediction/inverse_kinematics.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace foresight {
+namespace {
+
+constexpr int kStarts = 60;           // most targets within reach are found by the third
+constexpr int kStartsOutOfReach = 6;  // then the nearest pose is what is wanted, and one valley leads there as a rule
+
+bool is_rigid(const Pose& T) {
+  return T.matrix().allFinite() && (T.linear() * T.linear().transpose()).isIdentity(1e-6) &&
+         T.linear().determinant() > 0;
+}
+
+// Places spread evenly over the limits, the same ones for every target: Kronecker's sequence with the powers of the
+// generalised golden ratio of so many dimensions.
+class Starts {
+ public:
+  explicit Starts(const ArmChain& chain) : chain_(chain) {
+    double ratio = 2;
+    for (int i = 0; i < 30; ++i) ratio = std::pow(1 + ratio, 1.0 / static_cast<double>(chain.size() + 1));
+    ratio_ = ratio;
+  }
+  JointVector operator()(int index) const {
+    JointVector q(chain_.middle().size());
+    double power = 1;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      power /= ratio_;
+      const double share = 0.5 + index * power;
+      const double low = std::isfinite(chain_.lower()[i]) ? chain_.lower()[i] : chain_.middle()[i] - std::numbers::pi;
+      const double high = std::isfinite(chain_.upper()[i]) ? chain_.upper()[i] : chain_.middle()[i] + std::numbers::pi;
+      q[i] = low + (high - low) * (share - std::floor(share));
+    }
+    return q;
+  }
+
+ private:
+  const ArmChain& chain_;
+  double ratio_;
+};
+
+}  // namespace
+
+InverseKinematics::InverseKinematics(ArmChain chain)
+    : chain_(std::move(chain)),
+      spherical_(SphericalArm::recognise(chain_)),
+      length_(std::max(chain_.reach() / 3, 1e-3)) {}
+
+std::string InverseKinematics::description() const {
+  if (closed_form()) return "seven joints with spherical shoulder and wrist: closed form";
+  const std::string count = std::to_string(chain_.size()) + (chain_.size() == 1 ? " joint" : " joints");
+  if (position_only()) return count + ", fewer than six: position only, step by step";
+  return count + ": step by step";
+}
+
+DescentGoal InverseKinematics::goal(const Pose& target) const noexcept {
+  return {target, position_only(), length_};
+}
+
+IkAnswer InverseKinematics::answer(IkStatus status, const JointVector& q, const Pose& target) const noexcept {
+  IkAnswer a{status, q, chain_.tip_pose(q), 0, 0, 0};
+  const Vector6 difference = pose_difference(a.T_base_tip, target);
+  a.position_error = difference.head<3>().norm();
+  if (!position_only()) a.rotation_error = difference.tail<3>().norm();
+  if (status != IkStatus::bad_target)
+    a.status = a.position_error <= kIkExact && a.rotation_error <= kIkExact ? IkStatus::solved : IkStatus::nearest;
+  return a;
+}
+
+// The closed form is as exact as the URDF's right angles: "1.5708" is 4e-6 off. Descent does the rest, within limits.
+IkAnswer InverseKinematics::refined(const JointVector& q, const Pose& target) const noexcept {
+  const JointVector within = q.cwiseMax(chain_.lower()).cwiseMin(chain_.upper());
+  IkAnswer direct = answer(IkStatus::solved, within, target);
+  if (direct.position_error < 0.1 * kIkExact && direct.rotation_error < 0.1 * kIkExact) return direct;
+  DescentLimits limits{chain_.lower(), chain_.upper(), 20, 1e-12, false};
+  return answer(IkStatus::solved, descend(chain_, goal(target), limits, within).q, target);
+}
+
+IkAnswer InverseKinematics::search(const Pose& target, const JointVector* last) const noexcept {
+  const DescentGoal wanted = goal(target);
+  DescentLimits limits{chain_.lower(), chain_.upper(), 40, 1e-11, true};
+  const double exact = 0.5 * kIkExact * std::min(1.0, 1 / length_);
+  const Starts starts(chain_);
+  DescentEnd best;
+  best.error = std::numeric_limits<double>::infinity();
+  // Where a closed form has said that there is no answer, few valleys are looked at.
+  const int count = spherical_ ? kStartsOutOfReach : kStarts;
+  for (int start = last ? -1 : 0; start < count; ++start) {
+    const JointVector from = start < 0    ? last->cwiseMax(chain_.lower()).cwiseMin(chain_.upper()).eval()
+                             : start == 0 ? chain_.middle()
+                                          : starts(start);
+    const DescentEnd end = descend(chain_, wanted, limits, from);
+    if (end.error < best.error) best = end;
+    if (best.error <= exact) return answer(IkStatus::solved, best.q, target);
+  }
+  // The nearest pose: along the valley's floor to where nothing falls any more.
+  limits.steps = 200;
+  limits.give_up_early = false;
+  best = descend(chain_, wanted, limits, best.q);
+  return answer(IkStatus::nearest, best.q, target);
+}
+
+IkAnswer InverseKinematics::solve(const Pose& target) const noexcept {
+  if (!is_rigid(target)) return answer(IkStatus::bad_target, chain_.middle(), Pose::Identity());
+  if (!spherical_) return search(target, nullptr);
+  if (const auto direct = spherical_->solve(target)) {
+    const IkAnswer a = refined(direct->q, target);
+    if (a.status == IkStatus::solved) return a;
+  }
+  IkAnswer found = search(target, nullptr);
+  if (found.status == IkStatus::solved) return found;
+  // Often only the distance is too far: then the orientation can be kept, and the way there is in closed form.
+  const Pose pulled = spherical_->pulled_within_reach(target);
+  if (const auto direct = spherical_->solve(pulled)) {
+    const DescentLimits limits{chain_.lower(), chain_.upper(), 200, 1e-12, false};
+    const JointVector within = direct->q.cwiseMax(chain_.lower()).cwiseMin(chain_.upper());
+    const DescentEnd end = descend(chain_, goal(target), limits, within);
+    if (end.error < weighted_error(found.T_base_tip, goal(target)).norm())
+      found = answer(IkStatus::nearest, end.q, target);
+  }
+  return found;
+}
+
+IkAnswer InverseKinematics::solve(const Pose& target, const JointVector& last, double swivel) const noexcept {
+  if (last.size() != chain_.middle().size() || !last.allFinite()) return solve(target);
+  if (!is_rigid(target))
+    return answer(IkStatus::bad_target, last.cwiseMax(chain_.lower()).cwiseMin(chain_.upper()), Pose::Identity());
+  const auto with_change = [&](IkAnswer a) {
+    a.largest_change = (a.q - last).cwiseAbs().maxCoeff();
+    return a;
+  };
+  if (spherical_) {
+    if (const auto direct = spherical_->solve_near(target, last, swivel)) {
+      const IkAnswer a = refined(direct->q, target);
+      if (a.status == IkStatus::solved) return with_change(a);
+    }
+  }
+  return with_change(search(target, &last));
+}
+
+}  // namespace foresight

@@ -1,0 +1,103 @@
+#include "prediction/arm_chain.hpp"
+
+#include <map>
+
+#include "tests/prediction/sample_arms.hpp"
+#include "tests/scene/test_run.hpp"
+
+namespace foresight {
+namespace {
+
+TEST(ArmChain, ItsTipIsWhereTheFramesOfTheUrdfPutIt) {
+  const auto file = source_folder() / "configs/arm.urdf";
+  UrdfRobot robot = read_urdf(file, file.parent_path());
+  const ArmChain arm = read_arm_chain(file, "arm_7");
+  ASSERT_EQ(arm.size(), 7u);
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 100; ++i) {
+    const JointVector q = any_joints(arm, random);
+    std::map<std::string, double> positions;
+    for (std::size_t j = 0; j < 7; ++j) positions[arm.joints()[j].name] = q[static_cast<Eigen::Index>(j)];
+    pose_links(robot, positions, "test");
+    Pose T = Pose::Identity();
+    for (int link = 7; link != 0; link = robot.links[static_cast<std::size_t>(link)].parent)
+      T = robot.links[static_cast<std::size_t>(link)].T_parent_node * T;
+    ASSERT_EQ(robot.links[7].name, "arm_7");
+    EXPECT_LT(pose_difference(arm.tip_pose(q), T).norm(), 1e-14);
+  }
+}
+
+TEST(ArmChain, ItsChangeIsTheDerivativeOfItsTip) {
+  std::mt19937_64 random(2);
+  std::vector<ArmJoint> joints(3);
+  for (ArmJoint& joint : joints) {
+    joint = {"j", false, any_direction(random), any_direction(random), -1, 1, 1, true};
+    joint.slides = &joint == &joints[1];
+  }
+  const ArmChain arm(joints, Pose(Eigen::Translation3d(0.1, 0.2, 0.3)), "arm");
+  const JointVector q = any_joints(arm, random);
+  TipChange change;
+  EXPECT_EQ(arm.tip_pose(q, change).matrix(), arm.tip_pose(q).matrix());
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    constexpr double kStep = 1e-6;
+    JointVector less = q, more = q;
+    less[i] -= kStep, more[i] += kStep;
+    const Vector6 slope = pose_difference(arm.tip_pose(less), arm.tip_pose(more)) / (2 * kStep);
+    EXPECT_LT((slope - change[static_cast<std::size_t>(i)]).norm(), 1e-9) << i;
+  }
+}
+
+TEST(ArmChain, PosesBetweenGoStraightAndEvenly) {
+  Pose from = Pose::Identity(), to = Pose(Eigen::Translation3d(2, 0, -4));
+  to.linear() = Eigen::AngleAxisd(3.0, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  EXPECT_LT(pose_difference(pose_between(from, to, 1), to).norm(), 1e-14);
+  const Vector6 whole = pose_difference(from, to), part = pose_difference(from, pose_between(from, to, 0.25));
+  EXPECT_LT((part - 0.25 * whole).norm(), 1e-14);
+  EXPECT_EQ(pose_between(from, from, 0.5).matrix(), from.matrix());
+}
+
+std::string arm_urdf(const std::string& limit, const std::string& extra = "") {
+  return "<robot name='r'><link name='a'/><link name='hand'><visual><geometry><mesh filename='package://no/where.stl'/>"
+         "</geometry></visual></link><joint name='turn' type='revolute'><parent link='a'/><child link='hand'/>"
+         "<axis xyz='0 0 1'/>" +
+         limit + "</joint>" + extra + "</robot>";
+}
+
+TEST(ArmChain, AUrdfWithoutItsMeshesIsEnough) {
+  const TempFolder folder;
+  const auto file = folder.write("r.urdf", arm_urdf("<limit lower='-1' upper='2' effort='1' velocity='0.5'/>"));
+  const ArmChain arm = read_arm_chain(file, "hand");
+  EXPECT_EQ(arm.size(), 1u);
+  EXPECT_EQ(arm.joints()[0].velocity, 0.5);
+  EXPECT_TRUE(arm.joints()[0].velocity_known);
+  EXPECT_THAT(input_error([&] { read_urdf(file, folder.path()); }), testing::HasSubstr("where.stl"));
+}
+
+TEST(ArmChain, WhatIsWrongWithAUrdfIsSaid) {
+  const TempFolder folder;
+  const std::string good = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
+  const auto fault = [&](const std::string& urdf, const std::string& tip, const std::string& base = "") {
+    const auto file = folder.write("r.urdf", urdf);
+    return input_error([&] { read_arm_chain(file, tip, base); });
+  };
+  EXPECT_THAT(fault(arm_urdf("<limit lower='0' upper='0' effort='1' velocity='1'/>"), "hand"),
+              says("joint 'turn'", "no way to move", "fixed joint"));
+  EXPECT_THAT(fault(arm_urdf("<limit lower='1' upper='-1' effort='1' velocity='1'/>"), "hand"),
+              says("joint 'turn'", "exceeds", "swap"));
+  EXPECT_NE(fault(arm_urdf("<limit lower='nan' upper='1' effort='1' velocity='1'/>"), "hand"), "no error");
+  EXPECT_THAT(fault(arm_urdf(good), "hnd"), says("r.urdf", "no link 'hnd'", "did you mean 'hand'"));
+  EXPECT_THAT(fault(arm_urdf(good), "a"), says("r.urdf", "no moving joint", "choose a tip"));
+  EXPECT_THAT(fault(arm_urdf(good), "a", "hand"), says("r.urdf", "does not hang below", "name a base"));
+  const std::string second = "<joint name='again' type='fixed'><parent link='a'/><child link='hand'/></joint>";
+  EXPECT_NE(fault(arm_urdf(good, second), "hand"), "no error");
+  const std::string loop = "<joint name='back' type='fixed'><parent link='hand'/><child link='a'/></joint>";
+  EXPECT_NE(fault(arm_urdf(good, loop), "hand"), "no error");
+  EXPECT_NE(fault("", "hand"), "no error");
+  const std::string follower =
+      "<link name='finger'/><joint name='f' type='revolute'><parent link='hand'/><child link='finger'/>" + good +
+      "<mimic joint='turn'/></joint>";
+  EXPECT_THAT(fault(arm_urdf(good, follower), "finger"), says("joint 'f'", "follows another", "tip above"));
+}
+
+}  // namespace
+}  // namespace foresight
