@@ -52,7 +52,7 @@ void expect_quality(const json& quality) {
 TEST_F(Replay, WritesPicturesAndReports) {
   const SmallRun run;
   replay(run.path(), {"--delay-frames", "2"});
-  EXPECT_THAT(names_in(out_.path()), testing::ElementsAre("out", "report.html", "report.json"));
+  EXPECT_THAT(names_in(out_.path()), testing::ElementsAre("out", "report.html", "report.html.plots.json", "report.json"));
   EXPECT_THAT(names_in(out_ / "out"), testing::ElementsAre("contact_sheet.png", "predicted"));
   EXPECT_THAT(names_in(out_ / "out/predicted"),
               testing::ElementsAre("000002.png", "000003.png", "000004.png", "000005.png", "000006.png", "000007.png"));
