@@ -1,11 +1,11 @@
 #include "scene/yaml_fields.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 
 #include "common/error.hpp"
+#include "common/rotation.hpp"
 #include "common/text.hpp"
 #include "scene/files.hpp"
 #include "scene/text_table.hpp"
@@ -194,8 +194,7 @@ Pose YamlMap::pose(const std::string& key) const {
     throw InputError(where(key), "the 4x4 matrix is no rotation and translation",
                      "write an orthonormal rotation and the last row 0 0 0 1, row by row");
   // The nearest rotation; a quaternion from R itself would keep part of its rounding.
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Quaterniond q(Eigen::Matrix3d(svd.matrixU() * svd.matrixV().transpose()));
+  const Eigen::Quaterniond q(nearest_rotation(R));
   return checked_pose(matrix.topRightCorner<3, 1>(), q.normalized().coeffs(), where(key));
 }
 

@@ -1,8 +1,8 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "calibration/camera/camera_calibration.hpp"
+#include "common/rotation.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
 
@@ -35,8 +35,7 @@ Tilts tilts(const std::vector<Pose>& T_camera_board) {
     result.to_image = std::max(result.to_image, std::acos(std::clamp(normal.z(), -1.0, 1.0)));
     spread += normal.head<2>() * normal.head<2>().transpose() / static_cast<double>(T_camera_board.size());
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-  result.second_axis = std::asin(std::min(1.0, std::sqrt(std::max(0.0, axes.eigenvalues()[0]))));
+  result.second_axis = std::asin(std::min(1.0, principal_lengths(spread)[1]));
   return result;
 }
 
@@ -104,8 +103,7 @@ double lens_difference(const CameraModel& a, const CameraModel& b) {
     rays.emplace_back(*ra, *rb);
     sum += *rb * ra->transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
+  const Eigen::Matrix3d R = nearest_rotation(sum);
   std::vector<double> differences;
   for (const auto& [ra, rb] : rays) {
     const auto there = project(b, R * ra), here = project(b, rb);

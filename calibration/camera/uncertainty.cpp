@@ -1,12 +1,12 @@
 #include "calibration/camera/uncertainty.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "calibration/camera/lens_slopes.hpp"
+#include "common/rotation.hpp"
 #include "common/statistics.hpp"
 
 namespace foresight {
@@ -111,8 +111,7 @@ double RigUncertainty::at(int camera, const Eigen::Vector2d& pixel, std::optiona
   if (!ray) return kNone;
   const Eigen::Vector3d p_camera = *ray * distance_m.value_or(1);
   const Eigen::Matrix2d covariance = impl_->covariance_of(impl_->moves_of(camera, p_camera, !distance_m));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+  return principal_lengths(covariance)[0];
 }
 
 UncertaintyMap RigUncertainty::map(int camera, std::optional<double> distance_m, int cols, int rows) const {
@@ -156,7 +155,7 @@ double RigUncertainty::rotation_sigma_rad() const {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, impl_->scale.size());
   rows.middleCols(impl_->info.motion_at, 3) = 2 * Eigen::Matrix3d::Identity();
   const Eigen::MatrixXd covariance = impl_->covariance_of(rows);
-  return std::sqrt(std::max(0.0, covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff()));
+  return principal_lengths(Eigen::Matrix3d(covariance))[0];
 }
 
 Eigen::Vector2d RigUncertainty::warp_sigma_m() const {

@@ -5,7 +5,7 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "calibration/camera/lens_slopes.hpp"
@@ -13,6 +13,7 @@
 #include "calibration/camera/rigid_motion.hpp"
 #include "common/error.hpp"
 #include "common/lens.hpp"
+#include "common/rotation.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
 
@@ -127,18 +128,21 @@ Eigen::Matrix<double, 2, 3> affine_of(const std::vector<Ray>& rays, int picture)
   if (of_picture.size() < kFewest)
     throw InputError(name, "shows " + std::to_string(of_picture.size()) + " points of the panel",
                      "take a picture that shows at least " + std::to_string(kFewest));
-  Eigen::MatrixX3d rows(of_picture.size(), 3);
-  Eigen::MatrixX2d panel(of_picture.size(), 2);
-  for (std::size_t i = 0; i < of_picture.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const Eigen::Vector3d& d = of_picture[i].direction;
-    rows.row(row) << d.x() / d.z(), d.y() / d.z(), 1;
-    panel.row(row) = of_picture[i].panel;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  for (const Ray& ray : of_picture) centre += ray.panel / static_cast<double>(of_picture.size());
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 2, 3> moment = Eigen::Matrix<double, 2, 3>::Zero();
+  for (const Ray& ray : of_picture) {
+    const Eigen::Vector3d on_plane = ray.direction / ray.direction.z();
+    const Eigen::Vector2d off = ray.panel - centre;
+    scatter += off * off.transpose();
+    normal += on_plane * on_plane.transpose();
+    moment += ray.panel * on_plane.transpose();
   }
-  const Eigen::MatrixX2d spread = panel.rowwise() - panel.colwise().mean();
-  const Eigen::Vector2d extents = Eigen::JacobiSVD<Eigen::MatrixX2d>(spread).singularValues();
+  const Eigen::Vector2d extents = principal_lengths(scatter);
   if (extents[1] < kFlat * extents[0]) throw InputError(name, "its points lie on a line", "show a grid of points");
-  const Eigen::Matrix<double, 2, 3> A = rows.colPivHouseholderQr().solve(panel).transpose();
+  const Eigen::Matrix<double, 2, 3> A = moment * normal.inverse();
   if (A.leftCols<2>().determinant() <= 0)
     throw InputError(name, "shows the panel mirrored", "mirror the pattern's columns, or the picture where optics do");
   return A;
@@ -152,9 +156,7 @@ Eigen::Quaterniond turn_of(const std::vector<Ray>& rays, int picture, const Lens
     const Eigen::Vector3d d((ray.panel.x() - lens[2]) / lens[0], (ray.panel.y() - lens[3]) / lens[1], 1);
     sum += d.normalized() * ray.direction.transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-  return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose()));
+  return Eigen::Quaterniond(nearest_rotation(sum));
 }
 
 Unknowns start_of(const std::vector<Ray>& rays, int pictures, const DisplayLensOptions& options) {

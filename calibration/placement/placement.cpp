@@ -6,7 +6,6 @@
 #include <ceres/problem.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <random>
@@ -14,6 +13,7 @@
 #include "calibration/camera/minimise.hpp"
 #include "calibration/camera/rigid_motion.hpp"
 #include "common/error.hpp"
+#include "common/rotation.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
 
@@ -47,10 +47,11 @@ std::string millimetres(double metres) {
 
 // Largest two extents of the points about their centre, largest first.
 Eigen::Vector2d extents(const std::vector<PointPair>& points, Eigen::Vector3d PointPair::*side) {
-  Eigen::Matrix3Xd m(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) m.col(static_cast<Eigen::Index>(i)) = points[i].*side;
-  m.colwise() -= m.rowwise().mean().eval();
-  return Eigen::JacobiSVD<Eigen::Matrix3Xd>(m).singularValues().head<2>();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const PointPair& p : points) centre += p.*side / static_cast<double>(points.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const PointPair& p : points) scatter += (p.*side - centre) * (p.*side - centre).transpose();
+  return principal_lengths(scatter).head<2>();
 }
 
 void require_shape(const std::vector<PointPair>& points, const PlacementOptions& options) {
@@ -93,15 +94,17 @@ void require_scale(double scale, const std::vector<PointPair>& points, const Pla
                    "give the model the size of the real thing; it is never scaled here");
 }
 
-Pose umeyama(const std::vector<PointPair>& points, std::span<const std::size_t> chosen) {
-  const auto count = static_cast<Eigen::Index>(chosen.size());
-  Eigen::Matrix3Xd model(3, count), world(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    model.col(i) = points[chosen[static_cast<std::size_t>(i)]].p_model;
-    world.col(i) = points[chosen[static_cast<std::size_t>(i)]].p_world;
+Pose aligned(const std::vector<PointPair>& points, std::span<const std::size_t> chosen) {
+  Eigen::Vector3d model = Eigen::Vector3d::Zero(), world = Eigen::Vector3d::Zero();
+  for (const std::size_t i : chosen) {
+    model += points[i].p_model / static_cast<double>(chosen.size());
+    world += points[i].p_world / static_cast<double>(chosen.size());
   }
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const std::size_t i : chosen) sum += (points[i].p_world - world) * (points[i].p_model - model).transpose();
   Pose T = Pose::Identity();
-  T.matrix() = Eigen::umeyama(model, world, false);
+  T.linear() = nearest_rotation(sum);
+  T.translation() = world - T.linear() * model;
   return T;
 }
 
@@ -128,10 +131,10 @@ Pose consensus(const std::vector<PointPair>& points, const PlacementOptions& opt
   }
   std::vector<std::size_t> all(n);
   for (std::size_t i = 0; i < n; ++i) all[i] = i;
-  Pose best = umeyama(points, all);
+  Pose best = aligned(points, all);
   double least = cost_of(best, points, options);
   for (const auto& triple : triples) {
-    const Pose T = umeyama(points, triple);
+    const Pose T = aligned(points, triple);
     if (const double cost = cost_of(T, points, options); cost < least) least = cost, best = T;
   }
   return best;

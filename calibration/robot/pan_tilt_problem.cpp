@@ -5,13 +5,13 @@
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
 #include "calibration/camera/minimise.hpp"
 #include "calibration/robot/arrow_system.hpp"
 #include "common/error.hpp"
+#include "common/rotation.hpp"
 
 namespace foresight {
 namespace {
@@ -103,7 +103,7 @@ double off_the_line(const std::vector<PanTiltAngles>& angles) {
     const Eigen::Vector2d d = Eigen::Vector2d(a.pan, a.tilt) - mean;
     spread += d * d.transpose() / static_cast<double>(angles.size());
   }
-  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()[0]));
+  return principal_lengths(spread)[1];
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 #include "calibration/robot/rigid_math.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
+
+#include "common/rotation.hpp"
 
 namespace foresight {
 
@@ -31,11 +32,8 @@ Pose typical_pose(std::span<const Pose> poses) {
     sum += pose.linear();
     for (int i = 0; i < 3; ++i) t[static_cast<std::size_t>(i)].push_back(pose.translation()[i]);
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
   Pose out = Pose::Identity();
-  out.linear() = svd.matrixU() * flip * svd.matrixV().transpose();
+  out.linear() = nearest_rotation(sum);
   out.translation() = Eigen::Vector3d(median(t[0]), median(t[1]), median(t[2]));
   return out;
 }

@@ -1,12 +1,12 @@
 #include "calibration/robot/robot_poses.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <map>
 
 #include "calibration/robot/rigid_math.hpp"
 #include "common/error.hpp"
+#include "common/rotation.hpp"
 #include "common/text.hpp"
 #include "scene/text_table.hpp"
 #include "scene/yaml_fields.hpp"
@@ -36,9 +36,8 @@ Pose matrix_pose(const std::vector<double>& m, const std::string& where) {
                          (R.determinant() < 0 ? std::string("it mirrors") : "R R^T is off by " + readable(off, 3)) +
                          ")",
                      "write an orthonormal rotation with determinant 1");
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Pose pose = Pose::Identity();
-  pose.linear() = svd.matrixU() * svd.matrixV().transpose();
+  pose.linear() = nearest_rotation(R);
   pose.translation() = M.topRightCorner<3, 1>();
   return pose;
 }

@@ -1,10 +1,10 @@
 #include "calibration/robot/stream_alignment.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 
 #include "calibration/robot/hand_eye_start.hpp"
 #include "common/error.hpp"
+#include "common/rotation.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
 
@@ -104,10 +104,7 @@ Eigen::Matrix3d wahba(const std::vector<AlignedPose>& poses) {
     std::vector<double> off;
     for (std::size_t k = 0; k < hand.size(); ++k)
       if (round == 0 || (hand[k] - R * camera[k]).norm() < limit) sum += hand[k] * camera[k].transpose();
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
-    flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-    R = svd.matrixU() * flip * svd.matrixV().transpose();
+    R = nearest_rotation(sum);
     for (std::size_t k = 0; k < hand.size(); ++k) off.push_back((hand[k] - R * camera[k]).norm());
     limit = 4 * median(off);
   }
