@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/statistics.hpp"
+
 namespace foresight {
 namespace {
 
@@ -20,16 +22,6 @@ constexpr double kForgetting = 0.995;       // per image
 /// Where responses are closest to a power law: below, black level and toe, above, the bend to white.
 bool middle(double brightness) {
   return brightness >= 0.1 && brightness <= 0.75;
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
-double median(std::vector<double> values) {
-  return quantile(std::move(values), 0.5);
 }
 
 }  // namespace
