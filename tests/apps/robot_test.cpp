@@ -103,27 +103,28 @@ TEST_P(Robot, RecordsWhatItsMockCamerasSee) {
   EXPECT_EQ(replay.exit_code, 0) << replay.err;
 }
 
-/// Nothing but a machine that is too busy may stop this: threads that came too late, and only where that was counted or
-/// told by what waited for them.
-bool came_too_late(const Outcome& out) {
-  return testing::Matches(testing::ContainsRegex("[1-9][0-9]* overruns"))(out.out) ||
-         testing::Matches(testing::ContainsRegex(
-             "stopped: (no command in time|no position from the drive in time|the drive does not answer|"
-             "the drive reports a fault: (halted without our asking|does not answer|life guarding|RPDO timeout))"))(
-             out.err);
-}
-
+// What is judged is counted: a busy machine only makes it take longer. The drives stay without power, as a machine that
+// is late may rightly be stopped by the gate; how they move is judged in stepped time, above.
 TEST_P(Robot, RunsItsCamerasInRealTime) {
-  const Outcome out = run_program({"robot", with_small_cameras(GetParam(), folder_), "--home", "--follow", motion()});
-  EXPECT_THAT(out.out, testing::ContainsRegex("cameras: [0-9]+ pairs/s")) << "in the summary";
-  if (out.exit_code != 0) {
-    EXPECT_EQ(out.exit_code, 1);
-    ASSERT_TRUE(came_too_late(out)) << out.err << out.out;
-    GTEST_SKIP() << "this machine is too busy for real time: " << out.last_line();
-  }
-  EXPECT_THAT(out.err, HasSubstr("follow: done"));
-  EXPECT_THAT(out.out, testing::ContainsRegex("  [0-9]+ pairs, 0 dropped"));
-  EXPECT_THAT(out.out, Not(HasSubstr("  0 pairs, 0 dropped"))) << out.out;
+  const auto run = folder_ / "run";
+  Program program({"robot", with_small_cameras(GetParam(), folder_), "--record", run.string()});
+  const auto recorded = [&] {  // written under another name until the run is complete
+    std::size_t images = 0;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path(), none))
+      images += entry.path().extension() == ".png";
+    return images;
+  };
+  while (program.running() && recorded() < 8) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(program.running()) << program.wait().err;
+  kill(program.pid(), SIGTERM);
+  const Outcome out = program.wait();
+  EXPECT_EQ(out.exit_code, 0) << out.err << out.out;
+  EXPECT_THAT(out.out, testing::ContainsRegex("cameras: [0-9]+ pairs/s"));
+  EXPECT_THAT(out.out, HasSubstr(": disabled"));
+  EXPECT_THAT(out.err, testing::ContainsRegex("[0-9]+ pairs"));
+  EXPECT_GE(recorded(), 8u);
+  EXPECT_TRUE(std::filesystem::exists(run / "camera.yaml")) << "the recording was completed";
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, Robot, testing::Values("minerva.yaml", "cia402.yaml"),
