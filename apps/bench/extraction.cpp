@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "apps/bench/extraction_tables.hpp"
 #include "apps/output_files.hpp"

@@ -1,7 +1,7 @@
 // The measurements behind tables 7.1 to 7.4 of the thesis, repeated with both pipelines.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "apps/bench/bench_pipelines.hpp"
 #include "scene/run_folder.hpp"

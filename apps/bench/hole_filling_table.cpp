@@ -1,6 +1,7 @@
 // Table 7.3: ways to fill holes, by how much there is to fill.
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "apps/bench/extraction_tables.hpp"
 
