@@ -7,7 +7,6 @@
 #include <netlink/msg.h>
 #include <netlink/netlink.h>
 #include <netlink/route/link.h>
-#include <netlink/route/link/can.h>
 #include <netlink/route/rtnl.h>
 #include <netlink/socket.h>
 #include <sys/socket.h>
@@ -109,11 +108,7 @@ std::optional<CanInterface> find_can_interface(const std::string& name) {
 
 CanRestart::CanRestart(int index)
     : socket_(open_route_socket("a socket to restart a CAN controller")),
-      restart_(change_request(index,
-                              [](rtnl_link* link) {
-                                rtnl_link_set_type(link, "can");
-                                rtnl_link_can_restart(link);
-                              })),
+      restart_(restart_message(index)),
       down_(change_request(index, [](rtnl_link* link) { rtnl_link_unset_flags(link, IFF_UP); })),
       up_(change_request(index, [](rtnl_link* link) { rtnl_link_set_flags(link, IFF_UP); })) {}
 

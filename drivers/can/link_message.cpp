@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 namespace foresight {
 namespace {
@@ -116,6 +117,21 @@ std::optional<CanInterface> read_can_interface(const nlmsghdr& message) {
   }
   if (!out.up) out.state = CanBusState::down;
   return out;
+}
+
+NetlinkMessage restart_message(int index) {
+  NetlinkMessage message(nlmsg_alloc_simple(RTM_NEWLINK, NLM_F_REQUEST | NLM_F_ACK));
+  nl_msg* const m = message.get();
+  ifinfomsg link{};
+  link.ifi_index = index;
+  nlattr *info = nullptr, *data = nullptr;
+  const bool written =
+      m != nullptr && nlmsg_append(m, &link, sizeof link, NLMSG_ALIGNTO) == 0 &&
+      (info = nla_nest_start(m, IFLA_LINKINFO)) != nullptr && nla_put_string(m, IFLA_INFO_KIND, "can") == 0 &&
+      (data = nla_nest_start(m, IFLA_INFO_DATA)) != nullptr && nla_put_u32(m, IFLA_CAN_RESTART, 1) == 0 &&
+      nla_nest_end(m, data) == 0 && nla_nest_end(m, info) == 0;
+  if (!written) throw std::bad_alloc();
+  return message;
 }
 
 }  // namespace foresight

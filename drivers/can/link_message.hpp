@@ -1,4 +1,4 @@
-// Reading the kernel's messages on network links (rtnetlink), as far as CAN is concerned.
+// The kernel's messages on network links (rtnetlink), as far as CAN is concerned.
 #pragma once
 
 #include <linux/netlink.h>
@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "drivers/can/can_interfaces.hpp"
+#include "drivers/can/netlink.hpp"
 
 namespace foresight {
 
@@ -23,5 +24,10 @@ struct LinkState {
 std::optional<LinkState> read_link_state(const nlmsghdr& message) noexcept;
 /// All of an RTM_NEWLINK message.
 std::optional<CanInterface> read_can_interface(const nlmsghdr& message);
+
+/// Asks the driver of link `index` to leave bus-off: RTM_NEWLINK with IFLA_CAN_RESTART, as ip-link sends it. Written
+/// here, as libnl 3.7's rtnl_link_can_restart() leaves the attribute out, and the kernel then says yes and does
+/// nothing.
+NetlinkMessage restart_message(int index);
 
 }  // namespace foresight

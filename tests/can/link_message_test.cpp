@@ -8,6 +8,8 @@
 #include <linux/if.h>
 #include <linux/if_arp.h>
 #include <linux/rtnetlink.h>
+#include <netlink/attr.h>
+#include <netlink/msg.h>
 
 #include <cerrno>
 #include <cstring>
@@ -174,6 +176,25 @@ TEST(LinkMessage, DamagedBytesStayWithinTheMessage) {
     if (const auto link = read_can_interface(header)) read += link->name.size() <= bytes.size();
   }
   EXPECT_GT(read, 1000);
+}
+
+// A request without the attribute is answered as if it had been followed.
+TEST(CanRestart, NamesWhatTheDriverShallDo) {
+  const NetlinkMessage message = restart_message(7);
+  nlmsghdr* const header = nlmsg_hdr(message.get());
+  EXPECT_EQ(header->nlmsg_type, RTM_NEWLINK);
+  EXPECT_EQ(static_cast<const ifinfomsg*>(nlmsg_data(header))->ifi_index, 7);
+  nlattr* const info = nlmsg_find_attr(header, sizeof(ifinfomsg), IFLA_LINKINFO);
+  ASSERT_NE(info, nullptr);
+  const auto inside = [](nlattr* outer, int type) {
+    return nla_find(static_cast<nlattr*>(nla_data(outer)), nla_len(outer), type);
+  };
+  ASSERT_NE(inside(info, IFLA_INFO_KIND), nullptr);
+  EXPECT_STREQ(nla_get_string(inside(info, IFLA_INFO_KIND)), "can");
+  nlattr* const data = inside(info, IFLA_INFO_DATA);
+  ASSERT_NE(data, nullptr);
+  ASSERT_NE(inside(data, IFLA_CAN_RESTART), nullptr);
+  EXPECT_EQ(nla_get_u32(inside(data, IFLA_CAN_RESTART)), 1u);
 }
 
 // No such interface, or no right: either way the kernel answers, and nothing is allocated while it does.
