@@ -43,7 +43,7 @@ struct CanLogEntry {
 /// Reads a log line by line. Takes files without times, with comments (`#`), empty lines and any line ends.
 class CandumpReader {
  public:
-  /// Throws InputError where the file cannot be opened.
+  /// Throws InputError like open_input().
   explicit CandumpReader(const std::filesystem::path& file);
   /// The next frame; nothing at the end. Throws InputError naming file and line.
   std::optional<CanLogEntry> next();
@@ -68,7 +68,7 @@ std::size_t write_log_line(Duration time, std::string_view interface, const CanF
 /// Writes a log. One thread.
 class CandumpWriter {
  public:
-  /// Throws RuntimeFailure where the file cannot be made.
+  /// Makes folders that are missing. Throws RuntimeFailure where the file cannot be made.
   explicit CandumpWriter(const std::filesystem::path& file);
   /// Throws RuntimeFailure where the disk is full or the like.
   void write(Duration time, std::string_view interface, const CanFrame& frame, std::optional<bool> sent = {});

@@ -1,0 +1,76 @@
+#include "apps/command_line/writable.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/partial_path.hpp"
+#include "common/unique_fd.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Folders that exist only as long as this does, unless they were there before.
+class TrialFolder {
+ public:
+  explicit TrialFolder(const fs::path& folder) {
+    std::error_code ignored;
+    for (fs::path at = folder; at.has_relative_path() && !fs::exists(at, ignored); at = at.parent_path())
+      made_.push_back(at);
+    fs::create_directories(folder, error_);
+    if (!error_ && !fs::is_directory(folder, ignored)) error_ = std::make_error_code(std::errc::not_a_directory);
+  }
+  ~TrialFolder() {
+    for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // the innermost first; only empty ones go
+  }
+  TrialFolder(const TrialFolder&) = delete;
+  TrialFolder& operator=(const TrialFolder&) = delete;
+
+  std::error_code error() const { return error_; }
+
+ private:
+  std::vector<fs::path> made_;
+  std::error_code error_;
+};
+
+std::error_code try_file(const fs::path& file) {
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) return {errno, std::generic_category()};
+  ::close(fd);
+  ::unlink(file.c_str());
+  return {};
+}
+
+/// A pipe or a device: opened as it will be, but without waiting.
+void require_open(const std::string& where, const fs::path& file) {
+  const UniqueFd fd(::open(file.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (fd) return;
+  if (errno == ENXIO) throw InputError(where, "is a pipe that nobody reads", "start its reader first");
+  throw InputError(where, "cannot be written to (" + std::generic_category().message(errno) + ")",
+                   "give another place, or change its rights");
+}
+
+}  // namespace
+
+void require_writable(const std::string& where, const fs::path& path, bool inside) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return require_open(where, path);
+  fs::path whole = fs::absolute(path).lexically_normal();
+  if (!whole.has_filename()) whole = whole.parent_path();
+  const fs::path folder = inside && fs::is_directory(status) ? whole : whole.parent_path();
+  const TrialFolder trial(folder);
+  std::error_code error = trial.error();
+  if (!error) error = try_file(partial_path(folder / whole.filename()));
+  if (error)
+    throw InputError(where, folder.string() + " cannot be written to (" + error.message() + ")",
+                     "give another place, or change its rights");
+}
+
+}  // namespace foresight
