@@ -184,6 +184,7 @@ void add_record_command(Command& app, std::function<int()>& action) {
   command->add_option("--camera-right", a->camera_right, "Of the right one, with T_left_right")->reads();
   command->add_option("--scene", a->scene, "Scene or mesh, stored with the run")->reads();
   command->add_option("--pose", a->pose, "Where the left camera stands, fixed: x y z qx qy qz qw, camera to world")
+      ->check(from_to(-1e6, 1e6))
       ->expected(7);
   command->add_option("--format", a->format, "Pixel format of the devices")->capture_default_str();
   command->add_option("--rate", a->rate, "Images per second")->check(from_to(0.1, 1000))->capture_default_str();
