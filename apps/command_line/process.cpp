@@ -95,7 +95,7 @@ int exit_code_of(const std::function<int()>& work) noexcept {
     code = tell_failure();
   }
   const int error = flush_stdout();
-  if (error == 0 || code != 0) return code;
+  if (error == 0 || code == 2 || code == kStopped) return code;  // these have told of something worse
   return tell((std::string("stdout: not all could be written (") + std::strerror(error) + "); " +
                (error == ENOSPC || error == EFBIG ? cure_of_write_error(error) : "give it a reader or a file"))
                   .c_str(),

@@ -1,6 +1,8 @@
-// All subcommands and their options, as the program's own help tells them.
+// All subcommands and their options, as the program's own help tells them; and command lines read as the program reads
+// them, without starting it: its start costs more than all that is checked here.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +19,10 @@ struct HelpedCommand {
   std::string name() const;
 };
 
-/// Every command that has no subcommands. Starts the program once for each of them and of those above.
+/// Every command that has no subcommands.
 const std::vector<HelpedCommand>& all_commands();
+
+/// What the program says of a command line before any work; "" where it would begin.
+std::string refusal_of(const std::vector<std::string>& words);
 
 }  // namespace foresight

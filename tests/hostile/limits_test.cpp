@@ -35,8 +35,6 @@ class Limits : public testing::Test {
   const std::map<std::string, std::string> before_ = victim_.snapshot();
 };
 
-const CommandWords kIk{{"--urdf", {"@arm.urdf"}}};
-
 TEST_F(Limits, WhatStdoutDoesNotTakeIsTold) {
   const std::vector<std::pair<std::string, CommandWords>> talkers = {
       {"can explain", {}},      {"can scan", {}},        {"doctor", {}},
@@ -51,9 +49,9 @@ TEST_F(Limits, WhatStdoutDoesNotTakeIsTold) {
 }
 
 TEST_F(Limits, AReaderThatHasGoneIsAnErrorAndNoSignal) {
-  const Outcome outcome = run("can explain", {},
-                              "mkfifo new.pipe && { exec 3<>new.pipe; exec 4>new.pipe; exec 3<&-; "
-                              "exec >&4; }; rm -f new.pipe");
+  const std::string pipe = victim_ / "fifo";
+  const Outcome outcome =
+      run("can explain", {}, "exec 3<>" + pipe + " && exec 4>" + pipe + " && exec 3<&- && exec >&4");
   expect_failure(outcome, "stdout: not all could be written (Broken pipe)");
 }
 
