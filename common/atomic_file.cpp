@@ -50,7 +50,6 @@ class WrittenFile {
       return;
     }
     target_ = fs::exists(status) ? fs::canonical(path_) : path_;
-    if (target_.has_parent_path()) fs::create_directories(target_.parent_path(), ignored);
     fs::path temporary = partial_path(target_);
     const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (fd < 0) fail(path_, errno);

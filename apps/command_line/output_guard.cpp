@@ -6,7 +6,6 @@
 #include <set>
 
 #include "apps/command_line/inputs.hpp"
-#include "apps/command_line/writable.hpp"
 #include "common/error.hpp"
 #include "common/partial_path.hpp"
 #include "common/plot_data.hpp"
@@ -127,7 +126,8 @@ OutputGuard::OutputGuard(const std::vector<GivenPath>& given) {
     for (const Place& place : places) require_not_an_input(place, inputs);
     for (const Place& place : places) require_ours(place);
   }
-  for (const Place& place : places) require_writable(place.where, place.output.path, place.output.kind == Kind::folder);
+  for (const Place& place : places)
+    require_writable(place.where, place.output.path, place.output.kind == Kind::folder, folders_);
   for (const Place& place : places) {
     if (place.is_there() && !place.is_folder() && !fs::is_regular_file(place.status)) continue;
     locks_.emplace_back(place.where, place.canonical);

@@ -18,17 +18,10 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestName = 200;  // of a file, which may have 255 with what is put around it
 
-/// In the nearest folder above `target` that exists: ".a%b.lock" for a/b where there is no a.
 fs::path lock_file_of(const fs::path& target) {
-  std::error_code ignored;
   std::string name = target.filename().string();
-  fs::path folder = target.parent_path();
-  while (!fs::exists(folder, ignored) && folder.has_relative_path()) {
-    name = folder.filename().string() + "%" + name;
-    folder = folder.parent_path();
-  }
   if (name.size() > kLongestName) name = std::to_string(std::hash<std::string>{}(name));
-  return folder / ("." + name + ".lock");
+  return target.parent_path() / ("." + name + ".lock");
 }
 
 bool is_still(const std::string& file, int fd) {

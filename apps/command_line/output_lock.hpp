@@ -12,7 +12,7 @@ namespace foresight {
 /// it, which ends with the process in whatever way; the file goes with the object. One thread.
 class OutputLock {
  public:
-  /// `target`: canonical; its folder may be missing. Throws InputError at `where` where another program holds it. A
+  /// `target`: canonical. Throws InputError at `where` where another program holds it. A
   /// file system that knows no locks gives none.
   OutputLock(const std::string& where, const std::filesystem::path& target);
   ~OutputLock();

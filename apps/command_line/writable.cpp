@@ -4,8 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
-#include <vector>
 
 #include "common/error.hpp"
 #include "common/partial_path.hpp"
@@ -15,29 +13,6 @@ namespace foresight {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Folders that exist only as long as this does, unless they were there before.
-class TrialFolder {
- public:
-  explicit TrialFolder(const fs::path& folder) {
-    std::error_code ignored;
-    for (fs::path at = folder; at.has_relative_path() && !fs::exists(at, ignored); at = at.parent_path())
-      made_.push_back(at);
-    fs::create_directories(folder, error_);
-    if (!error_ && !fs::is_directory(folder, ignored)) error_ = std::make_error_code(std::errc::not_a_directory);
-  }
-  ~TrialFolder() {
-    for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // the innermost first; only empty ones go
-  }
-  TrialFolder(const TrialFolder&) = delete;
-  TrialFolder& operator=(const TrialFolder&) = delete;
-
-  std::error_code error() const { return error_; }
-
- private:
-  std::vector<fs::path> made_;
-  std::error_code error_;
-};
 
 std::error_code try_file(const fs::path& file) {
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
@@ -58,15 +33,26 @@ void require_open(const std::string& where, const fs::path& file) {
 
 }  // namespace
 
-void require_writable(const std::string& where, const fs::path& path, bool inside) {
+MadeFolder::MadeFolder(const fs::path& folder) {
+  std::error_code ignored;
+  for (fs::path at = folder; at.has_relative_path() && !fs::exists(at, ignored); at = at.parent_path())
+    made_.push_back(at);
+  fs::create_directories(folder, error_);
+  if (!error_ && !fs::is_directory(folder, ignored)) error_ = std::make_error_code(std::errc::not_a_directory);
+}
+
+MadeFolder::~MadeFolder() {
+  for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // only empty ones go
+}
+
+void require_writable(const std::string& where, const fs::path& path, bool inside, std::deque<MadeFolder>& folders) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return require_open(where, path);
   fs::path whole = fs::absolute(path).lexically_normal();
   if (!whole.has_filename()) whole = whole.parent_path();
   const fs::path folder = inside && fs::is_directory(status) ? whole : whole.parent_path();
-  const TrialFolder trial(folder);
-  std::error_code error = trial.error();
+  std::error_code error = folders.emplace_back(folder).error();
   if (!error) error = try_file(partial_path(folder / whole.filename()));
   if (error)
     throw InputError(where, folder.string() + " cannot be written to (" + error.message() + ")",

@@ -223,10 +223,7 @@ std::size_t write_log_line(Duration time, std::string_view interface, const CanF
   return static_cast<std::size_t>(at - out.data());
 }
 
-CandumpWriter::CandumpWriter(const std::filesystem::path& file) : file_(file) {
-  std::error_code ignored;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
-  out_.open(file, std::ios::binary);
+CandumpWriter::CandumpWriter(const std::filesystem::path& file) : file_(file), out_(file, std::ios::binary) {
   if (!out_)
     throw RuntimeFailure(file.string() + ": cannot be made: " + std::strerror(errno),
                          "give a file that can be written");

@@ -68,7 +68,7 @@ std::size_t write_log_line(Duration time, std::string_view interface, const CanF
 /// Writes a log. One thread.
 class CandumpWriter {
  public:
-  /// Makes folders that are missing. Throws RuntimeFailure where the file cannot be made.
+  /// Throws RuntimeFailure where the file cannot be made.
   explicit CandumpWriter(const std::filesystem::path& file);
   /// Throws RuntimeFailure where the disk is full or the like.
   void write(Duration time, std::string_view interface, const CanFrame& frame, std::optional<bool> sent = {});

@@ -37,7 +37,7 @@ const std::map<std::string, CommandWords>& table() {
       {"robot", {{"RIG", {"@rig.yaml"}}, {"--stepped", {}}}},
       {"doctor", {{"RIG", {"@rig.yaml"}}}},
       {"calibrate target",
-       {{"--board", {"chessboard:9x6:0.025"}}, {"--out", {"@new/board.pdf"}}, {"--measured", {"100,100"}}}},
+       {{"--board", {"chessboard:9x6:0.02"}}, {"--out", {"@new/board.pdf"}}, {"--measured", {"100,100"}}}},
       {"calibrate capture",
        {{"--board", {"chessboard:9x6:0.025"}}, {"--out", {"@new/set"}}, {"--mock", {}}, {"--no-window", {}}}},
       {"calibrate intrinsics", {{"--corners", {"@corners.vnl"}}, {"--board", {"chessboard:3x3:0.1"}}}},
