@@ -83,7 +83,7 @@ class WrittenFile {
 const char* cure_of_write_error(int error) {
   if (error == ENOSPC || error == EDQUOT) return "free some disk space";
   if (error == EFBIG) return "raise the limit on the size of files (ulimit -f)";
-  return "name a file in a folder that can be written";
+  return "name a file in a folder that exists and can be written";
 }
 
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
