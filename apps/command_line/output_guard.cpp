@@ -127,7 +127,7 @@ OutputGuard::OutputGuard(const std::vector<GivenPath>& given) {
     for (const Place& place : places) require_ours(place);
   }
   for (const Place& place : places)
-    require_writable(place.where, place.output.path, place.output.kind == Kind::folder, folders_);
+    open_.push_back(require_writable(place.where, place.output.path, place.output.kind == Kind::folder, folders_));
   for (const Place& place : places) {
     if (place.is_there() && !place.is_folder() && !fs::is_regular_file(place.status)) continue;
     locks_.emplace_back(place.where, place.canonical);

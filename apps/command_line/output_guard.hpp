@@ -29,6 +29,7 @@ class OutputGuard {
  private:
   std::deque<MadeFolder> folders_;  // go after the locks in them
   std::deque<OutputLock> locks_;
+  std::vector<UniqueFd> open_;  // pipes
 };
 
 }  // namespace foresight

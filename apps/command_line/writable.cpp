@@ -7,7 +7,6 @@
 
 #include "common/error.hpp"
 #include "common/partial_path.hpp"
-#include "common/unique_fd.hpp"
 
 namespace foresight {
 namespace {
@@ -23,9 +22,9 @@ std::error_code try_file(const fs::path& file) {
 }
 
 /// A pipe or a device: opened as it will be, but without waiting.
-void require_open(const std::string& where, const fs::path& file) {
-  const UniqueFd fd(::open(file.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
-  if (fd) return;
+UniqueFd opened(const std::string& where, const fs::path& file) {
+  UniqueFd fd(::open(file.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (fd) return fd;
   if (errno == ENXIO) throw InputError(where, "is a pipe that nobody reads", "start its reader first");
   throw InputError(where, "cannot be written to (" + std::generic_category().message(errno) + ")",
                    "give another place, or change its rights");
@@ -45,10 +44,11 @@ MadeFolder::~MadeFolder() {
   for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // only empty ones go
 }
 
-void require_writable(const std::string& where, const fs::path& path, bool inside, std::deque<MadeFolder>& folders) {
+UniqueFd require_writable(const std::string& where, const fs::path& path, bool inside,
+                          std::deque<MadeFolder>& folders) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return require_open(where, path);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return opened(where, path);
   fs::path whole = fs::absolute(path).lexically_normal();
   if (!whole.has_filename()) whole = whole.parent_path();
   const fs::path folder = inside && fs::is_directory(status) ? whole : whole.parent_path();
@@ -57,6 +57,7 @@ void require_writable(const std::string& where, const fs::path& path, bool insid
   if (error)
     throw InputError(where, folder.string() + " cannot be written to (" + error.message() + ")",
                      "give another place, or change its rights");
+  return {};
 }
 
 }  // namespace foresight

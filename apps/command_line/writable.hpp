@@ -7,6 +7,8 @@
 #include <system_error>
 #include <vector>
 
+#include "common/unique_fd.hpp"
+
 namespace foresight {
 
 /// A folder, and those above it, made where they are missing; those that were made and stay empty go with this. One
@@ -26,9 +28,9 @@ class MadeFolder {
 };
 
 /// `path`, a file or folder, may be missing. Makes the folder that it is to lie in, which `folders` gets, and in that
-/// (`inside`: in `path` itself, where it is a folder) a file, which goes at once; a pipe must have a reader. Throws
-/// InputError at `where`.
-void require_writable(const std::string& where, const std::filesystem::path& path, bool inside,
-                      std::deque<MadeFolder>& folders);
+/// (`inside`: in `path` itself, where it is a folder) a file, which goes at once. A pipe must have a reader, and stays
+/// open with what this returns: its reader would take an end for the end. Throws InputError at `where`.
+UniqueFd require_writable(const std::string& where, const std::filesystem::path& path, bool inside,
+                          std::deque<MadeFolder>& folders);
 
 }  // namespace foresight

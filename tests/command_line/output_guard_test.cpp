@@ -3,6 +3,9 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 
 #include "apps/command_line/inputs.hpp"
 #include "apps/command_line/named_files.hpp"
@@ -21,7 +24,9 @@ GivenPath reads(const std::string& option, const fs::path& word) {
   return {option, word.string(), {}};
 }
 GivenPath writes(const std::string& option, const fs::path& word, const FileForm& form = numbers_form()) {
-  return {option, word.string(), [form](const fs::path& file) -> std::vector<Output> { return {{file, Kind::file, form}}; }};
+  return {option, word.string(), [form](const fs::path& file) -> std::vector<Output> {
+            return {{file, Kind::file, form}};
+          }};
 }
 GivenPath folder(const std::string& option, const fs::path& word, Kind kind) {
   return {option, word.string(), [kind](const fs::path& path) -> std::vector<Output> { return {{path, kind}}; }};
@@ -102,7 +107,8 @@ TEST_F(OutputGuardTest, ForeignFilesStay) {
   files_.write("notes.txt", "precious");
   files_.write("ours.json", kOurNumbers);
   files_.write("empty", "");
-  EXPECT_THAT(refusal({writes("--json", at("mine.json"))}), says("--json", "exists and is not a file of numbers", "remove"));
+  EXPECT_THAT(refusal({writes("--json", at("mine.json"))}),
+              says("--json", "exists and is not a file of numbers", "remove"));
   for (const FileForm& form : {numbers_form(), page_form(), result_form(), camera_info_form(), can_log_form(),
                                joint_log_form(), board_form(), model_form(), png_form(), svg_form()}) {
     EXPECT_THAT(refusal({writes("--out", at("notes.txt"), form)}), HasSubstr("exists and is not " + form.name));
@@ -139,7 +145,10 @@ TEST_F(OutputGuardTest, PlacesThatCannotBeWrittenAreNamed) {
   };
   for (const auto& [given, what] : all) EXPECT_THAT(refusal({given}), HasSubstr(what)) << given.word;
   const UniqueFd reader(::open(at("pipe").c_str(), O_RDONLY | O_NONBLOCK));
-  EXPECT_EQ(refusal({writes("--json", at("pipe"))}), "no error");
+  const OutputGuard guard({writes("--json", at("pipe"))});
+  char byte = 0;
+  EXPECT_EQ(::read(reader.get(), &byte, 1), -1) << "not its end, which would send the reader away";
+  EXPECT_EQ(errno, EAGAIN);
   EXPECT_EQ(refusal({writes("--json", "/dev/full")}), "no error");  // told when it is written
 }
 
