@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "apps/command_line/output_lock.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/html_report.hpp"
 #include "common/error.hpp"
+#include "common/partial_path.hpp"
 
 namespace foresight {
 namespace {
@@ -15,8 +17,9 @@ bool is_of_a_view(const fs::directory_entry& entry) {
   const fs::path name = entry.path().filename();
   const fs::file_status status = entry.symlink_status();
   const auto is_picture = [](const fs::directory_entry& file) {
-    return file.path().extension() == ".png" && fs::is_regular_file(file.symlink_status());
+    return fs::is_regular_file(file.symlink_status()) && (file.path().extension() == ".png" || is_partial(file.path()));
   };
+  if (is_lock(name) || is_partial(name)) return true;  // of a view that was killed
   if (name == "predicted")
     return fs::is_directory(status) && std::ranges::all_of(fs::directory_iterator(entry.path()), is_picture);
   if (name == "contact_sheet.png") return fs::is_regular_file(status);

@@ -53,6 +53,10 @@ fs::path partial_path(const fs::path& target) {
   return out += std::string(kMark) + std::to_string(::getpid());
 }
 
+bool is_partial(const fs::path& path) {
+  return writer_of(path.filename().string()).has_value();
+}
+
 void sweep_partials(const fs::path& target) noexcept {
   try {
     const fs::path folder = target.parent_path();

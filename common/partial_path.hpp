@@ -8,6 +8,9 @@ namespace foresight {
 /// Where what will be `target` is written until it is complete: its neighbour "NAME.partial-PID".
 std::filesystem::path partial_path(const std::filesystem::path& target);
 
+/// Whether it has such a name, whoever wrote it.
+bool is_partial(const std::filesystem::path& path);
+
 /// Removes such neighbours of `target` (files and folders) whose program no longer runs. What cannot be removed stays.
 void sweep_partials(const std::filesystem::path& target) noexcept;
 

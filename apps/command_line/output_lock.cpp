@@ -40,6 +40,11 @@ std::string holder(int fd) {
 
 }  // namespace
 
+bool is_lock(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with('.') && name.ends_with(".lock");
+}
+
 OutputLock::OutputLock(const std::string& where, const fs::path& target) : file_(lock_file_of(target).string()) {
   for (;;) {
     fd_ = UniqueFd(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));

@@ -24,4 +24,7 @@ class OutputLock {
   UniqueFd fd_;
 };
 
+/// Whether it has the name of such a lock: one may have been left by a program that was killed.
+bool is_lock(const std::filesystem::path& path);
+
 }  // namespace foresight
