@@ -20,7 +20,7 @@ void add_dump(Command& can, std::function<int()>& action) {
   command->add_option("IF", options->interface, "Interface, such as can0")->required();
   command->add_option("--count", options->count, "Stop after so many frames")->check(from_to(1, 1e15));
   command->add_option("--seconds", options->seconds, "Stop after so long")->check(from_to(0, 1e9));
-  command->add_option("--log", options->log, "Write a log there too");
+  command->add_option("--log", options->log, "Write a log there too")->writes(can_log_form());
   command->add_option("--filter", options->filters, "Only these identifiers: ID:MASK in hex (8 digits: 29 bits)");
   command->add_flag("--fd", options->fd, "FD frames too; the interface must be set up for them");
   command->footer("Example: foresight can dump can0 --filter 580:780 --seconds 10 --log sdo.log");
@@ -38,7 +38,7 @@ void add_send(Command& can, std::function<int()>& action) {
 void add_replay(Command& can, std::function<int()>& action) {
   auto* command = can.add_subcommand("replay", "Sends what a log holds, at its pace");
   auto options = std::make_shared<CanReplayOptions>();
-  command->add_option("FILE", options->file, "A log of `foresight can dump --log` or candump -l")->required();
+  command->add_option("FILE", options->file, "A log of `foresight can dump --log` or candump -l")->reads()->required();
   command->add_option("IF", options->interface, "Interface, such as vcan0")->required();
   command->add_option("--speed", options->speed, "2: twice as fast")->check(from_to(1e-3, 1e6))->capture_default_str();
   command->add_option("--gap", options->gap_ms, "ms between frames that have no times")
@@ -51,12 +51,15 @@ void add_explain(Command& can, std::function<int()>& action) {
   auto* command = can.add_subcommand("explain", "Prints a log's frames with what they say in words");
   auto options = std::make_shared<CanExplainOptions>();
   command->add_option("FILE", options->file, "A log of `foresight can dump --log`, `robot --log` or candump -l")
+      ->reads()
       ->required();
   command->add_option("--protocol", options->protocol, "What the bus speaks: cia402, powercube or schunk-motion")
       ->required()
       ->check(one_of({"cia402", "powercube", "schunk-motion"}));
-  command->add_option("--eds", options->eds,
-                      "EDS or DCF file of all nodes, or NODE=FILE of one: objects and PDOs by the names that it gives");
+  command
+      ->add_option("--eds", options->eds,
+                   "EDS or DCF file of all nodes, or NODE=FILE of one: objects and PDOs by the names that it gives")
+      ->reads();
   command->footer(
       "Example: foresight can explain session.log --protocol cia402 --eds axis.eds --eds 12=gripper.dcf\n"
       "Exit code: 0 where all frames are known, 1 where some are not.");

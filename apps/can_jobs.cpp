@@ -2,13 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 
 #include "common/clock.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "common/text.hpp"
 #include "drivers/can/can_bits.hpp"
 #include "drivers/can/recording_bus.hpp"
@@ -17,15 +17,6 @@
 
 namespace foresight {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-void stop_on_interrupt() {
-  std::signal(SIGINT, [](int) {
-    interrupted = 1;
-    std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C ends the program even where a driver hangs
-  });
-}
 
 std::string rate_text(int bit_rate) {
   const bool whole = bit_rate % 1000 == 0;
@@ -110,23 +101,22 @@ int dump_can(const CanDumpOptions& options) {
   const auto recorded =
       options.log ? std::make_unique<RecordingBus>(can, clock, *options.log, epoch) : std::unique_ptr<RecordingBus>();
   CanBus& bus = recorded ? static_cast<CanBus&>(*recorded) : can;
-  stop_on_interrupt();
+  poll_stop_signals();
   const RobotTime start = clock.now();
   std::array<char, kLongestLogLine> line;
   long long seen = 0;
-  while (interrupted == 0 && seen < options.count.value_or(seen + 1)) {
+  while (!stop_requested() && seen < options.count.value_or(seen + 1)) {
     const Duration left = options.seconds ? start + seconds(*options.seconds) - clock.now() : Duration::max();
     if (left.count() <= 0) break;
     const auto frame = bus.receive(std::min<Duration>(left, std::chrono::milliseconds(100)));
     if (!frame) {
-      std::fflush(stdout);
+      if (std::fflush(stdout) != 0) break;
       continue;
     }
     ++seen;
     std::fwrite(line.data(), 1, write_log_line(Duration{frame->time.ns} + epoch, bus.name(), *frame, {}, line), stdout);
+    if (std::ferror(stdout)) break;  // nobody reads any more, which the exit code tells
   }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout))
-    throw RuntimeFailure("stdout: writing failed", "make room there");
   report_losses(can);
   if (recorded && (recorded->failed() || recorded->dropped() > 0))
     throw RuntimeFailure(options.log->string() + ": not all frames could be written (" +
@@ -134,7 +124,7 @@ int dump_can(const CanDumpOptions& options) {
                          "write to a faster disk with room");
   if (can.state() == CanBusState::bus_off || can.state() == CanBusState::down)
     std::cerr << "foresight: " << can.name() << " is " << to_string(can.state()) << "; see `foresight can scan`\n";
-  return interrupted ? 130 : 0;
+  return stop_requested() ? kStopped : 0;
 }
 
 int send_can(const CanSendOptions& options) {
@@ -169,13 +159,13 @@ int replay_can(const CanReplayOptions& options) {
   ReplayLogOptions replay;
   replay.speed = options.speed;
   replay.gap = seconds(options.gap_ms * 1e-3);
-  stop_on_interrupt();
+  poll_stop_signals();
   CandumpReader log(options.file);
-  const ReplayLogSummary done = replay_log(log, bus, clock, replay, [] { return interrupted != 0; });
+  const ReplayLogSummary done = replay_log(log, bus, clock, replay, stop_requested);
   std::cout << fmt::format("{} frames sent, at most {:.3f} ms late; {} failed, {} error frames left out\n", done.sent,
                            to_seconds(done.worst_delay) * 1e3, done.failed, done.error_frames)
             << std::flush;
-  if (interrupted) return 130;
+  if (stop_requested()) return kStopped;
   if (done.failed > 0)
     throw RuntimeFailure(bus.name() + ": " + std::to_string(done.failed) + " frames could not be sent",
                          "see `foresight can scan`, or replay more slowly with --speed");

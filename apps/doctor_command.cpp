@@ -52,7 +52,7 @@ void add_doctor_command(Command& app, std::function<int()>& action) {
   auto* command =
       app.add_subcommand("doctor", "Checks devices and permissions, and says what to type where something is missing");
   auto rig = std::make_shared<std::string>();
-  command->add_option("RIG", *rig, "Rig file whose devices to check (docs/rig-files.md); moves nothing");
+  command->add_option("RIG", *rig, "Rig file whose devices to check (docs/rig-files.md); moves nothing")->reads();
   command->footer(
       "ok: fine; -: not there and not needed; poor: works, but badly; BAD: does not work.\n\n"
       "Exit codes: 0 nothing is BAD, 1 something is, 2 wrong input.\n\n"

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
 
-#include "apps/output_files.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "common/text.hpp"
 #include "display/recorded_source.hpp"
 #include "display/view_session.hpp"
@@ -20,34 +19,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-volatile std::sig_atomic_t interrupted = 0;
-
 /// The files of one export.
 struct Outputs {
   fs::path model;
   fs::path bin, png;  // empty for .glb, which holds them
 };
 
-Outputs outputs_of(const ExportOptions& options) {
-  std::string extension = options.out.extension().string();
+Outputs files_of(const fs::path& out) {
+  std::string extension = out.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".glb") return {options.out, {}, {}};
+  if (extension == ".glb") return {out, {}, {}};
   if (extension != ".gltf")
     throw InputError(
-        "--out " + options.out.string(),
+        "--out " + out.string(),
         extension.empty() ? "has no extension" : in_quotes(extension) + " is not a form that can be written",
         "name the file .glb or .gltf");
-  Outputs out{options.out, options.out, options.out};
-  out.bin.replace_extension(".bin");
-  out.png.replace_extension(".png");
-  return out;
-}
-
-void check_outputs(const Outputs& outputs, const RunFolder& run, const ExportOptions& options) {
-  const auto inputs = input_files(run, options);
-  for (const fs::path& file : {outputs.model, outputs.bin, outputs.png})
-    if (!file.empty()) check_output_file("--out", file, inputs);
+  Outputs all{out, out, out};
+  all.bin.replace_extension(".bin");
+  all.png.replace_extension(".png");
+  return all;
 }
 
 std::size_t image_count(const RunFolder& run, const ExportOptions& options) {
@@ -67,7 +58,7 @@ bool extract(ViewSession& session, const RunFolder& run, std::size_t count, doub
   ProgressBar bar("export", "images", count, now(), ProgressBar::for_stderr());
   ChartAtlas::Policy policy;
   for (std::size_t i = 0; i < count; ++i) {
-    if (interrupted) return false;
+    if (stop_requested()) return false;
     policy = session.process(load_posed_frame(run, i, margin_px)).policy;
     std::cerr << bar.update(i + 1, now()) << std::flush;
   }
@@ -86,7 +77,6 @@ std::string as_png(const cv::Mat& picture) {
 }
 
 void write(const GltfModel& model, const Outputs& outputs) {
-  make_folder(fs::absolute(outputs.model).parent_path());
   if (outputs.bin.empty()) return write_file_atomically(outputs.model, to_glb(model));
   const GltfFiles files = to_gltf(model, outputs.bin.filename().string(), outputs.png.filename().string());
   const FileContent all[] = {{outputs.png, model.png}, {outputs.bin, files.bin}, {outputs.model, files.gltf}};
@@ -95,23 +85,27 @@ void write(const GltfModel& model, const Outputs& outputs) {
 
 }  // namespace
 
+std::vector<Output> export_outputs(const fs::path& out) {
+  const Outputs files = files_of(out);
+  std::vector<Output> all{{files.model, Output::Kind::file, model_form()}};
+  for (const fs::path& part : {files.bin, files.png})
+    if (!part.empty()) all.push_back({part, Output::Kind::file, part_form(files.model, model_form())});
+  return all;
+}
+
 int export_model(const ExportOptions& given) {
-  const Outputs outputs = outputs_of(given);
+  const Outputs outputs = files_of(given.out);
   ExportOptions options = given;
   const RunFolder run = open_run(options);
   const std::size_t count = image_count(run, options);
-  check_outputs(outputs, run, options);
   check_images(run);
-  std::signal(SIGINT, [](int) {
-    interrupted = 1;
-    std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C ends the program even where a driver hangs
-  });
+  poll_stop_signals();
 
   const auto context = gl::create_headless_context();
   ViewSession session(*context, view_setup(run, options.textures));
   if (!extract(session, run, count, options.textures.margin_px)) {
-    std::cerr << "\nforesight: stopped by Ctrl-C, nothing was written\n";
-    return 130;
+    std::cerr << "\nforesight: stopped by " << stopped_by() << ", nothing was written\n";
+    return kStopped;
   }
   const TextureLease lease = session.textures();
   const BakedAtlas atlas = bake_atlas(TextureReadback(*lease, session.surface()), options.max_atlas);

@@ -14,6 +14,9 @@ struct ExportOptions : RunOptions {
   int max_atlas = 8192;            ///< px
 };
 
+/// All files that --out stands for. Throws InputError for another extension.
+std::vector<Output> export_outputs(const std::filesystem::path& out);
+
 /// Checks all input before anything is written. Returns the exit code: 0, or 130 after Ctrl-C with
 /// nothing written. Throws InputError and RuntimeFailure.
 int export_model(const ExportOptions& options);

@@ -90,19 +90,6 @@ RunRecord described(const ViewSession& session, const ViewSetup& setup, const Li
   return record;
 }
 
-bool is_picture(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  return file.extension() == ".png" && stem.size() >= 6 &&
-         std::ranges::all_of(stem, [](char c) { return c >= '0' && c <= '9'; });
-}
-
-bool is_of_a_view(const fs::directory_entry& entry) {
-  if (entry.path().filename() == "contact_sheet.png") return entry.is_regular_file();
-  return entry.path().filename() == "predicted" && entry.is_directory() &&
-         std::ranges::all_of(fs::directory_iterator(entry.path()),
-                             [](const fs::directory_entry& file) { return is_picture(file.path()); });
-}
-
 void remove_old_pictures(const fs::path& out) {
   std::error_code ignored;  // what cannot be removed cannot be written either, which is told then
   fs::remove(out / "contact_sheet.png", ignored);
@@ -110,16 +97,6 @@ void remove_old_pictures(const fs::path& out) {
 }
 
 }  // namespace
-
-void check_live_outputs(const ViewOutputs& outputs, const std::set<fs::path>& inputs) {
-  check_outputs(outputs, inputs, {});
-  if (!outputs.out || !fs::is_directory(*outputs.out)) return;
-  for (const fs::directory_entry& entry : fs::directory_iterator(*outputs.out))
-    if (!is_of_a_view(entry))
-      throw InputError("--out " + outputs.out->string(),
-                       "holds " + entry.path().filename().string() + ", which is not of an earlier view",
-                       "give a new folder or an empty one");
-}
 
 struct LiveView::Work {
   LiveViewOptions options;

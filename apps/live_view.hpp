@@ -23,17 +23,13 @@ struct LiveViewOptions {
   bool stepped = false;  ///< step() in place of run()
 };
 
-/// Refuses what check_outputs() does, and a folder --out that holds anything but an earlier view's pictures. `inputs`:
-/// files that must stay. Throws InputError.
-void check_live_outputs(const ViewOutputs& outputs, const std::set<std::filesystem::path>& inputs);
-
 /// All in one thread; with a window, the main one (gl::Window). It only takes frames, and holds up nobody who makes
 /// them. A view that fails (a full disk, a lost context) ends, and tells in finish().
 class LiveView {
  public:
   /// What the frames are of, the frames, and what is wrong with the cameras (for the window). Blocks some seconds:
   /// shaders, charts. `clock`: the frames'; must outlive this. Throws InputError where the lenses or the model are not
-  /// known; RuntimeFailure (no window, no OpenGL), and what make_folder() does.
+  /// known; RuntimeFailure (no window, no OpenGL), or no folder for pictures.
   LiveView(const LiveScene& scene, std::shared_ptr<FrameQueue> frames, std::function<std::string()> trouble,
            const Clock& clock, const LiveViewOptions& options);
   ~LiveView();

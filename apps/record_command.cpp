@@ -1,11 +1,12 @@
 #include "apps/record_command.hpp"
 
-#include <csignal>
 #include <cstdio>
 #include <memory>
 
+#include "apps/recording_outputs.hpp"
 #include "apps/run_options.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "rig/open_stereo.hpp"
 #include "rig/rig.hpp"
 #include "session/encoder_poses.hpp"
@@ -16,8 +17,6 @@ namespace foresight {
 namespace {
 
 namespace fs = std::filesystem;
-
-volatile std::sig_atomic_t interrupted = 0;
 
 struct Arguments {
   std::string out, rig, left, right, format = "yuyv";
@@ -133,9 +132,8 @@ int record_and_report(const Arguments& a, const OpenStereo& opened, LiveFrames& 
   if (a.seconds) limits.length = seconds(*a.seconds);
   if (!a.images.empty()) limits.silent_after = std::chrono::seconds(1);  // the end of the files
   if (opened.mock) limits.silent_after = std::chrono::minutes(2);        // a renderer may be slow; it is not unplugged
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = 1; });
-  const RecordingResult result =
-      record(*opened.cameras, frames, recorder, limits, clock, [] { return interrupted != 0; });
+  poll_stop_signals();
+  const RecordingResult result = record(*opened.cameras, frames, recorder, limits, clock, stop_requested);
   std::fprintf(stderr, "record: %s", counts_text(result).c_str());
   std::printf("%s\n", a.out.c_str());
   const bool all_played = !a.images.empty() && !recorder.disk_full();
@@ -170,17 +168,23 @@ int run(const Arguments& a) {
 void add_record_command(Command& app, std::function<int()>& action) {
   auto* command = app.add_subcommand("record", "Write what two cameras see as a run");
   auto a = std::make_shared<Arguments>();
-  command->add_option("OUT", a->out, "Folder to write; an earlier recording in it is replaced")->required();
-  command->add_option("--rig", a->rig, "The cameras of a rig file (docs/rig-files.md)");
-  command->add_option("--left", a->left, "V4L2 device: a path, serial:... or bus:...; or libcamera:... and its id");
-  command->add_option("--right", a->right, "The right camera's");
-  command->add_option("--images", a->images, "Folders of numbered images instead: LEFTDIR RIGHTDIR")->expected(2);
+  command->add_option("OUT", a->out, "Folder to write; an earlier recording in it is replaced")
+      ->writes(recording_outputs)
+      ->required();
+  command->add_option("--rig", a->rig, "The cameras of a rig file (docs/rig-files.md)")->reads();
+  command->add_option("--left", a->left, "V4L2 device: a path, serial:... or bus:...; or libcamera:... and its id")
+      ->reads();
+  command->add_option("--right", a->right, "The right camera's")->reads();
+  command->add_option("--images", a->images, "Folders of numbered images instead: LEFTDIR RIGHTDIR")
+      ->reads()
+      ->expected(2);
   command->add_flag("--mock", a->mock,
                     "The mock lab in motion instead, with its scene and poses; with --rig, as its cameras see it");
-  command->add_option("--camera", a->camera, "Calibration of the left camera (camera.yaml)");
-  command->add_option("--camera-right", a->camera_right, "Of the right one, with T_left_right");
-  command->add_option("--scene", a->scene, "Scene or mesh, stored with the run");
+  command->add_option("--camera", a->camera, "Calibration of the left camera (camera.yaml)")->reads();
+  command->add_option("--camera-right", a->camera_right, "Of the right one, with T_left_right")->reads();
+  command->add_option("--scene", a->scene, "Scene or mesh, stored with the run")->reads();
   command->add_option("--pose", a->pose, "Where the left camera stands, fixed: x y z qx qy qz qw, camera to world")
+      ->check(from_to(-1e6, 1e6))
       ->expected(7);
   command->add_option("--format", a->format, "Pixel format of the devices")->capture_default_str();
   command->add_option("--rate", a->rate, "Images per second")->check(from_to(0.1, 1000))->capture_default_str();

@@ -3,17 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 
-#include "apps/output_files.hpp"
 #include "apps/replay_refinement.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "apps/view_measures.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "display/recorded_source.hpp"
 #include "display/view_window.hpp"
 
@@ -24,12 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLastPicture = 3;  // seconds for which the window shows the last instant
 constexpr int kWindowWidth = 1440;
-
-std::atomic<bool> interrupted = false;
-extern "C" void on_interrupt(int) {
-  interrupted = true;
-  std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C ends the program even where a driver hangs
-}
 
 /// Throws InputError for a delay that no image outlives.
 std::vector<std::size_t> arrivals(const RunFolder& run, const ReplayOptions& options) {
@@ -124,14 +116,14 @@ int play(const RunFolder& run, const ReplayOptions& options, std::vector<std::si
                                              }});
   if (shown) observers.push_back(&*shown);
 
-  ViewLoop(session, source, observers, [] { return interrupted.load(); }).run();
-  measures.record().complete = !interrupted && !(shown && !shown->wants_more());
-  if (shown && !interrupted) shown->linger(kLastPicture);
+  ViewLoop(session, source, observers, stop_requested).run();
+  measures.record().complete = !stop_requested() && !(shown && !shown->wants_more());
+  if (shown && !stop_requested()) shown->linger(kLastPicture);
   progress.finish(measures.record().frames.size());
   if (refinement) refinement->report(measures.record());
   measures.finish(source, session, "Foresight replay of " + measures.record().run);
   print_summary(measures.record());
-  return interrupted ? 130 : 0;
+  return stop_requested() ? kStopped : 0;
 }
 
 }  // namespace
@@ -148,12 +140,8 @@ int replay(const ReplayOptions& given) {
   ReplayOptions options = given;
   const RunFolder run = open_run(options);
   const std::vector<std::size_t> arrived = arrivals(run, options);
-  std::vector<std::string> pictures;
-  for (const RunFrame& frame : run.frames()) pictures.push_back(frame.left.stem);
-  check_outputs(options.outputs, input_files(run, options), pictures);
   check_images(run);
-  interrupted = false;
-  std::signal(SIGINT, on_interrupt);
+  poll_stop_signals();
   return play(run, options, arrived);
 }
 

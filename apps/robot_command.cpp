@@ -1,18 +1,19 @@
 #include "apps/robot_command.hpp"
 
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <future>
 #include <thread>
 
 #include "apps/live_view.hpp"
+#include "apps/recording_outputs.hpp"
 #include "apps/robot/keyboard.hpp"
 #include "apps/robot/service_notify.hpp"
 #include "apps/robot/status_view.hpp"
 #include "apps/run_options.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
+#include "common/stop_signal.hpp"
 #include "operators/follow_operator.hpp"
 #include "operators/key_operator.hpp"
 #include "session/joint_log.hpp"
@@ -38,8 +39,6 @@ struct Arguments {
   std::string scene;
   ViewOutputs outputs;
 };
-
-std::atomic<int> stop_signal = 0;
 
 void say(const std::string& line) {
   std::fprintf(stderr, "robot: %s\n", line.c_str());
@@ -81,12 +80,18 @@ class Console {
   int finish() {
     std::fputs(view(robot_.status(), -1).c_str(), stdout);
     if (const std::string recorded = cameras_ ? cameras_->finish() : ""; !recorded.empty()) say(recorded);
-    if (!follow_) return 0;
-    say("follow: " + (follow_->outcome().empty() ? "interrupted" : follow_->outcome()));
-    return follow_->succeeded() ? 0 : 1;
+    const std::string fault = log_fault();
+    if (follow_) say("follow: " + (follow_->outcome().empty() ? "interrupted" : follow_->outcome()));
+    if (!fault.empty()) std::fprintf(stderr, "foresight: %s\n", fault.c_str());
+    return fault.empty() && (!follow_ || follow_->succeeded()) ? 0 : 1;
   }
 
  private:
+  /// "" where all logs are complete.
+  std::string log_fault() {
+    const std::string fault = joints_ ? joints_->fault() : "";
+    return fault.empty() ? devices_.log_fault() : fault;
+  }
   std::string view(const RobotStatus& status, int selected) const {
     std::string out = status_text(rig_, status, devices_.buses(), selected);
     if (cameras_) out += camera_text(cameras_->watch().line());
@@ -128,12 +133,12 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevice
   if (cameras) clock.every(kTick, [cameras](RobotTime) { cameras->step(); });
   clock.every(kTick, [&](RobotTime now) {
     if (view && !view->step()) stop.request_stop();
-    if (!stop.stop_requested() && (!console.tick(now) || stop_signal != 0)) stop.request_stop();
+    if (!stop.stop_requested() && (!console.tick(now) || stop_requested())) stop.request_stop();
   });
   robot.run(clock, stop.get_token());
   const int code = console.finish();
-  if (view) view->finish(stop_signal == 0);
-  return code;
+  if (view) view->finish(!stop_requested());
+  return stop_requested() ? kStopped : code;
 }
 
 int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras,
@@ -164,7 +169,7 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
     notify_service("READY=1");
     std::atomic<bool> ended = false, unseen = false;
     const auto tick_on = [&] {
-      for (RobotTime due = clock.now(); stop_signal == 0 && !unseen && console.tick(due);
+      for (RobotTime due = clock.now(); !stop_requested() && !unseen && console.tick(due);
            due = std::max(due + kTick, clock.now()))
         clock.sleep_until(due + kTick);
       ended = true;
@@ -179,8 +184,8 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
     notify_service("STOPPING=1");
   }
   const int code = console.finish();
-  if (view) view->finish(stop_signal == 0);
-  return stop_signal == SIGINT ? 130 : code;
+  if (view) view->finish(!stop_requested());
+  return stop_requested() ? kStopped : code;
 }
 
 /// Null where there are none to run. In stepped time, pictures that nobody keeps are not drawn.
@@ -227,21 +232,9 @@ int run_with(const Rig& rig, const Arguments& arguments,
   const auto cameras = make_cameras(rig, devices, robot, clock, arguments);
   const auto view = make_view(rig, cameras.get(), clock, arguments);
   Console console(rig, devices, robot, cameras.get(), arguments);
-  std::signal(SIGINT, [](int signal) { stop_signal = signal; });
-  std::signal(SIGTERM, [](int signal) { stop_signal = signal; });
-  std::signal(SIGHUP, [](int signal) { stop_signal = signal; });
+  poll_stop_signals(SecondSignal::waits);  // a program that ends at once leaves the stop to the drives
   if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
   return run(clock, robot, console, devices, cameras.get(), view.get());
-}
-
-/// A recording takes the place of its whole folder, and a view of another's files would be refused.
-bool overlap(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const auto inside = [](const std::filesystem::path& outer, const std::filesystem::path& inner) {
-    const std::string way = inner.lexically_relative(outer).string();
-    return !way.empty() && !way.starts_with("..");
-  };
-  const auto whole_a = std::filesystem::weakly_canonical(a), whole_b = std::filesystem::weakly_canonical(b);
-  return inside(whole_a, whole_b) || inside(whole_b, whole_a);
 }
 
 void check_view(const Rig& rig, const Arguments& arguments) {
@@ -260,10 +253,6 @@ void check_view(const Rig& rig, const Arguments& arguments) {
   if (!rig.cameras || !arguments.cameras)
     throw InputError("--view", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
-  if (arguments.outputs.out && !arguments.record.empty() && overlap(*arguments.outputs.out, arguments.record))
-    throw InputError("--out " + arguments.outputs.out->string(), "and --record share a folder",
-                     "give each a folder of its own");
-  check_live_outputs(arguments.outputs, {std::filesystem::weakly_canonical(arguments.rig)});
 }
 
 int run(const Arguments& arguments) {
@@ -288,25 +277,29 @@ int run(const Arguments& arguments) {
 void add_robot_command(Command& app, std::function<int()>& action) {
   auto* command = app.add_subcommand("robot", "Runs the robot side of a rig: drives behind a safety gate");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->required();
+  command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->reads()->required();
   command->add_flag("--mock", arguments->mock,
                     "Emulated drives on every bus, and the mock lab before the cameras, whatever the rig says");
-  command->add_option("--follow", arguments->follow,
-                      "CSV file with the columns time_s and names of joints; enables, follows it and ends");
+  command
+      ->add_option("--follow", arguments->follow,
+                   "CSV file with the columns time_s and names of joints; enables, follows it and ends")
+      ->reads();
   command->add_flag("--home", arguments->may_home,
                     "Consent: with --follow, joints that are not homed look for home, slowly");
-  command->add_option("--log", arguments->log, "candump log of all frames");
-  command->add_option("--record", arguments->record,
-                      "Writes what the cameras see as a run into this folder, and beside it the CAN logs\n"
-                      "(OUT-can-BUS.log) and the joints (OUT-joints.csv, as --follow reads them)");
+  command->add_option("--log", arguments->log, "candump log of all frames")->writes(can_log_outputs);
+  command
+      ->add_option("--record", arguments->record,
+                   "Writes what the cameras see as a run into this folder, and beside it the CAN logs\n"
+                   "(OUT-can-BUS.log) and the joints (OUT-joints.csv, as --follow reads them)")
+      ->writes(robot_recording_outputs);
   command->add_flag("--view", arguments->view,
                     "Shows the live scene beside the camera's image; its textures are as old as --delay-ms says");
   command->add_option("--delay-ms", arguments->delay_ms, "With --view: delay of images in milliseconds (default 0)")
       ->check(from_to(0.0, 1e4));
   add_view_outputs(*command, arguments->outputs);
   command->add_flag("--window", arguments->window, "With --view: a window also where pictures or reports are written");
-  command->add_option("--scene", arguments->scene,
-                      "With --view: the model of what real cameras see, but for the robot");
+  command->add_option("--scene", arguments->scene, "With --view: the model of what real cameras see, but for the robot")
+      ->reads();
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag("--stepped", arguments->stepped,
                     "As fast as the machine can, the same on every run; only with mock drives");
@@ -314,7 +307,7 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   command->footer(
       "On a terminal, keys enable, home, move and stop the robot; space is a stop. A software stop does not replace a\n"
       "hardware emergency stop. The drives stop on their own when this program ends in whatever way.\n\n"
-      "Exit codes: 0 done, 1 stopped or a device failed, 2 wrong input, 130 Ctrl-C.\n\n"
+      "Exit codes: 0 done, 1 stopped or a device failed, 2 wrong input, 130 Ctrl-C or SIGTERM.\n\n"
       "Example: foresight robot configs/minerva.yaml --mock --home --follow motion.csv --log session.log");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

@@ -13,8 +13,9 @@ namespace foresight {
 void add_run_options(Command& command, RunOptions& options) {
   command
       .add_option("RUN", options.run, "Folder with camera.yaml, rgb.txt, trajectory.txt and scene.ply or scene.yaml")
+      ->reads()
       ->required();
-  command.add_option("--scene", options.scene, "Model to use instead of the run's own");
+  command.add_option("--scene", options.scene, "Model to use instead of the run's own")->reads();
   command
       .add_option("--texels-per-metre", options.textures.texels_per_metre,
                   "Finest resolution of textures (default: one texel per pixel of the closest view)")

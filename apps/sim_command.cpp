@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <sstream>
@@ -12,6 +11,7 @@
 
 #include "apps/sim_rack.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "common/text.hpp"
 #include "drivers/can/socket_can_bus.hpp"
 #include "rig/robot_devices.hpp"
@@ -24,8 +24,6 @@ namespace {
 struct Arguments {
   std::string can, rack, rig, profile = "powercube";
 };
-
-volatile std::sig_atomic_t interrupted = 0;
 
 std::vector<sim::NodeConfig> nodes_of(const Arguments& arguments) {
   if (!arguments.rack.empty()) return read_rack(arguments.rack);
@@ -94,7 +92,7 @@ bool obey(const std::string& line, sim::DriveRack& rack) {
 void obey_stdin(sim::DriveRack& rack) {
   std::string text;
   bool open = true;
-  while (!interrupted) {
+  while (!stop_requested()) {
     pollfd in{open ? STDIN_FILENO : -1, POLLIN, 0};
     if (poll(&in, 1, 100) <= 0) continue;
     char buffer[256];
@@ -112,13 +110,13 @@ int run(const Arguments& arguments) {
   const std::vector<sim::NodeConfig> nodes = nodes_of(arguments);
   MonotonicClock clock;
   sim::DriveRack rack(clock, std::make_unique<SocketCanBus>(arguments.can), nodes);
-  std::signal(SIGINT, [](int) { interrupted = 1; });
+  poll_stop_signals();
   std::printf("sim: %zu drives on %s; commands: show, forget, quit, FAULT DRIVE [VALUE]\n", rack.size(),
               arguments.can.c_str());
   std::fflush(stdout);
   const std::jthread thread([&](std::stop_token stop) { rack.run(stop); });
   obey_stdin(rack);
-  return interrupted ? 130 : 0;
+  return stop_requested() ? kStopped : 0;
 }
 
 }  // namespace
@@ -131,8 +129,10 @@ void add_sim_command(Command& app, std::function<int()>& action) {
   command->add_option("--can", arguments->can, "CAN interface, such as can0 or vcan0")->required();
   const Option* const rack =
       command->add_option("--rack", arguments->rack, "YAML file with a list of drives, instead of the built-in ones")
+          ->reads()
           ->check(existing_file());
   command->add_option("--rig", arguments->rig, "Rig file: the drives that it has on this interface")
+      ->reads()
       ->check(existing_file())
       ->excludes(rack);
   command

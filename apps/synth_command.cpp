@@ -1,12 +1,12 @@
 #include "apps/synth_command.hpp"
 
 #include <charconv>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "sim/synth_run.hpp"
 
 namespace foresight {
@@ -21,7 +21,6 @@ struct Arguments {
   sim::SynthOptions options;
 };
 
-volatile std::sig_atomic_t interrupted = 0;
 struct Interrupted {};
 
 void parse_size(const std::string& text, sim::SynthOptions& options) {
@@ -33,13 +32,19 @@ void parse_size(const std::string& text, sim::SynthOptions& options) {
     throw InputError("--size", "'" + text + "' is not a size", "write it as WIDTHxHEIGHT, such as 751x570");
 }
 
+std::vector<Output> synth_outputs(const std::filesystem::path& out) {
+  return {{out, Output::Kind::replaced_folder, {}, [](const std::string& where, const std::filesystem::path& folder) {
+             require_replaceable(where, folder, sim::synth_run_form());
+           }}};
+}
+
 int run(Arguments arguments) {
   parse_size(arguments.size, arguments.options);
   arguments.options.shutter.exposure_s = arguments.motion_blur_ms * 1e-3;
   arguments.options.shutter.readout_s = arguments.rolling_shutter_ms * 1e-3;
   if (arguments.auto_exposure) arguments.options.auto_exposure.emplace();
   if (!arguments.head_path.empty()) arguments.options.head_path = arguments.head_path;
-  std::signal(SIGINT, [](int) { interrupted = 1; });
+  poll_stop_signals();
   const std::size_t images =
       static_cast<std::size_t>(std::max(0, arguments.options.frames)) * (arguments.options.stereo ? 2 : 1);
   const auto now = [] { return std::chrono::steady_clock::now(); };
@@ -48,12 +53,12 @@ int run(Arguments arguments) {
   sim::SynthSummary summary;
   try {
     summary = sim::write_synth_run(arguments.out, arguments.options, [&](int done, int) {
-      if (interrupted) throw Interrupted();
+      if (stop_requested()) throw Interrupted();
       std::fputs(bar.update(static_cast<std::size_t>(done), now()).c_str(), stderr);
     });
   } catch (const Interrupted&) {
-    std::fputs("\nforesight: stopped by Ctrl-C, nothing was written\n", stderr);
-    return 130;
+    std::fprintf(stderr, "\nforesight: stopped by %s, nothing was written\n", stopped_by());
+    return kStopped;
   }
   std::fputs(bar.finish(images, now()).c_str(), stderr);
   std::fprintf(stderr, "synth: %d polygons, %d to %d in view\n", summary.polygons, summary.fewest_polygons_in_view,
@@ -68,7 +73,9 @@ void add_synth_command(Command& app, std::function<int()>& action) {
   Command* command = app.add_subcommand("synth", "Write a synthetic run: a lab with a moving arm, and its exact truth");
   const auto arguments = std::make_shared<Arguments>();
   sim::SynthOptions& options = arguments->options;
-  command->add_option("OUT", arguments->out, "Folder to write; an earlier synthetic run in it is replaced")->required();
+  command->add_option("OUT", arguments->out, "Folder to write; an earlier synthetic run in it is replaced")
+      ->writes(synth_outputs)
+      ->required();
   command->add_option("--frames", options.frames, "Images per camera")->capture_default_str();
   command->add_option("--size", arguments->size, "Image size in pixels, WIDTHxHEIGHT")->capture_default_str();
   command->add_option("--rate", options.rate, "Images per second")->capture_default_str();
@@ -77,9 +84,11 @@ void add_synth_command(Command& app, std::function<int()>& action) {
   command->add_flag("--fisheye", options.fisheye, "An equidistant lens of 150 degrees");
   command->add_option("--seed", options.seed, "Varies wood grain, small print, noise and pose errors")
       ->capture_default_str();
-  command->add_option("--head-path", arguments->head_path,
-                      "Path of the left camera instead of the built-in one: a file of lines "
-                      "'t x y z qx qy qz qw', seconds from 0, camera to world");
+  command
+      ->add_option("--head-path", arguments->head_path,
+                   "Path of the left camera instead of the built-in one: a file of lines "
+                   "'t x y z qx qy qz qw', seconds from 0, camera to world")
+      ->reads();
   command->add_option("--blur", options.sensor.blur, "Point spread of lens and demosaicing, standard deviation in px")
       ->capture_default_str();
   command->add_option("--noise", options.sensor.noise, "Standard deviation at mid grey, in 8-bit values")

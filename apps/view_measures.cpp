@@ -6,9 +6,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/output_files.hpp"
 #include "apps/replay_report/image_metrics.hpp"
 #include "common/atomic_file.hpp"
+#include "common/error.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
 namespace foresight {
@@ -56,7 +56,12 @@ void add_texture_options(RunRecord& record, const TextureOptions& textures) {
 
 ViewMeasures::ViewMeasures(RunRecord record, ViewOutputs outputs, const TextureOptions& textures)
     : record_(std::move(record)), outputs_(std::move(outputs)), textures_(textures) {
-  if (outputs_.out) make_folder(*outputs_.out / "predicted");
+  if (!outputs_.out) return;
+  const std::filesystem::path folder = *outputs_.out / "predicted";
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw RuntimeFailure("cannot make the folder " + folder.string() + ": " + error.message(), "check the disk");
 }
 
 void ViewMeasures::arrived(const PosedFrame& frame) {

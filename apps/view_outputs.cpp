@@ -1,59 +1,58 @@
 #include "apps/view_outputs.hpp"
 
-#include <system_error>
+#include <algorithm>
 
-#include "apps/output_files.hpp"
+#include "apps/command_line/output_lock.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/html_report.hpp"
 #include "common/error.hpp"
-#include "common/plot_data.hpp"
+#include "common/partial_path.hpp"
 
 namespace foresight {
 namespace {
 
 namespace fs = std::filesystem;
 
-void check_folder(const fs::path& out, const std::set<fs::path>& inputs, std::span<const std::string> pictures) {
-  const std::string where = "--out " + out.string();
-  require_writable(where, fs::absolute(out) / "predicted", "");
-  if (fs::is_directory(out / "contact_sheet.png"))
-    throw InputError(where, "contact_sheet.png in it is a folder", "remove it or give another place");
-  require_not_an_input(where, out / "contact_sheet.png", inputs);
-  for (const std::string& name : pictures) require_not_an_input(where, out / "predicted" / (name + ".png"), inputs);
+bool is_of_a_view(const fs::directory_entry& entry) {
+  const fs::path name = entry.path().filename();
+  const fs::file_status status = entry.symlink_status();
+  const auto is_picture = [](const fs::directory_entry& file) {
+    return fs::is_regular_file(file.symlink_status()) && (file.path().extension() == ".png" || is_partial(file.path()));
+  };
+  if (is_lock(name) || is_partial(name)) return true;  // of a view that was killed
+  if (name == "predicted")
+    return fs::is_directory(status) && std::ranges::all_of(fs::directory_iterator(entry.path()), is_picture);
+  if (name == "contact_sheet.png") return fs::is_regular_file(status);
+  // Reports of this command line or an earlier one: no picture takes their place.
+  return fs::is_regular_file(status) && (name.extension() == ".html" || name.extension() == ".json");
+}
+
+void refuse_foreign(const std::string& where, const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (!is_of_a_view(entry))
+      throw InputError(where, "holds " + entry.path().filename().string() + ", which is not of an earlier view",
+                       "give a new folder or an empty one");
+}
+
+std::vector<Output> picture_outputs(const fs::path& out) {
+  return {{out, Output::Kind::folder, {}, refuse_foreign},
+          {out / "contact_sheet.png", Output::Kind::file, png_form()},
+          {out / "predicted", Output::Kind::replaced_folder}};
 }
 
 }  // namespace
 
 void add_view_outputs(Command& command, ViewOutputs& outputs) {
-  command.add_option("--out", outputs.out, "Folder for predicted/*.png and contact_sheet.png");
-  command.add_option("--report", outputs.report, "JSON file with all measurements");
-  command.add_option("--html", outputs.html, "HTML file with pictures and plots, self-contained");
-}
-
-void check_outputs(const ViewOutputs& outputs, const std::set<fs::path>& inputs,
-                   std::span<const std::string> pictures) {
-  if (outputs.out) check_folder(*outputs.out, inputs, pictures);
-  if (outputs.report) check_output_file("--report", *outputs.report, inputs);
-  if (outputs.html) check_output_file("--html", *outputs.html, inputs);
-  if (const auto data = outputs.html ? plot_data_file(*outputs.html) : std::nullopt)
-    check_output_file("--html", *data, inputs);
-  std::error_code ignored;
-  if (outputs.report && outputs.html &&
-      fs::weakly_canonical(*outputs.report, ignored) == fs::weakly_canonical(*outputs.html, ignored))
-    throw InputError("--html " + outputs.html->string(), "is the file of --report", "give each its own name");
+  command.add_option("--out", outputs.out, "Folder for predicted/*.png and contact_sheet.png")->writes(picture_outputs);
+  command.add_option("--report", outputs.report, "JSON file with all measurements")->writes(numbers_form());
+  command.add_option("--html", outputs.html, "HTML file with pictures and plots, self-contained")->writes(page_outputs);
 }
 
 void write_reports(const ViewOutputs& outputs, const RunRecord& record, std::span<const Instant> instants,
                    const std::string& title) {
   if (outputs.out && !instants.empty()) write_contact_sheet(title, instants, *outputs.out / "contact_sheet.png");
-  if (outputs.report) {
-    make_folder(fs::absolute(*outputs.report).parent_path());
-    write_json_report(record, *outputs.report);
-  }
-  if (outputs.html) {
-    make_folder(fs::absolute(*outputs.html).parent_path());
-    write_html_report(record, instants, *outputs.html);
-  }
+  if (outputs.report) write_json_report(record, *outputs.report);
+  if (outputs.html) write_html_report(record, instants, *outputs.html);
 }
 
 }  // namespace foresight

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 
@@ -22,12 +21,6 @@ struct ViewOutputs {
 
 /// Adds --out, --report and --html. `outputs` must live as long as `command`.
 void add_view_outputs(Command& command, ViewOutputs& outputs);
-
-/// Refuses outputs that cannot be written, that are each other, or that are one of `inputs` (output_files.hpp).
-/// `pictures`: names of those that are known already. Throws InputError naming the option, the path, the reason and
-/// the cure.
-void check_outputs(const ViewOutputs& outputs, const std::set<std::filesystem::path>& inputs,
-                   std::span<const std::string> pictures);
 
 /// Writes all but the predicted pictures: `title` is the contact sheet's. Throws RuntimeFailure.
 void write_reports(const ViewOutputs& outputs, const RunRecord& record, std::span<const Instant> instants,

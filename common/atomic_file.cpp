@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/partial_path.hpp"
 
 namespace foresight {
 namespace {
@@ -16,9 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, int error) {
-  const bool full = error == ENOSPC || error == EDQUOT;
   throw RuntimeFailure("cannot write " + path.string() + ": " + std::generic_category().message(error),
-                       full ? "free some disk space" : "name a file in a folder that exists and can be written");
+                       cure_of_write_error(error));
 }
 
 // Writes all bytes and closes `fd`. Returns 0 or errno.
@@ -50,8 +50,7 @@ class WrittenFile {
       return;
     }
     target_ = fs::exists(status) ? fs::canonical(path_) : path_;
-    fs::path temporary = target_;
-    temporary += ".part" + std::to_string(::getpid());
+    fs::path temporary = partial_path(target_);
     const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (fd < 0) fail(path_, errno);
     temporary_ = std::move(temporary);
@@ -80,6 +79,12 @@ class WrittenFile {
 };
 
 }  // namespace
+
+const char* cure_of_write_error(int error) {
+  if (error == ENOSPC || error == EDQUOT) return "free some disk space";
+  if (error == EFBIG) return "raise the limit on the size of files (ulimit -f)";
+  return "name a file in a folder that exists and can be written";
+}
 
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
   WrittenFile(path, bytes).rename();

@@ -59,7 +59,7 @@ std::string map_json(const std::string& title, const std::string& unit, std::spa
 }
 
 std::string plot_file_json(const std::string& title, std::span<const std::string> plots) {
-  std::string out = "{\"title\":" + dumped(title) + ",\"plots\":[";
+  std::string out = "{\"generator\":\"foresight\",\"title\":" + dumped(title) + ",\"plots\":[";
   for (std::size_t i = 0; i < plots.size(); ++i) out += (i ? ",\n" : "\n") + plots[i];
   return out + "\n]}\n";
 }

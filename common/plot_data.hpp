@@ -1,6 +1,6 @@
 // The series of plots as JSON beside the page that shows them, so that others can draw their own.
 //
-//   FILE.plots.json of FILE: {"title": "...", "plots": [{"title": "...",
+//   FILE.plots.json of FILE: {"generator": "foresight", "title": "...", "plots": [{"title": "...",
 //     "x": {"unit": "s", "range": [0, 12]}, "y": {"unit": "dB", "range": [20, 40]}, "series": [
 //       {"name": "predicted", "kind": "line" or "dots", "x": [...], "y": [...]},
 //       {"name": "seen", "kind": "area", "x": [...], "low": [...], "high": [...]},

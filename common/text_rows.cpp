@@ -11,7 +11,6 @@
 namespace foresight {
 namespace {
 
-constexpr std::uintmax_t kLargestTable = std::uintmax_t{1} << 30;
 constexpr std::string_view kBlank = " \t\r\v\f";
 
 std::string_view trimmed(std::string_view text) {

@@ -1,6 +1,7 @@
 #include "gl/context.hpp"
 
 #include <epoxy/gl.h>
+#include <sys/resource.h>
 
 #include "common/error.hpp"
 
@@ -25,6 +26,15 @@ std::string error_name(GLenum error) {
 }
 
 }  // namespace
+
+void require_address_space() {
+  constexpr rlim_t kLeast = rlim_t{1} << 30;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur >= kLeast) return;
+  throw RuntimeFailure("the address space is limited to " + std::to_string(limit.rlim_cur >> 20) +
+                           " MiB, and OpenGL needs at least " + std::to_string(kLeast >> 20),
+                       "raise the limit (ulimit -v)");
+}
 
 DriverInfo query_driver() {
   DriverInfo info{text(GL_VENDOR), text(GL_RENDERER), text(GL_VERSION), false};

@@ -144,6 +144,7 @@ std::vector<EGLDeviceEXT> devices_hardware_first() {
 }  // namespace
 
 std::unique_ptr<Context> create_headless_context() {
+  require_address_space();
   std::string tried;
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
     for (EGLDeviceEXT device : devices_hardware_first()) {

@@ -19,6 +19,7 @@ namespace {
 }
 
 std::shared_ptr<void> start_library() {
+  require_address_space();
   if (!glfwInit()) fail("no desktop to open a window on");
   end_with_x_server();
   return {nullptr, [](void*) { glfwTerminate(); }};

@@ -41,13 +41,23 @@ class LoggedBus final : public CanBus {
   CanBusState state() const noexcept override { return bus_.state(); }
   CanCounters counters() const noexcept override { return bus_.counters(); }
 
+  /// Why the log is not complete; "" where it is.
+  std::string fault() {
+    attempt([&] { writer_.flush(); });
+    return fault_;
+  }
+
  private:
   void write(RobotTime time, const CanFrame& frame, bool sent) noexcept {
-    if (failed_) return;
+    attempt([&] { writer_.write(Duration{time.ns}, name(), frame, sent); });
+  }
+  template <typename Work>
+  void attempt(const Work& work) noexcept {
+    if (!fault_.empty()) return;
     try {
-      writer_.write(Duration{time.ns}, name(), frame, sent);
+      work();
     } catch (const std::exception& error) {
-      failed_ = true;
+      fault_ = error.what();
       std::fprintf(stderr, "robot: the log ends here: %s\n", error.what());
     }
   }
@@ -55,7 +65,7 @@ class LoggedBus final : public CanBus {
   CanBus& bus_;
   const Clock& clock_;
   CandumpWriter writer_;
-  bool failed_ = false;
+  std::string fault_;
 };
 
 /// While one network is set up and waits for its answers here, the others go on: their drives' watchdogs would find
@@ -164,6 +174,7 @@ struct RobotDevices::Bus {
   std::unique_ptr<sim::DriveRack> rack;
   std::unique_ptr<CanBus> end;
   std::unique_ptr<CanBus> logged;
+  std::function<std::string()> log_fault;
   std::unique_ptr<MeteredBus> metered;
   std::unique_ptr<PatientBus> patient;
   RobotTime served;
@@ -188,10 +199,7 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
     } else {
       bus->end = std::make_unique<SocketCanBus>(config.interface);
     }
-    if (options.log && stepped)
-      bus->logged = std::make_unique<LoggedBus>(*bus->end, clock, log_of(*options.log, rig, config));
-    else if (options.log)
-      bus->logged = std::make_unique<RecordingBus>(*bus->end, clock, log_of(*options.log, rig, config));
+    if (options.log) open_log(*bus, clock, stepped, log_of(*options.log, rig, config));
     bus->metered = std::make_unique<MeteredBus>(bus->logged ? *bus->logged : *bus->end, clock, rates);
     bus->patient = std::make_unique<PatientBus>(*bus->metered, clock, [this, i] { serve_others(i); });
     bus->network = make_network(*bus->patient, clock, rig, i);
@@ -207,6 +215,28 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
 }
 
 RobotDevices::~RobotDevices() = default;
+
+void RobotDevices::open_log(Bus& bus, Clock& clock, bool stepped, const std::filesystem::path& file) {
+  if (stepped) {
+    auto logged = std::make_unique<LoggedBus>(*bus.end, clock, file);
+    bus.log_fault = [log = logged.get()] { return log->fault(); };
+    bus.logged = std::move(logged);
+  } else {
+    auto logged = std::make_unique<RecordingBus>(*bus.end, clock, file);
+    bus.log_fault = [log = logged.get(), file] {
+      return log->failed() ? file.string() + ": the log ends early (" + std::to_string(log->dropped()) +
+                                 " frames are missing); make room on the disk"
+                           : std::string();
+    };
+    bus.logged = std::move(logged);
+  }
+}
+
+std::string RobotDevices::log_fault() const {
+  for (const auto& bus : buses_)
+    if (std::string fault = bus->log_fault ? bus->log_fault() : ""; !fault.empty()) return fault;
+  return {};
+}
 
 void RobotDevices::serve_others(std::size_t than) noexcept {
   const RobotTime now = clock_.now();

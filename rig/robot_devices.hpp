@@ -49,6 +49,8 @@ class RobotDevices {
   std::vector<Drive*> drives() const;  ///< in the rig's order
   /// Thread-safe while the loop runs.
   std::vector<BusLine> buses() const;
+  /// Why the log of a bus is not complete (a full disk); "" where all are. Once the loop has ended.
+  std::string log_fault() const;
 
   /// Where the shaft of a joint on a mock bus truly was at an instant of the last seconds, in the joint's own unit and
   /// direction; nothing for joints of real buses or that the rig does not have. Any thread; in real time it waits, 50
@@ -63,6 +65,7 @@ class RobotDevices {
  private:
   struct Bus;
   void serve_others(std::size_t than) noexcept;
+  static void open_log(Bus& bus, Clock& clock, bool stepped, const std::filesystem::path& file);
 
   const Rig& rig_;
   Clock& clock_;

@@ -134,7 +134,7 @@ class ColladaCheck final : public pugi::xml_tree_walker {
 }  // namespace
 
 void check_collada(const std::filesystem::path& file) {
-  const std::string text = read_file(file);
+  const std::string text = read_file(file, kLargestMesh);
   ColladaCheck(file, text).run();
 }
 

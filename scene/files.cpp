@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -23,7 +24,8 @@ void write_bytes(const fs::path& file, const void* data, std::size_t size) {
   stream.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
   stream.close();
   if (!stream)
-    throw RuntimeFailure("cannot write " + file.string() + " (" + std::strerror(errno) + ")", "free some disk space");
+    throw RuntimeFailure("cannot write " + file.string() + " (" + std::strerror(errno) + ")",
+                         cure_of_write_error(errno));
 }
 
 void write_text(const fs::path& file, const std::string& text) {

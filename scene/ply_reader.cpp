@@ -200,7 +200,7 @@ class BodyReader {
 }  // namespace
 
 Mesh read_ply(const std::filesystem::path& file) {
-  const std::string content = read_file(file);
+  const std::string content = read_file(file, kLargestMesh);
   return BodyReader(file, content).read();
 }
 

@@ -1,9 +1,12 @@
 #include "scene/run_writer.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "scene/files.hpp"
 #include "scene/number_text.hpp"
@@ -26,6 +29,18 @@ std::string pose_text(const Pose& pose) {
   for (const double value : q) out += number_text(value, 15) + " ";
   out.pop_back();
   return out;
+}
+
+bool is_file_of_run(const fs::path& relative) {
+  constexpr std::array<std::string_view, 10> files{
+      "camera.yaml",    "camera_right.yaml", "rgb.txt",    "rgb_right.txt", "nodes.txt",
+      "trajectory.txt", "registration.txt",  "scene.yaml", "tags.txt",      "without_pose.txt"};
+  const std::string folder = relative.parent_path().string(), name = relative.filename().string();
+  if (folder.empty()) return std::ranges::find(files, name) != files.end();
+  const std::string stem = relative.stem().string();
+  const bool numbered = stem.size() >= 6 && std::ranges::all_of(stem, [](char c) { return c >= '0' && c <= '9'; });
+  if (folder == "rgb" || folder == "rgb_right") return numbered && relative.extension() == ".png";
+  return folder == "meshes" && relative.extension() == ".ply";
 }
 
 RunWriter::RunWriter(fs::path folder, const Lens& left, const std::string& name) : folder_(std::move(folder)) {
@@ -87,7 +102,7 @@ void RunWriter::finish() {
     list->stream.close();
     if (!list->stream)
       throw RuntimeFailure("cannot write " + (folder_ / list->file).string() + " (" + std::strerror(errno) + ")",
-                           "free some disk space");
+                           cure_of_write_error(errno));
   }
 }
 

@@ -55,6 +55,9 @@ class RunWriter {
   List registration_{"registration.txt", "time[s] quality predicted[px]: of the left image's pose, RMS over the image"};
 };
 
+/// Whether a run that was written here, and its scene (scene/scene_writer.hpp), may have a file of this name.
+bool is_file_of_run(const std::filesystem::path& relative);
+
 /// Seconds to the nanosecond: "12.000000001".
 std::string time_text(RobotTime time);
 

@@ -1,38 +1,54 @@
 #include "scene/target_folder.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <fstream>
+#include <utility>
 
 #include "common/error.hpp"
+#include "common/partial_path.hpp"
 
 namespace foresight {
 namespace fs = std::filesystem;
 namespace {
 
-void require_ours(const fs::path& target, const std::string& marker, const std::string& marker_line) {
-  if (!fs::exists(fs::symlink_status(target))) return;
-  if (fs::is_symlink(target) || !fs::is_directory(target))
-    throw InputError(target.string(), "exists and is not a folder", "choose another place");
-  if (fs::is_empty(target)) return;
-  std::string line;
-  std::ifstream stream(target / marker);
-  if (std::getline(stream, line) && line == marker_line) return;
-  const bool recorded = fs::exists(target / "rgb.txt");
-  throw InputError(target.string(),
-                   recorded ? "holds a run that was not made by this command" : "is not empty and holds no run of ours",
-                   "choose a new or empty folder");
+/// The first file in `folder` that is none of the form's, relative to it; empty where there is none.
+fs::path first_foreign(const fs::path& folder, const FolderForm& form) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const fs::path relative = entry.path().lexically_relative(folder);
+    const fs::file_status status = entry.symlink_status();
+    if (!fs::is_directory(status) && !(fs::is_regular_file(status) && form.holds(relative))) return relative;
+  }
+  return {};
 }
 
 }  // namespace
 
-TargetFolder::TargetFolder(const fs::path& target, const std::string& marker, const std::string& marker_line)
-    : target_(fs::absolute(target).lexically_normal()) {
+void require_replaceable(const std::string& where, const fs::path& folder, const FolderForm& form) {
+  if (!fs::exists(fs::symlink_status(folder))) return;
+  if (fs::is_symlink(folder) || !fs::is_directory(folder))
+    throw InputError(where, "exists and is not a folder", "choose another place");
+  if (fs::is_empty(folder)) return;
+  std::string line;
+  std::ifstream stream;
+  if (fs::is_regular_file(folder / form.marker)) stream.open(folder / form.marker);
+  if (!std::getline(stream, line) || line != form.marker_line) {
+    const bool recorded = fs::exists(folder / "rgb.txt");
+    throw InputError(
+        where, recorded ? "holds a run that was not made by this command" : "is not empty and holds no run of ours",
+        "choose a new or empty folder");
+  }
+  if (const fs::path foreign = first_foreign(folder, form); !foreign.empty())
+    throw InputError(where, "holds " + foreign.string() + ", which this command did not write",
+                     "move it elsewhere, or choose a new or empty folder");
+}
+
+TargetFolder::TargetFolder(const fs::path& target, FolderForm form)
+    : form_(std::move(form)), target_(fs::absolute(target).lexically_normal()) {
   if (!target_.has_filename()) target_ = target_.parent_path();
   try {
-    require_ours(target_, marker, marker_line);
-    partial_ = target_.string() + ".partial-" + std::to_string(getpid());
+    require_replaceable(target_.string(), target_, form_);
+    partial_ = partial_path(target_);
     fs::create_directories(target_.parent_path());
     fs::create_directory(partial_);
   } catch (const fs::filesystem_error& e) {
@@ -55,6 +71,12 @@ void TargetFolder::require_space(double bytes) const {
 }
 
 void TargetFolder::commit() {
+  try {
+    require_replaceable(target_.string(), target_, form_);
+  } catch (const InputError& foreign) {
+    const fs::path kept = std::exchange(partial_, fs::path());
+    throw InputError("what was written is in " + kept.string(), foreign.what(), "then give it its name");
+  }
   fs::remove_all(target_);  // ours, or an empty folder
   fs::rename(partial_, target_);
   partial_.clear();

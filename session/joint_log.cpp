@@ -1,5 +1,9 @@
 #include "session/joint_log.hpp"
 
+#include <cerrno>
+#include <cstring>
+
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "scene/run_writer.hpp"
 
@@ -11,7 +15,7 @@ constexpr Duration kPatience = std::chrono::milliseconds(500);
 }  // namespace
 
 JointLog::JointLog(const std::filesystem::path& file, const Rig& rig, BroadcastRing<RobotCycle>::Reader cycles)
-    : stream_(file), cycles_(cycles), joints_(rig.joints.size()) {
+    : file_(file), stream_(file), cycles_(cycles), joints_(rig.joints.size()) {
   if (!stream_) throw RuntimeFailure("cannot write " + file.string(), "choose a folder that can be written");
   stream_.setf(std::ios::fixed);
   stream_.precision(7);
@@ -29,6 +33,11 @@ void JointLog::write() {
       waiting_.pop_front();
     }
   }
+}
+
+std::string JointLog::fault() {
+  if (stream_.flush()) return {};
+  return file_.string() + ": the log ends early (" + std::strerror(errno) + "); " + cure_of_write_error(errno);
 }
 
 void JointLog::write_row(const JointState& state) {

@@ -23,10 +23,13 @@ class JointLog {
   void write();
   /// Cycles without a row: not taken from the ring in time, or with a joint that fell silent.
   std::uint64_t dropped() const { return cycles_.dropped() + silent_; }
+  /// Why the file is not complete (a full disk); "" where it is.
+  std::string fault();
 
  private:
   void write_row(const JointState& state);
 
+  std::filesystem::path file_;
   std::ofstream stream_;
   BroadcastRing<RobotCycle>::Reader cycles_;
   JointTracks joints_;

@@ -22,10 +22,15 @@ fs::path beside_run(fs::path out, const char* ending) {
   return out.concat(ending);
 }
 
+FolderForm RunRecorder::form() {
+  return {kMarker, kMarkerLine,
+          [](const fs::path& relative) { return relative == kMarker || is_file_of_run(relative); }};
+}
+
 RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options, std::shared_ptr<FrameQueue> frames)
     : options_(std::move(options)),
       frames_(std::move(frames)),
-      target_(out, kMarker, kMarkerLine),
+      target_(out, form()),
       run_(target_.path(), options_.lenses.left, "left") {
   target_.require_space(options_.spare_bytes);
   run_.add_right_camera(options_.lenses.right, options_.lenses.T_left_right, "right");

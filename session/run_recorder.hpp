@@ -46,6 +46,7 @@ class RunRecorder {
  public:
   static constexpr const char* kMarker = "record.yaml";  ///< tells our folders from those of others
   static constexpr const char* kMarkerLine = "generator: foresight record";
+  static FolderForm form();                ///< of a folder that a new recording may replace
   static constexpr std::size_t kRoom = 8;  ///< pairs in memory: a quarter of a second
 
   /// `frames`: LiveFrames::subscribe(). Throws InputError (a folder of someone else, a place that cannot be written) or

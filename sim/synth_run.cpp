@@ -44,7 +44,7 @@ class SynthRun {
  public:
   SynthRun(const fs::path& out, const SynthOptions& options)
       : options_(options),
-        target_(out, kMarker, kMarkerLine),
+        target_(out, synth_run_form()),
         // Finer pictures and light for finer images, so that a small test is quick and a large image sharp.
         relative_(640.0 / std::max(options.width, options.height)) {
     options_.sensor.seed = options.seed;
@@ -268,6 +268,18 @@ class SynthRun {
 };
 
 }  // namespace
+
+FolderForm synth_run_form() {
+  return {kMarker, kMarkerLine, [](const fs::path& relative) {
+            if (relative == kMarker || relative == "arm.urdf" || is_file_of_run(relative)) return true;
+            const std::string top = relative.empty() ? "" : relative.begin()->string();
+            if (top != "truth" && top != "truth_right") return false;
+            const fs::path inside = relative.lexically_relative(top);
+            if (inside == "trajectory.txt" || inside == "truth.yaml") return true;
+            const fs::path kind = inside.parent_path();
+            return (kind == "depth" || kind == "node") && is_file_of_run("rgb" / inside.filename());
+          }};
+}
 
 void check(const SynthOptions& o) {
   const auto range = [](const char* option, const char* what, double value, double low, double high) {

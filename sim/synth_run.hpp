@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/lens.hpp"
+#include "scene/target_folder.hpp"
 #include "sim/auto_exposure.hpp"
 #include "sim/sensor.hpp"
 #include "sim/shutter.hpp"
@@ -42,6 +43,9 @@ inline constexpr double kNodeRate = 120;  ///< lowest rate of the poses in nodes
 
 /// The left or right lens of a synthetic run.
 Lens synth_lens(const SynthOptions& options, bool right);
+
+/// Of a folder that a new synthetic run may replace.
+FolderForm synth_run_form();
 
 /// Throws InputError naming the option of `foresight synth`, the value and the range.
 void check(const SynthOptions& options);

@@ -16,11 +16,17 @@
 namespace foresight {
 namespace {
 
+std::vector<Output> plot_outputs(const std::filesystem::path& plot) {
+  std::vector<Output> all = page_outputs(plot);
+  all.front().form = svg_form();
+  return all;
+}
+
 void add_figures(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("figures", "Draws what each step of the thesis' pipeline does");
   auto options = std::make_shared<FigureOptions>();
-  command->add_option("RUN", options->run, "A run, best one of `foresight synth --no-distortion`")->required();
-  command->add_option("--out", options->out, "Folder for the pictures")->required();
+  command->add_option("RUN", options->run, "A run, best one of `foresight synth --no-distortion`")->reads()->required();
+  command->add_option("--out", options->out, "Folder for the pictures")->writes(figure_outputs)->required();
   command->callback([options, &action] { action = [options] { return draw_figures(*options); }; });
 }
 
@@ -28,8 +34,9 @@ void add_extraction(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("extraction", "CPU time of the core and of the thesis' pipeline");
   auto options = std::make_shared<ExtractionBenchOptions>();
   command->add_option("RUN", options->run, "A run; the thesis' own scale: `foresight synth RUN --no-distortion`")
+      ->reads()
       ->required();
-  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->add_option("--images", options->images, "Take only the first so many images")->check(from_to(4, 1000000));
   command->add_flag("!--no-tables", options->tables, "Only the comparison, without tables 7.1 to 7.4");
   command->footer("Example: foresight synth lab --no-distortion && foresight bench extraction lab --json bench.json");
@@ -39,9 +46,12 @@ void add_extraction(Command& bench, std::function<int()>& action) {
 void add_margin(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("margin", "Counts what registration errors paint wrong, by truth");
   auto options = std::make_shared<MarginBenchOptions>();
-  command->add_option("RUN", options->run, "A run of `foresight synth --no-distortion`, with truth")->required();
-  command->add_option("--json", options->json, "File for all numbers");
-  command->add_option("--plot", options->plot, "SVG file; its series go to FILE.plots.json beside it");
+  command->add_option("RUN", options->run, "A run of `foresight synth --no-distortion`, with truth")
+      ->reads()
+      ->required();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->add_option("--plot", options->plot, "SVG file; its series go to FILE.plots.json beside it")
+      ->writes(plot_outputs);
   command->add_option("--images", options->images, "Images of the run, evenly spread")
       ->check(from_to(1, 1024))
       ->capture_default_str();
@@ -51,7 +61,7 @@ void add_margin(Command& bench, std::function<int()>& action) {
 void add_can(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("can", "CPU time of our share of CAN beside what a wire can carry");
   auto options = std::make_shared<CanBenchOptions>();
-  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer("Exit code: 1 where a full 1 Mbit/s bus needs 5 % of a core or more.");
   command->callback([options, &action] { action = [options] { return bench_can(*options); }; });
 }
@@ -59,9 +69,9 @@ void add_can(Command& bench, std::function<int()>& action) {
 void add_robot(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("robot", "Punctuality and CPU time of the control loop, with emulated drives");
   auto options = std::make_shared<RobotBenchOptions>();
-  command->add_option("RIG", options->rig, "Rig file; its buses are taken as mock ones")->required();
+  command->add_option("RIG", options->rig, "Rig file; its buses are taken as mock ones")->reads()->required();
   command->add_option("--seconds", options->seconds, "How long")->check(from_to(1.0, 86400.0))->capture_default_str();
-  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer("Exit code: 1 where the robot did not follow to the end.");
   command->callback([options, &action] { action = [options] { return bench_robot(*options); }; });
 }
@@ -70,14 +80,16 @@ void add_calibration(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("calibration", "CPU time and held-out error of our stereo solver and OpenCV's");
   auto options = std::make_shared<CalibrationBenchOptions>();
   command->add_option("CORNERS", options->corners, "Corners of a pair: .vnl, or a folder with cam0/ and cam1/")
+      ->reads()
       ->required();
   command->add_option("--board", options->board, "As in `foresight calibrate stereo`");
   command->add_option("--size", options->size, "WIDTHxHEIGHT of the images")->capture_default_str();
-  command->add_option("--images", options->images, "Folder or pattern: measures finding the corners in them too");
+  command->add_option("--images", options->images, "Folder or pattern: measures finding the corners in them too")
+      ->reads();
   command->add_option("--runs", options->runs, "Of which the median counts")
       ->check(from_to(1, 100))
       ->capture_default_str();
-  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer(
       "Example: foresight bench calibration corners.vnl --board chessboard:9x6:0.025 --images 'left*.jpg'\n"
       "Exit code: 1 where OpenCV predicts the views left out better.");
@@ -88,7 +100,7 @@ void add_registration(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("registration", "CPU time and error of the registration of a stereo pair");
   auto options = std::make_shared<RegistrationBenchOptions>();
   command->add_option("--pairs", options->pairs, "How many")->check(from_to(2, 1000))->capture_default_str();
-  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer("Example: foresight bench registration --pairs 40");
   command->callback([options, &action] { action = [options] { return bench_registration(*options); }; });
 }
@@ -100,7 +112,7 @@ void add_camera(Command& bench, std::function<int()>& action) {
   command->add_option("--height", options->height, "Pixels")->check(from_to(16, 4096))->capture_default_str();
   command->add_option("--rate", options->rate, "Pairs per second")->check(from_to(1, 240))->capture_default_str();
   command->add_option("--seconds", options->seconds, "Of each round")->check(from_to(1, 60))->capture_default_str();
-  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer("Exit code: 1 where all that is not rendering takes a tenth of a core or more.");
   command->callback([options, &action] { action = [options] { return bench_camera(*options); }; });
 }

@@ -14,9 +14,9 @@
 #include "calibration/camera/rig_start.hpp"
 #include "calibration/target/find_corners.hpp"
 #include "calibration/target/image_input.hpp"
-#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
+#include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
 
 namespace foresight {
@@ -226,7 +226,7 @@ int bench_calibration(const CalibrationBenchOptions& options) {
                                {"time_ratio", ratio},
                                {"simulated", simulated}};
     if (options.images) all["detection"] = detection;
-    write_file_atomically(*options.json, all.dump(2) + "\n");
+    write_numbers(options.json, all.dump(2));
   }
   return a.joint_px <= b.joint_px ? 0 : 1;
 }

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
+#include "common/numbers_file.hpp"
 #include "drivers/camera/stereo_camera.hpp"
 #include "sim/live_view/mock_camera.hpp"
 #include "sim/synth_run.hpp"
@@ -83,7 +83,7 @@ int bench_camera(const CameraBenchOptions& options) {
   std::printf("not rendering, at %.3g Hz: %.2f %% of a core (limit 10 %%: %s)\n", options.rate, 100 * share,
               met ? "met" : "MISSED");
   all["share_of_core_not_rendering"] = share;
-  if (options.json) write_file_atomically(*options.json, all.dump(2) + "\n");
+  write_numbers(options.json, all.dump(2));
   return met ? 0 : 1;
 }
 

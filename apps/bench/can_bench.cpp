@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
+#include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
 #include "drivers/can/can_bits.hpp"
 #include "drivers/can/candump_log.hpp"
@@ -150,7 +150,7 @@ int bench_can(const CanBenchOptions& options) {
   std::printf("%-50s %12s %14.0f\n", "1 Mbit/s wire, these frames", "", typical);
   all["share_of_core_on_full_bus"] = share;
   all["wire_frames_per_second"] = {{"shortest", most}, {"these", typical}};
-  if (options.json) write_file_atomically(*options.json, all.dump(2) + "\n");
+  write_numbers(options.json, all.dump(2));
   return share < kLargestShare ? 0 : 1;
 }
 

@@ -7,10 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bench/extraction_tables.hpp"
-#include "apps/output_files.hpp"
 #include "apps/replay_report/progress_bar.hpp"
-#include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
 #include "display/recorded_source.hpp"
 
@@ -69,9 +68,6 @@ BenchSetup prepare(const RunFolder& run, const ExtractionBenchOptions& options, 
 int bench_extraction(const ExtractionBenchOptions& options) {
   const RunFolder run = RunFolder::open(options.run, {});
   require_thesis_lens(run);
-  RunOptions inputs;
-  inputs.run = options.run;
-  if (options.json) check_output_file("--json", *options.json, input_files(run, inputs));
   const auto context = gl::create_headless_context();
   const gl::DriverInfo driver = gl::query_driver();
   gl::set_up_context();
@@ -108,7 +104,7 @@ int bench_extraction(const ExtractionBenchOptions& options) {
     all["table_7_3_hole_filling"] = bench_hole_filling(setup);
     all["table_7_4_resolutions"] = bench_resolutions(setup);
   }
-  if (options.json) write_file_atomically(*options.json, all.dump(2) + "\n");
+  write_numbers(options.json, all.dump(2));
   return 0;
 }
 

@@ -7,7 +7,6 @@
 #include "apps/bench/core_figure.hpp"
 #include "apps/bench/mask_figures.hpp"
 #include "apps/bench/view_figures.hpp"
-#include "apps/output_files.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 
@@ -28,17 +27,6 @@ void check_run(const RunFolder& run) {
   if (run.frames().size() < kFewest)
     throw InputError(where, "holds only " + std::to_string(run.frames().size()) + " images",
                      "take a run of at least " + std::to_string(kFewest));
-}
-
-void check_out(const fs::path& out, const std::set<fs::path>& inputs) {
-  const std::string where = "--out " + out.string();
-  require_writable(where, fs::absolute(out), kNames[0]);
-  for (const std::string name : kNames) {
-    const fs::path file = out / (name + ".png");
-    require_not_an_input(where, file, inputs);
-    if (fs::is_directory(file))
-      throw InputError(where, name + ".png in it is a folder", "remove it or give another place");
-  }
 }
 
 std::vector<FigurePage> draw_all(const RunFolder& run, const TextureOptions& core) {
@@ -72,7 +60,6 @@ void write(const std::vector<FigurePage>& pages, const fs::path& out) {
     cv::imencode(".png", draw_page(page), png);
     bytes.emplace_back(png.begin(), png.end());
   }
-  make_folder(out);
   std::vector<FileContent> files;
   for (std::size_t i = 0; i < pages.size(); ++i) files.push_back({out / (std::string(kNames[i]) + ".png"), bytes[i]});
   write_files_atomically(files);
@@ -80,11 +67,16 @@ void write(const std::vector<FigurePage>& pages, const fs::path& out) {
 
 }  // namespace
 
+std::vector<Output> figure_outputs(const fs::path& out) {
+  std::vector<Output> all{{out, Output::Kind::folder}};
+  for (const std::string name : kNames) all.push_back({out / (name + ".png"), Output::Kind::file, png_form()});
+  return all;
+}
+
 int draw_figures(const FigureOptions& given) {
   FigureOptions options = given;
   const RunFolder run = open_run(options);
   check_run(run);
-  check_out(options.out, input_files(run, options));
   check_images(run);
   write(draw_all(run, options.textures), options.out);
   std::printf("%s\n", options.out.c_str());

@@ -9,6 +9,8 @@ struct FigureOptions : RunOptions {
   std::filesystem::path out;  ///< folder, made where it is missing
 };
 
+std::vector<Output> figure_outputs(const std::filesystem::path& out);
+
 /// Returns the exit code. Throws InputError and RuntimeFailure.
 int draw_figures(const FigureOptions& options);
 

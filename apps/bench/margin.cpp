@@ -7,10 +7,9 @@
 #include "apps/bench/bench_pipelines.hpp"
 #include "apps/bench/margin_plot.hpp"
 #include "apps/bench/texel_truth.hpp"
-#include "apps/output_files.hpp"
 #include "apps/replay_report/progress_bar.hpp"
-#include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/numbers_file.hpp"
 #include "common/plot_data.hpp"
 #include "display/recorded_source.hpp"
 #include "sim/pose_error.hpp"
@@ -129,10 +128,6 @@ int bench_margin(const MarginBenchOptions& options) {
   if (!GroundTruth::exists(run))
     throw InputError(options.run.string(), "has no truth", "give a run of `foresight synth --no-distortion`");
   require_thesis_lens(run);
-  RunOptions inputs;
-  inputs.run = options.run;
-  if (options.json) check_output_file("--json", *options.json, input_files(run, inputs));
-  if (options.plot) check_output_file("--plot", *options.plot, input_files(run, inputs));
   const GroundTruth truth = GroundTruth::open(run);
   const auto context = gl::create_headless_context();
   const gl::DriverInfo driver = gl::query_driver();
@@ -153,7 +148,7 @@ int bench_margin(const MarginBenchOptions& options) {
   nlohmann::json all;
   all["images"] = frames.size();
   for (const MarginRow& row : rows) all["errors"].push_back(to_json(row));
-  if (options.json) write_file_atomically(*options.json, all.dump(2) + "\n");
+  write_numbers(options.json, all.dump(2));
   if (options.plot) write_page(*options.plot, margin_plot(rows), "bench margin", margin_plot_data(rows));
   return 0;
 }

@@ -10,7 +10,7 @@ namespace {
 void add_ik(Command& prediction, std::function<int()>& action) {
   auto* command = prediction.add_subcommand("ik", "Inverse kinematics of an arm: solved, CPU time, paths followed");
   auto options = std::make_shared<PredictionIkOptions>();
-  command->add_option("--urdf", options->urdf, "Robot; its meshes are not needed")->required();
+  command->add_option("--urdf", options->urdf, "Robot; its meshes are not needed")->reads()->required();
   command->add_option("--tip", options->tip, "Link that is to reach the poses")->required();
   command->add_option("--base", options->base, "Link that the poses are relative to; else the root");
   command->add_option("--poses", options->poses, "Uniform joint vectors whose poses are asked for")
@@ -22,11 +22,12 @@ void add_ik(Command& prediction, std::function<int()>& action) {
   command->add_option("--paths", options->paths, "Random straight paths to follow")
       ->check(from_to(0, 1'000'000))
       ->capture_default_str();
-  command->add_option(
-      "--path", options->path,
-      "CSV with time_s and x y z qx qy qz qw, perhaps after prefixes: followed instead, moved and scaled "
-      "into the workspace");
-  command->add_option("--json", options->json, "File for all numbers");
+  command
+      ->add_option("--path", options->path,
+                   "CSV with time_s and x y z qx qy qz qw, perhaps after prefixes: followed instead, moved and scaled "
+                   "into the workspace")
+      ->reads();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer(
       "Example: foresight bench prediction ik --urdf configs/arm.urdf --tip arm_7 --json ik.json\n"
       "Exit code: 1 where a joint stepped farther than its velocity allows.");

@@ -6,8 +6,8 @@
 #include "apps/bench/prediction_ik_poses.hpp"
 #include "apps/bench/prediction_kdl.hpp"
 #include "apps/bench/prediction_paths.hpp"
-#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
+#include "common/numbers_file.hpp"
 
 namespace foresight {
 namespace {
@@ -185,7 +185,7 @@ int bench_prediction_ik(const PredictionIkOptions& options) {
   for (const HandPath& path : paths)
     if (path.scale < 1) std::printf("%s: scaled by %.3f\n", path.name.c_str(), path.scale);
   report(figures, all);
-  if (options.json) write_file_atomically(*options.json, all.dump(2) + "\n");
+  write_numbers(options.json, all.dump(2));
   return figures.largest_step_over_limit > 1 ? 1 : 0;
 }
 

@@ -1,7 +1,6 @@
 #include "apps/bench/prediction_paths.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -10,6 +9,7 @@
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "common/text_rows.hpp"
 
 namespace foresight {
 namespace {
@@ -44,16 +44,6 @@ JointVector roomy_start(const InverseKinematics& kinematics) {
     if (value > most) most = value, best = q;
   }
   return best;
-}
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line)
-    if (c == ',')
-      fields.emplace_back();
-    else if (c != '\r')
-      fields.back() += c;
-  return fields;
 }
 
 struct PoseColumns {
@@ -126,37 +116,40 @@ std::vector<HandPath> random_paths(const InverseKinematics& kinematics, std::siz
 }
 
 std::vector<HandPath> recorded_paths(const InverseKinematics& kinematics, const std::filesystem::path& csv) {
-  std::ifstream stream(csv);
-  std::string line;
-  if (!stream || !std::getline(stream, line)) throw InputError(csv.string(), "cannot be read", "name a CSV file");
-  const std::vector<std::string> header = split(line);
-  const auto time = std::find(header.begin(), header.end(), "time_s");
-  const std::vector<PoseColumns> columns = find_columns(header);
-  if (time == header.end() || columns.empty())
-    throw InputError(at_line(csv, 1), "names no time_s or no pose (x y z qx qy qz qw, perhaps after a prefix)",
-                     "write the names of the columns in the first line");
-  std::vector<HandPath> paths(columns.size());
+  std::vector<std::string> header;
+  std::size_t time = 0;
+  std::vector<PoseColumns> columns;
+  std::vector<HandPath> paths;
   double before = 0;
-  for (int number = 2; std::getline(stream, line); ++number) {
-    if (line.empty() || line == "\r") continue;
-    std::vector<double> row;
-    for (const std::string& field : split(line))
-      row.push_back(parse_number(field).value_or(std::numeric_limits<double>::quiet_NaN()));
-    if (row.size() != header.size())
-      throw InputError(at_line(csv, number), "has " + std::to_string(row.size()) + " fields",
+  for_each_row(csv, {RowForm::Between::commas}, [&](const TextRow& line) {
+    if (header.empty()) {
+      header.assign(line.fields.begin(), line.fields.end());
+      time = static_cast<std::size_t>(std::ranges::find(header, "time_s") - header.begin());
+      columns = find_columns(header);
+      paths.resize(columns.size());
+      if (time == header.size() || columns.empty())
+        throw InputError(line.where(), "names no time_s or no pose (x y z qx qy qz qw, perhaps after a prefix)",
+                         "write the names of the columns in the first line");
+      return;
+    }
+    if (line.fields.size() != header.size())
+      throw InputError(line.where(), "has " + std::to_string(line.fields.size()) + " fields",
                        "write " + std::to_string(header.size()) + ", as the first line has");
-    const double now = row[static_cast<std::size_t>(time - header.begin())];
-    if (!std::isfinite(now)) throw InputError(at_line(csv, number), "its time is no number", "write seconds");
+    std::vector<double> row;
+    for (const std::string_view field : line.fields)
+      row.push_back(parse_number(field).value_or(std::numeric_limits<double>::quiet_NaN()));
+    const double now = row[time];
+    if (!std::isfinite(now)) throw InputError(line.where(time), "its time is no number", "write seconds");
     const bool first = paths[0].dt.empty();
     if (!first && !(now > before))
-      throw InputError(at_line(csv, number), "its time is not after the one before", "sort the rows by time");
+      throw InputError(line.where(time), "its time is not after the one before", "sort the rows by time");
     for (std::size_t c = 0; c < columns.size(); ++c) {
       paths[c].dt.push_back(first ? kCycle : now - before);
       paths[c].T_base_tip.push_back(read_pose(row, columns[c]));
     }
     before = now;
-  }
-  if (paths[0].dt.empty()) throw InputError(csv.string(), "has no row", "name a recording");
+  });
+  if (paths.empty() || paths[0].dt.empty()) throw InputError(csv.string(), "has no row", "name a recording");
   const JointVector start = roomy_start(kinematics);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     paths[c].name = columns[c].prefix.empty() ? csv.stem().string() : columns[c].prefix;

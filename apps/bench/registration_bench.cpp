@@ -5,8 +5,8 @@
 
 #include "apps/bench/bench_pipelines.hpp"
 #include "calibration/registration/registration.hpp"
-#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
+#include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
 #include "sim/pan_tilt_head.hpp"
 #include "sim/tag_room.hpp"
@@ -107,7 +107,7 @@ int bench_registration(const RegistrationBenchOptions& options) {
                 row["predicted_px"].get<double>());
     all["rows"].push_back(row);
   }
-  if (options.json) write_file_atomically(*options.json, all.dump(2) + "\n");
+  write_numbers(options.json, all.dump(2));
   return 0;
 }
 

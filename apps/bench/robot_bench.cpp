@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "common/atomic_file.hpp"
 #include "common/cpu_time.hpp"
+#include "common/numbers_file.hpp"
 #include "common/real_time.hpp"
 #include "drivers/robot/robot.hpp"
 #include "rig/robot_devices.hpp"
@@ -125,7 +125,7 @@ int bench_robot(const RobotBenchOptions& options) {
                                 {"empty_loop", to_json(empty)},
                                 {"loop_cpu_share", wall > 0 ? loop_cpu / wall : 0},
                                 {"all_cpu_share", wall > 0 ? all_cpu / wall : 0}};
-    write_file_atomically(*options.json, all.dump(2) + "\n");
+    write_numbers(options.json, all.dump(2));
   }
   return followed ? 0 : 1;
 }

@@ -192,23 +192,26 @@ int run(ArmOptions& options) {
 void add_arm(Command& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<ArmOptions>();
   auto* arm = calibrate.add_subcommand("arm", "Hand-eye of a camera on an arm, or of an arm before a camera");
-  arm->add_option("--images", options->images, "Folder of images");
-  arm->add_option("--corners", options->corners, "Found corners instead: .vnl file, or folder of .csv");
+  arm->add_option("--images", options->images, "Folder of images")->reads();
+  arm->add_option("--corners", options->corners, "Found corners instead: .vnl file, or folder of .csv")->reads();
   arm->add_option("--board", options->board,
                   "Board, such as chessboard:9x6:0.025 or charuco:5x7:0.036:0.018:DICT_6X6_250");
   arm->add_option("--poses", options->poses,
-                  "Robot poses, base to flange: 4x4 rows, x y z qx qy qz qw, or a folder with one file each");
+                  "Robot poses, base to flange: 4x4 rows, x y z qx qy qz qw, or a folder with one file each")
+      ->reads();
   arm->add_option("--pose-unit", options->unit, "Of the positions")
       ->check(one_of({"auto", "m", "mm"}))
       ->capture_default_str();
   arm->add_flag("--invert-poses", options->invert, "The poses are written from flange to base");
   arm->add_option("--joints", options->joints,
-                  "Joint positions instead, rad, rows [name] q1 q2 ..., for --urdf; also gives their offsets");
-  arm->add_option("--urdf", options->urdf, "The arm");
+                  "Joint positions instead, rad, rows [name] q1 q2 ..., for --urdf; also gives their offsets")
+      ->reads();
+  arm->add_option("--urdf", options->urdf, "The arm")->reads();
   arm->add_option("--base-link", options->names.base, "Link that stands still (default: the root)");
   arm->add_option("--flange-link", options->names.flange, "Link that carries camera or board (default: the last)");
   arm->add_option("--camera", options->camera,
-                  "Known lens: result of kind intrinsics, or camera_info; else it is estimated");
+                  "Known lens: result of kind intrinsics, or camera_info; else it is estimated")
+      ->reads();
   arm->add_option("--model", options->model, "Lens model that is estimated")->capture_default_str();
   arm->add_option("--camera-mount", options->mount, "Camera fixed beside the arm, or moving with it")
       ->check(one_of({"auto", "fixed", "moving"}))
@@ -217,7 +220,8 @@ void add_arm(Command& calibrate, std::function<int()>& action) {
       ->check(from_to(0.0, 0.2))
       ->capture_default_str();
   auto* head = arm->add_option("--head", options->head,
-                               "Result of kind pan-tilt of the head that carries the camera: arm to head");
+                               "Result of kind pan-tilt of the head that carries the camera: arm to head")
+                   ->reads();
   head->needs(
       arm->add_option("--head-angles", options->head_angles, "Pan and tilt during the session, rad")->expected(2));
   add_outputs(*arm, options->outputs);

@@ -59,17 +59,21 @@ void require_one_source(const CornerInput& input, bool pair) {
 }  // namespace
 
 void add_camera_input(Command& command, CornerInput& input, bool pair) {
-  command.add_option("--corners", input.corners,
-                     pair ? "Corners found before: mrcal .vnl, or a folder with cam0/ and cam1/"
-                          : "Corners found before: mrcal .vnl, or a folder of .csv");
+  command
+      .add_option("--corners", input.corners,
+                  pair ? "Corners found before: mrcal .vnl, or a folder with cam0/ and cam1/"
+                       : "Corners found before: mrcal .vnl, or a folder of .csv")
+      ->reads();
   if (pair) {
-    command.add_option("--left", input.left, "Folder of the left images, or a pattern such as 'pictures/left*.jpg'");
-    command.add_option("--right", input.right, "Folder of the right images, or a pattern");
+    command.add_option("--left", input.left, "Folder of the left images, or a pattern such as 'pictures/left*.jpg'")
+        ->reads();
+    command.add_option("--right", input.right, "Folder of the right images, or a pattern")->reads();
   } else {
-    command.add_option("--images", input.images, "Folder of images, or a pattern such as 'pictures/left*.jpg'");
+    command.add_option("--images", input.images, "Folder of images, or a pattern such as 'pictures/left*.jpg'")
+        ->reads();
   }
   command.add_option("--board", input.board, "KIND:COLSxROWS:SIZE_M, such as chessboard:9x6:0.025");
-  command.add_option("--test-corners", input.test_corners, "Corners that only score, not solve");
+  command.add_option("--test-corners", input.test_corners, "Corners that only score, not solve")->reads();
   command.add_option("--size", input.size, "WIDTHxHEIGHT of the images, where --corners does not say it");
 }
 

@@ -80,11 +80,18 @@ void write_camera_info(const CameraCalibration& c, const std::filesystem::path& 
   write_cameras(CameraFormat::camera_info, rig, rig.pair() ? folder : folder / "camera.yaml", true);
 }
 
+std::vector<Output> camera_info_outputs(const std::filesystem::path& folder) {
+  return {{folder, Output::Kind::folder},
+          {folder / "camera.yaml", Output::Kind::file, camera_info_form()},
+          {folder / "camera_right.yaml", Output::Kind::file, camera_info_form()}};
+}
+
 }  // namespace
 
 void add_camera_output(Command& command, CameraOutput& output) {
   add_outputs(command, output.files);
-  command.add_option("--camera-info", output.camera_info, "Folder for ROS camera_info files, as a run folder has them");
+  command.add_option("--camera-info", output.camera_info, "Folder for ROS camera_info files, as a run folder has them")
+      ->writes(camera_info_outputs);
   command.add_option("--serials", output.serials, "Serial numbers of the cameras, for the result file")->expected(1, 2);
 }
 

@@ -160,6 +160,24 @@ int run(const Arguments& a) {
   return report(a, session, capture(a, *source, session, clock));
 }
 
+std::vector<Output> now_outputs(const std::filesystem::path& folder) {
+  return {{folder, Output::Kind::folder}, {folder / "now.png", Output::Kind::file, png_form()}};
+}
+
+void refuse_files(const std::string& where, const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (!entry.is_directory())
+      throw InputError(where, "already holds files, such as " + entry.path().filename().string(),
+                       "name a new folder, or empty it");
+}
+
+std::vector<Output> capture_outputs(const Arguments& a, const std::filesystem::path& out) {
+  std::vector<Output> all;
+  if (a.pictures.empty()) all = now_outputs(out.string() + "-seen");
+  all.push_back({out, Output::Kind::folder, {}, refuse_files});
+  return all;
+}
+
 }  // namespace
 
 void add_capture(Command& calibrate, std::function<int()>& action) {
@@ -168,24 +186,29 @@ void add_capture(Command& calibrate, std::function<int()>& action) {
   auto a = std::make_shared<Arguments>();
   command->add_option("--board", a->board, "chessboard|charuco|apriltag|circles:COLSxROWS:SIZE_M[:EXTRA[:FAMILY]]")
       ->required();
-  command->add_option("--out", a->out, "New folder; left/ and right/ in it for a pair")->required();
-  command->add_option("--pictures", a->pictures,
-                      "Folder for now.png, what the window would show (without a window: OUT-seen)");
+  command->add_option("--out", a->out, "New folder; left/ and right/ in it for a pair")
+      ->writes([a](const std::filesystem::path& out) { return capture_outputs(*a, out); })
+      ->required();
+  command
+      ->add_option("--pictures", a->pictures,
+                   "Folder for now.png, what the window would show (without a window: OUT-seen)")
+      ->writes(now_outputs);
   auto* window = command->add_flag("--window", a->window, "Open a window (default: where there is a display)");
   command->add_flag("--no-window", a->no_window, "Open none")->excludes(window);
-  command->add_option("--rig", a->rig, "Rig file with both cameras");
+  command->add_option("--rig", a->rig, "Rig file with both cameras")->reads();
   command->add_option("--only", a->only, "Of --rig, this camera alone")->check(one_of({"left", "right"}));
-  command->add_option("--left", a->left, "Device: a path, serial:..., bus:... or libcamera:...");
-  command->add_option("--right", a->right, "The right camera's");
-  command->add_option("--camera", a->camera, "A lone camera: the same forms");
+  command->add_option("--left", a->left, "Device: a path, serial:..., bus:... or libcamera:...")->reads();
+  command->add_option("--right", a->right, "The right camera's")->reads();
+  command->add_option("--camera", a->camera, "A lone camera: the same forms")->reads();
   command->add_option("--images", a->images, "Folders of images instead: DIR of a lone camera, or LEFTDIR RIGHTDIR")
+      ->reads()
       ->expected(1, 2);
   command->add_flag("--mock", a->mock, "The mock lab's cameras instead, with the board held before them");
   command->add_option("--seed", a->seed, "Of the mock lab: another way to hold the board");
   command->add_option("--rate", a->rate, "Images per second")->check(from_to(0.1, 1000.0));
   command->add_option("--views", a->views, "Views to take at least")->check(from_to(5, 1000));
   command->add_option("--seconds", a->seconds, "Longest time")->check(from_to(1e-9, 1e9));
-  command->add_option("--json", a->json, "File for all numbers");
+  command->add_option("--json", a->json, "File for all numbers")->writes(numbers_form());
   command->footer(
       "Example: foresight calibrate capture --rig configs/minerva.yaml --board charuco:8x5:0.03:0.022:DICT_5X5_100 "
       "--out set\n         foresight calibrate capture --camera /dev/video0 --board chessboard:9x6:0.025 --out set\n"

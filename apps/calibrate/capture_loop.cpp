@@ -1,7 +1,6 @@
 #include "apps/calibrate/capture_loop.hpp"
 
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -10,6 +9,7 @@
 #include "calibration/target/capture_picture.hpp"
 #include "common/error.hpp"
 #include "common/latest_value.hpp"
+#include "common/stop_signal.hpp"
 #include "display/view_window.hpp"
 #include "gl/glfw_window.hpp"
 
@@ -20,13 +20,6 @@ using namespace std::chrono_literals;
 
 constexpr Duration kShowTaken = 1s, kShowEnd = 3s;
 constexpr Duration kRedraw = 40ms;  // at least, so that a moved or uncovered window is drawn again
-
-volatile std::sig_atomic_t interrupted = 0;
-
-void catch_signals() {
-  interrupted = 0;
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = 1; });
-}
 
 struct Running {  // stops also where something throws
   explicit Running(CaptureSource& of) : source(of) { source.start(); }
@@ -117,7 +110,7 @@ class Patience {
 
   void hear() { heard_ = clock_.now(), any_ = true; }
   std::optional<CaptureEnd> over() const {
-    if (interrupted != 0) return CaptureEnd::interrupted;
+    if (stop_requested()) return CaptureEnd::interrupted;
     const RobotTime now = clock_.now();
     if (now - begin_ >= options_.longest) return CaptureEnd::late;
     if (source_.at_end()) return CaptureEnd::no_more_images;
@@ -185,7 +178,7 @@ class LiveWindow {
 
 void linger(LiveWindow& live, const Scene& scene, const Clock& clock) {
   const RobotTime end = clock.now() + kShowEnd;
-  while (clock.now() < end && interrupted == 0 && !live.window().should_close()) {
+  while (clock.now() < end && !stop_requested() && !live.window().should_close()) {
     live.draw(scene);
     live.window().wait_events(to_seconds(kRedraw));
   }
@@ -213,7 +206,7 @@ bool has_display() {
 
 CaptureEnd capture_with_pictures(CaptureSource& source, CaptureSession& session, const Clock& clock,
                                  const CaptureLoopOptions& options) {
-  catch_signals();
+  poll_stop_signals();
   Judge judge(session, options.pictures);
   const Running running(source);
   Patience patience(source, clock, options);
@@ -231,7 +224,7 @@ CaptureEnd capture_with_window(CaptureSource& source, CaptureSession& session, c
                                const CaptureLoopOptions& options) {
   LiveWindow live;
   std::fprintf(stderr, "capture: in a window; Space takes a view, Escape ends\n");
-  catch_signals();
+  poll_stop_signals();
   JudgeThread judge(session, options.pictures);
   const Running running(source);
   Patience patience(source, clock, options);

@@ -197,10 +197,11 @@ void add_display(Command& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand("display", "The lens of a head display, from pictures taken through it");
   command->add_option("--pattern", options->pattern, "PANEL:CORNERS:SQUARE in pixels, such as 1440x1600:9x8:120")
       ->required();
-  command->add_option("--pattern-out", options->pattern_out, "Writes what the panel has to show, a PNG");
-  command->add_option("--images", options->images, "Folder of pictures that the eye camera took");
-  command->add_option("--corners", options->points, "Instead: rows 'picture u v panel_u panel_v'");
-  command->add_option("--eye-camera", options->eye_camera, "camera_info file of the eye camera");
+  command->add_option("--pattern-out", options->pattern_out, "Writes what the panel has to show, a PNG")
+      ->writes(png_form());
+  command->add_option("--images", options->images, "Folder of pictures that the eye camera took")->reads();
+  command->add_option("--corners", options->points, "Instead: rows 'picture u v panel_u panel_v'")->reads();
+  command->add_option("--eye-camera", options->eye_camera, "camera_info file of the eye camera")->reads();
   command
       ->add_option("--virtual-distance-m", options->virtual_distance_m,
                    "Distance of the virtual image; then the eye camera's positions are found too")

@@ -179,15 +179,17 @@ int run_export(const ExportOptions& options) {
 void add_export(Command& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<ExportOptions>();
   auto* command = calibrate.add_subcommand("export", "Writes a calibration for other programs, and reads theirs");
-  command->add_option("INPUT", options->input, "Result file, or what --from names")->required();
+  command->add_option("INPUT", options->input, "Result file, or what --from names")->reads()->required();
   command->add_option("--to", options->to, "camera-info, kalibr, opencv, mrcal, urdf, or result")
       ->required()
       ->check(one_of({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
   command->add_option("--from", options->from, "Format of INPUT: one of the same")
       ->capture_default_str()
       ->check(one_of({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
-  command->add_option("--urdf", options->urdf, "With --to urdf: the robot to correct; else a new file");
-  add_outputs(*command, options->outputs);
+  command->add_option("--urdf", options->urdf, "With --to urdf: the robot to correct; else a new file")->reads();
+  add_outputs(*command, options->outputs, [](const std::filesystem::path& out) -> std::vector<Output> {
+    return {{out, Output::Kind::either}};  // what is there stays, but for --force
+  });
   command->footer(
       "A pair becomes a folder with camera-info and mrcal, one file with the others. What is written is read\n"
       "back, and 1,000 rays per camera must meet the same pixels within 1e-6 px.\n\n"

@@ -17,8 +17,8 @@ struct CalibrateOutputs {
   bool force = false;                           ///< replaces a better result
 };
 
-/// --json, --out, --report, --force.
-void add_outputs(Command& command, CalibrateOutputs& outputs);
+/// --json, --out, --report, --force. `out`: what --out writes, where that is no result file.
+void add_outputs(Command& command, CalibrateOutputs& outputs, OutputsOf out = {});
 
 /// Writes to `file` where there is one; throws RuntimeFailure where it cannot be written.
 void write_json(const std::optional<std::filesystem::path>& file, const nlohmann::ordered_json& numbers);

@@ -131,18 +131,23 @@ void add_pan_tilt(Command& calibrate, std::function<int()>& action) {
   auto* head = calibrate.add_subcommand(
       "pan-tilt", "Axes, zero angles and backlash of a two-axis head, from poses or views at known angles");
   head->add_option(
-      "--poses", input.poses,
-      "Camera poses in the world: 4x4 rows or x y z qx qy qz qw; or .yaml with angles: NAME: {pose, target_joints}");
+          "--poses", input.poses,
+          "Camera poses in the world: 4x4 rows or x y z qx qy qz qw; or .yaml with angles: NAME: {pose, target_joints}")
+      ->reads();
   head->add_option("--angles", input.angles,
-                   "Rows [name] pan tilt [pan_way tilt_way], rad; ways +1 or -1: from below or above");
+                   "Rows [name] pan tilt [pan_way tilt_way], rad; ways +1 or -1: from below or above")
+      ->reads();
   head->add_option("--images", input.images,
-                   "Views of a tag map (--tags) or a board that stands still, instead of poses");
-  head->add_option("--corners", input.corners, "Found corners instead of images");
+                   "Views of a tag map (--tags) or a board that stands still, instead of poses")
+      ->reads();
+  head->add_option("--corners", input.corners, "Found corners instead of images")->reads();
   head->add_option("--board", input.board, "The board, such as apriltag:6x6:0.055");
   head->add_option("--camera", input.camera,
-                   "The lens, for views: result of kind intrinsics (with --tags also stereo), or camera_info");
+                   "The lens, for views: result of kind intrinsics (with --tags also stereo), or camera_info")
+      ->reads();
   add_tag_options(*head, options->tags.input);
-  head->add_option("--time", options->tags.time, "Result of `calibrate time` for --run; else a moving head tells it");
+  head->add_option("--time", options->tags.time, "Result of `calibrate time` for --run; else a moving head tells it")
+      ->reads();
   head->add_option("--poses-are", options->poses_are, "camera to world, or its inverse")
       ->check(one_of({"auto", "world-camera", "camera-world"}))
       ->capture_default_str();

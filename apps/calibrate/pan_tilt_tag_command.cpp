@@ -108,17 +108,23 @@ void print(const Solved& solved) {
 }  // namespace
 
 void add_tag_options(Command& command, PanTiltTagInput& input) {
-  command.add_option("--tags", input.tags,
-                     "Map of tags that stand still: rows id corner x y z, world, m (tags.txt of RUN)");
-  command.add_option("--run", input.run, "A recorded run and its joints (RUN-joints.csv), instead of images");
-  command.add_option("--joints", input.joints, "The joints of the run: rows time and positions, after a row of names");
+  command
+      .add_option("--tags", input.tags,
+                  "Map of tags that stand still: rows id corner x y z, world, m (tags.txt of RUN)")
+      ->reads();
+  command.add_option("--run", input.run, "A recorded run and its joints (RUN-joints.csv), instead of images")->reads();
+  command.add_option("--joints", input.joints, "The joints of the run: rows time and positions, after a row of names")
+      ->reads();
   command.add_option("--joint-names", input.joint_names, "Of pan and tilt in that row")
       ->expected(2)
       ->capture_default_str();
-  command.add_option("--right", input.right, "Pictures of the right camera, as many as --images has");
-  command.add_option("--camera-right", input.camera_right, "The right camera's lens (camera_info with T_left_right)");
-  command.add_option("--photometric", input.photometric,
-                     "Result of `calibrate photometric`: corners of tags are found in the light");
+  command.add_option("--right", input.right, "Pictures of the right camera, as many as --images has")->reads();
+  command.add_option("--camera-right", input.camera_right, "The right camera's lens (camera_info with T_left_right)")
+      ->reads();
+  command
+      .add_option("--photometric", input.photometric,
+                  "Result of `calibrate photometric`: corners of tags are found in the light")
+      ->reads();
   command.add_option("--family", input.family, "Of the tags")->capture_default_str();
   command.add_option("--most-views", input.most_views, "Of a run, spread over its time")
       ->check(from_to(8, 2000))

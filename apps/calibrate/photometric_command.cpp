@@ -203,16 +203,17 @@ int run_photometric(const PhotometricCommandOptions& options) {
 void add_photometric(Command& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<PhotometricCommandOptions>();
   auto* command = calibrate.add_subcommand("photometric", "Response, vignetting, gain between two cameras");
-  command->add_option("--images", options->one.series, "Folder: a still scene at several exposure times");
-  command->add_option("--flat", options->one.flat, "Folder: an evenly lit surface that fills the image");
-  command->add_option("--left", options->left.series, "The same for a pair: left series");
-  command->add_option("--right", options->right.series, "Right series");
-  command->add_option("--left-flat", options->left.flat, "Left flat field; the gain is from the same surface in both");
-  command->add_option("--right-flat", options->right.flat, "Right flat field");
-  command->add_option("--camera", options->one.camera, "camera_info file, for the centre of the vignetting");
-  command->add_option("--left-camera", options->left.camera, "camera_info file of the left camera");
-  command->add_option("--right-camera", options->right.camera, "camera_info file of the right camera");
-  command->add_option("--exposures", options->exposures, "Rows 'NAME SECONDS' for all images; without: EXIF");
+  command->add_option("--images", options->one.series, "Folder: a still scene at several exposure times")->reads();
+  command->add_option("--flat", options->one.flat, "Folder: an evenly lit surface that fills the image")->reads();
+  command->add_option("--left", options->left.series, "The same for a pair: left series")->reads();
+  command->add_option("--right", options->right.series, "Right series")->reads();
+  command->add_option("--left-flat", options->left.flat, "Left flat field; the gain is from the same surface in both")
+      ->reads();
+  command->add_option("--right-flat", options->right.flat, "Right flat field")->reads();
+  command->add_option("--camera", options->one.camera, "camera_info file, for the centre of the vignetting")->reads();
+  command->add_option("--left-camera", options->left.camera, "camera_info file of the left camera")->reads();
+  command->add_option("--right-camera", options->right.camera, "camera_info file of the right camera")->reads();
+  command->add_option("--exposures", options->exposures, "Rows 'NAME SECONDS' for all images; without: EXIF")->reads();
   add_outputs(*command, options->outputs);
   command->footer(
       "Switch automatic exposure, gain and white balance off. A flat field at several exposure times is enough\n"

@@ -119,17 +119,20 @@ int run_scene(const SceneOptions& options) {
 void add_scene(Command& calibrate, std::function<int()>& action) {
   const auto options = std::make_shared<SceneOptions>();
   auto* command = calibrate.add_subcommand("scene", "Places a model in the world from measured points or tags");
-  command->add_option("--points", options->points, "Rows 'x y z X Y Z [sigma]': model, world, in metres");
-  command->add_option("--tags", options->tags, "Rows 'id corner x y z': tag corners in the model");
-  command->add_option("--tag-corners", options->tag_corners, "The same corners in the world");
-  command->add_option("--seen", options->seen, "Instead: rows 'image id corner u v', found in images");
-  command->add_option("--camera", options->camera, "With --seen: camera_info file of the camera");
-  command->add_option("--camera-poses", options->camera_poses,
-                      "With --seen: rows 'image tx ty tz qx qy qz qw', camera to world");
+  command->add_option("--points", options->points, "Rows 'x y z X Y Z [sigma]': model, world, in metres")->reads();
+  command->add_option("--tags", options->tags, "Rows 'id corner x y z': tag corners in the model")->reads();
+  command->add_option("--tag-corners", options->tag_corners, "The same corners in the world")->reads();
+  command->add_option("--seen", options->seen, "Instead: rows 'image id corner u v', found in images")->reads();
+  command->add_option("--camera", options->camera, "With --seen: camera_info file of the camera")->reads();
+  command
+      ->add_option("--camera-poses", options->camera_poses,
+                   "With --seen: rows 'image tx ty tz qx qy qz qw', camera to world")
+      ->reads();
   command->add_option("--sigma-px", options->sigma_px, "With --seen: standard deviation of a corner")
       ->check(from_to(1e-3, 20.0))
       ->capture_default_str();
-  command->add_option("--model", options->model, "Mesh or scene.yaml: checks that the points can be its points");
+  command->add_option("--model", options->model, "Mesh or scene.yaml: checks that the points can be its points")
+      ->reads();
   command->add_option("--sigma-m", options->placement.sigma_m, "Standard deviation of a measured coordinate")
       ->check(from_to(1e-6, 1.0))
       ->capture_default_str();

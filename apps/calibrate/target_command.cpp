@@ -86,10 +86,10 @@ void add_target(Command& calibrate, std::function<int()>& action) {
   auto a = std::make_shared<Arguments>();
   command->add_option("--board", a->board, "chessboard|charuco|apriltag|circles:COLSxROWS:SIZE_M[:EXTRA[:FAMILY]]")
       ->required();
-  command->add_option("--out", a->out, "PDF to write");
+  command->add_option("--out", a->out, "PDF to write")->writes(board_form());
   command->add_option("--paper", a->paper, "A4 (default), A3 .. A0, letter, or WxH in mm");
   command->add_option("--measured", a->measured, "What the two printed rulers of 100 mm measure: X_MM,Y_MM");
-  command->add_option("--json", a->json, "File for all numbers");
+  command->add_option("--json", a->json, "File for all numbers")->writes(numbers_form());
   command->footer(
       "Example: foresight calibrate target --board chessboard:9x6:0.025 --paper A3 --out board.pdf\n"
       "         foresight calibrate target --board chessboard:9x6:0.025 --measured 99.8,99.9");

@@ -102,7 +102,8 @@ int run(TimeCommandOptions& options) {
             << readable(summary.scatter_mrad, 2) << " mrad over " << summary.samples << " samples, " << summary.outliers
             << " beyond 5 times that\n";
   if (!turns)
-    std::cout << "T_hand_camera  " << readable_pose(summary.X) << "\nT_base_target  " << readable_pose(summary.Y) << "\n";
+    std::cout << "T_hand_camera  " << readable_pose(summary.X) << "\nT_base_target  " << readable_pose(summary.Y)
+              << "\n";
   print_notes(summary.notes);
   write_json(options.outputs.json, numbers_of(summary, turns));
   if (options.outputs.report) report_of(summary, turns).write(*options.outputs.report);
@@ -120,13 +121,16 @@ void add_time(Command& calibrate, std::function<int()>& action) {
   auto* time = calibrate.add_subcommand(
       "time", "Offset of the clocks, t_encoder = t_camera + offset, from motion that both saw");
   auto* poses = time->add_option("--poses", options->poses,
-                                 "Encoder stream: rows t x y z qx qy qz qw, base to hand, blanks or commas");
+                                 "Encoder stream: rows t x y z qx qy qz qw, base to hand, blanks or commas")
+                    ->reads();
   time->add_option("--camera-poses", options->camera_poses, "Camera stream: the same, target to camera or its inverse")
+      ->reads()
       ->required();
   time->add_option("--joints", options->joints,
                    "Encoder log instead: rows t q1 q2 ..., rad; one or two joints of a head, or all of --urdf")
+      ->reads()
       ->excludes(poses);
-  time->add_option("--urdf", options->urdf, "The robot of --joints");
+  time->add_option("--urdf", options->urdf, "The robot of --joints")->reads();
   time->add_option("--base-link", options->base, "Link that stands still (default: the root)");
   time->add_option("--flange-link", options->flange, "Link that carries the camera (default: the last)");
   const std::map<std::string, TimeUnit> units{{"auto", TimeUnit::automatic},

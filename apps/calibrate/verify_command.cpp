@@ -118,16 +118,19 @@ int verify_any(const VerifyOptions& options) {
 void add_head_options(Command& command, PanTiltVerify& head) {
   PanTiltTagInput& input = head.input;
   auto* group = command.add_option_group("Of a head (result of pan-tilt)");
-  group->add_option("--tags", input.tags, "Map of tags that stand still: rows id corner x y z, world, m");
-  group->add_option("--run", input.run, "A recorded run and its joints, instead of images");
-  group->add_option("--joints", input.joints, "The joints of the run (default: RUN-joints.csv)");
+  group->add_option("--tags", input.tags, "Map of tags that stand still: rows id corner x y z, world, m")->reads();
+  group->add_option("--run", input.run, "A recorded run and its joints, instead of images")->reads();
+  group->add_option("--joints", input.joints, "The joints of the run (default: RUN-joints.csv)")->reads();
   group->add_option("--joint-names", input.joint_names, "Of pan and tilt in it")->expected(2)->capture_default_str();
-  group->add_option("--time", head.time, "Result of `calibrate time`");
-  group->add_option("--angles", input.angles, "Of each image: rows [name] pan tilt [pan_way tilt_way]");
-  group->add_option("--camera", input.camera, "Lens: result of stereo or intrinsics, or camera_info");
-  group->add_option("--camera-right", input.camera_right, "The right camera's (camera_info with T_left_right)");
-  group->add_option("--photometric", input.photometric,
-                    "Result of `calibrate photometric`: corners of tags are found in the light");
+  group->add_option("--time", head.time, "Result of `calibrate time`")->reads();
+  group->add_option("--angles", input.angles, "Of each image: rows [name] pan tilt [pan_way tilt_way]")->reads();
+  group->add_option("--camera", input.camera, "Lens: result of stereo or intrinsics, or camera_info")->reads();
+  group->add_option("--camera-right", input.camera_right, "The right camera's (camera_info with T_left_right)")
+      ->reads();
+  group
+      ->add_option("--photometric", input.photometric,
+                   "Result of `calibrate photometric`: corners of tags are found in the light")
+      ->reads();
   group->add_option("--family", input.family, "Of the tags")->capture_default_str();
   group->add_option("--encoders-px", head.encoders_px, "Limit by encoders alone, RMS")->capture_default_str();
   group->add_option("--tags-px", head.tags_px, "Limit of tags that others have corrected, RMS")->capture_default_str();
@@ -138,15 +141,17 @@ void add_head_options(Command& command, PanTiltVerify& head) {
 void add_verify(Command& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand("verify", "Errors of a result on views that no solver has seen");
   auto options = std::make_shared<VerifyOptions>();
-  command->add_option("--result", options->result, "Result file of `stereo`, `intrinsics` or `pan-tilt`")->required();
+  command->add_option("--result", options->result, "Result file of `stereo`, `intrinsics` or `pan-tilt`")
+      ->reads()
+      ->required();
   add_camera_input(*command, options->input, true);
-  command->add_option("--images", options->input.images, "Of one camera: folder of images, or a pattern");
+  command->add_option("--images", options->input.images, "Of one camera: folder of images, or a pattern")->reads();
   add_head_options(*command, options->head);
   command->add_option("--joint", options->joint_px, "Limit in px; default: 1.5 times the result's own score");
   command->add_option("--cross", options->cross_px, "Limit in px; default: 2.1 times the result's own score");
   command->add_option("--epipolar", options->epipolar_px, "Limit in px; default: 1.5 times the result's own score");
   command->add_flag("--flat", options->flat, "Take the board as flat, also where the result knows how it is bent");
-  command->add_option("--json", options->json, "File for all numbers");
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer(
       "Examples: foresight calibrate verify --result stereo.yaml --corners new.vnl "
       "--board chessboard:9x6:0.025\n"

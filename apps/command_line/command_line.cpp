@@ -1,9 +1,12 @@
 #include "apps/command_line/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
+#include <stdexcept>
+#include <type_traits>
 
 #include "common/text.hpp"
 
@@ -26,6 +29,29 @@ std::string joined(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
   return out;
+}
+
+template <typename T>
+struct Plain {
+  using type = T;
+};
+template <typename T>
+struct Plain<std::optional<T>> {
+  using type = T;
+};
+template <typename T>
+struct Plain<std::vector<T>> {
+  using type = T;
+};
+
+/// "nan" and "inf" are numbers for a parser, and for nobody else.
+OptionCheck finite() {
+  return {[](const std::string& given) {
+            const auto value = parse_number(given);
+            return value && std::isfinite(*value) ? std::string()
+                                                  : in_quotes(given) + " is not a finite number; give one";
+          },
+          ""};
 }
 
 }  // namespace
@@ -98,6 +124,22 @@ Option* Option::needs(const Option* other) {
   return this;
 }
 
+Option* Option::reads() {
+  role_ = OutputsOf();
+  option_->type_name("INPUT");
+  return this;
+}
+Option* Option::writes(FileForm form) {
+  return writes([form = std::move(form)](const std::filesystem::path& file) -> std::vector<Output> {
+    return {{file, Output::Kind::file, form}};
+  });
+}
+Option* Option::writes(OutputsOf outputs) {
+  role_ = std::move(outputs);
+  option_->type_name("OUTPUT");
+  return this;
+}
+
 Command::Command(CLI::App& app) : app_(app) {}
 Command::~Command() = default;
 
@@ -117,7 +159,11 @@ Option* Command::keep(CLI::Option* option) {
 
 template <typename T>
 Option* Command::add_option(const std::string& names, T& target, const std::string& help) {
-  return keep(app_.add_option(names, target, help));
+  using Type = typename Plain<T>::type;
+  Option* const option = keep(app_.add_option(names, target, help));
+  option->is_path_ = std::is_same_v<Type, std::filesystem::path>;
+  if (std::is_same_v<Type, double>) option->check(finite());
+  return option;
 }
 template Option* Command::add_option(const std::string&, int&, const std::string&);
 template Option* Command::add_option(const std::string&, std::int64_t&, const std::string&);
@@ -156,20 +202,40 @@ void Command::callback(std::function<void()> then) {
   app_.callback(std::move(then));
 }
 
-std::optional<int> read_command_line(int argc, char** argv, const std::string& help, const std::string& version,
-                                     const std::function<void(Command&)>& define) {
+std::vector<GivenPath> Command::given_paths() const {
+  std::vector<GivenPath> out;
+  for (const Option& option : options_)
+    if (option.role_)
+      for (const std::string& word : option.option_->results())
+        out.push_back({option.option_->get_name(), word, *option.role_});
+  for (const Command& below : commands_)
+    if (below.app_.get_name().empty() || below.app_.parsed())
+      for (GivenPath& path : below.given_paths()) out.push_back(std::move(path));
+  return out;
+}
+
+void Command::require_roles() const {
+  for (const Option& option : options_)
+    if (option.is_path_ && !option.role_)
+      throw std::logic_error(app_.get_name() + " " + option.option_->get_name() + " does not say what its path is for");
+  for (const Command& below : commands_) below.require_roles();
+}
+
+CommandLine read_command_line(int argc, char** argv, const std::string& help, const std::string& version,
+                              const std::function<void(Command&)>& define) {
   CLI::App app{help};
   app.set_version_flag("--version", version);
   Command root(app);
   define(root);
+  root.require_roles();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return {app.exit(error), {}};
     std::cerr << "foresight: " << explain(app, error) << "\n";
-    return 2;
+    return {2, {}};
   }
-  return std::nullopt;
+  return {std::nullopt, root.given_paths()};
 }
 
 }  // namespace foresight

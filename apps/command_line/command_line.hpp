@@ -1,7 +1,10 @@
 // The words of a command line and the variables that they fill. CLI11 does the work; it is compiled here, once, because
 // each of its users would spend ten seconds on it.
 //
-// One thread. Commands and options live as long as the CommandLine that they belong to.
+// An option that names a file or folder says what for: reads(), writes() or writes_folder(). One of the type
+// std::filesystem::path that does not is a mistake in the program, which every start of it tells.
+//
+// One thread. Commands and options live as long as read_command_line() runs.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +16,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "apps/command_line/path_roles.hpp"
 
 namespace CLI {
 class App;
@@ -46,8 +51,15 @@ class Option {
   Option* excludes(const Option* other);
   Option* needs(const Option* other);
 
+  Option* reads();                ///< a file, a folder, a pattern; words that are no path do no harm
+  Option* writes(FileForm form);  ///< one file
+  Option* writes(OutputsOf outputs);
+
  private:
+  friend class Command;
   CLI::Option* option_;
+  bool is_path_ = false;
+  std::optional<OutputsOf> role_;  // empty function: it is read
 };
 
 /// A command or subcommand.
@@ -84,6 +96,11 @@ class Command {
   /// Called once all words were read, where this command is the one that is asked for.
   void callback(std::function<void()> then);
 
+  /// The words that were given to options with a role, here and in groups.
+  std::vector<GivenPath> given_paths() const;
+  /// Throws std::logic_error naming the first option of a path, here and below, that does not say what for.
+  void require_roles() const;
+
  private:
   Option* add_word(const std::string& names, std::vector<std::string> words,
                    std::function<void(const std::string&)> take, const std::string& help);
@@ -94,9 +111,14 @@ class Command {
   std::deque<Command> commands_;
 };
 
-/// Reads the command line. `define` adds the subcommands. The exit code where there is nothing left to do (help,
-/// version, a mistake, which is explained on stderr); nothing where the chosen command's callback was called.
-std::optional<int> read_command_line(int argc, char** argv, const std::string& help, const std::string& version,
-                                     const std::function<void(Command&)>& define);
+struct CommandLine {
+  std::optional<int> ended;      ///< exit code where nothing is left to do: help, version, a mistake, told on stderr
+  std::vector<GivenPath> paths;  ///< of the chosen command, for the OutputGuard
+};
+
+/// Reads the command line. `define` adds the subcommands. Where it has not ended, the chosen command's callback was
+/// called.
+CommandLine read_command_line(int argc, char** argv, const std::string& help, const std::string& version,
+                              const std::function<void(Command&)>& define);
 
 }  // namespace foresight

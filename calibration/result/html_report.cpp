@@ -110,6 +110,7 @@ void HtmlReport::write(const std::filesystem::path& file) const {
   const std::string title = escape_html(title_);
   write_page(file,
              "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+             "<meta name=\"generator\" content=\"Foresight\">\n"
              "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
              "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
                  title + "</title>\n<style>\n" + std::string(page_style()) +

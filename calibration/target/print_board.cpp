@@ -33,6 +33,7 @@ class Page {
             cairo_pdf_surface_create_for_stream(append, &bytes_, width_mm * kPointsPerMm, height_mm * kPointsPerMm),
             cairo_surface_destroy),
         cairo_(cairo_create(surface_.get()), cairo_destroy) {
+    cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATOR, "Foresight");
     cairo_scale(cairo_.get(), kPointsPerMm, kPointsPerMm);
     cairo_select_font_face(cairo_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cairo_.get(), 3.2);

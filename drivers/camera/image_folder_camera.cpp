@@ -37,7 +37,8 @@ ImageFolderCamera::ImageFolderCamera(std::string name, const std::filesystem::pa
   std::vector<std::pair<long long, std::filesystem::path>> found;
   for (std::filesystem::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
     const auto parts = split_number(i->path().stem().string());
-    if (parts && is_image(i->path()) && (options.prefix.empty() || parts->first == options.prefix))
+    if (parts && is_image(i->path()) && std::filesystem::is_regular_file(i->path(), error) &&
+        (options.prefix.empty() || parts->first == options.prefix))
       found.emplace_back(parts->second, i->path());
   }
   if (error) throw InputError(where, "cannot read the folder " + folder.string(), "give a folder of images");

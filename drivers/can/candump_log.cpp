@@ -5,7 +5,9 @@
 #include <charconv>
 #include <cstring>
 
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/read_file.hpp"
 #include "common/text.hpp"
 #include "drivers/can/kernel_frame.hpp"
 
@@ -190,18 +192,18 @@ std::optional<CanLogEntry> parse_log_line(std::string_view line, const std::stri
   return out;
 }
 
-CandumpReader::CandumpReader(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
-  if (!in_ || std::filesystem::is_directory(file))
-    throw InputError(file.string(), "cannot be opened: " + std::string(std::strerror(in_ ? EISDIR : errno)),
-                     "give a log as `candump -l` writes it");
-}
+CandumpReader::CandumpReader(const std::filesystem::path& file) : file_(file), in_(open_input(file)) {}
 
 std::optional<CanLogEntry> CandumpReader::next() {
-  std::string line;
-  while (std::getline(in_, line)) {
+  std::array<char, 4096> line;  // what is longer is no log
+  while (in_.getline(line.data(), line.size())) {
     ++line_;
-    if (auto entry = parse_log_line(line, at_line(file_, line_))) return entry;
+    const auto length = static_cast<std::size_t>(in_.gcount()) - (in_.eof() ? 0 : 1);  // without the line's end
+    if (auto entry = parse_log_line({line.data(), length}, at_line(file_, line_))) return entry;
   }
+  if (in_.gcount() + 1 == static_cast<std::streamsize>(line.size()))
+    throw InputError(at_line(file_, line_ + 1), "is longer than a line of a log",
+                     "give a log as `candump -l` writes it");
   if (in_.bad()) throw InputError(at_line(file_, line_), "reading failed", "check the disk");
   return std::nullopt;
 }
@@ -240,7 +242,7 @@ void CandumpWriter::flush() {
 
 void CandumpWriter::require_good() const {
   if (!out_)
-    throw RuntimeFailure(file_.string() + ": writing failed: " + std::strerror(errno), "make room on the disk");
+    throw RuntimeFailure(file_.string() + ": writing failed: " + std::strerror(errno), cure_of_write_error(errno));
 }
 
 }  // namespace foresight

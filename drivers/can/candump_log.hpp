@@ -43,7 +43,7 @@ struct CanLogEntry {
 /// Reads a log line by line. Takes files without times, with comments (`#`), empty lines and any line ends.
 class CandumpReader {
  public:
-  /// Throws InputError where the file cannot be opened.
+  /// Throws InputError like open_input().
   explicit CandumpReader(const std::filesystem::path& file);
   /// The next frame; nothing at the end. Throws InputError naming file and line.
   std::optional<CanLogEntry> next();

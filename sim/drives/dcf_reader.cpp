@@ -4,10 +4,10 @@
 #include <array>
 #include <bit>
 #include <charconv>
-#include <fstream>
 #include <optional>
 
 #include "common/error.hpp"
+#include "common/read_file.hpp"
 #include "common/text.hpp"
 
 namespace foresight::sim {
@@ -239,14 +239,7 @@ ObjectDictionary parse_dcf(std::string_view text, int node, const std::filesyste
 }
 
 ObjectDictionary read_dcf(const std::filesystem::path& file, int node) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw InputError(file.string(), "cannot be read", "give an EDS or DCF file");
-  std::string text(kLargestFile + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() > kLargestFile) throw InputError(file.string(), "is larger than 1 MiB", "give an EDS or DCF file");
-  return parse_dcf(text, node, file);
+  return parse_dcf(read_file(file, kLargestFile), node, file);
 }
 
 }  // namespace foresight::sim

@@ -29,7 +29,7 @@ TEST(Can, WrongInputIsNamedBeforeAnythingIsOpened) {
       {{"can", "dump", "can0", "--filter", "580"}, "--filter: '580' has no colon"},
       {{"can", "dump", "can0", "--filter", "580:1FFFFFFF"}, "mixes 11 and 29 bits"},
       {{"can", "dump", "can0", "--count", "nan"}, "--count"},
-      {{"can", "replay", "/nowhere.log", "can0"}, "/nowhere.log: cannot be opened"},
+      {{"can", "replay", "/nowhere.log", "can0"}, "/nowhere.log: no such file"},
   };
   for (const auto& [arguments, problem] : cases) {
     const Outcome out = run_program(arguments);

@@ -59,8 +59,8 @@ TEST(CommandLine, SynthRefusesWhatItCannotWrite) {
       {{"synth", out, "--frames", "0"}, "choose a value"},
       {{"synth", out, "--frames", "x"}, "--frames"},
       {{"synth", mine}, "choose a new or empty folder"},
-      {{"synth", mine + "/diary.txt"}, "choose another place"},
-      {{"synth", "/proc/foresight"}, "choose a writable place"},
+      {{"synth", mine + "/diary.txt"}, "give another place"},
+      {{"synth", "/proc/foresight"}, "give another place"},
   };
   for (const auto& [arguments, what] : all) {
     SCOPED_TRACE(testing::PrintToString(arguments));
@@ -75,7 +75,12 @@ TEST(CommandLine, SynthRefusesWhatItCannotWrite) {
 TEST(CommandLine, SynthStoppedByCtrlCLeavesNothing) {
   const TempFolder folder;
   Program program({"synth", folder / "out", "--frames", "2000"});
-  while (program.running() && std::filesystem::is_empty(folder.path())) usleep(1000);
+  const auto begun = [&folder] {
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+      if (entry.path().string().find(".partial-") != std::string::npos) return true;
+    return false;
+  };
+  while (program.running() && !begun()) usleep(1000);
   usleep(200'000);
   program.interrupt();
   const Outcome outcome = program.wait();

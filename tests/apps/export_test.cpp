@@ -144,12 +144,13 @@ TEST_F(Export, WrongInputEndsWithCode2AndNoOutput) {
 }
 
 TEST_F(Export, AFullDiskLeavesTheOldFiles) {
+  const std::string kOld = R"({"asset":{"generator":"Foresight"}})";
   const SmallRun sample;
   const fs::path disk = out_ / "disk";
   fs::create_directory(disk);
   if (::mount("foresight", disk.c_str(), "tmpfs", 0, "size=24k") != 0)
     GTEST_SKIP() << "no right to mount a small disk: " << std::strerror(errno);
-  const std::string old = out_.write("disk/model.gltf", "old");
+  const std::string old = out_.write("disk/model.gltf", kOld);
   const Outcome three = run_program({"export", sample.path(), "--out", old});
   const Outcome one = run_program({"export", sample.path(), "--out", disk / "model.glb"});
   const auto left = names_in(disk);
@@ -160,7 +161,7 @@ TEST_F(Export, AFullDiskLeavesTheOldFiles) {
     EXPECT_THAT(outcome.last_line(), says("disk/model.", "No space left", "free some disk space"));
   }
   EXPECT_THAT(left, testing::ElementsAre("model.gltf"));
-  EXPECT_EQ(content, "old");
+  EXPECT_EQ(content, kOld);
 }
 
 TEST_F(Export, CtrlCLeavesNothing) {

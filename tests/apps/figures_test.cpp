@@ -103,7 +103,7 @@ TEST_F(Figures, WrongInputEndsWithCode2AndNoOutput) {
                 "distortion_coefficients: {rows: 1, cols: 4, data: [0, 0, 0, 0]}\n");
   expect_refused(places / "nowhere", out_ / "out", "nowhere", "no such folder", "");
   expect_refused(run(), places / "file/out", "--out", "cannot be written to", "give another place");
-  expect_refused(run(), places / "taken", "--out", "fig_5_09.png in it is a folder", "remove it");
+  expect_refused(run(), places / "taken", "--out", "fig_5_09.png: this is a folder", "give a file name");
   expect_refused(fisheye.path(), out_ / "out", fisheye.path(), "more than one picture plane", "120 degrees");
   expect_refused(brief.path(), out_ / "out", brief.path(), "only 12 images", "at least 20");
   EXPECT_EQ(places.read("file"), "kept");

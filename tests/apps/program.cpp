@@ -34,6 +34,7 @@ Program::Program(const std::vector<std::string>& arguments, const ProgramOptions
   }
   for (const auto& [name, value] : options.environment) variables[name] = value;
   std::vector<std::string> words{FORESIGHT_PROGRAM}, environment;
+  if (!options.shell.empty()) words = {"/bin/sh", "-c", options.shell + "; exec \"$0\" \"$@\"", FORESIGHT_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   for (const auto& [name, value] : variables)
     if (!value.empty()) environment.push_back(name + "=" + value);
@@ -51,8 +52,8 @@ Program::Program(const std::vector<std::string>& arguments, const ProgramOptions
   ::posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
   ::posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
   start_ = std::chrono::steady_clock::now();
-  const int error =
-      ::posix_spawn(&pid_, FORESIGHT_PROGRAM, &actions, nullptr, pointers(words).data(), pointers(environment).data());
+  const int error = ::posix_spawn(&pid_, words.front().c_str(), &actions, nullptr, pointers(words).data(),
+                                  pointers(environment).data());
   ::posix_spawn_file_actions_destroy(&actions);
   if (error) throw std::system_error(error, std::generic_category(), FORESIGHT_PROGRAM);
 }
@@ -70,8 +71,8 @@ bool Program::running() {
   return !ended_;
 }
 
-void Program::interrupt() const {
-  ::kill(pid_, SIGINT);
+void Program::interrupt(int signal) const {
+  ::kill(pid_, signal);
 }
 
 Outcome Program::wait(std::chrono::seconds timeout) {

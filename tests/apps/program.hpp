@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -21,7 +22,8 @@ struct Outcome {
 };
 
 struct ProgramOptions {
-  std::map<std::string, std::string> environment;  ///< added to this process's; an empty value unsets
+  std::map<std::string, std::string> environment = {};  ///< added to this process's; an empty value unsets
+  std::string shell = {};  ///< run by sh before the program takes its place: "ulimit -f 8", "exec >&-"
 };
 
 /// A running child. One thread. Killed with its life's end.
@@ -35,7 +37,7 @@ class Program {
 
   pid_t pid() const { return pid_; }
   bool running();
-  void interrupt() const;  ///< SIGINT, as Ctrl-C sends it
+  void interrupt(int signal = SIGINT) const;  ///< SIGINT, as Ctrl-C sends it, or another one
 
   /// Waits; kills it and reports exit code 137 after `timeout`.
   Outcome wait(std::chrono::seconds timeout = std::chrono::seconds(540));

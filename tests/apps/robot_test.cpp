@@ -62,7 +62,7 @@ TEST_P(Robot, StopsUnderControlWhenItIsTerminated) {
     ASSERT_TRUE(program.running()) << program.wait().err;
     kill(program.pid(), SIGTERM);
     const Outcome out = program.wait();
-    EXPECT_EQ(out.exit_code, 1) << "the motion was not finished";
+    EXPECT_EQ(out.exit_code, 130);
     EXPECT_THAT(out.out, HasSubstr(": disabled")) << "brakes closed";
     EXPECT_THAT(out.out, HasSubstr(" 0 overruns"));
     EXPECT_THAT(out.err, HasSubstr("follow: interrupted")) << "and no stop of the gate's";

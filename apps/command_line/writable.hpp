@@ -1,0 +1,36 @@
+// Whether something can be written, found out by trying.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "common/unique_fd.hpp"
+
+namespace foresight {
+
+/// A folder, and those above it, made where they are missing; those that were made and stay empty go with this. One
+/// thread.
+class MadeFolder {
+ public:
+  explicit MadeFolder(const std::filesystem::path& folder);
+  ~MadeFolder();
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+
+  std::error_code error() const { return error_; }  ///< why it could not be made
+
+ private:
+  std::vector<std::filesystem::path> made_;  // the innermost first
+  std::error_code error_;
+};
+
+/// `path`, a file or folder, may be missing. Makes the folder that it is to lie in, which `folders` gets, and in that
+/// (`inside`: in `path` itself, where it is a folder) a file, which goes at once. A pipe must have a reader, and stays
+/// open with what this returns: its reader would take an end for the end. Throws InputError at `where`.
+UniqueFd require_writable(const std::string& where, const std::filesystem::path& path, bool inside,
+                          std::deque<MadeFolder>& folders);
+
+}  // namespace foresight

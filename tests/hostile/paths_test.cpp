@@ -1,0 +1,99 @@
+// Every subcommand against names that would lose something of the user's, hang, or fill the memory: all are refused
+// with exit code 2, and the user's folder is the same after as before, byte by byte.
+#include "tests/apps/program.hpp"
+#include "tests/hostile/victim.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr std::chrono::seconds kHangs{120};
+
+class Hostile : public testing::Test {
+ protected:
+  /// Before any work, with a word about `option`; the folder is left alone.
+  void refused_by_guard(const HelpedCommand& command, const std::string& option, const CommandWords& more) const {
+    const std::vector<std::string> words = victim_.line(command, more);
+    SCOPED_TRACE(testing::PrintToString(words));
+    EXPECT_THAT(refusal_of(words), HasSubstr(option));
+    EXPECT_EQ(victim_.snapshot(), before_);
+  }
+  /// By the program that was started: with a word and no signal.
+  void refused_by_program(const HelpedCommand& command, const CommandWords& more) const {
+    const std::vector<std::string> words = victim_.line(command, more);
+    SCOPED_TRACE(testing::PrintToString(words));
+    const Outcome outcome = Program(words).wait(kHangs);
+    EXPECT_TRUE(outcome.exit_code == 1 || outcome.exit_code == 2) << outcome.exit_code << outcome.err;
+    EXPECT_THAT(outcome.last_line(), testing::StartsWith("foresight: "));
+    EXPECT_EQ(victim_.snapshot(), before_);
+    if (std::getenv("FORESIGHT_SHOW_MESSAGES"))
+      std::printf("%-24s %s\n", command.name().c_str(), outcome.last_line().c_str());
+  }
+
+  const Victim victim_;
+  const std::map<std::string, std::string> before_ = victim_.snapshot();
+};
+
+std::vector<std::string> options(const HelpedCommand& command, bool writes) {
+  std::vector<std::string> out;
+  for (const CommandOption& option : command.paths)
+    if (option.writes == writes) out.push_back(option.name);
+  return out;
+}
+
+TEST_F(Hostile, EverySubcommandHasARow) {
+  std::vector<std::string> names;
+  for (const HelpedCommand& command : all_commands()) names.push_back(command.name());
+  EXPECT_THAT(Victim::rows(), testing::UnorderedElementsAreArray(names)) << "add new commands to victim.cpp";
+}
+
+TEST_F(Hostile, EmptyNamesAreRefused) {
+  for (const HelpedCommand& command : all_commands())
+    for (const CommandOption& option : command.paths) refused_by_guard(command, option.name, {{option.name, {""}}});
+}
+
+TEST_F(Hostile, OutputsOverInputsAreRefused) {
+  for (const HelpedCommand& command : all_commands())
+    for (const std::string& output : options(command, true))
+      for (const std::string& input : options(command, false))
+        refused_by_guard(command, output, {{input, {"@notes.txt"}}, {output, {"@run/../notes.txt"}}});
+}
+
+TEST_F(Hostile, OutputsOverEachOtherAreRefused) {
+  for (const HelpedCommand& command : all_commands()) {
+    const std::vector<std::string> outputs = options(command, true);
+    for (std::size_t i = 0; i < outputs.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        refused_by_guard(command, outputs[i], {{outputs[i], {"@new/x.glb"}}, {outputs[j], {"@run/../new/x.glb"}}});
+  }
+}
+
+TEST_F(Hostile, ForeignFilesAndPlacesThatCannotBeWrittenAreRefused) {
+  for (const HelpedCommand& command : all_commands())
+    for (const std::string& output : options(command, true)) {
+      refused_by_guard(command, output, {{output, {"@notes.txt"}}});
+      refused_by_guard(command, output, {{output, {"/proc/foresight.glb"}}});
+      refused_by_guard(command, output, {{output, {"@notes.txt/below.glb"}}});
+    }
+}
+
+TEST_F(Hostile, TheRowsThemselvesAreNotRefused) {
+  for (const HelpedCommand& command : all_commands())
+    EXPECT_EQ(refusal_of(victim_.line(command, {})), "") << command.name();
+}
+
+// The program itself, as what opens a file is the command: a pipe that nobody writes, and a device without an end.
+TEST_F(Hostile, SpecialFilesAreNoInputs) {
+  for (const HelpedCommand& command : all_commands()) {
+    bool device = false;
+    for (const std::string& input : options(command, false)) {
+      refused_by_program(command, {{input, {device ? "/dev/zero" : "@fifo"}}});
+      device = !device;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace foresight
