@@ -222,7 +222,8 @@ int run_with(const Rig& rig, const Arguments& arguments,
     return 0;
   }
   const auto shape = rig.shape();
-  if (!shape) say("the rig has no robot.urdf: nothing is checked against the surroundings");
+  say(shape ? to_text(guarded_links(*rig.robot))
+            : "the rig has no robot.urdf: nothing is checked against the surroundings");
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
   const auto cameras = make_cameras(rig, devices, robot, clock, arguments);
   const auto view = make_view(rig, cameras.get(), clock, arguments);

@@ -173,7 +173,8 @@ void read_robot(const YamlMap& map, Rig& rig) {
   const auto urdf = map.file().parent_path() / map.text("urdf");
   if (!std::filesystem::is_regular_file(urdf))
     throw InputError(map.where("urdf"), "there is no file " + urdf.string(), "give its path, relative to the rig file");
-  rig.robot = read_urdf(urdf, urdf.parent_path().empty() ? std::filesystem::path(".") : urdf.parent_path());
+  const auto root = urdf.parent_path().empty() ? std::filesystem::path(".") : urdf.parent_path();
+  rig.robot = read_urdf(urdf, root, UrdfShapes::all);
   if (map.has("pose")) rig.T_world_robot = map.pose("pose");
 }
 

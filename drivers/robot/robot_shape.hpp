@@ -36,7 +36,18 @@ struct Surroundings {
   double clearance = 0.02;          ///< kept from obstacles and between links; > 0
 };
 
-/// A robot's links as capsules around their meshes. Thread: one at a time.
+/// Which links of a robot can be kept clear of things, and by what.
+struct GuardedLinks {
+  std::size_t links = 0;               ///< all of them
+  std::size_t by_collision = 0;        ///< by their collision shapes
+  std::size_t by_visual = 0;           ///< that have no collision shape: by their visual ones
+  std::vector<std::string> unguarded;  ///< without any shape, as mere frames are
+};
+GuardedLinks guarded_links(const UrdfRobot& robot);
+/// "11 of 11 links guarded (9 by collision shapes, 2 by visual ones)"; names those without a shape.
+std::string to_text(const GuardedLinks& guarded);
+
+/// A robot's links as capsules around their meshes (UrdfRobot::body). Thread: one at a time.
 class RobotShape {
  public:
   /// `joints`: those whose positions obstructed() gets, in its order, "" for one that is not of this robot (a pan-tilt
