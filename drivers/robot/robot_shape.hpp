@@ -66,6 +66,10 @@ class RobotShape {
   void margins(std::span<const double> positions, std::span<double> out) noexcept;
   /// Both parts of a couple in words, such as "link 'arm_5' leaves the workspace"; valid until the next surround().
   const char* message(std::size_t couple) const { return couples_[couple].message.c_str(); }
+  /// How far apart its parts must be, metres; 0 from the workspace's walls.
+  double kept_apart(std::size_t couple) const {
+    return couples_[couple].what == Against::workspace ? 0 : surroundings_.clearance;
+  }
 
   /// What keeps the robot from standing there, as message(); nullptr where nothing does. Does not allocate.
   const char* obstructed(std::span<const double> positions) noexcept;
