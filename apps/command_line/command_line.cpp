@@ -160,6 +160,8 @@ std::optional<int> read_command_line(int argc, char** argv, const std::string& h
                                      const std::function<void(Command&)>& define) {
   CLI::App app{help};
   app.set_version_flag("--version", version);
+  bool only_check = false;
+  app.add_flag("--check-options", only_check, "Only says whether the words behind it can be read, and does nothing");
   Command root(app);
   define(root);
   try {
@@ -169,7 +171,7 @@ std::optional<int> read_command_line(int argc, char** argv, const std::string& h
     std::cerr << "foresight: " << explain(app, error) << "\n";
     return 2;
   }
-  return std::nullopt;
+  return only_check ? std::optional(0) : std::nullopt;
 }
 
 }  // namespace foresight

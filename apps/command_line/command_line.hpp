@@ -95,7 +95,8 @@ class Command {
 };
 
 /// Reads the command line. `define` adds the subcommands. The exit code where there is nothing left to do (help,
-/// version, a mistake, which is explained on stderr); nothing where the chosen command's callback was called.
+/// version, --check-options, a mistake, which is explained on stderr); nothing where the chosen command's callback was
+/// called.
 std::optional<int> read_command_line(int argc, char** argv, const std::string& help, const std::string& version,
                                      const std::function<void(Command&)>& define);
 

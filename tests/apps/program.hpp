@@ -22,6 +22,7 @@ struct Outcome {
 
 struct ProgramOptions {
   std::map<std::string, std::string> environment;  ///< added to this process's; an empty value unsets
+  std::filesystem::path folder = {};               ///< where it runs; empty: here
 };
 
 /// A running child. One thread. Killed with its life's end.

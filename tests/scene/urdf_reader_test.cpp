@@ -270,7 +270,7 @@ TEST_F(Urdf, NamesWhatIsWrong) {
   EXPECT_THAT(error(link("base") + link("a") + joint("j", "fixed", "base", "b")),
               says("r.urdf", "not a valid URDF (", "check_urdf"));
   EXPECT_THAT(error(link("base", "<box size='1 -1 1'/>")),
-              says("link 'base'", "size=\"1 -1 1\"", "'-1'", "not positive", "metres"));
+              says("size=\"1 -1 1\"", "'-1', which is not positive", "metres"));
   EXPECT_THAT(error(link("base") + link("a") + joint("j", "revolute", "base", "a", "<axis xyz='0 0 0'/>")),
               says("joint 'j'", "axis has no direction", "unit vector"));
   EXPECT_THAT(error(link("base") + link("a") + link("b") + joint("j", "fixed", "base", "a") +
