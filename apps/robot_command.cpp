@@ -107,7 +107,7 @@ class Console {
   std::string view(const RobotStatus& status, int selected) const {
     std::string out = status_text(rig_, status, devices_.buses(), selected);
     if (cameras_) out += camera_text(cameras_->watch().line());
-    if (const std::string fault = cameras_ ? cameras_->registration_fault() : ""; !fault.empty())
+    if (const std::string fault = cameras_ ? cameras_->registration_trouble() : ""; !fault.empty())
       out += "  poses: " + fault + "\n";
     return out;
   }
