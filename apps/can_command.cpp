@@ -54,14 +54,24 @@ void add_explain(Command& can, std::function<int()>& action) {
       ->reads()
       ->required();
   command->add_option("--protocol", options->protocol, "What the bus speaks: cia402, powercube or schunk-motion")
-      ->required()
       ->check(one_of({"cia402", "powercube", "schunk-motion"}));
+  command->add_option("--rig", options->rig, "Rig file: says what each bus speaks, and names the joints")->reads();
   command
       ->add_option("--eds", options->eds,
                    "EDS or DCF file of all nodes, or NODE=FILE of one: objects and PDOs by the names that it gives")
       ->reads();
+  command->add_option("--node", options->node, "Only frames of and to this node")->check(from_to(1, 127));
+  command->add_flag("--errors", options->errors,
+                    "Only what went wrong: emergencies, faults, aborts, restarts, error frames, what is not known");
+  command->add_option("--from", options->from, "Only from so many seconds after the first frame on")
+      ->check(from_to(0, 1e9));
+  command->add_option("--to", options->to, "Only until so many seconds after the first frame")->check(from_to(0, 1e9));
+  command->add_flag("--absolute", options->absolute, "The log's own times, not those since its first frame");
   command->footer(
-      "Example: foresight can explain session.log --protocol cia402 --eds axis.eds --eds 12=gripper.dcf\n"
+      "A summary comes first: time span, nodes, frames of each kind, errors. Process data are decoded as the log's "
+      "own\n"
+      "set-up maps them, or as --eds says.\n\n"
+      "Example: foresight can explain session-arm.log --rig rig.yaml --node 3 --from 12 --to 13\n"
       "Exit code: 0 where all frames are known, 1 where some are not.");
   command->callback([options, &action] { action = [options] { return explain_can(*options); }; });
 }

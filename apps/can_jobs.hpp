@@ -39,11 +39,16 @@ int replay_can(const CanReplayOptions& options);
 
 struct CanExplainOptions {
   std::filesystem::path file;
-  std::string protocol;          ///< "cia402", "powercube" or "schunk-motion"
-  std::vector<std::string> eds;  ///< "FILE" or "NODE=FILE": data sheets, which name the objects; cia402 only
+  std::optional<std::string> protocol;       ///< "cia402", "powercube" or "schunk-motion"; or `rig`
+  std::optional<std::filesystem::path> rig;  ///< protocols by the log's interfaces, and the names of joints
+  std::vector<std::string> eds;    ///< "FILE" or "NODE=FILE": data sheets, which name the objects; cia402 only
+  std::optional<int> node;         ///< only this one
+  bool errors = false;             ///< only what went wrong
+  std::optional<double> from, to;  ///< only these seconds, from the log's first frame on
+  bool absolute = false;           ///< the log's own times
 };
-/// Prints each frame of a log with what it says in words, and how many say nothing known. Returns 1 where there are
-/// any.
+/// Prints a summary (lines with `#`, which readers of logs pass over), then each frame of a log with what it says in
+/// words, and how many of all say nothing known. Returns 1 where there are any.
 int explain_can(const CanExplainOptions& options);
 
 }  // namespace foresight

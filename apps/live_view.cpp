@@ -137,7 +137,9 @@ struct LiveView::Work {
   }
 
   std::string title() const {
-    return fmt::format("Foresight {}: camera, {:.0f} ms ago | predicted view", options.rig, options.delay_ms);
+    const std::string notice = options.notice ? options.notice() : "";
+    return fmt::format("Foresight {}: {}{}camera, {:.0f} ms ago | predicted view", options.rig, notice,
+                       notice.empty() ? "" : " | ", options.delay_ms);
   }
 
   /// False: the view has ended.
@@ -187,10 +189,11 @@ bool LiveView::run(const std::function<bool()>& stopped) noexcept {
   });
 }
 
-void LiveView::finish(bool complete) {
+void LiveView::finish(bool complete, const std::string& note) {
   if (work_->options.stepped) step();
   if (work_->measures) {
     work_->note();
+    if (!note.empty()) work_->measures->record().notes.push_back(note);
     work_->measures->record().complete = complete && !work_->failure;
     work_->measures->finish(work_->source, *work_->session, "Foresight, live view of " + work_->options.rig);
     print_summary(work_->measures->record());

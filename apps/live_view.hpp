@@ -21,6 +21,8 @@ struct LiveViewOptions {
   ViewOutputs outputs;
   bool window = true;
   bool stepped = false;  ///< step() in place of run()
+  /// What the window's title shall say besides, such as what holds the robot back; "" for nothing. The view's thread.
+  std::function<std::string()> notice = {};
 };
 
 /// All in one thread; with a window, the main one (gl::Window). It only takes frames, and holds up nobody who makes
@@ -39,8 +41,9 @@ class LiveView {
   /// In real time, until the frames' queue is closed or `stopped`. False as above.
   bool run(const std::function<bool()>& stopped) noexcept;
   /// In stepped time, takes what still came before the queue was closed. Writes the reports and prints the summary.
-  /// `complete`: false after Ctrl-C. Throws RuntimeFailure, also what ended the view.
-  void finish(bool complete);
+  /// `complete`: false after Ctrl-C; `note`: one more for the report, or "". Throws RuntimeFailure, also what ended the
+  /// view.
+  void finish(bool complete, const std::string& note = "");
 
  private:
   struct Work;

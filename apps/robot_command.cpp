@@ -9,11 +9,13 @@
 #include "apps/recording_outputs.hpp"
 #include "apps/robot/keyboard.hpp"
 #include "apps/robot/service_notify.hpp"
+#include "apps/robot/session_report.hpp"
 #include "apps/robot/status_view.hpp"
 #include "apps/run_options.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
 #include "common/stop_signal.hpp"
+#include "common/text.hpp"
 #include "operators/follow_operator.hpp"
 #include "operators/key_operator.hpp"
 #include "session/joint_log.hpp"
@@ -31,7 +33,7 @@ constexpr int kPriority = 80;  // above the network's and the cameras' threads, 
 struct Arguments {
   std::string rig;
   std::string follow;
-  std::string log, record;
+  std::string log, record, session;
   bool cameras = true;
   bool mock = false, stepped = false, may_home = false, check_only = false;
   bool view = false, window = false;  // the rest only with `view`
@@ -57,11 +59,13 @@ class Console {
         keys_(rig.gate_options().joints,
               arguments.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops) {
     if (!arguments.follow.empty()) {
-      follow_.emplace(FollowFile(arguments.follow, rig), rig.joint_names(), arguments.may_home);
+      follow_.emplace(FollowFile(arguments.follow, rig), arguments.may_home);
       commanders_.push_back(&*follow_);
     }
     if (keyboard_.is_terminal()) commanders_.push_back(&keys_);
     if (!arguments.record.empty()) joints_.emplace(joint_log_beside(arguments.record), rig, robot.cycles());
+    if (!arguments.session.empty()) session_.emplace(rig, robot.cycles());
+    report_ = arguments.session;
     if (keyboard_.is_terminal()) say(KeyOperator::help());
   }
 
@@ -71,22 +75,35 @@ class Console {
     const bool goes_on = serve(commanders_, robot_, now);
     const RobotStatus status = robot_.status();
     if (joints_) joints_->write();
+    if (session_) session_->write(devices_.buses());
     show(now, status);
     notify(now, status);
     return goes_on;
+  }
+
+  /// How the motion of the file ended, where it did not end well.
+  std::string trouble() const {
+    return !follow_ || follow_->succeeded() ? "" : "The motion of the file: " + outcome() + ".";
   }
 
   /// The last words, and the exit code.
   int finish() {
     std::fputs(view(robot_.status(), -1).c_str(), stdout);
     if (const std::string recorded = cameras_ ? cameras_->finish() : ""; !recorded.empty()) say(recorded);
+    if (joints_ && joints_->dropped() > 0)
+      say(std::to_string(joints_->dropped()) +
+          " cycles are missing in the joints' file: this program came too late, or a "
+          "joint was silent");
+    for (const std::filesystem::path& log : devices_.logs()) say("log: " + log.string());
+    if (session_) report();
     const std::string fault = log_fault();
-    if (follow_) say("follow: " + (follow_->outcome().empty() ? "interrupted" : follow_->outcome()));
+    if (follow_) say("follow: " + outcome());
     if (!fault.empty()) std::fprintf(stderr, "foresight: %s\n", fault.c_str());
     return fault.empty() && (!follow_ || follow_->succeeded()) ? 0 : 1;
   }
 
  private:
+  std::string outcome() const { return follow_->outcome().empty() ? "interrupted" : follow_->outcome(); }
   /// "" where all logs are complete.
   std::string log_fault() {
     const std::string fault = joints_ ? joints_->fault() : "";
@@ -95,7 +112,25 @@ class Console {
   std::string view(const RobotStatus& status, int selected) const {
     std::string out = status_text(rig_, status, devices_.buses(), selected);
     if (cameras_) out += camera_text(cameras_->watch().line());
+    if (const std::string fault = cameras_ ? cameras_->registration_trouble() : ""; !fault.empty())
+      out += "  poses: " + fault + "\n";
     return out;
+  }
+  void report() {
+    session_->write(devices_.buses());
+    const RobotStatus status = robot_.status();
+    std::vector<SessionFact> facts{
+        {"duration", readable(session_->duration_s(), 2, " s")},
+        {"commands",
+         std::to_string(status.gate.accepted) + " followed, " + std::to_string(status.gate.dropped) + " dropped"},
+        {"control loop", std::to_string(status.loop.cycles()) + " cycles, " + std::to_string(status.loop.overruns()) +
+                             " overruns, lateness p99 " +
+                             readable(1e3 * to_seconds(status.loop.quantile(0.99)), 3, " ms")},
+        {"cycles that this page lacks", std::to_string(session_->dropped())}};
+    for (const std::filesystem::path& log : devices_.logs()) facts.push_back({"CAN log", log.string()});
+    write_session_report(report_, rig_, *session_,
+                         follow_ ? "The motion of the file: " + outcome() + "." : "Driven by hand.", facts);
+    say("session: " + report_.string());
   }
   void show(RobotTime now, const RobotStatus& status) {
     if (!keyboard_.is_terminal() || now - shown_ < kRedraw) return;
@@ -118,6 +153,8 @@ class Console {
   Robot& robot_;
   RobotCameras* cameras_;
   std::optional<JointLog> joints_;
+  std::optional<SessionRecord> session_;
+  std::filesystem::path report_;
   Keyboard keyboard_;
   KeyOperator keys_;
   std::optional<FollowOperator> follow_;
@@ -137,7 +174,7 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevice
   });
   robot.run(clock, stop.get_token());
   const int code = console.finish();
-  if (view) view->finish(!stop_requested());
+  if (view) view->finish(!stop_requested(), console.trouble());
   return stop_requested() ? kStopped : code;
 }
 
@@ -184,7 +221,7 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
     notify_service("STOPPING=1");
   }
   const int code = console.finish();
-  if (view) view->finish(!stop_requested());
+  if (view) view->finish(!stop_requested(), console.trouble());
   return stop_requested() ? kStopped : code;
 }
 
@@ -203,12 +240,19 @@ std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& d
 }
 
 /// Null without --view.
-std::unique_ptr<LiveView> make_view(const Rig& rig, RobotCameras* cameras, const Clock& clock,
+std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCameras* cameras, const Clock& clock,
                                     const Arguments& arguments) {
   if (!arguments.view || !cameras) return nullptr;
   constexpr std::size_t kRoom = 64;
-  const LiveViewOptions options{rig.name, arguments.delay_ms.value_or(0), arguments.outputs,
-                                arguments.window || !arguments.outputs.any(), arguments.stepped};
+  const LiveViewOptions options{rig.name,
+                                arguments.delay_ms.value_or(0),
+                                arguments.outputs,
+                                arguments.window || !arguments.outputs.any(),
+                                arguments.stepped,
+                                [&rig, &robot] {
+                                  const RobotStatus status = robot.status();
+                                  return hold_text(status.gate.hold, rig.joint_words(), status.time);
+                                }};
   const auto trouble = [cameras] { return cameras->watch().line().fault; };
   return std::make_unique<LiveView>(cameras->scene(), cameras->frames().subscribe(kRoom), trouble, clock, options);
 }
@@ -222,15 +266,16 @@ int run_with(const Rig& rig, const Arguments& arguments,
   if (!arguments.record.empty()) options.log = can_log_beside(arguments.record);
   if (!arguments.log.empty()) options.log = arguments.log;
   RobotDevices devices(rig, clock, options);
+  const auto shape = rig.shape();
+  say(shape ? to_text(guarded_links(*rig.robot))
+            : "the rig has no robot.urdf: nothing is checked against the surroundings");
   if (arguments.check_only) {
     devices.bring_up(say);
     return 0;
   }
-  const auto shape = rig.shape();
-  if (!shape) say("the rig has no robot.urdf: nothing is checked against the surroundings");
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
   const auto cameras = make_cameras(rig, devices, robot, clock, arguments);
-  const auto view = make_view(rig, cameras.get(), clock, arguments);
+  const auto view = make_view(rig, robot, cameras.get(), clock, arguments);
   Console console(rig, devices, robot, cameras.get(), arguments);
   poll_stop_signals(SecondSignal::waits);  // a program that ends at once leaves the stop to the drives
   if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
@@ -286,7 +331,13 @@ void add_robot_command(Command& app, std::function<int()>& action) {
       ->reads();
   command->add_flag("--home", arguments->may_home,
                     "Consent: with --follow, joints that are not homed look for home, slowly");
-  command->add_option("--log", arguments->log, "candump log of all frames")->writes(can_log_outputs);
+  command->add_option("--log", arguments->log, "candump log of all frames: FILE, or FILE-BUS of each bus")
+      ->writes(can_log_outputs);
+  command
+      ->add_option("--session-html", arguments->session,
+                   "Report of the session: what the robot did and why, every joint over time, the buses' load; the\n"
+                   "plots' series as JSON beside it")
+      ->writes(page_outputs);
   command
       ->add_option("--record", arguments->record,
                    "Writes what the cameras see as a run into this folder, and beside it the CAN logs\n"
@@ -307,7 +358,7 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   command->footer(
       "On a terminal, keys enable, home, move and stop the robot; space is a stop. A software stop does not replace a\n"
       "hardware emergency stop. The drives stop on their own when this program ends in whatever way.\n\n"
-      "Exit codes: 0 done, 1 stopped or a device failed, 2 wrong input, 130 Ctrl-C or SIGTERM.\n\n"
+      "Exit codes: 0 done, 1 stopped, held back or a device failed, 2 wrong input, 130 Ctrl-C or SIGTERM.\n\n"
       "Example: foresight robot configs/minerva.yaml --mock --home --follow motion.csv --log session.log");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/edit_distance.hpp"
+
 namespace foresight {
 namespace {
 
@@ -94,25 +96,30 @@ std::string in_quotes(std::string_view text) {
   return out + (text.size() > kLongest ? "...'" : "'");
 }
 
-std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+std::size_t edit_distance(std::string_view word, std::string_view other) {
   const std::string_view a = word.substr(0, 64);  // no key is longer; bounds the work on garbage
+  std::vector<std::size_t> row(other.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < other.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == other[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
   std::string best;
   std::size_t best_distance = SIZE_MAX;
   for (const std::string& b : candidates) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      std::size_t diagonal = std::exchange(row[0], i + 1);
-      for (std::size_t j = 0; j < b.size(); ++j) {
-        const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-      }
-    }
+    std::size_t distance = edit_distance(word, b);
     // A word that was cut ("height" for "image_height") is nearer than its missing letters say.
-    if (a.size() >= 3 && b.find(a) != std::string::npos) row.back() = std::min(row.back(), std::size_t{1});
-    if (row.back() < best_distance) {
-      best_distance = row.back();
+    if (word.size() >= 3 && b.find(word) != std::string::npos) distance = std::min(distance, std::size_t{1});
+    if (distance < best_distance) {
+      best_distance = distance;
       best = b;
     }
   }

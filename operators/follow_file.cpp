@@ -32,7 +32,7 @@ std::vector<std::size_t> columns_of(const TextRow& row, const Rig& rig) {
 
 }  // namespace
 
-FollowFile::FollowFile(const std::filesystem::path& file, const Rig& rig) {
+FollowFile::FollowFile(const std::filesystem::path& file, const Rig& rig) : words_(rig.joint_words()) {
   for_each_row(file, {RowForm::Between::commas}, [&](const TextRow& row) {
     if (joints_.empty())
       joints_ = columns_of(row, rig);

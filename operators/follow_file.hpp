@@ -22,10 +22,13 @@ class FollowFile {
   /// `seconds` after the first row; before and after, where it begins and ends. Joints that are not named keep
   /// their value in `positions`.
   void at(double seconds, JointValues& positions) const;
+  /// All joints of the rig, in its order.
+  const std::vector<JointWords>& joints() const { return words_; }
 
  private:
   void add(const TextRow& row, const Rig& rig);
 
+  std::vector<JointWords> words_;
   std::vector<std::size_t> joints_;  // of each column, its joint
   std::vector<double> times_;
   std::vector<std::vector<double>> rows_;

@@ -1,5 +1,7 @@
 #include "operators/follow_operator.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,13 +10,22 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kPatience = 20s;      // for enabling
+constexpr Duration kPatience = 20s;      // for enabling, and for the last of the way
 constexpr Duration kReleasedFor = 50ms;  // before engaging
+constexpr Duration kStuckFor = 5s;       // on the way to where the file begins
+constexpr Duration kSettled = 500ms;     // after the file's end
+constexpr Duration kStandsFor = 1s;      // short of its end
+constexpr double kReached = 1e-3;        // rad or m
+
+bool set_points_move(const RobotStatus& status, std::size_t joints) {
+  return std::any_of(status.set_point.begin(), status.set_point.begin() + static_cast<std::ptrdiff_t>(joints),
+                     [](const JointMotion& m) { return m.velocity != 0; });
+}
 
 }  // namespace
 
-FollowOperator::FollowOperator(FollowFile file, std::vector<std::string> joints, bool may_home)
-    : file_(std::move(file)), names_(std::move(joints)), joints_(names_.size()), may_home_(may_home) {}
+FollowOperator::FollowOperator(FollowFile file, bool may_home)
+    : file_(std::move(file)), joints_(file_.joints().size()), may_home_(may_home) {}
 
 OperatorWish FollowOperator::end(std::string outcome) {
   outcome_ = std::move(outcome);
@@ -23,7 +34,7 @@ OperatorWish FollowOperator::end(std::string outcome) {
 
 void FollowOperator::enter(Step step, RobotTime now) {
   step_ = step;
-  since_ = now;
+  since_ = moved_ = now;
   asked_ = false;
 }
 
@@ -31,24 +42,94 @@ OperatorWish FollowOperator::command(RobotTime now, bool deadman) {
   return {.command = counter_.command(now, deadman, joints_, target_)};
 }
 
+OperatorWish FollowOperator::approach(RobotTime now, const RobotStatus& status) {
+  if (set_points_move(status, joints_)) moved_ = now;
+  if (gap(status) < kReached) {
+    enter(Step::follow, now);
+  } else if (now - moved_ > kStuckFor) {
+    const GateHold& hold = status.gate.hold;
+    return end("not reached: where the file begins: " + place(status) +
+               (hold.joint >= 0 ? ": " + parts_text(hold) : ""));
+  }
+  return command(now, true);
+}
+
+OperatorWish FollowOperator::follow(RobotTime now, const RobotStatus& status) {
+  const Duration past = now - since_ - seconds(file_.duration_s());
+  file_.at(to_seconds(now - since_), target_);
+  watch(now, status);
+  if (past < kSettled) return command(now, true);
+  const bool reached = gap(status) < kReached;
+  // The ramp after a start, or the gate, may make it late: it comes as long as it moves.
+  if (!reached && now - moved_ < kStandsFor && past < kPatience) return command(now, true);
+  result_ = result(reached, status);
+  enter(Step::rest, now);
+  return command(now, false);
+}
+
+void FollowOperator::watch(RobotTime now, const RobotStatus& status) {
+  if (set_points_move(status, joints_)) moved_ = now;
+  const GateHold& hold = status.gate.hold;
+  if (hold.joint < 0 || hold.since < since_) return;  // or it was on the way to where the file begins
+  if (!held_) held_ = {to_seconds(hold.since - since_), hold};
+  if (std::abs(hold.asked - hold.stands) > std::abs(held_->worst.asked - held_->worst.stands)) held_->worst = hold;
+}
+
+/// The joint whose set-point is farthest from where it should be.
+std::size_t FollowOperator::farthest(const RobotStatus& status) const {
+  std::size_t out = 0;
+  const auto way = [&](std::size_t i) { return std::abs(status.set_point[i].position - target_[i]); };
+  for (std::size_t i = 1; i < joints_; ++i)
+    if (way(i) > way(out)) out = i;
+  return out;
+}
+
+double FollowOperator::gap(const RobotStatus& status) const {
+  const std::size_t joint = farthest(status);
+  return std::abs(status.set_point[joint].position - target_[joint]);
+}
+
+/// Where that joint stands, as its drive says.
+std::string FollowOperator::place(const RobotStatus& status) const {
+  const std::size_t joint = farthest(status);
+  return place_text(file_.joints()[joint], status.feedback[joint].position, target_[joint]);
+}
+
+std::string FollowOperator::stopped_text(const RobotStatus& status) const {
+  std::string why = to_string(status.gate.reason);
+  if (*status.gate.detail != '\0') why += std::string(": ") + status.gate.detail;
+  if (*status.refused != '\0') why += std::string("; ") + status.refused;
+  const int joint = status.waiting_for >= 0 ? status.waiting_for : status.gate.joint;
+  if (joint >= 0) {
+    const auto index = static_cast<std::size_t>(joint);
+    const DriveFeedback& f = status.feedback[index];
+    why += "; joint " + file_.joints()[index].name + ": " + to_string(f.state);
+    if (*f.fault != '\0') why += std::string(", ") + f.fault;
+  }
+  if (engaged_ && gap(status) >= kReached)
+    why += "; not reached: " + place(status) +
+           (step_ == Step::follow ? fmt::format(" at {:.2f} s of the file", to_seconds(status.time - since_)) : "");
+  return (why.starts_with("stopped") ? "" : "stopped: ") + why;
+}
+
+std::string FollowOperator::result(bool reached, const RobotStatus& status) const {
+  const std::string since = held_ ? fmt::format(" since {:.2f} s of the file", std::max(0.0, held_->since_s)) : "";
+  const std::string by = held_ ? ": " + parts_text(held_->worst) : "";
+  if (!reached) return "not reached: " + place(status) + since + by;
+  if (!held_) return "done";
+  const JointWords& joint = file_.joints()[static_cast<std::size_t>(held_->worst.joint)];
+  return "not followed: held back" + since + ", joint " + joint.name + " by up to " +
+         position_text(std::abs(held_->worst.asked - held_->worst.stands), joint.unit) + by +
+         "; the end of the file was reached";
+}
+
 OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
   if (!outcome_.empty()) return {.quit = true};
   if (since_.ns == 0) since_ = now;
-  if (status.phase == RobotPhase::stopped) {
-    std::string why = *status.refused != '\0' ? status.refused : to_string(status.gate.reason);
-    if (*status.gate.detail != '\0') why += std::string(": ") + status.gate.detail;
-    const int joint = status.waiting_for >= 0 ? status.waiting_for : status.gate.joint;
-    if (joint >= 0) {
-      const DriveFeedback& f = status.feedback[static_cast<std::size_t>(joint)];
-      why += "; joint " + names_[static_cast<std::size_t>(joint)] + ": " + to_string(f.state);
-      if (*f.fault != '\0') why += std::string(", ") + f.fault;
-    }
-    return end("stopped: " + why);
-  }
+  if (status.phase == RobotPhase::stopped) return end(stopped_text(status));
   // Whoever was in charge and is not any more, though nobody let go, has lost the robot: it does not follow.
   const bool in_charge = status.gate.state == GateState::following && status.gate.operator_id == kId;
-  if (engaged_ && !in_charge && (step_ == Step::approach || step_ == Step::follow))
-    return end(std::string("stopped: ") + to_string(status.gate.reason));
+  if (engaged_ && !in_charge && (step_ == Step::approach || step_ == Step::follow)) return end(stopped_text(status));
   engaged_ = engaged_ || in_charge;
   switch (step_) {
     case Step::enable:
@@ -75,25 +156,10 @@ OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
         enter(Step::approach, now);
       }
       return command(now, false);
-    case Step::approach: {
-      double farthest = 0, fastest = 0;
-      for (std::size_t i = 0; i < joints_; ++i) {
-        farthest = std::max(farthest, std::abs(status.set_point[i].position - target_[i]));
-        fastest = std::max(fastest, std::abs(status.set_point[i].velocity));
-      }
-      if (status.gate.reason == GateReason::obstructed && fastest == 0 && now - since_ > 5s)
-        return end(std::string("cannot reach where the file begins: ") + status.gate.detail);
-      if (farthest < 1e-3) enter(Step::follow, now);
-      return command(now, true);
-    }
-    case Step::follow: {
-      const double t = to_seconds(now - since_);
-      file_.at(t, target_);
-      if (t > file_.duration_s() + 0.5) enter(Step::rest, now);
-      return command(now, true);
-    }
+    case Step::approach: return approach(now, status);
+    case Step::follow: return follow(now, status);
     case Step::rest:
-      if (status.gate.state == GateState::idle) return end("done");
+      if (status.gate.state == GateState::idle) return end(result_);
       return command(now, false);
   }
   return {};

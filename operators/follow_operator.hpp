@@ -9,13 +9,15 @@
 
 namespace foresight {
 
-/// Enables, homes where it may and must, goes to where the file begins, follows it, and ends.
+/// Enables, homes where it may and must, goes to where the file begins, follows it, and ends. It is done only where the
+/// robot came to where the file ends, and nothing held it back on the way: a motion that the safety gate held, slowed
+/// down in a corner, or let go of in the middle ends as "not reached" or "not followed", with the joint, where it
+/// stands, where it should be, since when, and what held it.
 class FollowOperator final : public Commander {
  public:
   static constexpr std::uint64_t kId = 1;
 
-  /// `joints`: the rig's, by name.
-  FollowOperator(FollowFile file, std::vector<std::string> joints, bool may_home);
+  FollowOperator(FollowFile file, bool may_home);
   std::uint64_t operator_id() const override { return kId; }
   OperatorWish tick(RobotTime now, const RobotStatus& status) override;
   /// "done", or why not; empty while it goes on.
@@ -26,17 +28,31 @@ class FollowOperator final : public Commander {
   enum class Step { enable, home, release, approach, follow, rest };
   OperatorWish command(RobotTime now, bool deadman);
   OperatorWish end(std::string outcome);
+  OperatorWish approach(RobotTime now, const RobotStatus& status);
+  OperatorWish follow(RobotTime now, const RobotStatus& status);
   void enter(Step step, RobotTime now);
+  void watch(RobotTime now, const RobotStatus& status);
+  std::size_t farthest(const RobotStatus& status) const;
+  double gap(const RobotStatus& status) const;
+  std::string place(const RobotStatus& status) const;
+  std::string stopped_text(const RobotStatus& status) const;
+  std::string result(bool reached, const RobotStatus& status) const;
 
   FollowFile file_;
-  std::vector<std::string> names_;
   std::size_t joints_;
   bool may_home_;
   Step step_ = Step::enable;
   bool asked_ = false, engaged_ = false;
-  RobotTime since_;
+  RobotTime since_, moved_;
   CommandCounter counter_{kId};
   JointValues target_{};
+  /// What held the robot back while it followed.
+  struct Held {
+    double since_s = 0;  // of the file
+    GateHold worst;      // when the joint was farthest from where it should have been
+  };
+  std::optional<Held> held_;
+  std::string result_ = "done";  // once at rest
   std::string outcome_;
 };
 

@@ -152,7 +152,7 @@ bool ArmChain::within_limits(const JointVector& q, double tolerance) const noexc
 
 ArmChain read_arm_chain(const std::filesystem::path& urdf, const std::string& tip, const std::string& base) {
   const std::string file = urdf.string();
-  const UrdfRobot robot = read_urdf(urdf, urdf.parent_path(), UrdfVisuals::leave_out);
+  const UrdfRobot robot = read_urdf(urdf, urdf.parent_path(), UrdfShapes::none);
   const std::size_t first = base.empty() ? 0 : find_link(robot, base, file);
   Pose T = Pose::Identity();
   std::vector<ArmJoint> joints;

@@ -7,6 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "rig/joint_limits.hpp"
 #include "scene/yaml_fields.hpp"
 
 namespace foresight {
@@ -49,19 +50,12 @@ RigBus read_bus(const YamlMap& map) {
   return bus;
 }
 
-void read_limits(const YamlMap& map, RigJoint& joint) {
-  joint.drive.min_position = map.number("min");
-  joint.drive.max_position = map.number("max");
-  if (joint.drive.min_position >= joint.drive.max_position)
-    throw InputError(map.where("min"), "is not below max", "exchange or correct them");
-  joint.drive.max_velocity = map.positive("velocity");
-  joint.drive.max_acceleration = map.positive("acceleration");
-  joint.jerk = map.positive("jerk");
-  joint.following_error = map.positive("following_error");
-  joint.drive.homing_velocity =
-      map.has("homing_velocity") ? map.positive("homing_velocity") : 0.1 * joint.drive.max_velocity;
-  if (joint.drive.homing_velocity > 0.25 * joint.drive.max_velocity)
-    throw InputError(map.where("homing_velocity"), "is more than a quarter of the joint's velocity", "home slowly");
+/// The joint of that name in the URDF, or null.
+const UrdfJoint* in_urdf(const Rig& rig, const std::string& name) {
+  if (!rig.robot) return nullptr;
+  const auto found = std::ranges::find_if(
+      rig.robot->joints, [&](const UrdfJoint& j) { return j.name == name && j.kind != UrdfJoint::Kind::fixed; });
+  return found == rig.robot->joints.end() ? nullptr : &*found;
 }
 
 // How the joint learns where it is. "Here is home" would make the model that all checks rest on whatever the arm's
@@ -84,7 +78,8 @@ void read_reference(const YamlMap& map, bool powercube, RigJoint& joint) {
                      "home to a switch, or use an absolute encoder");
 }
 
-RigJoint read_joint(const YamlMap& map, const std::vector<RigBus>& buses) {
+RigJoint read_joint(const YamlMap& map, const Rig& rig) {
+  const std::vector<RigBus>& buses = rig.buses;
   map.require_known(
       {"name",    "group",  "bus",      "node",         "unit", "counts_per_unit", "direction",       "offset",
        "min",     "max",    "velocity", "acceleration", "jerk", "following_error", "homing_velocity", "homing_method",
@@ -112,7 +107,8 @@ RigJoint read_joint(const YamlMap& map, const std::vector<RigBus>& buses) {
       throw InputError(map.where("direction"), "is " + std::to_string(joint.drive.direction), "give 1 or -1");
   }
   joint.drive.offset = number(map, "offset", 0);
-  read_limits(map, joint);
+  read_limits(map, in_urdf(rig, joint.drive.name), rig.rate_hz, joint);
+  if (!powercube) check_counts(map, joint);
   read_reference(map, powercube, joint);
   joint.drive.vendor = identity(map, "vendor");
   joint.drive.product = identity(map, "product");
@@ -163,6 +159,8 @@ void read_surroundings(const YamlMap& map, Surroundings& out) {
 void read_control(const YamlMap& map, Rig& rig) {
   map.require_known({"rate_hz", "command_age_s", "feedback_age_s", "ramp_s"});
   rig.rate_hz = number(map, "rate_hz", rig.rate_hz);
+  if (!(rig.rate_hz >= 10 && rig.rate_hz <= 2000))  // joints are judged by it before the gate's options are
+    throw InputError(map.where("rate_hz"), "is " + std::to_string(rig.rate_hz), "choose from 10 to 2000");
   rig.command_age_s = number(map, "command_age_s", rig.command_age_s);
   rig.feedback_age_s = number(map, "feedback_age_s", rig.feedback_age_s);
   rig.ramp_s = number(map, "ramp_s", rig.ramp_s);
@@ -173,7 +171,8 @@ void read_robot(const YamlMap& map, Rig& rig) {
   const auto urdf = map.file().parent_path() / map.text("urdf");
   if (!std::filesystem::is_regular_file(urdf))
     throw InputError(map.where("urdf"), "there is no file " + urdf.string(), "give its path, relative to the rig file");
-  rig.robot = read_urdf(urdf, urdf.parent_path().empty() ? std::filesystem::path(".") : urdf.parent_path());
+  const auto root = urdf.parent_path().empty() ? std::filesystem::path(".") : urdf.parent_path();
+  rig.robot = read_urdf(urdf, root, UrdfShapes::all);
   if (map.has("pose")) rig.T_world_robot = map.pose("pose");
 }
 
@@ -236,6 +235,12 @@ std::vector<std::string> Rig::joint_names() const {
   return out;
 }
 
+std::vector<JointWords> Rig::joint_words() const {
+  std::vector<JointWords> out;
+  for (const RigJoint& joint : joints) out.push_back({joint.drive.name, joint.unit});
+  return out;
+}
+
 std::unique_ptr<RobotShape> Rig::shape() const {
   if (!robot) return nullptr;
   std::vector<std::string> names = joint_names();
@@ -254,7 +259,7 @@ Rig read_rig(const std::filesystem::path& file) {
   if (map.has("control")) read_control(map.map("control"), rig);
   if (map.has("surroundings")) read_surroundings(map.map("surroundings"), rig.surroundings);
   for (const YamlMap& bus : map.maps("buses")) rig.buses.push_back(read_bus(bus));
-  for (const YamlMap& joint : map.maps("joints")) rig.joints.push_back(read_joint(joint, rig.buses));
+  for (const YamlMap& joint : map.maps("joints")) rig.joints.push_back(read_joint(joint, rig));
   check_joints(map, rig);
   if (map.has("cameras")) rig.cameras = read_stereo_config(map.map("cameras"));
   if (map.has("calibration")) {

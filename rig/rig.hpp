@@ -9,6 +9,7 @@
 
 #include "drivers/camera/camera_config.hpp"
 #include "drivers/drive/drive.hpp"
+#include "drivers/robot/robot_words.hpp"
 #include "drivers/robot/safety_gate.hpp"
 #include "scene/urdf_reader.hpp"
 
@@ -60,6 +61,8 @@ struct Rig {
   /// What the safety gate needs of all that.
   GateOptions gate_options() const;
   std::vector<std::string> joint_names() const;
+  /// Names and units, for messages.
+  std::vector<JointWords> joint_words() const;
   /// The robot's body, or null where the rig has none.
   std::unique_ptr<RobotShape> shape() const;
 };

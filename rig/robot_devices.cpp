@@ -199,7 +199,10 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
     } else {
       bus->end = std::make_unique<SocketCanBus>(config.interface);
     }
-    if (options.log) open_log(*bus, clock, stepped, log_of(*options.log, rig, config));
+    if (options.log) {
+      logs_.push_back(log_of(*options.log, rig, config));
+      open_log(*bus, clock, stepped, logs_.back());
+    }
     bus->metered = std::make_unique<MeteredBus>(bus->logged ? *bus->logged : *bus->end, clock, rates);
     bus->patient = std::make_unique<PatientBus>(*bus->metered, clock, [this, i] { serve_others(i); });
     bus->network = make_network(*bus->patient, clock, rig, i);
@@ -252,7 +255,10 @@ void RobotDevices::serve_others(std::size_t than) noexcept {
 void RobotDevices::bring_up(const std::function<void(const std::string&)>& say) {
   for (Drive* drive : drives_) drive->identify();
   say(std::to_string(drives_.size()) + " drives answer as the rig says");
-  for (Drive* drive : drives_) drive->configure();
+  for (Drive* drive : drives_) {
+    drive->configure();
+    for (const std::string& remark : drive->remarks()) say("drive " + drive->config().name + ": " + remark);
+  }
   say("limits, process data and watchdogs are written and read back");
 }
 

@@ -51,6 +51,8 @@ class RobotDevices {
   std::vector<BusLine> buses() const;
   /// Why the log of a bus is not complete (a full disk); "" where all are. Once the loop has ended.
   std::string log_fault() const;
+  /// The files that the frames go to, one for each bus; none without RobotDeviceOptions::log.
+  const std::vector<std::filesystem::path>& logs() const { return logs_; }
 
   /// Where the shaft of a joint on a mock bus truly was at an instant of the last seconds, in the joint's own unit and
   /// direction; nothing for joints of real buses or that the rig does not have. Any thread; in real time it waits, 50
@@ -71,6 +73,7 @@ class RobotDevices {
   Clock& clock_;
   std::vector<std::unique_ptr<Bus>> buses_;
   std::vector<Drive*> drives_;
+  std::vector<std::filesystem::path> logs_;
 };
 
 }  // namespace foresight

@@ -1,6 +1,7 @@
 #include "scene/urdf_reader.hpp"
 
 #include <console_bridge/console.h>
+#include <fmt/core.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include "scene/mesh_reader.hpp"
 #include "scene/primitives.hpp"
 #include "scene/text_table.hpp"
+#include "scene/urdf_check.hpp"
 
 namespace foresight {
 namespace fs = std::filesystem;
@@ -58,12 +60,19 @@ bool is_deep(std::string_view xml) {
   return false;
 }
 
-urdf::ModelInterfaceSharedPtr parse(const fs::path& file) {
+struct ParsedUrdf {
+  urdf::ModelInterfaceSharedPtr model;
+  std::map<std::string, UrdfShapeCount> shapes;  // by link
+  std::string complaint;                         // the parser's first; it goes on where it can
+};
+
+ParsedUrdf parse(const fs::path& file) {
   const std::string xml = read_file(file);
   if (is_deep(xml)) throw InputError(file.string(), "its elements nest too deep", "write a plain URDF");
   if (xml.find("xmlns:xacro") != std::string::npos && xml.find("<xacro:") != std::string::npos)
     throw InputError(file.string(), "is a xacro file", "expand it to a URDF with the xacro tool");
-  urdf::ModelInterfaceSharedPtr model;
+  ParsedUrdf out{nullptr, check_urdf(file, xml), {}};
+  urdf::ModelInterfaceSharedPtr& model = out.model;
   std::string reason;
   {
     LogCapture log;
@@ -77,13 +86,28 @@ urdf::ModelInterfaceSharedPtr parse(const fs::path& file) {
   if (!model || !model->getRoot())
     throw InputError(file.string(), "is not a valid URDF (" + (reason.empty() ? "no XML" : reason) + ")",
                      "correct it; check_urdf shows more");
-  return model;
+  out.complaint = reason;
+  return out;
+}
+
+/// A link that is this small or large is in another unit, and the gate would guard it in vain.
+void require_size_of_a_link(const Mesh& body, const std::string& where) {
+  constexpr double kSmallest = 1e-3, kLargest = 20;
+  if (body.vertices.empty()) return;
+  Eigen::AlignedBox3d box;
+  for (const auto& v : body.vertices) box.extend(v.cast<double>());
+  const double size = box.sizes().maxCoeff();
+  const std::string shown = fmt::format("its shapes are {:.3g} m large", size);
+  if (size < kSmallest)
+    throw InputError(where, shown, "write them in metres; a mesh in metres takes no scale of 0.001");
+  if (size > kLargest)
+    throw InputError(where, shown, "write them in metres; a mesh in millimetres takes scale=\"0.001 0.001 0.001\"");
 }
 
 class RobotBuilder {
  public:
-  RobotBuilder(const fs::path& file, const fs::path& root, UrdfVisuals visuals)
-      : file_(file), root_(root), visuals_(visuals), model_(parse(file)) {}
+  RobotBuilder(const fs::path& file, const fs::path& root, UrdfShapes shapes)
+      : file_(file), root_(root), shapes_(shapes), parsed_(parse(file)), model_(parsed_.model) {}
 
   UrdfRobot build() {
     robot_.name = model_->getName();
@@ -103,26 +127,48 @@ class RobotBuilder {
   void add_link(const urdf::Link& link, int parent) {
     if (!seen_.insert(link.name).second)
       throw InputError(file_.string(), "link " + in_quotes(link.name) + " has two parent joints", "remove one of them");
-    std::vector<Mesh> parts;
-    std::vector<Eigen::Affine3d> T;
     const std::string where = file_.string() + ": link " + in_quotes(link.name);
-    for (const auto& visual : link.visual_array) {
-      if (!visual || !visual->geometry || visuals_ == UrdfVisuals::leave_out) continue;
-      Eigen::Vector3d scale(1, 1, 1);
-      parts.push_back(read_geometry(*visual->geometry, where, scale));
-      T.push_back(Eigen::Affine3d(to_pose(visual->origin, where).matrix()) * Eigen::Scaling(scale));
-    }
-    Node node{link.name, merged(parts, T), parent, Pose::Identity()};
-    for (const auto& v : node.mesh.vertices)
-      if (!v.allFinite()) throw InputError(where, "its visual geometry is not finite", "correct its scale");
+    const UrdfShapeCount written = parsed_.shapes[link.name];
+    require_all(link.visual_array.size(), written.visual, "<visual>", where);
+    require_all(link.collision_array.size(), written.collision, "<collision>", where);
+    Node node{link.name, {}, parent, Pose::Identity()};
+    if (shapes_ != UrdfShapes::none) node.mesh = merged_shapes(link.visual_array, where + " <visual>");
     robot_.links.push_back(std::move(node));
+    if (shapes_ != UrdfShapes::all) return;
+    robot_.collision.push_back(merged_shapes(link.collision_array, where + " <collision>"));
+    require_size_of_a_link(robot_.body(robot_.links.size() - 1), where);
   }
 
-  Mesh read_geometry(const urdf::Geometry& geometry, const std::string& where, Eigen::Vector3d& scale) {
+  // check_urdf() has seen that all are right; whatever the parser still passed over must not go without a word.
+  void require_all(std::size_t found, std::size_t written, const char* what, const std::string& where) const {
+    if (found != written)
+      throw InputError(where,
+                       "only " + std::to_string(found) + " of its " + std::to_string(written) + " " + what +
+                           " can be read (" + parsed_.complaint + ")",
+                       "compare it with the URDF specification; check_urdf shows more");
+  }
+
+  /// `shapes`: of <visual> or <collision> elements.
+  template <typename Elements>
+  Mesh merged_shapes(const Elements& elements, const std::string& where) const {
+    std::vector<Mesh> parts;
+    std::vector<Eigen::Affine3d> T;
+    for (const auto& element : elements) {
+      if (!element || !element->geometry) throw InputError(where, "has no shape", "give it a <geometry>");
+      Eigen::Vector3d scale(1, 1, 1);
+      parts.push_back(read_geometry(*element->geometry, where, scale));
+      T.push_back(Eigen::Affine3d(to_pose(element->origin, where).matrix()) * Eigen::Scaling(scale));
+    }
+    Mesh out = merged(parts, T);
+    for (const auto& v : out.vertices)
+      if (!v.allFinite()) throw InputError(where, "its geometry is not finite", "correct its scale");
+    return out;
+  }
+
+  Mesh read_geometry(const urdf::Geometry& geometry, const std::string& where, Eigen::Vector3d& scale) const {
     const auto positive = [&](double size) {
       if (!(size > 0 && size <= kFarthest))
-        throw InputError(where, "the size " + std::to_string(size) + " of a visual is not positive",
-                         "write it in metres");
+        throw InputError(where, "the size " + std::to_string(size) + " is not positive", "write it in metres");
       return size;
     };
     switch (geometry.type) {
@@ -220,7 +266,8 @@ class RobotBuilder {
 
   const fs::path& file_;
   const fs::path& root_;
-  const UrdfVisuals visuals_;
+  const UrdfShapes shapes_;
+  ParsedUrdf parsed_;
   urdf::ModelInterfaceSharedPtr model_;
   UrdfRobot robot_;
   std::set<std::string> seen_;
@@ -228,8 +275,8 @@ class RobotBuilder {
 
 }  // namespace
 
-UrdfRobot read_urdf(const fs::path& file, const fs::path& root, UrdfVisuals visuals) {
-  return RobotBuilder(file, root, visuals).build();
+UrdfRobot read_urdf(const fs::path& file, const fs::path& root, UrdfShapes shapes) {
+  return RobotBuilder(file, root, shapes).build();
 }
 
 }  // namespace foresight

@@ -32,19 +32,30 @@ struct UrdfRobot {
   std::string name;
   std::vector<Node> links;        ///< parents first; link 0 is the root, with parent -1
   std::vector<UrdfJoint> joints;  ///< joint i moves link i + 1
+  /// Of each link, all its collision shapes as one mesh, without vertices where it has none. Only with UrdfShapes::all.
+  std::vector<Mesh> collision;
+
+  /// The shape that a link is kept clear by: its collision shapes where it has any, else its visual ones; without
+  /// vertices where it has neither.
+  const Mesh& body(std::size_t link) const {
+    return link < collision.size() && !collision[link].vertices.empty() ? collision[link] : links[link].mesh;
+  }
 };
 
-/// Whether a robot is read to be seen, or for its joints alone: then links are empty, and missing meshes no error.
-enum class UrdfVisuals { read, leave_out };
+/// What a robot is read for: its joints alone (then links are empty, and missing meshes no error), to be seen, or to be
+/// kept clear of things, too.
+enum class UrdfShapes { none, visual, all };
 
-/// Reads links, joints and visual geometry: meshes (with their scale), boxes, cylinders and
-/// spheres; all visuals of a link become its one mesh. A mesh named package://NAME/... or by a
+/// Reads links, joints and geometry: meshes (with their scale), boxes, cylinders and
+/// spheres; all visuals of a link become its one mesh. Every <visual> and <collision> yields its shape, or the file is
+/// refused as check_urdf() does; with UrdfShapes::all, also where a link's body is smaller than 1 mm or larger than 20
+/// m: its unit is another one. A mesh named package://NAME/... or by a
 /// relative path is looked for in the folder of the URDF and in those above it, up to `root`.
 /// Links stand at joint positions 0. Floating and planar joints count as fixed. Throws InputError
 /// naming the file and the link or joint: not a URDF, no single tree, a missing mesh, a size or
 /// axis that is no such thing.
 UrdfRobot read_urdf(const std::filesystem::path& file, const std::filesystem::path& root,
-                    UrdfVisuals visuals = UrdfVisuals::read);
+                    UrdfShapes shapes = UrdfShapes::visual);
 
 /// Joint positions in rad or m, by name. Sets T_parent_node of all links but the root. Joints
 /// that are not named stand at 0 or their nearest limit; mimic joints follow theirs. Throws

@@ -1,6 +1,7 @@
 #include "session/encoder_poses.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/registration/calibrated_head.hpp"
@@ -43,8 +44,9 @@ EncoderPoses::EncoderPoses(const Rig& rig, std::shared_ptr<const LiveScene> scen
 void EncoderPoses::listen() {
   while (const auto cycle = cycles_.take()) {
     joints_.add(*cycle);
-    if (!registration_ || !cycle->all_homed) continue;
+    if (!registration_) continue;
     const JointCycle &pan = cycle->joint[pan_], &tilt = cycle->joint[tilt_];
+    if (!pan.homed || !tilt.homed) continue;
     registration_->add_pan(pan.time, pan.position);
     registration_->add_tilt(tilt.time, tilt.position);
   }
@@ -62,8 +64,21 @@ bool EncoderPoses::is_ready(const StereoPair& pair) {
 JointPositions EncoderPoses::by_name(const JointState& joints) const {
   return [this, &joints](std::string_view name) -> std::optional<double> {
     const auto at = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
-    return at < names_.size() ? std::optional(joints.positions[at]) : std::nullopt;
+    return at < names_.size() && std::isfinite(joints.positions[at]) ? std::optional(joints.positions[at])
+                                                                     : std::nullopt;
   };
+}
+
+/// By the lab's drawing, pan and tilt carry them; what a registration needs, it sees to itself.
+bool EncoderPoses::cameras_known(const JointState& joints) const {
+  for (std::size_t i = 0; i < names_.size(); ++i)
+    if (!registration_ && (names_[i] == "pan" || names_[i] == "tilt") && !joints.known[i]) return false;
+  return std::ranges::find(joints.known, true) != joints.known.end();
+}
+
+SceneState EncoderPoses::scene_at(RobotTime time, const JointState& joints) const {
+  const StateStatus status = joints.status == StateStatus::invalid ? StateStatus::predicted : joints.status;
+  return scene_->state_at(time, by_name(joints), status);
 }
 
 PairPoses EncoderPoses::poses_of(const StereoPair& pair) {
@@ -76,7 +91,7 @@ PairPoses EncoderPoses::poses_of(const StereoPair& pair) {
   else if (scene_->is_mock())
     out.quality = "encoders";
   if (out.quality == "none" || out.quality == "lost") return out;
-  if (out.joints.status == StateStatus::invalid || right.status == StateStatus::invalid) {
+  if (!cameras_known(out.joints) || !cameras_known(right)) {
     out.T_world_camera.reset();
     out.quality = "lost";
     return out;
@@ -84,8 +99,9 @@ PairPoses EncoderPoses::poses_of(const StereoPair& pair) {
   if (!registration_)
     out.T_world_camera = {scene_->T_world_left(by_name(out.joints)),
                           scene_->T_world_left(by_name(right)) * scene_->lenses()->T_left_right};
-  out.scene = {scene_->state_at(pair.left.time, by_name(out.joints), out.joints.status),
-               scene_->state_at(pair.right.time, by_name(right), right.status)};
+  out.scene = {scene_at(pair.left.time, out.joints), scene_at(pair.right.time, right)};
+  for (std::size_t i = 0; i < names_.size(); ++i)
+    if (!out.joints.known[i] || !right.known[i]) out.missing += (out.missing.empty() ? "" : ", ") + names_[i];
   return out;
 }
 

@@ -15,8 +15,9 @@ namespace foresight {
 
 /// Takes what the control loop hands out when it is asked for a pose. Where the rig's head is calibrated, cameras stand
 /// where the registration finds them; mock cameras, else, where the encoders say by the lab's drawing; real ones are
-/// nowhere known ("none"). A frame all of whose joints are not known at its instants has no poses ("lost"): the model's
-/// parts would be guesses. One thread.
+/// nowhere known ("none"). A frame at whose instants the joints that carry the cameras are not known has no poses
+/// ("lost"). Other joints that are not known, such as those of a dead gripper, do not matter to the cameras: the
+/// model's parts stand where they were last heard of, as `predicted`, and PairPoses::missing names them. One thread.
 class EncoderPoses final : public PoseSource {
  public:
   using Cycles = BroadcastRing<RobotCycle>::Reader;
@@ -34,6 +35,8 @@ class EncoderPoses final : public PoseSource {
   void listen();
   RobotTime on_encoders(RobotTime camera_time) const;
   JointPositions by_name(const JointState& joints) const;
+  bool cameras_known(const JointState& joints) const;
+  SceneState scene_at(RobotTime time, const JointState& joints) const;
   void register_cameras(const StereoPair& pair, PairPoses& out);
 
   std::shared_ptr<const LiveScene> scene_;

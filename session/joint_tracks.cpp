@@ -3,25 +3,38 @@
 #include <algorithm>
 
 namespace foresight {
+namespace {
+
+constexpr Duration kSilent = std::chrono::milliseconds(300);  // so much older than the others' word
+
+}  // namespace
 
 void JointTracks::add(const RobotCycle& cycle) {
   for (std::size_t i = 0; i < std::min(tracks_.size(), cycle.joints); ++i)
-    if (const JointCycle& joint = cycle.joint[i]; joint.homed && joint.time.ns != 0)
+    if (const JointCycle& joint = cycle.joint[i]; joint.homed && joint.time.ns != 0) {
       tracks_[i].add(joint.time, joint.position);
+      told_[i] = {joint.time, joint.position};
+    }
 }
 
 JointState JointTracks::at(RobotTime encoder_time) const {
-  JointState out{encoder_time, StateStatus::exact, {}};
-  for (const ShaftTrack& track : tracks_) {
-    const ShaftTrack::Answer answer = track.at(encoder_time);
+  JointState out{encoder_time, StateStatus::exact, {}, {}};
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const ShaftTrack::Answer answer = tracks_[i].at(encoder_time);
+    const bool known = answer.status != StateStatus::invalid;
     out.status = std::max(out.status, answer.status);  // the enumeration goes from best to worst
-    out.positions.push_back(answer.shaft);
+    out.positions.push_back(known ? answer.shaft : told_[i].position);
+    out.known.push_back(known);
   }
   return out;
 }
 
 bool JointTracks::know(RobotTime encoder_time) const {
-  return std::ranges::all_of(tracks_, [&](const ShaftTrack& track) { return track.knows(encoder_time); });
+  RobotTime newest;
+  for (const Told& told : told_) newest = std::max(newest, told.time);
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    if (newest - told_[i].time < kSilent && !tracks_[i].knows(encoder_time)) return false;
+  return newest.ns != 0;
 }
 
 }  // namespace foresight

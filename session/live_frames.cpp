@@ -169,19 +169,21 @@ LiveFramePtr LiveFrames::registered(const Waiting& waiting) noexcept {
   auto frame = std::make_shared<LiveFrame>();
   frame->number = waiting.number;
   frame->pair = waiting.pair;
-  std::string fault;
+  std::string fault, missing;
   try {
     PairPoses poses = poses_->poses_of(waiting.pair);
     if (poses.T_world_camera) frame->posed = posed_frame(waiting.pair, poses, options_.margin_px);
     frame->joints = std::move(poses.joints);
     frame->quality = std::move(poses.quality);
     frame->predicted_px = poses.predicted_px;
+    missing = std::move(poses.missing);
   } catch (const std::exception& error) {
     fault = error.what();
     frame->quality = "lost";
   }
   const std::lock_guard lock(mutex_);
   fault_ = std::move(fault);
+  missing_ = std::move(missing);
   return frame;
 }
 
@@ -204,6 +206,11 @@ std::uint64_t LiveFrames::dropped() const noexcept {
 std::string LiveFrames::fault() const {
   const std::lock_guard lock(mutex_);
   return fault_;
+}
+
+std::string LiveFrames::missing() const {
+  const std::lock_guard lock(mutex_);
+  return missing_;
 }
 
 }  // namespace foresight

@@ -30,6 +30,7 @@ struct PairPoses {
   JointState joints;                   ///< at the left image's instant
   std::string quality = "none";        ///< "tags", "held", "encoders" (RegistrationQuality), "given"; "lost", "none"
   std::optional<double> predicted_px;  ///< expected error of the left camera's pose, RMS over the image
+  std::string missing;                 ///< joints of the scene that are not known then: they stand where last heard of
 };
 
 /// Tells poses of pairs. All but what an implementation says otherwise on the thread that registers.
@@ -110,6 +111,7 @@ class LiveFrames {
 
   std::uint64_t dropped() const noexcept;  ///< pairs for which the registration was too slow
   std::string fault() const;               ///< why the newest pair could not be registered at all; "" where it could
+  std::string missing() const;             ///< PairPoses::missing of the newest pair
 
  private:
   struct Waiting {
@@ -134,7 +136,7 @@ class LiveFrames {
   std::condition_variable_any arrived_;
   std::deque<Waiting> waiting_;
   std::uint64_t number_ = 0, dropped_ = 0;
-  std::string fault_;
+  std::string fault_, missing_;
   bool stopped_ = false;
   std::vector<std::weak_ptr<FrameQueue>> subscribers_;
   std::jthread thread_;

@@ -61,6 +61,12 @@ void RobotCameras::step() noexcept {
   if (frames_) frames_->step();
 }
 
+std::string RobotCameras::registration_trouble() const {
+  if (!frames_) return "";
+  const std::string fault = frames_->fault(), missing = frames_->missing();
+  return fault.empty() && !missing.empty() ? "not known: " + missing + "; drawn where last heard of" : fault;
+}
+
 std::string RobotCameras::finish() {
   watch_->stop();
   if (frames_) frames_->stop();

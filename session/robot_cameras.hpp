@@ -45,6 +45,9 @@ class RobotCameras {
   /// Only with RobotCameraOptions::frames or ::record.
   LiveFrames& frames() { return *frames_; }
   const LiveScene& scene() const { return *scene_; }
+  /// What the newest pair lacks: why it could not be registered at all, or which joints nobody knows; "" where nothing
+  /// is amiss, or nobody wants poses.
+  std::string registration_trouble() const;
 
   /// Stops the cameras and the registration, closes all subscribers' queues and finishes the recording. What there is
   /// to say, one line each; empty without a recording. Throws RuntimeFailure where the recording cannot be finished.

@@ -19,7 +19,7 @@ constexpr double kPeerTolerance = 1e-4;  // m and rad: what KDL is asked for is 
 class Judge {
  public:
   Judge(const PredictionIkOptions& options, const ArmChain& chain)
-      : chain_(chain), robot_(read_urdf(options.urdf, options.urdf.parent_path(), UrdfVisuals::leave_out)) {
+      : chain_(chain), robot_(read_urdf(options.urdf, options.urdf.parent_path(), UrdfShapes::none)) {
     int link = find(options.tip);
     for (const int base = options.base.empty() ? 0 : find(options.base); link != base;
          link = robot_.links[static_cast<std::size_t>(link)].parent)

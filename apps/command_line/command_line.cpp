@@ -225,6 +225,8 @@ CommandLine read_command_line(int argc, char** argv, const std::string& help, co
                               const std::function<void(Command&)>& define) {
   CLI::App app{help};
   app.set_version_flag("--version", version);
+  bool only_check = false;
+  app.add_flag("--check-options", only_check, "Only says whether the words behind it can be read, and does nothing");
   Command root(app);
   define(root);
   root.require_roles();
@@ -235,6 +237,7 @@ CommandLine read_command_line(int argc, char** argv, const std::string& help, co
     std::cerr << "foresight: " << explain(app, error) << "\n";
     return {2, {}};
   }
+  if (only_check) return {0, {}};
   return {std::nullopt, root.given_paths()};
 }
 

@@ -8,25 +8,22 @@ namespace foresight {
 namespace {
 
 std::string headline(const Rig& rig, const RobotStatus& status) {
-  std::string out = rig.name + ": " + to_string(status.phase);
-  const bool latched = status.phase == RobotPhase::stopped;
-  if (status.phase == RobotPhase::ready) out += std::string(", ") + to_string(status.gate.state);
-  if (status.gate.reason != GateReason::none && (latched || status.phase == RobotPhase::ready)) {
-    out += std::string(": ") + to_string(status.gate.reason);
-    if (status.gate.joint >= 0) out += " (" + rig.joints[static_cast<std::size_t>(status.gate.joint)].drive.name + ")";
-    if (*status.gate.detail != '\0') out += std::string(": ") + status.gate.detail;
-  }
-  if (status.waiting_for >= 0)
-    out += ", waiting for " + rig.joints[static_cast<std::size_t>(status.waiting_for)].drive.name;
+  const std::vector<JointWords> joints = rig.joint_words();
+  const RobotWords words = describe(status, joints);
+  std::string out = rig.name + ": " + words.name;
   if (*status.refused != '\0') out += std::string("; ") + status.refused;
   if (!status.bus_healthy) out += std::string("; bus: ") + status.bus_reason;
+  out += "\n";
+  if (const std::string held = hold_text(status.gate.hold, joints, status.time); !held.empty())
+    out += "  " + held + "\n";
+  if (!words.cure.empty()) out += "  next: " + words.cure + "\n";
   return out;
 }
 
 }  // namespace
 
 std::string status_text(const Rig& rig, const RobotStatus& status, const std::vector<BusLine>& buses, int selected) {
-  std::string out = headline(rig, status) + "\n";
+  std::string out = headline(rig, status);
   out += fmt::format("  commands: {} followed, {} dropped{}{}; speed {:.0f} %\n", status.gate.accepted,
                      status.gate.dropped, status.gate.last_dropped == GateReason::none ? "" : ", last: ",
                      to_string(status.gate.last_dropped), 100 * status.gate.speed);

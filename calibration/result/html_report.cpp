@@ -34,13 +34,18 @@ std::string card(const std::string& caption, const std::string& content) {
   return "<section class=\"card plot\"><h3>" + escape_html(caption) + "</h3>" + content + "</section>\n";
 }
 
-std::string legend(const std::vector<HtmlReport::Series>& series) {
+std::string legend(const std::vector<PlotKey>& keys) {
   std::string out;
-  for (std::size_t i = 0; i < series.size(); ++i)
-    if (!series[i].name.empty())
-      out += std::string("<span><i class=\"") + kColours[i % kColours.size()] + "\"></i>" +
-             escape_html(series[i].name) + "</span>";
+  for (const PlotKey& key : keys)
+    out += std::string("<span><i class=\"") + key.css_class + "\"></i>" + escape_html(key.text) + "</span>";
   return out.empty() ? "" : "<div class=\"legend\">" + out + "</div>";
+}
+
+std::vector<PlotKey> keys_of(const std::vector<HtmlReport::Series>& series) {
+  std::vector<PlotKey> out;
+  for (std::size_t i = 0; i < series.size(); ++i)
+    if (!series[i].name.empty()) out.push_back({kColours[i % kColours.size()], series[i].name});
+  return out;
 }
 
 // A column of figures ("0.31", "12 px", "-") stands to the right.
@@ -54,7 +59,7 @@ bool holds_figures(const std::vector<std::vector<std::string>>& rows, std::size_
 
 }  // namespace
 
-HtmlReport::HtmlReport(std::string title) : title_(std::move(title)) {}
+HtmlReport::HtmlReport(std::string title, std::string source) : title_(std::move(title)), source_(std::move(source)) {}
 
 void HtmlReport::heading(const std::string& text) {
   body_ += "<h2>" + escape_html(text) + "</h2>\n";
@@ -82,8 +87,8 @@ void HtmlReport::table(const std::vector<std::string>& columns, const std::vecto
 
 void HtmlReport::plot(const std::string& caption, const std::string& x_label, const std::string& y_label,
                       const std::vector<Series>& series, bool equal_scale) {
-  SvgPlot plot(caption, range_of(series, 0), range_of(series, 1), x_label, y_label,
-               equal_scale ? SvgPlot::Shape::image : SvgPlot::Shape::wide);
+  SvgPlot drawn(caption, range_of(series, 0), range_of(series, 1), x_label, y_label,
+                equal_scale ? SvgPlot::Shape::image : SvgPlot::Shape::wide);
   for (std::size_t i = 0; i < series.size(); ++i) {
     std::vector<double> x, y;
     for (const Eigen::Vector2d& p : series[i].points) {
@@ -91,12 +96,16 @@ void HtmlReport::plot(const std::string& caption, const std::string& x_label, co
       y.push_back(p.allFinite() ? p.y() : NAN);
     }
     if (series[i].line)
-      plot.line(x, y, kColours[i % kColours.size()], series[i].name);
+      drawn.line(x, y, kColours[i % kColours.size()], series[i].name);
     else
-      plot.dots(x, y, kColours[i % kColours.size()], series[i].name);
+      drawn.dots(x, y, kColours[i % kColours.size()], series[i].name);
   }
-  body_ += card(caption, legend(series) + plot.str());
-  plots_.push_back(plot.data());
+  plot(caption, drawn, keys_of(series));
+}
+
+void HtmlReport::plot(const std::string& caption, const SvgPlot& drawn, const std::vector<PlotKey>& keys) {
+  body_ += card(caption, legend(keys) + drawn.str());
+  plots_.push_back(drawn.data());
 }
 
 void HtmlReport::heat_map(const std::string& caption, const cv::Mat& values, int width, int height,
@@ -114,8 +123,8 @@ void HtmlReport::write(const std::filesystem::path& file) const {
              "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
              "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
                  title + "</title>\n<style>\n" + std::string(page_style()) +
-                 "</style>\n</head>\n<body>\n<main>\n<header>\n<small>foresight calibrate</small>\n<h1>" + title +
-                 "</h1>\n</header>\n<div class=\"sheet\">\n" + body_ + "</div>\n</main>\n</body>\n</html>\n",
+                 "</style>\n</head>\n<body>\n<main>\n<header>\n<small>" + escape_html(source_) + "</small>\n<h1>" +
+                 title + "</h1>\n</header>\n<div class=\"sheet\">\n" + body_ + "</div>\n</main>\n</body>\n</html>\n",
              title_, plots_);
 }
 

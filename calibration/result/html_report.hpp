@@ -10,9 +10,18 @@
 
 namespace foresight {
 
+class SvgPlot;
+
+/// What a colour of a plot stands for.
+struct PlotKey {
+  const char* css_class;
+  std::string text;
+};
+
 class HtmlReport {
  public:
-  explicit HtmlReport(std::string title);
+  /// `source`: the command that makes it, above the title.
+  explicit HtmlReport(std::string title, std::string source = "foresight calibrate");
 
   void heading(const std::string& text);
   void paragraph(const std::string& text);
@@ -30,6 +39,9 @@ class HtmlReport {
   void plot(const std::string& caption, const std::string& x_label, const std::string& y_label,
             const std::vector<Series>& series, bool equal_scale = false);
 
+  /// A plot drawn by somebody else.
+  void plot(const std::string& caption, const SvgPlot& drawn, const std::vector<PlotKey>& keys);
+
   /// A map over the image (CV_64F, any size, stretched to width x height px) with a colour bar; see heat_map.hpp.
   void heat_map(const std::string& caption, const cv::Mat& values, int width, int height, const std::string& unit);
 
@@ -40,7 +52,7 @@ class HtmlReport {
   const std::string& body() const { return body_; }
 
  private:
-  std::string title_;
+  std::string title_, source_;
   std::string body_;
   std::vector<std::string> plots_;  // JSON
 };

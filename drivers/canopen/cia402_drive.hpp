@@ -42,8 +42,7 @@ class Cia402Drive final : public Drive {
 
   /// Why enabling is refused; static text, "" where it is not.
   const char* refusal() const noexcept { return refusal_; }
-  /// What the device lacks or keeps of its own; one line each, of the last configure().
-  const std::vector<std::string>& notes() const noexcept { return notes_; }
+  std::vector<std::string> remarks() const override { return notes_; }
   const Cia402Machine& machine() const noexcept { return machine_; }
   std::span<const Pdo> pdos() const noexcept { return pdos_; }  ///< RPDO1, TPDO1, TPDO2
 

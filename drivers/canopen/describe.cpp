@@ -39,8 +39,17 @@ constexpr ObjectName kObjects[] = {
     {0x606C, 0, "actual velocity"},
     {0x607A, 0, "target position"},
     {0x607D, -1, "position limit"},
+    {0x607F, 0, "largest profile velocity"},
+    {0x6080, 0, "largest motor speed"},
+    {0x6083, 0, "profile acceleration"},
+    {0x6084, 0, "profile deceleration"},
+    {0x6085, 0, "quick stop deceleration"},
     {0x6098, 0, "homing method"},
+    {0x6099, -1, "homing velocity"},
+    {0x609A, 0, "homing acceleration"},
+    {0x60C2, -1, "interpolation period"},
     {0x60FF, 0, "target velocity"},
+    {0x6502, 0, "supported modes"},
 };
 
 std::string bytes_text(std::span<const std::uint8_t> bytes) {

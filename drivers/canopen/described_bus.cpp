@@ -33,10 +33,11 @@ DescribedBus::Node* DescribedBus::node_of(const CanFrame& frame) {
   const int id = static_cast<int>(frame.id & 0x7f);
   if (!is_canopen(frame) || id == 0) return nullptr;
   if (const auto known = nodes_.find(id); known != nodes_.end()) return &known->second;
-  if (!sheets_.of_all) return nullptr;
   Node& node = nodes_[id];
-  node.objects = read_eds(*sheets_.of_all, id);
-  map_pdos(node, id);
+  if (sheets_.of_all) {
+    node.objects = read_eds(*sheets_.of_all, id);
+    map_pdos(node, id);
+  }
   return &node;
 }
 

@@ -18,13 +18,13 @@ struct DataSheets {
 };
 
 /// Frames must come in the order of the bus: masters map PDOs anew, and what they write to a node counts from then on
-/// in place of what its sheet says. One thread.
+/// in place of what its sheet says, also where it has none. One thread.
 class DescribedBus {
  public:
   /// Throws InputError where a file cannot be read, or a node is not 1 .. 127.
   explicit DescribedBus(DataSheets sheets);
 
-  /// describe() of describe.hpp, in the words of the sheet of the frame's node.
+  /// describe() of describe.hpp, in the words of the sheet of the frame's node, with its PDOs as they are mapped.
   std::string describe(const CanFrame& frame);
 
  private:

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/time.hpp"
 #include "drivers/can/can_bus.hpp"
@@ -72,6 +73,8 @@ class Drive {
   /// Writes limits, mappings and the watchdog that stops the drive when we fall silent, and reads each
   /// back. A drive without a proven watchdog cannot be enabled. Throws as identify().
   virtual void configure() = 0;
+  /// What the device lacks or keeps of its own, one line each, as the last configure() found it.
+  virtual std::vector<std::string> remarks() const { return {}; }
 
   /// Asks for a change of state; it takes some cycles, seen in feedback(). Safe at any time: a request that
   /// does not fit the state (homing while disabled) is dropped. `quick_stop` overrides all others.

@@ -1,4 +1,4 @@
-// What the gate can be told, and what it says.
+// What the gate can be told.
 #include <cmath>
 
 #include "common/error.hpp"
@@ -12,46 +12,6 @@ void require(bool ok, const std::string& where, const std::string& what, const s
 }
 
 }  // namespace
-
-const char* to_string(GateState state) {
-  switch (state) {
-    case GateState::idle: return "idle";
-    case GateState::following: return "following";
-    case GateState::homing: return "homing";
-    case GateState::stopping: return "stopping";
-    case GateState::stopped: return "stopped";
-  }
-  return "?";
-}
-
-const char* to_string(GateReason reason) {
-  switch (reason) {
-    case GateReason::none: return "";
-    case GateReason::not_finite: return "a commanded position is not a number";
-    case GateReason::wrong_joint_count: return "a command for another number of joints";
-    case GateReason::out_of_range: return "a commanded position is beyond the joint's limits";
-    case GateReason::expired: return "a command came too late";
-    case GateReason::from_the_future: return "a command is stamped in the future";
-    case GateReason::out_of_order: return "a command is older than one before it";
-    case GateReason::second_operator: return "another operator is in charge";
-    case GateReason::obstructed: return "the way is obstructed";
-    case GateReason::operator_lost: return "no command in time: the operator is lost";
-    case GateReason::deadman_released: return "the deadman switch was released";
-    case GateReason::emergency_stop: return "emergency stop";
-    case GateReason::following_error: return "the joint does not follow its set-points";
-    case GateReason::stands_out_of_range:
-      return "the joint stands beyond its limits; move it back by hand, or correct them";
-    case GateReason::feedback_lost: return "no position from the drive in time";
-    case GateReason::feedback_not_finite: return "the drive's position is not a number";
-    case GateReason::feedback_frozen: return "the drive's position does not change while it should";
-    case GateReason::feedback_jumps: return "the drive's position jumps";
-    case GateReason::drive_fault: return "the drive reports a fault";
-    case GateReason::drive_offline: return "the drive does not answer";
-    case GateReason::drive_not_enabled: return "the drive is no longer enabled";
-    case GateReason::bus_fault: return "the bus is not usable";
-  }
-  return "?";
-}
 
 void GateOptions::validate(const std::string& where) const {
   require(rate_hz >= 10 && rate_hz <= 2000, where, "rate_hz is " + std::to_string(rate_hz), "choose from 10 to 2000");

@@ -26,18 +26,6 @@ bool is_faulty(const DriveFeedback& f) {
 
 }  // namespace
 
-const char* to_string(RobotPhase phase) {
-  switch (phase) {
-    case RobotPhase::disabled: return "disabled";
-    case RobotPhase::enabling: return "enabling";
-    case RobotPhase::ready: return "ready";
-    case RobotPhase::homing: return "homing";
-    case RobotPhase::stopped: return "stopped";
-    case RobotPhase::setting_up: return "setting up";
-  }
-  return "?";
-}
-
 Robot::Robot(GateOptions options, RobotShape* shape, std::vector<DriveNetwork*> networks, std::vector<Drive*> drives)
     : gate_(std::move(options), shape),
       rest_(velocities(gate_.options()), gate_.options().feedback_age_s),
@@ -106,7 +94,8 @@ void Robot::take_requests(RobotTime now) noexcept {
     last_request_ = {RobotRequest::emergency_stop, stop_asked_by_};
     refused_ = asked ? "an emergency stop came: what else was asked for is dropped" : "";
     if (phase_ == RobotPhase::enabling) stop_all();
-    gate_.emergency_stop("asked for");
+    gate_.emergency_stop();
+    if (phase_ == RobotPhase::enabling) gate_.stay_stopped(GateReason::emergency_stop);
     if (phase_ == RobotPhase::enabling) enter(RobotPhase::stopped, now);
     return;
   }
@@ -178,7 +167,7 @@ void Robot::advance_enabling(RobotTime now) noexcept {
     ask_again_ = now + kAskAgain;
   }
   if (now - phase_since_ < kEnableWithin) return;
-  refused_ = "a drive did not get enabled in time";
+  gate_.stay_stopped(GateReason::not_enabled_in_time, waiting_for_);
   stop_all();
   enter(RobotPhase::stopped, now, waiting_for_);
 }
@@ -193,7 +182,7 @@ void Robot::advance_homing(RobotTime now) noexcept {
     phase_since_ = now;
     return;
   }
-  if (now - phase_since_ > kHomeWithin) return gate_.emergency_stop("homing takes too long");
+  if (now - phase_since_ > kHomeWithin) return gate_.emergency_stop(GateReason::homing_too_long);
   // The drive needs a few cycles to say that it has begun.
   const DriveFeedback& f = feedback_[homing_];
   if (now - phase_since_ < 200ms || !f.homed || f.state != DriveState::enabled) return;
@@ -201,7 +190,7 @@ void Robot::advance_homing(RobotTime now) noexcept {
   homing_asked_ = false;
   if (++homing_ < drives_.size()) return;
   if (gate_.reset(feedback_, now)) return enter(RobotPhase::ready, now);
-  gate_.emergency_stop("homing ended beyond the limits");
+  gate_.emergency_stop(GateReason::homed_out_of_range);
 }
 
 /// How many of taken_ there are now.
@@ -277,11 +266,15 @@ void Robot::hand_out(const RobotStatus& status) noexcept {
   out.phase = status.phase;
   out.gate = status.gate.state;
   out.reason = status.gate.reason;
+  out.reason_joint = status.gate.joint;
+  out.detail = status.gate.detail;
+  out.hold = status.gate.hold;
   out.all_homed = status.all_homed;
   out.joints = drives_.size();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveFeedback& f = feedback_[i];
-    out.joint[i] = {f.time, f.position, f.velocity, status.set_point[i], f.state, f.homed};
+    const double asked = out.gate == GateState::following ? gate_.target(i) : std::numeric_limits<double>::quiet_NaN();
+    out.joint[i] = {f.time, f.position, f.velocity, status.set_point[i], asked, f.state, f.homed};
   }
   cycles_.put(out);
 }
@@ -316,7 +309,7 @@ void Robot::shut_down(Clock& clock, RobotTime due) noexcept {
   };
   ending_ = true;
   if (phase_ == RobotPhase::enabling) stop_all();
-  gate_.emergency_stop("the program ends");
+  gate_.emergency_stop(GateReason::program_ends);
   if (phase_ != RobotPhase::disabled) enter(RobotPhase::stopped, clock.now());
   const RobotTime until = clock.now() + kRestWithin;
   do cycle_once();

@@ -77,6 +77,7 @@ struct JointCycle {
   double position = std::numeric_limits<double>::quiet_NaN();  ///< measured, at `time`; true only where homed
   double velocity = std::numeric_limits<double>::quiet_NaN();  ///< measured; the newest that the drive has told
   JointMotion set_point;                                       ///< sent in this cycle, for the next one
+  double asked = std::numeric_limits<double>::quiet_NaN();     ///< where the operator wants it; only while following
   DriveState drive = DriveState::offline;
   bool homed = false;
 };
@@ -88,6 +89,9 @@ struct RobotCycle {
   RobotPhase phase = RobotPhase::disabled;
   GateState gate = GateState::idle;
   GateReason reason = GateReason::none;
+  int reason_joint = -1;    ///< GateStatus::joint
+  const char* detail = "";  ///< GateStatus::detail
+  GateHold hold;
   bool all_homed = false;
   std::size_t joints = 0;  ///< how many of `joint` there are
   std::array<JointCycle, kMostJoints> joint{};

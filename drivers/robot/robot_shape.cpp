@@ -1,5 +1,7 @@
 #include "drivers/robot/robot_shape.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "common/error.hpp"
@@ -90,6 +92,34 @@ double distance(const Capsule& capsule, const Eigen::AlignedBox3d& box) {
   return least - capsule.radius - 0.5 * (capsule.b - capsule.a).norm() / kSamples;
 }
 
+GuardedLinks guarded_links(const UrdfRobot& robot) {
+  GuardedLinks out;
+  out.links = robot.links.size();
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const Mesh& body = robot.body(i);
+    if (body.vertices.empty())
+      out.unguarded.push_back(robot.links[i].name);
+    else
+      ++(&body == &robot.links[i].mesh ? out.by_visual : out.by_collision);
+  }
+  return out;
+}
+
+std::string to_text(const GuardedLinks& guarded) {
+  const std::size_t all = guarded.by_collision + guarded.by_visual;
+  std::string out = fmt::format("{} of {} links guarded", all, guarded.links);
+  if (guarded.by_visual == 0 && all > 0)
+    out += " by their collision shapes";
+  else if (guarded.by_collision == 0 && all > 0)
+    out += " by their visual shapes; the URDF has no collision shapes";
+  else if (all > 0)
+    out += fmt::format(" ({} by collision shapes, {} by visual ones)", guarded.by_collision, guarded.by_visual);
+  if (guarded.unguarded.empty()) return out;
+  out += "; without a shape, as frames are:";
+  for (const std::string& name : guarded.unguarded) out += (&name == &guarded.unguarded.front() ? " " : ", ") + name;
+  return out;
+}
+
 RobotShape::RobotShape(UrdfRobot robot, std::vector<std::string> joints, const Pose& T_world_root,
                        const std::string& where)
     : robot_(std::move(robot)) {
@@ -114,8 +144,9 @@ RobotShape::RobotShape(UrdfRobot robot, std::vector<std::string> joints, const P
   for (std::size_t i = 0; i < links_.size(); ++i) {
     Link& link = links_[i];
     const Node& node = robot_.links[i];
-    link.has_body = !node.mesh.vertices.empty();
-    if (link.has_body) link.body = capsule_around(node.mesh);
+    const Mesh& body = robot_.body(i);
+    link.has_body = !body.vertices.empty();
+    if (link.has_body) link.body = capsule_around(body);
     link.moves = node.parent >= 0 && (input_[i - 1] >= 0 || links_[static_cast<std::size_t>(node.parent)].moves);
   }
   surround({});

@@ -36,7 +36,18 @@ struct Surroundings {
   double clearance = 0.02;          ///< kept from obstacles and between links; > 0
 };
 
-/// A robot's links as capsules around their meshes. Thread: one at a time.
+/// Which links of a robot can be kept clear of things, and by what.
+struct GuardedLinks {
+  std::size_t links = 0;               ///< all of them
+  std::size_t by_collision = 0;        ///< by their collision shapes
+  std::size_t by_visual = 0;           ///< that have no collision shape: by their visual ones
+  std::vector<std::string> unguarded;  ///< without any shape, as mere frames are
+};
+GuardedLinks guarded_links(const UrdfRobot& robot);
+/// "11 of 11 links guarded (9 by collision shapes, 2 by visual ones)"; names those without a shape.
+std::string to_text(const GuardedLinks& guarded);
+
+/// A robot's links as capsules around their meshes (UrdfRobot::body). Thread: one at a time.
 class RobotShape {
  public:
   /// `joints`: those whose positions obstructed() gets, in its order, "" for one that is not of this robot (a pan-tilt
@@ -55,6 +66,10 @@ class RobotShape {
   void margins(std::span<const double> positions, std::span<double> out) noexcept;
   /// Both parts of a couple in words, such as "link 'arm_5' leaves the workspace"; valid until the next surround().
   const char* message(std::size_t couple) const { return couples_[couple].message.c_str(); }
+  /// How far apart its parts must be, metres; 0 from the workspace's walls.
+  double kept_apart(std::size_t couple) const {
+    return couples_[couple].what == Against::workspace ? 0 : surroundings_.clearance;
+  }
 
   /// What keeps the robot from standing there, as message(); nullptr where nothing does. Does not allocate.
   const char* obstructed(std::span<const double> positions) noexcept;

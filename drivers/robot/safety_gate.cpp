@@ -12,6 +12,7 @@ constexpr double kFrozenWay = 0.25;    // share of the following error that the 
 constexpr int kSamplesToRest = 4;      // poses checked on the way to where the robot would stop
 constexpr double kRetreatSpeed = 0.1;  // away from what the robot stands too close to
 constexpr double kSameMargin = 1e-9;   // metres, rounding
+constexpr double kHeldFor = 0.25;      // seconds: one who is held, brakes and tries again is held all the while
 // A drive that homes opens its brake first, and rests for a moment where it turns round at its switch.
 constexpr double kHomingFrozenAfter = 1;  // seconds
 constexpr int kHomingJumps = 1;           // where it sets its zero
@@ -26,7 +27,7 @@ SafetyGate::SafetyGate(GateOptions options, RobotShape* shape)
     here_.resize(shape_->couples());
     there_.resize(shape_->couples());
   }
-  latch(GateReason::emergency_stop, -1, "not started yet", false);
+  latch(GateReason::not_started, -1, "", false);
 }
 
 bool SafetyGate::reset(std::span<const DriveFeedback> feedback, RobotTime now) noexcept {
@@ -82,11 +83,18 @@ void SafetyGate::end_homing(const DriveFeedback& feedback, RobotTime now) noexce
   status_.state = GateState::idle;
 }
 
-void SafetyGate::emergency_stop(const char* why) noexcept {
-  latch(GateReason::emergency_stop, -1, why, false);
+void SafetyGate::emergency_stop(GateReason why) noexcept {
+  latch(why, -1, "", false);
 }
 void SafetyGate::bus_fault(const char* why) noexcept {
   latch(GateReason::bus_fault, -1, why, true);
+}
+
+void SafetyGate::stay_stopped(GateReason why, int joint) noexcept {
+  if (status_.state != GateState::stopped) return;
+  status_.reason = why;
+  status_.joint = joint;
+  status_.detail = "";
 }
 
 void SafetyGate::latch(GateReason reason, int joint, const char* detail, bool quick_stop) noexcept {
@@ -254,12 +262,34 @@ std::optional<std::size_t> SafetyGate::blocking(const Motions& next, double dt) 
   return out;
 }
 
-/// From here, where some parts are too close: these only ever part, the closest of them for certain, and no others come
-/// too close.
-bool SafetyGate::retreats(const Motions& next, double dt) noexcept {
+void SafetyGate::measure_here() noexcept {
   JointValues now{};
   for (std::size_t i = 0; i < count_; ++i) now[i] = motion_[i].position;
   shape_->margins({now.data(), count_}, here_);
+}
+
+/// After measure_here(): the couple keeps the robot from going on.
+void SafetyGate::note_hold(std::size_t couple, RobotTime now) noexcept {
+  GateHold& hold = status_.hold;
+  if (hold.joint < 0) hold.since = now;
+  held_ = now;
+  hold.parts = shape_->message(couple);
+  hold.kept_apart = shape_->kept_apart(couple);
+  hold.apart = here_[couple] + hold.kept_apart;
+  double longest = -1;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double time = std::abs(target_[i] - motion_[i].position) / options_.joints[i].limits.velocity;
+    if (time <= longest) continue;
+    longest = time;
+    hold.joint = static_cast<int>(i);
+    hold.stands = motion_[i].position;
+    hold.asked = target_[i];
+  }
+}
+
+/// After measure_here(), which found some parts too close: these only ever part, the closest of them for certain, and
+/// no others come too close. Loses what was measured.
+bool SafetyGate::retreats(const Motions& next, double dt) noexcept {
   const double least = *std::min_element(here_.begin(), here_.end());
   if (least >= 0) return false;
   const bool only_part = all_to_rest(next, dt, [this] {
@@ -275,15 +305,18 @@ void SafetyGate::halt(double dt) noexcept {
   for (std::size_t i = 0; i < count_; ++i) motion_[i] = brake(motion_[i], options_.joints[i].limits, dt);
 }
 
-void SafetyGate::move(double dt) noexcept {
+void SafetyGate::move(RobotTime now, double dt) noexcept {
   const Motions next = towards_target(status_.speed, dt);
   const auto blocked = blocking(next, dt);
   status_.reason = blocked ? GateReason::obstructed : GateReason::none;
   status_.detail = blocked ? shape_->message(*blocked) : "";
   if (!blocked) {
     motion_ = next;
+    if (now - held_ > seconds(kHeldFor)) status_.hold = {};
     return;
   }
+  measure_here();
+  note_hold(*blocked, now);
   const Motions slow = towards_target(std::min(status_.speed, kRetreatSpeed), dt);
   if (retreats(slow, dt))
     motion_ = slow;
@@ -302,9 +335,10 @@ void SafetyGate::step(RobotTime now, std::span<const MotionCommand> commands,
   if (status_.state == GateState::following) {
     const double ramped = options_.ramp_s > 0 ? to_seconds(now - engaged_) / options_.ramp_s : 1;
     status_.speed = std::clamp(kFirstSpeed + (1 - kFirstSpeed) * ramped, kFirstSpeed, 1.0);
-    move(dt);
+    move(now, dt);
     return;
   }
+  status_.hold = {};
   halt(dt);
   if (status_.state == GateState::stopping && set_points_rest()) {
     status_.state = GateState::idle;

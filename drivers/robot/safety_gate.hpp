@@ -85,7 +85,12 @@ enum class GateReason : std::uint8_t {
   operator_lost,
   deadman_released,
   // latched
+  not_started,  ///< since the program began
   emergency_stop,
+  program_ends,
+  homing_too_long,
+  homed_out_of_range,
+  not_enabled_in_time,
   following_error,
   feedback_lost,
   feedback_not_finite,
@@ -99,6 +104,17 @@ enum class GateReason : std::uint8_t {
 };
 const char* to_string(GateReason reason);
 
+/// What keeps the robot from where it is asked to be. It lasts until nothing has held it for a quarter of a second.
+struct GateHold {
+  int joint = -1;          ///< the one that has the longest way to go, in time; -1: nothing holds the robot back
+  double stands = 0;       ///< its set-point, rad or m
+  double asked = 0;        ///< where it is asked to be
+  RobotTime since;         ///< when it was first held
+  const char* parts = "";  ///< what would come too close: RobotShape::message()
+  double apart = 0;        ///< distance of these parts where the robot stands, metres
+  double kept_apart = 0;   ///< what must be between them
+};
+
 struct GateStatus {
   GateState state = GateState::idle;
   GateReason reason = GateReason::none;     ///< of the state; while following, of what holds the robot back
@@ -108,6 +124,7 @@ struct GateStatus {
   std::uint64_t accepted = 0, dropped = 0;  ///< commands
   GateReason last_dropped = GateReason::none;
   double speed = 0;  ///< 0 .. 1: where the ramp is
+  GateHold hold;     ///< only while following
 };
 
 /// One thread: the control loop's. Nothing throws or allocates after construction.
@@ -121,10 +138,13 @@ class SafetyGate {
   /// fresh and within the limits; otherwise false, and the reason is in status(). Also ends `stopped`.
   bool reset(std::span<const DriveFeedback> feedback, RobotTime now) noexcept;
 
-  /// Latches: brakes and stays stopped until reset(). Any state.
-  void emergency_stop(const char* why) noexcept;
+  /// Latches: brakes and stays stopped until reset(). Any state. `why`: one of the latched reasons that are not the
+  /// drives' own.
+  void emergency_stop(GateReason why = GateReason::emergency_stop) noexcept;
   /// As emergency_stop(), for what the bus reports.
   void bus_fault(const char* why) noexcept;
+  /// While stopped: what stopped it before is gone, and this is what keeps it stopped now.
+  void stay_stopped(GateReason why, int joint = -1) noexcept;
 
   /// Joint `joint` moves by its drive's own orders from now on, and looks for home. Only while idle; otherwise false.
   bool begin_homing(std::size_t joint, RobotTime now) noexcept;
@@ -136,6 +156,8 @@ class SafetyGate {
   void step(RobotTime now, std::span<const MotionCommand> commands, std::span<const DriveFeedback> feedback) noexcept;
 
   const JointMotion& set_point(std::size_t joint) const { return motion_[joint]; }
+  /// Where the operator in charge wants the joint; while following.
+  double target(std::size_t joint) const { return target_[joint]; }
   /// Not of a joint from the begin of its homing until its end, or until reset() where it did not end.
   bool has_set_point(std::size_t joint) const noexcept { return homing_ != joint; }
   /// All set-points stand still. The robot itself may still move: see RestWatch.
@@ -154,7 +176,9 @@ class SafetyGate {
   GateReason wrong_while_homing(std::size_t joint, const DriveFeedback& f, RobotTime now) noexcept;
   void latch(GateReason reason, int joint, const char* detail, bool quick_stop) noexcept;
   void stop(GateReason reason) noexcept;
-  void move(double dt) noexcept;
+  void move(RobotTime now, double dt) noexcept;
+  void measure_here() noexcept;
+  void note_hold(std::size_t couple, RobotTime now) noexcept;
   void halt(double dt) noexcept;
   using Motions = std::array<JointMotion, kMostJoints>;
   Motions towards_target(double speed, double dt) const noexcept;
@@ -170,7 +194,7 @@ class SafetyGate {
   bool quick_stop_ = false;
   Motions motion_{};
   JointValues target_{};
-  RobotTime engaged_, last_command_;
+  RobotTime engaged_, last_command_, held_;
   OperatorRecords operators_;
   struct Watched {
     double position = 0, set_point = 0;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace {
@@ -61,14 +62,77 @@ TEST(Can, ExplainSaysEachFrameInWords) {
                               "can0 20000040#0000000000000000\n")
                               .as("cia402");
   EXPECT_EQ(canopen.exit_code, 0) << canopen.err;
-  EXPECT_EQ(canopen.out,
-            "(1700000000.123456) can0 000#0102 T  NMT start, node 2\n(1700000000.123556) can0 080#  SYNC\n"
-            "(0000000000.000000) can0 20000040#0000000000000000  error frame, class 0x040\n3 frames, 0 unknown\n");
+  EXPECT_THAT(canopen.out, testing::HasSubstr(": 3 frames in 0.000100 s, the first at 1700000000.123456 (2023-11-14 "
+                                              "22:13:20 UTC)\n# can0: 1 NMT, 1 SYNC, 1 error frame\n#   nodes: 2 1\n"
+                                              "# 1 errors, 0 frames unknown\n"));
+  EXPECT_THAT(canopen.out,
+              testing::EndsWith("(0.000000) can0 000#0102 T  NMT start, node 2\n(0.000100) can0 080#  SYNC\n"
+                                "(0.000000) can0 20000040#0000000000000000  error frame, class 0x040\n"
+                                "3 frames, 0 unknown\n"));
   const Outcome powercube = ExplainedLog("(1.5) can0 0E3#00\n(1.6) can0 100#07\n").as("powercube");
   EXPECT_EQ(powercube.exit_code, 0) << powercube.err;
   EXPECT_THAT(powercube.out, HasSubstr("0E3#00  to module 3: "));
   EXPECT_THAT(powercube.out, HasSubstr("100#07  to all: "));
   EXPECT_THAT(powercube.out, HasSubstr("2 frames, 0 unknown\n"));
+}
+
+// A drive that a master sets up, whose process data only that set-up explains; then it faults and starts anew.
+const char* const kFaultyDrive =
+    "(10.0) arm 603#2300140103020080 T\n"  // RPDO1 off: 1400:01 = 80000203h
+    "(10.1) arm 603#2F00160000000000 T\n"  // 1600:00 = 0
+    "(10.2) arm 603#2300160110004060 T\n"  // 1600:01 = 6040:00, 16 bits
+    "(10.3) arm 603#2300160220007A60 T\n"  // 1600:02 = 607A:00, 32 bits
+    "(10.4) arm 603#2F00160002000000 T\n"  // 1600:00 = 2
+    "(10.5) arm 603#2300140103020000 T\n"  // RPDO1 on
+    "(10.6) arm 603#4041600000000000 T\n(10.7) arm 583#8041600000000206 R\n"
+    "(11.0) arm 203#0F00F8FFFFFF T\n"
+    "(11.5) arm 183#1802 R\n(11.6) arm 183#1802 R\n"
+    "(12.0) arm 083#1023010000000000 R\n(13.0) arm 703#05 R\n(13.5) arm 703#00 R\n(14.0) arm 182#3702 R\n";
+
+TEST(Can, ExplainDecodesProcessDataByTheLogsOwnSetUp) {
+  const Outcome out = ExplainedLog(kFaultyDrive).as("cia402");
+  EXPECT_EQ(out.exit_code, 0) << out.out;
+  EXPECT_THAT(out.out, HasSubstr("(1.000000) arm 203#0F00F8FFFFFF T  RPDO1 to node 3: 6040:00 controlword = 0x000F "
+                                 "(enable operation); 607A:00 target position = 0xFFFFFFF8 (-8)\n"));
+  EXPECT_THAT(out.out, HasSubstr("#   nodes: 2 1, 3 14\n"));
+}
+
+TEST(Can, ExplainShowsWhatIsAskedFor) {
+  const ExplainedLog log(kFaultyDrive);
+  const Outcome errors = log.as("cia402", {"--errors"});
+  EXPECT_THAT(errors.out, HasSubstr("\n# 4 errors, 0 frames unknown\n"));
+  for (const char* words :
+       {"(0.700000) arm 583#8041600000000206 R  SDO answer of node 3: abort", "(1.500000) arm 183#1802",
+        "(2.000000) arm 083#", "(3.500000) arm 703#00 R  boot-up of node 3"})
+    EXPECT_THAT(errors.out, HasSubstr(words));
+  for (const char* words : {"(1.600000)", "(3.000000)", "controlword"})
+    EXPECT_THAT(errors.out, testing::Not(HasSubstr(words))) << "the same fault again, and what is well";
+  const Outcome part = log.as("cia402", {"--node", "3", "--from", "1", "--to", "2.0", "--absolute"});
+  EXPECT_THAT(part.out, HasSubstr("(0000000011.000000) arm 203#"));
+  EXPECT_THAT(part.out, testing::Not(HasSubstr("(0000000010.")));
+  EXPECT_THAT(part.out, testing::Not(HasSubstr("(0000000013.")));
+  EXPECT_THAT(log.as("cia402", {"--from", "2", "--to", "1"}).last_line(), HasSubstr("--from: lies behind --to"));
+}
+
+TEST(Can, ExplainTakesProtocolAndNamesFromTheRig) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("foresight-explain-rig-" + std::to_string(getpid()) + ".log");
+  std::ofstream(file) << "(1) arm 0E3#00\n(1) head 0E1#00\n";
+  const std::string minerva = (source_folder() / "configs/minerva.yaml").string();
+  const auto explain = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"can", "explain", file.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  };
+  const Outcome out = explain({"--rig", minerva});
+  EXPECT_THAT(out.out, HasSubstr("arm 0E3#00  upper_arm_roll: to module 3: "));
+  EXPECT_THAT(out.out, HasSubstr("head 0E1#00  pan: to module 1: "));
+  EXPECT_THAT(out.out, HasSubstr("#   nodes: 3 (upper_arm_roll) 1\n"));
+  EXPECT_THAT(explain({}).last_line(), HasSubstr("give the rig with --rig, or say --protocol"));
+  EXPECT_THAT(explain({"--rig", minerva, "--protocol", "powercube"}).last_line(), HasSubstr("leave one out"));
+  std::ofstream(file) << "(1) can7 0E3#00\n";
+  EXPECT_THAT(explain({"--rig", minerva}).last_line(), HasSubstr("no bus of it has the log's interface 'can7'"));
+  std::filesystem::remove(file);
 }
 
 TEST(Can, ExplainUsesTheNamesOfDataSheets) {

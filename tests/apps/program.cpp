@@ -51,6 +51,7 @@ Program::Program(const std::vector<std::string>& arguments, const ProgramOptions
   const std::string out = folder_ / "out", err = folder_ / "err";
   ::posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
   ::posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
+  if (!options.folder.empty()) ::posix_spawn_file_actions_addchdir_np(&actions, options.folder.c_str());
   start_ = std::chrono::steady_clock::now();
   const int error = ::posix_spawn(&pid_, words.front().c_str(), &actions, nullptr, pointers(words).data(),
                                   pointers(environment).data());

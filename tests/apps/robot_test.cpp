@@ -45,6 +45,17 @@ TEST_P(Robot, DoesNotHomeWithoutConsent) {
   EXPECT_THAT(out.err, HasSubstr("give --home"));
 }
 
+TEST(RobotMotion, WhatTheGateHoldsBackEndsAsNotReached) {
+  TempFolder folder;
+  const auto down = folder.write("down.csv", "time_s,shoulder_pitch,elbow\n0,0,0\n4,1.9,1.2\n");
+  const Outcome out =
+      run_program({"robot", config("cia402.yaml"), "--stepped", "--no-cameras", "--follow", down.string()});
+  EXPECT_EQ(out.exit_code, 1);
+  EXPECT_THAT(out.err, HasSubstr("robot: 10 of 10 links guarded by their visual shapes"));
+  EXPECT_THAT(out.err, HasSubstr("follow: not reached: joint "));
+  EXPECT_THAT(out.err, HasSubstr("comes too close to obstacle 'table'"));
+}
+
 // In stepped time, so that nothing but the signal can end it. How far it came is counted by what it wrote down.
 TEST_P(Robot, StopsUnderControlWhenItIsTerminated) {
   const std::string endless =

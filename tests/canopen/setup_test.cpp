@@ -150,7 +150,7 @@ TEST(Setup, LimitsThatTheDriveChangesAreErrorsMissingOnesAreNotes) {
   CanopenRig without;
   without.slave().remove(0x607F);
   without.configure();
-  EXPECT_THAT(without.drive().notes(), testing::Contains(HasSubstr("607F:00")));
+  EXPECT_THAT(without.drive().remarks(), testing::Contains(HasSubstr("607F:00")));
   without.enable();
   EXPECT_EQ(without.feedback().state, DriveState::enabled);
 }

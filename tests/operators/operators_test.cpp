@@ -11,10 +11,11 @@ using namespace std::chrono_literals;
 
 class OperatorsTest : public testing::Test {
  protected:
-  OperatorsTest() {
+  OperatorsTest() { make_robot(); }
+  void make_robot() {
     std::vector<Drive*> drives;
     for (PromptDrive& drive : drives_) drives.push_back(&drive);
-    robot_ = std::make_unique<Robot>(rig_.gate_options(), nullptr, std::vector<DriveNetwork*>{&network_}, drives);
+    robot_ = std::make_unique<Robot>(rig_.gate_options(), shape_.get(), std::vector<DriveNetwork*>{&network_}, drives);
   }
   /// 10 ms of the operator's, two and a half cycles of the robot's.
   bool tick(std::initializer_list<Commander*> who) {
@@ -28,6 +29,7 @@ class OperatorsTest : public testing::Test {
   Rig rig_ = read_rig(source_folder() / "configs/minerva.yaml");
   std::vector<PromptDrive> drives_{std::vector<PromptDrive>(rig_.joints.size())};
   PromptNetwork network_{drives_};
+  std::unique_ptr<RobotShape> shape_;  // null: nothing is in the way
   std::unique_ptr<Robot> robot_;
   RobotTime now_{1'000'000'000};
   TempFolder folder_;
@@ -35,9 +37,9 @@ class OperatorsTest : public testing::Test {
 
 class FollowOperatorTest : public OperatorsTest {
  protected:
-  std::string follow(bool may_home, const std::function<void()>& meanwhile = {}) {
-    FollowOperator who(FollowFile(folder_.write("m.csv", "time_s,elbow,finger\n0,0.5,0\n2,1.0,0.02\n"), rig_),
-                       rig_.joint_names(), may_home);
+  std::string follow(bool may_home, const std::function<void()>& meanwhile = {},
+                     const std::string& motion = "time_s,elbow,finger\n0,0.5,0\n2,1.0,0.02\n") {
+    FollowOperator who(FollowFile(folder_.write("m.csv", motion), rig_), may_home);
     for (int i = 0; i < 3000; ++i) {
       if (!tick({&who})) break;
       highest_ = std::max(highest_, drives_[3].state.position);
@@ -71,13 +73,45 @@ TEST_F(FollowOperatorTest, SaysWhyItWasStopped) {
   EXPECT_LT(highest_, 0.9);
 }
 
+TEST_F(FollowOperatorTest, WhatTheGateHoldsBackIsNotReached) {
+  shape_ = rig_.shape();
+  make_robot();
+  // Down to the table, and there the file ends.
+  const std::string outcome = follow(true, {}, "time_s,shoulder_pitch,elbow\n0,0,0\n4,1.9,1.2\n5,1.9,1.2\n");
+  const double stands = drives_[1].state.position;
+  EXPECT_LT(stands, 1.85);
+  EXPECT_THAT(outcome, testing::StartsWith("not reached: joint "));
+  EXPECT_THAT(outcome,
+              testing::ContainsRegex("stands at [0-9.]+ rad and should be at 1\\.[0-9]+ rad since [0-9.]+ s of "
+                                     "the file: link '[a-z_0-9]+' comes too close to obstacle 'table' "
+                                     "\\([0-9.]+ mm apart, 20.0 mm are kept\\)"));
+}
+
+TEST_F(FollowOperatorTest, AWayThatIsHeldBackIsNotFollowedThoughItsEndIsReached) {
+  shape_ = rig_.shape();
+  make_robot();
+  const std::string outcome = follow(true, {}, "time_s,shoulder_pitch,elbow\n0,0,0\n4,1.9,1.2\n5,1.9,1.2\n9,0,0\n");
+  EXPECT_NEAR(drives_[1].state.position, 0, 1e-3);
+  EXPECT_THAT(outcome, testing::StartsWith("not followed: held back since "));
+  EXPECT_THAT(outcome, testing::AllOf(testing::HasSubstr("by up to"), testing::HasSubstr("obstacle 'table'"),
+                                      testing::HasSubstr("end of the file was reached")));
+}
+
+// At the largest velocity from the first row on, where the ramp allows a tenth of it: late, but there.
+TEST_F(FollowOperatorTest, WaitsForWhatIsLate) {
+  EXPECT_EQ(follow(true, {}, "time_s,elbow\n0,0\n1,1.2\n"), "done");
+  EXPECT_NEAR(drives_[3].state.position, 1.2, 1e-3);
+}
+
 // As where this program's own threads came too late: what is left of the file is not followed, and that is no success.
 TEST_F(FollowOperatorTest, IsNotDoneWhereTheRobotLostIt) {
   const std::string outcome = follow(true, [&] {
     if (drives_[3].state.position < 0.6) return;
     for (int i = 0; i < 50; ++i) robot_->cycle(now_ = now_ + 4ms);
   });
-  EXPECT_THAT(outcome, testing::AllOf(testing::HasSubstr("stopped"), testing::HasSubstr("lost")));
+  EXPECT_THAT(outcome,
+              testing::AllOf(testing::HasSubstr("stopped"), testing::HasSubstr("lost"),
+                             testing::HasSubstr("joint elbow stands at"), testing::HasSubstr("s of the file")));
 }
 
 class KeyOperatorTest : public OperatorsTest {
@@ -128,8 +162,7 @@ TEST_F(KeyOperatorTest, HomingAsksForConsent) {
 
 TEST_F(KeyOperatorTest, BesideAFileKeysOnlyStopAndQuit) {
   KeyOperator keys(rig_.gate_options().joints, KeyOperator::Rights::only_stops);
-  FollowOperator file(FollowFile(folder_.write("m.csv", "time_s,elbow\n0,0.5\n2,1.0\n"), rig_), rig_.joint_names(),
-                      true);
+  FollowOperator file(FollowFile(folder_.write("m.csv", "time_s,elbow\n0,0.5\n2,1.0\n"), rig_), true);
   for (int i = 0; i < 200; ++i) {
     keys.press("d+");
     ASSERT_TRUE(tick({&file, &keys}));

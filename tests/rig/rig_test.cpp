@@ -66,7 +66,7 @@ joints:
   - {name: a, group: arm, bus: main, node: 1, unit: rad, encoder: absolute, counts_per_unit: 1000,
      min: -1, max: 1, velocity: 1, acceleration: 2, jerk: 20, following_error: 0.1}
   - {name: b, group: gripper, bus: main, node: 2, unit: m, homing_method: 35, counts_per_unit: 1000,
-     min: 0, max: 0.1, velocity: 0.1, acceleration: 2, jerk: 20, following_error: 0.1}
+     min: 0, max: 0.1, velocity: 0.1, acceleration: 2, jerk: 20, following_error: 0.01}
 )";
 };
 
@@ -125,7 +125,7 @@ TEST_F(BadRig, CalibrationNamesItsFiles) {
 TEST_F(BadRig, JointsMustBeThoseOfTheUrdf) {
   folder_.write("two.urdf", R"(<robot name='r'><link name='base'/><link name='l1'/><link name='l2'/>
 <joint name='a' type='revolute'><parent link='base'/><child link='l1'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>
-<joint name='c' type='revolute'><parent link='l1'/><child link='l2'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>)");
+<joint name='c' type='prismatic'><parent link='l1'/><child link='l2'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>)");
   EXPECT_THAT(error_with("name: small", "name: small\nrobot: {urdf: two.urdf}"),
               testing::HasSubstr("'b' is none that moves"));
   text_.replace(text_.find("name: b"), 7, "name: c");
@@ -133,6 +133,75 @@ TEST_F(BadRig, JointsMustBeThoseOfTheUrdf) {
   text_.resize(text_.find("  - {name: c"));
   EXPECT_THAT(error_with("name: small", "name: small\nrobot: {urdf: two.urdf}"),
               testing::HasSubstr("'c' is not in the rig"));
+}
+
+// A turning joint a and a sliding one b, whose limits the rig may leave out.
+const char* const kLimited = R"(<robot name='r'><link name='base'/><link name='l1'/><link name='l2'/>
+<joint name='a' type='revolute'><parent link='base'/><child link='l1'/><axis xyz='0 0 1'/><limit lower='-1.5' upper='1.57' effort='1' velocity='2'/></joint>
+<joint name='b' type='prismatic'><parent link='l1'/><child link='l2'/><axis xyz='0 0 1'/><limit lower='0' upper='0.1' effort='1' velocity='0.2'/></joint></robot>)";
+
+class LimitedRig : public BadRig {
+ protected:
+  LimitedRig() {
+    folder_.write("two.urdf", kLimited);
+    text_.replace(0, text_.find('\n'), "name: small\nrobot: {urdf: two.urdf}");
+  }
+  void expect(const char* what, const char* instead, std::initializer_list<const char*> words) {
+    const std::string message = error_with(what, instead);
+    EXPECT_THAT(message, testing::HasSubstr("rig.yaml:")) << instead;
+    for (const char* word : words) EXPECT_THAT(message, testing::HasSubstr(word)) << instead;
+  }
+};
+
+TEST_F(LimitedRig, TheUrdfsLimitsAreTheDefaults) {
+  text_.replace(text_.find("min: -1, max: 1, velocity: 1,"), 29, "");
+  EXPECT_EQ(error_with("name: small", "name: tall"), "no error");
+  const Rig rig = read_rig(folder_ / "rig.yaml");
+  EXPECT_EQ(rig.joints[0].drive.min_position, -1.5);
+  EXPECT_EQ(rig.joints[0].drive.max_position, 1.57);
+  EXPECT_EQ(rig.joints[0].drive.max_velocity, 2);
+  EXPECT_NEAR(rig.joints[0].drive.homing_velocity, 0.2, 1e-12);
+}
+
+TEST_F(LimitedRig, WhatIsBeyondTheUrdfIsRefusedWithAGuess) {
+  expect("max: 1,", "max: 90,",
+         {"joints[0].max", "90 rad is beyond the URDF's 1.57 rad", "90 looks like degrees: 1.571 rad"});
+  expect("min: -1,", "min: -85,", {"joints[0].min", "-85 rad", "-1.5 rad", "looks like degrees: -1.484 rad"});
+  expect("max: 1,", "max: 1.7,", {"1.7 rad is beyond the URDF's 1.57 rad", "at most that, or correct the URDF"});
+  expect("max: 0.1,", "max: 100,", {"joints[1].max", "100 m", "0.1 m", "looks like millimetres: 0.1 m"});
+  expect("velocity: 1,", "velocity: 60,", {"velocity", "60 rad/s", "2 rad/s", "looks like degrees: 1.047 rad"});
+  expect("velocity: 1,", "velocity: 2.5,", {"2.5 rad/s is beyond the URDF's 2 rad/s"});
+  expect("unit: rad", "unit: m", {"unit", "is m, but joint 'a' turns in the URDF", "unit: rad"});
+  expect("unit: m", "unit: rad", {"unit", "is rad, but joint 'b' slides in the URDF", "unit: m"});
+}
+
+TEST_F(LimitedRig, AbsurdValuesAreRefused) {
+  expect("following_error: 0.1", "following_error: 1e6",
+         {"following_error", "1e+06 rad is more than 0.5 rad", "hundredths"});
+  expect("following_error: 0.1", "following_error: 5", {"5 looks like degrees: 0.08727 rad"});
+  expect("following_error: 0.01", "following_error: 10",
+         {"10 m is more than 0.05 m", "10 looks like millimetres: 0.01 m"});
+  expect("jerk: 20", "jerk: 1e-9", {"joints[0].jerk", "a jerk of 1e-09", "it has 2 rad", "more jerk"});
+  expect("acceleration: 2", "acceleration: 0.1",
+         {"joints[0].acceleration", "an acceleration of 0.1", "it has 2 rad", "or less velocity"});
+  expect("acceleration: 2", "acceleration: 1e9",
+         {"acceleration", "1e+09 rad/s^2", "less than a control cycle of 4 ms"});
+  expect("counts_per_unit: 1000,\n     min: -1", "counts_per_unit: 1,\n     min: -1",
+         {"joints[0].counts_per_unit", "one count 1 rad", "a tenth of the following error of 0.1 rad", "gear"});
+  expect("counts_per_unit: 1000,\n     min: -1", "counts_per_unit: 1e10,\n     min: -1", {"1e+10 counts", "32 bits"});
+  expect("name: small", "name: small\ncontrol: {rate_hz: 0}", {"control.rate_hz", "10 to 2000"});
+}
+
+TEST_F(BadRig, WithoutAUrdfLimitsMustBePlausible) {
+  const auto expect = [&](const char* what, const char* instead, std::initializer_list<const char*> words) {
+    const std::string message = error_with(what, instead);
+    for (const char* word : words) EXPECT_THAT(message, testing::HasSubstr(word)) << instead;
+  };
+  expect("max: 1,", "max: 90,",
+         {"joints[0].max", "90 rad is more than 12.5664 rad", "90 looks like degrees: 1.571 rad"});
+  expect("velocity: 1,", "velocity: 100,", {"100 rad/s is more than 30 rad/s", "looks like degrees"});
+  expect("max: 0.1,", "max: 100,", {"100 m is more than 10 m", "looks like millimetres: 0.1 m"});
+  expect("max: 1,", "", {"max", "missing"});
 }
 
 }  // namespace

@@ -89,6 +89,27 @@ TEST_F(ClearanceTest, FromInsideThereIsAWayOutAndOnlyOut) {
   EXPECT_GT(fastest_, 0.3);
 }
 
+TEST_F(ClearanceTest, SaysWhatHoldsTheRobotSinceWhenAndHowFarApartItIs) {
+  stand_at(0);
+  EXPECT_LT(gate_->status().hold.joint, 0);
+  const double asked = edge() + 0.3;
+  go(asked, 0, 1000);
+  const GateHold hold = gate_->status().hold;
+  EXPECT_EQ(hold.joint, 0);
+  EXPECT_EQ(hold.asked, asked);
+  EXPECT_EQ(hold.stands, gate_->set_point(0).position);
+  EXPECT_STREQ(hold.parts, "link 'rod' comes too close to obstacle 'shelf'");
+  EXPECT_NEAR(hold.apart, margin(hold.stands) + 0.02, 1e-9);
+  EXPECT_GE(hold.apart, hold.kept_apart);
+  EXPECT_NEAR(hold.kept_apart, 0.02, 1e-12);
+  EXPECT_GT(to_seconds(now_ - hold.since), 1) << "since it was first held, and not since the last cycle";
+  go(0, 0, 100);
+  EXPECT_LT(gate_->status().hold.joint, 0) << "free again";
+  go(asked, 0, 1000);
+  go(asked, 0, 1, false);
+  EXPECT_LT(gate_->status().hold.joint, 0) << "nobody asks for anything";
+}
+
 TEST_F(ClearanceTest, FromDeepInsideThereIsAWayOutToo) {
   const double inside = edge() + 0.3;
   stand_at(inside);

@@ -72,7 +72,7 @@ TEST_F(HomingGateTest, ABusFaultStops) {
 
 TEST_F(HomingGateTest, AnEmergencyStopIsTheDrivesToFollow) {
   home(100);
-  gate_.emergency_stop("test");
+  gate_.emergency_stop();
   expect_stopped(GateReason::emergency_stop, -1);
 }
 

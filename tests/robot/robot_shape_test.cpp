@@ -74,6 +74,24 @@ TEST_F(RobotShapeTest, NamesTheLinksThatMeet) {
   EXPECT_STREQ(obstructed({0, 2.0944, 2.0944, 2.0944}), "link 'rod_4' comes too close to link 'rod_1'");
 }
 
+TEST_F(RobotShapeTest, SaysWhichLinksItGuards) {
+  const UrdfRobot robot = rods(folder_.path());
+  EXPECT_EQ(to_text(guarded_links(robot)),
+            "4 of 5 links guarded by their visual shapes; the URDF has no collision shapes; without a shape, as frames "
+            "are: base");
+  const auto file = folder_.path() / "two.urdf";
+  std::ofstream(file) << R"(<robot name='two'>
+<link name='base'><visual><geometry><box size='1 1 1'/></geometry></visual></link>
+<link name='arm'><visual><geometry><box size='0.1 0.1 1'/></geometry></visual>
+<collision><geometry><box size='0.1 0.1 3'/></geometry></collision></link>
+<joint name='turn' type='continuous'><parent link='base'/><child link='arm'/><axis xyz='0 1 0'/></joint></robot>)";
+  UrdfRobot two = read_urdf(file, folder_.path(), UrdfShapes::all);
+  EXPECT_EQ(to_text(guarded_links(two)), "2 of 2 links guarded (1 by collision shapes, 1 by visual ones)");
+  RobotShape shape(two, {"turn"}, Pose::Identity(), "rig.yaml");
+  shape.surround({.workspace = {Eigen::Vector3d(-5, -5, -1), Eigen::Vector3d(5, 5, 1)}, .obstacles = {}});
+  EXPECT_NE(shape.obstructed(std::vector{0.0}), nullptr) << "the collision shape is the longer one";
+}
+
 TEST_F(RobotShapeTest, RefusesAnUnknownJoint) {
   EXPECT_THROW(RobotShape(rods(folder_.path()), {"turn_9"}, Pose::Identity(), "rig.yaml"), InputError);
 }

@@ -162,7 +162,8 @@ TEST_F(RobotTest, ADriveThatIsNeverEnabledIsNamed) {
   run(1300);
   EXPECT_EQ(robot_.status().phase, RobotPhase::stopped);
   EXPECT_EQ(robot_.status().waiting_for, 1);
-  EXPECT_STRNE(robot_.status().refused, "");
+  EXPECT_EQ(robot_.status().gate.reason, GateReason::not_enabled_in_time);
+  EXPECT_EQ(robot_.status().gate.joint, 1);
 }
 
 TEST_F(RobotTest, FaultsFromBeforeAreClearedThoughADriveTellsItsLater) {

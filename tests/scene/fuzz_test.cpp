@@ -238,6 +238,40 @@ TEST(Fuzz, Urdf) {
             });
 }
 
+// Whatever happens to a URDF, each of its links has its shape, or the file is refused.
+TEST(Fuzz, NoShapeOfAUrdfIsLost) {
+  const std::string whole = R"(<robot name="r">
+<link name="base"><collision><geometry><box size="1 2 3"/></geometry></collision></link>
+<link name="a"><collision><origin xyz="0 0 1" rpy="0 1 0"/><geometry><cylinder radius="0.1" length="2"/></geometry></collision></link>
+<link name="b"><visual><geometry><sphere radius="0.5"/></geometry></visual></link>
+<joint name="j" type="fixed"><parent link="base"/><child link="a"/></joint>
+<joint name="k" type="fixed"><parent link="a"/><child link="b"/></joint></robot>)";
+  TempFolder folder;
+  std::mt19937 random(36);
+  int read = 0;
+  const int runs = 2 * fuzz_runs();
+  for (int i = 0; i < runs; ++i) {
+    std::string text = whole;
+    const std::size_t at = random() % text.size();
+    const char letter = "0123456789.,-+ \t\"'/<>=!?abcdenxyz&"[random() % 35];
+    switch (random() % 3) {
+      case 0: text[at] = letter; break;
+      case 1: text.insert(at, 1, letter); break;
+      default: text.erase(at, 1);
+    }
+    const auto file = folder.write("r.urdf", text);
+    try {
+      const UrdfRobot robot = read_urdf(file, folder.path(), UrdfShapes::all);
+      ++read;
+      ASSERT_EQ(robot.links.size(), 3u) << text;
+      for (std::size_t link = 0; link < 3; ++link) ASSERT_FALSE(robot.body(link).vertices.empty()) << text;
+    } catch (const InputError&) {
+    }
+  }
+  EXPECT_GT(read, runs / 50) << "some changes are harmless";
+  EXPECT_LT(read, runs / 2);
+}
+
 TEST(Fuzz, Images) {
   const Lens lens(Lens::Parameters{LensModel::plumb_bob, 8, 6, 10, 10, 3.5, 2.5, {}});
   unsigned seed = 40;

@@ -139,6 +139,108 @@ TEST_F(Urdf, ReadsVisualGeometry) {
   EXPECT_EQ(robot.links[0].mesh.triangles.size(), make_sphere(0.5).triangles.size() + 1);
 }
 
+// Each of these once made a robot without that link's shape, and without a word: its gate would not have seen it.
+TEST_F(Urdf, NoShapeIsLostWithoutAWord) {
+  struct Row {
+    const char* geometry;
+    std::vector<const char*> words;
+  };
+  const Row rows[] = {
+      {"<cylinder radius='0,09' length='1'/>", {"<cylinder>", "radius=\"0,09\" is no number", "a point", "metres"}},
+      {"<cylinder radius='nan' length='1'/>", {"<cylinder>", "radius=\"nan\" is not finite"}},
+      {"<cylinder radius='1e999' length='1'/>", {"radius=\"1e999\" is no number"}},
+      {"<cylinder radius='0.1'/>", {"<cylinder>", "has no length"}},
+      {"<cylinder radius='0.1' lenght='1'/>", {"<cylinder>", "'lenght'", "write length"}},
+      {"<cylinder radius='0.1' length='-1'/>", {"length=\"-1\" is not positive"}},
+      {"<sphere radius=''/>", {"<sphere>", "radius=\"\" has 0 numbers"}},
+      {"<sphere radius='0'/>", {"radius=\"0\" is not positive"}},
+      {"<sphere radius='0.1m'/>", {"radius=\"0.1m\" is no number"}},
+      {"<sphere radius='0.1 0.2'/>", {"radius=\"0.1 0.2\" has 2 numbers"}},
+      {"<box size='1 1'/>", {"<box>", "size=\"1 1\" has 2 numbers", "x y z"}},
+      {"<box size='1 1 inf'/>", {"size=\"1 1 inf\"", "'inf'", "not finite"}},
+      {"<box/>", {"<box>", "has no size"}},
+      {"<capsule radius='1' length='1'/>", {"<capsule> is unknown", "box, cylinder, sphere or mesh"}},
+      {"<Box size='1 1 1'/>", {"<Box> is unknown"}},
+      {"<box size='1 1 1'/><sphere radius='1'/>", {"has 2 shapes"}},
+      {"<mesh/>", {"<mesh>", "has no filename"}},
+      {"<mesh filename='none.stl'/>", {"'none.stl'"}},
+      {"<mesh filename='m.ply' scale='0 1 1'/>", {"scale=\"0 1 1\"", "'0'", "is zero"}},
+      {"<mesh filename='m.ply' scale='0.001'/>", {"scale=\"0.001\" has 1 number", "three factors"}},
+      {"<mesh filename='broken.ply'/>", {"broken.ply"}},
+      {"<mesh filename='empty.ply'/>", {"empty.ply"}}};
+  folder_.write("robot/urdf/m.ply", kTriangle);
+  folder_.write("robot/urdf/broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+  folder_.write("robot/urdf/empty.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
+  for (const char* element : {"visual", "collision"})
+    for (const Row& row : rows) {
+      const std::string tag = std::string("<") + element + ">";
+      const std::string refusal = input_error([&] {
+        const auto file =
+            folder_.write("robot/urdf/r.urdf", "<robot name='r'>\n<link name='base'>\n" + tag + "<geometry>" +
+                                                   row.geometry + "</geometry></" + tag.substr(1) + "</link></robot>");
+        read_urdf(file, folder_.path(), UrdfShapes::all);
+      });
+      for (const char* word : row.words) EXPECT_THAT(refusal, testing::HasSubstr(word)) << tag << row.geometry;
+      if (std::string(row.geometry).find("ply") == std::string::npos) {
+        EXPECT_THAT(refusal, says("link 'base'", tag, "")) << row.geometry;
+      }
+    }
+}
+
+TEST_F(Urdf, WhatIsAroundAShapeIsRead) {
+  const std::string box = "<geometry><box size='1 1 1'/></geometry>";
+  const auto base = [&](const std::string& inside) { return error("<link name='base'>" + inside + "</link>"); };
+  EXPECT_THAT(base("<visual/>"), says("r.urdf:1", "link 'base' <visual>", "has no <geometry>"));
+  EXPECT_THAT(base("<collision><geometry/></collision>"), says("<collision>", "empty <geometry>", "give it one of"));
+  EXPECT_THAT(base("<visual>" + box + box + "</visual>"),
+              says("<visual>", "has 2 <geometry>", "one visual for each"));
+  EXPECT_THAT(base("<colision>" + box + "</colision>"), says("link 'base'", "<colision>", "write <collision>"));
+  EXPECT_THAT(base("<Visual>" + box + "</Visual>"), says("link 'base'", "<Visual>", "write <visual>"));
+  EXPECT_THAT(base("<visual><origin xyz='0 0'/>" + box + "</visual>"), says("<origin>", "xyz=\"0 0\" has 2", "metres"));
+  EXPECT_THAT(base("<visual><origin rpy='0 0 ,5'/>" + box + "</visual>"), says("<origin>", "',5'", "radians"));
+  EXPECT_EQ(base("<visual>" + box + "</visual><contact/>"), "no error");
+  // The parser gives a link up at the first thing that it does not understand, with all of its shapes.
+  EXPECT_THAT(base("<visual>" + box + "</visual><inertial/>"),
+              says("link 'base'", "only 0 of its 1 <visual> can be read (", "specification"));
+  const auto moved = [&](const std::string& inside) {
+    return error(link("base") + link("a") + joint("j", "revolute", "base", "a", inside));
+  };
+  EXPECT_THAT(moved("<origin xyz='0 nan 0'/>"), says("joint 'j' <origin>", "'nan'", "metres"));
+  EXPECT_THAT(moved("<axis xyz='0 0 1,0'/>"), says("joint 'j' <axis>", "'1,0'", "unit vector"));
+  EXPECT_THAT(error(link("base") + link("a") +
+                    "<joint name='j' type='revolute'><parent link='base'/><child link='a'/>"
+                    "<limit lower='-1' upper='1' effort='1' velocity='-1'/></joint>"),
+              says("joint 'j' <limit>", "velocity=\"-1\" is negative", "per second"));
+}
+
+TEST_F(Urdf, TheBodyIsTheCollisionShapeWhereThereIsOne) {
+  const std::string two =
+      "<link name='base'><visual><geometry><sphere radius='0.5'/></geometry></visual>"
+      "<collision><origin xyz='1 0 0'/><geometry><box size='1 1 1'/></geometry></collision>"
+      "<collision><origin xyz='3 0 0'/><geometry><box size='1 1 1'/></geometry></collision></link>" +
+      link("a", "<box size='2 2 2'/>") + link("frame") + joint("j", "fixed", "base", "a") +
+      joint("k", "fixed", "a", "frame");
+  const auto file = folder_.write("r.urdf", "<robot name='r'>" + two + "</robot>");
+  const UrdfRobot seen = read_urdf(file, folder_.path()), all = read_urdf(file, folder_.path(), UrdfShapes::all);
+  EXPECT_TRUE(seen.collision.empty());
+  Eigen::AlignedBox3f box;
+  for (const auto& v : all.body(0).vertices) box.extend(v);
+  EXPECT_NEAR(box.min().x(), 0.5, 1e-6);
+  EXPECT_NEAR(box.max().x(), 3.5, 1e-6) << "all of them";
+  EXPECT_EQ(&all.body(1), &all.links[1].mesh);
+  EXPECT_TRUE(all.body(2).vertices.empty());
+}
+
+TEST_F(Urdf, ABodyInAnotherUnitIsRefused) {
+  const auto refusal = [&](const std::string& geometry) {
+    const auto file = folder_.write("r.urdf", "<robot name='r'>" + link("base", geometry) + "</robot>");
+    return input_error([&] { read_urdf(file, folder_.path(), UrdfShapes::all); });
+  };
+  EXPECT_THAT(refusal("<cylinder radius='65' length='140'/>"), says("link 'base'", "m large", "millimetres"));
+  EXPECT_THAT(refusal("<sphere radius='0.0001'/>"), says("link 'base'", "0.0002 m large", "in metres"));
+  EXPECT_EQ(refusal("<sphere radius='0.01'/>"), "no error");
+}
+
 TEST_F(Urdf, FindsMeshesAboveTheUrdf) {
   folder_.write("robot/meshes/m.ply", kTriangle);
   for (const char* name : {"package://robot/meshes/m.ply", "meshes/m.ply", "../meshes/m.ply", "robot/meshes/m.ply"})
@@ -162,14 +264,13 @@ TEST_F(Urdf, RefusesMeshesFromOutside) {
 }
 
 TEST_F(Urdf, NamesWhatIsWrong) {
-  EXPECT_THAT(error("<link"), says("r.urdf", "not a valid URDF", "check_urdf"));
+  EXPECT_THAT(error("<link"), says("r.urdf:1", "is no whole XML", "correct it"));
   EXPECT_THAT(error(""), says("r.urdf", "not a valid URDF", "check_urdf"));
   EXPECT_THAT(error(link("a") + link("b")), says("r.urdf", "not a valid URDF (", "check_urdf"));
   EXPECT_THAT(error(link("base") + link("a") + joint("j", "fixed", "base", "b")),
               says("r.urdf", "not a valid URDF (", "check_urdf"));
   EXPECT_THAT(error(link("base", "<box size='1 -1 1'/>")),
-              says("link 'base'", "size -1.000000 of a visual is not positive", "metres"));
-  EXPECT_THAT(error(link("base", "<sphere radius='0'/>")), says("link 'base'", "not positive", "metres"));
+              says("size=\"1 -1 1\"", "'-1', which is not positive", "metres"));
   EXPECT_THAT(error(link("base") + link("a") + joint("j", "revolute", "base", "a", "<axis xyz='0 0 0'/>")),
               says("joint 'j'", "axis has no direction", "unit vector"));
   EXPECT_THAT(error(link("base") + link("a") + link("b") + joint("j", "fixed", "base", "a") +

@@ -117,6 +117,43 @@ TEST_F(Encoders, WhatTheyDoNotKnowIsLost) {
   EXPECT_FALSE(late.T_world_camera);
 }
 
+// Its last word is long past, or it never had one: the cameras stand where their own joints say.
+TEST_F(Encoders, ADeadGripperLosesNoFrame) {
+  for (const bool calibrated : {false, true})
+    for (const bool ever : {true, false}) {
+      SCOPED_TRACE(std::string(calibrated ? "calibrated" : "by drawing") + (ever ? ", died" : ", never lived"));
+      if (calibrated) calibrate();
+      BroadcastRing<RobotCycle> ring(1024);
+      EncoderPoses poses(rig_, mock(), ring.reader());
+      for (Duration t = 0ms; t <= 1000ms; t += 4ms) {
+        RobotCycle now = cycle(t);
+        now.all_homed = false;
+        if (t > 100ms || !ever) now.joint[7].homed = false;
+        ring.put(now);
+      }
+      const StereoPair taken = pair(956ms, 961ms);
+      EXPECT_TRUE(poses.is_ready(taken)) << "nobody waits for it";
+      const PairPoses found = poses.poses_of(taken);
+      EXPECT_EQ(found.quality, "encoders");
+      ASSERT_TRUE(found.T_world_camera);
+      EXPECT_TRUE((*found.T_world_camera)[0].isApprox(T_world_left(956ms), 1e-9));
+      EXPECT_EQ(found.missing, "finger");
+      EXPECT_EQ(found.scene[0].status, StateStatus::predicted);
+      EXPECT_EQ(found.joints.status, StateStatus::invalid) << "who needs all joints must know";
+      EXPECT_EQ(std::isfinite(found.joints.positions[7]), ever);
+    }
+}
+
+TEST_F(Encoders, ADeadHeadLosesThem) {
+  EncoderPoses poses(rig_, mock(), ring_.reader());
+  for (Duration t = 0ms; t <= 1000ms; t += 4ms) {
+    RobotCycle now = cycle(t);
+    if (t > 100ms) now.joint[8].homed = false;
+    ring_.put(now);
+  }
+  EXPECT_EQ(poses.poses_of(pair(956ms, 961ms)).quality, "lost");
+}
+
 TEST_F(Encoders, PlaceTheCamerasOfACalibratedHead) {
   calibrate(0.02);
   EncoderPoses poses(rig_, mock(), ring_.reader());

@@ -1,0 +1,183 @@
+#include "rig/joint_limits.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "scene/yaml_fields.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr double kRounding = 1e-6;
+// Where the URDF says nothing, by unit: more than two turns, or than any arm's reach, are another unit.
+struct Plausible {
+  const char* unit;
+  double position, velocity, following_error;
+  const char* other;  // that may have been meant
+  double factor;
+};
+constexpr Plausible kTurning{"rad", 4 * std::numbers::pi, 30, 0.5, "degrees", std::numbers::pi / 180};
+constexpr Plausible kSliding{"m", 10, 10, 0.1, "millimetres", 1e-3};
+
+std::string shown(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+class LimitReader {
+ public:
+  LimitReader(const YamlMap& map, const UrdfJoint* urdf, RigJoint& joint)
+      : map_(map), urdf_(urdf), joint_(joint), plausible_(joint.unit == "m" ? kSliding : kTurning) {}
+
+  void read_positions() {
+    const bool bounded = urdf_ != nullptr && std::isfinite(urdf_->lower) && std::isfinite(urdf_->upper);
+    const double most = plausible_.position;
+    const std::pair<double, double> bounds = bounded ? std::pair(urdf_->lower, urdf_->upper) : std::pair(-most, most);
+    joint_.drive.min_position = default_of("min", bounded ? std::optional(bounds.first) : std::nullopt);
+    joint_.drive.max_position = default_of("max", bounded ? std::optional(bounds.second) : std::nullopt);
+    for (const auto& [key, value] : {std::pair("min", joint_.drive.min_position), {"max", joint_.drive.max_position}})
+      if (!(value >= bounds.first - kRounding && value <= bounds.second + kRounding))
+        refuse(key, value, value < bounds.first ? bounds.first : bounds.second, bounded, "",
+               std::max(std::abs(bounds.first), std::abs(bounds.second)));
+    if (joint_.drive.min_position >= joint_.drive.max_position)
+      throw InputError(map_.where("min"),
+                       shown(joint_.drive.min_position) + " is not below max, " + shown(joint_.drive.max_position),
+                       "exchange or correct them");
+  }
+
+  void read_velocity() {
+    const bool bounded = urdf_ != nullptr && urdf_->velocity > 0;
+    const double most = bounded ? urdf_->velocity : plausible_.velocity;
+    joint_.drive.max_velocity = default_of("velocity", bounded ? std::optional(most) : std::nullopt);
+    if (!(joint_.drive.max_velocity > 0)) map_.positive("velocity");  // which refuses it
+    if (joint_.drive.max_velocity > most * (1 + kRounding))
+      refuse("velocity", joint_.drive.max_velocity, most, bounded, "/s", most);
+  }
+
+  void read_following_error() {
+    joint_.following_error = map_.positive("following_error");
+    const double range = joint_.drive.max_position - joint_.drive.min_position;
+    const double most = std::min(0.5 * range, plausible_.following_error);
+    if (joint_.following_error <= most * (1 + kRounding)) return;
+    throw InputError(
+        map_.where("following_error"),
+        fmt::format("{} {} is more than {} {}, half of the joint's range or what links may be off their place: "
+                    "nothing would be noticed",
+                    shown(joint_.following_error), joint_.unit, shown(most), joint_.unit),
+        guess(joint_.following_error, most).value_or("give a few hundredths, at most " + shown(most)));
+  }
+
+  void check_stop(double rate_hz) const {
+    const double v = joint_.drive.max_velocity, a = joint_.drive.max_acceleration;
+    const double range = joint_.drive.max_position - joint_.drive.min_position;
+    if (v / a < 1 / rate_hz)
+      throw InputError(
+          map_.where("acceleration"),
+          fmt::format("{} {}/s^2 reaches the velocity of {} {}/s in {:.3g} ms, less than a control cycle of "
+                      "{:.3g} ms: nothing that has a mass does that",
+                      shown(a), joint_.unit, shown(v), joint_.unit, 1e3 * v / a, 1e3 / rate_hz),
+          guess(a, v * rate_hz).value_or("give what the drive can do, at most " + shown(v * rate_hz)));
+    const double way = stop_position(
+        {0, v, 0}, {joint_.drive.min_position, joint_.drive.max_position, v, a, joint_.jerk}, 1 / rate_hz);
+    if (way <= range) return;
+    const bool too_weak = 0.5 * v * v / a > 0.5 * range;
+    throw InputError(map_.where(too_weak ? "acceleration" : "jerk"),
+                     fmt::format("with an acceleration of {} and a jerk of {} it takes the joint {} {} or more to stop "
+                                 "from {} {}/s, and it has {} {}",
+                                 shown(a), shown(joint_.jerk), shown(way), joint_.unit, shown(v), joint_.unit,
+                                 shown(range), joint_.unit),
+                     too_weak ? "give it more acceleration, or less velocity"
+                              : "give it more jerk, such as ten times the acceleration");
+  }
+
+ private:
+  double default_of(const char* key, const std::optional<double>& otherwise) const {
+    if (map_.has(key) || (urdf_ == nullptr && !otherwise)) return map_.number(key);
+    if (otherwise) return *otherwise;
+    throw InputError(map_.where(key), "is missing, and the URDF has no such limit", "add it");
+  }
+
+  /// What `value` would be in the unit that is mistaken for ours, where it then fits.
+  std::optional<std::string> guess(double value, double most) const {
+    const double meant = value * plausible_.factor;
+    const bool little_too_much = std::abs(value) < 2.5 * most;  // that is another mistake
+    if (little_too_much || !(std::abs(meant) <= 1.1 * most)) return std::nullopt;
+    return fmt::format("{} looks like {}: {:.4g} {}{}", shown(value), plausible_.other, meant, joint_.unit,
+                       std::abs(meant) > most ? ", and give at most " + shown(most) : "");
+  }
+
+  [[noreturn]] void refuse(const char* key, double value, double bound, bool by_urdf, const char* per_second,
+                           double most) const {
+    const std::string unit = joint_.unit + per_second;
+    const std::string what =
+        by_urdf ? fmt::format("{} {} is beyond the URDF's {} {}", shown(value), unit, shown(bound), unit)
+                : fmt::format("{} {} is more than {} {}, and the URDF has no limit that says so", shown(value), unit,
+                              shown(bound), unit);
+    throw InputError(map_.where(key), what,
+                     guess(value, most)
+                         .value_or(by_urdf ? "give at most that, or correct the URDF"
+                                           : "correct it, or give the joint its limits in the URDF"));
+  }
+
+  const YamlMap& map_;
+  const UrdfJoint* urdf_;
+  RigJoint& joint_;
+  const Plausible& plausible_;
+};
+
+void require_unit(const YamlMap& map, const UrdfJoint* urdf, const RigJoint& joint) {
+  if (urdf == nullptr) return;
+  const bool turns = urdf->kind == UrdfJoint::Kind::rotating;
+  if (turns == (joint.unit == "rad")) return;
+  throw InputError(
+      map.where("unit"),
+      fmt::format("is {}, but joint '{}' {} in the URDF", joint.unit, joint.drive.name, turns ? "turns" : "slides"),
+      turns ? "write `unit: rad`, and its numbers in rad" : "write `unit: m`, and its numbers in m");
+}
+
+}  // namespace
+
+void read_limits(const YamlMap& map, const UrdfJoint* urdf, double rate_hz, RigJoint& joint) {
+  require_unit(map, urdf, joint);
+  LimitReader reader(map, urdf, joint);
+  reader.read_positions();
+  reader.read_velocity();
+  joint.drive.max_acceleration = map.positive("acceleration");
+  joint.jerk = map.positive("jerk");
+  reader.read_following_error();
+  reader.check_stop(rate_hz);
+  joint.drive.homing_velocity =
+      map.has("homing_velocity") ? map.positive("homing_velocity") : 0.1 * joint.drive.max_velocity;
+  if (joint.drive.homing_velocity > 0.25 * joint.drive.max_velocity)
+    throw InputError(
+        map.where("homing_velocity"),
+        fmt::format("{} {}/s is more than a quarter of the joint's velocity, {} {}/s",
+                    shown(joint.drive.homing_velocity), joint.unit, shown(joint.drive.max_velocity), joint.unit),
+        "home slowly");
+}
+
+void check_counts(const YamlMap& map, const RigJoint& joint) {
+  const DriveConfig& d = joint.drive;
+  const std::string cure = fmt::format(
+      "counts_per_unit is increments per {} of the joint: those of the encoder per turn of the motor, times the "
+      "gear's ratio, {}",
+      joint.unit, joint.unit == "m" ? "over the way of one turn in metres" : "/ 6.2832");
+  if (1 / d.counts_per_unit > 0.1 * joint.following_error * (1 + kRounding))
+    throw InputError(map.where("counts_per_unit"),
+                     fmt::format("{} makes one count {} {}, more than a tenth of the following error of {} {}",
+                                 shown(d.counts_per_unit), shown(1 / d.counts_per_unit), joint.unit,
+                                 shown(joint.following_error), joint.unit),
+                     cure);
+  const double farthest = std::max(std::abs(d.min_position - d.offset), std::abs(d.max_position - d.offset));
+  if (farthest * d.counts_per_unit > 2147483647.0)
+    throw InputError(map.where("counts_per_unit"),
+                     fmt::format("{} makes the joint's end at {} {} {:.4g} counts, more than the 2147483647 of 32 bits",
+                                 shown(d.counts_per_unit), shown(farthest), joint.unit, farthest * d.counts_per_unit),
+                     cure);
+}
+
+}  // namespace foresight
