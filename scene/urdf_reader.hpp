@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/mesh_finder.hpp"
 #include "scene/scene_model.hpp"
 
 namespace foresight {
@@ -38,11 +39,13 @@ struct UrdfRobot {
 enum class UrdfVisuals { read, leave_out };
 
 /// Reads links, joints and visual geometry: meshes (with their scale), boxes, cylinders and
-/// spheres; all visuals of a link become its one mesh. A mesh named package://NAME/... or by a
-/// relative path is looked for in the folder of the URDF and in those above it, up to `root`.
+/// spheres; all visuals of a link become its one mesh. Meshes are looked for as find_mesh() says.
 /// Links stand at joint positions 0. Floating and planar joints count as fixed. Throws InputError
 /// naming the file and the link or joint: not a URDF, no single tree, a missing mesh, a size or
 /// axis that is no such thing.
+UrdfRobot read_urdf(const std::filesystem::path& file, const MeshSearch& search = {},
+                    UrdfVisuals visuals = UrdfVisuals::read);
+/// The same of a run folder: meshes lie in the folder of the URDF or in those above it, up to `root`.
 UrdfRobot read_urdf(const std::filesystem::path& file, const std::filesystem::path& root,
                     UrdfVisuals visuals = UrdfVisuals::read);
 
