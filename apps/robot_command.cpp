@@ -18,6 +18,7 @@
 #include "common/text.hpp"
 #include "operators/follow_operator.hpp"
 #include "operators/key_operator.hpp"
+#include "rig/mock_faults.hpp"
 #include "session/joint_log.hpp"
 #include "session/robot_cameras.hpp"
 
@@ -40,6 +41,7 @@ struct Arguments {
   std::optional<double> delay_ms;
   std::string scene;
   ViewOutputs outputs;
+  std::vector<std::string> faults;
 };
 
 void say(const std::string& line) {
@@ -55,6 +57,7 @@ class Console {
         devices_(devices),
         robot_(robot),
         cameras_(cameras),
+        faults_(parse_mock_faults(arguments.faults, rig, arguments.mock), rig, devices),
         // The keyboard can always stop and quit; it drives only where no file does.
         keys_(rig.gate_options().joints,
               arguments.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops) {
@@ -71,6 +74,7 @@ class Console {
 
   /// False: the program shall end.
   bool tick(RobotTime now) {
+    for (const std::string& line : faults_.step(now)) say(line);
     keys_.press(keyboard_.pressed());
     const bool goes_on = serve(commanders_, robot_, now);
     const RobotStatus status = robot_.status();
@@ -155,6 +159,7 @@ class Console {
   std::optional<JointLog> joints_;
   std::optional<SessionRecord> session_;
   std::filesystem::path report_;
+  MockFaults faults_;
   Keyboard keyboard_;
   KeyOperator keys_;
   std::optional<FollowOperator> follow_;
@@ -303,6 +308,7 @@ void check_view(const Rig& rig, const Arguments& arguments) {
 int run(const Arguments& arguments) {
   const Rig rig = read_rig(arguments.rig);
   check_view(rig, arguments);
+  parse_mock_faults(arguments.faults, rig, arguments.mock);
   if (!arguments.record.empty() && (!rig.cameras || !arguments.cameras))
     throw InputError("--record", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
@@ -354,6 +360,9 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag("--stepped", arguments->stepped,
                     "As fast as the machine can, the same on every run; only with mock drives");
+  command->add_option("--fault", arguments->faults,
+                      "JOINT:KIND@TIME: what goes wrong with a mock drive, so many seconds after the start: stuck,\n"
+                      "following_error, lost_node, noisy_encoder or lost_power; again for more");
   command->add_flag("--check", arguments->check_only, "Only identify and configure the drives; move nothing");
   command->footer(
       "On a terminal, keys enable, home, move and stop the robot; space is a stop. A software stop does not replace a\n"

@@ -68,7 +68,7 @@ bool obey(const std::string& line, sim::DriveRack& rack) {
     for (std::size_t i = 0; i < rack.size(); ++i) rack.forget_extremes(i);
   if (verb.empty() || verb == "show" || verb == "forget") return true;
   std::vector<std::string> verbs{"show", "forget", "quit"};
-  for (int f = 0; f <= static_cast<int>(sim::DriveFault::jam); ++f) {
+  for (int f = 0; f <= static_cast<int>(sim::DriveFault::no_power); ++f) {
     const auto fault = static_cast<sim::DriveFault>(f);
     verbs.emplace_back(sim::to_string(fault));
     if (verb != verbs.back()) continue;

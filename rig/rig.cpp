@@ -167,12 +167,18 @@ void read_control(const YamlMap& map, Rig& rig) {
 }
 
 void read_robot(const YamlMap& map, Rig& rig) {
-  map.require_known({"urdf", "pose"});
+  map.require_known({"urdf", "mesh_root", "pose"});
   const auto urdf = map.file().parent_path() / map.text("urdf");
   if (!std::filesystem::is_regular_file(urdf))
     throw InputError(map.where("urdf"), "there is no file " + urdf.string(), "give its path, relative to the rig file");
-  const auto root = urdf.parent_path().empty() ? std::filesystem::path(".") : urdf.parent_path();
-  rig.robot = read_urdf(urdf, root, UrdfShapes::all);
+  MeshSearch meshes;
+  if (map.has("mesh_root")) {
+    meshes.root = map.file().parent_path() / map.text("mesh_root");
+    if (!std::filesystem::is_directory(*meshes.root))
+      throw InputError(map.where("mesh_root"), "there is no folder " + meshes.root->string(),
+                       "give its path, relative to the rig file");
+  }
+  rig.robot = read_urdf(urdf, meshes, UrdfShapes::all);
   if (map.has("pose")) rig.T_world_robot = map.pose("pose");
 }
 

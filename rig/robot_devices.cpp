@@ -14,6 +14,7 @@
 #include "drivers/canopen/canopen_network.hpp"
 #include "drivers/powercube/network.hpp"
 #include "rig/bus_plan.hpp"
+#include "sim/drives/homing_search.hpp"
 
 namespace foresight {
 namespace {
@@ -102,6 +103,17 @@ std::filesystem::path log_of(std::filesystem::path file, const Rig& rig, const R
   return file.replace_extension().concat("-" + bus.name + extension);
 }
 
+/// Where a mock shaft stands at the start: not quite at home, on the side from which it can be looked for.
+double start_beside(double home, int homing_method, const sim::NodeConfig& config) {
+  const auto method = sim::homing_method(homing_method);
+  const bool towards_center = !method || (method->input == sim::kHomeSwitch);
+  const double center = 0.5 * (config.min_position + config.max_position);
+  const double way = !towards_center  ? (method->edge == sim::HomingMethod::Edge::none ? -method->way : method->way)
+                     : home <= center ? 1
+                                      : -1;
+  return home + 0.02 * way * (config.max_position - config.min_position);
+}
+
 /// The drive that a joint of the rig needs, as its own shaft sees it.
 sim::NodeConfig emulated(const RigJoint& joint, DriveProtocol protocol) {
   const DriveConfig& d = joint.drive;
@@ -115,15 +127,13 @@ sim::NodeConfig emulated(const RigJoint& joint, DriveProtocol protocol) {
   if (!powercube) out.counts_per_unit = d.counts_per_unit;
   out.homed = joint.absolute;
   std::tie(out.min_position, out.max_position) = std::minmax({at_drive(d.min_position), at_drive(d.max_position)});
-  // Not quite at home, where it can be looked for.
   const double home = std::clamp(0.0, d.min_position, d.max_position);
   out.home_position = at_drive(home);
   out.motor.start = at_drive(powercube && !joint.absolute ? std::min(home + 0.02 * room, d.max_position) : home);
-  // By a limit switch (CiA 402, methods 17 and 18), home is where the switch is.
-  if (!powercube && !joint.absolute && (joint.homing_method == 17 || joint.homing_method == 18)) {
-    const bool low = joint.homing_method == 17;
-    (low ? out.low_switch : out.high_switch) = out.home_position;
-    out.motor.start = out.home_position + (low ? 0.02 : -0.02) * room;
+  // A CiA 402 drive says 0 at the home that it has found: there its switches must be.
+  if (!powercube && !joint.absolute) {
+    sim::place_homing_switches(out, joint.homing_method, 0);
+    out.motor.start = start_beside(0, joint.homing_method, out);
   }
   out.motor.min_stop = out.min_position - 0.05 * room;
   out.motor.max_stop = out.max_position + 0.05 * room;
@@ -169,6 +179,20 @@ std::vector<sim::NodeConfig> emulated_drives(const Rig& rig, std::size_t bus) {
   return out;
 }
 
+namespace {
+
+void start_at(const std::map<std::string, double>& positions, const Rig& rig, std::vector<sim::NodeConfig>& nodes) {
+  for (sim::NodeConfig& node : nodes) {
+    const auto given = positions.find(node.name);
+    if (given == positions.end()) continue;
+    const DriveConfig& d =
+        std::ranges::find_if(rig.joints, [&](const RigJoint& j) { return j.drive.name == node.name; })->drive;
+    node.motor.start = d.direction * (given->second - d.offset);
+  }
+}
+
+}  // namespace
+
 struct RobotDevices::Bus {
   std::unique_ptr<InProcessBus> medium;  // of a mock bus
   std::unique_ptr<sim::DriveRack> rack;
@@ -194,6 +218,7 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
           std::make_unique<InProcessBus>(config.name, clock, InProcessBusOptions{.wire = rates, .faults = {}});
       auto nodes = emulated_drives(rig, i);
       for (sim::NodeConfig& node : nodes) node.motor.limits_off = options.mock_without_limits;
+      start_at(options.mock_start, rig, nodes);
       bus->rack = std::make_unique<sim::DriveRack>(clock, bus->medium->attach(), nodes);
       bus->end = bus->medium->attach();
     } else {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,8 @@ struct RobotDeviceOptions {
   bool mock = false;                         ///< every bus with emulated drives, whatever the rig says
   std::optional<std::filesystem::path> log;  ///< candump log of all frames
   bool mock_without_limits = false;          ///< emulated drives do whatever they are told: to prove the gate
+  /// Where shafts of mock drives stand at first, by joint, in its unit and direction; else a little beside home.
+  std::map<std::string, double> mock_start = {};
 };
 
 /// Opens the rig's buses: SocketCAN interfaces, or in-process ones with emulated drives where the rig says `mock`.

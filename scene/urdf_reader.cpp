@@ -69,8 +69,11 @@ struct ParsedUrdf {
 ParsedUrdf parse(const fs::path& file) {
   const std::string xml = read_file(file);
   if (is_deep(xml)) throw InputError(file.string(), "its elements nest too deep", "write a plain URDF");
-  if (xml.find("xmlns:xacro") != std::string::npos && xml.find("<xacro:") != std::string::npos)
-    throw InputError(file.string(), "is a xacro file", "expand it to a URDF with the xacro tool");
+  // A URDF that was made of a xacro file keeps its name space, but none of its macros and variables.
+  if (xml.find("<xacro:") != std::string::npos ||
+      (xml.find("xmlns:xacro") != std::string::npos && xml.find("${") != std::string::npos))
+    throw InputError(file.string(), "is a xacro file, from which a URDF is still to be made",
+                     "run `xacro " + file.filename().string() + " > robot.urdf` first, and give robot.urdf");
   ParsedUrdf out{nullptr, check_urdf(file, xml), {}};
   urdf::ModelInterfaceSharedPtr& model = out.model;
   std::string reason;
@@ -106,8 +109,8 @@ void require_size_of_a_link(const Mesh& body, const std::string& where) {
 
 class RobotBuilder {
  public:
-  RobotBuilder(const fs::path& file, const fs::path& root, UrdfShapes shapes)
-      : file_(file), root_(root), shapes_(shapes), parsed_(parse(file)), model_(parsed_.model) {}
+  RobotBuilder(const fs::path& file, const MeshSearch& search, UrdfShapes shapes)
+      : file_(file), search_(search), shapes_(shapes), parsed_(parse(file)), model_(parsed_.model) {}
 
   UrdfRobot build() {
     robot_.name = model_->getName();
@@ -186,28 +189,7 @@ class RobotBuilder {
     const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
     scale = {mesh.scale.x, mesh.scale.y, mesh.scale.z};  // negative mirrors
     for (double s : scale) positive(std::abs(s));
-    return read_mesh(find_mesh(mesh.filename, where));
-  }
-
-  fs::path find_mesh(const std::string& name, const std::string& where) const {
-    constexpr std::string_view kPackage = "package://";
-    const bool in_package = name.starts_with(kPackage);
-    const std::string path = in_package ? name.substr(kPackage.size()) : name;
-    if (path.find("://") != std::string::npos || fs::path(path).is_absolute())
-      throw InputError(where, "the mesh " + in_quotes(name) + " is not named relative to the robot",
-                       "write package://NAME/path or a relative path");
-    const std::size_t slash = path.find('/');
-    std::error_code error;
-    for (fs::path folder = file_.parent_path();; folder = folder.parent_path()) {
-      if (fs::exists(folder / path, error)) return resolve_inside(root_, folder, path, where);
-      // The run folder itself may be the package.
-      if (in_package && slash != std::string::npos && folder.filename() == path.substr(0, slash) &&
-          fs::exists(folder / path.substr(slash + 1), error))
-        return resolve_inside(root_, folder, path.substr(slash + 1), where);
-      if (folder == root_ || folder == folder.parent_path()) break;
-    }
-    throw InputError(where, "the mesh " + in_quotes(name) + " is missing",
-                     "put it beside the URDF or in a folder above it, up to " + root_.string());
+    return read_mesh(find_mesh(mesh.filename, file_, search_, where));
   }
 
   Pose to_pose(const urdf::Pose& pose, const std::string& where) const {
@@ -265,7 +247,7 @@ class RobotBuilder {
   }
 
   const fs::path& file_;
-  const fs::path& root_;
+  const MeshSearch& search_;
   const UrdfShapes shapes_;
   ParsedUrdf parsed_;
   urdf::ModelInterfaceSharedPtr model_;
@@ -276,7 +258,11 @@ class RobotBuilder {
 }  // namespace
 
 UrdfRobot read_urdf(const fs::path& file, const fs::path& root, UrdfShapes shapes) {
-  return RobotBuilder(file, root, shapes).build();
+  return read_urdf(file, MeshSearch{root, {}}, shapes);
+}
+
+UrdfRobot read_urdf(const fs::path& file, const MeshSearch& search, UrdfShapes shapes) {
+  return RobotBuilder(file, search, shapes).build();
 }
 
 }  // namespace foresight

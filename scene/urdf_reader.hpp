@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/mesh_finder.hpp"
 #include "scene/scene_model.hpp"
 
 namespace foresight {
@@ -46,14 +47,16 @@ struct UrdfRobot {
 /// kept clear of things, too.
 enum class UrdfShapes { none, visual, all };
 
-/// Reads links, joints and geometry: meshes (with their scale), boxes, cylinders and
-/// spheres; all visuals of a link become its one mesh. Every <visual> and <collision> yields its shape, or the file is
-/// refused as check_urdf() does; with UrdfShapes::all, also where a link's body is smaller than 1 mm or larger than 20
-/// m: its unit is another one. A mesh named package://NAME/... or by a
-/// relative path is looked for in the folder of the URDF and in those above it, up to `root`.
+/// Reads links, joints and geometry: meshes (with their scale), boxes, cylinders and spheres; all visuals of a link become
+/// its one mesh. Every <visual> and <collision> yields its shape, or the file is refused as check_urdf() does; with
+/// UrdfShapes::all, also where a link's body is smaller than 1 mm or larger than 20 m: its unit is another one. Meshes are
+/// looked for as find_mesh() says.
 /// Links stand at joint positions 0. Floating and planar joints count as fixed. Throws InputError
 /// naming the file and the link or joint: not a URDF, no single tree, a missing mesh, a size or
 /// axis that is no such thing.
+UrdfRobot read_urdf(const std::filesystem::path& file, const MeshSearch& search = {},
+                    UrdfShapes shapes = UrdfShapes::visual);
+/// The same of a run folder: meshes lie in the folder of the URDF or in those above it, up to `root`.
 UrdfRobot read_urdf(const std::filesystem::path& file, const std::filesystem::path& root,
                     UrdfShapes shapes = UrdfShapes::visual);
 

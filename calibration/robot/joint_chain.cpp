@@ -43,7 +43,7 @@ int turning_joints(const UrdfRobot& robot, int base, int link) {
 
 JointChain read_joint_chain(const std::filesystem::path& urdf, const std::string& base, const std::string& flange) {
   JointChain chain;
-  chain.robot = read_urdf(urdf, urdf.parent_path());
+  chain.robot = read_urdf(urdf);
   if (!base.empty()) chain.base = find_link(chain.robot, base, urdf);
   if (!flange.empty()) {
     chain.flange = find_link(chain.robot, flange, urdf);

@@ -59,6 +59,7 @@ class Cia402Drive final : public Drive {
   void prove_abort_option();
   void write_limits();
   void write_limit(ObjectRef object, std::int64_t value, const char* what);
+  void require_homing_method();
   void write_homing();
   void write_mode();
   void write_interpolation();

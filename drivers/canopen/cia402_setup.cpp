@@ -156,11 +156,32 @@ void Cia402Drive::write_limits() {
   write_limit(kQuickStopOption, config_.quick_stop_option, "quick stop option");
 }
 
+// A drive that lacks the method would refuse to home only when somebody waits for it, or never say so.
+void Cia402Drive::require_homing_method() {
+  const std::int64_t wanted = config_.homing_method;
+  const std::int64_t count = access_.read_if_there({0x60E3, 0, 1}).value_or(0);
+  std::string listed;
+  for (std::int64_t sub = 1; sub <= count; ++sub) {
+    // INTEGER8 in some devices, INTEGER16 in others: the low byte tells all methods.
+    const std::int64_t method = access_.read({0x60E3, static_cast<std::uint8_t>(sub), 1, true});
+    if (method == wanted) return;
+    listed += (sub > 1 ? ", " : "") + std::to_string(method);
+  }
+  if (count > 0)
+    throw InputError(access_.device(),
+                     "it does not have homing method " + std::to_string(wanted) + "; it has " + listed + " (60E3h)",
+                     "set homing_method to one of these");
+}
+
 void Cia402Drive::write_homing() {
   if (config_.homing_method == 0) return;
+  require_homing_method();
   const std::int64_t velocity = counts_rate(config_.drive.homing_velocity * config_.velocity_factor);
   const double acceleration = config_.homing_acceleration;
-  access_.write_proven({0x6098, 0, 1, true}, config_.homing_method);
+  if (access_.try_write({0x6098, 0, 1, true}, config_.homing_method) != Written::proven)
+    throw InputError(access_.device(),
+                     "it does not take homing method " + std::to_string(config_.homing_method) + " (6098h)",
+                     "set homing_method to one that its manual lists");
   access_.write_proven({0x6099, 1, 4}, velocity);
   access_.write_proven({0x6099, 2, 4}, velocity);
   write_limit({0x609A, 0, 4}, counts_rate(acceleration > 0 ? acceleration : config_.drive.max_acceleration),

@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kEnableWithin = 5s;
 constexpr Duration kAskAgain = 100ms;
-constexpr Duration kHomeWithin = 120s;  // a joint
+constexpr Duration kHomeWithin = 30s;  // a joint, beside its ways
 constexpr Duration kRestWithin = 3s;
 
 bool is_enabled(const DriveFeedback& f) {
@@ -172,6 +172,12 @@ void Robot::advance_enabling(RobotTime now) noexcept {
   enter(RobotPhase::stopped, now, waiting_for_);
 }
 
+// Wherever the joint stands: to the one end, back to the other, and to the middle.
+Duration Robot::home_within(std::size_t joint) const noexcept {
+  const DriveConfig& d = drives_[joint]->config();
+  return kHomeWithin + seconds(std::min(2.5 * (d.max_position - d.min_position) / d.homing_velocity, 3600.0));
+}
+
 // After the gate has looked at all drives: if it stopped, nothing goes on here.
 void Robot::advance_homing(RobotTime now) noexcept {
   waiting_for_ = static_cast<int>(homing_);
@@ -182,7 +188,7 @@ void Robot::advance_homing(RobotTime now) noexcept {
     phase_since_ = now;
     return;
   }
-  if (now - phase_since_ > kHomeWithin) return gate_.emergency_stop(GateReason::homing_too_long);
+  if (now - phase_since_ > home_within(homing_)) return gate_.emergency_stop(GateReason::homing_too_long);
   // The drive needs a few cycles to say that it has begun.
   const DriveFeedback& f = feedback_[homing_];
   if (now - phase_since_ < 200ms || !f.homed || f.state != DriveState::enabled) return;

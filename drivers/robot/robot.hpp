@@ -137,6 +137,7 @@ class Robot {
   void let_gate_step(RobotTime now) noexcept;
   void advance_enabling(RobotTime now) noexcept;
   void advance_homing(RobotTime now) noexcept;
+  Duration home_within(std::size_t joint) const noexcept;
   void enter(RobotPhase phase, RobotTime now, int waiting_for = -1) noexcept;
   bool at_rest() const noexcept;
   void stop_all() noexcept;

@@ -13,9 +13,9 @@ void Cia402Motion::hold(double position) {
   cyclic_.start(wanted_ == Mode::cyclic_velocity ? 0 : position);
   fresh_ = monitored_ = holding_ = missed_event_ = limited_ = false;
   missed_ = 0;
-  homing_ = Homing::idle;
-  edge_.reset();
+  search_.reset();
   home_.reset();
+  homing_failed_ = false;
   mode_ = wanted_;
 }
 
@@ -113,40 +113,34 @@ void Cia402Motion::step_velocity(double dt) {
 
 bool Cia402Motion::start_homing() {
   home_.reset();
-  edge_.reset();
-  switch (settings.homing_method) {
-    case 35:
-    case 37: home_ = reference_.position; return true;
-    case 17:
-    case 18: homing_ = Homing::approach; return true;
-    default: return false;
-  }
+  search_.reset();
+  homing_failed_ = false;
+  const int number = settings.homing_method;
+  const auto method = homing_method(number);
+  if (method) search_.emplace(*method, settings.index_distance, settings.index_at);
+  if (number == 35 || number == 37) home_ = reference_.position;
+  return method || home_;
 }
 
 std::optional<double> Cia402Motion::take_home() {
   return std::exchange(home_, std::nullopt);
 }
 
-// Methods 17 and 18: onto the limit switch, back until it opens; home is where it opened.
+bool Cia402Motion::take_homing_failure() {
+  return std::exchange(homing_failed_, false);
+}
+
 void Cia402Motion::step_homing(double dt, double shaft, unsigned switches) {
-  const bool negative = settings.homing_method == 17;
-  const bool closed = switches & (negative ? 1u : 2u);
-  const double towards = negative ? -1 : 1;
-  double velocity = 0;
-  if (homing_ == Homing::approach) {
-    velocity = towards * settings.homing_fast;
-    if (closed) homing_ = Homing::leave;
-  } else if (homing_ == Homing::leave) {
-    velocity = -towards * settings.homing_slow;
-    if (!closed) {
-      edge_ = shaft;
-      homing_ = Homing::stop;
-    }
-  } else if (homing_ == Homing::stop && at_rest()) {
-    homing_ = Homing::idle;
-    home_ = edge_;
-  }
+  const int speed = search_ ? static_cast<int>(search_->step(shaft, switches)) : 0;
+  const double velocity = std::copysign(std::abs(speed) == 2   ? settings.homing_fast
+                                        : std::abs(speed) == 1 ? settings.homing_slow
+                                                               : 0,
+                                        speed);
   reference_ = change_speed(reference_, velocity, settings.homing_acceleration, dt);
+  if (!search_ || speed != 0 || !at_rest()) return;
+  home_ = search_->home();
+  homing_failed_ = search_->failed();
+  search_.reset();
 }
 
 void Cia402Motion::step_mode(double dt, double shaft, unsigned switches) {
@@ -182,7 +176,7 @@ Reference Cia402Motion::step(double dt, Braking braking, bool halted, double sha
   if (!halted || changes) {
     target_.reset();
     next_.reset();
-    homing_ = Homing::idle;
+    search_.reset();
   }
   if (changes && at_rest()) hold(slowed.position);
   fresh_ = monitored_ = holding_ = false;

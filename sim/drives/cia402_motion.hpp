@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "sim/drives/cia402_states.hpp"
+#include "sim/drives/homing_search.hpp"
 #include "sim/drives/reference.hpp"
 
 namespace foresight::sim {
@@ -27,8 +28,9 @@ struct MotionSettings {
   double interval_s = 0.01;                   ///< 60C2h
   int missed_set_points = 3;
   bool hold_when_missed = false;
-  int homing_method = 37;  ///< 6098h: 17 and 18 (negative, positive limit switch), 35 and 37 (here)
+  int homing_method = 37;                                                 ///< 6098h: one of served_homing_methods()
   double homing_fast = 0.1, homing_slow = 0.02, homing_acceleration = 1;  ///< 6099h, 609Ah
+  double index_distance = 1, index_at = 0;                                ///< of the encoder's index pulses
 };
 
 class Cia402Motion {
@@ -51,12 +53,14 @@ class Cia402Motion {
   void synchronised();
   // Homing.
   bool start_homing();  ///< false: the method is not served
-  void cancel_homing() { homing_ = Homing::idle; }
+  void cancel_homing() { search_.reset(); }
   /// The shaft position of the home found, once.
   std::optional<double> take_home();
-  bool homing_active() const { return homing_ != Homing::idle; }
+  bool homing_active() const { return search_.has_value(); }
+  /// The search ended at a limit switch without having found home; once.
+  bool take_homing_failure();
 
-  /// `switches`: bit 0 the negative, bit 1 the positive limit switch, at `shaft`. A braking that is a halt keeps
+  /// `switches`: the inputs of homing_search.hpp, at `shaft`. A braking that is a halt keeps
   /// target and homing for later; any other drops them.
   Reference step(double dt, Braking braking, bool halted, double shaft, unsigned switches);
   const Reference& reference() const { return reference_; }
@@ -67,7 +71,6 @@ class Cia402Motion {
   bool take_missed();
 
  private:
-  enum class Homing : std::uint8_t { idle, approach, leave, stop };
   double limited_position(double position);
   void begin_interval();
   void step_mode(double dt, double shaft, unsigned switches);
@@ -83,8 +86,9 @@ class Cia402Motion {
   double set_point_ = 0, since_sync_s_ = 1e9;
   bool fresh_ = false, monitored_ = false, holding_ = false, missed_event_ = false;
   int missed_ = 0;
-  Homing homing_ = Homing::idle;
-  std::optional<double> edge_, home_;
+  std::optional<HomingSearch> search_;
+  std::optional<double> home_;
+  bool homing_failed_ = false;
 };
 
 }  // namespace foresight::sim

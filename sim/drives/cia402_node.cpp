@@ -16,11 +16,18 @@ constexpr std::uint32_t kErrorCode = object_key(0x603F), kControlword = object_k
                         kTargetPosition = object_key(0x607A), kInterpolated = object_key(0x60C1, 1),
                         kTargetVelocity = object_key(0x60FF), kFollowingError = object_key(0x60F4),
                         kInputs = object_key(0x60FD), kSupportedModes = object_key(0x6502);
+constexpr unsigned kHomingMethods = 0x60E3;
 constexpr std::uint16_t kHalt = 0x100, kNewSetPoint = 0x10;
 constexpr double kRest = 1e-3;  // rad/s, when a brake may close
 
 ObjectDictionary dictionary_of(const NodeConfig& config) {
-  return config.dictionary.empty() ? generic_402(config.node) : read_dcf(config.dictionary, config.node);
+  if (!config.dictionary.empty()) return read_dcf(config.dictionary, config.node);
+  ObjectDictionary out = generic_402(config.node);
+  const std::vector<int>& methods = config.homing_methods.empty() ? served_homing_methods() : config.homing_methods;
+  out.define(object_key(kHomingMethods), DataType::uint8, Access::ro, static_cast<std::int64_t>(methods.size()));
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    out.define(object_key(kHomingMethods, static_cast<unsigned>(i) + 1), DataType::int16, Access::ro, methods[i]);
+  return out;
 }
 
 std::int64_t whole(double value) {
@@ -69,6 +76,8 @@ void Cia402Node::load_settings() {
   settings.homing_method = static_cast<int>(objects_.integer(object_key(0x6098), 37));
   settings.homing_fast = scaled(0x6099, 1, motor.max_velocity / 20);
   settings.homing_slow = scaled(0x6099, 2, motor.max_velocity / 100);
+  settings.index_distance = config_.index_distance;
+  settings.index_at = config_.index_at;
   settings.homing_acceleration = scaled(0x609A, 0, motor.max_acceleration / 10);
   StopOptions& options = states_.options;
   options.quick_stop = static_cast<int>(objects_.integer(object_key(0x605A), 2));
@@ -95,7 +104,17 @@ void Cia402Node::power(bool on) {
   if (on) motion_.hold(motor_.shaft().position);
 }
 
+bool Cia402Node::serves_homing(std::int64_t method) const {
+  const auto& all = served_homing_methods();
+  if (std::find(all.begin(), all.end(), method) == all.end()) return false;
+  const std::int64_t listed = objects_.integer(object_key(kHomingMethods));
+  for (std::int64_t sub = 1; sub <= listed; ++sub)
+    if (objects_.integer(object_key(kHomingMethods, static_cast<unsigned>(sub))) == method) return true;
+  return listed == 0;
+}
+
 SdoAbort Cia402Node::check(std::uint32_t key, std::int64_t value) {
+  if (key == object_key(0x6098)) return serves_homing(value) ? SdoAbort::none : SdoAbort::value_range;
   if (key != kMode) return SdoAbort::none;
   constexpr std::array served{0, 1, 6, 7, 8, 9};
   if (std::find(served.begin(), served.end(), value) == served.end()) return SdoAbort::value_range;
@@ -153,7 +172,7 @@ void Cia402Node::control_profile(std::uint16_t controlword) {
 void Cia402Node::control_homing(std::uint16_t controlword) {
   if ((controlword & kNewSetPoint) == 0) return motion_.cancel_homing();
   homed_ = false;
-  homing_failed_ = !motion_.start_homing();
+  homing_failed_ = !serves_homing(motion_.settings.homing_method) || !motion_.start_homing();
 }
 
 void Cia402Node::synchronised(RobotTime) {
@@ -178,6 +197,7 @@ void Cia402Node::inject(DriveFault fault, double value) {
   switch (fault) {
     case DriveFault::recover:
       frozen_ = garbage_ = false;
+      noise_ = 0;
       motor_.jam(false);
       objects_.set(object_key(0x1018, 2), config_.product);
       objects_.set(object_key(0x1018, 4), config_.serial);
@@ -201,14 +221,19 @@ void Cia402Node::inject(DriveFault fault, double value) {
       objects_.set(object_key(0x1018, 4), config_.serial ^ 0x5555);
       return;
     case DriveFault::jam: motor_.jam(true); return;
+    case DriveFault::noisy: noise_ = value; return;
     case DriveFault::silent:
-    case DriveFault::slow: return;  // of the wire: the rack does it
+    case DriveFault::slow:
+    case DriveFault::unplugged:
+    case DriveFault::no_power: return;  // of the wires: the rack does it
   }
 }
 
 unsigned Cia402Node::switches() const {
   const double at = motor_.shaft().position;
-  return (at <= config_.low_switch ? 1u : 0u) | (at >= config_.high_switch ? 2u : 0u);
+  const bool home = at >= config_.home_switch_low && at <= config_.home_switch_high;
+  return (at <= config_.low_switch ? kNegativeLimit : 0) | (at >= config_.high_switch ? kPositiveLimit : 0) |
+         (home ? kHomeSwitch : 0);
 }
 
 void Cia402Node::take_events() {
@@ -218,6 +243,7 @@ void Cia402Node::take_events() {
     homed_ = true;
     load_settings();
   }
+  homing_failed_ = motion_.take_homing_failure() || homing_failed_;
   if (states_.powered() && motor_.following_failed() && !config_.motor.limits_off) {
     following_error_ = true;
     fail(0x8611, 0x20);
@@ -261,7 +287,7 @@ std::uint16_t Cia402Node::statusword() const {
   std::uint16_t out = states_.status_bits() | 0x0200 | mode_bits();  // 9: listens to the bus
   const bool halted = (controlword_ & kHalt) != 0;
   if (halted ? motion_.at_rest() : motion_.target_reached()) out |= 0x0400;
-  if (motion_.limited() || switches() != 0) out |= 0x0800;
+  if (motion_.limited() || (switches() & (kNegativeLimit | kPositiveLimit)) != 0) out |= 0x0800;
   return out;
 }
 
@@ -280,7 +306,7 @@ void Cia402Node::refresh() {
     objects_.set(kVelocity, whole(arbitrary() * 2147483647));
     return;
   }
-  objects_.set(kPosition, to_counts(motor_.shaft().position));
+  objects_.set(kPosition, to_counts(encoder()));
   objects_.set(kVelocity, whole(motor_.shaft().velocity * config_.counts_per_unit));
 }
 

@@ -39,6 +39,7 @@ class Cia402Node final : public CanopenNode {
   std::uint16_t statusword() const;
   std::uint16_t mode_bits() const;
   unsigned switches() const;
+  bool serves_homing(std::int64_t method) const;
   double to_shaft(double counts) const { return counts / config_.counts_per_unit + zero_; }
   std::int64_t to_counts(double shaft) const;
   double scaled(unsigned index, unsigned sub, double otherwise) const;

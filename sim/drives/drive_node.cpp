@@ -21,6 +21,9 @@ const char* to_string(DriveFault fault) {
     case DriveFault::wrong_identity: return "wrong-identity";
     case DriveFault::slow: return "slow";
     case DriveFault::jam: return "jam";
+    case DriveFault::noisy: return "noisy";
+    case DriveFault::unplugged: return "unplugged";
+    case DriveFault::no_power: return "no-power";
   }
   return "?";
 }
@@ -41,6 +44,7 @@ void NodeConfig::validate() const {
   require(node >= 1 && node <= largest, "node", node, kind == Kind::cia402 ? "use 1 to 127" : "use 1 to 31");
   require(std::isfinite(counts_per_unit) && counts_per_unit > 0, "counts_per_unit", counts_per_unit,
           "make it positive");
+  require(std::isfinite(index_distance) && index_distance > 0, "index_distance", index_distance, "make it positive");
   require(watchdog_s > 0, "watchdog_s", watchdog_s, "make it positive");
   require(missed_set_points >= 0, "missed_set_points", missed_set_points, "use 0 or more");
   require(motor.max_velocity > 0, "max_velocity", motor.max_velocity, "make it positive");

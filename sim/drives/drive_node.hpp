@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "drivers/can/can_frame.hpp"
 #include "sim/drives/motor.hpp"
@@ -24,6 +25,9 @@ enum class DriveFault : std::uint8_t {
   wrong_identity,  ///< state: tells a serial number and product that are not its own
   slow,            ///< state: every frame leaves `value` seconds late
   jam,             ///< state: the shaft is held fast by something outside
+  noisy,           ///< state: what it tells of its position is off by up to `value`, each time otherwise
+  unplugged,       ///< state: neither hears nor is heard, but goes on
+  no_power,        ///< state: no supply; afterwards as after a reset
 };
 /// "tow-error"; for command lines.
 const char* to_string(DriveFault fault);
@@ -38,6 +42,10 @@ struct NodeConfig {
   bool homed = false;                           ///< absolute encoder: knows its position from power on
   double home_position = 0;                     ///< joint position of a PowerCube's home switch
   double low_switch = -1e9, high_switch = 1e9;  ///< joint positions beyond which the limit switches close
+  double home_switch_low = 1,
+         home_switch_high = 0;  ///< CiA 402: between them the home switch closes; none where low > high
+  double index_distance = 0.0628, index_at = 0;  ///< CiA 402: > 0; the encoder's index pulses, one of them at index_at
+  std::vector<int> homing_methods;               ///< CiA 402, 60E3h; empty: all of served_homing_methods()
   /// After so many missed cyclic set-points the drive faults; until then it goes on at its last velocity.
   int missed_set_points = 3;
   bool hold_when_missed = false;  ///< instead of the fault it stops, and waits for set-points
@@ -72,7 +80,11 @@ class DriveNode {
 
   NodeConfig config_;
   Motor motor_;
+  /// What the encoder reads: the shaft's position, with noise where there is some.
+  double encoder() { return shaft().position + (noise_ > 0 ? noise_ * arbitrary() : 0); }
+
   bool frozen_ = false, garbage_ = false;
+  double noise_ = 0;
 
  private:
   std::uint32_t arbitrary_ = 12345;

@@ -97,7 +97,8 @@ void DriveRack::take_frames(RobotTime until) {
   while (waiting_ || (waiting_ = bus_->receive(Duration(0)))) {
     if (waiting_->time > until) return;
     const CanFrame frame = *std::exchange(waiting_, std::nullopt);
-    for (const auto& slot : slots_) slot->node->receive(frame, now_);
+    for (const auto& slot : slots_)
+      if (!slot->deaf) slot->node->receive(frame, now_);
   }
 }
 
@@ -134,10 +135,17 @@ void DriveRack::inject(std::size_t i, DriveFault fault, double value) {
   const std::lock_guard lock(mutex_);
   Slot& slot = *slots_.at(i);
   if (fault == DriveFault::recover) {
-    slot.silent = false;
+    slot.silent = slot.deaf = false;
     slot.delay = {};
+    if (!std::exchange(slot.supplied, true)) slot.node->inject(DriveFault::reset, 0);
   }
   if (fault == DriveFault::silent) slot.silent = true;
+  if (fault == DriveFault::unplugged || fault == DriveFault::no_power) slot.silent = slot.deaf = true;
+  if (fault == DriveFault::no_power) {
+    slot.supplied = false;
+    slot.outbox.clear();
+    slot.node->inject(DriveFault::reset, 0);  // it forgets all, and does not hear what would wake it
+  }
   if (fault == DriveFault::slow) slot.delay = seconds(value);
   slot.node->inject(fault, value);
 }

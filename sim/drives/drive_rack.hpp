@@ -58,7 +58,7 @@ class DriveRack {
   struct Slot {
     std::unique_ptr<DriveNode> node;
     std::deque<Waiting> outbox;
-    bool silent = false;
+    bool silent = false, deaf = false, supplied = true;
     Duration delay{};
   };
   /// All that came until then; what came later waits.

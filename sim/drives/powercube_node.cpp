@@ -262,16 +262,17 @@ double PowerCubeNode::parameter(std::uint8_t parameter) {
 
 double PowerCubeNode::shown_position() {
   if (frozen_) return frozen_position_;
-  if (!garbage_) return motor_.shaft().position - zero_;
+  if (!garbage_) return encoder() - zero_;
   const double die = arbitrary();
   if (die > 0.5) return std::numeric_limits<double>::quiet_NaN();
   return die > 0 ? std::numeric_limits<double>::infinity() : die * 1e30;
 }
 
-void PowerCubeNode::inject(DriveFault fault, double) {
+void PowerCubeNode::inject(DriveFault fault, double value) {
   switch (fault) {
     case DriveFault::recover:
       frozen_ = garbage_ = false;
+      noise_ = 0;
       motor_.jam(false);
       values_[0x1A] = config_.serial;
       values_[0x1D] = config_.revision;
@@ -294,9 +295,12 @@ void PowerCubeNode::inject(DriveFault fault, double) {
       values_[0x1D] = (config_.revision ^ 0x5555u) & 0xffff;
       return;
     case DriveFault::jam: motor_.jam(true); return;
+    case DriveFault::noisy: noise_ = value; return;
     case DriveFault::emergency:
     case DriveFault::silent:
-    case DriveFault::slow: return;
+    case DriveFault::slow:
+    case DriveFault::unplugged:
+    case DriveFault::no_power: return;
   }
 }
 

@@ -164,6 +164,19 @@ TEST(Setup, UnsupportedModeAndUnkeptMappingAreErrors) {
   EXPECT_THAT(thrown<InputError>([&] { mapping.configure(); }), HasSubstr("1600:02"));
 }
 
+TEST(Setup, AHomingMethodThatTheDriveLacksIsSaidAtOnce) {
+  CanopenRig rig;
+  rig.slave().object(0x60E3, 0) = {2, 1};
+  rig.slave().object(0x60E3, 1) = {17, 2};    // INTEGER16
+  rig.slave().object(0x60E3, 2) = {0xfe, 1};  // INTEGER8: -2
+  EXPECT_THAT(thrown<InputError>([&] { rig.configure(); }), HasSubstr("it has 17, -2 (60E3h)"));
+  rig.slave().object(0x60E3, 2) = {static_cast<std::uint32_t>(rig.drive_config(1).homing_method), 2};
+  rig.configure();
+  rig.slave().remove(0x60E3);
+  rig.slave().object(0x6098) = {0, 1, false};
+  EXPECT_THAT(thrown<InputError>([&] { rig.configure(); }), HasSubstr("does not take homing method"));
+}
+
 TEST(Setup, ADriveFoundEnabledIsSwitchedOff) {
   CanopenRig rig;
   rig.slave().state = 0x27;

@@ -255,9 +255,6 @@ TEST(Cia402Node, HomesHereAndAtALimitSwitch) {
   EXPECT_EQ(wire.status(kNode) & 0x3400, 0x1400) << "attained and at rest";
   const double zero = wire.shaft().position - static_cast<double>(*wire.upload(kNode, 0x6064)) / 1000;
   EXPECT_NEAR(zero, -0.25 - 0.05, 2e-3) << "the switch is at the home offset";
-  wire.control(kNode, 0x0F);
-  wire.download(kNode, 0x6098, 0, 5, 1);
-  EXPECT_EQ(wire.control(kNode, 0x1F) & 0x3000, 0x2000) << "a method it has not";
 }
 
 // 1016h watches the master; 6007h says what its silence does.

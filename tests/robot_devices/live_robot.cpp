@@ -9,10 +9,11 @@ using namespace std::chrono_literals;
 
 LiveRobot::LiveRobot(const std::string& rig_file) : LiveRobot(read_rig(source_folder() / "configs" / rig_file)) {}
 
-LiveRobot::LiveRobot(Rig rig) : rig_(std::move(rig)) {
+LiveRobot::LiveRobot(Rig rig, std::map<std::string, double> start) : rig_(std::move(rig)) {
   RobotDeviceOptions options;
   options.mock = true;
   options.mock_without_limits = true;
+  options.mock_start = std::move(start);
   devices_ = std::make_unique<RobotDevices>(rig_, clock_, options);
   shape_ = rig_.shape();
   robot_ = std::make_unique<Robot>(rig_.gate_options(), shape_.get(), devices_->networks(), devices_->drives());

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 
 #include "drivers/robot/robot.hpp"
@@ -14,7 +15,8 @@ namespace foresight {
 class LiveRobot {
  public:
   explicit LiveRobot(const std::string& rig_file);
-  explicit LiveRobot(Rig rig);
+  /// `start`: where shafts stand at first, by joint, in its unit.
+  explicit LiveRobot(Rig rig, std::map<std::string, double> start = {});
 
   /// Lets time pass; the control loop runs unless `frozen`.
   void run(Duration time, bool frozen = false);

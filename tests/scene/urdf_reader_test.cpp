@@ -260,7 +260,7 @@ TEST_F(Urdf, RefusesMeshesFromOutside) {
   EXPECT_THAT(mesh("file://" + (outside / "m.ply").string()), says("link 'base'", "not named relative", "package://"));
   EXPECT_THAT(mesh("../../../" + outside.path().filename().string() + "/m.ply"), says("link 'base'", "leaves", "copy"));
   EXPECT_THAT(mesh("package://robot/none.ply"),
-              says("link 'base'", "'package://robot/none.ply' is missing", "beside the URDF"));
+              says("link 'base'", "'package://robot/none.ply' is missing", "one of these places"));
 }
 
 TEST_F(Urdf, NamesWhatIsWrong) {
@@ -291,7 +291,7 @@ TEST_F(Urdf, NamesWhatIsWrong) {
   EXPECT_THAT(error(deep), says("r.urdf", "nest too deep", "plain URDF"));
   const auto xacro = folder_.write(
       "x.urdf", "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'><xacro:include filename='y'/></robot>");
-  EXPECT_THAT(input_error([&] { read_urdf(xacro, folder_.path()); }), says("x.urdf", "is a xacro file", "expand it"));
+  EXPECT_THAT(input_error([&] { read_urdf(xacro, folder_.path()); }), says("x.urdf", "is a xacro file", "`xacro x.urdf"));
 }
 
 }  // namespace

@@ -1,0 +1,13 @@
+#include "apps/rig_command.hpp"
+
+#include "apps/rig_new_command.hpp"
+
+namespace foresight {
+
+void add_rig_command(Command& app, std::function<int()>& action) {
+  Command* const rig = app.add_subcommand("rig", "Rig files: which drives and cameras a robot has (docs/rig-files.md)");
+  rig->require_subcommand();
+  add_rig_new_command(*rig, action);
+}
+
+}  // namespace foresight

@@ -1,0 +1,13 @@
+// `foresight rig`: rig files made.
+#pragma once
+
+#include <functional>
+
+#include "apps/command_line/command_line.hpp"
+
+namespace foresight {
+
+/// Adds the subcommand; `action` is set to its work where it is chosen.
+void add_rig_command(Command& app, std::function<int()>& action);
+
+}  // namespace foresight

@@ -1,0 +1,125 @@
+#include "apps/rig_new_command.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "common/unique_fd.hpp"
+#include "rig/bus_plan.hpp"
+#include "rig/rig_draft.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string urdf, out, protocol = "cia402", eds, dcf, mesh_root;
+};
+
+RigDraftOptions options_of(const Arguments& arguments) {
+  RigDraftOptions out;
+  out.urdf = arguments.urdf;
+  if (!arguments.mesh_root.empty()) out.mesh_root = arguments.mesh_root;
+  out.protocol = arguments.protocol == "cia402" ? DriveProtocol::cia402 : DriveProtocol::powercube;
+  const std::string& sheet = arguments.eds.empty() ? arguments.dcf : arguments.eds;
+  if (sheet.empty()) return out;
+  if (out.protocol != DriveProtocol::cia402)
+    throw InputError(arguments.eds.empty() ? "--dcf" : "--eds", "describes a CiA 402 drive",
+                     "leave it out: PowerCube modules have none");
+  out.sheet = read_drive_sheet(sheet);
+  return out;
+}
+
+/// Never over a file that is there, not even one that came a moment ago.
+void write_new_file(const fs::path& file, const std::string& text) {
+  const UniqueFd fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  if (fd.get() < 0 && errno == EEXIST)
+    throw InputError("--out " + file.string(), "is there already", "give another name, or remove it first");
+  if (fd.get() < 0)
+    throw InputError("--out " + file.string(), std::string("cannot be made (") + std::strerror(errno) + ")",
+                     "give a file in a folder that can be written");
+  for (std::string_view rest = text; !rest.empty();) {
+    const ssize_t written = ::write(fd.get(), rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      const std::string why = std::strerror(errno);
+      ::unlink(file.c_str());
+      throw RuntimeFailure("cannot write " + file.string() + " (" + why + ")", "free some disk space");
+    }
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void tell(const RigDraft& draft, const std::string& file) {
+  const Rig& rig = draft.rig;
+  std::printf("%s: %s with %zu joints\n", file.c_str(), rig.name.c_str(), rig.joints.size());
+  for (std::size_t i = 0; i < rig.buses.size(); ++i) {
+    std::string nodes;
+    for (const RigJoint& joint : rig.joints)
+      if (joint.bus == i) nodes += (nodes.empty() ? "" : ", ") + std::to_string(joint.drive.node);
+    std::printf("  %s: nodes %s; %.0f %% of %d kbit/s\n", rig.buses[i].name.c_str(), nodes.c_str(),
+                100 * planned_bus_load(rig, i), rig.buses[i].bit_rate / 1000);
+  }
+  for (const std::string& note : draft.notes) std::printf("  note: %s\n", note.c_str());
+  std::printf("try it: foresight doctor %s; foresight robot %s\n", file.c_str(), file.c_str());
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.out.empty()) throw InputError("--out", "is empty", "name the rig file to be written");
+  const fs::path file = arguments.out;
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(file, error)))
+    throw InputError("--out " + file.string(), "is there already", "give another name, or remove it first");
+  const RigDraftOptions options = options_of(arguments);
+  const RigDraft draft = draft_rig(options);
+  write_new_file(file, rig_text(draft, options, file));
+  try {
+    read_rig(file);  // what is written is what works
+  } catch (...) {
+    fs::remove(file, error);
+    throw;
+  }
+  tell(draft, file.string());
+  return 0;
+}
+
+}  // namespace
+
+void add_rig_new_command(Command& rig, std::function<int()>& action) {
+  Command* const command =
+      rig.add_subcommand("new", "Makes the first rig file of your own robot, for mock drives and mock cameras");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("--urdf", arguments->urdf, "The robot")->required()->check(existing_file());
+  command->add_option("--out", arguments->out, "The rig file; never one that is there already")->required();
+  command->add_option("--protocol", arguments->protocol, "What its drives speak: cia402 or powercube")
+      ->check(one_of({"cia402", "powercube"}))
+      ->capture_default_str();
+  const Option* const eds =
+      command
+          ->add_option("--eds", arguments->eds,
+                       "Electronic data sheet of its CiA 402 drives: scaling, identity, homing methods")
+          ->check(existing_file());
+  command->add_option("--dcf", arguments->dcf, "The same with a drive's configured values")
+      ->check(existing_file())
+      ->excludes(eds);
+  command->add_option("--mesh-root", arguments->mesh_root,
+                      "Folder of the URDF's meshes, where they are not found from the URDF (robot.mesh_root)");
+  command->footer(
+      "One joint for each that moves on its own, with the URDF's limits and slow first speeds; the file says why each\n"
+      "number is what it is. `interface: can0` in place of `mock` is all that remains for real drives that are wired "
+      "and\n"
+      "scaled so: docs/own-robot.md goes there step by step.\n\n"
+      "Exit codes: 0 done, 1 the file cannot be written, 2 wrong input.\n\n"
+      "Example: foresight rig new --urdf arm.urdf --eds drive.eds --out rig.yaml");
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace foresight

@@ -1,0 +1,276 @@
+#include "rig/rig_draft.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "rig/bus_plan.hpp"
+#include "scene/urdf_reader.hpp"
+#include "sim/drives/homing_search.hpp"
+
+namespace foresight {
+namespace {
+
+// What neither URDF nor data sheet tells. A first rig is slow; whoever has seen the robot move raises it.
+constexpr double kFirstSpeed = 1.0;   // rad/s, at most; m/s too
+constexpr double kRangeTime = 1.0;    // seconds for the whole range, at least
+constexpr double kTimeToSpeed = 0.5;  // seconds: acceleration
+constexpr double kTimeToAcceleration = 1. / 15;
+constexpr double kLag = 0.1;               // seconds of way at full velocity: following error
+constexpr double kHomingShare = 0.1;       // of the velocity
+constexpr double kEndlessRange = 3.1;      // rad to each side, of a joint without limits
+constexpr double kMockCounts = 2'000'000;  // per rad
+constexpr double kMockCountsPerMetre = 100'000'000;
+constexpr double kMetresPerTurn = 0.01;  // of a spindle of which nobody knows
+constexpr double kHomeInside = 0.01;     // of the range: from its end to the home that a limit switch gives
+constexpr double kRoomAtZero = 0.1;      // of the range, on both sides of a home at 0
+constexpr double kShortStroke = 0.15;    // m: a last link that slides no farther is a finger
+constexpr double kFloorStep = 0.01, kDeepestFloor = 0.5;
+
+bool moves(const UrdfJoint& joint) {
+  return joint.kind != UrdfJoint::Kind::fixed && !joint.mimic;
+}
+
+bool is_word_of(std::string_view name, std::string_view word) {
+  const std::size_t at = name.find(word);
+  const auto ends = [&](std::size_t i) { return i >= name.size() || name[i] == '_' || name[i] == '-'; };
+  return at != std::string_view::npos && (at == 0 || ends(at - 1)) && ends(at + word.size());
+}
+
+/// Whether another joint that moves hangs on the link that `joint` moves.
+bool carries_others(const UrdfRobot& robot, const UrdfJoint& joint) {
+  for (const UrdfJoint& other : robot.joints) {
+    if (!moves(other) || &other == &joint) continue;
+    for (int link = other.child; link >= 0; link = robot.links[static_cast<std::size_t>(link)].parent)
+      if (link == joint.child) return true;
+  }
+  return false;
+}
+
+/// The last in its chain, and others follow it or it slides a little: fingers.
+bool is_gripper(const UrdfRobot& robot, std::size_t index) {
+  const UrdfJoint& joint = robot.joints[index];
+  if (carries_others(robot, joint)) return false;
+  const bool followed = std::ranges::any_of(robot.joints, [&](const UrdfJoint& other) {
+    return other.mimic && other.mimic->joint == static_cast<int>(index);
+  });
+  return followed || (joint.kind == UrdfJoint::Kind::sliding && joint.upper - joint.lower <= kShortStroke);
+}
+
+std::vector<std::size_t> pan_tilt_of(const UrdfRobot& robot) {
+  std::vector<std::size_t> out;
+  for (const char* word : {"pan", "tilt"})
+    for (std::size_t i = 0; i < robot.joints.size(); ++i)
+      if (moves(robot.joints[i]) && is_word_of(robot.joints[i].name, word)) out.push_back(i);
+  return out.size() == 2 ? out : std::vector<std::size_t>{};
+}
+
+void choose_limits(const UrdfJoint& from, const std::optional<DriveSheet>& sheet, const std::string& where,
+                   DraftJoint& out) {
+  DriveConfig& d = out.joint.drive;
+  const bool turns = from.kind == UrdfJoint::Kind::rotating;
+  if (!turns && !(std::isfinite(from.lower) && std::isfinite(from.upper)))
+    throw InputError(where, "slides without limits", "give it a <limit lower upper>");
+  if (from.lower >= from.upper)
+    throw InputError(where, fmt::format("its limits are {:g} and {:g}: it cannot move", from.lower, from.upper),
+                     "give it a <limit lower upper>, or make it fixed");
+  d.min_position = std::isfinite(from.lower) ? from.lower : -kEndlessRange;
+  d.max_position = std::isfinite(from.upper) ? from.upper : kEndlessRange;
+  const double range = d.max_position - d.min_position;
+  double fastest = std::min(kFirstSpeed, range / kRangeTime);
+  if (from.velocity > 0) fastest = std::min(fastest, from.velocity);
+  if (turns && sheet && sheet->fastest_rad_per_s) fastest = std::min(fastest, *sheet->fastest_rad_per_s);
+  d.max_velocity = fastest;
+  d.max_acceleration = fastest / kTimeToSpeed;
+  out.joint.jerk = d.max_acceleration / kTimeToAcceleration;
+  out.joint.following_error = kLag * fastest;
+  d.homing_velocity = kHomingShare * fastest;
+  out.urdf_says = std::isfinite(from.lower) ? "" : "continuous; ";
+  out.urdf_says +=
+      from.velocity > 0 ? fmt::format("{:g} {}/s", from.velocity, turns ? "rad" : "m") : std::string("no velocity");
+}
+
+void choose_scaling(const std::optional<DriveSheet>& sheet, RigJoint& joint) {
+  DriveConfig& d = joint.drive;
+  const bool turns = joint.unit == "rad";
+  d.counts_per_unit = turns ? kMockCounts : kMockCountsPerMetre;
+  if (!sheet) return;
+  d.vendor = sheet->vendor;
+  d.product = sheet->product;
+  if (sheet->counts_per_turn)
+    d.counts_per_unit = *sheet->counts_per_turn / (turns ? 2 * std::numbers::pi : kMetresPerTurn);
+}
+
+/// The method that suits: what the sheet has set, else the first of those that work from any pose.
+std::optional<int> homing_method_of(const std::optional<DriveSheet>& sheet, bool home_inside) {
+  constexpr std::array inside{20, 19, 22, 21, 4, 3, 6, 5, 24, 23, 25, 26, 27, 28, 29, 30, 8, 7, 9, 10, 11, 12, 13, 14};
+  constexpr std::array at_ends{17, 18, 1, 2};
+  const auto has = [&](int method) {
+    if (!sheet || sheet->homing_methods.empty()) return true;
+    return std::ranges::find(sheet->homing_methods, method) != sheet->homing_methods.end();
+  };
+  const auto first_of = [&](const auto& list) -> std::optional<int> {
+    const auto found = std::ranges::find_if(list, has);
+    if (found == list.end()) return std::nullopt;
+    return *found;
+  };
+  if (sheet && !sheet->can_home) return std::nullopt;
+  if (sheet && sheet->homing_method && has(*sheet->homing_method)) {
+    const auto known = sim::homing_method(*sheet->homing_method);
+    if (known && known->input != 0) return sheet->homing_method;
+  }
+  const auto wanted = home_inside ? first_of(inside) : first_of(at_ends);
+  if (wanted) return wanted;
+  return home_inside ? first_of(at_ends) : first_of(inside);
+}
+
+void choose_homing(const std::optional<DriveSheet>& sheet, RigJoint& joint) {
+  DriveConfig& d = joint.drive;
+  const double range = d.max_position - d.min_position;
+  const bool zero_inside = d.min_position + kRoomAtZero * range < 0 && 0 < d.max_position - kRoomAtZero * range;
+  const auto number = homing_method_of(sheet, joint.group != JointGroup::gripper);
+  joint.absolute = !number;
+  if (!number) return;
+  joint.homing_method = *number;
+  const auto method = sim::homing_method(*number);
+  if (method->input == sim::kNegativeLimit)
+    d.offset = d.min_position + kHomeInside * range;
+  else if (method->input == sim::kPositiveLimit)
+    d.offset = d.max_position - kHomeInside * range;
+  else
+    d.offset = zero_inside ? 0 : 0.5 * (d.min_position + d.max_position);
+}
+
+/// Each drive on the first bus that has room for it.
+void choose_buses(DriveProtocol protocol, RigDraft& draft) {
+  Rig& rig = draft.rig;
+  const auto name = [](std::size_t i) { return "bus" + std::to_string(i + 1); };
+  rig.buses = {{name(0), "mock", protocol, 1'000'000}};
+  for (DraftJoint& draft_joint : draft.joints) {
+    draft_joint.joint.bus = rig.buses.size() - 1;
+    draft_joint.joint.drive.node = static_cast<int>(rig.joints.size()) + 1;
+    rig.joints.push_back(draft_joint.joint);
+    if (planned_bus_load(rig, rig.buses.size() - 1) <= kMostBusLoad) continue;
+    rig.buses.push_back({name(rig.buses.size()), "mock", protocol, 1'000'000});
+    draft_joint.joint.bus = rig.joints.back().bus = rig.buses.size() - 1;
+  }
+  if (rig.buses.size() > 1)
+    draft.notes.push_back(fmt::format("{} drives would fill one bus beyond {:.0f} %: they are on {}", rig.joints.size(),
+                                      100 * kMostBusLoad, rig.buses.size()));
+}
+
+/// How far from its root any point of the robot can be, metres; never too little.
+double reach_of(const UrdfRobot& robot) {
+  std::vector<double> far(robot.links.size());
+  double out = 0;
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    if (i > 0) {
+      const UrdfJoint& joint = robot.joints[i - 1];
+      const double slide =
+          joint.kind == UrdfJoint::Kind::sliding ? std::max(std::abs(joint.lower), std::abs(joint.upper)) : 0;
+      far[i] = far[static_cast<std::size_t>(robot.links[i].parent)] + joint.T_parent_joint.translation().norm() +
+               (std::isfinite(slide) ? slide : 0);
+    }
+    double size = 0;
+    for (const auto& v : robot.links[i].mesh.vertices) size = std::max(size, v.cast<double>().norm());
+    out = std::max(out, far[i] + size);
+  }
+  return out;
+}
+
+double lowest_of(const Mesh& mesh) {
+  double out = 0;
+  for (const auto& v : mesh.vertices) out = std::min(out, static_cast<double>(v.z()));
+  return out;
+}
+
+/// Floor and workspace, such that the robot stands clear at home.
+void choose_surroundings(RigDraft& draft) {
+  Rig& rig = draft.rig;
+  const double reach = 0.05 * std::ceil((reach_of(*rig.robot) + 0.05) / 0.05);
+  std::vector<double> home;
+  for (const RigJoint& joint : rig.joints)
+    home.push_back(std::clamp(joint.drive.offset, joint.drive.min_position, joint.drive.max_position));
+  const auto shape = rig.shape();
+  rig.surroundings = {};
+  shape->surround(rig.surroundings);
+  if (const char* const touching = shape->obstructed(home))
+    draft.notes.push_back(
+        fmt::format("at home {}, as the gate sees them: it lets them only part from there", touching));
+  const double stand = std::floor(100 * lowest_of(rig.robot->links[0].mesh) + 0.1) / 100;
+  const Eigen::Vector3d far(reach, reach, 0);
+  double below = 0;  // the robot's foot
+  for (; below < kDeepestFloor; below += kFloorStep) {
+    const Eigen::Vector3d top(0, 0, stand - below);
+    rig.surroundings.obstacles = {{"floor", {top - far - Eigen::Vector3d::UnitZ(), top + far}}};
+    shape->surround(rig.surroundings);
+    const char* const what = shape->obstructed(home);
+    if (what == nullptr || std::string_view(what).find("'floor'") == std::string_view::npos) break;
+  }
+  rig.surroundings.workspace = {Eigen::Vector3d(-reach, -reach, stand - below),
+                                Eigen::Vector3d(reach, reach, stand + reach)};
+  if (below > 0)
+    draft.notes.push_back(fmt::format(
+        "the floor is {:.2f} m below the robot's foot: higher, the gate would see a moving link in it at home", below));
+}
+
+void note_left_out(const UrdfRobot& robot, RigDraft& draft) {
+  for (const UrdfJoint& joint : robot.joints)
+    if (joint.mimic)
+      draft.notes.push_back(fmt::format("{} follows {}: it has no drive of its own", joint.name,
+                                        robot.joints[static_cast<std::size_t>(joint.mimic->joint)].name));
+}
+
+void note_sheet(const DriveSheet& sheet, RigDraft& draft) {
+  const std::string file = sheet.file.filename().string();
+  if (!sheet.counts_per_turn)
+    draft.notes.push_back(file + " tells no scaling (608Fh, 6091h, 6092h): counts_per_unit is to be measured");
+  if (!sheet.vendor) draft.notes.push_back(file + " tells no vendor (1018:01): any device is taken");
+  for (const std::string& object : sheet.lacks) draft.notes.push_back(file + " has no " + object);
+  if (!sheet.homing_methods.empty() && draft.rig.joints.front().absolute)
+    draft.notes.push_back(file + " has no homing method that works from any pose: encoders are taken for absolute");
+}
+
+}  // namespace
+
+RigDraft draft_rig(const RigDraftOptions& options) {
+  RigDraft draft;
+  MeshSearch meshes;
+  meshes.root = options.mesh_root;
+  draft.rig.robot = read_urdf(options.urdf, meshes);
+  const UrdfRobot& robot = *draft.rig.robot;
+  draft.rig.name = robot.name.empty() ? options.urdf.stem().string() : robot.name;
+  const std::vector<std::size_t> head = pan_tilt_of(robot);
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const UrdfJoint& from = robot.joints[i];
+    if (!moves(from)) continue;
+    DraftJoint out;
+    out.joint.drive.name = from.name;
+    out.joint.unit = from.kind == UrdfJoint::Kind::sliding ? "m" : "rad";
+    out.joint.group = std::ranges::find(head, i) != head.end() ? JointGroup::pan_tilt
+                      : is_gripper(robot, i)                   ? JointGroup::gripper
+                                                               : JointGroup::arm;
+    choose_limits(from, options.sheet, options.urdf.string() + ": joint " + in_quotes(from.name), out);
+    if (options.protocol == DriveProtocol::cia402) {
+      choose_scaling(options.sheet, out.joint);
+      choose_homing(options.sheet, out.joint);
+    }
+    draft.joints.push_back(std::move(out));
+  }
+  if (draft.joints.empty() || draft.joints.size() > kMostJoints)
+    throw InputError(options.urdf.string(), std::to_string(draft.joints.size()) + " of its joints move on their own",
+                     "a rig has 1 to " + std::to_string(kMostJoints) + "; make others fixed, or split the robot");
+  choose_buses(options.protocol, draft);
+  note_left_out(robot, draft);
+  if (options.sheet) note_sheet(*options.sheet, draft);
+  choose_surroundings(draft);
+  return draft;
+}
+
+}  // namespace foresight
