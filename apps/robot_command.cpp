@@ -245,13 +245,11 @@ bool overlap(const std::filesystem::path& a, const std::filesystem::path& b) {
 }
 
 void check_view(const Rig& rig, const Arguments& arguments) {
-  const bool asked[] = {arguments.delay_ms.has_value(),
-                        arguments.outputs.out.has_value(),
-                        arguments.outputs.report.has_value(),
-                        arguments.outputs.html.has_value(),
-                        arguments.window,
-                        !arguments.scene.empty()};
-  const char* const names[] = {"--delay-ms", "--out", "--report", "--html", "--window", "--scene"};
+  const bool asked[] = {arguments.delay_ms.has_value(), arguments.outputs.out.has_value(),
+                        arguments.outputs.report.has_value(), arguments.outputs.html.has_value(), arguments.window};
+  const char* const names[] = {"--delay-ms", "--out", "--report", "--html", "--window"};
+  if (!arguments.scene.empty() && !arguments.view && arguments.record.empty())
+    throw InputError("--scene", "belongs to --view or --record", "add one of them, or leave it out");
   if (!arguments.view) {
     for (std::size_t i = 0; i < std::size(asked); ++i)
       if (asked[i]) throw InputError(names[i], "belongs to --view", "add --view, or leave it out");
@@ -306,7 +304,7 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   add_view_outputs(*command, arguments->outputs);
   command->add_flag("--window", arguments->window, "With --view: a window also where pictures or reports are written");
   command->add_option("--scene", arguments->scene,
-                      "With --view: the model of what real cameras see, but for the robot");
+                      "With --view or --record: the scene around the robot, in place of the rig's `scene:`");
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag("--stepped", arguments->stepped,
                     "As fast as the machine can, the same on every run; only with mock drives");
