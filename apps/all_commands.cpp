@@ -7,6 +7,7 @@
 #include "apps/export_command.hpp"
 #include "apps/record_command.hpp"
 #include "apps/replay_command.hpp"
+#include "apps/rig_command.hpp"
 #include "apps/robot_command.hpp"
 #include "apps/sim_command.hpp"
 #include "apps/synth_command.hpp"
@@ -21,6 +22,7 @@ void add_commands(Command& app, std::function<int()>& action) {
   add_can_command(app, action);
   add_sim_command(app, action);
   add_bench_command(app, action);
+  add_rig_command(app, action);
   add_robot_command(app, action);
   add_doctor_command(app, action);
   add_calibrate_command(app, action);

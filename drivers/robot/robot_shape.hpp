@@ -24,6 +24,13 @@ double distance(const Capsule& one, const Capsule& other);
 /// a step is taken off. Negative where they overlap, the more the deeper.
 double distance(const Capsule& capsule, const Eigen::AlignedBox3d& box);
 
+/// What the gate takes a link for.
+struct GuardedLink {
+  std::string name;
+  Capsule body;  ///< world
+  bool moves = false;
+};
+
 struct Obstacle {
   std::string name;
   Eigen::AlignedBox3d box;
@@ -55,6 +62,9 @@ class RobotShape {
   void margins(std::span<const double> positions, std::span<double> out) noexcept;
   /// Both parts of a couple in words, such as "link 'arm_5' leaves the workspace"; valid until the next surround().
   const char* message(std::size_t couple) const { return couples_[couple].message.c_str(); }
+
+  /// The links that have a body, as they stand there. Allocates: for pictures, not for the loop.
+  std::vector<GuardedLink> guarded(std::span<const double> positions);
 
   /// What keeps the robot from standing there, as message(); nullptr where nothing does. Does not allocate.
   const char* obstructed(std::span<const double> positions) noexcept;

@@ -60,13 +60,14 @@ TEST_F(OwnRobot, IsSeenRecordedAndReplayedAtOnce) {
 
   const RunFolder run = RunFolder::open(folder_ / "run", {});
   for (const char* name : {"ground", "crate", "foot", "table", "mast", "tip"})
-    EXPECT_TRUE(run.scene().find(name)) << name;
-  EXPECT_FALSE(run.scene().find("room")) << "the lab's own things stand beside the rig's scene";
+    EXPECT_TRUE(run.scene()->find(name)) << name;
+  EXPECT_FALSE(run.scene()->find("room")) << "the lab's own things stand beside the rig's scene";
   ASSERT_GT(run.frames().size(), 10u);
   const std::string nodes = folder_.read("run/nodes.txt");
   for (const char* name : {" table ", " mast ", " tip "}) EXPECT_THAT(nodes, HasSubstr(name));
   const auto height_of = [&](const RunFrame& frame, const char* node) {
-    return frame.left.scene.T_world_node[static_cast<std::size_t>(*run.scene().find(node))].translation().z();
+    const auto at = static_cast<std::size_t>(run.scene()->find(node).value());
+    return run.state_at(frame.left.time).T_world_node[at].translation().z();
   };
   EXPECT_NEAR(height_of(run.frames().front(), "tip"), 0.36, 0.004);
   EXPECT_NEAR(height_of(run.frames().back(), "tip"), 0.44, 0.004);

@@ -123,7 +123,7 @@ TEST_F(LiveViewTest, SeesARigsRobotAsTheRayCasterDoes) {
   int first = 0;
   for (int k = 0; k < part; ++k) first += static_cast<int>(live.lab().parts[static_cast<std::size_t>(k)].facets.size());
   const int end = first + static_cast<int>(live.lab().parts[static_cast<std::size_t>(part)].facets.size());
-  const cv::Mat column = picture.facet >= first & picture.facet < end;
+  const cv::Mat column = (picture.facet >= first) & (picture.facet < end);
   ASSERT_GT(cv::countNonZero(column), 1500);
   cv::Scalar mean, deviation;
   cv::meanStdDev(truth, mean, deviation, column);
