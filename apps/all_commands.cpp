@@ -22,6 +22,7 @@ void add_commands(Command& app, std::function<int()>& action) {
   add_can_command(app, action);
   add_sim_command(app, action);
   add_bench_command(app, action);
+  add_rig_command(app, action);
   add_robot_command(app, action);
   add_rig_command(app, action);
   add_doctor_command(app, action);

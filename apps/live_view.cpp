@@ -38,7 +38,7 @@ std::vector<ExpectedView> expected_views(const LiveScene& scene) {
 ViewSetup live_setup(const LiveScene& scene) {
   if (!scene.lenses())
     throw InputError("--view", "the cameras have no calibration", "give it as `lens` in the rig (docs/rig-files.md)");
-  if (!scene.model()) throw InputError("--view", "there is no model of what the cameras see", "give one with --scene");
+  if (!scene.model()) throw InputError("--view", "there is no model of what the cameras see", "give one as `scene:` in the rig, or with --scene");
   ViewSetup setup;
   setup.scene = scene.model();
   setup.left = scene.lenses()->left;

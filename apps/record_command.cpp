@@ -63,15 +63,19 @@ void check(const Arguments& a) {
 
 struct Described {
   StereoConfig cameras;
-  std::optional<fs::path> tags;  // of the rig
+  std::optional<Rig> rig;
+  std::optional<fs::path> tags, scene;  // the rig's; --scene goes before it
 };
 
 Described described(const Arguments& a) {
-  StereoConfig out;
-  std::optional<fs::path> tags;
+  Described all;
+  StereoConfig& out = all.cameras;
+  if (!a.scene.empty()) all.scene = a.scene;
   if (!a.rig.empty()) {
-    const Rig rig = read_rig(a.rig);
-    if (rig.calibration) tags = rig.calibration->tags;
+    all.rig = read_rig(a.rig);
+    const Rig& rig = *all.rig;
+    if (rig.calibration) all.tags = rig.calibration->tags;
+    if (!all.scene) all.scene = rig.scene;
     if (!rig.cameras) throw InputError(a.rig, "the rig has no cameras", "add them (docs/rig-files.md)");
     out = *rig.cameras;
     if (rig.calibration && rig.calibration->pan_tilt && !a.mock)
@@ -95,21 +99,21 @@ Described described(const Arguments& a) {
     camera.settings.rate = a.rate;
     camera.settings.format = parse_pixel_format(a.format, "--format");
   }
-  if (!a.mock) return {out, tags};
+  if (!a.mock) return all;
   if (!a.camera.empty()) {  // both cameras alike
     out.cameras[1].calibration = CameraInfo{out.cameras[0].calibration->lens, {}};
     out.cameras[1].settings = out.cameras[0].settings;
   }
-  return {as_mock(out), tags};
+  out = as_mock(out);
+  return all;
 }
 
-LiveScene scene_of(const Arguments& a, const StereoConfig& config, const OpenStereo& opened) {
+/// Of real cameras without the rig's robot: nobody knows here how its joints stand.
+LiveScene scene_of(const Described& all, const OpenStereo& opened) {
   if (opened.mock) return LiveScene(*opened.mock);
-  if (a.scene.empty()) {
-    std::fputs("record: no --scene, so that `foresight replay` will need one\n", stderr);
-    return LiveScene(config, nullptr, std::nullopt);
-  }
-  return LiveScene(config, nullptr, a.scene);
+  if (!all.scene)
+    std::fputs("record: no --scene and none in the rig, so that `foresight replay` will need one\n", stderr);
+  return LiveScene(all.cameras, nullptr, all.scene);
 }
 
 GivenPoses poses_of(const Arguments& a, const std::shared_ptr<const LiveScene>& scene, const sim::ShaftsAt& shafts) {
@@ -145,15 +149,17 @@ int record_and_report(const Arguments& a, const OpenStereo& opened, LiveFrames& 
 int run(const Arguments& a) {
   MonotonicClock clock;
   check(a);
-  const auto [config, tags] = described(a);
+  const Described all = described(a);
+  const StereoConfig& config = all.cameras;
   const RobotTime start = clock.now();
   const sim::ShaftsAt shafts = moving_shafts(start);
   if (config.mock()) std::fputs("record: lighting the lab\n", stderr);
-  const OpenStereo opened = open_stereo(config, shafts, clock, config.mock() ? mock_world(tags) : MockWorld{});
-  const auto scene = std::make_shared<const LiveScene>(scene_of(a, config, opened));
+  const MockWorld world = config.mock() && all.rig ? mock_world(*all.rig) : MockWorld{};
+  const OpenStereo opened = open_stereo(config, shafts, clock, world);
+  const auto scene = std::make_shared<const LiveScene>(scene_of(all, opened));
   RecorderOptions options = recorder_options(*scene);
   options.posed = opened.mock || !a.pose.empty();
-  options.tags = tags;
+  options.tags = all.tags;
   LiveFrames frames(std::make_shared<GivenPoses>(poses_of(a, scene, shafts)), clock);
   const int code = record_and_report(a, opened, frames, std::move(options), clock);
   if (opened.mock) write_head_joints(beside_run(a.out, "-joints.csv"), shafts, start, clock.now());
@@ -182,7 +188,7 @@ void add_record_command(Command& app, std::function<int()>& action) {
                     "The mock lab in motion instead, with its scene and poses; with --rig, as its cameras see it");
   command->add_option("--camera", a->camera, "Calibration of the left camera (camera.yaml)")->reads();
   command->add_option("--camera-right", a->camera_right, "Of the right one, with T_left_right")->reads();
-  command->add_option("--scene", a->scene, "Scene or mesh, stored with the run")->reads();
+  command->add_option("--scene", a->scene, "Scene or mesh, stored with the run; in place of the rig's")->reads();
   command->add_option("--pose", a->pose, "Where the left camera stands, fixed: x y z qx qy qz qw, camera to world")
       ->check(from_to(-1e6, 1e6))
       ->expected(7);

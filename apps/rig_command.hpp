@@ -1,4 +1,4 @@
-// `foresight rig`: rig files made.
+// `foresight rig`: what there is to do with rig files, but for running them.
 #pragma once
 
 #include <functional>

@@ -97,8 +97,10 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
   Command* const command =
       rig.add_subcommand("new", "Makes the first rig file of your own robot, for mock drives and mock cameras");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--urdf", arguments->urdf, "The robot")->required()->check(existing_file());
-  command->add_option("--out", arguments->out, "The rig file; never one that is there already")->required();
+  command->add_option("--urdf", arguments->urdf, "The robot")->reads()->required()->check(existing_file());
+  command->add_option("--out", arguments->out, "The rig file; never one that is there already")
+      ->writes([](const std::filesystem::path& file) { return std::vector{Output{file, Output::Kind::either}}; })
+      ->required();
   command->add_option("--protocol", arguments->protocol, "What its drives speak: cia402 or powercube")
       ->check(one_of({"cia402", "powercube"}))
       ->capture_default_str();
@@ -106,12 +108,15 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
       command
           ->add_option("--eds", arguments->eds,
                        "Electronic data sheet of its CiA 402 drives: scaling, identity, homing methods")
+          ->reads()
           ->check(existing_file());
   command->add_option("--dcf", arguments->dcf, "The same with a drive's configured values")
+      ->reads()
       ->check(existing_file())
       ->excludes(eds);
   command->add_option("--mesh-root", arguments->mesh_root,
-                      "Folder of the URDF's meshes, where they are not found from the URDF (robot.mesh_root)");
+                      "Folder of the URDF's meshes, where they are not found from the URDF (robot.mesh_root)")
+      ->reads();
   command->footer(
       "One joint for each that moves on its own, with the URDF's limits and slow first speeds; the file says why each\n"
       "number is what it is. `interface: can0` in place of `mock` is all that remains for real drives that are wired "

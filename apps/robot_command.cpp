@@ -7,6 +7,7 @@
 
 #include "apps/live_view.hpp"
 #include "apps/recording_outputs.hpp"
+#include "apps/rig_feed.hpp"
 #include "apps/robot/keyboard.hpp"
 #include "apps/robot/service_notify.hpp"
 #include "apps/robot/session_report.hpp"
@@ -37,6 +38,7 @@ struct Arguments {
   std::string log, record, session;
   bool cameras = true;
   bool mock = false, stepped = false, may_home = false, check_only = false;
+  bool rig_view = false;
   bool view = false, window = false;  // the rest only with `view`
   std::optional<double> delay_ms;
   std::string scene;
@@ -168,8 +170,25 @@ class Console {
   RobotTime shown_, notified_;
 };
 
+/// What shows the robot; at most one of them.
+struct Windows {
+  std::unique_ptr<LiveView> view;
+  std::unique_ptr<RigBody> body;  // of `rig`
+  std::unique_ptr<RigWindow> rig;
+};
+
+/// A window that fails ends, and the robot with it, under control.
+void run_guarded(RigWindow& window, const std::function<bool()>& stopped) noexcept {
+  try {
+    window.run(stopped);
+  } catch (const std::exception& error) {
+    say(error.what());
+  }
+}
+
 int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras,
-                LiveView* view) {
+                const Windows& windows) {
+  LiveView* const view = windows.view.get();
   devices.bring_up(say);
   std::stop_source stop;
   if (cameras) clock.every(kTick, [cameras](RobotTime) { cameras->step(); });
@@ -184,7 +203,8 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevice
 }
 
 int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras,
-             LiveView* view) {
+             const Windows& windows) {
+  LiveView* const view = windows.view.get();
   const auto set_up = [&] {
     try {
       devices.bring_up(say);
@@ -216,9 +236,13 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
         clock.sleep_until(due + kTick);
       ended = true;
     };
-    if (view) {  // its window wants the main thread, and drawing must not make commands late
+    if (view || windows.rig) {  // a window wants the main thread, and drawing must not make commands late
       std::jthread ticks(tick_on);
-      view->run([&] { return ended.load(); });
+      const auto stopped = [&] { return ended.load(); };
+      if (view)
+        view->run(stopped);
+      else
+        run_guarded(*windows.rig, stopped);
       unseen = true;
     } else {
       tick_on();
@@ -264,7 +288,7 @@ std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCam
 
 template <typename ClockKind>
 int run_with(const Rig& rig, const Arguments& arguments,
-             int (*run)(ClockKind&, Robot&, Console&, RobotDevices&, RobotCameras*, LiveView*)) {
+             int (*run)(ClockKind&, Robot&, Console&, RobotDevices&, RobotCameras*, const Windows&)) {
   ClockKind clock;
   RobotDeviceOptions options;
   options.mock = arguments.mock;
@@ -280,21 +304,35 @@ int run_with(const Rig& rig, const Arguments& arguments,
   }
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
   const auto cameras = make_cameras(rig, devices, robot, clock, arguments);
-  const auto view = make_view(rig, robot, cameras.get(), clock, arguments);
+  Windows windows;
+  windows.view = make_view(rig, robot, cameras.get(), clock, arguments);
+  if (arguments.rig_view) {
+    windows.body = std::make_unique<RigBody>(
+        rig, arguments.scene.empty() ? std::nullopt : std::optional<std::filesystem::path>(arguments.scene));
+    windows.rig = std::make_unique<RigWindow>(
+        *windows.body,
+        RigWindowOptions{"Foresight rig: " + rig.name, windows.body->rest(), 1320, 860, rig_feed(robot)});
+  }
   Console console(rig, devices, robot, cameras.get(), arguments);
   poll_stop_signals(SecondSignal::waits);  // a program that ends at once leaves the stop to the drives
   if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
-  return run(clock, robot, console, devices, cameras.get(), view.get());
+  return run(clock, robot, console, devices, cameras.get(), windows);
+}
+
+void check_rig_view(const Arguments& arguments) {
+  if (!arguments.rig_view) return;
+  for (const auto& [given, other] : {std::pair{arguments.view, "--view"}, {arguments.stepped, "--stepped"}})
+    if (given)
+      throw InputError("--rig-view", std::string("stands beside ") + other,
+                       "leave one out; `foresight rig view RIG --out` draws without a window");
 }
 
 void check_view(const Rig& rig, const Arguments& arguments) {
-  const bool asked[] = {arguments.delay_ms.has_value(),
-                        arguments.outputs.out.has_value(),
-                        arguments.outputs.report.has_value(),
-                        arguments.outputs.html.has_value(),
-                        arguments.window,
-                        !arguments.scene.empty()};
-  const char* const names[] = {"--delay-ms", "--out", "--report", "--html", "--window", "--scene"};
+  const bool asked[] = {arguments.delay_ms.has_value(), arguments.outputs.out.has_value(),
+                        arguments.outputs.report.has_value(), arguments.outputs.html.has_value(), arguments.window};
+  const char* const names[] = {"--delay-ms", "--out", "--report", "--html", "--window"};
+  if (!arguments.scene.empty() && !arguments.view && !arguments.rig_view && arguments.record.empty())
+    throw InputError("--scene", "belongs to --view, --rig-view or --record", "add one of them, or leave it out");
   if (!arguments.view) {
     for (std::size_t i = 0; i < std::size(asked); ++i)
       if (asked[i]) throw InputError(names[i], "belongs to --view", "add --view, or leave it out");
@@ -307,6 +345,7 @@ void check_view(const Rig& rig, const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   const Rig rig = read_rig(arguments.rig);
+  check_rig_view(arguments);
   check_view(rig, arguments);
   parse_mock_faults(arguments.faults, rig, arguments.mock);
   if (!arguments.record.empty() && (!rig.cameras || !arguments.cameras))
@@ -355,7 +394,10 @@ void add_robot_command(Command& app, std::function<int()>& action) {
       ->check(from_to(0.0, 1e4));
   add_view_outputs(*command, arguments->outputs);
   command->add_flag("--window", arguments->window, "With --view: a window also where pictures or reports are written");
-  command->add_option("--scene", arguments->scene, "With --view: the model of what real cameras see, but for the robot")
+  command->add_flag("--rig-view", arguments->rig_view,
+                    "Shows the robot in three dimensions as it moves, with what the gate guards (foresight rig view)");
+  command->add_option("--scene", arguments->scene,
+                      "With --view or --record: the scene around the robot, in place of the rig's `scene:`")
       ->reads();
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag("--stepped", arguments->stepped,

@@ -4,6 +4,7 @@
 // epoxy must come first: it replaces the system's GL header.
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "gl/x_connection.hpp"
@@ -43,13 +44,54 @@ Window::Window(int width, int height, const std::string& title) : glfw_(start_li
   if (!window_) fail("no window with OpenGL 4.5");
   make_current();
   glfwSwapInterval(1);
-  // By events: a key that was released before anybody asked has been pressed all the same.
+  listen();
+}
+
+// By events: a key that was released before anybody asked has been pressed all the same.
+void Window::listen() {
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-    if (action != GLFW_PRESS) return;
-    if (key == GLFW_KEY_SPACE) static_cast<Window*>(glfwGetWindowUserPointer(window))->space_ = true;
-    if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
+    if (action != GLFW_RELEASE) static_cast<Window*>(glfwGetWindowUserPointer(window))->press(key, action);
   });
+  glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double up) {
+    static_cast<Window*>(glfwGetWindowUserPointer(window))->input_.scrolled += up;
+  });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+    if (button == GLFW_MOUSE_BUTTON_LEFT && action == GLFW_PRESS)
+      static_cast<Window*>(glfwGetWindowUserPointer(window))->input_.pressed = true;
+  });
+}
+
+void Window::press(int key, int action) {
+  switch (key) {
+    case GLFW_KEY_LEFT: return input_.arrows.push_back(WindowInput::Arrow::left);
+    case GLFW_KEY_RIGHT: return input_.arrows.push_back(WindowInput::Arrow::right);
+    case GLFW_KEY_UP: return input_.arrows.push_back(WindowInput::Arrow::up);
+    case GLFW_KEY_DOWN: return input_.arrows.push_back(WindowInput::Arrow::down);
+    default: break;
+  }
+  if (action != GLFW_PRESS) return;
+  if (key == GLFW_KEY_SPACE) space_ = true;
+  if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window_, GLFW_TRUE);
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) input_.keys += static_cast<char>('0' + key - GLFW_KEY_0);
+  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) input_.keys += static_cast<char>('a' + key - GLFW_KEY_A);
+}
+
+WindowInput Window::take_input() {
+  WindowInput out = std::exchange(input_, {});
+  int width = 0, height = 0, framebuffer_width = 0, framebuffer_height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  framebuffer_size(framebuffer_width, framebuffer_height);
+  glfwGetCursorPos(window_, &out.x, &out.y);
+  out.x *= framebuffer_width / static_cast<double>(std::max(width, 1));
+  out.y *= framebuffer_height / static_cast<double>(std::max(height, 1));
+  out.moved_x = out.x - pointer_[0];
+  out.moved_y = out.y - pointer_[1];
+  pointer_ = {out.x, out.y};
+  out.left = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+  out.other = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS ||
+              glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_MIDDLE) == GLFW_PRESS;
+  return out;
 }
 
 Window::Window(Window& share, int) : glfw_(share.glfw_) {

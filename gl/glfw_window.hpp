@@ -1,8 +1,10 @@
 // A window on the desktop, with the context that draws into it.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/error.hpp"
 #include "gl/context.hpp"
@@ -15,6 +17,18 @@ namespace foresight::gl {
 class NoWindow : public RuntimeFailure {
  public:
   using RuntimeFailure::RuntimeFailure;
+};
+
+/// What mouse and keys did.
+struct WindowInput {
+  enum class Arrow { left, right, up, down };
+  double x = 0, y = 0;               ///< the pointer now, px of the framebuffer, y downwards
+  double moved_x = 0, moved_y = 0;   ///< since the last call
+  bool left = false, other = false;  ///< held: the left button; the right or middle one
+  bool pressed = false;              ///< the left button went down since the last call
+  double scrolled = 0;               ///< steps, upwards
+  std::string keys;                  ///< letters, in lower case, and digits that were pressed
+  std::vector<Arrow> arrows;         ///< pressed or held long enough to repeat
 };
 
 /// A GLFW window. All methods on the main thread (a rule of GLFW); only make_current() of shared
@@ -37,14 +51,19 @@ class Window final : public Context {
   void wait_events(double timeout_s);  ///< handles events, or returns after the time-out
   bool should_close() const;           ///< closed by the user, or Escape or Q pressed
   bool take_space();                   ///< the space bar was pressed since the last call
+  WindowInput take_input();            ///< since the last call
   void set_title(const std::string& title);
   void framebuffer_size(int& width, int& height) const;  ///< px
 
  private:
   Window(Window& share, int);
+  void listen();
+  void press(int key, int action);
   std::shared_ptr<void> glfw_;  // glfwTerminate with the last window
   GLFWwindow* window_ = nullptr;
   bool space_ = false;
+  WindowInput input_;
+  std::array<double, 2> pointer_{};  // at the last take_input()
 };
 
 }  // namespace foresight::gl

@@ -28,6 +28,8 @@ std::shared_ptr<sim::MockStereo> make_mock(const StereoConfig& config, const sim
   lab.hidden = world.hidden;
   lab.prints = world.prints;
   lab.board = world.board;
+  lab.things = world.things;
+  lab.furniture = world.furniture;
   return std::make_shared<sim::MockStereo>(std::make_shared<const sim::LiveLab>(lab), shafts, mock_options(config),
                                            clock);
 }

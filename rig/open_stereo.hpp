@@ -7,6 +7,7 @@
 
 #include "drivers/camera/camera_config.hpp"
 #include "drivers/camera/stereo_camera.hpp"
+#include "scene/robot_scene.hpp"
 #include "sim/live_view/mock_camera.hpp"
 
 namespace foresight {
@@ -22,6 +23,8 @@ struct MockWorld {
   std::vector<sim::Print> prints;         ///< that stand still, such as sim::tag_prints()
   std::optional<sim::MovingPrint> board;  ///< before the cameras, or on the arm
   sim::HiddenDeviations hidden;
+  std::shared_ptr<const RobotScene> things;  ///< LiveLab::Options::things; null: the lab's own arm
+  bool furniture = true;                     ///< with `things`: the lab's own around them
 };
 
 /// What a rig with this map of tags sees in the mock lab: the tags, of the family tag36h11; none without a map. Throws

@@ -39,6 +39,13 @@ std::optional<std::uint32_t> identity(const YamlMap& map, const std::string& key
   return value;
 }
 
+std::filesystem::path existing_file(const YamlMap& map, const std::string& key) {
+  std::filesystem::path path = map.file().parent_path() / map.text(key);
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError(map.where(key), "there is no file " + path.string(), "give its path, relative to the rig file");
+  return path;
+}
+
 RigBus read_bus(const YamlMap& map) {
   map.require_known({"name", "interface", "protocol", "bit_rate"});
   RigBus bus;
@@ -168,9 +175,7 @@ void read_control(const YamlMap& map, Rig& rig) {
 
 void read_robot(const YamlMap& map, Rig& rig) {
   map.require_known({"urdf", "mesh_root", "pose"});
-  const auto urdf = map.file().parent_path() / map.text("urdf");
-  if (!std::filesystem::is_regular_file(urdf))
-    throw InputError(map.where("urdf"), "there is no file " + urdf.string(), "give its path, relative to the rig file");
+  const auto urdf = existing_file(map, "urdf");
   MeshSearch meshes;
   if (map.has("mesh_root")) {
     meshes.root = map.file().parent_path() / map.text("mesh_root");
@@ -184,12 +189,7 @@ void read_robot(const YamlMap& map, Rig& rig) {
 
 RigCalibration read_calibration(const YamlMap& map) {
   map.require_known({"pan_tilt", "time", "tags", "photometric"});
-  const auto file = [&](const std::string& key) {
-    std::filesystem::path path = map.file().parent_path() / map.text(key);
-    if (!std::filesystem::is_regular_file(path))
-      throw InputError(map.where(key), "there is no file " + path.string(), "give its path, relative to the rig file");
-    return path;
-  };
+  const auto file = [&](const std::string& key) { return existing_file(map, key); };
   RigCalibration out;
   if (map.has("time") || !map.has("tags")) out.pan_tilt = file("pan_tilt");
   if (map.has("pan_tilt")) out.pan_tilt = file("pan_tilt");
@@ -258,7 +258,7 @@ std::unique_ptr<RobotShape> Rig::shape() const {
 
 Rig read_rig(const std::filesystem::path& file) {
   const YamlMap map = YamlMap::load(file);
-  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "cameras", "calibration"});
+  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "scene", "cameras", "calibration"});
   Rig rig;
   rig.name = map.text("name");
   if (map.has("robot")) read_robot(map.map("robot"), rig);
@@ -267,6 +267,7 @@ Rig read_rig(const std::filesystem::path& file) {
   for (const YamlMap& bus : map.maps("buses")) rig.buses.push_back(read_bus(bus));
   for (const YamlMap& joint : map.maps("joints")) rig.joints.push_back(read_joint(joint, rig));
   check_joints(map, rig);
+  if (map.has("scene")) rig.scene = existing_file(map, "scene");
   if (map.has("cameras")) rig.cameras = read_stereo_config(map.map("cameras"));
   if (map.has("calibration")) {
     rig.calibration = read_calibration(map.map("calibration"));

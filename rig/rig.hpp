@@ -54,7 +54,8 @@ struct Rig {
   double rate_hz = 250, command_age_s = 0.1, feedback_age_s = 0.05, ramp_s = 2;
   Surroundings surroundings;
   std::vector<RigBus> buses;
-  std::vector<RigJoint> joints;  ///< in the order of the file, which is that of commands
+  std::vector<RigJoint> joints;                ///< in the order of the file, which is that of commands
+  std::optional<std::filesystem::path> scene;  ///< what stands around, but for the robot (scene/scene_reader.hpp)
   std::optional<StereoConfig> cameras;
   std::optional<RigCalibration> calibration;
 

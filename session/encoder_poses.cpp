@@ -29,7 +29,11 @@ cv::Mat grey(const ColourImage& image) {
 // --- EncoderPoses ---------------------------------------------------------------------------------------------------
 
 EncoderPoses::EncoderPoses(const Rig& rig, std::shared_ptr<const LiveScene> scene, Cycles cycles)
-    : scene_(std::move(scene)), cycles_(std::move(cycles)), names_(rig.joint_names()), joints_(rig.joints.size()) {
+    : scene_(std::move(scene)),
+      cycles_(std::move(cycles)),
+      rig_(rig),
+      names_(rig.joint_names()),
+      joints_(rig.joints.size()) {
   if (!rig.calibration || !rig.calibration->pan_tilt) return;
   if (!scene_->lenses())
     throw InputError(rig.calibration->pan_tilt->string(), "is of a head whose cameras' lenses are not calibrated",
@@ -63,7 +67,7 @@ bool EncoderPoses::is_ready(const StereoPair& pair) {
 
 JointPositions EncoderPoses::by_name(const JointState& joints) const {
   return [this, &joints](std::string_view name) -> std::optional<double> {
-    const auto at = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
+    const auto at = static_cast<std::size_t>(std::ranges::find(names_, shaft_name(rig_, name)) - names_.begin());
     return at < names_.size() && std::isfinite(joints.positions[at]) ? std::optional(joints.positions[at])
                                                                      : std::nullopt;
   };
@@ -72,7 +76,9 @@ JointPositions EncoderPoses::by_name(const JointState& joints) const {
 /// By the lab's drawing, pan and tilt carry them; what a registration needs, it sees to itself.
 bool EncoderPoses::cameras_known(const JointState& joints) const {
   for (std::size_t i = 0; i < names_.size(); ++i)
-    if (!registration_ && (names_[i] == "pan" || names_[i] == "tilt") && !joints.known[i]) return false;
+    if (!registration_ && !joints.known[i] &&
+        (names_[i] == shaft_name(rig_, "pan") || names_[i] == shaft_name(rig_, "tilt")))
+      return false;
   return std::ranges::find(joints.known, true) != joints.known.end();
 }
 
@@ -90,13 +96,12 @@ PairPoses EncoderPoses::poses_of(const StereoPair& pair) {
     register_cameras(pair, out);
   else if (scene_->is_mock())
     out.quality = "encoders";
-  if (out.quality == "none" || out.quality == "lost") return out;
   if (!cameras_known(out.joints) || !cameras_known(right)) {
     out.T_world_camera.reset();
-    out.quality = "lost";
+    if (out.quality != "none") out.quality = "lost";
     return out;
   }
-  if (!registration_)
+  if (out.quality == "encoders" && !registration_)
     out.T_world_camera = {scene_->T_world_left(by_name(out.joints)),
                           scene_->T_world_left(by_name(right)) * scene_->lenses()->T_left_right};
   out.scene = {scene_at(pair.left.time, out.joints), scene_at(pair.right.time, right)};

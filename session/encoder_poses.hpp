@@ -22,8 +22,9 @@ class EncoderPoses final : public PoseSource {
  public:
   using Cycles = BroadcastRing<RobotCycle>::Reader;
 
-  /// `scene`: not null. `cycles`: Robot::cycles(). Reads the rig's calibration: throws InputError naming the file that
-  /// is of another kind or damaged, and for a calibrated head before cameras without lenses.
+  /// `scene`: not null. `cycles`: Robot::cycles(). `rig` must outlive this. Reads the rig's calibration: throws
+  /// InputError naming the file that is of another kind or damaged, and for a calibrated head before cameras without
+  /// lenses.
   EncoderPoses(const Rig& rig, std::shared_ptr<const LiveScene> scene, Cycles cycles);
 
   bool is_ready(const StereoPair& pair) override;
@@ -41,6 +42,7 @@ class EncoderPoses final : public PoseSource {
 
   std::shared_ptr<const LiveScene> scene_;
   Cycles cycles_;
+  const Rig& rig_;
   std::vector<std::string> names_;
   JointTracks joints_;
   std::size_t pan_ = 0, tilt_ = 0;              // indices of the rig's joints; only with a registration

@@ -173,6 +173,7 @@ LiveFramePtr LiveFrames::registered(const Waiting& waiting) noexcept {
   try {
     PairPoses poses = poses_->poses_of(waiting.pair);
     if (poses.T_world_camera) frame->posed = posed_frame(waiting.pair, poses, options_.margin_px);
+    frame->scene = std::move(poses.scene);
     frame->joints = std::move(poses.joints);
     frame->quality = std::move(poses.quality);
     frame->predicted_px = poses.predicted_px;

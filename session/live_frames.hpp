@@ -50,6 +50,7 @@ struct LiveFrame {
   /// Pixels are the pair's. Nothing where the registration has no pose, or there is none. A right image whose instant
   /// is another one has its own pose and scene.
   std::optional<PosedFrame> posed;
+  std::array<SceneState, 2> scene;  ///< PairPoses::scene: may be known where the cameras' poses are not
   JointState joints;
   std::string quality;                 ///< PairPoses::quality
   std::optional<double> predicted_px;  ///< from which PosedImage::margin_px follows

@@ -9,13 +9,9 @@
 
 #include "calibration/registration/tag_correction.hpp"
 #include "rig/open_stereo.hpp"
-#include "rig/rig.hpp"
-#include "scene/scene_model.hpp"
+#include "rig/rig_scene.hpp"
 
 namespace foresight {
-
-/// Position of a joint by name, rad or m; nothing for one that is not known: it stays at rest.
-using JointPositions = std::function<std::optional<double>(std::string_view joint)>;
 
 /// Immutable; safe to share between threads.
 class LiveScene {
@@ -23,10 +19,8 @@ class LiveScene {
   /// Of a mock lab: its own lenses and parts as the robot believes them to be, arm and ball at rest.
   explicit LiveScene(const sim::MockStereo& mock);
   LiveScene(std::shared_ptr<const sim::LiveLab> lab, const StereoLenses& lenses);
-  /// Of real cameras: their calibrations; the scene of `scene_file` (scene/scene_reader.hpp), and the rig's robot,
-  /// whose links are the nodes of their names, or come as further nodes where the scene has none. `rig` may be null.
-  /// Throws what read_scene() does; InputError where the right camera's calibration has no T_left_right, or where the
-  /// scene has some of the robot's links and not all.
+  /// Of real cameras: their calibrations, and rig_scene(). `rig` may be null. Throws what that does; InputError where
+  /// the right camera's calibration has no T_left_right.
   LiveScene(const StereoConfig& cameras, const Rig* rig, const std::optional<std::filesystem::path>& scene_file);
 
   /// Nothing where a camera has no calibration.
@@ -42,15 +36,11 @@ class LiveScene {
   bool moves(std::size_t node) const { return moves_[node]; }
 
  private:
-  void add_robot(std::vector<Node>& nodes);
-
   std::optional<StereoLenses> lenses_;
   std::shared_ptr<const SceneModel> model_;
-  std::vector<bool> moves_;  // of each node
-  std::shared_ptr<const sim::LiveLab> lab_;
-  std::optional<UrdfRobot> robot_;
-  Pose T_world_robot_ = Pose::Identity();
-  std::vector<std::size_t> node_of_link_;
+  std::vector<bool> moves_;                  // of each node
+  std::shared_ptr<const sim::LiveLab> lab_;  // of a mock lab, else
+  std::shared_ptr<const RobotScene> real_;
 };
 
 }  // namespace foresight

@@ -15,9 +15,9 @@ std::filesystem::path joint_log_beside(const std::filesystem::path& out) {
 
 RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, const Robot& robot, Clock& clock,
                            const RobotCameraOptions& options)
-    : devices_(devices), clock_(clock) {
+    : rig_(rig), devices_(devices), clock_(clock) {
   const StereoConfig config = options.mock ? as_mock(*rig.cameras) : *rig.cameras;
-  if (config.mock() && rig.calibration) world_ = mock_world(rig.calibration->tags);
+  if (config.mock()) world_ = mock_world(rig, options.scene);
   if (config.mock() || options.record) ready_ = open(config);
   if (options.frames || options.record) {
     scene_ = ready_.mock ? std::make_shared<const LiveScene>(*ready_.mock)
@@ -47,7 +47,9 @@ void RobotCameras::start_recording(const Rig& rig, const std::filesystem::path& 
 RobotCameras::~RobotCameras() = default;
 
 OpenStereo RobotCameras::open(const StereoConfig& config) const {
-  const auto shafts = [this](std::string_view joint, RobotTime time) { return devices_.shaft_at(joint, time); };
+  const auto shafts = [this](std::string_view joint, RobotTime time) {
+    return devices_.shaft_at(shaft_name(rig_, joint), time);
+  };
   return open_stereo(config, shafts, clock_, world_);
 }
 

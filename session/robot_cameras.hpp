@@ -22,7 +22,7 @@ struct RobotCameraOptions {
   bool mock = false;                                 ///< the mock lab's, whatever the rig says
   std::optional<std::filesystem::path> record = {};  ///< folder for a run (RunRecorder) of all pairs
   bool frames = false;                               ///< frames() is wanted; also where it records
-  std::optional<std::filesystem::path> scene = {};   ///< what real cameras look at, but for the robot; frames only
+  std::optional<std::filesystem::path> scene = {};   ///< in place of the rig's
   LiveFrameOptions live = {};
 };
 
@@ -57,6 +57,7 @@ class RobotCameras {
   OpenStereo open(const StereoConfig& config) const;
   void start_recording(const Rig& rig, const std::filesystem::path& out, bool posed);
 
+  const Rig& rig_;
   const RobotDevices& devices_;
   Clock& clock_;
   MockWorld world_;

@@ -96,7 +96,7 @@ void RunRecorder::write(const LiveFrame& frame) {
   const bool placed = frame.posed || !options_.posed;
   if (options_.posed && frame.predicted_px)
     run_.add_registration(frame.pair.left.time, frame.quality, *frame.predicted_px);
-  if (frame.posed && options_.posed) write_poses(*frame.posed);
+  write_poses(frame);
   const std::uint64_t number = counts().written;
   for (const bool right : {false, true}) {
     const ColourImage& image = right ? frame.pair.right : frame.pair.left;
@@ -111,19 +111,23 @@ void RunRecorder::write(const LiveFrame& frame) {
 
 /// Of both instants, where they differ: a reader then has the right image's pose without guessing between two left
 /// ones.
-void RunRecorder::write_poses(const PosedFrame& frame) {
-  const PosedImage &left = frame.left, &right = frame.right.value();
-  const Pose T_right_left = options_.lenses.T_left_right.inverse();
-  const bool right_first = right.time < left.time;
-  if (right_first) write_poses(right.time, right.T_world_camera * T_right_left, right.scene);
-  write_poses(left.time, left.T_world_camera, left.scene);
-  if (!right_first) write_poses(right.time, right.T_world_camera * T_right_left, right.scene);
+void RunRecorder::write_poses(const LiveFrame& frame) {
+  const bool posed = frame.posed && options_.posed;
+  const auto write_side = [&](bool right) {
+    std::optional<Pose> T_world_left;
+    if (posed && !right) T_world_left = frame.posed->left.T_world_camera;
+    if (posed && right) T_world_left = frame.posed->right->T_world_camera * options_.lenses.T_left_right.inverse();
+    write_poses(right ? frame.pair.right.time : frame.pair.left.time, T_world_left, frame.scene[right ? 1 : 0]);
+  };
+  const bool right_first = frame.pair.right.time < frame.pair.left.time;
+  write_side(right_first);
+  write_side(!right_first);
 }
 
-void RunRecorder::write_poses(RobotTime time, const Pose& T_world_left, const SceneState& scene) {
+void RunRecorder::write_poses(RobotTime time, const std::optional<Pose>& T_world_left, const SceneState& scene) {
   if (time <= last_pose_) return;  // readers want ascending times
   last_pose_ = time;
-  run_.add_pose(time, T_world_left);
+  if (T_world_left) run_.add_pose(time, *T_world_left);
   if (!options_.scene) return;
   const auto& nodes = options_.scene->nodes();
   for (std::size_t i = 0; i < std::min({nodes.size(), options_.moves.size(), scene.T_world_node.size()}); ++i)

@@ -23,7 +23,7 @@ struct RecorderOptions {
   std::shared_ptr<const SceneModel> scene = {};  ///< null: the run gets none (`foresight replay --scene`)
   std::vector<bool> moves = {};                  ///< of each node of the scene: its poses are written, image by image
   /// Frames have poses; those without are kept apart from the run. False: all are written without a trajectory.txt, and
-  /// whoever replays the run has to add one.
+  /// whoever replays the run has to add one. What moves in the scene is written all the same, where it is known.
   bool posed = true;
   std::optional<std::filesystem::path> tags = {};  ///< map of tags, copied into the run as tags.txt
   double spare_bytes = 16e6;                       ///< of the disk that are left free
@@ -69,8 +69,8 @@ class RunRecorder {
   void check(const ColourImage& image, const Lens& lens, const char* side, RobotTime last) const;
   void run() noexcept;
   void write(const LiveFrame& frame);
-  void write_poses(const PosedFrame& frame);
-  void write_poses(RobotTime time, const Pose& T_world_left, const SceneState& scene);
+  void write_poses(const LiveFrame& frame);
+  void write_poses(RobotTime time, const std::optional<Pose>& T_world_left, const SceneState& scene);
   void join();
 
   RecorderOptions options_;

@@ -44,6 +44,23 @@ std::array<Pose, kArmLinks> arm_links_at(const ArmPosition& position) {
   return out;
 }
 
+bool is_lab_arm(const UrdfRobot& robot, const Pose& T_world_root) {
+  constexpr double kAlike = 1e-3;
+  if (robot.links.size() != std::size_t{kArmLinks} || robot.links[0].name != kArmStand) return false;
+  if (!T_world_root.isApprox(T_world_stand(), kAlike)) return false;
+  for (std::size_t i = 0; i < arm_joints().size(); ++i) {
+    const ArmJoint& own = arm_joints()[i];
+    const UrdfJoint& other = robot.joints[i];
+    const auto child = static_cast<std::size_t>(other.child);
+    if (other.name != own.name || robot.links[child].name != own.child || robot.links[child].parent != own.parent)
+      return false;
+    if ((other.T_parent_joint.translation() - own.xyz).norm() > kAlike || !other.axis.isApprox(own.axis, kAlike) ||
+        !other.T_parent_joint.linear().isIdentity(kAlike))
+      return false;
+  }
+  return true;
+}
+
 std::string arm_urdf() {
   std::ostringstream text;
   text << "<?xml version=\"1.0\"?>\n<robot name=\"arm\">\n";

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "scene/scene_model.hpp"
+#include "scene/urdf_reader.hpp"
 
 namespace foresight::sim {
 
@@ -43,6 +44,9 @@ Pose T_world_stand();
 
 /// T_world_link of the stand and all links.
 std::array<Pose, kArmLinks> arm_links_at(const ArmPosition& position);
+
+/// Is this the lab's own arm, standing in its place? By joints, links and frames (1 mm); shapes do not count.
+bool is_lab_arm(const UrdfRobot& robot, const Pose& T_world_root);
 
 /// The robot as URDF; link meshes are meshes/LINK.ply.
 std::string arm_urdf();

@@ -10,6 +10,7 @@
 #include "sim/lab_builder.hpp"
 #include "sim/lab_furniture.hpp"
 #include "sim/lab_prints.hpp"
+#include "sim/things.hpp"
 
 namespace foresight::sim {
 namespace {
@@ -185,6 +186,15 @@ void add_turned_things(LabBuilder& b) {
              0.004f, 0.17f);
 }
 
+void add_all_but_robot(LabBuilder& b) {
+  add_room(b);
+  add_wall_things(b);
+  add_table(b);
+  add_boxes(b);
+  add_turned_things(b);
+  add_furniture(b);
+}
+
 // Banded, so that one sees it roll.
 void add_ball(LabBuilder& b) {
   const int colours[] = {b.plain(0xd9542b, 0.04, 0.03f), b.plain(0xf0ece0, 0.04, 0.03f)};
@@ -215,17 +225,24 @@ int Lab::find(const std::string& name) const {
 
 Lab make_lab(double texel, unsigned seed, bool with_ball) {
   LabBuilder builder(texel, seed);
-  add_room(builder);
-  add_wall_things(builder);
-  add_table(builder);
-  add_boxes(builder);
-  add_turned_things(builder);
-  add_furniture(builder);
+  add_all_but_robot(builder);
   const int arm = static_cast<int>(builder.part_count());
   add_arm(builder);
   if (with_ball) add_ball(builder);
   Lab lab = builder.finish();
   lab.arm = arm;
+  return lab;
+}
+
+Lab make_lab_with(const RobotScene& things, bool furniture, double texel, unsigned seed) {
+  LabBuilder builder(texel, seed);
+  if (furniture) add_all_but_robot(builder);
+  const int first = static_cast<int>(builder.part_count());
+  add_things(builder, things);
+  if (furniture) add_ball(builder);
+  Lab lab = builder.finish();
+  lab.arm = -1;
+  lab.things = first;
   return lab;
 }
 

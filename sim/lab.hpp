@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/robot_scene.hpp"
 #include "scene/scene_model.hpp"
 #include "sim/shapes.hpp"
 #include "sim/texture.hpp"
@@ -38,7 +39,8 @@ using LabState = std::vector<Pose>;
 struct Lab {
   std::vector<Material> materials;
   std::vector<Part> parts;
-  int arm = 0;  ///< index of the arm's stand; its links follow, in the order of sim/arm.hpp
+  int arm = 0;      ///< index of the arm's stand; its links follow, in the order of sim/arm.hpp; -1: has none
+  int things = -1;  ///< index of the part of the first node of `things`; the others follow; -1: there are none
 
   LabState at_rest() const;
   int find(const std::string& name) const;  ///< index of the part; throws std::out_of_range
@@ -47,6 +49,8 @@ struct Lab {
 /// `texel`: metres per texel of the finest pictures. `seed` varies grain and small print.
 /// With a ball, that is one more part at the end, "ball", which moves.
 Lab make_lab(double texel, unsigned seed, bool with_ball = false);
+/// The lab with `things` (sim/things.hpp) in place of its arm; with the ball or, without `furniture`, nothing but them.
+Lab make_lab_with(const RobotScene& things, bool furniture, double texel, unsigned seed);
 inline constexpr float kBallRadius = 0.03f;  ///< metres
 
 /// The part's triangles over welded vertices, exactly as they are rendered.

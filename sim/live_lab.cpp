@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "common/error.hpp"
 #include "sim/motion.hpp"
@@ -26,13 +27,25 @@ void check(const char* field, double value, double most) {
     throw InputError(field, fmt::format("{:.9g} is outside 0 .. {:.9g}", value, most), "choose a value inside");
 }
 
+Lab lab_for(const LiveLab::Options& options) {
+  if (!options.things) return make_lab(options.texel, options.seed, true);
+  Lab lab = make_lab_with(*options.things, options.furniture, options.texel, options.seed);
+  std::set<std::string> names;
+  for (const Part& part : lab.parts)
+    if (!names.insert(part.name).second)
+      throw InputError("the mock lab", "has a '" + part.name + "' of its own", "rename the link or node of that name");
+  return lab;
+}
+
 PanTilt head_shafts(const ShaftPositions& shafts) {
   return {shafts("pan").value_or(kHeadAtTable.pan), shafts("tilt").value_or(kHeadAtTable.tilt)};
 }
 
 }  // namespace
 
-LiveLab::LiveLab(const Options& options) : lab_(make_lab(options.texel, options.seed, true)), ball_(lab_.find(kBall)) {
+LiveLab::LiveLab(const Options& options) : lab_(lab_for(options)), things_(options.things) {
+  for (std::size_t i = 0; i < lab_.parts.size(); ++i)
+    if (lab_.parts[i].name == kBall && (!things_ || options.furniture)) ball_ = static_cast<int>(i);
   const HiddenDeviations& hidden = options.hidden;
   check("hidden object_m", hidden.object_m, 0.05);
   check("hidden object_rad", hidden.object_rad, std::numbers::pi);
@@ -43,6 +56,8 @@ LiveLab::LiveLab(const Options& options) : lab_(make_lab(options.texel, options.
   for (double& offset : joint_offsets_) offset = evenly(random, hidden.joint_rad);
   head_offset_ = {evenly(random, hidden.joint_rad), evenly(random, hidden.joint_rad)};
   if (hidden.object_m == 0 && hidden.object_rad == 0) return;
+  if (!options.furniture)
+    throw InputError("hidden object_m", "displaces one of the lab's things, which are not there", "leave it 0");
   displaced_ = lab_.find(kMovable[random() % std::size(kMovable)]);
   Pose& pose = lab_.parts[static_cast<std::size_t>(displaced_)].T_world_part;
   const double direction = evenly(random, std::numbers::pi);
@@ -74,7 +89,11 @@ std::vector<Pose> LiveLab::true_prints(const LabState& T_world_part, double t) c
   return out;
 }
 
-LabState LiveLab::with_arm(LabState state, const ShaftPositions& shafts, const std::array<double, 7>& offsets) const {
+LabState LiveLab::with_robot(LabState state, const ShaftPositions& shafts, const std::array<double, 7>& offsets) const {
+  if (things_) {
+    std::ranges::copy(things_->poses(shafts), state.begin() + lab_.things);
+    return state;
+  }
   ArmPosition arm;
   for (std::size_t j = 0; j < arm.joints.size(); ++j)
     arm.joints[j] = shafts(arm_joints()[j].name).value_or(*shafts_at_rest(arm_joints()[j].name)) + offsets[j];
@@ -86,13 +105,13 @@ LabState LiveLab::with_arm(LabState state, const ShaftPositions& shafts, const s
 }
 
 LabState LiveLab::true_state(const ShaftPositions& shafts, double t) const {
-  LabState state = with_arm(lab_.at_rest(), shafts, joint_offsets_);
-  state[static_cast<std::size_t>(ball_)] = T_world_ball(t);
+  LabState state = with_robot(lab_.at_rest(), shafts, joint_offsets_);
+  if (ball_ >= 0) state[static_cast<std::size_t>(ball_)] = T_world_ball(t);
   return state;
 }
 
 LabState LiveLab::modelled_state(const ShaftPositions& shafts) const {
-  return with_arm(modelled_rest_, shafts, {});
+  return with_robot(modelled_rest_, shafts, {});
 }
 
 Pose LiveLab::T_world_left(const ShaftPositions& shafts) const {

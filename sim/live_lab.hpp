@@ -24,7 +24,7 @@ struct HiddenDeviations {
   unsigned seed = 1;
   double object_m = 0;    ///< one thing on the table stands this far from where the model has it; 0 .. 0.05
   double object_rad = 0;  ///< and is turned by up to this about z
-  double joint_rad = 0;   ///< of each turning joint of the arm, and of pan and tilt
+  double joint_rad = 0;   ///< of each turning joint of the lab's own arm, and of pan and tilt
 };
 
 inline constexpr const char* kBall = "ball";
@@ -39,8 +39,12 @@ class LiveLab {
     HiddenDeviations hidden = {};
     std::vector<Print> prints = {};  ///< that stand still
     std::optional<MovingPrint> board = {};
+    /// In place of the lab's own arm: the rig's robot, or a whole scene with it. Null: the lab's own arm.
+    std::shared_ptr<const RobotScene> things = {};
+    bool furniture = true;  ///< with `things`: the lab's own around them, and the ball
   };
-  /// Throws InputError (a deviation out of range; what check() says of a print; a part that the lab does not have).
+  /// Throws InputError (a deviation out of range; what check() says of a print; a part that the lab does not have; a
+  /// thing that has the name of a part of the lab).
   explicit LiveLab(const Options& options);
 
   /// The true lab: a displaced object stands where it truly is.
@@ -67,17 +71,18 @@ class LiveLab {
 
  private:
   void add_prints(const Options& options);
-  LabState with_arm(LabState state, const ShaftPositions& shafts, const std::array<double, 7>& offsets) const;
+  LabState with_robot(LabState state, const ShaftPositions& shafts, const std::array<double, 7>& offsets) const;
 
   Lab lab_;
   LabState modelled_rest_;
+  std::shared_ptr<const RobotScene> things_;
   std::array<double, 7> joint_offsets_{};
   PanTilt head_offset_;
   std::vector<Print> prints_;
   std::function<Pose(double)> T_board_;  // in the world, or in board_part_
   int board_part_ = -1;
   int displaced_ = -1;
-  int ball_ = 0;
+  int ball_ = -1;  // part; -1: none
 };
 
 /// The arm a little bent above the table, the head at the table: for worlds without drives.

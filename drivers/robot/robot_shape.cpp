@@ -203,6 +203,14 @@ void RobotShape::margins(std::span<const double> positions, std::span<double> ou
   for (std::size_t i = 0; i < couples_.size(); ++i) out[i] = margin(couples_[i]);
 }
 
+std::vector<GuardedLink> RobotShape::guarded(std::span<const double> positions) {
+  pose(positions);
+  std::vector<GuardedLink> out;
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    if (links_[i].has_body) out.push_back({robot_.links[i].name, placed_[i], links_[i].moves});
+  return out;
+}
+
 const char* RobotShape::obstructed(std::span<const double> positions) noexcept {
   pose(positions);
   for (const Couple& couple : couples_)

@@ -24,6 +24,13 @@ double distance(const Capsule& one, const Capsule& other);
 /// a step is taken off. Negative where they overlap, the more the deeper.
 double distance(const Capsule& capsule, const Eigen::AlignedBox3d& box);
 
+/// What the gate takes a link for.
+struct GuardedLink {
+  std::string name;
+  Capsule body;  ///< world
+  bool moves = false;
+};
+
 struct Obstacle {
   std::string name;
   Eigen::AlignedBox3d box;
@@ -70,6 +77,9 @@ class RobotShape {
   double kept_apart(std::size_t couple) const {
     return couples_[couple].what == Against::workspace ? 0 : surroundings_.clearance;
   }
+
+  /// The links that have a body, as they stand there. Allocates: for pictures, not for the loop.
+  std::vector<GuardedLink> guarded(std::span<const double> positions);
 
   /// What keeps the robot from standing there, as message(); nullptr where nothing does. Does not allocate.
   const char* obstructed(std::span<const double> positions) noexcept;

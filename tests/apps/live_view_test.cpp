@@ -105,6 +105,43 @@ TEST_P(LiveView, ReportsAsReplayDoes) {
 INSTANTIATE_TEST_SUITE_P(Rigs, LiveView, testing::Values("minerva.yaml", "cia402.yaml"),
                          [](const auto& i) { return std::string(i.param).substr(0, std::string(i.param).find('.')); });
 
+/// The lab's head as `calibrate pan-tilt` would find it, and the lab's tags: every pair is registered, as that of a
+/// real rig would be.
+TEST(LiveViewCalibrated, RegistersWhatItShows) {
+  const TempFolder folder;
+  folder.write(
+      "head.yaml",
+      "kind: pan-tilt\ndate: 2026-01-01T00:00:00Z\nscore: {name: loo_mrad, value: 0.5}\nresult:\n"
+      "  T_world_pan: {xyz: [-0.82, 0.04, 0.48], quaternion: [0, 0, 0, 1]}\n"
+      "  length_m: 0\n  twist_rad: -1.5707963267948966\n"
+      "  T_tilt_camera: {xyz: [0.03, 0, 0.0325], quaternion: [0, 0.70710678118654752, 0, 0.70710678118654752]}\n"
+      "  gain: [1, 1]\n  backlash_rad: [0, 0]\n");
+  for (const char* name : {"arm.urdf", "lab_tags.txt"}) fs::copy_file(config(name), folder / name);
+  std::string text = text_of(config("cia402.yaml"));
+  for (auto at = text.find("rate_hz: 10"); at != std::string::npos; at = text.find("rate_hz: 10"))
+    text.replace(at, 11, "rate_hz: 4");
+  text += "calibration: {pan_tilt: head.yaml, tags: lab_tags.txt}\n";
+  const std::string rig = folder.write("rig.yaml", text).string();
+  const std::string motion =
+      folder.write("motion.csv", "time_s,elbow,pan,tilt\n0,0.2,0,0.6\n1.5,0.6,0.15,0.5\n3,0.2,-0.1,0.6\n").string();
+  const Outcome out = run_program({"robot", rig, "--stepped", "--follow", motion, "--view", "--delay-ms", "500",
+                                   "--record", folder / "run", "--report", folder / "view.json"});
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const json report = read_json(folder / "view.json");
+  const json& summary = report.at("summary");
+  EXPECT_GT(summary.at("predicted").at("psnr_db").at("mean").get<double>(),
+            summary.at("delayed").at("psnr_db").at("mean").get<double>() + 3)
+      << summary.dump(1);
+  // Tags are in view most of the time, and the recording has the poses that were shown.
+  const std::string registered = folder.read("run/registration.txt");
+  const auto count = [&](const std::string& word) {
+    std::size_t found = 0;
+    for (auto at = registered.find(word); at != std::string::npos; at = registered.find(word, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_GT(count(" tags "), count(" encoders ") + count(" held ")) << registered;
+}
+
 TEST(LiveViewInput, WrongInputIsNamed) {
   const TempFolder folder;
   const std::string rig = config("cia402.yaml");

@@ -5,6 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "drivers/camera/frame.hpp"
+#include "scene/primitives.hpp"
 #include "sim/live_lab.hpp"
 #include "sim/picture.hpp"
 #include "sim/synth_run.hpp"
@@ -83,6 +84,53 @@ TEST_F(LiveViewTest, SeesWhatTheRayCasterSees) {
       cv::imwrite(std::string(folder) + "/" + c.name + "_truth.png", truth);
       cv::imwrite(std::string(folder) + "/" + c.name + "_made.png", made);
     }
+  }
+}
+
+// Some robot's links on the lab's table, with the print that they get.
+TEST_F(LiveViewTest, SeesARigsRobotAsTheRayCasterDoes) {
+  UrdfRobot robot;
+  robot.links = {{"foot", make_box({0.24, 0.24, 0.1}), -1, Pose::Identity()},
+                 {"column", make_cylinder(0.08, 0.3), 0, Pose::Identity()}};
+  UrdfJoint turn;
+  turn.name = "turn";
+  turn.kind = UrdfJoint::Kind::rotating;
+  turn.child = 1;
+  turn.T_parent_joint.translation().z() = 0.2;
+  turn.lower = -1, turn.upper = 1;
+  turn.axis = Eigen::Vector3d(0.3, 0, 1).normalized();
+  robot.joints = {turn};
+  Pose T_world_robot = Pose::Identity();
+  T_world_robot.translation() = Eigen::Vector3d(-0.2, 0.02, 0.05);
+  LiveLab::Options options{.texel = 0.002};
+  options.things = std::make_shared<const RobotScene>(nullptr, robot, T_world_robot);
+  const LiveLab live(options);
+  const LightMap light(live.lab(), 4);
+  const LabState state =
+      live.true_state([](std::string_view joint) { return joint == "turn" ? std::optional(0.4) : std::nullopt; }, 0);
+  const auto irradiance = light.lit(state);
+  const Pose T_world_camera = live.T_world_left(shafts_at_rest);
+  const Lens lens = lens_of(false, true);
+  const Picture picture = Renderer(live.lab(), light).render(RayTable(lens), T_world_camera, state, irradiance);
+  LiveView view(std::make_shared<const LabBuffers>(live.lab(), light, irradiance), lens, {});
+  ASSERT_TRUE(view.draw(T_world_camera, state, 1, 0));
+  std::vector<std::uint8_t> yuyv(std::size_t{2} * lens.width() * lens.height());
+  ASSERT_TRUE(view.take(yuyv, true));
+  const cv::Mat truth = Sensor{}.develop(picture.light, 0, 0), made = bgr_of(yuyv, lens);
+  EXPECT_GT(cv::PSNR(truth, made), 28);
+  // On the column alone, which has to be in the picture, with a print that textures can be taken from.
+  const int part = live.lab().find("column");
+  int first = 0;
+  for (int k = 0; k < part; ++k) first += static_cast<int>(live.lab().parts[static_cast<std::size_t>(k)].facets.size());
+  const int end = first + static_cast<int>(live.lab().parts[static_cast<std::size_t>(part)].facets.size());
+  const cv::Mat column = (picture.facet >= first) & (picture.facet < end);
+  ASSERT_GT(cv::countNonZero(column), 1500);
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(truth, mean, deviation, column);
+  EXPECT_GT(deviation[1], 12);
+  if (const char* folder = std::getenv("FORESIGHT_KEEP_IMAGES")) {
+    cv::imwrite(std::string(folder) + "/robot_truth.png", truth);
+    cv::imwrite(std::string(folder) + "/robot_made.png", made);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.hpp"
+#include "scene/primitives.hpp"
 #include "sim/motion.hpp"
 
 namespace foresight::sim {
@@ -64,6 +65,86 @@ TEST(LiveLab, OnlyTheLiveLabHasABall) {
   const LiveLab world = live();
   ASSERT_EQ(world.lab().parts.size(), plain.parts.size() + 1);
   for (std::size_t k = 0; k < plain.parts.size(); ++k) EXPECT_EQ(world.lab().parts[k].name, plain.parts[k].name);
+}
+
+/// A foot and what turns on it.
+RobotScene turntable(const SceneModel* around = nullptr) {
+  UrdfRobot robot;
+  robot.name = "turner";
+  robot.links = {{"foot", make_box({0.3, 0.3, 0.1}), -1, Pose::Identity()},
+                 {"plate", make_cylinder(0.1, 0.05), 0, Pose::Identity()}};
+  UrdfJoint turn;
+  turn.name = "turn";
+  turn.kind = UrdfJoint::Kind::rotating;
+  turn.child = 1;
+  turn.T_parent_joint.translation().z() = 0.1;
+  turn.axis = Eigen::Vector3d::UnitZ();
+  turn.lower = -2;
+  turn.upper = 2;
+  robot.joints = {turn};
+  Pose T_world_robot = Pose::Identity();
+  T_world_robot.translation() = Eigen::Vector3d(0.1, 0, 0.05);
+  return {around, robot, T_world_robot};
+}
+
+TEST(LiveLab, ARigsRobotStandsInPlaceOfTheArm) {
+  LiveLab::Options options{.texel = 0.02};
+  options.things = std::make_shared<const RobotScene>(turntable());
+  const LiveLab world(options);
+  EXPECT_THROW(world.lab().find("arm_1"), std::out_of_range);
+  const auto plate = static_cast<std::size_t>(world.lab().find("plate"));
+  EXPECT_TRUE(world.lab().parts[plate].moves);
+  EXPECT_FALSE(world.lab().parts[static_cast<std::size_t>(world.lab().find("foot"))].moves);
+  const auto turned = [](std::string_view joint) -> std::optional<double> {
+    return joint == "turn" ? std::optional(0.5) : std::nullopt;
+  };
+  for (const LabState& state : {world.true_state(turned, 1), world.modelled_state(turned)}) {
+    EXPECT_TRUE(state[plate].translation().isApprox(Eigen::Vector3d(0.1, 0, 0.15), 1e-12));
+    EXPECT_NEAR(Eigen::AngleAxisd(state[plate].linear()).angle(), 0.5, 1e-12);
+  }
+  EXPECT_FALSE(world.true_state(turned, 1)[static_cast<std::size_t>(world.lab().find(kBall))].isApprox(
+      world.true_state(turned, 2)[static_cast<std::size_t>(world.lab().find(kBall))]));
+  const Mesh& as_given = options.things->nodes()[1].mesh;
+  EXPECT_EQ(mesh_of(world.lab().parts[plate]).triangles.size(), as_given.triangles.size());
+}
+
+TEST(LiveLab, ASceneStandsInPlaceOfTheFurniture) {
+  const SceneModel around({{"crate", make_box({0.2, 0.2, 0.2})}});
+  LiveLab::Options options{.texel = 0.02};
+  options.things = std::make_shared<const RobotScene>(turntable(&around));
+  options.furniture = false;
+  const LiveLab world(options);
+  ASSERT_EQ(world.lab().parts.size(), 3u);
+  EXPECT_EQ(world.lab().parts[0].name, "crate");
+  options.hidden.object_m = 0.01;
+  EXPECT_THROW(LiveLab{options}, InputError) << "none of the lab's things can be displaced";
+  options.hidden = {};
+  options.furniture = true;
+  const SceneModel mug({{"mug", make_box({0.2, 0.2, 0.2})}});
+  options.things = std::make_shared<const RobotScene>(turntable(&mug));
+  EXPECT_THROW(LiveLab{options}, InputError) << "two things are called mug";
+}
+
+TEST(LabArm, IsToldFromOthers) {
+  UrdfRobot robot;
+  robot.links = {{kArmStand, {}}};
+  for (const ArmJoint& joint : arm_joints()) {
+    robot.links.push_back({joint.child, {}, joint.parent});
+    UrdfJoint copy;
+    copy.name = joint.name;
+    copy.child = static_cast<int>(robot.links.size()) - 1;
+    copy.T_parent_joint.translation() = joint.xyz;
+    copy.axis = joint.axis;
+    robot.joints.push_back(copy);
+  }
+  EXPECT_TRUE(is_lab_arm(robot, T_world_stand()));
+  EXPECT_FALSE(is_lab_arm(robot, Pose::Identity()));
+  UrdfRobot longer = robot;
+  longer.joints[3].T_parent_joint.translation().z() += 0.01;
+  EXPECT_FALSE(is_lab_arm(longer, T_world_stand()));
+  UrdfRobot other = robot;
+  other.joints[3].name = "knee";
+  EXPECT_FALSE(is_lab_arm(other, T_world_stand()));
 }
 
 TEST(LiveLab, DeviationsAreHiddenFromTheModelAndTheSameEachTime) {
