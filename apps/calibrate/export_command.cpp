@@ -103,7 +103,9 @@ Source read_source(const ExportOptions& options) {
   if (options.from == "result") return read_result_source(options.input);
   if (options.from == "urdf") {
     const UrdfMount mount = read_mount(read_file(options.input), kRightLink, options.input.string());
-    return {std::nullopt, {{mount}, {}}, {}};
+    Source source;
+    source.offsets.mounts = {mount};
+    return source;
   }
   Source source;
   source.cameras = read_cameras(parse_camera_format(options.from), options.input);

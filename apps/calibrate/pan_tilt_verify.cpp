@@ -78,8 +78,6 @@ void score_corrected(const PosedView& posed, const TagViews& all, const TagMap& 
   score.add(scored, corner_errors(all.cameras, posed.T_world_left * found.T_left_corrected, scored));
 }
 
-}  // namespace
-
 /// Leaves out the views that the result was solved from; where no other is there, they stay, and count against it.
 void keep_unseen(const ViewPrints& known, TagViews& all, nlohmann::ordered_json& json, Verdict& verdict) {
   TagViews unseen = all;
@@ -102,6 +100,8 @@ void keep_unseen(const ViewPrints& known, TagViews& all, nlohmann::ordered_json&
               all.views.size());
   all = std::move(unseen);
 }
+
+}  // namespace
 
 int verify_head(const PanTiltVerify& options) {
   TagViews all = read_tag_views(options.input);

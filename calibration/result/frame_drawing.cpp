@@ -68,17 +68,17 @@ std::string FrameDrawing::svg(const std::string& label) const {
   const double step = round_step(std::max(1e-3, box.sizes().head<2>().maxCoeff()) / 6);
   const Eigen::Array2d low = (box.min().head<2>().array() / step).floor() * step,
                        high = (box.max().head<2>().array() / step).ceil() * step;
-  std::vector<Line> grid;
+  std::vector<Line> all;  // the grid first
   const double floor = box.min().z();
   for (double x = low.x(); x < high.x() + step / 2; x += step)
-    grid.push_back({{{x, low.y(), floor}, {x, high.y(), floor}}, "grid", 1, false});
+    all.push_back({{{x, low.y(), floor}, {x, high.y(), floor}}, "grid", 1, false});
   for (double y = low.y(); y < high.y() + step / 2; y += step)
-    grid.push_back({{{low.x(), y, floor}, {high.x(), y, floor}}, "grid", 1, false});
+    all.push_back({{{low.x(), y, floor}, {high.x(), y, floor}}, "grid", 1, false});
 
+  all.insert(all.end(), lines_.begin(), lines_.end());
   Eigen::AlignedBox2d paper;
-  for (const std::vector<Line>* all : {&grid, &lines_})
-    for (const Line& line : *all)
-      for (const Eigen::Vector3d& p : line.points) paper.extend(on_paper(p));
+  for (const Line& line : all)
+    for (const Eigen::Vector3d& p : line.points) paper.extend(on_paper(p));
   const double scale = std::min((kWidth - 2 * kMargin) / std::max(1e-6, paper.sizes().x()),
                                 (kHeight - 2 * kMargin) / std::max(1e-6, paper.sizes().y()));
   const auto place = [&](const Eigen::Vector3d& p) {
@@ -87,13 +87,12 @@ std::string FrameDrawing::svg(const std::string& label) const {
   };
   std::string out = fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">", kWidth, kHeight,
                                 escape_html(label));
-  for (const std::vector<Line>* all : {&grid, &lines_})
-    for (const Line& line : *all) {
-      out += line.closed ? "<polygon" : "<polyline";
-      out += fmt::format(" class=\"frame3 {}\" stroke-width=\"{:.1f}\" points=\"", line.css_class, line.width);
-      for (const Eigen::Vector3d& p : line.points) out += fmt::format("{:.1f},{:.1f} ", place(p).x(), place(p).y());
-      out += "\"/>";
-    }
+  for (const Line& line : all) {
+    out += line.closed ? "<polygon" : "<polyline";
+    out += fmt::format(" class=\"frame3 {}\" stroke-width=\"{:.1f}\" points=\"", line.css_class, line.width);
+    for (const Eigen::Vector3d& p : line.points) out += fmt::format("{:.1f},{:.1f} ", place(p).x(), place(p).y());
+    out += "\"/>";
+  }
   for (const auto& [p, css] : dots_)
     out += fmt::format("<circle class=\"dot {}\" r=\"2.6\" cx=\"{:.1f}\" cy=\"{:.1f}\"/>", css, place(p).x(),
                        place(p).y());
