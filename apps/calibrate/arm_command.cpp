@@ -1,123 +1,31 @@
 #include "apps/calibrate/arm_command.hpp"
 
-#include <algorithm>
 #include <iostream>
-#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "apps/calibrate/arm_input.hpp"
 #include "apps/calibrate/arm_report.hpp"
+#include "apps/calibrate/arm_session.hpp"
 #include "apps/calibrate/outputs.hpp"
 #include "apps/calibrate/robot_output.hpp"
-#include "calibration/robot/joint_chain.hpp"
-#include "calibration/robot/robot_poses.hpp"
-#include "calibration/target/corner_files.hpp"
-#include "calibration/target/image_input.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
 namespace {
 
+constexpr double kWorseThanLeftOut = 2.5;  // of views kept back, of which there are few
+
 struct ArmOptions {
-  std::optional<std::filesystem::path> images, corners, poses, joints, urdf, camera, head;
-  std::string board, mount = "auto", unit = "auto", model = "radtan4";
-  ArmNames names{"", "", "camera", {}};
+  ArmInput input;
+  ArmSessionOptions session;
+  std::optional<std::filesystem::path> camera, head;
+  std::string mount = "auto", model = "radtan4";
   std::vector<double> head_angles;
   double board_sigma = 0.01;
-  bool invert = false;
   CalibrateOutputs outputs;
 };
-
-struct Inputs {
-  HandEyeData data;
-  std::vector<std::string> images;  // all of them, also those without the board
-  std::vector<std::string> notes;
-};
-
-Inputs read_views(const ArmOptions& options) {
-  std::optional<Board> board;
-  if (!options.board.empty()) board = parse_board(options.board);
-  Inputs in;
-  if (options.images) {
-    if (!board) throw InputError("--board", "is missing", "name the board in the images, such as chessboard:9x6:0.025");
-    FoundCorners found = find_in_folder(*options.images, *board);
-    for (const auto& image : list_images(*options.images)) in.images.push_back(image.stem().string());
-    for (const DroppedView& dropped : found.dropped)
-      in.notes.push_back("view " + dropped.name + " is left out: " + dropped.reason);
-    in.data.corners = std::move(found.corners);
-  } else if (options.corners) {
-    in.data.corners = read_corners(*options.corners, board);
-    for (const BoardView& view : in.data.corners.views) in.images.push_back(view.name);
-  } else {
-    throw InputError("--images", "no views are given", "give --images DIR or --corners PATH");
-  }
-  if (board && (board->kind == BoardKind::chessboard || board->kind == BoardKind::circles))
-    in.data.cols = board->cols, in.data.rows = board->rows;
-  return in;
-}
-
-std::vector<std::string> view_names(const Inputs& in) {
-  std::vector<std::string> names;
-  for (const BoardView& view : in.data.corners.views) names.push_back(view.name);
-  return names;
-}
-
-void read_poses(const ArmOptions& options, Inputs& in) {
-  const PoseUnit unit = options.unit == "auto" ? PoseUnit::automatic
-                        : options.unit == "mm" ? PoseUnit::millimetre
-                                               : PoseUnit::metre;
-  const RobotPoses read = read_robot_poses(*options.poses, unit);
-  in.notes.insert(in.notes.end(), read.notes.begin(), read.notes.end());
-  const MatchedPoses matched = match_poses(read.poses, in.images, view_names(in));
-  in.notes.push_back("robot poses were matched to the images " + matched.how);
-  for (const Pose& pose : matched.poses) in.data.poses.push_back({options.invert ? pose.inverse() : pose, {}});
-}
-
-struct JointRow {
-  std::string name;  // of the image, or empty
-  std::vector<double> positions;
-};
-
-// A first field more than the joints is a name.
-std::vector<JointRow> read_joint_rows(const std::filesystem::path& file, std::size_t joints) {
-  std::vector<JointRow> rows;
-  for (const FieldRow& row : read_field_rows(file)) {
-    JointRow out;
-    if (row.fields.size() == joints + 1) out.name = std::filesystem::path(row.fields[0]).stem().string();
-    for (std::size_t i = row.fields.size() > joints ? 1 : 0; i < row.fields.size(); ++i) {
-      const auto value = parse_number(row.fields[i]);
-      if (!value)
-        throw InputError(at_line(file, row.line), in_quotes(row.fields[i]) + " is not a number",
-                         "write joint positions in rad");
-      out.positions.push_back(*value);
-    }
-    rows.push_back(std::move(out));
-  }
-  return rows;
-}
-
-// Joint positions of each view: by the rows' names where these are the images', else by order of the images.
-std::vector<std::vector<double>> read_joints(const std::filesystem::path& file, std::size_t joints, Inputs& in) {
-  const std::vector<JointRow> rows = read_joint_rows(file, joints);
-  std::map<std::string, std::size_t> by_name;
-  for (std::size_t i = 0; i < rows.size(); ++i) by_name.emplace(rows[i].name, i);
-  const std::vector<std::string> views = view_names(in);
-  const bool named = by_name.size() == rows.size() && std::all_of(views.begin(), views.end(), [&](const auto& view) {
-                       return by_name.contains(std::filesystem::path(view).stem().string());
-                     });
-  if (!named && rows.size() != in.images.size())
-    throw InputError("--joints",
-                     std::to_string(rows.size()) + " rows for " + std::to_string(in.images.size()) + " images",
-                     "give one row an image, or name the rows as the images");
-  in.notes.push_back("joint positions were matched to the images by " + std::string(named ? "name" : "order"));
-  std::vector<std::vector<double>> out;
-  for (const std::string& view : views) {
-    const auto place =
-        static_cast<std::size_t>(std::find(in.images.begin(), in.images.end(), view) - in.images.begin());
-    out.push_back(rows[named ? by_name.at(std::filesystem::path(view).stem().string()) : place].positions);
-  }
-  return out;
-}
 
 HandEyeOptions solver_options(const ArmOptions& options) {
   HandEyeOptions out;
@@ -152,39 +60,70 @@ void print(const HandEyeSummary& s) {
             << readable(s.loo_mm, 3) << " mm\n";
 }
 
-int run(ArmOptions& options) {
-  Inputs in = read_views(options);
-  HandEyeSummary summary;
-  if (options.urdf) {
-    if (!options.joints)
-      throw InputError("--urdf", "no joint positions are given", "give --joints FILE, one row an image");
-    JointChain chain = read_joint_chain(*options.urdf, options.names.base, options.names.flange);
-    for (const int joint : chain.joints)
-      options.names.joints.push_back(chain.robot.joints[static_cast<std::size_t>(joint)].name);
-    options.names.base = chain.robot.links[static_cast<std::size_t>(chain.base)].name;
-    options.names.flange = chain.robot.links[static_cast<std::size_t>(chain.flange)].name;
-    const auto rows = read_joints(*options.joints, chain.joints.size(), in);
-    summary = solve_with_joints(chain, rows, in.data, solver_options(options));
-  } else {
-    if (!options.poses)
-      throw InputError("--poses", "no robot poses are given", "give --poses FILE or DIR, or --urdf and --joints");
-    if (options.names.base.empty()) options.names.base = "base";
-    if (options.names.flange.empty()) options.names.flange = "flange";
-    read_poses(options, in);
-    summary = solve_hand_eye(in.data, solver_options(options));
+/// Takes the views of a guided session, and makes them what is solved. False: it was stopped.
+bool guide(ArmOptions& options) {
+  ArmInput& input = options.input;
+  if (!input.rig) throw InputError("--guided", "it needs the robot", "give --rig RIG");
+  if (input.images || input.run || input.corners || input.poses || input.joints)
+    throw InputError("--guided", "it takes its own views",
+                     "leave --images, --run, --corners, --poses and --joints out");
+  ArmSessionOptions& session = options.session;
+  session.rig = *input.rig, session.board = input.board, session.side = input.side;
+  session.base = input.names.base, session.flange = input.names.flange;
+  if (session.views.empty()) {
+    if (!options.outputs.out)
+      throw InputError("--views", "there is no folder for the views", "give --out FILE, or --views DIR");
+    session.views = options.outputs.out->parent_path() / (options.outputs.out->stem().string() + "-views");
   }
-  summary.notes.insert(summary.notes.begin(), in.notes.begin(), in.notes.end());
+  if (!run_arm_session(session)) return false;
+  input.images = session.views, input.joints = session.views / "joints.csv";
+  std::cout << "views and joints are in " << session.views.string() << "\n";
+  return true;
+}
+
+/// On views that the solver has not seen.
+HandEyeScore verify_kept(const ArmViews& unseen, const ArmViews& solved, HandEyeSummary& summary) {
+  std::map<std::string, double> offsets;
+  for (std::size_t j = 0; j < std::min(summary.joint_offsets.size(), solved.names.joints.size()); ++j)
+    offsets[solved.names.joints[j]] = summary.joint_offsets[j];
+  const HandEyeScore score = score_hand_eye({summary.mount, summary.camera, summary.X, summary.Y, summary.board_scale},
+                                            with_poses(unseen, offsets));
+  std::cout << "kept back " << score.views << " views: " << readable(score.px, 3) << " px, " << readable(score.mm, 3)
+            << " mm\n";
+  if (score.px > kWorseThanLeftOut * summary.loo_px)
+    summary.verdict.object("views that were kept back are predicted to " + readable(score.px, 2) +
+                               " px, and those that were left out one by one to " + readable(summary.loo_px, 2),
+                           "look at the views for one in which something moved, and take more");
+  return score;
+}
+
+int run(ArmOptions& options) {
+  constexpr int kStopped = 130;
+  if (options.session.guided && !guide(options)) return kStopped;
+  ArmViews views = read_arm_views(options.input);
+  const std::optional<ArmViews> unseen = options.session.guided ? std::optional(keep_back(views)) : std::nullopt;
+  HandEyeOptions solver = solver_options(options);
+  if (!solver.camera) solver.camera = lens_of_run(options.input);
+  HandEyeSummary summary;
+  if (views.chain) {
+    JointChain chain = *views.chain;
+    summary = solve_with_joints(chain, views.rows, views.data, solver);
+  } else {
+    summary = solve_hand_eye(views.data, solver);
+  }
+  summary.notes.insert(summary.notes.begin(), views.notes.begin(), views.notes.end());
   const std::optional<Pose> T_head_base = head_of_arm(options, summary);
   print(summary);
+  const std::optional<HandEyeScore> kept = unseen ? std::optional(verify_kept(*unseen, views, summary)) : std::nullopt;
   if (T_head_base) std::cout << "T_head_base  " << readable_pose(*T_head_base) << "\n";
   print_notes(summary.notes);
-  write_json(options.outputs.json, arm_numbers(summary, options.names, T_head_base));
-  if (options.outputs.report) arm_report(summary, options.names).write(*options.outputs.report);
-  if (options.outputs.out) {
-    const ResultHeader header{"arm", utc_now(), {}, "loo_px", summary.loo_px, sigmas_of(summary, options.names)};
-    write_result(*options.outputs.out, header, to_yaml(summary, options.names, T_head_base), options.outputs.force);
-  }
-  return 0;
+  nlohmann::ordered_json numbers = arm_numbers(summary, views.names, T_head_base);
+  if (kept) numbers["kept_back"] = {{"views", kept->views}, {"px", kept->px}, {"mm", kept->mm}};
+  ResultHeader header{"arm", {}, {}, "loo_px", summary.loo_px, sigmas_of(summary, views.names)};
+  header.views = prints_of(views.data.corners);
+  return deliver(
+      {summary.verdict, header, to_yaml(summary, views.names, T_head_base), [&] { return arm_report(summary, views); }},
+      numbers, options.outputs);
 }
 
 }  // namespace
@@ -192,27 +131,13 @@ int run(ArmOptions& options) {
 void add_arm(Command& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<ArmOptions>();
   auto* arm = calibrate.add_subcommand("arm", "Hand-eye of a camera on an arm, or of an arm before a camera");
-  arm->add_option("--images", options->images, "Folder of images")->reads();
-  arm->add_option("--corners", options->corners, "Found corners instead: .vnl file, or folder of .csv")->reads();
-  arm->add_option("--board", options->board,
-                  "Board, such as chessboard:9x6:0.025 or charuco:5x7:0.036:0.018:DICT_6X6_250");
-  arm->add_option("--poses", options->poses,
-                  "Robot poses, base to flange: 4x4 rows, x y z qx qy qz qw, or a folder with one file each")
-      ->reads();
-  arm->add_option("--pose-unit", options->unit, "Of the positions")
-      ->check(one_of({"auto", "m", "mm"}))
-      ->capture_default_str();
-  arm->add_flag("--invert-poses", options->invert, "The poses are written from flange to base");
-  arm->add_option("--joints", options->joints,
-                  "Joint positions instead, rad, rows [name] q1 q2 ..., for --urdf; also gives their offsets")
-      ->reads();
-  arm->add_option("--urdf", options->urdf, "The arm")->reads();
-  arm->add_option("--base-link", options->names.base, "Link that stands still (default: the root)");
-  arm->add_option("--flange-link", options->names.flange, "Link that carries camera or board (default: the last)");
+  add_arm_input(*arm, options->input);
   arm->add_option("--camera", options->camera,
-                  "Known lens: result of kind intrinsics, or camera_info; else it is estimated")
+                  "Known lens: result of kind intrinsics, or camera_info; else that of --run, or it is estimated")
       ->reads();
   arm->add_option("--model", options->model, "Lens model that is estimated")->capture_default_str();
+  arm->add_option("--camera-link", options->input.names.camera,
+                  "Name of the camera's link in a URDF (default: camera)");
   arm->add_option("--camera-mount", options->mount, "Camera fixed beside the arm, or moving with it")
       ->check(one_of({"auto", "fixed", "moving"}))
       ->capture_default_str();
@@ -224,10 +149,13 @@ void add_arm(Command& calibrate, std::function<int()>& action) {
                    ->reads();
   head->needs(
       arm->add_option("--head-angles", options->head_angles, "Pan and tilt during the session, rad")->expected(2));
+  add_arm_session(*arm, options->session);
   add_outputs(*arm, options->outputs);
   arm->footer(
-      "Example:\n  foresight calibrate arm --images views --poses poses.txt --board charuco:5x7:0.036:0.018 "
-      "--json arm.json --report arm.html");
+      "Examples:\n"
+      "  foresight calibrate arm --images views --poses poses.txt --board charuco:5x7:0.036:0.018 --report arm.html\n"
+      "  foresight calibrate arm --run session --rig lab.yaml --board chessboard:9x6:0.025 --out arm.yaml\n"
+      "  foresight calibrate arm --guided --rig lab.yaml --board chessboard:9x6:0.025 --out arm.yaml");
   arm->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -32,17 +32,19 @@ void note_dropped(const std::vector<DroppedView>& dropped, std::vector<std::stri
   for (const DroppedView& view : dropped) notes.push_back("view " + view.name + " is not used: " + view.reason);
 }
 
-RigViews find_in_images(const CornerInput& input, std::vector<std::string>& notes) {
+RigViews find_in_images(const CornerInput& input, CameraViewsInput& read) {
   if (input.board.empty())
     throw InputError("--board", "is missing", "say what is in the images, such as chessboard:9x6:0.025");
   const Board board = parse_board(input.board);
   if (input.images) {
     const FoundCorners found = find_in_folder(*input.images, board);
-    note_dropped(found.dropped, notes);
+    note_dropped(found.dropped, read.notes);
+    read.files = found.files;
     return rig_views(found.corners);
   }
   const FoundStereoCorners found = find_pairs_in_folders(*input.left, *input.right, board);
-  note_dropped(found.dropped, notes);
+  note_dropped(found.dropped, read.notes);
+  read.files = found.files;
   return rig_views(found.corners);
 }
 
@@ -80,7 +82,7 @@ void add_camera_input(Command& command, CornerInput& input, bool pair) {
 CameraViewsInput read_camera_input(const CornerInput& input, bool pair) {
   require_one_source(input, pair);
   CameraViewsInput read;
-  read.train = input.corners ? read_file(*input.corners, input, pair) : find_in_images(input, read.notes);
+  read.train = input.corners ? read_file(*input.corners, input, pair) : find_in_images(input, read);
   if (input.test_corners) {
     read.test = read_file(*input.test_corners, input, pair);
     const bool same = read.test.p_board.size() == read.train.p_board.size() &&

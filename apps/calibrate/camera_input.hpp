@@ -8,6 +8,7 @@
 
 #include "apps/command_line/command_line.hpp"
 #include "calibration/camera/rig.hpp"
+#include "calibration/target/image_input.hpp"
 
 namespace foresight {
 
@@ -26,6 +27,7 @@ void add_camera_input(Command& command, CornerInput& input, bool pair);
 struct CameraViewsInput {
   RigViews train;
   RigViews test;                   ///< empty without --test-corners
+  PicturesOfViews files;           ///< of `train`, where it was found in images
   std::vector<std::string> notes;  ///< views that were not used, and why
 };
 

@@ -1,6 +1,7 @@
 #include "apps/calibrate/camera_output.hpp"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "apps/calibrate/camera_report.hpp"
 #include "calibration/camera/camera_result.hpp"
@@ -64,7 +65,6 @@ ResultHeader header_of(const CameraCalibration& c, const std::vector<std::string
   ResultHeader header;
   const bool pair = cameras(c) == 2;
   header.kind = pair ? "stereo" : "intrinsics";
-  header.date = utc_now();
   for (std::size_t i = 0; i < std::min(serials.size(), cameras(c)); ++i)
     header.devices[camera_name(static_cast<int>(i), c.views.cameras)] = serials[i];
   header.score_name = pair ? "loo_joint_px" : "loo_px";
@@ -98,8 +98,7 @@ void add_camera_output(Command& command, CameraOutput& output) {
 nlohmann::ordered_json camera_numbers(const CameraCalibration& c) {
   const bool pair = cameras(c) == 2;
   const LensParameters& lens = c.solution.rig.cameras[0].lens;
-  Json json{{"usable", c.usable()},
-            {"in_sample_px", c.solution.rms_px},
+  Json json{{"in_sample_px", c.solution.rms_px},
             {"rejected_points", c.solution.rejected.size()},
             {"views", c.views.views.size()}};
   json[pair ? "loo_joint_px" : "loo_px"] = c.held_out.joint_px;
@@ -126,21 +125,20 @@ nlohmann::ordered_json camera_numbers(const CameraCalibration& c) {
   json["turned_views"] = c.repairs.turned;
   json["dropped_views"] = c.repairs.dropped;
   json["notes"] = c.notes;
-  json["not_usable"] = c.unusable;
   return json;
 }
 
-int deliver(const CameraCalibration& c, const CameraOutput& output) {
+int deliver(const CameraCalibration& c, const CameraViewsInput& input, const CameraOutput& output) {
   std::fputs(c.full().c_str(), stdout);
-  write_json(output.files.json, camera_numbers(c));
-  if (output.files.report) camera_report(c).write(*output.files.report);
-  if (!c.usable()) return 1;
   const CameraRig& rig = c.solution.rig;
-  YAML::Node result = to_yaml(rig);
-  if (c.warp) result["board"] = to_yaml(KnownBoard(c.views.p_board, rig.warp));
-  if (output.files.out) write_result(*output.files.out, header_of(c, output.serials), result, output.files.force);
-  if (output.camera_info) write_camera_info(c, *output.camera_info);
-  return 0;
+  Deliverable found{c.verdict, header_of(c, output.serials), to_yaml(rig),
+                    [&] { return camera_report(c, input.files); }};
+  found.header.views = prints_of(input.train, c.views);
+  if (c.warp) found.payload["board"] = to_yaml(KnownBoard(c.views.p_board, rig.warp));
+  Json numbers = camera_numbers(c);
+  const int code = deliver(found, numbers, output.files);
+  if (output.camera_info && c.usable()) write_camera_info(c, *output.camera_info);
+  return code;
 }
 
 }  // namespace foresight

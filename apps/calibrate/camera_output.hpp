@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "apps/calibrate/camera_input.hpp"
 #include "apps/calibrate/outputs.hpp"
 #include "apps/command_line/command_line.hpp"
 #include "calibration/camera/camera_calibration.hpp"
@@ -22,7 +23,7 @@ void add_camera_output(Command& command, CameraOutput& output);
 nlohmann::ordered_json camera_numbers(const CameraCalibration& calibration);
 
 /// Prints the summary and writes what was asked for; the result and camera_info only where it is
-/// usable. Returns 0, or 1 where it is not.
-int deliver(const CameraCalibration& calibration, const CameraOutput& output);
+/// usable. `input`: what it was solved from. Returns 0, or 1 where it is not usable.
+int deliver(const CameraCalibration& calibration, const CameraViewsInput& input, const CameraOutput& output);
 
 }  // namespace foresight

@@ -3,10 +3,13 @@
 #include <opencv2/core.hpp>
 #include <sstream>
 
+#include "apps/calibrate/view_pictures.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
 namespace {
+
+constexpr std::size_t kMostPictures = 28;
 
 std::size_t cameras(const CameraCalibration& c) {
   return static_cast<std::size_t>(c.views.cameras);
@@ -46,29 +49,68 @@ void add_scores(const CameraCalibration& c, HtmlReport& report) {
   report.table({"what", "error"}, rows);
 }
 
-void add_residuals(const CameraCalibration& c, HtmlReport& report) {
-  const RigErrors errors = rig_errors(c.views, c.solution);
-  std::vector<HtmlReport::Series> clouds(cameras(c)), places(cameras(c)), by_view(cameras(c));
+std::vector<int> numbers_of(const CameraCalibration& c) {
+  std::vector<std::string> names;
+  for (const RigView& view : c.views.views) names.push_back(view.name);
+  return view_numbers(names);
+}
+
+double rms_of(const std::vector<Eigen::Vector2d>& errors) {
+  double sum = 0, count = 0;
+  for (const Eigen::Vector2d& error : errors)
+    if (error.allFinite()) sum += error.squaredNorm(), ++count;
+  return std::sqrt(sum / std::max(1.0, count));
+}
+
+void add_residuals(const CameraCalibration& c, const RigErrors& errors, HtmlReport& report) {
+  const std::vector<int> number = numbers_of(c);
+  std::vector<HtmlReport::Series> clouds(cameras(c)), by_view(cameras(c));
   for (std::size_t i = 0; i < cameras(c); ++i) {
-    const std::string name = camera_name(static_cast<int>(i), c.views.cameras);
-    clouds[i].name = places[i].name = by_view[i].name = name;
+    clouds[i].name = by_view[i].name = camera_name(static_cast<int>(i), c.views.cameras);
     for (std::size_t v = 0; v < errors.size(); ++v) {
-      double sum = 0;
-      const auto& corners = c.views.views[v].corners[i];
-      for (std::size_t k = 0; k < corners.size(); ++k) {
-        if (!errors[v][i][k].allFinite()) continue;
-        clouds[i].points.push_back(errors[v][i][k]);
-        places[i].points.push_back(corners[k].pixel);
-        sum += errors[v][i][k].squaredNorm();
-      }
-      if (!corners.empty())
-        by_view[i].points.emplace_back(double(v + 1), std::sqrt(sum / static_cast<double>(corners.size())));
+      for (const Eigen::Vector2d& error : errors[v][i])
+        if (error.allFinite()) clouds[i].points.push_back(error);
+      if (!errors[v][i].empty()) by_view[i].points.emplace_back(number[v], rms_of(errors[v][i]));
     }
   }
   report.heading("Residuals");
   report.plot("Error of every corner, rejected ones included", "x in px", "y in px", clouds, true);
   report.plot("Error of each view", "view", "RMS in px", by_view);
-  report.plot("Where the corners were seen", "x in px", "y in px", places, true);
+}
+
+void add_coverage(const CameraCalibration& c, HtmlReport& report) {
+  report.heading("Coverage");
+  report.paragraph("Every corner that was seen, in the whole image. Where none was, the lens is not known.");
+  for (std::size_t i = 0; i < cameras(c); ++i) {
+    HtmlReport::Series places{camera_name(static_cast<int>(i), c.views.cameras), {}, false};
+    for (const RigView& view : c.views.views)
+      for (const Corner& corner : view.corners[i]) places.points.push_back(corner.pixel);
+    report.places(title(places.name), {places}, c.views.width[i], c.views.height[i]);
+  }
+}
+
+void add_pictures(const CameraCalibration& c, const RigErrors& errors, const PicturesOfViews& files,
+                  HtmlReport& report) {
+  const std::vector<int> number = numbers_of(c);
+  std::vector<HtmlReport::Picture> pictures;
+  for (const std::size_t v : some_of(errors.size(), kMostPictures / cameras(c))) {
+    const RigView& view = c.views.views[v];
+    const auto found = files.find(view.name);
+    for (std::size_t i = 0; found != files.end() && i < cameras(c); ++i) {
+      if (found->second[i].empty() || view.corners[i].empty()) continue;
+      std::vector<ShownPoint> points;
+      for (std::size_t k = 0; k < view.corners[i].size(); ++k)
+        points.push_back({view.corners[i][k].pixel, view.corners[i][k].pixel + errors[v][i][k]});
+      const std::string side = cameras(c) == 2 ? ", " + camera_name(static_cast<int>(i), 2) : "";
+      pictures.push_back({draw_view(found->second[i], points), std::to_string(number[v]) + side,
+                          view.name + ": " + readable(rms_of(errors[v][i]), 2, " px")});
+    }
+  }
+  if (pictures.empty()) return;
+  report.heading("Pictures");
+  report.paragraph("Rings: corners as found. Lines: to where the solution has them, " + readable(kArrow, 0) +
+                   " times too long.");
+  report.pictures(pictures);
 }
 
 void add_maps(const CameraCalibration& c, HtmlReport& report) {
@@ -85,13 +127,16 @@ void add_maps(const CameraCalibration& c, HtmlReport& report) {
 
 }  // namespace
 
-HtmlReport camera_report(const CameraCalibration& c) {
+HtmlReport camera_report(const CameraCalibration& c, const PicturesOfViews& files) {
+  const RigErrors errors = rig_errors(c.views, c.solution);
   HtmlReport report(cameras(c) == 2 ? "Calibration of a stereo pair" : "Calibration of a camera");
   std::istringstream lines(c.full());
   for (std::string line; std::getline(lines, line);) report.paragraph(line);
   add_scores(c, report);
-  add_residuals(c, report);
+  add_residuals(c, errors, report);
+  add_coverage(c, report);
   add_maps(c, report);
+  add_pictures(c, errors, files, report);
   return report;
 }
 

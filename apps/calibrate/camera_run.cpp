@@ -20,7 +20,7 @@ int calibrate_cameras(const CameraRun& run, bool pair) {
   const CameraViewsInput input = read_camera_input(run.input, pair);
   CameraCalibration calibration = calibrate_rig(input.train, input.test, options);
   calibration.notes.insert(calibration.notes.begin(), input.notes.begin(), input.notes.end());
-  return deliver(calibration, run.output);
+  return deliver(calibration, input, run.output);
 }
 
 }  // namespace foresight

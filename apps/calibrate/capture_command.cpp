@@ -1,5 +1,7 @@
 #include "apps/calibrate/capture_command.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdio>
 #include <nlohmann/json.hpp>
 

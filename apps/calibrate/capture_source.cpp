@@ -5,6 +5,7 @@
 
 #include "calibration/target/image_input.hpp"
 #include "common/error.hpp"
+#include "scene/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -92,9 +93,7 @@ class FolderSource final : public CaptureSource {
 
  private:
   static cv::Mat read(const fs::path& file) {
-    cv::Mat image = cv::imread(file.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-    if (image.empty()) throw InputError(file.string(), "is no image that can be read", "remove it, or copy it again");
-    return image;
+    return read_picture(file, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   }
   std::vector<std::array<fs::path, 2>> files_;
   std::size_t next_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -15,6 +16,7 @@
 #include "common/text.hpp"
 #include "scene/camera_info.hpp"
 #include "scene/files.hpp"
+#include "scene/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -54,8 +56,7 @@ Pictures find_all(const DisplayOptions& options, const PanelPattern& pattern, co
   if (files.empty())
     throw InputError(options.images.string(), "holds no images", "name a folder of PNG or JPEG images");
   for (const auto& file : files) {
-    const cv::Mat image = cv::imread(file.string(), options.colours ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
-    if (image.empty()) throw InputError(file.string(), "cannot be read as an image", "remove it, or take it anew");
+    const cv::Mat image = read_picture(file, options.colours ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
     if (image.cols != eye.width || image.rows != eye.height)
       throw InputError(file.string(),
                        "is " + std::to_string(image.cols) + " x " + std::to_string(image.rows) +
@@ -83,25 +84,23 @@ void write_pattern(const DisplayOptions& options, const PanelPattern& pattern) {
   std::cout << options.pattern_out.string() << ": show it unscaled on the panel\n";
 }
 
-void write_display(const DisplayOptions& options, const DisplayLensSummary& s,
-                   const std::vector<std::pair<std::string, CameraModel>>& colours) {
-  if (!options.outputs.out) return;
-  ResultHeader header;
-  header.kind = "display";
-  header.date = utc_now();
-  header.score_name = "held_out_px";
-  header.score = s.held_out_px;
-  header.sigma = {{"focal_px", s.sigma_focal_px}, {"centre_px", s.sigma_centre_px}, {"tilt_rad", s.sigma_tilt_rad}};
-  YAML::Node payload;
-  payload["panel"] = to_yaml(s.panel);
-  for (const auto& [name, lens] : colours) payload["colours"][name] = to_yaml(lens);
-  for (const Pose& T : s.T_display_camera) payload["T_display_camera"].push_back(to_yaml(T));
-  write_result(*options.outputs.out, header, payload, options.outputs.force);
+Deliverable deliverable(const DisplayLensSummary& s, const std::vector<std::pair<std::string, CameraModel>>& colours) {
+  Deliverable out;
+  out.verdict = s.verdict;
+  out.header = {"display",
+                {},
+                {},
+                "held_out_px",
+                s.held_out_px,
+                {{"focal_px", s.sigma_focal_px}, {"centre_px", s.sigma_centre_px}, {"tilt_rad", s.sigma_tilt_rad}}};
+  out.payload["panel"] = to_yaml(s.panel);
+  for (const auto& [name, lens] : colours) out.payload["colours"][name] = to_yaml(lens);
+  for (const Pose& T : s.T_display_camera) out.payload["T_display_camera"].push_back(to_yaml(T));
+  return out;
 }
 
-void write_report(const DisplayOptions& options, const DisplayLensSummary& s, const std::vector<PanelPoint>& points,
-                  const CameraModel& eye) {
-  if (!options.outputs.report) return;
+HtmlReport report_of(const DisplayOptions& options, const DisplayLensSummary& s, const std::vector<PanelPoint>& points,
+                     const CameraModel& eye) {
   HtmlReport report("Lens of a head display");
   report.paragraph(std::to_string(s.points) + " points in " + std::to_string(s.T_display_camera.size()) +
                    " pictures, " + std::to_string(s.rejected) + " rejected; " + readable(s.held_out_px, 3, " px") +
@@ -124,7 +123,7 @@ void write_report(const DisplayOptions& options, const DisplayLensSummary& s, co
   std::vector<std::vector<std::string>> rows;
   for (const auto& [model, score] : s.tried) rows.push_back({to_string(model), readable(score, 3, " px")});
   report.table({"lens model", "held-out RMS"}, rows);
-  report.write(*options.outputs.report);
+  return report;
 }
 
 nlohmann::ordered_json numbers_of(const DisplayLensSummary& s) {
@@ -184,10 +183,9 @@ int run_display(const DisplayOptions& options) {
   for (const std::string& warning : s.warnings) std::cerr << "warning: " << warning << "\n";
   nlohmann::ordered_json numbers = numbers_of(s);
   for (const auto& [name, lens] : colours) numbers["scale_" + name] = lens.lens[0] / s.panel.lens[0];
-  write_json(options.outputs.json, numbers);
-  write_display(options, s, colours);
-  write_report(options, s, pictures.points, eye);
-  return 0;
+  Deliverable found = deliverable(s, colours);
+  found.report = [&] { return report_of(options, s, pictures.points, eye); };
+  return deliver(found, numbers, options.outputs);
 }
 
 }  // namespace

@@ -2,12 +2,14 @@
 
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "apps/calibrate/outputs.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/formats/camera_formats.hpp"
 #include "calibration/formats/urdf_offsets.hpp"
 #include "calibration/result/html_report.hpp"
+#include "calibration/robot/pan_tilt.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/exact_number.hpp"
@@ -25,6 +27,8 @@ struct ExportOptions {
   std::string from = "result";
   std::string to;
   std::filesystem::path urdf;  // empty: a new one
+  std::string link;            // of it, to which the mount or head is attached
+  std::vector<std::string> joints{"pan", "tilt"};
   CalibrateOutputs outputs;
 };
 
@@ -32,6 +36,7 @@ struct Source {
   std::optional<CalibratedCameras> cameras;
   UrdfOffsets offsets;
   std::map<std::string, std::string> devices;
+  std::vector<std::string> notes;  // of what is lost
 };
 
 // Results of arms and heads name what a URDF takes: joint_offsets: {NAME: rad or m}, and
@@ -53,6 +58,27 @@ void add_pair(Source& source) {
     source.offsets.mounts.push_back({kLeftLink, kRightLink, source.cameras->T_left_right});
 }
 
+/// A head stands in the world in which its tags or poses were measured; in a URDF, that is the link it hangs on.
+void add_head(const YamlMap& result, Source& source) {
+  const PanTiltModel model = read_pan_tilt(result);
+  UrdfHead head;
+  head.parent = "world";
+  head.T_parent_pan = model.T_world_pan;
+  head.T_pan_tilt.translate(Eigen::Vector3d(model.length_m, 0, 0));
+  head.T_pan_tilt.rotate(Eigen::AngleAxisd(model.twist_rad, Eigen::Vector3d::UnitX()));
+  head.T_tilt_camera = model.T_tilt_camera;
+  head.camera = kLeftLink;
+  source.offsets.head = head;
+  for (const std::size_t joint : {0u, 1u}) {
+    const std::string name = joint == 0 ? "pan" : "tilt";
+    if (model.gain[joint] != 1)
+      source.notes.push_back("a URDF cannot hold the gain of " + name + ", " + readable(model.gain[joint], 5));
+    if (model.backlash_rad[joint] != 0)
+      source.notes.push_back("a URDF cannot hold the backlash of " + name + ", " +
+                             readable(1000 * model.backlash_rad[joint], 2, " mrad"));
+  }
+}
+
 Source read_result_source(const std::filesystem::path& file) {
   const std::string kind = YamlMap::load(file).text("kind");
   const ResultFile result = read_result(file, kind);
@@ -62,7 +88,11 @@ Source read_result_source(const std::filesystem::path& file) {
     source.cameras = read_calibrated_cameras(result.result);
   } else if (kind == "display") {
     source.cameras = CalibratedCameras{{read_camera(result.result.map("panel"))}, Pose::Identity()};
+  } else if (kind == "pan-tilt") {
+    add_head(result.result, source);
   } else {
+    if (result.result.has("camera"))
+      source.cameras = CalibratedCameras{{read_camera(result.result.map("camera"))}, Pose::Identity()};
     source.offsets = read_offsets(result.result);
   }
   add_pair(source);
@@ -73,7 +103,9 @@ Source read_source(const ExportOptions& options) {
   if (options.from == "result") return read_result_source(options.input);
   if (options.from == "urdf") {
     const UrdfMount mount = read_mount(read_file(options.input), kRightLink, options.input.string());
-    return {std::nullopt, {{mount}, {}}, {}};
+    Source source;
+    source.offsets.mounts = {mount};
+    return source;
   }
   Source source;
   source.cameras = read_cameras(parse_camera_format(options.from), options.input);
@@ -84,7 +116,7 @@ Source read_source(const ExportOptions& options) {
 const CalibratedCameras& cameras_of(const Source& source, const ExportOptions& options) {
   if (!source.cameras)
     throw InputError(options.input.string(), "it holds no lens",
-                     "give a result of `calibrate intrinsics` or `stereo`, or use --to urdf");
+                     "give a result of `calibrate intrinsics`, `stereo` or `arm`, or use --to urdf");
   return *source.cameras;
 }
 
@@ -92,16 +124,25 @@ ExportSummary write_urdf(const Source& source, const ExportOptions& options) {
   const std::filesystem::path& out = *options.outputs.out;
   if (std::filesystem::exists(out) && !options.outputs.force)
     throw InputError(out.string(), "it exists", "write to another place, or give --force to replace it");
-  if (source.offsets.mounts.empty() && source.offsets.joints.empty())
+  if (source.offsets.mounts.empty() && source.offsets.joints.empty() && !source.offsets.head)
     throw InputError(options.input.string(), "it holds nothing that a URDF takes",
-                     "give a result with a pair of cameras, joint_offsets or mounts");
+                     "give a result of `calibrate stereo`, `arm` or `pan-tilt`");
+  if (!options.link.empty() && options.urdf.empty())
+    throw InputError("--link", "there is no robot that has it", "give --urdf ROBOT.urdf");
   if (options.urdf.empty() && !source.offsets.joints.empty())
     throw InputError("--urdf", "joint offsets need the robot that they belong to", "give --urdf ROBOT.urdf");
-  const std::string before = options.urdf.empty() ? empty_urdf(kLeftLink) : read_file(options.urdf);
+  UrdfOffsets offsets = source.offsets;
+  if (offsets.head) offsets.head->joints = {options.joints.at(0), options.joints.at(1)};
+  const auto root = [&] { return offsets.head ? offsets.head->parent : offsets.mounts.front().parent; };
+  const std::string before = options.urdf.empty() ? empty_urdf(root()) : read_file(options.urdf);
   const std::string where = options.urdf.empty() ? options.input.string() : options.urdf.string();
-  const std::string text = with_offsets(before, source.offsets, where);
+  if (!options.link.empty()) {
+    for (UrdfMount& mount : offsets.mounts) mount = attached(mount, options.link, before, where);
+    if (offsets.head) offsets.head->parent = options.link;
+  }
+  const std::string text = with_offsets(before, offsets, where);
   ExportSummary summary{{out}, 0, 0};
-  for (const UrdfMount& mount : source.offsets.mounts) {
+  for (const UrdfMount& mount : offsets.mounts) {
     const Pose back = read_mount(text, mount.child, out.string()).T_parent_child;
     if (!source.cameras || !source.cameras->pair()) continue;
     CalibratedCameras as_read = *source.cameras;
@@ -168,7 +209,9 @@ int run_export(const ExportOptions& options) {
     numbers["files"].push_back(file.string());
     std::cout << file.string() << "\n";
   }
-  std::cout << summary.rays << " rays per camera agree within " << exact_text(summary.worst_px) << " px\n";
+  for (const std::string& note : source.notes) std::cout << "note: " << note << "\n";
+  if (summary.rays > 0)
+    std::cout << summary.rays << " rays per camera agree within " << exact_text(summary.worst_px) << " px\n";
   write_json(options.outputs.json, numbers);
   write_report(source, options, summary);
   return 0;
@@ -187,6 +230,12 @@ void add_export(Command& calibrate, std::function<int()>& action) {
       ->capture_default_str()
       ->check(one_of({"camera-info", "kalibr", "opencv", "mrcal", "urdf", "result"}));
   command->add_option("--urdf", options->urdf, "With --to urdf: the robot to correct; else a new file")->reads();
+  command->add_option("--link", options->link,
+                      "With --urdf: its link that carries the camera, the pair's left camera or the head, where the\n"
+                      "result knows it by another name, or one that is fixed to it");
+  command->add_option("--joint-names", options->joints, "With --to urdf, of a head: its joints")
+      ->expected(2)
+      ->capture_default_str();
   add_outputs(*command, options->outputs, [](const std::filesystem::path& out) -> std::vector<Output> {
     return {{out, Output::Kind::either}};  // what is there stays, but for --force
   });
@@ -196,7 +245,9 @@ void add_export(Command& calibrate, std::function<int()>& action) {
       "Examples:\n"
       "  foresight calibrate export stereo.yaml --to kalibr --out camchain.yaml\n"
       "  foresight calibrate export camchain.yaml --from kalibr --to mrcal --out models/\n"
-      "  foresight calibrate export arm_result.yaml --to urdf --urdf arm.urdf --out arm_calibrated.urdf");
+      "  foresight calibrate export arm.yaml --to urdf --urdf robot.urdf --link tool0 --out robot_calibrated.urdf\n"
+      "  foresight calibrate export arm.yaml --to camera-info --out camera.yaml\n"
+      "  foresight calibrate export head.yaml --to urdf --urdf robot.urdf --link torso --out robot_calibrated.urdf");
   command->callback([options, &action] { action = [options] { return run_export(*options); }; });
 }
 

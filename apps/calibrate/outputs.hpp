@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "apps/command_line/command_line.hpp"
+#include "calibration/result/html_report.hpp"
 #include "calibration/result/result_file.hpp"
 
 namespace foresight {
@@ -22,5 +24,22 @@ void add_outputs(Command& command, CalibrateOutputs& outputs, OutputsOf out = {}
 
 /// Writes to `file` where there is one; throws RuntimeFailure where it cannot be written.
 void write_json(const std::optional<std::filesystem::path>& file, const nlohmann::ordered_json& numbers);
+
+/// What a solver found.
+struct Deliverable {
+  Verdict verdict;
+  ResultHeader header;  ///< its date and `judged` are set by deliver()
+  YAML::Node payload;   ///< of the result file
+  std::function<HtmlReport()> report;
+};
+
+/// Prints the verdict, and writes what was asked for: `numbers` with the verdict among them, the report with the
+/// verdict above all, and the result where it may be used. Returns the exit code: 0, or 1 where it may not be used.
+int deliver(const Deliverable& found, nlohmann::ordered_json& numbers, const CalibrateOutputs& outputs);
+
+/// The same for `verify`: prints "pass on 12 views", or "FAIL on 12 views" and each objection, and writes `numbers`
+/// with them to `json`. Returns 0 or 1.
+int tell_verified(const Verdict& verdict, std::size_t views, nlohmann::ordered_json& numbers,
+                  const std::optional<std::filesystem::path>& json);
 
 }  // namespace foresight

@@ -2,7 +2,9 @@
 
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "apps/calibrate/head_drawing.hpp"
 #include "apps/calibrate/outputs.hpp"
 #include "apps/calibrate/pan_tilt_input.hpp"
 #include "apps/calibrate/pan_tilt_tag_command.hpp"
@@ -60,6 +62,9 @@ HtmlReport report_of(const PanTiltSummary& s, const PanTiltSummary& plain, const
                 error_row("plain least squares, in sample", plain.in_sample)});
   report_notes(report, s.notes);
   report_model(report, s.model);
+  DrawnHead head{s.model, {}};
+  for (const PanTiltSample& sample : samples) head.angles.push_back(sample.angles);
+  report.drawing("Where everything stands", head_svg(head));
   HtmlReport::Series pan{"mm", {}, false}, pan_turn{"mrad", {}, false}, tilt{"mm", {}, false},
       tilt_turn{"mrad", {}, false};
   for (std::size_t i = 0; i < s.loo_steps.size(); ++i) {
@@ -115,12 +120,12 @@ int run(PanTiltCommandOptions& options) {
   summary.notes.insert(summary.notes.begin(), notes.begin(), notes.end());
   print(summary, plain);
   print_notes(summary.notes);
-  write_json(options.outputs.json, numbers_of(summary, plain, samples.size()));
-  if (options.outputs.report) report_of(summary, plain, samples).write(*options.outputs.report);
-  if (options.outputs.out)
-    write_result(*options.outputs.out, {"pan-tilt", utc_now(), {}, "loo_mrad", summary.loo.mrad, sigmas_of(summary)},
-                 to_yaml(summary.model), options.outputs.force);
-  return 0;
+  nlohmann::ordered_json numbers = numbers_of(summary, plain, samples.size());
+  return deliver({summary.verdict,
+                  {"pan-tilt", {}, {}, "loo_mrad", summary.loo.mrad, sigmas_of(summary)},
+                  to_yaml(summary.model),
+                  [&] { return report_of(summary, plain, samples); }},
+                 numbers, options.outputs);
 }
 
 }  // namespace

@@ -1,6 +1,11 @@
 #include "apps/calibrate/pan_tilt_tag_command.hpp"
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/calibrate/head_drawing.hpp"
 #include "apps/calibrate/robot_output.hpp"
+#include "apps/calibrate/view_pictures.hpp"
 #include "calibration/robot/robot_results.hpp"
 #include "common/text.hpp"
 
@@ -11,6 +16,7 @@ constexpr double kMoves = 0.02;           // rad/s: a head that moves tells the 
 constexpr std::size_t kFewestMoving = 8;  // views
 constexpr double kSettled = 1e-4;         // s
 constexpr int kRounds = 8;
+constexpr std::size_t kMostPictures = 12;
 
 struct Solved {
   PanTiltTagSummary summary;
@@ -65,7 +71,33 @@ nlohmann::ordered_json numbers_of(const Solved& solved) {
   return out;
 }
 
-HtmlReport report_of(const Solved& solved) {
+void show_pictures(const Solved& solved, const TagViews& all, HtmlReport& report) {
+  const std::vector<PanTiltView> views = views_at(all, solved.offset_s.value_or(0));
+  std::vector<HtmlReport::Picture> pictures;
+  for (const std::size_t i : some_of(solved.summary.view_names.size(), kMostPictures)) {
+    const auto view = std::find_if(views.begin(), views.end(),
+                                   [&](const PanTiltView& v) { return v.name == solved.summary.view_names[i]; });
+    const auto files = all.files.find(solved.summary.view_names[i]);
+    if (view == views.end() || files == all.files.end()) continue;
+    const auto predicted = predicted_corners(all.cameras, camera_pose(solved.summary.model, view->angles), *view);
+    std::array<std::vector<ShownPoint>, 2> points;
+    for (std::size_t k = 0; k < predicted.size(); ++k)
+      points[static_cast<std::size_t>(view->tags[k / 4].camera)].push_back(
+          {view->tags[k / 4].pixels[k % 4], predicted[k].value_or(Eigen::Vector2d::Constant(NAN))});
+    for (std::size_t side = 0; side < 2; ++side)
+      if (!points[side].empty() && !files->second[side].empty())
+        pictures.push_back({draw_view(files->second[side], points[side]),
+                            view->name + (all.cameras.pair() ? (side == 0 ? ", left" : ", right") : ""),
+                            "left out " + readable(solved.summary.loo_view_px[i], 2, " px")});
+  }
+  if (pictures.empty()) return;
+  report.heading("Pictures");
+  report.paragraph("Rings: corners of tags as found. Lines: to where the encoders alone have them, " +
+                   readable(kArrow, 0) + " times too long.");
+  report.pictures(pictures);
+}
+
+HtmlReport report_of(const Solved& solved, const TagViews& all) {
   const PanTiltTagSummary& s = solved.summary;
   HtmlReport report("Pan-tilt calibration from tags");
   report.table({"", ""},
@@ -78,6 +110,11 @@ HtmlReport report_of(const Solved& solved) {
                 {"t_encoder - t_camera, ms", solved.offset_s ? readable(1e3 * *solved.offset_s, 2) : "-"}});
   report_notes(report, s.notes);
   report_model(report, s.model);
+  DrawnHead head{s.model, s.angles};
+  const CameraModel& left = all.cameras.left();
+  head.tan_x = left.width / (2 * left.lens[0]), head.tan_y = left.height / (2 * left.lens[1]);
+  for (const auto& [id, corners] : all.map) head.tags.push_back(corners);
+  report.drawing("Where everything stands", head_svg(head));
   HtmlReport::Series pan{"left out", {}, false}, tilt{"left out", {}, false};
   for (std::size_t i = 0; i < s.loo_view_px.size(); ++i) {
     pan.points.emplace_back(s.angles[i].pan, s.loo_view_px[i]);
@@ -85,6 +122,7 @@ HtmlReport report_of(const Solved& solved) {
   }
   report.plot("Error of each view when it is left out, over pan", "pan / rad", "px", {pan});
   report.plot("Error of each view when it is left out, over tilt", "tilt / rad", "px", {tilt});
+  show_pictures(solved, all, report);
   report_sigmas(report, sigmas_of(s));
   return report;
 }
@@ -137,13 +175,12 @@ int calibrate_from_tags(PanTiltTagCommand& command) {
   solved.summary.notes.insert(solved.summary.notes.begin(), all.notes.begin(), all.notes.end());
   print(solved);
   print_notes(solved.summary.notes);
-  write_json(command.outputs.json, numbers_of(solved));
-  if (command.outputs.report) report_of(solved).write(*command.outputs.report);
-  if (command.outputs.out)
-    write_result(*command.outputs.out,
-                 {"pan-tilt", utc_now(), {}, "loo_px", solved.summary.loo_px, sigmas_of(solved.summary)},
-                 to_yaml(solved.summary, solved.offset_s), command.outputs.force);
-  return 0;
+  nlohmann::ordered_json numbers = numbers_of(solved);
+  ResultHeader header{"pan-tilt", {}, {}, "loo_px", solved.summary.loo_px, sigmas_of(solved.summary)};
+  header.views = prints_of(all.views);
+  return deliver({solved.summary.verdict, header, to_yaml(solved.summary, solved.offset_s),
+                  [&] { return report_of(solved, all); }},
+                 numbers, command.outputs);
 }
 
 }  // namespace foresight

@@ -6,6 +6,7 @@
 
 #include "apps/calibrate/pan_tilt_input.hpp"
 #include "apps/calibrate/robot_output.hpp"
+#include "apps/calibrate/run_input.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/registration/calibrated_head.hpp"
 #include "calibration/result/result_file.hpp"
@@ -14,7 +15,7 @@
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "scene/camera_info.hpp"
-#include "scene/text_table.hpp"
+#include "scene/picture_file.hpp"
 #include "session/run_recorder.hpp"
 
 namespace foresight {
@@ -39,8 +40,7 @@ struct Shot {
 };
 
 cv::Mat read_grey(const fs::path& file, const CameraModel& lens) {
-  const cv::Mat grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-  if (grey.empty()) throw InputError(file.string(), "is no picture that can be read", "remove it, or take it anew");
+  const cv::Mat grey = read_picture(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   if (grey.cols != lens.width || grey.rows != lens.height)
     throw InputError(file.string(),
                      "is of " + std::to_string(grey.cols) + "x" + std::to_string(grey.rows) + ", the lens of " +
@@ -127,10 +127,8 @@ std::vector<Shot> shots_of_images(const PanTiltTagInput& input) {
 
 std::vector<Shot> listed(const fs::path& list, int camera) {
   std::vector<Shot> out;
-  for_each_row(list, "time file", [&](const TextRow& row) {
-    const fs::path file = list.parent_path() / row.fields[1];
-    out.push_back({{file.stem().string(), {}, {0, 0}, {}}, time_field(row, 0), {{file, camera}}});
-  });
+  for (const TimedPicture& picture : read_picture_list(list))
+    out.push_back({{picture.file.stem().string(), {}, {0, 0}, {}}, picture.time, {{picture.file, camera}}});
   return out;
 }
 
@@ -160,25 +158,7 @@ std::vector<JointRow> read_joints(const PanTiltTagInput& input) {
   const fs::path file = input.joints.value_or(beside_run(*input.run, "-joints.csv"));
   if (!fs::exists(file))
     throw InputError(file.string(), "is missing", "give the recorded joints with --joints: rows time pan tilt");
-  const std::vector<FieldRow> rows = read_field_rows(file);
-  std::vector<JointRow> joints = read_joint_stream(file, TimeUnit::second).rows;
-  std::array<std::size_t, 2> column{0, 1};
-  if (!rows.empty() && !parse_number(rows[0].fields.back())) {
-    const std::vector<std::string> names(rows[0].fields.begin() + 1, rows[0].fields.end());
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto at = std::find(names.begin(), names.end(), input.joint_names.at(i));
-      if (at == names.end())
-        throw InputError(file.string(), "has no joint " + in_quotes(input.joint_names[i]),
-                         "name the head's with --joint-names; the nearest is " +
-                             in_quotes(nearest_word(input.joint_names[i], names)));
-      column[i] = static_cast<std::size_t>(at - names.begin());
-    }
-  } else if (joints[0].positions.size() != 2) {
-    throw InputError(file.string(), "has " + std::to_string(joints[0].positions.size()) + " joints without names",
-                     "begin it with a row of names: time_s,pan,tilt");
-  }
-  for (JointRow& row : joints) row.positions = {row.positions[column[0]], row.positions[column[1]]};
-  return joints;
+  return read_named_joints(file, input.joint_names, "--joint-names");
 }
 
 void require(bool given, const char* option, const char* what) {
@@ -207,9 +187,7 @@ TagViews read_tag_views(const PanTiltTagInput& given) {
     throw InputError("--images, --run", input.run ? "are both given" : "are both missing",
                      "give --images DIR with --angles FILE, or --run RUN");
   if (input.run) {
-    if (!fs::is_regular_file(*input.run / "rgb.txt"))
-      throw InputError((*input.run / "rgb.txt").string(), "is missing",
-                       "give a folder that `foresight robot --record` or `foresight record` wrote");
+    require_run(*input.run);
     if (!input.camera) {
       input.camera = *input.run / "camera.yaml";
       if (const fs::path right = *input.run / "camera_right.yaml"; fs::exists(right)) input.camera_right = right;
@@ -231,6 +209,9 @@ TagViews read_tag_views(const PanTiltTagInput& given) {
   }
   find_tags(shots, input, out);
   for (Shot& shot : shots) {
+    std::array<fs::path, 2> files;
+    for (const Picture& picture : shot.pictures) files[static_cast<std::size_t>(picture.camera)] = picture.file;
+    out.files[shot.view.name] = files;
     out.views.push_back(std::move(shot.view));
     if (input.run) out.times.push_back(shot.time);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "calibration/registration/tag_correction.hpp"
@@ -26,10 +27,11 @@ struct PanTiltTagInput {
 struct TagViews {
   CalibratedCameras cameras;
   TagMap map;
-  std::vector<PanTiltView> views;        ///< of images: with their angles
-  std::vector<RobotTime> times;          ///< of a run: of each view
-  std::vector<JointRow> joints;          ///< of a run: pan and tilt
-  std::optional<HeadEncoders> encoders;  ///< of a run
+  std::vector<PanTiltView> views;                                     ///< of images: with their angles
+  std::vector<RobotTime> times;                                       ///< of a run: of each view
+  std::vector<JointRow> joints;                                       ///< of a run: pan and tilt
+  std::optional<HeadEncoders> encoders;                               ///< of a run
+  std::map<std::string, std::array<std::filesystem::path, 2>> files;  ///< pictures of each view, by name; left, right
   std::vector<std::string> notes;
 };
 

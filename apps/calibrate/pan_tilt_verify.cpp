@@ -1,6 +1,7 @@
 #include "apps/calibrate/pan_tilt_verify.hpp"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "apps/calibrate/outputs.hpp"
@@ -77,10 +78,36 @@ void score_corrected(const PosedView& posed, const TagViews& all, const TagMap& 
   score.add(scored, corner_errors(all.cameras, posed.T_world_left * found.T_left_corrected, scored));
 }
 
+/// Leaves out the views that the result was solved from; where no other is there, they stay, and count against it.
+void keep_unseen(const ViewPrints& known, TagViews& all, nlohmann::ordered_json& json, Verdict& verdict) {
+  TagViews unseen = all;
+  unseen.views.clear(), unseen.times.clear();
+  for (std::size_t i = 0; i < all.views.size(); ++i) {
+    const ViewPrints print = prints_of({all.views[i]});
+    if (!print.empty() && knows(known, print.front())) continue;
+    unseen.views.push_back(all.views[i]);
+    if (!all.times.empty()) unseen.times.push_back(all.times[i]);
+  }
+  const std::size_t seen = all.views.size() - unseen.views.size();
+  json["views_of_the_calibration"] = seen;
+  if (seen == 0) return;
+  if (2 * seen > all.views.size())
+    verdict.object(std::to_string(seen) + " of " + std::to_string(all.views.size()) +
+                       " views are among those that the result was solved from, and say nothing about others",
+                   "record another run, and verify with it");
+  if (2 * seen > all.views.size()) return;
+  std::printf("%zu of %zu views are among those that the result was solved from, and do not count\n", seen,
+              all.views.size());
+  all = std::move(unseen);
+}
+
 }  // namespace
 
 int verify_head(const PanTiltVerify& options) {
-  const TagViews all = read_tag_views(options.input);
+  TagViews all = read_tag_views(options.input);
+  Verdict verdict;
+  nlohmann::ordered_json json;
+  keep_unseen(read_result(options.result, "pan-tilt").header.views, all, json, verdict);
   const std::vector<PosedView> views = by_encoders(options, all);
   if (views.empty())
     throw InputError("--joints", "the encoders tell nothing of the times of the pictures",
@@ -98,11 +125,10 @@ int verify_head(const PanTiltVerify& options) {
   if (tags.points == 0)
     throw InputError("--tags", "no view shows two tags, one to correct and one to score",
                      "verify where more tags are in view");
-  bool pass = true;
-  nlohmann::ordered_json json{{"views", views.size()}};
-  const auto row = [&](const char* name, const Score& score, double limit) {
+  json["views"] = views.size();
+  const auto row = [&](const char* name, const Score& score, double limit, const std::string& cure) {
     const bool good = score.px() <= limit;
-    pass = pass && good;
+    if (!good) verdict.object(std::string("the error by ") + name + " is above its limit", cure);
     std::printf("%-9s %s  (limit %s, %d corners)  %s\n", name, readable(score.px(), 3, " px").c_str(),
                 readable(limit, 3).c_str(), score.points, good ? "pass" : "FAIL");
     if (!good)
@@ -112,12 +138,15 @@ int verify_head(const PanTiltVerify& options) {
     json[std::string(name) + "_worst"] = score.worst_tag;
     json[std::string(name) + "_limit_px"] = limit;
   };
-  row("encoders", encoders, options.encoders_px);
-  row("tags", tags, options.tags_px);
-  json["pass"] = pass;
-  std::printf("%s on %zu views\n", pass ? "pass" : "FAIL", views.size());
-  write_json(options.json, json);
-  return pass ? 0 : 1;
+  row("encoders", encoders, options.encoders_px,
+      "the head's zeros, axes or clock may have changed: calibrate it again (pan-tilt); --joints must be on the "
+      "pictures' clock");
+  row("tags", tags, options.tags_px,
+      options.input.photometric
+          ? "check that the map of the tags is that of what was in view, and the lenses (verify with a board)"
+          : "bright and dark shift the corners of tags: give --photometric FILE of `foresight calibrate photometric`, "
+            "here and to pan-tilt; else check the map of the tags");
+  return tell_verified(verdict, views.size(), json, options.json);
 }
 
 }  // namespace foresight

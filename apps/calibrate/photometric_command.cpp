@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "apps/calibrate/outputs.hpp"
 #include "calibration/photometric/exposure_series.hpp"
@@ -35,9 +36,15 @@ constexpr int kPlaces = 400;  // blocks of a static scene
 CameraPhotometry solve_one(const std::string& name, const Folders& folders,
                            const std::map<std::string, double>& exposures) {
   CameraPhotometry out{name, {}, {}};
-  if (!folders.series.empty()) add_static(read_series(folders.series, exposures), kPlaces, out.samples);
+  Verdict of_series;
+  if (!folders.series.empty()) {
+    const auto series = read_series(folders.series, exposures);
+    judge_series(series, of_series);
+    add_static(series, kPlaces, out.samples);
+  }
   if (!folders.flat.empty()) {
     const auto flat = read_series(folders.flat, exposures);
+    judge_series(flat, of_series);
     const cv::Size size = flat.front().pixels.size();
     Eigen::Vector2d centre((size.width - 1) / 2.0, (size.height - 1) / 2.0);
     if (!folders.camera.empty()) {
@@ -49,6 +56,7 @@ CameraPhotometry solve_one(const std::string& name, const Folders& folders,
     add_flat(flat, centre, out.samples);
   }
   out.summary = solve_photometric(out.samples.samples);
+  out.summary.verdict.add(of_series);
   if (!out.summary.has_vignetting)
     out.summary.warnings.emplace_back("without a flat field (--flat) the vignetting is not known");
   return out;
@@ -110,32 +118,30 @@ YAML::Node payload_of(const CameraPhotometry& camera) {
   return node;
 }
 
-void write_photometry(const PhotometricCommandOptions& options, const std::vector<CameraPhotometry>& cameras,
-                      const std::optional<Gain>& gain) {
-  if (!options.outputs.out) return;
-  ResultHeader header;
-  header.kind = "photometric";
-  header.date = utc_now();
-  header.score_name = "held_out_levels";
-  YAML::Node payload;
+Deliverable deliverable(const std::vector<CameraPhotometry>& cameras, const std::optional<Gain>& gain) {
+  Deliverable out;
+  out.header.kind = "photometric";
+  out.header.score_name = "held_out_levels";
   for (const CameraPhotometry& camera : cameras) {
-    if (!std::isfinite(camera.summary.held_out_levels)) header.score_name = "rms_levels";
-    payload[camera.name] = payload_of(camera);
-    if (camera.summary.has_vignetting) header.sigma[camera.name + "_corner_relative"] = camera.summary.corner_sigma;
+    const PhotometricSummary& s = camera.summary;
+    for (const Objection& objection : s.verdict.against)
+      out.verdict.object(cameras.size() > 1 ? camera.name + ": " + objection.what : objection.what, objection.cure);
+    if (!std::isfinite(s.held_out_levels)) out.header.score_name = "rms_levels";
+    out.payload[camera.name] = payload_of(camera);
+    if (s.has_vignetting) out.header.sigma[camera.name + "_corner_relative"] = s.corner_sigma;
   }
   for (const CameraPhotometry& camera : cameras)
-    header.score = std::max(
-        header.score, header.score_name == "rms_levels" ? camera.summary.rms_levels : camera.summary.held_out_levels);
+    out.header.score =
+        std::max(out.header.score,
+                 out.header.score_name == "rms_levels" ? camera.summary.rms_levels : camera.summary.held_out_levels);
   if (gain) {
-    payload["gain_right_over_left"] = exact_text(gain->value);
-    if (std::isfinite(gain->sigma)) header.sigma["gain_right_over_left"] = gain->sigma;
+    out.payload["gain_right_over_left"] = exact_text(gain->value);
+    if (std::isfinite(gain->sigma)) out.header.sigma["gain_right_over_left"] = gain->sigma;
   }
-  write_result(*options.outputs.out, header, payload, options.outputs.force);
+  return out;
 }
 
-void write_report(const PhotometricCommandOptions& options, const std::vector<CameraPhotometry>& cameras,
-                  const std::optional<Gain>& gain) {
-  if (!options.outputs.report) return;
+HtmlReport report_of(const std::vector<CameraPhotometry>& cameras, const std::optional<Gain>& gain) {
   HtmlReport report("Photometric calibration");
   std::vector<HtmlReport::Series> responses, vignettes;
   for (const CameraPhotometry& camera : cameras) {
@@ -155,7 +161,7 @@ void write_report(const PhotometricCommandOptions& options, const std::vector<Ca
     report.paragraph("Gain, right over left: " + readable(gain->value, 4) + " +/- " + readable(gain->sigma, 4) + ".");
   report.plot("Response", "exposure, 1 saturates", "level", responses);
   if (!vignettes.empty()) report.plot("Vignetting", "radius, half diagonals", "light", vignettes);
-  report.write(*options.outputs.report);
+  return report;
 }
 
 std::vector<std::pair<std::string, Folders>> cameras_of(const PhotometricCommandOptions& options) {
@@ -192,10 +198,9 @@ int run_photometric(const PhotometricCommandOptions& options) {
   } else if (cameras.size() == 2) {
     std::cerr << "warning: without flat fields of one surface (--left-flat, --right-flat) the gain is not known\n";
   }
-  write_json(options.outputs.json, numbers);
-  write_photometry(options, cameras, gain);
-  write_report(options, cameras, gain);
-  return 0;
+  Deliverable found = deliverable(cameras, gain);
+  found.report = [&] { return report_of(cameras, gain); };
+  return deliver(found, numbers, options.outputs);
 }
 
 }  // namespace

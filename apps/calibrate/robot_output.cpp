@@ -1,5 +1,7 @@
 #include "apps/calibrate/robot_output.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/result/result_file.hpp"
 #include "common/text.hpp"

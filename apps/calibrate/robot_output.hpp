@@ -3,7 +3,7 @@
 
 #include <iostream>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "calibration/camera/camera_model.hpp"
 #include "calibration/result/html_report.hpp"

@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "apps/calibrate/outputs.hpp"
@@ -54,8 +55,7 @@ void require_near(const SceneModel& model, const std::vector<PointPair>& points)
           "give points of this model, in metres");
 }
 
-void write_report(const SceneOptions& options, const std::vector<PointPair>& points, const PlacementSummary& s) {
-  if (!options.outputs.report) return;
+HtmlReport report_of(const std::vector<PointPair>& points, const PlacementSummary& s) {
   HtmlReport report("Placement of a model in the world");
   report.paragraph(std::to_string(points.size()) + " points, " + readable(1000 * s.rms_m, 1, " mm") + " RMS; " +
                    readable(1000 * s.loo_m, 1, " mm") + " on points left out.");
@@ -70,20 +70,22 @@ void write_report(const SceneOptions& options, const std::vector<PointPair>& poi
   }
   report.plot("Distance of each point", "point", "mm", {series});
   report.table({"point", "x, mm", "y, mm", "z, mm", "distance, mm"}, rows);
-  report.write(*options.outputs.report);
+  return report;
 }
 
-void write_placement(const SceneOptions& options, const PlacementSummary& s) {
-  if (!options.outputs.out) return;
-  ResultHeader header;
-  header.kind = "scene";
-  header.date = utc_now();
-  header.score_name = std::isfinite(s.loo_m) ? "loo_m" : "rms_of_three_m";
-  header.score = std::isfinite(s.loo_m) ? s.loo_m : s.rms_m;
-  header.sigma = {{"position_m", s.sigma_position_m}, {"rotation_rad", s.sigma_rotation_rad}};
-  YAML::Node payload;
-  payload["T_world_model"] = to_yaml(s.T_world_model);
-  write_result(*options.outputs.out, header, payload, options.outputs.force);
+Deliverable deliverable(const std::vector<PointPair>& points, const PlacementSummary& s) {
+  Deliverable out;
+  const bool scored = std::isfinite(s.loo_m);
+  out.verdict = s.verdict;
+  out.header = {"scene",
+                {},
+                {},
+                scored ? "loo_m" : "rms_of_three_m",
+                scored ? s.loo_m : s.rms_m,
+                {{"position_m", s.sigma_position_m}, {"rotation_rad", s.sigma_rotation_rad}}};
+  out.payload["T_world_model"] = to_yaml(s.T_world_model);
+  out.report = [&] { return report_of(points, s); };
+  return out;
 }
 
 int run_scene(const SceneOptions& options) {
@@ -108,10 +110,7 @@ int run_scene(const SceneOptions& options) {
   for (const double r : s.residual_m) numbers["residual_mm"].push_back(1000 * r);
   const Eigen::Matrix4d T = s.T_world_model.matrix();
   for (int i = 0; i < 16; ++i) numbers["T_world_model"].push_back(T(i / 4, i % 4));
-  write_json(options.outputs.json, numbers);
-  write_placement(options, s);
-  write_report(options, points, s);
-  return 0;
+  return deliver(deliverable(points, s), numbers, options.outputs);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "apps/calibrate/target_command.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <unistd.h>
 
 #include <cstdio>

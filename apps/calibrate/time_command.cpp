@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "apps/calibrate/outputs.hpp"
 #include "apps/calibrate/robot_output.hpp"
@@ -105,13 +106,12 @@ int run(TimeCommandOptions& options) {
     std::cout << "T_hand_camera  " << readable_pose(summary.X) << "\nT_base_target  " << readable_pose(summary.Y)
               << "\n";
   print_notes(summary.notes);
-  write_json(options.outputs.json, numbers_of(summary, turns));
-  if (options.outputs.report) report_of(summary, turns).write(*options.outputs.report);
-  if (options.outputs.out)
-    write_result(*options.outputs.out,
-                 {"time", utc_now(), {}, "offset_sigma_s", summary.offset_sigma_s, sigmas_of(summary)},
-                 to_yaml(summary), options.outputs.force);
-  return 0;
+  nlohmann::ordered_json numbers = numbers_of(summary, turns);
+  return deliver({summary.verdict,
+                  {"time", {}, {}, "offset_sigma_s", summary.offset_sigma_s, sigmas_of(summary)},
+                  to_yaml(summary),
+                  [&] { return report_of(summary, turns); }},
+                 numbers, options.outputs);
 }
 
 }  // namespace

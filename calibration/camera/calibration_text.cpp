@@ -42,7 +42,6 @@ void write_lists(std::ostream& out, const CameraCalibration& c) {
         << readable(rejected[i].error_px, 2, " px") << "\n";
   if (rejected.size() > kListed) out << "rejected: and " << rejected.size() - kListed << " more\n";
   for (const std::string& note : c.notes) out << "note: " << note << "\n";
-  for (const std::string& why : c.unusable) out << "NOT USABLE: " << why << "\n";
 }
 
 }  // namespace
@@ -56,7 +55,7 @@ std::string CameraCalibration::brief() const {
   else
     out << readable(held_out.joint_px, 3, " px") << " held out";
   out << ", " << views.views.size() << " views";
-  if (!usable()) out << "; " << unusable.front();
+  if (!usable()) out << "; " << verdict.against.front().text();
   return out.str();
 }
 

@@ -120,7 +120,7 @@ class Calibrator {
     }
     store_sigmas(uncertainty);
     if (const auto missing = missing_motion(result_.views, result_.solution, uncertainty))
-      result_.unusable.push_back(*missing);
+      result_.verdict.against.push_back(*missing);
   }
 
   void store_sigmas(const RigUncertainty& uncertainty) {
@@ -179,21 +179,23 @@ class Calibrator {
       result_.notes.push_back("only " + std::to_string(count) + (cameras() == 2 ? " pairs" : " views") +
                               "; take 15 or more for figures that can be trusted");
     if (result_.stereo_over_mono > kUnsynchronised)
-      result_.unusable.push_back(
-          "the pairs are not synchronised, or the cameras moved against each other: the error is " +
-          readable(result_.stereo_over_mono, 2) +
-          " times that of the cameras alone (1.4 is the limit); trigger both at once, or hold the board still");
+      result_.verdict.object("the pairs are not synchronised, or the cameras moved against each other: the error is " +
+                                 readable(result_.stereo_over_mono, 2) +
+                                 " times that of the cameras alone (1.4 is the limit)",
+                             "trigger both at once, or hold the board still");
     if (cameras() == 2) judge_baseline();
     const auto rejected = static_cast<double>(result_.solution.rejected.size());
     if (rejected > 0.1 * (result_.solution.points + rejected))
       result_.notes.push_back("over a tenth of the corners do not fit; look for blurred or wrong views");
-    if (!result_.solution.converged) result_.unusable.push_back("the solver did not converge");
+    if (!result_.solution.converged)
+      result_.verdict.object("the solver did not converge",
+                             "take other views, and check that --board is what was shown");
   }
 
   void judge_baseline() {
     const Eigen::Vector3d t = result_.solution.rig.T_left_right.translation();
     if (t.norm() < 5 * result_.sigma["baseline_m"])
-      result_.unusable.push_back("both cameras stand at one place: give the images of two cameras, not one's twice");
+      result_.verdict.object("both cameras stand at one place", "give the images of two cameras, not one's twice");
     else if (-t.x() > 0.5 * t.norm())
       result_.notes.push_back("the right camera stands to the left of the left one: are the folders swapped?");
   }

@@ -6,6 +6,7 @@
 #include "calibration/camera/held_out.hpp"
 #include "calibration/camera/pair_checks.hpp"
 #include "calibration/camera/uncertainty.hpp"
+#include "calibration/result/verdict.hpp"
 
 namespace foresight {
 
@@ -24,8 +25,8 @@ struct CameraCalibration {
   RigViews views;  ///< those that were used, repaired
   bool warp = false;
   ViewRepairs repairs;
-  std::vector<std::string> notes;     ///< warnings for the reader
-  std::vector<std::string> unusable;  ///< why it should not be used; empty: it may be
+  std::vector<std::string> notes;  ///< warnings for the reader
+  Verdict verdict;
 
   HeldOutScore held_out;  ///< views left out
   int folds = 0;
@@ -38,7 +39,7 @@ struct CameraCalibration {
   double board_distance_m = 0;             ///< the middle one
   std::map<std::string, double> sigma;     ///< name with unit -> standard deviation
 
-  bool usable() const { return unusable.empty(); }
+  bool usable() const { return verdict.usable(); }
   std::string brief() const;  ///< one line
   std::string full() const;   ///< a page
 };
@@ -49,9 +50,9 @@ struct CameraCalibration {
 CameraCalibration calibrate_rig(const RigViews& train, const RigViews& test, const CameraCalibrationOptions& options);
 
 /// What the boards would have to do so that everything can be told apart, where it cannot: such as
-/// "all boards are parallel to the image: ...". Nothing where all is well.
-std::optional<std::string> missing_motion(const RigViews& views, const RigSolution& solution,
-                                          const RigUncertainty& uncertainty);
+/// "all boards are parallel to the image ...". Nothing where all is well.
+std::optional<Objection> missing_motion(const RigViews& views, const RigSolution& solution,
+                                        const RigUncertainty& uncertainty);
 
 /// Middle difference over the image, in px, of where two lenses see one ray, after the turn between
 /// them that makes it smallest.

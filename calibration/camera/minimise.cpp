@@ -1,8 +1,10 @@
 #include "calibration/camera/minimise.hpp"
 
 #include <ceres/solver.h>
+#include <glog/logging.h>
 
 #include <memory>
+#include <mutex>
 
 #include "common/error.hpp"
 
@@ -23,7 +25,13 @@ std::shared_ptr<ceres::ParameterBlockOrdering> ordering_of(const ceres::Problem&
 
 }  // namespace
 
+void silence_ceres() {
+  static std::once_flag once;
+  std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
+}
+
 MinimiseSummary minimise(ceres::Problem& problem, const MinimiseOptions& options) {
+  silence_ceres();
   ceres::Solver::Options ours;
   ours.linear_solver_type = options.solver;
   if (!options.eliminated.empty()) ours.linear_solver_ordering = ordering_of(problem, options.eliminated);

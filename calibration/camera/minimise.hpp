@@ -24,6 +24,10 @@ struct MinimiseSummary {
   std::string message;  ///< Ceres' own
 };
 
+/// Ceres and what it stands on write nothing to the error stream from here on: what went wrong is in the summary. The
+/// functions below call it.
+void silence_ceres();
+
 /// Minimises over the problem's blocks, in place.
 MinimiseSummary minimise(ceres::Problem& problem, const MinimiseOptions& options);
 

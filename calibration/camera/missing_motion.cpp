@@ -50,21 +50,23 @@ std::string only_covered(const RigViews& views, std::size_t c) {
   return "the boards reach only " + readable(100 * covered(views, c), 0) + " % of the image";
 }
 
-std::string cure(const RigViews& views, std::size_t c, const Tilts& t) {
+Objection missing(const RigViews& views, std::size_t c, const Tilts& t) {
   if (t.to_image < kParallel)
-    return "all boards are parallel to the image: tilt the board by 20 to 40 degrees; its focal length and distance "
-           "cannot be told apart";
+    return {"all boards are parallel to the image, so that focal length and distance cannot be told apart",
+            "tilt the board by 20 to 40 degrees"};
   if (t.to_another < kParallel)
-    return "all boards are parallel to each other: turn the board about both axes by 20 to 40 degrees between views";
-  if (t.second_axis < kParallel / 2) return "the board is tilted about one axis only: tilt it about the other one too";
-  if (covered(views, c) < kWellCovered) return only_covered(views, c) + ": bring the board closer, and to all sides";
-  return "the views say too little: take more, closer, and with tilts about both axes";
+    return {"all boards are parallel to each other",
+            "turn the board about both axes by 20 to 40 degrees between views"};
+  if (t.second_axis < kParallel / 2)
+    return {"the board is tilted about one axis only", "tilt it about the other one too"};
+  if (covered(views, c) < kWellCovered) return {only_covered(views, c), "bring the board closer, and to all sides"};
+  return {"the views say too little", "take more, closer, and with tilts about both axes"};
 }
 
 }  // namespace
 
-std::optional<std::string> missing_motion(const RigViews& views, const RigSolution& solution,
-                                          const RigUncertainty& uncertainty) {
+std::optional<Objection> missing_motion(const RigViews& views, const RigSolution& solution,
+                                        const RigUncertainty& uncertainty) {
   const double scale = std::max(1.0, kLeastNoise / std::max(1e-12, solution.noise_px));
   for (int camera = 0; camera < views.cameras; ++camera) {
     const auto c = static_cast<std::size_t>(camera);
@@ -76,17 +78,20 @@ std::optional<std::string> missing_motion(const RigViews& views, const RigSoluti
     if (uncertainty.usable() && focal < kVagueFocalLength && centre < kVagueCentre) {
       const double rim_px = scale * uncertainty.map(camera, std::nullopt, 8, 6).p90_px;
       if (covered(views, c) >= kWellCovered || !(rim_px > kVagueRim * model.width)) continue;
-      return whose + only_covered(views, c) + ", and do not say how it is distorted beyond (+- " + readable(rim_px, 0) +
-             " px): bring the board closer, and to all sides";
+      return Objection{whose + only_covered(views, c) + ", and do not say how it is distorted beyond (+- " +
+                           readable(rim_px, 0) + " px)",
+                       "bring the board closer, and to all sides"};
     }
     std::vector<Pose> T_camera_board;
     for (std::size_t v = 0; v < views.views.size(); ++v)
       if (!views.views[v].corners[c].empty())
         T_camera_board.push_back(camera == 0 ? solution.T_left_board[v]
                                              : Pose(solution.rig.T_left_right.inverse() * solution.T_left_board[v]));
-    return whose + cure(views, c, tilts(T_camera_board)) +
-           (uncertainty.usable() && std::isfinite(focal) ? " (focal length +- " + readable(100 * focal, 1) + " %)"
-                                                         : "");
+    Objection out = missing(views, c, tilts(T_camera_board));
+    out.what = whose + out.what;
+    if (uncertainty.usable() && std::isfinite(focal))
+      out.what += " (focal length +- " + readable(100 * focal, 1) + " %)";
+    return out;
   }
   return std::nullopt;
 }

@@ -116,6 +116,28 @@ RigViews subset(const RigViews& all, const std::vector<std::size_t>& indices) {
   return some;
 }
 
+ViewPrint print_of(const RigView& view) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const std::vector<Corner>& corners : view.corners)
+    for (const Corner& corner : corners) pixels.push_back(corner.pixel);
+  return ViewPrint(pixels);
+}
+
+ViewPrints prints_of(const RigViews& all, const RigViews& some) {
+  std::set<std::string> names;
+  for (const RigView& view : some.views) names.insert(view.name);
+  ViewPrints out;
+  for (const RigView& view : all.views)
+    if (names.contains(view.name)) out.push_back(print_of(view));
+  return out;
+}
+
+ViewPrints prints_of(const CornerSet& camera) {
+  ViewPrints out;
+  for (const BoardView& view : camera.views) out.push_back(print_of(RigView{view.name, {{view.corners, {}}}}));
+  return out;
+}
+
 Eigen::Vector3d to_camera(const CalibratedCameras& rig, int camera, const Eigen::Vector3d& p_left) {
   return camera == 0 ? p_left : rig.T_left_right.inverse() * p_left;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/camera/camera_model.hpp"
+#include "calibration/result/view_print.hpp"
 #include "calibration/target/corner_set.hpp"
 
 namespace foresight {
@@ -55,6 +56,11 @@ RigViews rig_views(const StereoCorners& pair);
 
 /// The views at `indices`, in their order.
 RigViews subset(const RigViews& all, const std::vector<std::size_t>& indices);
+
+/// Prints of those of `all` whose names are among the views of `some`: of what the cameras saw, before it was mended.
+ViewPrints prints_of(const RigViews& all, const RigViews& some);
+ViewPrint print_of(const RigView& view);
+ViewPrints prints_of(const CornerSet& camera);
 
 /// "left", "right"; "camera" where there is one only.
 std::string camera_name(int camera, int cameras);

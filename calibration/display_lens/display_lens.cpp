@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kFewest = 12;      // points of a picture: three times those of an affine map
 constexpr double kFlat = 0.01;           // shorter over longer side of a picture's points on the panel
+constexpr double kLargestError = 0.005;  // of points left out, of the panel's width
 constexpr double kHuber = 1.5;           // panel px
 constexpr double kClearlyBetter = 0.97;  // a model with more parameters must win by this factor
 constexpr double kFloor = 0.02;          // panel px; residuals below are no outliers
@@ -215,7 +216,8 @@ void fill_sigmas(const Solver& solver, Unknowns& x, Distortion model, DisplayLen
   Eigen::Matrix<double, 4, 4, Eigen::RowMajor> of_turn;
   if (!covariance.Compute(blocks, problem.get()) || !covariance.GetCovarianceBlock(lens, lens, of_lens.data()) ||
       !covariance.GetCovarianceBlock(motion, motion, of_turn.data())) {
-    summary.warnings.emplace_back("the covariance cannot be computed: turn the eye camera for more pictures");
+    summary.verdict.object("the pictures do not determine the lens: its covariance cannot be computed",
+                           "turn the eye camera for more pictures");
     return;
   }
   const double s = summary.rms_px / std::sqrt(2.0);
@@ -265,6 +267,10 @@ DisplayLensSummary solve_display_lens(const std::vector<PanelPoint>& points, con
   summary.points = static_cast<int>(rays.size());
   summary.rejected = static_cast<int>(before - rays.size());
   fill_sigmas(solver, x, model, summary);
+  if (const double limit = kLargestError * summary.panel.width; !(summary.held_out_px < limit))
+    summary.verdict.object("points that were left out lie " + readable(summary.held_out_px, 1) +
+                               " px from where the lens has them; " + readable(limit, 1) + " px are the limit",
+                           "check --pattern and the eye camera's calibration, and that the eye camera only turned");
   return summary;
 }
 

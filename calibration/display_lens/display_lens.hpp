@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "calibration/camera/camera_model.hpp"
+#include "calibration/result/verdict.hpp"
 
 namespace foresight {
 
@@ -47,6 +48,7 @@ struct DisplayLensSummary {
   double sigma_tilt_rad = 0;                         ///< of the first picture's rotation
   std::vector<std::pair<Distortion, double>> tried;  ///< held-out RMS of every model
   std::vector<std::string> warnings;
+  Verdict verdict;
 };
 
 /// Residual: lens(T_display_camera * ray) - panel pixel, in panel px, Huber's loss at 1.5; all lens parameters of the

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "calibration/formats/lens_coefficients.hpp"
+#include "calibration/formats/rectification.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/exact_number.hpp"
@@ -42,10 +43,8 @@ bool can_hold(const Format& format, const CameraModel& camera) {
 
 bool can_hold(const Format& format, const CalibratedCameras& cameras) {
   if (!cameras.pair()) return can_hold(format, cameras.left());
-  const CameraModel &a = cameras.left(), &b = cameras.right();
-  const bool alike = a.width == b.width && a.height == b.height &&
-                     (a.distortion == Distortion::equidistant) == (b.distortion == Distortion::equidistant);
-  return can_hold(format, a) && can_hold(format, b) && (alike || format.sizes_may_differ);
+  return can_hold(format, cameras.left()) && can_hold(format, cameras.right()) &&
+         (can_be_rectified(cameras) || format.sizes_may_differ);
 }
 
 void require_held(CameraFormat format, const CalibratedCameras& cameras) {

@@ -1,10 +1,11 @@
 // Cameras in the files of other programs, one or a pair.
 //
 //   camera-info   ROS sensor_msgs/CameraInfo in YAML; a pair is a folder: camera.yaml and
-//                 camera_right.yaml with T_left_right, as in a run folder
+//                 camera_right.yaml with T_left_right, as in a run folder, rectified (rectification.hpp)
 //   kalibr        camchain: cam0 (left), cam1 with T_cn_cnm1 (left to right camera coordinates)
 //   opencv        cv::FileStorage (.yml, .xml, .json): camera_matrix and distortion_coefficients, or
-//                 M1 D1 M2 D2 and R T (left to right); fisheye_model 1 for equidistant
+//                 M1 D1 M2 D2 and R T (left to right), with R1 R2 P1 P2 Q (rectification.hpp);
+//                 fisheye_model 1 for equidistant
 //   mrcal         .cameramodel; a pair is a folder: left.cameramodel and right.cameramodel, whose
 //                 extrinsics are the Rodrigues vector and translation from the left camera
 //

@@ -1,8 +1,10 @@
 // Names as OpenCV's own calibration samples write them.
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
+#include <opencv2/core/eigen.hpp>
 
 #include "calibration/formats/lens_coefficients.hpp"
+#include "calibration/formats/rectification.hpp"
 #include "common/error.hpp"
 #include "scene/files.hpp"
 
@@ -65,6 +67,13 @@ void write_one(cv::FileStorage& storage, const CameraModel& camera, const std::s
   storage << d << cv::Mat(c, true).reshape(1, 1);
 }
 
+template <typename Matrix>
+void write_matrix(cv::FileStorage& storage, const std::string& name, const Matrix& m) {
+  cv::Mat out;
+  cv::eigen2cv(m, out);
+  storage << name << out;
+}
+
 }  // namespace
 
 CalibratedCameras read_opencv(const fs::path& file) {
@@ -94,6 +103,10 @@ std::vector<CameraFileText> opencv_text(const CalibratedCameras& cameras, const 
     for (int i = 0; i < 9; ++i) R.val[i] = T_right_left.linear()(i / 3, i % 3);
     const Eigen::Vector3d t = T_right_left.translation();
     storage << "R" << cv::Mat(R) << "T" << cv::Mat(cv::Matx31d(t.x(), t.y(), t.z()));
+    const Rectification r = rectify(cameras);
+    write_matrix(storage, "R1", r.R_left), write_matrix(storage, "R2", r.R_right);
+    write_matrix(storage, "P1", r.P_left), write_matrix(storage, "P2", r.P_right);
+    write_matrix(storage, "Q", r.Q);
   }
   return {{"", storage.releaseAndGetString()}};
 }

@@ -68,13 +68,42 @@ class Document {
     set_origin(joint, m.T_parent_child);
   }
 
+  void head(const UrdfHead& h) {
+    require("link", h.parent);
+    const bool known[] = {find("joint", h.joints[0]) != nullptr, find("joint", h.joints[1]) != nullptr};
+    if (known[0] != known[1]) require("joint", h.joints[known[0] ? 1 : 0]);
+    if (!known[0]) {
+      add_turning(h.joints[0], h.parent, h.T_parent_pan);
+      add_turning(h.joints[1], h.joints[0] + "_link", h.T_pan_tilt);
+      return mount({h.joints[1] + "_link", h.camera, h.T_tilt_camera});
+    }
+    TiXmlElement &pan = require("joint", h.joints[0]), &tilt = require("joint", h.joints[1]);
+    require_between(pan, h.parent);
+    require_between(tilt, child_of(pan));
+    const Pose pan_axis = z_to(axis_of(pan)), tilt_axis = z_to(axis_of(tilt));
+    set_origin(pan, h.T_parent_pan * pan_axis.inverse());
+    set_origin(tilt, pan_axis * h.T_pan_tilt * tilt_axis.inverse());
+    mount({child_of(tilt), h.camera, tilt_axis * h.T_tilt_camera});
+  }
+
+  UrdfMount attach(const UrdfMount& m, const std::string& link) {
+    require("link", link);
+    if (!find("link", m.parent) || m.parent == link) return {link, m.child, m.T_parent_child};
+    const auto [root_a, T_a] = rigid_root(link);
+    const auto [root_b, T_b] = rigid_root(m.parent);
+    if (root_a != root_b)
+      throw InputError(where_,
+                       "the links " + in_quotes(link) + " and " + in_quotes(m.parent) + " move against each other",
+                       "attach to " + in_quotes(m.parent) + ", or to a link that is fixed to it");
+    return {link, m.child, T_a.inverse() * T_b * m.T_parent_child};
+  }
+
   void shift(const std::string& name, double offset) {
     TiXmlElement& joint = require("joint", name);
     const std::string type = attribute(joint, "type");
     if (type != "revolute" && type != "continuous" && type != "prismatic")
       throw InputError(where_, "the joint " + in_quotes(name) + " is of type " + type, "give a joint that moves");
-    const TiXmlElement* axis = joint.FirstChildElement("axis");
-    const Eigen::Vector3d along = (axis ? vector(*axis, "xyz", {1, 0, 0}) : Eigen::Vector3d{1, 0, 0}).normalized();
+    const Eigen::Vector3d along = axis_of(joint);
     Pose T = Pose::Identity();
     if (type == "prismatic")
       T.translation() = offset * along;
@@ -93,6 +122,52 @@ class Document {
   static std::string attribute(const TiXmlElement& element, const char* name) {
     const char* value = element.Attribute(name);
     return value ? value : "";
+  }
+
+  Eigen::Vector3d axis_of(const TiXmlElement& joint) const {
+    const TiXmlElement* axis = joint.FirstChildElement("axis");
+    return (axis ? vector(*axis, "xyz", {1, 0, 0}) : Eigen::Vector3d{1, 0, 0}).normalized();
+  }
+
+  static Pose z_to(const Eigen::Vector3d& axis) {
+    return Pose(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis));
+  }
+
+  static std::string child_of(const TiXmlElement& joint) {
+    const TiXmlElement* child = joint.FirstChildElement("child");
+    return child ? attribute(*child, "link") : "";
+  }
+
+  void require_between(const TiXmlElement& joint, const std::string& parent) const {
+    const TiXmlElement* there = joint.FirstChildElement("parent");
+    if (there && attribute(*there, "link") == parent) return;
+    throw InputError(where_,
+                     "the joint " + in_quotes(attribute(joint, "name")) + " does not hang on " + in_quotes(parent),
+                     "name the link that it hangs on with --link" +
+                         (there ? ", " + in_quotes(attribute(*there, "link")) : std::string()));
+  }
+
+  void add_turning(const std::string& name, const std::string& parent, const Pose& origin) {
+    const std::string link = name + "_link";
+    if (!find("link", link)) add(*robot_, "link").SetAttribute("name", link);
+    TiXmlElement& joint = add(*robot_, "joint");
+    joint.SetAttribute("name", name);
+    joint.SetAttribute("type", "continuous");
+    add(joint, "parent").SetAttribute("link", parent);
+    add(joint, "child").SetAttribute("link", link);
+    add(joint, "axis").SetAttribute("xyz", "0 0 1");
+    set_origin(joint, origin);
+  }
+
+  /// The topmost link that `link` is fixed to, and `link` in its frame.
+  std::pair<std::string, Pose> rigid_root(std::string link) const {
+    Pose T = Pose::Identity();
+    for (const TiXmlElement* joint = joint_of(link); joint && attribute(*joint, "type") == "fixed";
+         joint = joint_of(link)) {
+      T = origin(*joint) * T;
+      link = attribute(*joint->FirstChildElement("parent"), "link");
+    }
+    return {link, T};
   }
 
   static TiXmlElement& add(TiXmlElement& parent, const char* name) {
@@ -165,8 +240,13 @@ class Document {
 std::string with_offsets(const std::string& urdf, const UrdfOffsets& offsets, const std::string& where) {
   Document document(urdf, where);
   for (const UrdfMount& m : offsets.mounts) document.mount(m);
+  if (offsets.head) document.head(*offsets.head);
   for (const auto& [name, offset] : offsets.joints) document.shift(name, offset);
   return document.text();
+}
+
+UrdfMount attached(const UrdfMount& mount, const std::string& link, const std::string& urdf, const std::string& where) {
+  return Document(urdf, where).attach(mount, link);
 }
 
 UrdfMount read_mount(const std::string& urdf, const std::string& child, const std::string& where) {

@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "scene/files.hpp"
+#include "scene/picture_file.hpp"
 #include "scene/text_table.hpp"
 
 namespace foresight {
@@ -76,8 +77,8 @@ bool is_image(const fs::path& file) {
 }
 
 ExposedImage read_one(const fs::path& file, const std::map<std::string, double>& exposures) {
-  ExposedImage image{file.filename().string(), 0, cv::imread(file.string(), cv::IMREAD_UNCHANGED)};
-  if (image.pixels.empty() || image.pixels.depth() != CV_8U)
+  ExposedImage image{file.filename().string(), 0, read_picture(file, cv::IMREAD_UNCHANGED)};
+  if (image.pixels.depth() != CV_8U)
     throw InputError(file.string(), "is no 8-bit image", "give PNG or JPEG images of the camera itself");
   if (image.pixels.channels() == 4) cv::cvtColor(image.pixels, image.pixels, cv::COLOR_BGRA2BGR);
   if (exposures.empty()) {
@@ -189,6 +190,20 @@ std::vector<ExposedImage> read_series(const fs::path& folder, const std::map<std
                        "keep the images of one camera in a folder");
   }
   return series;
+}
+
+void judge_series(const std::vector<ExposedImage>& series, Verdict& verdict) {
+  std::string names;
+  for (std::size_t i = 0; i < series.size(); ++i)
+    for (std::size_t j = i + 1; j < series.size(); ++j) {
+      const ExposedImage &a = series[i], &b = series[j];
+      if (a.exposure_s == b.exposure_s || cv::norm(a.pixels, b.pixels, cv::NORM_INF) > 0) continue;
+      names += (names.empty() ? "" : ", ") + a.name + " and " + b.name;
+      break;
+    }
+  if (!names.empty())
+    verdict.object("pictures of different exposure times are the same: " + names,
+                   "give each picture its own file, and switch automatic exposure off");
 }
 
 void add_static(const std::vector<ExposedImage>& series, int most, SeriesSamples& out) {

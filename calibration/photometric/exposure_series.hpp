@@ -31,6 +31,9 @@ std::optional<double> exif_exposure(const std::filesystem::path& file);
 std::vector<ExposedImage> read_series(const std::filesystem::path& folder,
                                       const std::map<std::string, double>& exposures);
 
+/// Objects to pictures that are the same, pixel by pixel, though their exposure times differ, by name.
+void judge_series(const std::vector<ExposedImage>& series, Verdict& verdict);
+
 struct SeriesSamples {
   std::vector<LevelSample> samples;
   int images = 0;

@@ -4,20 +4,22 @@
 #include <ceres/covariance.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
 
+#include "calibration/camera/minimise.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr std::size_t kFewest = 50;   // samples: more than three per knot
-constexpr double kLargestRms = 4;     // grey levels; more is no noise
+constexpr std::size_t kFewest = 50;    // samples: more than three per knot
+constexpr double kLargestRms = 4;      // grey levels; more is no noise
+constexpr double kMostBrighter = 0.9;  // of all places; of a proper series it is all of them
+constexpr double kSmallestExponent = 0.4, kLargestExponent = 4;
 constexpr double kStartExponent = 2;  // between a linear and a gamma-coded camera
 constexpr double kSmallestVignette = 0.02;
 
@@ -88,22 +90,10 @@ class Fit {
   void run() {
     for (int round = 0; round < 2; ++round) {
       build();
-      ceres::Solver::Options solver;
-      solver.linear_solver_type = ceres::SPARSE_SCHUR;
-      solver.max_num_iterations = 100;
-      solver.function_tolerance = 1e-10;
-      solver.logging_type = ceres::SILENT;
-      auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-      for (double& radiance : x_.log_radiance)
-        if (problem_->HasParameterBlock(&radiance)) ordering->AddElementToGroup(&radiance, 0);
-      ordering->AddElementToGroup(x_.response.log_slope.data(), 1);
-      if (problem_->HasParameterBlock(x_.vignetting.a.data())) ordering->AddElementToGroup(x_.vignetting.a.data(), 1);
-      solver.linear_solver_ordering = ordering;
-      ceres::Solver::Summary summary;
-      ceres::Solve(solver, problem_.get(), &summary);
-      if (!summary.IsSolutionUsable())
-        throw RuntimeFailure("the response does not converge: " + summary.message,
-                             "check that the exposure times belong to the images");
+      MinimiseOptions options;
+      options.solver = ceres::SPARSE_SCHUR;
+      for (double& radiance : x_.log_radiance) options.eliminated.push_back(&radiance);
+      minimise_or_throw(*problem_, options, "the response", "check that the exposure times belong to the images");
     }
   }
 
@@ -247,6 +237,47 @@ class Uncertainty {
   PhotometricSummary& summary_;
 };
 
+// Share of the places that get brighter from the shortest to the longest exposure at which their level is known, of all
+// whose exposures differ.
+double brighter(const std::vector<LevelSample>& samples) {
+  constexpr double kClearly = 1.05;  // of the level, for an exposure half as long again and more
+  std::map<int, std::pair<const LevelSample*, const LevelSample*>> spans;
+  for (const LevelSample& s : samples) {
+    auto& [least, most] = spans.try_emplace(s.radiance, &s, &s).first->second;
+    if (s.exposure_s < least->exposure_s) least = &s;
+    if (s.exposure_s > most->exposure_s) most = &s;
+  }
+  int grown = 0, all = 0;
+  for (const auto& [radiance, span] : spans) {
+    const auto& [least, most] = span;
+    if (most->exposure_s < 1.5 * least->exposure_s) continue;
+    ++all;
+    grown += most->level > kClearly * least->level;
+  }
+  return all == 0 ? 1 : double(grown) / all;
+}
+
+void judge(const std::vector<LevelSample>& samples, PhotometricSummary& summary) {
+  Verdict& verdict = summary.verdict;
+  if (const double share = brighter(samples); share < kMostBrighter) {
+    verdict.object("only " + readable(100 * share, 0) +
+                       " % of the places are brighter at the longest exposure than at the shortest",
+                   "switch automatic exposure and gain off, and check that each exposure time is that of its picture");
+  } else if (summary.rms_levels > kLargestRms || 5 * summary.outliers > summary.samples) {
+    verdict.object("the levels do not fit (" + readable(summary.rms_levels, 1) + " levels RMS, " +
+                       std::to_string(summary.outliers) + " outliers of " + std::to_string(summary.samples) + ")",
+                   "check that nothing in the scene moved, that the light does not flicker, and the exposure times");
+  }
+  const double exponent = std::log(summary.response.inverse(200) / summary.response.inverse(40)) / std::log(5.0);
+  if (!(exponent > kSmallestExponent && exponent < kLargestExponent))
+    verdict.object("a response with exponent " + readable(exponent, 1) + " is no camera's (1 is linear, 2.2 usual)",
+                   "check the exposure times");
+  if (summary.held_out_levels > 2 * kLargestRms)
+    verdict.object(
+        "pictures that were left out are predicted to " + readable(summary.held_out_levels, 1) + " levels only",
+        "take more exposures, each at most twice as long as the one before");
+}
+
 }  // namespace
 
 PhotometricSummary solve_photometric(const std::vector<LevelSample>& samples, const PhotometricOptions& options) {
@@ -272,15 +303,12 @@ PhotometricSummary solve_photometric(const std::vector<LevelSample>& samples, co
   }
   summary.samples = static_cast<int>(samples.size());
   summary.rms_levels = std::sqrt(squares / static_cast<double>(samples.size()));
-  if (summary.rms_levels > kLargestRms || summary.outliers > summary.samples / 5)
-    summary.warnings.push_back("the levels do not fit (" + readable(summary.rms_levels, 1) + " levels RMS, " +
-                               std::to_string(summary.outliers) +
-                               " outliers): the scene moved, the light flickers, or exposure times are wrong");
   Uncertainty(fit.problem(), x, summary.rms_levels / options.sigma_level, summary).fill(flat);
   summary.held_out_levels = options.held_out ? held_out(samples, options, radiances) : NAN;
   summary.response = x.response;
   summary.vignetting = x.vignetting;
   summary.log_radiance = x.log_radiance;
+  judge(samples, summary);
   return summary;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibration/photometric/response.hpp"
+#include "calibration/result/verdict.hpp"
 
 namespace foresight {
 
@@ -40,6 +41,7 @@ struct PhotometricSummary {
   double rms_levels = 0;       ///< of the residuals, grey levels
   double held_out_levels = 0;  ///< RMS of the levels predicted for images that were left out; NaN: too few
   std::vector<std::string> warnings;
+  Verdict verdict;
 };
 
 /// Residual of a sample, in grey levels over sigma: (ln g(v) - ln t - ln L - ln V) * v / n(v), with Huber's loss;

@@ -20,8 +20,9 @@
 namespace foresight {
 namespace {
 
-constexpr double kCauchy = 2;   // sigmas
-constexpr double kFlat = 1e-3;  // second over first singular value of points on a line
+constexpr double kVagueM = 0.1, kVagueRad = 0.05;  // of the model's place: no texture would fit it
+constexpr double kCauchy = 2;                      // sigmas
+constexpr double kFlat = 1e-3;                     // second over first singular value of points on a line
 constexpr std::size_t kMostTriples = 4000;
 
 struct Unit {
@@ -251,6 +252,10 @@ PlacementSummary place_model(const std::vector<PointPair>& points, const Placeme
   summary.loo_m = leave_one_out(summary, points, options);
   if (points.size() == 3)
     summary.warnings.emplace_back("three points fit almost anything: measure a fourth to see whether they are right");
+  if (!(summary.sigma_position_m < kVagueM && summary.sigma_rotation_rad < kVagueRad))
+    summary.verdict.object("the model's place is uncertain by " + readable(1000 * summary.sigma_position_m, 0) +
+                               " mm and " + readable(57.29578 * summary.sigma_rotation_rad, 1) + " degrees",
+                           "measure more points, farther from each other");
   return summary;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/result/verdict.hpp"
 #include "scene/scene_model.hpp"
 
 namespace foresight {
@@ -34,6 +35,7 @@ struct PlacementSummary {
   double sigma_position_m = 0;    ///< of the model at the centre of its points, root of the three variances' sum
   double sigma_rotation_rad = 0;  ///< the same for its rotation
   std::vector<std::string> warnings;
+  Verdict verdict;
 };
 
 /// Umeyama's fit without scale on the three points that most others agree with, then all points in Ceres: residual

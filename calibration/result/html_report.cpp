@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "calibration/result/heat_map.hpp"
@@ -61,6 +62,15 @@ bool holds_figures(const std::vector<std::vector<std::string>>& rows, std::size_
 
 HtmlReport::HtmlReport(std::string title, std::string source) : title_(std::move(title)), source_(std::move(source)) {}
 
+void HtmlReport::verdict(const Verdict& verdict) {
+  verdict_ = verdict.usable() ? "<section class=\"verdict\"><b>Usable</b></section>\n"
+                              : "<section class=\"verdict bad\"><b>Not usable</b>";
+  if (verdict.usable()) return;
+  for (const Objection& objection : verdict.against)
+    verdict_ += "<p>" + escape_html(objection.what) + ". <b>What to do:</b> " + escape_html(objection.cure) + ".</p>";
+  verdict_ += "</section>\n";
+}
+
 void HtmlReport::heading(const std::string& text) {
   body_ += "<h2>" + escape_html(text) + "</h2>\n";
 }
@@ -85,10 +95,7 @@ void HtmlReport::table(const std::vector<std::string>& columns, const std::vecto
   body_ += "</tbody></table></section>\n";
 }
 
-void HtmlReport::plot(const std::string& caption, const std::string& x_label, const std::string& y_label,
-                      const std::vector<Series>& series, bool equal_scale) {
-  SvgPlot drawn(caption, range_of(series, 0), range_of(series, 1), x_label, y_label,
-                equal_scale ? SvgPlot::Shape::image : SvgPlot::Shape::wide);
+void HtmlReport::add_plot(const std::string& caption, SvgPlot& drawn, const std::vector<Series>& series) {
   for (std::size_t i = 0; i < series.size(); ++i) {
     std::vector<double> x, y;
     for (const Eigen::Vector2d& p : series[i].points) {
@@ -108,6 +115,36 @@ void HtmlReport::plot(const std::string& caption, const SvgPlot& drawn, const st
   plots_.push_back(drawn.data());
 }
 
+void HtmlReport::plot(const std::string& caption, const std::string& x_label, const std::string& y_label,
+                      const std::vector<Series>& series, bool equal_scale) {
+  SvgPlot plot(caption, range_of(series, 0), range_of(series, 1), x_label, y_label,
+               equal_scale ? SvgPlot::Shape::image : SvgPlot::Shape::wide);
+  add_plot(caption, plot, series);
+}
+
+void HtmlReport::places(const std::string& caption, const std::vector<Series>& series, int width, int height) {
+  SvgPlot plot(caption, {-0.5, width - 0.5}, {-0.5, height - 0.5}, "x in px", "y in px", SvgPlot::Shape::image);
+  add_plot(caption, plot, series);
+}
+
+void HtmlReport::drawing(const std::string& caption, const std::string& svg) {
+  body_ += card(caption, svg);
+}
+
+void HtmlReport::pictures(const std::vector<Picture>& pictures) {
+  constexpr int kQuality = 80;
+  if (pictures.empty()) return;
+  body_ += "<section class=\"pictures\">\n";
+  for (const Picture& picture : pictures) {
+    std::vector<uchar> jpeg;
+    cv::imencode(".jpg", picture.bgr, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+    body_ += "<figure><img alt=\"" + escape_html(picture.name) + "\" src=\"" + data_uri("image/jpeg", jpeg) +
+             "\"><figcaption><b>" + escape_html(picture.name) + "</b> " + escape_html(picture.caption) +
+             "</figcaption></figure>\n";
+  }
+  body_ += "</section>\n";
+}
+
 void HtmlReport::heat_map(const std::string& caption, const cv::Mat& values, int width, int height,
                           const std::string& unit) {
   body_ += card(caption, heat_map_svg(caption, values, width, height, unit));
@@ -124,7 +161,7 @@ void HtmlReport::write(const std::filesystem::path& file) const {
              "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
                  title + "</title>\n<style>\n" + std::string(page_style()) +
                  "</style>\n</head>\n<body>\n<main>\n<header>\n<small>" + escape_html(source_) + "</small>\n<h1>" +
-                 title + "</h1>\n</header>\n<div class=\"sheet\">\n" + body_ + "</div>\n</main>\n</body>\n</html>\n",
+                 title + "</h1>\n</header>\n<div class=\"sheet\">\n" + verdict_ + body_ + "</div>\n</main>\n</body>\n</html>\n",
              title_, plots_);
 }
 

@@ -1,5 +1,6 @@
 #include "calibration/result/result_file.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -10,10 +11,26 @@
 namespace foresight {
 namespace {
 
+constexpr const char* kUsable = "usable";
 constexpr double kNoise = 1.02;  // two runs over other views of the same rig differ by about this factor
 
+ViewPrints read_views(const YamlMap& top) {
+  const std::vector<double> numbers = top.numbers("views");
+  if (numbers.size() % 4 != 0)
+    throw InputError(top.where("views"), "is no list of rows of 4 numbers", "write each as [points, u, v, spread]");
+  ViewPrints views;
+  for (std::size_t i = 0; i < numbers.size(); i += 4) {
+    ViewPrint print;
+    print.points = static_cast<int>(std::clamp(numbers[i], 0.0, 1e9));
+    print.centre_px = {numbers[i + 1], numbers[i + 2]};
+    print.spread_px = numbers[i + 3];
+    views.push_back(print);
+  }
+  return views;
+}
+
 ResultHeader read_header(const YamlMap& top) {
-  top.require_known({"kind", "date", "devices", "score", "sigma", "result"});
+  top.require_known({"kind", "date", "devices", "score", "sigma", "verdict", "views", "result"});
   ResultHeader header;
   header.kind = top.text("kind");
   header.date = top.text("date");
@@ -29,6 +46,8 @@ ResultHeader read_header(const YamlMap& top) {
     const YamlMap sigma = top.map("sigma");
     for (const std::string& name : sigma.keys()) header.sigma[name] = sigma.number(name);
   }
+  if (top.has("verdict")) header.judged = top.choice<bool>("verdict", {{kUsable, true}});
+  if (top.has("views")) header.views = read_views(top);
   return header;
 }
 
@@ -47,7 +66,8 @@ void require_better(const std::filesystem::path& file, const ResultHeader& heade
   for (const auto& [role, serial] : old.devices)
     if (const auto now = header.devices.find(role); now != header.devices.end() && now->second != serial)
       refuse("it belongs to the " + role + " device " + in_quotes(serial) + ", not " + in_quotes(now->second));
-  if (old.score_name == header.score_name && header.score > kNoise * old.score)
+  if (old.judged && !header.judged) refuse("its solver judged it to be usable, and nobody judged the new one");
+  if (old.judged == header.judged && old.score_name == header.score_name && header.score > kNoise * old.score)
     refuse("its " + old.score_name + " of " + std::to_string(old.score) + " is better than the new " +
            std::to_string(header.score));
 }
@@ -60,6 +80,14 @@ YAML::Node to_yaml(const ResultHeader& header, const YAML::Node& result) {
   top["score"]["name"] = header.score_name;
   top["score"]["value"] = header.score;
   for (const auto& [name, sigma] : header.sigma) top["sigma"][name] = sigma;
+  if (header.judged) top["verdict"] = kUsable;
+  for (const ViewPrint& view : header.views) {
+    YAML::Node row(YAML::NodeType::Sequence);
+    row.SetStyle(YAML::EmitterStyle::Flow);
+    row.push_back(view.points);
+    for (const double px : {view.centre_px.x(), view.centre_px.y(), view.spread_px}) row.push_back(readable(px, 3));
+    top["views"].push_back(row);
+  }
   top["result"] = result;
   return top;
 }

@@ -5,6 +5,7 @@
 #include "calibration/robot/hand_eye_problem.hpp"
 #include "calibration/robot/hand_eye_score.hpp"
 #include "calibration/robot/hand_eye_start.hpp"
+#include "calibration/robot/hand_eye_verdict.hpp"
 #include "calibration/robot/motion_check.hpp"
 #include "calibration/robot/pose_reading.hpp"
 #include "common/error.hpp"
@@ -18,8 +19,7 @@ constexpr double kClearly = 0.7;    // of two mounts or orders of corners, the b
 constexpr double kContradicts = 8;  // a robot pose this many times the median correction off is wrong
 constexpr double kWildPose = 22.5;  // squared, of six coordinates: a normal one in a thousand lies beyond
 constexpr double kHardlyTrusted = 0.4;
-constexpr double kWildFreedom = 8;              // of Student's t: the mildest tail that helped on recorded wild poses
-constexpr double kOpenRad = 0.1, kOpenM = 0.1;  // standard deviations from which a parameter counts as open
+constexpr double kWildFreedom = 8;  // of Student's t: the mildest tail that helped on recorded wild poses
 
 void require_views(const HandEyeData& data) {
   const std::size_t views = data.corners.views.size();
@@ -35,6 +35,17 @@ void require_views(const HandEyeData& data) {
   require_two_axes(motion_spread(poses), "--poses", "wrist");
 }
 
+void require_enough(const HandEyeData& data, const HandEyeSelection& selection) {
+  const auto used = static_cast<std::size_t>(std::count(selection.used.begin(), selection.used.end(), true));
+  if (used >= kFewestViews) return;
+  std::string names;
+  for (std::size_t v = 0; v < selection.used.size(); ++v)
+    if (!selection.used[v]) names += (names.empty() ? "" : ", ") + data.corners.views[v].name;
+  throw InputError("--poses",
+                   "only " + std::to_string(used) + " robot poses agree with each other, not those of " + names,
+                   "check that each pose belongs to its image, and take more views");
+}
+
 HandEyeStart best_start(const HandEyeOptions& options, const HandEyeData& data, std::span<const Pose> seen,
                         std::span<const Pose> symmetries, HandEyeSummary& summary) {
   std::vector<HandEyeStart> starts;
@@ -48,9 +59,12 @@ HandEyeStart best_start(const HandEyeOptions& options, const HandEyeData& data, 
     const std::string both = readable(summary.start_mm_fixed, 1) + " mm of misfit with a fixed camera, " +
                              readable(summary.start_mm_moving, 1) + " mm with a moving one";
     const bool clear = starts[0].misfit_m <= kClearly * starts[1].misfit_m;
-    summary.notes.push_back(clear ? "the camera is taken as " + to_string(starts[0].mount) + ": " + both +
-                                        "; poses written from flange to base would look the other way round"
-                                  : both + ": too near each other, say which with --camera-mount");
+    if (clear)
+      summary.notes.push_back("the camera is taken as " + to_string(starts[0].mount) + ": " + both +
+                              "; poses written from flange to base would look the other way round");
+    else
+      summary.verdict.object(both + ": too near each other to tell which it is",
+                             "say which with --camera-mount, and check that poses and images belong together");
   }
   require_meant(starts[0], options.mount.has_value(), data.poses, seen, symmetries);
   return starts[0];
@@ -171,21 +185,10 @@ HandEyeCovariance robust_solve(const HandEyeData& data, const HandEyeOptions& op
   return covariance;
 }
 
-void require_determined(const HandEyeCovariance& covariance, HandEyeSummary& summary) {
-  const auto open = [&](const char* name, const Vector6d& sigma) {
-    const double turn = sigma.head<3>().maxCoeff(), shift = sigma.tail<3>().maxCoeff();
-    if (turn > kOpenRad)
-      summary.notes.push_back(std::string(name) + " turn is open to " + readable(turn, 2) +
-                              " rad: add poses that turn the wrist about another axis");
-    if (shift > kOpenM)
-      summary.notes.push_back(std::string(name) + " shift is open to " + readable(shift, 2) +
-                              " m: add poses that turn the wrist by larger angles about two axes");
-  };
+void require_determined(const HandEyeCovariance& covariance) {
   if (covariance.open > 0)
     throw InputError("--poses", std::to_string(covariance.open) + " parameters of the hand-eye stay open",
                      "add views with other turns of the wrist and tilts of the board");
-  open("the camera's", covariance.X_sigma);
-  open("the board's", covariance.Y_sigma);
 }
 
 void fill_views(const HandEyeData& data, const HandEyeSelection& selection, const HandEyeState& state,
@@ -201,6 +204,7 @@ void fill_views(const HandEyeData& data, const HandEyeSelection& selection, cons
     for (std::size_t c = 0; c < data.corners.views[v].corners.size(); ++c) {
       const Corner& corner = data.corners.views[v].corners[c];
       const auto& p = data.corners.p_board[static_cast<std::size_t>(corner.index)];
+      view.found_px.push_back(corner.pixel);
       view.residuals_px.push_back(corner.pixel - predicted_pixel(state, data.poses[v], view.correction, p));
       if (!view.used || !selection.keep[v][c]) {
         view.rejected += view.used;
@@ -213,8 +217,6 @@ void fill_views(const HandEyeData& data, const HandEyeSelection& selection, cons
     view.rms_px = std::sqrt(view_sum / std::max(1, view.points));
     summary.rejected_points += view.rejected;
     sum += view_sum, points += view.points;
-    if (!view.used)
-      summary.notes.push_back("view " + view.name + " is left out: its robot pose contradicts the others");
   }
   summary.in_sample_px = std::sqrt(sum / std::max(1, points));
   summary.uncorrected_px = std::sqrt(sum_plain / std::max(1, points));
@@ -270,13 +272,15 @@ HandEyeSummary solve_hand_eye(const HandEyeData& given, const HandEyeOptions& op
 
   HandEyeState state = first_state(data, options, camera, start);
   HandEyeSelection selection;
-  selection.used.assign(data.poses.size(), true);
+  selection.used = belong_together(start.misfits_m);
+  require_enough(data, selection);
   for (const BoardView& view : data.corners.views) selection.keep.emplace_back(view.corners.size(), true);
   const HandEyeCovariance covariance = robust_solve(data, options, selection, state);
-  require_determined(covariance, summary);
+  require_determined(covariance);
   fill(state, covariance, summary);
   fill_views(data, selection, state, summary);
   if (options.score) score_left_out(data, selection, state, summary);
+  judge_hand_eye(data, summary);
   return summary;
 }
 

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "calibration/camera/camera_model.hpp"
+#include "calibration/result/verdict.hpp"
 #include "calibration/robot/rigid_math.hpp"
 #include "calibration/target/corner_set.hpp"
 
@@ -57,7 +58,7 @@ struct HandEyeView {
   double loo_mm = 0;         ///< RMS over corners of board points by the robot minus by PnP, without this view
   double loo_across_mm = 0;  ///< the part of it across the line of sight
   int turned = 0;            ///< quarter turns by which the board's corner order was corrected
-  std::vector<Eigen::Vector2d> residuals_px;  ///< of all corners, in their order
+  std::vector<Eigen::Vector2d> found_px, residuals_px;  ///< of all corners: where, and found less predicted
 };
 
 struct HandEyeSummary {
@@ -80,7 +81,29 @@ struct HandEyeSummary {
   int rejected_points = 0;
   std::vector<HandEyeView> views;
   std::vector<std::string> notes;  ///< warnings in words
+  Verdict verdict;
 };
+
+/// A hand-eye as a result file keeps it.
+struct KnownHandEye {
+  CameraMount mount = CameraMount::fixed;
+  CameraModel camera;
+  Pose X = Pose::Identity(), Y = Pose::Identity();  ///< as HandEyeSummary has them
+  double board_scale = 1;
+};
+
+/// How well a hand-eye predicts views that its solver has not seen.
+struct HandEyeScore {
+  double px = 0;  ///< RMS per corner, by the robot alone
+  double mm = 0;  ///< RMS over corners, robot against image
+  int views = 0;
+  double worst_px = 0;  ///< of a view
+  std::string worst;    ///< its name
+};
+
+/// `data.poses`: with the joints' offsets in them. A board that looks the same when turned is taken in the order in
+/// which it fits best.
+HandEyeScore score_hand_eye(const KnownHandEye& known, const HandEyeData& data);
 
 /// Throws InputError: fewer than 5 views or poses of another count, motion that leaves X or Y open
 /// (naming it), views that no hand-eye fits.

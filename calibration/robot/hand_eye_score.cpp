@@ -1,5 +1,9 @@
 #include "calibration/robot/hand_eye_score.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/robot/hand_eye_problem.hpp"
 #include "calibration/robot/hand_eye_start.hpp"
 
 namespace foresight {
@@ -37,7 +41,45 @@ Sums predict(const HandEyeData& data, const BoardView& view, std::size_t v, cons
   return sums;
 }
 
+// The corners of `view`, counted from the corner of the board that the robot has there.
+BoardView turned_like_robot(const BoardView& view, const std::vector<BoardTurn>& turns, const HandEyeState& state,
+                            const HandEyeData& data, const RobotPose& robot) {
+  BoardView best = view;
+  double least = INFINITY;
+  for (const BoardTurn& turn : turns) {
+    BoardView one = view;
+    double sum = 0;
+    for (Corner& corner : one.corners) {
+      corner.index = turn.order[static_cast<std::size_t>(corner.index)];
+      const Eigen::Vector3d& p = data.corners.p_board[static_cast<std::size_t>(corner.index)];
+      sum += (predicted_pixel(state, robot, Vector6d::Zero(), p) - corner.pixel).squaredNorm();
+    }
+    if (sum < least) least = sum, best = std::move(one);
+  }
+  return best;
+}
+
 }  // namespace
+
+HandEyeScore score_hand_eye(const KnownHandEye& known, const HandEyeData& data) {
+  HandEyeState state;
+  state.mount = known.mount, state.camera = known.camera, state.board_scale = known.board_scale;
+  state.X = to_parameters(known.X), state.Y = to_parameters(known.Y);
+  const std::vector<BoardTurn> turns = board_turns(data.corners.p_board, data.cols, data.rows);
+  HandEyeScore score;
+  Sums all;
+  for (std::size_t v = 0; v < data.poses.size(); ++v) {
+    const BoardView view = turned_like_robot(data.corners.views[v], turns, state, data, data.poses[v]);
+    const Sums sums = predict(data, view, v, state);
+    all.px += sums.px, all.m += sums.m, all.points += sums.points;
+    ++score.views;
+    if (const double px = std::sqrt(sums.px / std::max(1, sums.points)); px > score.worst_px)
+      score.worst_px = px, score.worst = view.name;
+  }
+  score.px = std::sqrt(all.px / std::max(1, all.points));
+  score.mm = 1e3 * std::sqrt(all.m / std::max(1, all.points));
+  return score;
+}
 
 void score_left_out(const HandEyeData& data, const HandEyeSelection& selection, const HandEyeState& state,
                     HandEyeSummary& summary) {

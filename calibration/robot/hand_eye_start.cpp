@@ -4,11 +4,16 @@
 #include <numeric>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
+#include <random>
 
+#include "calibration/robot/motion_check.hpp"
 #include "common/error.hpp"
 
 namespace foresight {
 namespace {
+
+constexpr int kTrials = 100;            // of three views; of these, half are right where a fifth of all views is wrong
+constexpr double kTurnOfThree = 0.087;  // rad: below 5 degrees noise decides
 
 struct Points {
   std::vector<cv::Point3d> board;
@@ -87,11 +92,11 @@ std::vector<double> misfits(const HandEyeStart& start, std::span<const Pose> T_b
   return out;
 }
 
-// Closed form, then again without the views that do not fit it, up to three times.
-HandEyeStart fit(CameraMount mount, std::span<const Pose> T_base_flange, std::span<const Pose> seen) {
+// Closed form of the views `F` and `B`, then again of those of all that fit it, up to three times.
+HandEyeStart fit(CameraMount mount, std::span<const Pose> T_base_flange, std::span<const Pose> seen,
+                 std::vector<Pose> F, std::vector<Pose> B) {
   HandEyeStart start;
   start.mount = mount;
-  std::vector<Pose> F(T_base_flange.begin(), T_base_flange.end()), B(seen.begin(), seen.end());
   for (int round = 0; round < 3; ++round) {
     start.X = park(mount, F, B);
     start.Y = typical_pose(base_or_flange_boards(mount, F, start.X, B));
@@ -104,6 +109,39 @@ HandEyeStart fit(CameraMount mount, std::span<const Pose> T_base_flange, std::sp
     F = F_good, B = B_good;
   }
   return start;
+}
+
+HandEyeStart fit(CameraMount mount, std::span<const Pose> F, std::span<const Pose> seen) {
+  return fit(mount, F, seen, {F.begin(), F.end()}, {seen.begin(), seen.end()});
+}
+
+// From the three views whose closed form fits half of all views best (least median of squares, Rousseeuw 1984): poses
+// that belong to other images draw a closed form of all views so far that they no longer stand out from it.
+HandEyeStart of_the_best_three(CameraMount mount, std::span<const Pose> F, std::span<const Pose> seen) {
+  std::mt19937 random(1);
+  std::vector<std::size_t> order(F.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  HandEyeStart best;
+  best.misfit_m = 1e300;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    for (std::size_t i = 0; i < 3; ++i) std::swap(order[i], order[i + random() % (order.size() - i)]);
+    std::vector<Pose> some_F, some_B;
+    for (std::size_t i = 0; i < 3; ++i) some_F.push_back(F[order[i]]), some_B.push_back(seen[order[i]]);
+    if (motion_spread(some_F).second_axis_rad < kTurnOfThree) continue;
+    HandEyeStart start;
+    start.mount = mount;
+    start.X = park(mount, some_F, some_B);
+    if (!start.X.matrix().allFinite()) continue;
+    start.Y = typical_pose(base_or_flange_boards(mount, some_F, start.X, some_B));
+    start.misfits_m = misfits(start, F, seen);
+    start.misfit_m = median(start.misfits_m);
+    if (start.misfit_m < best.misfit_m) best = std::move(start);
+  }
+  if (best.misfits_m.empty()) return best;
+  std::vector<Pose> fitting_F, fitting_B;
+  for (std::size_t i = 0; i < F.size(); ++i)
+    if (best.misfits_m[i] <= 2 * best.misfit_m) fitting_F.push_back(F[i]), fitting_B.push_back(seen[i]);
+  return fitting_F.size() < 4 ? best : fit(mount, F, seen, fitting_F, fitting_B);
 }
 
 // Angle and shift along the axis of a motion are the same in every frame that is fixed to its body.
@@ -232,13 +270,17 @@ HandEyeStart start_hand_eye(CameraMount mount, std::span<const RobotPose> poses,
   std::vector<Pose> F;
   for (const RobotPose& pose : poses) F.push_back(pose.T_base_flange);
   HandEyeStart best = settle(mount, F, T_camera_board, symmetries, std::vector<std::size_t>(F.size(), 0));
-  if (symmetries.size() < 2) return best;
-  for (std::size_t anchor = 0; anchor < F.size(); anchor += std::max<std::size_t>(1, F.size() / 4)) {
+  for (std::size_t anchor = 0; symmetries.size() > 1 && anchor < F.size();
+       anchor += std::max<std::size_t>(1, F.size() / 4)) {
     HandEyeStart other =
         settle(mount, F, T_camera_board, symmetries, turns_like_robot(mount, F, T_camera_board, symmetries, anchor));
     if (other.misfit_m < 0.7 * best.misfit_m) best = std::move(other);
   }
-  return best;
+  const std::vector<std::size_t> k(best.turned.begin(), best.turned.end());
+  HandEyeStart few = of_the_best_three(mount, F, turned(T_camera_board, symmetries, k));
+  if (few.misfit_m >= 0.7 * best.misfit_m) return best;
+  few.turned = best.turned;
+  return few;
 }
 
 std::vector<BoardTurn> board_turns(const std::vector<Eigen::Vector3d>& p_board, int cols, int rows) {

@@ -42,8 +42,13 @@ int turning_joints(const UrdfRobot& robot, int base, int link) {
 }  // namespace
 
 JointChain read_joint_chain(const std::filesystem::path& urdf, const std::string& base, const std::string& flange) {
+  return joint_chain_of(read_urdf(urdf, urdf.parent_path(), UrdfShapes::none), base, flange, urdf);
+}
+
+JointChain joint_chain_of(UrdfRobot robot, const std::string& base, const std::string& flange,
+                          const std::filesystem::path& urdf) {
   JointChain chain;
-  chain.robot = read_urdf(urdf);
+  chain.robot = std::move(robot);
   if (!base.empty()) chain.base = find_link(chain.robot, base, urdf);
   if (!flange.empty()) {
     chain.flange = find_link(chain.robot, flange, urdf);

@@ -21,6 +21,10 @@ struct JointChain {
 /// Throws InputError: no such link (with the nearest), no chain between the two, none that moves.
 JointChain read_joint_chain(const std::filesystem::path& urdf, const std::string& base, const std::string& flange);
 
+/// The same of a robot that was read; `urdf`: the file, for messages.
+JointChain joint_chain_of(UrdfRobot robot, const std::string& base, const std::string& flange,
+                          const std::filesystem::path& urdf);
+
 /// Forward kinematics. Throws InputError at `where` for another number of positions, or one outside of its limits.
 Pose flange_pose(JointChain& chain, const std::vector<double>& positions, const std::string& where);
 

@@ -10,7 +10,8 @@
 namespace foresight {
 namespace {
 
-constexpr double kFits = 0.1;  // RMS rad: a chain of the wrong order is off by more
+constexpr double kLargestMm = 20, kLargestMrad = 20;  // of poses that were left out: 10 px of a usual lens
+constexpr double kFits = 0.1;                         // RMS rad: a chain of the wrong order is off by more
 
 PanTiltErrors errors_of(const std::vector<Vector6d>& steps) {
   PanTiltErrors errors;
@@ -102,6 +103,17 @@ PanTiltSummary with_gains_if_better(const std::vector<PanTiltSample>& samples, c
   });
 }
 
+void judge(std::size_t poses, PanTiltSummary& summary) {
+  judge_sigmas(summary.names, summary.sigmas, summary.verdict);
+  if (summary.loo.mm > kLargestMm || summary.loo.mrad > kLargestMrad)
+    summary.verdict.object("poses that were left out are predicted to " + readable(summary.loo.mm, 1) + " mm and " +
+                               readable(summary.loo.mrad, 1) + " mrad only",
+                           "check that angles (rad, pan first) and poses belong together, row by row");
+  if (5 * static_cast<std::size_t>(summary.outliers) > poses)
+    summary.verdict.object(std::to_string(summary.outliers) + " of " + std::to_string(poses) + " poses are outliers",
+                           "check that angles and poses belong together, and that nothing slipped");
+}
+
 }  // namespace
 
 Pose camera_pose(const PanTiltModel& model, const PanTiltAngles& angles) {
@@ -157,6 +169,7 @@ PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const Pan
   summary.names = pan_tilt_names(state);
   summary.sigmas = sigmas_of(covariance);
   if (options.score) score_left_out(samples, options, state, summary);
+  judge(samples.size(), summary);
   return summary;
 }
 

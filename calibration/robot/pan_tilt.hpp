@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/result/verdict.hpp"
 #include "calibration/robot/rigid_math.hpp"
 #include "scene/yaml_fields.hpp"
 
@@ -65,6 +66,7 @@ struct PanTiltSummary {
   int outliers = 0;                 ///< poses beyond 5 robust sigmas; they count in the errors
   std::vector<Vector6d> loo_steps;  ///< per sample: from predicted to measured pose, in the camera; empty without score
   std::vector<std::string> notes;
+  Verdict verdict;
 };
 
 /// Throws InputError: fewer than 8 poses, a joint that did not move (naming the parameters that

@@ -38,6 +38,17 @@ inline std::vector<double> sigmas_of(const Eigen::MatrixXd& covariance) {
   return sigmas;
 }
 
+/// Objects to parameters that hardly anything determined, by name.
+inline void judge_sigmas(const std::vector<std::string>& names, const std::vector<double>& sigmas, Verdict& verdict) {
+  constexpr double kOpen = 0.2;  // rad or m
+  std::string open;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!(sigmas[i] < kOpen)) open += (open.empty() ? "" : ", ") + names[i] + " (+- " + readable(sigmas[i], 2) + ")";
+  if (!open.empty())
+    verdict.object("these parameters of the head stay open: " + open,
+                   "sweep both joints further, each at several angles of the other");
+}
+
 /// Calls `score` with the index of each of `count` views and a copy of `state` that `fit(state, index)` has solved
 /// again without it.
 template <typename State, typename Fit, typename Score>

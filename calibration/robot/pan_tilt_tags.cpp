@@ -13,13 +13,14 @@
 namespace foresight {
 namespace {
 
-constexpr double kOutlier = 5;        // robust standard deviations
-constexpr double kStartPx = 4;        // a tag that is farther off from a view's first pose has no part in it
-constexpr double kStrange = 0.3;      // share of rejected corners above which the map cannot be right
-constexpr double kWorstCornerPx = 3;  // of a found corner: beyond it, the map is another one
-constexpr double kFirstCornerPx = 1;  // both noises before anything is known
-constexpr double kFirstShaft = 2e-3;  // rad
-constexpr double kLeastShaft = 2e-5;  // rad, a few counts of a good encoder
+constexpr double kOutlier = 5;          // robust standard deviations
+constexpr double kStartPx = 4;          // a tag that is farther off from a view's first pose has no part in it
+constexpr double kStrange = 0.3;        // share of rejected corners above which the map cannot be right
+constexpr double kWorstCornerPx = 3;    // of a found corner: beyond it, the map is another one
+constexpr double kLargestError = 0.01;  // of views left out, of the image's width
+constexpr double kFirstCornerPx = 1;    // both noises before anything is known
+constexpr double kFirstShaft = 2e-3;    // rad
+constexpr double kLeastShaft = 2e-5;    // rad, a few counts of a good encoder
 
 /// The left camera from one view's tags in one camera, or nothing.
 std::optional<Pose> view_pose(const PanTiltView& view, const CalibratedCameras& cameras, int camera) {
@@ -219,15 +220,33 @@ std::vector<PanTiltView> of_known_ways(const std::vector<PanTiltView>& views, bo
 
 }  // namespace
 
-std::vector<double> corner_errors(const CalibratedCameras& cameras, const Pose& T_world_left, const PanTiltView& view) {
-  std::vector<double> errors;
+ViewPrints prints_of(const std::vector<PanTiltView>& views) {
+  ViewPrints out;
+  for (const PanTiltView& view : views) {
+    std::vector<Eigen::Vector2d> pixels;
+    for (const SeenTag& tag : view.tags) pixels.insert(pixels.end(), tag.pixels.begin(), tag.pixels.end());
+    if (!pixels.empty()) out.emplace_back(pixels);
+  }
+  return out;
+}
+
+std::vector<std::optional<Eigen::Vector2d>> predicted_corners(const CalibratedCameras& cameras,
+                                                              const Pose& T_world_left, const PanTiltView& view) {
+  std::vector<std::optional<Eigen::Vector2d>> out;
   const Pose T_left_world = T_world_left.inverse();
   for (const SeenTag& tag : view.tags)
-    for (std::size_t c = 0; c < 4; ++c) {
-      const auto pixel = project(cameras.cameras[static_cast<std::size_t>(tag.camera)],
-                                 to_camera(cameras, tag.camera, T_left_world * tag.corners[c]));
-      errors.push_back(pixel ? (*pixel - tag.pixels[c]).norm() : std::numeric_limits<double>::infinity());
-    }
+    for (const Eigen::Vector3d& corner : tag.corners)
+      out.push_back(project(cameras.cameras[static_cast<std::size_t>(tag.camera)],
+                            to_camera(cameras, tag.camera, T_left_world * corner)));
+  return out;
+}
+
+std::vector<double> corner_errors(const CalibratedCameras& cameras, const Pose& T_world_left, const PanTiltView& view) {
+  std::vector<double> errors;
+  const auto predicted = predicted_corners(cameras, T_world_left, view);
+  for (std::size_t i = 0; i < predicted.size(); ++i)
+    errors.push_back(predicted[i] ? (*predicted[i] - view.tags[i / 4].pixels[i % 4]).norm()
+                                  : std::numeric_limits<double>::infinity());
   return errors;
 }
 
@@ -261,6 +280,11 @@ PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, con
   }
   summary.in_sample_px = root_mean_square(all);
   if (options.score) score_left_out(views, cameras, state, summary);
+  judge_sigmas(summary.names, summary.sigmas, summary.verdict);
+  if (const double limit = kLargestError * cameras.left().width; summary.loo_px > limit)
+    summary.verdict.object("views that were left out are predicted to " + readable(summary.loo_px, 1) +
+                               " px by the encoders; " + readable(limit, 1) + " px are the limit",
+                           "check that angles and pictures belong together, and that the head's joints do not slip");
   return summary;
 }
 

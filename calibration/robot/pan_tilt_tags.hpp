@@ -12,6 +12,7 @@
 #pragma once
 
 #include "calibration/camera/rig.hpp"
+#include "calibration/result/view_print.hpp"
 #include "calibration/robot/pan_tilt.hpp"
 
 namespace foresight {
@@ -56,6 +57,7 @@ struct PanTiltTagSummary {
   std::vector<double> view_px, loo_view_px;
   int tags = 0, rejected_points = 0;  ///< tags in images; corners left out
   std::vector<std::string> notes;
+  Verdict verdict;
 };
 
 /// `cameras`: lenses, and where the right camera stands; they stay as they are.
@@ -63,6 +65,13 @@ struct PanTiltTagSummary {
 /// stays open), angles or a map that fit no two-axis head.
 PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
                                       const PanTiltTagOptions& options);
+
+/// Of what each view's tags looked like.
+ViewPrints prints_of(const std::vector<PanTiltView>& views);
+
+/// Where each corner of `view` is predicted, in the order of its tags; nothing for one behind its camera.
+std::vector<std::optional<Eigen::Vector2d>> predicted_corners(const CalibratedCameras& cameras,
+                                                              const Pose& T_world_left, const PanTiltView& view);
 
 /// Distances, px, from the predicted to the seen corners of `view`, in the order of its tags. A corner that the model
 /// puts behind a camera is infinitely far.

@@ -66,6 +66,16 @@ YAML::Node to_yaml(const PanTiltTagSummary& summary, std::optional<double> offse
   return out;
 }
 
+KnownHandEye read_hand_eye(const YamlMap& result) {
+  KnownHandEye out;
+  out.mount = result.choice<CameraMount>("mount", {{"fixed", CameraMount::fixed}, {"moving", CameraMount::moving}});
+  out.X = result.pose(name_of_X(out.mount));
+  out.Y = result.pose(name_of_Y(out.mount));
+  out.board_scale = result.positive("board_scale");
+  out.camera = read_camera(result.map("camera"));
+  return out;
+}
+
 std::map<std::string, double> sigmas_of(const HandEyeSummary& summary, const ArmNames& names) {
   std::map<std::string, double> out;
   add_motion(name_of_X(summary.mount), summary.X_sigma, out);

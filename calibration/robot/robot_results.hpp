@@ -28,6 +28,9 @@ YAML::Node to_yaml(const PanTiltModel& model);
 /// `offset_s`: what stands in the file, nothing where the clocks were not compared.
 YAML::Node to_yaml(const PanTiltTagSummary& summary, std::optional<double> offset_s);
 
+/// What `verify` needs of a file of kind "arm". Throws InputError naming file and field.
+KnownHandEye read_hand_eye(const YamlMap& result);
+
 /// Standard deviations by name, as the header of the file holds them.
 std::map<std::string, double> sigmas_of(const HandEyeSummary& summary, const ArmNames& names);
 std::map<std::string, double> sigmas_of(const TimeOffsetSummary& summary);

@@ -1,19 +1,17 @@
 #include "calibration/robot/time_offset.hpp"
 
 #include <ceres/autodiff_cost_function.h>
-#include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
 
 #include <algorithm>
-#include <map>
 
 #include "calibration/camera/minimise.hpp"
 #include "calibration/camera/rigid_motion.hpp"
-#include "calibration/robot/arrow_system.hpp"
 #include "calibration/robot/motion_check.hpp"
 #include "calibration/robot/stream_alignment.hpp"
+#include "calibration/robot/time_covariance.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -22,8 +20,11 @@ namespace {
 
 constexpr std::size_t kFewestSamples = 50;
 constexpr double kLeastCorrelation = 0.4;
-constexpr double kRobust = 3;       // of Cauchy's loss, standard deviations of a six-vector
-constexpr double kLeastTurn = 0.1;  // rad, of swept joints
+constexpr double kRobust = 3;               // of Cauchy's loss, standard deviations of a six-vector
+constexpr double kLeastTurn = 0.1;          // rad, of swept joints
+constexpr double kShortestStretch = 1;      // s: shorter ones are not independent
+constexpr double kLargestSigma = 1.0 / 60;  // s
+constexpr double kLargestStep = 0.15;       // s, from the correlation's offset to the refined one
 
 // Encoder samples as doubles since the first, with the turn to the next one.
 struct Track {
@@ -145,35 +146,17 @@ void refine(const Track& track, const std::vector<AlignedPose>& poses, bool rota
   }
 }
 
-// Sandwich over segments: H^-1 (sum of g g^T) H^-1, g the gradient of one segment; what is
-// correlated within a segment does not make the result look better than it is.
-Eigen::MatrixXd segment_covariance(ceres::Problem& problem, const std::vector<AlignedPose>& poses, double segment_s,
-                                   State& state, int& segments) {
+Eigen::MatrixXd covariance_of(ceres::Problem& problem, const std::vector<AlignedPose>& poses, double segment_s,
+                              State& state, TimeOffsetSummary& summary) {
   ceres::Problem::EvaluateOptions options;
   options.parameter_blocks = {&state.offset, state.X.data(), state.Y.data()};
-  std::vector<double> r;
+  std::vector<double> r, times;
   ceres::CRSMatrix J;
   problem.Evaluate(options, nullptr, &r, nullptr, &J);
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(J.num_cols, J.num_cols);
-  std::map<long, Eigen::VectorXd> gradients;
-  for (std::size_t row = 0; row < r.size(); ++row) {
-    Eigen::VectorXd j = Eigen::VectorXd::Zero(J.num_cols);
-    for (int k = J.rows[row]; k < J.rows[row + 1]; ++k)
-      j[J.cols[static_cast<std::size_t>(k)]] = J.values[static_cast<std::size_t>(k)];
-    H += j * j.transpose();
-    auto& g =
-        gradients
-            .try_emplace(std::lround(std::floor(poses[row / 6].time_s / segment_s)), Eigen::VectorXd::Zero(J.num_cols))
-            .first->second;
-    g += j * r[row];
-  }
-  segments = static_cast<int>(gradients.size());
-  std::vector<Eigen::VectorXd> open;
-  const Eigen::MatrixXd inverse = invert_information(H, open, 1e-10);
-  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(J.num_cols, J.num_cols);
-  for (const auto& [segment, g] : gradients) middle += g * g.transpose();
-  const double n = segments, parameters = static_cast<double>(J.num_cols) - static_cast<double>(open.size());
-  return inverse * middle * inverse * (n / std::max(1.0, n - std::min(parameters, n / 2)));
+  for (const AlignedPose& pose : poses) times.insert(times.end(), 6, pose.time_s);
+  const StretchCovariance found = stretch_covariance(J, r, times, segment_s);
+  summary.segments = found.stretches;
+  return found.covariance;
 }
 
 void measure_scatter(const Track& track, const std::vector<AlignedPose>& poses, const PoseTrack& encoder,
@@ -219,7 +202,35 @@ void require_correlation(const Lag& lag, const TimeOffsetOptions& options, TimeO
                      "the angular speeds do not correlate: " + readable(lag.correlation, 2) + " at best",
                      "check that both streams belong to one body and session, and that it turned to and fro");
   if (std::abs(lag.offset_s - options.around_s) > options.largest_offset_s - 0.05)
-    summary.notes.emplace_back("the offset lies at the edge of the search: widen it by --search");
+    summary.verdict.object("the offset lies at the edge of the search", "widen it by --search");
+}
+
+void judge_stretches(double span_s, const TimeOffsetOptions& options, TimeOffsetSummary& summary) {
+  if (summary.segments >= kFewestStretches) return;
+  const bool one = summary.segments == 1;
+  const double fitting = std::floor(10 * span_s / (2 * kFewestStretches)) / 10;
+  summary.verdict.object(
+      std::to_string(summary.segments) + (one ? " stretch of " : " stretches of ") + readable(options.segment_s, 1) +
+          (one ? " s says" : " s say") + " too little about the error of the offset; " +
+          std::to_string(kFewestStretches) + " are the least",
+      fitting >= kShortestStretch ? "give --segment " + readable(fitting, 1) + ", or record for longer"
+                                  : "record for " + readable(2.0 * kFewestStretches, 0) + " s and more");
+}
+
+void judge(const std::vector<AlignedPose>& poses, const TimeOffsetOptions& options, TimeOffsetSummary& summary) {
+  judge_stretches(poses.back().time_s - poses.front().time_s, options, summary);
+  if (!(summary.offset_sigma_s < kLargestSigma))
+    summary.verdict.object("the offset is uncertain by " + readable(1e3 * summary.offset_sigma_s, 1) +
+                               " ms; half the time between two images is the limit",
+                           "record for longer, and turn faster to and fro");
+  if (std::abs(summary.offset_s - summary.coarse_offset_s) > kLargestStep)
+    summary.verdict.object("the angular speeds agree at " + readable(1e3 * summary.coarse_offset_s, 0) +
+                               " ms and the poses at " + readable(1e3 * summary.offset_s, 0) + " ms",
+                           "move less regularly, so that one offset alone fits");
+  if (3 * summary.outliers > summary.samples)
+    summary.verdict.object(
+        std::to_string(summary.outliers) + " of " + std::to_string(summary.samples) + " samples lie beyond 5 scatters",
+        "check that the camera's poses are those of one target that stands still");
 }
 
 }  // namespace
@@ -249,13 +260,14 @@ TimeOffsetSummary solve_time_offset(const std::vector<PoseTrack::Sample>& encode
   refine(track, poses, options.rotation_only, state);
   ceres::Problem problem;
   build(track, poses, options.rotation_only, state, problem);
-  const Eigen::MatrixXd covariance = segment_covariance(problem, poses, options.segment_s, state, summary.segments);
+  const Eigen::MatrixXd covariance = covariance_of(problem, poses, options.segment_s, state, summary);
   summary.offset_s = state.offset;
   summary.offset_sigma_s = std::sqrt(covariance(0, 0));
   summary.X = to_pose(state.X), summary.Y = to_pose(state.Y);
   summary.X_sigma = covariance.diagonal().segment<6>(1).cwiseMax(0).cwiseSqrt();
   summary.X_sigma.head<3>() *= 2;  // the manifold steps by half angles
   measure_scatter(track, poses, encoder, options.rotation_only, summary);
+  judge(poses, options, summary);
   return summary;
 }
 

@@ -10,6 +10,7 @@
 // 2017). Then all three are refined together, robustly, with A interpolated at the camera's times.
 #pragma once
 
+#include "calibration/result/verdict.hpp"
 #include "calibration/robot/pose_stream.hpp"
 #include "calibration/robot/rigid_math.hpp"
 
@@ -24,7 +25,7 @@ struct TimeOffsetOptions {
 
 struct TimeOffsetSummary {
   double offset_s = 0;
-  double offset_sigma_s = 0;            ///< from the scatter between segments
+  double offset_sigma_s = 0;            ///< from what each stretch changes when it is left out
   double coarse_offset_s = 0;           ///< by correlation
   double correlation = 0;               ///< of the angular speeds at that offset
   bool camera_inverted = false;         ///< the camera stream gives target in camera, not camera in target
@@ -37,6 +38,7 @@ struct TimeOffsetSummary {
   std::vector<double> residual_time_s, residual_mm, residual_mrad;  ///< per sample: time since the first
   std::vector<double> lag_s, lag_correlation;                       ///< of the search
   std::vector<std::string> notes;
+  Verdict verdict;
 };
 
 /// Throws InputError: streams that do not overlap (naming both spans), fewer than 50 common

@@ -14,6 +14,7 @@
 #include "common/error.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
+#include "scene/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -77,9 +78,7 @@ void for_all(std::size_t count, const std::function<void(std::size_t)>& work) {
 }
 
 cv::Mat read_grey(const fs::path& file) {
-  const cv::Mat grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-  if (grey.empty()) throw InputError(file.string(), "is no image that can be read", "remove it, or copy it again");
-  return grey;
+  return read_picture(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
 std::vector<cv::Mat> some_images(const std::vector<fs::path>& files, std::size_t most) {
@@ -222,11 +221,14 @@ std::vector<std::array<fs::path, 2>> list_pairs(const fs::path& left, const fs::
 }
 
 FoundCorners find_in_folder(const fs::path& folder, const Board& board) {
-  const auto files = list_images(folder);
+  return find_in_files(list_images(folder), board);
+}
+
+FoundCorners find_in_files(const std::vector<fs::path>& files, const Board& board) {
   FoundCorners result;
   result.board = completed(board, files);
   const auto seen = look_at(files, result.board);
-  require_found(seen, result.board, folder);
+  require_found(seen, result.board, files.front().parent_path());
   start_set(result.corners, seen, result.board);
   const BlurRule blur(seen);
   for (const Seen& s : seen) {
@@ -237,6 +239,7 @@ FoundCorners find_in_folder(const fs::path& folder, const Board& board) {
       result.dropped.push_back({name, blur.text(*s.found)});
     } else {
       result.corners.views.push_back({s.file.stem().string(), s.found->corners});
+      result.files[result.corners.views.back().name] = {s.file, {}};
     }
   }
   return result;
@@ -275,6 +278,7 @@ FoundStereoCorners find_pairs_in_folders(const fs::path& left, const fs::path& r
     for (int i = 0; i < 2; ++i) {
       if (!sides[i] || !sides[i]->found) continue;
       (i == 0 ? result.corners.left : result.corners.right).views.push_back({name, sides[i]->found->corners});
+      result.files[name][static_cast<std::size_t>(i)] = sides[i]->file;
     }
   }
   if (!any)

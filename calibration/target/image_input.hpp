@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,16 +17,21 @@ struct DroppedView {
   std::string reason;
 };
 
+/// Files of views, by the views' names: left or the only one, right.
+using PicturesOfViews = std::map<std::string, std::array<std::filesystem::path, 2>>;
+
 struct FoundCorners {
   Board board;  ///< with what was found from the images
   CornerSet corners;
   std::vector<DroppedView> dropped;
+  PicturesOfViews files;
 };
 
 struct FoundStereoCorners {
   Board board;
   StereoCorners corners;
   std::vector<DroppedView> dropped;  ///< named after the file, or after the pair
+  PicturesOfViews files;
 };
 
 /// Pictures of a folder (png jpg jpeg bmp pgm tif tiff), or those that a pattern in the last part of
@@ -42,6 +48,9 @@ std::vector<std::array<std::filesystem::path, 2>> list_pairs(const std::filesyst
 /// images without the board, and blurred ones (sharpness below half the median). Throws InputError:
 /// no image, unreadable image, sizes that differ (naming two), the board in none (naming what fits).
 FoundCorners find_in_folder(const std::filesystem::path& folder, const Board& board);
+
+/// The same for these files, at least one, in their order.
+FoundCorners find_in_files(const std::vector<std::filesystem::path>& files, const Board& board);
 
 /// Pairs by name (split_side() of the path's file name); where no name fits and both folders hold
 /// equally many, by their order. A blurred image drops its pair; a board seen by one camera

@@ -4,11 +4,13 @@
 #include <fstream>
 
 #include "calibration/formats/camera_formats.hpp"
+#include "calibration/formats/urdf_offsets.hpp"
 #include "calibration/robot/joint_chain.hpp"
 #include "calibration/robot/robot_results.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/robot_calibration/synthetic_rig.hpp"
 #include "tests/support/folders.hpp"
+#include "tests/support/html_check.hpp"
 
 namespace foresight {
 namespace {
@@ -73,6 +75,83 @@ TEST_F(Arm, FindsAFixedAndAMovingCamera) {
     EXPECT_THAT(arm({"--poses", poses, "--camera-mount", mount == CameraMount::fixed ? "moving" : "fixed"}),
                 AllOf(HasSubstr("contradicts images and poses"), HasSubstr("--camera-mount " + to_string(mount))));
   }
+}
+
+// The file keeps what it had, and the numbers say why.
+TEST_F(Arm, PosesThatChangedPlacesEndWithAVerdict) {
+  HandEyeRig rig = make(CameraMount::fixed);
+  std::swap(rig.data.poses[2], rig.data.poses[6]);
+  const auto poses = folder_.write("poses.txt", rows(rig.data.poses));
+  EXPECT_EQ(arm({"--poses", poses, "--report", folder_ / "a.html"}), "1");
+  const auto numbers = json_of(folder_, "a.json");
+  EXPECT_EQ(numbers["usable"], false);
+  EXPECT_THAT(numbers["not_usable"].dump(), AllOf(HasSubstr("view2 and view6 are exchanged"), HasSubstr("--poses")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.yaml"));
+  const std::string page = folder_.read("a.html");
+  EXPECT_EQ(malformed(page), "");
+  EXPECT_LT(page.find("Not usable"), page.find("<table")) << "the verdict stands before all else";
+  std::swap(rig.data.poses[2], rig.data.poses[6]);
+  folder_.write("poses.txt", rows(rig.data.poses));
+  ASSERT_EQ(error_of(arm({"--poses", poses})), "no error");
+  EXPECT_THAT(folder_.read("a.yaml"), HasSubstr("verdict: usable"));
+}
+
+TEST_F(Arm, VerifyKnowsItsOwnViewsWhateverTheyAreCalled) {
+  HandEyeRig rig = make_rig(
+      random_, {.mount = CameraMount::moving, .views = 18, .noise_px = 0.05, .noise_rad = 5e-5, .noise_m = 5e-5});
+  const HandEyeData all = rig.data;
+  const auto part = [&](std::size_t from, std::size_t to, const std::string& name) {
+    HandEyeData some = all;
+    some.corners.views = {all.corners.views.begin() + std::ptrdiff_t(from),
+                          all.corners.views.begin() + std::ptrdiff_t(to)};
+    some.poses = {all.poses.begin() + std::ptrdiff_t(from), all.poses.begin() + std::ptrdiff_t(to)};
+    for (std::size_t v = 0; v < some.corners.views.size(); ++v) some.corners.views[v].name = name + std::to_string(v);
+    folder_.write(name + ".vnl", vnl(some.corners));
+    folder_.write(name + ".txt", rows(some.poses));
+  };
+  part(0, 12, "solved"), part(0, 12, "renamed"), part(8, 18, "both"), part(12, 18, "new");
+  corners_ = folder_ / "solved.vnl";
+  ASSERT_EQ(error_of(arm({"--poses", folder_ / "solved.txt"})), "no error");
+  const auto verify = [&](const std::string& name) {
+    const std::string code =
+        run_calibrate({"verify", "--result", folder_ / "a.yaml", "--corners", folder_ / (name + ".vnl"), "--board",
+                       kBoard, "--poses", folder_ / (name + ".txt"), "--json", folder_ / "v.json"});
+    return std::pair(code, json_of(folder_, "v.json"));
+  };
+  const auto [code, numbers] = verify("renamed");
+  EXPECT_EQ(code, "1");
+  EXPECT_EQ(numbers["views_of_the_calibration"], 12);
+  EXPECT_THAT(numbers["failed_because"].dump(), HasSubstr("take new pictures"));
+  EXPECT_EQ(verify("new").first, "0");
+  EXPECT_EQ(verify("new").second["views"], 6);
+  EXPECT_EQ(verify("both").first, "0");
+  EXPECT_EQ(verify("both").second["views"], 6) << "four of them are known";
+  rig.data.poses.resize(6);
+  for (std::size_t v = 0; v < 6; ++v)  // the camera was bumped
+    rig.data.poses[v].T_base_flange = all.poses[12 + v].T_base_flange * random_pose(random_, 0.02, 0.002);
+  folder_.write("new.txt", rows(rig.data.poses));
+  EXPECT_EQ(verify("new").first, "1");
+}
+
+// The lens that was found goes to others, and the camera onto whatever link carries it.
+TEST_F(Arm, ExportsTheLensAndAttachesToALink) {
+  const HandEyeRig rig = make(CameraMount::moving);
+  write_cameras(CameraFormat::camera_info, {{rig.camera}}, folder_ / "camera.yaml", true);
+  ASSERT_EQ(error_of(arm({"--poses", folder_.write("poses.txt", rows(rig.data.poses)), "--camera",
+                          folder_ / "camera.yaml", "--camera-link", "eye"})),
+            "no error");
+  ASSERT_EQ(run_calibrate({"export", folder_ / "a.yaml", "--to", "camera-info", "--out", folder_ / "lens.yaml"}), "0");
+  EXPECT_LT(worst_ray({{rig.camera}}, read_cameras(CameraFormat::camera_info, folder_ / "lens.yaml"), 100), 1e-6);
+  const std::string urdf = source_folder() / "configs/arm.urdf";
+  const std::vector<std::string> to_urdf{"export", folder_ / "a.yaml",  "--to", "urdf", "--urdf", urdf,
+                                         "--out",  folder_ / "arm.urdf"};
+  EXPECT_THAT(run_calibrate(to_urdf), HasSubstr("no link 'flange'"));
+  std::vector<std::string> attached = to_urdf;
+  attached.insert(attached.end(), {"--link", "arm_7"});
+  ASSERT_EQ(run_calibrate(attached), "0");
+  const UrdfMount mount = read_mount(folder_.read("arm.urdf"), "eye", "arm.urdf");
+  EXPECT_EQ(mount.parent, "arm_7");
+  EXPECT_LT(step_between(mount.T_parent_child, result("T_flange_camera")).norm(), 1e-9);
 }
 
 TEST_F(Arm, MillimetresAndInversePosesAreNamed) {
@@ -165,11 +244,14 @@ TEST_F(Arm, FindsJointOffsets) {
   made.rows.resize(views), made.rig.data.corners.views.resize(views);
   write_cameras(CameraFormat::camera_info, {{made.rig.camera}}, folder_ / "camera.yaml", true);
   corners_ = folder_.write("corners.vnl", vnl(made.rig.data.corners));
-  std::string joints;  // named rows may come in any order
+  std::string joints = "image";  // rows and columns that are named may come in any order
+  for (std::size_t j = chain.joints.size(); j-- > 0;)
+    joints += "," + chain.robot.joints[static_cast<std::size_t>(chain.joints[j])].name;
+  joints += ",finger\n";
   for (std::size_t i = made.rows.size(); i-- > 0;) {
     joints += made.rig.data.corners.views[i].name + ".png";
-    for (const double q : made.rows[i]) joints += " " + std::to_string(q);
-    joints += "\n";
+    for (std::size_t j = made.rows[i].size(); j-- > 0;) joints += "," + std::to_string(made.rows[i][j]);
+    joints += ",0.01\n";
   }
   const auto rows = folder_.write("joints.txt", joints);
   ASSERT_EQ(error_of(arm({"--urdf", urdf, "--joints", rows, "--camera-mount", "fixed", "--board-sigma", "0", "--camera",
@@ -197,6 +279,11 @@ TEST_F(Arm, WrongJointsAreNamed) {
   EXPECT_THAT(arm({"--urdf", urdf, "--joints", folder_.write("j.txt", "0 0 0 0 0 0 0\n")}),
               HasSubstr("1 rows for 9 images"));
   EXPECT_THAT(arm({"--urdf", urdf, "--joints", folder_.write("w.txt", "0 zero 0 0 0 0 0\n")}), HasSubstr("'zero'"));
+  EXPECT_THAT(arm({"--urdf", urdf, "--joints", folder_.write("t.csv", "time_s,shoulder_yaw\n0,0\n")}),
+              HasSubstr("--run RUN"));
+  EXPECT_THAT(arm({"--urdf", urdf, "--joints", folder_.write("n.csv", "image,shoulder_yaw,elbov\nview0,0,0\n")}),
+              HasSubstr("no joint 'shoulder_pitch'"));
+  EXPECT_THAT(arm({"--guided"}), HasSubstr("--rig"));
   EXPECT_THAT(arm({}), HasSubstr("--poses"));
 }
 

@@ -138,6 +138,16 @@ TEST(PhotometricCommand, FindsTheGainOfAPair) {
   EXPECT_EQ(numbers["left"]["inverse_response"].size(), 256u);
   EXPECT_EQ(read_result(folder / "p.yaml", "photometric").result.map("left").numbers("inverse_response").size(), 256u);
   EXPECT_EQ(malformed(folder.read("r.html")), "");
+  const auto identical = folder / "identical";
+  std::filesystem::create_directories(identical);
+  for (const ExposedImage& image : series_of({}, cv::Mat(240, 320, CV_64F, cv::Scalar(0.5)), exposures, 11))
+    std::filesystem::copy(folder / "left/image2.png", identical / image.name);
+  EXPECT_EQ(run_calibrate({"photometric", "--flat", identical, "--exposures", times, "--force", "--out",
+                           folder / "p.yaml", "--json", folder / "i.json"}),
+            "1");
+  EXPECT_THAT(json_of(folder, "i.json")["not_usable"].dump(),
+              AllOf(HasSubstr("image0.png and image1.png"), HasSubstr("automatic exposure")));
+  EXPECT_TRUE(read_result(folder / "p.yaml", "photometric").result.has("left")) << "kept as it was";
   EXPECT_THAT(run_calibrate({"photometric"}), HasSubstr("--images"));
   EXPECT_THAT(run_calibrate({"photometric", "--images", folder / "left"}), HasSubstr("--exposures"));
 }

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "calibration/result/frame_drawing.hpp"
 #include "calibration/result/heat_map.hpp"
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
@@ -38,6 +39,34 @@ HtmlReport example() {
   values.at<double>(0, 0) = NAN;
   report.heat_map("Projection uncertainty", values, 640, 480, "px");
   return report;
+}
+
+// Frames that stand apart in space stand apart on paper, each with its name.
+TEST(FrameDrawing, DrawsFramesCamerasAndAGrid) {
+  FrameDrawing drawing;
+  Pose T = Pose::Identity();
+  drawing.frame("base <a>", T, 0.2);
+  T.translation() = Eigen::Vector3d(0.5, 0.3, 0.4);
+  drawing.frame("camera", T, 0.1);
+  drawing.camera("", T, 0.6, 0.4, 0.2);
+  drawing.dot({0.1, 0.1, 0.1}, "k3");
+  HtmlReport report("Frames");
+  report.drawing("Where everything stands", drawing.svg("frames"));
+  report.pictures({{cv::Mat(30, 40, CV_8UC3, cv::Scalar(9, 90, 200)), "view 3", "0.2 px & more"}});
+  report.places("Left", {{"left", {{10, 10}}, false}}, 640, 480);
+  Verdict verdict;
+  verdict.object("the board <moved>", "hold it still");
+  report.verdict(verdict);
+  const TempFolder folder;
+  report.write(folder / "r.html");
+  const std::string page = folder.read("r.html");
+  EXPECT_EQ(malformed(page), "");
+  for (const char* text : {"base &lt;a&gt;", ">camera<", "grid: 0.1 m", "data:image/jpeg;base64,", "0.2 px &amp; more",
+                           "the board &lt;moved&gt;", "hold it still"})
+    EXPECT_THAT(page, HasSubstr(text));
+  EXPECT_LT(page.find("Not usable"), page.find("Where everything stands"));
+  EXPECT_THAT(page, HasSubstr(">600<")) << "the whole image, not only where points are";
+  EXPECT_EQ(FrameDrawing().svg("nothing"), "");
 }
 
 TEST(HtmlReport, IsWellFormedSelfContainedAndEscaped) {

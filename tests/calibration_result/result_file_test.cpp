@@ -26,6 +26,39 @@ double value_in(const std::filesystem::path& file) {
   return read_result(file, "stereo").result.number("value");
 }
 
+TEST(ResultFile, NoScoreOutranksAVerdict) {
+  const TempFolder folder;
+  const std::filesystem::path file = folder / "a.yaml";
+  ResultHeader judged = header(0.5);
+  judged.judged = true;
+  write_result(file, header(1e-6), payload(1), false);  // nobody judged what it is worth
+  write_result(file, judged, payload(2), false);
+  EXPECT_TRUE(read_result(file, "stereo").header.judged);
+  EXPECT_THAT(input_error([&] { write_result(file, header(1e-6), payload(3), false); }),
+              HasSubstr("nobody judged the new one"));
+  judged.score = 0.6;
+  EXPECT_THAT(input_error([&] { write_result(file, judged, payload(4), false); }), HasSubstr("is better than the new"));
+  EXPECT_EQ(value_in(file), 2);
+  folder.write("b.yaml", "kind: stereo\ndate: x\nscore: {name: a, value: 1}\nverdict: good\nresult: {}\n");
+  EXPECT_THAT(input_error([&] { read_result(folder / "b.yaml", "stereo"); }), HasSubstr("verdict"));
+}
+
+TEST(ResultFile, KnowsItsViewsAgain) {
+  const TempFolder folder;
+  const std::vector<Eigen::Vector2d> pixels{{10.25, 20}, {110, 25.5}, {60, 90}};
+  std::vector<Eigen::Vector2d> moved = pixels, stored = pixels;
+  for (Eigen::Vector2d& pixel : moved) pixel.x() += 0.5;
+  for (Eigen::Vector2d& pixel : stored) pixel.y() += 0.001;
+  ResultHeader with = header(0.2);
+  with.views = {ViewPrint(pixels)};
+  write_result(folder / "a.yaml", with, payload(1), false);
+  const ViewPrints known = read_result(folder / "a.yaml", "stereo").header.views;
+  EXPECT_TRUE(knows(known, ViewPrint(stored)));
+  EXPECT_FALSE(knows(known, ViewPrint(moved)));
+  EXPECT_FALSE(knows(known, ViewPrint(std::span(pixels).first(2))));
+  EXPECT_FALSE(knows({ViewPrint()}, ViewPrint()));
+}
+
 TEST(ResultFile, ReadsBackWhatWasWritten) {
   const TempFolder folder;
   const double exact = 0.1 + 1e-16;

@@ -100,7 +100,7 @@ TEST(BadInput, UnsynchronisedPairs) {
   }
   const CameraCalibration c = calibrate(s.views);
   EXPECT_FALSE(c.usable());
-  EXPECT_THAT(c.unusable, Contains(HasSubstr("not synchronised")));
+  EXPECT_THAT(c.verdict.text(), HasSubstr("not synchronised"));
   EXPECT_GT(c.stereo_over_mono, 1.4);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <random>
 
@@ -46,6 +47,61 @@ std::string refusal(const std::string& urdf, const UrdfOffsets& offsets) {
     return error.what();
   }
   return "";
+}
+
+// Wherever the joints' axes point in the robot's file, its camera stands where the head's model has it.
+TEST(UrdfOffsets, AHeadDoesTheSameInAUrdf) {
+  std::mt19937 random(5);
+  constexpr const char* kTorso = R"(<robot name="r"><link name="torso"/><link name="neck"/><link name="face"/>
+  <joint name="yaw" type="revolute"><parent link="torso"/><child link="neck"/><axis xyz="0 0.6 0.8"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="nod" type="revolute"><parent link="neck"/><child link="face"/><axis xyz="0 -1 0"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)";
+  UrdfHead head;
+  head.parent = "torso";
+  head.T_parent_pan = random_pose(random), head.T_pan_tilt = random_pose(random),
+  head.T_tilt_camera = random_pose(random);
+  const TempFolder folder;
+  for (const bool known : {false, true}) {
+    if (known) head.joints = {"yaw", "nod"};
+    UrdfOffsets offsets;
+    offsets.head = head;
+    const std::string text = with_offsets(known ? kTorso : empty_urdf("torso"), offsets, "r.urdf");
+    UrdfRobot robot = read_urdf(folder.write("r.urdf", text), folder.path());
+    pose_links(robot, {{head.joints[0], 0.4}, {head.joints[1], -0.7}}, "test");
+    Pose T = Pose::Identity();
+    auto link = static_cast<std::size_t>(
+        std::find_if(robot.links.begin(), robot.links.end(), [&](const Node& n) { return n.name == head.camera; }) -
+        robot.links.begin());
+    for (; robot.links[link].parent >= 0; link = static_cast<std::size_t>(robot.links[link].parent))
+      T = robot.links[link].T_parent_node * T;
+    Pose expected = head.T_parent_pan;
+    expected.rotate(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()));
+    expected = expected * head.T_pan_tilt;
+    expected.rotate(Eigen::AngleAxisd(-0.7, Eigen::Vector3d::UnitZ()));
+    expected = expected * head.T_tilt_camera;
+    EXPECT_LT((T.matrix() - expected.matrix()).norm(), 1e-9) << known;
+  }
+  UrdfOffsets elsewhere;
+  elsewhere.head = head;
+  elsewhere.head->parent = "face";
+  EXPECT_THAT(refusal(kTorso, elsewhere), HasSubstr("--link, 'torso'"));
+}
+
+TEST(UrdfOffsets, AMountHangsOnTheLinkThatTheUserNames) {
+  std::mt19937 random(6);
+  const Pose T = random_pose(random);
+  EXPECT_EQ(attached({"flange", "eye", T}, "upper", kArm, "arm.urdf").parent, "upper");
+  const UrdfMount moved = attached({"camera", "eye", T}, "upper", kArm, "arm.urdf");  // fixed, 0.1 m along x
+  Pose expected = Pose::Identity();
+  expected.translation().x() = 0.1;
+  EXPECT_LT((moved.T_parent_child.matrix() - (expected * T).matrix()).norm(), 1e-12);
+  try {
+    attached({"camera", "eye", T}, "base", kArm, "arm.urdf");
+    FAIL() << "a joint between them moves";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("move against each other"));
+  }
 }
 
 TEST(UrdfOffsets, MountsReadBackAtEveryAttitude) {

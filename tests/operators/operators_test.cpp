@@ -1,5 +1,6 @@
 #include "operators/follow_operator.hpp"
 #include "operators/key_operator.hpp"
+#include "operators/station_operator.hpp"
 #include "tests/robot/prompt_drive.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
@@ -112,6 +113,66 @@ TEST_F(FollowOperatorTest, IsNotDoneWhereTheRobotLostIt) {
   EXPECT_THAT(outcome,
               testing::AllOf(testing::HasSubstr("stopped"), testing::HasSubstr("lost"),
                              testing::HasSubstr("joint elbow stands at"), testing::HasSubstr("s of the file")));
+}
+
+class StationOperatorTest : public OperatorsTest {
+ protected:
+  /// Until it waits, or gives up.
+  void go_on(int most_ticks = 4000) {
+    for (int i = 0; i < most_ticks && tick({&who_}) && !who_.waiting(); ++i) {
+    }
+  }
+  JointValues at(double elbow) const {
+    JointValues positions{};
+    for (std::size_t i = 0; i < rig_.joints.size(); ++i) positions[i] = drives_[i].state.position;
+    positions[3] = elbow;
+    return positions;
+  }
+  StationOperator who_{rig_.joint_names(), true};
+};
+
+TEST_F(StationOperatorTest, LetsGoAndHoldsStillAtEachStation) {
+  go_on();
+  ASSERT_TRUE(who_.waiting()) << who_.failure();
+  for (const double elbow : {0.4, -0.2}) {
+    who_.go_to(at(elbow));
+    EXPECT_FALSE(who_.waiting());
+    go_on();
+    ASSERT_TRUE(who_.waiting()) << who_.failure();
+    EXPECT_EQ(who_.missed(), "");
+    EXPECT_NEAR(drives_[3].state.position, elbow, 1e-3);
+    EXPECT_EQ(robot_->status().gate.state, GateState::idle) << "nobody drives while somebody looks";
+    EXPECT_GE(to_seconds(now_ - who_.still_since()), 0.29);
+  }
+  who_.finish();
+  EXPECT_FALSE(tick({&who_}));
+}
+
+TEST_F(StationOperatorTest, SaysWhatItWasKeptFrom) {
+  go_on();
+  who_.go_to(at(9));  // beyond the joint
+  go_on();
+  ASSERT_TRUE(who_.waiting()) << who_.failure();
+  EXPECT_NE(who_.missed(), "");
+  EXPECT_NEAR(drives_[3].state.position, 0, 1e-3);
+  who_.go_to(at(0.3));
+  go_on();
+  EXPECT_EQ(who_.missed(), "");
+  EXPECT_NEAR(drives_[3].state.position, 0.3, 1e-3);
+}
+
+TEST_F(StationOperatorTest, EndsWhereTheRobotStopsOrMayNotHome) {
+  go_on();
+  who_.go_to(at(1));
+  for (int i = 0; i < 60; ++i) tick({&who_});
+  robot_->ask(RobotRequest::emergency_stop);
+  go_on();
+  EXPECT_THAT(who_.failure(), testing::HasSubstr("emergency"));
+  StationOperator other(rig_.joint_names(), false);
+  for (PromptDrive& drive : drives_) drive.state.homed = false;
+  for (int i = 0; i < 3000 && tick({&other}); ++i) {
+  }
+  EXPECT_NE(other.failure(), "");
 }
 
 class KeyOperatorTest : public OperatorsTest {

@@ -57,6 +57,7 @@ TEST(Photometric, RecoversResponseAndVignettingWithinTwoPercent) {
     EXPECT_GT(summary.corner_sigma, 0);
     EXPECT_LT(summary.corner_sigma, 0.01);
     EXPECT_THAT(summary.warnings, testing::IsEmpty());
+    EXPECT_TRUE(summary.verdict.usable()) << summary.verdict.text();
     RecordProperty("worst_response_" + std::to_string(seed), std::to_string(worst_response(summary.response, inverse)));
   }
 }
@@ -119,14 +120,31 @@ TEST(Photometric, NamesWhatIsMissing) {
   EXPECT_THAT(refusal({1000, 3000}), HasSubstr("neither dark nor saturated"));
 }
 
-TEST(Photometric, WarnsWhenTheSceneMoves) {
+TEST(Photometric, ObjectsWhenTheSceneMoves) {
   SeriesSamples samples;
   auto series = series_of({}, hills(320, 240), kSeries, 5);
   for (std::size_t i = 0; i < series.size(); i += 2) cv::flip(series[i].pixels, series[i].pixels, 1);
   add_static(series, 300, samples);
   PhotometricOptions options;
   options.held_out = false;
-  EXPECT_THAT(solve_photometric(samples.samples, options).warnings, testing::Contains(HasSubstr("moved")));
+  EXPECT_THAT(solve_photometric(samples.samples, options).verdict.text(), HasSubstr("in the scene moved"));
+}
+
+TEST(Photometric, ObjectsToPicturesThatDoNotGetBrighter) {
+  auto series = series_of({}, hills(320, 240), kSeries, 6);
+  Verdict proper;
+  judge_series(series, proper);
+  EXPECT_TRUE(proper.usable());
+  for (ExposedImage& image : series) image.pixels = series[3].pixels;
+  SeriesSamples samples;
+  add_static(series, 300, samples);
+  PhotometricOptions options;
+  options.held_out = false;
+  EXPECT_THAT(solve_photometric(samples.samples, options).verdict.text(),
+              testing::AllOf(HasSubstr("only 0 % of the places are brighter"), HasSubstr("automatic exposure")));
+  Verdict same;
+  judge_series(series, same);
+  EXPECT_THAT(same.text(), testing::AllOf(HasSubstr("are the same"), HasSubstr("image0.png and image1.png")));
 }
 
 }  // namespace

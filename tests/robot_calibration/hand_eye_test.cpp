@@ -64,6 +64,40 @@ TEST(HandEye, LeavesOutAWrongRobotPoseByName) {
   EXPECT_LT(in_sigmas(summary.X, rig.X, summary.X_sigma).cwiseAbs().maxCoeff(), 5);
 }
 
+// Two poses that changed places draw a least-squares hand-eye so far that neither stands out from it.
+TEST(HandEye, NamesPosesThatChangedPlaces) {
+  Random random(14);
+  for (const CameraMount mount : {CameraMount::fixed, CameraMount::moving}) {
+    HandEyeRig rig = make_rig(random, {.mount = mount});
+    EXPECT_TRUE(solve_hand_eye(rig.data, quick()).verdict.usable());
+    std::swap(rig.data.poses[3], rig.data.poses[9]);
+    const HandEyeSummary summary = solve_hand_eye(rig.data, quick());
+    for (std::size_t v = 0; v < summary.views.size(); ++v) EXPECT_EQ(summary.views[v].used, v != 3 && v != 9) << v;
+    EXPECT_LT(in_sigmas(summary.X, rig.X, summary.X_sigma).cwiseAbs().maxCoeff(), 5);
+    EXPECT_FALSE(summary.verdict.usable());
+    EXPECT_THAT(summary.verdict.text(), HasSubstr("robot poses of views view3 and view9 are exchanged"));
+    EXPECT_THAT(summary.notes, testing::Contains(AllOf(HasSubstr("view view3 is left out"), HasSubstr(" mm and "))));
+  }
+}
+
+TEST(HandEye, ObjectsToManyWrongPosesAndToRowsThatSlipped) {
+  Random random(15);
+  const HandEyeRig rig = make_rig(random, {.views = 15});
+  HandEyeData wrong = rig.data;
+  for (const std::size_t v : {1u, 4u, 8u, 11u})
+    wrong.poses[v].T_base_flange = wrong.poses[v].T_base_flange * random_pose(random, 0.5, 0.1);
+  const HandEyeSummary four = solve_hand_eye(wrong, quick());
+  EXPECT_THAT(four.verdict.text(), HasSubstr("4 of 15 robot poses contradict the others"));
+  EXPECT_LT(in_sigmas(four.X, rig.X, four.X_sigma).cwiseAbs().maxCoeff(), 5);
+
+  HandEyeData late = rig.data;
+  std::rotate(late.poses.begin(), late.poses.begin() + 1, late.poses.end());
+  HandEyeOptions fixed = quick();
+  fixed.mount = CameraMount::fixed;
+  const HandEyeSummary slipped = solve_hand_eye(late, fixed);
+  EXPECT_THAT(slipped.verdict.text(), HasSubstr("each image fits the pose before its own"));
+}
+
 TEST(HandEye, RejectsWrongCornersAndCountsThem) {
   Random random(5);
   HandEyeRig rig = make_rig(random, {});

@@ -129,6 +129,25 @@ TEST(TimeOffset, OtherRatesGapsAndLengths) {
   }
 }
 
+// However the time is cut, what is stated is about the error that is made; where too little is known of it, it is said.
+TEST(TimeOffset, FewStretchesDoNotMakeItLookCertain) {
+  Random random(38);
+  const StreamRig rig = make_streams(random, 40, 0.03);
+  const auto solved = [&](double segment_s) {
+    TimeOffsetOptions options;
+    options.segment_s = segment_s;
+    return solve_time_offset(rig.encoder, rig.camera, options);
+  };
+  const TimeOffsetSummary usual = solved(2), one = solved(60), two = solved(20);
+  EXPECT_TRUE(usual.verdict.usable()) << usual.verdict.text();
+  EXPECT_EQ(one.segments, 1);
+  for (const TimeOffsetSummary* few : {&one, &two}) {
+    EXPECT_GT(few->offset_sigma_s, 0.5 * usual.offset_sigma_s);
+    EXPECT_LT(few->offset_sigma_s, 4 * usual.offset_sigma_s);
+    EXPECT_THAT(few->verdict.text(), AllOf(HasSubstr("too little about the error"), HasSubstr("give --segment 2.")));
+  }
+}
+
 TEST(TimeOffset, NamesAStreamThatStandsStillOrIsTooSparse) {
   Random random(37);
   const StreamRig rig = make_streams(random, 30, 0.02);

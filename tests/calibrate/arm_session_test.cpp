@@ -1,0 +1,147 @@
+// A hand-eye from nothing but a rig: the mock robot shows a board to the mock cameras, and the truth is known.
+#include <gmock/gmock.h>
+
+#include "apps/calibrate/arm_stations.hpp"
+#include "calibration/formats/urdf_offsets.hpp"
+#include "calibration/robot/robot_results.hpp"
+#include "rig/open_stereo.hpp"
+#include "tests/calibrate/run_calibrate.hpp"
+#include "tests/support/folders.hpp"
+#include "tests/support/headless_test.hpp"
+#include "tests/support/html_check.hpp"
+
+namespace foresight {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kBoard = "chessboard:6x5:0.02";
+const std::vector<std::string> kStart{"-0.22", "0.93", "0.42", "1.06", "1.35", "1.33", "1.19"};
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The example rig with cameras that see enough.
+std::string rig_in(const TempFolder& folder) {
+  std::string rig = text_of(source_folder() / "configs/minerva.yaml");
+  for (auto at = rig.find("[320, 240]"); at != std::string::npos; at = rig.find("[320, 240]"))
+    rig.replace(at, 10, "[640, 480]");
+  folder.write("arm.urdf", text_of(source_folder() / "configs/arm.urdf"));
+  return folder.write("rig.yaml", rig);
+}
+
+class ArmSession : public HeadlessTest {
+ protected:
+  void SetUp() override {
+    HeadlessTest::SetUp();
+    if (!IsSkipped()) context_.reset();
+  }
+};
+
+TEST_F(ArmSession, GoesLooksSolvesAndVerifies) {
+  const TempFolder folder;
+  const std::string rig = rig_in(folder);
+  std::vector<std::string> words{"arm",           "--guided",
+                                 "--rig",         rig,
+                                 "--stepped",     "--home",
+                                 "--board",       kBoard,
+                                 "--stations",    "16",
+                                 "--board-sigma", "0",
+                                 "--out",         folder / "arm.yaml",
+                                 "--json",        folder / "arm.json",
+                                 "--report",      folder / "arm.html",
+                                 "--start"};
+  words.insert(words.end(), kStart.begin(), kStart.end());
+  ASSERT_EQ(run_calibrate(words), "0");
+  const auto numbers = json_of(folder, "arm.json");
+  EXPECT_EQ(numbers["camera_mount"], "fixed");
+  EXPECT_EQ(numbers["views"], 13);
+  EXPECT_EQ(numbers["kept_back"]["views"], 3);
+  EXPECT_LT(numbers["loo_px"], 1.0);
+  EXPECT_LT(numbers["kept_back"]["px"], 1.5);
+  EXPECT_LT(numbers["kept_back"]["mm"], 3.0);
+
+  const Rig read = read_rig(rig);
+  const Pose T_world_left = sim::T_world_head_left({0, 0});
+  const Pose truth = read.T_world_robot.inverse() * T_world_left;
+  const Pose found = read_hand_eye(read_result(folder / "arm.yaml", "arm").result).X;
+  EXPECT_LT((truth.translation() - found.translation()).norm(), 5e-3);
+  EXPECT_LT(rotation_vector(truth.linear().transpose() * found.linear()).norm(), 8e-3);
+
+  const std::string page = folder.read("arm.html");
+  EXPECT_EQ(malformed(page), "");
+  for (const char* text : {"<b>Usable</b>", "Where everything stands", "stand", "data:image/jpeg;base64,"})
+    EXPECT_THAT(page, HasSubstr(text));
+
+  // The views are a set like any other, and the ones that were kept back are still new to the result.
+  const auto with_views = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--images", folder / "arm-views", "--joints", folder / "arm-views/joints.csv", "--rig",
+                             rig, "--board", kBoard, "--json", folder / "v.json"});
+    return run_calibrate(more);
+  };
+  EXPECT_EQ(with_views({"verify", "--result", folder / "arm.yaml", "--robot-px", "1.5"}), "0");
+  EXPECT_EQ(json_of(folder, "v.json")["views"], 3);
+  EXPECT_EQ(json_of(folder, "v.json")["views_of_the_calibration"], 13);
+  words[12] = "--out", words[13] = folder / "other.yaml";
+  words.insert(words.end(), {"--views", folder / "arm-views"});
+  EXPECT_THAT(run_calibrate(words), HasSubstr("is not empty"));
+
+  ASSERT_EQ(run_calibrate({"export", folder / "arm.yaml", "--to", "urdf", "--urdf", folder / "arm.urdf", "--out",
+                           folder / "with_camera.urdf"}),
+            "0");
+  EXPECT_EQ(read_mount(folder.read("with_camera.urdf"), "camera", "u").parent, "stand");
+}
+
+TEST_F(ArmSession, RefusesWhatCannotWork) {
+  const TempFolder folder;
+  const std::string rig = rig_in(folder);
+  const auto refusal = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"arm", "--guided", "--rig", rig, "--stepped", "--out", folder / "a.yaml"});
+    return run_calibrate(more);
+  };
+  EXPECT_THAT(refusal({}), HasSubstr("--board"));
+  EXPECT_THAT(refusal({"--board", kBoard, "--images", folder.path().string()}), HasSubstr("takes its own views"));
+  EXPECT_THAT(run_calibrate({"arm", "--guided", "--rig", rig, "--board", kBoard}), HasSubstr("--views"));
+  EXPECT_THAT(refusal({"--board", kBoard}), HasSubstr("give --home"));
+}
+
+// No picture is drawn: whatever is proposed stays within the limits and clear of everything, with turns that differ.
+TEST(ArmStations, ProposesClearStationsThatTurnTheFlange) {
+  const Rig rig = read_rig(source_folder() / "configs/minerva.yaml");
+  JointChain chain = joint_chain_of(*rig.robot, "", "", "minerva.yaml");
+  JointValues start{};
+  for (std::size_t i = 0; i < kStart.size(); ++i) start[i] = std::stod(kStart[i]);
+  ArmStations stations(rig, chain, {}, 1);
+  ASSERT_EQ(stations.joints().size(), kStart.size());
+  stations.start_at(start);
+  const auto shape = rig.shape();
+  shape->surround(rig.surroundings);
+  std::vector<double> margins(shape->couples());
+  const auto limits = rig.gate_options().joints;
+  std::vector<Pose> flanges;
+  for (int i = 0; i < 15; ++i) {
+    const auto station = stations.next();
+    ASSERT_TRUE(station);
+    if (i == 0) {
+      EXPECT_EQ(*station, start);
+    }
+    shape->margins(std::span(*station).first(rig.joints.size()), margins);
+    EXPECT_GT(*std::min_element(margins.begin(), margins.end()), 0) << i;
+    for (std::size_t j = 0; j < limits.size(); ++j) {
+      EXPECT_GE((*station)[j], limits[j].limits.min_position);
+      EXPECT_LE((*station)[j], limits[j].limits.max_position);
+    }
+    flanges.push_back(flange_pose(chain, stations.of_chain(*station), "test"));
+    stations.judge(true, i % 3 != 2);
+  }
+  double nearest = 9;
+  for (std::size_t a = 0; a < flanges.size(); ++a)
+    for (std::size_t b = a + 1; b < flanges.size(); ++b)
+      nearest = std::min(nearest, rotation_vector(flanges[a].linear().transpose() * flanges[b].linear()).norm());
+  EXPECT_GT(nearest, 0.1);
+}
+
+}  // namespace
+}  // namespace foresight
