@@ -34,8 +34,8 @@ struct UrdfHead {
 
 struct UrdfOffsets {
   std::vector<UrdfMount> mounts;
+  std::map<std::string, double> joints;  ///< name -> rad or m
   std::optional<UrdfHead> head = {};
-  std::map<std::string, double> joints = {};  ///< name -> rad or m
 };
 
 /// `urdf` (the text of a file, named `where` in messages) with the offsets worked in; the rest is kept.

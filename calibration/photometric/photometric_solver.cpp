@@ -241,14 +241,14 @@ class Uncertainty {
 // whose exposures differ.
 double brighter(const std::vector<LevelSample>& samples) {
   constexpr double kClearly = 1.05;  // of the level, for an exposure half as long again and more
-  std::map<int, std::pair<const LevelSample*, const LevelSample*>> spans;
+  std::map<std::pair<int, double>, std::pair<const LevelSample*, const LevelSample*>> spans;  // by light and radius
   for (const LevelSample& s : samples) {
-    auto& [least, most] = spans.try_emplace(s.radiance, &s, &s).first->second;
+    auto& [least, most] = spans.try_emplace({s.radiance, s.r2}, &s, &s).first->second;
     if (s.exposure_s < least->exposure_s) least = &s;
     if (s.exposure_s > most->exposure_s) most = &s;
   }
   int grown = 0, all = 0;
-  for (const auto& [radiance, span] : spans) {
+  for (const auto& [place, span] : spans) {
     const auto& [least, most] = span;
     if (most->exposure_s < 1.5 * least->exposure_s) continue;
     ++all;

@@ -1,6 +1,7 @@
 #include "calibration/robot/robot_results.hpp"
 
 #include "calibration/camera/camera_result.hpp"
+#include "common/error.hpp"
 
 namespace foresight {
 namespace {
@@ -72,6 +73,8 @@ KnownHandEye read_hand_eye(const YamlMap& result) {
   out.X = result.pose(name_of_X(out.mount));
   out.Y = result.pose(name_of_Y(out.mount));
   out.board_scale = result.positive("board_scale");
+  if (!result.has("camera"))
+    throw InputError(result.file().string(), "holds no lens", "solve it from images, or with --camera FILE");
   out.camera = read_camera(result.map("camera"));
   return out;
 }

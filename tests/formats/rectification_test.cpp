@@ -6,6 +6,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/camera/rig.hpp"
 #include "scene/yaml_fields.hpp"
 #include "tests/formats/example_cameras.hpp"
 #include "tests/scene/test_run.hpp"
