@@ -325,9 +325,11 @@ std::optional<CameraModel> lens_of_run(const ArmInput& input) {
 void add_arm_input(Command& command, ArmInput& input) {
   command.add_option("--images", input.images, "Folder of images")->reads();
   command.add_option("--corners", input.corners, "Found corners instead: .vnl file, or folder of .csv")->reads();
-  command.add_option("--run", input.run,
-                     "Instead: a recording of a robot that held still at many places, and its joints\n"
-                     "(RUN-joints.csv); with --rig or --urdf")->reads();
+  command
+      .add_option("--run", input.run,
+                  "Instead: a recording of a robot that held still at many places, and its joints\n"
+                  "(RUN-joints.csv); with --rig or --urdf")
+      ->reads();
   command.add_option("--side", input.side, "Of the recording: the left camera's pictures, or the right one's")
       ->check(one_of({"left", "right"}))
       ->capture_default_str();
@@ -337,15 +339,19 @@ void add_arm_input(Command& command, ArmInput& input) {
   command.add_option("--time", input.time, "Result of `calibrate time`, for --run")->reads();
   command.add_option("--board", input.board,
                      "Board, such as chessboard:9x6:0.025 or charuco:5x7:0.036:0.018:DICT_6X6_250");
-  command.add_option("--poses", input.poses,
-                     "Robot poses, base to flange: 4x4 rows, x y z qx qy qz qw, or a folder with one file each")->reads();
+  command
+      .add_option("--poses", input.poses,
+                  "Robot poses, base to flange: 4x4 rows, x y z qx qy qz qw, or a folder with one file each")
+      ->reads();
   command.add_option("--pose-unit", input.unit, "Of the positions")
       ->check(one_of({"auto", "m", "mm"}))
       ->capture_default_str();
   command.add_flag("--invert-poses", input.invert, "The poses are written from flange to base");
-  command.add_option("--joints", input.joints,
-                     "Joint positions instead, rad, rows [name] q1 q2 ..., or columns under the joints' names; for\n"
-                     "--urdf or --rig; also gives their offsets")->reads();
+  command
+      .add_option("--joints", input.joints,
+                  "Joint positions instead, rad, rows [name] q1 q2 ..., or columns under the joints' names; for\n"
+                  "--urdf or --rig; also gives their offsets")
+      ->reads();
   command.add_option("--urdf", input.urdf, "The arm")->reads();
   command.add_option("--rig", input.rig, "The arm of this rig")->reads();
   command.add_option("--base-link", input.names.base, "Link that stands still (default: the root)");

@@ -155,13 +155,13 @@ int verify_any(const VerifyOptions& options) {
 
 void add_arm_options(Command& command, ArmVerify& arm) {
   auto* group = command.add_option_group("Of an arm (result of arm), beside --run, --joints and --time");
-  group->add_option("--poses", arm.input.poses, "Robot poses, base to flange, of --images or --corners");
+  group->add_option("--poses", arm.input.poses, "Robot poses, base to flange, of --images or --corners")->reads();
   group->add_option("--pose-unit", arm.input.unit, "Of the positions")
       ->check(one_of({"auto", "m", "mm"}))
       ->capture_default_str();
   group->add_flag("--invert-poses", arm.input.invert, "The poses are written from flange to base");
-  group->add_option("--urdf", arm.input.urdf, "The arm, for --joints or --run");
-  group->add_option("--rig", arm.input.rig, "The arm of this rig");
+  group->add_option("--urdf", arm.input.urdf, "The arm, for --joints or --run")->reads();
+  group->add_option("--rig", arm.input.rig, "The arm of this rig")->reads();
   group->add_option("--side", arm.input.side, "Of the recording: left or right pictures")
       ->check(one_of({"left", "right"}))
       ->capture_default_str();

@@ -161,7 +161,8 @@ void HtmlReport::write(const std::filesystem::path& file) const {
              "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
                  title + "</title>\n<style>\n" + std::string(page_style()) +
                  "</style>\n</head>\n<body>\n<main>\n<header>\n<small>" + escape_html(source_) + "</small>\n<h1>" +
-                 title + "</h1>\n</header>\n<div class=\"sheet\">\n" + verdict_ + body_ + "</div>\n</main>\n</body>\n</html>\n",
+                 title + "</h1>\n</header>\n<div class=\"sheet\">\n" + verdict_ + body_ +
+                 "</div>\n</main>\n</body>\n</html>\n",
              title_, plots_);
 }
 
