@@ -18,8 +18,8 @@ constexpr double kStill = 5e-4;          // rad or m: more than encoders' noise,
 
 }  // namespace
 
-StationOperator::StationOperator(std::vector<std::string> joints, bool may_home)
-    : names_(std::move(joints)), may_home_(may_home) {}
+StationOperator::StationOperator(std::vector<JointWords> joints, bool may_home)
+    : joints_(std::move(joints)), may_home_(may_home) {}
 
 OperatorWish StationOperator::fail(std::string why) {
   failure_ = std::move(why);
@@ -33,22 +33,26 @@ void StationOperator::enter(Step step, RobotTime now) {
 }
 
 OperatorWish StationOperator::command(RobotTime now, bool deadman) {
-  return {.command = counter_.command(now, deadman, names_.size(), target_)};
+  return {.command = counter_.command(now, deadman, joints_.size(), target_)};
 }
 
 std::string StationOperator::reason(const RobotStatus& status) const {
-  std::string why = *status.refused != '\0' ? status.refused : to_string(status.gate.reason);
-  if (*status.gate.detail != '\0') why += std::string(": ") + status.gate.detail;
-  if (status.gate.joint >= 0) why += ", joint " + names_[static_cast<std::size_t>(status.gate.joint)];
-  return why;
+  const RobotWords words = describe(status, joints_);
+  return words.cure.empty() ? words.name : words.name + "; " + words.cure;
+}
+
+std::string StationOperator::kept_from(const RobotStatus& status, RobotTime now) const {
+  if (const std::string held = hold_text(status.gate.hold, joints_, now); !held.empty()) return held;
+  if (status.gate.last_dropped != GateReason::none) return words_for(status.gate.last_dropped).name;
+  return "the robot did not come there";
 }
 
 void StationOperator::watch_rest(RobotTime now, const RobotStatus& status) {
   bool moved = status.gate.state != GateState::idle;
-  for (std::size_t i = 0; i < names_.size(); ++i)
+  for (std::size_t i = 0; i < joints_.size(); ++i)
     moved = moved || !(std::abs(status.feedback[i].position - held_[i]) < kStill);
   if (moved) {
-    for (std::size_t i = 0; i < names_.size(); ++i) held_[i] = status.feedback[i].position;
+    for (std::size_t i = 0; i < joints_.size(); ++i) held_[i] = status.feedback[i].position;
     moved_ = now;
   }
   still_ = now - moved_ >= kStillFor;
@@ -96,13 +100,13 @@ OperatorWish StationOperator::tick(RobotTime now, const RobotStatus& status) {
       if (engaged_ && !in_charge) return fail("the robot was taken away: " + reason(status));
       engaged_ = engaged_ || in_charge;
       double farthest = 0, fastest = 0;
-      for (std::size_t i = 0; i < names_.size(); ++i) {
+      for (std::size_t i = 0; i < joints_.size(); ++i) {
         farthest = std::max(farthest, std::abs(status.set_point[i].position - target_[i]));
         fastest = std::max(fastest, std::abs(status.set_point[i].velocity));
       }
       if (fastest > 0) moved_ = now;
       if (now - moved_ > kHeldBack) {
-        missed_ = reason(status);
+        missed_ = kept_from(status, now);
         enter(Step::release, now);
       } else if (farthest < kReached) {
         enter(Step::release, now);

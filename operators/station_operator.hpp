@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/robot/robot_words.hpp"
 #include "operators/commander.hpp"
 
 namespace foresight {
@@ -14,8 +15,8 @@ class StationOperator final : public Commander {
  public:
   static constexpr std::uint64_t kId = 4;
 
-  /// `joints`: the rig's, by name.
-  StationOperator(std::vector<std::string> joints, bool may_home);
+  /// `joints`: the rig's.
+  StationOperator(std::vector<JointWords> joints, bool may_home);
   std::uint64_t operator_id() const override { return kId; }
   OperatorWish tick(RobotTime now, const RobotStatus& status) override;
 
@@ -38,8 +39,9 @@ class StationOperator final : public Commander {
   void enter(Step step, RobotTime now);
   void watch_rest(RobotTime now, const RobotStatus& status);
   std::string reason(const RobotStatus& status) const;
+  std::string kept_from(const RobotStatus& status, RobotTime now) const;
 
-  std::vector<std::string> names_;
+  std::vector<JointWords> joints_;
   bool may_home_;
   Step step_ = Step::enable;
   bool asked_ = false, engaged_ = false, still_ = false;

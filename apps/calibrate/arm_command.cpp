@@ -10,6 +10,7 @@
 #include "apps/calibrate/outputs.hpp"
 #include "apps/calibrate/robot_output.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -98,7 +99,6 @@ HandEyeScore verify_kept(const ArmViews& unseen, const ArmViews& solved, HandEye
 }
 
 int run(ArmOptions& options) {
-  constexpr int kStopped = 130;
   if (options.session.guided && !guide(options)) return kStopped;
   ArmViews views = read_arm_views(options.input);
   const std::optional<ArmViews> unseen = options.session.guided ? std::optional(keep_back(views)) : std::nullopt;

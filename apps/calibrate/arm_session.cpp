@@ -19,6 +19,7 @@
 #include "common/text.hpp"
 #include "operators/station_operator.hpp"
 #include "rig/open_stereo.hpp"
+#include "rig/rig_scene.hpp"
 #include "rig/robot_devices.hpp"
 
 namespace foresight {
@@ -32,20 +33,25 @@ constexpr int kMostMissesInARow = 25;  // stations at which nothing was seen
 constexpr std::size_t kFewest = 8;
 constexpr double kBoardBeyondFlange = 0.19;  // m, along the flange's z: beyond the mock lab's fingers
 
-
 void say(const std::string& line) {
   std::fprintf(stderr, "arm: %s\n", line.c_str());
 }
 
-/// The board on the mock lab's arm, its front away from the flange.
-sim::MovingPrint board_on_arm(const Board& board) {
+/// The board on the mock robot's flange, its front away from it. A flange without a body hangs on a link that has one.
+sim::MovingPrint board_on_arm(const Board& board, const JointChain& chain) {
   const BoardPicture picture = board_picture(board);
-  Pose T_flange_print = Pose::Identity();
-  T_flange_print.translate(Eigen::Vector3d(0, 0, kBoardBeyondFlange));
-  T_flange_print.rotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+  Pose T_part_print = Pose::Identity();
+  auto link = static_cast<std::size_t>(chain.flange);
+  while (link > 0 && chain.robot.links[link].mesh.triangles.empty() &&
+         chain.robot.joints[link - 1].kind == UrdfJoint::Kind::fixed) {
+    T_part_print = chain.robot.joints[link - 1].T_parent_joint * T_part_print;
+    link = static_cast<std::size_t>(chain.robot.links[link].parent);
+  }
+  T_part_print.translate(Eigen::Vector3d(0, 0, kBoardBeyondFlange));
+  T_part_print.rotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
   return {{to_string(board), picture.picture, picture.width_m, picture.height_m},
-          [T_flange_print](double) { return T_flange_print; },
-          "arm_7"};
+          [T_part_print](double) { return T_part_print; },
+          chain.robot.links[link].name};
 }
 
 struct View {
@@ -64,7 +70,7 @@ class Session {
         polled_(polled),
         finder_(parse_board(options.board)),
         chain_(joint_chain_of(*rig.robot, options.base, options.flange, options.rig)),
-        operator_(rig.joint_names(), options.may_home) {}
+        operator_(rig.joint_words(), options.may_home) {}
 
   /// False: the session is over.
   bool tick(RobotTime now) {
@@ -217,12 +223,13 @@ void run_with(const ArmSessionOptions& options, const Rig& rig,
   MockWorld world;
   if (config.mock()) {
     say("lighting the lab");
-    if (rig.calibration) world = mock_world(rig.calibration->tags);
-    world.board = board_on_arm(parse_board(options.board));
+    world = mock_world(rig);
+    world.board =
+        board_on_arm(parse_board(options.board), joint_chain_of(*rig.robot, options.base, options.flange, options.rig));
   }
   OpenStereo opened = open_stereo(
-      config, [&devices](std::string_view joint, RobotTime time) { return devices.shaft_at(joint, time); }, clock,
-      world);
+      config, [&](std::string_view joint, RobotTime time) { return devices.shaft_at(shaft_name(rig, joint), time); },
+      clock, world);
   Session session(options, rig, robot, *opened.cameras, kStepped);
   if (kStepped)
     opened.cameras->start_polled();
@@ -254,9 +261,11 @@ void require_usable(const ArmSessionOptions& options, const Rig& rig) {
 void add_arm_session(Command& command, ArmSessionOptions& options) {
   command.add_flag("--guided", options.guided,
                    "Moves the robot of --rig from station to station, takes the views, then solves");
-  command.add_option("--views", options.views,
-                     "With --guided: folder for the views (default: OUT without ending, -views)")
-      ->writes([](const std::filesystem::path& folder) { return std::vector{Output{folder, Output::Kind::either}}; });
+  command
+      .add_option("--views", options.views, "With --guided: folder for the views (default: OUT without ending, -views)")
+      ->writes([](const std::filesystem::path& folder) {
+        return std::vector{Output{folder, Output::Kind::either}};
+      });
   command
       .add_option("--start", options.start,
                   "With --guided: joints, rad, at which the board is in view (default: where the arm stands)")

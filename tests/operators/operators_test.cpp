@@ -128,7 +128,7 @@ class StationOperatorTest : public OperatorsTest {
     positions[3] = elbow;
     return positions;
   }
-  StationOperator who_{rig_.joint_names(), true};
+  StationOperator who_{rig_.joint_words(), true};
 };
 
 TEST_F(StationOperatorTest, LetsGoAndHoldsStillAtEachStation) {
@@ -167,8 +167,8 @@ TEST_F(StationOperatorTest, EndsWhereTheRobotStopsOrMayNotHome) {
   for (int i = 0; i < 60; ++i) tick({&who_});
   robot_->ask(RobotRequest::emergency_stop);
   go_on();
-  EXPECT_THAT(who_.failure(), testing::HasSubstr("emergency"));
-  StationOperator other(rig_.joint_names(), false);
+  EXPECT_THAT(who_.failure(), testing::HasSubstr("stopped"));
+  StationOperator other(rig_.joint_words(), false);
   for (PromptDrive& drive : drives_) drive.state.homed = false;
   for (int i = 0; i < 3000 && tick({&other}); ++i) {
   }
