@@ -14,6 +14,7 @@ namespace foresight {
 namespace {
 
 constexpr double kRounding = 1e-6;
+constexpr double kWritten = 1e-5;  // as when somebody writes 2.0944 for 2.09439510
 // Where the URDF says nothing, by unit: more than two turns, or than any arm's reach, are another unit.
 struct Plausible {
   const char* unit;
@@ -39,10 +40,13 @@ class LimitReader {
     const std::pair<double, double> bounds = bounded ? std::pair(urdf_->lower, urdf_->upper) : std::pair(-most, most);
     joint_.drive.min_position = default_of("min", bounded ? std::optional(bounds.first) : std::nullopt);
     joint_.drive.max_position = default_of("max", bounded ? std::optional(bounds.second) : std::nullopt);
-    for (const auto& [key, value] : {std::pair("min", joint_.drive.min_position), {"max", joint_.drive.max_position}})
-      if (!(value >= bounds.first - kRounding && value <= bounds.second + kRounding))
-        refuse(key, value, value < bounds.first ? bounds.first : bounds.second, bounded, "",
-               std::max(std::abs(bounds.first), std::abs(bounds.second)));
+    const double farthest = std::max(std::abs(bounds.first), std::abs(bounds.second));
+    const double little = kWritten * std::max(1.0, farthest);
+    for (auto [key, value] : {std::pair("min", &joint_.drive.min_position), {"max", &joint_.drive.max_position}}) {
+      if (!(*value >= bounds.first - little && *value <= bounds.second + little))
+        refuse(key, *value, *value < bounds.first ? bounds.first : bounds.second, bounded, "", farthest);
+      *value = std::clamp(*value, bounds.first, bounds.second);
+    }
     if (joint_.drive.min_position >= joint_.drive.max_position)
       throw InputError(map_.where("min"),
                        shown(joint_.drive.min_position) + " is not below max, " + shown(joint_.drive.max_position),
@@ -54,8 +58,9 @@ class LimitReader {
     const double most = bounded ? urdf_->velocity : plausible_.velocity;
     joint_.drive.max_velocity = default_of("velocity", bounded ? std::optional(most) : std::nullopt);
     if (!(joint_.drive.max_velocity > 0)) map_.positive("velocity");  // which refuses it
-    if (joint_.drive.max_velocity > most * (1 + kRounding))
+    if (joint_.drive.max_velocity > most * (1 + kWritten))
       refuse("velocity", joint_.drive.max_velocity, most, bounded, "/s", most);
+    joint_.drive.max_velocity = std::min(joint_.drive.max_velocity, most);
   }
 
   void read_following_error() {

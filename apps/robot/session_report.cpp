@@ -123,7 +123,7 @@ class SessionPage {
     const bool near_min = least<limits.min + 0.15 * room, near_max = most> limits.max - 0.15 * room;
     if (near_min) least = std::min(least, limits.min);
     if (near_max) most = std::max(most, limits.max);
-    const double span = std::max(most - least, 0.01 * room);
+    const double span = std::max(most - least, 0.05 * room);  // noise at rest is no event
     const SvgPlot::Range y{least - 0.06 * span, most + 0.2 * span};
     SvgPlot plot(title, times(), y, "s", unit);
     add_bands(plot, {y.max - 0.05 * (y.max - y.min), y.max});

@@ -65,7 +65,7 @@ StateWords words_for(GateReason reason) {
       return {"operator's stop", "stopped by the operator; drives hold", "reset (r) once the way is clear"};
     case GateReason::program_ends: return {"program ends", "the program ends", "start it again"};
     case GateReason::homing_too_long:
-      return {"homing too long", "homing takes longer than two minutes",
+      return {"homing too long", "homing takes longer than all its ways at homing_velocity",
               "check the home switch and homing_velocity, then reset (r)"};
     case GateReason::homed_out_of_range:
       return {"homed out of range", "after homing, a joint stands beyond its limits",

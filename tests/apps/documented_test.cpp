@@ -163,5 +163,11 @@ TEST_F(Documented, TheFirstDriveRunsAsPrinted) {
       if (line.starts_with("foresight ")) type(line, false);
 }
 
+TEST_F(Documented, ThePageOnOnesOwnRobotKnowsItsOptions) {
+  for (const auto& block : blocks("docs/own-robot.md", "sh"))
+    for (const std::string& line : block) type(line, false);
+  EXPECT_GE(checked(), 6);
+}
+
 }  // namespace
 }  // namespace foresight

@@ -163,6 +163,13 @@ TEST_F(LimitedRig, TheUrdfsLimitsAreTheDefaults) {
   EXPECT_NEAR(rig.joints[0].drive.homing_velocity, 0.2, 1e-12);
 }
 
+TEST_F(LimitedRig, WhatIsRoundedMeansTheUrdfsLimit) {
+  EXPECT_EQ(error_with("max: 1, velocity: 1,", "max: 1.570006, velocity: 2.00001,"), "no error");
+  const Rig rig = read_rig(folder_ / "rig.yaml");
+  EXPECT_EQ(rig.joints[0].drive.max_position, 1.57);
+  EXPECT_EQ(rig.joints[0].drive.max_velocity, 2);
+}
+
 TEST_F(LimitedRig, WhatIsBeyondTheUrdfIsRefusedWithAGuess) {
   expect("max: 1,", "max: 90,",
          {"joints[0].max", "90 rad is beyond the URDF's 1.57 rad", "90 looks like degrees: 1.571 rad"});
