@@ -138,6 +138,21 @@ TEST_F(Draft, StandsClearAtHome) {
   EXPECT_NE(shape->obstructed(std::vector<double>{2, 1.1, 0, 0.0004}), nullptr) << "the floor";
 }
 
+TEST_F(Draft, GuardsByVisualShapesWhereCollisionMeshesAreMissing) {
+  std::string urdf = kArm;
+  urdf.insert(urdf.find("</link>"),
+              R"(<collision><geometry><mesh filename="meshes/foot.stl"/></geometry></collision>)");
+  folder_.write("arm.urdf", urdf);
+  const Rig rig = written();
+  EXPECT_FALSE(rig.robot->links[0].mesh.vertices.empty());
+  EXPECT_TRUE(rig.robot->collision.empty());
+  EXPECT_THAT(text_,
+              AllOf(HasSubstr("shapes: visual"), HasSubstr("Note: links are guarded by their visual shapes alone"),
+                    HasSubstr("'meshes/foot.stl' is missing")));
+  EXPECT_THAT(input_error([&] { read_urdf(folder_ / "arm.urdf", MeshSearch{}, UrdfShapes::all); }),
+              HasSubstr("'foot' <collision>"));
+}
+
 TEST_F(Draft, UsesWhatTheDataSheetTells) {
   give_sheet(usual_drive());
   const Rig rig = written();
