@@ -149,7 +149,7 @@ std::string joint_text(const DraftJoint& draft, const Rig& rig, const RigDraftOp
   return out + fmt::format(
                    "     min: {}, max: {}, velocity: {}, acceleration: {}, jerk: {}, following_error: {}}}"
                    "  # URDF: {}\n",
-                   d.min_position, d.max_position, number(d.max_velocity), number(d.max_acceleration),
+                   d.min_position, d.max_position, exact(d.max_velocity), number(d.max_acceleration),
                    number(joint.jerk), number(joint.following_error), draft.urdf_says);
 }
 
