@@ -27,7 +27,11 @@ struct Arguments {
 RigDraftOptions options_of(const Arguments& arguments) {
   RigDraftOptions out;
   out.urdf = arguments.urdf;
-  if (!arguments.mesh_root.empty()) out.mesh_root = arguments.mesh_root;
+  if (!arguments.mesh_root.empty()) {
+    out.mesh_root = arguments.mesh_root;
+    if (!fs::is_directory(*out.mesh_root))
+      throw InputError("--mesh-root " + arguments.mesh_root, "is no folder", "give the folder of the meshes");
+  }
   out.protocol = arguments.protocol == "cia402" ? DriveProtocol::cia402 : DriveProtocol::powercube;
   const std::string& sheet = arguments.eds.empty() ? arguments.dcf : arguments.eds;
   if (sheet.empty()) return out;
@@ -36,6 +40,11 @@ RigDraftOptions options_of(const Arguments& arguments) {
                      "leave it out: PowerCube modules have none");
   out.sheet = read_drive_sheet(sheet);
   return out;
+}
+
+/// What somebody has corrected by hand is not made again.
+FileForm never_replaced() {
+  return {.name = "a rig file that may be lost: none is", .is = [](std::string_view) { return false; }};
 }
 
 /// Never over a file that is there, not even one that came a moment ago.
@@ -80,6 +89,7 @@ int run(const Arguments& arguments) {
     throw InputError("--out " + file.string(), "is there already", "give another name, or remove it first");
   const RigDraftOptions options = options_of(arguments);
   const RigDraft draft = draft_rig(options);
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
   write_new_file(file, rig_text(draft, options, file));
   try {
     read_rig(file);  // what is written is what works
@@ -99,7 +109,7 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("--urdf", arguments->urdf, "The robot")->reads()->required()->check(existing_file());
   command->add_option("--out", arguments->out, "The rig file; never one that is there already")
-      ->writes([](const std::filesystem::path& file) { return std::vector{Output{file, Output::Kind::either}}; })
+      ->writes(never_replaced())
       ->required();
   command->add_option("--protocol", arguments->protocol, "What its drives speak: cia402 or powercube")
       ->check(one_of({"cia402", "powercube"}))
@@ -114,8 +124,9 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
       ->reads()
       ->check(existing_file())
       ->excludes(eds);
-  command->add_option("--mesh-root", arguments->mesh_root,
-                      "Folder of the URDF's meshes, where they are not found from the URDF (robot.mesh_root)")
+  command
+      ->add_option("--mesh-root", arguments->mesh_root,
+                   "Folder of the URDF's meshes, where they are not found from the URDF (robot.mesh_root)")
       ->reads();
   command->footer(
       "One joint for each that moves on its own, with the URDF's limits and slow first speeds; the file says why each\n"

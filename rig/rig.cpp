@@ -174,7 +174,7 @@ void read_control(const YamlMap& map, Rig& rig) {
 }
 
 void read_robot(const YamlMap& map, Rig& rig) {
-  map.require_known({"urdf", "mesh_root", "pose"});
+  map.require_known({"urdf", "mesh_root", "shapes", "pose"});
   const auto urdf = existing_file(map, "urdf");
   MeshSearch meshes;
   if (map.has("mesh_root")) {
@@ -183,7 +183,11 @@ void read_robot(const YamlMap& map, Rig& rig) {
       throw InputError(map.where("mesh_root"), "there is no folder " + meshes.root->string(),
                        "give its path, relative to the rig file");
   }
-  rig.robot = read_urdf(urdf, meshes, UrdfShapes::all);
+  const auto shapes =
+      map.has("shapes")
+          ? map.choice<UrdfShapes>("shapes", {{"collision", UrdfShapes::all}, {"visual", UrdfShapes::visual}})
+          : UrdfShapes::all;
+  rig.robot = read_urdf(urdf, meshes, shapes);
   if (map.has("pose")) rig.T_world_robot = map.pose("pose");
 }
 

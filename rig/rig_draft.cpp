@@ -237,13 +237,27 @@ void note_sheet(const DriveSheet& sheet, RigDraft& draft) {
     draft.notes.push_back(file + " has no homing method that works from any pose: encoders are taken for absolute");
 }
 
+/// Descriptions are published without their collision meshes: the visual ones guard as well, but somebody must know.
+void read_robot(const RigDraftOptions& options, RigDraft& draft) {
+  MeshSearch meshes;
+  meshes.root = options.mesh_root;
+  try {
+    draft.rig.robot = read_urdf(options.urdf, meshes, UrdfShapes::all);
+  } catch (const InputError& error) {
+    if (std::string_view(error.what()).find("<collision>") == std::string_view::npos) throw;
+    draft.rig.robot = read_urdf(options.urdf, meshes, UrdfShapes::visual);
+    draft.visual_only = true;
+    const std::string why = error.what();
+    draft.notes.push_back("links are guarded by their visual shapes alone (robot.shapes): " +
+                          why.substr(0, why.find("; looked for")));
+  }
+}
+
 }  // namespace
 
 RigDraft draft_rig(const RigDraftOptions& options) {
   RigDraft draft;
-  MeshSearch meshes;
-  meshes.root = options.mesh_root;
-  draft.rig.robot = read_urdf(options.urdf, meshes);
+  read_robot(options, draft);
   const UrdfRobot& robot = *draft.rig.robot;
   draft.rig.name = robot.name.empty() ? options.urdf.stem().string() : robot.name;
   const std::vector<std::size_t> head = pan_tilt_of(robot);

@@ -27,6 +27,7 @@ struct RigDraft {
   Rig rig;
   std::vector<DraftJoint> joints;  ///< in the rig's order
   std::vector<std::string> notes;  ///< what was left out or is to be checked; one line each
+  bool visual_only = false;        ///< the URDF's collision meshes are not there: robot.shapes is `visual`
 };
 
 /// Every joint that moves on its own, in the URDF's order; those that follow another and fixed ones have no drive. What

@@ -149,7 +149,7 @@ std::string joint_text(const DraftJoint& draft, const Rig& rig, const RigDraftOp
   return out + fmt::format(
                    "     min: {}, max: {}, velocity: {}, acceleration: {}, jerk: {}, following_error: {}}}"
                    "  # URDF: {}\n",
-                   d.min_position, d.max_position, number(d.max_velocity), number(d.max_acceleration),
+                   d.min_position, d.max_position, exact(d.max_velocity), number(d.max_acceleration),
                    number(joint.jerk), number(joint.following_error), draft.urdf_says);
 }
 
@@ -159,6 +159,8 @@ std::string rig_text(const RigDraft& draft, const RigDraftOptions& options, cons
   const Rig& rig = draft.rig;
   std::string out = heading(draft, options) + "name: " + scalar(rig.name) +
                     "\nrobot:\n  urdf: " + path_from(file, options.urdf) + "\n";
+  if (draft.visual_only)
+    out += "  shapes: visual  # its collision meshes are not there; give them, and remove this line\n";
   if (options.mesh_root) out += "  mesh_root: " + path_from(file, *options.mesh_root) + "\n";
   out +=
       "  # Where its root stands in the world: x forward from the operator, y left, z up. Measure it.\n"

@@ -56,19 +56,14 @@ double segment_distance(const Capsule& s, const Capsule& t) {
   return (s.a + u * d1 - t.a - v * d2).norm();
 }
 
-/// How many joints two links are apart in the tree.
-int joints_between(const std::vector<Node>& links, std::size_t one, std::size_t other) {
-  const auto depth = [&](std::size_t i) {
-    int d = 0;
-    for (int k = static_cast<int>(i); links[static_cast<std::size_t>(k)].parent >= 0; ++d)
-      k = links[static_cast<std::size_t>(k)].parent;
-    return d;
-  };
-  int apart = 0, a = static_cast<int>(one), b = static_cast<int>(other);
-  for (int da = depth(one), db = depth(other); a != b; ++apart) {
-    int& deeper = da >= db ? a : b;
-    (da >= db ? da : db)--;
-    deeper = links[static_cast<std::size_t>(deeper)].parent;
+/// How many joints that move lie between two links of the tree.
+int joints_between(const UrdfRobot& robot, std::size_t one, std::size_t other) {
+  const auto parent = [&](std::size_t i) { return static_cast<std::size_t>(robot.links[i].parent); };
+  int apart = 0;
+  while (one != other) {
+    std::size_t& later = one > other ? one : other;  // parents come first: it is no ancestor of the other
+    apart += robot.joints[later - 1].kind != UrdfJoint::Kind::fixed ? 1 : 0;
+    later = parent(later);
   }
   return apart;
 }
@@ -167,7 +162,7 @@ void RobotShape::surround(const Surroundings& surroundings) {
   for (std::size_t i = 0; i < links_.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
       if (links_[i].has_body && links_[k].has_body && (links_[i].moves || links_[k].moves) &&
-          joints_between(robot_.links, i, k) > 2)
+          joints_between(robot_, i, k) > 2)
         couples_.push_back({Against::link, i, k, link_name(i) + " comes too close to " + link_name(k)});
 }
 

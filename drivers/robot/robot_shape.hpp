@@ -66,7 +66,7 @@ class RobotShape {
   void surround(const Surroundings& surroundings);
 
   /// How many couples of parts must stay apart: links and the workspace's walls, links and obstacles, links and other
-  /// links. Those that are one or two joints apart are not compared: their neighbours' covers overlap.
+  /// links. Those with at most two joints that move between them are not compared: their covers overlap.
   std::size_t couples() const { return couples_.size(); }
   /// Of each couple, by how much it is farther apart than it must be, metres; negative: too close. `out`: couples() of
   /// them. Does not allocate.

@@ -35,9 +35,11 @@ class OwnRobot : public testing::Test {
 TEST_F(OwnRobot, AnIiwaIsHomedMovedRecordedAndReplayed) {
   const std::string rig = new_rig("iiwa7/diff_robot_data/kuka_iiwa/urdf/iiwa7.urdf");
   EXPECT_THAT(text_, HasSubstr("7 drives at 250 Hz: 63 % of it"));
-  const Outcome again = run_program({"rig", "new", "--urdf", rig, "--out", rig});
+  const Outcome again =
+      run_program({"rig", "new", "--urdf", (source_folder() / "configs/arm.urdf").string(), "--out", rig});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_THAT(again.err, HasSubstr("is there already"));
+  EXPECT_THAT(again.err, HasSubstr("exists and is not a rig file that may be lost"));
+  EXPECT_NE(folder_.read("small.yaml"), "") << "and stays";
 
   const Outcome doctor = run_program({"doctor", rig});
   EXPECT_EQ(doctor.exit_code, 0) << doctor.out;

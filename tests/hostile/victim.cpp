@@ -34,6 +34,8 @@ const std::map<std::string, CommandWords>& table() {
       {"bench camera", {}},
       {"bench prediction ik",
        {{"--urdf", {"@arm.urdf"}}, {"--tip", {"arm_7"}}, {"--poses", {"20"}}, {"--paths", {"1"}}}},
+      {"rig new", {{"--urdf", {"@arm.urdf"}}, {"--out", {"@new/rig.yaml"}}}},
+      {"rig view", {{"RIG", {"@rig.yaml"}}, {"--out", {"@new/rig.png"}}}},
       {"robot", {{"RIG", {"@rig.yaml"}}, {"--stepped", {}}}},
       {"doctor", {{"RIG", {"@rig.yaml"}}}},
       {"calibrate target",

@@ -23,7 +23,7 @@ constexpr const char* kArm = R"(<robot name="small arm">
   <joint name="shoulder" type="revolute"><parent link="foot"/><child link="lower"/><origin xyz="0 0 0.25"/><axis xyz="0 1 0"/>
     <limit lower="-2" upper="1.5" velocity="10" effort="1"/></joint>
   <joint name="elbow" type="revolute"><parent link="lower"/><child link="upper"/><origin xyz="0 0 0.4"/><axis xyz="0 1 0"/>
-    <limit lower="0.1" upper="2.1" velocity="0.5" effort="1"/></joint>
+    <limit lower="0.1" upper="2.1" velocity="0.87266463" effort="1"/></joint>
   <joint name="turn: wrist" type="continuous"><parent link="upper"/><child link="wrist"/><origin xyz="0 0 0.4"/><axis xyz="0 0 1"/></joint>
   <joint name="flange" type="fixed"><parent link="wrist"/><child link="tool"/></joint>
   <joint name="grip" type="prismatic"><parent link="tool"/><child link="left"/><axis xyz="0 1 0"/>
@@ -110,7 +110,7 @@ TEST_F(Draft, TakesLimitsFromTheUrdfAndIsSlowAtFirst) {
   EXPECT_EQ(shoulder.min_position, -2);
   EXPECT_EQ(shoulder.max_position, 1.5);
   EXPECT_EQ(shoulder.max_velocity, 1) << "a first rig is slow, whatever the URDF says";
-  EXPECT_EQ(rig.joints[1].drive.max_velocity, 0.5) << "and never faster than that";
+  EXPECT_EQ(rig.joints[1].drive.max_velocity, 0.87266463) << "never faster than that, by no digit";
   EXPECT_EQ(rig.joints[2].drive.min_position, -3.1);
   EXPECT_EQ(rig.joints[3].drive.max_velocity, 0.04) << "a second for the whole way";
   for (const RigJoint& joint : rig.joints) {
@@ -136,6 +136,21 @@ TEST_F(Draft, StandsClearAtHome) {
   EXPECT_EQ(shape->obstructed(std::vector<double>{0, 1.1, 0, 0.0004}), nullptr);
   EXPECT_FALSE(rig.surroundings.workspace.isEmpty());
   EXPECT_NE(shape->obstructed(std::vector<double>{2, 1.1, 0, 0.0004}), nullptr) << "the floor";
+}
+
+TEST_F(Draft, GuardsByVisualShapesWhereCollisionMeshesAreMissing) {
+  std::string urdf = kArm;
+  urdf.insert(urdf.find("</link>"),
+              R"(<collision><geometry><mesh filename="meshes/foot.stl"/></geometry></collision>)");
+  folder_.write("arm.urdf", urdf);
+  const Rig rig = written();
+  EXPECT_FALSE(rig.robot->links[0].mesh.vertices.empty());
+  EXPECT_TRUE(rig.robot->collision.empty());
+  EXPECT_THAT(text_,
+              AllOf(HasSubstr("shapes: visual"), HasSubstr("Note: links are guarded by their visual shapes alone"),
+                    HasSubstr("'meshes/foot.stl' is missing")));
+  EXPECT_THAT(input_error([&] { read_urdf(folder_ / "arm.urdf", MeshSearch{}, UrdfShapes::all); }),
+              HasSubstr("'foot' <collision>"));
 }
 
 TEST_F(Draft, UsesWhatTheDataSheetTells) {

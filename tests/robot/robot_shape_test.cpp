@@ -74,6 +74,28 @@ TEST_F(RobotShapeTest, NamesTheLinksThatMeet) {
   EXPECT_STREQ(obstructed({0, 2.0944, 2.0944, 2.0944}), "link 'rod_4' comes too close to link 'rod_1'");
 }
 
+// A hand on a flange is as near to the forearm as the link that it is fixed to.
+TEST_F(RobotShapeTest, RigidJointsDoNotSetLinksApart) {
+  const auto couples = [&](const std::string& kind) {
+    const auto rod = [](const std::string& name) {
+      return "<link name='" + name + "'><visual><geometry><sphere radius='0.1'/></geometry></visual></link>";
+    };
+    const auto joint = [](int i, const std::string& type) {
+      const std::string n = std::to_string(i);
+      return "<joint name='j" + n + "' type='" + type + "'><parent link='l" + std::to_string(i - 1) +
+             "'/><child link='l" + n + "'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>";
+    };
+    const auto file =
+        folder_.write("hand.urdf", "<robot name='hand'>" + rod("l0") + rod("l1") + rod("l2") + rod("l3") +
+                                       joint(1, "revolute") + joint(2, "revolute") + joint(3, kind) + "</robot>");
+    std::vector<std::string> moving{"j1", "j2"};
+    if (kind != "fixed") moving.emplace_back("j3");
+    return RobotShape(read_urdf(file), moving, Pose::Identity(), "rig.yaml").couples();
+  };
+  EXPECT_EQ(couples("revolute"), 1u) << "the first and the last";
+  EXPECT_EQ(couples("fixed"), 0u);
+}
+
 TEST_F(RobotShapeTest, SaysWhichLinksItGuards) {
   const UrdfRobot robot = rods(folder_.path());
   EXPECT_EQ(to_text(guarded_links(robot)),
