@@ -3,21 +3,13 @@
 #include <limits>
 #include <memory>
 
+#include "drivers/robot/robot_words.hpp"
+
 namespace foresight {
-namespace {
 
-std::string state_text(const RobotCycle& cycle) {
-  std::string out = to_string(cycle.phase);
-  if (cycle.phase == RobotPhase::ready) out += std::string(", ") + to_string(cycle.gate);
-  if (cycle.reason != GateReason::none) out += std::string(": ") + to_string(cycle.reason);
-  return out;
-}
-
-}  // namespace
-
-std::function<std::optional<LiveRig>()> rig_feed(const Robot& robot) {
+std::function<std::optional<LiveRig>()> rig_feed(const Rig& rig, const Robot& robot) {
   const auto cycles = std::make_shared<BroadcastRing<RobotCycle>::Reader>(robot.cycles());
-  return [cycles]() -> std::optional<LiveRig> {
+  return [&robot, cycles, joints = rig.joint_words()]() -> std::optional<LiveRig> {
     std::optional<RobotCycle> newest;
     while (const auto cycle = cycles->take()) newest = *cycle;
     if (!newest) return std::nullopt;
@@ -26,8 +18,10 @@ std::function<std::optional<LiveRig>()> rig_feed(const Robot& robot) {
       const JointCycle& joint = newest->joint[i];
       out.positions.push_back(joint.homed ? joint.position : std::numeric_limits<double>::quiet_NaN());
     }
-    out.state = state_text(*newest);
-    out.is_bad = newest->phase == RobotPhase::stopped;
+    const RobotStatus status = robot.status();
+    const std::string held = hold_text(status.gate.hold, joints, status.time);
+    out.state = held.empty() ? describe(status, joints).name : held;
+    out.is_bad = newest->phase == RobotPhase::stopped || !held.empty();
     return out;
   };
 }

@@ -311,7 +311,7 @@ int run_with(const Rig& rig, const Arguments& arguments,
         rig, arguments.scene.empty() ? std::nullopt : std::optional<std::filesystem::path>(arguments.scene));
     windows.rig = std::make_unique<RigWindow>(
         *windows.body,
-        RigWindowOptions{"Foresight rig: " + rig.name, windows.body->rest(), 1320, 860, rig_feed(robot)});
+        RigWindowOptions{"Foresight rig: " + rig.name, windows.body->rest(), 1320, 860, rig_feed(rig, robot)});
   }
   Console console(rig, devices, robot, cameras.get(), arguments);
   poll_stop_signals(SecondSignal::waits);  // a program that ends at once leaves the stop to the drives
@@ -397,7 +397,7 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   command->add_flag("--rig-view", arguments->rig_view,
                     "Shows the robot in three dimensions as it moves, with what the gate guards (foresight rig view)");
   command->add_option("--scene", arguments->scene,
-                      "With --view or --record: the scene around the robot, in place of the rig's `scene:`")
+                      "With --view, --rig-view or --record: the scene around the robot, in place of the rig's `scene:`")
       ->reads();
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag("--stepped", arguments->stepped,

@@ -42,6 +42,7 @@ void RobotScene::add_robot() {
     nodes_.push_back(std::move(node));
   }
   for (Node& link : robot_->links) link.mesh = {};
+  robot_->collision.clear();
 }
 
 std::vector<Pose> RobotScene::poses(const JointPositions& joints) const {
