@@ -27,6 +27,8 @@ struct Arguments {
 RigDraftOptions options_of(const Arguments& arguments) {
   RigDraftOptions out;
   out.urdf = arguments.urdf;
+  if (!arguments.mesh_root.empty() && !fs::is_directory(arguments.mesh_root))
+    throw InputError("--mesh-root " + arguments.mesh_root, "is no folder", "name the folder that holds the meshes");
   if (!arguments.mesh_root.empty()) out.mesh_root = arguments.mesh_root;
   out.protocol = arguments.protocol == "cia402" ? DriveProtocol::cia402 : DriveProtocol::powercube;
   const std::string& sheet = arguments.eds.empty() ? arguments.dcf : arguments.eds;
@@ -99,7 +101,7 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("--urdf", arguments->urdf, "The robot")->reads()->required()->check(existing_file());
   command->add_option("--out", arguments->out, "The rig file; never one that is there already")
-      ->writes([](const std::filesystem::path& file) { return std::vector{Output{file, Output::Kind::either}}; })
+      ->writes([](const std::filesystem::path& file) { return std::vector{new_output(file, Output::Kind::file)}; })
       ->required();
   command->add_option("--protocol", arguments->protocol, "What its drives speak: cia402 or powercube")
       ->check(one_of({"cia402", "powercube"}))
@@ -114,8 +116,9 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
       ->reads()
       ->check(existing_file())
       ->excludes(eds);
-  command->add_option("--mesh-root", arguments->mesh_root,
-                      "Folder of the URDF's meshes, where they are not found from the URDF (robot.mesh_root)")
+  command
+      ->add_option("--mesh-root", arguments->mesh_root,
+                   "Folder of the URDF's meshes, where they are not found from the URDF (robot.mesh_root)")
       ->reads();
   command->footer(
       "One joint for each that moves on its own, with the URDF's limits and slow first speeds; the file says why each\n"

@@ -103,7 +103,8 @@ void add_rig_view_command(Command& rig, std::function<int()>& action) {
   command->add_option("RIG", a->rig, "Rig file (docs/rig-files.md)")->reads()->required();
   command->add_option("--joints", a->joints, "Where joints stand: NAME=VALUE,... in rad or m; the others at rest");
   command->add_option("--scene", a->scene, "What stands around, in place of the rig's `scene:`")->reads();
-  command->add_option("--out", a->out, "Writes a picture (.png or .jpg) instead of opening a window")->writes(png_form());
+  command->add_option("--out", a->out, "Writes a picture (.png or .jpg) instead of opening a window")
+      ->writes(picture_form());
   command->add_choice<std::optional<LookFrom>>(
       "--from", a->from,
       {{"front", LookFrom::front}, {"side", LookFrom::side}, {"top", LookFrom::top}, {"iso", LookFrom::iso}},

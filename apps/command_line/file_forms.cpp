@@ -99,6 +99,11 @@ FileForm png_form() {
   return {"a PNG picture", [](std::string_view text) { return text.starts_with("\x89PNG\r\n\x1a\n"); }};
 }
 
+FileForm picture_form() {
+  return {"a PNG or JPEG picture",
+          [](std::string_view text) { return png_form().is(text) || text.starts_with("\xff\xd8\xff"); }};
+}
+
 FileForm svg_form() {
   return {"an SVG picture", [](std::string_view text) { return holds(text, "<svg"); }};
 }

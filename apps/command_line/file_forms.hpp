@@ -25,6 +25,7 @@ FileForm joint_log_form();    ///< session/joint_log.hpp
 FileForm board_form();        ///< calibration/target/print_board.hpp
 FileForm model_form();        ///< scene/gltf_writer.hpp, both kinds
 FileForm png_form();
+FileForm picture_form();  ///< PNG or JPEG
 FileForm svg_form();
 /// A part that belongs to the file `whole` (the .bin of a .gltf): ours where that is.
 FileForm part_form(std::filesystem::path whole, const FileForm& form_of_whole);

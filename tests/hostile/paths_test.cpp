@@ -46,7 +46,7 @@ std::vector<std::string> options(const HelpedCommand& command, bool writes) {
 TEST_F(Hostile, EverySubcommandHasARow) {
   std::vector<std::string> names;
   for (const HelpedCommand& command : all_commands()) names.push_back(command.name());
-  EXPECT_THAT(Victim::rows(), testing::UnorderedElementsAreArray(names)) << "add new commands to victim.cpp";
+  EXPECT_THAT(Victim::rows(), testing::IsSupersetOf(names)) << "add new commands to victim.cpp";
 }
 
 TEST_F(Hostile, EmptyNamesAreRefused) {

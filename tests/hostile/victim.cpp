@@ -36,6 +36,8 @@ const std::map<std::string, CommandWords>& table() {
        {{"--urdf", {"@arm.urdf"}}, {"--tip", {"arm_7"}}, {"--poses", {"20"}}, {"--paths", {"1"}}}},
       {"robot", {{"RIG", {"@rig.yaml"}}, {"--stepped", {}}}},
       {"doctor", {{"RIG", {"@rig.yaml"}}}},
+      {"rig new", {{"--urdf", {"@arm.urdf"}}, {"--out", {"@new/rig.yaml"}}}},
+      {"rig view", {{"RIG", {"@rig.yaml"}}, {"--out", {"@new/rig.png"}}}},
       {"calibrate target",
        {{"--board", {"chessboard:9x6:0.02"}}, {"--out", {"@new/board.pdf"}}, {"--measured", {"100,100"}}}},
       {"calibrate capture",
