@@ -101,6 +101,16 @@ std::map<std::string, std::string> Victim::snapshot() const {
   return out;
 }
 
+std::vector<std::string> Victim::changes(const std::map<std::string, std::string>& before) const {
+  const auto now = snapshot();
+  std::vector<std::string> out;
+  for (const auto& [name, content] : before)
+    if (const auto found = now.find(name); found == now.end() || found->second != content) out.push_back(name);
+  for (const auto& [name, content] : now)
+    if (!before.contains(name)) out.push_back(name);
+  return out;
+}
+
 const CommandWords* Victim::row(const std::string& command) {
   const auto found = table().find(command);
   return found == table().end() ? nullptr : &found->second;
