@@ -27,11 +27,9 @@ struct Arguments {
 RigDraftOptions options_of(const Arguments& arguments) {
   RigDraftOptions out;
   out.urdf = arguments.urdf;
-  if (!arguments.mesh_root.empty()) {
-    out.mesh_root = arguments.mesh_root;
-    if (!fs::is_directory(*out.mesh_root))
-      throw InputError("--mesh-root " + arguments.mesh_root, "is no folder", "give the folder of the meshes");
-  }
+  if (!arguments.mesh_root.empty() && !fs::is_directory(arguments.mesh_root))
+    throw InputError("--mesh-root " + arguments.mesh_root, "is no folder", "name the folder that holds the meshes");
+  if (!arguments.mesh_root.empty()) out.mesh_root = arguments.mesh_root;
   out.protocol = arguments.protocol == "cia402" ? DriveProtocol::cia402 : DriveProtocol::powercube;
   const std::string& sheet = arguments.eds.empty() ? arguments.dcf : arguments.eds;
   if (sheet.empty()) return out;
@@ -40,11 +38,6 @@ RigDraftOptions options_of(const Arguments& arguments) {
                      "leave it out: PowerCube modules have none");
   out.sheet = read_drive_sheet(sheet);
   return out;
-}
-
-/// What somebody has corrected by hand is not made again.
-FileForm never_replaced() {
-  return {.name = "a rig file that may be lost: none is", .is = [](std::string_view) { return false; }};
 }
 
 /// Never over a file that is there, not even one that came a moment ago.
@@ -109,7 +102,7 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("--urdf", arguments->urdf, "The robot")->reads()->required()->check(existing_file());
   command->add_option("--out", arguments->out, "The rig file; never one that is there already")
-      ->writes(never_replaced())
+      ->writes([](const std::filesystem::path& file) { return std::vector{new_output(file, Output::Kind::file)}; })
       ->required();
   command->add_option("--protocol", arguments->protocol, "What its drives speak: cia402 or powercube")
       ->check(one_of({"cia402", "powercube"}))

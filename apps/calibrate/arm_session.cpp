@@ -263,9 +263,8 @@ void add_arm_session(Command& command, ArmSessionOptions& options) {
                    "Moves the robot of --rig from station to station, takes the views, then solves");
   command
       .add_option("--views", options.views, "With --guided: folder for the views (default: OUT without ending, -views)")
-      ->writes([](const std::filesystem::path& folder) {
-        return std::vector{Output{folder, Output::Kind::either}};
-      });
+      ->writes(
+          [](const std::filesystem::path& folder) { return std::vector{new_output(folder, Output::Kind::folder)}; });
   command
       .add_option("--start", options.start,
                   "With --guided: joints, rad, at which the board is in view (default: where the arm stands)")

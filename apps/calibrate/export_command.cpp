@@ -217,6 +217,14 @@ int run_export(const ExportOptions& options) {
   return 0;
 }
 
+std::vector<Output> outputs_of(const ExportOptions& options, const std::filesystem::path& out) {
+  if (options.to == "result") return {{out, Output::Kind::file, result_form()}};
+  const auto refuse = [force = options.outputs.force](const std::string& where, const std::filesystem::path&) {
+    if (!force) throw InputError(where, "exists", "write to another place, or give --force to replace it");
+  };
+  return {{out, Output::Kind::either, {}, refuse}};
+}
+
 }  // namespace
 
 void add_export(Command& calibrate, std::function<int()>& action) {
@@ -236,9 +244,8 @@ void add_export(Command& calibrate, std::function<int()>& action) {
   command->add_option("--joint-names", options->joints, "With --to urdf, of a head: its joints")
       ->expected(2)
       ->capture_default_str();
-  add_outputs(*command, options->outputs, [](const std::filesystem::path& out) -> std::vector<Output> {
-    return {{out, Output::Kind::either}};  // what is there stays, but for --force
-  });
+  add_outputs(*command, options->outputs,
+              [options](const std::filesystem::path& out) { return outputs_of(*options, out); });
   command->footer(
       "A pair becomes a folder with camera-info and mrcal, one file with the others. What is written is read\n"
       "back, and 1,000 rays per camera must meet the same pixels within 1e-6 px.\n\n"

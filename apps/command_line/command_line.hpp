@@ -112,7 +112,8 @@ class Command {
 };
 
 struct CommandLine {
-  std::optional<int> ended;      ///< exit code where nothing is left to do: help, version, --check-options, a mistake, told on stderr
+  std::optional<int>
+      ended;  ///< exit code where nothing is left to do: help, version, --check-options, a mistake, told on stderr
   std::vector<GivenPath> paths;  ///< of the chosen command, for the OutputGuard
 };
 

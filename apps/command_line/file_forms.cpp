@@ -100,9 +100,8 @@ FileForm png_form() {
 }
 
 FileForm picture_form() {
-  return {"a PNG or JPEG picture", [](std::string_view text) {
-            return text.starts_with("\x89PNG\r\n\x1a\n") || text.starts_with("\xff\xd8\xff");
-          }};
+  return {"a PNG or JPEG picture",
+          [](std::string_view text) { return png_form().is(text) || text.starts_with("\xff\xd8\xff"); }};
 }
 
 FileForm svg_form() {

@@ -94,9 +94,8 @@ void require_not_an_input(const Place& place, const Inputs& inputs) {
 
 void require_ours(const Place& place) {
   if (!place.is_there()) return;
-  if (place.is_folder()) {
-    if (place.output.refuse_foreign) place.output.refuse_foreign(place.where, place.output.path);
-  } else if (fs::is_regular_file(place.status)) {
+  if (place.output.refuse_foreign) place.output.refuse_foreign(place.where, place.output.path);
+  if (!place.is_folder() && fs::is_regular_file(place.status)) {
     if (place.output.form && !has_form(place.output.path, *place.output.form))
       throw InputError(place.where, "exists and is not " + place.output.form->name,
                        "give another place, or remove it first");
@@ -107,6 +106,15 @@ void require_ours(const Place& place) {
 }
 
 }  // namespace
+
+Output new_output(const fs::path& path, Kind kind) {
+  const auto refuse = [](const std::string& where, const fs::path& there) {
+    std::error_code ignored;
+    if (!fs::is_empty(there, ignored))
+      throw InputError(where, "is there already", "give another name, or remove it first");
+  };
+  return {path, kind, {}, refuse};
+}
 
 std::vector<Output> page_outputs(const fs::path& page) {
   std::vector<Output> out{{page, Kind::file, page_form()}};

@@ -130,7 +130,7 @@ TEST_P(Robot, RunsItsCamerasInRealTime) {
   ASSERT_TRUE(program.running()) << program.wait().err;
   kill(program.pid(), SIGTERM);
   const Outcome out = program.wait();
-  EXPECT_EQ(out.exit_code, 0) << out.err << out.out;
+  EXPECT_EQ(out.exit_code, 130) << out.err << out.out;
   EXPECT_THAT(out.out, testing::ContainsRegex("cameras: [0-9]+ pairs/s"));
   EXPECT_THAT(out.out, HasSubstr(": disabled"));
   EXPECT_THAT(out.err, testing::ContainsRegex("[0-9]+ pairs"));

@@ -86,7 +86,7 @@ TEST_F(ArmSession, GoesLooksSolvesAndVerifies) {
   EXPECT_EQ(json_of(folder, "v.json")["views_of_the_calibration"], 13);
   words[12] = "--out", words[13] = folder / "other.yaml";
   words.insert(words.end(), {"--views", folder / "arm-views"});
-  EXPECT_THAT(run_calibrate(words), HasSubstr("is not empty"));
+  EXPECT_THAT(run_calibrate(words), HasSubstr("is there already"));
 
   ASSERT_EQ(run_calibrate({"export", folder / "arm.yaml", "--to", "urdf", "--urdf", folder / "arm.urdf", "--out",
                            folder / "with_camera.urdf"}),

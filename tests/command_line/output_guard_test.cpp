@@ -119,6 +119,19 @@ TEST_F(OutputGuardTest, ForeignFilesStay) {
   EXPECT_THAT(refusal({writes("--json", at("ours.json"))}), HasSubstr("write-protected"));
 }
 
+TEST_F(OutputGuardTest, WhatIsToBeNewReplacesNothing) {
+  files_.write("notes.txt", "precious");
+  const auto fresh = [&](const std::string& name, Kind kind) -> std::vector<GivenPath> {
+    return {{"--out", at(name).string(),
+             [kind](const fs::path& path) -> std::vector<Output> { return {new_output(path, kind)}; }}};
+  };
+  EXPECT_THAT(refusal(fresh("notes.txt", Kind::file)), says("--out", "is there already", "another name"));
+  EXPECT_THAT(refusal(fresh("run", Kind::folder)), HasSubstr("is there already"));
+  fs::create_directory(at("empty"));
+  EXPECT_EQ(refusal(fresh("empty", Kind::folder)), "no error");
+  EXPECT_EQ(refusal(fresh("new", Kind::file)), "no error");
+}
+
 TEST_F(OutputGuardTest, APartBelongsToItsWhole) {
   files_.write("m.png", "a holiday");
   const auto part = part_form(at("m.gltf"), model_form());

@@ -1,5 +1,7 @@
 // Every subcommand against names that would lose something of the user's, hang, or fill the memory: all are refused
 // with exit code 2, and the user's folder is the same after as before, byte by byte.
+#include <set>
+
 #include "tests/apps/program.hpp"
 #include "tests/hostile/victim.hpp"
 
@@ -11,6 +13,9 @@ using testing::HasSubstr;
 
 constexpr std::chrono::seconds kHangs{120};
 
+/// Options that the row's other words leave without use.
+const std::set<std::string> kUnused{"calibrate scene --tag-corners", "calibrate scene --seen"};
+
 class Hostile : public testing::Test {
  protected:
   /// Before any work, with a word about `option`; the folder is left alone.
@@ -18,16 +23,20 @@ class Hostile : public testing::Test {
     const std::vector<std::string> words = victim_.line(command, more);
     SCOPED_TRACE(testing::PrintToString(words));
     EXPECT_THAT(refusal_of(words), HasSubstr(option));
-    EXPECT_EQ(victim_.snapshot(), before_);
+    EXPECT_THAT(victim_.changes(before_), testing::IsEmpty());
   }
-  /// By the program that was started: with a word and no signal.
-  void refused_by_program(const HelpedCommand& command, const CommandWords& more) const {
+  /// By the program that was started: with a word, no signal and no wait.
+  void survived(const HelpedCommand& command, const std::string& option, const CommandWords& more) const {
     const std::vector<std::string> words = victim_.line(command, more);
     SCOPED_TRACE(testing::PrintToString(words));
     const Outcome outcome = Program(words).wait(kHangs);
-    EXPECT_TRUE(outcome.exit_code == 1 || outcome.exit_code == 2) << outcome.exit_code << outcome.err;
-    EXPECT_THAT(outcome.last_line(), testing::StartsWith("foresight: "));
-    EXPECT_EQ(victim_.snapshot(), before_);
+    if (kUnused.contains(command.name() + " " + option)) {
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err << "\nit has a use now: take it out of kUnused";
+    } else {
+      EXPECT_THAT(outcome.exit_code, testing::AnyOf(1, 2)) << outcome.err;
+      EXPECT_THAT(outcome.last_line(), testing::StartsWith("foresight: "));
+    }
+    EXPECT_THAT(victim_.changes(before_), testing::IsEmpty());
     if (std::getenv("FORESIGHT_SHOW_MESSAGES"))
       std::printf("%-24s %s\n", command.name().c_str(), outcome.last_line().c_str());
   }
@@ -46,7 +55,7 @@ std::vector<std::string> options(const HelpedCommand& command, bool writes) {
 TEST_F(Hostile, EverySubcommandHasARow) {
   std::vector<std::string> names;
   for (const HelpedCommand& command : all_commands()) names.push_back(command.name());
-  EXPECT_THAT(Victim::rows(), testing::UnorderedElementsAreArray(names)) << "add new commands to victim.cpp";
+  EXPECT_THAT(Victim::rows(), testing::UnorderedElementsAreArray(names)) << "rows are in victim.cpp";
 }
 
 TEST_F(Hostile, EmptyNamesAreRefused) {
@@ -89,7 +98,7 @@ TEST_F(Hostile, SpecialFilesAreNoInputs) {
   for (const HelpedCommand& command : all_commands()) {
     bool device = false;
     for (const std::string& input : options(command, false)) {
-      refused_by_program(command, {{input, {device ? "/dev/zero" : "@fifo"}}});
+      survived(command, input, {{input, {device ? "/dev/zero" : "@fifo"}}});
       device = !device;
     }
   }

@@ -34,10 +34,10 @@ const std::map<std::string, CommandWords>& table() {
       {"bench camera", {}},
       {"bench prediction ik",
        {{"--urdf", {"@arm.urdf"}}, {"--tip", {"arm_7"}}, {"--poses", {"20"}}, {"--paths", {"1"}}}},
-      {"rig new", {{"--urdf", {"@arm.urdf"}}, {"--out", {"@new/rig.yaml"}}}},
-      {"rig view", {{"RIG", {"@rig.yaml"}}, {"--out", {"@new/rig.png"}}}},
       {"robot", {{"RIG", {"@rig.yaml"}}, {"--stepped", {}}}},
       {"doctor", {{"RIG", {"@rig.yaml"}}}},
+      {"rig new", {{"--urdf", {"@arm.urdf"}}, {"--out", {"@new/rig.yaml"}}}},
+      {"rig view", {{"RIG", {"@rig.yaml"}}, {"--out", {"@new/rig.png"}}}},
       {"calibrate target",
        {{"--board", {"chessboard:9x6:0.02"}}, {"--out", {"@new/board.pdf"}}, {"--measured", {"100,100"}}}},
       {"calibrate capture",
@@ -98,6 +98,16 @@ std::map<std::string, std::string> Victim::snapshot() const {
     out[name] =
         std::to_string(static_cast<int>(status.type())) + (fs::is_regular_file(status) ? text_of(entry.path()) : "");
   }
+  return out;
+}
+
+std::vector<std::string> Victim::changes(const std::map<std::string, std::string>& before) const {
+  const auto now = snapshot();
+  std::vector<std::string> out;
+  for (const auto& [name, content] : before)
+    if (const auto found = now.find(name); found == now.end() || found->second != content) out.push_back(name);
+  for (const auto& [name, content] : now)
+    if (!before.contains(name)) out.push_back(name);
   return out;
 }
 

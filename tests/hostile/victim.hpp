@@ -17,8 +17,10 @@ class Victim : public TempFolder {
  public:
   Victim();
 
-  /// What is in the folder: names, kinds, bytes, of all but what lies in it below new/.
+  /// What is in the folder: names, kinds, bytes.
   std::map<std::string, std::string> snapshot() const;
+  /// Names of what differs from `before`.
+  std::vector<std::string> changes(const std::map<std::string, std::string>& before) const;
 
   /// The least that `command` needs to get to its work: rows of a table; null where it has no row.
   static const CommandWords* row(const std::string& command);
