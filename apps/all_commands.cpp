@@ -24,7 +24,6 @@ void add_commands(Command& app, std::function<int()>& action) {
   add_bench_command(app, action);
   add_rig_command(app, action);
   add_robot_command(app, action);
-  add_rig_command(app, action);
   add_doctor_command(app, action);
   add_calibrate_command(app, action);
 }
