@@ -208,7 +208,7 @@ void choose_surroundings(RigDraft& draft) {
   double below = 0;  // the robot's foot
   for (; below < kDeepestFloor; below += kFloorStep) {
     const Eigen::Vector3d top(0, 0, stand - below);
-    rig.surroundings.obstacles = {{"floor", {top - far - Eigen::Vector3d::UnitZ(), top + far}}};
+    rig.surroundings.obstacles = {{"floor", {top - far - 0.1 * Eigen::Vector3d::UnitZ(), top + far}}};
     shape->surround(rig.surroundings);
     const char* const what = shape->obstructed(home);
     if (what == nullptr || std::string_view(what).find("'floor'") == std::string_view::npos) break;

@@ -143,9 +143,10 @@ Eigen::AlignedBox3d RigBody::extent() {
     out.extend(Eigen::AlignedBox3d(link.body.a.cwiseMin(link.body.b), link.body.a.cwiseMax(link.body.b)));
   if (out.isEmpty()) out = all;
   if (out.isEmpty()) out.extend(Eigen::Vector3d(-0.5, -0.5, -0.5)).extend(Eigen::Vector3d(0.5, 0.5, 0.5));
-  const Eigen::AlignedBox3d robot = out;
+  // Of what stands around, as much as is near: beside a whole floor the robot would be small.
+  const Eigen::AlignedBox3d near(out.min().array() - kNear, out.max().array() + kNear);
   for (const Obstacle& obstacle : rig_.surroundings.obstacles)
-    if (robot.exteriorDistance(obstacle.box) < kNear) out.extend(obstacle.box);
+    if (near.intersects(obstacle.box)) out.extend(near.intersection(obstacle.box));
   return out;
 }
 
