@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/calibrate/calibrate_command.hpp"
+#include "apps/command_line/output_guard.hpp"
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
 
@@ -23,9 +24,12 @@ inline std::string run_calibrate(std::vector<std::string> arguments) {
   testing::internal::CaptureStderr();
   std::string out;
   try {
-    const auto ended = read_command_line(static_cast<int>(words.size()), words.data(), "", "",
-                                         [&action](Command& app) { add_calibrate_command(app, action); });
-    if (!ended) out = std::to_string(action());
+    const CommandLine line = read_command_line(static_cast<int>(words.size()), words.data(), "", "",
+                                               [&action](Command& app) { add_calibrate_command(app, action); });
+    if (!line.ended) {
+      const OutputGuard guard(line.paths);
+      out = std::to_string(action());
+    }
   } catch (const std::exception& error) {
     out = error.what();
   }

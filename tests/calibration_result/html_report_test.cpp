@@ -61,11 +61,11 @@ TEST(FrameDrawing, DrawsFramesCamerasAndAGrid) {
   report.write(folder / "r.html");
   const std::string page = folder.read("r.html");
   EXPECT_EQ(malformed(page), "");
-  for (const char* text : {"base &lt;a&gt;", ">camera<", "grid: 0.1 m", "data:image/jpeg;base64,", "0.2 px &amp; more",
+  for (const char* text : {"base &lt;a&gt;", ">camera<", "grid: 0.2 m", "data:image/jpeg;base64,", "0.2 px &amp; more",
                            "the board &lt;moved&gt;", "hold it still"})
     EXPECT_THAT(page, HasSubstr(text));
   EXPECT_LT(page.find("Not usable"), page.find("Where everything stands"));
-  EXPECT_THAT(page, HasSubstr(">600<")) << "the whole image, not only where points are";
+  EXPECT_THAT(page, HasSubstr(">400<")) << "the whole image, not only where points are";
   EXPECT_EQ(FrameDrawing().svg("nothing"), "");
 }
 
