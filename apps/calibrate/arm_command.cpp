@@ -105,7 +105,10 @@ int run(ArmOptions& options) {
   HandEyeOptions solver = solver_options(options);
   if (!solver.camera) solver.camera = lens_of_run(options.input);
   HandEyeSummary summary;
-  if (views.chain) {
+  if (options.session.guided) {
+    // A session's views are too few to tell joint offsets from all else; more of them, given by --joints, do.
+    summary = solve_hand_eye(with_poses(views, {}), solver);
+  } else if (views.chain) {
     JointChain chain = *views.chain;
     summary = solve_with_joints(chain, views.rows, views.data, solver);
   } else {

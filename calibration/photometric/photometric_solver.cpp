@@ -292,8 +292,16 @@ PhotometricSummary solve_photometric(const std::vector<LevelSample>& samples, co
   x.log_radiance.resize(radiances);
   start_radiances(samples, x);
   Fit fit(samples, options, x);
-  fit.run();
   PhotometricSummary summary;
+  try {
+    fit.run();
+  } catch (const RuntimeFailure& failure) {
+    summary.samples = static_cast<int>(samples.size());
+    summary.log_radiance.assign(radiances, NAN);
+    summary.log_radiance_sigma = summary.log_radiance;
+    summary.verdict.object(failure.what(), "check each picture's time, and that the camera kept it");
+    return summary;
+  }
   summary.has_vignetting = !flat.empty();
   double squares = 0;
   for (const LevelSample& s : samples) {
@@ -304,7 +312,13 @@ PhotometricSummary solve_photometric(const std::vector<LevelSample>& samples, co
   summary.samples = static_cast<int>(samples.size());
   summary.rms_levels = std::sqrt(squares / static_cast<double>(samples.size()));
   Uncertainty(fit.problem(), x, summary.rms_levels / options.sigma_level, summary).fill(flat);
-  summary.held_out_levels = options.held_out ? held_out(samples, options, radiances) : NAN;
+  summary.held_out_levels = NAN;
+  try {
+    if (options.held_out) summary.held_out_levels = held_out(samples, options, radiances);
+  } catch (const RuntimeFailure& failure) {
+    summary.verdict.object("without one of its pictures " + std::string(failure.what()),
+                           "take more pictures, at exposures that differ by twice");
+  }
   summary.response = x.response;
   summary.vignetting = x.vignetting;
   summary.log_radiance = x.log_radiance;

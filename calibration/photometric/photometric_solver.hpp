@@ -46,7 +46,7 @@ struct PhotometricSummary {
 
 /// Residual of a sample, in grey levels over sigma: (ln g(v) - ln t - ln L - ln V) * v / n(v), with Huber's loss;
 /// gauge: g(255) = 1. Solved by Ceres, starting at a power law. Throws InputError naming what is missing: one exposure
-/// only, a ratio of exposures that is too small, too few samples; and RuntimeFailure where it does not converge.
+/// only, a ratio of exposures that is too small, too few samples. Where it does not converge, the verdict says so.
 PhotometricSummary solve_photometric(const std::vector<LevelSample>& samples, const PhotometricOptions& options = {});
 
 }  // namespace foresight

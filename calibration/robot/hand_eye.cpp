@@ -275,7 +275,15 @@ HandEyeSummary solve_hand_eye(const HandEyeData& given, const HandEyeOptions& op
   selection.used = belong_together(start.misfits_m);
   require_enough(data, selection);
   for (const BoardView& view : data.corners.views) selection.keep.emplace_back(view.corners.size(), true);
-  const HandEyeCovariance covariance = robust_solve(data, options, selection, state);
+  HandEyeCovariance covariance;
+  try {
+    covariance = robust_solve(data, options, selection, state);
+  } catch (const RuntimeFailure& failure) {
+    summary.camera = camera;
+    summary.mount = state.mount;
+    judge_unsolved(data, failure.what(), summary);
+    return summary;
+  }
   require_determined(covariance);
   fill(state, covariance, summary);
   fill_views(data, selection, state, summary);

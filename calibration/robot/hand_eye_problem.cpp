@@ -13,7 +13,9 @@
 namespace foresight {
 namespace {
 
-constexpr double kLeastRad = 1e-6, kLeastM = 1e-6, kLeastPx = 1e-4;  // noises below these change no result
+// Noises below these change no result; a robot without any would weigh so much that the Schur complement has no digits
+// left.
+constexpr double kLeastRad = 1e-5, kLeastM = 1e-5, kLeastPx = 1e-4;
 
 // Board to camera through X, Y and a robot pose with its correction (rotation vector, shift).
 template <typename T>

@@ -99,21 +99,23 @@ bool fits_later(const HandEyeData& data, const HandEyeSummary& summary, std::ptr
   return start_hand_eye(summary.mount, poses, seen, std::array{Pose::Identity()}).misfit_m < kSlipped * misfit_m;
 }
 
+std::string cure_of_order(const HandEyeData& data, const HandEyeSummary& summary) {
+  const double misfit_m =
+      1e-3 * (summary.mount == CameraMount::fixed ? summary.start_mm_fixed : summary.start_mm_moving);
+  for (const std::ptrdiff_t rows : {1, -1})
+    if (fits_later(data, summary, rows, misfit_m))
+      return std::string("each image fits the pose ") + (rows > 0 ? "after" : "before") +
+             " its own: a row of --poses is missing, or one too many stands before the first";
+  return "check that poses and images belong together, that the arm stood still in each, and that nothing else moved";
+}
+
 void judge_error(const HandEyeData& data, HandEyeSummary& summary) {
   const double width = summary.camera.width > 0 ? summary.camera.width : 2 * summary.camera.lens[2];
   const double error = std::max(summary.loo_px, summary.uncorrected_px);
   if (error <= kLargestError * width) return;
-  const double misfit_m =
-      1e-3 * (summary.mount == CameraMount::fixed ? summary.start_mm_fixed : summary.start_mm_moving);
-  std::string cure =
-      "check that poses and images belong together, that the arm stood still in each, and that nothing else moved";
-  for (const std::ptrdiff_t rows : {1, -1})
-    if (fits_later(data, summary, rows, misfit_m))
-      cure = std::string("each image fits the pose ") + (rows > 0 ? "after" : "before") +
-             " its own: a row of --poses is missing, or one too many stands before the first";
   summary.verdict.object("the robot puts the board " + readable(error, 1) +
                              " px from where views that were left out show it; 1 % of the image's width is the limit",
-                         cure);
+                         cure_of_order(data, summary));
 }
 
 void judge_open(const char* name, const Vector6d& sigma, Verdict& verdict) {
@@ -133,6 +135,11 @@ std::vector<bool> belong_together(const std::vector<double>& misfits_m) {
   std::vector<bool> out;
   for (const double misfit : misfits_m) out.push_back(misfit <= limit);
   return out;
+}
+
+void judge_unsolved(const HandEyeData& data, const std::string& why, HandEyeSummary& summary) {
+  summary.verdict.object("no place of camera and board brings the robot poses and the images together: " + why,
+                         cure_of_order(data, summary));
 }
 
 void judge_hand_eye(const HandEyeData& data, HandEyeSummary& summary) {

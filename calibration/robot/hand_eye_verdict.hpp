@@ -13,4 +13,7 @@ std::vector<bool> belong_together(const std::vector<double>& misfits_m);
 /// `data` with the corners in the order that the solver found. Reads everything else of `summary`.
 void judge_hand_eye(const HandEyeData& data, HandEyeSummary& summary);
 
+/// The same where the adjustment ended with `why`. Reads mount, start and camera of `summary`.
+void judge_unsolved(const HandEyeData& data, const std::string& why, HandEyeSummary& summary);
+
 }  // namespace foresight
