@@ -23,6 +23,7 @@ constexpr std::array<Kind, 4> kKinds{{
     {BoardKind::circles, "circles", "circles:10x10:0.0254", 3, 2},
 }};
 constexpr int kMostPoints = 1000;  // columns or rows: more cannot be told apart in an image
+constexpr double kLargest = 1;     // metres: what is printed is smaller
 constexpr double kKalibrGap = 0.3;
 
 const Kind& kind_of(BoardKind kind) {
@@ -89,7 +90,9 @@ class Parser {
 
   double metres(const std::string& text) {
     const auto value = parse_number(text);
-    if (!value || !(*value > 0) || !(*value <= 100))
+    if (value && *value > kLargest && *value <= 1e3 * kLargest)
+      refuse("has a size of " + text + " m, which looks like millimetres: " + readable(1e-3 * *value, 5));
+    if (!value || !(*value > 0) || !(*value <= kLargest))
       refuse("has " + in_quotes(text) + " where a size in metres belongs");
     return *value;
   }
