@@ -343,8 +343,25 @@ void check_view(const Rig& rig, const Arguments& arguments) {
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
 }
 
+/// What the OutputGuard cannot know: the rig says how many logs there are, and how they are called.
+void check_logs(const Rig& rig, const Arguments& arguments) {
+  namespace fs = std::filesystem;
+  if (arguments.log.empty() || rig.buses.size() < 2) return;
+  if (fs::exists(arguments.log) && !fs::is_regular_file(arguments.log))
+    throw InputError("--log " + arguments.log, "is no file, and the rig's buses have a log each",
+                     "give the name of a file: each bus's goes before its extension");
+  if (arguments.session.empty()) return;
+  for (const RigBus& bus : rig.buses) {
+    const fs::path log = log_of(arguments.log, rig, bus);
+    if (fs::weakly_canonical(log) == fs::weakly_canonical(arguments.session))
+      throw InputError("--session-html " + arguments.session, "is the log of bus '" + bus.name + "', too",
+                       "give another name");
+  }
+}
+
 int run(const Arguments& arguments) {
   const Rig rig = read_rig(arguments.rig);
+  check_logs(rig, arguments);
   check_rig_view(arguments);
   check_view(rig, arguments);
   parse_mock_faults(arguments.faults, rig, arguments.mock);
@@ -396,8 +413,9 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   command->add_flag("--window", arguments->window, "With --view: a window also where pictures or reports are written");
   command->add_flag("--rig-view", arguments->rig_view,
                     "Shows the robot in three dimensions as it moves, with what the gate guards (foresight rig view)");
-  command->add_option("--scene", arguments->scene,
-                      "With --view, --rig-view or --record: the scene around the robot, in place of the rig's `scene:`")
+  command
+      ->add_option("--scene", arguments->scene,
+                   "With --view, --rig-view or --record: the scene around the robot, in place of the rig's `scene:`")
       ->reads();
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag("--stepped", arguments->stepped,

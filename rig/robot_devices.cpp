@@ -96,13 +96,6 @@ class PatientBus final : public CanBus {
   std::function<void()> meanwhile_;
 };
 
-/// A log for each bus: FILE where there is one, else FILE's name with the bus's before its extension.
-std::filesystem::path log_of(std::filesystem::path file, const Rig& rig, const RigBus& bus) {
-  if (rig.buses.size() == 1) return file;
-  const std::string extension = file.extension().string();
-  return file.replace_extension().concat("-" + bus.name + extension);
-}
-
 /// Where a mock shaft stands at the start: not quite at home, on the side from which it can be looked for.
 double start_beside(double home, int homing_method, const sim::NodeConfig& config) {
   const auto method = sim::homing_method(homing_method);
@@ -171,6 +164,12 @@ std::unique_ptr<DriveNetwork> make_network(CanBus& bus, Clock& clock, const Rig&
 }
 
 }  // namespace
+
+std::filesystem::path log_of(std::filesystem::path file, const Rig& rig, const RigBus& bus) {
+  if (rig.buses.size() == 1) return file;
+  const std::string extension = file.extension().string();
+  return file.replace_extension().concat("-" + bus.name + extension);
+}
 
 std::vector<sim::NodeConfig> emulated_drives(const Rig& rig, std::size_t bus) {
   std::vector<sim::NodeConfig> out;

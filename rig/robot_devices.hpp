@@ -37,6 +37,9 @@ struct RobotDeviceOptions {
   std::map<std::string, double> mock_start = {};
 };
 
+/// Where the frames of a bus go: `file` where the rig has one bus, else its name with the bus's before its extension.
+std::filesystem::path log_of(std::filesystem::path file, const Rig& rig, const RigBus& bus);
+
 /// Opens the rig's buses: SocketCAN interfaces, or in-process ones with emulated drives where the rig says `mock`.
 /// Outlived by the clock. Construction and bring_up() throw InputError or RuntimeFailure; nothing moves.
 class RobotDevices {
