@@ -27,7 +27,7 @@ class OutputGuard {
   explicit OutputGuard(const std::vector<GivenPath>& given);
 
  private:
-  std::deque<MadeFolder> folders_;  // go after the locks in them
+  MadeFolders folders_;  // go after the locks in them
   std::deque<OutputLock> locks_;
   std::vector<UniqueFd> open_;  // pipes
 };

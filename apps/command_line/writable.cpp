@@ -44,15 +44,14 @@ MadeFolder::~MadeFolder() {
   for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // only empty ones go
 }
 
-UniqueFd require_writable(const std::string& where, const fs::path& path, bool inside,
-                          std::deque<MadeFolder>& folders) {
+UniqueFd require_writable(const std::string& where, const fs::path& path, bool inside, MadeFolders& folders) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return opened(where, path);
   fs::path whole = fs::absolute(path).lexically_normal();
   if (!whole.has_filename()) whole = whole.parent_path();
   const fs::path folder = inside && fs::is_directory(status) ? whole : whole.parent_path();
-  std::error_code error = folders.emplace_back(folder).error();
+  std::error_code error = folders.make(folder);
   if (!error) error = try_file(partial_path(folder / whole.filename()));
   if (error)
     throw InputError(where, folder.string() + " cannot be written to (" + error.message() + ")",
