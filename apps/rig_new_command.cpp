@@ -100,7 +100,7 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
   Command* const command =
       rig.add_subcommand("new", "Makes the first rig file of your own robot, for mock drives and mock cameras");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--urdf", arguments->urdf, "The robot")->reads()->required()->check(existing_file());
+  command->add_option("--urdf", arguments->urdf, "The robot")->reads()->required();
   command->add_option("--out", arguments->out, "The rig file; never one that is there already")
       ->writes([](const std::filesystem::path& file) { return std::vector{new_output(file, Output::Kind::file)}; })
       ->required();
@@ -111,12 +111,8 @@ void add_rig_new_command(Command& rig, std::function<int()>& action) {
       command
           ->add_option("--eds", arguments->eds,
                        "Electronic data sheet of its CiA 402 drives: scaling, identity, homing methods")
-          ->reads()
-          ->check(existing_file());
-  command->add_option("--dcf", arguments->dcf, "The same with a drive's configured values")
-      ->reads()
-      ->check(existing_file())
-      ->excludes(eds);
+          ->reads();
+  command->add_option("--dcf", arguments->dcf, "The same with a drive's configured values")->reads()->excludes(eds);
   command
       ->add_option("--mesh-root", arguments->mesh_root,
                    "Folder of the URDF's meshes, where they are not found from the URDF (robot.mesh_root)")

@@ -77,8 +77,9 @@ TEST_F(OwnRobotSeen, IsSeenRecordedAndReplayedAtOnce) {
   ASSERT_EQ(replay.exit_code, 0) << replay.err;
   const auto summary = read_json(folder_ / "replay.json").at("summary");
   EXPECT_GT(summary.at("coverage").at("seen").get<double>(), 0.3) << summary.dump(1);
-  EXPECT_GT(summary.at("predicted").at("psnr_db").at("mean").get<double>(),
-            summary.at("delayed").at("psnr_db").at("mean").get<double>() + 2)
+  // The head stands still: only where the robot moves does the delayed image differ, and there the links must be drawn.
+  const auto worst = [&summary](const char* of) { return summary.at(of).at("psnr_db").at("min").get<double>(); };
+  EXPECT_GT(worst("predicted"), worst("delayed"))
       << "the links of the images are not where the nodes say; " << summary.dump(1);
 }
 

@@ -38,7 +38,7 @@ TEST_F(OwnRobot, AnIiwaIsHomedMovedRecordedAndReplayed) {
   const Outcome again =
       run_program({"rig", "new", "--urdf", (source_folder() / "configs/arm.urdf").string(), "--out", rig});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_THAT(again.err, HasSubstr("exists and is not a rig file that may be lost"));
+  EXPECT_THAT(again.err, HasSubstr("is there already"));
   EXPECT_NE(folder_.read("small.yaml"), "") << "and stays";
 
   const Outcome doctor = run_program({"doctor", rig});

@@ -52,7 +52,8 @@ void expect_quality(const json& quality) {
 TEST_F(Replay, WritesPicturesAndReports) {
   const SmallRun run;
   replay(run.path(), {"--delay-frames", "2"});
-  EXPECT_THAT(names_in(out_.path()), testing::ElementsAre("out", "report.html", "report.html.plots.json", "report.json"));
+  EXPECT_THAT(names_in(out_.path()),
+              testing::ElementsAre("out", "report.html", "report.html.plots.json", "report.json"));
   EXPECT_THAT(names_in(out_ / "out"), testing::ElementsAre("contact_sheet.png", "predicted"));
   EXPECT_THAT(names_in(out_ / "out/predicted"),
               testing::ElementsAre("000002.png", "000003.png", "000004.png", "000005.png", "000006.png", "000007.png"));
@@ -114,12 +115,17 @@ TEST_F(Replay, IsBitIdenticalButForTimesAndOverwritesPictures) {
   const json first_report = without_times(report());
   EXPECT_EQ(first.size(), 1u + 5u);
   out_.write("out/predicted/000004.png", "an old picture");
-  out_.write("out/contact_sheet.png", "an old picture");
-  out_.write("out/notes.txt", "mine");
+  out_.write("out/contact_sheet.png", "");
   replay(run.path(), {"--delay-ms", "70"});
   EXPECT_TRUE(contents() == first);
   EXPECT_EQ(without_times(report()), first_report);
+
+  out_.write("out/notes.txt", "mine");
+  const Outcome refused = run_program({"replay", run.path(), "--delay-ms", "70", "--out", out_ / "out"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.last_line(), HasSubstr("notes.txt"));
   EXPECT_EQ(out_.read("out/notes.txt"), "mine");
+  EXPECT_TRUE(contents() == first);
 }
 
 TEST_F(Replay, ARunOfOneImageWithoutDelayShowsThatImage) {

@@ -64,12 +64,12 @@ TEST_F(Synth, OptionsOutOfRangeAreRefused) {
       {{"--rate", "0"}, "--rate", "0 is outside", "choose a value"},
       {{"--noise", "-1"}, "--noise", "-1", "choose a value"},
       {{"--vignetting", "1.5"}, "--vignetting", "1.5", "choose a value"},
-      {{"--exposure-drift", "nan"}, "--exposure-drift", "nan", "choose a value"},
+      {{"--exposure-drift", "nan"}, "--exposure-drift", "nan", "give one"},
       {{"--motion-blur", "-3"}, "--motion-blur", "-3", "choose a value"},
-      {{"--rolling-shutter", "inf"}, "--rolling-shutter", "inf", "choose a value"},
+      {{"--rolling-shutter", "inf"}, "--rolling-shutter", "inf", "give one"},
       {{"--pose-error-px", "1000"}, "--pose-error-px", "1000", "choose a value"},
       {{"--pose-error-px", "-1"}, "--pose-error-px", "-1", "choose a value"},
-      {{"--pose-error-px", "nan"}, "--pose-error-px", "nan", "choose a value"},
+      {{"--pose-error-px", "nan"}, "--pose-error-px", "nan", "give one"},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(testing::PrintToString(c.options));
