@@ -100,6 +100,7 @@ class Console {
       say(std::to_string(joints_->dropped()) +
           " cycles are missing in the joints' file: this program came too late, or a "
           "joint was silent");
+    for (const std::string& line : faults_.missed()) say(line);
     for (const std::filesystem::path& log : devices_.logs()) say("log: " + log.string());
     if (session_) report();
     const std::string fault = log_fault();

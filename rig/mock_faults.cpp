@@ -97,4 +97,12 @@ std::vector<std::string> MockFaults::step(RobotTime now) {
   return said;
 }
 
+std::vector<std::string> MockFaults::missed() const {
+  std::vector<std::string> out;
+  for (const MockFault& fault : waiting_)
+    out.push_back(fmt::format("fault {} of {} at {:.2f} s did not happen: the session ended before", fault.kind,
+                              rig_.joints[fault.joint].drive.name, fault.time_s));
+  return out;
+}
+
 }  // namespace foresight

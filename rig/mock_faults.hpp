@@ -26,6 +26,8 @@ class MockFaults {
   MockFaults(std::vector<MockFault> faults, const Rig& rig, const RobotDevices& devices);
   /// What is due at `now` happens, and gets a line to say so; time begins with the first call.
   std::vector<std::string> step(RobotTime now);
+  /// A line for each whose instant never came.
+  std::vector<std::string> missed() const;
 
  private:
   std::vector<MockFault> waiting_;  // the last one is due first

@@ -1,5 +1,7 @@
 #include "rig/rig.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -17,8 +19,19 @@ double number(const YamlMap& map, const std::string& key, double fallback) {
   return map.has(key) ? map.number(key) : fallback;
 }
 
+constexpr double kFarthest = 50;  // metres, of what stands in a lab
+
+void require_metres(const YamlMap& map, const std::string& key, const Eigen::Vector3d& p) {
+  const double most = p.cwiseAbs().maxCoeff();
+  if (most <= kFarthest) return;
+  throw InputError(map.where(key), fmt::format("{:g} m is farther than a lab is wide", most),
+                   fmt::format("write metres; {:g} mm are {:g} m", most, 1e-3 * most));
+}
+
 Eigen::AlignedBox3d box(const YamlMap& map, const std::string& key) {
   const auto n = map.numbers(key, 6);
+  require_metres(map, key, {n[0], n[1], n[2]});
+  require_metres(map, key, {n[3], n[4], n[5]});
   const Eigen::Vector3d least(n[0], n[1], n[2]), most(n[3], n[4], n[5]);
   if (!(least.array() < most.array()).all())
     throw InputError(map.where(key), "has a least corner that is not below the largest",
@@ -188,7 +201,9 @@ void read_robot(const YamlMap& map, Rig& rig) {
           ? map.choice<UrdfShapes>("shapes", {{"collision", UrdfShapes::all}, {"visual", UrdfShapes::visual}})
           : UrdfShapes::all;
   rig.robot = read_urdf(urdf, meshes, shapes);
-  if (map.has("pose")) rig.T_world_robot = map.pose("pose");
+  if (!map.has("pose")) return;
+  rig.T_world_robot = map.pose("pose");
+  require_metres(map, "pose", rig.T_world_robot.translation());
 }
 
 RigCalibration read_calibration(const YamlMap& map) {

@@ -82,6 +82,10 @@ TEST(MockFault, StopsARunningRobotAndIsNamed) {
   EXPECT_EQ(out.exit_code, 1) << out.err;
   EXPECT_THAT(out.err, HasSubstr("s: fault lost_power of elbow: its drive has no power"));
   EXPECT_THAT(out.err, testing::AllOf(HasSubstr("follow: "), HasSubstr("elbow")));
+  const Outcome late =
+      run_program({"robot", rig, "--stepped", "--no-cameras", "--follow",
+                   folder.write("short.csv", "time_s,elbow\n0,0\n1,0.2\n").string(), "--fault", "elbow:stuck@9999"});
+  EXPECT_THAT(late.err, HasSubstr("fault stuck of elbow at 9999.00 s did not happen"));
   const Outcome wrong = run_program({"robot", rig, "--fault", "elbow:lost@2"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("stuck, following_error, lost_node, noisy_encoder, lost_power"));

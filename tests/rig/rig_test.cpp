@@ -99,6 +99,10 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("node: 2", "node: 2, serial: 12g", {"12g", "32-bit"});
   expect("node: 2", "node: 2, serial: 0x100000000", {"32-bit"});
   expect("name: small", "name: small\nrobot: {urdf: none.urdf}", {"none.urdf", "no file"});
+  expect("name: small", "name: small\nsurroundings: {workspace_m: [-1, -1, 0, 1, 1, 1800]}",
+         {"workspace_m", "1800", "1.8 m"});
+  expect("name: small", "name: small\nsurroundings: {obstacles: [{name: shelf, box_m: [-460, 0, 0, 1, 1, 1]}]}",
+         {"box_m", "460", "0.46 m"});
   expect("name: small", "name: small\ncamera: {}", {"camera", "did you mean 'cameras'"});
   expect("name: small", "name: small\ncameras: {left: {driver: mock}}", {"cameras.right", "missing"});
   expect("name: small", "name: small\ncameras: {left: {driver: mock}, right: {driver: mokc}}",
