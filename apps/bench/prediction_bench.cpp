@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "apps/bench/prediction_head.hpp"
 #include "apps/bench/prediction_ik.hpp"
 
 namespace foresight {
@@ -34,12 +35,29 @@ void add_ik(Command& prediction, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_prediction_ik(*options); }; });
 }
 
+void add_head(Command& prediction, std::function<int()>& action) {
+  auto* command = prediction.add_subcommand("head", "Where a head will be when its picture is seen");
+  auto options = std::make_shared<PredictionHeadOptions>();
+  command
+      ->add_option("RECORDING", options->csv,
+                   "CSV with time_s (or timestamp) and x y z qx qy qz qw, perhaps after the prefix head_")
+      ->reads()
+      ->required();
+  command->add_option("--ahead-ms", options->ahead_ms, "How far ahead of the newest pose")
+      ->check(from_to(1, 500))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer("Example: foresight bench prediction head head.csv --json head.json");
+  command->callback([options, &action] { action = [options] { return bench_prediction_head(*options); }; });
+}
+
 }  // namespace
 
 void add_prediction_benches(Command& bench, std::function<int()>& action) {
   auto* prediction = bench.add_subcommand("prediction", "How well the robot that will be is predicted");
   prediction->require_subcommand();
   add_ik(*prediction, action);
+  add_head(*prediction, action);
 }
 
 }  // namespace foresight

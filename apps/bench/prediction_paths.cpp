@@ -5,11 +5,11 @@
 #include <numbers>
 #include <random>
 
+#include "apps/bench/pose_table.hpp"
 #include "apps/bench/prediction_ik_poses.hpp"
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
-#include "common/text.hpp"
-#include "common/text_rows.hpp"
+#include "common/time.hpp"
 
 namespace foresight {
 namespace {
@@ -44,36 +44,6 @@ JointVector roomy_start(const InverseKinematics& kinematics) {
     if (value > most) most = value, best = q;
   }
   return best;
-}
-
-struct PoseColumns {
-  std::string prefix;
-  std::array<std::size_t, 7> index;
-};
-
-std::vector<PoseColumns> find_columns(const std::vector<std::string>& header) {
-  std::vector<PoseColumns> all;
-  for (const std::string& name : header) {
-    if (!name.ends_with("qw") || name.starts_with("head_")) continue;
-    PoseColumns columns{name.substr(0, name.size() - 2), {}};
-    std::size_t found = 0;
-    for (const char* part : {"x", "y", "z", "qx", "qy", "qz", "qw"}) {
-      const auto at = std::find(header.begin(), header.end(), columns.prefix + part);
-      if (at != header.end()) columns.index[found++] = static_cast<std::size_t>(at - header.begin());
-    }
-    if (found == 7) all.push_back(columns);
-  }
-  return all;
-}
-
-Pose read_pose(const std::vector<double>& row, const PoseColumns& columns) {
-  const auto at = [&](std::size_t i) { return row[columns.index[i]]; };
-  const Eigen::Quaterniond q(at(6), at(3), at(4), at(5));
-  if (!(std::abs(q.norm() - 1) < 0.01)) return kUnseen;
-  Pose T = Pose::Identity();
-  T.linear() = q.normalized().toRotationMatrix();
-  T.translation() = Eigen::Vector3d(at(0), at(1), at(2));
-  return T;
 }
 
 // The recorded motion about its first pose, about the pose of `start` instead.
@@ -116,46 +86,22 @@ std::vector<HandPath> random_paths(const InverseKinematics& kinematics, std::siz
 }
 
 std::vector<HandPath> recorded_paths(const InverseKinematics& kinematics, const std::filesystem::path& csv) {
-  std::vector<std::string> header;
-  std::size_t time = 0;
-  std::vector<PoseColumns> columns;
-  std::vector<HandPath> paths;
-  double before = 0;
-  for_each_row(csv, {RowForm::Between::commas}, [&](const TextRow& line) {
-    if (header.empty()) {
-      header.assign(line.fields.begin(), line.fields.end());
-      time = static_cast<std::size_t>(std::ranges::find(header, "time_s") - header.begin());
-      columns = find_columns(header);
-      paths.resize(columns.size());
-      if (time == header.size() || columns.empty())
-        throw InputError(line.where(), "names no time_s or no pose (x y z qx qy qz qw, perhaps after a prefix)",
-                         "write the names of the columns in the first line");
-      return;
-    }
-    if (line.fields.size() != header.size())
-      throw InputError(line.where(), "has " + std::to_string(line.fields.size()) + " fields",
-                       "write " + std::to_string(header.size()) + ", as the first line has");
-    std::vector<double> row;
-    for (const std::string_view field : line.fields)
-      row.push_back(parse_number(field).value_or(std::numeric_limits<double>::quiet_NaN()));
-    const double now = row[time];
-    if (!std::isfinite(now)) throw InputError(line.where(time), "its time is no number", "write seconds");
-    const bool first = paths[0].dt.empty();
-    if (!first && !(now > before))
-      throw InputError(line.where(time), "its time is not after the one before", "sort the rows by time");
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      paths[c].dt.push_back(first ? kCycle : now - before);
-      paths[c].T_base_tip.push_back(read_pose(row, columns[c]));
-    }
-    before = now;
-  });
-  if (paths.empty() || paths[0].dt.empty()) throw InputError(csv.string(), "has no row", "name a recording");
+  const PoseTable table = read_pose_table(csv);
   const JointVector start = roomy_start(kinematics);
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    paths[c].name = columns[c].prefix.empty() ? csv.stem().string() : columns[c].prefix;
-    paths[c].start = start;
-    move_into_workspace(kinematics, paths[c]);
+  std::vector<HandPath> paths;
+  for (const PoseSeries& series : table.series) {
+    if (series.prefix == "head_") continue;
+    HandPath& path = paths.emplace_back();
+    path.name = series.prefix.empty() ? csv.stem().string() : series.prefix;
+    path.start = start;
+    for (std::size_t i = 0; i < series.poses.size(); ++i) {
+      path.dt.push_back(i == 0 ? kCycle : to_seconds(Duration{table.time_ns[i] - table.time_ns[i - 1]}));
+      path.T_base_tip.push_back(series.poses[i].value_or(kUnseen));
+    }
+    move_into_workspace(kinematics, path);
   }
+  if (paths.empty())
+    throw InputError(csv.string(), "has no pose but the head's", "name a recording of what a hand holds");
   return paths;
 }
 
