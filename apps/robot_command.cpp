@@ -1,27 +1,17 @@
 #include "apps/robot_command.hpp"
 
 #include <atomic>
-#include <cstdio>
-#include <future>
 #include <thread>
 
 #include "apps/live_view.hpp"
 #include "apps/recording_outputs.hpp"
 #include "apps/rig_feed.hpp"
-#include "apps/robot/keyboard.hpp"
-#include "apps/robot/service_notify.hpp"
-#include "apps/robot/session_report.hpp"
-#include "apps/robot/status_view.hpp"
+#include "apps/robot/console.hpp"
 #include "apps/run_options.hpp"
 #include "common/error.hpp"
 #include "common/real_time.hpp"
 #include "common/stop_signal.hpp"
-#include "common/text.hpp"
-#include "operators/follow_operator.hpp"
-#include "operators/key_operator.hpp"
-#include "rig/mock_faults.hpp"
-#include "session/joint_log.hpp"
-#include "session/robot_cameras.hpp"
+#include "session/robot_loop.hpp"
 
 namespace foresight {
 namespace {
@@ -29,8 +19,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kTick = 10ms;
-constexpr Duration kRedraw = 200ms;
-constexpr int kPriority = 80;  // above the network's and the cameras' threads, below the kernel's watchdogs
 
 struct Arguments {
   std::string rig;
@@ -46,131 +34,6 @@ struct Arguments {
   std::vector<std::string> faults;
 };
 
-void say(const std::string& line) {
-  std::fprintf(stderr, "robot: %s\n", line.c_str());
-}
-
-/// What goes on beside the control loop: operators, the view, the service's watchdog.
-class Console {
- public:
-  /// `cameras`: may be null.
-  Console(const Rig& rig, const RobotDevices& devices, Robot& robot, RobotCameras* cameras, const Arguments& arguments)
-      : rig_(rig),
-        devices_(devices),
-        robot_(robot),
-        cameras_(cameras),
-        faults_(parse_mock_faults(arguments.faults, rig, arguments.mock), rig, devices),
-        // The keyboard can always stop and quit; it drives only where no file does.
-        keys_(rig.gate_options().joints,
-              arguments.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops) {
-    if (!arguments.follow.empty()) {
-      follow_.emplace(FollowFile(arguments.follow, rig), arguments.may_home);
-      commanders_.push_back(&*follow_);
-    }
-    if (keyboard_.is_terminal()) commanders_.push_back(&keys_);
-    if (!arguments.record.empty()) joints_.emplace(joint_log_beside(arguments.record), rig, robot.cycles());
-    if (!arguments.session.empty()) session_.emplace(rig, robot.cycles());
-    report_ = arguments.session;
-    if (keyboard_.is_terminal()) say(KeyOperator::help());
-  }
-
-  /// False: the program shall end.
-  bool tick(RobotTime now) {
-    for (const std::string& line : faults_.step(now)) say(line);
-    keys_.press(keyboard_.pressed());
-    const bool goes_on = serve(commanders_, robot_, now);
-    const RobotStatus status = robot_.status();
-    if (joints_) joints_->write();
-    if (session_) session_->write(devices_.buses());
-    show(now, status);
-    notify(now, status);
-    return goes_on;
-  }
-
-  /// How the motion of the file ended, where it did not end well.
-  std::string trouble() const {
-    return !follow_ || follow_->succeeded() ? "" : "The motion of the file: " + outcome() + ".";
-  }
-
-  /// The last words, and the exit code.
-  int finish() {
-    std::fputs(view(robot_.status(), -1).c_str(), stdout);
-    if (const std::string recorded = cameras_ ? cameras_->finish() : ""; !recorded.empty()) say(recorded);
-    if (joints_ && joints_->dropped() > 0)
-      say(std::to_string(joints_->dropped()) +
-          " cycles are missing in the joints' file: this program came too late, or a "
-          "joint was silent");
-    for (const std::string& line : faults_.missed()) say(line);
-    for (const std::filesystem::path& log : devices_.logs()) say("log: " + log.string());
-    if (session_) report();
-    const std::string fault = log_fault();
-    if (follow_) say("follow: " + outcome());
-    if (!fault.empty()) std::fprintf(stderr, "foresight: %s\n", fault.c_str());
-    return fault.empty() && (!follow_ || follow_->succeeded()) ? 0 : 1;
-  }
-
- private:
-  std::string outcome() const { return follow_->outcome().empty() ? "interrupted" : follow_->outcome(); }
-  /// "" where all logs are complete.
-  std::string log_fault() {
-    const std::string fault = joints_ ? joints_->fault() : "";
-    return fault.empty() ? devices_.log_fault() : fault;
-  }
-  std::string view(const RobotStatus& status, int selected) const {
-    std::string out = status_text(rig_, status, devices_.buses(), selected);
-    if (cameras_) out += camera_text(cameras_->watch().line());
-    if (const std::string fault = cameras_ ? cameras_->registration_trouble() : ""; !fault.empty())
-      out += "  poses: " + fault + "\n";
-    return out;
-  }
-  void report() {
-    session_->write(devices_.buses());
-    const RobotStatus status = robot_.status();
-    std::vector<SessionFact> facts{
-        {"duration", readable(session_->duration_s(), 2, " s")},
-        {"commands",
-         std::to_string(status.gate.accepted) + " followed, " + std::to_string(status.gate.dropped) + " dropped"},
-        {"control loop", std::to_string(status.loop.cycles()) + " cycles, " + std::to_string(status.loop.overruns()) +
-                             " overruns, lateness p99 " +
-                             readable(1e3 * to_seconds(status.loop.quantile(0.99)), 3, " ms")},
-        {"cycles that this page lacks", std::to_string(session_->dropped())}};
-    for (const std::filesystem::path& log : devices_.logs()) facts.push_back({"CAN log", log.string()});
-    write_session_report(report_, rig_, *session_,
-                         follow_ ? "The motion of the file: " + outcome() + "." : "Driven by hand.", facts);
-    say("session: " + report_.string());
-  }
-  void show(RobotTime now, const RobotStatus& status) {
-    if (!keyboard_.is_terminal() || now - shown_ < kRedraw) return;
-    shown_ = now;
-    std::string text = view(status, follow_ ? -1 : static_cast<int>(keys_.selected()));
-    text += std::string("\n") + KeyOperator::help() + "\n";
-    if (keys_.asks_for_consent()) text += "Every joint will look for home, slowly. Is the robot's way clear? y/n\n";
-    std::fputs(("\x1b[H\x1b[J" + text).c_str(), stdout);
-    std::fflush(stdout);
-  }
-  void notify(RobotTime now, const RobotStatus& status) {
-    const auto period = service_watchdog_period();
-    if (!period || now - notified_ < *period / 2) return;
-    if (life_.goes_on(now, status)) notify_service("WATCHDOG=1");
-    notified_ = now;
-  }
-
-  const Rig& rig_;
-  const RobotDevices& devices_;
-  Robot& robot_;
-  RobotCameras* cameras_;
-  std::optional<JointLog> joints_;
-  std::optional<SessionRecord> session_;
-  std::filesystem::path report_;
-  MockFaults faults_;
-  Keyboard keyboard_;
-  KeyOperator keys_;
-  std::optional<FollowOperator> follow_;
-  std::vector<Commander*> commanders_;
-  LoopLife life_;
-  RobotTime shown_, notified_;
-};
-
 /// What shows the robot; at most one of them.
 struct Windows {
   std::unique_ptr<LiveView> view;
@@ -183,14 +46,14 @@ void run_guarded(RigWindow& window, const std::function<bool()>& stopped) noexce
   try {
     window.run(stopped);
   } catch (const std::exception& error) {
-    say(error.what());
+    say_robot(error.what());
   }
 }
 
 int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras,
                 const Windows& windows) {
   LiveView* const view = windows.view.get();
-  devices.bring_up(say);
+  devices.bring_up(say_robot);
   std::stop_source stop;
   if (cameras) clock.every(kTick, [cameras](RobotTime) { cameras->step(); });
   clock.every(kTick, [&](RobotTime now) {
@@ -206,28 +69,8 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevice
 int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras,
              const Windows& windows) {
   LiveView* const view = windows.view.get();
-  const auto set_up = [&] {
-    try {
-      devices.bring_up(say);
-    } catch (const std::exception& error) {
-      say(error.what());
-    }
-  };
   {
-    std::promise<void> up;
-    std::jthread loop([&](const std::stop_token& stop) {
-      if (const std::string refused = make_real_time(kPriority); !refused.empty()) say(refused);
-      // In this thread: the drives' watchdogs would find the bus silent while a new one gets its stack, every page of
-      // which is locked in memory.
-      try {
-        devices.bring_up(say);
-      } catch (...) {
-        return up.set_exception(std::current_exception());
-      }
-      up.set_value();
-      robot.run(clock, stop, set_up);
-    });
-    up.get_future().get();
+    const RobotLoop loop(clock, robot, devices, say_robot);
     if (cameras) cameras->start();  // the drives already wait for the loop: that goes first
     notify_service("READY=1");
     std::atomic<bool> ended = false, unseen = false;
@@ -265,7 +108,7 @@ std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& d
   if (!arguments.record.empty()) options.record = arguments.record;
   options.frames = arguments.view;
   if (!arguments.scene.empty()) options.scene = arguments.scene;
-  if (options.mock || rig.cameras->mock()) say("lighting the lab");
+  if (options.mock || rig.cameras->mock()) say_robot("lighting the lab");
   return std::make_unique<RobotCameras>(rig, devices, robot, clock, options);
 }
 
@@ -287,6 +130,17 @@ std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCam
   return std::make_unique<LiveView>(cameras->scene(), cameras->frames().subscribe(kRoom), trouble, clock, options);
 }
 
+ConsoleOptions console_options(const Arguments& arguments) {
+  ConsoleOptions options;
+  options.follow = arguments.follow;
+  options.may_home = arguments.may_home;
+  if (!arguments.record.empty()) options.joints = joint_log_beside(arguments.record);
+  options.session = arguments.session;
+  options.faults = arguments.faults;
+  options.mock = arguments.mock;
+  return options;
+}
+
 template <typename ClockKind>
 int run_with(const Rig& rig, const Arguments& arguments,
              int (*run)(ClockKind&, Robot&, Console&, RobotDevices&, RobotCameras*, const Windows&)) {
@@ -297,10 +151,12 @@ int run_with(const Rig& rig, const Arguments& arguments,
   if (!arguments.log.empty()) options.log = arguments.log;
   RobotDevices devices(rig, clock, options);
   const auto shape = rig.shape();
-  say(shape ? to_text(guarded_links(*rig.robot))
-            : "the rig has no robot.urdf: nothing is checked against the surroundings");
+  say_robot(shape ? to_text(guarded_links(*rig.robot))
+                  : "the rig has no robot.urdf: nothing is checked against the surroundings");
   if (arguments.check_only) {
-    devices.bring_up(say);
+    devices.bring_up(say_robot);
+    for (const Drive* drive : devices.drives())
+      say_robot("drive " + drive->config().name + ": " + to_text(drive->identity()));
     return 0;
   }
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
@@ -314,9 +170,9 @@ int run_with(const Rig& rig, const Arguments& arguments,
         *windows.body,
         RigWindowOptions{"Foresight rig: " + rig.name, windows.body->rest(), 1320, 860, rig_feed(rig, robot)});
   }
-  Console console(rig, devices, robot, cameras.get(), arguments);
+  Console console(rig, devices, robot, cameras.get(), console_options(arguments));
   poll_stop_signals(SecondSignal::waits);  // a program that ends at once leaves the stop to the drives
-  if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say(refused);
+  if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say_robot(refused);
   return run(clock, robot, console, devices, cameras.get(), windows);
 }
 
@@ -370,13 +226,7 @@ int run(const Arguments& arguments) {
     throw InputError("--record", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
   if (!arguments.stepped) return run_with<MonotonicClock>(rig, arguments, run_real);
-  for (const RigBus& bus : rig.buses)
-    if (!arguments.mock && bus.interface != "mock")
-      throw InputError("--stepped", "bus '" + bus.name + "' is a real one, whose time cannot be stepped",
-                       "add --mock, or leave --stepped out");
-  if ((arguments.view || !arguments.record.empty()) && !arguments.mock && !rig.cameras->mock())
-    throw InputError("--stepped", "the cameras are real ones, whose time cannot be stepped",
-                     "add --mock, or leave --stepped out");
+  require_mock(rig, arguments.mock, arguments.view || !arguments.record.empty());
   return run_with<SteppedClock>(rig, arguments, run_stepped);
 }
 

@@ -2,11 +2,8 @@
 
 #include <fmt/core.h>
 
-#include <atomic>
 #include <cstdio>
-#include <future>
 #include <opencv2/imgproc.hpp>
-#include <thread>
 
 #include "apps/calibrate/arm_stations.hpp"
 #include "calibration/target/board_drawing.hpp"
@@ -14,13 +11,12 @@
 #include "calibration/target/find_corners.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
-#include "common/real_time.hpp"
 #include "common/stop_signal.hpp"
 #include "common/text.hpp"
 #include "operators/station_operator.hpp"
 #include "rig/open_stereo.hpp"
 #include "rig/rig_scene.hpp"
-#include "rig/robot_devices.hpp"
+#include "session/robot_loop.hpp"
 
 namespace foresight {
 namespace {
@@ -191,19 +187,7 @@ void run_stepped(SteppedClock& clock, Robot& robot, RobotDevices& devices, Sessi
 }
 
 void run_real(MonotonicClock& clock, Robot& robot, RobotDevices& devices, Session& session) {
-  std::promise<void> up;
-  std::jthread loop([&](const std::stop_token& stop) {
-    constexpr int kPriority = 80;
-    if (const std::string refused = make_real_time(kPriority); !refused.empty()) say(refused);
-    try {
-      devices.bring_up(say);
-    } catch (...) {
-      return up.set_exception(std::current_exception());
-    }
-    up.set_value();
-    robot.run(clock, stop);
-  });
-  up.get_future().get();
+  const RobotLoop loop(clock, robot, devices, say);
   for (RobotTime due = clock.now(); !stop_requested() && session.tick(clock.now());
        due = std::max(due + kTick, clock.now()))
     clock.sleep_until(due + kTick);
@@ -246,14 +230,7 @@ void require_usable(const ArmSessionOptions& options, const Rig& rig) {
   if (!rig.cameras) throw InputError(options.rig.string(), "has no cameras", "add them to the rig (docs/rig-files.md)");
   if (options.board.empty())
     throw InputError("--board", "is missing", "name the board on the arm, such as chessboard:6x5:0.02");
-  if (!options.stepped || options.mock) return;
-  for (const RigBus& bus : rig.buses)
-    if (bus.interface != "mock")
-      throw InputError("--stepped", "bus '" + bus.name + "' is a real one, whose time cannot be stepped",
-                       "add --mock, or leave --stepped out");
-  if (!rig.cameras->mock())
-    throw InputError("--stepped", "the cameras are real ones, whose time cannot be stepped",
-                     "add --mock, or leave --stepped out");
+  if (options.stepped) require_mock(rig, options.mock, true);
 }
 
 }  // namespace

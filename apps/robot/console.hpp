@@ -1,0 +1,70 @@
+// What goes on beside the control loop of `foresight robot`: operators, the terminal, logs, the service's watchdog.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/robot/keyboard.hpp"
+#include "apps/robot/service_notify.hpp"
+#include "apps/robot/session_record.hpp"
+#include "operators/follow_operator.hpp"
+#include "operators/key_operator.hpp"
+#include "rig/mock_faults.hpp"
+#include "session/joint_log.hpp"
+#include "session/robot_cameras.hpp"
+
+namespace foresight {
+
+struct ConsoleOptions {
+  std::string follow;               ///< file with a motion, or "": then the keyboard drives
+  bool may_home = false;            ///< consent, with `follow`
+  std::string joints;               ///< file for all joints over time, or ""
+  std::string session;              ///< page about the session, or ""
+  std::vector<std::string> faults;  ///< of mock drives (parse_mock_faults)
+  bool mock = false;                ///< all drives are mock ones, whatever the rig says
+};
+
+/// One line for whoever started the program.
+void say_robot(const std::string& line);
+
+/// One thread. Everything that it is made of must outlive it.
+class Console {
+ public:
+  /// `cameras`: may be null. Throws what FollowFile, JointLog and parse_mock_faults do.
+  Console(const Rig& rig, const RobotDevices& devices, Robot& robot, RobotCameras* cameras,
+          const ConsoleOptions& options);
+
+  /// To be called about every 10 ms. False: the program shall end.
+  bool tick(RobotTime now);
+  /// How the motion of the file ended, where it did not end well.
+  std::string trouble() const;
+  /// After the loop has ended: the last words, the report, and the exit code.
+  int finish();
+
+ private:
+  std::string outcome() const;
+  std::string log_fault();
+  std::string view(const RobotStatus& status, int selected) const;
+  void report();
+  void show(RobotTime now, const RobotStatus& status);
+  void notify(RobotTime now, const RobotStatus& status);
+
+  const Rig& rig_;
+  const RobotDevices& devices_;
+  Robot& robot_;
+  RobotCameras* cameras_;
+  std::optional<JointLog> joints_;
+  std::optional<SessionRecord> session_;
+  std::filesystem::path report_;
+  MockFaults faults_;
+  Keyboard keyboard_;
+  KeyOperator keys_;
+  std::optional<FollowOperator> follow_;
+  std::vector<Commander*> commanders_;
+  LoopLife life_;
+  RobotTime shown_, notified_;
+};
+
+}  // namespace foresight
