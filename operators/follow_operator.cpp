@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kPatience = 20s;      // for enabling, and for the last of the way
+constexpr Duration kPatience = 20s;      // for the last of the way
 constexpr Duration kReleasedFor = 50ms;  // before engaging
 constexpr Duration kStuckFor = 5s;       // on the way to where the file begins
 constexpr Duration kSettled = 500ms;     // after the file's end
@@ -25,7 +25,7 @@ bool set_points_move(const RobotStatus& status, std::size_t joints) {
 }  // namespace
 
 FollowOperator::FollowOperator(FollowFile file, bool may_home)
-    : file_(std::move(file)), joints_(file_.joints().size()), may_home_(may_home) {}
+    : file_(std::move(file)), joints_(file_.joints().size()), start_(may_home) {}
 
 OperatorWish FollowOperator::end(std::string outcome) {
   outcome_ = std::move(outcome);
@@ -35,7 +35,6 @@ OperatorWish FollowOperator::end(std::string outcome) {
 void FollowOperator::enter(Step step, RobotTime now) {
   step_ = step;
   since_ = moved_ = now;
-  asked_ = false;
 }
 
 OperatorWish FollowOperator::command(RobotTime now, bool deadman) {
@@ -48,7 +47,7 @@ OperatorWish FollowOperator::approach(RobotTime now, const RobotStatus& status) 
     enter(Step::follow, now);
   } else if (now - moved_ > kStuckFor) {
     const GateHold& hold = status.gate.hold;
-    return end("not reached: where the file begins: " + place(status) +
+    return end("not reached: where the file begins: " + place(farthest(status), status) +
                (hold.joint >= 0 ? ": " + parts_text(hold) : ""));
   }
   return command(now, true);
@@ -89,9 +88,8 @@ double FollowOperator::gap(const RobotStatus& status) const {
   return std::abs(status.set_point[joint].position - target_[joint]);
 }
 
-/// Where that joint stands, as its drive says.
-std::string FollowOperator::place(const RobotStatus& status) const {
-  const std::size_t joint = farthest(status);
+/// Where the joint stands, as its drive says.
+std::string FollowOperator::place(std::size_t joint, const RobotStatus& status) const {
   return place_text(file_.joints()[joint], status.feedback[joint].position, target_[joint]);
 }
 
@@ -106,8 +104,10 @@ std::string FollowOperator::stopped_text(const RobotStatus& status) const {
     why += "; joint " + file_.joints()[index].name + ": " + to_string(f.state);
     if (*f.fault != '\0') why += std::string(", ") + f.fault;
   }
-  if (engaged_ && gap(status) >= kReached)
-    why += "; not reached: " + place(status) +
+  // All joints were stopped on their way: the one that is to blame is what matters.
+  if (const std::size_t to_blame = joint >= 0 ? static_cast<std::size_t>(joint) : farthest(status);
+      engaged_ && gap(status) >= kReached)
+    why += "; not reached: " + place(to_blame, status) +
            (step_ == Step::follow ? fmt::format(" at {:.2f} s of the file", to_seconds(status.time - since_)) : "");
   return (why.starts_with("stopped") ? "" : "stopped: ") + why;
 }
@@ -115,7 +115,7 @@ std::string FollowOperator::stopped_text(const RobotStatus& status) const {
 std::string FollowOperator::result(bool reached, const RobotStatus& status) const {
   const std::string since = held_ ? fmt::format(" since {:.2f} s of the file", std::max(0.0, held_->since_s)) : "";
   const std::string by = held_ ? ": " + parts_text(held_->worst) : "";
-  if (!reached) return "not reached: " + place(status) + since + by;
+  if (!reached) return "not reached: " + place(farthest(status), status) + since + by;
   if (!held_) return "done";
   const JointWords& joint = file_.joints()[static_cast<std::size_t>(held_->worst.joint)];
   return "not followed: held back" + since + ", joint " + joint.name + " by up to " +
@@ -132,24 +132,15 @@ OperatorWish FollowOperator::tick(RobotTime now, const RobotStatus& status) {
   if (engaged_ && !in_charge && (step_ == Step::approach || step_ == Step::follow)) return end(stopped_text(status));
   engaged_ = engaged_ || in_charge;
   switch (step_) {
-    case Step::enable:
-      if (status.phase == RobotPhase::ready) {
-        enter(status.all_homed ? Step::release : Step::home, now);
-        for (std::size_t i = 0; i < joints_; ++i) target_[i] = status.set_point[i].position;
-        return {};
-      }
-      if (now - since_ > kPatience) return end("the drives were not enabled in time");
-      if (std::exchange(asked_, true)) return {};
-      return {.request = RobotRequest::enable};
-    case Step::home:
-      if (!may_home_) return end("not all joints are homed; give --home to let them look for home, slowly");
-      if (status.all_homed && status.phase == RobotPhase::ready) {
+    case Step::start: {
+      const RobotStart::Progress start = start_.tick(now, status);
+      if (!start.failure.empty()) return end(start.failure);
+      if (start.ready) {
         for (std::size_t i = 0; i < joints_; ++i) target_[i] = status.set_point[i].position;
         enter(Step::release, now);
-        return {};
       }
-      if (std::exchange(asked_, true)) return {};
-      return {.request = RobotRequest::home};
+      return {.request = start.request};
+    }
     case Step::release:
       if (now - since_ > kReleasedFor) {
         file_.at(0, target_);

@@ -6,6 +6,7 @@
 
 #include "operators/commander.hpp"
 #include "operators/follow_file.hpp"
+#include "operators/robot_start.hpp"
 
 namespace foresight {
 
@@ -25,7 +26,7 @@ class FollowOperator final : public Commander {
   bool succeeded() const { return outcome_ == "done"; }
 
  private:
-  enum class Step { enable, home, release, approach, follow, rest };
+  enum class Step { start, release, approach, follow, rest };
   OperatorWish command(RobotTime now, bool deadman);
   OperatorWish end(std::string outcome);
   OperatorWish approach(RobotTime now, const RobotStatus& status);
@@ -34,15 +35,15 @@ class FollowOperator final : public Commander {
   void watch(RobotTime now, const RobotStatus& status);
   std::size_t farthest(const RobotStatus& status) const;
   double gap(const RobotStatus& status) const;
-  std::string place(const RobotStatus& status) const;
+  std::string place(std::size_t joint, const RobotStatus& status) const;
   std::string stopped_text(const RobotStatus& status) const;
   std::string result(bool reached, const RobotStatus& status) const;
 
   FollowFile file_;
   std::size_t joints_;
-  bool may_home_;
-  Step step_ = Step::enable;
-  bool asked_ = false, engaged_ = false;
+  RobotStart start_;
+  Step step_ = Step::start;
+  bool engaged_ = false;
   RobotTime since_, moved_;
   CommandCounter counter_{kId};
   JointValues target_{};

@@ -9,7 +9,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kPatience = 20s;      // for enabling
 constexpr Duration kReleasedFor = 50ms;  // before engaging
 constexpr Duration kHeldBack = 2s;       // without a step nearer
 constexpr Duration kStillFor = 300ms;    // measured positions, before anybody looks
@@ -19,7 +18,7 @@ constexpr double kStill = 5e-4;          // rad or m: more than encoders' noise,
 }  // namespace
 
 StationOperator::StationOperator(std::vector<JointWords> joints, bool may_home)
-    : joints_(std::move(joints)), may_home_(may_home) {}
+    : joints_(std::move(joints)), start_(may_home) {}
 
 OperatorWish StationOperator::fail(std::string why) {
   failure_ = std::move(why);
@@ -29,7 +28,7 @@ OperatorWish StationOperator::fail(std::string why) {
 void StationOperator::enter(Step step, RobotTime now) {
   step_ = step;
   since_ = moved_ = now;
-  asked_ = engaged_ = still_ = false;
+  engaged_ = still_ = false;
 }
 
 OperatorWish StationOperator::command(RobotTime now, bool deadman) {
@@ -75,22 +74,12 @@ OperatorWish StationOperator::tick(RobotTime now, const RobotStatus& status) {
   if (since_.ns == 0) enter(step_, now);
   if (status.phase == RobotPhase::stopped) return fail("the robot stopped: " + reason(status));
   switch (step_) {
-    case Step::enable:
-      if (status.phase == RobotPhase::ready) {
-        enter(status.all_homed ? Step::wait : Step::home, now);
-        return {};
-      }
-      if (now - since_ > kPatience) return fail("the drives were not enabled in time");
-      if (std::exchange(asked_, true)) return {};
-      return {.request = RobotRequest::enable};
-    case Step::home:
-      if (!may_home_) return fail("not all joints are homed; give --home to let them look for home, slowly");
-      if (status.all_homed && status.phase == RobotPhase::ready) {
-        enter(Step::wait, now);
-        return {};
-      }
-      if (std::exchange(asked_, true)) return {};
-      return {.request = RobotRequest::home};
+    case Step::start: {
+      const RobotStart::Progress start = start_.tick(now, status);
+      if (!start.failure.empty()) return fail(start.failure);
+      if (start.ready) enter(Step::wait, now);
+      return {.request = start.request};
+    }
     case Step::wait: watch_rest(now, status); return {};
     case Step::engage:
       if (now - since_ > kReleasedFor) enter(Step::move, now);

@@ -6,6 +6,7 @@
 
 #include "drivers/robot/robot_words.hpp"
 #include "operators/commander.hpp"
+#include "operators/robot_start.hpp"
 
 namespace foresight {
 
@@ -33,7 +34,7 @@ class StationOperator final : public Commander {
   void finish() { step_ = Step::done; }
 
  private:
-  enum class Step { enable, home, wait, engage, move, release, done };
+  enum class Step { start, wait, engage, move, release, done };
   OperatorWish command(RobotTime now, bool deadman);
   OperatorWish fail(std::string why);
   void enter(Step step, RobotTime now);
@@ -42,9 +43,9 @@ class StationOperator final : public Commander {
   std::string kept_from(const RobotStatus& status, RobotTime now) const;
 
   std::vector<JointWords> joints_;
-  bool may_home_;
-  Step step_ = Step::enable;
-  bool asked_ = false, engaged_ = false, still_ = false;
+  RobotStart start_;
+  Step step_ = Step::start;
+  bool engaged_ = false, still_ = false;
   RobotTime since_, moved_, still_since_;
   CommandCounter counter_{kId};
   JointValues target_{}, held_{};

@@ -74,6 +74,19 @@ TEST_F(FollowOperatorTest, SaysWhyItWasStopped) {
   EXPECT_LT(highest_, 0.9);
 }
 
+// All are stopped with it, and another one may have a longer way to go.
+TEST_F(FollowOperatorTest, BlamesTheJointThatFailed) {
+  const std::string outcome = follow(
+      true,
+      [&] {
+        if (drives_[1].state.position < 0.2) return;
+        drives_[1].state.state = DriveState::fault;
+      },
+      "time_s,shoulder_pitch,elbow\n0,0,0\n2,0.5,1.5\n");
+  EXPECT_THAT(outcome, testing::HasSubstr("not reached: joint shoulder_pitch stands at"));
+  EXPECT_THAT(outcome, testing::Not(testing::HasSubstr("elbow")));
+}
+
 TEST_F(FollowOperatorTest, WhatTheGateHoldsBackIsNotReached) {
   shape_ = rig_.shape();
   make_robot();
