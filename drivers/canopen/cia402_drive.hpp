@@ -30,8 +30,10 @@ class Cia402Drive final : public Drive {
   Cia402Drive(Cia402Config config, const NetworkConfig& network, CanBus& bus, Clock& clock, SdoAccess::Pump pump);
 
   const DriveConfig& config() const noexcept override { return config_.drive; }
-  /// Reads 1000h (profile 402) and 1018h. Takes at most 2 sdo_timeout an object.
+  /// Reads 1000h (profile 402) and 1018h, whose product and serial number need not exist. Takes at most 2 sdo_timeout an
+  /// object.
   void identify() override;
+  DriveIdentity identity() const override { return identity_; }
   /// Leaves the node operational, switched off. Moves nothing; a drive found enabled is stopped first.
   /// Other drives of the bus get no SYNC meanwhile: disable them before. A device without 1016h, 6007h or 1017h
   /// does not throw: refusal() tells, and enabling is refused.
@@ -54,6 +56,7 @@ class Cia402Drive final : public Drive {
 
  private:
   // cia402_setup.cpp
+  std::optional<std::uint32_t> told(ObjectRef object, const char* what, std::optional<std::uint32_t> wanted);
   void switch_off();
   void prove_heartbeats();
   void prove_abort_option();
@@ -88,6 +91,7 @@ class Cia402Drive final : public Drive {
   std::vector<Pdo> pdos_;
   HeartbeatConsumer heartbeat_;
   Cia402Machine machine_;
+  DriveIdentity identity_;
   std::vector<std::string> notes_;
   const char* refusal_ = "";
   const char* lost_ = "";  // why set-up does not hold any more

@@ -15,6 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr ObjectRef kDeviceType{0x1000, 0, 4}, kConsumerCount{0x1016, 0, 1}, kProducer{0x1017, 0, 2};
+constexpr ObjectRef kVendor{0x1018, 1, 4}, kProduct{0x1018, 2, 4}, kSerial{0x1018, 4, 4};
 constexpr ObjectRef kAbortOption{0x6007, 0, 2, true}, kControlWord{0x6040, 0, 2}, kStatusWord{0x6041, 0, 2};
 constexpr ObjectRef kQuickStopOption{0x605A, 0, 2, true}, kMode{0x6060, 0, 1, true}, kModeShown{0x6061, 0, 1, true};
 constexpr ObjectRef kActual{0x6064, 0, 4, true}, kErrorCode{0x603F, 0, 2}, kSupportedModes{0x6502, 0, 4};
@@ -28,13 +29,17 @@ std::string hex(std::int64_t value) {
   return fmt::format("0x{:X}", static_cast<std::uint64_t>(value));
 }
 
-void need_identity(const std::string& device, const char* what, std::int64_t is, std::optional<std::uint32_t> wanted) {
-  if (wanted && is != *wanted)
-    throw InputError(device, std::string(what) + " is " + hex(is) + " but the rig expects " + hex(*wanted),
-                     "connect that device, or correct the rig");
-}
-
 }  // namespace
+
+/// What the node says at `object`, which must be `wanted` where the rig says so.
+std::optional<std::uint32_t> Cia402Drive::told(ObjectRef object, const char* what,
+                                               std::optional<std::uint32_t> wanted) {
+  const std::optional<std::int64_t> is = wanted ? access_.read(object) : access_.read_if_there(object);
+  if (wanted && is != *wanted)
+    throw InputError(access_.device(), std::string(what) + " is " + hex(*is) + " but the rig expects " + hex(*wanted),
+                     "connect that device, or correct the rig");
+  return is ? std::optional(static_cast<std::uint32_t>(*is)) : std::nullopt;
+}
 
 void Cia402Drive::identify() {
   const std::int64_t type = access_.read(kDeviceType);
@@ -42,11 +47,9 @@ void Cia402Drive::identify() {
     throw InputError(access_.device(),
                      "device type (1000h) is " + hex(type) + ", profile " + std::to_string(type & 0xffff),
                      "connect a drive of profile 402");
-  need_identity(access_.device(), "vendor (1018:01)", access_.read({0x1018, 1, 4}), config_.drive.vendor);
-  if (config_.drive.product)
-    need_identity(access_.device(), "product (1018:02)", access_.read({0x1018, 2, 4}), config_.drive.product);
-  if (config_.drive.serial)
-    need_identity(access_.device(), "serial number (1018:04)", access_.read({0x1018, 4, 4}), config_.drive.serial);
+  identity_.vendor = told(kVendor, "vendor (1018:01)", config_.drive.vendor);
+  identity_.product = told(kProduct, "product (1018:02)", config_.drive.product);
+  identity_.serial = told(kSerial, "serial number (1018:04)", config_.drive.serial);
 }
 
 void Cia402Drive::configure() {

@@ -27,6 +27,13 @@ struct DriveConfig {
   std::optional<std::uint32_t> vendor, product, serial;
 };
 
+/// What a device says of itself; absent where it does not.
+struct DriveIdentity {
+  std::optional<std::uint32_t> vendor, product, serial;
+};
+/// As the keys of a joint in a rig file: "vendor: 0x10, product: 0x20, serial: 30"; "" where it says nothing.
+std::string to_text(const DriveIdentity& identity);
+
 enum class DriveState : std::uint8_t {
   offline,   ///< nothing heard of it in time (heartbeat, answer)
   disabled,  ///< reachable, no torque (brake holds)
@@ -70,6 +77,8 @@ class Drive {
   /// Reads what the device is and compares it with the rig. Moves nothing.
   /// Throws InputError (another device, naming both) or RuntimeFailure (no answer).
   virtual void identify() = 0;
+  /// As the last identify() found it.
+  virtual DriveIdentity identity() const = 0;
   /// Writes limits, mappings and the watchdog that stops the drive when we fall silent, and reads each
   /// back. A drive without a proven watchdog cannot be enabled. Throws as identify().
   virtual void configure() = 0;

@@ -55,6 +55,7 @@ class Module final : public Drive {
   const DriveConfig& config() const noexcept override { return config_; }
   /// Serial number, version (as DriveConfig::product) and kind; DriveConfig::vendor must be absent. Blocks.
   void identify() override;
+  DriveIdentity identity() const override { return {{}, info_.version, info_.serial}; }
   void configure() override;
   void request(DriveRequest what) noexcept override;
   void set_point(double position, double velocity) noexcept override;

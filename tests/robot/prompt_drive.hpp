@@ -13,6 +13,7 @@ class PromptDrive final : public Drive {
  public:
   const DriveConfig& config() const noexcept override { return config_; }
   void identify() override {}
+  DriveIdentity identity() const override { return {}; }
   void configure() override {}
   void request(DriveRequest what) noexcept override {
     requests.push_back(what);
