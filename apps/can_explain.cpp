@@ -19,16 +19,21 @@ double since(Duration time, Duration begin) {
 
 /// What a log is about.
 struct Summary {
-  std::optional<Duration> first, last;
+  std::optional<Duration> first, last;  // the least and the largest: received frames keep the instant of their arrival,
+                                        // and may stand behind ones that were sent later
   long long frames = 0, unknown = 0, errors = 0;
   std::map<std::string, std::map<std::string, long long>> kinds;  // by interface
   std::map<std::string, std::map<int, long long>> nodes;
-  std::vector<std::string> first_errors;
+  struct Trouble {
+    std::optional<Duration> time;
+    std::string text;
+  };
+  std::vector<Trouble> first_errors;
 
   void add(const CanLogEntry& entry, const ExplainedFrame& frame) {
     if (entry.time) {
-      if (!first) first = entry.time;
-      last = entry.time;
+      first = std::min(first.value_or(*entry.time), *entry.time);
+      last = std::max(last.value_or(*entry.time), *entry.time);
     }
     ++frames;
     ++kinds[entry.interface][frame.kind];
@@ -36,9 +41,7 @@ struct Summary {
     if (frame.unknown) ++unknown;
     if (!frame.trouble) return;
     ++errors;
-    if (first_errors.size() < kErrorsShown)
-      first_errors.push_back(
-          fmt::format("{:.6f} s {} {}", since(entry.time.value_or(begin()), begin()), entry.interface, frame.text));
+    if (first_errors.size() < kErrorsShown) first_errors.push_back({entry.time, entry.interface + " " + frame.text});
   }
   Duration begin() const { return first.value_or(Duration{0}); }
 };
@@ -70,7 +73,8 @@ void print(const Summary& summary, const std::filesystem::path& file, const LogW
     std::cout << "\n";
   }
   std::cout << "# " << summary.errors << " errors, " << summary.unknown << " frames unknown\n";
-  for (const std::string& error : summary.first_errors) std::cout << "#   " << error << "\n";
+  for (const auto& [time, text] : summary.first_errors)
+    std::cout << fmt::format("#   {:.6f} s {}\n", since(time.value_or(summary.begin()), summary.begin()), text);
   if (summary.errors > static_cast<long long>(kErrorsShown)) std::cout << "#   and more: --errors shows all\n";
 }
 
@@ -103,7 +107,7 @@ int explain_can(const CanExplainOptions& options) {
   }
   LogWords words(options);  // anew: a frame means what was set up before it
   CandumpReader log(options.file);
-  while (const auto entry = log.next()) {
+  while (const auto entry = std::cout ? log.next() : std::nullopt) {
     const ExplainedFrame frame = words.explain(*entry);
     if (!is_wanted(options, frame, since(entry->time.value_or(summary.begin()), summary.begin()))) continue;
     std::cout << line_text(*entry, options.absolute ? std::nullopt : std::optional(summary.begin())) << "  "

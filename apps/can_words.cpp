@@ -65,10 +65,11 @@ class CanopenWords final : public BusWords {
     const auto heartbeat = canopen::parse_heartbeat(frame);
     const bool pdo = out.kind == std::string_view("TPDO");
     const bool starts = heartbeat && heartbeat->state == canopen::NmtState::boot_up;
-    out.trouble = (emergency && emergency->code != 0) || out.text.find(": abort ") != std::string::npos ||
+    out.trouble = (emergency && emergency->code != 0) || is_abort_of_one_that_hears(frame, out) ||
                   (starts && heard_.contains(*out.node)) ||
                   (pdo && new_fault_(out.node.value_or(0), tells_fault(out.text)));
     if (out.node && !starts && is_from_node(frame.id)) heard_.insert(*out.node);
+    if (frame.id == canopen::kNmtId) forget_reset(frame);
     return out;
   }
 
@@ -88,9 +89,35 @@ class CanopenWords final : public BusWords {
     return id < canopen::kTimeId || (id < canopen::kSdoRequestId && (id & 0x80) != 0) || id > canopen::kHeartbeatId;
   }
 
+  /// A node that was asked before it had booted answers nothing, and nothing is wrong with that, if it boots later.
+  bool is_abort_of_one_that_hears(const CanFrame& frame, const ExplainedFrame& words) {
+    if (const auto heartbeat = canopen::parse_heartbeat(frame);
+        heartbeat && heartbeat->state == canopen::NmtState::boot_up)
+      booted_.insert(heartbeat->node);
+    if (words.kind != std::string_view("SDO") || !words.node) return false;
+    const bool asks = frame.id >= canopen::kSdoRequestId;
+    if (words.text.find(": abort ") == std::string::npos) {
+      if (asks && !heard_.contains(*words.node) && !booted_.contains(*words.node)) asked_early_.insert(*words.node);
+      return false;
+    }
+    const bool too_early = asked_early_.erase(*words.node) > 0 && booted_.contains(*words.node);
+    return !(asks && too_early);
+  }
+
+  /// A node that the master resets boots up, and nothing is wrong with that.
+  void forget_reset(const CanFrame& frame) {
+    const auto command = static_cast<canopen::NmtCommand>(frame.data[0]);
+    if (command != canopen::NmtCommand::reset_node && command != canopen::NmtCommand::reset_communication) return;
+    if (frame.data[1] == 0)
+      heard_.clear();
+    else
+      heard_.erase(frame.data[1]);
+  }
+
   canopen::DescribedBus bus_;
   NewFaults new_fault_;
-  std::set<int> heard_;  // nodes that were up: a boot-up from these is a restart
+  std::set<int> heard_;                 // nodes that were up: a boot-up from these is a restart
+  std::set<int> booted_, asked_early_;  // that booted; that were asked before they did
 };
 
 class PowercubeWords final : public BusWords {

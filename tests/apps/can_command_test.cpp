@@ -114,6 +114,31 @@ TEST(Can, ExplainShowsWhatIsAskedFor) {
   EXPECT_THAT(log.as("cia402", {"--from", "2", "--to", "1"}).last_line(), HasSubstr("--from: lies behind --to"));
 }
 
+// Every start of mock drives, and of real ones that get power with the program.
+TEST(Can, ExplainTakesNoStartForAnError) {
+  const char* const start =
+      "(5.0) arm 601#4000100000000000 T\n(5.01) arm 701#00 R\n(5.3) arm 601#8000100000000405 T\n"
+      "(5.4) arm 601#4000100000000000 T\n(5.41) arm 581#4300100092010200 R\n"
+      "(5.5) arm 000#8101 T\n(5.6) arm 701#00 R\n";
+  EXPECT_THAT(ExplainedLog(start).as("cia402").out, HasSubstr("\n# 0 errors, 0 frames unknown\n"));
+  // It had booted, had been asked, and then says nothing; later it boots by itself.
+  const Outcome silent =
+      ExplainedLog(std::string(start) + "(5.7) arm 601#4000100000000000 T\n(6.0) arm 601#8000100000000405 T\n"
+                                        "(6.1) arm 701#05 R\n(6.2) arm 701#00 R\n")
+          .as("cia402", {"--errors"});
+  EXPECT_THAT(silent.out, HasSubstr("\n# 2 errors, 0 frames unknown\n"));
+  EXPECT_THAT(silent.out, HasSubstr("(1.000000) arm 601#80"));
+  EXPECT_THAT(silent.out, HasSubstr("(1.200000) arm 701#00"));
+}
+
+// A received frame is logged when it is read, with the instant at which it came.
+TEST(Can, ExplainCountsTimeFromTheFirstFrameOnTheBus) {
+  const Outcome out = ExplainedLog("(7.5) arm 080# T\n(7.25) arm 701#05 R\n(8.0) arm 080# T\n").as("cia402");
+  EXPECT_THAT(out.out, HasSubstr("3 frames in 0.750000 s, the first at 7.250000"));
+  EXPECT_THAT(out.out, HasSubstr("(0.250000) arm 080#"));
+  EXPECT_THAT(out.out, HasSubstr("(0.000000) arm 701#05"));
+}
+
 TEST(Can, ExplainTakesProtocolAndNamesFromTheRig) {
   const auto file =
       std::filesystem::temp_directory_path() / ("foresight-explain-rig-" + std::to_string(getpid()) + ".log");
