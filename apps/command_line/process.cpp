@@ -1,6 +1,7 @@
 #include "apps/command_line/process.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -75,6 +76,9 @@ int flush_stdout() noexcept {
   std::cout.flush();
   std::fflush(stdout);
   if (std::cout && std::ferror(stdout) == 0) return 0;
+  // A write that failed earlier has left no errno: a pipe without a reader tells by itself.
+  pollfd out{STDOUT_FILENO, 0, 0};
+  if (::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0) return EPIPE;
   return errno ? errno : EIO;
 }
 
@@ -95,6 +99,8 @@ int exit_code_of(const std::function<int()>& work) noexcept {
     code = tell_failure();
   }
   const int error = flush_stdout();
+  // Its reader, such as `head`, has seen enough and went.
+  if (error == EPIPE) return code;
   if (error == 0 || code == 2 || code == kStopped) return code;  // these have told of something worse
   return tell((std::string("stdout: not all could be written (") + std::strerror(error) + "); " +
                (error == ENOSPC || error == EFBIG ? cure_of_write_error(error) : "give it a reader or a file"))
