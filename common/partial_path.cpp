@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,8 +29,13 @@ std::optional<pid_t> writer_of(std::string_view name) {
   return pid;
 }
 
+/// Gone, or ended and not yet waited for by its parent (proc(5): the state follows the name in parentheses).
 bool is_dead(pid_t pid) {
-  return ::kill(pid, 0) != 0 && errno == ESRCH;
+  if (::kill(pid, 0) != 0 && errno == ESRCH) return true;
+  std::ifstream stream("/proc/" + std::to_string(pid) + "/stat");
+  const std::string stat{std::istreambuf_iterator<char>(stream), {}};
+  const std::size_t at = stat.rfind(") ");
+  return at != std::string::npos && (stat[at + 2] == 'Z' || stat[at + 2] == 'X');
 }
 
 void sweep(const fs::path& folder, const std::string& prefix) noexcept {

@@ -82,5 +82,18 @@ TEST(Partial, OnlyWhatDeadProgramsLeftIsSwept) {
   EXPECT_FALSE(fs::exists(folder / ("ab" + dead)));
 }
 
+// Whose parent never waits for it, as in many containers.
+TEST(Partial, AProgramThatEndedIsDeadBeforeItsParentKnows) {
+  const TempFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  siginfo_t ended{};
+  ::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT);
+  folder.write("a.partial-" + std::to_string(child), "half");
+  sweep_partials(folder / "a");
+  EXPECT_EQ(entries(folder.path()), 0U);
+  ::waitpid(child, nullptr, 0);
+}
+
 }  // namespace
 }  // namespace foresight
