@@ -63,20 +63,23 @@ class StallLog final : public ViewObserver {
   void stepped(const ViewStep& /*step*/, FrameSource& /*source*/, ViewSession& /*session*/) override {
     if (!fault_.empty()) std::fprintf(stderr, "robot: view: images again; it was: %s\n", fault_.c_str());
     fault_.clear();
+    began_ = true;
   }
   void waiting(FrameSource& source, ViewSession& /*session*/) override {
     const std::string fault = source.fault();
     if (fault.empty()) return;
     if (fault_.empty()) {
-      ++stalls_;
+      stalls_ += began_ ? 1 : 0;
       std::fprintf(stderr, "robot: view: %s\n", fault.c_str());
     }
     fault_ = fault;
   }
+  /// Since the first image: before, joints that are not homed tell no poses.
   int stalls() const { return stalls_; }
 
  private:
   std::string fault_;
+  bool began_ = false;
   int stalls_ = 0;
 };
 

@@ -49,9 +49,10 @@ void draw_row(cv::Mat& sheet, const Layout& layout, const Instant& instant, int 
   const std::string captions[] = {
       readable(f.delayed.psnr_db, 1, " dB"), readable(f.predicted.psnr_db, 1, " dB"),
       "t = " + readable(f.time_s, 3, " s") + ", delayed by " + readable(1000 * f.delay_s, 0, " ms"), shares};
+  const bool helps = f.predicted.psnr_db > f.delayed.psnr_db;
   for (int i = 0; i < 4; ++i) {
     draw_tile(sheet, layout, *pictures[i], {layout.column(i), top});
-    const cv::Scalar colour = i == 1 ? kGood : i == 0 ? kInk : kFaint;
+    const cv::Scalar colour = i > 1 ? kFaint : i == 1 && helps ? kGood : kInk;
     const int baseline = top + layout.tile_height + kCaption + 6;
     const DrawnText caption{captions[i], kCaption, colour, i < 2};
     draw_text(sheet, caption, {layout.column(i), baseline});
