@@ -124,7 +124,7 @@ struct GateStatus {
   std::uint64_t accepted = 0, dropped = 0;  ///< commands
   GateReason last_dropped = GateReason::none;
   double speed = 0;  ///< 0 .. 1: where the ramp is
-  GateHold hold;     ///< only while following
+  GateHold hold = {};  ///< only while following
 };
 
 /// One thread: the control loop's. Nothing throws or allocates after construction.

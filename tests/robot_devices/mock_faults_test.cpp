@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Rigs, OrderedFaults, testing::Values("minerva.yaml", "c
 
 TEST(OrderedFault, SaysWhatIsWrongWithTheOrder) {
   Rig rig = read_rig(source_folder() / "configs/cia402.yaml");
-  const auto error = [&](const std::string& text, bool all_mock = true) -> std::string {
+  const auto refusal = [&](const std::string& text, bool all_mock = true) -> std::string {
     try {
       parse_mock_faults({text}, rig, all_mock);
     } catch (const InputError& error) {
@@ -63,18 +63,18 @@ TEST(OrderedFault, SaysWhatIsWrongWithTheOrder) {
     }
     return "nothing was thrown";
   };
-  EXPECT_EQ(error("elbow:stuck@0"), "nothing was thrown");
-  EXPECT_THAT(error("elbow"), testing::AllOf(HasSubstr("JOINT:KIND@TIME"), HasSubstr("shoulder_yaw:stuck@3.5")));
-  EXPECT_THAT(error("elbo:stuck@1"),
+  EXPECT_EQ(refusal("elbow:stuck@0"), "nothing was thrown");
+  EXPECT_THAT(refusal("elbow"), testing::AllOf(HasSubstr("JOINT:KIND@TIME"), HasSubstr("shoulder_yaw:stuck@3.5")));
+  EXPECT_THAT(refusal("elbo:stuck@1"),
               testing::AllOf(HasSubstr("no joint 'elbo'"), HasSubstr("shoulder_yaw, "), HasSubstr("elbow, ")));
-  EXPECT_THAT(error("elbow:broken@1"),
+  EXPECT_THAT(refusal("elbow:broken@1"),
               testing::AllOf(HasSubstr("no fault 'broken'"),
                              HasSubstr("stuck, following_error, lost_node, noisy_encoder, lost_power")));
   for (const char* time : {"", "-1", "soon", "nan", "inf"})
-    EXPECT_THAT(error(std::string("elbow:stuck@") + time), HasSubstr("is no time")) << time;
+    EXPECT_THAT(refusal(std::string("elbow:stuck@") + time), HasSubstr("is no time")) << time;
   rig.buses[0].interface = "can0";
-  EXPECT_THAT(error("elbow:stuck@1", false), testing::AllOf(HasSubstr("on can0"), HasSubstr("--mock")));
-  EXPECT_EQ(error("pan:stuck@1", false), "nothing was thrown") << "the other bus is a mock one";
+  EXPECT_THAT(refusal("elbow:stuck@1", false), testing::AllOf(HasSubstr("on can0"), HasSubstr("--mock")));
+  EXPECT_EQ(refusal("pan:stuck@1", false), "nothing was thrown") << "the other bus is a mock one";
 }
 
 }  // namespace
