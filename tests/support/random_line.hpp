@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -33,13 +35,17 @@ class RandomLine {
  public:
   RandomLine(RandomLineOptions options, std::uint64_t seed) : options_(options), random_(seed) {}
 
+  /// From now on delays and losses come from elsewhere, such as a recorded line: when what is sent now arrives, if at
+  /// all. Duplicates, late packets and losses of the options are added.
+  void carry_by(std::function<std::optional<std::int64_t>(std::int64_t)> arrival) { arrival_ = std::move(arrival); }
+
   void send(std::int64_t now_ns, const T& value) {
     const double now = 1e-9 * static_cast<double>(now_ns);
     advance(now);
     const bool lost = chance(options_.loss) || now < burst_until_ || (now < outage_until_ && !options_.outage_keeps);
     if (lost) return;
-    put(now, value);
-    if (chance(options_.duplicated)) put(now, value);
+    put(now_ns, value);
+    if (chance(options_.duplicated)) put(now_ns, value);
   }
   /// What has arrived by `now_ns`, in the order of arrival.
   std::vector<T> take(std::int64_t now_ns) {
@@ -84,13 +90,22 @@ class RandomLine {
     }
     if (options_.step_every_s > 0 && chance(dt / options_.step_every_s)) step_ = uniform(0, options_.step_s);
   }
-  void put(double now, const T& value) {
+  void put(std::int64_t now_ns, const T& value) {
+    if (arrival_) {
+      const auto at = arrival_(now_ns);
+      if (at) keep(*at + (chance(options_.late) ? std::llround(1e9 * uniform(0, options_.late_s)) : 0), value);
+      return;
+    }
+    const double now = 1e-9 * static_cast<double>(now_ns);
     double delay = options_.base_s + step_;
     if (options_.jitter_s > 0) delay += std::exponential_distribution(1 / options_.jitter_s)(random_);
     if (now < congested_until_) delay += queue_ * uniform(0.7, 1);
     if (chance(options_.late)) delay += uniform(0, options_.late_s);
     auto at = static_cast<std::int64_t>(1e9 * (std::max(now, now < outage_until_ ? outage_until_ : now) + delay));
     if (options_.in_order) at = last_ = std::max(last_, at);
+    keep(at, value);
+  }
+  void keep(std::int64_t at, const T& value) {
     packets_.push_back({at, ++number_, value});
     std::push_heap(packets_.begin(), packets_.end(),
                    [](const Packet& a, const Packet& b) { return a.at != b.at ? a.at > b.at : a.number > b.number; });
@@ -101,6 +116,7 @@ class RandomLine {
   double seen_ = 0, outage_until_ = 0, burst_until_ = 0, congested_until_ = 0, queue_ = 0, step_ = 0;
   std::int64_t last_ = 0;
   std::uint64_t number_ = 0;
+  std::function<std::optional<std::int64_t>(std::int64_t)> arrival_;
   std::vector<Packet> packets_;  // a heap, the first to arrive in front
 };
 

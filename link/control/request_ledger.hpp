@@ -1,0 +1,31 @@
+// Requests that are executed once, however often they come.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "link/control/messages.hpp"
+
+namespace foresight {
+
+/// Of one operator's connection. One thread; does not allocate.
+class RequestLedger {
+ public:
+  /// What was answered to this one before; nothing where it is new. One that a later one overtook is not new, unless it
+  /// is an emergency stop.
+  std::optional<RequestOutcome> answered(const Request& request) const;
+  void note(std::uint64_t id, RequestOutcome outcome);
+
+ private:
+  static constexpr std::size_t kKept = 32;
+  struct Entry {
+    std::uint64_t id = 0;
+    RequestOutcome outcome = RequestOutcome::taken;
+  };
+  std::array<Entry, kKept> entries_{};
+  std::size_t next_ = 0;
+  std::uint64_t newest_ = 0;
+};
+
+}  // namespace foresight

@@ -1,0 +1,366 @@
+#include "link/control/control_words.hpp"
+#include "tests/control/small_line.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+class ControlDeskTest : public SmallLineTest {
+ protected:
+  /// What has moved since, where the switch is held all the time.
+  int moves_in(Duration time) {
+    followed_ = 0;
+    run(time);
+    return followed_;
+  }
+  std::uint64_t dropped(SetPointFault fault) const { return desk_.counts().faults[static_cast<std::size_t>(fault)]; }
+  void let_go_and_press(SmallSeat& it) {
+    it.held = false;
+    run(200ms);
+    it.held = true;
+    run(200ms);
+  }
+};
+
+TEST_F(ControlDeskTest, FollowsWhoAskedLetGoAndPressed) {
+  engage(anna_);
+  EXPECT_TRUE(status(anna_).follows);
+  EXPECT_EQ(status(anna_).words, "");
+  anna_.position = {0.05, 0.02};
+  run(100ms);
+  EXPECT_DOUBLE_EQ(robot_.set_point[0], 0.05);
+  anna_.held = false;
+  run(50ms);
+  EXPECT_FALSE(robot_.follows);
+  EXPECT_EQ(desk_.permit().cause(), RestCause::let_go);
+}
+
+TEST_F(ControlDeskTest, NothingMovesBeforeTheSwitchWasSeenOpen) {
+  anna_.seat.want_control(true);
+  anna_.held = true;
+  EXPECT_EQ(moves_in(2s), 0);
+  EXPECT_TRUE(status(anna_).must_let_go);
+  EXPECT_THAT(status(anna_).cure, HasSubstr("let go"));
+  let_go_and_press(anna_);
+  EXPECT_TRUE(robot_.follows);
+}
+
+TEST_F(ControlDeskTest, AnOutageStopsItAndItStaysSo) {
+  engage(anna_);
+  anna_.up_cut = true;
+  const RobotTime cut = now_;
+  while (robot_.follows) step();
+  EXPECT_LE(now_ - cut, 160ms);
+  EXPECT_EQ(desk_.permit().cause(), RestCause::expired);
+  run(300ms);
+  anna_.up_cut = false;
+  EXPECT_EQ(moves_in(3s), 0) << "the switch was held all the time";
+  EXPECT_TRUE(status(anna_).must_let_go);
+  let_go_and_press(anna_);
+  EXPECT_TRUE(robot_.follows);
+}
+
+TEST_F(ControlDeskTest, WhatTheLineHeldBackIsNotExecuted) {
+  engage(anna_);
+  // Tapping all the time, without seeing the robot.
+  const auto held_back = [&](Duration time, bool tap) {
+    anna_.down_cut = tap;
+    std::deque<std::pair<RobotTime, FromOperator>> kept;
+    for (const RobotTime end = now_ + time; now_ < end;) {
+      anna_.held = !tap || (now_.ns / 100'000'000) % 2 == 0;
+      step();
+      kept.insert(kept.end(), anna_.up.begin(), anna_.up.end());
+      anna_.up.clear();
+    }
+    anna_.up = kept;
+    for (auto& packet : anna_.up) packet.first = now_;
+    anna_.down_cut = false;
+  };
+  for (const bool tap : {false, true}) {
+    held_back(1s, tap);
+    anna_.held = true;
+    EXPECT_EQ(moves_in(1s), 0) << tap;
+    EXPECT_GT(dropped(SetPointFault::expired), 50u);
+    let_go_and_press(anna_);
+    EXPECT_TRUE(robot_.follows);
+  }
+}
+
+// Pressed while the line was down: nobody had seen that the robot had stopped.
+TEST_F(ControlDeskTest, APressThatDidNotKnowOfTheStopMovesNothing) {
+  engage(anna_);
+  anna_.up_cut = anna_.down_cut = true;
+  run(200ms);
+  anna_.held = false;
+  run(100ms);
+  anna_.held = true;
+  run(10ms);
+  anna_.up_cut = anna_.down_cut = false;
+  EXPECT_EQ(moves_in(2s), 0);
+  EXPECT_GT(dropped(SetPointFault::no_consent), 0u);
+}
+
+TEST_F(ControlDeskTest, WhoNoLongerSeesTheRobotMovesNothing) {
+  engage(anna_);
+  anna_.down_cut = true;
+  run(700ms);
+  EXPECT_FALSE(robot_.follows);
+  anna_.down_cut = false;
+  EXPECT_EQ(moves_in(2s), 0);
+}
+
+TEST_F(ControlDeskTest, BeginsWhereTheRobotStandsOrNotAtAll) {
+  anna_.position = {0.5, 0};
+  anna_.seat.want_control(true);
+  run(1s);
+  anna_.held = true;
+  EXPECT_EQ(moves_in(300ms), 0);
+  EXPECT_THAT(status(anna_).words, HasSubstr("where the robot stands"));
+  anna_.position = anna_.seat.begin();
+  EXPECT_EQ(moves_in(300ms), 0) << "this press moves nothing any more";
+  let_go_and_press(anna_);
+  EXPECT_TRUE(robot_.follows);
+}
+
+TEST_F(ControlDeskTest, ARobotThatStoppedByItselfWaitsForAnotherPress) {
+  engage(anna_);
+  for (int i = 0; i < 30; ++i) {
+    step();
+    robot_.follows = false;  // as of a safety gate that has latched
+    robot_.ready = false;
+  }
+  EXPECT_EQ(desk_.permit().cause(), RestCause::robot_stopped);
+  EXPECT_EQ(moves_in(1s), 0);
+}
+
+TEST_F(ControlDeskTest, APauseOfTheRobotsProgramStops) {
+  engage(anna_);
+  now_ = now_ + 150ms;
+  anna_.up.clear();
+  EXPECT_EQ(moves_in(2s), 0);
+  let_go_and_press(anna_);
+  EXPECT_TRUE(robot_.follows);
+}
+
+TEST_F(ControlDeskTest, ALeapOfTheOperatorsClockStops) {
+  for (const Duration leap : {Duration(1s), Duration(-1s)}) {
+    engage(anna_);
+    anna_.ahead += leap;
+    run(100ms);
+    EXPECT_EQ(moves_in(4s), 0);
+    EXPECT_EQ(status(anna_).phase, ControlSeatStatus::Phase::holding) << "it comes back by itself, but does not move";
+  }
+}
+
+TEST_F(ControlDeskTest, ASecondOperatorIsRefusedAndToldWhoCommands) {
+  seats_.push_back(&ben_);
+  engage(anna_);
+  ben_.seat.want_control(true);
+  ben_.held = false;
+  run(1s);
+  EXPECT_THAT(status(ben_).words, HasSubstr("'anna' commands"));
+  ben_.held = true;
+  run(1s);
+  EXPECT_EQ(desk_.holder_name(), "anna");
+  EXPECT_EQ(desk_.asking_name(now_), "ben");
+  EXPECT_EQ(dropped(SetPointFault::no_lease), 0u) << "a seat without the lease sends no set-points";
+  EXPECT_TRUE(robot_.follows);
+}
+
+TEST_F(ControlDeskTest, HandingOverNeedsBothOrSomebodyBesideTheRobot) {
+  seats_.push_back(&ben_);
+  engage(anna_);
+  EXPECT_FALSE(anna_.seat.hand_over()) << "nobody asks";
+  ben_.seat.want_control(true);
+  run(500ms);
+  EXPECT_TRUE(anna_.seat.hand_over());
+  run(500ms);
+  EXPECT_EQ(desk_.holder_name(), "ben");
+  EXPECT_FALSE(robot_.follows) << "neither the old one nor the new one drives";
+  EXPECT_EQ(status(anna_).phase, ControlSeatStatus::Phase::connected);
+  ben_.held = true;
+  run(300ms);
+  EXPECT_TRUE(robot_.follows);
+  anna_.seat.want_control(true);
+  run(500ms);
+  EXPECT_EQ(desk_.holder_name(), "ben");
+  EXPECT_TRUE(desk_.consent_to_asking(now_));
+  EXPECT_EQ(desk_.holder_name(), "anna");
+  EXPECT_EQ(moves_in(1s), 0);
+}
+
+TEST_F(ControlDeskTest, WhoIsNotHeardLosesTheLease) {
+  seats_.push_back(&ben_);
+  engage(anna_);
+  ben_.seat.want_control(true);
+  seats_ = {&ben_};  // anna's program is gone
+  run(4s);
+  EXPECT_EQ(desk_.holder_name(), "ben");
+}
+
+TEST_F(ControlDeskTest, WhatWasGivenBackStaysSoWhateverComesLate) {
+  engage(anna_);
+  const std::vector<FromOperator> recorded = sent_;
+  anna_.seat.want_control(false);
+  run(500ms);
+  EXPECT_EQ(desk_.holder_name(), "");
+  for (const FromOperator& message : recorded) desk_.receive(message, now_);
+  EXPECT_EQ(desk_.holder_name(), "") << "an Ask that comes late";
+  EXPECT_EQ(moves_in(500ms), 0);
+}
+
+TEST_F(ControlDeskTest, ARecordingOfAnEarlierDayIsNobody) {
+  engage(anna_);
+  const std::vector<FromOperator> recorded = sent_;
+  seats_.clear();
+  followed_ = 0;
+  // The robot's program has started anew, and by chance draws other numbers.
+  ControlDeskOptions options = desk_options();
+  options.draw = counting(77'000'000);
+  desk_ = ControlDesk(options);
+  for (const FromOperator& message : recorded) {
+    desk_.receive(message, now_);
+    step();
+  }
+  EXPECT_EQ(followed_, 0);
+  EXPECT_EQ(desk_.holder_name(), "");
+  EXPECT_GT(desk_.counts().strangers, 50u);
+}
+
+TEST_F(ControlDeskTest, RequestsAreExecutedOnceAndAcknowledged) {
+  engage(anna_);
+  const auto id = anna_.seat.request(LineRequest::disable, time_of(anna_));
+  for (int i = 0; i < 5; ++i) {
+    run(100ms);
+    for (const FromOperator& message : std::vector(sent_))
+      if (std::holds_alternative<Request>(message.body)) desk_.receive(message, now_);
+  }
+  EXPECT_THAT(executed_, testing::ElementsAre(LineRequest::disable));
+  const auto fates = anna_.seat.take_fates();
+  ASSERT_EQ(fates.size(), 1u);
+  EXPECT_EQ(fates[0].id, id);
+  EXPECT_EQ(fates[0].outcome, RequestOutcome::taken);
+}
+
+TEST_F(ControlDeskTest, ALostAnswerIsAskedForAgainAndTheRequestIsNot) {
+  engage(anna_);
+  anna_.down_cut = true;
+  anna_.seat.request(LineRequest::reset, time_of(anna_));
+  run(300ms);
+  anna_.down_cut = false;
+  run(300ms);
+  EXPECT_THAT(executed_, testing::ElementsAre(LineRequest::reset));
+  EXPECT_EQ(anna_.seat.take_fates().at(0).outcome, RequestOutcome::taken);
+}
+
+TEST_F(ControlDeskTest, ARequestFromBeforeALossIsNotExecuted) {
+  engage(anna_);
+  anna_.up_cut = true;
+  anna_.seat.request(LineRequest::home, time_of(anna_));
+  run(500ms);
+  anna_.up_cut = false;
+  run(1s);
+  EXPECT_TRUE(executed_.empty());
+  EXPECT_EQ(anna_.seat.take_fates().at(0).outcome, RequestOutcome::before_stop);
+  anna_.up_cut = true;
+  anna_.seat.request(LineRequest::home, time_of(anna_));
+  run(1500ms);
+  anna_.up_cut = false;
+  run(1s);
+  EXPECT_TRUE(executed_.empty()) << "nor is one that comes too late";
+}
+
+TEST_F(ControlDeskTest, EverybodyMayStop) {
+  seats_.push_back(&ben_);
+  engage(anna_);
+  ben_.seat.request(LineRequest::enable, time_of(ben_));
+  ben_.seat.request(LineRequest::emergency_stop, time_of(ben_));
+  run(500ms);
+  EXPECT_THAT(executed_, testing::ElementsAre(LineRequest::emergency_stop));
+  const auto fates = ben_.seat.take_fates();
+  ASSERT_EQ(fates.size(), 2u);
+  EXPECT_EQ(fates[0].outcome, RequestOutcome::not_holder);
+}
+
+TEST_F(ControlDeskTest, WhatDiffersIsNamedAndRefusedWhereItMatters) {
+  Identity other = sample_identity("carl");
+  other.calibration = 44;
+  other.program = "1.1";
+  SmallSeat harmless(other, 200'000);
+  other.urdf = 12;
+  other.joints[1] = "elbow";
+  SmallSeat wrong(other, 300'000);
+  other = sample_identity("newer");
+  other.protocol = 2;
+  SmallSeat newer(other, 400'000);
+  seats_ = {&wrong, &newer};
+  for (SmallSeat* seat : seats_) seat->seat.want_control(true);
+  run(1s);
+  EXPECT_EQ(desk_.holder_name(), "");
+  EXPECT_THAT(status(wrong).words,
+              testing::AllOf(HasSubstr("another URDF"), HasSubstr("joint 2 is 'wrist' on the robot, 'elbow' in"),
+                             testing::Not(HasSubstr("calibration"))));
+  EXPECT_EQ(status(wrong).differences.size(), 4u);
+  EXPECT_THAT(status(newer).words, HasSubstr("update the robot's program"));
+  seats_ = {&harmless};
+  engage(harmless);
+  EXPECT_EQ(status(harmless).differences.size(), 2u);
+}
+
+TEST_F(ControlDeskTest, WhatIsNoSetPointMovesNothing) {
+  engage(anna_);
+  const FromOperator last = sent_.back();
+  const auto sample = [&](auto change) {
+    FromOperator out = last;
+    SetPoint& point = std::get<SetPoint>(out.body);
+    point.sequence += 1000;
+    point.given = time_of(anna_);
+    change(point);
+    return out;
+  };
+  const auto faults = dropped(SetPointFault::malformed);
+  desk_.receive(sample([](SetPoint& p) { p.position[1] = std::numeric_limits<double>::quiet_NaN(); }), now_);
+  desk_.receive(sample([](SetPoint& p) { p.joints = 99; }), now_);
+  desk_.receive(sample([](SetPoint& p) { p.joints = 1; }), now_);
+  EXPECT_EQ(dropped(SetPointFault::malformed), faults + 3);
+  desk_.receive(sample([](SetPoint& p) { p.given = {INT64_MAX}; }), now_);
+  EXPECT_EQ(dropped(SetPointFault::clock_unknown), 1u);
+  desk_.receive(sample([](SetPoint& p) {
+                  p.sequence += 1;
+                  p.given = p.given - 10s;
+                  p.lasts = Duration::max();
+                }),
+                now_);
+  EXPECT_GT(dropped(SetPointFault::expired), 0u) << "the robot says how long set-points last";
+}
+
+TEST_F(ControlDeskTest, RoomForAFewOperatorsIsNotTakenByMany) {
+  engage(anna_);
+  for (Nonce stranger = 9'000; stranger < 9'100; ++stranger)
+    desk_.receive({stranger, 0, Hello{sample_identity(std::string(100'000, 'x'))}}, now_);
+  EXPECT_EQ(desk_.peers().size(), DeskPeers::kMost);
+  EXPECT_LT(desk_.peers().back().identity.name.size(), 100u);
+  run(6s);
+  EXPECT_EQ(desk_.peers().size(), 1u);
+  EXPECT_TRUE(robot_.follows);
+}
+
+TEST(SetPointLifeTest, GrowsWithWhatTheLineNeedsAndNoFurther) {
+  const auto life_of = [](auto age) {
+    SetPointLife life;
+    for (int i = 0; i < 600; ++i) life.came(age(i), {1'000'000'000 + i * 20'000'000LL});
+    return life.life();
+  };
+  EXPECT_EQ(life_of([](int) { return 1ms; }), 100ms);
+  EXPECT_EQ(life_of([](int) { return 60ms; }), 140ms);
+  EXPECT_EQ(life_of([](int) { return 2s; }), 250ms) << "a line that is slower than this carries no commands";
+  const Duration rough = life_of([](int i) { return Duration((30 + i % 100) * 1ms); });
+  EXPECT_GT(rough, 200ms);
+  EXPECT_LE(rough, 350ms);
+  EXPECT_EQ(life_of([](int i) { return Duration((i % 2) * 9s); }), 500ms) << "whatever the line does";
+}
+
+}  // namespace
+}  // namespace foresight
