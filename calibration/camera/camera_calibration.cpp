@@ -7,6 +7,7 @@
 #include "calibration/camera/input_checks.hpp"
 #include "calibration/camera/model_choice.hpp"
 #include "calibration/camera/rig_start.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
@@ -176,7 +177,7 @@ class Calibrator {
   void judge() {
     const int count = useful_views(result_.views);
     if (count < kFewViews)
-      result_.notes.push_back("only " + std::to_string(count) + (cameras() == 2 ? " pairs" : " views") +
+      result_.notes.push_back("only " + counted(count, cameras() == 2 ? "pair" : "view") +
                               "; take 15 or more for figures that can be trusted");
     if (result_.stereo_over_mono > kUnsynchronised)
       result_.verdict.object("the pairs are not synchronised, or the cameras moved against each other: the error is " +
@@ -197,7 +198,10 @@ class Calibrator {
     if (t.norm() < 5 * result_.sigma["baseline_m"])
       result_.verdict.object("both cameras stand at one place", "give the images of two cameras, not one's twice");
     else if (-t.x() > 0.5 * t.norm())
-      result_.notes.push_back("the right camera stands to the left of the left one: are the folders swapped?");
+      result_.verdict.object(
+          "the right camera stands " + readable(-1000 * t.x(), 1) + " mm to the left of the left one",
+          "exchange left and right, in the folders and in the rig; where both cameras hang upside "
+          "down, the one on the other side is their left one");
   }
 
   const CameraCalibrationOptions& options_;

@@ -52,6 +52,16 @@ TEST(BadInput, ReversedBoardIsTurned) {
   EXPECT_THAT(c.full(), HasSubstr("turned: view view4"));
 }
 
+TEST(BadInput, SwappedCamerasAreNotUsable) {
+  auto s = synthetic_rig(2, {.views = 12});
+  EXPECT_TRUE(calibrate(s.views).usable());
+  for (RigView& view : s.views.views) std::swap(view.corners[0], view.corners[1]);
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_FALSE(c.usable());
+  EXPECT_THAT(c.verdict.text(),
+              AllOf(HasSubstr("mm to the left of the left one"), HasSubstr("exchange left and right")));
+}
+
 TEST(BadInput, PairThatDoesNotBelongTogetherIsDropped) {
   auto s = synthetic_rig(3, {.views = 12});
   s.views.views[5].corners[1] = s.views.views[6].corners[1];
