@@ -68,8 +68,7 @@ void print(const HandEyeSummary& s) {
             << name_of_Y(s.mount) << "  " << readable_pose(s.Y) << "\n"
             << "focal length " << readable(s.camera.lens[0], 2) << " " << readable(s.camera.lens[1], 2) << " px, "
             << board_words(s) << "\n"
-            << "noise: corner " << readable(s.sigma_px, 3) << " px, robot " << readable(1e3 * s.sigma_robot_m, 2)
-            << " mm and " << readable(1e3 * s.sigma_robot_rad, 2) << " mrad\n"
+            << "noise: corner " << readable(s.sigma_px, 3) << " px, robot " << robot_noise_words(s) << "\n"
             << "in sample " << readable(s.in_sample_px, 3) << " px; left out " << readable(s.loo_px, 3) << " px, "
             << readable(s.loo_mm, 3) << " mm\n";
 }
@@ -137,9 +136,9 @@ int run(ArmOptions& options) {
   if (kept) numbers["kept_back"] = {{"views", kept->views}, {"px", kept->px}, {"mm", kept->mm}};
   ResultHeader header{"arm", {}, {}, "loo_px", summary.loo_px, sigmas_of(summary, views.names)};
   header.views = prints_of(views.data.corners);
-  return deliver(
-      {summary.verdict, header, to_yaml(summary, views.names, T_head_base), [&] { return arm_report(summary, views); }},
-      numbers, options.outputs);
+  return deliver({summary.verdict, header, to_yaml(summary, views.names, T_head_base),
+                  [&] { return arm_report(summary, views, kept); }},
+                 numbers, options.outputs);
 }
 
 }  // namespace

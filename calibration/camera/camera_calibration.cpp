@@ -16,6 +16,10 @@ namespace foresight {
 namespace {
 
 constexpr int kFewViews = 10;  // fewer are warned about
+constexpr int kEnoughViews = 15;
+// Of the image's width, between lenses from every second view. All views together know the lens two to four times as
+// well: to a pixel or so, which is where ghosts begin.
+constexpr double kVagueHalves = 0.005;
 constexpr double kUnsynchronised = 1.4;
 constexpr int kGroups = 10;         // of views left out together where there are many
 constexpr double kMovedByWarp = 2;  // the lens by more than so many times the error: not believed
@@ -184,6 +188,7 @@ class Calibrator {
                                  readable(result_.stereo_over_mono, 2) +
                                  " times that of the cameras alone (1.4 is the limit)",
                              "trigger both at once, or hold the board still");
+    if (count < kEnoughViews) judge_halves(count);
     if (cameras() == 2) judge_baseline();
     const auto rejected = static_cast<double>(result_.solution.rejected.size());
     if (rejected > 0.1 * (result_.solution.points + rejected))
@@ -191,6 +196,22 @@ class Calibrator {
     if (!result_.solution.converged)
       result_.verdict.object("the solver did not converge",
                              "take other views, and check that --board is what was shown");
+  }
+
+  /// Few views look more certain than they are: what the board or the corners have in common, each view has anew.
+  void judge_halves(int count) {
+    for (std::size_t c = 0; c < cameras(); ++c) {
+      const double px = result_.odd_even_px[c];
+      if (px <= kVagueHalves * result_.views.width[c]) continue;
+      const std::string whose = cameras() == 2 ? " of the " + camera_name(static_cast<int>(c), 2) + " camera" : "";
+      result_.verdict.object(
+          counted(count, cameras() == 2 ? "pair" : "view") + " are too few: every second one gives a lens" + whose +
+              " that " +
+              (std::isfinite(px) ? "differs from the others' by " + readable(px, 1, " px") : "the others contradict") +
+              " (0.5 % of the image's width is the limit)",
+          "take 15 and more, with the board tilted to all sides and in all corners of the image");
+      return;
+    }
   }
 
   void judge_baseline() {

@@ -100,6 +100,10 @@ HandEyeState first_state(const HandEyeData& data, const HandEyeOptions& options,
   state.board_sigma = options.board_sigma;
   state.corrections.assign(data.poses.size(), {});
   state.joint_offsets.assign(static_cast<std::size_t>(data.poses[0].flange_per_joint.cols()), 0.0);
+  state.joint_means.assign(state.joint_offsets.size(), 0.0);
+  for (std::size_t i = 0; i < std::min(state.joint_means.size(), data.joint_offsets.size()); ++i)
+    state.joint_means[i] = -data.joint_offsets[i];
+  state.joint_sigma = options.joint_sigma;
   state.sigma_m = std::max(1e-4, start.misfit_m / 2);
   state.sigma_rad = std::max(1e-4, start.misfit_m);
   return state;

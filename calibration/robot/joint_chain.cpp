@@ -110,6 +110,8 @@ HandEyeSummary solve_with_joints(JointChain& chain, const std::vector<std::vecto
   quick.score = false;
   for (int round = 0;; ++round) {
     data.poses.clear();
+    data.joint_offsets.clear();
+    if (offsets.size() > 2) data.joint_offsets.assign(offsets.begin() + 1, offsets.end() - 1);
     for (std::size_t v = 0; v < rows.size(); ++v)
       data.poses.push_back(jointed_pose(chain, rows[v], offsets, "joints of view " + data.corners.views[v].name));
     const bool last = round == 4;

@@ -132,6 +132,8 @@ TEST_F(ArmSession, GoesLooksSolvesAndVerifies) {
   EXPECT_THAT(of_run["notes"].dump(), HasSubstr("held still at 16 places, in 48 pictures"));
   EXPECT_EQ(of_run["camera_given"], true);
   EXPECT_LT(of_run["loo_px"], 0.5);
+  EXPECT_LT(of_run["robot_noise_mm"], 0.1) << "the mock robot stands where it says";
+  EXPECT_LT(of_run["robot_noise_mrad"], 0.3);
   const Pose by_run = read_hand_eye(read_result(folder / "run.yaml", "arm").result).X;
   EXPECT_LT((truth.translation() - by_run.translation()).norm(), 3e-3);
   EXPECT_LT(rotation_vector(truth.linear().transpose() * by_run.linear()).norm(), 5e-3);
@@ -146,6 +148,16 @@ TEST_F(ArmSession, GoesLooksSolvesAndVerifies) {
                              rig, "--board", kBoard, "--json", folder / "v.json"});
     return run_calibrate(more);
   };
+  // With offsets of the joints, of which views of one small board in one place tell little.
+  EXPECT_EQ(with_views({"arm", "--board-sigma", "0"}), "0");
+  const auto with_offsets = json_of(folder, "v.json");
+  EXPECT_LT(with_offsets["robot_noise_mm"], 0.1);
+  EXPECT_LT(with_offsets["robot_noise_mrad"], 0.3);
+  for (const auto& [joint, offset] : with_offsets["joint_offsets"].items()) {
+    if (offset == 0) continue;
+    EXPECT_LT(std::abs(offset.get<double>()), 4 * with_offsets["sigmas"][joint + "_offset"].get<double>()) << joint;
+  }
+
   EXPECT_EQ(with_views({"verify", "--result", folder / "arm.yaml", "--robot-px", "1.5"}), "0");
   EXPECT_EQ(json_of(folder, "v.json")["views"], 3);
   EXPECT_EQ(json_of(folder, "v.json")["views_of_the_calibration"], 13);

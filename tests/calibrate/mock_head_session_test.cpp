@@ -121,20 +121,20 @@ double true_exposure(int level) {
   return light < 0.55 ? light : 0.55 - 0.45 * std::log(1 - (light - 0.55) / 0.45);
 }
 
-TEST_F(MockLabHead, TellsItsResponseByASeriesOfExposures) {
-  const std::vector<double> found = read_inverse_response(response());
-  const auto numbers = json_of(folder_, "p.json");
-  for (const char* side : {"left", "right"}) EXPECT_LT(numbers[side]["held_out_levels"], 6) << side;
+/// Over most of the levels; darker, noise bends it.
+double worst_ratio(const std::vector<double>& found) {
   double worst = 0;
-  for (int v = 24; v <= 240; ++v) {  // darker, noise bends it
+  for (int v = 24; v <= 240; ++v) {
     const double ratio = found[static_cast<std::size_t>(v)] / true_exposure(v) * true_exposure(128) / found[128];
     worst = std::max(worst, std::abs(std::log(ratio)));
   }
-  std::printf("response: worst %.3f of the light\n", worst);
-  EXPECT_LT(worst, 0.04);
+  return worst;
 }
 
+// The documented session: a series of exposures tells the cameras' response, a sweep with it the head.
 TEST_F(MockLabHead, IsCalibratedByTheLabsOwnPictures) {
+  EXPECT_LT(worst_ratio(read_inverse_response(response())), 0.04);
+  for (const char* side : {"left", "right"}) EXPECT_LT(json_of(folder_, "p.json")[side]["held_out_levels"], 6) << side;
   const std::string head_file = folder_ / "head.yaml";
   write("sweep", look(1, 32));
   ASSERT_EQ(run_calibrate({"pan-tilt", "--run", folder_ / "sweep", "--photometric", response(), "--json",

@@ -41,6 +41,14 @@ TEST(BadInput, FewViews) {
   EXPECT_THAT(c.notes, Contains(HasSubstr("only 9 pairs")));
 }
 
+TEST(BadInput, TooFewViewsForTheLensAreNotUsable) {
+  const auto s = synthetic_rig(1, {.views = 30, .noise_px = 1});
+  const CameraCalibration few = calibrate(subset(s.views, {0, 1, 2, 3, 4}));
+  EXPECT_FALSE(few.usable());
+  EXPECT_THAT(few.verdict.text(), AllOf(HasSubstr("5 pairs are too few"), HasSubstr("take 15 and more")));
+  EXPECT_TRUE(calibrate(s.views).usable());
+}
+
 TEST(BadInput, ReversedBoardIsTurned) {
   auto s = synthetic_rig(2, {.views = 12});
   reverse(s.views.views[4].corners[1]);
