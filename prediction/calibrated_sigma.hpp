@@ -17,13 +17,13 @@ class CalibratedSigma {
  public:
   static constexpr double kInside = 0.95;  ///< of the truths, within 2 sigma
 
-  /// `start`: sigma before anything was seen, > 0. `least`: no sigma is below it. `memory`: seconds that count, > 0.
-  /// `dimensions` of the error whose length is told: 1, or 3 for vectors.
-  CalibratedSigma(double start, double least, double memory, int dimensions)
-      : mean_square_(start * start), least_(least), memory_(memory) {
-    // 2 sigma of one coordinate hold 95 %; the length of three normal ones passes 1.615 sqrt(3) sigma in 5 % of cases.
-    scale_ = dimensions == 1 ? 1 : 0.807;
-  }
+  /// 2 sigma hold 95 % of one normal coordinate; 95 % of the lengths of three are within 1.615 of their rms.
+  static constexpr double kScaleOfOne = 1, kScaleOfThree = 0.807;
+
+  /// `rms` of the errors' lengths before anything was seen, > 0. `least`: no sigma is below it. `memory`: seconds that
+  /// count, > 0. `scale`: what rms times that is sigma at first.
+  CalibratedSigma(double rms, double least, double memory, double scale)
+      : mean_square_(rms * rms), least_(least), memory_(memory), scale_(scale) {}
 
   double sigma() const noexcept { return std::max(least_, scale_ * std::sqrt(mean_square_)); }
 

@@ -41,9 +41,8 @@ const Weights& OnlineRegression::weights() noexcept {
   return weights_;
 }
 
-double OnlineRegression::spread(const Weights& x) noexcept {
-  solve();
-  return x.dot(factor_.solve(x));
+double OnlineRegression::spread(const Weights& x) const noexcept {
+  return factor_.cols() == x.size() ? x.dot(factor_.solve(x)) : 0;
 }
 
 }  // namespace foresight

@@ -34,8 +34,9 @@ class OnlineRegression {
   /// Solves when something was added since.
   const Weights& weights() noexcept;
   double predict(const Weights& x) noexcept { return weights().dot(x); }
-  /// x^T A^-1 x: times the variance of one y, the variance of predict(x) that the weights are the reason of.
-  double spread(const Weights& x) noexcept;
+  /// x^T A^-1 x of what weights() last solved: times the variance of one y, the variance of predict(x) that the weights
+  /// are the reason of. 0 before that.
+  double spread(const Weights& x) const noexcept;
 
  private:
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostWeights, kMostWeights>;

@@ -54,8 +54,8 @@ PosePredictor::PosePredictor(const PosePredictorOptions& options)
       trail_(options.trail),
       position_(regression(kVelocities + 3 * kTurns, kUsualSpeed * options.ahead, options.memory)),
       rotation_(regression(kVelocities, kUsualTurning * options.ahead, options.memory)),
-      position_sigma_(0.05 * options.ahead / 0.1, 1e-5, 2, 3),
-      rotation_sigma_(0.1 * options.ahead / 0.1, 1e-5, 2, 3) {}
+      position_sigma_(0.05 * options.ahead / 0.1, 1e-5, 2, CalibratedSigma::kScaleOfThree),
+      rotation_sigma_(0.1 * options.ahead / 0.1, 1e-5, 2, CalibratedSigma::kScaleOfThree) {}
 
 PoseTaken PosePredictor::observe(OperatorTime time, const Pose& pose) noexcept {
   const PoseTaken taken = trail_.add(time, pose);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "apps/bench/time_column.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "common/text_rows.hpp"
@@ -14,8 +15,8 @@ namespace {
 constexpr std::array kParts{"x", "y", "z", "qx", "qy", "qz", "qw"};
 
 struct Columns {
-  std::size_t count = 0, time = 0;
-  bool seconds = true;                                        // else a timestamp
+  std::size_t count = 0;
+  std::optional<TimeColumn> time;
   std::vector<std::array<std::size_t, kParts.size()>> poses;  // of the table's series
 };
 
@@ -24,8 +25,7 @@ Columns read_header(const TextRow& line, PoseTable& table) {
   const auto find = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   };
-  Columns columns{names.size(), find("time_s"), true, {}};
-  if (columns.time == names.size()) columns = {names.size(), find("timestamp"), false, {}};
+  Columns columns{names.size(), TimeColumn::find(names), {}};
   for (const std::string& name : names) {
     if (!name.ends_with("qw")) continue;
     const std::string prefix = name.substr(0, name.size() - 2);
@@ -35,7 +35,7 @@ Columns read_header(const TextRow& line, PoseTable& table) {
     columns.poses.push_back(pose);
     table.series.push_back({prefix, {}});
   }
-  if (columns.time == names.size() || columns.poses.empty())
+  if (!columns.time || columns.poses.empty())
     throw InputError(line.where(),
                      "names no time_s (or timestamp) or no pose (x y z qx qy qz qw, perhaps after a prefix)",
                      "write the names of the columns in the first line");
@@ -48,26 +48,6 @@ double number_field(const TextRow& line, std::size_t field) {
     throw InputError(line.where(field), in_quotes(line.fields[field]) + " is no number",
                      "correct it, or write nan where the tracker had lost the pose");
   return *number;
-}
-
-std::int64_t read_time(const TextRow& line, const Columns& columns) {
-  const std::string_view text = line.fields[columns.time];
-  if (columns.seconds) {
-    if (const auto time = parse_seconds(text)) return time->count();
-    throw InputError(line.where(columns.time), "time_s is " + in_quotes(text) + ", no number of seconds",
-                     "write seconds, at most " + std::to_string(kLargestSeconds));
-  }
-  // Ticks of these years would be nanoseconds since 1970 of August 1989 to November 1990.
-  constexpr std::int64_t kFirstTick = 620'000'000'000'000'000, kLastTick = 660'000'000'000'000'000;
-  std::optional<std::int64_t> time = parse_integer(text);
-  if (!time) {
-    const auto number = parse_number(text);
-    if (number && std::abs(*number) < 9e18) time = std::llround(*number);
-  }
-  if (!time)
-    throw InputError(line.where(columns.time), "timestamp is " + in_quotes(text) + ", no number of nanoseconds",
-                     "write nanoseconds, or seconds in a column time_s");
-  return *time >= kFirstTick && *time <= kLastTick ? (*time - kFirstTick) * 100 : *time;
 }
 
 std::optional<Pose> read_pose(const TextRow& line, const std::array<std::size_t, kParts.size()>& at) {
@@ -99,12 +79,9 @@ PoseTable read_pose_table(const std::filesystem::path& csv) {
     if (line.fields.size() != columns.count)
       throw InputError(line.where(), "has " + std::to_string(line.fields.size()) + " fields",
                        "write " + std::to_string(columns.count) + ", as the first line has");
-    const std::int64_t time = read_time(line, columns);
+    const std::int64_t time = columns.time->read(line);
     if (table.time_ns.empty()) first = time;
-    // Differences of times of either sign are taken where they cannot overflow.
-    const auto since = static_cast<std::int64_t>(static_cast<std::uint64_t>(time) - static_cast<std::uint64_t>(first));
-    if (time < first || since < 0 || (!table.time_ns.empty() && since < table.time_ns.back()))
-      throw InputError(line.where(columns.time), "its time is not after the one before", "sort the rows by time");
+    const std::int64_t since = time - first;
     const bool repeated = !table.time_ns.empty() && since == table.time_ns.back();
     for (std::size_t i = 0; i < table.series.size(); ++i) {
       const auto pose = read_pose(line, columns.poses[i]);

@@ -4,6 +4,7 @@
 
 #include "apps/bench/prediction_head.hpp"
 #include "apps/bench/prediction_ik.hpp"
+#include "apps/bench/prediction_response.hpp"
 
 namespace foresight {
 namespace {
@@ -51,6 +52,21 @@ void add_head(Command& prediction, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_prediction_head(*options); }; });
 }
 
+void add_response(Command& prediction, std::function<int()>& action) {
+  auto* command = prediction.add_subcommand("response", "Where commanded joints will be, with their drives' response");
+  auto options = std::make_shared<PredictionResponseOptions>();
+  command->add_option("--commands", options->commands, "CSV with time_s and q1, q2, ... (or dq1, dq2, ...)")
+      ->reads()
+      ->required();
+  command->add_option("--states", options->states, "CSV with time_s and q1, q2, ... as measured, on the same clock")
+      ->reads()
+      ->required();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "Example: foresight bench prediction response --commands command.csv --states state.csv --json response.json");
+  command->callback([options, &action] { action = [options] { return bench_prediction_response(*options); }; });
+}
+
 }  // namespace
 
 void add_prediction_benches(Command& bench, std::function<int()>& action) {
@@ -58,6 +74,7 @@ void add_prediction_benches(Command& bench, std::function<int()>& action) {
   prediction->require_subcommand();
   add_ik(*prediction, action);
   add_head(*prediction, action);
+  add_response(*prediction, action);
 }
 
 }  // namespace foresight

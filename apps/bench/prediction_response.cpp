@@ -1,0 +1,232 @@
+#include "apps/bench/prediction_response.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "apps/bench/joint_table.hpp"
+#include "common/error.hpp"
+#include "common/numbers_file.hpp"
+#include "common/statistics.hpp"
+#include "common/text.hpp"
+#include "common/time.hpp"
+#include "prediction/joint_response.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr std::array kAhead{0.1, 0.3, 1.0};  // s
+constexpr std::array kAheadKeys{"100ms", "300ms", "1000ms"};
+constexpr double kLearning = 0.4;         // of the time
+constexpr double kFarthestCommand = 1.1;  // s: commands are known so far ahead
+constexpr double kVelocityOver = 0.02;    // s
+constexpr double kLongestGap = 0.15;      // s between states that judge what lies between
+constexpr std::size_t kMostInstants = 20'000;
+constexpr std::size_t kFewest = 30;
+
+using Series = std::vector<TimedPosition>;
+
+struct Joint {
+  std::string name;
+  Series commands, states;
+  std::vector<double> velocities;  // of the states; empty: not recorded
+};
+
+struct Errors {
+  const char* name;
+  const char* key;
+  std::array<std::vector<double>, kAhead.size()> at{};
+};
+
+Series series_of(const JointTable& table, const std::vector<double>& values, std::int64_t epoch_ns) {
+  Series series;
+  series.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    series.push_back({to_seconds(Duration{table.time_ns[i] - epoch_ns}), values[i]});
+  return series;
+}
+
+// Where commanded velocities lead from `start`.
+Series integrated(const Series& velocities, double start) {
+  Series positions = velocities;
+  positions[0].position = start;
+  for (std::size_t i = 1; i < positions.size(); ++i)
+    positions[i].position = positions[i - 1].position + 0.5 * (velocities[i - 1].position + velocities[i].position) *
+                                                            (velocities[i].time - velocities[i - 1].time);
+  return positions;
+}
+
+std::vector<Joint> read_joints(const PredictionResponseOptions& options) {
+  const JointTable commands = read_joint_table(options.commands), states = read_joint_table(options.states);
+  const std::int64_t epoch = states.time_ns.front();
+  std::vector<Joint> joints;
+  for (const JointColumn& column : states.columns) {
+    if (column.name.starts_with("dq")) continue;
+    Joint joint{column.name, {}, series_of(states, column.values, epoch), {}};
+    if (const JointColumn* positions = commands.find(column.name))
+      joint.commands = series_of(commands, positions->values, epoch);
+    else if (const JointColumn* velocities = commands.find("d" + column.name))
+      joint.commands = integrated(series_of(commands, velocities->values, epoch), column.values.front());
+    else
+      continue;
+    if (const JointColumn* velocities = states.find("d" + column.name)) joint.velocities = velocities->values;
+    joints.push_back(std::move(joint));
+  }
+  if (joints.empty())
+    throw InputError(options.commands.string(), "commands no joint of " + options.states.string(),
+                     "call a joint's column the same in both: q1, q2, ...; or dq1, dq2, ... for commanded velocities");
+  const double first = std::max(joints[0].commands.front().time, 0.0);
+  const double last = std::min(joints[0].commands.back().time, joints[0].states.back().time);
+  if (last - first < 0.5 * joints[0].states.back().time || last - first < kAhead[0])
+    throw InputError(options.commands.string(), "covers less than half of the time of " + options.states.string(),
+                     "name recordings of the same motion, with times of one clock");
+  return joints;
+}
+
+// A learner and how far it has been fed.
+struct Learner {
+  JointResponse response;
+  std::size_t next_command = 0;
+
+  void take(const Joint& joint, const TimedPosition& state) {
+    for (; next_command < joint.commands.size(); ++next_command) {
+      const TimedPosition& command = joint.commands[next_command];
+      if (command.time > state.time + kFarthestCommand) break;
+      response.command(command.time, command.position);
+    }
+    response.observe(state.time, state.position);
+  }
+};
+
+struct Scores {
+  std::array<Errors, 5> methods{Errors{"predicted", ""}, Errors{"predicted, learning goes on", "online_"},
+                                Errors{"increment", "increment_"}, Errors{"velocity", "velocity_"},
+                                Errors{"hold", "hold_"}};
+  std::array<std::size_t, kAhead.size()> inside{};
+  nlohmann::json joints = nlohmann::json::array();
+};
+
+double velocity_at(const Joint& joint, const PositionHistory& states, std::size_t i) {
+  if (!joint.velocities.empty()) return joint.velocities[i];
+  const TimedPosition& now = joint.states[i];
+  const double then = std::max(now.time - kVelocityOver, joint.states.front().time);
+  return now.time > then ? (now.position - states.at(then)) / (now.time - then) : 0;
+}
+
+void describe(const Joint& joint, const JointResponse& response, Scores& scores) {
+  const ResponseFigures& f = response.figures();
+  scores.joints.push_back({{"name", joint.name},
+                           {"identified", f.samples > 0},
+                           {"delay_s", f.delay},
+                           {"delay_sigma_s", f.delay_sigma},
+                           {"dead_time_s", f.dead_time},
+                           {"dead_time_sigma_s", f.dead_time_sigma},
+                           {"lag_s", f.lag},
+                           {"unexplained_rad", f.unexplained}});
+  if (f.samples == 0) {
+    std::printf("%-12s not identified: its commands do not move it in the first 40 %% of the time\n",
+                joint.name.c_str());
+    return;
+  }
+  std::printf("%-12s delay %6.1f +- %.1f ms: dead time %6.1f +- %.1f ms, lag %6.1f ms; unexplained %.3f mrad rms\n",
+              joint.name.c_str(), f.delay * 1e3, f.delay_sigma * 1e3, f.dead_time * 1e3, f.dead_time_sigma * 1e3,
+              f.lag * 1e3, f.unexplained * 1e3);
+}
+
+// All that the recordings show, at once: what predictions are judged by.
+struct Truth {
+  PositionHistory commands, states;
+  double end = 0;
+
+  explicit Truth(const Joint& joint) : commands(joint.commands.size()), states(joint.states.size()) {
+    for (const TimedPosition& command : joint.commands) commands.add(command.time, command.position);
+    for (const TimedPosition& state : joint.states) states.add(state.time, state.position);
+    end = std::min(joint.commands.back().time, joint.states.back().time);
+  }
+};
+
+void score(const Joint& joint, const Truth& truth, std::size_t i, const std::array<const JointResponse*, 2>& learners,
+           Scores& scores) {
+  const TimedPosition& now = joint.states[i];
+  for (std::size_t h = 0; h < kAhead.size(); ++h) {
+    const double then = now.time + kAhead[h];
+    if (then > truth.end || !truth.states.covers(then, kLongestGap)) continue;
+    const PredictedPosition predicted = learners[0]->at(then), online = learners[1]->at(then);
+    const double there = truth.states.at(then);
+    const double way = truth.commands.at(then) - truth.commands.at(now.time);
+    const std::array guesses{predicted.position, online.position, now.position + way,
+                             now.position + velocity_at(joint, truth.states, i) * kAhead[h], now.position};
+    for (std::size_t m = 0; m < guesses.size(); ++m) scores.methods[m].at[h].push_back(std::abs(guesses[m] - there));
+    scores.inside[h] += std::abs(predicted.position - there) <= 2 * predicted.sigma;
+  }
+}
+
+void measure(const Joint& joint, Scores& scores) {
+  const Truth truth(joint);
+  const double learnt = kLearning * truth.end;
+  const std::size_t stride = joint.states.size() / kMostInstants + 1;
+  Learner kept, online;
+  bool identified = false;
+  double identify_next = 1;
+  for (std::size_t i = 0; i < joint.states.size() && joint.states[i].time <= truth.end; ++i) {
+    const TimedPosition& now = joint.states[i];
+    if (!identified && now.time > learnt) {
+      identified = true;
+      kept.response.identify();
+      describe(joint, kept.response, scores);
+    }
+    kept.take(joint, now);
+    online.take(joint, now);
+    if (now.time >= identify_next) {
+      online.response.identify();
+      identify_next = now.time + 1;
+    }
+    if (identified && i % stride == 0) score(joint, truth, i, {&kept.response, &online.response}, scores);
+  }
+}
+
+nlohmann::json report(const Scores& scores) {
+  const auto& ours = scores.methods[0].at;
+  nlohmann::json all;
+  std::printf("\n%-28s %12s %12s %12s   (95 %% are nearer, mrad)\n", "error", "100 ms", "300 ms", "1,000 ms");
+  for (const Errors& method : scores.methods) {
+    std::printf("%-28s", method.name);
+    for (std::size_t h = 0; h < kAhead.size(); ++h) {
+      const std::string key = kAheadKeys[h], before = method.key;
+      const bool any = !method.at[h].empty();
+      const double p95 = quantile(method.at[h], 0.95);
+      all[before + "p95_rad_" + key] = any ? nlohmann::json(p95) : nlohmann::json();
+      all[before + "rms_rad_" + key] = any ? nlohmann::json(root_mean_square(method.at[h])) : nlohmann::json();
+      std::printf(" %12s", any ? readable(p95 * 1e3, 3).c_str() : "-");
+    }
+    std::printf("\n");
+  }
+  std::printf("%-28s", "truth within 2 sigma, %");
+  for (std::size_t h = 0; h < kAhead.size(); ++h) {
+    const double inside =
+        static_cast<double>(scores.inside[h]) / static_cast<double>(std::max<std::size_t>(ours[h].size(), 1));
+    std::printf(" %12.1f", 100 * inside);
+    all[std::string("inside_2_sigma_") + kAheadKeys[h]] = ours[h].empty() ? nlohmann::json() : nlohmann::json(inside);
+  }
+  std::printf("\n");
+  all["scored"] = {ours[0].size(), ours[1].size(), ours[2].size()};
+  all["joints"] = scores.joints;
+  return all;
+}
+
+}  // namespace
+
+int bench_prediction_response(const PredictionResponseOptions& options) {
+  const std::vector<Joint> joints = read_joints(options);
+  Scores scores;
+  for (const Joint& joint : joints) measure(joint, scores);
+  const auto& ours = scores.methods[0].at;
+  if (ours[0].size() < kFewest)
+    throw InputError(options.states.string(), "has only " + std::to_string(ours[0].size()) + " states to judge by",
+                     "name a recording of some seconds");
+  write_numbers(options.json, report(scores).dump(2));
+  return 0;
+}
+
+}  // namespace foresight

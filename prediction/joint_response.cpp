@@ -1,0 +1,193 @@
+#include "prediction/joint_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+constexpr double kLongestAge = 0.32;                      // s beyond the delay, until something was identified
+constexpr std::size_t kCommands = 32768, kStates = 8192;  // half a minute at 1 kHz and at 250 Hz
+constexpr double kLongestGap = 0.15;                      // s between states that what lies between is known for
+constexpr std::size_t kFewest = 40;                       // changes to learn from
+constexpr double kLeastVariance = 1e-14;
+constexpr double kLeastSigma = 1e-7;                  // rad
+constexpr double kSigmaOver = 5;                      // s
+constexpr std::array kHorizon{0.03, 0.1, 0.3, 1.0};   // s
+constexpr std::array kMeanOver{0.0, 0.02, 0.2, 2.0};  // s
+constexpr double kGuessEvery = 0.01;                  // s
+constexpr std::size_t kRestTerms = kMeanOver.size() - 1;
+
+Weights rest_inputs(const std::array<double, kMeanOver.size()>& means) {
+  Weights x(kRestTerms);
+  for (std::size_t k = 0; k < kRestTerms; ++k) x[static_cast<Eigen::Index>(k)] = means[k] - means.back();
+  return x;
+}
+
+void carry_on(std::array<double, kMeanOver.size()>& means, double seconds, double unexplained) {
+  for (std::size_t k = 0; k < means.size(); ++k)
+    means[k] += (1 - (kMeanOver[k] > 0 ? std::exp(-seconds / kMeanOver[k]) : 0)) * (unexplained - means[k]);
+}
+
+// Where `ahead` lies between the horizons: the earlier one's index, and the share of the next.
+std::pair<std::size_t, double> between_horizons(double ahead) {
+  std::size_t i = 0;
+  while (i + 2 < kHorizon.size() && ahead > kHorizon[i + 1]) ++i;
+  const double share = std::log(std::max(ahead, 1e-9) / kHorizon[i]) / std::log(kHorizon[i + 1] / kHorizon[i]);
+  return {i, std::clamp(share, 0.0, 1.0)};
+}
+
+}  // namespace
+
+JointResponse::JointResponse(const JointResponseOptions& options)
+    : options_(options),
+      commands_(kCommands),
+      states_(kStates),
+      fit_{StepResponse::pure_delay(options.expected_delay, kLongestAge), {}},
+      learnt_means_(kStates),
+      learnt_unexplained_(kStates),
+      learnt_off_(kStates) {
+  static_assert(kHorizon.size() == kHorizons && kMeanOver.size() == kMeans);
+  for (const double horizon : kHorizon) {
+    const auto guesses = static_cast<std::size_t>(std::ceil(horizon / kGuessEvery)) + 2;
+    rests_.push_back({Weights::Constant(kRestTerms, 0.3),
+                      CalibratedSigma(0.02, kLeastSigma, kSigmaOver, CalibratedSigma::kScaleOfOne),
+                      LastOf<PredictedAt>(guesses)});
+  }
+}
+
+bool JointResponse::observe(double time, double position) noexcept {
+  if (!std::isfinite(time) || !std::isfinite(position) || commands_.empty()) return false;
+  if (observed_ && !(time > newest_.time)) return false;
+  const TimedPosition before = newest_, now{time, position};
+  const double unexplained = position - fit_.model.output(commands_, time);
+  if (!observed_ || time - before.time > options_.stale) {
+    means_.fill(unexplained);
+    for (Rest& rest : rests_) rest.guesses.clear();
+  } else {
+    carry_on(means_, time - before.time, unexplained);
+    judge(before, now);
+  }
+  newest_ = now;
+  observed_ = true;
+  inputs_now_ = fit_.model.inputs(commands_, time, time);
+  if (states_.empty() || time - states_.values().newest().time >= options_.least_step) states_.add(time, position);
+  guess();
+  return true;
+}
+
+void JointResponse::judge(const TimedPosition& before, const TimedPosition& now) noexcept {
+  for (Rest& rest : rests_)
+    for (; !rest.guesses.empty() && rest.guesses[0].time <= now.time; rest.guesses.drop_oldest()) {
+      const PredictedAt& guess = rest.guesses[0];
+      const double truth =
+          std::lerp(before.position, now.position, (guess.time - before.time) / (now.time - before.time));
+      rest.sigma.score(std::abs(guess.position - truth), guess.sigma, kGuessEvery);
+    }
+}
+
+void JointResponse::guess() noexcept {
+  for (std::size_t i = 0; i < kHorizons; ++i) {
+    auto& guesses = rests_[i].guesses;
+    const double then = newest_.time + kHorizon[i];
+    if (!guesses.empty() && then - guesses.newest().time < kGuessEvery) continue;
+    // Commands that are not known yet would make another prediction of it than the one that is asked for then.
+    if (commands_.values().newest().time < then) continue;
+    const PredictedPosition predicted = at(then);
+    if (predicted.valid) guesses.next() = {then, predicted.position, predicted.sigma};
+  }
+}
+
+bool JointResponse::identify() noexcept {
+  const auto found = fit_step_response(commands_, states_);
+  if (!found) return false;
+  fit_ = *found;
+  figures_ = fit_.figures();
+  std::size_t first = 0;
+  while (states_.values()[first].time < fit_.first) ++first;
+  learn_rest(first);
+  identified_ = true;
+  inputs_now_ = fit_.model.inputs(commands_, newest_.time, newest_.time);
+  return true;
+}
+
+void JointResponse::learn_rest(std::size_t first) noexcept {
+  const auto& states = states_.values();
+  Means means{};
+  for (std::size_t i = first; i < states.size(); ++i) {
+    const double unexplained = states[i].position - fit_.model.output(commands_, states[i].time);
+    const double seconds = i == first ? 0 : states[i].time - states[i - 1].time;
+    if (i == first || seconds > options_.stale)
+      means.fill(unexplained);
+    else
+      carry_on(means, seconds, unexplained);
+    learnt_unexplained_[i] = unexplained;
+    learnt_means_[i] = means;
+  }
+  means_ = means;
+  for (std::size_t h = 0; h < kHorizons; ++h) learn_rest(first, h);
+}
+
+void JointResponse::learn_rest(std::size_t first, std::size_t horizon) noexcept {
+  const auto& states = states_.values();
+  Rest& rest = rests_[horizon];
+  const auto for_each_pair = [&](const auto& visit) {
+    for (std::size_t i = first, then = first; i < states.size(); ++i) {
+      while (then < states.size() && states[then].time < states[i].time + kHorizon[horizon]) ++then;
+      if (then == states.size()) return;
+      if (states[then].time - states[then - 1].time <= kLongestGap)
+        visit(rest_inputs(learnt_means_[i]), learnt_unexplained_[then] - learnt_means_[i].back());
+    }
+  };
+  double variance = kLeastVariance;
+  std::size_t count = 0;
+  for_each_pair([&](const Weights& x, double) {
+    variance += x[0] * x[0];
+    ++count;
+  });
+  if (count < kFewest) return;
+  constexpr double kFirmly = 10;  // samples
+  variance /= static_cast<double>(count);
+  OnlineRegression fit(Weights::Constant(kRestTerms, 0.3), Weights::Constant(kRestTerms, kFirmly * variance), 1);
+  for_each_pair([&](const Weights& x, double y) { fit.add(x, y); });
+  rest.weights = fit.weights();
+  if (identified_) return;
+  rest.guesses.clear();  // they tell of the prior
+  double squares = 0;
+  std::size_t judged = 0;
+  for_each_pair([&](const Weights& x, double y) {
+    const double off = y - fit.predict(x);
+    squares += off * off;
+    learnt_off_[judged++] = std::abs(off);
+  });
+  const double rms = std::sqrt(squares / static_cast<double>(judged));
+  const auto worst = learnt_off_.begin() + static_cast<std::ptrdiff_t>(judged * 19 / 20);
+  std::nth_element(learnt_off_.begin(), worst, learnt_off_.begin() + static_cast<std::ptrdiff_t>(judged));
+  const double scale = rms > 0 ? std::clamp(0.5 * *worst / rms, 0.5, 2.0) : CalibratedSigma::kScaleOfOne;
+  rest.sigma = CalibratedSigma(rms, kLeastSigma, kSigmaOver, scale);
+}
+
+double JointResponse::rest(double ahead) const noexcept {
+  const auto [i, share] = between_horizons(ahead);
+  const Weights weights = (1 - share) * rests_[i].weights + share * rests_[i + 1].weights;
+  return means_.back() + rest_inputs(means_).dot(weights);
+}
+
+double JointResponse::sigma(double ahead) const noexcept {
+  const auto [i, share] = between_horizons(ahead);
+  return std::lerp(rests_[i].sigma.sigma(), rests_[i + 1].sigma.sigma(), share);
+}
+
+PredictedPosition JointResponse::at(double time) const noexcept {
+  PredictedPosition answer;
+  if (!observed_ || !(time >= newest_.time && time <= newest_.time + options_.farthest)) return answer;
+  const double ahead = time - newest_.time;
+  const StepResponse& model = fit_.model;
+  const Weights then = model.inputs(commands_, time, time);
+  answer.position = model.base(commands_, time, time) + then.dot(model.realised) + rest(ahead);
+  answer.sigma = std::hypot(sigma(ahead), fit_.sigma(then - inputs_now_));
+  answer.valid = std::isfinite(answer.position);
+  return answer;
+}
+
+}  // namespace foresight

@@ -1,0 +1,47 @@
+#include "prediction/position_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foresight {
+
+bool PositionHistory::add(double time, double position) noexcept {
+  if (!std::isfinite(time) || !std::isfinite(position)) return false;
+  if (!values_.empty() && !(time > values_.newest().time)) return false;
+  values_.next() = {time, position};
+  return true;
+}
+
+// The first value whose time is after `time`; size() where there is none.
+std::size_t PositionHistory::first_after(double time) const noexcept {
+  std::size_t from = 0, count = values_.size();
+  while (count > 0) {
+    const std::size_t half = count / 2;
+    if (values_[from + half].time > time) {
+      count = half;
+    } else {
+      from += half + 1;
+      count -= half + 1;
+    }
+  }
+  return from;
+}
+
+double PositionHistory::at(double time, double until, double sparse) const noexcept {
+  const std::size_t after = first_after(std::min(time, until));
+  if (after == 0) return values_[0].position;
+  const TimedPosition& before = values_[after - 1];
+  if (after == values_.size()) return before.position;
+  const TimedPosition& next = values_[after];
+  if (next.time > until || next.time - before.time > sparse) return before.position;
+  return std::lerp(before.position, next.position, (time - before.time) / (next.time - before.time));
+}
+
+bool PositionHistory::covers(double time, double gap) const noexcept {
+  const std::size_t after = first_after(time);
+  if (after == 0) return false;
+  if (after == values_.size()) return values_.newest().time == time;
+  return values_[after].time - values_[after - 1].time <= gap;
+}
+
+}  // namespace foresight

@@ -1,0 +1,38 @@
+// A joint's positions over time: commanded, or measured.
+#pragma once
+
+#include <limits>
+
+#include "prediction/last_of.hpp"
+
+namespace foresight {
+
+/// rad or m; s since an instant of the caller's.
+struct TimedPosition {
+  double time = 0, position = 0;
+};
+
+/// The last of a joint's positions over time, commanded or measured. One thread; allocates at the start only.
+class PositionHistory {
+ public:
+  static constexpr double kSparse = 0.055;  ///< s
+  explicit PositionHistory(std::size_t most) : values_(most) {}
+
+  /// False, and not taken: not finite, or not after the one before.
+  bool add(double time, double position) noexcept;
+  bool empty() const noexcept { return values_.empty(); }
+  const LastOf<TimedPosition>& values() const noexcept { return values_; }
+  /// Of those up to `until`, as if there were no others: linear between two that are `sparse` apart at most, else the
+  /// earlier one (a step); before the first and after the last, that one. Not empty.
+  double at(double time, double until = std::numeric_limits<double>::infinity(),
+            double sparse = kSparse) const noexcept;
+  /// Whether values on both sides of `time` are no farther apart than `gap`.
+  bool covers(double time, double gap) const noexcept;
+
+ private:
+  std::size_t first_after(double time) const noexcept;
+
+  LastOf<TimedPosition> values_;
+};
+
+}  // namespace foresight

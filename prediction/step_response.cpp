@@ -1,0 +1,201 @@
+#include "prediction/step_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+constexpr std::array kAgesAboutDelay{-0.1, -0.04, -0.02, -0.01, 0.0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};  // s
+constexpr double kFriction = 0.01;       // rad: what friction's share is a share of
+constexpr double kFrictionSpeed = 0.02;  // rad/s: where friction is nearly all there
+constexpr double kSpeedOver = 0.01;      // s to both sides
+constexpr double kLongestGap = 0.15;     // s between states that what lies between is known for
+constexpr double kDense = 0.006;         // s: commands so near on average are alike held or joined
+constexpr double kAllSteps = 0, kAllLines = 0.5;
+constexpr std::size_t kFewest = 40;    // changes to learn from
+constexpr std::size_t kEnough = 2000;  // more are left out, evenly
+constexpr double kMoved = 1e-4;        // rad rms: commands that change less teach nothing
+constexpr double kFirm = 4;            // inverse variance of a step's share about the pure delay's
+constexpr double kLeastVariance = 1e-14;
+constexpr double kResolution = 0.001;  // s that the steps of the ages leave open
+
+// States of which both `change` seconds and `reach` of commands lie before.
+struct Window {
+  const PositionHistory& commands;
+  const PositionHistory& states;
+  std::size_t first = 0, stride = 1, count = 0;
+  double change = 0, reach = 0;
+
+  // Visits the state at an instant, and the same earlier.
+  template <typename Visit>
+  void for_each_change(const Visit& visit) const {
+    for (std::size_t i = first; i < states.values().size(); i += stride) {
+      const TimedPosition now = states.values()[i];
+      const double then = now.time - change;
+      if (states.covers(then, kLongestGap)) visit(now, TimedPosition{then, states.at(then)});
+    }
+  }
+};
+
+std::optional<Window> learning_window(const PositionHistory& commands, const PositionHistory& states) {
+  if (states.empty() || commands.empty()) return {};
+  const double begin = std::max(commands.values()[0].time, states.values()[0].time);
+  const double seconds = states.values().newest().time - begin;
+  Window window{commands, states};
+  window.change = std::min(0.3, 0.25 * seconds);
+  window.reach = std::min(0.5, 0.25 * seconds);
+  const double from = begin + window.change + window.reach;
+  while (window.first < states.values().size() && states.values()[window.first].time < from) ++window.first;
+  window.stride = (states.values().size() - window.first) / kEnough + 1;
+  double moved = 0;
+  std::size_t count = 0;
+  window.for_each_change([&](const TimedPosition& now, const TimedPosition& then) {
+    const double way = commands.at(now.time, now.time) - commands.at(then.time, then.time);
+    moved += way * way;
+    ++count;
+  });
+  window.count = count;
+  if (count < kFewest || moved < kMoved * kMoved * static_cast<double>(count)) return {};
+  return window;
+}
+
+// Whether it matters if commands are held or joined by lines.
+bool are_sparse(const LastOf<TimedPosition>& commands) {
+  return commands.newest().time - commands[0].time > kDense * static_cast<double>(commands.size() - 1);
+}
+
+double misfit(const Window& window, double delay, double sparse) {
+  double sum = 0;
+  window.for_each_change([&](const TimedPosition& now, const TimedPosition& then) {
+    const double off = now.position - window.commands.at(now.time - delay, now.time, sparse) -
+                       (then.position - window.commands.at(then.time - delay, then.time, sparse));
+    sum += off * off;
+  });
+  return sum;
+}
+
+double best_delay(const Window& window, double sparse) {
+  Window coarse = window;
+  coarse.stride *= 4;
+  double best = 0, least = misfit(coarse, 0, sparse);
+  const auto consider = [&](const Window& some, double delay) {
+    const double misfit_then = misfit(some, delay, sparse);
+    if (misfit_then >= least) return;
+    least = misfit_then;
+    best = delay;
+  };
+  for (double delay = 0.002; delay <= window.reach; delay += delay < 0.06 ? 0.002 : delay < 0.2 ? 0.005 : 0.01)
+    consider(coarse, delay);
+  const double middle = best;
+  least = misfit(window, middle, sparse);
+  for (double off = -0.01; off <= 0.01; off += 0.001)
+    if (middle + off >= 0 && middle + off <= window.reach) consider(window, middle + off);
+  return best;
+}
+
+StepResponseFit fit(const Window& window, double sparse) {
+  const auto count = static_cast<double>(window.count);
+  StepResponseFit fit;
+  fit.count = window.count;
+  fit.first = window.states.values()[window.first].time;
+  StepResponse& model = fit.model;
+  model = StepResponse::pure_delay(best_delay(window, sparse), window.reach, sparse);
+  const double before = std::max(kLeastVariance, misfit(window, model.delay, sparse) / count);
+  fit.regression = {model.realised, Weights::Constant(model.realised.size(), kFirm * before), 1};
+  const auto for_each_equation = [&](const auto& visit) {
+    window.for_each_change([&](const TimedPosition& now, const TimedPosition& then) {
+      const double base =
+          model.base(window.commands, now.time, now.time) - model.base(window.commands, then.time, then.time);
+      visit(model.inputs(window.commands, now.time, now.time) - model.inputs(window.commands, then.time, then.time),
+            now.position - then.position - base);
+    });
+  };
+  for_each_equation([&](const Weights& x, double y) { fit.regression.add(x, y); });
+  model.realised = fit.regression.weights();
+  double products = 0, last = 0;
+  for_each_equation([&](const Weights& x, double y) {
+    const double off = y - x.dot(model.realised);
+    fit.squares += off * off;
+    products += off * last;
+    last = off;
+  });
+  // Neighbouring errors are alike, and count as one: (1 + r) / (1 - r) of them (Bartlett 1946).
+  const double alike = std::clamp(fit.squares > 0 ? products / fit.squares : 0.0, 0.0, 0.999);
+  fit.variance = std::max(kLeastVariance, fit.squares / count) * (1 + alike) / (1 - alike);
+  return fit;
+}
+
+}  // namespace
+
+StepResponse StepResponse::pure_delay(double delay, double reach, double sparse) noexcept {
+  StepResponse model;
+  model.delay = delay;
+  model.sparse = sparse;
+  std::size_t count = 1;  // age 0
+  for (const double about : kAgesAboutDelay)
+    if (delay + about > model.ages[count - 1] && about <= reach) model.ages[count++] = delay + about;
+  model.bins = count - 1;
+  model.realised.setZero(static_cast<Eigen::Index>(count));
+  for (std::size_t k = 0; k < model.bins; ++k)
+    model.realised[static_cast<Eigen::Index>(k)] = model.ages[k] >= delay ? 1 : 0;
+  return model;
+}
+
+double StepResponse::base(const PositionHistory& commands, double time, double until) const noexcept {
+  return commands.at(time - ages[bins], until, sparse);
+}
+
+Weights StepResponse::inputs(const PositionHistory& commands, double time, double until) const noexcept {
+  Weights x(static_cast<Eigen::Index>(bins + 1));
+  double younger = commands.at(time, until, sparse);
+  for (std::size_t k = 0; k < bins; ++k) {
+    const double older = commands.at(time - ages[k + 1], until, sparse);
+    x[static_cast<Eigen::Index>(k)] = younger - older;
+    younger = older;
+  }
+  const double acting = time - delay;
+  const double way = commands.at(acting + kSpeedOver, until, sparse) - commands.at(acting - kSpeedOver, until, sparse);
+  x[static_cast<Eigen::Index>(bins)] = kFriction * std::tanh(way / (2 * kSpeedOver * kFrictionSpeed));
+  return x;
+}
+
+double StepResponseFit::sigma(const Weights& inputs) const noexcept {
+  return std::sqrt(variance * regression.spread(inputs));
+}
+
+ResponseFigures StepResponseFit::figures() const noexcept {
+  Weights first = Weights::Zero(model.realised.size()), second = first;  // moments are sums of these times the shares
+  double mean = model.ages[model.bins], square = mean * mean;
+  for (std::size_t k = 0; k < model.bins; ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    first[at] = model.ages[k] - model.ages[k + 1];
+    second[at] = model.ages[k] * model.ages[k] - model.ages[k + 1] * model.ages[k + 1];
+  }
+  mean += first.dot(model.realised);
+  square += second.dot(model.realised);
+  ResponseFigures figures;
+  figures.delay = mean;
+  figures.delay_sigma = std::hypot(kResolution, sigma(first));
+  // A dead time d and a lag of time constant T: mean d + T, spread T.
+  figures.lag = std::clamp(std::sqrt(std::max(0.0, square - mean * mean)), 0.0, std::max(0.0, mean));
+  figures.dead_time = mean - figures.lag;
+  const double steep = std::max(figures.lag, 0.001);  // dT = (d square - 2 mean d mean) / 2 T
+  figures.dead_time_sigma = std::hypot(kResolution, sigma(first - (second - 2 * mean * first) / (2 * steep)));
+  figures.unexplained = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
+  figures.samples = count;
+  return figures;
+}
+
+std::optional<StepResponseFit> fit_step_response(const PositionHistory& commands,
+                                                 const PositionHistory& states) noexcept {
+  const auto window = learning_window(commands, states);
+  if (!window) return {};
+  StepResponseFit best = fit(*window, PositionHistory::kSparse);
+  if (are_sparse(commands.values()))
+    for (const double sparse : {kAllSteps, kAllLines})
+      if (const StepResponseFit other = fit(*window, sparse); other.squares < best.squares) best = other;
+  return best;
+}
+
+}  // namespace foresight

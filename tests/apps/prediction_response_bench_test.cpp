@@ -1,0 +1,106 @@
+// `foresight bench prediction response`: recorded and made-up arms, its keys, and words for wrong input.
+#include <cmath>
+
+#include "tests/apps/program.hpp"
+#include "tests/apps/runs.hpp"
+#include "tests/support/folders.hpp"
+
+namespace foresight {
+namespace {
+
+nlohmann::json measured(const TempFolder& out, const std::string& commands, const std::string& states) {
+  const std::string json = out / "response.json";
+  const Outcome outcome =
+      run_program({"bench", "prediction", "response", "--commands", commands, "--states", states, "--json", json});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  return outcome.exit_code == 0 ? read_json(json) : nlohmann::json{};
+}
+
+TEST(PredictionResponse, ARealArmIsPredictedToAMilliradian) {
+  const auto folder = data_folder() / "panda_command_state";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recorded arm in " << folder;
+  const TempFolder out;
+  const nlohmann::json all = measured(out, (folder / "command.csv").string(), (folder / "state.csv").string());
+  for (const std::string ahead : {"100ms", "300ms", "1000ms"}) {
+    EXPECT_LE(all["p95_rad_" + ahead].get<double>(), 0.7e-3) << ahead;
+    EXPECT_LE(all["online_p95_rad_" + ahead].get<double>(), 0.7e-3) << ahead;
+    EXPECT_GE(all["inside_2_sigma_" + ahead].get<double>(), 0.90) << ahead;
+    EXPECT_LE(all["inside_2_sigma_" + ahead].get<double>(), 0.985) << ahead;
+  }
+  EXPECT_LE(10 * all["p95_rad_300ms"].get<double>(), all["increment_p95_rad_300ms"].get<double>());
+  EXPECT_NEAR(all["hold_p95_rad_300ms"], 0.409, 0.01);
+  EXPECT_NEAR(all["velocity_p95_rad_300ms"], 0.115, 0.005);
+  EXPECT_NEAR(all["increment_p95_rad_300ms"], 0.0115, 0.0005);
+  ASSERT_EQ(all["joints"].size(), 7u);
+  for (const nlohmann::json& joint : all["joints"]) EXPECT_NEAR(joint["delay_s"], 0.0155, 0.002);
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+double wish(double t) {
+  return 0.5 * std::sin(1.2 * t) + 0.1 * std::sin(4 * t);
+}
+
+// One joint that follows 40 ms later; commanded by position, or by velocity.
+TEST(PredictionResponse, CommandsAreTakenAsPositionsOrVelocities) {
+  const TempFolder out;
+  std::string positions = "time_s,elbow\n", velocities = "dq1,time_s\n", states = "time_s,elbow\n",
+              numbered = "time_s,q1\n";
+  for (int i = 0; i < 3000; ++i) {
+    const double t = i * 0.005;
+    const std::string time = number(1000 + t);
+    positions += time + "," + number(wish(t)) + "\n";
+    velocities += number(0.6 * std::cos(1.2 * t) + 0.4 * std::cos(4 * t)) + "," + time + "\n";
+    for (std::string* table : {&states, &numbered})
+      *table += time + "," + number(wish(std::max(0.0, t - 0.04)) + 0.02) + "\n";
+  }
+  const auto by_position = measured(out, out.write("p.csv", positions).string(), out.write("s.csv", states).string());
+  const auto by_velocity =
+      measured(out, out.write("v.csv", velocities).string(), out.write("n.csv", numbered).string());
+  for (const nlohmann::json& all : {by_position, by_velocity}) {
+    EXPECT_LT(all["p95_rad_1000ms"].get<double>(), 0.0005);
+    EXPECT_GT(all["increment_p95_rad_1000ms"].get<double>(), 0.01);
+    EXPECT_TRUE(all["joints"][0]["identified"]);
+    EXPECT_NEAR(all["joints"][0]["delay_s"], 0.04, 0.003);
+    EXPECT_NEAR(all["joints"][0]["lag_s"], 0, 0.01);
+  }
+  EXPECT_EQ(by_position["joints"][0]["name"], "elbow");
+}
+
+TEST(PredictionResponse, WrongInputIsRefused) {
+  const TempFolder out;
+  std::string good = "time_s,q1\n", late = good, other = "time_s,q2\n";
+  for (int i = 0; i < 300; ++i) {
+    good += number(0.01 * i) + ",0\n";
+    late += number(5000 + 0.01 * i) + ",0\n";
+    other += number(0.01 * i) + ",0\n";
+  }
+  const std::string fine = out.write("fine.csv", good).string();
+  const std::pair<std::string, const char*> cases[] = {
+      {"/nowhere.csv", "/nowhere.csv"},
+      {out.write("empty.csv", "").string(), "has no row"},
+      {out.write("no_time.csv", "q1,q2\n1,2\n").string(), "names no time_s"},
+      {out.write("twice.csv", "time_s,q1,q1\n0,1,2\n").string(), "second column"},
+      {out.write("nan.csv", "time_s,q1\n0,0\n0.1,nan\n").string(), "nan.csv:3:5"},
+      {out.write("back.csv", "time_s,q1\n1,0\n0.5,0\n").string(), "back.csv:3"},
+      {out.write("fields.csv", "time_s,q1\n1,0\n1.5\n").string(), "fields.csv:3"},
+      {out.write("late.csv", late).string(), "one clock"},
+      {out.write("other.csv", other).string(), "commands no joint"},
+  };
+  for (const auto& [commands, problem] : cases) {
+    const Outcome outcome = run_program({"bench", "prediction", "response", "--commands", commands, "--states", fine});
+    EXPECT_EQ(outcome.exit_code, 2) << problem;
+    EXPECT_THAT(outcome.last_line(), testing::HasSubstr(problem));
+  }
+  const std::string brief = out.write("brief.csv", "time_s,q1\n0,0\n0.1,0\n0.2,0\n").string();
+  const Outcome outcome = run_program({"bench", "prediction", "response", "--commands", fine, "--states", brief});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.last_line(), testing::HasSubstr("states to judge by"));
+}
+
+}  // namespace
+}  // namespace foresight
