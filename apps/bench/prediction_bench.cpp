@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "apps/bench/prediction_hand.hpp"
 #include "apps/bench/prediction_head.hpp"
 #include "apps/bench/prediction_ik.hpp"
 #include "apps/bench/prediction_response.hpp"
@@ -52,6 +53,20 @@ void add_head(Command& prediction, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_prediction_head(*options); }; });
 }
 
+void add_hand(Command& prediction, std::function<int()>& action) {
+  auto* command =
+      prediction.add_subcommand("hand", "What filtering takes from the noise of tracked hands, and its lag");
+  auto options = std::make_shared<PredictionHandOptions>();
+  command
+      ->add_option("RECORDING", options->csv,
+                   "CSV with time_s (or timestamp) and x y z qx qy qz qw after a prefix for each pose")
+      ->reads()
+      ->required();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer("Example: foresight bench prediction hand hands.csv --json hands.json");
+  command->callback([options, &action] { action = [options] { return bench_prediction_hand(*options); }; });
+}
+
 void add_response(Command& prediction, std::function<int()>& action) {
   auto* command = prediction.add_subcommand("response", "Where commanded joints will be, with their drives' response");
   auto options = std::make_shared<PredictionResponseOptions>();
@@ -74,6 +89,7 @@ void add_prediction_benches(Command& bench, std::function<int()>& action) {
   prediction->require_subcommand();
   add_ik(*prediction, action);
   add_head(*prediction, action);
+  add_hand(*prediction, action);
   add_response(*prediction, action);
 }
 

@@ -1,4 +1,4 @@
-// `foresight bench prediction head`: recorded heads, its keys, and words for wrong input.
+// `foresight bench prediction head` and `hand`: recorded heads and hands, its keys, and words for wrong input.
 #include <cmath>
 
 #include "tests/apps/program.hpp"
@@ -63,6 +63,21 @@ TEST(PredictionHead, ReadsWhatTrackersWrite) {
   EXPECT_EQ(less["repeated"], 4);
   EXPECT_EQ(less["anew"], 1);
   EXPECT_LT(less["p95_mm"], less["constant_velocity_50ms_p95_mm"]);
+}
+
+TEST(PredictionHead, HandsAreFilteredWithoutLag) {
+  const auto csv = data_folder() / "quest_controllers/controllers.csv";
+  if (!std::filesystem::exists(csv)) GTEST_SKIP() << "no recorded hands in " << csv;
+  const TempFolder out;
+  const std::string json = out / "hand.json";
+  const Outcome outcome = run_program({"bench", "prediction", "hand", csv.string(), "--json", json});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json all = read_json(json);
+  EXPECT_EQ(all["poses"].size(), 4u);
+  EXPECT_NEAR(all["lag_ms"], 0, 1);
+  EXPECT_GT(all["low_pass_lag_ms"], 15);
+  EXPECT_LT(all["noise_mm"].get<double>(), 0.9 * all["raw_noise_mm"].get<double>());
+  EXPECT_LT(all["jitter_mm"].get<double>(), 0.8 * all["raw_jitter_mm"].get<double>());
 }
 
 TEST(PredictionHead, WrongInputIsRefused) {
