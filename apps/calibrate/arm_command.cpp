@@ -7,8 +7,10 @@
 #include "apps/calibrate/arm_input.hpp"
 #include "apps/calibrate/arm_report.hpp"
 #include "apps/calibrate/arm_session.hpp"
+#include "apps/calibrate/lens_file.hpp"
 #include "apps/calibrate/outputs.hpp"
 #include "apps/calibrate/robot_output.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/stop_signal.hpp"
 #include "common/text.hpp"
@@ -28,10 +30,14 @@ struct ArmOptions {
   CalibrateOutputs outputs;
 };
 
-HandEyeOptions solver_options(const ArmOptions& options) {
+HandEyeOptions solver_options(const ArmOptions& options, std::vector<std::string>& notes) {
   HandEyeOptions out;
   if (options.mount != "auto") out.mount = options.mount == "fixed" ? CameraMount::fixed : CameraMount::moving;
-  if (options.camera) out.camera = read_camera_file(*options.camera);
+  if (options.camera) {
+    const LensInFile lens = read_lens_file(*options.camera, options.input.side == "right" ? Side::right : Side::left);
+    if (!lens.note.empty()) notes.push_back(lens.note);
+    out.camera = lens.camera;
+  }
   out.distortion = parse_distortion(options.model);
   out.board_sigma = options.board_sigma;
   return out;
@@ -47,16 +53,22 @@ std::optional<Pose> head_of_arm(const ArmOptions& options, const HandEyeSummary&
   return Pose((head.T_world_pan.inverse() * camera_pose(head, angles)) * summary.X.inverse());
 }
 
+std::string board_words(const HandEyeSummary& s) {
+  if (s.board_scale_sigma == 0) return "board taken as stated";
+  const double off = s.board_scale - 1;
+  const std::string sigma = " +/- " + readable(100 * s.board_scale_sigma, 2) + " %";
+  if (std::abs(off) < s.board_scale_sigma) return "board as stated" + sigma;
+  return "board " + readable(100 * std::abs(off), 2) + sigma + (off < 0 ? " smaller" : " larger") + " than stated";
+}
+
 void print(const HandEyeSummary& s) {
-  std::cout << "camera is " << to_string(s.mount) << "; views " << s.views.size() << ", corners rejected "
-            << s.rejected_points << "\n"
+  std::cout << "camera is " << to_string(s.mount) << "; " << counted(s.views.size(), "view") << ", "
+            << counted(s.rejected_points, "corner") << " rejected\n"
             << name_of_X(s.mount) << "  " << readable_pose(s.X) << "\n"
             << name_of_Y(s.mount) << "  " << readable_pose(s.Y) << "\n"
-            << "focal length " << readable(s.camera.lens[0], 2) << " " << readable(s.camera.lens[1], 2) << " px, board "
-            << readable(100 * (s.board_scale - 1), 2) << " +/- " << readable(100 * s.board_scale_sigma, 2)
-            << " % larger than stated\n"
-            << "noise: corner " << readable(s.sigma_px, 3) << " px, robot " << readable(1e3 * s.sigma_robot_m, 2)
-            << " mm and " << readable(1e3 * s.sigma_robot_rad, 2) << " mrad\n"
+            << "focal length " << readable(s.camera.lens[0], 2) << " " << readable(s.camera.lens[1], 2) << " px, "
+            << board_words(s) << "\n"
+            << "noise: corner " << readable(s.sigma_px, 3) << " px, robot " << robot_noise_words(s) << "\n"
             << "in sample " << readable(s.in_sample_px, 3) << " px; left out " << readable(s.loo_px, 3) << " px, "
             << readable(s.loo_mm, 3) << " mm\n";
 }
@@ -89,8 +101,8 @@ HandEyeScore verify_kept(const ArmViews& unseen, const ArmViews& solved, HandEye
     offsets[solved.names.joints[j]] = summary.joint_offsets[j];
   const HandEyeScore score = score_hand_eye({summary.mount, summary.camera, summary.X, summary.Y, summary.board_scale},
                                             with_poses(unseen, offsets));
-  std::cout << "kept back " << score.views << " views: " << readable(score.px, 3) << " px, " << readable(score.mm, 3)
-            << " mm\n";
+  std::cout << "kept back " << counted(score.views, "view") << ": " << readable(score.px, 3) << " px, "
+            << readable(score.mm, 3) << " mm\n";
   if (score.px > kWorseThanLeftOut * summary.loo_px)
     summary.verdict.object("views that were kept back are predicted to " + readable(score.px, 2) +
                                " px, and those that were left out one by one to " + readable(summary.loo_px, 2),
@@ -102,7 +114,7 @@ int run(ArmOptions& options) {
   if (options.session.guided && !guide(options)) return kStopped;
   ArmViews views = read_arm_views(options.input);
   const std::optional<ArmViews> unseen = options.session.guided ? std::optional(keep_back(views)) : std::nullopt;
-  HandEyeOptions solver = solver_options(options);
+  HandEyeOptions solver = solver_options(options, views.notes);
   if (!solver.camera) solver.camera = lens_of_run(options.input);
   HandEyeSummary summary;
   if (options.session.guided) {
@@ -124,9 +136,9 @@ int run(ArmOptions& options) {
   if (kept) numbers["kept_back"] = {{"views", kept->views}, {"px", kept->px}, {"mm", kept->mm}};
   ResultHeader header{"arm", {}, {}, "loo_px", summary.loo_px, sigmas_of(summary, views.names)};
   header.views = prints_of(views.data.corners);
-  return deliver(
-      {summary.verdict, header, to_yaml(summary, views.names, T_head_base), [&] { return arm_report(summary, views); }},
-      numbers, options.outputs);
+  return deliver({summary.verdict, header, to_yaml(summary, views.names, T_head_base),
+                  [&] { return arm_report(summary, views, kept); }},
+                 numbers, options.outputs);
 }
 
 }  // namespace
@@ -135,8 +147,10 @@ void add_arm(Command& calibrate, std::function<int()>& action) {
   auto options = std::make_shared<ArmOptions>();
   auto* arm = calibrate.add_subcommand("arm", "Hand-eye of a camera on an arm, or of an arm before a camera");
   add_arm_input(*arm, options->input);
-  arm->add_option("--camera", options->camera,
-                  "Known lens: result of kind intrinsics, or camera_info; else that of --run, or it is estimated")
+  arm->add_option(
+         "--camera", options->camera,
+         "Known lens: result of stereo (that of --side), intrinsics or arm, or camera_info; else that of --run,\n"
+         "or it is estimated")
       ->reads();
   arm->add_option("--model", options->model, "Lens model that is estimated")->capture_default_str();
   arm->add_option("--camera-link", options->input.names.camera,

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/calibrate/robot_output.hpp"
+#include "apps/calibrate/lens_file.hpp"
 #include "apps/calibrate/run_input.hpp"
 #include "calibration/robot/robot_poses.hpp"
 #include "calibration/target/corner_files.hpp"
 #include "calibration/target/image_input.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "rig/rig.hpp"
@@ -122,8 +123,7 @@ void match_rows(const fs::path& file, const std::vector<std::string>& joints, Ar
                        return by_name.contains(fs::path(view).stem().string());
                      });
   if (!named && rows.size() != out.images.size())
-    throw InputError("--joints",
-                     std::to_string(rows.size()) + " rows for " + std::to_string(out.images.size()) + " images",
+    throw InputError("--joints", counted(rows.size(), "row") + " for " + counted(out.images.size(), "image"),
                      "give one row an image, or name the rows as the images");
   out.notes.push_back("joint positions were matched to the images by " + std::string(named ? "name" : "order"));
   for (const std::string& view : views) {
@@ -212,7 +212,7 @@ void read_run(const ArmInput& input, const std::vector<std::string>& names, ArmV
   const auto stills = stills_of(pictures, history, seconds(offset), static_cast<std::size_t>(input.most_views));
   if (stills.size() < kFewestStations)
     throw InputError(input.run->string(),
-                     "the robot held still at " + std::to_string(stills.size()) + " places before the camera",
+                     "the robot held still at " + counted(stills.size(), "place") + " before the camera",
                      "let it stop for half a second at 15 places and more (`foresight calibrate arm --guided`)");
   std::vector<fs::path> files;
   for (const Still& still : stills) files.push_back(still.picture.file);
@@ -225,8 +225,8 @@ void read_run(const ArmInput& input, const std::vector<std::string>& names, ArmV
     const auto at = std::find(out.images.begin(), out.images.end(), view) - out.images.begin();
     out.rows.push_back(stills[static_cast<std::size_t>(at)].positions);
   }
-  out.notes.push_back("the robot held still at " + std::to_string(stills.size()) + " places, in " +
-                      std::to_string(pictures.size()) + " pictures");
+  out.notes.push_back("the robot held still at " + counted(stills.size(), "place") + ", in " +
+                      counted(pictures.size(), "picture"));
 }
 
 JointChain chain_of(const ArmInput& input) {
@@ -319,7 +319,7 @@ std::optional<CameraModel> lens_of_run(const ArmInput& input) {
   if (!input.run) return std::nullopt;
   const fs::path file = *input.run / (input.side == "right" ? "camera_right.yaml" : "camera.yaml");
   if (!fs::exists(file)) return std::nullopt;
-  return read_camera_file(file);
+  return read_lens_file(file).camera;
 }
 
 void add_arm_input(Command& command, ArmInput& input) {
@@ -330,7 +330,8 @@ void add_arm_input(Command& command, ArmInput& input) {
                   "Instead: a recording of a robot that held still at many places, and its joints\n"
                   "(RUN-joints.csv); with --rig or --urdf")
       ->reads();
-  command.add_option("--side", input.side, "Of the recording: the left camera's pictures, or the right one's")
+  command
+      .add_option("--side", input.side, "Of a recording, or of a pair in --camera: the left camera, or the right one")
       ->check(one_of({"left", "right"}))
       ->capture_default_str();
   command.add_option("--most-views", input.most_views, "Of a recording, evenly over its places")

@@ -6,6 +6,7 @@
 #include "apps/calibrate/robot_output.hpp"
 #include "apps/calibrate/view_pictures.hpp"
 #include "calibration/result/frame_drawing.hpp"
+#include "common/counted.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -119,6 +120,12 @@ void show_pictures(const HandEyeSummary& s, const ArmViews& views, HtmlReport& r
 
 }  // namespace
 
+std::string robot_noise_words(const HandEyeSummary& s) {
+  constexpr double kLeast = 2e-5;  // rad or m: what the solver takes at least
+  if (s.sigma_robot_m < kLeast && s.sigma_robot_rad < kLeast) return "none found (below 0.02 mm and 0.02 mrad)";
+  return readable(1e3 * s.sigma_robot_m, 2) + " mm and " + readable(1e3 * s.sigma_robot_rad, 2) + " mrad";
+}
+
 nlohmann::ordered_json arm_numbers(const HandEyeSummary& s, const ArmNames& names,
                                    const std::optional<Pose>& T_head_base) {
   nlohmann::ordered_json out;
@@ -145,10 +152,12 @@ nlohmann::ordered_json arm_numbers(const HandEyeSummary& s, const ArmNames& name
   return out;
 }
 
-HtmlReport arm_report(const HandEyeSummary& s, const ArmViews& views) {
+HtmlReport arm_report(const HandEyeSummary& s, const ArmViews& views, const std::optional<HandEyeScore>& kept) {
   HtmlReport report("Hand-eye calibration");
-  report.table({"", ""}, {{"left out, px", readable(s.loo_px, 3)},
-                          {"left out, mm", readable(s.loo_mm, 3)},
+  const std::string of_kept =
+      kept ? readable(kept->px, 3, " px, ") + readable(kept->mm, 3, " mm on ") + counted(kept->views, "view") : "-";
+  report.table({"", ""}, {{"each view left out in turn", readable(s.loo_px, 3, " px, ") + readable(s.loo_mm, 3, " mm")},
+                          {"views kept back from the solver", of_kept},
                           {"in sample, px", readable(s.in_sample_px, 3)},
                           {"corners rejected", std::to_string(s.rejected_points)},
                           {"camera", to_string(s.mount)},
@@ -156,8 +165,11 @@ HtmlReport arm_report(const HandEyeSummary& s, const ArmViews& views) {
                           {name_of_Y(s.mount), readable_pose(s.Y)},
                           {"board, true over stated size", readable(s.board_scale, 5)},
                           {"noise of a corner, px", readable(s.sigma_px, 3)},
-                          {"noise of the robot, mm", readable(1e3 * s.sigma_robot_m, 3)},
-                          {"noise of the robot, mrad", readable(1e3 * s.sigma_robot_rad, 3)}});
+                          {"noise of the robot, per axis", robot_noise_words(s)}});
+  report.paragraph(
+      "Noise of the robot: by how much its poses differ from where the pictures have the board, beyond what the noise "
+      "of "
+      "the corners explains.");
   report_notes(report, s.notes);
   draw_frames(s, views, report);
   plot_residuals(s, report);

@@ -4,6 +4,9 @@
 #include <sstream>
 
 #include "apps/calibrate/view_pictures.hpp"
+#include "calibration/camera/camera_result.hpp"
+#include "calibration/result/frame_drawing.hpp"
+#include "common/counted.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -38,7 +41,7 @@ void add_scores(const CameraCalibration& c, HtmlReport& report) {
     row("left out, cross", c.held_out.cross_px);
     row("left out, epipolar (mean)", c.held_out.epipolar_px);
   }
-  const std::string without = ", without " + std::to_string(c.held_out.rejected_points) + " outliers";
+  const std::string without = ", without " + counted(c.held_out.rejected_points, "outlier");
   row("left out, joint" + without, c.held_out.joint_inlier_px);
   if (cameras(c) == 2) {
     row("left out, cross" + without, c.held_out.cross_inlier_px);
@@ -89,6 +92,31 @@ void add_coverage(const CameraCalibration& c, HtmlReport& report) {
   }
 }
 
+/// The left camera looks along the drawing's x.
+void add_drawing(const CameraCalibration& c, HtmlReport& report) {
+  const CameraRig& rig = c.solution.rig;
+  Pose T_drawing_left = Pose::Identity();
+  T_drawing_left.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const KnownBoard board(c.views.p_board, {});
+  const Eigen::Vector2d size = board.extent_m;
+  const double depth = 0.2 * c.board_distance_m;
+  FrameDrawing drawing;
+  for (const Pose& T_left_board : c.solution.T_left_board) {
+    const Pose T = T_drawing_left * T_left_board;
+    drawing.line({T * Eigen::Vector3d::Zero(), T * Eigen::Vector3d(size.x(), 0, 0),
+                  T * Eigen::Vector3d(size.x(), size.y(), 0), T * Eigen::Vector3d(0, size.y(), 0)},
+                 "k5", true);
+  }
+  for (std::size_t i = 0; i < cameras(c); ++i) {
+    const CameraModel& model = rig.cameras[i];
+    const Pose T = i == 0 ? T_drawing_left : Pose(T_drawing_left * rig.T_left_right);
+    drawing.frame(camera_name(static_cast<int>(i), c.views.cameras), T, 0.6 * depth);
+    drawing.camera("", T, model.width / (2 * model.lens[0]), model.height / (2 * model.lens[1]), depth);
+  }
+  report.heading("Where everything stood");
+  report.drawing("Cameras, and the board in each view", drawing.svg("cameras and boards in space"));
+}
+
 void add_pictures(const CameraCalibration& c, const RigErrors& errors, const PicturesOfViews& files,
                   HtmlReport& report) {
   const std::vector<int> number = numbers_of(c);
@@ -135,6 +163,7 @@ HtmlReport camera_report(const CameraCalibration& c, const PicturesOfViews& file
   add_scores(c, report);
   add_residuals(c, errors, report);
   add_coverage(c, report);
+  add_drawing(c, report);
   add_maps(c, report);
   add_pictures(c, errors, files, report);
   return report;

@@ -1,16 +1,17 @@
 #include "apps/calibrate/capture_command.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "apps/calibrate/capture_loop.hpp"
+#include "apps/calibrate/exposure_capture.hpp"
 #include "apps/calibrate/mock_board.hpp"
 #include "apps/calibrate/outputs.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "gl/glfw_window.hpp"
-#include "rig/rig.hpp"
+#include "rig/rig_scene.hpp"
 
 namespace foresight {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 struct Arguments {
   std::string board, out, pictures, rig, only, left, right, camera;
   std::vector<std::string> images;
+  std::vector<double> exposures;  // s; of a still scene, in place of a board
   bool mock = false;
   double rate = 0;
   int views = CaptureGuide::Options{}.views;
@@ -143,14 +145,69 @@ int report(const Arguments& a, const CaptureSession& session, CaptureEnd end) {
   write_json(a.json, numbers);
   if (progress.views > 0) print_next_command(a, session);
   if (progress.enough) return 0;
-  std::fprintf(stderr, "foresight: %s: %d views, kept in %s, are not enough; %s\n", to_string(end), progress.views,
-               a.out.c_str(), progress.wish.text.empty() ? "show more views" : progress.wish.text.c_str());
-  return 1;
+  const std::string kept = progress.views == 0 ? "nothing was taken"
+                           : progress.views == 1
+                               ? "1 view, kept in " + a.out + ", is not enough"
+                               : counted(progress.views, "view") + ", kept in " + a.out + ", are not enough";
+  std::fprintf(stderr, "foresight: %s: %s; %s\n", to_string(end), kept.c_str(),
+               progress.wish.text.empty() ? "show more views" : progress.wish.text.c_str());
+  return end == CaptureEnd::interrupted ? kStopped : 1;
+}
+
+/// Slow enough that the middles of the exposures come one after the other.
+constexpr double kMockSeriesRate = 20;
+
+std::unique_ptr<ExposedCameras> open_exposed(const Arguments& a, StereoConfig config, Clocks& clocks) {
+  if (config.mock()) {
+    for (CameraConfig& camera : config.cameras) camera.settings.rate = kMockSeriesRate;
+    const MockWorld world = a.rig.empty() ? MockWorld{} : mock_world(read_rig(a.rig));
+    const auto shafts = [](std::string_view joint, RobotTime) { return sim::shafts_at_rest(joint); };
+    return exposed_mock_cameras(open_stereo(config, shafts, clocks.stepped, world), clocks.stepped);
+  }
+  const auto open = [&a, config, &clocks](Duration exposure) -> std::unique_ptr<CaptureSource> {
+    StereoConfig exposed = config;
+    for (CameraConfig& camera : exposed.cameras) camera.settings.exposure = exposure;
+    if (is_stereo(a)) return pair_source(open_stereo(exposed, {}, clocks.real));
+    return lone_source(make_camera("camera", exposed.cameras[0], clocks.real));
+  };
+  return reopened_cameras(open, clocks.real);
+}
+
+int run_exposures(const Arguments& a) {
+  if (!a.board.empty() || !a.images.empty())
+    throw InputError("--exposures", std::string("stands beside ") + (a.board.empty() ? "--images" : "--board"),
+                     "give one of them: pictures of a board, or of a still scene at several exposure times");
+  StereoConfig config;
+  if (is_stereo(a))
+    config = described(a);
+  else
+    config.cameras[0] = lone_camera(a);
+  const Duration longest = config.mock() ? sim::MockStereo::kLongestExposure * Duration{100'000}
+                                         : seconds(1 / config.cameras[0].settings.rate);
+  const ExposureSeries series{a.out, exposure_times(a.exposures, longest), is_stereo(a)};
+  Clocks clocks;
+  const auto cameras = open_exposed(a, config, clocks);
+  const bool whole = take_exposure_series(*cameras, series);
+  const char* const out = a.out.c_str();
+  write_json(a.json, {{"cameras", series.stereo ? 2 : 1}, {"exposures_s", a.exposures}, {"whole", whole}});
+  if (!whole) {
+    std::fprintf(stderr, "foresight: interrupted; what was taken is in %s\n", out);
+    return kStopped;
+  }
+  if (series.stereo)
+    std::printf("foresight calibrate photometric --left %s/left --right %s/right --exposures %s/exposures.txt\n", out,
+                out, out);
+  else
+    std::printf("foresight calibrate photometric --images %s --exposures %s/exposures.txt\n", out, out);
+  return 0;
 }
 
 int run(const Arguments& a) {
-  Clocks clocks;
   require_one_source(a);
+  if (!a.exposures.empty()) return run_exposures(a);
+  if (a.board.empty())
+    throw InputError("--board", "is missing", "name the board that is shown, such as chessboard:9x6:0.025");
+  Clocks clocks;
   const Board board = parse_board(a.board);
   const auto [source, clock] = open_source(a, board, clocks);
   CaptureSession::Options options;
@@ -175,7 +232,7 @@ void refuse_files(const std::string& where, const std::filesystem::path& folder)
 
 std::vector<Output> capture_outputs(const Arguments& a, const std::filesystem::path& out) {
   std::vector<Output> all;
-  if (a.pictures.empty()) all = now_outputs(out.string() + "-seen");
+  if (a.pictures.empty() && a.exposures.empty()) all = now_outputs(out.string() + "-seen");
   all.push_back({out, Output::Kind::folder, {}, refuse_files});
   return all;
 }
@@ -183,11 +240,15 @@ std::vector<Output> capture_outputs(const Arguments& a, const std::filesystem::p
 }  // namespace
 
 void add_capture(Command& calibrate, std::function<int()>& action) {
-  auto* command =
-      calibrate.add_subcommand("capture", "Take images of a board by one or two cameras, until they are enough");
+  auto* command = calibrate.add_subcommand(
+      "capture", "Take images of a board until they are enough, or of a still scene at several exposures");
   auto a = std::make_shared<Arguments>();
-  command->add_option("--board", a->board, "chessboard|charuco|apriltag|circles:COLSxROWS:SIZE_M[:EXTRA[:FAMILY]]")
-      ->required();
+  command->add_option("--board", a->board, "chessboard|charuco|apriltag|circles:COLSxROWS:SIZE_M[:EXTRA[:FAMILY]]");
+  command
+      ->add_option("--exposures", a->exposures,
+                   "Instead of a board: a still scene at these exposure times, s, for `calibrate photometric`;\n"
+                   "automatic gain and white balance must be off")
+      ->expected(3, 100);
   command->add_option("--out", a->out, "New folder; left/ and right/ in it for a pair")
       ->writes([a](const std::filesystem::path& out) { return capture_outputs(*a, out); })
       ->required();
@@ -214,6 +275,9 @@ void add_capture(Command& calibrate, std::function<int()>& action) {
   command->footer(
       "Example: foresight calibrate capture --rig configs/minerva.yaml --board charuco:8x5:0.03:0.022:DICT_5X5_100 "
       "--out set\n         foresight calibrate capture --camera /dev/video0 --board chessboard:9x6:0.025 --out set\n"
+      "         foresight calibrate capture --rig configs/minerva.yaml --exposures 0.0005 0.001 0.002 0.004 0.008 "
+      "0.016 "
+      "0.03 --out series\n"
       "In the window: Space takes what is seen now, Escape or Q ends; what was taken stays.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "calibration/target/capture_picture.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/latest_value.hpp"
 #include "common/stop_signal.hpp"
@@ -32,7 +33,7 @@ struct Running {  // stops also where something throws
 void say(const CaptureMoment& moment, std::string& last) {
   const CaptureSession::Outcome& outcome = moment.outcome;
   std::string text =
-      outcome.verdict.taken ? "taken, " + std::to_string(moment.progress.views) + " views" : outcome.verdict.reason;
+      outcome.verdict.taken ? "taken, " + counted(moment.progress.views, "view") : outcome.verdict.reason;
   const std::string& wish = moment.progress.wish.text;
   if (!moment.progress.enough) text += "; next: " + (wish.empty() ? "another view, turned or moved" : wish);
   std::string kind = text;  // not again because a number changed, but for a view that was taken

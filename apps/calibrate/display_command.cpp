@@ -7,14 +7,16 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/calibrate/lens_file.hpp"
 #include "apps/calibrate/outputs.hpp"
+#include "apps/calibrate/robot_output.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/display_lens/panel_pattern.hpp"
 #include "calibration/result/html_report.hpp"
 #include "common/atomic_file.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
-#include "scene/camera_info.hpp"
 #include "scene/files.hpp"
 #include "scene/picture_file.hpp"
 
@@ -102,8 +104,8 @@ Deliverable deliverable(const DisplayLensSummary& s, const std::vector<std::pair
 HtmlReport report_of(const DisplayOptions& options, const DisplayLensSummary& s, const std::vector<PanelPoint>& points,
                      const CameraModel& eye) {
   HtmlReport report("Lens of a head display");
-  report.paragraph(std::to_string(s.points) + " points in " + std::to_string(s.T_display_camera.size()) +
-                   " pictures, " + std::to_string(s.rejected) + " rejected; " + readable(s.held_out_px, 3, " px") +
+  report.paragraph(counted(s.points, "point") + " in " + counted(s.T_display_camera.size(), "picture") + ", " +
+                   std::to_string(s.rejected) + " rejected; " + readable(s.held_out_px, 3, " px") +
                    " of the panel on points left out, " + to_string(s.panel.distortion) + ".");
   for (const std::string& warning : s.warnings) report.paragraph("Warning: " + warning + ".");
   HtmlReport::Series residuals{"points", {}, false}, places{"points", {}, false};
@@ -158,8 +160,10 @@ int run_display(const DisplayOptions& options) {
     return 0;
   }
   if (options.eye_camera.empty())
-    throw InputError("--eye-camera", "is missing", "give the camera_info file of the camera that took the pictures");
-  const CameraModel eye = to_camera_model(read_camera_info(options.eye_camera).lens);
+    throw InputError("--eye-camera", "is missing", "give the lens of the camera that took the pictures");
+  const LensInFile lens = read_lens_file(options.eye_camera);
+  if (!lens.note.empty()) print_notes({lens.note});
+  const CameraModel& eye = lens.camera;
   Pictures pictures;
   if (options.points.empty())
     pictures = find_all(options, pattern, eye);
@@ -199,7 +203,7 @@ void add_display(Command& calibrate, std::function<int()>& action) {
       ->writes(png_form());
   command->add_option("--images", options->images, "Folder of pictures that the eye camera took")->reads();
   command->add_option("--corners", options->points, "Instead: rows 'picture u v panel_u panel_v'")->reads();
-  command->add_option("--eye-camera", options->eye_camera, "camera_info file of the eye camera")->reads();
+  command->add_option("--eye-camera", options->eye_camera, std::string("The eye camera: ") + kLensFile)->reads();
   command
       ->add_option("--virtual-distance-m", options->virtual_distance_m,
                    "Distance of the virtual image; then the eye camera's positions are found too")

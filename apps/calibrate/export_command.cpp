@@ -1,5 +1,7 @@
 #include "apps/calibrate/export_command.hpp"
 
+#include <fmt/core.h>
+
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,8 +13,8 @@
 #include "calibration/result/html_report.hpp"
 #include "calibration/robot/pan_tilt.hpp"
 #include "common/atomic_file.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
-#include "common/exact_number.hpp"
 #include "common/text.hpp"
 #include "scene/files.hpp"
 
@@ -120,6 +122,11 @@ const CalibratedCameras& cameras_of(const Source& source, const ExportOptions& o
   return *source.cameras;
 }
 
+/// "2.3e-13 px": rounding of the numbers, as a rule.
+std::string px_text(double px) {
+  return fmt::format("{:.1e} px", px);
+}
+
 ExportSummary write_urdf(const Source& source, const ExportOptions& options) {
   const std::filesystem::path& out = *options.outputs.out;
   if (std::filesystem::exists(out) && !options.outputs.force)
@@ -151,7 +158,7 @@ ExportSummary write_urdf(const Source& source, const ExportOptions& options) {
     summary.worst_px = worst_ray(*source.cameras, as_read, kRays);
   }
   if (!(summary.worst_px <= kMostPx))
-    throw RuntimeFailure("the URDF would differ by " + exact_text(summary.worst_px) + " px", "report this");
+    throw RuntimeFailure("the URDF would differ by " + px_text(summary.worst_px), "report this");
   write_file_atomically(out, text);
   return summary;
 }
@@ -185,8 +192,8 @@ std::vector<std::vector<std::string>> lens_rows(const CalibratedCameras& cameras
 void write_report(const Source& source, const ExportOptions& options, const ExportSummary& summary) {
   if (!options.outputs.report) return;
   HtmlReport report("Export to " + options.to);
-  report.paragraph(std::to_string(summary.rays) + " rays per camera, read back from the files, differ by at most " +
-                   exact_text(summary.worst_px) + " px.");
+  report.paragraph(counted(summary.rays, "ray") + " per camera, read back from the files, differ by at most " +
+                   px_text(summary.worst_px) + ".");
   std::vector<std::vector<std::string>> files;
   for (const auto& file : summary.files) files.push_back({file.string()});
   report.table({"file"}, files);
@@ -211,7 +218,7 @@ int run_export(const ExportOptions& options) {
   }
   for (const std::string& note : source.notes) std::cout << "note: " << note << "\n";
   if (summary.rays > 0)
-    std::cout << summary.rays << " rays per camera agree within " << exact_text(summary.worst_px) << " px\n";
+    std::cout << counted(summary.rays, "ray") << " per camera agree within " << px_text(summary.worst_px) << "\n";
   write_json(options.outputs.json, numbers);
   write_report(source, options, summary);
   return 0;

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/counted.hpp"
 #include "common/numbers_file.hpp"
 
 namespace foresight {
@@ -21,11 +22,16 @@ void write_json(const std::optional<std::filesystem::path>& file, const nlohmann
   write_numbers(file, numbers.dump(2));
 }
 
+void tell_seen(std::size_t seen, std::size_t all) {
+  std::cout << seen << " of " << counted(all, "view") << (seen == 1 ? " is" : " are")
+            << " among those that the result was solved from, and " << (seen == 1 ? "does" : "do") << " not count\n";
+}
+
 int tell_verified(const Verdict& verdict, std::size_t views, nlohmann::ordered_json& numbers,
                   const std::optional<std::filesystem::path>& json) {
   numbers["pass"] = verdict.usable();
   numbers["failed_because"] = nlohmann::ordered_json::array();
-  std::cout << (verdict.usable() ? "pass on " : "FAIL on ") << views << (views == 1 ? " view\n" : " views\n");
+  std::cout << (verdict.usable() ? "pass on " : "FAIL on ") << counted(views, "view") << "\n";
   for (const Objection& objection : verdict.against) {
     numbers["failed_because"].push_back(objection.text());
     std::cout << "FAIL: " << objection.text() << "\n";

@@ -37,6 +37,9 @@ struct Deliverable {
 /// verdict above all, and the result where it may be used. Returns the exit code: 0, or 1 where it may not be used.
 int deliver(const Deliverable& found, nlohmann::ordered_json& numbers, const CalibrateOutputs& outputs);
 
+/// Prints that so many of the views are those that the result was solved from.
+void tell_seen(std::size_t seen, std::size_t all);
+
 /// The same for `verify`: prints "pass on 12 views", or "FAIL on 12 views" and each objection, and writes `numbers`
 /// with them to `json`. Returns 0 or 1.
 int tell_verified(const Verdict& verdict, std::size_t views, nlohmann::ordered_json& numbers,

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/calibrate/head_drawing.hpp"
+#include "apps/calibrate/lens_file.hpp"
 #include "apps/calibrate/outputs.hpp"
 #include "apps/calibrate/pan_tilt_input.hpp"
 #include "apps/calibrate/pan_tilt_tag_command.hpp"
@@ -148,7 +149,7 @@ void add_pan_tilt(Command& calibrate, std::function<int()>& action) {
   head->add_option("--corners", input.corners, "Found corners instead of images")->reads();
   head->add_option("--board", input.board, "The board, such as apriltag:6x6:0.055");
   head->add_option("--camera", input.camera,
-                   "The lens, for views: result of kind intrinsics (with --tags also stereo), or camera_info")
+                   std::string("The lens, for views: ") + kLensFile + "; with --tags both of stereo")
       ->reads();
   add_tag_options(*head, options->tags.input);
   head->add_option("--time", options->tags.time, "Result of `calibrate time` for --run; else a moving head tells it")

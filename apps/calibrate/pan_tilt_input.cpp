@@ -1,10 +1,11 @@
 #include "apps/calibrate/pan_tilt_input.hpp"
 
-#include "apps/calibrate/robot_output.hpp"
+#include "apps/calibrate/lens_file.hpp"
 #include "calibration/robot/hand_eye_start.hpp"
 #include "calibration/robot/robot_poses.hpp"
 #include "calibration/target/corner_files.hpp"
 #include "calibration/target/image_input.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "scene/text_table.hpp"
@@ -15,7 +16,7 @@ namespace {
 PanTiltAngles angles_of(const std::filesystem::path& file, const FieldRow& row) {
   const std::size_t n = row.fields.size(), first = n == 3 || n == 5 ? 1 : 0;
   if (n < 2 || n > 5)
-    throw InputError(at_line(file, row.line), "has " + std::to_string(n) + " fields",
+    throw InputError(at_line(file, row.line), "has " + counted(n, "field"),
                      "write [name] pan tilt [pan_way tilt_way], rad, ways +1 or -1");
   PanTiltAngles angles;
   double* const places[] = {&angles.pan, &angles.tilt};
@@ -59,7 +60,7 @@ std::vector<PanTiltSample> from_yaml(const std::filesystem::path& file) {
     for (const char* key : {"camera_joints", "target_joints"})
       if (joints.empty() && entry.has(key)) joints = entry.numbers(key);
     if (joints.size() != 2)
-      throw InputError(entry.where("target_joints"), "has " + std::to_string(joints.size()) + " angles",
+      throw InputError(entry.where("target_joints"), "has " + counted(joints.size(), "angle"),
                        "write pan and tilt, rad");
     PanTiltSample sample{name, {joints[0], joints[1], {}}, Pose::Identity()};
     const Eigen::Vector4d q(pose.number("qx"), pose.number("qy"), pose.number("qz"), pose.number("qw"));
@@ -89,12 +90,13 @@ std::vector<PanTiltSample> from_views(const PanTiltInput& input, std::vector<std
     for (const BoardView& view : corners.views) images.push_back(view.name);
   }
   const std::vector<PanTiltAngles> angles = read_angles_of(input.angles, images);
-  const CameraModel camera = read_camera_file(*input.camera);
+  const LensInFile lens = read_lens_file(*input.camera);
+  if (!lens.note.empty()) notes.push_back(lens.note);
   std::vector<PanTiltSample> samples;
   for (const BoardView& view : corners.views) {
     const auto at = std::find(images.begin(), images.end(), view.name) - images.begin();
     samples.push_back({view.name, angles[static_cast<std::size_t>(at)],
-                       board_pose(camera, corners.p_board, view).T_camera_board.inverse()});
+                       board_pose(lens.camera, corners.p_board, view).T_camera_board.inverse()});
   }
   return samples;
 }
@@ -104,8 +106,7 @@ std::vector<PanTiltSample> from_files(const PanTiltInput& input, std::vector<std
   notes.insert(notes.end(), read.notes.begin(), read.notes.end());
   const std::vector<NamedAngles> angles = read_angles(input.angles);
   if (angles.size() != read.poses.size())
-    throw InputError("--angles",
-                     std::to_string(angles.size()) + " rows for " + std::to_string(read.poses.size()) + " poses",
+    throw InputError("--angles", counted(angles.size(), "row") + " for " + counted(read.poses.size(), "pose"),
                      "give one row a pose");
   std::vector<PanTiltSample> samples;
   for (std::size_t i = 0; i < angles.size(); ++i)
@@ -127,7 +128,7 @@ std::vector<PanTiltAngles> read_angles_of(const std::optional<std::filesystem::p
   const bool by_name =
       std::all_of(images.begin(), images.end(), [&](const std::string& image) { return of(image) != rows.end(); });
   if (!by_name && rows.size() != images.size())
-    throw InputError("--angles", std::to_string(rows.size()) + " rows for " + std::to_string(images.size()) + " images",
+    throw InputError("--angles", counted(rows.size(), "row") + " for " + counted(images.size(), "image"),
                      "give one row an image");
   for (std::size_t i = 0; i < images.size(); ++i) out.push_back(by_name ? of(images[i])->angles : rows[i].angles);
   return out;

@@ -7,6 +7,7 @@
 #include "apps/calibrate/robot_output.hpp"
 #include "apps/calibrate/view_pictures.hpp"
 #include "calibration/robot/robot_results.hpp"
+#include "common/counted.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -73,6 +74,7 @@ nlohmann::ordered_json numbers_of(const Solved& solved) {
 
 void show_pictures(const Solved& solved, const TagViews& all, HtmlReport& report) {
   const std::vector<PanTiltView> views = views_at(all, solved.offset_s.value_or(0));
+  const std::vector<int> number = view_numbers(solved.summary.view_names);
   std::vector<HtmlReport::Picture> pictures;
   for (const std::size_t i : some_of(solved.summary.view_names.size(), kMostPictures)) {
     const auto view = std::find_if(views.begin(), views.end(),
@@ -87,14 +89,24 @@ void show_pictures(const Solved& solved, const TagViews& all, HtmlReport& report
     for (std::size_t side = 0; side < 2; ++side)
       if (!points[side].empty() && !files->second[side].empty())
         pictures.push_back({draw_view(files->second[side], points[side]),
-                            view->name + (all.cameras.pair() ? (side == 0 ? ", left" : ", right") : ""),
-                            "left out " + readable(solved.summary.loo_view_px[i], 2, " px")});
+                            std::to_string(number[i]) + (all.cameras.pair() ? (side == 0 ? ", left" : ", right") : ""),
+                            view->name + ": left out " + readable(solved.summary.loo_view_px[i], 2, " px")});
   }
   if (pictures.empty()) return;
   report.heading("Pictures");
   report.paragraph("Rings: corners of tags as found. Lines: to where the encoders alone have them, " +
                    readable(kArrow, 0) + " times too long.");
   report.pictures(pictures);
+}
+
+void list_views(const PanTiltTagSummary& s, HtmlReport& report) {
+  const std::vector<int> number = view_numbers(s.view_names);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < s.view_names.size(); ++i)
+    rows.push_back({std::to_string(number[i]), s.view_names[i], readable(s.angles[i].pan, 4),
+                    readable(s.angles[i].tilt, 4), i < s.loo_view_px.size() ? readable(s.loo_view_px[i], 2) : "-"});
+  report.heading("Views");
+  report.table({"view", "name", "pan / rad", "tilt / rad", "left out / px"}, rows);
 }
 
 HtmlReport report_of(const Solved& solved, const TagViews& all) {
@@ -123,6 +135,7 @@ HtmlReport report_of(const Solved& solved, const TagViews& all) {
   report.plot("Error of each view when it is left out, over pan", "pan / rad", "px", {pan});
   report.plot("Error of each view when it is left out, over tilt", "tilt / rad", "px", {tilt});
   show_pictures(solved, all, report);
+  list_views(s, report);
   report_sigmas(report, sigmas_of(s));
   return report;
 }
@@ -131,9 +144,9 @@ void print(const Solved& solved) {
   const PanTiltTagSummary& s = solved.summary;
   std::cout << "corners by encoders alone, views left out  " << readable(s.loo_px, 3) << " px RMS\n"
             << "corners in sample                          " << readable(s.in_sample_px, 3) << " px RMS\n"
-            << s.view_names.size() << " views, " << s.tags << " tags in images, " << s.rejected_points
-            << " corners left out; noise " << readable(s.corner_px, 3) << " px a corner, "
-            << readable(1e3 * s.shaft_rad, 3) << " mrad a shaft\n"
+            << counted(s.view_names.size(), "view") << ", " << counted(s.tags, "tag") << " in images, "
+            << counted(s.rejected_points, "corner") << " left out; noise " << readable(s.corner_px, 3)
+            << " px a corner, " << readable(1e3 * s.shaft_rad, 3) << " mrad a shaft\n"
             << "axes " << readable(1e3 * s.model.length_m, 2) << " mm apart, "
             << readable(s.model.twist_rad * 57.29577951, 3) << " degrees between them; backlash pan "
             << readable(1e3 * s.model.backlash_rad[0], 3) << " mrad, tilt "

@@ -4,17 +4,16 @@
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
+#include "apps/calibrate/lens_file.hpp"
 #include "apps/calibrate/pan_tilt_input.hpp"
-#include "apps/calibrate/robot_output.hpp"
 #include "apps/calibrate/run_input.hpp"
-#include "calibration/camera/camera_result.hpp"
 #include "calibration/registration/calibrated_head.hpp"
 #include "calibration/result/result_file.hpp"
 #include "calibration/robot/robot_poses.hpp"
 #include "calibration/target/image_input.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
-#include "scene/camera_info.hpp"
 #include "scene/picture_file.hpp"
 #include "session/run_recorder.hpp"
 
@@ -107,8 +106,7 @@ std::vector<Shot> shots_of_images(const PanTiltTagInput& input) {
   const std::vector<fs::path> left = list_images(*input.images);
   const std::vector<fs::path> right = input.right ? list_images(*input.right) : std::vector<fs::path>{};
   if (input.right && right.size() != left.size())
-    throw InputError("--right",
-                     std::to_string(right.size()) + " pictures for " + std::to_string(left.size()) + " left ones",
+    throw InputError("--right", counted(right.size(), "picture") + " for " + std::to_string(left.size()) + " left ones",
                      "give one right picture for each left one, in the same order");
   std::vector<std::string> names;
   for (const fs::path& file : left) names.push_back(file.stem().string());
@@ -166,20 +164,6 @@ void require(bool given, const char* option, const char* what) {
 }
 
 }  // namespace
-
-CalibratedCameras read_cameras_file(const fs::path& file, const std::optional<fs::path>& right) {
-  CalibratedCameras cameras;
-  const YamlMap top = YamlMap::load(file);
-  if (top.has("kind") && top.text("kind") == "stereo")
-    return read_calibrated_cameras(read_result(file, "stereo").result);
-  cameras.cameras = {read_camera_file(file)};
-  if (!right) return cameras;
-  const CameraInfo info = read_camera_info(*right);
-  if (!info.T_left_right) throw InputError(right->string(), "has no T_left_right", "say where the right camera is");
-  cameras.cameras.push_back(to_camera_model(info.lens));
-  cameras.T_left_right = *info.T_left_right;
-  return cameras;
-}
 
 TagViews read_tag_views(const PanTiltTagInput& given) {
   PanTiltTagInput input = given;

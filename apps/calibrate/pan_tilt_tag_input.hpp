@@ -42,9 +42,4 @@ TagViews read_tag_views(const PanTiltTagInput& input);
 /// Views of a run with the angles that its encoders tell at the capture times plus `offset_s`; others as they are.
 std::vector<PanTiltView> views_at(const TagViews& all, double offset_s);
 
-/// A result of kind "stereo" or "intrinsics", or a camera_info (and another one for the right camera, with
-/// T_left_right).
-CalibratedCameras read_cameras_file(const std::filesystem::path& file,
-                                    const std::optional<std::filesystem::path>& right);
-
 }  // namespace foresight

@@ -8,6 +8,7 @@
 #include "calibration/camera/camera_model.hpp"
 #include "calibration/registration/calibrated_head.hpp"
 #include "calibration/result/result_file.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -96,8 +97,7 @@ void keep_unseen(const ViewPrints& known, TagViews& all, nlohmann::ordered_json&
                        " views are among those that the result was solved from, and say nothing about others",
                    "record another run, and verify with it");
   if (2 * seen > all.views.size()) return;
-  std::printf("%zu of %zu views are among those that the result was solved from, and do not count\n", seen,
-              all.views.size());
+  tell_seen(seen, all.views.size());
   all = std::move(unseen);
 }
 
@@ -129,8 +129,8 @@ int verify_head(const PanTiltVerify& options) {
   const auto row = [&](const char* name, const Score& score, double limit, const std::string& cure) {
     const bool good = score.px() <= limit;
     if (!good) verdict.object(std::string("the error by ") + name + " is above its limit", cure);
-    std::printf("%-9s %s  (limit %s, %d corners)  %s\n", name, readable(score.px(), 3, " px").c_str(),
-                readable(limit, 3).c_str(), score.points, good ? "pass" : "FAIL");
+    std::printf("%-9s %s  (limit %s, %s)  %s\n", name, readable(score.px(), 3, " px").c_str(),
+                readable(limit, 3).c_str(), counted(score.points, "corner").c_str(), good ? "pass" : "FAIL");
     if (!good)
       std::printf("          worst: %s, %s\n", readable(score.worst, 1, " px").c_str(), score.worst_tag.c_str());
     json[std::string(name) + "_px"] = score.px();

@@ -4,13 +4,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/calibrate/lens_file.hpp"
 #include "apps/calibrate/outputs.hpp"
+#include "apps/calibrate/robot_output.hpp"
 #include "calibration/photometric/exposure_series.hpp"
 #include "calibration/result/html_report.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/exact_number.hpp"
 #include "common/text.hpp"
-#include "scene/camera_info.hpp"
 
 namespace foresight {
 namespace {
@@ -48,10 +50,11 @@ CameraPhotometry solve_one(const std::string& name, const Folders& folders,
     const cv::Size size = flat.front().pixels.size();
     Eigen::Vector2d centre((size.width - 1) / 2.0, (size.height - 1) / 2.0);
     if (!folders.camera.empty()) {
-      const Lens lens = read_camera_info(folders.camera).lens;
-      if (lens.width() != size.width || lens.height() != size.height)
+      const auto [camera, which] = read_lens_file(folders.camera, name == "right" ? Side::right : Side::left);
+      if (!which.empty()) print_notes({which});
+      if (camera.width != size.width || camera.height != size.height)
         throw InputError(folders.camera.string(), "is of another image size", "give the camera of these images");
-      centre = {lens.parameters().cx, lens.parameters().cy};
+      centre = {camera.lens[2], camera.lens[3]};
     }
     add_flat(flat, centre, out.samples);
   }
@@ -146,9 +149,8 @@ HtmlReport report_of(const std::vector<CameraPhotometry>& cameras, const std::op
   std::vector<HtmlReport::Series> responses, vignettes;
   for (const CameraPhotometry& camera : cameras) {
     const PhotometricSummary& s = camera.summary;
-    report.paragraph(camera.name + ": " + std::to_string(s.samples) + " blocks of " +
-                     std::to_string(camera.samples.images) + " images, residuals " +
-                     readable(s.rms_levels, 2, " levels") + ", on images left out " +
+    report.paragraph(camera.name + ": " + counted(s.samples, "block") + " of " + std::to_string(camera.samples.images) +
+                     " images, residuals " + readable(s.rms_levels, 2, " levels") + ", on images left out " +
                      readable(s.held_out_levels, 2, " levels") + ".");
     for (const std::string& warning : s.warnings) report.paragraph("Warning: " + warning + ".");
     responses.push_back({camera.name, {}, true});
@@ -215,9 +217,13 @@ void add_photometric(Command& calibrate, std::function<int()>& action) {
   command->add_option("--left-flat", options->left.flat, "Left flat field; the gain is from the same surface in both")
       ->reads();
   command->add_option("--right-flat", options->right.flat, "Right flat field")->reads();
-  command->add_option("--camera", options->one.camera, "camera_info file, for the centre of the vignetting")->reads();
-  command->add_option("--left-camera", options->left.camera, "camera_info file of the left camera")->reads();
-  command->add_option("--right-camera", options->right.camera, "camera_info file of the right camera")->reads();
+  command->add_option("--camera", options->one.camera, std::string("For the centre of the vignetting: ") + kLensFile)
+      ->reads();
+  command->add_option("--left-camera", options->left.camera, "The same of the left camera")->reads();
+  command
+      ->add_option("--right-camera", options->right.camera,
+                   "The same of the right camera; of a result of stereo its right lens")
+      ->reads();
   command->add_option("--exposures", options->exposures, "Rows 'NAME SECONDS' for all images; without: EXIF")->reads();
   add_outputs(*command, options->outputs);
   command->footer(

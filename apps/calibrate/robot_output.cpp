@@ -2,10 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calibration/camera/camera_result.hpp"
-#include "calibration/result/result_file.hpp"
 #include "common/text.hpp"
-#include "scene/camera_info.hpp"
 
 namespace foresight {
 
@@ -55,11 +52,6 @@ void report_notes(HtmlReport& report, const std::vector<std::string>& notes) {
 
 void print_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) std::cout << "note: " << note << "\n";
-}
-
-CameraModel read_camera_file(const std::filesystem::path& file) {
-  if (YamlMap::load(file).has("kind")) return read_camera(read_result(file, "intrinsics").result);
-  return to_camera_model(read_camera_info(file).lens);
 }
 
 }  // namespace foresight

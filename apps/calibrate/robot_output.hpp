@@ -27,7 +27,4 @@ void report_notes(HtmlReport& report, const std::vector<std::string>& notes);
 /// One line each on stdout.
 void print_notes(const std::vector<std::string>& notes);
 
-/// The lens in a file: a result of kind "intrinsics", or a ROS camera_info.
-CameraModel read_camera_file(const std::filesystem::path& file);
-
 }  // namespace foresight

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "calibration/robot/robot_poses.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "scene/text_table.hpp"
@@ -37,7 +38,7 @@ std::vector<JointRow> read_named_joints(const fs::path& file, const std::vector<
   std::vector<std::string> there = column_names(file);
   if (there.empty()) {
     if (joints[0].positions.size() != names.size())
-      throw InputError(file.string(), "has " + std::to_string(joints[0].positions.size()) + " joints without names",
+      throw InputError(file.string(), "has " + counted(joints[0].positions.size(), "joint") + " without names",
                        "begin it with a row of names, such as time_s," + names.front() + ",...");
     return joints;
   }

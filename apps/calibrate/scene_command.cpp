@@ -5,14 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "apps/calibrate/lens_file.hpp"
 #include "apps/calibrate/outputs.hpp"
+#include "apps/calibrate/robot_output.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/placement/placement.hpp"
 #include "calibration/placement/tag_views.hpp"
 #include "calibration/result/html_report.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
-#include "scene/camera_info.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace foresight {
@@ -37,8 +39,10 @@ std::vector<PointPair> read_points(const SceneOptions& options) {
   if (options.seen.empty() || options.camera.empty() || options.camera_poses.empty())
     throw InputError("--tag-corners", "it is not known where the tags are in the world",
                      "give --tag-corners FILE, or --seen, --camera and --camera-poses");
+  const LensInFile lens = read_lens_file(options.camera);
+  if (!lens.note.empty()) print_notes({lens.note});
   return triangulate_tags(options.tags, read_seen_corners(options.seen), read_image_poses(options.camera_poses),
-                          read_camera_info(options.camera).lens, options.sigma_px);
+                          to_lens(lens.camera), options.sigma_px);
 }
 
 // Points that cannot be points of this model: it is another one, or in another unit.
@@ -57,7 +61,7 @@ void require_near(const SceneModel& model, const std::vector<PointPair>& points)
 
 HtmlReport report_of(const std::vector<PointPair>& points, const PlacementSummary& s) {
   HtmlReport report("Placement of a model in the world");
-  report.paragraph(std::to_string(points.size()) + " points, " + readable(1000 * s.rms_m, 1, " mm") + " RMS; " +
+  report.paragraph(counted(points.size(), "point") + ", " + readable(1000 * s.rms_m, 1, " mm") + " RMS; " +
                    readable(1000 * s.loo_m, 1, " mm") + " on points left out.");
   for (const std::string& warning : s.warnings) report.paragraph("Warning: " + warning + ".");
   std::vector<std::vector<std::string>> rows;
@@ -94,7 +98,7 @@ int run_scene(const SceneOptions& options) {
   const PlacementSummary s = place_model(points, options.placement);
   YAML::Node pose;
   pose["pose"] = to_yaml(s.T_world_model);
-  std::cout << points.size() << " points fit to " << readable(1000 * s.rms_m, 1, " mm") << " RMS, "
+  std::cout << counted(points.size(), "point") << " fit to " << readable(1000 * s.rms_m, 1, " mm") << " RMS, "
             << readable(1000 * s.loo_m, 1, " mm") << " on points left out; position to "
             << readable(1000 * s.sigma_position_m, 1, " mm") << ", rotation to "
             << readable(kDegrees * s.sigma_rotation_rad, 2, " degrees") << "\nfor the node in scene.yaml:\n"
@@ -122,7 +126,7 @@ void add_scene(Command& calibrate, std::function<int()>& action) {
   command->add_option("--tags", options->tags, "Rows 'id corner x y z': tag corners in the model")->reads();
   command->add_option("--tag-corners", options->tag_corners, "The same corners in the world")->reads();
   command->add_option("--seen", options->seen, "Instead: rows 'image id corner u v', found in images")->reads();
-  command->add_option("--camera", options->camera, "With --seen: camera_info file of the camera")->reads();
+  command->add_option("--camera", options->camera, std::string("With --seen: ") + kLensFile)->reads();
   command
       ->add_option("--camera-poses", options->camera_poses,
                    "With --seen: rows 'image tx ty tz qx qy qz qw', camera to world")

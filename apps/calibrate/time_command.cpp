@@ -8,6 +8,7 @@
 #include "apps/calibrate/robot_output.hpp"
 #include "calibration/robot/joint_chain.hpp"
 #include "calibration/robot/robot_results.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -96,12 +97,13 @@ int run(TimeCommandOptions& options) {
   const bool turns = options.solver.rotation_only;
   std::cout << "t_encoder = t_camera " << (summary.offset_s < 0 ? "- " : "+ ")
             << readable(1e3 * std::abs(summary.offset_s), 2) << " ms, sigma "
-            << readable(1e3 * summary.offset_sigma_s, 2) << " ms (" << summary.segments << " stretches)\n"
+            << readable(1e3 * summary.offset_sigma_s, 2) << " ms (" << counted(summary.segments, "stretch", "stretches")
+            << ")\n"
             << "correlation of angular speeds " << readable(summary.correlation, 3) << " at "
             << readable(1e3 * summary.coarse_offset_s, 1) << " ms\n"
             << "scatter of the target, median: " << (turns ? "" : readable(summary.scatter_mm, 2) + " mm, ")
-            << readable(summary.scatter_mrad, 2) << " mrad over " << summary.samples << " samples, " << summary.outliers
-            << " beyond 5 times that\n";
+            << readable(summary.scatter_mrad, 2) << " mrad over " << counted(summary.samples, "sample") << ", "
+            << summary.outliers << " beyond 5 times that\n";
   if (!turns)
     std::cout << "T_hand_camera  " << readable_pose(summary.X) << "\nT_base_target  " << readable_pose(summary.Y)
               << "\n";

@@ -10,6 +10,7 @@
 #include "apps/calibrate/pan_tilt_verify.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/camera/held_out.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -87,8 +88,7 @@ void keep_unseen(const KnownRig& known, RigViews& views, nlohmann::ordered_json&
                    "take new pictures, and verify with these");
     return;
   }
-  std::printf("%zu of %zu views are among those that the result was solved from, and do not count\n", seen,
-              views.views.size());
+  tell_seen(seen, views.views.size());
   views = subset(views, unseen);
 }
 
@@ -129,7 +129,7 @@ int verify(const VerifyOptions& options) {
   if (pair) json["cross_inlier_px"] = score.cross_inlier_px, json["epipolar_inlier_px"] = score.epipolar_inlier_px;
   json["rejected_points"] = score.rejected_points;
   if (score.rejected_points > 0)
-    std::printf("joint without %d outliers: %s\n", score.rejected_points,
+    std::printf("joint without %s: %s\n", counted(score.rejected_points, "outlier").c_str(),
                 readable(score.joint_inlier_px, 4, " px").c_str());
   return tell_verified(verdict, static_cast<std::size_t>(score.views), json, options.json);
 }
@@ -179,7 +179,7 @@ void add_head_options(Command& command, PanTiltVerify& head) {
   group->add_option("--joint-names", input.joint_names, "Of pan and tilt in it")->expected(2)->capture_default_str();
   group->add_option("--time", head.time, "Result of `calibrate time`")->reads();
   group->add_option("--angles", input.angles, "Of each image: rows [name] pan tilt [pan_way tilt_way]")->reads();
-  group->add_option("--camera", input.camera, "Lens: result of stereo or intrinsics, or camera_info")->reads();
+  group->add_option("--camera", input.camera, "Lens: result of stereo, intrinsics or arm, or camera_info")->reads();
   group->add_option("--camera-right", input.camera_right, "The right camera's (camera_info with T_left_right)")
       ->reads();
   group

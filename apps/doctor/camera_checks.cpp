@@ -1,6 +1,7 @@
 // Cameras that V4L2 and libcamera know.
 #include "apps/doctor/findings.hpp"
 #include "common/clock.hpp"
+#include "common/held_stderr.hpp"
 #include "drivers/camera/libcamera_session.hpp"
 #include "drivers/camera/v4l2_calls.hpp"
 #include "drivers/camera/v4l2_camera.hpp"
@@ -8,7 +9,9 @@
 namespace foresight::doctor {
 namespace {
 
+// What libcamera warns of (pipelines that are not configured, sensors that it does not know) is no finding.
 Findings libcamera_cameras() {
+  const HeldStderr warnings;
   try {
     Findings out;
     for (const std::string& camera : libcam::library().cameras())
@@ -16,7 +19,7 @@ Findings libcamera_cameras() {
     if (out.empty()) out.push_back({Verdict::absent, "libcamera", "knows no camera", ""});
     return out;
   } catch (const std::exception& error) {
-    return {{Verdict::absent, "libcamera", error.what(), ""}};
+    return {{Verdict::absent, "libcamera", error.what(), warnings.text()}};
   }
 }
 

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "calibration/camera/camera_calibration.hpp"
+#include "common/counted.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -54,7 +55,7 @@ std::string CameraCalibration::brief() const {
         << readable(held_out.epipolar_px, 3, " px") << " held out (joint / cross / epipolar)";
   else
     out << readable(held_out.joint_px, 3, " px") << " held out";
-  out << ", " << views.views.size() << " views";
+  out << ", " << counted(views.views.size(), "view");
   if (!usable()) out << "; " << verdict.against.front().text();
   return out.str();
 }
@@ -78,14 +79,14 @@ std::string CameraCalibration::full() const {
     out << "board warp: " << readable(1000 * solution.rig.warp.x_m, 3) << " along x, "
         << readable(1000 * solution.rig.warp.y_m, 3, " mm") << " along y\n";
   out << (folds == static_cast<int>(views.views.size()) ? "held out: each view in turn\n"
-                                                        : "held out: in " + std::to_string(folds) + " groups\n");
-  out << "held out, without " << held_out.rejected_points
-      << (held_out.rejected_points == 1 ? " outlier: " : " outliers: ") << readable(held_out.joint_inlier_px, 3);
+                                                        : "held out: in " + counted(folds, "group") + "\n");
+  out << "held out, without " << counted(held_out.rejected_points, "outlier") << ": "
+      << readable(held_out.joint_inlier_px, 3);
   if (views.cameras == 2)
     out << " / " << readable(held_out.cross_inlier_px, 3) << " / " << readable(held_out.epipolar_inlier_px, 3);
   out << " px\n";
   if (unseen)
-    out << "views never used (" << unseen->views << "): " << readable(unseen->joint_px, 3) << " / "
+    out << "on " << counted(unseen->views, "view") << " never used: " << readable(unseen->joint_px, 3) << " / "
         << readable(unseen->cross_px, 3) << " / " << readable(unseen->epipolar_px, 3, " px") << "\n";
   out << "corners: " << solution.points << " used, " << solution.rejected.size() << " rejected\n";
   write_lists(out, *this);

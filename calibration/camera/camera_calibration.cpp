@@ -7,6 +7,7 @@
 #include "calibration/camera/input_checks.hpp"
 #include "calibration/camera/model_choice.hpp"
 #include "calibration/camera/rig_start.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
@@ -15,6 +16,10 @@ namespace foresight {
 namespace {
 
 constexpr int kFewViews = 10;  // fewer are warned about
+constexpr int kEnoughViews = 15;
+// Of the image's width, between lenses from every second view. All views together know the lens two to four times as
+// well: to a pixel or so, which is where ghosts begin.
+constexpr double kVagueHalves = 0.005;
 constexpr double kUnsynchronised = 1.4;
 constexpr int kGroups = 10;         // of views left out together where there are many
 constexpr double kMovedByWarp = 2;  // the lens by more than so many times the error: not believed
@@ -176,13 +181,14 @@ class Calibrator {
   void judge() {
     const int count = useful_views(result_.views);
     if (count < kFewViews)
-      result_.notes.push_back("only " + std::to_string(count) + (cameras() == 2 ? " pairs" : " views") +
+      result_.notes.push_back("only " + counted(count, cameras() == 2 ? "pair" : "view") +
                               "; take 15 or more for figures that can be trusted");
     if (result_.stereo_over_mono > kUnsynchronised)
       result_.verdict.object("the pairs are not synchronised, or the cameras moved against each other: the error is " +
                                  readable(result_.stereo_over_mono, 2) +
                                  " times that of the cameras alone (1.4 is the limit)",
                              "trigger both at once, or hold the board still");
+    if (count < kEnoughViews) judge_halves(count);
     if (cameras() == 2) judge_baseline();
     const auto rejected = static_cast<double>(result_.solution.rejected.size());
     if (rejected > 0.1 * (result_.solution.points + rejected))
@@ -192,12 +198,31 @@ class Calibrator {
                              "take other views, and check that --board is what was shown");
   }
 
+  /// Few views look more certain than they are: what the board or the corners have in common, each view has anew.
+  void judge_halves(int count) {
+    for (std::size_t c = 0; c < cameras(); ++c) {
+      const double px = result_.odd_even_px[c];
+      if (px <= kVagueHalves * result_.views.width[c]) continue;
+      const std::string whose = cameras() == 2 ? " of the " + camera_name(static_cast<int>(c), 2) + " camera" : "";
+      result_.verdict.object(
+          counted(count, cameras() == 2 ? "pair" : "view") + " are too few: every second one gives a lens" + whose +
+              " that " +
+              (std::isfinite(px) ? "differs from the others' by " + readable(px, 1, " px") : "the others contradict") +
+              " (0.5 % of the image's width is the limit)",
+          "take 15 and more, with the board tilted to all sides and in all corners of the image");
+      return;
+    }
+  }
+
   void judge_baseline() {
     const Eigen::Vector3d t = result_.solution.rig.T_left_right.translation();
     if (t.norm() < 5 * result_.sigma["baseline_m"])
       result_.verdict.object("both cameras stand at one place", "give the images of two cameras, not one's twice");
     else if (-t.x() > 0.5 * t.norm())
-      result_.notes.push_back("the right camera stands to the left of the left one: are the folders swapped?");
+      result_.verdict.object(
+          "the right camera stands " + readable(-1000 * t.x(), 1) + " mm to the left of the left one",
+          "exchange left and right, in the folders and in the rig; where both cameras hang upside "
+          "down, the one on the other side is their left one");
   }
 
   const CameraCalibrationOptions& options_;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "calibration/camera/lens_projection.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 
 namespace foresight {
@@ -21,14 +22,13 @@ void check_views(const CornerSet& set, const std::string& camera) {
     if (!names.insert(view.name).second)
       throw InputError(where, "there are two views of this name", "rename or remove one");
     if (view.corners.size() < kFewestCorners)
-      throw InputError(where, "has " + std::to_string(view.corners.size()) + " corners",
-                       "remove it; at least 4 are needed");
+      throw InputError(where, "has " + counted(view.corners.size(), "corner"), "remove it; at least 4 are needed");
     for (const Corner& corner : view.corners) {
       const std::string at = where + ", corner " + std::to_string(corner.index);
       if (!corner.pixel.allFinite())
         throw InputError(at, "its pixel is not a number", "remove this corner, or find the corners again");
       if (corner.index < 0 || static_cast<std::size_t>(corner.index) >= set.p_board.size())
-        throw InputError(at, "the board has only " + std::to_string(set.p_board.size()) + " points",
+        throw InputError(at, "the board has only " + counted(set.p_board.size(), "point"),
                          "give the --board that these corners were found on");
       if (!(corner.sigma_px > 0)) throw InputError(at, "its sigma is not positive", "give a sigma above 0, or none");
     }

@@ -11,6 +11,7 @@
 #include "calibration/camera/lens_slopes.hpp"
 #include "calibration/camera/minimise.hpp"
 #include "calibration/camera/rigid_motion.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/lens.hpp"
 #include "common/rotation.hpp"
@@ -127,7 +128,7 @@ Eigen::Matrix<double, 2, 3> affine_of(const std::vector<Ray>& rays, int picture)
     if (ray.picture == picture && ray.direction.z() > 0.2) of_picture.push_back(ray);
   const std::string name = "picture " + std::to_string(picture + 1);
   if (of_picture.size() < kFewest)
-    throw InputError(name, "shows " + std::to_string(of_picture.size()) + " points of the panel",
+    throw InputError(name, "shows " + counted(of_picture.size(), "point") + " of the panel",
                      "take a picture that shows at least " + std::to_string(kFewest));
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   for (const Ray& ray : of_picture) centre += ray.panel / static_cast<double>(of_picture.size());

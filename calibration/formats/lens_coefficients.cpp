@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/exact_number.hpp"
 
@@ -42,7 +43,7 @@ CameraModel perspective(const std::vector<double>& d, const std::string& where) 
 
 CameraModel equidistant(const std::vector<double>& d, const std::string& where) {
   if (d.size() != 4)
-    throw InputError(where, "has " + std::to_string(d.size()) + " coefficients", "equidistant takes 4: k1 k2 k3 k4");
+    throw InputError(where, "has " + counted(d.size(), "coefficient"), "equidistant takes 4: k1 k2 k3 k4");
   CameraModel camera;
   camera.distortion = Distortion::equidistant;
   std::copy(d.begin(), d.end(), camera.lens.begin() + 4);

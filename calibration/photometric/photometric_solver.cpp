@@ -10,6 +10,7 @@
 #include <set>
 
 #include "calibration/camera/minimise.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -265,7 +266,7 @@ void judge(const std::vector<LevelSample>& samples, PhotometricSummary& summary)
                    "switch automatic exposure and gain off, and check that each exposure time is that of its picture");
   } else if (summary.rms_levels > kLargestRms || 5 * summary.outliers > summary.samples) {
     verdict.object("the levels do not fit (" + readable(summary.rms_levels, 1) + " levels RMS, " +
-                       std::to_string(summary.outliers) + " outliers of " + std::to_string(summary.samples) + ")",
+                       counted(summary.outliers, "outlier") + " of " + std::to_string(summary.samples) + ")",
                    "check that nothing in the scene moved, that the light does not flicker, and the exposure times");
   }
   const double exponent = std::log(summary.response.inverse(200) / summary.response.inverse(40)) / std::log(5.0);

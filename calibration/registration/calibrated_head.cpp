@@ -4,6 +4,7 @@
 
 #include "calibration/placement/placement.hpp"
 #include "calibration/result/result_file.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 
 namespace foresight {
@@ -82,8 +83,7 @@ TagMap read_tag_map(const std::filesystem::path& file) {
   TagMap map;
   for (const auto& [id, corners] : tags) {
     if (corners.size() != 4)
-      throw InputError(file.string(),
-                       "tag " + std::to_string(id) + " has " + std::to_string(corners.size()) + " corners",
+      throw InputError(file.string(), "tag " + std::to_string(id) + " has " + counted(corners.size(), "corner"),
                        "give all four, 0 to 3");
     std::array<Eigen::Vector3d, 4>& c = map[id];
     for (const auto& [index, corner] : corners) c[static_cast<std::size_t>(index)] = corner;

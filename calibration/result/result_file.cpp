@@ -1,5 +1,7 @@
 #include "calibration/result/result_file.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <ctime>
@@ -68,8 +70,7 @@ void require_better(const std::filesystem::path& file, const ResultHeader& heade
       refuse("it belongs to the " + role + " device " + in_quotes(serial) + ", not " + in_quotes(now->second));
   if (old.judged && !header.judged) refuse("its solver judged it to be usable, and nobody judged the new one");
   if (old.judged == header.judged && old.score_name == header.score_name && header.score > kNoise * old.score)
-    refuse("its " + old.score_name + " of " + std::to_string(old.score) + " is better than the new " +
-           std::to_string(header.score));
+    refuse(fmt::format("its {} of {:.4g} is better than the new {:.4g}", old.score_name, old.score, header.score));
 }
 
 YAML::Node to_yaml(const ResultHeader& header, const YAML::Node& result) {

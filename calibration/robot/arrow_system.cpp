@@ -66,8 +66,11 @@ ArrowSystem arrow_system(ceres::Problem& problem, const std::vector<double*>& sh
     at += size;
   }
   out.shared_covariance = invert_information(out.shared_information, out.open);
-  for (std::size_t i = 0; i < own.size(); ++i)
+  for (std::size_t i = 0; i < own.size(); ++i) {
     out.own_covariance.push_back(inverse[i] + coupled[i].transpose() * out.shared_covariance * coupled[i]);
+    out.own_alone.push_back(inverse[i]);
+    out.own_by_shared.emplace_back(-coupled[i].transpose());
+  }
   return out;
 }
 

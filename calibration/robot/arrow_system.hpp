@@ -15,6 +15,8 @@ struct ArrowSystem {
   Eigen::MatrixXd shared_covariance;   ///< of what is determined; open directions count as zero
   std::vector<Eigen::VectorXd> open;   ///< unit directions of the shared parameters that no residual sees
   std::vector<Eigen::MatrixXd> own_covariance;
+  std::vector<Eigen::MatrixXd> own_alone;      ///< covariance of each own block where the shared parameters are known
+  std::vector<Eigen::MatrixXd> own_by_shared;  ///< how its estimate moves with the shared parameters: -C^-1 B^T
 };
 
 /// `shared` and `own` are parameter blocks that `problem` does not hold constant; own blocks must

@@ -8,6 +8,7 @@
 #include "calibration/robot/hand_eye_verdict.hpp"
 #include "calibration/robot/motion_check.hpp"
 #include "calibration/robot/pose_reading.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -24,11 +25,10 @@ constexpr double kWildFreedom = 8;  // of Student's t: the mildest tail that hel
 void require_views(const HandEyeData& data) {
   const std::size_t views = data.corners.views.size();
   if (data.poses.size() != views)
-    throw InputError("--poses",
-                     std::to_string(data.poses.size()) + " robot poses for " + std::to_string(views) + " views",
+    throw InputError("--poses", counted(data.poses.size(), "robot pose") + " for " + counted(views, "view"),
                      "give one pose for each view");
   if (views < kFewestViews)
-    throw InputError("--images", "the board was found in " + std::to_string(views) + " views only",
+    throw InputError("--images", "the board was found in " + counted(views, "view") + " only",
                      "take at least 5, better 15 or more");
   std::vector<Pose> poses;
   for (const RobotPose& pose : data.poses) poses.push_back(pose.T_base_flange);
@@ -100,6 +100,10 @@ HandEyeState first_state(const HandEyeData& data, const HandEyeOptions& options,
   state.board_sigma = options.board_sigma;
   state.corrections.assign(data.poses.size(), {});
   state.joint_offsets.assign(static_cast<std::size_t>(data.poses[0].flange_per_joint.cols()), 0.0);
+  state.joint_means.assign(state.joint_offsets.size(), 0.0);
+  for (std::size_t i = 0; i < std::min(state.joint_means.size(), data.joint_offsets.size()); ++i)
+    state.joint_means[i] = -data.joint_offsets[i];
+  state.joint_sigma = options.joint_sigma;
   state.sigma_m = std::max(1e-4, start.misfit_m / 2);
   state.sigma_rad = std::max(1e-4, start.misfit_m);
   return state;
@@ -258,7 +262,7 @@ HandEyeSummary solve_hand_eye(const HandEyeData& given, const HandEyeOptions& op
   HandEyeSummary summary;
   for (const BoardView& view : data.corners.views) summary.views.emplace_back().name = view.name;
   if (data.poses.size() < kFewViews)
-    summary.notes.push_back("only " + std::to_string(data.poses.size()) + " views: take 15 or more");
+    summary.notes.push_back("only " + counted(data.poses.size(), "view") + ": take 15 or more");
 
   const CameraModel camera = options.camera ? *options.camera : first_lens(data.corners, options.distortion);
   std::vector<Pose> seen;

@@ -32,8 +32,9 @@ struct RobotPose {
 
 struct HandEyeData {
   CornerSet corners;
-  std::vector<RobotPose> poses;  ///< one per view, in the order of corners.views
-  int cols = 0, rows = 0;        ///< of points, where the board looks the same when turned; 0: it does not
+  std::vector<RobotPose> poses;       ///< one per view, in the order of corners.views
+  int cols = 0, rows = 0;             ///< of points, where the board looks the same when turned; 0: it does not
+  std::vector<double> joint_offsets;  ///< rad or m: those that the poses have in them already; empty: none
 };
 
 struct HandEyeOptions {
@@ -41,8 +42,9 @@ struct HandEyeOptions {
   std::optional<CameraModel> camera;            ///< given: the lens is held
   Distortion distortion = Distortion::radtan4;  ///< of a lens that is estimated
   double board_sigma = 0.01;                    ///< doubt about the board's stated size, relative; 0: it is exact
-  bool score = true;                            ///< leave-one-view-out, one solve per view
-  double reject_sigmas = 5;                     ///< corners beyond this many robust sigmas are left out
+  double joint_sigma = 0.05;  ///< doubt about a joint's zero, rad or m; offsets that no view tells stay 0
+  bool score = true;          ///< leave-one-view-out, one solve per view
+  double reject_sigmas = 5;   ///< corners beyond this many robust sigmas are left out
 };
 
 /// What a view contributed, and what it says when it is left out.

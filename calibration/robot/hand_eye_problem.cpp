@@ -92,6 +92,27 @@ class RobotResidual : public ceres::CostFunction {
   Eigen::MatrixXd per_joint_;
 };
 
+// (offsets - means) over one sigma: what is known of the joints' zeros without any image.
+class OffsetResidual : public ceres::CostFunction {
+ public:
+  OffsetResidual(std::vector<double> means, double sigma) : means_(std::move(means)), weight_(1 / sigma) {
+    set_num_residuals(static_cast<int>(means_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(means_.size()));
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const std::size_t n = means_.size();
+    for (std::size_t i = 0; i < n; ++i) residuals[i] = weight_ * (parameters[0][i] - means_[i]);
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    for (std::size_t i = 0; i < n * n; ++i) jacobians[0][i] = i % (n + 1) == 0 ? weight_ : 0;
+    return true;
+  }
+
+ private:
+  std::vector<double> means_;
+  double weight_;
+};
+
 double typical_sigma(const CornerSet& corners) {
   std::vector<double> sigmas;
   for (const BoardView& view : corners.views)
@@ -162,7 +183,10 @@ void build(const HandEyeData& data, const HandEyeSelection& selection, HandEyeSt
     out.problem.SetParameterBlockConstant(&state.board_scale);
   }
   if (!state.camera_held) out.shared.push_back(state.camera.lens.data());
-  if (!state.joint_offsets.empty()) out.shared.push_back(state.joint_offsets.data());
+  if (state.joint_offsets.empty()) return;
+  out.problem.AddResidualBlock(new OffsetResidual(state.joint_means, state.joint_sigma), nullptr,
+                               state.joint_offsets.data());
+  out.shared.push_back(state.joint_offsets.data());
 }
 
 void minimise(Adjustment& adjustment) {
@@ -173,6 +197,15 @@ void minimise(Adjustment& adjustment) {
   options.threads = 2;
   minimise_or_throw(adjustment.problem, options, "the hand-eye adjustment",
                     "check that the poses belong to the images and that their unit is the metre");
+}
+
+/// Of what is the robot's in the correction of adjustment's i-th view: the joints' offsets are not, however little the
+/// views say of them.
+Matrix6d robot_covariance(const ArrowSystem& system, std::size_t i, const RobotPose& robot) {
+  Eigen::MatrixXd by_shared = system.own_by_shared[i];
+  if (robot.flange_per_joint.cols() > 0)
+    by_shared.rightCols(robot.flange_per_joint.cols()) -= robot.flange_per_joint;  // the offsets come last
+  return system.own_alone[i] + by_shared * system.shared_covariance * by_shared.transpose();
 }
 
 // Helmert: each noise is scaled by its squared residuals over its redundancy.
@@ -186,8 +219,9 @@ void update_noise(const ArrowSystem& system, const Adjustment& adjustment, const
     const double trust = state.trust.empty() ? 1 : state.trust[v];
     turn += trust * left.head<3>().squaredNorm();
     shift += trust * left.tail<3>().squaredNorm();
-    turn_known += trust * system.own_covariance[i].topLeftCorner(3, 3).trace() / (state.sigma_rad * state.sigma_rad);
-    shift_known += trust * system.own_covariance[i].bottomRightCorner(3, 3).trace() / (state.sigma_m * state.sigma_m);
+    const Matrix6d known = robot_covariance(system, i, data.poses[v]);
+    turn_known += trust * known.topLeftCorner<3, 3>().trace() / (state.sigma_rad * state.sigma_rad);
+    shift_known += trust * known.bottomRightCorner<3, 3>().trace() / (state.sigma_m * state.sigma_m);
   }
   const double terms = 3 * static_cast<double>(adjustment.views.size());
   const double parameters = 2 * terms + static_cast<double>(system.shared_information.rows());
@@ -215,9 +249,9 @@ void update_trust(const ArrowSystem& system, const Adjustment& adjustment, const
     const std::size_t v = adjustment.views[i];
     const Vector6d left =
         Eigen::Map<const Vector6d>(state.corrections[v].data()) - joint_correction(state, data.poses[v]);
-    const Eigen::MatrixXd& known = system.own_covariance[i];
-    const double distance = turn * (left.head<3>().squaredNorm() + known.topLeftCorner(3, 3).trace()) +
-                            shift * (left.tail<3>().squaredNorm() + known.bottomRightCorner(3, 3).trace());
+    const Matrix6d known = robot_covariance(system, i, data.poses[v]);
+    const double distance = turn * (left.head<3>().squaredNorm() + known.topLeftCorner<3, 3>().trace()) +
+                            shift * (left.tail<3>().squaredNorm() + known.bottomRightCorner<3, 3>().trace());
     state.trust[v] = (state.robot_freedom + 6) / (state.robot_freedom + distance);
   }
 }

@@ -21,6 +21,8 @@ struct HandEyeState {
   std::vector<double> trust;
   double robot_freedom = 0;
   std::vector<double> joint_offsets;
+  std::vector<double> joint_means;  ///< where the offsets are before the images, to joint_sigma
+  double joint_sigma = 0.05;
   double sigma_px = 0.3;
   double sigma_rad = 1e-3;
   double sigma_m = 1e-3;

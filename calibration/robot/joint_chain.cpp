@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -69,7 +70,7 @@ JointChain joint_chain_of(UrdfRobot robot, const std::string& base, const std::s
 
 Pose flange_pose(JointChain& chain, const std::vector<double>& positions, const std::string& where) {
   if (positions.size() != chain.joints.size())
-    throw InputError(where, "has " + std::to_string(positions.size()) + " joint positions",
+    throw InputError(where, "has " + counted(positions.size(), "joint position"),
                      "write " + std::to_string(chain.joints.size()) + ", in the order of the chain");
   std::map<std::string, double> named;
   for (std::size_t i = 0; i < positions.size(); ++i)
@@ -109,6 +110,8 @@ HandEyeSummary solve_with_joints(JointChain& chain, const std::vector<std::vecto
   quick.score = false;
   for (int round = 0;; ++round) {
     data.poses.clear();
+    data.joint_offsets.clear();
+    if (offsets.size() > 2) data.joint_offsets.assign(offsets.begin() + 1, offsets.end() - 1);
     for (std::size_t v = 0; v < rows.size(); ++v)
       data.poses.push_back(jointed_pose(chain, rows[v], offsets, "joints of view " + data.corners.views[v].name));
     const bool last = round == 4;

@@ -4,6 +4,7 @@
 
 #include "calibration/robot/pan_tilt_problem.hpp"
 #include "calibration/robot/pan_tilt_scoring.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -140,8 +141,7 @@ void came_from_order(std::vector<PanTiltSample>& samples, double least_rad) {
 PanTiltSummary solve_pan_tilt(const std::vector<PanTiltSample>& given, const PanTiltOptions& options) {
   if (!options.gains && options.score) return with_gains_if_better(given, options);
   if (given.size() < kFewestHeadViews)
-    throw InputError("--poses", std::to_string(given.size()) + " poses",
-                     "measure at least 8, better 30, over both joints");
+    throw InputError("--poses", counted(given.size(), "pose"), "measure at least 8, better 30, over both joints");
   require_sweeps(angles_of(given));
   std::vector<PanTiltSample> samples = given;
   PanTiltSummary summary;

@@ -4,6 +4,7 @@
 
 #include "calibration/robot/rigid_math.hpp"
 #include "calibration/robot/robot_poses.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "scene/text_table.hpp"
@@ -99,7 +100,7 @@ PoseStream read_pose_stream(const std::filesystem::path& file, TimeUnit unit) {
   for (const FieldRow& fields : rows) {
     const TextRow row = text_row(file, fields);
     if (row.fields.size() != 8)
-      throw InputError(row.where(), "has " + std::to_string(row.fields.size()) + " fields", "write 8 of them: " + form);
+      throw InputError(row.where(), "has " + counted(row.fields.size(), "field"), "write 8 of them: " + form);
     const RobotTime time = time_of(row, unit);
     if (!stream.samples.empty() && time == stream.samples.back().time) {
       ++repeated;
@@ -129,7 +130,7 @@ JointStream read_joint_stream(const std::filesystem::path& file, TimeUnit unit) 
       joints.positions.push_back(*value);
     }
     if (joints.positions.empty() || (!rows.empty() && joints.positions.size() != rows[0].positions.size()))
-      throw InputError(row.where(), "has " + std::to_string(joints.positions.size()) + " joints",
+      throw InputError(row.where(), "has " + counted(joints.positions.size(), "joint"),
                        "write the time and as many joints in every row");
     if (!rows.empty() && joints.time == rows.back().time) continue;
     if (!rows.empty()) require_ascending(row, rows.back().time, joints.time);
@@ -140,7 +141,7 @@ JointStream read_joint_stream(const std::filesystem::path& file, TimeUnit unit) 
 
 std::vector<PoseTrack::Sample> swept_poses(const std::vector<JointRow>& rows, const std::string& where) {
   if (rows.at(0).positions.size() > 2)
-    throw InputError(where, "has " + std::to_string(rows[0].positions.size()) + " joints",
+    throw InputError(where, "has " + counted(rows[0].positions.size(), "joint"),
                      "give the robot's --urdf, or the one or two joints that were swept");
   std::vector<PoseTrack::Sample> samples;
   for (const JointRow& row : rows) {

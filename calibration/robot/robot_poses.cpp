@@ -5,6 +5,7 @@
 #include <map>
 
 #include "calibration/robot/rigid_math.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/rotation.hpp"
 #include "common/text.hpp"
@@ -62,12 +63,12 @@ std::vector<NamedPose> blocks(const std::filesystem::path& file, const std::vect
   for (std::size_t i = 0; i < rows.size(); i += 4) {
     const std::string where = at_line(file, rows[i].line);
     if (i + 4 > rows.size())
-      throw InputError(where, "the last matrix has " + std::to_string(rows.size() - i) + " rows of 4", "complete it");
+      throw InputError(where, "the last matrix has " + counted(rows.size() - i, "row") + " of 4", "complete it");
     std::vector<double> m;
     for (std::size_t r = i; r < i + 4; ++r) {
       const std::string here = at_line(file, rows[r].line);
       if (rows[r].fields.size() != 4)
-        throw InputError(here, "has " + std::to_string(rows[r].fields.size()) + " numbers", "write 4 rows of 4 a pose");
+        throw InputError(here, "has " + counted(rows[r].fields.size(), "number"), "write 4 rows of 4 a pose");
       for (const double value : numbers(rows[r].fields, 0, here)) m.push_back(value);
     }
     poses.push_back({"", where, matrix_pose(m, where)});
@@ -89,7 +90,7 @@ NamedPose row_pose(const std::filesystem::path& file, const FieldRow& row) {
       return {"", where, matrix_pose(m, where)};
     }
     default:
-      throw InputError(where, "has " + std::to_string(f.size()) + " fields",
+      throw InputError(where, "has " + counted(f.size(), "field"),
                        "write 16 numbers of a 4x4 matrix, 4 lines of 4, or x y z qx qy qz qw");
   }
 }
@@ -217,8 +218,7 @@ MatchedPoses match_poses(const std::vector<NamedPose>& poses, const std::vector<
     if (const auto found = match_by(poses, views, last_number)) return {*found, "by number"};
   }
   if (poses.size() != images.size())
-    throw InputError("--poses",
-                     std::to_string(poses.size()) + " poses for " + std::to_string(images.size()) + " images",
+    throw InputError("--poses", counted(poses.size(), "pose") + " for " + counted(images.size(), "image"),
                      "give one pose an image, or name the poses as the images");
   std::map<std::string, Pose> by_image;
   for (std::size_t i = 0; i < images.size(); ++i) by_image[stem(images[i])] = poses[i].pose;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "calibration/robot/hand_eye_start.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/rotation.hpp"
 #include "common/statistics.hpp"
@@ -82,7 +83,7 @@ void require_turning(const Speeds& speeds, const PoseTrack& track, const std::st
   const double span = to_seconds(samples.back().time - samples.front().time);
   throw InputError(
       option,
-      std::to_string(samples.size()) + " rows within " + readable(span, 3) + " s " +
+      counted(samples.size(), "row") + " within " + readable(span, 3) + " s " +
           (span < 2 * kHalfWindow ? "are too short a stream" : "lie more than 0.2 s apart from each other"),
       "give 10 poses a second and more, times in one unit (--time-unit)");
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "calibration/tags/tag_family.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 
 namespace foresight {
@@ -34,7 +35,7 @@ bool is_inside(const DetectedTag& tag, const cv::Size& size) {
 cv::Mat light_of_levels(const std::vector<double>& inverse_response) {
   if (inverse_response.empty()) return {};
   if (inverse_response.size() != 256 || !(inverse_response.back() > 0))
-    throw InputError("the response", "has " + std::to_string(inverse_response.size()) + " levels, or a dark last one",
+    throw InputError("the response", "has " + counted(inverse_response.size(), "level") + ", or a dark last one",
                      "give the 256 of `calibrate photometric`");
   cv::Mat out(1, 256, CV_8UC1);
   for (int v = 0; v < 256; ++v)

@@ -13,6 +13,7 @@
 
 #include <array>
 
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -77,7 +78,7 @@ const std::vector<std::string>& tag_families() {
 cv::Mat tag_image(const std::string& family, int id) {
   const TagFamily made = create_tag_family(family);
   if (id < 0 || id >= static_cast<int>(made->ncodes))
-    throw InputError("tag family", family + " has " + std::to_string(made->ncodes) + " tags", "make the board smaller");
+    throw InputError("tag family", family + " has " + counted(made->ncodes, "tag"), "make the board smaller");
   const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(made.get(), id), image_u8_destroy);
   const cv::Mat whole(image->height, image->width, CV_8U, image->buf, static_cast<std::size_t>(image->stride));
   const int margin = (made->total_width - made->width_at_border) / 2;

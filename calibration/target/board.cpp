@@ -3,6 +3,7 @@
 #include <array>
 #include <sstream>
 
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 
@@ -49,7 +50,7 @@ class Parser {
     const Kind& kind = find_kind();
     example_ = kind.example;
     if (parts_.size() < 3 || parts_.size() > kind.most_parts)
-      refuse("has " + std::to_string(parts_.size()) + " parts between colons");
+      refuse("has " + counted(parts_.size(), "part") + " between colons");
     Board board;
     board.kind = kind.kind;
     const auto counts = split(parts_[1], 'x');

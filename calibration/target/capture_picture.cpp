@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/atomic_file.hpp"
+#include "common/counted.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -213,7 +214,7 @@ void draw_panel(cv::Mat& canvas, const CaptureMoment& moment) {
 }
 
 std::string headline(const CaptureProgress& progress) {
-  if (progress.enough) return "ENOUGH: " + std::to_string(progress.views) + " views";
+  if (progress.enough) return "ENOUGH: " + counted(progress.views, "view");
   switch (progress.wish.kind) {
     case CaptureWish::Kind::first: return "SHOW THE BOARD";
     case CaptureWish::Kind::tilt: return "TILT IT: " + progress.wish.where + " side away";

@@ -9,6 +9,7 @@
 #include "calibration/target/board_finders.hpp"
 #include "calibration/target/grid_order.hpp"
 #include "calibration/target/refine_corners.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
@@ -52,7 +53,7 @@ cv::Ptr<cv::aruco::CharucoBoard> charuco_board(const Board& board) {
   const auto dictionary = cv::aruco::getPredefinedDictionary(charuco_dictionary(board.family));
   if (dictionary->bytesList.rows < marker_count(board))
     throw InputError("--board",
-                     board.family + " has " + std::to_string(dictionary->bytesList.rows) + " markers, the board " +
+                     board.family + " has " + counted(dictionary->bytesList.rows, "marker") + ", the board " +
                          std::to_string(marker_count(board)),
                      "name a larger dictionary, such as DICT_6X6_1000");
   const double marker = board.marker_m > 0 ? board.marker_m : kUsualShare * board.size_m;

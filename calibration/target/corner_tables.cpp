@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "common/text_rows.hpp"
@@ -49,7 +50,7 @@ class VnlReader {
   void read_row(const TextRow& row) {
     const auto& fields = row.fields;
     if (fields.size() < 3 || fields.size() > 4)
-      throw InputError(row.where(), "has " + std::to_string(fields.size()) + " fields", "write: filename x y level");
+      throw InputError(row.where(), "has " + counted(fields.size(), "field"), "write: filename x y level");
     if (images_.empty() || images_.back().name != fields[0]) start_image(std::string(fields[0]), row.where(), row.line);
     VnlImage& image = images_.back();
     const std::size_t index = rows_++;
@@ -80,10 +81,10 @@ class VnlReader {
   }
 
   [[noreturn]] void refuse_count(const std::string& where, std::size_t rows, const std::string& more) const {
-    throw InputError(where,
-                     images_.back().name + " has " + std::to_string(rows) + more + " rows, the board " +
-                         std::to_string(points_) + " points",
-                     "check --board; write '-' for a point that was not seen");
+    throw InputError(
+        where,
+        images_.back().name + " has " + std::to_string(rows) + more + " rows, the board " + counted(points_, "point"),
+        "check --board; write '-' for a point that was not seen");
   }
 
   const fs::path& file_;
@@ -142,8 +143,7 @@ std::vector<TagRow> read_tag_table(const fs::path& file) {
     if (at.empty())
       for (std::size_t i = 0; i < kTagColumns.size(); ++i) at.push_back(i);
     if (row.fields.size() != at.size())
-      throw InputError(row.where(), "has " + std::to_string(row.fields.size()) + " fields",
-                       "write 12, with commas between");
+      throw InputError(row.where(), "has " + counted(row.fields.size(), "field"), "write 12, with commas between");
     TagRow out{row.where(), whole(row, at[10], "tag_id"), whole(row, at[11], "corner_idx"), {}, {}};
     const std::string corner = " of corner " + std::to_string(out.corner) + " of tag " + std::to_string(out.tag);
     const auto number = [&](std::size_t column) { return finite_field(row, at[column], kTagColumns[column] + corner); };

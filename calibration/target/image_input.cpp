@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "calibration/target/view_names.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
@@ -120,8 +121,8 @@ void require_found(const std::vector<Seen>& seen, const Board& board, const fs::
   std::vector<fs::path> files;
   for (const Seen& s : seen) files.push_back(s.file);
   throw InputError(folder.string(),
-                   "shows the board in none of " + std::to_string(seen.size()) +
-                       " images: " + explain_nothing_found(board, some_images(files, 3)),
+                   "shows the board in none of " + counted(seen.size(), "image") + ": " +
+                       explain_nothing_found(board, some_images(files, 3)),
                    "check --board against the print");
 }
 
@@ -185,7 +186,7 @@ Pairs pair_up(const std::vector<fs::path>& left, const std::vector<fs::path>& ri
   if (left.size() != right.size())
     throw InputError(left.front().parent_path().string(),
                      "has no image named like one of " + right.front().parent_path().string() + ", and " +
-                         std::to_string(left.size()) + " images beside " + std::to_string(right.size()),
+                         counted(left.size(), "image") + " beside " + std::to_string(right.size()),
                      "give both images of a pair the same name");
   Pairs in_order;
   for (std::size_t i = 0; i < left.size(); ++i)

@@ -6,6 +6,7 @@
 #include "calibration/tags/tag_family.hpp"
 #include "calibration/target/board_finders.hpp"
 #include "calibration/target/refine_corners.hpp"
+#include "common/counted.hpp"
 #include "common/error.hpp"
 
 namespace foresight {
@@ -18,7 +19,7 @@ TagDetector::Options detector_options(const Board& board) {
   if (tags < board.cols * board.rows)
     throw InputError(
         "--board",
-        board.family + " has " + std::to_string(tags) + " tags, the board " + std::to_string(board.cols * board.rows),
+        board.family + " has " + counted(tags, "tag") + ", the board " + std::to_string(board.cols * board.rows),
         "name a larger family, such as tag36h11");
   return {board.family, 0, 0, 0};
 }

@@ -245,6 +245,7 @@ TEST_F(RobotInput, LibcameraIsAskedForByName) {
 TEST_F(RobotInput, DoctorIsUsefulWithoutAnyHardware) {
   const Outcome out = run_program({"doctor"});
   EXPECT_EQ(out.exit_code, 0) << out.out;
+  EXPECT_THAT(out.err, testing::Not(HasSubstr("WARN"))) << "of libraries that look for hardware";
   for (const char* words : {"CAN", "cameras", "real-time priority", "OpenGL", "network buffers"})
     EXPECT_THAT(out.out, HasSubstr(words));
 }

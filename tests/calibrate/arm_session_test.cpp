@@ -1,10 +1,16 @@
 // A hand-eye from nothing but a rig: the mock robot shows a board to the mock cameras, and the truth is known.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
+
+#include <opencv2/imgcodecs.hpp>
 
 #include "apps/calibrate/arm_stations.hpp"
 #include "calibration/formats/urdf_offsets.hpp"
+#include "calibration/robot/robot_poses.hpp"
 #include "calibration/robot/robot_results.hpp"
+#include "common/text.hpp"
 #include "rig/open_stereo.hpp"
+#include "scene/run_writer.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/support/folders.hpp"
 #include "tests/support/headless_test.hpp"
@@ -30,6 +36,45 @@ std::string rig_in(const TempFolder& folder) {
     rig.replace(at, 10, "[640, 480]");
   folder.write("arm.urdf", text_of(source_folder() / "configs/arm.urdf"));
   return folder.write("rig.yaml", rig);
+}
+
+/// The views of a session as a recording has them: the arm holds still for half a second at each place, where two
+/// pictures are taken; a third one is taken on the way to the next place, which it does not show.
+constexpr double kBegin = 10;  // s
+void record_views(const std::filesystem::path& views, const std::filesystem::path& run, const Lens& lens) {
+  std::filesystem::create_directories(run);
+  RunWriter writer(run, lens, "left");
+  std::vector<std::vector<double>> places;
+  std::ofstream joints(run.string() + "-joints.csv");
+  for (const FieldRow& row : read_field_rows(views / "joints.csv")) {
+    if (row.fields[0] == "image") {
+      joints << "time_s";
+      for (std::size_t j = 1; j < row.fields.size(); ++j) joints << "," << row.fields[j];
+      joints << "\n";
+      continue;
+    }
+    std::vector<double> place;
+    for (std::size_t j = 1; j < row.fields.size(); ++j) place.push_back(*parse_number(row.fields[j]));
+    const auto number = places.size();
+    const cv::Mat picture = cv::imread((views / (row.fields[0] + ".png")).string());
+    std::uint64_t image = 3 * number;
+    for (const double after : {0.1, 0.4, 0.75}) {
+      const std::string name = RunWriter::image_name(false, image++);
+      std::filesystem::create_directories((run / name).parent_path());
+      writer.write_image(name, picture);
+      writer.add_image(false, RobotTime{} + seconds(kBegin + static_cast<double>(number) + after), name);
+    }
+    places.push_back(place);
+  }
+  for (int i = -20; i < 100 * static_cast<int>(places.size()); ++i) {
+    const auto from = static_cast<std::size_t>(std::max(0, i / 100)), to = std::min(from + 1, places.size() - 1);
+    const double share = std::clamp((i / 100.0 - static_cast<double>(from) - 0.5) / 0.5, 0.0, 1.0);
+    joints << fmt::format("{:.3f}", i / 100.0 + kBegin);
+    for (std::size_t j = 0; j < places[from].size(); ++j)
+      joints << fmt::format(",{:.7f}", places[from][j] + share * (places[to][j] - places[from][j]));
+    joints << "\n";
+  }
+  writer.finish();
 }
 
 class ArmSession : public HeadlessTest {
@@ -75,12 +120,44 @@ TEST_F(ArmSession, GoesLooksSolvesAndVerifies) {
   for (const char* text : {"<b>Usable</b>", "Where everything stands", "stand", "data:image/jpeg;base64,"})
     EXPECT_THAT(page, HasSubstr(text));
 
+  // A recording that holds the same pictures, and others taken in motion; its lens is known.
+  record_views(folder / "arm-views", folder / "run", mock_options(as_mock(*read.cameras)).lenses.left);
+  const std::vector<std::string> run{"--run", folder / "run", "--rig", rig, "--board", kBoard};
+  std::vector<std::string> from_run{"arm",    "--board-sigma",  "0", "--out", folder / "run.yaml",
+                                    "--json", folder / "r.json"};
+  from_run.insert(from_run.end(), run.begin(), run.end());
+  ASSERT_EQ(run_calibrate(from_run), "0");
+  const auto of_run = json_of(folder, "r.json");
+  EXPECT_EQ(of_run["views"], 16) << "each place once, and none of those in motion";
+  EXPECT_THAT(of_run["notes"].dump(), HasSubstr("held still at 16 places, in 48 pictures"));
+  EXPECT_EQ(of_run["camera_given"], true);
+  EXPECT_LT(of_run["loo_px"], 0.5);
+  EXPECT_LT(of_run["robot_noise_mm"], 0.1) << "the mock robot stands where it says";
+  EXPECT_LT(of_run["robot_noise_mrad"], 0.3);
+  const Pose by_run = read_hand_eye(read_result(folder / "run.yaml", "arm").result).X;
+  EXPECT_LT((truth.translation() - by_run.translation()).norm(), 3e-3);
+  EXPECT_LT(rotation_vector(truth.linear().transpose() * by_run.linear()).norm(), 5e-3);
+  std::vector<std::string> verify_run{"verify", "--result", folder / "run.yaml", "--json", folder / "v.json"};
+  verify_run.insert(verify_run.end(), run.begin(), run.end());
+  EXPECT_EQ(run_calibrate(verify_run), "1") << "they are the views that it was solved from";
+  EXPECT_EQ(json_of(folder, "v.json")["views_of_the_calibration"], 16);
+
   // The views are a set like any other, and the ones that were kept back are still new to the result.
   const auto with_views = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--images", folder / "arm-views", "--joints", folder / "arm-views/joints.csv", "--rig",
                              rig, "--board", kBoard, "--json", folder / "v.json"});
     return run_calibrate(more);
   };
+  // With offsets of the joints, of which views of one small board in one place tell little.
+  EXPECT_EQ(with_views({"arm", "--board-sigma", "0"}), "0");
+  const auto with_offsets = json_of(folder, "v.json");
+  EXPECT_LT(with_offsets["robot_noise_mm"], 0.1);
+  EXPECT_LT(with_offsets["robot_noise_mrad"], 0.3);
+  for (const auto& [joint, offset] : with_offsets["joint_offsets"].items()) {
+    if (offset == 0) continue;
+    EXPECT_LT(std::abs(offset.get<double>()), 4 * with_offsets["sigmas"][joint + "_offset"].get<double>()) << joint;
+  }
+
   EXPECT_EQ(with_views({"verify", "--result", folder / "arm.yaml", "--robot-px", "1.5"}), "0");
   EXPECT_EQ(json_of(folder, "v.json")["views"], 3);
   EXPECT_EQ(json_of(folder, "v.json")["views_of_the_calibration"], 13);

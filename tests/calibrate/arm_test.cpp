@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "calibration/camera/camera_result.hpp"
 #include "calibration/formats/camera_formats.hpp"
 #include "calibration/formats/urdf_offsets.hpp"
 #include "calibration/robot/joint_chain.hpp"
@@ -161,6 +162,32 @@ TEST_F(Arm, ExportsTheLensAndAttachesToALink) {
   EXPECT_LT(step_between(mount.T_parent_child, result("T_flange_camera")).norm(), 1e-9);
 }
 
+// One camera of a pair watches the arm: its lens is in the pair's result.
+TEST_F(Arm, TakesTheLensOfItsSideFromAPair) {
+  const HandEyeRig rig = make(CameraMount::fixed);
+  const auto poses = folder_.write("poses.txt", rows(rig.data.poses));
+  CameraModel other = rig.camera;
+  other.lens[0] *= 1.1, other.lens[1] *= 1.1;
+  const auto lens_taken = [&](const CalibratedCameras& pair, const std::string& side) {
+    write_result(folder_ / "pair.yaml", {"stereo", utc_now(), {}, "loo_joint_px", 0.1, {}}, to_yaml(pair), true);
+    EXPECT_EQ(error_of(arm({"--poses", poses, "--camera", folder_ / "pair.yaml", "--side", side})), "no error");
+    const auto numbers = json_of(folder_, "a.json");
+    EXPECT_THAT(numbers["notes"].dump(), HasSubstr("the " + side + " lens of "));
+    EXPECT_EQ(numbers["camera_given"], true);
+    return numbers["fx_px"].get<double>();
+  };
+  const Pose T = Pose(Eigen::Translation3d(0.1, 0, 0));
+  EXPECT_EQ(lens_taken({{rig.camera, other}, T}, "left"), rig.camera.lens[0]);
+  EXPECT_EQ(lens_taken({{other, rig.camera}, T}, "right"), rig.camera.lens[0]);
+  std::filesystem::copy_file(folder_ / "a.yaml", folder_ / "earlier.yaml");
+  ASSERT_EQ(error_of(arm({"--poses", poses, "--camera", folder_ / "earlier.yaml"})), "no error");
+  EXPECT_EQ(json_of(folder_, "a.json")["fx_px"], rig.camera.lens[0]) << "of an earlier result of arm";
+  const PanTiltModel head = random_head(random_);
+  write_result(folder_ / "head.yaml", {"pan-tilt", utc_now(), {}, "loo_mm", 0.1, {}}, to_yaml(head), true);
+  EXPECT_THAT(arm({"--poses", poses, "--camera", folder_ / "head.yaml"}),
+              AllOf(HasSubstr("kind 'pan-tilt', which has no lens"), HasSubstr("calibrate intrinsics")));
+}
+
 TEST_F(Arm, MillimetresAndInversePosesAreNamed) {
   const HandEyeRig rig = make(CameraMount::fixed);
   const auto millimetres = folder_.write("mm.txt", rows(rig.data.poses, 1000));
@@ -284,7 +311,7 @@ TEST_F(Arm, WrongJointsAreNamed) {
   const std::string urdf = source_folder() / "configs/arm.urdf";
   EXPECT_THAT(arm({"--urdf", urdf}), HasSubstr("--joints"));
   EXPECT_THAT(arm({"--urdf", urdf, "--joints", folder_.write("j.txt", "0 0 0 0 0 0 0\n")}),
-              HasSubstr("1 rows for 9 images"));
+              HasSubstr("1 row for 9 images"));
   EXPECT_THAT(arm({"--urdf", urdf, "--joints", folder_.write("w.txt", "0 zero 0 0 0 0 0\n")}), HasSubstr("'zero'"));
   EXPECT_THAT(arm({"--urdf", urdf, "--joints", folder_.write("t.csv", "time_s,shoulder_yaw\n0,0\n")}),
               HasSubstr("--run RUN"));

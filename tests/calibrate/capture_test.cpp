@@ -1,8 +1,12 @@
 // `foresight calibrate capture` on OpenCV's pictures.
 #include <gmock/gmock.h>
 
+#include <unistd.h>
+
+#include <csignal>
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
+#include <thread>
 
 #include "calibration/target/image_input.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
@@ -83,6 +87,42 @@ TEST_F(Capture, AWindowTakesTheSame) {
   const auto numbers = json_of(folder_, "c.json");
   ASSERT_EQ(capture({"--images", left_, right_, "--out", folder_ / "b", "--no-window"}), "1");
   EXPECT_EQ(numbers, json_of(folder_, "c.json"));
+}
+
+// Ctrl-C in the middle: what was taken stays, and the exit code says that it was not the end.
+TEST_F(Capture, KeepsWhatWasTakenWhenItIsStopped) {
+  for (const std::string side : {"left", "right"}) {
+    std::filesystem::create_directories(folder_ / side);
+    for (int copy = 0; copy < 20; ++copy)  // far more than are looked at
+      for (const auto& file : list_images(kPictures / (side + "0*.jpg")))
+        std::filesystem::create_symlink(file, folder_ / (side + "/" + std::to_string(copy) + file.filename().string()));
+  }
+  const std::filesystem::path out = folder_ / "set";
+  std::jthread ctrl_c([&](const std::stop_token& stop) {
+    while (!stop.stop_requested() && (!std::filesystem::exists(out / "right") || count(out / "right") < 2))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (!stop.stop_requested()) kill(getpid(), SIGINT);
+  });
+  EXPECT_EQ(capture({"--images", folder_ / "left", folder_ / "right", "--out", out, "--no-window", "--views", "900"}),
+            "130");
+  const auto numbers = json_of(folder_, "c.json");
+  EXPECT_EQ(numbers["ended"], "interrupted");
+  EXPECT_GE(numbers["views"], 2);
+  EXPECT_EQ(count(out / "left"), numbers["views"]);
+}
+
+TEST_F(Capture, ExposuresThatTellNothingAreRefused) {
+  const auto series = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"capture", "--mock", "--out", folder_ / "s", "--exposures"});
+    return run_calibrate(more);
+  };
+  EXPECT_THAT(series({"0.001", "0.002", "0.00255"}), AllOf(HasSubstr("0.00255 s"), HasSubstr("0.1 ms")));
+  EXPECT_THAT(series({"0.001", "0.002", "0.04"}), AllOf(HasSubstr("0.04 s"), HasSubstr("0.03 s")));
+  EXPECT_THAT(series({"0.001", "0.002", "0.001"}), HasSubstr("given twice"));
+  EXPECT_THAT(series({"0.001", "0.0012", "0.0014"}), HasSubstr("less than twice the shortest"));
+  EXPECT_THAT(series({"0.001", "0.002", "0.004", "--board", kBoard}), HasSubstr("stands beside --board"));
+  EXPECT_THAT(run_calibrate({"capture", "--mock", "--out", folder_ / "s"}), HasSubstr("--board"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "s"));
 }
 
 TEST_F(Capture, SaysWhichCamerasAreMissing) {

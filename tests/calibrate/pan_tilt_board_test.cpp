@@ -95,7 +95,7 @@ TEST_F(PanTiltBoard, TooFewViewsAreRefused) {
   EXPECT_THAT(solve(), AllOf(HasSubstr("5 poses"), HasSubstr("8")));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "h.yaml"));
   angles_ = "0 0\n";
-  EXPECT_THAT(solve(), AllOf(HasSubstr("--angles"), HasSubstr("1 rows for 5 images")));
+  EXPECT_THAT(solve(), AllOf(HasSubstr("--angles"), HasSubstr("1 row for 5 images")));
   angles_ = "0 0\n10 20\n1 2\n30 0\n0 0\n";
   EXPECT_THAT(solve(), HasSubstr("rad, not degrees"));
 }

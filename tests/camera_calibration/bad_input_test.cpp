@@ -41,6 +41,14 @@ TEST(BadInput, FewViews) {
   EXPECT_THAT(c.notes, Contains(HasSubstr("only 9 pairs")));
 }
 
+TEST(BadInput, TooFewViewsForTheLensAreNotUsable) {
+  const auto s = synthetic_rig(1, {.views = 30, .noise_px = 1});
+  const CameraCalibration few = calibrate(subset(s.views, {0, 1, 2, 3, 4}));
+  EXPECT_FALSE(few.usable());
+  EXPECT_THAT(few.verdict.text(), AllOf(HasSubstr("5 pairs are too few"), HasSubstr("take 15 and more")));
+  EXPECT_TRUE(calibrate(s.views).usable());
+}
+
 TEST(BadInput, ReversedBoardIsTurned) {
   auto s = synthetic_rig(2, {.views = 12});
   reverse(s.views.views[4].corners[1]);
@@ -50,6 +58,16 @@ TEST(BadInput, ReversedBoardIsTurned) {
   EXPECT_THAT(c.repairs.dropped, IsEmpty());
   EXPECT_LT(c.solution.rms_px, 0.35);
   EXPECT_THAT(c.full(), HasSubstr("turned: view view4"));
+}
+
+TEST(BadInput, SwappedCamerasAreNotUsable) {
+  auto s = synthetic_rig(2, {.views = 12});
+  EXPECT_TRUE(calibrate(s.views).usable());
+  for (RigView& view : s.views.views) std::swap(view.corners[0], view.corners[1]);
+  const CameraCalibration c = calibrate(s.views);
+  EXPECT_FALSE(c.usable());
+  EXPECT_THAT(c.verdict.text(),
+              AllOf(HasSubstr("mm to the left of the left one"), HasSubstr("exchange left and right")));
 }
 
 TEST(BadInput, PairThatDoesNotBelongTogetherIsDropped) {

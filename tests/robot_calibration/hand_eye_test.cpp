@@ -44,6 +44,18 @@ TEST(HandEye, FindsNoiseAndBoardSize) {
   EXPECT_NEAR(summary.sigma_robot_m, 5e-4, 2e-4);
 }
 
+// Of a small board far away: what one image says of its tilt and distance is far worse than an exact robot.
+TEST(HandEye, DoesNotTakeTheCamerasNoiseForTheRobots) {
+  for (const std::uint64_t seed : {21u, 22u, 23u}) {
+    Random random(seed);
+    const HandEyeRigOptions exact{.views = 13, .cols = 6, .rows = 5, .size_m = 0.02, .noise_rad = 0, .noise_m = 0};
+    const HandEyeSummary summary = solve_hand_eye(make_rig(random, exact).data, quick());
+    EXPECT_LT(summary.sigma_robot_m, 1e-4) << seed;
+    EXPECT_LT(summary.sigma_robot_rad, 2e-4) << seed;
+    EXPECT_NEAR(summary.sigma_px, 0.2, 0.03) << seed;
+  }
+}
+
 // What is left out is predicted about as well as the noise of robot and corners allows, and worse than in sample.
 TEST(HandEye, LeftOutErrorIsAboveInSampleError) {
   Random random(3);

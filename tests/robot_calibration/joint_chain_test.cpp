@@ -54,7 +54,7 @@ TEST(JointChain, NamesWhatIsWrong) {
               AllOf(HasSubstr("no link 'nowhere'"), HasSubstr("did you mean")));
   JointChain chain = read_joint_chain(arm(), "", "");
   EXPECT_THAT(input_error([&] { flange_pose(chain, {0.1}, "row 3"); }),
-              AllOf(HasSubstr("row 3"), HasSubstr("has 1 joint positions")));
+              AllOf(HasSubstr("row 3"), HasSubstr("has 1 joint position;")));
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST_F(ImageInput, PairsByNameAndBySorting) {
   EXPECT_EQ(sorted.corners.left.views[0].name, sorted.corners.right.views[0].name);
   save("r/c.png", view(0));
   EXPECT_THAT(input_error([&] { find_pairs_in_folders(files_ / "l", files_ / "r", board_); }),
-              HasSubstr("1 images beside 2"));
+              HasSubstr("1 image beside 2"));
 }
 
 TEST(ImageInputData, OpenCvStereoPictures) {
