@@ -329,7 +329,10 @@ void SafetyGate::step(RobotTime now, std::span<const MotionCommand> commands,
   const double dt = 1 / options_.rate_hz;
   if (feedback.size() != count_) return latch(GateReason::feedback_lost, -1, "feedback of too few joints", true);
   watch(feedback, now);
+  const bool followed = status_.state == GateState::following;
   for (const MotionCommand& command : commands) take(command, now);
+  // A robot that stood may have lost its torque unseen: it is watched before the first step.
+  if (status_.state == GateState::following && !followed) watch(feedback, now);
   if (status_.state == GateState::following && now - last_command_ > seconds(options_.command_age_s))
     stop(GateReason::operator_lost);
   if (status_.state == GateState::following) {

@@ -131,6 +131,16 @@ TEST_F(SafetyGateTest, ADriveThatFallsSilentLatches) {
   EXPECT_EQ(gate_.status().reason, GateReason::feedback_lost);
 }
 
+// As after its host was suspended for a while: the drive's own watchdog has stopped it, and nobody has noticed.
+TEST_F(SafetyGateTest, WhoEngagesADriveWithoutTorqueMovesNothing) {
+  cycle(command(0, 0, false));
+  feedback_[1].state = DriveState::disabled;
+  cycle(command(1, 0.5));
+  EXPECT_EQ(gate_.set_point(0).acceleration, 0);
+  expect_stopped_at_rest(GateReason::drive_not_enabled);
+  EXPECT_EQ(gate_.set_point(0).position, 0);
+}
+
 TEST_F(SafetyGateTest, FeedbackThatIsNoNumberLatches) {
   get_moving();
   now_ = now_ + seconds(kDt);
