@@ -111,6 +111,21 @@ TEST_F(ControlDeskTest, WhoNoLongerSeesTheRobotMovesNothing) {
   EXPECT_EQ(moves_in(2s), 0);
 }
 
+TEST_F(ControlDeskTest, ASeatAgreesByAPressAndByNothingElse) {
+  engage(anna_);
+  const Nonce agreed = desk_.permit().consent();
+  anna_.up_cut = true;
+  run(300ms);
+  anna_.up_cut = false;
+  sent_.clear();
+  run(1s);
+  ASSERT_NE(anna_.seat.state().consent, agreed);
+  for (const FromOperator& message : sent_) {
+    const auto* point = std::get_if<SetPoint>(&message.body);
+    ASSERT_TRUE(point == nullptr || point->consent == agreed);
+  }
+}
+
 TEST_F(ControlDeskTest, BeginsWhereTheRobotStandsOrNotAtAll) {
   anna_.position = {0.5, 0};
   anna_.seat.want_control(true);
@@ -137,8 +152,11 @@ TEST_F(ControlDeskTest, ARobotThatStoppedByItselfWaitsForAnotherPress) {
 
 TEST_F(ControlDeskTest, APauseOfTheRobotsProgramStops) {
   engage(anna_);
+  const Nonce consent = desk_.permit().consent();
   now_ = now_ + 150ms;
-  anna_.up.clear();
+  step();
+  EXPECT_EQ(desk_.permit().cause(), RestCause::paused) << "whatever has not expired yet";
+  EXPECT_NE(desk_.permit().consent(), consent);
   EXPECT_EQ(moves_in(2s), 0);
   let_go_and_press(anna_);
   EXPECT_TRUE(robot_.follows);
@@ -272,6 +290,19 @@ TEST_F(ControlDeskTest, ARequestFromBeforeALossIsNotExecuted) {
   EXPECT_TRUE(executed_.empty()) << "nor is one that comes too late";
 }
 
+TEST_F(ControlDeskTest, ARequestThatComesTooLateIsNotExecuted) {
+  anna_.commands = false;  // so that no set-point is lost
+  anna_.seat.want_control(true);
+  run(1s);
+  anna_.up_cut = true;
+  anna_.seat.request(LineRequest::home, time_of(anna_));
+  run(1500ms);
+  anna_.up_cut = false;
+  run(1s);
+  EXPECT_TRUE(executed_.empty());
+  EXPECT_EQ(anna_.seat.take_fates().at(0).outcome, RequestOutcome::expired);
+}
+
 TEST_F(ControlDeskTest, EverybodyMayStop) {
   seats_.push_back(&ben_);
   engage(anna_);
@@ -325,6 +356,9 @@ TEST_F(ControlDeskTest, WhatIsNoSetPointMovesNothing) {
   desk_.receive(sample([](SetPoint& p) { p.joints = 99; }), now_);
   desk_.receive(sample([](SetPoint& p) { p.joints = 1; }), now_);
   EXPECT_EQ(dropped(SetPointFault::malformed), faults + 3);
+  const auto strangers = dropped(SetPointFault::no_lease);
+  desk_.receive(sample([](SetPoint& p) { p.lease += 1; }), now_);
+  EXPECT_EQ(dropped(SetPointFault::no_lease), strangers + 1) << "of an earlier lease";
   desk_.receive(sample([](SetPoint& p) { p.given = {INT64_MAX}; }), now_);
   EXPECT_EQ(dropped(SetPointFault::clock_unknown), 1u);
   desk_.receive(sample([](SetPoint& p) {
@@ -334,6 +368,14 @@ TEST_F(ControlDeskTest, WhatIsNoSetPointMovesNothing) {
                 }),
                 now_);
   EXPECT_GT(dropped(SetPointFault::expired), 0u) << "the robot says how long set-points last";
+  const Nonce consent = desk_.permit().consent();
+  desk_.receive(sample([](SetPoint& p) {
+                  p.sequence += 2;
+                  p.given = p.given + 1s;
+                }),
+                now_);
+  EXPECT_EQ(dropped(SetPointFault::from_the_future), 1u);
+  EXPECT_NE(desk_.permit().consent(), consent);
 }
 
 TEST_F(ControlDeskTest, RoomForAFewOperatorsIsNotTakenByMany) {
