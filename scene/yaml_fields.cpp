@@ -86,6 +86,18 @@ std::string YamlMap::text(const std::string& key) const {
   return value.Scalar();
 }
 
+std::vector<std::string> YamlMap::texts(const std::string& key) const {
+  const YAML::Node list = require(key);
+  if (!list.IsSequence()) throw InputError(where(key), "is not a list", "write [a, b, ...]");
+  std::vector<std::string> out;
+  for (const YAML::Node& entry : list) {
+    if (!entry.IsScalar() || entry.Scalar().empty())
+      throw InputError(where(key), "has an entry that is not a word", "write [a, b, ...]");
+    out.push_back(entry.Scalar());
+  }
+  return out;
+}
+
 double YamlMap::finite(const YAML::Node& node, const std::string& key) const {
   const auto value = node.IsScalar() ? parse_number(node.Scalar()) : std::nullopt;
   if (!value || !std::isfinite(*value))

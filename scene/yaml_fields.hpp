@@ -29,10 +29,11 @@ class YamlMap {
   std::vector<std::string> keys() const;
   std::string where(const std::string& key) const;  ///< "file:line: a.b.key", of this map when absent
 
-  std::string text(const std::string& key) const;  ///< a scalar that is not empty
-  double number(const std::string& key) const;     ///< finite
-  double positive(const std::string& key) const;   ///< finite, above 0
-  int integer(const std::string& key) const;       ///< within int
+  std::string text(const std::string& key) const;                ///< a scalar that is not empty
+  std::vector<std::string> texts(const std::string& key) const;  ///< a list of scalars, none of them empty
+  double number(const std::string& key) const;                   ///< finite
+  double positive(const std::string& key) const;                 ///< finite, above 0
+  int integer(const std::string& key) const;                     ///< within int
   int integer(const std::string& key, int least, int most) const;
   std::vector<double> numbers(const std::string& key) const;  ///< a list, a list of rows, or {rows, cols, data}; finite
   std::vector<double> numbers(const std::string& key, std::size_t count) const;

@@ -1,0 +1,30 @@
+// The `link:` section of a rig file: the network between robot side and operator side.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace foresight {
+
+class YamlMap;
+
+/// Defaults: both sides on one machine.
+struct LinkConfig {
+  int domain = 0;                  ///< 0 .. 230; only who has the same one is seen
+  std::string interface = "lo";    ///< of the network, as `ip link` shows it
+  std::vector<std::string> peers;  ///< addresses or names of other hosts; none: found by multicast, on a LAN
+  double joint_rate_hz = 50;       ///< joint states and transforms, at most; > 0
+  double state_rate_hz = 10;       ///< robot's state; changes go at once; > 0
+  double image_rate_hz = 30;       ///< pairs, at most; > 0
+  int jpeg_quality = 85;           ///< 1 .. 100
+  std::string where = "link";      ///< "file:line: link", for messages
+
+  bool loopback() const { return interface == "lo"; }
+};
+
+/// Reads `map`, the section. Throws InputError naming file, line and field: unknown keys, numbers out of range, a name
+/// that cannot be one of an interface, a peer that is neither an address nor a host's name. Whether interface and peers
+/// exist is known where the link is opened: a rig file is read on other machines, too.
+LinkConfig read_link_config(const YamlMap& map);
+
+}  // namespace foresight

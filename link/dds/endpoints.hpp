@@ -1,0 +1,76 @@
+// Writers and readers of topics.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "common/time.hpp"
+#include "link/dds/participant.hpp"
+#include "link/messages/cdr.hpp"
+#include "link/messages/checks.hpp"
+
+namespace foresight::link {
+
+/// One thread.
+class Writer {
+ public:
+  /// Throws RuntimeFailure: another type on a topic of that name in this program. `participant` must outlive it.
+  Writer(Participant& participant, const Topic& topic);
+  ~Writer();
+
+  /// False: it did not go (only of Delivery::each, where readers are too far behind). Never waits for a reader.
+  bool write(Bytes cdr) noexcept;
+  template <detail::Message T>
+  bool write(const T& message) {
+    return write(to_cdr(message));
+  }
+  std::size_t readers() const noexcept;  ///< that are matched, in any program
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A sample while it is visited.
+struct Sample {
+  std::span<const std::uint8_t> cdr;  ///< as anybody may have sent it
+  std::int64_t sent_unix_ns = 0;      ///< when it was written, by the writer's wall clock
+  std::uint64_t writer = 0;           ///< one number for each writer
+};
+
+/// One thread; counts from any.
+class Reader {
+ public:
+  Reader(Participant& participant, const Topic& topic);  ///< as Writer
+  ~Reader();
+
+  /// Visits every sample that has come, oldest first, where it lies; returns how many there were.
+  std::size_t take(const std::function<void(const Sample&)>& visit);
+  /// Until a sample is there, `timeout` at most.
+  bool wait(Duration timeout) const noexcept;
+  std::size_t writers() const noexcept;  ///< that are matched
+  std::uint64_t lost() const noexcept;   ///< samples that were never seen here, of reliable writers too
+
+  /// Decodes and checks each that has come; what is wrong is counted, not visited.
+  template <detail::Message T>
+  std::size_t take(const Expected& expected, const std::function<void(T&&, const Sample&)>& visit) {
+    return take([&](const Sample& sample) {
+      std::optional<T> message = from_cdr<T>(sample.cdr);
+      const std::string wrong = message ? objection(*message, expected) : "bytes are no such message";
+      wrong.empty() ? visit(std::move(*message), sample) : refuse(wrong);
+    });
+  }
+  std::uint64_t refused() const noexcept { return refused_; }
+  const std::string& last_refusal() const noexcept { return last_refusal_; }  ///< in words; "" before the first
+
+ private:
+  void refuse(std::string why);
+
+  struct State;
+  std::unique_ptr<State> state_;
+  std::string topic_;
+  std::uint64_t refused_ = 0;
+  std::string last_refusal_;
+};
+
+}  // namespace foresight::link

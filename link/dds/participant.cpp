@@ -1,0 +1,225 @@
+#include "link/dds/participant.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "link/dds/cyclone.hpp"
+#include "link/dds/raw_type.hpp"
+#include "link/dds/settings.hpp"
+
+namespace foresight::link {
+namespace {
+
+constexpr char kRole[] = "foresight=";  // in the participant's user data, beside what ROS 2's tools look for
+
+void note_complaint(void* complaints, const dds_log_data_t* data) {
+  static_cast<Complaints*>(complaints)->note({data->message + data->hdrsize, data->size - data->hdrsize});
+}
+
+Qos participant_qos(const std::string& role) {
+  Qos qos(dds_create_qos());
+  const std::string data = "enclave=/;" + (kRole + role) + ";";
+  dds_qset_userdata(qos.get(), data.data(), data.size());
+  return qos;
+}
+
+std::string property(const dds_qos_t* qos, const char* name) {
+  char* value = nullptr;
+  if (!dds_qget_prop(qos, name, &value) || !value) return "";
+  const std::unique_ptr<char, decltype(&dds_free)> owner(value, &dds_free);
+  return value;
+}
+
+std::string role_of(const dds_qos_t* qos) {
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (!dds_qget_userdata(qos, &data, &size) || !data) return "";
+  const std::unique_ptr<void, decltype(&dds_free)> owner(data, &dds_free);
+  const std::string text(static_cast<const char*>(data), size);
+  const std::size_t at = text.find(kRole);
+  if (at == text.npos) return "";
+  const std::size_t begin = at + std::strlen(kRole);
+  return text.substr(begin, text.find(';', begin) - begin);
+}
+
+std::string entity_name(const dds_qos_t* qos) {
+  char* value = nullptr;
+  if (!dds_qget_entity_name(qos, &value) || !value) return "";
+  const std::unique_ptr<char, decltype(&dds_free)> owner(value, &dds_free);
+  return value;
+}
+
+/// Printable, and of a bounded length: others may call themselves anything.
+std::string shown(std::string text, std::size_t most = 80) {
+  if (text.size() > most) text.resize(most);
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
+  return text;
+}
+
+std::string id_of(const dds_guid_t& guid) {
+  std::string out;
+  for (const std::uint8_t byte : guid.v) out += fmt::format("{:02x}", byte);
+  return out;
+}
+
+/// Visits what a reader of Cyclone's own topics holds, alive only.
+template <typename T, typename Visit>
+void each_alive(dds_entity_t reader, Visit&& visit) {
+  constexpr std::size_t kMost = 512;
+  std::array<void*, kMost> samples{};
+  std::array<dds_sample_info_t, kMost> infos;
+  const dds_return_t count = dds_read(reader, samples.data(), infos.data(), kMost, kMost);
+  if (count <= 0) return;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    if (infos[i].valid_data && infos[i].instance_state == DDS_IST_ALIVE) visit(*static_cast<const T*>(samples[i]));
+  dds_return_loan(reader, samples.data(), count);
+}
+
+bool is_kept(const dds_qos_t* qos) {
+  dds_durability_kind_t kind = DDS_DURABILITY_VOLATILE;
+  return dds_qget_durability(qos, &kind) && kind != DDS_DURABILITY_VOLATILE;
+}
+
+Peer peer_of(const dds_builtintopic_participant_t& participant) {
+  Peer out;
+  out.id = id_of(participant.key);
+  out.host = shown(property(participant.qos, "__Hostname"));
+  const std::string process = property(participant.qos, "__ProcessName"), pid = property(participant.qos, "__Pid");
+  out.process = shown(process.empty() || pid.empty() ? process : process + " " + pid);
+  out.name = shown(role_of(participant.qos));
+  if (out.name.empty()) out.name = shown(entity_name(participant.qos));
+  if (out.name.empty()) out.name = out.process.empty() ? "?" : out.process;
+  return out;
+}
+
+}  // namespace
+
+Complaints::Complaints() {
+  dds_set_log_sink(note_complaint, this);
+}
+
+Complaints::~Complaints() {
+  dds_set_log_sink(nullptr, nullptr);
+}
+
+void Complaints::note(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  const std::lock_guard lock(mutex_);
+  last_ = shown(std::move(text), 200);
+  ++count_;
+}
+
+std::string Complaints::last() const {
+  const std::lock_guard lock(mutex_);
+  return last_;
+}
+
+std::uint64_t Complaints::count() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
+}
+
+dds_entity_t checked(dds_entity_t code, const std::string& what) {
+  if (code < 0)
+    throw RuntimeFailure(what + ": Cyclone DDS says '" + dds_strretcode(code) + "'",
+                         "see whether another program uses the domain's ports, or choose another link.domain");
+  return code;
+}
+
+Qos qos_of(const Topic& topic) {
+  constexpr int kMostWaiting = 1024;  // samples of Delivery::each that nobody has taken
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, 0);
+  dds_qset_durability(qos.get(),
+                      topic.delivery == Delivery::kept ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  if (topic.delivery == Delivery::each) {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+    dds_qset_resource_limits(qos.get(), kMostWaiting, DDS_LENGTH_UNLIMITED, kMostWaiting);
+  } else {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth);
+  }
+  if (topic.delivery == Delivery::kept)
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, topic.depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
+  dds_qset_data_representation(qos.get(), 1, &representation);
+  return qos;
+}
+
+const Participant::State::UsedTopic& Participant::State::topic(const Topic& wanted) {
+  const std::lock_guard lock(mutex);
+  auto& used = topics[wanted.name];
+  if (used.topic.get() > 0) {
+    if (used.type_name == wanted.type) return used;
+    throw RuntimeFailure("topic " + wanted.name + " has the type " + used.type_name + " here, not " + wanted.type,
+                         "choose another name");
+  }
+  ddsi_sertype* type = new_raw_type(wanted.type);
+  const dds_entity_t made =
+      dds_create_topic_sertype(participant.get(), wanted.name.c_str(), &type, nullptr, nullptr, nullptr);
+  if (made < 0) ddsi_sertype_unref(type);
+  used.topic = Entity(checked(made, "topic " + wanted.name + " cannot be made"));
+  used.type = type;
+  used.type_name = wanted.type;
+  return used;
+}
+
+Participant::Participant(const LinkConfig& config, const std::string& role) : state_(std::make_unique<State>()) {
+  check_network(config);
+  State& s = *state_;
+  const auto domain = static_cast<dds_domainid_t>(config.domain);
+  try {
+    const std::string settings = cyclone_settings(config, granted_receive_buffer());
+    s.domain = Entity(checked(dds_create_domain(domain, settings.c_str()), "the link cannot be opened"));
+    s.participant = Entity(
+        checked(dds_create_participant(domain, participant_qos(role).get(), nullptr), "the link cannot be opened"));
+    const auto reader = [&](dds_entity_t topic) {
+      return Entity(checked(dds_create_reader(s.participant.get(), topic, nullptr, nullptr), "discovery"));
+    };
+    s.programs = reader(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT);
+    s.publications = reader(DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
+    s.subscriptions = reader(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
+  } catch (const RuntimeFailure&) {
+    const std::string why = s.complaints.last();
+    if (why.empty()) throw;
+    throw RuntimeFailure(fmt::format("{}: the link cannot be opened on domain {}, interface {}: {}", config.where,
+                                     config.domain, config.interface, why),
+                         "end the programs that use the domain's ports, or choose another link.domain on both sides");
+  }
+}
+
+Participant::~Participant() = default;
+
+std::vector<Peer> Participant::peers() const {
+  const State& s = *state_;
+  std::vector<Peer> out;
+  dds_guid_t own{};
+  dds_get_guid(s.participant.get(), &own);
+  each_alive<dds_builtintopic_participant_t>(s.programs.get(), [&](const dds_builtintopic_participant_t& one) {
+    out.push_back(peer_of(one));
+    out.back().own = out.back().id == id_of(own);
+  });
+  for (const bool writes : {true, false})
+    each_alive<dds_builtintopic_endpoint_t>(
+        (writes ? s.publications : s.subscriptions).get(), [&](const dds_builtintopic_endpoint_t& one) {
+          const auto of = std::ranges::find(out, id_of(one.participant_key), &Peer::id);
+          if (of != out.end())
+            of->endpoints.push_back({shown(one.topic_name), shown(one.type_name), writes, is_kept(one.qos)});
+        });
+  for (Peer& peer : out)
+    std::ranges::sort(peer.endpoints, [](const auto& a, const auto& b) { return a.topic < b.topic; });
+  std::ranges::sort(out, [](const Peer& a, const Peer& b) { return std::tie(a.name, a.id) < std::tie(b.name, b.id); });
+  return out;
+}
+
+std::string Participant::trouble() const {
+  const auto count = static_cast<unsigned long long>(state_->complaints.count());
+  return count == 0 ? "" : fmt::format("{} ({} such messages)", state_->complaints.last(), count);
+}
+
+}  // namespace foresight::link

@@ -1,0 +1,70 @@
+// One program's place on a DDS domain, and who else is there. No header of Cyclone is needed to use it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "link/config/link_config.hpp"
+
+namespace foresight::link {
+
+/// How samples of a topic get to who reads them. All are reliable: what a loss takes is sent again while it is still
+/// wanted. No writer ever waits for a reader.
+enum class Delivery : std::uint8_t {
+  newest,  ///< the newest replaces one that has not gone or been read yet: images, states
+  kept,    ///< as `newest`; who comes late gets the last one, too: what does not change
+  each,    ///< every one, in order, or write() says that it did not go: requests, which are acknowledged
+};
+
+struct Topic {
+  std::string name;  ///< on DDS: "rt/joint_states"
+  std::string type;  ///< on DDS: "sensor_msgs::msg::dds_::JointState_"
+  Delivery delivery = Delivery::newest;
+  int depth = 1;  ///< of `newest` and `kept`: samples that a reader may be behind; > 0
+};
+
+/// A program on the domain.
+struct Peer {
+  std::string name;     ///< its role, such as "robot minerva"; its process where it has told none
+  std::string host;     ///< "" where it has not told
+  std::string process;  ///< "foresight 4711"; "" where it has not told
+  std::string id;       ///< of its participant, hexadecimal
+  bool own = false;     ///< this program
+  struct Endpoint {
+    std::string topic, type;
+    bool writes = false;
+    bool kept = false;  ///< who comes late is to get the last one (Delivery::kept)
+  };
+  std::vector<Endpoint> endpoints;  ///< by topic
+};
+
+/// Any thread. One at a time for each domain in a process.
+class Participant {
+ public:
+  /// `role`: as others see it, such as "robot minerva". Throws InputError (no such interface, or one that is down or
+  /// without an address; a peer whose name nobody knows), RuntimeFailure (the domain's ports are in use, or Cyclone
+  /// says no: its words are in it).
+  Participant(const LinkConfig& config, const std::string& role);
+  ~Participant();
+
+  /// All programs that are heard of, this one included, by name.
+  std::vector<Peer> peers() const;
+  /// The last thing that Cyclone complained about, such as a packet that makes no sense, and how often it did; "" while
+  /// there is nothing.
+  std::string trouble() const;
+
+ private:
+  friend class Writer;
+  friend class Reader;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Why images would be lost for the size of the kernel's receive buffers, and what to type about it; "" where they are
+/// large enough.
+std::string receive_buffer_trouble();
+
+}  // namespace foresight::link
