@@ -1,6 +1,8 @@
 // The `link:` section of a rig file: the network between robot side and operator side.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +19,9 @@ struct LinkConfig {
   double state_rate_hz = 10;       ///< robot's state; changes go at once; > 0
   double image_rate_hz = 30;       ///< pairs, at most; > 0
   int jpeg_quality = 85;           ///< 1 .. 100
-  std::string where = "link";      ///< "file:line: link", for messages
+  /// Folder of `foresight link keys`: everything is encrypted, and nobody without a certificate is let in.
+  std::optional<std::filesystem::path> security;
+  std::string where = "link";  ///< "file:line: link", for messages
 
   bool loopback() const { return interface == "lo"; }
 };

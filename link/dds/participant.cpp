@@ -1,8 +1,10 @@
 #include "link/dds/participant.hpp"
 
+#include <dlfcn.h>
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "common/error.hpp"
@@ -20,10 +22,44 @@ void note_complaint(void* complaints, const dds_log_data_t* data) {
   static_cast<Complaints*>(complaints)->note({data->message + data->hdrsize, data->size - data->hdrsize});
 }
 
-Qos participant_qos(const std::string& role) {
+/// Cyclone's plugins lie in a folder that the loader does not search.
+std::string plugin(const char* name) {
+  Dl_info cyclone{};
+  ::dladdr(reinterpret_cast<const void*>(&dds_create_domain), &cyclone);
+  const std::string file = std::string("libdds_security_") + name + ".so";
+  const std::filesystem::path beside = std::filesystem::path(cyclone.dli_fname).parent_path();
+  for (const auto& folder : {beside / "libddsc0debian", beside})
+    if (std::filesystem::exists(folder / file)) return folder / file;
+  throw RuntimeFailure("Cyclone DDS has no " + file + " beside " + beside.string(),
+                       "install a Cyclone DDS that was built with security, as Debian's libddsc0debian is");
+}
+
+void secure(dds_qos_t* qos, const KeyFiles& files) {
+  const auto set = [qos](const char* name, const std::string& value) { dds_qset_prop(qos, name, value.c_str()); };
+  for (const auto& [kind, name, words] : {std::array{"auth", "auth", "authentication"},
+                                          {"access", "ac", "access_control"},
+                                          {"crypto", "crypto", "crypto"}}) {
+    const std::string prefix = std::string("dds.sec.") + kind + ".library.";
+    set((prefix + "path").c_str(), plugin(name));
+    set((prefix + "init").c_str(), std::string("init_") + words);
+    set((prefix + "finalize").c_str(), std::string("finalize_") + words);
+  }
+  const auto file = [](const std::filesystem::path& path) {
+    return "file:" + std::filesystem::absolute(path).string();
+  };
+  set("dds.sec.auth.identity_ca", file(files.authority));
+  set("dds.sec.auth.identity_certificate", file(files.certificate));
+  set("dds.sec.auth.private_key", file(files.key));
+  set("dds.sec.access.permissions_ca", file(files.authority));
+  set("dds.sec.access.governance", file(files.rules));
+  set("dds.sec.access.permissions", file(files.permissions));
+}
+
+Qos participant_qos(const LinkConfig& config, const std::string& name, Role role) {
   Qos qos(dds_create_qos());
-  const std::string data = "enclave=/;" + (kRole + role) + ";";
+  const std::string data = "enclave=/;" + (kRole + name) + ";";
   dds_qset_userdata(qos.get(), data.data(), data.size());
+  if (config.security) secure(qos.get(), key_files(*config.security, role));
   return qos;
 }
 
@@ -125,6 +161,9 @@ std::uint64_t Complaints::count() const {
 }
 
 dds_entity_t checked(dds_entity_t code, const std::string& what) {
+  if (code == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY)
+    throw RuntimeFailure(what + ": this program's certificate does not permit it",
+                         "use the keys of the role that may (docs/line.md)");
   if (code < 0)
     throw RuntimeFailure(what + ": Cyclone DDS says '" + dds_strretcode(code) + "'",
                          "see whether another program uses the domain's ports, or choose another link.domain");
@@ -169,15 +208,17 @@ const Participant::State::UsedTopic& Participant::State::topic(const Topic& want
   return used;
 }
 
-Participant::Participant(const LinkConfig& config, const std::string& role) : state_(std::make_unique<State>()) {
+Participant::Participant(const LinkConfig& config, const std::string& name, Role role)
+    : state_(std::make_unique<State>()) {
   check_network(config);
+  if (config.security) check_keys(*config.security, role, config.where);
   State& s = *state_;
   const auto domain = static_cast<dds_domainid_t>(config.domain);
   try {
     const std::string settings = cyclone_settings(config, granted_receive_buffer());
     s.domain = Entity(checked(dds_create_domain(domain, settings.c_str()), "the link cannot be opened"));
-    s.participant = Entity(
-        checked(dds_create_participant(domain, participant_qos(role).get(), nullptr), "the link cannot be opened"));
+    s.participant = Entity(checked(dds_create_participant(domain, participant_qos(config, name, role).get(), nullptr),
+                                   "the link cannot be opened"));
     const auto reader = [&](dds_entity_t topic) {
       return Entity(checked(dds_create_reader(s.participant.get(), topic, nullptr, nullptr), "discovery"));
     };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "link/config/link_config.hpp"
+#include "link/keys/keys.hpp"
 
 namespace foresight::link {
 
@@ -44,10 +45,11 @@ struct Peer {
 /// Any thread. One at a time for each domain in a process.
 class Participant {
  public:
-  /// `role`: as others see it, such as "robot minerva". Throws InputError (no such interface, or one that is down or
-  /// without an address; a peer whose name nobody knows), RuntimeFailure (the domain's ports are in use, or Cyclone
+  /// `name`: as others see it, such as "robot minerva". `role`: whose keys it uses, where the link has any. Throws
+  /// InputError (no such interface, or one that is down or without an address; a peer whose name nobody knows; what
+  /// check_keys() does), RuntimeFailure (the domain's ports are in use, or Cyclone
   /// says no: its words are in it).
-  Participant(const LinkConfig& config, const std::string& role);
+  Participant(const LinkConfig& config, const std::string& name, Role role = Role::observer);
   ~Participant();
 
   /// All programs that are heard of, this one included, by name.

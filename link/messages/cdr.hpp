@@ -12,7 +12,9 @@
 #include <cstring>
 #include <optional>
 #include <span>
+#include <variant>
 
+#include "common/time.hpp"
 #include "link/messages/foresight_messages.hpp"
 
 namespace foresight::link {
@@ -25,9 +27,24 @@ struct AnyVisitor {
   AnyVisitor& operator()(const char*, auto&) { return *this; }
 };
 template <typename T>
-concept Message = requires(T& message, AnyVisitor visitor) {
+concept NamesFields = requires(T& message, AnyVisitor visitor) {
   T::visit(message, visitor);
 };
+template <typename T>
+concept HasFieldsNamed = requires(T& message, AnyVisitor visitor) {
+  visit_fields(message, visitor);
+};
+/// Its fields are named by itself, or by a function beside it.
+template <typename T>
+concept Message = NamesFields<T> || HasFieldsNamed<T>;
+
+template <typename T, typename V>
+void visit(T& message, V& visitor) {
+  if constexpr (NamesFields<std::remove_const_t<T>>)
+    T::visit(message, visitor);
+  else
+    visit_fields(message, visitor);
+}
 template <typename T>
 concept Number = std::is_arithmetic_v<T>;
 
@@ -80,7 +97,22 @@ class CdrWriter {
   }
   template <detail::Message T>
   void put(const T& message) {
-    T::visit(message, *this);
+    detail::visit(message, *this);
+  }
+  // As numbers: of an enumeration its value, of instants and durations nanoseconds.
+  template <typename E>
+  requires std::is_enum_v<E>
+  void put(E value) { put(static_cast<std::underlying_type_t<E>>(value)); }
+  void put(Duration duration) { put(std::int64_t{duration.count()}); }
+  template <typename Clock>
+  void put(Time<Clock> time) {
+    put(time.ns);
+  }
+  // IDL's union: which one, then that one.
+  template <typename... T>
+  void put(const std::variant<T...>& one) {
+    put(static_cast<std::int32_t>(one.index()));
+    std::visit([this](const auto& of) { put(of); }, one);
   }
   void append(const void* data, std::size_t size) {
     const auto* const bytes = static_cast<const std::uint8_t*>(data);
@@ -162,7 +194,38 @@ class CdrReader {
   }
   template <detail::Message T>
   void take(T& message) {
-    T::visit(message, *this);
+    detail::visit(message, *this);
+  }
+  template <typename E>
+  requires std::is_enum_v<E>
+  void take(E& value) {  // it may be none of its names: whoever uses it looks
+    std::underlying_type_t<E> number{};
+    take(number);
+    value = static_cast<E>(number);
+  }
+  void take(Duration& duration) {
+    std::int64_t ns = 0;
+    take(ns);
+    duration = Duration{ns};
+  }
+  template <typename Clock>
+  void take(Time<Clock>& time) {
+    take(time.ns);
+  }
+  template <typename... T>
+  void take(std::variant<T...>& one) {
+    std::int32_t index = 0;
+    take(index);
+    take_one<0>(index, one);
+  }
+  template <std::size_t I, typename... T>
+  void take_one(std::int32_t index, std::variant<T...>& one) {
+    if constexpr (I < sizeof...(T)) {
+      if (index == static_cast<std::int32_t>(I)) return take(one.template emplace<I>());
+      take_one<I + 1>(index, one);
+    } else {
+      fail();
+    }
   }
 
   // Bytes that one of a sequence has at least.
@@ -180,7 +243,7 @@ class CdrReader {
 template <detail::Message T>
 void to_cdr(const T& message, Bytes& out) {
   CdrWriter writer(out);
-  T::visit(message, writer);
+  detail::visit(message, writer);
 }
 template <detail::Message T>
 Bytes to_cdr(const T& message) {
@@ -194,7 +257,7 @@ template <detail::Message T>
 std::optional<T> from_cdr(std::span<const std::uint8_t> cdr) {
   std::optional<T> out(std::in_place);
   CdrReader reader(cdr);
-  T::visit(*out, reader);
+  detail::visit(*out, reader);
   if (!reader.at_end()) out.reset();
   return out;
 }

@@ -37,4 +37,14 @@ class Child {
   pid_t pid_ = 0;
 };
 
+/// Is it so, sooner or later? Nothing is judged by how long it took: a busy machine gets as long as it wants.
+inline bool comes_true(const std::function<bool()>& so) {
+  constexpr int kPatience = 2000;  // looks, 10 ms each at least
+  for (int i = 0; i < kPatience; ++i) {
+    if (so()) return true;
+    ::usleep(10'000);
+  }
+  return false;
+}
+
 }  // namespace foresight

@@ -14,17 +14,6 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-constexpr int kPatience = 2000;  // looks, 10 ms each at most: as long as a busy machine wants
-
-/// Is it so, sooner or later? Nothing is judged by how long it took.
-bool comes_true(const std::function<bool()>& so) {
-  for (int i = 0; i < kPatience; ++i) {
-    if (so()) return true;
-    ::usleep(10'000);
-  }
-  return false;
-}
-
 class Dds : public PrivateNetworkTest {};
 
 TEST_F(Dds, SamplesGoFromWriterToReaderAndAreChecked) {
