@@ -11,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/real_time.hpp"
 #include "common/stop_signal.hpp"
+#include "link/robot_side/robot_server.hpp"
 #include "session/robot_loop.hpp"
 
 namespace foresight {
@@ -26,7 +27,7 @@ struct Arguments {
   std::string log, record, session;
   bool cameras = true;
   bool mock = false, stepped = false, may_home = false, check_only = false;
-  bool rig_view = false;
+  bool rig_view = false, serve = false;
   bool view = false, window = false;  // the rest only with `view`
   std::optional<double> delay_ms;
   std::string scene;
@@ -106,7 +107,7 @@ std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& d
   RobotCameraOptions options;
   options.mock = arguments.mock;
   if (!arguments.record.empty()) options.record = arguments.record;
-  options.frames = arguments.view;
+  options.frames = arguments.view || arguments.serve;
   if (!arguments.scene.empty()) options.scene = arguments.scene;
   if (options.mock || rig.cameras->mock()) say_robot("lighting the lab");
   return std::make_unique<RobotCameras>(rig, devices, robot, clock, options);
@@ -130,8 +131,19 @@ std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCam
   return std::make_unique<LiveView>(cameras->scene(), cameras->frames().subscribe(kRoom), trouble, clock, options);
 }
 
-ConsoleOptions console_options(const Arguments& arguments) {
+/// Null without --serve.
+std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock,
+                                               const Arguments& arguments) {
+  if (!arguments.serve) return nullptr;
+  auto server = std::make_unique<link::RobotServer>(rig, robot, cameras, clock);
+  say_robot("serving on domain " + std::to_string(rig.link.domain) + ", interface " + rig.link.interface);
+  if (const std::string trouble = link::receive_buffer_trouble(); !trouble.empty()) say_robot(trouble);
+  return server;
+}
+
+ConsoleOptions console_options(const Arguments& arguments, const link::RobotServer* server) {
   ConsoleOptions options;
+  if (server) options.line = [server] { return server->line(); };
   options.follow = arguments.follow;
   options.may_home = arguments.may_home;
   if (!arguments.record.empty()) options.joints = joint_log_beside(arguments.record);
@@ -170,9 +182,11 @@ int run_with(const Rig& rig, const Arguments& arguments,
         *windows.body,
         RigWindowOptions{"Foresight rig: " + rig.name, windows.body->rest(), 1320, 860, rig_feed(rig, robot)});
   }
-  Console console(rig, devices, robot, cameras.get(), console_options(arguments));
+  const auto server = make_server(rig, robot, cameras.get(), clock, arguments);
+  Console console(rig, devices, robot, cameras.get(), console_options(arguments, server.get()));
   poll_stop_signals(SecondSignal::waits);  // a program that ends at once leaves the stop to the drives
   if (const std::string refused = arguments.stepped ? "" : lock_memory(); !refused.empty()) say_robot(refused);
+  if (server) server->start();
   return run(clock, robot, console, devices, cameras.get(), windows);
 }
 
@@ -225,6 +239,8 @@ int run(const Arguments& arguments) {
   if (!arguments.record.empty() && (!rig.cameras || !arguments.cameras))
     throw InputError("--record", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
+  if (arguments.serve && arguments.stepped)
+    throw InputError("--serve", "stands beside --stepped: a network's time cannot be stepped", "leave one of them out");
   if (!arguments.stepped) return run_with<MonotonicClock>(rig, arguments, run_real);
   require_mock(rig, arguments.mock, arguments.view || !arguments.record.empty());
   return run_with<SteppedClock>(rig, arguments, run_stepped);
@@ -269,6 +285,10 @@ void add_robot_command(Command& app, std::function<int()>& action) {
                    "With --view, --rig-view or --record: the scene around the robot, in place of the rig's `scene:`")
       ->reads();
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
+  command->add_flag(
+      "--serve", arguments->serve,
+      "Publishes pairs, joints, transforms and states on the network that the rig's `link:` section names\n"
+      "(docs/line.md); whoever listens cannot hold the robot up");
   command->add_flag("--stepped", arguments->stepped,
                     "As fast as the machine can, the same on every run; only with mock drives");
   command->add_option("--fault", arguments->faults,

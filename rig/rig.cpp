@@ -277,7 +277,7 @@ std::unique_ptr<RobotShape> Rig::shape() const {
 
 Rig read_rig(const std::filesystem::path& file) {
   const YamlMap map = YamlMap::load(file);
-  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "scene", "cameras", "calibration"});
+  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "scene", "cameras", "calibration", "link"});
   Rig rig;
   rig.name = map.text("name");
   if (map.has("robot")) read_robot(map.map("robot"), rig);
@@ -292,6 +292,8 @@ Rig read_rig(const std::filesystem::path& file) {
     rig.calibration = read_calibration(map.map("calibration"));
     if (rig.calibration->pan_tilt) require_head(map, rig);
   }
+  if (map.has("link")) rig.link = read_link_config(map.map("link"));
+  rig.link.where = map.where("link");
   rig.gate_options().validate(file.string());
   return rig;
 }

@@ -11,6 +11,7 @@
 #include "drivers/drive/drive.hpp"
 #include "drivers/robot/robot_words.hpp"
 #include "drivers/robot/safety_gate.hpp"
+#include "link/config/link_config.hpp"
 #include "scene/urdf_reader.hpp"
 
 namespace foresight {
@@ -58,6 +59,7 @@ struct Rig {
   std::optional<std::filesystem::path> scene;  ///< what stands around, but for the robot (scene/scene_reader.hpp)
   std::optional<StereoConfig> cameras;
   std::optional<RigCalibration> calibration;
+  LinkConfig link;
 
   /// What the safety gate needs of all that.
   GateOptions gate_options() const;

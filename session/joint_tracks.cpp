@@ -29,6 +29,14 @@ JointState JointTracks::at(RobotTime encoder_time) const {
   return out;
 }
 
+RobotTime JointTracks::newest() const {
+  RobotTime newest, common{INT64_MAX};
+  for (const Told& told : told_) newest = std::max(newest, told.time);
+  for (const Told& told : told_)
+    if (newest - told.time < kSilent) common = std::min(common, told.time);
+  return newest.ns == 0 ? newest : common;
+}
+
 bool JointTracks::know(RobotTime encoder_time) const {
   RobotTime newest;
   for (const Told& told : told_) newest = std::max(newest, told.time);

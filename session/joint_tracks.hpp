@@ -26,6 +26,8 @@ class JointTracks {
   void add(const RobotCycle& cycle);
   /// On the encoders' clock.
   JointState at(RobotTime encoder_time) const;
+  /// The newest instant that all joints have told of which still tell anything; 0 before any has.
+  RobotTime newest() const;
   /// Have all joints told of that instant that still tell anything? One that has been silent for long is not waited
   /// for.
   bool know(RobotTime encoder_time) const;

@@ -169,6 +169,7 @@ LiveFramePtr LiveFrames::registered(const Waiting& waiting) noexcept {
   auto frame = std::make_shared<LiveFrame>();
   frame->number = waiting.number;
   frame->pair = waiting.pair;
+  frame->came = waiting.came;
   std::string fault, missing;
   try {
     PairPoses poses = poses_->poses_of(waiting.pair);
@@ -182,6 +183,7 @@ LiveFramePtr LiveFrames::registered(const Waiting& waiting) noexcept {
     fault = error.what();
     frame->quality = "lost";
   }
+  frame->registered = clock_.now();
   const std::lock_guard lock(mutex_);
   fault_ = std::move(fault);
   missing_ = std::move(missing);

@@ -54,6 +54,7 @@ struct LiveFrame {
   JointState joints;
   std::string quality;                 ///< PairPoses::quality
   std::optional<double> predicted_px;  ///< from which PosedImage::margin_px follows
+  RobotTime came, registered;          ///< when it was handed in, and when its poses were found
 };
 using LiveFramePtr = std::shared_ptr<const LiveFrame>;
 

@@ -7,6 +7,7 @@
 #include "apps/bench/can_bench.hpp"
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
+#include "apps/bench/link_bench.hpp"
 #include "apps/bench/margin.hpp"
 #include "apps/bench/prediction_bench.hpp"
 #include "apps/bench/registration_bench.hpp"
@@ -76,6 +77,20 @@ void add_robot(Command& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_robot(*options); }; });
 }
 
+void add_link(Command& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("link", "What the line adds to a pair's age on loopback, between two processes");
+  auto options = std::make_shared<LinkBenchOptions>();
+  command->add_option("--seconds", options->seconds, "How long")->check(from_to(1, 86400))->capture_default_str();
+  command->add_option("--size", options->size, "Of each picture, px")->capture_default_str();
+  command->add_option("--rate", options->rate_hz, "Pairs a second")->check(from_to(0.1, 1000))->capture_default_str();
+  command->add_option("--quality", options->quality, "Of the JPEGs")->check(from_to(1, 100))->capture_default_str();
+  command->add_flag("--secured", options->secured, "Encrypted and authenticated, with keys made for it");
+  command->add_option("--domain", options->domain, "DDS domain to use")->check(from_to(0, 230))->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer("Exit code: 1 where it adds more than 1 ms (p50) or 5 ms (p99), or loses a pair.");
+  command->callback([options, &action] { action = [options] { return bench_link(*options); }; });
+}
+
 void add_calibration(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("calibration", "CPU time and held-out error of our stereo solver and OpenCV's");
   auto options = std::make_shared<CalibrationBenchOptions>();
@@ -130,6 +145,7 @@ void add_bench_command(Command& app, std::function<int()>& action) {
   add_margin(*bench, action);
   add_prediction_benches(*bench, action);
   add_robot(*bench, action);
+  add_link(*bench, action);
   add_registration(*bench, action);
 }
 

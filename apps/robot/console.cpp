@@ -27,7 +27,8 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
       faults_(parse_mock_faults(options.faults, rig, options.mock), rig, devices),
       // The keyboard can always stop and quit; it drives only where no file does.
       keys_(rig.gate_options().joints,
-            options.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops) {
+            options.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops),
+      line_(options.line) {
   if (!options.follow.empty()) {
     follow_.emplace(FollowFile(options.follow, rig), options.may_home);
     commanders_.push_back(&*follow_);
@@ -84,6 +85,7 @@ std::string Console::view(const RobotStatus& status, int selected) const {
   if (cameras_) out += camera_text(cameras_->watch().line());
   if (const std::string fault = cameras_ ? cameras_->registration_trouble() : ""; !fault.empty())
     out += "  poses: " + fault + "\n";
+  if (line_) out += "line: " + line_() + "\n";
   return out;
 }
 

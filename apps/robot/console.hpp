@@ -1,6 +1,7 @@
 // What goes on beside the control loop of `foresight robot`: operators, the terminal, logs, the service's watchdog.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,12 +19,13 @@
 namespace foresight {
 
 struct ConsoleOptions {
-  std::string follow;               ///< file with a motion, or "": then the keyboard drives
-  bool may_home = false;            ///< consent, with `follow`
-  std::string joints;               ///< file for all joints over time, or ""
-  std::string session;              ///< page about the session, or ""
-  std::vector<std::string> faults;  ///< of mock drives (parse_mock_faults)
-  bool mock = false;                ///< all drives are mock ones, whatever the rig says
+  std::string follow;                 ///< file with a motion, or "": then the keyboard drives
+  bool may_home = false;              ///< consent, with `follow`
+  std::string joints;                 ///< file for all joints over time, or ""
+  std::string session;                ///< page about the session, or ""
+  std::vector<std::string> faults;    ///< of mock drives (parse_mock_faults)
+  bool mock = false;                  ///< all drives are mock ones, whatever the rig says
+  std::function<std::string()> line;  ///< how the line to others is, in one line; empty: there is none
 };
 
 /// One line for whoever started the program.
@@ -63,6 +65,7 @@ class Console {
   KeyOperator keys_;
   std::optional<FollowOperator> follow_;
   std::vector<Commander*> commanders_;
+  std::function<std::string()> line_;
   LoopLife life_;
   RobotTime shown_, notified_;
 };

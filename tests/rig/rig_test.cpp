@@ -104,6 +104,7 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("name: small", "name: small\nsurroundings: {obstacles: [{name: shelf, box_m: [-460, 0, 0, 1, 1, 1]}]}",
          {"box_m", "460", "0.46 m"});
   expect("name: small", "name: small\ncamera: {}", {"camera", "did you mean 'cameras'"});
+  expect("name: small", "name: small\nlink: {domian: 3}", {"rig.yaml:2: link.domian", "did you mean 'domain'"});
   expect("name: small", "name: small\ncameras: {left: {driver: mock}}", {"cameras.right", "missing"});
   expect("name: small", "name: small\ncameras: {left: {driver: mock}, right: {driver: mokc}}",
          {"rig.yaml:2: cameras.right.driver", "mokc", "mock"});

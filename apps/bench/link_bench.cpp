@@ -1,0 +1,251 @@
+#include "apps/bench/link_bench.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "common/error.hpp"
+#include "common/numbers_file.hpp"
+#include "common/statistics.hpp"
+#include "common/text.hpp"
+#include "common/unique_fd.hpp"
+#include "link/dds/topics.hpp"
+#include "link/robot_side/frame_sender.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kLook = 100ms;
+constexpr std::size_t kPictures = 16;
+
+/// What the receiving process tells of each pair.
+struct Arrival {
+  std::uint64_t number;
+  double added_ms, age_ms, coder_ms, decoder_ms;
+  std::uint64_t bytes;
+  double memory_mb;
+};
+
+double memory_mb() {
+  std::ifstream file("/proc/self/statm");
+  double all = 0, resident = 0;
+  file >> all >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) * 1e-6;
+}
+
+double ms(std::int64_t ns) {
+  return 1e-6 * static_cast<double>(ns);
+}
+
+/// Keys for as long as this lives.
+class KeyFolder {
+ public:
+  KeyFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "foresight-keys-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw RuntimeFailure("no folder can be made in " + name, "free some disk space");
+    path_ = name;
+    link::make_keys(path_, 1);
+  }
+  ~KeyFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  KeyFolder(const KeyFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void write_all(int fd, const Arrival& arrival) {
+  const auto* at = reinterpret_cast<const char*>(&arrival);  // less than PIPE_BUF: whole, or not at all
+  while (::write(fd, at, sizeof arrival) < 0 && errno == EINTR) {
+  }
+}
+
+/// The operator's end, until it is killed.
+[[noreturn]] void receive(const LinkConfig& config, int to) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  try {
+    MonotonicClock clock;
+    link::Participant program(config, "bench receiver");
+    link::Reader reader(program, link::topics::frames());
+    for (;;) {
+      reader.wait(kLook);
+      reader.take<link::StereoFrame>({}, [&](link::StereoFrame&& frame, const link::Sample& sample) {
+        const std::int64_t here = clock.now().ns;
+        const cv::Mat left = cv::imdecode(frame.left.data, cv::IMREAD_COLOR);
+        const cv::Mat right = cv::imdecode(frame.right.data, cv::IMREAD_COLOR);
+        write_all(to, {left.empty() || right.empty() ? 0 : frame.number, ms(here - frame.stamps.coded_ns),
+                       ms(here - frame.left.capture_ns), ms(frame.stamps.coded_ns - frame.stamps.taken_ns),
+                       ms(clock.now().ns - here), sample.cdr.size(), memory_mb()});
+      });
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench: receiver: %s\n", error.what());
+  }
+  ::_exit(1);
+}
+
+/// Noise on a smooth ground, as cameras deliver it; another picture each time, and as hard to code.
+std::vector<cv::Mat> pictures(cv::Size size) {
+  std::vector<cv::Mat> out;
+  cv::RNG random(1);
+  cv::Mat ground(size / 16, CV_8UC3);
+  random.fill(ground, cv::RNG::UNIFORM, 30, 220);
+  cv::resize(ground, ground, size, 0, 0, cv::INTER_CUBIC);
+  for (std::size_t i = 0; i < kPictures; ++i) {
+    cv::Mat noise(size, CV_16SC3), picture;
+    random.fill(noise, cv::RNG::NORMAL, 0, 4);
+    ground.convertTo(picture, CV_16SC3);
+    cv::Mat(picture + noise).convertTo(picture, CV_8UC3);
+    out.push_back(picture);
+  }
+  return out;
+}
+
+cv::Size parse_size(const std::string& text) {
+  const std::size_t by = text.find('x');
+  const auto width = parse_integer(text.substr(0, by));
+  const auto height = by == text.npos ? std::nullopt : parse_integer(text.substr(by + 1));
+  if (!width || !height || *width < 16 || *height < 16 || *width > 8192 || *height > 8192)
+    throw InputError("--size " + text, "is no size of a picture", "write it as 1280x720");
+  return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+void take_arrivals(int from, std::vector<Arrival>& out) {
+  Arrival one;
+  while (::read(from, &one, sizeof one) == sizeof one) out.push_back(one);
+}
+
+struct Sent {
+  std::uint64_t pairs = 0;
+  double memory_mb_first = 0, memory_mb_last = 0;
+};
+
+Sent send(const LinkConfig& config, const LinkBenchOptions& options, int from, std::vector<Arrival>& arrivals) {
+  MonotonicClock clock;
+  link::WallClock wall(clock);
+  const auto all = pictures(parse_size(options.size));
+  link::Participant program(config, "bench sender", link::Role::robot);
+  const auto queue = std::make_shared<FrameQueue>(2);
+  link::FrameSender sender(program, {1, {}}, nullptr, queue, link::jpeg_coder(options.quality), 2 * options.rate_hz,
+                           wall, clock);
+  const link::Writer probe(program, link::topics::frames());
+  const RobotTime patience = clock.now() + 10s;
+  while (probe.readers() == 0) {
+    if (clock.now() > patience) throw RuntimeFailure("the receiver was not found", "see `foresight link status`");
+    clock.sleep_until(clock.now() + 10ms);
+  }
+  Sent out;
+  const Duration period = seconds(1 / options.rate_hz);
+  const auto count = static_cast<std::uint64_t>(options.seconds * options.rate_hz);
+  RobotTime due = clock.now();
+  for (std::uint64_t i = 1; i <= count; ++i, due = due + period) {
+    clock.sleep_until(due);
+    auto frame = std::make_shared<LiveFrame>();
+    frame->number = i;
+    frame->pair.left.time = frame->pair.right.time = clock.now();
+    frame->pair.left.bgr = all[i % kPictures];
+    frame->pair.right.bgr = all[(i + kPictures / 2) % kPictures];
+    queue->put(frame);
+    sender.step(Duration{0});
+    take_arrivals(from, arrivals);
+    if (i == count / 10 + 1) out.memory_mb_first = memory_mb();
+  }
+  clock.sleep_until(clock.now() + 500ms);
+  take_arrivals(from, arrivals);
+  out.pairs = sender.counts().sent;
+  out.memory_mb_last = memory_mb();
+  return out;
+}
+
+template <typename Get>
+std::vector<double> column(const std::vector<Arrival>& from, Get&& get, double begin = 0, double end = 1) {
+  std::vector<double> out;
+  const auto at = [&](double share) { return static_cast<std::size_t>(share * static_cast<double>(from.size())); };
+  for (std::size_t i = at(begin); i < at(end); ++i) out.push_back(get(from[i]));
+  return out;
+}
+
+}  // namespace
+
+int bench_link(const LinkBenchOptions& options) {
+  parse_size(options.size);
+  LinkConfig config;
+  config.domain = options.domain;
+  config.where = "bench link";
+  std::optional<KeyFolder> keys;
+  if (options.secured) config.security = keys.emplace().path();
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) throw RuntimeFailure("no pipe can be made", "end other programs");
+  const UniqueFd from(ends[0]), to(ends[1]);
+  std::fflush(nullptr);
+  const pid_t receiver = ::fork();  // before any of our threads
+  if (receiver < 0) throw RuntimeFailure("no second process can be started", "end other programs");
+  if (receiver == 0) receive(config, to.get());
+  std::vector<Arrival> arrivals;
+  Sent sent;
+  const auto end_receiver = [&] {
+    ::kill(receiver, SIGKILL);
+    ::waitpid(receiver, nullptr, 0);
+  };
+  try {
+    sent = send(config, options, from.get(), arrivals);
+  } catch (...) {
+    end_receiver();
+    throw;
+  }
+  end_receiver();
+  if (arrivals.empty()) throw RuntimeFailure("no pair arrived", "see `foresight link status`");
+
+  const auto added = column(arrivals, [](const Arrival& a) { return a.added_ms; });
+  const auto age = [&](double begin, double end) {
+    return median(column(
+        arrivals, [](const Arrival& a) { return a.age_ms; }, begin, end));
+  };
+  const auto damaged = std::ranges::count(arrivals, std::uint64_t{0}, &Arrival::number);
+  const auto lost = static_cast<long long>(sent.pairs) - static_cast<long long>(arrivals.size()) + damaged;
+  const double p50 = quantile(added, 0.5), p99 = quantile(added, 0.99), worst = quantile(added, 1);
+  const double kilobytes = 1e-3 * median(column(arrivals, [](const Arrival& a) { return double(a.bytes); }));
+  const double coder = median(column(arrivals, [](const Arrival& a) { return a.coder_ms; }));
+  const double decoder = median(column(arrivals, [](const Arrival& a) { return a.decoder_ms; }));
+  const double receiver_first = arrivals[arrivals.size() / 10].memory_mb, receiver_last = arrivals.back().memory_mb;
+  std::printf("2 x %s at %g Hz for %g s, %.0f kB a pair, two processes on loopback%s\n", options.size.c_str(),
+              options.rate_hz, options.seconds, kilobytes, options.secured ? ", secured" : "");
+  std::printf("the line adds   p50 %.2f ms, p99 %.2f ms, worst %.2f ms\n", p50, p99, worst);
+  std::printf("pairs           %llu sent, %lld lost\n", static_cast<unsigned long long>(sent.pairs), lost);
+  std::printf("coder           %.1f ms a pair to code, %.1f ms to decode\n", coder, decoder);
+  std::printf("age on arrival  p50 %.1f ms in the first fifth, %.1f ms in the last\n", age(0, 0.2), age(0.8, 1));
+  std::printf("memory          sender %.1f to %.1f MB, receiver %.1f to %.1f MB\n", sent.memory_mb_first,
+              sent.memory_mb_last, receiver_first, receiver_last);
+  if (const std::string trouble = link::receive_buffer_trouble(); !trouble.empty())
+    std::fprintf(stderr, "bench: %s\n", trouble.c_str());
+  const nlohmann::json all = {{"added_p50_ms", p50},
+                              {"added_p99_ms", p99},
+                              {"added_worst_ms", worst},
+                              {"pairs_sent", sent.pairs},
+                              {"pairs_lost", lost},
+                              {"pair_kb", kilobytes},
+                              {"coder_ms", coder},
+                              {"decoder_ms", decoder},
+                              {"age_first_ms", age(0, 0.2)},
+                              {"age_last_ms", age(0.8, 1)},
+                              {"sender_growth_mb", sent.memory_mb_last - sent.memory_mb_first},
+                              {"receiver_growth_mb", receiver_last - receiver_first}};
+  write_numbers(options.json, all.dump(2));
+  return p50 <= 1 && p99 <= 5 && lost == 0 ? 0 : 1;
+}
+
+}  // namespace foresight

@@ -1,0 +1,52 @@
+#include "link/robot_side/robot_server.hpp"
+
+#include <fmt/core.h>
+
+#include <random>
+
+namespace foresight::link {
+namespace {
+
+constexpr std::size_t kRoom = 2;  // pairs that wait for the coder; only the newest goes
+
+SenderName sender_name(const Rig& rig) {
+  std::random_device random;
+  return {(std::uint64_t{random()} << 32) | random(), rig.joint_names()};
+}
+
+}  // namespace
+
+RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock)
+    : participant_(rig.link, "robot " + rig.name, Role::robot),
+      wall_(clock),
+      states_(participant_, sender_name(rig), rig, robot, cameras, wall_, clock) {
+  if (!cameras) return;
+  const auto& lenses = cameras->scene().lenses();
+  frames_ = std::make_unique<FrameSender>(participant_, states_.name(), lenses ? &*lenses : nullptr,
+                                          cameras->frames().subscribe(kRoom), jpeg_coder(rig.link.jpeg_quality),
+                                          rig.link.image_rate_hz, wall_, clock);
+}
+
+void RobotServer::start() {
+  states_.start();
+  if (frames_) frames_->start();
+}
+
+void RobotServer::stop() noexcept {
+  if (frames_) frames_->stop();
+  states_.stop();
+}
+
+std::string RobotServer::line() const {
+  std::string others;
+  for (const Peer& peer : participant_.peers())
+    if (!peer.own) others += (others.empty() ? "" : ", ") + peer.name;
+  const FrameCounts counts = this->counts();
+  std::string out = others.empty() ? "nobody listens" : others;
+  if (frames_) out += fmt::format("; {} pairs sent", static_cast<unsigned long long>(counts.sent));
+  if (counts.failed) out += fmt::format(", {} could not be coded", static_cast<unsigned long long>(counts.failed));
+  const std::string trouble = participant_.trouble();
+  return out + (trouble.empty() ? "" : "; " + trouble);
+}
+
+}  // namespace foresight::link

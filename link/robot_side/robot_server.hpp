@@ -1,0 +1,30 @@
+// The robot's end of the line: everything that `foresight robot --serve` publishes.
+#pragma once
+
+#include "link/robot_side/state_sender.hpp"
+
+namespace foresight::link {
+
+/// Nothing in it ever holds up the control loop, the cameras or the console: it takes the loop's cycles from a ring and
+/// pairs from a queue, each in a thread of its own. A reader that is slow, stopped or strange costs at most samples of
+/// its own.
+class RobotServer {
+ public:
+  /// `cameras`: null, or with frames(). All references must outlive this. Throws what Participant does.
+  RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock);
+
+  void start();
+  void stop() noexcept;
+
+  /// One line for people: who listens, what goes out, what is wrong with the line.
+  std::string line() const;
+  FrameCounts counts() const noexcept { return frames_ ? frames_->counts() : FrameCounts{}; }
+
+ private:
+  Participant participant_;
+  WallClock wall_;
+  StateSender states_;
+  std::unique_ptr<FrameSender> frames_;
+};
+
+}  // namespace foresight::link

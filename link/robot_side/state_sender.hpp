@@ -1,0 +1,52 @@
+// What the robot does onto the line: joints, transforms, states.
+#pragma once
+
+#include <thread>
+
+#include "link/robot_side/frame_sender.hpp"
+#include "session/robot_cameras.hpp"
+
+namespace foresight::link {
+
+/// Joint states, set-points and transforms at `joint_rate_hz`; the robot's state at `state_rate_hz`, and at once when
+/// its phase, gate or reason changes; diagnostics once a second. It takes the control loop's cycles from a ring of its
+/// own: the loop knows nothing of it. start() gives it a thread; step() does the same in the caller's.
+class StateSender {
+ public:
+  /// `cameras` may be null. All references must outlive this.
+  StateSender(Participant& participant, SenderName name, const Rig& rig, const Robot& robot,
+              const RobotCameras* cameras, WallClock& wall, Clock& clock);
+  ~StateSender() { stop(); }
+
+  void start();
+  void stop() noexcept;
+  const SenderName& name() const { return name_; }
+  /// Sends what is due at `now`.
+  void step(RobotTime now) noexcept;
+
+ private:
+  void listen();
+  void send_joints();
+  void send_state(RobotTime now);
+
+  const SenderName name_;
+  const Rig& rig_;
+  const Robot& robot_;
+  const RobotCameras* cameras_;
+  WallClock& wall_;
+  Clock& clock_;
+  const Duration joint_period_, state_period_;
+
+  BroadcastRing<RobotCycle>::Reader cycles_;
+  JointTracks joints_;
+  std::optional<RobotCycle> newest_;
+  bool changed_ = true;                                 // since the last state that was sent
+  RobotTime joints_due_, state_due_, diagnostics_due_;  // by the clock
+  RobotTime sent_joints_;                               // the instant that they were of
+  std::uint64_t number_ = 0;
+
+  Writer joint_states_, set_points_, transforms_, static_transforms_, states_, diagnostics_;
+  std::jthread thread_;
+};
+
+}  // namespace foresight::link
