@@ -145,7 +145,10 @@ void JointResponse::learn_rest(std::size_t first, std::size_t horizon) noexcept 
     variance += x[0] * x[0];
     ++count;
   });
-  if (count < kFewest) return;
+  if (count < kFewest) {  // too short a recording so far: the nearer horizon knows most
+    if (!identified_ && horizon > 0) rest.sigma = rests_[horizon - 1].sigma;
+    return;
+  }
   constexpr double kFirmly = 10;  // samples
   variance /= static_cast<double>(count);
   OnlineRegression fit(Weights::Constant(kRestTerms, 0.3), Weights::Constant(kRestTerms, kFirmly * variance), 1);

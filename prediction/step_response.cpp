@@ -165,23 +165,23 @@ double StepResponseFit::sigma(const Weights& inputs) const noexcept {
 }
 
 ResponseFigures StepResponseFit::figures() const noexcept {
-  Weights first = Weights::Zero(model.realised.size()), second = first;  // moments are sums of these times the shares
+  Weights once = Weights::Zero(model.realised.size()), twice = once;  // moments are sums of these times the shares
   double mean = model.ages[model.bins], square = mean * mean;
   for (std::size_t k = 0; k < model.bins; ++k) {
     const auto at = static_cast<Eigen::Index>(k);
-    first[at] = model.ages[k] - model.ages[k + 1];
-    second[at] = model.ages[k] * model.ages[k] - model.ages[k + 1] * model.ages[k + 1];
+    once[at] = model.ages[k] - model.ages[k + 1];
+    twice[at] = model.ages[k] * model.ages[k] - model.ages[k + 1] * model.ages[k + 1];
   }
-  mean += first.dot(model.realised);
-  square += second.dot(model.realised);
+  mean += once.dot(model.realised);
+  square += twice.dot(model.realised);
   ResponseFigures figures;
   figures.delay = mean;
-  figures.delay_sigma = std::hypot(kResolution, sigma(first));
+  figures.delay_sigma = std::hypot(kResolution, sigma(once));
   // A dead time d and a lag of time constant T: mean d + T, spread T.
   figures.lag = std::clamp(std::sqrt(std::max(0.0, square - mean * mean)), 0.0, std::max(0.0, mean));
   figures.dead_time = mean - figures.lag;
   const double steep = std::max(figures.lag, 0.001);  // dT = (d square - 2 mean d mean) / 2 T
-  figures.dead_time_sigma = std::hypot(kResolution, sigma(first - (second - 2 * mean * first) / (2 * steep)));
+  figures.dead_time_sigma = std::hypot(kResolution, sigma(once - (twice - 2 * mean * once) / (2 * steep)));
   figures.unexplained = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
   figures.samples = count;
   return figures;
