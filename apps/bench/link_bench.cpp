@@ -14,6 +14,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/error.hpp"
+#include "common/latest_value.hpp"
 #include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
@@ -31,8 +32,11 @@ constexpr std::size_t kPictures = 16;
 
 /// What the receiving process tells of each pair.
 struct Arrival {
+  enum Kind : std::uint8_t { came, decoded };
   std::uint64_t number;
-  double added_ms, age_ms, coder_ms, decoder_ms;
+  Kind kind;
+  double ms;  ///< what the line added or, where it was decoded, how long that took; -1: it was damaged
+  double age_ms, coder_ms;
   std::uint64_t bytes;
   double memory_mb;
 };
@@ -74,22 +78,35 @@ void write_all(int fd, const Arrival& arrival) {
   }
 }
 
+/// Decodes the newest pair, as an operator's program does beside the one that receives.
+void decode(LatestValue<link::StereoFrame>& newest, const Clock& clock, int to, const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const auto frame = newest.take(kLook);
+    if (!frame) continue;
+    const std::int64_t begin = clock.now().ns;
+    const cv::Mat left = cv::imdecode(frame->left.data, cv::IMREAD_COLOR);
+    const cv::Mat right = cv::imdecode(frame->right.data, cv::IMREAD_COLOR);
+    const bool whole = !left.empty() && !right.empty();
+    write_all(to, {frame->number, Arrival::decoded, whole ? ms(clock.now().ns - begin) : -1, 0, 0, 0, memory_mb()});
+  }
+}
+
 /// The operator's end, until it is killed.
 [[noreturn]] void receive(const LinkConfig& config, int to) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   try {
     MonotonicClock clock;
+    LatestValue<link::StereoFrame> newest;
+    const std::jthread decoder([&](const std::stop_token& stop) { decode(newest, clock, to, stop); });
     link::Participant program(config, "bench receiver");
     link::Reader reader(program, link::topics::frames());
     for (;;) {
       reader.wait(kLook);
       reader.take<link::StereoFrame>({}, [&](link::StereoFrame&& frame, const link::Sample& sample) {
         const std::int64_t here = clock.now().ns;
-        const cv::Mat left = cv::imdecode(frame.left.data, cv::IMREAD_COLOR);
-        const cv::Mat right = cv::imdecode(frame.right.data, cv::IMREAD_COLOR);
-        write_all(to, {left.empty() || right.empty() ? 0 : frame.number, ms(here - frame.stamps.coded_ns),
-                       ms(here - frame.left.capture_ns), ms(frame.stamps.coded_ns - frame.stamps.taken_ns),
-                       ms(clock.now().ns - here), sample.cdr.size(), memory_mb()});
+        write_all(to, {frame.number, Arrival::came, ms(here - frame.stamps.coded_ns), ms(here - frame.left.capture_ns),
+                       ms(frame.stamps.coded_ns - frame.stamps.taken_ns), sample.cdr.size(), memory_mb()});
+        newest.put(std::move(frame));
       });
     }
   } catch (const std::exception& error) {
@@ -124,9 +141,14 @@ cv::Size parse_size(const std::string& text) {
   return {static_cast<int>(*width), static_cast<int>(*height)};
 }
 
-void take_arrivals(int from, std::vector<Arrival>& out) {
+struct Arrivals {
+  std::vector<Arrival> came, decoded;
+};
+
+void take_arrivals(int from, Arrivals& out) {
   Arrival one;
-  while (::read(from, &one, sizeof one) == sizeof one) out.push_back(one);
+  while (::read(from, &one, sizeof one) == sizeof one)
+    (one.kind == Arrival::came ? out.came : out.decoded).push_back(one);
 }
 
 struct Sent {
@@ -134,7 +156,7 @@ struct Sent {
   double memory_mb_first = 0, memory_mb_last = 0;
 };
 
-Sent send(const LinkConfig& config, const LinkBenchOptions& options, int from, std::vector<Arrival>& arrivals) {
+Sent send(const LinkConfig& config, const LinkBenchOptions& options, int from, Arrivals& arrivals) {
   MonotonicClock clock;
   link::WallClock wall(clock);
   const auto all = pictures(parse_size(options.size));
@@ -195,32 +217,33 @@ int bench_link(const LinkBenchOptions& options) {
   const pid_t receiver = ::fork();  // before any of our threads
   if (receiver < 0) throw RuntimeFailure("no second process can be started", "end other programs");
   if (receiver == 0) receive(config, to.get());
-  std::vector<Arrival> arrivals;
+  Arrivals all_arrivals;
   Sent sent;
   const auto end_receiver = [&] {
     ::kill(receiver, SIGKILL);
     ::waitpid(receiver, nullptr, 0);
   };
   try {
-    sent = send(config, options, from.get(), arrivals);
+    sent = send(config, options, from.get(), all_arrivals);
   } catch (...) {
     end_receiver();
     throw;
   }
   end_receiver();
+  const std::vector<Arrival>& arrivals = all_arrivals.came;
   if (arrivals.empty()) throw RuntimeFailure("no pair arrived", "see `foresight link status`");
 
-  const auto added = column(arrivals, [](const Arrival& a) { return a.added_ms; });
+  const auto added = column(arrivals, [](const Arrival& a) { return a.ms; });
   const auto age = [&](double begin, double end) {
     return median(column(
         arrivals, [](const Arrival& a) { return a.age_ms; }, begin, end));
   };
-  const auto damaged = std::ranges::count(arrivals, std::uint64_t{0}, &Arrival::number);
+  const auto damaged = std::ranges::count(all_arrivals.decoded, -1.0, &Arrival::ms);
   const auto lost = static_cast<long long>(sent.pairs) - static_cast<long long>(arrivals.size()) + damaged;
   const double p50 = quantile(added, 0.5), p99 = quantile(added, 0.99), worst = quantile(added, 1);
   const double kilobytes = 1e-3 * median(column(arrivals, [](const Arrival& a) { return double(a.bytes); }));
   const double coder = median(column(arrivals, [](const Arrival& a) { return a.coder_ms; }));
-  const double decoder = median(column(arrivals, [](const Arrival& a) { return a.decoder_ms; }));
+  const double decoder = median(column(all_arrivals.decoded, [](const Arrival& a) { return a.ms; }));
   const double receiver_first = arrivals[arrivals.size() / 10].memory_mb, receiver_last = arrivals.back().memory_mb;
   std::printf("2 x %s at %g Hz for %g s, %.0f kB a pair, two processes on loopback%s\n", options.size.c_str(),
               options.rate_hz, options.seconds, kilobytes, options.secured ? ", secured" : "");
