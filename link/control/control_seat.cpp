@@ -121,9 +121,11 @@ void ControlSeat::take_state(const ControlState& state, OperatorTime now) {
 }
 
 void ControlSeat::connect(OperatorTime now) {
-  if (desk_ != 0 && now - answered_ > kAnsweredWithin) {
-    desk_ = 0;
-    lease_ = 0;
+  const bool mute = state_.sequence > 0 && now - state_came_ > kAnsweredWithin;
+  if (desk_ != 0 && (mute || now - answered_ > kAnsweredWithin)) {
+    desk_ = lease_ = 0;
+    // Whatever number it had: what the robot tells after this is the newest.
+    state_ = {};
     withdraw();
   }
   if (desk_ != 0 || (greeted_.ns != 0 && now - greeted_ < kGreetEvery)) return;

@@ -172,6 +172,18 @@ TEST_F(ControlDeskTest, ALeapOfTheOperatorsClockStops) {
   }
 }
 
+TEST_F(ControlDeskTest, AJumpOfAClockVoidsTheConsentThoughNothingWasToFollow) {
+  anna_.commands = false;
+  anna_.seat.want_control(true);
+  run(1s);
+  const Nonce consent = desk_.permit().consent();
+  anna_.ahead -= 1s;
+  run(500ms);
+  EXPECT_EQ(desk_.permit().cause(), RestCause::clock_jumped);
+  EXPECT_NE(desk_.permit().consent(), consent);
+  EXPECT_EQ(desk_.holder_name(), "anna");
+}
+
 TEST_F(ControlDeskTest, ASecondOperatorIsRefusedAndToldWhoCommands) {
   seats_.push_back(&ben_);
   engage(anna_);
