@@ -70,7 +70,7 @@ class Session {
 
   /// False: the session is over.
   bool tick(RobotTime now) {
-    if (polled_) cameras_.poll();
+    if (polled_ && operator_.waiting()) cameras_.poll();  // what is on the way between stations is not looked at
     if (operator_.waiting()) at_station(now);
     Commander* const one[] = {&operator_};
     return serve(one, robot_, now) && failure_.empty();
