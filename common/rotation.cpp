@@ -24,4 +24,10 @@ Eigen::Vector2d principal_lengths(const Eigen::Matrix2d& scatter) {
   return Eigen::Vector2d(middle + half_way, middle - half_way).cwiseMax(0).cwiseSqrt();
 }
 
+bool is_rigid(const Eigen::Isometry3d& T, double tolerance) {
+  const Eigen::Matrix3d R = T.linear();
+  return T.matrix().allFinite() &&
+         (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= tolerance && R.determinant() > 0;
+}
+
 }  // namespace foresight

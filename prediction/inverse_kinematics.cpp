@@ -4,16 +4,13 @@
 #include <limits>
 #include <numbers>
 
+#include "common/rotation.hpp"
+
 namespace foresight {
 namespace {
 
 constexpr int kStarts = 60;           // most targets within reach are found by the third
 constexpr int kStartsOutOfReach = 6;  // then the nearest pose is what is wanted, and one valley leads there as a rule
-
-bool is_rigid(const Pose& T) {
-  return T.matrix().allFinite() && (T.linear() * T.linear().transpose()).isIdentity(1e-6) &&
-         T.linear().determinant() > 0;
-}
 
 // Places spread evenly over the limits, the same ones for every target: Kronecker's sequence with the powers of the
 // generalised golden ratio of so many dimensions.

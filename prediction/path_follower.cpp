@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/rotation.hpp"
+
 namespace foresight {
 namespace {
 
@@ -11,11 +13,6 @@ constexpr double kThere = 1e-12;        // weighted error at which the hand is a
 constexpr double kOnLine = 2e-10;       // weighted error at which a point of the line is reached
 constexpr double kSmallestPart = 1e-3;  // of the way, in one cycle: slower, the hand leaves its line instead
 constexpr double kGain = 1e-9;          // weighted error that a step must take away to count as one
-
-bool is_rigid(const Pose& T) {
-  return T.matrix().allFinite() && (T.linear() * T.linear().transpose()).isIdentity(1e-6) &&
-         T.linear().determinant() > 0;
-}
 
 }  // namespace
 

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/rotation.hpp"
 #include "prediction/arm_chain.hpp"
 
 namespace foresight {
 namespace {
 
-bool is_rigid(const Pose& pose) {
-  constexpr double kTolerance = 1e-3;  // as for quaternions in files
-  if (!pose.matrix().allFinite()) return false;
-  const Eigen::Matrix3d R = pose.linear();
-  return (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 3 * kTolerance &&
-         R.determinant() > 0;
-}
+constexpr double kTolerance = 3e-3;  // of a rotation matrix whose quaternion has the three decimals of files
 
 }  // namespace
 
@@ -45,7 +40,7 @@ double PoseTrail::even_time(double stamp) noexcept {
 }
 
 PoseTaken PoseTrail::add(OperatorTime time, const Pose& pose) noexcept {
-  if (!is_rigid(pose)) return PoseTaken::invalid;
+  if (!is_rigid(pose, kTolerance)) return PoseTaken::invalid;
   if (!begun_) epoch_ = time;
   begun_ = true;
   const double stamp = to_seconds(time - epoch_);

@@ -7,7 +7,6 @@
 namespace foresight {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kMissesBy = 1e-4;        // m, and rad from a right angle
 constexpr double kLimitRounding = 1e-10;  // rad: what counts as on the limit, and is put there
 
@@ -180,10 +179,10 @@ namespace {
 // Between neighbours of `angles`, going around; the whole circle where there is none.
 template <typename Visit>
 void visit_between(const SwivelAngles& angles, const Visit& visit) {
-  if (angles.size() == 0) visit(-kPi, kPi);
+  if (angles.size() == 0) visit(-std::numbers::pi, std::numbers::pi);
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const bool last = i + 1 == angles.size();
-    visit(angles[i], last ? angles[0] + 2 * kPi : angles[i + 1]);
+    visit(angles[i], last ? angles[0] + 2 * std::numbers::pi : angles[i + 1]);
   }
 }
 
@@ -222,16 +221,17 @@ SphericalArm::Scored SphericalArm::best_swivel(const Elbow& e) const noexcept {
   const double infinity = std::numeric_limits<double>::infinity();
   const SwivelAngles angles = limit_angles(e);
   Scored best;
-  double width = 2 * kPi / kSamples;
+  double width = 2 * std::numbers::pi / kSamples;
   const auto consider = [&](double psi, double room) {
     const Scored s = score(e, psi, best.score);
     if (s.score <= best.score) return;
     best = s;
-    width = std::min(room, 2 * kPi / kSamples);
+    width = std::min(room, 2 * std::numbers::pi / kSamples);
   };
   visit_between(angles, [&](double low, double high) { consider(0.5 * (low + high), 0.5 * (high - low)); });
   if (angles.size() < kSamples)
-    for (std::size_t i = 0; i < kSamples; ++i) consider(2 * kPi * static_cast<double>(i) / kSamples, kPi);
+    for (std::size_t i = 0; i < kSamples; ++i)
+      consider(2 * std::numbers::pi * static_cast<double>(i) / kSamples, std::numbers::pi);
   if (best.score < 0)  // an interval of one angle alone, where limits touch
     for (std::size_t i = 0; i < angles.size(); ++i) consider(angles[i], 0);
   if (best.score < -kLimitRounding || width == 0) return best;
@@ -333,12 +333,13 @@ Pose SphericalArm::pulled_within_reach(const Pose& T) const noexcept {
 }
 
 std::array<double, 2> SphericalArm::distances_within_limits() const noexcept {
-  const double shortest = distance_at(q4_longest_ + kPi), longest = distance_at(q4_longest_);
+  const double shortest = distance_at(q4_longest_ + std::numbers::pi), longest = distance_at(q4_longest_);
   if (!std::isfinite(lower_limit_[3]) || !std::isfinite(upper_limit_[3])) return {shortest, longest};
   const double middle = 0.5 * (lower_limit_[3] + upper_limit_[3]), half = upper_limit_[3] - middle;
   const auto passes = [&](double q4) { return std::abs(nearest_turn(q4, middle) - middle) <= half; };
   const double a = distance_at(lower_limit_[3]), b = distance_at(upper_limit_[3]);
-  return {passes(q4_longest_ + kPi) ? shortest : std::min(a, b), passes(q4_longest_) ? longest : std::max(a, b)};
+  return {passes(q4_longest_ + std::numbers::pi) ? shortest : std::min(a, b),
+          passes(q4_longest_) ? longest : std::max(a, b)};
 }
 
 }  // namespace foresight

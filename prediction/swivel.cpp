@@ -8,13 +8,11 @@
 namespace foresight {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Abramowitz and Stegun 4.4.45: to 7e-5. An exact one, where the answer decides, is ten times as dear.
 double rough_acos(double x) {
   const double a = std::abs(x);
   const double r = std::sqrt(std::max(1 - a, 0.0)) * (1.5707288 + a * (-0.2121144 + a * (0.0742610 - 0.0187293 * a)));
-  return x < 0 ? kPi - r : r;
+  return x < 0 ? std::numbers::pi - r : r;
 }
 
 // An angle's distance from a limit to either side of a middle, where `cosine` and `sine` are those of the angle from
@@ -27,7 +25,7 @@ double distance(double half, double cosine, double sine, double scale) {
 // The same of the angle, and of that half a turn on.
 std::array<double, 2> distances(double half, double cosine, double sine, double scale) {
   const double angle = rough_acos(std::clamp(scale * cosine, -1.0, 1.0));
-  std::array<double, 2> d{half - angle, half - kPi + angle};
+  std::array<double, 2> d{half - angle, half - std::numbers::pi + angle};
   if (std::abs(d[0]) < 1e-3) d[0] = half - std::atan2(std::abs(sine), cosine);
   if (std::abs(d[1]) < 1e-3) d[1] = half - std::atan2(std::abs(sine), -cosine);
   return d;
@@ -52,7 +50,9 @@ void SwivelAngles::add_roots(const Harmonic& f) noexcept {
   if (size_ + 2 > angles_.size()) return;
   const double middle = std::atan2(f.ks, f.kc), half = std::acos(std::clamp(-f.k0 / size, -1.0, 1.0));
   for (const double angle : {middle - half, middle + half})
-    angles_[size_++] = angle > kPi ? angle - 2 * kPi : angle < -kPi ? angle + 2 * kPi : angle;
+    angles_[size_++] = angle > std::numbers::pi    ? angle - 2 * std::numbers::pi
+                       : angle < -std::numbers::pi ? angle + 2 * std::numbers::pi
+                                                   : angle;
 }
 
 void SwivelAngles::sort() noexcept {
@@ -84,9 +84,11 @@ void BallJoint::add_limits(const BallTurn& turn, SwivelAngles& angles) const noe
     return Harmonic{s * a.k0 - c * b.k0, s * a.kc - c * b.kc, s * a.ks - c * b.ks};
   };
   for (std::size_t end = 0; end < 2; ++end) {
-    if (half_[0] < kPi) angles.add_roots(mixed(sin_limit_[0][end], turn.cos_first, cos_limit_[0][end], turn.sin_first));
-    if (half_[2] < kPi) angles.add_roots(mixed(sin_limit_[2][end], turn.cos_last, cos_limit_[2][end], turn.sin_last));
-    if (half_[1] < kPi) {
+    if (half_[0] < std::numbers::pi)
+      angles.add_roots(mixed(sin_limit_[0][end], turn.cos_first, cos_limit_[0][end], turn.sin_first));
+    if (half_[2] < std::numbers::pi)
+      angles.add_roots(mixed(sin_limit_[2][end], turn.cos_last, cos_limit_[2][end], turn.sin_last));
+    if (half_[1] < std::numbers::pi) {
       const Harmonic& f = turn.cos_middle;
       angles.add_roots({f.k0 - cos_limit_[1][end], f.kc, f.ks});
     }
@@ -135,7 +137,7 @@ Eigen::Matrix3d BallJoint::rotation(const Angles& q) const noexcept {
 }
 
 double nearest_turn(double angle, double wanted) noexcept {
-  return angle + 2 * kPi * std::round((wanted - angle) / (2 * kPi));
+  return angle + 2 * std::numbers::pi * std::round((wanted - angle) / (2 * std::numbers::pi));
 }
 
 }  // namespace foresight

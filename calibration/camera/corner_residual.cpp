@@ -2,6 +2,7 @@
 
 #include "calibration/camera/lens_slopes.hpp"
 #include "calibration/camera/rigid_motion.hpp"
+#include "common/rotation.hpp"
 
 namespace foresight {
 namespace {
@@ -9,12 +10,6 @@ namespace {
 using Matrix34 = Eigen::Matrix<double, 3, 4>;
 using Rows7 = Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>>;
 using Matrix37 = Eigen::Matrix<double, 3, 7>;
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 // Derivative of q * p after x y z w of q, for q p = p + w u + v x u, u = 2 v x p.
 Matrix34 rotated_after_quaternion(const Eigen::Vector3d& v, double w, const Eigen::Vector3d& p) {

@@ -8,18 +8,14 @@
 #include <cmath>
 #include <optional>
 
+#include "common/rotation.hpp"
+
 namespace foresight {
 namespace {
 
 constexpr double kDamping = 1e-6;
 constexpr double kSameCost = 1e-12;  // the change of twice the cost that rounding alone makes
 constexpr double kNowhere = 1e100;   // a residual that no step is taken for
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& w) {
-  Eigen::Matrix3d out;
-  out << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
-  return out;
-}
 
 constexpr int kSize = 8;  // of every problem: one size is compiled, and numbers that a problem does not have stay zero
 using Unknowns = Eigen::Matrix<double, kSize, 1>;

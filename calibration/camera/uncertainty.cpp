@@ -15,12 +15,6 @@ namespace {
 using Rows = Eigen::Matrix<double, 2, Eigen::Dynamic>;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 Eigen::Matrix<double, 2, kLensParameters> after_lens(const CameraModel& camera, const Eigen::Vector3d& p_camera) {
   Eigen::Vector2d pixel;
   LensSlopes slopes;

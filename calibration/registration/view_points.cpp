@@ -3,18 +3,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/registration/projection_slope.hpp"
+#include "common/rotation.hpp"
 
 namespace foresight {
 namespace {
 
 constexpr int kBlock = 16;          // px
 constexpr double kSmoothing = 0.7;  // px, before slopes are taken
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& p) {
-  Eigen::Matrix3d m;
-  m << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-  return m;
-}
 
 /// Largest block parity pattern: judging blocks lie on a lattice that no row or column escapes.
 int block_of(const Eigen::Vector2d& pixel, int width) {
