@@ -9,8 +9,8 @@
 namespace foresight {
 namespace {
 
-constexpr std::size_t kFewestCorners = 4;
-constexpr std::size_t kListed = 10;
+constexpr std::size_t kFewestLeft = 4;
+constexpr std::size_t kNamed = 10;
 constexpr double kShareOfCamera = 0.01;  // more corners outside are no single ones: the size is wrong
 constexpr double kShareOfView = 0.05;    // and so many of one view and camera: it is of other images
 constexpr std::size_t kMostOfView = 2;
@@ -61,7 +61,7 @@ Outside drop_outside(RigViews& views, int camera) {
     const std::size_t count = outside.corners.size() - named_before;
     outside.whole_view |= count > kMostOfView && double(count) > kShareOfView * double(before);
     outside.of += before;
-    if (count > 0) corners = kept.size() < kFewestCorners ? std::vector<Corner>{} : std::move(kept);
+    if (count > 0) corners = kept.size() < kFewestLeft ? std::vector<Corner>{} : std::move(kept);
   }
   return outside;
 }
@@ -76,7 +76,7 @@ void check_size(RigViews& views, int camera, std::vector<std::string>& notes) {
     throw InputError(outside.corners.front(),
                      "lies outside the image of " + size_text(views, c) + ", as do " + of_all + " of this camera",
                      "give the size of the images they were found in (--size)");
-  for (std::size_t i = 0; i < std::min(count, kListed); ++i)
+  for (std::size_t i = 0; i < std::min(count, kNamed); ++i)
     notes.push_back(outside.corners[i] + " lies outside the image of " + size_text(views, c) + " and is not used");
   notes.push_back(of_all + " of the " + camera_name(camera, views.cameras) + (views.cameras == 2 ? " camera" : "") +
                   " lie outside the image and are not used");

@@ -10,7 +10,7 @@
 namespace foresight {
 namespace {
 
-constexpr std::size_t kTrialViews = 12;
+constexpr std::size_t kStartViews = 12;
 
 // An error beyond this says no more than that it is wrong.
 constexpr double kCap = 0.05;  // of the image's width
@@ -28,7 +28,7 @@ double misfit(const CameraRig& rig, const RigViews& views, const std::vector<std
 
 std::vector<std::size_t> trial_views(std::size_t count) {
   std::vector<std::size_t> trial;
-  const std::size_t n = std::min(count, kTrialViews);
+  const std::size_t n = std::min(count, kStartViews);
   for (std::size_t i = 0; i < n; ++i) trial.push_back(i * count / n);
   return trial;
 }

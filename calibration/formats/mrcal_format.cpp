@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kLeft = "left.cameramodel";
-constexpr const char* kRight = "right.cameramodel";
+constexpr const char* kLeftName = "left.cameramodel";
+constexpr const char* kRightName = "right.cameramodel";
 const std::vector<std::string> kModels = {"LENSMODEL_PINHOLE", "LENSMODEL_OPENCV4", "LENSMODEL_OPENCV5",
                                           "LENSMODEL_OPENCV8", "LENSMODEL_OPENCV12"};
 
@@ -75,14 +75,14 @@ std::string camera_text(const CameraModel& camera, const Pose& T_camera_referenc
 
 CalibratedCameras read_mrcal(const fs::path& path) {
   if (!fs::is_directory(path)) return {{read_one(path).camera}, Pose::Identity()};
-  const PosedCamera left = read_one(path / kLeft), right = read_one(path / kRight);
+  const PosedCamera left = read_one(path / kLeftName), right = read_one(path / kRightName);
   return {{left.camera, right.camera}, left.T_camera_reference * right.T_camera_reference.inverse()};
 }
 
 std::vector<CameraFileText> mrcal_text(const CalibratedCameras& cameras) {
   if (!cameras.pair()) return {{"", camera_text(cameras.left(), Pose::Identity())}};
-  return {{kLeft, camera_text(cameras.left(), Pose::Identity())},
-          {kRight, camera_text(cameras.right(), cameras.T_left_right.inverse())}};
+  return {{kLeftName, camera_text(cameras.left(), Pose::Identity())},
+          {kRightName, camera_text(cameras.right(), cameras.T_left_right.inverse())}};
 }
 
 }  // namespace foresight::formats

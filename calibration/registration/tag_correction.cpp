@@ -11,8 +11,8 @@
 namespace foresight {
 namespace {
 
-constexpr double kHuber = 2;         // sigmas
-constexpr double kConverged = 1e-7;  // rad and m
+constexpr double kTagHuber = 2;          // sigmas
+constexpr double kStepConverged = 1e-7;  // rad and m
 
 /// Slope of the pixel by the correction's twist. `p_left`: corner in the corrected left camera's frame.
 std::optional<Eigen::Matrix<double, 2, 6>> slope_of(const Lens& lens, const Pose& T_camera_left,
@@ -60,9 +60,9 @@ struct TagCorrection::Problem {
       const Eigen::Vector2d r = *pixel - seen.pixels[c];
       const double size = r.norm() / sigma;
       chi2 += size * size;
-      tag.cost += size > kHuber ? kHuber * (size - kHuber / 2) : size * size / 2;
+      tag.cost += size > kTagHuber ? kTagHuber * (size - kTagHuber / 2) : size * size / 2;
       if (!derivatives) continue;
-      const double w = (size > kHuber ? kHuber / size : 1) / var;
+      const double w = (size > kTagHuber ? kTagHuber / size : 1) / var;
       tag.H.noalias() += w * slope->transpose() * *slope;
       tag.g.noalias() += w * slope->transpose() * r;
     }
@@ -78,7 +78,7 @@ struct TagCorrection::Problem {
     PoseSolverOptions<0> options;
     options.prior = Vector6d(of.options_.prior_sigma.array().square().inverse()).asDiagonal();
     options.most_iterations = of.options_.iterations;
-    options.step_metric = Matrix6d::Identity() / (kConverged * kConverged);
+    options.step_metric = Matrix6d::Identity() / (kStepConverged * kStepConverged);
     const auto problem = [this](const PoseEstimate<0>& at, bool derivatives, PoseEquations<0>& sum) {
       for (const Image& image : of.images_) {
         const Pose T_left_world = (image.T_world_left * at.T).inverse();

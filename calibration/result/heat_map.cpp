@@ -16,7 +16,7 @@ namespace foresight {
 namespace {
 
 // In user units, as in common/svg_plot.cpp: both stand side by side on a page.
-constexpr double kWidth = 560, kLeft = 44, kTop = 20, kMapWidth = 420, kBarLeft = 486, kBarWidth = 16, kBottom = 30;
+constexpr double kBothWidth = 560, kLeft = 44, kTop = 20, kMapWidth = 420, kBarLeft = 486, kBarWidth = 16, kBottom = 30;
 constexpr double kSmallest = 1e-12;  // range of the bar
 constexpr int kBarSteps = 64;
 
@@ -92,7 +92,7 @@ std::string heat_map_svg(const std::string& label, const cv::Mat& values, int wi
     throw std::invalid_argument("a heat map needs CV_64F cells and an image size");
   const double scale = kMapWidth / width, map_height = scale * height;
   const SvgPlot::Range range = range_of(values);
-  std::string out = "<svg viewBox=\"0 0 " + number(kWidth) + " " + number(kTop + map_height + kBottom) +
+  std::string out = "<svg viewBox=\"0 0 " + number(kBothWidth) + " " + number(kTop + map_height + kBottom) +
                     "\" role=\"img\" aria-label=\"" + escape_html(label) + "\">" +
                     picture(coloured(values, range), kLeft, kTop, kMapWidth, map_height) +
                     frame(kLeft, kTop, kMapWidth, map_height);

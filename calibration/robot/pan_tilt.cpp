@@ -12,7 +12,7 @@ namespace foresight {
 namespace {
 
 constexpr double kLargestMm = 20, kLargestMrad = 20;  // of poses that were left out: 10 px of a usual lens
-constexpr double kFits = 0.1;                         // RMS rad: a chain of the wrong order is off by more
+constexpr double kChainFits = 0.1;                    // RMS rad: a chain of the wrong order is off by more
 
 PanTiltErrors errors_of(const std::vector<Vector6d>& steps) {
   PanTiltErrors errors;
@@ -73,7 +73,7 @@ PanTiltState start(std::vector<PanTiltSample>& samples, const PanTiltOptions& op
   samples = turned_round(samples, inverted);
   std::vector<double> turns;
   for (const PanTiltSample& sample : samples) turns.push_back(off(*best, sample).head<3>().norm());
-  if (median(turns) > kFits)
+  if (median(turns) > kChainFits)
     throw InputError(
         "--angles",
         "no two-axis head fits: half of the poses turn " + readable(median(turns) * 57.3, 1) + " degrees away",

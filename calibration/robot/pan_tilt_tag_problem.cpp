@@ -15,7 +15,7 @@
 namespace foresight {
 namespace {
 
-constexpr double kRobust = 6;  // of a tag's eight residuals together, which is 2.8 where all is well
+constexpr double kTagRobust = 6;  // of a tag's eight residuals together, which is 2.8 where all is well
 
 // The four corners of one tag.
 struct TagResidual {
@@ -71,7 +71,7 @@ void add_view(const std::vector<PanTiltView>& views, std::size_t k, const Calibr
     auto* functor = new TagResidual{&views[k], &tag, &cameras.cameras[static_cast<std::size_t>(tag.camera)],
                                     to_parameters(cameras.T_left_right), 1 / state.corner_px};
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<TagResidual, 8, 7, 2, 7, 4, 1, 2>(functor),
-                             state.robust ? new ceres::CauchyLoss(kRobust) : nullptr, head.world.data(),
+                             state.robust ? new ceres::CauchyLoss(kTagRobust) : nullptr, head.world.data(),
                              head.link.data(), head.camera.data(), head.joints.data(), &state.offset_s, shaft);
   }
   problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ShaftResidual, 2, 2>(new ShaftResidual{1 / state.shaft_rad}),

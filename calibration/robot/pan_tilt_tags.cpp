@@ -13,14 +13,14 @@
 namespace foresight {
 namespace {
 
-constexpr double kOutlier = 5;          // robust standard deviations
-constexpr double kStartPx = 4;          // a tag that is farther off from a view's first pose has no part in it
-constexpr double kStrange = 0.3;        // share of rejected corners above which the map cannot be right
-constexpr double kWorstCornerPx = 3;    // of a found corner: beyond it, the map is another one
-constexpr double kLargestError = 0.01;  // of views left out, of the image's width
-constexpr double kFirstCornerPx = 1;    // both noises before anything is known
-constexpr double kFirstShaft = 2e-3;    // rad
-constexpr double kLeastShaft = 2e-5;    // rad, a few counts of a good encoder
+constexpr double kOutlier = 5;            // robust standard deviations
+constexpr double kStartPx = 4;            // a tag that is farther off from a view's first pose has no part in it
+constexpr double kStrange = 0.3;          // share of rejected corners above which the map cannot be right
+constexpr double kWorstCornerPx = 3;      // of a found corner: beyond it, the map is another one
+constexpr double kLargestLeftOut = 0.01;  // of views left out, of the image's width
+constexpr double kFirstCornerPx = 1;      // both noises before anything is known
+constexpr double kFirstShaft = 2e-3;      // rad
+constexpr double kLeastShaft = 2e-5;      // rad, a few counts of a good encoder
 
 /// The left camera from one view's tags in one camera, or nothing.
 std::optional<Pose> view_pose(const PanTiltView& view, const CalibratedCameras& cameras, int camera) {
@@ -281,7 +281,7 @@ PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, con
   summary.in_sample_px = root_mean_square(all);
   if (options.score) score_left_out(views, cameras, state, summary);
   judge_sigmas(summary.names, summary.sigmas, summary.verdict);
-  if (const double limit = kLargestError * cameras.left().width; summary.loo_px > limit)
+  if (const double limit = kLargestLeftOut * cameras.left().width; summary.loo_px > limit)
     summary.verdict.object("views that were left out are predicted to " + readable(summary.loo_px, 1) +
                                " px by the encoders; " + readable(limit, 1) + " px are the limit",
                            "check that angles and pictures belong together, and that the head's joints do not slip");

@@ -11,7 +11,7 @@
 namespace foresight {
 namespace {
 
-Eigen::Vector2d row_direction(const Board& board, const std::vector<Corner>& corners) {
+Eigen::Vector2d direction_of_rows(const Board& board, const std::vector<Corner>& corners) {
   const auto n = static_cast<std::size_t>(board.cols);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (std::size_t first = 0; first + n <= corners.size(); first += n)
@@ -89,13 +89,13 @@ void align_order(const Board& board, const FoundBoard& left, FoundBoard& right) 
   GridPoints indices;  // the indices themselves, read in every order
   for (int row = 0; row < board.rows; ++row)
     for (int col = 0; col < board.cols; ++col) indices.emplace_back(static_cast<float>(col), static_cast<float>(row));
-  const Eigen::Vector2d wanted = row_direction(board, left.corners);
+  const Eigen::Vector2d wanted = direction_of_rows(board, left.corners);
   std::vector<Corner> best = right.corners;
   for (const GridPoints& order : grid_orders(indices, board.cols, board.rows)) {
     std::vector<int> from;
     for (const cv::Point2f& p : order) from.push_back(static_cast<int>(p.y) * board.cols + static_cast<int>(p.x));
     const auto turned = reordered(right.corners, from);
-    if (row_direction(board, turned).dot(wanted) > row_direction(board, best).dot(wanted) + 1e-9) best = turned;
+    if (direction_of_rows(board, turned).dot(wanted) > direction_of_rows(board, best).dot(wanted) + 1e-9) best = turned;
   }
   right.corners = std::move(best);
 }

@@ -20,7 +20,7 @@ constexpr Duration kPause = 250ms;
 constexpr Duration kRepeatEvery = 200ms;  // a request
 constexpr Duration kRequestLife = 1s;
 constexpr Duration kStopRepeated = 30s;  // an emergency stop
-constexpr std::size_t kMostOutgoing = 256;
+constexpr std::size_t kMostWaiting = 256;
 constexpr std::size_t kMostOpen = 16;
 
 }  // namespace
@@ -30,7 +30,7 @@ ControlSeat::ControlSeat(ControlSeatOptions options)
 
 template <typename Body>
 void ControlSeat::send(Body body) {
-  if (out_.size() < kMostOutgoing) out_.push_back({session_, desk_, std::move(body)});
+  if (out_.size() < kMostWaiting) out_.push_back({session_, desk_, std::move(body)});
 }
 
 std::vector<FromOperator> ControlSeat::take_outgoing() {
