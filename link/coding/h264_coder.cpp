@@ -1,0 +1,106 @@
+#include "link/coding/h264_coder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+constexpr QualityModel::Range kSteps{18, 51};  // finer than 18 codes the sensor's noise
+constexpr double kStepsPerHalving = 5;
+constexpr int kUsualStep = 30;
+constexpr double kIntraBytes = 0.065, kPredictedBytes = 0.025;  // per pixel at that step, until a picture was coded
+constexpr double kNoiseDifference = 0.7;  // added to differences, so that a still picture is not infinitely easier
+
+}  // namespace
+
+H264PairEncoder::H264PairEncoder()
+    : intra_(kSteps, kStepsPerHalving, kUsualStep, 1), predicted_(kSteps, kStepsPerHalving, kUsualStep, 1) {}
+
+H264PairEncoder::Lane& H264PairEncoder::choose(const PairWish& wish) {
+  // The newest that may be built on, else one that has to begin anyway, else the newest that is on its way.
+  Lane *newest = nullptr, *unused = nullptr, *on_the_way = nullptr;
+  for (Lane& lane : lanes_) {
+    if (lane.broken) {
+      if (!unused) unused = &lane;
+      continue;
+    }
+    if (!on_the_way || lane.number > on_the_way->number) on_the_way = &lane;
+    if ((lane.arrived || !wish.only_what_arrived) && (!newest || lane.number > newest->number)) newest = &lane;
+  }
+  return newest ? *newest : unused ? *unused : *on_the_way;
+}
+
+int H264PairEncoder::step_for(const Lane& lane, const Planes& planes, const PairWish& wish, bool intra) const {
+  const std::size_t budget = wish.bytes > kCodedPairHeader ? wish.bytes - kCodedPairHeader : 1;
+  if (intra) return intra_.step_for(budget);
+  const double difference = mean_difference(planes, lane.last) + kNoiseDifference;
+  return predicted_.step_for(budget, difference / predicted_difference_);
+}
+
+CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& wish) {
+  check(picture);
+  Planes planes = to_planes(picture);
+  if (planes.size != size_) {
+    lanes_ = {};
+    size_ = planes.size;
+    intra_ = QualityModel(kSteps, kStepsPerHalving, kUsualStep, kIntraBytes * size_.area());
+    predicted_ = QualityModel(kSteps, kStepsPerHalving, kUsualStep, kPredictedBytes * size_.area());
+  }
+  Lane& lane = choose(wish);
+  const bool intra = lane.broken;
+  if (!lane.encoder) lane.encoder.emplace(size_);
+  const int step = step_for(lane, planes, wish, intra);
+  CodedPair pair{.number = wish.number, .captured = picture.captured, .coding = Coding::h264};
+  pair.lane = static_cast<std::uint8_t>(&lane - lanes_.data());
+  pair.reference = intra ? 0 : lane.number;
+  pair.width = picture.left.cols;
+  pair.height = picture.left.rows;
+  pair.colour = picture.left.channels() == 3;
+  pair.stereo = !picture.right.empty();
+  pair.data = lane.encoder->encode(planes, step, intra);
+  if (intra) {
+    intra_.learn(step, pair.data.size());
+  } else {
+    predicted_difference_ = mean_difference(planes, lane.last) + kNoiseDifference;
+    predicted_.learn(step, pair.data.size());
+  }
+  lane.last = std::move(planes);
+  lane.number = wish.number;
+  lane.arrived = lane.broken = false;
+  return pair;
+}
+
+void H264PairEncoder::arrived(std::uint32_t number) {
+  for (Lane& lane : lanes_)
+    if (lane.number == number) lane.arrived = true;
+}
+
+void H264PairEncoder::gone(std::uint32_t number) {
+  // Later pairs of the lane build on it: whichever lane has it, its newest pair is not before it. Those of other lanes
+  // are told by their own numbers.
+  for (Lane& lane : lanes_)
+    if (lane.number == number) lane.broken = true;
+}
+
+bool H264PairDecoder::ready(const CodedPair& pair) const {
+  return pair.reference == 0 || lanes_[pair.lane].number == pair.reference;
+}
+
+std::optional<StereoPicture> H264PairDecoder::decode(const CodedPair& pair) {
+  Lane& lane = lanes_[pair.lane];
+  // What was overtaken by a newer begin of its lane would throw that back.
+  if (!ready(pair) || pair.number <= lane.number) return std::nullopt;
+  if (!lane.decoder || pair.reference == 0) lane.decoder.emplace();
+  lane.number = 0;
+  cv::Size size = even_size(pair.width, pair.height);
+  if (pair.stereo) size.height *= 2;
+  const std::optional<Planes> planes = lane.decoder->decode(pair.data, size);
+  if (!planes) return std::nullopt;
+  lane.number = pair.number;
+  StereoPicture out = from_planes(*planes, pair.width, pair.height, pair.colour, pair.stereo);
+  out.captured = pair.captured;
+  return out;
+}
+
+}  // namespace foresight

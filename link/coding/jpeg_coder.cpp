@@ -1,0 +1,78 @@
+#include "link/coding/jpeg_coder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+
+#include "common/error.hpp"
+#include "scene/image_structure.hpp"
+
+namespace foresight {
+namespace {
+
+// Steps of a JPEG's quantiser, six to a doubling as in H.264: 0 is quality 97, 45 is quality 5.
+int quality_of(int step) {
+  const double scale = 6 * std::exp2(step / 6.0);  // percent of the tables of Annex K
+  return static_cast<int>(std::lround(std::clamp(scale < 100 ? 100 - scale / 2 : 5000 / scale, 1.0, 100.0)));
+}
+
+constexpr QualityModel::Range kSteps{0, 45};
+
+std::vector<std::uint8_t> encode_eye(const cv::Mat& eye, int step) {
+  std::vector<std::uint8_t> out;
+  cv::imencode(".jpg", eye, out, {cv::IMWRITE_JPEG_QUALITY, quality_of(step)});
+  return out;
+}
+
+std::optional<cv::Mat> decode_eye(std::span<const std::uint8_t> bytes, const CodedPair& pair) {
+  // The structure first: decoders fill with grey what a file lacks, and allocate what its header asks for.
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  try {
+    const ImageForm form = read_image_form(text, "a pair's JPEG");
+    if (form.width != pair.width || form.height != pair.height || form.channels != (pair.colour ? 3 : 1))
+      return std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  const cv::Mat all(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
+  cv::Mat out = cv::imdecode(all, pair.colour ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
+  if (out.cols != pair.width || out.rows != pair.height) return std::nullopt;
+  return out;
+}
+
+}  // namespace
+
+JpegPairEncoder::JpegPairEncoder() : model_(kSteps, 9, 20, 60'000) {}
+
+CodedPair JpegPairEncoder::encode(const StereoPicture& picture, const PairWish& wish) {
+  check(picture);
+  CodedPair pair{.number = wish.number, .captured = picture.captured, .coding = Coding::jpeg};
+  pair.width = picture.left.cols;
+  pair.height = picture.left.rows;
+  pair.colour = picture.left.channels() == 3;
+  pair.stereo = !picture.right.empty();
+  const int step = model_.step_for(wish.bytes);
+  pair.data = encode_eye(picture.left, step);
+  pair.left_bytes = static_cast<std::uint32_t>(pair.data.size());
+  if (pair.stereo) {
+    const std::vector<std::uint8_t> right = encode_eye(picture.right, step);
+    pair.data.insert(pair.data.end(), right.begin(), right.end());
+  }
+  model_.learn(step, pair.data.size());
+  return pair;
+}
+
+std::optional<StereoPicture> decode_jpeg(const CodedPair& pair) {
+  const std::span<const std::uint8_t> all(pair.data);
+  StereoPicture out{.left = {}, .right = {}, .captured = pair.captured};
+  const std::optional<cv::Mat> left = decode_eye(all.first(pair.left_bytes), pair);
+  if (!left) return std::nullopt;
+  out.left = *left;
+  if (!pair.stereo) return out;
+  const std::optional<cv::Mat> right = decode_eye(all.subspan(pair.left_bytes), pair);
+  if (!right) return std::nullopt;
+  out.right = *right;
+  return out;
+}
+
+}  // namespace foresight

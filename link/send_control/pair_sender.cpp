@@ -1,0 +1,137 @@
+#include "link/send_control/pair_sender.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+constexpr double kHead_s = 0.025;   // of line time that may still be waiting
+constexpr double kPrudence = 0.85;  // lines get slower without a word
+constexpr Duration kNoQueue = std::chrono::milliseconds(20);
+constexpr double kGrowth = 1.5;
+constexpr Duration kOld = std::chrono::milliseconds(250);     // besides the road: what is shown is old, so be quick
+constexpr Duration kOfUse = std::chrono::milliseconds(1000);  // after which a pair that is mostly lost is given up
+constexpr Duration kNeverOfUse = std::chrono::seconds(20);
+constexpr std::size_t kMostPending = 64;
+
+}  // namespace
+
+double PairSender::bytes_per_s(RobotTime now) const {
+  const double measured = transmissions_.rate().rate().value_or(options_.first_bytes_per_s) * kPrudence;
+  const auto trip = transmissions_.round_trip(), least = transmissions_.least_round_trip();
+  if (!trip || *trip - *least > kNoQueue) return measured;
+  // Nothing waits in the line: it carries more than it is given, though pairs of one piece would never show that.
+  const double given =
+      static_cast<double>(transmissions_.acknowledged_recently(now)) / to_seconds(Transmissions::kRecent);
+  return std::max(measured, kGrowth * given);
+}
+
+int PairSender::pairs_on_the_way() const {
+  return static_cast<int>(
+      std::count_if(pending_.begin(), pending_.end(), [](const auto& entry) { return entry.second.missing > 0; }));
+}
+
+bool PairSender::wants_pair(RobotTime now) const {
+  if (!fresh_.empty()) return false;
+  const std::size_t on_the_way = transmissions_.unacknowledged();
+  if (on_the_way > transmissions_.acknowledged_recently(now)) return false;
+  if (transmissions_.lost_lately(now) && pairs_on_the_way() >= options_.most_on_the_way) return false;
+  // What is under way on the road itself, both ways, is no queue.
+  const double road = to_seconds(transmissions_.least_round_trip().value_or(Duration{}));
+  return static_cast<double>(on_the_way) <= bytes_per_s(now) * (road + kHead_s);
+}
+
+PairWish PairSender::wish(RobotTime now) const {
+  const double rate = bytes_per_s(now);
+  const bool lossy = transmissions_.lost_lately(now);
+  const double time =
+      std::clamp(static_cast<double>(options_.fine_bytes) / rate, options_.shortest_s, options_.longest_s);
+  const std::size_t most = lossy ? std::min(options_.most_lossy_bytes, options_.most_bytes) : options_.most_bytes;
+  const auto bytes = static_cast<std::size_t>(std::min(rate * time, static_cast<double>(most)));
+  return {.number = last_number_ + 1, .bytes = std::max(bytes, options_.least_bytes), .only_what_arrived = lossy};
+}
+
+void PairSender::hand_over(const CodedPair& pair, RobotTime now) {
+  Pending pending{.reference = pair.reference, .handed_over = now, .bytes = to_bytes(pair), .arrived = {}};
+  pending.missing = (pending.bytes.size() + kPieceBytes - 1) / kPieceBytes;
+  pending.arrived.resize(pending.missing);
+  for (std::size_t i = 0; i < pending.missing; ++i) fresh_.emplace_back(pair.number, static_cast<std::uint16_t>(i));
+  last_number_ = std::max(last_number_, pair.number);
+  pending_.insert_or_assign(pair.number, std::move(pending));
+}
+
+void PairSender::send_piece(std::uint32_t pair, std::uint16_t index, RobotTime now, std::vector<Packet>& out) {
+  const auto found = pending_.find(pair);
+  if (found == pending_.end() || found->second.arrived[index]) return;
+  const std::vector<std::uint8_t>& bytes = found->second.bytes;
+  const std::size_t begin = index * kPieceBytes, size = std::min(kPieceBytes, bytes.size() - begin);
+  Piece piece{.sequence = transmissions_.send(pair, index, kPieceHeader + size, now), .pair = pair, .index = index};
+  piece.count = static_cast<std::uint16_t>(found->second.arrived.size());
+  piece.pair_bytes = static_cast<std::uint32_t>(bytes.size());
+  piece.data = std::span(bytes).subspan(begin, size);
+  out.push_back(to_packet(piece));
+}
+
+// A pair goes on to be sent as long as a lane builds on it, which is cheaper to repair than to begin anew. Only where
+// it is old and mostly lost, as after an outage, a fresh picture is the better use of the line.
+bool PairSender::worth_sending(const Pending& pending, std::size_t lost, RobotTime now) const {
+  const Duration age = now - pending.handed_over;
+  return age < kOfUse || (age < kNeverOfUse && 2 * lost < pending.arrived.size());
+}
+
+void PairSender::give_up(std::uint32_t pair, PairEncoder& encoder) {
+  encoder.gone(pair);
+  pending_.erase(pair);
+  // What builds on it is of no use either.
+  for (auto next = pending_.upper_bound(pair); next != pending_.end(); ++next)
+    if (next->second.reference == pair) return give_up(next->first, encoder);
+}
+
+void PairSender::take(std::span<const std::uint8_t> packet, RobotTime now, PairEncoder& encoder) {
+  const auto parsed = parse_packet(packet);
+  const auto* acknowledgement = std::get_if<Acknowledgement>(&parsed);
+  if (!acknowledgement) return;
+  for (const Transmissions::Sent& sent : transmissions_.acknowledge(*acknowledgement, now)) {
+    const auto pending = pending_.find(sent.pair);
+    if (pending == pending_.end() || pending->second.arrived[sent.index]) continue;
+    pending->second.arrived[sent.index] = true;
+    --pending->second.missing;
+  }
+  for (const std::uint32_t pair : acknowledgement->decoded) {
+    if (pair > last_number_) continue;
+    encoder.arrived(pair);
+    const auto pending = pending_.find(pair);
+    if (pending == pending_.end()) continue;
+    if (!shown_ || pending->second.handed_over > *shown_) shown_ = pending->second.handed_over;
+    pending_.erase(pending);
+  }
+  if (acknowledgement->undecodable > last_undecodable_ && acknowledgement->undecodable <= last_number_) {
+    last_undecodable_ = acknowledgement->undecodable;
+    give_up(last_undecodable_, encoder);
+  }
+}
+
+std::vector<Packet> PairSender::packets(RobotTime now, PairEncoder& encoder) {
+  std::vector<Packet> out;
+  std::map<std::uint32_t, std::vector<std::uint16_t>> lost;
+  for (const Transmissions::Sent& sent : transmissions_.lost(now))
+    if (sent.pair != 0) lost[sent.pair].push_back(sent.index);
+  for (const auto& [pair, pieces] : lost) {
+    const auto pending = pending_.find(pair);
+    if (pending == pending_.end()) continue;
+    if (!worth_sending(pending->second, pieces.size(), now)) {
+      give_up(pair, encoder);
+      continue;
+    }
+    for (const std::uint16_t index : pieces) send_piece(pair, index, now, out);
+  }
+  for (const auto& [pair, index] : fresh_) send_piece(pair, index, now, out);
+  fresh_.clear();
+  if (transmissions_.question_due(now))
+    out.push_back(to_packet(Question{transmissions_.send(0, 0, to_packet(Question{}).size(), now)}));
+  while (pending_.size() > kMostPending) give_up(pending_.begin()->first, encoder);
+  return out;
+}
+
+}  // namespace foresight

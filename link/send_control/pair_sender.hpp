@@ -1,0 +1,76 @@
+// The robot's end of the line: when to hand over the next pair, how large it may be, and its pieces until they arrived.
+//
+// The age of the newest picture is the way, the time in the line's queue, its own transmission, and what passes until
+// the next one. So the queue is kept short, and a pair takes no more of the line than a fraction of a second:
+//
+//   hand over when    nothing has to be waited for, or what is on its way will have crossed in kHead of line time, and
+//                     bytes without acknowledgement <= bytes acknowledged within the last 200 ms
+//   bytes             what the line carries in `Options::share` of time: less where the line is fast enough
+//
+// Pure logic; one thread.
+#pragma once
+
+#include <map>
+
+#include "link/coding/coded_pair.hpp"
+#include "link/coding/pair_coder.hpp"
+#include "link/send_control/transmissions.hpp"
+
+namespace foresight {
+
+class PairSender {
+ public:
+  struct Options {
+    double first_bytes_per_s = 100'000;     ///< until the line was measured
+    double shortest_s = 0.030;              ///< of line time for a pair
+    double longest_s = 0.080;               ///< where the line is so thin that pictures would suffer
+    std::size_t fine_bytes = 12'000;        ///< what a pair needs to look well; takes up to longest_s
+    std::size_t least_bytes = 1'500;        ///< however thin the line
+    std::size_t most_bytes = 40'000;        ///< more shows little but the sensor's noise
+    std::size_t most_lossy_bytes = 24'000;  ///< while packets get lost: the more pieces, the likelier one is missing
+    int most_on_the_way = static_cast<int>(kMostLanes);  ///< pairs, while packets get lost
+  };
+
+  PairSender() : PairSender(Options{}) {}
+  explicit PairSender(const Options& options) : options_(options) {}
+
+  /// Whether the newest picture should be encoded and handed over now.
+  bool wants_pair(RobotTime now) const;
+  /// What it is to be like.
+  PairWish wish(RobotTime now) const;
+  /// Takes the pair that was encoded for `wish(now)`; its pieces are sent next. While pieces of it are missing and of
+  /// use, they are sent again.
+  void hand_over(const CodedPair& pair, RobotTime now);
+
+  /// Takes any bytes; of what is no acknowledgement nothing happens. What it says about pairs goes to `encoder`.
+  void take(std::span<const std::uint8_t> packet, RobotTime now, PairEncoder& encoder);
+  /// Packets to send now. Tells `encoder` which pairs are given up.
+  std::vector<Packet> packets(RobotTime now, PairEncoder& encoder);
+  /// When `packets` may have something without anything else happening.
+  std::optional<RobotTime> due() const { return transmissions_.due(); }
+
+  const Transmissions& transmissions() const { return transmissions_; }
+  double bytes_per_s(RobotTime now) const;  ///< that the line is taken to carry
+
+ private:
+  struct Pending {
+    std::uint32_t reference = 0;
+    RobotTime handed_over;
+    std::vector<std::uint8_t> bytes;
+    std::vector<bool> arrived;
+    std::size_t missing = 0;
+  };
+  void send_piece(std::uint32_t pair, std::uint16_t index, RobotTime now, std::vector<Packet>& out);
+  void give_up(std::uint32_t pair, PairEncoder& encoder);
+  bool worth_sending(const Pending& pending, std::size_t lost, RobotTime now) const;
+  int pairs_on_the_way() const;
+
+  Options options_;
+  Transmissions transmissions_;
+  std::map<std::uint32_t, Pending> pending_;
+  std::vector<std::pair<std::uint32_t, std::uint16_t>> fresh_;  // pieces never sent
+  std::optional<RobotTime> shown_;  // when the newest pair that was decoded had been handed over
+  std::uint32_t last_number_ = 0, last_undecodable_ = 0;
+};
+
+}  // namespace foresight

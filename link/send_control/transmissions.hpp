@@ -1,0 +1,87 @@
+// What was sent, and what became of it: acknowledged, lost, or not known yet.
+//
+// A packet counts as lost when one that was sent later has come, and it has had the time that the later one took, and a
+// little more for packets that overtake each other (the rule of RACK, RFC 8985, by time and not by count). Where
+// nothing comes back at all, a question is asked, at growing distances: its answer tells what is lost, and a line that
+// stands still is not filled with copies.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "link/send_control/packets.hpp"
+#include "link/send_control/rate_meter.hpp"
+
+namespace foresight {
+
+/// One thread.
+class Transmissions {
+ public:
+  struct Sent {
+    std::uint32_t sequence = 0;
+    std::uint32_t pair = 0;  ///< 0: a question
+    std::uint16_t index = 0;
+    std::size_t bytes = 0;  ///< of the packet
+    RobotTime at;
+  };
+
+  /// Remembers a packet that is sent now; its sequence.
+  std::uint32_t send(std::uint32_t pair, std::uint16_t index, std::size_t bytes, RobotTime now);
+  /// What an acknowledgement that came at `now` says: the packets that are new in it.
+  std::vector<Sent> acknowledge(const Acknowledgement& acknowledgement, RobotTime now);
+  /// The packets that count as lost from now on.
+  std::vector<Sent> lost(RobotTime now);
+  /// Whether a question is due; asked, it is sent like any packet, as of pair 0.
+  bool question_due(RobotTime now) const;
+  /// When `lost` or `question_due` may have something.
+  std::optional<RobotTime> due() const;
+
+  /// Bytes on their way: sent, and neither acknowledged nor lost.
+  std::size_t unacknowledged() const { return unacknowledged_; }
+  /// Bytes whose acknowledgement came within kRecent.
+  std::size_t acknowledged_recently(RobotTime now) const;
+  static constexpr Duration kRecent = std::chrono::milliseconds(200);
+
+  bool lost_lately(RobotTime now) const { return last_loss_ && now - *last_loss_ < std::chrono::seconds(10); }
+  std::optional<Duration> round_trip() const { return smooth_; }  ///< of late, waiting in the line included
+  std::optional<Duration> least_round_trip() const { return least_; }
+  const RateMeter& rate() const { return rate_; }
+  /// Share of packets that were lost, of about the last thousand.
+  double loss() const { return loss_; }
+
+ private:
+  struct Record {
+    Sent sent;
+    enum class State { on_the_way, acknowledged, lost } state = State::on_the_way;
+  };
+  Record* find(std::uint32_t sequence);
+  void take(Record& record, RobotTime now, std::vector<Sent>& out);
+  void measure_round_trip(const Acknowledgement& acknowledgement, RobotTime now);
+  void measure_rate(const Acknowledgement& acknowledgement);
+  std::optional<RobotTime> loss_deadline(const Record& record) const;
+  std::optional<RobotTime> question_time() const;
+
+  std::deque<Record> records_;  // by sequence, without a hole
+  std::uint32_t next_ = 1;
+  std::size_t unacknowledged_ = 0;
+  std::size_t on_the_way_ = 0;  // packets
+  struct Recent {
+    RobotTime at;
+    std::size_t bytes;
+  };
+  std::deque<Recent> recent_;
+  RateMeter rate_;
+  std::uint32_t measured_ = 0;  // sequence up to which arrivals went into the meter
+  std::optional<Duration> last_arrival_;
+  std::uint32_t newest_ = 0;  // of those acknowledged, the one sent last
+  Duration newest_trip_{};    // and how long it took
+  std::optional<Duration> smooth_, least_;
+  Duration variation_{}, overtaking_ = std::chrono::milliseconds(5);
+  RobotTime last_send_, last_news_;
+  int questions_ = 0;  // since the last news
+  std::optional<RobotTime> last_loss_;
+  double loss_ = 0;
+};
+
+}  // namespace foresight

@@ -1,0 +1,136 @@
+#include "link/coding/h264_coder.hpp"
+
+#include "link/send_control/line_trial.hpp"
+#include "tests/support/moving_picture.hpp"
+
+namespace foresight {
+namespace {
+
+RobotTime instant(std::uint32_t i) {
+  return RobotTime{} + std::chrono::milliseconds(33) * i;
+}
+
+bool equal(const StereoPicture& a, const StereoPicture& b) {
+  return a.left.size() == b.left.size() && cv::norm(a.left, b.left, cv::NORM_INF) == 0 &&
+         cv::norm(a.right, b.right, cv::NORM_INF) == 0;
+}
+
+// Two decoders: one gets everything, and tells what the encoder has made.
+class H264Lanes : public testing::Test {
+ protected:
+  CodedPair encode(bool only_what_arrived = false) {
+    ++number_;
+    const CodedPair pair = encoder_.encode(moving_picture(instant(number_)),
+                                           {.number = number_, .bytes = 3000, .only_what_arrived = only_what_arrived});
+    made_.push_back(mirror_.decode(pair).value());
+    return pair;
+  }
+  void expect_shown(const CodedPair& pair) {
+    const std::optional<StereoPicture> shown = receiver_.decode(pair);
+    ASSERT_TRUE(shown) << pair.number;
+    EXPECT_TRUE(equal(*shown, made_[pair.number - 1])) << pair.number;
+    EXPECT_EQ(shown->captured, instant(pair.number));
+  }
+
+  H264PairEncoder encoder_;
+  H264PairDecoder mirror_, receiver_;
+  std::vector<StereoPicture> made_;
+  std::uint32_t number_ = 0;
+};
+
+TEST_F(H264Lanes, EveryPictureComesOutAtOnceWithItsInstant) {
+  for (int i = 0; i < 12; ++i) {
+    const CodedPair pair = encode();
+    EXPECT_EQ(pair.reference, pair.number - 1);
+    EXPECT_EQ(pair.lane, 0);
+    expect_shown(pair);
+    EXPECT_GT(luma_psnr_db(moving_picture(instant(pair.number)), made_.back()), 27);
+  }
+}
+
+TEST_F(H264Lanes, WhatBuildsOnALostPairIsRefused) {
+  expect_shown(encode());
+  const CodedPair lost = encode(), after = encode();
+  EXPECT_FALSE(receiver_.ready(after));
+  EXPECT_FALSE(receiver_.decode(after));
+  expect_shown(lost);  // it came at last
+  expect_shown(after);
+  EXPECT_FALSE(receiver_.decode(after)) << "again";
+}
+
+TEST_F(H264Lanes, GoesOnFromPairsThatArrivedWhileOthersAreMissing) {
+  const CodedPair first = encode(true);
+  expect_shown(first);
+  encoder_.arrived(1);
+  const CodedPair late = encode(true);    // 2 on 1, and is lost
+  const CodedPair begins = encode(true);  // nothing arrived that nobody builds on: a lane of its own
+  EXPECT_EQ(late.reference, 1U);
+  EXPECT_EQ(begins.reference, 0U);
+  EXPECT_NE(begins.lane, late.lane);
+  expect_shown(begins);
+  encoder_.arrived(3);
+  const CodedPair on_it = encode(true);
+  EXPECT_EQ(on_it.reference, 3U);
+  expect_shown(on_it);
+  expect_shown(late);  // sent again; its lane goes on
+  encoder_.arrived(2);
+  const CodedPair on_late = encode(true);
+  EXPECT_EQ(on_late.reference, 2U);
+  expect_shown(on_late);
+}
+
+TEST_F(H264Lanes, BeginsALaneAnewWhenItsPairIsGone) {
+  expect_shown(encode());
+  encode();
+  encoder_.gone(2);
+  const CodedPair fresh = encode();
+  EXPECT_EQ(fresh.reference, 0U);
+  expect_shown(fresh);
+  expect_shown(encode());
+}
+
+TEST_F(H264Lanes, ADamagedPictureIsNotShownNorBuiltOn) {
+  for (std::size_t hit = 8; hit < 200; hit += 24) {
+    H264PairDecoder receiver;
+    H264PairEncoder encoder;
+    ASSERT_TRUE(receiver.decode(encoder.encode(moving_picture(instant(1)), {.number = 1})));
+    CodedPair cut = encoder.encode(moving_picture(instant(2)), {.number = 2});
+    const CodedPair next = encoder.encode(moving_picture(instant(3)), {.number = 3});
+    cut.data.resize(std::min(hit, cut.data.size() - 1));
+    if (receiver.decode(cut)) continue;  // rarely the end holds nothing; the frame's checksum is there for that
+    EXPECT_FALSE(receiver.ready(next));
+    EXPECT_FALSE(receiver.decode(next));
+  }
+}
+
+TEST_F(H264Lanes, FollowsTheBudgetThroughAChangeOfScene) {
+  H264PairEncoder encoder;
+  std::vector<std::size_t> sizes;
+  for (std::uint32_t i = 1; i <= 40; ++i) {
+    const RobotTime time = instant(i <= 20 ? i : i + 3000);
+    const std::size_t budget = i <= 10 ? 6000 : 2000;
+    sizes.push_back(encoder.encode(moving_picture(time, {160, 128}), {.number = i, .bytes = budget}).data.size());
+    if (i > 3 && i != 11 && i != 21) {
+      EXPECT_LT(sizes.back(), budget * 2) << i;
+      EXPECT_GT(sizes.back(), budget / 4) << i;
+    }
+  }
+}
+
+TEST_F(H264Lanes, TakesGreyOddAndSinglePicturesAndChangesOfSize) {
+  std::uint32_t number = 0;
+  for (const bool colour : {false, true})
+    for (const bool stereo : {false, true}) {
+      StereoPicture picture = moving_picture({}, {75, 57}, colour);
+      if (!stereo) picture.right.release();
+      const auto shown = receiver_.decode(encoder_.encode(picture, {.number = ++number, .bytes = 20'000}));
+      ASSERT_TRUE(shown);
+      EXPECT_EQ(shown->left.size(), picture.left.size());
+      EXPECT_EQ(shown->left.type(), picture.left.type());
+      EXPECT_EQ(shown->right.empty(), !stereo);
+      EXPECT_GT(luma_psnr_db(picture, *shown), 30);
+    }
+}
+
+}  // namespace
+}  // namespace foresight

@@ -1,0 +1,85 @@
+#include "link/send_control/transmissions.hpp"
+
+namespace foresight {
+namespace {
+
+using std::chrono::milliseconds;
+
+RobotTime at_ms(int ms) {
+  return RobotTime{} + milliseconds(ms);
+}
+
+Acknowledgement of(std::uint32_t newest, std::initializer_list<std::uint32_t> others, int ms) {
+  Acknowledgement out;
+  out.newest = newest;
+  for (const std::uint32_t other : others) out.before.set(newest - 1 - other);
+  out.arrivals = {{newest, milliseconds(ms)}};
+  return out;
+}
+
+TEST(Transmissions, CountsWhatIsOnItsWayAndWhatCameLately) {
+  Transmissions sent;
+  for (int i = 0; i < 4; ++i) sent.send(1, static_cast<std::uint16_t>(i), 1000, at_ms(0));
+  EXPECT_EQ(sent.unacknowledged(), 4000U);
+  EXPECT_EQ(sent.acknowledge(of(2, {1}, 20), at_ms(40)).size(), 2U);
+  EXPECT_EQ(sent.acknowledge(of(2, {1}, 20), at_ms(41)).size(), 0U) << "a copy";
+  EXPECT_EQ(sent.unacknowledged(), 2000U);
+  EXPECT_EQ(sent.acknowledged_recently(at_ms(240)), 2000U);
+  EXPECT_EQ(sent.acknowledged_recently(at_ms(241)), 0U);
+  EXPECT_EQ(sent.round_trip(), milliseconds(40));
+}
+
+TEST(Transmissions, APacketIsLostWhenALaterOneCame) {
+  Transmissions sent;
+  sent.send(1, 0, 1000, at_ms(0));
+  sent.send(1, 1, 1000, at_ms(1));
+  EXPECT_TRUE(sent.lost(at_ms(200)).empty());
+  sent.acknowledge(of(2, {}, 20), at_ms(41));
+  EXPECT_TRUE(sent.lost(at_ms(44)).empty()) << "it may be overtaken";
+  ASSERT_TRUE(sent.due());
+  const auto lost = sent.lost(*sent.due());
+  ASSERT_EQ(lost.size(), 1U);
+  EXPECT_EQ(lost[0].sequence, 1U);
+  EXPECT_EQ(sent.unacknowledged(), 0U);
+  EXPECT_TRUE(sent.lost_lately(at_ms(60)));
+  EXPECT_FALSE(sent.lost_lately(at_ms(11'000)));
+}
+
+TEST(Transmissions, WaitsLongerWhereThePacketWasOnlyOvertaken) {
+  Transmissions sent;
+  sent.send(1, 0, 1000, at_ms(0));
+  sent.send(1, 1, 1000, at_ms(0));
+  sent.acknowledge(of(2, {}, 20), at_ms(40));
+  EXPECT_EQ(sent.lost(at_ms(45)).size(), 1U);
+  EXPECT_EQ(sent.acknowledge(of(2, {1}, 20), at_ms(48)).size(), 1U);
+  sent.send(2, 0, 1000, at_ms(100));
+  sent.send(2, 1, 1000, at_ms(100));
+  sent.acknowledge(of(4, {2, 1}, 120), at_ms(140));
+  EXPECT_TRUE(sent.lost(at_ms(146)).empty());
+  EXPECT_EQ(sent.lost(at_ms(151)).size(), 1U);
+}
+
+TEST(Transmissions, AsksRarelyWhileALineStandsStill) {
+  Transmissions sent;
+  sent.send(1, 0, 1000, at_ms(0));
+  int questions = 0;
+  for (int ms = 1; ms <= 20'000; ++ms)
+    if (sent.question_due(at_ms(ms))) {
+      sent.send(0, 0, 5, at_ms(ms));
+      ++questions;
+    }
+  EXPECT_GE(questions, 15);
+  EXPECT_LE(questions, 25);
+  EXPECT_TRUE(sent.lost(at_ms(20'000)).empty()) << "nothing tells that it was lost";
+  EXPECT_LE(sent.unacknowledged(), 1000U + 25 * 5);
+}
+
+TEST(Transmissions, TakesNothingFromAcknowledgementsOfOthers) {
+  Transmissions sent;
+  sent.send(1, 0, 1000, at_ms(0));
+  EXPECT_TRUE(sent.acknowledge(of(900, {}, 5), at_ms(9)).empty());
+  EXPECT_EQ(sent.unacknowledged(), 1000U);
+}
+
+}  // namespace
+}  // namespace foresight
