@@ -7,6 +7,7 @@
 #include "apps/bench/can_bench.hpp"
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
+#include "apps/bench/line_bench.hpp"
 #include "apps/bench/link_bench.hpp"
 #include "apps/bench/margin.hpp"
 #include "apps/bench/prediction_bench.hpp"
@@ -132,6 +133,39 @@ void add_camera(Command& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_camera(*options); }; });
 }
 
+void add_line(Command& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("line", "Age and quality of the images that a line lets through");
+  auto options = std::make_shared<LineBenchOptions>();
+  command->add_option("--trace", options->trace, "Recorded line from the robot; CSV: both ways")->reads();
+  command->add_option("--trace-down", options->trace_down, "Recorded line to the robot")->reads();
+  command->add_option("--line", options->line, "Instead: a whole line, as docs/line.md says")->reads();
+  command->add_option("--delay-ms", options->delay_ms, "Each way, besides a trace")
+      ->check(from_to(0, 60'000))
+      ->capture_default_str();
+  command->add_option("--loss", options->loss, "Share of packets that are lost each way, besides a trace")
+      ->check(from_to(0, 0.9))
+      ->capture_default_str();
+  command->add_option("--burst", options->burst, "How many of them in a row, on average")
+      ->check(from_to(1, 1000))
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "Of the line's time")
+      ->check(from_to(1, 86400))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "WIDTHxHEIGHT of one eye's picture, px")->capture_default_str();
+  command->add_option("--coding", options->coding, "Of the pictures")
+      ->check(one_of({"h264", "jpeg"}))
+      ->capture_default_str();
+  command->add_option("--pictures", options->pictures, "Pairs of the lab that are rendered; they play forth and back")
+      ->check(from_to(2, 1000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of losses")->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "Example: foresight bench line --trace drive.up --trace-down drive.down --json line.json\n"
+      "Exit code: 1 where no picture was shown, one was damaged, or a pair was handed over too early.");
+  command->callback([options, &action] { action = [options] { return bench_line(*options); }; });
+}
+
 }  // namespace
 
 void add_bench_command(Command& app, std::function<int()>& action) {
@@ -142,6 +176,7 @@ void add_bench_command(Command& app, std::function<int()>& action) {
   add_can(*bench, action);
   add_extraction(*bench, action);
   add_figures(*bench, action);
+  add_line(*bench, action);
   add_margin(*bench, action);
   add_prediction_benches(*bench, action);
   add_robot(*bench, action);

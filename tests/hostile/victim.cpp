@@ -30,6 +30,7 @@ const std::map<std::string, CommandWords>& table() {
       {"bench can", {}},
       {"bench robot", {{"RIG", {"@rig.yaml"}}}},
       {"bench calibration", {{"CORNERS", {"@corners.vnl"}}, {"--board", {"chessboard:3x3:0.1"}}}},
+      {"bench line", {{"--size", {"32x32"}}, {"--seconds", {"1"}}, {"--pictures", {"2"}}}},
       {"bench registration", {}},
       {"bench camera", {}},
       {"bench prediction ik",

@@ -1,0 +1,52 @@
+#include "apps/bench/lab_pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "sim/motion.hpp"
+#include "sim/parallel.hpp"
+#include "sim/sensor.hpp"
+#include "sim/shutter.hpp"
+#include "sim/synth_run.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr double kNoise = 2;
+
+}  // namespace
+
+LabPictures::LabPictures(cv::Size size, std::size_t count,
+                         const std::function<void(std::size_t, std::size_t)>& progress)
+    : pairs_(count) {
+  const sim::SynthOptions options{.width = size.width, .height = size.height, .stereo = true};
+  const double relative = 640.0 / std::max(size.width, size.height);
+  const sim::Lab lab = sim::make_lab(0.0005 * std::clamp(relative, 0.6, 8.0), options.seed);
+  const sim::LightMap light(lab, std::clamp(relative, 0.6, 16.0));
+  const sim::Renderer renderer(lab, light);
+  const sim::RayTable left(sim::synth_lens(options, false)), right(sim::synth_lens(options, true));
+  const sim::Sensor sensor{.noise = kNoise};
+  std::mutex mutex;
+  std::size_t done = 0;
+  sim::parallel_for(count, [&](std::size_t i) {
+    const double t = static_cast<double>(i) / kPairsPerSecond;
+    const sim::LabState state = sim::lab_state_at(lab, t);
+    const sim::LightMap::Irradiance lit = light.lit(state);
+    const Pose T_world_left = sim::T_world_camera_at(t), T_world_right = T_world_left * sim::T_left_right();
+    pairs_[i].left = sensor.develop(renderer.render(left, T_world_left, state, lit).light, t, 2 * i);
+    pairs_[i].right = sensor.develop(renderer.render(right, T_world_right, state, lit).light, t, 2 * i + 1);
+    const std::scoped_lock lock(mutex);
+    progress(++done, count);
+  });
+}
+
+StereoPicture LabPictures::at(RobotTime time) const {
+  const auto tick = static_cast<std::size_t>(std::floor(to_seconds(time - RobotTime{}) * kPairsPerSecond + 1e-6));
+  const std::size_t turn = std::max<std::size_t>(1, 2 * (pairs_.size() - 1)), place = tick % turn;
+  StereoPicture out = pairs_[place < pairs_.size() ? place : turn - place];
+  out.captured = time;
+  return out;
+}
+
+}  // namespace foresight

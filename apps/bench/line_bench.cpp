@@ -1,0 +1,127 @@
+#include "apps/bench/line_bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "apps/bench/lab_pictures.hpp"
+#include "apps/replay_report/progress_bar.hpp"
+#include "common/error.hpp"
+#include "common/numbers_file.hpp"
+#include "common/statistics.hpp"
+#include "common/text.hpp"
+#include "link/send_control/line_trial.hpp"
+
+namespace foresight {
+namespace {
+
+cv::Size read_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  const auto width = parse_integer(text.substr(0, cross));
+  const auto height = cross == std::string::npos ? std::nullopt : parse_integer(text.substr(cross + 1));
+  if (!width || !height || *width < 32 || *height < 32 || *width > 4096 || *height > 2048)
+    throw InputError("--size", in_quotes(text) + " is no size", "give WIDTHxHEIGHT, 32x32 to 4096x2048");
+  return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+LineSpec line_of(const LineBenchOptions& options) {
+  LineSpec line;
+  if (options.line) line = read_line_spec(*options.line);
+  line.seed = options.line ? line.seed : options.seed;
+  if (options.trace) {
+    const LineTraces traces = read_line_traces(*options.trace);
+    line.up.trace = traces.up;
+    line.down.trace = traces.down;
+  }
+  if (options.trace_down) {
+    const LineTraces traces = read_line_traces(*options.trace_down);
+    line.down.trace = traces.down ? traces.down : traces.up;
+  }
+  if (options.line) return line;
+  for (DirectionSpec* way : {&line.up, &line.down}) {
+    way->delay = seconds(options.delay_ms * 1e-3);
+    way->loss = options.loss;
+    way->burst = options.burst;
+    check(*way, "the line");
+  }
+  return line;
+}
+
+double nearest_rank(std::vector<double> values, double share) {
+  if (values.empty()) return -1;
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+double mean(const std::vector<double>& values) {
+  if (values.empty()) return -1;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+LabPictures render(cv::Size size, std::size_t count) {
+  ProgressBar bar("render", "pairs", count, ProgressBar::Instant::clock::now(), ProgressBar::for_stderr());
+  const LabPictures pictures(size, count, [&](std::size_t done, std::size_t) {
+    std::fputs(bar.update(done, ProgressBar::Instant::clock::now()).c_str(), stderr);
+  });
+  std::fputs(bar.finish(count, ProgressBar::Instant::clock::now()).c_str(), stderr);
+  return pictures;
+}
+
+nlohmann::json figures(const LineTrialResult& result, double length_s) {
+  std::vector<double> outside, psnr;
+  for (std::size_t i = 0; i < result.age_beyond_ms.size(); ++i)
+    if (!result.in_gap[i]) outside.push_back(result.age_beyond_ms[i]);
+  for (const TrialPair& pair : result.pairs) psnr.push_back(pair.psnr_db);
+  return {{"age_p50_ms", nearest_rank(outside, 0.5)},
+          {"age_p95_ms", nearest_rank(outside, 0.95)},
+          {"age_all_p95_ms", nearest_rank(result.age_beyond_ms, 0.95)},
+          {"pairs_per_s", static_cast<double>(result.pairs.size()) / length_s},
+          {"psnr_db", mean(psnr)},
+          {"psnr_p5_db", nearest_rank(psnr, 0.05)},
+          {"bytes_per_s", static_cast<double>(result.up_bytes) / length_s},
+          {"down_bytes_per_s", static_cast<double>(result.down_bytes) / length_s},
+          {"gaps", result.gaps.size()},
+          {"worst_recovery_ms",
+           result.recovery_ms.empty() ? 0 : *std::max_element(result.recovery_ms.begin(), result.recovery_ms.end())},
+          {"damaged", result.damaged},
+          {"early_hand_overs", result.early},
+          {"packets", result.packets},
+          {"packets_sent_again", result.copies},
+          {"encode_ms", median(result.encode_ms)},
+          {"decode_ms", median(result.decode_ms)}};
+}
+
+}  // namespace
+
+int bench_line(const LineBenchOptions& options) {
+  const cv::Size size = read_size(options.size);
+  LineTrialOptions trial{.line = line_of(options), .length = seconds(options.seconds)};
+  trial.coding = options.coding == "jpeg" ? Coding::jpeg : Coding::h264;
+  const LabPictures pictures = render(size, static_cast<std::size_t>(options.pictures));
+  const LineTrialResult result = run_line_trial(trial, [&](RobotTime time) { return pictures.at(time); });
+  const nlohmann::json all = figures(result, options.seconds);
+  const auto number = [&](const char* key) { return all.at(key).get<double>(); };
+  std::printf("2 x %s, %.0f s of the line, %s; ages beyond those of a packet on the idle line\n", options.size.c_str(),
+              options.seconds, options.coding.c_str());
+  std::printf("  age p50 / p95                %8.0f / %.0f ms   (with gaps of 1 s and more: p95 %.0f ms)\n",
+              number("age_p50_ms"), number("age_p95_ms"), number("age_all_p95_ms"));
+  std::printf("  pairs per s                  %8.1f\n", number("pairs_per_s"));
+  std::printf("  PSNR of luma, mean / p5      %8.1f / %.1f dB\n", number("psnr_db"), number("psnr_p5_db"));
+  std::printf("  sent                         %8.0f kB/s up, %.1f kB/s down\n", number("bytes_per_s") * 1e-3,
+              number("down_bytes_per_s") * 1e-3);
+  std::printf("  gaps of 1 s and more         %8.0f, worst recovery %.0f ms after 30 kB\n", number("gaps"),
+              number("worst_recovery_ms"));
+  std::printf("  packets sent again           %8.0f of %.0f\n", number("packets_sent_again"), number("packets"));
+  std::printf("  damaged pictures shown       %8.0f\n", number("damaged"));
+  std::printf("  hand-overs too early         %8.0f\n", number("early_hand_overs"));
+  std::printf("  CPU time of a pair           %8.1f ms to encode, %.1f ms to decode\n", number("encode_ms"),
+              number("decode_ms"));
+  write_numbers(options.json, all.dump(2));
+  return result.damaged > 0 || result.early > 0 || result.pairs.empty() ? 1 : 0;
+}
+
+}  // namespace foresight
