@@ -11,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/real_time.hpp"
 #include "common/stop_signal.hpp"
+#include "link/robot_side/rig_identity.hpp"
 #include "link/robot_side/robot_server.hpp"
 #include "session/robot_loop.hpp"
 
@@ -135,15 +136,17 @@ std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCam
 std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock,
                                                const Arguments& arguments) {
   if (!arguments.serve) return nullptr;
-  auto server = std::make_unique<link::RobotServer>(rig, robot, cameras, clock);
+  auto server = std::make_unique<link::RobotServer>(rig, robot, cameras,
+                                                    link::rig_identity(rig, arguments.rig, FORESIGHT_VERSION), clock);
   say_robot("serving on domain " + std::to_string(rig.link.domain) + ", interface " + rig.link.interface);
   if (const std::string trouble = link::receive_buffer_trouble(); !trouble.empty()) say_robot(trouble);
   return server;
 }
 
-ConsoleOptions console_options(const Arguments& arguments, const link::RobotServer* server) {
+ConsoleOptions console_options(const Arguments& arguments, link::RobotServer* server) {
   ConsoleOptions options;
   if (server) options.line = [server] { return server->line(); };
+  if (server && arguments.follow.empty()) options.commander = &server->commander();
   options.follow = arguments.follow;
   options.may_home = arguments.may_home;
   if (!arguments.record.empty()) options.joints = joint_log_beside(arguments.record);

@@ -34,6 +34,7 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
     commanders_.push_back(&*follow_);
   }
   if (keyboard_.is_terminal()) commanders_.push_back(&keys_);
+  if (options.commander) commanders_.push_back(options.commander);
   if (!options.joints.empty()) joints_.emplace(options.joints, rig, robot.cycles());
   if (!options.session.empty()) session_.emplace(rig, robot.cycles());
   if (keyboard_.is_terminal()) say_robot(KeyOperator::help());

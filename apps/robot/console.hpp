@@ -25,6 +25,7 @@ struct ConsoleOptions {
   std::string session;                ///< page about the session, or ""
   std::vector<std::string> faults;    ///< of mock drives (parse_mock_faults)
   bool mock = false;                  ///< all drives are mock ones, whatever the rig says
+  Commander* commander = nullptr;     ///< somebody else who may command, beside the keyboard; null: nobody
   std::function<std::string()> line;  ///< how the line to others is, in one line; empty: there is none
 };
 

@@ -9,17 +9,25 @@ namespace {
 
 constexpr std::size_t kRoom = 2;  // pairs that wait for the coder; only the newest goes
 
-SenderName sender_name(const Rig& rig) {
+std::uint64_t draw() {
   std::random_device random;
-  return {(std::uint64_t{random()} << 32) | random(), rig.joint_names()};
+  return (std::uint64_t{random()} << 32) | random();
+}
+
+ControlDeskOptions desk_options(Identity identity) {
+  ControlDeskOptions out;
+  out.identity = std::move(identity);
+  out.draw = draw;
+  return out;
 }
 
 }  // namespace
 
-RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock)
+RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock)
     : participant_(rig.link, "robot " + rig.name, Role::robot),
       wall_(clock),
-      states_(participant_, sender_name(rig), rig, robot, cameras, wall_, clock) {
+      states_(participant_, {draw(), rig.joint_names()}, rig, robot, cameras, wall_, clock),
+      operator_(participant_, rig.gate_options(), desk_options(std::move(identity))) {
   if (!cameras) return;
   const auto& lenses = cameras->scene().lenses();
   frames_ = std::make_unique<FrameSender>(participant_, states_.name(), lenses ? &*lenses : nullptr,

@@ -1,6 +1,7 @@
 // The robot's end of the line: everything that `foresight robot --serve` publishes.
 #pragma once
 
+#include "link/robot_side/served_operator.hpp"
 #include "link/robot_side/state_sender.hpp"
 
 namespace foresight::link {
@@ -10,8 +11,12 @@ namespace foresight::link {
 /// its own.
 class RobotServer {
  public:
-  /// `cameras`: null, or with frames(). All references must outlive this. Throws what Participant does.
-  RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock);
+  /// `cameras`: null, or with frames(). `identity`: rig_identity(). All references must outlive this. Throws what
+  /// Participant does.
+  RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock);
+
+  /// Whoever commands over the line; to be asked in one thread, that of all commanders.
+  Commander& commander() { return operator_; }
 
   void start();
   void stop() noexcept;
@@ -24,6 +29,7 @@ class RobotServer {
   Participant participant_;
   WallClock wall_;
   StateSender states_;
+  ServedOperator operator_;
   std::unique_ptr<FrameSender> frames_;
 };
 

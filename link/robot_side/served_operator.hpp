@@ -1,0 +1,30 @@
+// Who commands over the line, as one of the robot's commanders.
+#pragma once
+
+#include "link/control_wire/control_lines.hpp"
+#include "operators/line_operator.hpp"
+
+namespace foresight::link {
+
+/// LineOperator with its line: messages are taken in before each tick, and sent after it. One thread.
+class ServedOperator final : public Commander {
+ public:
+  ServedOperator(Participant& participant, const GateOptions& gate, ControlDeskOptions desk)
+      : line_(participant), operator_(gate, std::move(desk)) {}
+
+  std::uint64_t operator_id() const override { return operator_.operator_id(); }
+  OperatorWish tick(RobotTime now, const RobotStatus& status) override {
+    line_.receive(operator_.desk(), now);
+    OperatorWish wish = operator_.tick(now, status);
+    line_.send(operator_.desk());
+    return wish;
+  }
+
+  ControlDesk& desk() { return operator_.desk(); }
+
+ private:
+  DeskLine line_;
+  LineOperator operator_;
+};
+
+}  // namespace foresight::link
