@@ -65,7 +65,7 @@ void ControlSeat::take(const FromRobot& message, const Welcome& welcome, Operato
   robot_ = welcome.robot;
   desk_ = message.from;
   differences_ = welcome.differences;
-  answered_ = now;
+  answered_ = state_came_ = now;
   lease_ = 0;
   verdict_came_ = false;
   ++ask_number_;
@@ -121,7 +121,7 @@ void ControlSeat::take_state(const ControlState& state, OperatorTime now) {
 }
 
 void ControlSeat::connect(OperatorTime now) {
-  const bool mute = state_.sequence > 0 && now - state_came_ > kAnsweredWithin;
+  const bool mute = now - state_came_ > kAnsweredWithin;
   if (desk_ != 0 && (mute || now - answered_ > kAnsweredWithin)) {
     desk_ = lease_ = 0;
     // Whatever number it had: what the robot tells after this is the newest.

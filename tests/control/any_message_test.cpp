@@ -56,6 +56,28 @@ class AnyMessageTest : public SmallLineTest {
     }
     return out;
   }
+  FromRobot from_robot() {
+    FromRobot out{any(), any(), ClockPing{any()}};
+    switch (random_() % 6) {
+      case 0: out.body = Welcome{any(), identity(), {{"words", "cure", true}}}; break;
+      case 1: out.body = ClockPong{any(), signed_any(), signed_any()}; break;
+      case 2: out.body = Verdict{any(), any(), "words"}; break;
+      case 3: out.body = Answer{any(), static_cast<RequestOutcome>(any() % 5)}; break;
+      case 4: {
+        ControlState state;
+        state.sequence = any();
+        state.time = {signed_any()};
+        state.holder = any();
+        state.consent = any();
+        state.joints = any();
+        state.begin = positions();
+        out.body = state;
+        break;
+      }
+      default: break;
+    }
+    return out;
+  }
   void learn() {
     known_ = {1,
               2,
@@ -88,6 +110,21 @@ TEST_F(AnyMessageTest, TheDeskBearsIt) {
     ASSERT_LE(desk_.peers().size(), DeskPeers::kMost);
     for (const double p : robot_.set_point) ASSERT_TRUE(std::isfinite(p));
   }
+}
+
+TEST_F(AnyMessageTest, TheSeatBearsItAndFindsTheRobotAgain) {
+  engage(anna_);
+  for (int i = 0; i < 40'000; ++i) {
+    learn();
+    anna_.seat.receive(from_robot(), time_of(anna_));
+    if (i % 20 != 0) continue;
+    step();
+    status(anna_);
+  }
+  anna_.held = false;
+  anna_.seat.want_control(false);
+  run(10s);
+  engage(anna_);
 }
 
 }  // namespace
