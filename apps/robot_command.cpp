@@ -290,8 +290,8 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag(
       "--serve", arguments->serve,
-      "Publishes pairs, joints, transforms and states on the network that the rig's `link:` section names\n"
-      "(docs/line.md); whoever listens cannot hold the robot up");
+      "Publishes pairs, joints, transforms and states on the network that the rig's `link:` section names, and\n"
+      "lets one operator there command at a time (docs/line.md); whoever listens cannot hold the robot up");
   command->add_flag("--stepped", arguments->stepped,
                     "As fast as the machine can, the same on every run; only with mock drives");
   command->add_option("--fault", arguments->faults,
