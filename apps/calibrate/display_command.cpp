@@ -186,7 +186,7 @@ int run_display(const DisplayOptions& options) {
             << ", centre " << readable(s.panel.lens[2], 1) << " " << readable(s.panel.lens[3], 1, " px") << "\n";
   for (const std::string& warning : s.warnings) std::cerr << "warning: " << warning << "\n";
   nlohmann::ordered_json numbers = numbers_of(s);
-  for (const auto& [name, lens] : colours) numbers["scale_" + name] = lens.lens[0] / s.panel.lens[0];
+  for (const auto& [name, panel] : colours) numbers["scale_" + name] = panel.lens[0] / s.panel.lens[0];
   Deliverable found = deliverable(s, colours);
   found.report = [&] { return report_of(options, s, pictures.points, eye); };
   return deliver(found, numbers, options.outputs);

@@ -69,8 +69,8 @@ TEST_P(LensSlopesTest, ChainToWhatTheModelGivesByItself) {
 INSTANTIATE_TEST_SUITE_P(Models, LensSlopesTest,
                          testing::Values(Distortion::radtan4, Distortion::radtan5, Distortion::rational,
                                          Distortion::thin_prism, Distortion::equidistant),
-                         [](const auto& info) {
-                           std::string name = to_string(info.param);
+                         [](const auto& model) {
+                           std::string name = to_string(model.param);
                            std::erase(name, '-');
                            return name;
                          });

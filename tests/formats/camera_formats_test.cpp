@@ -47,8 +47,8 @@ TEST(CameraFormats, EveryFormatReadsBackOrRefuses) {
         const ExportSummary summary = write();
         EXPECT_EQ(summary.rays, 1000);
         EXPECT_LT(summary.worst_px, 1e-9) << name;
-        const bool folder = format == CameraFormat::camera_info || format == CameraFormat::mrcal;
-        EXPECT_EQ(summary.files.size(), pair && folder ? 2u : 1u);
+        const bool in_files = format == CameraFormat::camera_info || format == CameraFormat::mrcal;
+        EXPECT_EQ(summary.files.size(), pair && in_files ? 2u : 1u);
         const CalibratedCameras back = read_cameras(format, path);
         EXPECT_EQ(back.pair(), pair);
         EXPECT_LT(worst_ray(cameras, back, 500), 1e-9) << name;

@@ -35,7 +35,9 @@ TEST_P(OrderedFaults, EachStopsTheRobotAndIsNamed) {
     const RobotTime begin = live.clock().now();
     for (RobotTime now = begin; now < begin + 2500ms; now = live.clock().now()) {
       for (const std::string& line : faults.step(now)) said.push_back(line);
-      if (said.empty()) EXPECT_EQ(live.robot().status().gate.state, GateState::following) << c.kind << ": too early";
+      if (said.empty()) {
+        EXPECT_EQ(live.robot().status().gate.state, GateState::following) << c.kind << ": too early";
+      }
       live.move(8ms);
     }
     ASSERT_EQ(said.size(), 1u);

@@ -109,9 +109,9 @@ void UsbIpPort::send(std::uint32_t command, std::uint32_t number, std::int32_t s
   header.number = htonl(number);
   header.first = htonl(static_cast<std::uint32_t>(status));
   header.second = htonl(length);
-  Bytes all(sizeof header + data.size());
+  Bytes all(sizeof header);
   std::memcpy(all.data(), &header, sizeof header);
-  if (!data.empty()) std::memcpy(all.data() + sizeof header, data.data(), data.size());
+  all.insert(all.end(), data.begin(), data.end());
   write_all(fd(), all);
 }
 
