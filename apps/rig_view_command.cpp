@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "apps/command_line/picture_size.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
@@ -25,14 +26,11 @@ struct Arguments {
 };
 
 cv::Size picture_size(const std::string& text) {
-  const std::size_t by = text.find('x');
-  const auto number = [&](const std::string& part) { return parse_integer(part).value_or(0); };
-  const long long width = number(text.substr(0, by)),
-                  height = by == std::string::npos ? 0 : number(text.substr(by + 1));
+  const auto [width, height] = parse_picture_size(text).value_or(std::array{0, 0});
   if (width < 2 * kPanelWidth || width > 8000 || height < 400 || height > 8000)
     throw InputError("--size", in_quotes(text) + " is no size of a picture",
                      "write WIDTHxHEIGHT in px, such as 1320x860; from 660x400 to 8000x8000");
-  return {static_cast<int>(width), static_cast<int>(height)};
+  return {width, height};
 }
 
 Layers layers_without(const std::vector<std::string>& hidden) {

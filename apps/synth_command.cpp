@@ -1,9 +1,9 @@
 #include "apps/synth_command.hpp"
 
-#include <charconv>
 #include <cstdio>
 #include <memory>
 
+#include "apps/command_line/picture_size.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/error.hpp"
 #include "common/stop_signal.hpp"
@@ -24,12 +24,10 @@ struct Arguments {
 struct Interrupted {};
 
 void parse_size(const std::string& text, sim::SynthOptions& options) {
-  const char* const end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, options.width);
-  const bool separated = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
-  const auto height = separated ? std::from_chars(width.ptr + 1, end, options.height) : width;
-  if (!separated || height.ec != std::errc() || height.ptr != end)
-    throw InputError("--size", "'" + text + "' is not a size", "write it as WIDTHxHEIGHT, such as 751x570");
+  const auto size = parse_picture_size(text);
+  if (!size) throw InputError("--size", "'" + text + "' is not a size", "write it as WIDTHxHEIGHT, such as 751x570");
+  options.width = (*size)[0];
+  options.height = (*size)[1];
 }
 
 std::vector<Output> synth_outputs(const std::filesystem::path& out) {

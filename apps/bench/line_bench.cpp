@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "apps/bench/lab_pictures.hpp"
+#include "apps/command_line/picture_size.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/error.hpp"
 #include "common/numbers_file.hpp"
@@ -18,12 +19,10 @@ namespace foresight {
 namespace {
 
 cv::Size read_size(const std::string& text) {
-  const std::size_t cross = text.find('x');
-  const auto width = parse_integer(text.substr(0, cross));
-  const auto height = cross == std::string::npos ? std::nullopt : parse_integer(text.substr(cross + 1));
-  if (!width || !height || *width < 32 || *height < 32 || *width > 4096 || *height > 2048)
+  const auto [width, height] = parse_picture_size(text).value_or(std::array{0, 0});
+  if (width < 32 || height < 32 || width > 4096 || height > 2048)
     throw InputError("--size", in_quotes(text) + " is no size", "give WIDTHxHEIGHT, 32x32 to 4096x2048");
-  return {static_cast<int>(*width), static_cast<int>(*height)};
+  return {width, height};
 }
 
 LineSpec line_of(const LineBenchOptions& options) {

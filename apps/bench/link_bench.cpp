@@ -13,6 +13,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/command_line/picture_size.hpp"
 #include "common/error.hpp"
 #include "common/latest_value.hpp"
 #include "common/numbers_file.hpp"
@@ -133,12 +134,10 @@ std::vector<cv::Mat> pictures(cv::Size size) {
 }
 
 cv::Size parse_size(const std::string& text) {
-  const std::size_t by = text.find('x');
-  const auto width = parse_integer(text.substr(0, by));
-  const auto height = by == text.npos ? std::nullopt : parse_integer(text.substr(by + 1));
-  if (!width || !height || *width < 16 || *height < 16 || *width > 8192 || *height > 8192)
+  const auto [width, height] = parse_picture_size(text).value_or(std::array{0, 0});
+  if (width < 16 || height < 16 || width > 8192 || height > 8192)
     throw InputError("--size " + text, "is no size of a picture", "write it as 1280x720");
-  return {static_cast<int>(*width), static_cast<int>(*height)};
+  return {width, height};
 }
 
 struct Arrivals {

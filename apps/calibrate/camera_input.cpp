@@ -1,5 +1,6 @@
 #include "apps/calibrate/camera_input.hpp"
 
+#include "apps/command_line/picture_size.hpp"
 #include "calibration/target/corner_files.hpp"
 #include "calibration/target/image_input.hpp"
 #include "common/error.hpp"
@@ -10,12 +11,10 @@ namespace {
 
 std::array<int, 2> parse_size(const std::string& text) {
   if (text.empty()) return {0, 0};
-  const auto x = text.find('x');
-  const auto w = parse_integer(text.substr(0, x));
-  const auto h = x == std::string::npos ? std::nullopt : parse_integer(text.substr(x + 1));
-  if (!w || !h || *w < 16 || *h < 16 || *w > 32768 || *h > 32768)
+  const auto size = parse_picture_size(text).value_or(std::array{0, 0});
+  if (size[0] < 16 || size[1] < 16 || size[0] > 32768 || size[1] > 32768)
     throw InputError("--size", in_quotes(text) + " is no image size", "give WIDTHxHEIGHT in pixels, such as 640x480");
-  return {static_cast<int>(*w), static_cast<int>(*h)};
+  return size;
 }
 
 RigViews read_file(const std::filesystem::path& path, const CornerInput& input, bool pair) {

@@ -1,0 +1,14 @@
+// Sizes of pictures in a command line.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace foresight {
+
+/// Of "WIDTHxHEIGHT" both, px; nothing where that is anything else, or beyond an int. Which sizes make sense is for the
+/// command to say.
+std::optional<std::array<int, 2>> parse_picture_size(std::string_view text);
+
+}  // namespace foresight
