@@ -22,12 +22,6 @@ class LineOperatorTest : public testing::Test {
     out.joints = {{"arm", {-2, 2, 1, 4, 60}, 0.2}, {"wrist", {0, 0.1, 0.1, 1, 20}, 0.02, true}};
     return out;
   }
-  static ControlDeskOptions desk_options() {
-    ControlDeskOptions out;
-    out.identity = sample_identity("the robot");
-    out.draw = counting(1'000'000);
-    return out;
-  }
   /// Four milliseconds; what is sent arrives at once.
   void step() {
     now_ = now_ + 4ms;

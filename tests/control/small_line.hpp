@@ -21,6 +21,13 @@ inline Identity sample_identity(const std::string& name) {
   return {kLineProtocol, "1.0", name, 11, 22, 33, {"arm", "wrist"}};
 }
 
+inline ControlDeskOptions desk_options() {
+  ControlDeskOptions out;
+  out.identity = sample_identity("the robot");
+  out.draw = counting(1'000'000);
+  return out;
+}
+
 /// The operator's end of a line of constant delay, its clock 1,000 s ahead.
 struct SmallSeat {
   explicit SmallSeat(const std::string& name, Nonce first) : SmallSeat(sample_identity(name), first) {}
@@ -41,12 +48,6 @@ class SmallLineTest : public testing::Test {
     robot_.joints = 2;
     robot_.ready = true;
     robot_.reach = {0.1, 0.1};
-  }
-  static ControlDeskOptions desk_options() {
-    ControlDeskOptions out;
-    out.identity = sample_identity("the robot");
-    out.draw = counting(1'000'000);
-    return out;
   }
   /// Ten milliseconds: seats, line, desk, a robot that follows at once.
   void step() {
