@@ -1,21 +1,6 @@
 #include "link/coding/h264_coder.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace foresight {
-namespace {
-
-constexpr QualityModel::Range kSteps{18, 51};  // finer than 18 codes the sensor's noise
-constexpr double kStepsPerHalving = 5;
-constexpr int kUsualStep = 30;
-constexpr double kIntraBytes = 0.065, kPredictedBytes = 0.025;  // per pixel at that step, until a picture was coded
-constexpr double kNoiseDifference = 0.7;  // added to differences, so that a still picture is not infinitely easier
-
-}  // namespace
-
-H264PairEncoder::H264PairEncoder()
-    : intra_(kSteps, kStepsPerHalving, kUsualStep, 1), predicted_(kSteps, kStepsPerHalving, kUsualStep, 1) {}
 
 H264PairEncoder::Lane& H264PairEncoder::choose(const PairWish& wish) {
   // The newest that may be built on, else one that has to begin anyway, else the newest that is on its way.
@@ -31,26 +16,17 @@ H264PairEncoder::Lane& H264PairEncoder::choose(const PairWish& wish) {
   return newest ? *newest : unused ? *unused : *on_the_way;
 }
 
-int H264PairEncoder::step_for(const Lane& lane, const Planes& planes, const PairWish& wish, bool intra) const {
-  const std::size_t budget = wish.bytes > kCodedPairHeader ? wish.bytes - kCodedPairHeader : 1;
-  if (intra) return intra_.step_for(budget);
-  const double difference = mean_difference(planes, lane.last) + kNoiseDifference;
-  return predicted_.step_for(budget, difference / predicted_difference_);
-}
-
 CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& wish) {
   check(picture);
-  Planes planes = to_planes(picture);
+  const Planes planes = to_planes(picture);
   if (planes.size != size_) {
     lanes_ = {};
     size_ = planes.size;
-    intra_ = QualityModel(kSteps, kStepsPerHalving, kUsualStep, kIntraBytes * size_.area());
-    predicted_ = QualityModel(kSteps, kStepsPerHalving, kUsualStep, kPredictedBytes * size_.area());
   }
   Lane& lane = choose(wish);
   const bool intra = lane.broken;
   if (!lane.encoder) lane.encoder.emplace(size_);
-  const int step = step_for(lane, planes, wish, intra);
+  const std::size_t bytes = wish.bytes > kCodedPairHeader ? wish.bytes - kCodedPairHeader : 1;
   CodedPair pair{.number = wish.number, .captured = picture.captured, .coding = Coding::h264};
   pair.lane = static_cast<std::uint8_t>(&lane - lanes_.data());
   pair.reference = intra ? 0 : lane.number;
@@ -58,14 +34,7 @@ CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& 
   pair.height = picture.left.rows;
   pair.colour = picture.left.channels() == 3;
   pair.stereo = !picture.right.empty();
-  pair.data = lane.encoder->encode(planes, step, intra);
-  if (intra) {
-    intra_.learn(step, pair.data.size());
-  } else {
-    predicted_difference_ = mean_difference(planes, lane.last) + kNoiseDifference;
-    predicted_.learn(step, pair.data.size());
-  }
-  lane.last = std::move(planes);
+  pair.data = lane.encoder->encode(planes, bytes, intra);
   lane.number = wish.number;
   lane.arrived = lane.broken = false;
   return pair;

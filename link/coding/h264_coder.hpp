@@ -5,13 +5,11 @@
 
 #include "link/coding/h264_stream.hpp"
 #include "link/coding/pair_coder.hpp"
-#include "link/coding/quality_model.hpp"
 
 namespace foresight {
 
 class H264PairEncoder final : public PairEncoder {
  public:
-  H264PairEncoder();
   CodedPair encode(const StereoPicture& picture, const PairWish& wish) override;
   void arrived(std::uint32_t number) override;
   void gone(std::uint32_t number) override;
@@ -19,19 +17,15 @@ class H264PairEncoder final : public PairEncoder {
  private:
   struct Lane {
     std::optional<H264Encoder> encoder;
-    Planes last;               // what was encoded last
     std::uint32_t number = 0;  // of the last pair
     bool arrived = false;      // the receiver has it
     bool broken = true;        // has to begin anew
   };
   Lane& choose(const PairWish& wish);
-  int step_for(const Lane& lane, const Planes& planes, const PairWish& wish, bool intra) const;
 
   std::array<Lane, kMostLanes> lanes_;
   cv::Size size_;
   bool colour_ = false;
-  QualityModel intra_, predicted_;
-  double predicted_difference_ = 1;  // of the last predicted picture to its reference
 };
 
 class H264PairDecoder {

@@ -2,6 +2,7 @@
 
 #include <wels/codec_api.h>
 
+#include <algorithm>
 #include <climits>
 #include <cstring>
 
@@ -11,6 +12,10 @@ namespace foresight {
 namespace {
 
 constexpr int kQuiet = WELS_LOG_QUIET;
+constexpr int kRate = 10;              // pictures per second, nominally: only bytes per picture count
+constexpr int kFirstTimesAsLarge = 4;  // a picture predicted from none gets so much more from the library's control
+constexpr int kFinest = 18;            // quantiser step; finer ones code the sensor's noise
+constexpr std::size_t kMostBytes = 1U << 24;
 
 [[noreturn]] void fail(const char* what, long code) {
   throw RuntimeFailure(std::string("OpenH264 cannot ") + what + " (" + std::to_string(code) + ")",
@@ -27,7 +32,6 @@ struct H264Encoder::State {
     }
   };
   std::unique_ptr<ISVCEncoder, Delete> encoder;
-  SEncParamExt parameters{};
   cv::Size size;
   bool begun = false;
 };
@@ -38,14 +42,17 @@ H264Encoder::H264Encoder(cv::Size size) : state_(std::make_unique<State>()) {
   state_->encoder.reset(made);
   state_->size = size;
   made->SetOption(ENCODER_OPTION_TRACE_LEVEL, const_cast<int*>(&kQuiet));
-  SEncParamExt& p = state_->parameters;
+  SEncParamExt p{};
   made->GetDefaultParams(&p);
   p.iUsageType = CAMERA_VIDEO_REAL_TIME;
   p.iPicWidth = size.width;
   p.iPicHeight = size.height;
-  p.fMaxFrameRate = 30;
-  p.iTargetBitrate = p.iMaxBitrate = UNSPECIFIED_BIT_RATE;
-  p.iRCMode = RC_OFF_MODE;  // the sender knows the line; the step of every picture is its own
+  p.fMaxFrameRate = kRate;
+  p.iTargetBitrate = kRate * 8 * size.area() / 40;
+  p.iMaxBitrate = UNSPECIFIED_BIT_RATE;
+  p.iRCMode = RC_QUALITY_MODE;  // within the picture; the sender says for each what it may take
+  p.iMinQp = kFinest;
+  p.iMaxQp = 51;
   p.iNumRefFrame = 1;
   p.uiIntraPeriod = 0;
   p.eSpsPpsIdStrategy = CONSTANT_ID;
@@ -59,9 +66,10 @@ H264Encoder::H264Encoder(cv::Size size) : state_(std::make_unique<State>()) {
   SSpatialLayerConfig& layer = p.sSpatialLayers[0];
   layer.iVideoWidth = size.width;
   layer.iVideoHeight = size.height;
-  layer.fFrameRate = 30;
+  layer.fFrameRate = kRate;
   layer.uiProfileIdc = PRO_MAIN;
-  layer.iSpatialBitrate = layer.iMaxSpatialBitrate = UNSPECIFIED_BIT_RATE;
+  layer.iSpatialBitrate = p.iTargetBitrate;
+  layer.iMaxSpatialBitrate = UNSPECIFIED_BIT_RATE;
   layer.sSliceArgument.uiSliceMode = SM_SINGLE_SLICE;
   if (const int code = made->InitializeExt(&p); code != 0) fail("encode pictures of this size", code);
   made->SetOption(ENCODER_OPTION_TRACE_LEVEL, const_cast<int*>(&kQuiet));
@@ -71,13 +79,11 @@ H264Encoder::~H264Encoder() = default;
 H264Encoder::H264Encoder(H264Encoder&&) noexcept = default;
 H264Encoder& H264Encoder::operator=(H264Encoder&&) noexcept = default;
 
-std::vector<std::uint8_t> H264Encoder::encode(const Planes& planes, int step, bool intra) {
+std::vector<std::uint8_t> H264Encoder::encode(const Planes& planes, std::size_t bytes, bool intra) {
   State& s = *state_;
-  if (s.parameters.sSpatialLayers[0].iDLayerQp != step) {
-    s.parameters.sSpatialLayers[0].iDLayerQp = step;
-    if (const int code = s.encoder->SetOption(ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, &s.parameters); code != 0)
-      fail("change its quality", code);
-  }
+  const auto wanted = static_cast<int>(std::clamp<std::size_t>(bytes, 64, kMostBytes));
+  SBitrateInfo rate{SPATIAL_LAYER_ALL, kRate * 8 * (intra || !s.begun ? wanted / kFirstTimesAsLarge : wanted)};
+  if (const int code = s.encoder->SetOption(ENCODER_OPTION_BITRATE, &rate); code != 0) fail("change its quality", code);
   if (intra && s.begun) s.encoder->ForceIntraFrame(true);
   s.begun = true;
   SSourcePicture source{};

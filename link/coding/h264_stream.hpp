@@ -19,9 +19,9 @@ class H264Encoder {
   H264Encoder(H264Encoder&&) noexcept;
   H264Encoder& operator=(H264Encoder&&) noexcept;
 
-  /// The bytes of one picture at quantiser step `step` (0 .. 51). `intra`: predicted from none; the first always is.
-  /// Throws RuntimeFailure where the library fails.
-  std::vector<std::uint8_t> encode(const Planes& planes, int step, bool intra);
+  /// One picture in about `bytes`: within a fifth of it mostly, but for what is too hard or too easy for it. `intra`:
+  /// predicted from none; the first always is. Throws RuntimeFailure where the library fails.
+  std::vector<std::uint8_t> encode(const Planes& planes, std::size_t bytes, bool intra);
 
  private:
   struct State;

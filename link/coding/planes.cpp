@@ -1,14 +1,11 @@
 #include "link/coding/planes.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
 namespace foresight {
 namespace {
-
-constexpr int kSparse = 4;
 
 cv::Mat padded(const cv::Mat& picture) {
   const cv::Size size = even_size(picture.cols, picture.rows);
@@ -78,17 +75,6 @@ StereoPicture from_planes(const Planes& planes, int width, int height, bool colo
   out.left = take_eye(planes, eye, 0, colour)(seen);
   if (stereo) out.right = take_eye(planes, eye, eye.height, colour)(seen);
   return out;
-}
-
-double mean_difference(const Planes& a, const Planes& b) {
-  if (a.size != b.size) return 255;
-  std::uint64_t sum = 0, count = 0;
-  for (int row = 0; row < a.size.height; row += kSparse) {
-    const auto at = static_cast<std::size_t>(row * a.size.width);
-    for (std::size_t i = at; i < at + static_cast<std::size_t>(a.size.width); i += kSparse, ++count)
-      sum += static_cast<std::uint64_t>(std::abs(int{a.bytes[i]} - int{b.bytes[i]}));
-  }
-  return static_cast<double>(sum) / static_cast<double>(std::max<std::uint64_t>(1, count));
 }
 
 }  // namespace foresight

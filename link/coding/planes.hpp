@@ -27,7 +27,4 @@ Planes to_planes(const StereoPicture& picture);
 /// Back again, into pictures of `width` x `height`.
 StereoPicture from_planes(const Planes& planes, int width, int height, bool colour, bool stereo);
 
-/// Mean absolute difference of the luma, of every fourth pixel in every fourth row. Of different sizes: 255.
-double mean_difference(const Planes& a, const Planes& b);
-
 }  // namespace foresight

@@ -8,8 +8,8 @@ namespace foresight {
 QualityModel::QualityModel(Range range, double steps_per_halving, int step, double bytes)
     : range_(range), steps_per_halving_(steps_per_halving), at_zero_(std::log2(bytes) + step / steps_per_halving) {}
 
-int QualityModel::step_for(std::size_t budget, double change) const {
-  const double halvings = at_zero_ + std::log2(change) - std::log2(std::max<double>(1, static_cast<double>(budget)));
+int QualityModel::step_for(std::size_t budget) const {
+  const double halvings = at_zero_ - std::log2(std::max<double>(1, static_cast<double>(budget)));
   const double step = std::round(halvings * steps_per_halving_);
   return static_cast<int>(std::clamp(step, static_cast<double>(range_.finest), static_cast<double>(range_.coarsest)));
 }

@@ -15,8 +15,8 @@ class QualityModel {
   /// `steps_per_halving`: how many steps halve the bytes. `step`, `bytes`: what a first picture is expected to take.
   QualityModel(Range range, double steps_per_halving, int step, double bytes);
 
-  /// The step at which a picture `change` times as hard as the last is expected to take about `budget` bytes.
-  int step_for(std::size_t budget, double change = 1) const;
+  /// The step at which a picture as hard as the last is expected to take about `budget` bytes.
+  int step_for(std::size_t budget) const;
   /// A picture took `bytes` at `step`.
   void learn(int step, std::size_t bytes);
 

@@ -39,10 +39,10 @@ class Trial {
         picture_(picture),
         up_(options.line.up, RobotTime{}, options.line.seed),
         down_(options.line.down, RobotTime{}, options.line.seed + 1),
-        encoder_(make_pair_encoder(options.coding)),
+        encoder_(options.encoder ? options.encoder() : make_pair_encoder(options.coding)),
         sender_(options.sender),
-        receiver_(make_pair_decoder()),
-        mirror_(make_pair_decoder()) {}
+        receiver_(options.decoder ? options.decoder() : make_pair_decoder()),
+        mirror_(options.decoder ? options.decoder() : make_pair_decoder()) {}
 
   void run(const std::function<void()>& poll) {
     const RobotTime end = RobotTime{} + options_.length;

@@ -15,6 +15,9 @@ struct LineTrialOptions {
   Duration length = std::chrono::seconds(60);
   double pairs_per_s = 30;  ///< of the camera
   Coding coding = Coding::h264;
+  /// Instead of those of `coding`, where they are set: a model of a coder makes a trial as long as a real line's cheap.
+  std::function<std::unique_ptr<PairEncoder>()> encoder{};
+  std::function<std::unique_ptr<PairDecoder>()> decoder{};
   PairSender::Options sender{};
   bool compare = true;  ///< decode every pair beside the encoder, too, and compare what was shown with that
 };

@@ -99,7 +99,6 @@ TEST(QualityModel, HalvesTheBytesInItsSteps) {
   QualityModel model({10, 51}, 5, 30, 8000);
   EXPECT_EQ(model.step_for(8000), 30);
   EXPECT_EQ(model.step_for(4000), 35);
-  EXPECT_EQ(model.step_for(4000, 2), 40);
   EXPECT_EQ(model.step_for(1), 51);
   EXPECT_EQ(model.step_for(100'000'000), 10);
   model.learn(35, 8000);

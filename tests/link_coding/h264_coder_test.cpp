@@ -1,5 +1,8 @@
 #include "link/coding/h264_coder.hpp"
 
+#include <algorithm>
+#include <random>
+
 #include "link/send_control/line_trial.hpp"
 #include "tests/support/moving_picture.hpp"
 
@@ -115,6 +118,26 @@ TEST_F(H264Lanes, FollowsTheBudgetThroughAChangeOfScene) {
       EXPECT_GT(sizes.back(), budget / 4) << i;
     }
   }
+}
+
+// What a pair takes decides how long it is on the line: coarse and fine ones must not take turns, whatever the camera's
+// distance in time and however the line's share changes.
+TEST_F(H264Lanes, PairsTakeWhatTheyMay) {
+  H264PairEncoder encoder;
+  std::mt19937 random(1);
+  std::vector<double> ratios;
+  std::size_t budget = 1500, tick = 0;
+  for (std::uint32_t i = 1; i <= 60; ++i) {
+    if (random() % 4 == 0) budget = 800 + random() % 2400;
+    tick += 1 + random() % 4;
+    const StereoPicture picture = moving_picture(instant(static_cast<std::uint32_t>(tick)), {160, 128});
+    const auto bytes = encoder.encode(picture, {.number = i, .bytes = budget}).data.size();
+    if (i > 5) ratios.push_back(static_cast<double>(bytes) / static_cast<double>(budget));
+  }
+  std::sort(ratios.begin(), ratios.end());
+  EXPECT_GT(ratios[ratios.size() / 20], 0.45) << "finer it gets by small steps only";
+  EXPECT_NEAR(ratios[ratios.size() / 2], 1, 0.2);
+  EXPECT_LT(ratios[ratios.size() * 19 / 20], 1.5);
 }
 
 TEST_F(H264Lanes, TakesGreyOddAndSinglePicturesAndChangesOfSize) {
