@@ -12,6 +12,7 @@ void add_place(Command& command, LinkPlace& place) {
   command.add_option("--domain", place.domain, "DDS domain, in place of the rig's (default 0)")->check(from_to(0, 230));
   command.add_option("--interface", place.interface, "Network interface, in place of the rig's (default lo)");
   command.add_option("--keys", place.keys, "Folder of `link keys` with the observer's, in place of the rig's")->reads();
+  command.add_option("--line", place.line, "File of a line (docs/line.md) that everything passes, out and in")->reads();
   command.add_option("--peer", place.peers, "Address or name of another host; again for more");
 }
 
@@ -23,6 +24,9 @@ void add_status(Command& link, std::function<int()>& action) {
       ->check(from_to(0.5, 60))
       ->capture_default_str();
   command->footer(
+      "Where a robot is there, its clock and its pictures are looked at, too, as an operator's program does; a robot "
+      "that\n"
+      "codes for a thin line sends its pictures to one program at a time.\n\n"
       "Exit code: 0 where a robot is there, 1 where none is.\n\nExample: foresight link status --rig rig.yaml");
   command->callback([options, &action] { action = [options] { return link_status(*options); }; });
 }

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <random>
 #include <set>
 
-#include "common/clock.hpp"
 #include "common/error.hpp"
 #include "common/statistics.hpp"
 #include "common/stop_signal.hpp"
 #include "common/text.hpp"
 #include "link/dds/endpoints.hpp"
+#include "link/dds/pretended_line.hpp"
 #include "link/messages/message_types.hpp"
 #include "rig/rig.hpp"
 
@@ -38,6 +39,15 @@ LinkConfig config_of(const LinkPlace& place) {
   return out;
 }
 
+/// Null without --line. `clock` must outlive it.
+std::shared_ptr<link::PretendedLine> line_of(const LinkPlace& place, const Clock& clock) {
+  if (place.line.empty()) return nullptr;
+  auto out =
+      std::make_shared<link::PretendedLine>(read_line_spec(place.line), link::PretendedLine::Side::operating, clock);
+  out->start();
+  return out;
+}
+
 void warn(const std::string& trouble) {
   if (!trouble.empty()) std::fprintf(stderr, "link: %s\n", trouble.c_str());
 }
@@ -53,7 +63,10 @@ std::optional<link::Topic> find_topic(const link::Participant& program, const st
       for (const link::Peer::Endpoint& endpoint : peer.endpoints) {
         if (!endpoint.writes) continue;
         if (endpoint.topic == topic)
-          return link::Topic{topic, endpoint.type, endpoint.kept ? link::Delivery::kept : link::Delivery::newest,
+          return link::Topic{topic, endpoint.type,
+                             endpoint.kept   ? link::Delivery::kept
+                             : endpoint.once ? link::Delivery::once
+                                             : link::Delivery::newest,
                              kRoom};
         written.insert(endpoint.topic);
       }
@@ -120,22 +133,85 @@ std::string peers_text(const std::vector<link::Peer>& peers) {
   return out;
 }
 
+std::string figures_text(const link::LineFigures& line) {
+  std::string out;
+  if (line.clock && line.round_trip)
+    out += fmt::format("clock      the robot's is {:.6f} s ahead, +- {:.3f} ms{}; round trip {:.3f} ms\n",
+                       1e-9 * static_cast<double>(line.clock->middle()), 1e-6 * static_cast<double>(line.clock->half()),
+                       line.clock_jumps ? fmt::format(", {} jumps", number(line.clock_jumps)) : "",
+                       1e3 * to_seconds(*line.round_trip));
+  else
+    out += "clock      not known: the robot's program answers no operator (as with --follow)\n";
+  const link::IntakeCounts& pairs = line.pairs;
+  if (pairs.pairs == 0) {
+    out += fmt::format("pairs      none came{}\n", pairs.others ? ": they go to another program" : "");
+  } else {
+    const double intervals = static_cast<double>(pairs.pairs - 1), n = static_cast<double>(pairs.pairs);
+    const double per_s = intervals > 0 ? intervals / to_seconds(line.lasted) : 0;
+    out += fmt::format("pairs      {:.1f} a second ({}), {:.3f} Mbit/s\n", per_s, line.coding,
+                       8e-6 * per_s * static_cast<double>(pairs.bytes) / n);
+  }
+  std::vector<double> ages, doubts;
+  for (const BoundedDelay& age : line.ages) {
+    ages.push_back(1e3 * to_seconds(age.delay));
+    doubts.push_back(1e3 * to_seconds(age.uncertainty));
+  }
+  if (!ages.empty())
+    out += fmt::format("age        p50 {:.1f} ms, p99 {:.1f} ms, from capture until it was here, +- {:.1f} ms\n",
+                       quantile(ages, 0.5), quantile(ages, 0.99), quantile(doubts, 0.5));
+  if (pairs.expected > 0)
+    out += fmt::format("lost       {} of {} packets\n",
+                       number(pairs.expected - std::min(pairs.packets, pairs.expected)), number(pairs.expected));
+  else if (pairs.pairs > 0)
+    out +=
+        fmt::format("lost       {} of {} pairs\n", number(line.samples_lost), number(line.samples_lost + pairs.pairs));
+  if (pairs.refused > 0) out += fmt::format("refused    {} pairs: {}\n", number(pairs.refused), pairs.refusal);
+  return out;
+}
+
+namespace {
+
+std::uint64_t draw() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 32) | random();
+}
+
+/// Null where keys do not let us speak, which measuring clocks and asking for pictures takes.
+std::unique_ptr<link::OperatorEnd> look_at_line(link::Participant& program, Clock& clock) {
+  link::OperatorEndOptions options;
+  options.seat.identity.program = FORESIGHT_VERSION;
+  options.seat.identity.name = "link status";
+  options.seat.draw = draw;
+  try {
+    auto end = std::make_unique<link::OperatorEnd>(program, options, clock);
+    end->start();
+    return end;
+  } catch (const RuntimeFailure& failure) {
+    warn(std::string("clock and pictures are not looked at: ") + failure.what());
+    return nullptr;
+  }
+}
+
+}  // namespace
+
 int link_status(const LinkStatusOptions& options) {
   const LinkConfig config = config_of(options.place);
   poll_stop_signals();
-  const link::Participant program(config, "link status");
   MonotonicClock clock;
-  for (const RobotTime end = clock.now() + seconds(options.seconds); clock.now() < end && !stop_requested();)
-    clock.sleep_until(std::min(end, clock.now() + kLook));
+  link::Participant program(config, "link status", link::Role::observer, line_of(options.place, clock));
+  const auto end = look_at_line(program, clock);
+  for (const RobotTime until = clock.now() + seconds(options.seconds); clock.now() < until && !stop_requested();)
+    clock.sleep_until(std::min(until, clock.now() + kLook));
   if (stop_requested()) return kStopped;
   const auto peers = program.peers();
   const std::size_t others = peers.empty() ? 0 : peers.size() - 1;
   std::printf("domain %d, interface %s: %zu other program%s\n", config.domain, config.interface.c_str(), others,
               others == 1 ? "" : "s");
   std::fputs(peers_text(peers).c_str(), stdout);
+  const bool robot = std::ranges::any_of(peers, [](const link::Peer& peer) { return peer.name.starts_with("robot "); });
+  if (robot && end) std::fputs(figures_text(end->figures()).c_str(), stdout);
   warn(link::receive_buffer_trouble());
   warn(program.trouble());
-  const bool robot = std::ranges::any_of(peers, [](const link::Peer& peer) { return peer.name.starts_with("robot "); });
   if (!robot)
     warn(
         "no robot is there; start `foresight robot RIG --serve` with the same domain, and name each other's address "
@@ -145,7 +221,9 @@ int link_status(const LinkStatusOptions& options) {
 
 int link_listen(const LinkListenOptions& options) {
   poll_stop_signals();
-  link::Participant program(config_of(options.place), "link listen");
+  MonotonicClock clock;
+  link::Participant program(config_of(options.place), "link listen", link::Role::observer,
+                            line_of(options.place, clock));
   const auto topic = find_topic(program, topic_on_dds(options.topic));
   if (!topic) return kStopped;
   const link::MessageType* const type = link::find_message_type(topic->type);
@@ -155,7 +233,6 @@ int link_listen(const LinkListenOptions& options) {
         "has messages of the type " + in_quotes(link::ros_name(topic->type)) + ", which are not known here",
         "measure it with `foresight link rate`, or look at it with the tools of who writes it");
   link::Reader reader(program, *topic);
-  MonotonicClock clock;
   const RobotTime begin = clock.now();
   std::uint64_t shown = 0, strange = 0;
   while (!stop_requested() && (!options.count || shown < *options.count) &&
@@ -187,7 +264,8 @@ int link_keys(const LinkKeysOptions& options) {
 
 int link_rate(const LinkRateOptions& options) {
   poll_stop_signals();
-  link::Participant program(config_of(options.place), "link rate");
+  MonotonicClock clock;
+  link::Participant program(config_of(options.place), "link rate", link::Role::observer, line_of(options.place, clock));
   const auto topic = find_topic(program, topic_on_dds(options.topic));
   if (!topic) return kStopped;
   link::Reader reader(program, *topic);

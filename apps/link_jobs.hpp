@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "link/config/link_config.hpp"
-#include "link/dds/participant.hpp"
+#include "link/operator_side/operator_end.hpp"
 
 namespace foresight {
 
@@ -14,7 +14,7 @@ namespace foresight {
 struct LinkPlace {
   std::string rig;  ///< "": the defaults
   std::optional<int> domain;
-  std::string interface, keys;
+  std::string interface, keys, line;  ///< `line`: file of a line that is pretended (link/line)
   std::vector<std::string> peers;
 };
 
@@ -50,5 +50,7 @@ int link_keys(const LinkKeysOptions& options);
 std::string topic_on_dds(const std::string& given);
 /// What status prints of these programs, the own one left out.
 std::string peers_text(const std::vector<link::Peer>& peers);
+/// And of the line to the robot.
+std::string figures_text(const link::LineFigures& line);
 
 }  // namespace foresight

@@ -11,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/real_time.hpp"
 #include "common/stop_signal.hpp"
+#include "link/dds/pretended_line.hpp"
 #include "link/robot_side/rig_identity.hpp"
 #include "link/robot_side/robot_server.hpp"
 #include "session/robot_loop.hpp"
@@ -26,6 +27,7 @@ struct Arguments {
   std::string rig;
   std::string follow;
   std::string log, record, session;
+  std::string line;  // with `serve`
   bool cameras = true;
   bool mock = false, stepped = false, may_home = false, check_only = false;
   bool rig_view = false, serve = false;
@@ -136,8 +138,15 @@ std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCam
 std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock,
                                                const Arguments& arguments) {
   if (!arguments.serve) return nullptr;
-  auto server = std::make_unique<link::RobotServer>(rig, robot, cameras,
-                                                    link::rig_identity(rig, arguments.rig, FORESIGHT_VERSION), clock);
+  std::shared_ptr<link::PretendedLine> line;
+  if (!arguments.line.empty()) {
+    line =
+        std::make_shared<link::PretendedLine>(read_line_spec(arguments.line), link::PretendedLine::Side::robot, clock);
+    line->start();
+    say_robot("everything on the line passes " + arguments.line);
+  }
+  auto server = std::make_unique<link::RobotServer>(
+      rig, robot, cameras, link::rig_identity(rig, arguments.rig, FORESIGHT_VERSION), clock, std::move(line));
   say_robot("serving on domain " + std::to_string(rig.link.domain) + ", interface " + rig.link.interface);
   if (const std::string trouble = link::receive_buffer_trouble(); !trouble.empty()) say_robot(trouble);
   return server;
@@ -242,6 +251,9 @@ int run(const Arguments& arguments) {
   if (!arguments.record.empty() && (!rig.cameras || !arguments.cameras))
     throw InputError("--record", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
+  if (!arguments.line.empty() && !arguments.serve)
+    throw InputError("--line", "belongs to --serve", "add --serve, or leave it out");
+  if (!arguments.line.empty()) read_line_spec(arguments.line);  // known before anything moves
   if (arguments.serve && arguments.stepped)
     throw InputError("--serve", "stands beside --stepped: a network's time cannot be stepped", "leave one of them out");
   if (!arguments.stepped) return run_with<MonotonicClock>(rig, arguments, run_real);
@@ -292,6 +304,12 @@ void add_robot_command(Command& app, std::function<int()>& action) {
       "--serve", arguments->serve,
       "Publishes pairs, joints, transforms and states on the network that the rig's `link:` section names, and\n"
       "lets one operator there command at a time (docs/line.md); whoever listens cannot hold the robot up");
+  command
+      ->add_option(
+          "--line", arguments->line,
+          "With --serve: file of a line (docs/line.md) that everything passes on its way out and in, to try out\n"
+          "what a network does")
+      ->reads();
   command->add_flag("--stepped", arguments->stepped,
                     "As fast as the machine can, the same on every run; only with mock drives");
   command->add_option("--fault", arguments->faults,

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/bounded_queue.hpp"
 #include "common/clock.hpp"
 #include "drivers/camera/stereo_pairing.hpp"
 #include "scene/posed_frame.hpp"
@@ -58,32 +59,8 @@ struct LiveFrame {
 };
 using LiveFramePtr = std::shared_ptr<const LiveFrame>;
 
-/// What one subscriber has not taken yet. Any thread.
-class FrameQueue {
- public:
-  /// Holds `room` > 0 frames; one that comes then replaces the oldest, which is counted. `waits`: put() waits for room
-  /// instead, for stepped time, where waiting costs nothing and nothing may be left out.
-  explicit FrameQueue(std::size_t room, bool waits = false) : room_(room), waits_(waits) {}
-
-  void put(LiveFramePtr frame) noexcept;
-  /// The oldest, waiting `timeout` at most.
-  std::optional<LiveFramePtr> take(Duration timeout) noexcept;
-  /// The newest; those before it count as dropped.
-  std::optional<LiveFramePtr> take_newest(Duration timeout) noexcept;
-  /// Nothing comes any more: who waits wakes. What is in it can still be taken.
-  void close() noexcept;
-  bool closed() const noexcept;
-  std::uint64_t dropped() const noexcept;
-
- private:
-  const std::size_t room_;
-  const bool waits_;
-  mutable std::mutex mutex_;  // all below
-  std::condition_variable arrived_, taken_;
-  std::deque<LiveFramePtr> frames_;
-  std::uint64_t dropped_ = 0;
-  bool closed_ = false;
-};
+/// What one subscriber has not taken yet.
+using FrameQueue = BoundedQueue<LiveFramePtr>;
 
 struct LiveFrameOptions {
   double margin_px = 1.5;   ///< TextureOptions::margin_px, that of exact poses

@@ -84,7 +84,10 @@ void add_link(Command& bench, std::function<int()>& action) {
   command->add_option("--seconds", options->seconds, "How long")->check(from_to(1, 86400))->capture_default_str();
   command->add_option("--size", options->size, "Of each picture, px")->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Pairs a second")->check(from_to(0.1, 1000))->capture_default_str();
-  command->add_option("--quality", options->quality, "Of the JPEGs")->check(from_to(1, 100))->capture_default_str();
+  command->add_option("--coding", options->coding, "Of the pictures")
+      ->check(one_of({"jpeg", "h264"}))
+      ->capture_default_str();
+  command->add_option("--quality", options->quality, "Of JPEGs")->check(from_to(1, 100))->capture_default_str();
   command->add_flag("--secured", options->secured, "Encrypted and authenticated, with keys made for it");
   command->add_option("--domain", options->domain, "DDS domain to use")->check(from_to(0, 230))->capture_default_str();
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "apps/command_line/picture_size.hpp"
 #include "common/error.hpp"
@@ -20,7 +20,9 @@
 #include "common/statistics.hpp"
 #include "common/text.hpp"
 #include "common/unique_fd.hpp"
+#include "link/coding/jpeg_coder.hpp"
 #include "link/dds/topics.hpp"
+#include "link/operator_side/pair_intake.hpp"
 #include "link/robot_side/frame_sender.hpp"
 
 namespace foresight {
@@ -85,21 +87,45 @@ void decode(LatestValue<link::StereoFrame>& newest, const Clock& clock, int to, 
     const auto frame = newest.take(kLook);
     if (!frame) continue;
     const std::int64_t begin = clock.now().ns;
-    const cv::Mat left = cv::imdecode(frame->left.data, cv::IMREAD_COLOR);
-    const cv::Mat right = cv::imdecode(frame->right.data, cv::IMREAD_COLOR);
-    const bool whole = !left.empty() && !right.empty();
+    const auto decoded = [](const link::CodedImage& image) {
+      return decode_jpeg(image.data, {static_cast<int>(image.width), static_cast<int>(image.height)}, true);
+    };
+    const bool whole = decoded(frame->left) && decoded(frame->right);
     write_all(to, {frame->number, Arrival::decoded, whole ? ms(clock.now().ns - begin) : -1, 0, 0, 0, memory_mb()});
   }
 }
 
+/// Pairs that come in pieces: decoded as they become whole, in their order.
+[[noreturn]] void receive_pieces(link::Participant& program, const Clock& clock, int to) {
+  constexpr Duration kPoll = 5ms;  // an acknowledgement may be due
+  link::PairIntake intake(1, {}, clock);
+  link::Reader reader(program, link::topics::pieces());
+  link::Writer reports(program, link::topics::reports());
+  std::uint64_t bytes = 0;  // since the last pair
+  for (;;) {
+    reader.wait(kPoll);
+    reader.take<link::StereoPiece>({}, [&](link::StereoPiece&& piece, const link::Sample& sample) {
+      bytes += sample.cdr.size();
+      const link::LineFramePtr frame = intake.take(piece, RobotClockTracker());
+      if (!frame) return;
+      const std::int64_t captured = frame->image[0].captured.ns, coded = captured + frame->ages.coded->count();
+      write_all(to, {frame->number, Arrival::came, ms(frame->arrived.ns - coded), ms(frame->arrived.ns - captured),
+                     ms((*frame->ages.coded - *frame->ages.taken).count()), std::exchange(bytes, 0), memory_mb()});
+      write_all(to, {frame->number, Arrival::decoded, ms(frame->decoded.ns - frame->arrived.ns), 0, 0, 0, memory_mb()});
+    });
+    if (const auto report = intake.report()) reports.write(*report);
+  }
+}
+
 /// The operator's end, until it is killed.
-[[noreturn]] void receive(const LinkConfig& config, int to) {
+[[noreturn]] void receive(const LinkConfig& config, bool coded, int to) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   try {
     MonotonicClock clock;
     LatestValue<link::StereoFrame> newest;
     const std::jthread decoder([&](const std::stop_token& stop) { decode(newest, clock, to, stop); });
-    link::Participant program(config, "bench receiver");
+    link::Participant program(config, "bench receiver", link::Role::operating);
+    if (coded) receive_pieces(program, clock, to);
     link::Reader reader(program, link::topics::frames());
     for (;;) {
       reader.wait(kLook);
@@ -155,17 +181,25 @@ struct Sent {
   double memory_mb_first = 0, memory_mb_last = 0;
 };
 
-Sent send(const LinkConfig& config, const LinkBenchOptions& options, int from, Arrivals& arrivals) {
+/// Who waits for pairs, of either coding.
+std::size_t receivers(const link::Writer& frames, const link::FrameSender& sender, bool coded) {
+  return coded ? sender.counts().watched : frames.readers();
+}
+
+Sent send(const LinkConfig& config, const LinkBenchOptions& options, cv::Size size, int from, Arrivals& arrivals) {
+  const bool coded = options.coding == "h264";
   MonotonicClock clock;
   link::WallClock wall(clock);
-  const auto all = pictures(parse_size(options.size));
+  const auto all = pictures(size);
   link::Participant program(config, "bench sender", link::Role::robot);
   const auto queue = std::make_shared<FrameQueue>(2);
-  link::FrameSender sender(program, {1, {}}, nullptr, queue, link::jpeg_coder(options.quality), 2 * options.rate_hz,
-                           wall, clock);
+  link::FrameSender sender(program, {1, {}}, nullptr, queue,
+                           {coded ? LinkCoding::h264 : LinkCoding::jpeg, options.quality, 2 * options.rate_hz}, wall,
+                           clock);
+  sender.start();
   const link::Writer probe(program, link::topics::frames());
   const RobotTime patience = clock.now() + 10s;
-  while (probe.readers() == 0) {
+  while (receivers(probe, sender, coded) == 0) {
     if (clock.now() > patience) throw RuntimeFailure("the receiver was not found", "see `foresight link status`");
     clock.sleep_until(clock.now() + 10ms);
   }
@@ -181,7 +215,6 @@ Sent send(const LinkConfig& config, const LinkBenchOptions& options, int from, A
     frame->pair.left.bgr = all[i % kPictures];
     frame->pair.right.bgr = all[(i + kPictures / 2) % kPictures];
     queue->put(frame);
-    sender.step(Duration{0});
     take_arrivals(from, arrivals);
     if (i == count / 10 + 1) out.memory_mb_first = memory_mb();
   }
@@ -203,7 +236,7 @@ std::vector<double> column(const std::vector<Arrival>& from, Get&& get, double b
 }  // namespace
 
 int bench_link(const LinkBenchOptions& options) {
-  parse_size(options.size);
+  const cv::Size size = parse_size(options.size);
   LinkConfig config;
   config.domain = options.domain;
   config.where = "bench link";
@@ -215,7 +248,7 @@ int bench_link(const LinkBenchOptions& options) {
   std::fflush(nullptr);
   const pid_t receiver = ::fork();  // before any of our threads
   if (receiver < 0) throw RuntimeFailure("no second process can be started", "end other programs");
-  if (receiver == 0) receive(config, to.get());
+  if (receiver == 0) receive(config, options.coding == "h264", to.get());
   Arrivals all_arrivals;
   Sent sent;
   const auto end_receiver = [&] {
@@ -223,7 +256,7 @@ int bench_link(const LinkBenchOptions& options) {
     ::waitpid(receiver, nullptr, 0);
   };
   try {
-    sent = send(config, options, from.get(), all_arrivals);
+    sent = send(config, options, size, from.get(), all_arrivals);
   } catch (...) {
     end_receiver();
     throw;
@@ -244,8 +277,8 @@ int bench_link(const LinkBenchOptions& options) {
   const double coder = median(column(arrivals, [](const Arrival& a) { return a.coder_ms; }));
   const double decoder = median(column(all_arrivals.decoded, [](const Arrival& a) { return a.ms; }));
   const double receiver_first = arrivals[arrivals.size() / 10].memory_mb, receiver_last = arrivals.back().memory_mb;
-  std::printf("2 x %s at %g Hz for %g s, %.0f kB a pair, two processes on loopback%s\n", options.size.c_str(),
-              options.rate_hz, options.seconds, kilobytes, options.secured ? ", secured" : "");
+  std::printf("2 x %s at %g Hz for %g s, %.0f kB a pair, two processes on loopback, %s%s\n", options.size.c_str(),
+              options.rate_hz, options.seconds, kilobytes, options.coding.c_str(), options.secured ? ", secured" : "");
   std::printf("the line adds   p50 %.2f ms, p99 %.2f ms, worst %.2f ms\n", p50, p99, worst);
   std::printf("pairs           %llu sent, %lld lost\n", static_cast<unsigned long long>(sent.pairs), lost);
   std::printf("coder           %.1f ms a pair to code, %.1f ms to decode\n", coder, decoder);

@@ -58,7 +58,9 @@ class ClockTracker {
     Sent& sent = sent_[pong.number % kPending];
     if (!sent.waits || sent.number != pong.number) return ClockNews::stale;
     sent.waits = false;
-    return bound_.add({sent.at.ns, pong.received_ns, pong.answered_ns, now.ns});
+    const ClockNews news = bound_.add({sent.at.ns, pong.received_ns, pong.answered_ns, now.ns});
+    if (news != ClockNews::nonsense) round_trip_ = now - sent.at - Duration{pong.answered_ns - pong.received_ns};
+    return news;
   }
 
   /// Nothing before the first round trip, or of an instant that no clock shows.
@@ -79,6 +81,8 @@ class ClockTracker {
     return BoundedDelay{arrived - from->time, from->uncertainty};
   }
   const OffsetBound& bound() const { return bound_; }
+  /// Of the last answer, without the time that answering took; by what the other host says of that.
+  std::optional<Duration> round_trip() const { return round_trip_; }
 
  private:
   static constexpr std::size_t kPending = 128;  // of pings: 12.8 s of round trip
@@ -90,6 +94,7 @@ class ClockTracker {
   std::array<Sent, kPending> sent_{};
   std::uint64_t next_, first_;
   Time<Here> pinged_;
+  std::optional<Duration> round_trip_;
   OffsetBound bound_;
 };
 

@@ -25,7 +25,7 @@ bool within_bounds(const CodedPair& pair) {
 
 std::vector<std::uint8_t> to_bytes(const CodedPair& pair) {
   std::vector<std::uint8_t> body;
-  body.reserve(kCodedPairHeader + pair.data.size());
+  body.reserve(kCodedPairHeader + pair.notes.size() + pair.data.size());
   put(body, kMark);
   put(body, static_cast<std::uint8_t>(pair.coding));
   put(body, pair.lane);
@@ -33,12 +33,13 @@ std::vector<std::uint8_t> to_bytes(const CodedPair& pair) {
   put(body, std::uint8_t{0});
   put(body, static_cast<std::uint16_t>(pair.width));
   put(body, static_cast<std::uint16_t>(pair.height));
-  put(body, std::uint16_t{0});
+  put(body, static_cast<std::uint16_t>(pair.notes.size()));
   put(body, pair.number);
   put(body, pair.reference);
   put(body, static_cast<std::uint64_t>(pair.captured.ns));
   put(body, pair.left_bytes);
   put(body, static_cast<std::uint32_t>(pair.data.size()));
+  body.insert(body.end(), pair.notes.begin(), pair.notes.end());
   body.insert(body.end(), pair.data.begin(), pair.data.end());
   std::vector<std::uint8_t> out;
   out.reserve(body.size() + 4);
@@ -61,14 +62,16 @@ std::optional<CodedPair> parse_coded_pair(std::span<const std::uint8_t> bytes) {
   reader.take<std::uint8_t>();
   pair.width = reader.take<std::uint16_t>();
   pair.height = reader.take<std::uint16_t>();
-  reader.take<std::uint16_t>();
+  const std::size_t notes = reader.take<std::uint16_t>();
   pair.number = reader.take<std::uint32_t>();
   pair.reference = reader.take<std::uint32_t>();
   pair.captured.ns = static_cast<std::int64_t>(reader.take<std::uint64_t>());
   pair.left_bytes = reader.take<std::uint32_t>();
   const auto size = reader.take<std::uint32_t>();
-  if (!reader.good() || mark != kMark || size != reader.rest().size() || size > kLargestCodedPair) return std::nullopt;
-  pair.data.assign(reader.rest().begin(), reader.rest().end());
+  const std::span<const std::uint8_t> rest = reader.rest();
+  if (!reader.good() || mark != kMark || rest.size() != notes + size || size > kLargestCodedPair) return std::nullopt;
+  pair.notes.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(notes));
+  pair.data.assign(rest.begin() + static_cast<std::ptrdiff_t>(notes), rest.end());
   if (!within_bounds(pair)) return std::nullopt;
   return pair;
 }

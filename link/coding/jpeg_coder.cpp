@@ -18,29 +18,28 @@ int quality_of(int step) {
 
 constexpr QualityModel::Range kSteps{0, 45};
 
-std::vector<std::uint8_t> encode_eye(const cv::Mat& eye, int step) {
+}  // namespace
+
+std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality) {
   std::vector<std::uint8_t> out;
-  cv::imencode(".jpg", eye, out, {cv::IMWRITE_JPEG_QUALITY, quality_of(step)});
+  cv::imencode(".jpg", picture, out, {cv::IMWRITE_JPEG_QUALITY, quality});
   return out;
 }
 
-std::optional<cv::Mat> decode_eye(std::span<const std::uint8_t> bytes, const CodedPair& pair) {
+std::optional<cv::Mat> decode_jpeg(std::span<const std::uint8_t> bytes, cv::Size size, bool colour) {
   // The structure first: decoders fill with grey what a file lacks, and allocate what its header asks for.
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   try {
-    const ImageForm form = read_image_form(text, "a pair's JPEG");
-    if (form.width != pair.width || form.height != pair.height || form.channels != (pair.colour ? 3 : 1))
-      return std::nullopt;
+    const ImageForm form = read_image_form(text, "a JPEG");
+    if (cv::Size(form.width, form.height) != size || form.channels != (colour ? 3 : 1)) return std::nullopt;
   } catch (const InputError&) {
     return std::nullopt;
   }
   const cv::Mat all(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-  cv::Mat out = cv::imdecode(all, pair.colour ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
-  if (out.cols != pair.width || out.rows != pair.height) return std::nullopt;
+  cv::Mat out = cv::imdecode(all, colour ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
+  if (out.size() != size) return std::nullopt;
   return out;
 }
-
-}  // namespace
 
 JpegPairEncoder::JpegPairEncoder() : model_(kSteps, 9, 20, 60'000) {}
 
@@ -52,10 +51,11 @@ CodedPair JpegPairEncoder::encode(const StereoPicture& picture, const PairWish& 
   pair.colour = picture.left.channels() == 3;
   pair.stereo = !picture.right.empty();
   const int step = model_.step_for(wish.bytes);
-  pair.data = encode_eye(picture.left, step);
+  const int quality = quality_of(step);
+  pair.data = encode_jpeg(picture.left, quality);
   pair.left_bytes = static_cast<std::uint32_t>(pair.data.size());
   if (pair.stereo) {
-    const std::vector<std::uint8_t> right = encode_eye(picture.right, step);
+    const std::vector<std::uint8_t> right = encode_jpeg(picture.right, quality);
     pair.data.insert(pair.data.end(), right.begin(), right.end());
   }
   model_.learn(step, pair.data.size());
@@ -64,12 +64,13 @@ CodedPair JpegPairEncoder::encode(const StereoPicture& picture, const PairWish& 
 
 std::optional<StereoPicture> decode_jpeg(const CodedPair& pair) {
   const std::span<const std::uint8_t> all(pair.data);
+  const cv::Size size(pair.width, pair.height);
   StereoPicture out{.left = {}, .right = {}, .captured = pair.captured};
-  const std::optional<cv::Mat> left = decode_eye(all.first(pair.left_bytes), pair);
+  const std::optional<cv::Mat> left = decode_jpeg(all.first(pair.left_bytes), size, pair.colour);
   if (!left) return std::nullopt;
   out.left = *left;
   if (!pair.stereo) return out;
-  const std::optional<cv::Mat> right = decode_eye(all.subspan(pair.left_bytes), pair);
+  const std::optional<cv::Mat> right = decode_jpeg(all.subspan(pair.left_bytes), size, pair.colour);
   if (!right) return std::nullopt;
   out.right = *right;
   return out;

@@ -54,8 +54,8 @@ double read_rate(const YamlMap& map, const std::string& key, double otherwise, d
 }  // namespace
 
 LinkConfig read_link_config(const YamlMap& map) {
-  map.require_known(
-      {"domain", "interface", "peers", "joint_rate_hz", "state_rate_hz", "image_rate_hz", "jpeg_quality", "security"});
+  map.require_known({"domain", "interface", "peers", "joint_rate_hz", "state_rate_hz", "image_rate_hz", "coding",
+                     "jpeg_quality", "security"});
   LinkConfig out;
   if (map.has("domain")) out.domain = map.integer("domain", 0, kLastDomain);
   if (map.has("interface")) out.interface = read_interface(map);
@@ -63,6 +63,8 @@ LinkConfig read_link_config(const YamlMap& map) {
   out.joint_rate_hz = read_rate(map, "joint_rate_hz", out.joint_rate_hz, 1000);
   out.state_rate_hz = read_rate(map, "state_rate_hz", out.state_rate_hz, 100);
   out.image_rate_hz = read_rate(map, "image_rate_hz", out.image_rate_hz, 1000);
+  if (map.has("coding"))
+    out.coding = map.choice<LinkCoding>("coding", {{"jpeg", LinkCoding::jpeg}, {"h264", LinkCoding::h264}});
   if (map.has("jpeg_quality")) out.jpeg_quality = map.integer("jpeg_quality", 1, 100);
   if (map.has("security")) {
     out.security = map.file().parent_path() / map.text("security");

@@ -1,6 +1,7 @@
 // The `link:` section of a rig file: the network between robot side and operator side.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,6 +11,12 @@ namespace foresight {
 
 class YamlMap;
 
+/// How pairs are coded for the operator.
+enum class LinkCoding : std::uint8_t {
+  jpeg,  ///< each image by itself: for every reader, and exact whatever got lost before; a LAN has room for it
+  h264,  ///< predicted from what the one reader has: for lines of a few Mbit/s
+};
+
 /// Defaults: both sides on one machine.
 struct LinkConfig {
   int domain = 0;                  ///< 0 .. 230; only who has the same one is seen
@@ -18,7 +25,8 @@ struct LinkConfig {
   double joint_rate_hz = 50;       ///< joint states and transforms, at most; > 0
   double state_rate_hz = 10;       ///< robot's state; changes go at once; > 0
   double image_rate_hz = 30;       ///< pairs, at most; > 0
-  int jpeg_quality = 85;           ///< 1 .. 100
+  LinkCoding coding = LinkCoding::jpeg;
+  int jpeg_quality = 85;  ///< 1 .. 100
   /// Folder of `foresight link keys`: everything is encrypted, and nobody without a certificate is let in.
   std::optional<std::filesystem::path> security;
   std::string where = "link";  ///< "file:line: link", for messages

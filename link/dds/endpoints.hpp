@@ -17,6 +17,7 @@ class Writer {
   /// Throws RuntimeFailure: another type on a topic of that name in this program. `participant` must outlive it.
   Writer(Participant& participant, const Topic& topic);
   ~Writer();
+  Writer(const Writer&) = delete;
 
   /// False: it did not go (only of Delivery::each, where readers are too far behind). Never waits for a reader.
   bool write(Bytes cdr) noexcept;
@@ -28,7 +29,7 @@ class Writer {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;
 };
 
 /// A sample while it is visited.
@@ -48,6 +49,9 @@ class Reader {
   std::size_t take(const std::function<void(const Sample&)>& visit);
   /// Until a sample is there, `timeout` at most.
   bool wait(Duration timeout) const noexcept;
+  /// From now on wait() also ends where a sample of `other` has come, whose participant is the same, and which must
+  /// outlive this.
+  void wait_also_for(const Reader& other);
   std::size_t writers() const noexcept;  ///< that are matched
   std::uint64_t lost() const noexcept;   ///< samples that were never seen here, of reliable writers too
 
@@ -69,6 +73,7 @@ class Reader {
   struct State;
   std::unique_ptr<State> state_;
   std::string topic_;
+  bool waits_for_others_ = false;
   std::uint64_t refused_ = 0;
   std::string last_refusal_;
 };

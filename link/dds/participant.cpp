@@ -121,6 +121,11 @@ bool is_kept(const dds_qos_t* qos) {
   return dds_qget_durability(qos, &kind) && kind != DDS_DURABILITY_VOLATILE;
 }
 
+bool is_once(const dds_qos_t* qos) {
+  dds_reliability_kind_t kind = DDS_RELIABILITY_RELIABLE;
+  return dds_qget_reliability(qos, &kind, nullptr) && kind == DDS_RELIABILITY_BEST_EFFORT;
+}
+
 Peer peer_of(const dds_builtintopic_participant_t& participant) {
   Peer out;
   out.id = id_of(participant.key);
@@ -173,7 +178,8 @@ dds_entity_t checked(dds_entity_t code, const std::string& what) {
 Qos qos_of(const Topic& topic) {
   constexpr int kMostWaiting = 1024;  // samples of Delivery::each that nobody has taken
   Qos qos(dds_create_qos());
-  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, 0);
+  dds_qset_reliability(qos.get(),
+                       topic.delivery == Delivery::once ? DDS_RELIABILITY_BEST_EFFORT : DDS_RELIABILITY_RELIABLE, 0);
   dds_qset_durability(qos.get(),
                       topic.delivery == Delivery::kept ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   if (topic.delivery == Delivery::each) {
@@ -208,8 +214,10 @@ const Participant::State::UsedTopic& Participant::State::topic(const Topic& want
   return used;
 }
 
-Participant::Participant(const LinkConfig& config, const std::string& name, Role role)
+Participant::Participant(const LinkConfig& config, const std::string& name, Role role,
+                         std::shared_ptr<PretendedLine> line)
     : state_(std::make_unique<State>()) {
+  state_->line = std::move(line);
   check_network(config);
   if (config.security) check_keys(*config.security, role, config.where);
   State& s = *state_;
@@ -250,7 +258,8 @@ std::vector<Peer> Participant::peers() const {
         (writes ? s.publications : s.subscriptions).get(), [&](const dds_builtintopic_endpoint_t& one) {
           const auto of = std::ranges::find(out, id_of(one.participant_key), &Peer::id);
           if (of != out.end())
-            of->endpoints.push_back({shown(one.topic_name), shown(one.type_name), writes, is_kept(one.qos)});
+            of->endpoints.push_back(
+                {shown(one.topic_name), shown(one.type_name), writes, is_kept(one.qos), is_once(one.qos)});
         });
   for (Peer& peer : out)
     std::ranges::sort(peer.endpoints, [](const auto& a, const auto& b) { return a.topic < b.topic; });

@@ -12,11 +12,14 @@
 
 namespace foresight::link {
 
-/// How samples of a topic get to who reads them. All are reliable: what a loss takes is sent again while it is still
-/// wanted. No writer ever waits for a reader.
+class PretendedLine;
+
+/// How samples of a topic get to who reads them. All but `once` are reliable: what a loss takes is sent again while it
+/// is still wanted. No writer ever waits for a reader.
 enum class Delivery : std::uint8_t {
   newest,  ///< the newest replaces one that has not gone or been read yet: images, states
   kept,    ///< as `newest`; who comes late gets the last one, too: what does not change
+  once,    ///< sent once: who writes sees to losses himself, or tells all again soon
   each,    ///< every one, in order, or write() says that it did not go: requests, which are acknowledged
 };
 
@@ -24,7 +27,7 @@ struct Topic {
   std::string name;  ///< on DDS: "rt/joint_states"
   std::string type;  ///< on DDS: "sensor_msgs::msg::dds_::JointState_"
   Delivery delivery = Delivery::newest;
-  int depth = 1;  ///< of `newest` and `kept`: samples that a reader may be behind; > 0
+  int depth = 1;  ///< of `newest`, `kept` and `once`: samples that a reader may be behind; > 0
 };
 
 /// A program on the domain.
@@ -38,6 +41,7 @@ struct Peer {
     std::string topic, type;
     bool writes = false;
     bool kept = false;  ///< who comes late is to get the last one (Delivery::kept)
+    bool once = false;  ///< Delivery::once: who reads it has to read it so, too
   };
   std::vector<Endpoint> endpoints;  ///< by topic
 };
@@ -49,7 +53,9 @@ class Participant {
   /// InputError (no such interface, or one that is down or without an address; a peer whose name nobody knows; what
   /// check_keys() does), RuntimeFailure (the domain's ports are in use, or Cyclone
   /// says no: its words are in it).
-  Participant(const LinkConfig& config, const std::string& name, Role role = Role::observer);
+  /// `line`: null, or what all samples pass, on their way out and in.
+  Participant(const LinkConfig& config, const std::string& name, Role role = Role::observer,
+              std::shared_ptr<PretendedLine> line = nullptr);
   ~Participant();
 
   /// All programs that are heard of, this one included, by name.

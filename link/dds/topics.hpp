@@ -10,12 +10,16 @@ namespace foresight::link::topics {
 inline Topic frames() {
   return {"rt/foresight/frames", StereoFrame::kType, Delivery::newest, 1};
 }
+/// Of pairs that are coded for a thin line. Room for all pieces of a few pairs: a reader that decodes takes none.
+inline Topic pieces() {
+  return {"rt/foresight/pieces", StereoPiece::kType, Delivery::once, 512};
+}
 inline Topic robot_state() {
   return {"rt/foresight/robot_state", RobotState::kType, Delivery::kept, 1};
 }
 // From the operator side.
 inline Topic reports() {
-  return {"rt/foresight/reports", StereoReport::kType, Delivery::newest, 8};
+  return {"rt/foresight/reports", StereoReport::kType, Delivery::once, 32};
 }
 
 // From the robot side, for ROS 2's tools: copies. What is read often has room for a few, as such tools expect.

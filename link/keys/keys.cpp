@@ -61,7 +61,7 @@ std::string may_write(Role role) {
   switch (role) {
     case Role::robot:
       return publish({"rt/joint_states", "rt/tf", "rt/tf_static", "rt/diagnostics", "rt/left/*", "rt/right/*",
-                      "rt/foresight/frames", "rt/foresight/robot_state", "rt/foresight/set_points",
+                      "rt/foresight/frames", "rt/foresight/pieces", "rt/foresight/robot_state", "rt/foresight/set_points",
                       "rt/foresight/control/robot/*"});
     case Role::operating: return publish({"rt/foresight/reports", "rt/foresight/control/operator/*"});
     case Role::observer: break;

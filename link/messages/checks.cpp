@@ -119,8 +119,13 @@ std::string of_size(const char* field, std::uint32_t width, std::uint32_t height
   return "";
 }
 
-std::string of_image(const char* side, const CodedImage& image, const Expected& expected, std::size_t at) {
-  if (image.data.empty()) return std::string(side) + ".data is empty";
+std::string of_packet(const char* field, std::size_t bytes, std::size_t least) {
+  return bytes < least || bytes > kMostPieceBytes ? fmt::format("{} has {} bytes", field, bytes) : "";
+}
+
+std::string of_image(const char* side, const CodedImage& image, bool with_data, const Expected& expected,
+                     std::size_t at) {
+  if (image.data.empty() == with_data) return std::string(side) + (with_data ? ".data is empty" : ".data is not empty");
   if (image.uncertainty_ns < 0) return std::string(side) + ".uncertainty_ns is negative";
   if (std::string size = of_size(side, image.width, image.height); !size.empty()) return size;
   if (expected.image_sizes) {
@@ -202,26 +207,25 @@ std::string objection(const DiagnosticArray& m, const Expected&) {
 std::string objection(const StereoFrame& m, const Expected& expected) {
   std::vector<std::string> names;
   for (const JointSample& joint : m.joints) names.push_back(joint.name);
-  return first_of(
-      [&] { return of_fields(m); }, [&] { return of_names("joints", names, expected); },
-      [&]() -> std::string {
-        const bool known =
-            std::ranges::all_of(m.joints, [](const JointSample& j) { return j.status <= JointSample::kNeverKnown; });
-        if (m.joints_status > 3 || !known) return "joints have a status that there is not";
-        return m.number == 0 ? "number is 0" : "";
-      },
-      [&] { return of_image("left", m.left, expected, 0); }, [&] { return of_image("right", m.right, expected, 2); });
+  return first_of([&] { return of_fields(m); }, [&] { return of_names("joints", names, expected); },
+                  [&]() -> std::string {
+                    const bool known = std::ranges::all_of(
+                        m.joints, [](const JointSample& j) { return j.status <= JointSample::kNeverKnown; });
+                    if (m.joints_status > 3 || !known) return "joints have a status that there is not";
+                    if (m.coding != kJpegCoding && m.coding != kH264Coding) return "coding is " + in_quotes(m.coding);
+                    return m.number == 0 ? "number is 0" : "";
+                  },
+                  [&] { return of_image("left", m.left, m.coding == kJpegCoding, expected, 0); },
+                  [&] { return of_image("right", m.right, m.coding == kJpegCoding, expected, 2); });
+}
+
+std::string objection(const StereoPiece& m, const Expected&) {
+  if (m.stream == 0) return "stream is 0";
+  return of_packet("data", m.data.size(), 1);
 }
 
 std::string objection(const StereoReport& m, const Expected&) {
-  return first_of([&] { return of_fields(m); },
-                  [&]() -> std::string {
-                    if (m.pairs.size() > StereoReport::kMostPairs)
-                      return fmt::format("pairs has {} of them", m.pairs.size());
-                    for (const ReceivedPair& pair : m.pairs)
-                      if (pair.outcome > ReceivedPair::kRefused) return "pairs have an outcome that there is not";
-                    return "";
-                  });
+  return of_packet("acknowledgement", m.acknowledgement.size(), 0);
 }
 
 std::string objection(const RobotState& m, const Expected& expected) {

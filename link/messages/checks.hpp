@@ -19,6 +19,7 @@ struct Expected {
 
 inline constexpr std::size_t kMostText = 4096;              ///< characters
 inline constexpr std::size_t kMostImageBytes = 16'000'000;  ///< of one image, coded or not
+inline constexpr std::size_t kMostPieceBytes = 1200;        ///< of a packet in a piece or report
 inline constexpr std::uint32_t kMostPixels = 8192;          ///< along one side
 
 /// What is wrong with a message, in words that begin with the field ("joints[2].position is nan"); "" where nothing is.
@@ -35,6 +36,7 @@ std::string objection(const CameraInfoMessage& message, const Expected& expected
 std::string objection(const JointTrajectory& message, const Expected& expected = {});
 std::string objection(const DiagnosticArray& message, const Expected& expected = {});
 std::string objection(const StereoFrame& message, const Expected& expected = {});
+std::string objection(const StereoPiece& message, const Expected& expected = {});
 std::string objection(const StereoReport& message, const Expected& expected = {});
 std::string objection(const RobotState& message, const Expected& expected = {});
 

@@ -49,6 +49,9 @@ struct StageStamps {
   }
 };
 
+inline constexpr const char* kJpegCoding = "jpeg";  ///< StereoFrame::coding
+inline constexpr const char* kH264Coding = "h264";
+
 /// A pair of images, and where everything was when it was taken: one message, as separate topics tear.
 struct StereoFrame {
   static constexpr const char* kType = "foresight_msgs::msg::dds_::StereoFrame_";
@@ -60,7 +63,9 @@ struct StereoFrame {
   double predicted_px = -1;        ///< expected error of the left pose, RMS over the image; -1: not known
   std::uint8_t joints_status = 3;  ///< of the worst joint: 0 exact, 1 interpolated, 2 predicted, 3 invalid
   std::vector<JointSample> joints;
-  std::string coding;           ///< "jpeg": each image one JPEG in its own bytes
+  /// "jpeg": each image one JPEG in its own bytes. "h264": both in a coded pair that this message travels with
+  /// (link/coding/coded_pair.hpp), and no bytes here.
+  std::string coding;
   std::string lenses_revision;  ///< changes with every calibration of either lens; "" without one
   CodedImage left, right;
   template <typename Self, typename V>
@@ -71,32 +76,33 @@ struct StereoFrame {
   }
 };
 
-struct ReceivedPair {
-  static constexpr const char* kType = "foresight_msgs::msg::dds_::ReceivedPair_";
-  static constexpr std::uint8_t kDecoded = 0, kWaits = 1, kRefused = 2;
-  std::uint64_t number = 0;
-  std::uint32_t bytes = 0;
-  std::int64_t arrived_ns = 0;  ///< on the reader's clock
-  std::uint8_t outcome = kWaits;
+/// A piece of a coded pair (StereoFrame::coding "h264"), to one reader: packets of link/send_control/packets.hpp. A
+/// sample each, sent once: what gets lost is sent again by who knows whether it is still wanted.
+struct StereoPiece {
+  static constexpr const char* kType = "foresight_msgs::msg::dds_::StereoPiece_";
+  std::uint64_t session = 0;       ///< StereoFrame::session
+  std::uint64_t reader = 0;        ///< StereoReport::reader whom it is for
+  std::uint32_t stream = 0;        ///< from 1 on: another one begins anew, with numbers of its own
+  std::vector<std::uint8_t> data;  ///< one packet
   template <typename Self, typename V>
   static void visit(Self& m, V&& v) {
-    v("number", m.number)("bytes", m.bytes)("arrived_ns", m.arrived_ns)("outcome", m.outcome);
+    v("session", m.session)("reader", m.reader)("stream", m.stream)("data", m.data);
   }
 };
 
-/// What a reader received: the sender's acknowledgements. The newest kMostPairs pairs are in each report, so that one
-/// that is lost matters little.
+/// What a reader received. Each says all again that matters, so that one that is lost does no harm.
 struct StereoReport {
   static constexpr const char* kType = "foresight_msgs::msg::dds_::StereoReport_";
-  static constexpr std::size_t kMostPairs = 64;
-  std::uint64_t session = 0;       ///< StereoFrame::session
-  std::uint64_t reader = 0;        ///< who reports, chosen at random
-  std::int64_t sent_ns = 0;        ///< on the reader's clock
-  std::uint64_t newest_shown = 0;  ///< number; 0: none yet
-  std::vector<ReceivedPair> pairs;
+  std::uint64_t session = 0;                  ///< StereoFrame::session; 0: none heard of yet
+  std::uint64_t reader = 0;                   ///< who reports, chosen at random
+  std::uint32_t stream = 0;                   ///< StereoPiece::stream that is acknowledged; 0: none came yet
+  std::int64_t sent_ns = 0;                   ///< on the reader's clock
+  std::uint64_t newest_shown = 0;             ///< StereoFrame::number; 0: none yet
+  std::vector<std::uint8_t> acknowledgement;  ///< one packet; empty: no piece came since
   template <typename Self, typename V>
   static void visit(Self& m, V&& v) {
-    v("session", m.session)("reader", m.reader)("sent_ns", m.sent_ns)("newest_shown", m.newest_shown)("pairs", m.pairs);
+    v("session", m.session)("reader", m.reader)("stream", m.stream)("sent_ns", m.sent_ns)(
+        "newest_shown", m.newest_shown)("acknowledgement", m.acknowledgement);
   }
 };
 

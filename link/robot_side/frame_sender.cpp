@@ -1,5 +1,6 @@
 #include "link/robot_side/frame_sender.hpp"
 
+#include "link/coding/jpeg_coder.hpp"
 #include "link/dds/topics.hpp"
 
 namespace foresight::link {
@@ -9,25 +10,34 @@ using namespace std::chrono_literals;
 
 // Cameras' periods jitter: a pair that comes by so much of a period too early still is the next one.
 constexpr double kEarly = 0.25;
+constexpr Duration kLook = 4ms;  // while somebody reports: for reports, and for pieces that the line wants again
 
 }  // namespace
 
+FrameSender::Thin::Thin(Participant& participant, std::uint64_t session, const Clock& clock)
+    : stream(session, clock), pieces(participant, topics::pieces()), reports(participant, topics::reports()) {}
+
 FrameSender::FrameSender(Participant& participant, SenderName name, const StereoLenses* lenses,
-                         std::shared_ptr<FrameQueue> frames, PairCoder coder, double rate_hz, WallClock& wall,
+                         std::shared_ptr<FrameQueue> frames, const FrameSenderOptions& options, WallClock& wall,
                          const Clock& clock)
     : name_(std::move(name)),
       lenses_(lenses ? std::optional(*lenses) : std::nullopt),
       revision_(lenses ? lenses_revision(*lenses) : ""),
       frames_(std::move(frames)),
-      coder_(std::move(coder)),
-      period_(seconds((1 - kEarly) / rate_hz)),
+      quality_(options.jpeg_quality),
+      period_(seconds((1 - kEarly) / options.rate_hz)),
       wall_(wall),
       clock_(clock),
-      pairs_(participant, topics::frames()),
       transforms_(participant, topics::transforms()),
       images_{Writer(participant, topics::compressed_images("left")),
               Writer(participant, topics::compressed_images("right"))},
-      infos_{Writer(participant, topics::camera_info("left")), Writer(participant, topics::camera_info("right"))} {}
+      infos_{Writer(participant, topics::camera_info("left")), Writer(participant, topics::camera_info("right"))} {
+  if (options.coding == LinkCoding::jpeg)
+    pairs_.emplace(participant, topics::frames());
+  else
+    thin_.emplace(participant, name_.session, clock);
+  counts_.watched = !thin_;
+}
 
 void FrameSender::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) {
@@ -40,17 +50,23 @@ void FrameSender::stop() noexcept {
   if (thread_.joinable()) thread_.join();
 }
 
+/// The next pair to go, if it is time for one.
+std::optional<LiveFramePtr> FrameSender::next(Duration timeout) noexcept {
+  auto frame = frames_->take_newest(thin_ && thin_->stream.has_reader() ? std::min(timeout, kLook) : timeout);
+  if (frame && last_.ns != INT64_MIN && (*frame)->pair.left.time - last_ < period_) frame.reset();
+  return frame;
+}
+
 void FrameSender::step(Duration timeout) noexcept {
-  const auto frame = frames_->take_newest(timeout);
-  if (!frame) return;
-  if (last_.ns != INT64_MIN && (*frame)->pair.left.time - last_ < period_) return;
   try {
-    send(**frame);
-    last_ = (*frame)->pair.left.time;
+    if (const auto frame = next(timeout)) {
+      send(**frame);
+      last_ = (*frame)->pair.left.time;
+    }
   } catch (const std::exception&) {  // OpenCV's coder, or no memory: the next pair is another one
-    const std::lock_guard lock(mutex_);
-    ++counts_.failed;
+    count_failure();
   }
+  if (thin_) send_pieces();
 }
 
 void FrameSender::send(const LiveFrame& frame) {
@@ -58,12 +74,19 @@ void FrameSender::send(const LiveFrame& frame) {
   message.session = name_.session;
   message.lenses_revision = revision_;
   message.header.stamp = ros_time(wall_.unix_ns(frame.pair.left.time));
-  message.stamps.taken_ns = clock_.now().ns;
-  if (!coder_(frame, message)) {
-    const std::lock_guard lock(mutex_);
-    ++counts_.failed;
-    return;
+  if (pairs_) {
+    send_jpeg(message, frame);
+  } else {
+    thin_->stream.offer(message, {frame.pair.left.bgr, frame.pair.right.bgr, frame.pair.left.time});
   }
+  send_copies(frame, message);
+}
+
+void FrameSender::send_jpeg(StereoFrame& message, const LiveFrame& frame) {
+  message.coding = kJpegCoding;
+  message.stamps.taken_ns = clock_.now().ns;
+  message.left.data = encode_jpeg(frame.pair.left.bgr, quality_);
+  message.right.data = encode_jpeg(frame.pair.right.bgr, quality_);
   message.stamps.coded_ns = clock_.now().ns;
   Bytes cdr = to_cdr(message);
   {
@@ -71,18 +94,41 @@ void FrameSender::send(const LiveFrame& frame) {
     ++counts_.sent;
     counts_.bytes += cdr.size();
   }
-  pairs_.write(std::move(cdr));
-  send_copies(frame, message, ros_time(wall_.unix_ns(frame.pair.right.time)));
+  pairs_->write(std::move(cdr));
 }
 
-void FrameSender::send_copies(const LiveFrame& frame, const StereoFrame& message, RosTime right) {
+void FrameSender::send_pieces() {
+  try {
+    thin_->reports.take<StereoReport>({}, [this](StereoReport&& report, const Sample&) { thin_->stream.take(report); });
+    for (const StereoPiece& piece : thin_->stream.step()) thin_->pieces.write(piece);
+  } catch (const std::exception&) {
+    count_failure();
+  }
+  const CodedStream::Counts now = thin_->stream.counts();
+  const std::lock_guard lock(mutex_);
+  counts_.sent = now.coded;
+  counts_.replaced = now.replaced;
+  counts_.bytes = now.bytes;
+  counts_.watched = thin_->stream.has_reader();
+  counts_.bytes_per_s = now.bytes_per_s;
+}
+
+void FrameSender::count_failure() noexcept {
+  const std::lock_guard lock(mutex_);
+  ++counts_.failed;
+}
+
+void FrameSender::send_copies(const LiveFrame& frame, const StereoFrame& message) {
+  const RosTime right = ros_time(wall_.unix_ns(frame.pair.right.time));
   const std::array<RosTime, 2> stamps{message.header.stamp, right};
   for (const Side side : {Side::left, Side::right}) {
     const auto i = static_cast<std::size_t>(side);
     const Header header{stamps[i], camera_frame(side)};
     const CodedImage& image = side == Side::left ? message.left : message.right;
-    if (message.coding == kJpeg && images_[i].readers() > 0)
-      images_[i].write(CompressedImage{header, "bgr8; jpeg compressed bgr8", image.data});
+    const ColourImage& picture = side == Side::left ? frame.pair.left : frame.pair.right;
+    if (images_[i].readers() > 0)
+      images_[i].write(CompressedImage{header, "bgr8; jpeg compressed bgr8",
+                                       image.data.empty() ? encode_jpeg(picture.bgr, quality_) : image.data});
     if (lenses_ && infos_[i].readers() > 0)
       infos_[i].write(camera_info(side == Side::left ? lenses_->left : lenses_->right, header.frame_id, header.stamp));
   }
@@ -93,7 +139,7 @@ void FrameSender::send_copies(const LiveFrame& frame, const StereoFrame& message
 FrameCounts FrameSender::counts() const noexcept {
   const std::lock_guard lock(mutex_);
   FrameCounts out = counts_;
-  out.replaced = frames_->dropped();
+  out.replaced += frames_->dropped();
   return out;
 }
 

@@ -1,13 +1,15 @@
-// Live pairs onto the line: one message each, and copies for ROS 2's tools.
+// Live pairs onto the line: for the operator, and copies for ROS 2's tools.
+//
+//   coding jpeg   one message each on /foresight/frames, for every reader
+//   coding h264   pieces on /foresight/pieces, for the one reader that reports (CodedStream)
 #pragma once
 
-#include <atomic>
 #include <mutex>
 #include <string>
 #include <thread>
 
 #include "link/dds/endpoints.hpp"
-#include "link/robot_side/pair_coder.hpp"
+#include "link/robot_side/coded_stream.hpp"
 #include "link/robot_side/robot_messages.hpp"
 #include "link/robot_side/wall_clock.hpp"
 #include "scene/stereo_lenses.hpp"
@@ -22,43 +24,64 @@ struct SenderName {
 
 struct FrameCounts {
   std::uint64_t sent = 0;      ///< pairs
-  std::uint64_t replaced = 0;  ///< by newer ones, before the coder was free
+  std::uint64_t replaced = 0;  ///< by newer ones, before the coder or the line was free
   std::uint64_t failed = 0;    ///< that could not be coded
   std::uint64_t bytes = 0;     ///< of the pairs sent
+  bool watched = true;         ///< of h264: somebody reports
+  double bytes_per_s = 0;      ///< of h264: what the line is taken to carry; 0: not known
 };
 
-/// Always the newest pair, `rate_hz` at most: a coder that is slow costs pairs, not age, and nobody waits for a reader.
+/// What of LinkConfig concerns pairs.
+struct FrameSenderOptions {
+  LinkCoding coding = LinkCoding::jpeg;
+  int jpeg_quality = 85;
+  double rate_hz = 30;  ///< at most
+};
+
+/// Always the newest pair: a coder or a line that is slow costs pairs, not age, and nobody waits for a reader.
 /// Copies are made only while somebody reads them. start() gives it a thread; step() does the same in the caller's.
 class FrameSender {
  public:
   /// `lenses` may be null. `participant`, `wall` and `clock` must outlive this.
   FrameSender(Participant& participant, SenderName name, const StereoLenses* lenses, std::shared_ptr<FrameQueue> frames,
-              PairCoder coder, double rate_hz, WallClock& wall, const Clock& clock);
+              const FrameSenderOptions& options, WallClock& wall, const Clock& clock);
   ~FrameSender() { stop(); }
 
   void start();
   void stop() noexcept;
-  /// Sends the newest pair if one is there, waiting for it `timeout` at most.
+  /// Sends the newest pair if one is there, waiting for it `timeout` at most; of h264 also what the line wants again.
   void step(Duration timeout) noexcept;
 
   FrameCounts counts() const noexcept;
 
  private:
+  /// Of h264.
+  struct Thin {
+    Thin(Participant& participant, std::uint64_t session, const Clock& clock);
+    CodedStream stream;
+    Writer pieces;
+    Reader reports;
+  };
+  std::optional<LiveFramePtr> next(Duration timeout) noexcept;
   void send(const LiveFrame& frame);
-  void send_copies(const LiveFrame& frame, const StereoFrame& message, RosTime right);
+  void send_jpeg(StereoFrame& message, const LiveFrame& frame);
+  void send_pieces();
+  void send_copies(const LiveFrame& frame, const StereoFrame& message);
+  void count_failure() noexcept;
 
   const SenderName name_;
   const std::optional<StereoLenses> lenses_;
   const std::string revision_;
   std::shared_ptr<FrameQueue> frames_;
-  const PairCoder coder_;
+  const int quality_;
   const Duration period_;
   WallClock& wall_;
   const Clock& clock_;
   RobotTime last_{INT64_MIN};  // capture of the last pair sent
-  Bytes buffer_;
 
-  Writer pairs_, transforms_;
+  std::optional<Writer> pairs_;  // of jpeg
+  std::optional<Thin> thin_;     // of h264
+  Writer transforms_;
   std::array<Writer, 2> images_, infos_;
   mutable std::mutex mutex_;  // counts_
   FrameCounts counts_;

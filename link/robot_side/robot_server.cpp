@@ -23,16 +23,17 @@ ControlDeskOptions desk_options(Identity identity) {
 
 }  // namespace
 
-RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock)
-    : participant_(rig.link, "robot " + rig.name, Role::robot),
+RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock,
+                         std::shared_ptr<PretendedLine> line)
+    : participant_(rig.link, "robot " + rig.name, Role::robot, std::move(line)),
       wall_(clock),
       states_(participant_, {draw(), rig.joint_names()}, rig, robot, cameras, wall_, clock),
       operator_(participant_, rig.gate_options(), desk_options(std::move(identity))) {
   if (!cameras) return;
   const auto& lenses = cameras->scene().lenses();
-  frames_ = std::make_unique<FrameSender>(participant_, states_.name(), lenses ? &*lenses : nullptr,
-                                          cameras->frames().subscribe(kRoom), jpeg_coder(rig.link.jpeg_quality),
-                                          rig.link.image_rate_hz, wall_, clock);
+  frames_ = std::make_unique<FrameSender>(
+      participant_, states_.name(), lenses ? &*lenses : nullptr, cameras->frames().subscribe(kRoom),
+      FrameSenderOptions{rig.link.coding, rig.link.jpeg_quality, rig.link.image_rate_hz}, wall_, clock);
 }
 
 void RobotServer::start() {
@@ -52,6 +53,8 @@ std::string RobotServer::line() const {
   const FrameCounts counts = this->counts();
   std::string out = others.empty() ? "nobody listens" : others;
   if (frames_) out += fmt::format("; {} pairs sent", static_cast<unsigned long long>(counts.sent));
+  if (counts.bytes_per_s > 0) out += fmt::format(", the line carries {:.0f} kbit/s", 8e-3 * counts.bytes_per_s);
+  if (frames_ && !counts.watched) out += ", nobody takes pictures";
   if (counts.failed) out += fmt::format(", {} could not be coded", static_cast<unsigned long long>(counts.failed));
   const std::string trouble = participant_.trouble();
   return out + (trouble.empty() ? "" : "; " + trouble);

@@ -11,9 +11,10 @@ namespace foresight::link {
 /// its own.
 class RobotServer {
  public:
-  /// `cameras`: null, or with frames(). `identity`: rig_identity(). All references must outlive this. Throws what
-  /// Participant does.
-  RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock);
+  /// `cameras`: null, or with frames(). `identity`: rig_identity(). `line`: null, or as of Participant. All references
+  /// must outlive this. Throws what Participant does.
+  RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock,
+              std::shared_ptr<PretendedLine> line = nullptr);
 
   /// Whoever commands over the line; to be asked in one thread, that of all commanders.
   Commander& commander() { return operator_; }

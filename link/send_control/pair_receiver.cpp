@@ -105,13 +105,14 @@ std::vector<ReceivedPair> PairReceiver::decode_ready() {
       next = waiting_.erase(next);
       continue;
     }
-    const CodedPair pair = std::move(next->second);
+    CodedPair pair = std::move(next->second);
     waiting_.erase(next);
     if (std::optional<StereoPicture> picture = decoder_->decode(pair)) {
       decoded_.push_back(pair.number);
       const bool newest = !newest_captured_ || pair.captured > *newest_captured_;
       if (newest) newest_captured_ = pair.captured;
-      out.push_back({pair.number, pair.data.size() + kCodedPairHeader, std::move(*picture), newest});
+      const std::size_t bytes = pair.data.size() + pair.notes.size() + kCodedPairHeader;
+      out.push_back({pair.number, bytes, std::move(*picture), std::move(pair.notes), newest});
     } else {
       undecodable_ = std::max(undecodable_, pair.number);
     }

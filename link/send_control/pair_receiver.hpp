@@ -15,6 +15,7 @@ struct ReceivedPair {
   std::uint32_t number = 0;
   std::size_t bytes = 0;  ///< of the coded pair
   StereoPicture picture;
+  std::vector<std::uint8_t> notes{};  ///< CodedPair::notes
   bool newest = true;  ///< none that was captured later came before it; others only keep their lane going
 };
 

@@ -41,6 +41,35 @@ TEST_F(Link, ARunningRobotIsSeenAndReadAndNamesAreHelpedWith) {
   EXPECT_THAT(end.err, HasSubstr("robot: serving on domain 0, interface lo"));
 }
 
+/// The number after `words` in `text`; -1 where they are not there.
+double number_after(const std::string& text, const std::string& words) {
+  const std::size_t at = text.find(words);
+  return at == text.npos ? -1 : std::strtod(text.c_str() + at + words.size(), nullptr);
+}
+
+// Both programs have one clock: whatever the line between them, it is within the bound, and the line's delay shows.
+TEST_F(Link, StatusMeasuresTheClockOverAPretendedLine) {
+  const TempFolder folder;
+  const std::string line = folder.write("line.yaml", "up: {delay_ms: 40, loss: 0.05}\ndown: {delay_ms: 10}\n");
+  Program robot({"robot", rig(), "--mock", "--no-cameras", "--serve", "--line", line});
+  const Outcome there = run_program({"link", "listen", "/foresight/robot_state", "--count", "1"});
+  ASSERT_EQ(there.exit_code, 0) << there.err;
+  const Outcome status = run_program({"link", "status", "--seconds", "3"});
+  EXPECT_EQ(status.exit_code, 0) << status.err;
+  EXPECT_THAT(status.out, HasSubstr("pairs      none came\n"));
+  const double ahead_ms = 1e3 * number_after(status.out, "clock      the robot's is "),
+               bound_ms = number_after(status.out, "ahead, +- "), trip_ms = number_after(status.out, "round trip ");
+  EXPECT_GE(trip_ms, 50) << status.out;
+  EXPECT_GE(bound_ms, 20) << status.out;
+  EXPECT_LE(std::abs(ahead_ms), bound_ms) << status.out;
+  const Outcome both = run_program({"link", "status", "--seconds", "3", "--line", line});
+  EXPECT_GE(number_after(both.out, "round trip "), 100) << both.out;
+  robot.interrupt();
+  const Outcome end = robot.wait();
+  EXPECT_EQ(end.exit_code, 130) << end.err;
+  EXPECT_THAT(end.err, HasSubstr("robot: everything on the line passes " + line));
+}
+
 TEST_F(Link, NobodyThereIsSaidAndCured) {
   const Outcome status = run_program({"link", "status", "--domain", "9", "--seconds", "0.5"});
   EXPECT_EQ(status.exit_code, 1);
@@ -59,6 +88,11 @@ TEST_F(Link, WhatCannotBeIsRefused) {
   refused({"link", "status", "--peer", "no-such-host.invalid"}, "nobody knows the peer 'no-such-host.invalid'");
   refused({"link", "rate", "joint_states", "--domain", "77"}, "nobody writes this topic");
   refused({"robot", rig(), "--mock", "--stepped", "--serve"}, "a network's time cannot be stepped");
+  refused({"robot", rig(), "--mock", "--line", rig()}, "--line: belongs to --serve");
+  const TempFolder folder;
+  const std::string wrong = folder.write("line.yaml", "up: {delay: 40}\n");
+  refused({"robot", rig(), "--mock", "--no-cameras", "--serve", "--line", wrong}, "line.yaml:1");
+  refused({"link", "status", "--line", wrong}, "line.yaml:1");
 }
 
 }  // namespace

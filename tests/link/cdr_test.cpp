@@ -98,6 +98,7 @@ TEST(MessageTypes, NamesAndTextsAreThoseOfRos) {
 StereoFrame good_frame() {
   StereoFrame frame;
   frame.number = 1;
+  frame.coding = kJpegCoding;
   frame.joints = {{"elbow", JointSample::kKnown, 0.5}};
   for (CodedImage* image : {&frame.left, &frame.right}) {
     image->capture_ns = 1000;
@@ -129,6 +130,8 @@ TEST(Checks, EachFaultOfAFrameIsNamed) {
             "right is 320 x 480 px, but its lens was calibrated at 640 x 480 px");
   EXPECT_EQ(with([](StereoFrame& f) { f.right.height = 1'000'000; }), "right is 640 x 1000000 px");
   EXPECT_EQ(with([](StereoFrame& f) { f.left.data.clear(); }), "left.data is empty");
+  EXPECT_EQ(with([](StereoFrame& f) { f.coding = kH264Coding; }), "left.data is not empty");
+  EXPECT_EQ(with([](StereoFrame& f) { f.coding = "gif"; }), "coding is 'gif'");
   EXPECT_EQ(with([](StereoFrame& f) { f.left.t_world_camera.orientation.w = 0; }),
             "left.t_world_camera.orientation has the length 0, not 1");
   EXPECT_EQ(with([](StereoFrame& f) { f.left.t_world_camera.position.x = INFINITY; }),
@@ -156,8 +159,17 @@ TEST(Checks, CountsOfOtherMessagesMustFit) {
   EXPECT_EQ(objection(image), "");
 
   StereoReport report;
-  report.pairs.resize(65);
-  EXPECT_EQ(objection(report), "pairs has 65 of them");
+  EXPECT_EQ(objection(report), "");
+  report.acknowledgement.resize(1201);
+  EXPECT_EQ(objection(report), "acknowledgement has 1201 bytes");
+
+  StereoPiece piece;
+  piece.stream = 1;
+  EXPECT_EQ(objection(piece), "data has 0 bytes");
+  piece.data = {'q'};
+  EXPECT_EQ(objection(piece), "");
+  piece.stream = 0;
+  EXPECT_EQ(objection(piece), "stream is 0");
 
   TFMessage transforms;
   transforms.transforms.resize(1);

@@ -21,6 +21,7 @@ const dds_topic_descriptor_t* const kTypes[] = {&sensor_msgs_msg_dds__JointState
                                                 &trajectory_msgs_msg_dds__JointTrajectory__desc,
                                                 &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
                                                 &foresight_msgs_msg_dds__StereoFrame__desc,
+                                                &foresight_msgs_msg_dds__StereoPiece__desc,
                                                 &foresight_msgs_msg_dds__StereoReport__desc,
                                                 &foresight_msgs_msg_dds__RobotState__desc};
 

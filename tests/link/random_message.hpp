@@ -68,6 +68,7 @@ void each_message_type(Visit&& visit) {
   visit.template operator()<JointTrajectory>();
   visit.template operator()<DiagnosticArray>();
   visit.template operator()<StereoFrame>();
+  visit.template operator()<StereoPiece>();
   visit.template operator()<StereoReport>();
   visit.template operator()<RobotState>();
 }

@@ -16,13 +16,14 @@ CodedPair some_pair() {
   pair.colour = pair.stereo = true;
   pair.left_bytes = 2;
   pair.data = {1, 2, 3, 4, 5};
+  pair.notes = {9, 8, 7};
   return pair;
 }
 
 TEST(CodedPair, ComesBackAsItWas) {
   const CodedPair pair = some_pair();
   const std::vector<std::uint8_t> bytes = to_bytes(pair);
-  EXPECT_EQ(bytes.size(), kCodedPairHeader + pair.data.size());
+  EXPECT_EQ(bytes.size(), kCodedPairHeader + pair.notes.size() + pair.data.size());
   const std::optional<CodedPair> back = parse_coded_pair(bytes);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->number, pair.number);
@@ -35,6 +36,7 @@ TEST(CodedPair, ComesBackAsItWas) {
   EXPECT_TRUE(back->colour && back->stereo);
   EXPECT_EQ(back->left_bytes, pair.left_bytes);
   EXPECT_EQ(back->data, pair.data);
+  EXPECT_EQ(back->notes, pair.notes);
 }
 
 TEST(CodedPair, RefusesEveryDamage) {

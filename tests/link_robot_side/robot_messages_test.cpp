@@ -136,6 +136,7 @@ TEST(StereoFrameMessage, HasTheInstantsPosesAndJointsOfItsPair) {
   EXPECT_EQ(message.joints[2].status, JointSample::kNeverKnown);
   EXPECT_EQ(message.stamps.paired_ns, 2000);
   EXPECT_EQ(message.stamps.registered_ns, 3000);
+  message.coding = kJpegCoding;
   message.left.data = message.right.data = {1};
   EXPECT_EQ(objection(message, {1500, {"a", "b", "c"}, {{6, 4, 6, 4}}}), "");
   EXPECT_NE(objection(message, {1499, {}, {}}), "");

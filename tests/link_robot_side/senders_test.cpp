@@ -98,9 +98,9 @@ StereoLenses lenses() {
 
 class FrameSenders : public Senders {
  protected:
-  FrameSender sender(double rate_hz = 30, PairCoder coder = jpeg_coder(90)) {
+  FrameSender sender(double rate_hz = 30, LinkCoding coding = LinkCoding::jpeg) {
     static const StereoLenses both = lenses();
-    return {program_, {1, {}}, &both, queue_, std::move(coder), rate_hz, wall_, clock_};
+    return {program_, {1, {}}, &both, queue_, {coding, 90, rate_hz}, wall_, clock_};
   }
   Reader reader(Topic topic) {
     topic.depth = 1000;
@@ -137,6 +137,33 @@ TEST_F(FrameSenders, APairArrivesWholeWithItsCopies) {
   EXPECT_EQ(taken<CompressedImage>(right).size(), 1u);
   EXPECT_EQ(taken<CameraInfoMessage>(info).at(0).width, 64u);
   EXPECT_EQ(taken<TFMessage>(transforms).at(0).transforms.size(), 2u);
+}
+
+// The operator's pairs go as pieces, to who reports; tools of others find what they always find.
+TEST_F(FrameSenders, CodedPairsLeaveTheCopiesAsTheyAre) {
+  FrameSender to = sender(30, LinkCoding::h264);
+  Reader frames = reader(topics::frames()), left = reader(topics::compressed_images("left")),
+         transforms = reader(topics::transforms()), pieces = reader(topics::pieces());
+  const auto put = [&](std::uint64_t number) {
+    queue_->put(frame_at(number, RobotTime{} + seconds(number)));
+    to.step(0ns);
+  };
+  put(1);
+  EXPECT_EQ(taken<CompressedImage>(left).size(), 1u);
+  EXPECT_EQ(taken<TFMessage>(transforms).size(), 1u);
+  EXPECT_TRUE(taken<StereoPiece>(pieces).empty()) << "nobody reports";
+  EXPECT_FALSE(to.counts().watched);
+  Writer reports(program_, topics::reports());
+  reports.write(StereoReport{0, 9, 0, 0, 0, {}});
+  put(2);
+  put(3);
+  EXPECT_TRUE(to.counts().watched);
+  const auto came = taken<StereoPiece>(pieces);
+  ASSERT_FALSE(came.empty());
+  EXPECT_EQ(came[0].session, 1u);
+  EXPECT_EQ(came[0].reader, 9u);
+  EXPECT_TRUE(taken<StereoFrame>(frames).empty());
+  EXPECT_EQ(frames.writers(), 0u);
 }
 
 TEST_F(FrameSenders, SendsAtMostItsRateAndAlwaysTheNewest) {
@@ -182,14 +209,11 @@ TEST_F(Senders, AReaderThatStopsHoldsUpNeitherRobotNorPairs) {
   Participant program(LinkConfig{}, "robot");
   WallClock wall = same_as(robot.clock());
   const auto queue = std::make_shared<FrameQueue>(2);
-  const PairCoder large = [](const LiveFrame&, StereoFrame& out) {
-    out.coding = kJpeg;
-    out.left.data.resize(300'000);
-    out.right.data.resize(300'000);
-    return true;
-  };
+  cv::Mat noise(384, 512, CV_8UC3);  // some 300 kB each, as a large picture has
+  cv::theRNG().fill(noise, cv::RNG::UNIFORM, 0, 255);
   StateSender states(program, {1, robot.rig().joint_names()}, robot.rig(), robot.robot(), nullptr, wall, robot.clock());
-  FrameSender pairs(program, {1, robot.rig().joint_names()}, nullptr, queue, large, 30, wall, robot.clock());
+  FrameSender pairs(program, {1, robot.rig().joint_names()}, nullptr, queue, {LinkCoding::jpeg, 95, 30}, wall,
+                    robot.clock());
   Writer probe(program, topics::frames());
   ASSERT_TRUE(comes_true([&] { return probe.readers() == 2; }));
   stopped.pause();
@@ -198,13 +222,16 @@ TEST_F(Senders, AReaderThatStopsHoldsUpNeitherRobotNorPairs) {
   std::uint64_t newest = 0;
   for (std::uint64_t i = 1; i <= 90; ++i) {  // three seconds
     robot.move(32ms);
-    queue->put(frame_at(i, robot.clock().now()));
+    auto large = std::make_shared<LiveFrame>(*frame_at(i, robot.clock().now()));
+    large->pair.left.bgr = large->pair.right.bgr = noise;
+    queue->put(large);
     pairs.step(0ns);
     states.step(robot.clock().now());
     for (const StereoFrame& frame : taken<StereoFrame>(good)) newest = frame.number;
     ASSERT_EQ(newest, i);
   }
   EXPECT_EQ(pairs.counts().sent, 90u);
+  EXPECT_GT(pairs.counts().bytes, 90 * 300'000u);
   EXPECT_EQ(robot.robot().status().gate.state, GateState::following);
   robot.expect_limits_kept("while a reader stands still");
 }

@@ -1,0 +1,26 @@
+#include "link/messages/pair_notes.hpp"
+
+#include <zlib.h>
+
+#include "common/error.hpp"
+
+namespace foresight::link {
+
+Bytes to_notes(const StereoFrame& frame) {
+  const Bytes cdr = to_cdr(frame);
+  uLongf size = compressBound(cdr.size());
+  Bytes out(size);
+  if (cdr.size() > kMostNotesInflated || compress2(out.data(), &size, cdr.data(), cdr.size(), Z_BEST_SPEED) != Z_OK)
+    throw RuntimeFailure("a pair has more notes than fit", "give the rig fewer joints, or shorter names");
+  out.resize(size);
+  return out;
+}
+
+std::optional<StereoFrame> from_notes(std::span<const std::uint8_t> notes) {
+  Bytes cdr(kMostNotesInflated);
+  uLongf size = cdr.size();
+  if (uncompress(cdr.data(), &size, notes.data(), notes.size()) != Z_OK) return std::nullopt;
+  return from_cdr<StereoFrame>(std::span(cdr).first(size));
+}
+
+}  // namespace foresight::link

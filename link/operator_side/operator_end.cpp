@@ -1,0 +1,144 @@
+#include "link/operator_side/operator_end.hpp"
+
+#include "link/dds/topics.hpp"
+
+namespace foresight::link {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kControlEvery = 5ms;
+constexpr Duration kLook = 5ms;  // for pieces: an acknowledgement may be due
+
+std::uint64_t not_zero(std::uint64_t drawn) {
+  return drawn == 0 ? 1 : drawn;
+}
+
+}  // namespace
+
+OperatorEnd::Pictures::Pictures(Participant& participant, const OperatorEndOptions& options, const Clock& clock)
+    : intake(not_zero(options.seat.draw()), options.expected, clock),
+      pieces(participant, topics::pieces()),
+      pairs(participant, topics::frames()),
+      reports(participant, topics::reports()) {
+  pieces.wait_also_for(pairs);
+}
+
+OperatorEnd::OperatorEnd(Participant& participant, const OperatorEndOptions& options, Clock& clock)
+    : clock_(clock),
+      expected_(options.expected),
+      line_(participant),
+      states_(participant, topics::robot_state()),
+      seat_(options.seat),
+      queue_(options.room) {
+  if (options.frames) pictures_.emplace(participant, options, clock);
+}
+
+void OperatorEnd::start() {
+  control_thread_ = std::jthread([this](const std::stop_token& stop) { run_control(stop); });
+  if (pictures_) frames_thread_ = std::jthread([this](const std::stop_token& stop) { run_frames(stop); });
+}
+
+void OperatorEnd::stop() noexcept {
+  for (std::jthread* thread : {&frames_thread_, &control_thread_}) {
+    thread->request_stop();
+    if (thread->joinable()) thread->join();
+  }
+  queue_.close();
+}
+
+void OperatorEnd::run_control(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    step_control();
+    clock_.sleep_until(clock_.now() + kControlEvery);
+  }
+}
+
+void OperatorEnd::run_frames(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    pictures_->pieces.wait(kLook);
+    step_frames();
+  }
+}
+
+void OperatorEnd::step() {
+  step_control();
+  if (pictures_) step_frames();
+}
+
+void OperatorEnd::step_control() {
+  const OperatorTime now{clock_.now().ns};
+  RobotClockTracker known;
+  {
+    const std::lock_guard lock(seat_mutex_);
+    line_.receive(seat_, now);
+    seat_.advance(now);
+    line_.send(seat_);
+    known = seat_.clock();
+  }
+  Expected expected{.joints = expected_.joints};
+  if (const auto there = known.to_there(now)) expected.writer_now_ns = there->latest().ns;
+  std::optional<RobotState> newest;
+  states_.take<RobotState>(expected, [&](RobotState&& state, const Sample&) { newest = std::move(state); });
+  const std::lock_guard lock(heard_mutex_);
+  robot_clock_ = known;
+  if (!newest) return;
+  const RobotTime time{newest->time_ns};
+  heard_ = HeardState{std::move(*newest), now, known.to_here(time)};
+}
+
+void OperatorEnd::hand_out(LineFramePtr frame, const char* coding) {
+  if (!frame) return;
+  if (!first_) first_ = frame->arrived;
+  {
+    const std::lock_guard lock(figures_mutex_);
+    figures_.coding = coding;
+    figures_.lasted = frame->arrived - *first_;
+    if (frame->ages.arrived) {
+      if (figures_.ages.size() == kMostAges) figures_.ages.pop_front();
+      figures_.ages.push_back(*frame->ages.arrived);
+    }
+  }
+  queue_.put(std::move(frame));
+}
+
+void OperatorEnd::step_frames() {
+  const RobotClockTracker robot = robot_clock();
+  Pictures& in = *pictures_;
+  in.pieces.take([&](const Sample& sample) {
+    if (const auto piece = from_cdr<StereoPiece>(sample.cdr)) hand_out(in.intake.take(*piece, robot), kH264Coding);
+  });
+  in.pairs.take([&](const Sample& sample) {
+    if (const auto pair = from_cdr<StereoFrame>(sample.cdr))
+      hand_out(in.intake.take(*pair, sample.cdr.size(), robot), kJpegCoding);
+  });
+  if (const auto report = in.intake.report()) in.reports.write(*report);
+  const std::lock_guard lock(figures_mutex_);
+  figures_.pairs = in.intake.counts();
+  figures_.samples_lost = in.pairs.lost();
+}
+
+RobotClockTracker OperatorEnd::robot_clock() const {
+  const std::lock_guard lock(heard_mutex_);
+  return robot_clock_;
+}
+
+std::optional<OperatorEnd::HeardState> OperatorEnd::robot_state() const {
+  const std::lock_guard lock(heard_mutex_);
+  return heard_;
+}
+
+LineFigures OperatorEnd::figures() const {
+  LineFigures out;
+  {
+    const std::lock_guard lock(figures_mutex_);
+    out = figures_;
+  }
+  const RobotClockTracker clock = robot_clock();
+  out.round_trip = clock.round_trip();
+  out.clock = clock.bound().at(clock_.now().ns);
+  out.clock_jumps = clock.bound().jumps();
+  return out;
+}
+
+}  // namespace foresight::link

@@ -1,0 +1,189 @@
+// A served mock rig and an operator's end in one process, over DDS on loopback, in stepped time: frames of either
+// coding, as a display takes them, against those that were sent.
+#include "link/dds/topics.hpp"
+#include "link/operator_view/line_feed.hpp"
+#include "link/robot_side/frame_sender.hpp"
+#include "link/robot_side/rig_identity.hpp"
+#include "link/robot_side/served_operator.hpp"
+#include "link/robot_side/state_sender.hpp"
+#include "session/encoder_poses.hpp"
+#include "sim/pan_tilt_head.hpp"
+#include "sim/synth_run.hpp"
+#include "tests/link/child.hpp"
+#include "tests/robot_devices/live_robot.hpp"
+#include "tests/support/folders.hpp"
+#include "tests/support/moving_picture.hpp"
+#include "tests/support/private_network.hpp"
+
+namespace foresight::link {
+namespace {
+
+using namespace std::chrono_literals;
+
+const cv::Size kSize{160, 120};
+
+/// Numbers that nobody draws twice.
+DrawNonce counting(Nonce from) {
+  return [from]() mutable { return ++from; };
+}
+
+StereoLenses small_lenses() {
+  sim::SynthOptions small;
+  small.width = kSize.width, small.height = kSize.height;
+  return {sim::synth_lens(small, false), sim::synth_lens(small, true), sim::T_head_left_right()};
+}
+
+class TwoEnds : public PrivateNetworkTest {
+ protected:
+  void SetUp() override {
+    PrivateNetworkTest::SetUp();
+    if (IsSkipped()) return;
+    robot_.get_moving();
+  }
+  void serve(LinkCoding coding) {
+    sender_.emplace(program_, SenderName{42, robot_.rig().joint_names()}, &lenses_, frames_.subscribe(2),
+                    FrameSenderOptions{coding, 90, 30}, wall_, robot_.clock());
+  }
+  ControlDeskOptions desk_options() {
+    ControlDeskOptions out;
+    out.identity = identity_;
+    out.draw = counting(1000);
+    return out;
+  }
+  OperatorEndOptions operator_options() {
+    OperatorEndOptions out;
+    out.seat.identity = identity_;
+    out.seat.draw = counting(1'000'000);
+    out.expected = {{}, robot_.rig().joint_names(), {{160, 120, 160, 120}}};
+    return out;
+  }
+  /// 8 ms of both sides; a pair every 40 ms.
+  void tick() {
+    robot_.move(8ms);
+    const RobotTime now = robot_.clock().now();
+    if (++ticks_ % 5 == 0) {
+      const StereoPicture picture = moving_picture(now, kSize);
+      frames_.add({{picture.left, 0, now, 1us}, {picture.right, 0, now, 1us}});
+    }
+    frames_.step();
+    while (const auto frame = sent_->take(0ns)) sent_frames_[(*frame)->number] = *frame;
+    sender_->step(0ns);
+    states_.step(now);
+    Commander* const commander = &served_;
+    foresight::serve(std::span(&commander, 1), robot_.robot(), now);
+    end_.step();
+  }
+  void run(int ticks, LiveSource& source) {
+    for (int i = 0; i < ticks; ++i) {
+      tick();
+      while (source.advance() == SourceState::ready) {
+        if (const auto frame = source.arrived()) shown_.emplace_back(number_of(frame->left.time), *frame);
+      }
+    }
+  }
+  std::uint64_t number_of(RobotTime time) const {
+    for (const auto& [number, frame] : sent_frames_)
+      if (frame->pair.left.time == time) return number;
+    return 0;
+  }
+  /// What a display got is what the robot's own display would get, but for the coding of the pixels.
+  void expect_same(double psnr_db) const {
+    for (const auto& [number, frame] : shown_) {
+      const auto sent = sent_frames_.find(number);
+      ASSERT_NE(sent, sent_frames_.end()) << "an instant that no pair was taken at";
+      ASSERT_TRUE(sent->second->posed && frame.right);
+      const PosedFrame& truth = *sent->second->posed;
+      for (const auto& [got, wanted] : {std::pair(&frame.left, &truth.left), std::pair(&*frame.right, &*truth.right)}) {
+        EXPECT_EQ(got->time, wanted->time);
+        EXPECT_TRUE(got->T_world_camera.isApprox(wanted->T_world_camera, 1e-12));
+        EXPECT_EQ(got->scene.time, wanted->scene.time);
+        EXPECT_EQ(got->scene.status, wanted->scene.status);
+        ASSERT_EQ(got->scene.T_world_node.size(), wanted->scene.T_world_node.size());
+        for (std::size_t i = 0; i < got->scene.T_world_node.size(); ++i)
+          EXPECT_TRUE(got->scene.T_world_node[i].isApprox(wanted->scene.T_world_node[i], 1e-12));
+        EXPECT_EQ(got->margin_px, wanted->margin_px);
+        EXPECT_GT(cv::PSNR(got->pixels, wanted->pixels), psnr_db);
+      }
+    }
+  }
+
+  LiveRobot robot_{"minerva.yaml"};
+  Identity identity_ = rig_identity(robot_.rig(), source_folder() / "configs" / "minerva.yaml", "test");
+  StereoLenses lenses_ = small_lenses();
+  std::shared_ptr<const LiveScene> scene_ = std::make_shared<const LiveScene>(
+      std::make_shared<const sim::LiveLab>(sim::LiveLab::Options{.texel = 0.02}), lenses_);
+  Participant program_{LinkConfig{}, "test"};
+  WallClock wall_{robot_.clock(), [this] { return robot_.clock().now().ns; }};
+  LiveFrames frames_{std::make_shared<EncoderPoses>(robot_.rig(), scene_, robot_.robot().cycles()), robot_.clock()};
+  std::shared_ptr<FrameQueue> sent_ = frames_.subscribe(100);
+  std::optional<FrameSender> sender_;
+  StateSender states_{program_,      {42, robot_.rig().joint_names()}, robot_.rig(), robot_.robot(), nullptr, wall_,
+                      robot_.clock()};
+  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options()};
+  OperatorEnd end_{program_, operator_options(), robot_.clock()};
+  std::map<std::uint64_t, LiveFramePtr> sent_frames_;
+  std::vector<std::pair<std::uint64_t, PosedFrame>> shown_;
+  int ticks_ = 0;
+};
+
+TEST_F(TwoEnds, JpegPairsAreShownAsTheyWereSent) {
+  serve(LinkCoding::jpeg);
+  LiveSource source(line_feed(end_, robot_.rig(), scene_), robot_.clock(), {.real_time = false});
+  run(250, source);  // two seconds
+  EXPECT_GE(shown_.size(), 45u);
+  expect_same(32);
+  const LineFigures figures = end_.figures();
+  EXPECT_EQ(figures.coding, "jpeg");
+  EXPECT_EQ(figures.pairs.refused, 0u) << figures.pairs.refusal;
+  EXPECT_EQ(source.fault(), "");
+}
+
+TEST_F(TwoEnds, CodedPairsAreShownAsTheyWereSent) {
+  serve(LinkCoding::h264);
+  LiveSource source(line_feed(end_, robot_.rig(), scene_), robot_.clock(), {.real_time = false});
+  run(250, source);
+  EXPECT_GE(shown_.size(), 25u);
+  expect_same(26);
+  const LineFigures figures = end_.figures();
+  EXPECT_EQ(figures.coding, "h264");
+  EXPECT_EQ(figures.pairs.refused, 0u) << figures.pairs.refusal;
+  EXPECT_EQ(figures.pairs.packets, figures.pairs.expected);
+  EXPECT_EQ(sender_->counts().failed, 0u);
+}
+
+TEST_F(TwoEnds, ClocksStatesAndControlComeAlong) {
+  serve(LinkCoding::jpeg);
+  LiveSource source(line_feed(end_, robot_.rig(), scene_), robot_.clock(), {.real_time = false});
+  run(150, source);
+  const LineFigures figures = end_.figures();
+  ASSERT_TRUE(figures.clock && figures.round_trip);
+  EXPECT_LE(figures.clock->least, 0) << "it is the same clock";
+  EXPECT_GE(figures.clock->most, 0);
+  EXPECT_LE(*figures.round_trip, Duration(20ms));
+  ASSERT_FALSE(figures.ages.empty());
+  EXPECT_LE(std::abs(figures.ages.back().delay.count()), (figures.ages.back().uncertainty + 20ms).count());
+  const auto state = end_.robot_state();
+  ASSERT_TRUE(state && state->time);
+  EXPECT_EQ(state->state.rig, "minerva");
+  EXPECT_LE(state->time->earliest(), OperatorTime{robot_.clock().now().ns});
+  end_.seat([&](ControlSeat& seat, OperatorTime now) {
+    EXPECT_EQ(seat.status(now).phase, ControlSeatStatus::Phase::connected);
+    EXPECT_EQ(seat.state().joints, robot_.rig().joints.size());
+    const std::size_t elbow = robot_.joint("elbow");
+    EXPECT_NEAR(seat.state().measured[elbow], robot_.shaft(elbow).position, 0.05);
+  });
+}
+
+// A reader of pieces that takes nothing, in a program that stands still: pairs go on to the one who reports.
+TEST_F(TwoEnds, AReaderOfPiecesThatStopsHoldsUpNobody) {
+  serve(LinkCoding::h264);
+  Reader never_takes(program_, topics::pieces());
+  LiveSource source(line_feed(end_, robot_.rig(), scene_), robot_.clock(), {.real_time = false});
+  run(250, source);
+  EXPECT_GE(shown_.size(), 25u);
+  EXPECT_EQ(robot_.robot().status().gate.state, GateState::following);
+  robot_.expect_limits_kept("while a reader takes nothing");
+}
+
+}  // namespace
+}  // namespace foresight::link
