@@ -22,18 +22,6 @@ Lens lens_of(const StereoConfig& config, Side side) {
   return sim::synth_lens(usual, side == Side::right);
 }
 
-std::shared_ptr<sim::MockStereo> make_mock(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock,
-                                           const MockWorld& world) {
-  sim::LiveLab::Options lab;
-  lab.hidden = world.hidden;
-  lab.prints = world.prints;
-  lab.board = world.board;
-  lab.things = world.things;
-  lab.furniture = world.furniture;
-  return std::make_shared<sim::MockStereo>(std::make_shared<const sim::LiveLab>(lab), shafts, mock_options(config),
-                                           clock);
-}
-
 std::unique_ptr<Camera> make_mock_camera(Side side, const CameraConfig& config,
                                          const std::shared_ptr<sim::MockStereo>& stereo) {
   auto camera = std::make_unique<sim::MockCamera>(side == Side::left ? "left" : "right", side, stereo);
@@ -48,6 +36,16 @@ MockWorld mock_world(const std::optional<fs::path>& tags) {
   MockWorld out;
   if (tags) out.prints = sim::tag_prints(read_tag_map(*tags));
   return out;
+}
+
+std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world) {
+  sim::LiveLab::Options lab;
+  lab.hidden = world.hidden;
+  lab.prints = world.prints;
+  lab.board = world.board;
+  lab.things = world.things;
+  lab.furniture = world.furniture;
+  return std::make_shared<const sim::LiveLab>(lab);
 }
 
 StereoConfig as_mock(StereoConfig config) {
@@ -78,7 +76,8 @@ sim::MockCameraOptions mock_options(const StereoConfig& config) {
 
 OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock, const MockWorld& world) {
   OpenStereo out;
-  if (config.mock()) out.mock = make_mock(config, shafts, clock, world);
+  if (config.mock())
+    out.mock = std::make_shared<sim::MockStereo>(mock_lab(world), shafts, mock_options(config), clock);
   std::array<std::unique_ptr<Camera>, 2> cameras;
   for (const Side side : {Side::left, Side::right}) {
     const auto index = static_cast<std::size_t>(side);

@@ -31,6 +31,9 @@ struct MockWorld {
 /// what read_tag_map() and sim::tag_prints() do.
 MockWorld mock_world(const std::optional<std::filesystem::path>& tags);
 
+/// The world itself, not lit: for who wants to know what stands in it. Throws what sim::LiveLab does.
+std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world);
+
 /// The same description with the mock lab's cameras in place of its own: size, rate, exposure and lenses stay. Throws
 /// InputError where these cannot be mock ones (two sizes, an odd width).
 StereoConfig as_mock(StereoConfig config);

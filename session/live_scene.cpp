@@ -46,4 +46,10 @@ Pose LiveScene::T_world_left(const JointPositions& joints) const {
   return sim::LiveLab::T_world_left_modelled(joints);
 }
 
+LiveScene live_scene_of(const Rig& rig, bool mock, const std::optional<fs::path>& scene_file) {
+  const StereoConfig config = mock ? as_mock(*rig.cameras) : *rig.cameras;
+  if (!config.mock()) return {config, &rig, scene_file};
+  return {mock_lab(mock_world(rig, scene_file)), mock_options(config).lenses};
+}
+
 }  // namespace foresight

@@ -43,4 +43,8 @@ class LiveScene {
   std::shared_ptr<const RobotScene> real_;
 };
 
+/// What the robot of this rig knows of its surroundings, without opening a camera. `mock`: as_mock() stands for the
+/// rig's cameras, which it has. Throws what LiveScene, as_mock() and mock_world() do.
+LiveScene live_scene_of(const Rig& rig, bool mock, const std::optional<std::filesystem::path>& scene_file);
+
 }  // namespace foresight
