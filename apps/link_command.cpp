@@ -5,15 +5,20 @@
 #include "apps/link_jobs.hpp"
 
 namespace foresight {
+
+void add_link_place(Command& command, LinkPlace& place) {
+  command.add_option("--domain", place.domain, "DDS domain, in place of the rig's (default 0)")->check(from_to(0, 230));
+  command.add_option("--interface", place.interface, "Network interface, in place of the rig's (default lo)");
+  command.add_option("--keys", place.keys, "Folder of `link keys`, in place of the rig's")->reads();
+  command.add_option("--peer", place.peers, "Address or name of another host; again for more");
+}
+
 namespace {
 
 void add_place(Command& command, LinkPlace& place) {
   command.add_option("--rig", place.rig, "Rig file: its `link:` section says where")->reads();
-  command.add_option("--domain", place.domain, "DDS domain, in place of the rig's (default 0)")->check(from_to(0, 230));
-  command.add_option("--interface", place.interface, "Network interface, in place of the rig's (default lo)");
-  command.add_option("--keys", place.keys, "Folder of `link keys` with the observer's, in place of the rig's")->reads();
+  add_link_place(command, place);
   command.add_option("--line", place.line, "File of a line (docs/line.md) that everything passes, out and in")->reads();
-  command.add_option("--peer", place.peers, "Address or name of another host; again for more");
 }
 
 void add_status(Command& link, std::function<int()>& action) {

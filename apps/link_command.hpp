@@ -9,4 +9,8 @@ namespace foresight {
 
 void add_link_command(Command& app, std::function<int()>& action);
 
+struct LinkPlace;
+/// The options that say where the line is, but for --rig. `place` must live as long as `command`.
+void add_link_place(Command& command, LinkPlace& place);
+
 }  // namespace foresight

@@ -29,16 +29,6 @@ unsigned long long number(std::uint64_t n) {
   return n;
 }
 
-LinkConfig config_of(const LinkPlace& place) {
-  LinkConfig out = place.rig.empty() ? LinkConfig{} : read_rig(place.rig).link;
-  if (place.rig.empty()) out.where = "foresight link";
-  if (place.domain) out.domain = *place.domain;
-  if (!place.interface.empty()) out.interface = place.interface;
-  if (!place.peers.empty()) out.peers = place.peers;
-  if (!place.keys.empty()) out.security = place.keys;
-  return out;
-}
-
 /// Null without --line. `clock` must outlive it.
 std::shared_ptr<link::PretendedLine> line_of(const LinkPlace& place, const Clock& clock) {
   if (place.line.empty()) return nullptr;
@@ -114,6 +104,16 @@ void measure(link::Reader& reader, const link::MessageType* type, Duration lengt
 }
 
 }  // namespace
+
+LinkConfig link_config_of(const LinkPlace& place) {
+  LinkConfig out = place.rig.empty() ? LinkConfig{} : read_rig(place.rig).link;
+  if (place.rig.empty()) out.where = "foresight link";
+  if (place.domain) out.domain = *place.domain;
+  if (!place.interface.empty()) out.interface = place.interface;
+  if (!place.peers.empty()) out.peers = place.peers;
+  if (!place.keys.empty()) out.security = place.keys;
+  return out;
+}
 
 std::string topic_on_dds(const std::string& given) {
   if (given.starts_with("rt/")) return given;
@@ -195,7 +195,7 @@ std::unique_ptr<link::OperatorEnd> look_at_line(link::Participant& program, Cloc
 }  // namespace
 
 int link_status(const LinkStatusOptions& options) {
-  const LinkConfig config = config_of(options.place);
+  const LinkConfig config = link_config_of(options.place);
   poll_stop_signals();
   MonotonicClock clock;
   link::Participant program(config, "link status", link::Role::observer, line_of(options.place, clock));
@@ -222,7 +222,7 @@ int link_status(const LinkStatusOptions& options) {
 int link_listen(const LinkListenOptions& options) {
   poll_stop_signals();
   MonotonicClock clock;
-  link::Participant program(config_of(options.place), "link listen", link::Role::observer,
+  link::Participant program(link_config_of(options.place), "link listen", link::Role::observer,
                             line_of(options.place, clock));
   const auto topic = find_topic(program, topic_on_dds(options.topic));
   if (!topic) return kStopped;
@@ -265,7 +265,8 @@ int link_keys(const LinkKeysOptions& options) {
 int link_rate(const LinkRateOptions& options) {
   poll_stop_signals();
   MonotonicClock clock;
-  link::Participant program(config_of(options.place), "link rate", link::Role::observer, line_of(options.place, clock));
+  link::Participant program(link_config_of(options.place), "link rate", link::Role::observer,
+                            line_of(options.place, clock));
   const auto topic = find_topic(program, topic_on_dds(options.topic));
   if (!topic) return kStopped;
   link::Reader reader(program, *topic);

@@ -46,6 +46,7 @@ int link_listen(const LinkListenOptions& options);
 int link_rate(const LinkRateOptions& options);
 int link_keys(const LinkKeysOptions& options);
 
+LinkConfig link_config_of(const LinkPlace& place);
 /// "joint_states" and "/joint_states" as "rt/joint_states".
 std::string topic_on_dds(const std::string& given);
 /// What status prints of these programs, the own one left out.

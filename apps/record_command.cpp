@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "apps/line_recording.hpp"
+#include "apps/link_command.hpp"
 #include "apps/recording_outputs.hpp"
 #include "apps/run_options.hpp"
 #include "common/error.hpp"
@@ -27,6 +29,7 @@ struct Arguments {
   double rate = 30;
   std::optional<double> seconds;
   std::optional<std::uint64_t> count;
+  RecordLineOptions line;  // what is said on a line, instead of cameras: only with line.file
 };
 
 Pose parse_pose(const std::vector<double>& v) {
@@ -146,7 +149,29 @@ int record_and_report(const Arguments& a, const OpenStereo& opened, LiveFrames& 
   return 1;
 }
 
+int run_line(const Arguments& a) {
+  const std::pair<const char*, bool> cameras[] = {
+      {"OUT", !a.out.empty()},         {"--left, --right", !a.left.empty() || !a.right.empty()},
+      {"--images", !a.images.empty()}, {"--camera, --camera-right", !(a.camera + a.camera_right).empty()},
+      {"--scene", !a.scene.empty()},   {"--pose", !a.pose.empty()},
+      {"--count", a.count.has_value()}};
+  for (const auto& [option, given] : cameras)
+    if (given) throw InputError(option, "stands beside --line, which opens no cameras", "leave one of them out");
+  RecordLineOptions options = a.line;
+  options.place.rig = a.rig;
+  options.mock = a.mock;
+  options.seconds = a.seconds;
+  return record_line(options);
+}
+
 int run(const Arguments& a) {
+  if (!a.line.file.empty()) return run_line(a);
+  const LinkPlace& place = a.line.place;
+  if (place.domain || !(place.interface + place.keys).empty() || !place.peers.empty() || a.line.pictures)
+    throw InputError("--domain, --interface, --keys, --peer, --pictures", "belong to --line",
+                     "add it, or leave them out");
+  if (a.out.empty())
+    throw InputError("OUT", "is missing", "name the folder to write, or record a line with --line FILE");
   MonotonicClock clock;
   check(a);
   const Described all = described(a);
@@ -172,11 +197,20 @@ int run(const Arguments& a) {
 }  // namespace
 
 void add_record_command(Command& app, std::function<int()>& action) {
-  auto* command = app.add_subcommand("record", "Write what two cameras see as a run");
+  auto* command = app.add_subcommand("record", "Write what two cameras see as a run, or what is said on a line");
   auto a = std::make_shared<Arguments>();
   command->add_option("OUT", a->out, "Folder to write; an earlier recording in it is replaced")
-      ->writes(recording_outputs)
-      ->required();
+      ->writes(recording_outputs);
+  command
+      ->add_option("--line", a->line.file,
+                   "Instead of cameras, all that is said on a line, into this new file (MCAP); --rig, --mock and "
+                   "--seconds\nbelong to it, too (docs/line.md)")
+      ->writes([](const std::filesystem::path& file) -> std::vector<Output> {
+        return {new_output(file, Output::Kind::file)};
+      });
+  command->add_flag("--pictures", a->line.pictures,
+                    "With --line: also the copies of the pictures for ROS 2's tools: twice the bytes on the line");
+  add_link_place(*command, a->line.place);
   command->add_option("--rig", a->rig, "The cameras of a rig file (docs/rig-files.md)")->reads();
   command->add_option("--left", a->left, "V4L2 device: a path, serial:... or bus:...; or libcamera:... and its id")
       ->reads();
@@ -201,7 +235,8 @@ void add_record_command(Command& app, std::function<int()>& action) {
       "Exit codes: 0 done, 1 a camera fell silent or the disk is full (what came before is kept), 2 wrong input.\n\n"
       "Example: foresight record run --left serial:A1 --right serial:A2 --camera left.yaml --camera-right right.yaml\n"
       "         foresight record run --rig my_rig.yaml --seconds 60\n"
-      "         foresight record run --mock --seconds 5");
+      "         foresight record run --mock --seconds 5\n"
+      "         foresight record --line session.mcap --rig my_rig.yaml");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 

@@ -42,6 +42,8 @@ const std::map<std::string, CommandWords>& table() {
       {"link status", {{"--seconds", {"0.5"}}}},
       {"link listen", {{"TOPIC", {"joint_states"}}, {"--seconds", {"0.1"}}}},
       {"link rate", {{"TOPIC", {"joint_states"}}, {"--seconds", {"0.5"}}}},
+      {"play", {{"FILE", {"@line.mcap"}}, {"--domain", {"9"}}}},
+      {"export-run", {{"FILE", {"@line.mcap"}}, {"--out", {"@new/exported"}}}},
       {"link keys", {{"DIR", {"@new/keys"}}}},
       {"robot", {{"RIG", {"@rig.yaml"}}, {"--stepped", {}}}},
       {"doctor", {{"RIG", {"@rig.yaml"}}}},
@@ -94,6 +96,7 @@ Victim::Victim() {
   write("result.yaml",
         "kind: intrinsics\ndate: 2026-01-01T00:00:00Z\nscore: {name: loo_px, value: 0.2}\nresult:\n  left:\n"
         "    model: radtan4\n    width: 640\n    height: 480\n");
+  write("line.mcap", "\x89MCAP0\r\n");
   write("notes.txt", "precious\n");
   write("mine/notes.txt", "precious too\n");
   ::mkfifo((*this / "fifo").c_str(), 0600);
