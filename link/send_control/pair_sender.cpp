@@ -6,10 +6,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kHead_s = 0.025;   // of line time that may still be waiting
+constexpr double kHead_s = 0.010;   // of line time that may still be waiting
 constexpr double kPrudence = 0.85;  // lines get slower without a word
 constexpr Duration kNoQueue = std::chrono::milliseconds(20);
-constexpr double kGrowth = 1.5;
+constexpr double kGrowth = 1.2;
 constexpr Duration kOld = std::chrono::milliseconds(250);     // besides the road: what is shown is old, so be quick
 constexpr Duration kOfUse = std::chrono::milliseconds(1000);  // after which a pair that is mostly lost is given up
 constexpr Duration kNeverOfUse = std::chrono::seconds(20);
@@ -18,7 +18,7 @@ constexpr std::size_t kMostPending = 64;
 }  // namespace
 
 double PairSender::bytes_per_s(RobotTime now) const {
-  const double measured = transmissions_.rate().rate().value_or(options_.first_bytes_per_s) * kPrudence;
+  const double measured = transmissions_.rate(now).value_or(options_.first_bytes_per_s) * kPrudence;
   const auto trip = transmissions_.round_trip(), least = transmissions_.least_round_trip();
   if (!trip || *trip - *least > kNoQueue) return measured;
   // Nothing waits in the line: it carries more than it is given, though pairs of one piece would never show that.

@@ -5,7 +5,8 @@
 //
 //   hand over when    nothing has to be waited for, or what is on its way will have crossed in kHead of line time, and
 //                     bytes without acknowledgement <= bytes acknowledged within the last 200 ms
-//   bytes             what the line carries in `Options::share` of time: less where the line is fast enough
+//   bytes             what the line may be trusted to carry (RateMeter) in a part of a tenth of a second: little is on
+//                     its way when the line gets slower, and what is lost of quality comes back with the next pairs
 //
 // Pure logic; one thread.
 #pragma once
@@ -22,10 +23,10 @@ class PairSender {
  public:
   struct Options {
     double first_bytes_per_s = 100'000;     ///< until the line was measured
-    double shortest_s = 0.030;              ///< of line time for a pair
-    double longest_s = 0.080;               ///< where the line is so thin that pictures would suffer
-    std::size_t fine_bytes = 12'000;        ///< what a pair needs to look well; takes up to longest_s
-    std::size_t least_bytes = 1'500;        ///< however thin the line
+    double shortest_s = 0.025;              ///< of line time for a pair
+    double longest_s = 0.060;               ///< where the line is so thin that pictures would suffer
+    std::size_t fine_bytes = 9'000;         ///< what a pair needs to look well; takes up to longest_s
+    std::size_t least_bytes = 1'200;        ///< however thin the line
     std::size_t most_bytes = 40'000;        ///< more shows little but the sensor's noise
     std::size_t most_lossy_bytes = 24'000;  ///< while packets get lost: the more pieces, the likelier one is missing
     int most_on_the_way = static_cast<int>(kMostLanes);  ///< pairs, while packets get lost

@@ -6,8 +6,9 @@ namespace foresight {
 namespace {
 
 constexpr Duration kWindow = std::chrono::milliseconds(250);
-constexpr Duration kLongest = std::chrono::milliseconds(50);  // of one stretch: after a gap, what comes counts again
-constexpr Duration kSlack = std::chrono::milliseconds(2);     // chances of a line come in milliseconds
+constexpr Duration kLately = std::chrono::milliseconds(80);
+constexpr Duration kLongest = kWindow;                     // of one stretch: after a gap, what comes counts again
+constexpr Duration kSlack = std::chrono::milliseconds(2);  // chances of a line come in milliseconds
 constexpr Duration kLeastFor = std::chrono::seconds(30);
 
 }  // namespace
@@ -38,9 +39,18 @@ void RateMeter::add(RobotTime sent, Duration arrived, std::size_t bytes) {
   last_ = arrived;
 }
 
-std::optional<double> RateMeter::rate() const {
+std::optional<double> RateMeter::rate(Duration overdue) const {
   if (busy_bytes_ == 0) return std::nullopt;
-  return static_cast<double>(busy_bytes_) / std::max(1e-3, to_seconds(busy_time_));
+  const auto rate_of = [](std::size_t bytes, Duration time) {
+    return static_cast<double>(bytes) / std::max(1e-3, to_seconds(time));
+  };
+  Duration lately = overdue;
+  std::size_t bytes = 0;
+  for (auto stretch = busy_.rbegin(); stretch != busy_.rend() && (bytes == 0 || lately < kLately); ++stretch) {
+    lately += stretch->lasted;
+    bytes += stretch->bytes;
+  }
+  return std::min(rate_of(busy_bytes_, busy_time_ + overdue), rate_of(bytes, lately));
 }
 
 }  // namespace foresight

@@ -18,8 +18,11 @@ class RateMeter {
   /// one of these is of no use.
   void add(RobotTime sent, Duration arrived, std::size_t bytes);
 
-  /// Bytes per second while the line was busy, of its last kWindow of busy time; nothing before there were any.
-  std::optional<double> rate() const;
+  /// Bytes per second that the line may be trusted to carry next: what it carried while it was busy, over the last
+  /// 250 ms of busy time or over the last 80 ms, whichever is less, as lines get slower without a word. `overdue`: for
+  /// how long packets that are on their way should have come by now; it counts as busy time in which nothing came.
+  /// Nothing before the line was busy at all.
+  std::optional<double> rate(Duration overdue = {}) const;
 
  private:
   struct Stretch {

@@ -11,7 +11,8 @@ constexpr Duration kFirstTrip = std::chrono::milliseconds(300);  // until one wa
 constexpr Duration kLeastOvertaking = std::chrono::milliseconds(5), kMostOvertaking = std::chrono::milliseconds(60);
 constexpr Duration kLeastQuestion = std::chrono::milliseconds(60);
 constexpr Duration kMostQuestion = std::chrono::seconds(1);
-constexpr int kQuickQuestions = 12;  // then at growing distances: losses come in rows, too
+constexpr int kQuickQuestions = 12;                             // then at growing distances: losses come in rows, too
+constexpr Duration kNewsEvery = std::chrono::milliseconds(10);  // acknowledgements, at most, while packets come
 constexpr double kLossMemory = 1e-3;
 constexpr Duration kArrivalWrap = std::chrono::microseconds(10) * (std::int64_t{1} << 32);
 
@@ -143,6 +144,15 @@ std::optional<RobotTime> Transmissions::due() const {
     if (deadline && (!first || *deadline < *first)) first = deadline;
   }
   return first;
+}
+
+/// For how long the oldest packet on its way, or any after the last news, should have been told about.
+Duration Transmissions::overdue(RobotTime now) const {
+  if (on_the_way_ == 0 || !least_) return {};
+  const auto oldest = std::find_if(records_.begin(), records_.end(),
+                                   [](const Record& record) { return record.state == Record::State::on_the_way; });
+  const RobotTime expected = std::max(oldest->sent.at + *least_, last_news_) + kNewsEvery;
+  return now > expected ? now - expected : Duration{};
 }
 
 std::size_t Transmissions::acknowledged_recently(RobotTime now) const {

@@ -46,7 +46,8 @@ class Transmissions {
   bool lost_lately(RobotTime now) const { return last_loss_ && now - *last_loss_ < std::chrono::seconds(10); }
   std::optional<Duration> round_trip() const { return smooth_; }  ///< of late, waiting in the line included
   std::optional<Duration> least_round_trip() const { return least_; }
-  const RateMeter& rate() const { return rate_; }
+  /// What the line carries, as far as it can be trusted (RateMeter::rate), with what is overdue at `now`.
+  std::optional<double> rate(RobotTime now) const { return rate_.rate(overdue(now)); }
   /// Share of packets that were lost, of about the last thousand.
   double loss() const { return loss_; }
 
@@ -56,6 +57,7 @@ class Transmissions {
     enum class State { on_the_way, acknowledged, lost } state = State::on_the_way;
   };
   Record* find(std::uint32_t sequence);
+  Duration overdue(RobotTime now) const;
   void take(Record& record, RobotTime now, std::vector<Sent>& out);
   void measure_round_trip(const Acknowledgement& acknowledgement, RobotTime now);
   void measure_rate(const Acknowledgement& acknowledgement);

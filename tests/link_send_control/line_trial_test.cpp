@@ -1,9 +1,12 @@
 #include "link/send_control/line_trial.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "common/statistics.hpp"
+#include "tests/support/model_pair_coder.hpp"
 #include "tests/support/moving_picture.hpp"
+#include "tests/support/synthetic_lines.hpp"
 
 namespace foresight {
 namespace {
@@ -26,6 +29,14 @@ LineTrialResult run(const LineTrialOptions& options) {
   return run_line_trial(options, [](RobotTime time) { return moving_picture(time); });
 }
 
+StereoPicture grey_pixel(RobotTime time) {
+  return {.left = cv::Mat(1, 1, CV_8UC1, cv::Scalar(128)), .captured = time};
+}
+
+bool long_tests() {
+  return std::getenv("FORESIGHT_LONG") != nullptr;
+}
+
 double p95(const LineTrialResult& result) {
   return quantile(result.age_beyond_ms, 0.95);
 }
@@ -36,8 +47,8 @@ double pairs_per_s(const LineTrialResult& result, const LineTrialOptions& option
 TEST(LineTrial, AFastLineShowsEveryPicture) {
   const auto options = small({}, seconds(4));
   const LineTrialResult result = run(options);
-  EXPECT_GT(pairs_per_s(result, options), 25);
-  EXPECT_LT(p95(result), 70);
+  EXPECT_GT(pairs_per_s(result, options), 29);
+  EXPECT_LT(p95(result), 40) << "one period of the camera, and what steps of time add";
   EXPECT_EQ(result.damaged, 0U);
   EXPECT_EQ(result.early, 0U);
   EXPECT_EQ(result.copies, 0U);
@@ -46,8 +57,8 @@ TEST(LineTrial, AFastLineShowsEveryPicture) {
 TEST(LineTrial, AThinLineShowsRecentPictures) {
   const auto options = small({.bytes_per_s = 10'000});
   const LineTrialResult result = run(options);
-  EXPECT_GT(pairs_per_s(result, options), 5);
-  EXPECT_LT(p95(result), 400);
+  EXPECT_GT(pairs_per_s(result, options), 10);
+  EXPECT_LT(p95(result), 250);
   EXPECT_EQ(result.early, 0U);
   EXPECT_EQ(result.damaged, 0U);
   EXPECT_GT(result.up_bytes, 60'000U) << "it should use what the line carries";
@@ -92,9 +103,32 @@ TEST(LineTrial, LossCostsTimeAndNeverShowsADamagedPicture) {
     EXPECT_EQ(result.damaged, 0U);
     EXPECT_EQ(result.early, 0U);
     EXPECT_GT(result.copies, 10U) << "there was nothing to repair: the test shows nothing";
-    EXPECT_GT(pairs_per_s(result, options), 5);
-    EXPECT_LT(p95(result), 2000);
+    EXPECT_GT(pairs_per_s(result, options), coding == Coding::h264 ? 15 : 10);
+    EXPECT_LT(p95(result), 400);
   }
+}
+
+// Lines that nobody recorded, with a model of the coder (its sizes and lanes): walking, driving, tunnels, fades, loss.
+TEST(LineTrial, PicturesStayRecentOnLinesOfAllKinds) {
+  const unsigned seeds = long_tests() ? 40 : 2;
+  for (unsigned seed = 1; seed <= seeds; ++seed)
+    for (const SyntheticLine& line : synthetic_lines(seed)) {
+      SCOPED_TRACE(line.name + ", seed " + std::to_string(seed));
+      LineTrialOptions options{.line = line.line, .length = seconds(60), .compare = false};
+      options.encoder = [] { return std::make_unique<ModelPairEncoder>(); };
+      options.decoder = [] { return std::make_unique<ModelPairDecoder>(); };
+      const LineTrialResult result = run_line_trial(options, grey_pixel);
+      std::vector<double> ages, bytes;
+      for (std::size_t i = 0; i < result.age_beyond_ms.size(); ++i)
+        if (!result.in_gap[i]) ages.push_back(result.age_beyond_ms[i]);
+      for (const TrialPair& pair : result.pairs) bytes.push_back(static_cast<double>(pair.bytes));
+      EXPECT_LT(quantile(ages, 0.95), line.name == "deep fades" ? 800 : line.name == "on and off" ? 600 : 400);
+      EXPECT_LT(quantile(ages, 0.5), 150);
+      EXPECT_GT(pairs_per_s(result, options), 9);
+      EXPECT_GT(median(bytes), 2500) << "age must not be bought with pictures that show nothing";
+      EXPECT_EQ(result.early, 0U);
+      for (const double recovery : result.recovery_ms) EXPECT_LE(recovery, 500);
+    }
 }
 
 TEST(LineTrial, RepeatsBitForBit) {

@@ -45,5 +45,30 @@ TEST(RateMeter, ForgetsAGapSoon) {
   EXPECT_GT(meter.rate().value(), 7e4);
 }
 
+/// 100 kB/s for a second, then `slow_ms` between packets for `count` of them.
+RateMeter slower(int slow_ms, int count) {
+  RateMeter meter;
+  meter.add({}, std::chrono::milliseconds(20), 1000);
+  Duration at = std::chrono::milliseconds(100);
+  for (int i = 0; i < 100 + count; ++i) {
+    at += std::chrono::milliseconds(i < 100 ? 10 : slow_ms);
+    meter.add(RobotTime{} + at - std::chrono::milliseconds(300), at, 1000);
+  }
+  return meter;
+}
+
+TEST(RateMeter, TrustsTheLastTimeWhereItWasTheSlower) {
+  EXPECT_NEAR(slower(10, 0).rate().value(), 1e5, 1e3);
+  EXPECT_LT(slower(40, 2).rate().value(), 3e4);
+  EXPECT_LT(slower(120, 1).rate().value(), 1e4);
+  EXPECT_GT(slower(1, 80).rate().value(), 2e5) << "and the longer time where that was";
+}
+
+TEST(RateMeter, CountsWhatIsOverdue) {
+  const RateMeter meter = slower(10, 0);
+  EXPECT_NEAR(meter.rate(std::chrono::milliseconds(90)).value(), 1000 / 0.1, 1500);
+  EXPECT_LT(meter.rate(std::chrono::seconds(3)).value(), 1e4);
+}
+
 }  // namespace
 }  // namespace foresight
