@@ -22,14 +22,14 @@ struct LineBenchOptions {
 
 /// Prints, and writes to `json`, in stepped time (link/send_control/line_trial.hpp):
 ///   age_p50_ms, age_p95_ms     nearest rank, of each millisecond after the first picture: age of the newest one less
-///   that
-///                              of a small packet on the idle line; outside of gaps of 1 s and more. age_all_p95_ms:
-///                              with them
+///                              that of a small packet on the idle line. Without the trace's gaps: times of 1 s and
+///                              more in which it carries nothing
+///   age_all_p95_ms             with the gaps
+///   gaps, gaps_s               how many there were, and how much time they take
 ///   pairs_per_s, bytes_per_s   decoded and newest; sent by the robot's side without network headers
-///   psnr_db, psnr_p5_db        of luma against the source, mean and nearest rank over the pairs; -1 where there are
-///   none worst_recovery_ms          after gaps of 1 s and more, from when the line could have carried 30 kB; 0 without
-///   gaps damaged, early_hand_overs  pictures other than the encoder's; hand-overs with more unacknowledged bytes than
-///   were
+///   psnr_db, psnr_p5_db        of luma against the source, mean and nearest rank over the pairs; -1 without pairs
+///   worst_recovery_ms          after the gaps, from when the line could have carried 30 kB; 0 without gaps
+///   damaged, early_hand_overs  pictures other than the encoder's; hand-overs with more unacknowledged bytes than were
 ///                              acknowledged within 200 ms: both 0
 ///   encode_ms, decode_ms       CPU time of a pair, median
 /// Returns 1 where a damaged picture was shown, nothing was shown at all, or a hand-over was early, else 0. Throws

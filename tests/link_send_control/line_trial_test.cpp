@@ -122,7 +122,7 @@ TEST(LineTrial, PicturesStayRecentOnLinesOfAllKinds) {
       for (std::size_t i = 0; i < result.age_beyond_ms.size(); ++i)
         if (!result.in_gap[i]) ages.push_back(result.age_beyond_ms[i]);
       for (const TrialPair& pair : result.pairs) bytes.push_back(static_cast<double>(pair.bytes));
-      EXPECT_LT(quantile(ages, 0.95), line.name == "deep fades" ? 800 : line.name == "on and off" ? 600 : 400);
+      EXPECT_LT(quantile(ages, 0.95), line.name == "deep fades" ? 550 : line.name == "on and off" ? 450 : 320);
       EXPECT_LT(quantile(ages, 0.5), 150);
       EXPECT_GT(pairs_per_s(result, options), 9);
       EXPECT_GT(median(bytes), 2500) << "age must not be bought with pictures that show nothing";
