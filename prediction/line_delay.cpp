@@ -7,10 +7,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kMemory = 30;      // s
-constexpr double kUsual = 0.005;    // s: after a few messages that far off the median, weights are learnt
-constexpr double kLeast = 1e-5;     // s
-constexpr double kLongestStep = 1;  // s that forgetting counts for a silence
+constexpr double kMemory = 30;         // s
+constexpr double kUsual = 0.005;       // s: after a few messages that far off the median, weights are learnt
+constexpr double kLeast = 1e-5;        // s
+constexpr double kLongestSilence = 1;  // s that forgetting counts for a silence
 
 Weights two(double a, double b) {
   Weights w(2);
@@ -30,7 +30,7 @@ bool LineDelay::add(double time, double delay) noexcept {
   if (!std::isfinite(time) || !(delay >= 0 && delay <= options_.largest)) return false;
   if (!delays_.empty()) {
     if (time < time_) return false;
-    const double passed = std::min(time - time_, kLongestStep);
+    const double passed = std::min(time - time_, kLongestSilence);
     sigma_.score(std::abs(delay - expected_), sigma_.sigma(), passed);
     fit_.forget(passed);
     fit_.add(inputs_, delay - median_);

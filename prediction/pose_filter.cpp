@@ -7,10 +7,10 @@
 namespace foresight {
 namespace {
 
-constexpr std::array kLags{0, 1, 2, 3, 4, 6, 8};  // of kLag
-constexpr double kLag = 1.0 / 60;                 // s
-constexpr Eigen::Index kBends = static_cast<Eigen::Index>(kLags.size()) - 2;
-constexpr double kReach = kLags.back() * kLag;
+constexpr std::array kHandLags{0, 1, 2, 3, 4, 6, 8};  // of kHandLag
+constexpr double kHandLag = 1.0 / 60;                 // s
+constexpr Eigen::Index kBends = static_cast<Eigen::Index>(kHandLags.size()) - 2;
+constexpr double kHandReach = kHandLags.back() * kHandLag;
 constexpr double kFirm = 0.003;  // m and rad: with bends of the path of that size, a sample counts as the prior does
 
 OnlineRegression regression(double memory) {
@@ -53,7 +53,7 @@ PoseTaken PoseFilter::observe(OperatorTime time, const Pose& pose) noexcept {
   position_.forget(trail_.samples().newest().stamp - before);
   rotation_.forget(trail_.samples().newest().stamp - before);
   learn();
-  if (trail_.length() < kReach) return taken;
+  if (trail_.length() < kHandReach) return taken;
   Pending& now = pending_.next();
   now.even = trail_.samples().newest().even;
   now.inputs = inputs();
@@ -69,9 +69,9 @@ PoseFilter::Inputs PoseFilter::inputs() const noexcept {
   Inputs bends(6, kBends);
   Pose newer = trail_.samples().newest().pose;
   Vector6 velocity = Vector6::Zero();
-  for (std::size_t k = 0; k + 1 < kLags.size(); ++k) {
-    const Pose older = trail_.back(kLags[k + 1] * kLag);
-    const Vector6 earlier = pose_difference(older, newer) / (kLags[k + 1] - kLags[k]);  // per kLag
+  for (std::size_t k = 0; k + 1 < kHandLags.size(); ++k) {
+    const Pose older = trail_.back(kHandLags[k + 1] * kHandLag);
+    const Vector6 earlier = pose_difference(older, newer) / (kHandLags[k + 1] - kHandLags[k]);  // per kHandLag
     if (k > 0) bends.col(static_cast<Eigen::Index>(k) - 1) = velocity - earlier;
     velocity = earlier;
     newer = older;

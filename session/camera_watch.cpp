@@ -2,13 +2,14 @@
 
 #include <fmt/core.h>
 
+#include "session/stop_latency.hpp"
+
 namespace foresight {
 namespace {
 
 using namespace std::chrono_literals;
 
 constexpr Duration kTryEvery = 5s;
-constexpr Duration kLook = 100ms;     // so long a stop may take
 constexpr Duration kNoPairs = 500ms;  // both cameras deliver, and nothing pairs
 constexpr const char* kStarting = "starting";
 
@@ -33,7 +34,7 @@ void CameraWatch::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     if (!cameras_) try_to_open(false);
     if (cameras_) {
-      take_in(cameras_->take(kLook));
+      take_in(cameras_->take(kStopLatency));
       continue;
     }
     std::unique_lock lock(mutex_);

@@ -2,12 +2,13 @@
 
 #include <exception>
 
+#include "session/stop_latency.hpp"
+
 namespace foresight {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kLook = 100ms;    // so long a stop may take
 constexpr Duration kAskAgain = 2ms;  // for encoders that have not come yet
 
 /// The same everywhere: a margin follows the left camera's error, from which the right one's pose follows too.
@@ -57,7 +58,8 @@ void LiveFrames::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     if (process(false)) continue;
     std::unique_lock lock(mutex_);
-    arrived_.wait_for(lock, stop, current_ ? kAskAgain : kLook, [this] { return !current_ && !waiting_.empty(); });
+    arrived_.wait_for(lock, stop, current_ ? kAskAgain : kStopLatency,
+                      [this] { return !current_ && !waiting_.empty(); });
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "common/error.hpp"
+#include "session/stop_latency.hpp"
 
 namespace foresight {
 namespace {
@@ -44,7 +45,7 @@ RecordingResult record(StereoCamera& cameras, LiveFrames& frames, RunRecorder& r
     std::optional<RobotTime> first;
     RobotTime heard = clock.now();
     while (!stop() && !recorder.stopped() && !(limits.count && pairs >= *limits.count)) {
-      const auto pair = cameras.take(100ms);
+      const auto pair = cameras.take(kStopLatency);
       if (!pair) {
         if (clock.now() - heard <= limits.silent_after) continue;
         result.fault = why_silent(cameras.status(), clock.now() - heard);

@@ -5,14 +5,12 @@
 #include "common/error.hpp"
 #include "scene/files.hpp"
 #include "scene/scene_writer.hpp"
+#include "session/stop_latency.hpp"
 
 namespace foresight {
 namespace fs = std::filesystem;
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr Duration kLook = 100ms;
 constexpr int kCompression = 1;  // more takes longer than 33 ms
 
 }  // namespace
@@ -70,7 +68,7 @@ RecorderCounts RunRecorder::counts() const {
 
 void RunRecorder::run() noexcept {
   for (;;) {
-    const auto frame = frames_->take(kLook);
+    const auto frame = frames_->take(kStopLatency);
     if (!frame && frames_->closed()) return;
     if (!frame || stopped()) continue;  // what waits goes all the same: nobody may wait for room for ever
     try {
