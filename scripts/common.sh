@@ -16,10 +16,13 @@ jobs() {
   echo "${FORESIGHT_JOBS:-$((cores < memory ? cores : memory))}"
 }
 
-# build_preset NAME [TARGET]: configures the CMake preset NAME and builds it, or one target of it.
+# build_preset NAME [TARGET]: configures the CMake preset NAME and builds it, or one target of it. FORESIGHT_UNITY=ON
+# joins files where nothing is built yet: a third less to do then, but more after each change of one.
 build_preset() {
+  local unity=()
+  [ -z "${FORESIGHT_UNITY:-}" ] || [ -e "$root/build/$1/CMakeCache.txt" ] || unity=("-DFORESIGHT_UNITY=$FORESIGHT_UNITY")
   say "building ${2:-all} of preset $1 with $(jobs) jobs"
-  (cd "$root" && cmake --preset "$1" >/dev/null &&
+  (cd "$root" && cmake --preset "$1" "${unity[@]}" >/dev/null &&
     cmake --build --preset "$1" --parallel "$(jobs)" ${2:+--target "$2"}) ||
     fail "the build of preset $1 failed; the first error above says why"
 }
