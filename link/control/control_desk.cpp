@@ -210,11 +210,19 @@ void ControlDesk::tell_state(RobotTime now) {
   if (out_.size() < kMostOutgoing) out_.push_back({session_, 0, std::move(state)});
 }
 
+void ControlDesk::forget_clocks() {
+  for (DeskPeer& peer : peers_.all()) peer.clock = OperatorClockTracker(options_.draw());
+}
+
+void ControlDesk::stood_still() {
+  forget_clocks();
+  if (permit_.lease() != 0) permit_.withdraw(RestCause::paused);
+}
+
 void ControlDesk::advance(RobotTime now, const RobotView& robot) {
   robot_ = robot;
   // A pause may have been a leap of our clock: what was known of the others' is void.
-  if (advanced_.ns != 0 && now - advanced_ > MotionPermit::kPause)
-    for (DeskPeer& peer : peers_.all()) peer.clock = OperatorClockTracker(options_.draw());
+  if (advanced_.ns != 0 && now - advanced_ > MotionPermit::kPause) forget_clocks();
   advanced_ = now;
   permit_.advance(now, robot);
   for (DeskPeer& peer : peers_.all())

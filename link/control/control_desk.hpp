@@ -41,6 +41,8 @@ class ControlDesk {
   void receive(const FromOperator& message, RobotTime now);
   /// Every 10 ms or so, with the robot as it is; a hundred milliseconds without count as a loss.
   void advance(RobotTime now, const RobotView& robot);
+  /// This host was suspended: its clock stood still, and what comes next looks younger than it is. A loss.
+  void stood_still();
   /// What to send, oldest first; each once.
   std::vector<FromRobot> take_outgoing();
 
@@ -74,6 +76,7 @@ class ControlDesk {
   void take(DeskPeer& from, const HandOver& over, RobotTime now);
   void take(DeskPeer& from, const SetPoint& set_point, RobotTime now);
   void take(DeskPeer& from, const Request& request, RobotTime now);
+  void forget_clocks();
   void greet(Nonce theirs, const Hello& hello, RobotTime now);
   RequestOutcome judge(const DeskPeer& from, const Request& request, RobotTime now) const;
   void grant(DeskPeer& to, RobotTime now);

@@ -55,6 +55,8 @@ class ControlSeat {
   /// Every 10 ms or so. A quarter of a second without is a pause, or a leap of our clock: then all begins anew, as if
   /// the program had just been started.
   void advance(OperatorTime now);
+  /// This host was suspended: its clock stood still. All begins anew, too.
+  void stood_still() { begin_anew(); }
   /// What to send, oldest first; each once.
   std::vector<FromOperator> take_outgoing();
 

@@ -1,6 +1,7 @@
 // Who commands over the line, as one of the robot's commanders.
 #pragma once
 
+#include "common/suspension.hpp"
 #include "link/control_wire/control_lines.hpp"
 #include "operators/line_operator.hpp"
 
@@ -9,11 +10,13 @@ namespace foresight::link {
 /// LineOperator with its line: messages are taken in before each tick, and sent after it. One thread.
 class ServedOperator final : public Commander {
  public:
-  ServedOperator(Participant& participant, const GateOptions& gate, ControlDeskOptions desk)
-      : line_(participant), operator_(gate, std::move(desk)) {}
+  ServedOperator(Participant& participant, const GateOptions& gate, ControlDeskOptions desk,
+                 SuspensionWatch suspension = SuspensionWatch())
+      : line_(participant), operator_(gate, std::move(desk)), suspension_(std::move(suspension)) {}
 
   std::uint64_t operator_id() const override { return operator_.operator_id(); }
   OperatorWish tick(RobotTime now, const RobotStatus& status) override {
+    if (suspension_.woke()) operator_.desk().stood_still();
     line_.receive(operator_.desk(), now);
     OperatorWish wish = operator_.tick(now, status);
     line_.send(operator_.desk());
@@ -25,6 +28,7 @@ class ServedOperator final : public Commander {
  private:
   DeskLine line_;
   LineOperator operator_;
+  SuspensionWatch suspension_;
 };
 
 }  // namespace foresight::link

@@ -162,6 +162,32 @@ TEST_F(ControlDeskTest, APauseOfTheRobotsProgramStops) {
   EXPECT_TRUE(robot_.follows);
 }
 
+// Its clock has not moved, so that what had come before looks as if it had just been sent.
+TEST_F(ControlDeskTest, ASuspendedRobotsHostStops) {
+  engage(anna_);
+  const Nonce consent = desk_.permit().consent();
+  ASSERT_FALSE(anna_.up.empty());
+  anna_.ahead += 5s;
+  desk_.stood_still();
+  EXPECT_EQ(desk_.permit().cause(), RestCause::paused);
+  EXPECT_NE(desk_.permit().consent(), consent);
+  EXPECT_EQ(moves_in(3s), 0);
+  EXPECT_GT(dropped(SetPointFault::clock_unknown), 0u) << "until the next round trip";
+  let_go_and_press(anna_);
+  EXPECT_TRUE(robot_.follows);
+}
+
+TEST_F(ControlDeskTest, ASuspendedOperatorsHostStops) {
+  engage(anna_);
+  anna_.ahead -= 5s;
+  anna_.seat.stood_still();
+  EXPECT_EQ(moves_in(20ms), 2) << "what was on its way before";
+  EXPECT_EQ(moves_in(3s), 0);
+  EXPECT_EQ(status(anna_).phase, ControlSeatStatus::Phase::holding) << "it comes back by itself, but does not move";
+  let_go_and_press(anna_);
+  EXPECT_TRUE(robot_.follows);
+}
+
 TEST_F(ControlDeskTest, ALeapOfTheOperatorsClockStops) {
   for (const Duration leap : {Duration(1s), Duration(-1s)}) {
     engage(anna_);

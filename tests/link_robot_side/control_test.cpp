@@ -61,10 +61,12 @@ class ServedControl : public PrivateNetworkTest {
     return seat_.begin();
   }
 
+  Duration asleep_{0};
   LiveRobot robot_{"minerva.yaml"};
   Identity identity_ = rig_identity(robot_.rig(), source_folder() / "configs" / "minerva.yaml", "test");
   Participant program_{LinkConfig{}, "test"};
-  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options()};
+  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options(),
+                         SuspensionWatch([this] { return asleep_; })};
   SeatLine operator_line_{program_};
   ControlSeat seat_{seat_options()};
 };
@@ -84,6 +86,16 @@ TEST_F(ServedControl, AnOperatorOverTheLineMovesTheRobotAndItRestsWhenTheLineIsG
   EXPECT_EQ(robot_.robot().status().gate.state, GateState::idle);
   robot_.expect_at_rest("a second after the operator's last word");
   robot_.expect_limits_kept("all the while");
+}
+
+TEST_F(ServedControl, AfterASuspensionOfTheRobotsHostNothingMovesWithoutAnotherPress) {
+  const LinePositions positions = take_control();
+  for (int i = 0; i < 50; ++i) tick(positions, true);
+  ASSERT_EQ(robot_.robot().status().gate.state, GateState::following);
+  asleep_ += 5s;
+  for (int i = 0; i < 200; ++i) tick(positions, true);
+  EXPECT_EQ(robot_.robot().status().gate.state, GateState::idle);
+  EXPECT_TRUE(seat_.status(OperatorTime{robot_.clock().now().ns}).must_let_go);
 }
 
 // What somebody else writes on the same topics, and on those that look like it, moves nothing.
