@@ -51,6 +51,15 @@ void YamlMap::require_known(const std::vector<std::string>& known) const {
   }
 }
 
+std::string YamlMap::text_without(const std::string& left_out) const {
+  YAML::Emitter out;
+  out << YAML::Flow << YAML::BeginMap;
+  for (const std::string& key : keys())
+    if (key != left_out) out << YAML::Key << key << YAML::Value << YAML::Flow << YAML::Clone(node_[key]);
+  out << YAML::EndMap;
+  return out.c_str();
+}
+
 std::vector<std::string> YamlMap::keys() const {
   std::vector<std::string> out;
   for (const auto& entry : node_) {

@@ -27,6 +27,8 @@ class YamlMap {
   const std::filesystem::path& file() const { return file_; }
   bool has(const std::string& key) const { return node_[key].IsDefined(); }
   std::vector<std::string> keys() const;
+  /// What it says, without `left_out`: the same text for the same values, however they are set out and commented.
+  std::string text_without(const std::string& left_out) const;
   std::string where(const std::string& key) const;  ///< "file:line: a.b.key", of this map when absent
 
   std::string text(const std::string& key) const;                ///< a scalar that is not empty

@@ -29,7 +29,7 @@ Identity rig_identity(const Rig& rig, const std::filesystem::path& file, const s
   Identity out;
   out.program = program;
   out.name = rig.name;
-  out.rig = digest_of(read_file(file));
+  out.rig = digest_of(map.text_without("link"));
   if (map.has("robot")) out.urdf = digest_of(file_text(map.map("robot"), "urdf"));
   if (const std::string text = calibration_text(map); !text.empty()) out.calibration = digest_of(text);
   out.joints = rig.joint_names();

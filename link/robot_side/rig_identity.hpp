@@ -8,7 +8,8 @@
 
 namespace foresight::link {
 
-/// With digests of the rig file, of its URDF, and of all calibrations that it names (lenses included), by their bytes.
+/// With digests of what the rig file says, but for its `link:` section, which each host has its own of; and of its URDF
+/// and all calibrations that it names (lenses included), by their bytes.
 /// `rig`: as read from `file`. Throws InputError where a file cannot be read any more.
 Identity rig_identity(const Rig& rig, const std::filesystem::path& file, const std::string& program);
 

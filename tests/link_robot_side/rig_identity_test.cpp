@@ -1,0 +1,46 @@
+#include "link/robot_side/rig_identity.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/read_file.hpp"
+#include "tests/support/folders.hpp"
+#include "tests/scene/test_run.hpp"
+
+namespace foresight::link {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class RigIdentity : public testing::Test {
+ protected:
+  RigIdentity() { folder_.write("arm.urdf", read_file(source_folder() / "configs" / "arm.urdf")); }
+  /// Of a rig file with this text.
+  Identity of(const std::string& text) {
+    folder_.write("rig.yaml", text);
+    const std::filesystem::path file = folder_ / "rig.yaml";
+    return rig_identity(read_rig(file), file, "1.0");
+  }
+  std::string text_ = read_file(source_folder() / "configs" / "minerva.yaml");
+  TempFolder folder_;
+};
+
+// As docs/line.md says it: each host names its own interface and the other's address.
+TEST_F(RigIdentity, EachHostHasALinkSectionOfItsOwn) {
+  const Identity robot = of(text_ + "link:\n  interface: eth0\n  peers: [10.0.0.2]\n");
+  const Identity other = of("# the operator's copy\n" + text_ + "link:\n  interface: wg0\n  peers: [10.0.0.1]\n");
+  EXPECT_THAT(differences(robot, other), IsEmpty());
+}
+
+TEST_F(RigIdentity, AnotherLimitIsAnotherRig) {
+  const std::string key = "velocity: ";
+  const std::size_t at = text_.find(key);
+  ASSERT_NE(at, std::string::npos);
+  const Identity robot = of(text_);
+  const Identity other = of(text_.substr(0, at + key.size()) + "0.01" + text_.substr(text_.find_first_of(",}\n", at)));
+  EXPECT_THAT(refusal_text(differences(robot, other)), HasSubstr("rig"));
+}
+
+}  // namespace
+}  // namespace foresight::link
