@@ -108,6 +108,10 @@ class Player {
     if (shown > kShown) left += fmt::format(" and {} more", shown - kShown);
     say("play", fmt::format("{} messages", number(sent_)));
     if (!left.empty()) say("play", "not played, as the robot does not say it or somebody could follow it: " + left);
+    if (const auto& pieces = playback_.pieces(); pieces.came && pieces.pairs == 0)
+      say("play",
+          "no coded pair (h264) could be decoded: a stream is recorded from its beginning on if the recorder is "
+          "there before the operator's program");
     if (playback_.damaged()) say("play", fmt::format("{} messages are damaged", number(playback_.damaged())));
     if (!outcome.trouble.empty()) say("play", "the recording is cut: " + outcome.trouble);
   }

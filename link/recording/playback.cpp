@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "link/coding/jpeg_coder.hpp"
 #include "link/dds/topics.hpp"
 #include "link/messages/message_types.hpp"
 #include "link/recording/line_recorder.hpp"
@@ -68,6 +69,9 @@ PlayedType played(Topic topic) {
           }};
 }
 
+constexpr std::size_t kFrames = 0;                           // in played_types()
+constexpr std::int64_t kLatest = 4'000'000'000'000'000'000;  // ns; a file may say anything
+
 const std::vector<PlayedType>& played_types() {
   static const std::vector<PlayedType> all{played<StereoFrame>(topics::frames()),
                                            played<RobotState>(topics::robot_state()),
@@ -92,6 +96,12 @@ std::optional<std::size_t> played_type(const McapChannel& channel) {
   return static_cast<std::size_t>(found - played_types().begin());
 }
 
+bool is_pieces(const McapChannel& channel) {
+  const Topic topic = topics::pieces();
+  return channel.message_encoding == "cdr" && channel.topic == topic_in_ros(topic.name) &&
+         channel.schema->name == ros_name(topic.type);
+}
+
 }  // namespace
 
 std::span<const Topic> played_topics() {
@@ -113,34 +123,56 @@ Playback::Message Playback::moved(std::size_t topic, std::span<const std::uint8_
 bool Playback::wants_chunk(std::int64_t end_ns, std::span<const McapChannel* const> channels) const {
   constexpr std::int64_t kBefore = 2'000'000'000;  // ns: the robot's state comes more often
   if (!begin_ns_ || began_ || end_ns >= *begin_ns_ - std::min(kBefore, options_.from.count())) return true;
-  return std::ranges::any_of(channels, [](const McapChannel* channel) {
-    return channel->topic == topic_in_ros(topics::static_transforms().name);
+  return std::ranges::any_of(channels, [](const McapChannel* channel) {  // coded pairs build on earlier ones
+    return channel->topic == topic_in_ros(topics::static_transforms().name) || is_pieces(*channel);
   });
 }
 
 std::vector<Playback::Message> Playback::take(const McapMessage& message) {
-  std::vector<Message> out;
+  if (is_pieces(message.channel)) return take_piece(message);
   const auto topic = played_type(message.channel);
-  if (!topic) {
-    ++left_out_[message.channel.topic];
-    return out;
+  if (topic) return take(*topic, message.data, message);
+  ++left_out_[message.channel.topic];
+  return {};
+}
+
+std::vector<Playback::Message> Playback::take_piece(const McapMessage& message) {
+  constexpr int kQuality = 95;
+  const auto piece = from_cdr<StereoPiece>(message.data);
+  if (!piece) {
+    ++damaged_;
+    return {};
   }
-  const PlayedType& type = played_types()[*topic];
-  if (!type.learn(time_, message.data)) {
+  ++pieces_.came;
+  stream_time_ = std::max(stream_time_, RobotTime{std::min<std::int64_t>(message.log_ns, kLatest)});
+  auto pair = stream_.take(*piece, stream_time_);
+  if (!pair) return {};
+  ++pieces_.pairs;
+  pair->frame.coding = kJpegCoding;
+  pair->frame.left.data = encode_jpeg(pair->picture.left, kQuality);
+  pair->frame.right.data = encode_jpeg(pair->picture.right, kQuality);
+  return take(kFrames, to_cdr(pair->frame), message);
+}
+
+std::vector<Playback::Message> Playback::take(std::size_t topic, std::span<const std::uint8_t> cdr,
+                                              const McapMessage& message) {
+  std::vector<Message> out;
+  const PlayedType& type = played_types()[topic];
+  if (!type.learn(time_, cdr)) {
     ++damaged_;
     return out;
   }
   const bool kept = type.topic.delivery == Delivery::kept;
   if (!begin_ns_) begin_ns_ = std::min(message.log_ns, INT64_MAX - options_.from.count()) + options_.from.count();
   if (!began_ && message.log_ns < *begin_ns_) {
-    if (kept) kept_[*topic].assign(message.data.begin(), message.data.end());
+    if (kept) kept_[topic].assign(cdr.begin(), cdr.end());
     return out;
   }
   const RobotTime due = time_.due(message.log_ns, message.publish_ns, kept);
   began_ = true;
-  for (const auto& [old, cdr] : std::exchange(kept_, {}))
-    if (old != *topic) out.push_back(moved(old, cdr, due));
-  out.push_back(moved(*topic, message.data, due));
+  for (const auto& [old, last] : std::exchange(kept_, {}))
+    if (old != topic) out.push_back(moved(old, last, due));
+  out.push_back(moved(topic, cdr, due));
   return out;
 }
 

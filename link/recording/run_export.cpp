@@ -2,47 +2,24 @@
 
 #include <fmt/core.h>
 
-#include <opencv2/imgcodecs.hpp>
+#include <algorithm>
 
 #include "common/error.hpp"
 #include "common/read_file.hpp"
-#include "common/text.hpp"
 #include "link/dds/topics.hpp"
 #include "link/messages/cdr.hpp"
+#include "link/operator_side/pair_intake.hpp"
+#include "link/operator_view/line_feed.hpp"
 #include "link/recording/line_recorder.hpp"
 #include "link/recording/mcap_reader.hpp"
 #include "link/recording/rig_files.hpp"
 #include "link/robot_side/robot_messages.hpp"
-#include "scene/image_structure.hpp"
 #include "session/recorder_options.hpp"
 
 namespace foresight::link {
 namespace {
 
 namespace fs = std::filesystem;
-
-Pose pose_of(const PoseMessage& message) {
-  const Quaternion& q = message.orientation;
-  Pose out = Pose::Identity();
-  out.translate(Eigen::Vector3d(message.position.x, message.position.y, message.position.z));
-  out.rotate(Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized());
-  return out;
-}
-
-/// As the robot's program sent it, with its pictures decoded. Throws InputError where they are no whole JPEGs of that
-/// size.
-ColourImage decoded(const CodedImage& image, const std::string& where) {
-  const std::string_view bytes(reinterpret_cast<const char*>(image.data.data()), image.data.size());
-  const ImageForm form = read_image_form(bytes, where);
-  if (form.width != static_cast<int>(image.width) || form.height != static_cast<int>(image.height))
-    throw InputError(where, "is a picture of another size than its message says", "record anew");
-  ColourImage out;
-  out.bgr = cv::imdecode(image.data, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-  if (out.bgr.empty()) throw InputError(where, "cannot be decoded", "record anew");
-  out.time = RobotTime{image.capture_ns};
-  out.uncertainty = Duration{image.uncertainty_ns};
-  return out;
-}
 
 McapOutcome read(const fs::path& file, const McapVisitor& visitor) {
   std::ifstream stream = open_input(file, UINTMAX_MAX);
@@ -60,24 +37,19 @@ class Exporter {
 
   RunExport run() {
     RunRecorder recorder(options_.out, recorder_options(scene_), queue_);
-    const std::string frames = topic_in_ros(topics::frames().name);
     McapVisitor visitor;
     visitor.message = [&](const McapMessage& message) {
-      if (message.channel.topic == frames) take(message);
+      take(message);
       return !recorder.stopped();
     };
     const McapOutcome outcome = read(options_.recording, visitor);
+    begin_intake(0);  // what the last one has refused counts, too
     if (good_ == 0)
-      throw InputError(options_.recording.string(), "has no pair of images that can be used" + words(),
+      throw InputError(options_.recording.string(),
+                       "has no pair of images that can be used" + (refusal_.empty() ? "" : ": " + refusal_),
                        "record with `foresight record --line` while `foresight robot --serve` runs");
     const RecorderCounts counts = recorder.finish("recording: " + options_.recording.filename().string() + "\n");
-    RunExport out{counts.written, counts.without_pose, ""};
-    if (!outcome.trouble.empty()) out.remarks += "the recording is cut: " + outcome.trouble + "\n";
-    for (const auto& [why, count] : refused_) out.remarks += fmt::format("{} pairs left out: {}\n", count, why);
-    if (other_lenses_)
-      out.remarks += fmt::format(
-          "{} pairs were taken through lenses of another calibration than this rig's: export with the robot's own\n",
-          other_lenses_);
+    RunExport out{counts.written, counts.without_pose, remarks(outcome)};
     if (out.without_pose == out.pairs)
       out.remarks +=
           "no pair has a pose, which `foresight replay` needs: the head was not homed, or is not calibrated\n";
@@ -88,45 +60,71 @@ class Exporter {
  private:
   static constexpr std::size_t kRoom = 4;
 
-  std::string words() const { return refused_.empty() ? "" : ": " + refused_.begin()->first; }
-
-  void take(const McapMessage& message) {
-    const auto frame = from_cdr<StereoFrame>(message.data);
-    std::string wrong = frame ? objection(*frame, expected_) : "bytes are no such message";
-    if (wrong.empty() && frame->coding != kJpegCoding)
-      wrong = "coding " + in_quotes(frame->coding) + " is not known here";
-    if (wrong.empty() && (frame->left.capture_ns <= last_[0] || frame->right.capture_ns <= last_[1]))
-      wrong = "older than the one before";
-    try {
-      if (wrong.empty()) return put(*frame);
-    } catch (const InputError& error) {
-      wrong = error.what();
-    }
-    if (refused_.size() < 20 || refused_.contains(wrong)) ++refused_[wrong];
+  std::string remarks(const McapOutcome& outcome) const {
+    std::string out;
+    if (!outcome.trouble.empty()) out += "the recording is cut: " + outcome.trouble + "\n";
+    if (refused_) out += fmt::format("{} pairs left out, the last as {}\n", refused_, refusal_);
+    if (pieces_ && decoded_pieces_ == 0)
+      out +=
+          "no coded pair (h264) could be decoded: a stream is recorded from its beginning on if the recorder is there "
+          "before the operator's program\n";
+    if (other_lenses_)
+      out += fmt::format(
+          "{} pairs were taken through lenses of another calibration than this rig's: export with the robot's own\n",
+          other_lenses_);
+    return out;
   }
 
-  void put(const StereoFrame& message) {
+  /// For pieces to `reader`, and all pairs that are no pieces.
+  void begin_intake(std::uint64_t reader) {
+    if (intake_ && intake_->counts().refused) {
+      refused_ += intake_->counts().refused;
+      refusal_ = intake_->counts().refusal;
+    }
+    reader_ = reader;
+    intake_.emplace(reader, expected_, clock_);
+  }
+
+  /// Time goes as it went when the recorder took the messages: the intake judges by it which robot it hears.
+  void take(const McapMessage& message) {
+    constexpr std::int64_t kLatest = 4'000'000'000'000'000'000;  // ns; a file may say anything
+    clock_.sleep_until(RobotTime{std::clamp<std::int64_t>(message.log_ns, 0, kLatest)});
+    const auto is = [&](const Topic& topic) { return message.channel.topic == topic_in_ros(topic.name); };
+    if (is(topics::frames())) {
+      const auto frame = from_cdr<StereoFrame>(message.data);
+      if (!intake_) begin_intake(0);
+      if (frame) put(intake_->take(*frame, message.data.size(), {}));
+    } else if (is(topics::pieces())) {
+      const auto piece = from_cdr<StereoPiece>(message.data);
+      if (!piece) return;
+      ++pieces_;
+      if (!intake_ || piece->reader != reader_) begin_intake(piece->reader);
+      if (const LineFramePtr frame = intake_->take(*piece, {})) {
+        ++decoded_pieces_;
+        put(frame);
+      }
+    }
+  }
+
+  void put(const LineFramePtr& line) {
+    if (!line || line->image[0].captured <= last_[0] || line->image[1].captured <= last_[1]) return;
     auto frame = std::make_shared<LiveFrame>();
-    frame->number = message.number;
-    frame->pair = {decoded(message.left, "a left image"), decoded(message.right, "a right image")};
-    last_ = {message.left.capture_ns, message.right.capture_ns};
-    frame->quality = message.quality;
-    if (message.predicted_px >= 0) frame->predicted_px = message.predicted_px;
-    const auto known = [&](std::string_view joint) -> std::optional<double> {
-      for (const JointSample& sample : message.joints)
-        if (sample.name == shaft_name(rig_, joint) && sample.status != JointSample::kNeverKnown) return sample.position;
-      return std::nullopt;
-    };
-    const auto status = static_cast<StateStatus>(std::min<int>(message.joints_status, int(StateStatus::invalid)));
-    frame->scene = {scene_.state_at(frame->pair.left.time, known, status),
-                    scene_.state_at(frame->pair.right.time, known, status)};
-    if (message.left.has_pose && message.right.has_pose) {
+    frame->number = line->number;
+    for (const bool right : {false, true}) {
+      const LineImage& image = line->image[right ? 1 : 0];
+      (right ? frame->pair.right : frame->pair.left) = {image.bgr, line->number, image.captured, image.uncertainty};
+      frame->scene[right ? 1 : 0] = scene_at(rig_, scene_, image.captured, line->joints);
+      last_[right ? 1 : 0] = image.captured;
+    }
+    frame->quality = line->quality;
+    frame->predicted_px = line->predicted_px;
+    if (line->image[0].T_world_camera && line->image[1].T_world_camera) {
       PosedFrame posed;
-      posed.left.T_world_camera = pose_of(message.left.t_world_camera);
-      posed.right.emplace().T_world_camera = pose_of(message.right.t_world_camera);
+      posed.left.T_world_camera = *line->image[0].T_world_camera;
+      posed.right.emplace().T_world_camera = *line->image[1].T_world_camera;
       frame->posed = std::move(posed);
     }
-    if (!message.lenses_revision.empty() && message.lenses_revision != lenses_) ++other_lenses_;
+    if (!line->lenses_revision.empty() && line->lenses_revision != lenses_) ++other_lenses_;
     queue_->put(std::move(frame));
     ++good_;
   }
@@ -136,10 +134,13 @@ class Exporter {
   const LiveScene& scene_;
   std::shared_ptr<FrameQueue> queue_;
   Expected expected_;
-  std::array<std::int64_t, 2> last_{INT64_MIN, INT64_MIN};
+  SteppedClock clock_;
+  std::uint64_t reader_ = 0;
+  std::optional<PairIntake> intake_;
+  std::array<RobotTime, 2> last_{RobotTime{INT64_MIN}, RobotTime{INT64_MIN}};
   const std::string lenses_ = lenses_revision(*scene_.lenses());
-  std::uint64_t good_ = 0, other_lenses_ = 0;
-  std::map<std::string, std::uint64_t> refused_;
+  std::uint64_t good_ = 0, other_lenses_ = 0, refused_ = 0, pieces_ = 0, decoded_pieces_ = 0;
+  std::string refusal_;  // the last
 };
 
 /// The rig file that the recording was made with, and what it says besides.

@@ -1,13 +1,15 @@
 // A served robot and its operator in stepped time, recorded: what is in the file, the run that comes of it, and what
 // the recorded commands do to a robot that hears them again.
 #include <fstream>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "common/error.hpp"
 #include "link/control_wire/control_wire.hpp"
 #include "link/dds/topics.hpp"
+#include "link/operator_side/pair_intake.hpp"
 #include "link/recording/line_recorder.hpp"
 #include "link/recording/mcap_reader.hpp"
+#include "link/recording/playback.hpp"
 #include "link/recording/rig_files.hpp"
 #include "link/recording/run_export.hpp"
 #include "link/robot_side/rig_identity.hpp"
@@ -107,14 +109,16 @@ class RecordedLine : public PrivateNetworkTest {
     for (int i = 0; i < 200; ++i) {
       tick(served_, positions, true);
       positions[elbow] = begin + 0.2 * std::min(1.0, i / 150.0);
-      if (i % 10 == 0) send_pair();
+      if (i % 10 != 0) continue;
+      frames_->put(next_pair());
+      pairs_.step(0ns);
     }
     EXPECT_NEAR(robot_.shaft(elbow).position, begin + 0.2, 0.02);
     for (int i = 0; i < 5; ++i) tick(served_, positions, false);
     return begin;
   }
 
-  void send_pair() {
+  std::shared_ptr<LiveFrame> next_pair() {
     auto frame = std::make_shared<LiveFrame>();
     frame->number = sent_.size() + 1;
     for (ColourImage* image : {&frame->pair.left, &frame->pair.right}) {
@@ -135,9 +139,8 @@ class RecordedLine : public PrivateNetworkTest {
     posed.left.T_world_camera = Pose(Eigen::Translation3d(0.01 * static_cast<double>(sent_.size()), 0, 1));
     posed.right.emplace().T_world_camera = posed.left.T_world_camera * scene_.lenses()->T_left_right;
     frame->posed = posed;
-    frames_->put(frame);
-    pairs_.step(0ns);
     sent_.push_back(frame);
+    return frame;
   }
 
   void finish() {
@@ -210,6 +213,57 @@ TEST_F(RecordedLine, EverythingThatIsSaidIsInTheFileAndBecomesARun) {
     for (std::size_t node = 0; node < wanted.T_world_node.size(); ++node)
       EXPECT_TRUE(there.T_world_node[node].isApprox(wanted.T_world_node[node], 1e-6)) << i << ", node " << node;
   }
+}
+
+// Pieces of H.264, which the robot sends because somebody else reports: what that one could decode is in the run.
+TEST_F(RecordedLine, PairsOfAThinLineBecomeARunToo) {
+  const auto queue = std::make_shared<FrameQueue>(2);
+  FrameSender thin(program_, {1, robot_.rig().joint_names()}, &*scene_.lenses(), queue, {LinkCoding::h264, 90, 30},
+                   wall_, robot_.clock());
+  PairIntake intake(42, {}, robot_.clock());
+  Reader pieces(program_, topics::pieces());
+  Writer reports(program_, topics::reports());
+  std::vector<LineFramePtr> shown;
+  for (int i = 0; i < 300; ++i) {
+    robot_.run(10ms);
+    recorder_.step(robot_.clock().now());
+    file_.step();
+    if (i >= 30 && i % 10 == 0) queue->put(next_pair());
+    thin.step(0ns);
+    pieces.take<StereoPiece>({}, [&](StereoPiece&& piece, const Sample&) {
+      if (const LineFramePtr frame = intake.take(piece, {})) shown.push_back(frame);
+    });
+    if (const auto report = intake.report()) reports.write(*report);
+  }
+  finish();
+  ASSERT_GT(shown.size(), 20u);
+  const RunExport made = export_run({path_, folder_ / "run", {}, {}, false});
+  EXPECT_EQ(made.pairs, shown.size());
+  EXPECT_EQ(made.remarks, "");
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const RunImage& image = run.frames()[i].left;
+    EXPECT_EQ(image.time, shown[i]->image[0].captured);
+    EXPECT_TRUE(image.T_world_camera.isApprox(*shown[i]->image[0].T_world_camera, 1e-9));
+    EXPECT_EQ(cv::norm(read_run_image(image, run.lens_left()), shown[i]->image[0].bgr, cv::NORM_INF), 0);
+  }
+
+  Playback playback(RobotTime{1}, 1, {});  // whole pairs with JPEGs
+  std::size_t played = 0;
+  McapVisitor visitor;
+  visitor.message = [&](const McapMessage& message) {
+    for (const Playback::Message& one : playback.take(message)) {
+      if (one.topic->name != topics::frames().name) continue;
+      const auto frame = from_cdr<StereoFrame>(one.cdr);
+      EXPECT_TRUE(frame && objection(*frame).empty());
+      const cv::Mat picture = cv::imdecode(frame->right.data, cv::IMREAD_COLOR);
+      EXPECT_GT(psnr(picture, shown.at(played++)->image[1].bgr), 35);
+    }
+    return true;
+  };
+  std::ifstream stream(path_, std::ios::binary);
+  EXPECT_TRUE(read_mcap(stream, "session.mcap", visitor).whole);
+  EXPECT_EQ(played, shown.size());
 }
 
 // The same robot, and one that was started anew, hear all that the operator said once more.
