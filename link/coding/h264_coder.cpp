@@ -1,6 +1,31 @@
 #include "link/coding/h264_coder.hpp"
 
+#include <algorithm>
+
 namespace foresight {
+namespace {
+
+constexpr std::array<double, 4> kSoftness{0, 1.5, 3, 6};  // standard deviation in pixels, of an eye 640 wide
+constexpr double kTooLarge = 1.5;                         // bytes over wish
+constexpr std::size_t kSuddenly = 4;  // a wish that so much less than the last pair took is not waited for
+
+}  // namespace
+
+// Even the coarsest step has a floor: what moves has to be said somehow. A softer picture has a lower one.
+std::size_t H264PairEncoder::softness_for(std::size_t wish) const {
+  if (wish * kSuddenly < last_bytes_) return std::max<std::size_t>(softness_, 2);
+  return softness_;
+}
+
+void H264PairEncoder::learn(std::size_t bytes, std::size_t wish, std::size_t softness) {
+  last_bytes_ = bytes;
+  softness_ = softness;
+  if (static_cast<double>(bytes) > kTooLarge * static_cast<double>(wish)) {
+    softness_ = std::min(softness + 1, kSoftness.size() - 1);
+  } else if (bytes <= wish && softness > 0) {
+    --softness_;
+  }
+}
 
 H264PairEncoder::Lane& H264PairEncoder::choose(const PairWish& wish) {
   // The newest that may be built on, else one that has to begin anyway, else the newest that is on its way.
@@ -18,7 +43,7 @@ H264PairEncoder::Lane& H264PairEncoder::choose(const PairWish& wish) {
 
 CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& wish) {
   check(picture);
-  const Planes planes = to_planes(picture);
+  Planes planes = to_planes(picture);
   if (planes.size != size_) {
     lanes_ = {};
     size_ = planes.size;
@@ -34,7 +59,10 @@ CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& 
   pair.height = picture.left.rows;
   pair.colour = picture.left.channels() == 3;
   pair.stereo = !picture.right.empty();
+  const std::size_t softness = softness_for(bytes);
+  soften(planes, kSoftness[softness] * picture.left.cols / 640);
   pair.data = lane.encoder->encode(planes, bytes, intra);
+  if (!intra) learn(pair.data.size(), bytes, softness);
   lane.number = wish.number;
   lane.arrived = lane.broken = false;
   return pair;

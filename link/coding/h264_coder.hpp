@@ -22,10 +22,13 @@ class H264PairEncoder final : public PairEncoder {
     bool broken = true;        // has to begin anew
   };
   Lane& choose(const PairWish& wish);
+  std::size_t softness_for(std::size_t wish) const;
+  void learn(std::size_t bytes, std::size_t wish, std::size_t softness);
 
   std::array<Lane, kMostLanes> lanes_;
   cv::Size size_;
-  bool colour_ = false;
+  std::size_t softness_ = 0;    // of the next picture, so that it fits its wish
+  std::size_t last_bytes_ = 0;  // of the last predicted pair
 };
 
 class H264PairDecoder {

@@ -68,6 +68,17 @@ Planes to_planes(const StereoPicture& picture) {
   return planes;
 }
 
+void soften(Planes& planes, double sigma) {
+  if (sigma < 1.0 / 3) return;
+  const auto smooth = [](std::uint8_t* pixels, cv::Size size, double by) {
+    cv::Mat plane(size, CV_8UC1, pixels);
+    cv::GaussianBlur(plane, plane, {}, by);
+  };
+  smooth(planes.y(), planes.size, sigma);
+  smooth(planes.u(), planes.size / 2, sigma / 2);
+  smooth(planes.v(), planes.size / 2, sigma / 2);
+}
+
 StereoPicture from_planes(const Planes& planes, int width, int height, bool colour, bool stereo) {
   const cv::Size eye = even_size(width, height);
   const cv::Rect seen(0, 0, width, height);

@@ -24,6 +24,9 @@ struct Planes {
 /// BT.601, video range, as cv::COLOR_BGR2YUV_I420; grey pictures keep their full range and have no chroma.
 Planes to_planes(const StereoPicture& picture);
 
+/// Smooths all planes by a Gaussian of this standard deviation, in luma pixels; below a third of one not at all.
+void soften(Planes& planes, double sigma);
+
 /// Back again, into pictures of `width` x `height`.
 StereoPicture from_planes(const Planes& planes, int width, int height, bool colour, bool stereo);
 

@@ -140,6 +140,27 @@ TEST_F(H264Lanes, PairsTakeWhatTheyMay) {
   EXPECT_LT(ratios[ratios.size() * 19 / 20], 1.5);
 }
 
+// A line that carries next to nothing: what the coarsest step takes is too much, so the pictures get softer; later they
+// are as sharp as before.
+TEST_F(H264Lanes, GetsBelowTheFloorOfTheCoarsestStepAndBack) {
+  H264PairEncoder encoder;
+  H264PairDecoder decoder;
+  std::vector<std::size_t> thin;
+  double before = 0, after = 0;
+  for (std::uint32_t i = 1; i <= 60; ++i) {
+    const StereoPicture picture = moving_picture(instant(3 * i), {320, 240}, true, 6);
+    const std::size_t budget = i > 20 && i <= 35 ? 300 : 12'000;
+    const CodedPair pair = encoder.encode(picture, {.number = i, .bytes = budget});
+    const auto shown = decoder.decode(pair);
+    ASSERT_TRUE(shown);
+    if (i == 20) before = luma_psnr_db(picture, *shown);
+    if (i == 60) after = luma_psnr_db(picture, *shown);
+    if (i > 28 && i <= 35) thin.push_back(pair.data.size());
+  }
+  EXPECT_LT(*std::max_element(thin.begin(), thin.end()), 900U);
+  EXPECT_NEAR(after, before, 1);
+}
+
 TEST_F(H264Lanes, TakesGreyOddAndSinglePicturesAndChangesOfSize) {
   std::uint32_t number = 0;
   for (const bool colour : {false, true})
