@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/lens.hpp"
-#include "drivers/robot/robot_shape.hpp"
+#include "motion/robot_shape.hpp"
 #include "rig/rig_scene.hpp"
 #include "scene/stereo_lenses.hpp"
 

@@ -6,12 +6,8 @@
 namespace foresight {
 namespace {
 
-constexpr double kFirstSpeed = 0.1;    // of the ramp
 constexpr double kFrozenAfter = 0.25;  // seconds without any change of a position that should change
 constexpr double kFrozenWay = 0.25;    // share of the following error that the set-point moved meanwhile
-constexpr int kSamplesToRest = 4;      // poses checked on the way to where the robot would stop
-constexpr double kRetreatSpeed = 0.1;  // away from what the robot stands too close to
-constexpr double kSameMargin = 1e-9;   // metres, rounding
 constexpr double kHeldFor = 0.25;      // seconds: one who is held, brakes and tries again is held all the while
 // A drive that homes opens its brake first, and rests for a moment where it turns round at its switch.
 constexpr double kHomingFrozenAfter = 1;  // seconds
@@ -20,13 +16,7 @@ constexpr int kHomingJumps = 1;           // where it sets its zero
 }  // namespace
 
 SafetyGate::SafetyGate(GateOptions options, RobotShape* shape)
-    : options_(std::move(options)), shape_(shape), count_(options_.joints.size()) {
-  options_.validate("safety gate");
-  if (shape_ != nullptr) {
-    shape_->surround(options_.surroundings);
-    here_.resize(shape_->couples());
-    there_.resize(shape_->couples());
-  }
+    : options_(std::move(options)), shape_(shape), count_(options_.joints.size()), motion_(options_, shape) {
   latch(GateReason::not_started, -1, "", false);
 }
 
@@ -45,7 +35,7 @@ bool SafetyGate::reset(std::span<const DriveFeedback> feedback, RobotTime now) n
     return false;
   }
   for (std::size_t i = 0; i < count_; ++i) {
-    motion_[i] = {feedback[i].position, 0, 0};
+    motion_.set(i, {feedback[i].position, 0, 0});
     target_[i] = feedback[i].position;
     watched_[i] = {feedback[i].position, feedback[i].position, now, feedback[i].time};
   }
@@ -76,7 +66,7 @@ bool SafetyGate::begin_homing(std::size_t joint, RobotTime now) noexcept {
 
 void SafetyGate::end_homing(const DriveFeedback& feedback, RobotTime now) noexcept {
   if (status_.state != GateState::homing) return;
-  motion_[*homing_] = {feedback.position, 0, 0};
+  motion_.set(*homing_, {feedback.position, 0, 0});
   target_[*homing_] = feedback.position;
   watched_[*homing_] = {feedback.position, feedback.position, now, feedback.time};
   homing_.reset();
@@ -124,12 +114,8 @@ GateReason SafetyGate::judge(const MotionCommand& command, const OperatorRecord&
   if (command.session < who.session || (command.session == who.session && command.sequence <= who.sequence))
     return GateReason::out_of_order;
   for (std::size_t i = 0; i < count_; ++i) {
-    const JointLimits& limits = options_.joints[i].limits;
-    // A little beyond, as rounding makes it, means the limit.
-    constexpr double kRounding = 1e-6;
     if (!std::isfinite(command.position[i])) return GateReason::not_finite;
-    if (command.position[i] < limits.min_position - kRounding || command.position[i] > limits.max_position + kRounding)
-      return GateReason::out_of_range;
+    if (!options_.joints[i].reaches(command.position[i])) return GateReason::out_of_range;
   }
   return GateReason::none;
 }
@@ -225,108 +211,39 @@ GateReason SafetyGate::wrong_while_homing(std::size_t joint, const DriveFeedback
   return GateReason::none;
 }
 
-SafetyGate::Motions SafetyGate::towards_target(double speed, double dt) const noexcept {
-  Motions next = motion_;
-  for (std::size_t i = 0; i < count_; ++i)
-    next[i] = approach(motion_[i], target_[i], options_.joints[i].limits, speed, dt);
-  return next;
-}
-
-/// `check` looks at the margins (there_) of poses from the next one to where the robot would stop after it.
-template <typename Check>
-bool SafetyGate::all_to_rest(const Motions& next, double dt, Check&& check) noexcept {
-  JointValues here{}, rest{}, between{};
-  for (std::size_t i = 0; i < count_; ++i) {
-    here[i] = next[i].position;
-    rest[i] = stop_position(next[i], options_.joints[i].limits, dt);
-  }
-  for (int k = 0; k <= kSamplesToRest; ++k) {
-    const double share = static_cast<double>(k) / kSamplesToRest;
-    for (std::size_t i = 0; i < count_; ++i) between[i] = here[i] + share * (rest[i] - here[i]);
-    shape_->margins({between.data(), count_}, there_);
-    if (!check()) return false;
-  }
-  return true;
-}
-
-/// The couple of parts that would come too close.
-std::optional<std::size_t> SafetyGate::blocking(const Motions& next, double dt) noexcept {
-  std::optional<std::size_t> out;
-  if (shape_ == nullptr) return out;
-  all_to_rest(next, dt, [&] {
-    const auto least = std::min_element(there_.begin(), there_.end());
-    if (least == there_.end() || *least >= 0) return true;
-    out = static_cast<std::size_t>(least - there_.begin());
-    return false;
-  });
-  return out;
-}
-
-void SafetyGate::measure_here() noexcept {
-  JointValues now{};
-  for (std::size_t i = 0; i < count_; ++i) now[i] = motion_[i].position;
-  shape_->margins({now.data(), count_}, here_);
-}
-
-/// After measure_here(): the couple keeps the robot from going on.
-void SafetyGate::note_hold(std::size_t couple, RobotTime now) noexcept {
+/// `blocked` keeps the robot from going on from `before`.
+void SafetyGate::note_hold(const GuardedMotion::Blocked& blocked, const GuardedMotion::Motions& before,
+                           RobotTime now) noexcept {
   GateHold& hold = status_.hold;
   if (hold.joint < 0) hold.since = now;
   held_ = now;
-  hold.parts = shape_->message(couple);
-  hold.kept_apart = shape_->kept_apart(couple);
-  hold.apart = here_[couple] + hold.kept_apart;
+  hold.parts = shape_->message(blocked.couple);
+  hold.kept_apart = shape_->kept_apart(blocked.couple);
+  hold.apart = blocked.margin + hold.kept_apart;
   double longest = -1;
   for (std::size_t i = 0; i < count_; ++i) {
-    const double time = std::abs(target_[i] - motion_[i].position) / options_.joints[i].limits.velocity;
+    const double time = std::abs(target_[i] - before[i].position) / options_.joints[i].limits.velocity;
     if (time <= longest) continue;
     longest = time;
     hold.joint = static_cast<int>(i);
-    hold.stands = motion_[i].position;
+    hold.stands = before[i].position;
     hold.asked = target_[i];
   }
 }
 
-/// After measure_here(), which found some parts too close: these only ever part, the closest of them for certain, and
-/// no others come too close. Loses what was measured.
-bool SafetyGate::retreats(const Motions& next, double dt) noexcept {
-  const double least = *std::min_element(here_.begin(), here_.end());
-  if (least >= 0) return false;
-  const bool only_part = all_to_rest(next, dt, [this] {
-    for (std::size_t c = 0; c < there_.size(); ++c)
-      if (there_[c] < 0 && there_[c] < here_[c] - kSameMargin) return false;
-    std::swap(here_, there_);
-    return true;
-  });
-  return only_part && *std::min_element(here_.begin(), here_.end()) > least + kSameMargin;
-}
-
-void SafetyGate::halt(double dt) noexcept {
-  for (std::size_t i = 0; i < count_; ++i) motion_[i] = brake(motion_[i], options_.joints[i].limits, dt);
-}
-
-void SafetyGate::move(RobotTime now, double dt) noexcept {
-  const Motions next = towards_target(status_.speed, dt);
-  const auto blocked = blocking(next, dt);
+void SafetyGate::move(RobotTime now) noexcept {
+  const GuardedMotion::Motions before = motion_.all();
+  const auto blocked = motion_.go_towards(target_, status_.speed);
   status_.reason = blocked ? GateReason::obstructed : GateReason::none;
-  status_.detail = blocked ? shape_->message(*blocked) : "";
-  if (!blocked) {
-    motion_ = next;
-    if (now - held_ > seconds(kHeldFor)) status_.hold = {};
-    return;
-  }
-  measure_here();
-  note_hold(*blocked, now);
-  const Motions slow = towards_target(std::min(status_.speed, kRetreatSpeed), dt);
-  if (retreats(slow, dt))
-    motion_ = slow;
-  else
-    halt(dt);
+  status_.detail = blocked ? shape_->message(blocked->couple) : "";
+  if (blocked)
+    note_hold(*blocked, before, now);
+  else if (now - held_ > seconds(kHeldFor))
+    status_.hold = {};
 }
 
 void SafetyGate::step(RobotTime now, std::span<const MotionCommand> commands,
                       std::span<const DriveFeedback> feedback) noexcept {
-  const double dt = 1 / options_.rate_hz;
   if (feedback.size() != count_) return latch(GateReason::feedback_lost, -1, "feedback of too few joints", true);
   watch(feedback, now);
   const bool followed = status_.state == GateState::following;
@@ -336,13 +253,12 @@ void SafetyGate::step(RobotTime now, std::span<const MotionCommand> commands,
   if (status_.state == GateState::following && now - last_command_ > seconds(options_.command_age_s))
     stop(GateReason::operator_lost);
   if (status_.state == GateState::following) {
-    const double ramped = options_.ramp_s > 0 ? to_seconds(now - engaged_) / options_.ramp_s : 1;
-    status_.speed = std::clamp(kFirstSpeed + (1 - kFirstSpeed) * ramped, kFirstSpeed, 1.0);
-    move(now, dt);
+    status_.speed = options_.speed_after(now - engaged_);
+    move(now);
     return;
   }
   status_.hold = {};
-  halt(dt);
+  motion_.halt();
   if (status_.state == GateState::stopping && set_points_rest()) {
     status_.state = GateState::idle;
     status_.operator_id = 0;
@@ -351,8 +267,7 @@ void SafetyGate::step(RobotTime now, std::span<const MotionCommand> commands,
 }
 
 bool SafetyGate::set_points_rest() const noexcept {
-  return std::all_of(motion_.begin(), motion_.begin() + static_cast<std::ptrdiff_t>(count_),
-                     [](const JointMotion& m) { return m.velocity == 0 && m.acceleration == 0; });
+  return motion_.at_rest();
 }
 
 }  // namespace foresight

@@ -1,8 +1,8 @@
 // Stands between every command and the drives. What leaves it can be driven.
 //
-//   command --> accepted? --> approach() per joint --> whole arm clear until it stands? --> set-points
-//                  |                                        |
-//                  no: last target holds                    no: brake()
+//   command --> accepted? --> GuardedMotion: approach() per joint --> whole arm clear until it stands? --> set-points
+//                  |                                                       |
+//                  no: last target holds                                   no: brake()
 //
 // A set-point is only ever a cycle's continuation of the one before it: from each of them the robot
 // can stop within all limits, clear of everything, which the gate checks before it takes the step.
@@ -23,14 +23,10 @@
 #include <vector>
 
 #include "drivers/drive/drive.hpp"
-#include "drivers/robot/joint_motion.hpp"
 #include "drivers/robot/operator_records.hpp"
-#include "drivers/robot/robot_shape.hpp"
+#include "motion/guarded_motion.hpp"
 
 namespace foresight {
-
-inline constexpr std::size_t kMostJoints = 16;
-using JointValues = std::array<double, kMostJoints>;
 
 /// What an operator asks for. A plain value.
 struct MotionCommand {
@@ -41,24 +37,6 @@ struct MotionCommand {
   std::size_t joints = 0;         ///< how many positions follow; all that the rig has
   JointValues position{};         ///< rad or m, in the rig's order
   std::uint64_t session = 0;      ///< grows with every start of the operator, which counts `sequence` anew
-};
-
-struct GateJoint {
-  std::string name;
-  JointLimits limits;
-  double following_error = 0.1;  ///< largest distance between set-point and feedback; > 0
-  bool keeps_grip = false;       ///< a gripper: never told to release by a stop
-};
-
-struct GateOptions {
-  double rate_hz = 250;
-  double command_age_s = 0.1;     ///< older commands are dropped; the operator counts as lost then
-  double feedback_age_s = 0.05;   ///< older feedback is frozen feedback
-  double ramp_s = 2;              ///< time from a tenth to the full speed after each start
-  std::vector<GateJoint> joints;  ///< 1 .. kMostJoints
-  Surroundings surroundings;
-  /// Throws InputError at `where`: numbers out of range, limits that contradict each other.
-  void validate(const std::string& where) const;
 };
 
 enum class GateState : std::uint8_t {
@@ -176,23 +154,15 @@ class SafetyGate {
   GateReason wrong_while_homing(std::size_t joint, const DriveFeedback& f, RobotTime now) noexcept;
   void latch(GateReason reason, int joint, const char* detail, bool quick_stop) noexcept;
   void stop(GateReason reason) noexcept;
-  void move(RobotTime now, double dt) noexcept;
-  void measure_here() noexcept;
-  void note_hold(std::size_t couple, RobotTime now) noexcept;
-  void halt(double dt) noexcept;
-  using Motions = std::array<JointMotion, kMostJoints>;
-  Motions towards_target(double speed, double dt) const noexcept;
-  template <typename Check>
-  bool all_to_rest(const Motions& next, double dt, Check&& check) noexcept;
-  std::optional<std::size_t> blocking(const Motions& next, double dt) noexcept;
-  bool retreats(const Motions& next, double dt) noexcept;
+  void move(RobotTime now) noexcept;
+  void note_hold(const GuardedMotion::Blocked& blocked, const GuardedMotion::Motions& before, RobotTime now) noexcept;
 
   GateOptions options_;
   RobotShape* shape_;
   std::size_t count_;
   GateStatus status_;
   bool quick_stop_ = false;
-  Motions motion_{};
+  GuardedMotion motion_;
   JointValues target_{};
   RobotTime engaged_, last_command_, held_;
   OperatorRecords operators_;
@@ -204,7 +174,6 @@ class SafetyGate {
   std::array<Watched, kMostJoints> watched_{};
   std::optional<std::size_t> homing_;  // a joint without a set-point
   int jumps_ = 0;                      // of its position
-  std::vector<double> here_, there_;   // margins of the shape's couples
 };
 
 }  // namespace foresight

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "drivers/robot/robot_shape.hpp"
+#include "motion/robot_shape.hpp"
 #include "tests/robot/gate_fixture.hpp"
 #include "tests/scene/test_run.hpp"
 

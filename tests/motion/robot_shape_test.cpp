@@ -1,4 +1,4 @@
-#include "drivers/robot/robot_shape.hpp"
+#include "motion/robot_shape.hpp"
 
 #include <gtest/gtest.h>
 

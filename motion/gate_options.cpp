@@ -1,8 +1,9 @@
-// What the gate can be told.
+#include "motion/gate_options.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 #include "common/error.hpp"
-#include "drivers/robot/safety_gate.hpp"
 
 namespace foresight {
 namespace {
@@ -42,6 +43,16 @@ void GateOptions::validate(const std::string& where) const {
   }
   require(surroundings.clearance > 0 && surroundings.clearance < 1, where,
           "the clearance is " + std::to_string(surroundings.clearance), "choose between 0 and 1 m");
+}
+
+bool GateJoint::reaches(double position) const noexcept {
+  constexpr double kRounding = 1e-6;
+  return position >= limits.min_position - kRounding && position <= limits.max_position + kRounding;
+}
+
+double GateOptions::speed_after(Duration engaged) const noexcept {
+  const double ramped = ramp_s > 0 ? to_seconds(engaged) / ramp_s : 1;
+  return std::clamp(kFirstSpeed + (1 - kFirstSpeed) * ramped, kFirstSpeed, 1.0);
 }
 
 }  // namespace foresight

@@ -1,4 +1,4 @@
-#include "drivers/robot/joint_motion.hpp"
+#include "motion/joint_motion.hpp"
 
 #include <gtest/gtest.h>
 
