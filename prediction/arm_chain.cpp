@@ -69,9 +69,9 @@ ArmJoint arm_joint(const UrdfJoint& from, const Pose& T_base_joint, const std::s
 ArmChain::ArmChain(std::vector<ArmJoint> joints, const Pose& T_base_tip_at_zero, const std::string& where)
     : joints_(std::move(joints)), T_base_tip_at_zero_(T_base_tip_at_zero) {
   if (joints_.empty()) throw InputError(where, "has no moving joint between base and tip", "choose a tip that moves");
-  if (joints_.size() > kMostJoints)
+  if (joints_.size() > kMostArmJoints)
     throw InputError(where, "has " + std::to_string(joints_.size()) + " moving joints between base and tip",
-                     "choose base and tip with at most " + std::to_string(kMostJoints) + " between them");
+                     "choose base and tip with at most " + std::to_string(kMostArmJoints) + " between them");
   if (!T_base_tip_at_zero.matrix().allFinite()) throw InputError(where, "its tip is nowhere", "write finite numbers");
   const auto n = static_cast<Eigen::Index>(joints_.size());
   lower_.resize(n), upper_.resize(n), middle_.resize(n);
@@ -117,7 +117,7 @@ Pose ArmChain::tip_pose(const JointVector& q) const noexcept {
 }
 
 Pose ArmChain::tip_pose(const JointVector& q, TipChange& change) const noexcept {
-  std::array<Eigen::Vector3d, kMostJoints> points;
+  std::array<Eigen::Vector3d, kMostArmJoints> points;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -150,17 +150,19 @@ bool ArmChain::within_limits(const JointVector& q, double tolerance) const noexc
   return true;
 }
 
-ArmChain read_arm_chain(const std::filesystem::path& urdf, const std::string& tip, const std::string& base) {
-  const std::string file = urdf.string();
-  const UrdfRobot robot = read_urdf(urdf, urdf.parent_path(), UrdfShapes::none);
-  const std::size_t first = base.empty() ? 0 : find_link(robot, base, file);
+ArmChain arm_chain(const UrdfRobot& robot, const std::string& tip, const std::string& base, const std::string& where) {
+  const std::size_t first = base.empty() ? 0 : find_link(robot, base, where);
   Pose T = Pose::Identity();
   std::vector<ArmJoint> joints;
-  for (const std::size_t j : joints_between(robot, first, find_link(robot, tip, file), file)) {
+  for (const std::size_t j : joints_between(robot, first, find_link(robot, tip, where), where)) {
     T = T * robot.joints[j].T_parent_joint;
-    if (robot.joints[j].kind != UrdfJoint::Kind::fixed) joints.push_back(arm_joint(robot.joints[j], T, file));
+    if (robot.joints[j].kind != UrdfJoint::Kind::fixed) joints.push_back(arm_joint(robot.joints[j], T, where));
   }
-  return ArmChain(std::move(joints), T, file);
+  return ArmChain(std::move(joints), T, where);
+}
+
+ArmChain read_arm_chain(const std::filesystem::path& urdf, const std::string& tip, const std::string& base) {
+  return arm_chain(read_urdf(urdf, urdf.parent_path(), UrdfShapes::none), tip, base, urdf.string());
 }
 
 Vector6 pose_difference(const Pose& now, const Pose& then) noexcept {

@@ -18,10 +18,10 @@
 
 namespace foresight {
 
-inline constexpr std::size_t kMostJoints = 12;
+inline constexpr std::size_t kMostArmJoints = 12;
 
 /// One number per joint, in rad or m. Never allocates.
-using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMostJoints), 1>;
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMostArmJoints), 1>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct ArmJoint {
@@ -38,12 +38,12 @@ inline constexpr double kAssumedVelocity = 1;  ///< rad/s or m/s
 
 /// Change of the tip per change of each joint: of the tip's position (m), then of its rotation vector (rad), both in
 /// the base frame.
-using TipChange = std::array<Vector6, kMostJoints>;
+using TipChange = std::array<Vector6, kMostArmJoints>;
 
 /// Immutable; any thread. No method but the constructor allocates or throws.
 class ArmChain {
  public:
-  /// Throws InputError at `where`: no joint or more than kMostJoints, numbers that are not finite, lower >= upper, a
+  /// Throws InputError at `where`: no joint or more than kMostArmJoints, numbers that are not finite, lower >= upper, a
   /// velocity <= 0.
   ArmChain(std::vector<ArmJoint> joints, const Pose& T_base_tip_at_zero, const std::string& where);
 
@@ -72,9 +72,11 @@ class ArmChain {
 
 /// The joints from link `base` (empty: the root) to link `tip`. Visuals are not read: a URDF without its meshes will
 /// do. Throws InputError naming file, link or joint: what read_urdf refuses; no such link (with the nearest); a tip
-/// that is not below the base, or with no moving joint between the two, or more than kMostJoints; a joint on the way
+/// that is not below the base, or with no moving joint between the two, or more than kMostArmJoints; a joint on the way
 /// that follows another, whose limits leave it no way to move, or whose numbers are not finite.
 ArmChain read_arm_chain(const std::filesystem::path& urdf, const std::string& tip, const std::string& base = "");
+/// The same of a robot that was read; messages name `where`.
+ArmChain arm_chain(const UrdfRobot& robot, const std::string& tip, const std::string& base, const std::string& where);
 
 /// What lies between two poses of the tip, in the base frame: position, then rotation vector. exp(step) * now = then.
 Vector6 pose_difference(const Pose& now, const Pose& then) noexcept;

@@ -25,6 +25,10 @@ class CalibratedSigma {
   CalibratedSigma(double rms, double least, double memory, double scale)
       : mean_square_(rms * rms), least_(least), memory_(memory), scale_(scale) {}
 
+  /// What of an error is scored where a few far larger ones must not decide what is told for seconds: an event that no
+  /// uncertainty covers, of which others tell.
+  static double usual_part(double error, double predicted) noexcept { return std::min(error, 5 * predicted); }
+
   double sigma() const noexcept { return std::max(least_, scale_ * std::sqrt(mean_square_)); }
 
   /// A prediction made with `predicted` as its sigma was off by `error` >= 0; the truth before came `seconds` ago.

@@ -26,10 +26,10 @@ Vector6 weighted_error(const Pose& T_base_tip, const DescentGoal& goal) noexcept
 
 JointVector damped_step(const ArmChain& chain, const DescentGoal& goal, const TipChange& change, const Vector6& e,
                         double mu, const JointVector& q, const JointVector& lower, const JointVector& upper,
-                        const JointVector* wish, std::array<bool, kMostJoints>* held) noexcept {
+                        const JointVector* wish, std::array<bool, kMostArmJoints>* held) noexcept {
   const std::size_t n = chain.size();
   const Vector6 w = weights(goal);
-  std::array<bool, kMostJoints> fixed{};
+  std::array<bool, kMostArmJoints> fixed{};
   JointVector step = JointVector::Zero(static_cast<Eigen::Index>(n));
   // Each round fixes at least one joint more, on its limit.
   for (std::size_t round = 0; round <= n; ++round) {

@@ -44,7 +44,7 @@ DescentEnd descend(const ArmChain& chain, const DescentGoal& goal, const Descent
 /// limit stopped. `change` is weighted in place.
 JointVector damped_step(const ArmChain& chain, const DescentGoal& goal, const TipChange& change, const Vector6& e,
                         double mu, const JointVector& q, const JointVector& lower, const JointVector& upper,
-                        const JointVector* wish = nullptr, std::array<bool, kMostJoints>* held = nullptr) noexcept;
+                        const JointVector* wish = nullptr, std::array<bool, kMostArmJoints>* held = nullptr) noexcept;
 
 /// The smallest singular value of the weighted tip change: how far the hand moves (rad, m / length) per rad of the
 /// joints in the direction in which it moves least.

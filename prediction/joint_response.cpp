@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prediction/rate_limit.hpp"
+
 namespace foresight {
 namespace {
 
@@ -16,6 +18,8 @@ constexpr double kSigmaOver = 5;                      // s
 constexpr std::array kHorizon{0.03, 0.1, 0.3, 1.0};   // s
 constexpr std::array kMeanOver{0.0, 0.02, 0.2, 2.0};  // s
 constexpr double kGuessEvery = 0.01;                  // s
+constexpr double kFarMore = 0.5;                      // of the squares that are left unexplained
+constexpr std::array kSpeeds{1.0, 0.98, 0.95, 1.03};  // of the largest speed seen
 constexpr std::size_t kRestTerms = kMeanOver.size() - 1;
 
 Weights rest_inputs(const std::array<double, kMeanOver.size()>& means) {
@@ -41,8 +45,10 @@ std::pair<std::size_t, double> between_horizons(double ahead) {
 
 JointResponse::JointResponse(const JointResponseOptions& options)
     : options_(options),
+      asked_(kCommands),
       commands_(kCommands),
       states_(kStates),
+      tried_(kCommands),
       fit_{StepResponse::pure_delay(options.expected_delay, kLongestAge), {}},
       learnt_means_(kStates),
       learnt_unexplained_(kStates),
@@ -51,12 +57,18 @@ JointResponse::JointResponse(const JointResponseOptions& options)
   for (const double horizon : kHorizon) {
     const auto guesses = static_cast<std::size_t>(std::ceil(horizon / kGuessEvery)) + 2;
     rests_.push_back({Weights::Constant(kRestTerms, 0.3),
-                      CalibratedSigma(0.02, kLeastSigma, kSigmaOver, CalibratedSigma::kScaleOfOne),
+                      CalibratedSigma(options.first_sigma, kLeastSigma, kSigmaOver, CalibratedSigma::kScaleOfOne),
                       LastOf<PredictedAt>(guesses)});
   }
 }
 
-bool JointResponse::observe(double time, double position) noexcept {
+bool JointResponse::command(double time, double position) noexcept {
+  if (!asked_.add(time, position)) return false;
+  append_limited(commands_, {time, position}, speed_);
+  return true;
+}
+
+bool JointResponse::observe(double time, double position, bool typical) noexcept {
   if (!std::isfinite(time) || !std::isfinite(position) || commands_.empty()) return false;
   if (observed_ && !(time > newest_.time)) return false;
   const TimedPosition before = newest_, now{time, position};
@@ -71,7 +83,8 @@ bool JointResponse::observe(double time, double position) noexcept {
   newest_ = now;
   observed_ = true;
   inputs_now_ = fit_.model.inputs(commands_, time, time);
-  if (states_.empty() || time - states_.values().newest().time >= options_.least_step) states_.add(time, position);
+  if (typical && (states_.empty() || time - states_.values().newest().time >= options_.least_step))
+    states_.add(time, position);
   guess();
   return true;
 }
@@ -82,7 +95,8 @@ void JointResponse::judge(const TimedPosition& before, const TimedPosition& now)
       const PredictedAt& guess = rest.guesses[0];
       const double truth =
           std::lerp(before.position, now.position, (guess.time - before.time) / (now.time - before.time));
-      rest.sigma.score(std::abs(guess.position - truth), guess.sigma, kGuessEvery);
+      const double off = std::abs(guess.position - truth);
+      rest.sigma.score(CalibratedSigma::usual_part(off, guess.sigma), guess.sigma, kGuessEvery);
     }
 }
 
@@ -92,15 +106,41 @@ void JointResponse::guess() noexcept {
     const double then = newest_.time + kHorizon[i];
     if (!guesses.empty() && then - guesses.newest().time < kGuessEvery) continue;
     // Commands that are not known yet would make another prediction of it than the one that is asked for then.
-    if (commands_.values().newest().time < then) continue;
+    if (asked_.values().newest().time < then) continue;
     const PredictedPosition predicted = at(then);
     if (predicted.valid) guesses.next() = {then, predicted.position, predicted.sigma};
   }
 }
 
+void JointResponse::limit_commands(PositionHistory& limited, double speed) const noexcept {
+  limited.clear();
+  for (std::size_t i = 0; i < asked_.values().size(); ++i) append_limited(limited, asked_.values()[i], speed);
+}
+
+// Where commands ask for more speed than was ever seen, the drive may have a largest one. It has where that explains
+// far more.
+void JointResponse::find_speed(StepResponseFit& best) noexcept {
+  const double before = speed_;
+  speed_ = std::numeric_limits<double>::infinity();
+  const auto reached = speed_reached(asked_, states_);
+  if (reached) {
+    double least = kFarMore * best.squares / static_cast<double>(best.count);
+    for (const double share : kSpeeds) {
+      limit_commands(tried_, share * *reached);
+      const auto found = fit_step_response(tried_, states_);
+      if (!found || found->squares / static_cast<double>(found->count) >= least) continue;
+      least = found->squares / static_cast<double>(found->count);
+      speed_ = share * *reached;
+      best = *found;
+    }
+  }
+  if (speed_ != before) limit_commands(commands_, speed_);
+}
+
 bool JointResponse::identify() noexcept {
-  const auto found = fit_step_response(commands_, states_);
+  auto found = fit_step_response(asked_, states_);
   if (!found) return false;
+  find_speed(*found);
   fit_ = *found;
   figures_ = fit_.figures();
   std::size_t first = 0;

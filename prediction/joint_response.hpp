@@ -28,6 +28,7 @@ struct JointResponseOptions {
   double least_step = 0.004;     ///< s: states that come faster are not kept for identification
   double stale = 0.5;            ///< s without a state: what is unexplained is learnt anew
   double farthest = 3;           ///< s ahead of the newest state
+  double first_sigma = 0.02;     ///< rad or m: until the first errors were seen; > 0
 };
 
 /// One thread. Only the constructor allocates; no method throws.
@@ -36,14 +37,33 @@ class JointResponse {
   explicit JointResponse(const JointResponseOptions& options = {});
 
   /// The position that is commanded from `time` on. False where not finite, or not after the one before.
-  bool command(double time, double position) noexcept { return commands_.add(time, position); }
-  /// The position that was measured at `time`; the commands up to then are known. False likewise.
-  bool observe(double time, double position) noexcept;
+  bool command(double time, double position) noexcept;
+  /// Commands later than `time` were only expected; those that follow are known better. States up to `time` may have
+  /// been observed, no later ones.
+  void forget_commands_after(double time) noexcept {
+    asked_.forget_after(time);
+    commands_.forget_after(time);
+  }
+  /// Nothing is known of the commands and states so far; what was learnt of the drive stays.
+  void begin_anew() noexcept {
+    asked_.clear();
+    commands_.clear();
+    observed_ = false;
+  }
+  /// The position that was measured at `time`; the commands up to then are known. Not `typical`: something else than
+  /// the drive moved or held the joint, and nothing is learnt of the drive from it. False likewise.
+  bool observe(double time, double position, bool typical = true) noexcept;
 
   /// Learns from the last half minute, some ms of CPU time: every second or so. False, and all stays as it was: too few
   /// states, or none of them moved.
   bool identify() noexcept;
   const ResponseFigures& figures() const noexcept { return figures_; }
+  /// The speed that the drive does not exceed, though its commands ask for more; infinite where none was seen.
+  double largest_speed() const noexcept { return speed_; }
+  bool identified() const noexcept { return identified_; }
+  /// How far the newest state is from where the commands so far and the usual difference of the last seconds put it:
+  /// little, unless something else than the drive moves or holds the joint. 0 before any state.
+  double astray() const noexcept { return means_.front() - means_.back(); }
 
   /// The position at `time`, of the states so far and the commands up to `time`.
   PredictedPosition at(double time) const noexcept;
@@ -59,6 +79,8 @@ class JointResponse {
     CalibratedSigma sigma;
     LastOf<PredictedAt> guesses;  // to be judged when their time has come
   };
+  void limit_commands(PositionHistory& limited, double speed) const noexcept;
+  void find_speed(StepResponseFit& best) noexcept;
   void learn_rest(std::size_t first) noexcept;
   void learn_rest(std::size_t first, std::size_t horizon) noexcept;
   double rest(double ahead) const noexcept;
@@ -67,7 +89,9 @@ class JointResponse {
   void guess() noexcept;
 
   JointResponseOptions options_;
-  PositionHistory commands_, states_;
+  PositionHistory asked_, commands_, states_;  // commands as they came, and as the drive can follow them
+  PositionHistory tried_;                      // room for find_speed
+  double speed_ = std::numeric_limits<double>::infinity();
   TimedPosition newest_;
   bool observed_ = false, identified_ = false;
   StepResponseFit fit_;

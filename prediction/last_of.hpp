@@ -32,6 +32,7 @@ class LastOf {
     first_ = (first_ + 1) % values_.size();
     --count_;
   }
+  void drop_newest() noexcept { --count_; }
   void clear() noexcept { first_ = count_ = 0; }
 
  private:

@@ -49,7 +49,7 @@ PathFollower::PathFollower(const InverseKinematics& kinematics, const JointVecto
 JointVector PathFollower::freedom(const TipChange& change) const noexcept {
   const std::size_t n = chain_.size();
   const double length = kinematics_.length();
-  std::array<Vector6, kMostJoints> solved;
+  std::array<Vector6, kMostArmJoints> solved;
   Eigen::Matrix<double, 6, 6> A = 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
   const auto weighted = [&](Vector6 column) {
     column.head<3>() /= length;

@@ -44,4 +44,12 @@ bool PositionHistory::covers(double time, double gap) const noexcept {
   return values_[after].time - values_[after - 1].time <= gap;
 }
 
+double PositionHistory::nearest(double time) const noexcept {
+  const std::size_t after = first_after(time);
+  double out = std::numeric_limits<double>::infinity();
+  if (after < values_.size()) out = values_[after].time - time;
+  if (after > 0) out = std::min(out, time - values_[after - 1].time);
+  return out;
+}
+
 }  // namespace foresight

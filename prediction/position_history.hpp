@@ -20,6 +20,11 @@ class PositionHistory {
 
   /// False, and not taken: not finite, or not after the one before.
   bool add(double time, double position) noexcept;
+  /// Those later than `time` were only expected: others will come in their place.
+  void forget_after(double time) noexcept {
+    while (!values_.empty() && values_.newest().time > time) values_.drop_newest();
+  }
+  void clear() noexcept { values_.clear(); }
   bool empty() const noexcept { return values_.empty(); }
   const LastOf<TimedPosition>& values() const noexcept { return values_; }
   /// Of those up to `until`, as if there were no others: linear between two that are `sparse` apart at most, else the
@@ -28,6 +33,8 @@ class PositionHistory {
             double sparse = kSparse) const noexcept;
   /// Whether values on both sides of `time` are no farther apart than `gap`.
   bool covers(double time, double gap) const noexcept;
+  /// How far in time the nearest value is. Not empty.
+  double nearest(double time) const noexcept;
 
  private:
   std::size_t first_after(double time) const noexcept;

@@ -6,6 +6,7 @@
 #include "apps/bench/prediction_head.hpp"
 #include "apps/bench/prediction_ik.hpp"
 #include "apps/bench/prediction_response.hpp"
+#include "apps/bench/prediction_robot.hpp"
 
 namespace foresight {
 namespace {
@@ -82,6 +83,30 @@ void add_response(Command& prediction, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_prediction_response(*options); }; });
 }
 
+void add_robot(Command& prediction, std::function<int()>& action) {
+  auto* command = prediction.add_subcommand("robot", "Where a robot will be when set-points act that are on their way");
+  auto options = std::make_shared<PredictionRobotOptions>();
+  command->add_option("--rig", options->rig, "Rig; its drives are emulated")->reads()->required();
+  command->add_option("--delay-ms", options->delay_ms, "Of the line, each way")
+      ->check(from_to(0, 1400))
+      ->capture_default_str();
+  command->add_option("--jitter-ms", options->jitter_ms, "That each message may take more, evenly")
+      ->check(from_to(0, 1000))
+      ->capture_default_str();
+  command->add_option("--loss", options->loss, "Share of messages that is lost")
+      ->check(from_to(0, 0.9))
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "Of motion that is judged, after 10 in which drives are learnt")
+      ->check(from_to(1, 3600))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of the motion and the line")->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "Example: foresight bench prediction robot --rig configs/minerva.yaml --json robot.json\n"
+      "Exit code: 1 where nothing could be judged.");
+  command->callback([options, &action] { action = [options] { return bench_prediction_robot(*options); }; });
+}
+
 }  // namespace
 
 void add_prediction_benches(Command& bench, std::function<int()>& action) {
@@ -91,6 +116,7 @@ void add_prediction_benches(Command& bench, std::function<int()>& action) {
   add_head(*prediction, action);
   add_hand(*prediction, action);
   add_response(*prediction, action);
+  add_robot(*prediction, action);
 }
 
 }  // namespace foresight

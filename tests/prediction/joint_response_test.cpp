@@ -22,6 +22,7 @@ struct Drive {
   double quantum = 2e-5, offset = 0.005;  // rad
   double jitter = 0;                      // of the states' times, as a share of their step
   double friction = 0;                    // rad of following error that it takes to move
+  double fastest = 1e9;                   // rad/s
 };
 
 double wish(double t) {  // rad
@@ -41,6 +42,7 @@ std::vector<double> shaft(const Drive& drive, double seconds) {
     } else {
       velocity = std::copysign(std::max(0.0, std::abs(off) - drive.friction), off) / drive.lag;
     }
+    velocity = std::clamp(velocity, -drive.fastest, drive.fastest);
     position += velocity * kTick;
     positions.push_back(position);
   }
@@ -51,6 +53,7 @@ struct Outcome {
   ResponseFigures figures;
   std::array<double, 3> p95{}, inside{};
   double increment_p95 = 0;  // at 0.3 s
+  double largest_speed = 0;
 };
 
 // Learns for 8 s of 20, then predicts 0.1, 0.3 and 1 s ahead.
@@ -88,7 +91,7 @@ Outcome run(const Drive& drive) {
     }
     increments.push_back(std::abs(measured(t) + wish(t + 0.3) - wish(t) - measured(t + 0.3)));
   }
-  Outcome outcome{response.figures(), {}, {}, quantile(increments, 0.95)};
+  Outcome outcome{response.figures(), {}, {}, quantile(increments, 0.95), response.largest_speed()};
   for (std::size_t h = 0; h < 3; ++h) {
     outcome.p95[h] = quantile(errors[h], 0.95);
     outcome.inside[h] = static_cast<double>(inside[h]) / static_cast<double>(errors[h].size());
@@ -122,6 +125,43 @@ TEST(JointResponse, DrivesOfManyKindsArePredicted) {
   expect_predicted(run({.command_step = 0.02, .state_step = 0.02, .jitter = 0.5}), 0.003, "slow, at uneven times");
   expect_predicted(run({.state_step = 0.001}), 0.0005, "fast states");
   expect_predicted(run({.friction = 0.002}), 0.004, "friction");
+}
+
+// Its commands ask for up to 1.4 rad/s.
+TEST(JointResponse, ADriveAtItsLargestSpeedIsPredicted) {
+  for (const double fastest : {0.7, 1.0}) {
+    const Outcome outcome = run({.lag = 0.02, .fastest = fastest});
+    EXPECT_NEAR(outcome.largest_speed, fastest, 0.05 * fastest);
+    for (const double p95 : outcome.p95) EXPECT_LT(p95, 0.006) << fastest;
+    for (const double inside : outcome.inside) EXPECT_GE(inside, 0.85) << fastest;
+    EXPECT_LT(10 * outcome.p95[1], outcome.increment_p95) << fastest;
+  }
+  EXPECT_TRUE(std::isinf(run({}).largest_speed)) << "one that follows has none";
+}
+
+TEST(JointResponse, FarTargetsOfADriveWithARampOfItsOwnArePredicted) {
+  constexpr double kFastest = 0.5, kStep = 0.01;
+  JointResponse response;
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  double target = 0, position = 0, worst = 0;
+  for (int i = 1; i < 4000; ++i) {
+    if (i % 150 == 1) {
+      target = anywhere(random);
+      response.command(i * kStep, target);
+    }
+    position += std::clamp(target - position, -kFastest * kStep, kFastest * kStep);
+    response.observe((i + 1) * kStep, position);
+    if (i % 500 == 0) response.identify();
+    // No other target comes within the next 0.3 s.
+    if (i > 2500 && i % 150 < 100 && i % 150 > 5) {
+      double then = position;
+      for (int k = 0; k < 30; ++k) then += std::clamp(target - then, -kFastest * kStep, kFastest * kStep);
+      worst = std::max(worst, std::abs(response.at((i + 31) * kStep).position - then));
+    }
+  }
+  EXPECT_NEAR(response.largest_speed(), kFastest, 0.03);
+  EXPECT_LT(worst, 0.03);
 }
 
 TEST(JointResponse, NothingIsLearntFromStandingStillOrTooLittle) {

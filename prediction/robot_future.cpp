@@ -1,0 +1,338 @@
+#include "prediction/robot_future.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+constexpr double kOtherClock = 60;          // s from now: no line is that slow
+constexpr double kClockError = 0.1;         // s that an instant may seem to lie ahead
+constexpr double kExact = 0.001;            // s (docs/conventions.md, time)
+constexpr double kLongestGap = 0.2;         // s, likewise
+constexpr double kBeyond = 0.05;            // s later than what is known for certain, while a line becomes faster
+constexpr double kOften = 10, kSeldom = 5;  // s at the start in which drives are identified often; then as seldom
+constexpr double kUnknownDelay = 0.02;      // s that a drive's response may be off before it was identified
+constexpr double kAssumedPast = 0.4, kAssumedEvery = 0.02;  // s before the first set-point that is known
+constexpr std::size_t kShown = 1024;
+
+bool is_finite(const ReportedJoint& joint) {
+  return std::isfinite(joint.position) && std::isfinite(joint.set_point.position) &&
+         std::isfinite(joint.set_point.velocity);
+}
+
+bool near_now(RobotTime time, RobotTime now, double ahead) {
+  const double age = to_seconds(now - time);
+  return age >= -ahead && age <= kOtherClock;
+}
+
+// By how much a straight line between positions that are `gap` apart may be off, as twice a sigma.
+double interpolation_sigma(double acceleration, double gap) {
+  return acceleration * gap * gap / 16;
+}
+
+}  // namespace
+
+void RobotFuture::Doubt::see(double time, bool doubtful, double after) noexcept {
+  if (doubtful == doubted) agreed = time;
+  if (time - agreed < after) return;
+  doubted = doubtful;
+  agreed = time;
+}
+
+RobotFuture::RobotFuture(RobotFutureOptions options, RobotShape* shape)
+    : options_(std::move(options)),
+      motion_(options_.gate, shape, options_.motion),
+      shown_ones_(kShown),
+      scored_(kShown) {
+  for (const GateJoint& joint : options_.gate.joints) {
+    JointResponseOptions response;
+    response.first_sigma = kUnknownDelay * joint.limits.velocity;
+    Joint& added = joints_.emplace_back();
+    added.response = JointResponse(response);
+    added.precise = options_.astray_share * joint.following_error;
+    added.least_sure = options_.unsure_share * joint.following_error;
+    added.fastest = joint.limits.velocity;
+  }
+}
+
+HistoryFault RobotFuture::sent(const SentSetPoint& set_point, RobotTime now) noexcept {
+  if (set_point.joints != joints_.size()) return HistoryFault::wrong_joint_count;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    if (!std::isfinite(set_point.position[i])) return HistoryFault::not_finite;
+  if (!near_now(set_point.sent, now, kClockError) || set_point.lasts > seconds(kOtherClock))
+    return HistoryFault::other_clock;
+  if (set_point.number <= sent_number_ || set_point.sent < sent_at_) return HistoryFault::out_of_order;
+  sent_number_ = set_point.number;
+  sent_at_ = set_point.sent;
+  motion_.sent(set_point);
+  return HistoryFault::none;
+}
+
+HistoryFault RobotFuture::check(const RobotReport& report, RobotTime now) const noexcept {
+  if (report.joints != joints_.size()) return HistoryFault::wrong_joint_count;
+  if (!std::isfinite(report.speed)) return HistoryFault::not_finite;
+  for (std::size_t i = 0; i < joints_.size() && report.doing != GateDoing::away; ++i)
+    if (!is_finite(report.joint[i])) return HistoryFault::not_finite;
+  if (!near_now(report.time, now, kClockError)) return HistoryFault::other_clock;
+  if (report.newest_set_point != 0 && !near_now(report.newest_came, now, kClockError)) return HistoryFault::other_clock;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    if (is_finite(report.joint[i]) && !near_now(report.joint[i].time, now, kClockError))
+      return HistoryFault::other_clock;
+  return report.time <= reported_ ? HistoryFault::out_of_order : HistoryFault::none;
+}
+
+HistoryFault RobotFuture::reported(const RobotReport& report, RobotTime now) noexcept {
+  if (const HistoryFault fault = check(report, now); fault != HistoryFault::none) return fault;
+  if (epoch_.ns == 0) {
+    epoch_ = report.time;
+    identified_at_ = 0;
+  }
+  const Shown before = any_shown_ ? predict(shown_) : Shown{};
+  reported_ = report.time;
+  came_ = now_ = std::max(now, now_);
+  doing_ = report.doing;
+  if (doing_ != GateDoing::away) {
+    const std::optional<ExpectedMotion::Change> change = motion_.reported(report, now);
+    motion_.advance(now);
+    if (change && change->restarted) begin_anew(change->after);
+    feed(change ? change->after : fed_);
+  }
+  observe(report);
+  identify();
+  const Shown after = any_shown_ ? predict(shown_) : Shown{};
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    if (before.judged && after.judged) joints_[i].correction.jumped(after.predicted[i] - before.predicted[i]);
+  score();
+  return HistoryFault::none;
+}
+
+void RobotFuture::advance(RobotTime now) noexcept {
+  now_ = std::max(now, now_);
+  if (reported_.ns == 0 || doing_ == GateDoing::away) return;
+  motion_.advance(now);
+  feed(fed_);
+}
+
+// The set-points until then are not known: as if each had come at the speed of the first that is.
+void RobotFuture::begin_anew(RobotTime after) noexcept {
+  const GateModel::State& first = motion_.cycles()[0];
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    joints_[i].response.begin_anew();
+    for (double before = kAssumedPast; before > 0.5 * kAssumedEvery; before -= kAssumedEvery)
+      joints_[i].response.command(since_epoch(after) - before,
+                                  first.motion[i].position - before * first.motion[i].velocity);
+  }
+  fed_ = after;
+}
+
+// The responses get the set-points that are later than `after`.
+void RobotFuture::feed(RobotTime after) noexcept {
+  const ExpectedMotion::Cycles& cycles = motion_.cycles();
+  if (after < fed_)
+    for (Joint& joint : joints_) joint.response.forget_commands_after(since_epoch(after));
+  std::size_t first = cycles.size();
+  while (first > 0 && cycles[first - 1].time > after) --first;
+  for (std::size_t k = first; k < cycles.size(); ++k)
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+      joints_[i].response.command(since_epoch(cycles[k].time), cycles[k].motion[i].position);
+  if (!cycles.empty()) fed_ = cycles.newest().time;
+}
+
+void RobotFuture::observe(const RobotReport& report) noexcept {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Joint& joint = joints_[i];
+    const ReportedJoint& told = report.joint[i];
+    const double time = since_epoch(told.time);
+    if (!std::isfinite(told.position) || !joint.measured.add(time, told.position)) continue;
+    if (doing_ == GateDoing::away) continue;
+    const bool typical = !joint.held.doubted && std::abs(joint.response.astray()) <= joint.precise;
+    joint.response.observe(time, told.position, typical || !joint.response.identified());
+    const double off = std::abs(joint.response.astray());
+    joint.held.see(time, joint.response.identified() && off > (joint.held.doubted ? 0.5 : 1) * joint.precise,
+                   options_.astray_after);
+  }
+}
+
+// One drive after the other, as each takes some milliseconds.
+void RobotFuture::identify() noexcept {
+  const double now = since_epoch(came_);
+  const double every = now < kOften ? options_.identify_every : std::max(kSeldom, options_.identify_every);
+  if (doing_ == GateDoing::away || now - identified_at_ < every / static_cast<double>(joints_.size())) return;
+  identified_at_ = now;
+  identify_joint_ = (identify_joint_ + 1) % joints_.size();
+  Joint& joint = joints_[identify_joint_];
+  if (!joint.held.doubted) joint.response.identify();
+}
+
+std::optional<double> RobotFuture::measured_until() const noexcept {
+  std::optional<double> until;
+  for (const Joint& joint : joints_) {
+    if (joint.measured.empty()) return {};
+    const double newest = joint.measured.values().newest().time;
+    until = std::min(newest, until.value_or(newest));
+  }
+  return until;
+}
+
+bool RobotFuture::measured(double time, PredictedRobot& out) const noexcept {
+  const std::optional<double> until = measured_until();
+  if (!until || time > *until) return false;
+  out.status = StateStatus::exact;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const PositionHistory& measured = joints_[i].measured;
+    const double nearest = measured.nearest(time);
+    if (!measured.covers(time, kLongestGap) && nearest > kExact) return false;
+    out.position[i] = measured.at(time, std::numeric_limits<double>::infinity(), kLongestGap);
+    if (nearest > kExact) out.status = StateStatus::interpolated;
+    out.sigma[i] = nearest > kExact ? interpolation_sigma(options_.gate.joints[i].limits.acceleration, 2 * nearest) : 0;
+  }
+  return true;
+}
+
+void RobotFuture::fall_back(PredictedRobot& out, FutureReason reason, int joint) const noexcept {
+  out.status = StateStatus::invalid;
+  out.reason = reason;
+  out.joint = joint;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    out.position[i] = joints_[i].measured.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                  : joints_[i].measured.values().newest().position;
+    out.sigma[i] = std::numeric_limits<double>::infinity();
+  }
+}
+
+// What there is no prediction for.
+FutureReason RobotFuture::obstacle(RobotTime time, int& joint) const noexcept {
+  if (now_ - came_ > seconds(options_.stale)) return FutureReason::stale;
+  if (doing_ == GateDoing::away) return FutureReason::not_ready;
+  if (motion_.follows_others()) return FutureReason::strangers;
+  const double oldest = since_epoch(reported_) - options_.stale;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    if (joints_[i].measured.values().newest().time < oldest) {
+      joint = static_cast<int>(i);
+      return FutureReason::stale;
+    }
+  return time > motion_.known_until() + seconds(kBeyond) ? FutureReason::too_far : FutureReason::none;
+}
+
+// Why there is a prediction, but no trust in it.
+FutureReason RobotFuture::doubt(const Shown& shown, int& joint) const noexcept {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    joint = static_cast<int>(i);
+    if (joints_[i].held.doubted || joints_[i].missed.doubted) return FutureReason::astray;
+    if (shown.robot.sigma[i] > joints_[i].least_sure) return FutureReason::unsure;
+  }
+  joint = -1;
+  return FutureReason::none;
+}
+
+RobotFuture::Shown RobotFuture::predict(RobotTime time) const noexcept {
+  Shown out;
+  PredictedRobot& robot = out.robot;
+  robot.time = time;
+  robot.joints = joints_.size();
+  const std::optional<double> until = measured_until();
+  int joint = -1;
+  FutureReason reason = FutureReason::none;
+  if (!until)
+    reason = FutureReason::no_state;
+  else if (since_epoch(time) <= *until)
+    reason = measured(since_epoch(time), robot) ? FutureReason::none : FutureReason::hole;
+  else
+    reason = obstacle(time, joint);
+  if (reason != FutureReason::none) fall_back(robot, reason, joint);
+  if (reason != FutureReason::none || since_epoch(time) <= *until) return out;
+  const double beyond = std::max(0.0, to_seconds(time - motion_.known_until()));
+  const GateModel::State& last = motion_.cycles().newest();
+  robot.status = StateStatus::predicted;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const PredictedPosition there = joints_[i].response.at(since_epoch(time));
+    if (!there.valid) {
+      fall_back(robot, FutureReason::too_far, static_cast<int>(i));
+      return out;
+    }
+    out.predicted[i] = robot.position[i] = there.position;
+    out.prior[i] = std::hypot(there.sigma, beyond * last.motion[i].velocity);
+    out.scale[i] = joints_[i].scale.sigma();
+    robot.sigma[i] = out.scale[i] * out.prior[i];
+  }
+  out.judged = true;
+  const GateModel::State* cycle = motion_.cycle_at(time);
+  robot.blocked = (cycle != nullptr ? *cycle : last).blocked;
+  if (const FutureReason doubtful = doubt(out, joint); doubtful != FutureReason::none)
+    fall_back(robot, doubtful, joint);
+  return out;
+}
+
+PredictedRobot RobotFuture::at(RobotTime time) const noexcept {
+  return predict(time).robot;
+}
+
+PredictedRobot RobotFuture::show(RobotTime time) noexcept {
+  Shown shown = predict(time);
+  const bool goes_on = any_shown_ && shown.judged;
+  const double passed = goes_on ? std::max(0.0, to_seconds(time - shown_)) : 0;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Joint& joint = joints_[i];
+    if (!goes_on || shown.robot.status != StateStatus::predicted) {
+      joint.correction.forget();
+      continue;
+    }
+    joint.correction.pass(passed, joint.fastest);
+    shown.robot.position[i] += joint.correction.offset();
+    shown.prior[i] = std::hypot(shown.prior[i], joint.correction.offset());
+    shown.robot.sigma[i] = shown.scale[i] * shown.prior[i];
+  }
+  shown_ = time;
+  any_shown_ = shown.judged;
+  if (shown.judged) shown_ones_.next() = shown;
+  return shown.robot;
+}
+
+RobotTime RobotFuture::instant_to_show(RobotTime now) noexcept {
+  constexpr double kSlowest = 0.9, kFastest = 1.1, kTooFar = 1;  // of real time; s
+  const RobotTime wanted = now + seconds(delay().seconds);
+  const double passed = instant_ ? to_seconds(now - instant_asked_) : 0;
+  instant_asked_ = now;
+  if (!instant_ || std::abs(to_seconds(wanted - *instant_)) > kTooFar) {
+    instant_ = std::max(wanted, instant_.value_or(wanted));
+  } else {
+    const double step = std::clamp(to_seconds(wanted - *instant_), kSlowest * passed, kFastest * passed);
+    instant_ = *instant_ + seconds(step);
+  }
+  return *instant_;
+}
+
+void RobotFuture::score() noexcept {
+  const std::optional<double> until = measured_until();
+  for (; until && !shown_ones_.empty() && since_epoch(shown_ones_[0].robot.time) <= *until; shown_ones_.drop_oldest())
+    score(shown_ones_[0]);
+}
+
+void RobotFuture::score(const Shown& shown) noexcept {
+  PredictedRobot truth;
+  const double time = since_epoch(shown.robot.time);
+  if (!measured(time, truth)) return;
+  const double passed = std::clamp(time - scored_at_, 0.0, 1.0);
+  scored_at_ = time;
+  const bool trusted = shown.robot.status == StateStatus::predicted;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Joint& joint = joints_[i];
+    const double off = std::abs((trusted ? shown.robot.position[i] : shown.predicted[i]) - truth.position[i]);
+    joint.scale.score(CalibratedSigma::usual_part(off / shown.prior[i], shown.scale[i]), shown.scale[i], passed);
+    const double usual = std::max(joint.precise, 3 * shown.scale[i] * shown.prior[i]);
+    // What a line loses is shown wrongly until the report of it has come: a way there and back.
+    const double blind = joint.missed.doubted ? 0 : 2 * motion_.delay().seconds;
+    joint.missed.see(time, off > usual, options_.missed_after + blind);
+  }
+  if (trusted) scored_.next() = {shown.robot, truth.position};
+}
+
+std::optional<ScoredRobot> RobotFuture::take_scored() noexcept {
+  if (scored_.empty()) return {};
+  const ScoredRobot oldest = scored_[0];
+  scored_.drop_oldest();
+  return oldest;
+}
+
+}  // namespace foresight

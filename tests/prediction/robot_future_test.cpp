@@ -1,0 +1,286 @@
+#include "prediction/robot_future.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/statistics.hpp"
+#include "tests/prediction/future_world.hpp"
+#include "tests/support/allocations.hpp"
+
+namespace foresight {
+namespace {
+
+const std::vector<std::string> kNames{"turn", "wave"};
+
+struct Judged {
+  double p95 = 0, hold_p95 = 0, inside = 0;  // rad; of both joints
+  std::size_t count = 0, invalid = 0;
+};
+
+// Of the pictures from the first one of that index on, but for those whose time has not come.
+Judged judge(const FutureWorld& world, std::size_t first) {
+  std::vector<double> errors, hold;
+  std::size_t inside = 0, invalid = 0;
+  const Duration age = world.now() - world.pictures().back().time;
+  for (std::size_t k = first; k < world.pictures().size(); ++k) {
+    const PredictedRobot& shown = world.pictures()[k];
+    if (shown.time > world.now()) break;
+    if (shown.status == StateStatus::invalid) {
+      ++invalid;
+      continue;
+    }
+    const JointValues truth = world.truth_at(shown.time), last = world.truth_at(shown.time + age + age);
+    for (std::size_t i = 0; i < 2; ++i) {
+      errors.push_back(std::abs(shown.position[i] - truth[i]));
+      hold.push_back(std::abs(last[i] - truth[i]));
+      inside += errors.back() <= 2 * shown.sigma[i] ? 1 : 0;
+    }
+  }
+  return {quantile(errors, 0.95), quantile(hold, 0.95),
+          static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(errors.size(), 1)), errors.size(),
+          invalid};
+}
+
+TEST(RobotFuture, ShowsWhereTheRobotWillBe) {
+  FutureWorld world;
+  world.run(10);
+  const std::size_t learnt = world.pictures().size();
+  world.run(30);
+  const Judged judged = judge(world, learnt);
+  EXPECT_GT(judged.count, 3000u);
+  EXPECT_EQ(judged.invalid, 0u);
+  EXPECT_LT(judged.p95, 0.001);
+  EXPECT_GT(judged.hold_p95, 100 * judged.p95);
+  EXPECT_GE(judged.inside, 0.90);
+  EXPECT_LE(judged.inside, 0.98);
+  EXPECT_NEAR(world.future().delay().seconds, 0.3, 1e-6);
+  EXPECT_NEAR(world.future().figures(0).lag, 0.015, 0.006);
+}
+
+TEST(RobotFuture, JitterAndLossWidenItsUncertainty) {
+  FutureWorld world({.jitter = 0.03, .loss = 0.03});
+  world.run(10);
+  const std::size_t learnt = world.pictures().size();
+  world.run(30);
+  const Judged judged = judge(world, learnt);
+  EXPECT_LT(judged.p95, 0.02);
+  EXPECT_GT(judged.hold_p95, 15 * judged.p95);
+  EXPECT_GE(judged.inside, 0.90);
+  EXPECT_LE(judged.inside, 0.985);
+  EXPECT_LT(static_cast<double>(judged.invalid), 0.02 * static_cast<double>(judged.count));
+}
+
+// The robot follows set-points no more for a while that were shown as if it did.
+TEST(RobotFuture, WhatWasShownWronglyIsCorrectedWithoutAJump) {
+  FutureWorld world;
+  world.run(12);
+  world.wish = [](double t) { return JointValues{-0.9 + 0.6 * (t - 12), 0}; };
+  world.line_cut_down = true;
+  world.run(0.12);
+  world.line_cut_down = false;
+  const std::size_t first = world.pictures().size();
+  world.run(1.5);
+  double largest = 0, worst = 0;
+  for (std::size_t k = first; k < world.pictures().size(); ++k) {
+    const PredictedRobot &before = world.pictures()[k - 1], &now = world.pictures()[k];
+    ASSERT_EQ(now.status, StateStatus::predicted) << to_words(now, kNames);
+    const double passed = to_seconds(now.time - before.time);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double fastest = world.gate().options().joints[i].limits.velocity;
+      largest = std::max(largest, std::abs(now.position[i] - before.position[i]) / (fastest * passed));
+    }
+    if (now.time <= world.now()) worst = std::max(worst, std::abs(now.position[0] - world.truth_at(now.time)[0]));
+  }
+  EXPECT_GT(worst, 0.02) << "there was something to correct";
+  EXPECT_LT(largest, 2.05) << "the robot's own speed, and as much for the correction";
+  // The first report of the gap comes 0.3 s after it, and its correction takes 0.3 s.
+  const Judged after = judge(world, first + static_cast<std::size_t>(0.8 / 0.016));
+  EXPECT_LT(after.p95, 0.004) << "the responses' means of 2 s still know of it";
+}
+
+TEST(RobotFuture, StopsWhereTheGateStops) {
+  FutureWorld world;
+  world.wish = [](double t) {
+    return t < 10 ? JointValues{0.5 * std::sin(t) - 0.2, 0.3 * std::sin(2 * t)} : JointValues{1.8, 0};
+  };
+  world.run(16);
+  const PredictedRobot& shown = world.pictures().back();
+  ASSERT_EQ(shown.status, StateStatus::predicted) << to_words(shown, kNames);
+  EXPECT_TRUE(shown.blocked);
+  EXPECT_TRUE(world.gate().state().blocked);
+  EXPECT_LT(world.gate().state().motion[0].position, 1.2);
+  EXPECT_NEAR(shown.position[0], world.truth_at(world.now())[0], 2e-4);
+}
+
+TEST(RobotFuture, WhatHoldsAJointIsNoticed) {
+  FutureWorld world;
+  world.run(12);
+  ASSERT_EQ(world.pictures().back().status, StateStatus::predicted);
+  world.jammed = true;
+  // As long as the set-points stay within the following error: the drives do not fault.
+  world.run(0.3 + 0.35);
+  const PredictedRobot& held = world.pictures().back();
+  EXPECT_EQ(held.status, StateStatus::invalid);
+  EXPECT_EQ(held.reason, FutureReason::astray);
+  EXPECT_EQ(held.joint, 0);
+  EXPECT_THAT(to_words(held, kNames), testing::HasSubstr("joint 'turn'"));
+  EXPECT_NEAR(held.position[0], world.truth_at(world.now() - std::chrono::milliseconds(320))[0], 1e-3)
+      << "as last measured";
+  world.jammed = false;
+  world.run(6);
+  EXPECT_EQ(world.pictures().back().status, StateStatus::predicted) << to_words(world.pictures().back(), kNames);
+}
+
+TEST(RobotFuture, SaysWhyItCannotKnow) {
+  FutureWorld world;
+  const auto reason = [&](Duration ahead = Duration{0}) { return world.future().at(world.now() + ahead).reason; };
+  EXPECT_EQ(reason(), FutureReason::no_state);
+  world.run(10);
+  using namespace std::chrono_literals;
+  EXPECT_EQ(reason(100ms), FutureReason::none);
+  EXPECT_EQ(reason(1s), FutureReason::too_far);
+  EXPECT_EQ(world.future().at(world.now() - 20s).reason, FutureReason::hole);
+  EXPECT_EQ(world.future().at(world.now() - 1s - 10ms).status, StateStatus::interpolated);
+  EXPECT_EQ(world.future().at(RobotTime{1'000'000'000'000} + 8s).status, StateStatus::exact)
+      << "reports are of full 20 ms";
+  world.edit_report = [](RobotReport& report) { report.doing = GateDoing::away; };
+  world.run(1);
+  EXPECT_EQ(reason(), FutureReason::not_ready);
+  world.edit_report = [](RobotReport& report) { report.newest_set_point += 1'000'000; };
+  world.run(1);
+  EXPECT_EQ(reason(), FutureReason::strangers);
+  world.edit_report = [](RobotReport&) {};
+  world.run(3);
+  EXPECT_EQ(reason(), FutureReason::none);
+  world.robot_silent = true;
+  world.run(10);
+  const PredictedRobot shown = world.pictures().back();
+  EXPECT_EQ(shown.status, StateStatus::invalid);
+  EXPECT_EQ(shown.reason, FutureReason::stale) << "10 s without any state";
+  EXPECT_THAT(to_words(shown, kNames), testing::HasSubstr("nothing new comes of the robot"));
+  EXPECT_TRUE(std::isfinite(shown.position[0]));
+  EXPECT_TRUE(std::isinf(shown.sigma[0]));
+  const std::size_t began = world.pictures().size();
+  world.robot_silent = false;
+  world.run(4);
+  EXPECT_EQ(reason(), FutureReason::none) << "it comes back";
+  EXPECT_GT(world.pictures().size(), began);
+}
+
+TEST(RobotFuture, HistoriesThatAreWrongAreRefused) {
+  FutureWorld world;
+  world.run(5);
+  RobotFuture& future = world.future();
+  const RobotTime now = world.now();
+  RobotReport good;
+  good.time = now;
+  good.doing = GateDoing::idle;
+  good.joints = 2;
+  for (std::size_t i = 0; i < 2; ++i) good.joint[i] = {now, 0, {}};
+  const auto report = [&](const std::function<void(RobotReport&)>& edit) {
+    RobotReport bad = good;
+    edit(bad);
+    return future.reported(bad, now);
+  };
+  using namespace std::chrono_literals;
+  EXPECT_EQ(report([](RobotReport& r) { r.joints = 3; }), HistoryFault::wrong_joint_count);
+  EXPECT_EQ(report([](RobotReport& r) { r.joint[1].position = NAN; }), HistoryFault::not_finite);
+  EXPECT_EQ(report([](RobotReport& r) { r.joint[0].set_point.velocity = INFINITY; }), HistoryFault::not_finite);
+  EXPECT_EQ(report([](RobotReport& r) { r.speed = NAN; }), HistoryFault::not_finite);
+  EXPECT_EQ(report([](RobotReport& r) { r.time = r.time + 5s; }), HistoryFault::other_clock);
+  EXPECT_EQ(report([](RobotReport& r) { r.time = RobotTime{5}; }), HistoryFault::other_clock);
+  EXPECT_EQ(report([](RobotReport& r) { r.joint[1].time = RobotTime{}; }), HistoryFault::other_clock);
+  EXPECT_EQ(report([](RobotReport& r) { r.time = r.time - 1s; }), HistoryFault::out_of_order);
+  SentSetPoint set_point{1'000'000, now, 500ms, true, 2, {}};
+  const auto send = [&](const std::function<void(SentSetPoint&)>& edit) {
+    SentSetPoint bad = set_point;
+    edit(bad);
+    return future.sent(bad, now);
+  };
+  EXPECT_EQ(send([](SentSetPoint& s) { s.joints = 1; }), HistoryFault::wrong_joint_count);
+  EXPECT_EQ(send([](SentSetPoint& s) { s.position[1] = NAN; }), HistoryFault::not_finite);
+  EXPECT_EQ(send([](SentSetPoint& s) { s.number = 3; }), HistoryFault::out_of_order);
+  EXPECT_EQ(send([](SentSetPoint& s) { s.sent = s.sent - 2s; }), HistoryFault::out_of_order);
+  EXPECT_EQ(send([](SentSetPoint& s) { s.sent = s.sent + 2s; }), HistoryFault::other_clock);
+  EXPECT_EQ(send([](SentSetPoint& s) { s.sent = RobotTime{7}; }), HistoryFault::other_clock);
+  for (const HistoryFault fault : {HistoryFault::wrong_joint_count, HistoryFault::not_finite,
+                                   HistoryFault::out_of_order, HistoryFault::other_clock})
+    EXPECT_GT(std::string(to_string(fault)).size(), 10u);
+  EXPECT_EQ(future.at(now + 100ms).status, StateStatus::predicted) << "none of it did any harm";
+}
+
+TEST(RobotFuture, TheShownInstantGoesOnEvenly) {
+  FutureWorld world({.jitter = 0.05, .loss = 0.1});
+  world.run(8);
+  for (std::size_t k = 200; k < world.pictures().size(); ++k) {
+    const double passed = to_seconds(world.pictures()[k].time - world.pictures()[k - 1].time);
+    EXPECT_GE(passed, 0.9 * 0.016 - 1e-9);
+    EXPECT_LE(passed, 1.1 * 0.016 + 1e-9);
+  }
+}
+
+TEST(RobotFuture, TheSameTwiceIsTheSameBitForBit) {
+  FutureWorld one({.jitter = 0.02, .loss = 0.02}), other({.jitter = 0.02, .loss = 0.02});
+  one.run(6);
+  other.run(6);
+  ASSERT_EQ(one.pictures().size(), other.pictures().size());
+  for (std::size_t k = 0; k < one.pictures().size(); ++k) {
+    ASSERT_EQ(one.pictures()[k].time, other.pictures()[k].time);
+    for (std::size_t i = 0; i < 2 && one.pictures()[k].status == StateStatus::predicted; ++i) {
+      ASSERT_EQ(one.pictures()[k].position[i], other.pictures()[k].position[i]);
+      ASSERT_EQ(one.pictures()[k].sigma[i], other.pictures()[k].sigma[i]);
+    }
+  }
+}
+
+TEST(RobotFuture, DoesNotAllocateOnceItIsMade) {
+  FutureWorld world;
+  world.run(6);
+  RobotFuture& future = world.future();
+  RobotReport report;
+  report.doing = GateDoing::following;
+  report.joints = 2;
+  std::uint64_t number = 1'000'000;
+  const std::size_t before = allocations();
+  for (int i = 1; i < 200; ++i) {
+    const RobotTime now = world.now() + std::chrono::milliseconds(20 * i);
+    const SentSetPoint set_point{++number, now, std::chrono::seconds(1), true, 2, {0.001 * i, 0}};
+    future.sent(set_point, now);
+    report.time = now - std::chrono::milliseconds(5);
+    for (std::size_t k = 0; k < 2; ++k) report.joint[k] = {report.time, 0.001 * i, {}};
+    future.reported(report, now);
+    future.advance(now);
+    future.show(future.instant_to_show(now));
+    while (future.take_scored()) {
+    }
+  }
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST(CorrectionBlend, IsOverInTimeAndNeverFasterThanItMay) {
+  for (const double jump : {0.01, -0.2, 1.0}) {
+    constexpr double kFastest = 1.5, kStep = 0.001;
+    CorrectionBlend blend;
+    blend.jumped(-jump);
+    EXPECT_EQ(blend.offset(), jump) << "what is shown does not move";
+    const double longest = CorrectionBlend::kSettled + std::abs(jump) / kFastest;
+    double fastest = 0;
+    for (double t = 0; t < longest; t += kStep) {
+      const double before = blend.offset();
+      blend.pass(kStep, kFastest);
+      fastest = std::max(fastest, std::abs(blend.offset() - before) / kStep);
+    }
+    EXPECT_LE(std::abs(blend.offset()), 0.0101 * std::abs(jump)) << jump;
+    EXPECT_LE(fastest, std::min(kFastest, 8.2 * std::abs(jump)) * (1 + 1e-9)) << jump;
+  }
+  CorrectionBlend blend;
+  blend.jumped(-0.01);
+  blend.pass(CorrectionBlend::kSettled, 10);
+  EXPECT_NEAR(blend.offset(), 0.0001, 2e-6);
+}
+
+}  // namespace
+}  // namespace foresight
