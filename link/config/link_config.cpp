@@ -14,6 +14,7 @@ namespace {
 
 // RTPS counts ports from 7400 on, 250 a domain: the last one whose ports all exist.
 constexpr int kLastDomain = 230;
+constexpr double kMostRoundTrip_s = 2;
 
 bool may_be_host(const std::string& text) {
   const auto fits = [](char c) {
@@ -51,11 +52,19 @@ double read_rate(const YamlMap& map, const std::string& key, double otherwise, d
   return rate;
 }
 
+Duration read_round_trip(const YamlMap& map) {
+  const double delay = map.number("round_trip_s");
+  if (delay < 0 || delay > kMostRoundTrip_s)
+    throw InputError(map.where("round_trip_s"), fmt::format("is {:g}", delay),
+                     fmt::format("give the line's round trip in seconds, 0 .. {:g}", kMostRoundTrip_s));
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(delay));
+}
+
 }  // namespace
 
 LinkConfig read_link_config(const YamlMap& map) {
   map.require_known({"domain", "interface", "peers", "joint_rate_hz", "state_rate_hz", "image_rate_hz", "coding",
-                     "jpeg_quality", "security"});
+                     "jpeg_quality", "round_trip_s", "security"});
   LinkConfig out;
   if (map.has("domain")) out.domain = map.integer("domain", 0, kLastDomain);
   if (map.has("interface")) out.interface = read_interface(map);
@@ -66,6 +75,7 @@ LinkConfig read_link_config(const YamlMap& map) {
   if (map.has("coding"))
     out.coding = map.choice<LinkCoding>("coding", {{"jpeg", LinkCoding::jpeg}, {"h264", LinkCoding::h264}});
   if (map.has("jpeg_quality")) out.jpeg_quality = map.integer("jpeg_quality", 1, 100);
+  if (map.has("round_trip_s")) out.round_trip = read_round_trip(map);
   if (map.has("security")) {
     out.security = map.file().parent_path() / map.text("security");
     if (!std::filesystem::is_directory(*out.security))

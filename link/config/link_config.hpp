@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/time.hpp"
+
 namespace foresight {
 
 class YamlMap;
@@ -26,7 +28,8 @@ struct LinkConfig {
   double state_rate_hz = 10;       ///< robot's state; changes go at once; > 0
   double image_rate_hz = 30;       ///< pairs, at most; > 0
   LinkCoding coding = LinkCoding::jpeg;
-  int jpeg_quality = 85;  ///< 1 .. 100
+  int jpeg_quality = 85;   ///< 1 .. 100
+  Duration round_trip{0};  ///< of a line that is slower than any line may be unasked (SetPointLife); 0: none
   /// Folder of `foresight link keys`: everything is encrypted, and nobody without a certificate is let in.
   std::optional<std::filesystem::path> security;
   std::string where = "link";  ///< "file:line: link", for messages

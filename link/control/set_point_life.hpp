@@ -12,7 +12,8 @@ struct SetPointLifeOptions {
   Duration widest = std::chrono::milliseconds(250);  ///< beside the spread
   Duration most_spread = std::chrono::milliseconds(250);
   /// Lines whose least delay alone outlasts `widest` carry no commands, unless somebody who knows where the robot
-  /// stands allows for that delay, up to this much.
+  /// stands allows for that delay, up to this much. Their age is known but for the clocks' uncertainty, which is half
+  /// of the round trip: this is to be all of it.
   Duration allowed_delay{0};
 };
 

@@ -14,8 +14,9 @@ std::uint64_t draw() {
   return (std::uint64_t{random()} << 32) | random();
 }
 
-ControlDeskOptions desk_options(Identity identity) {
+ControlDeskOptions desk_options(Identity identity, Duration round_trip) {
   ControlDeskOptions out;
+  out.life.allowed_delay = round_trip;
   out.identity = std::move(identity);
   out.draw = draw;
   return out;
@@ -28,7 +29,7 @@ RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* camer
     : participant_(rig.link, "robot " + rig.name, Role::robot, std::move(line)),
       wall_(clock),
       states_(participant_, {draw(), rig.joint_names()}, rig, robot, cameras, wall_, clock),
-      operator_(participant_, rig.gate_options(), desk_options(std::move(identity))) {
+      operator_(participant_, rig.gate_options(), desk_options(std::move(identity), rig.link.round_trip)) {
   if (!cameras) return;
   const auto& lenses = cameras->scene().lenses();
   frames_ = std::make_unique<FrameSender>(

@@ -188,6 +188,35 @@ TEST_F(ControlDeskTest, ASuspendedOperatorsHostStops) {
   EXPECT_TRUE(robot_.follows);
 }
 
+class SlowLineTest : public SmallLineTest {
+ protected:
+  SlowLineTest() : SmallLineTest(600ms) {}
+  /// Whether it has moved, once the switch was let go of and pressed again.
+  bool moves() {
+    anna_.seat.want_control(true);
+    run(8s);
+    anna_.held = true;
+    followed_ = 0;
+    run(3s);
+    return followed_ > 0;
+  }
+};
+
+TEST_F(SlowLineTest, CarriesNoCommands) {
+  EXPECT_FALSE(moves());
+}
+
+TEST_F(SlowLineTest, CarriesThemWhereTheRobotsSideAllowsForItsDelay) {
+  ControlDeskOptions options = desk_options();
+  options.life.allowed_delay = 1300ms;  // the round trip, and a little
+  desk_ = ControlDesk(options);
+  EXPECT_TRUE(moves());
+  anna_.up_cut = true;
+  const RobotTime cut = now_;
+  while (robot_.follows) step();
+  EXPECT_LE(now_ - cut, 600ms + 250ms + 20ms) << "from the last that was sent: its way, and its life besides";
+}
+
 TEST_F(ControlDeskTest, ALeapOfTheOperatorsClockStops) {
   for (const Duration leap : {Duration(1s), Duration(-1s)}) {
     engage(anna_);

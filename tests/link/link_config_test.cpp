@@ -18,7 +18,7 @@ auto refused_as(const char* text) {
 TEST(LinkConfig, EveryKeyIsRead) {
   const LinkConfig config = read(
       "domain: 7\ninterface: wg0\npeers: [10.8.0.2, operator.lab]\njoint_rate_hz: 100\nstate_rate_hz: 5\n"
-      "image_rate_hz: 15\ncoding: h264\njpeg_quality: 70\n");
+      "image_rate_hz: 15\ncoding: h264\njpeg_quality: 70\nround_trip_s: 0.6\n");
   EXPECT_EQ(config.domain, 7);
   EXPECT_EQ(config.interface, "wg0");
   EXPECT_EQ(config.peers, (std::vector<std::string>{"10.8.0.2", "operator.lab"}));
@@ -27,6 +27,7 @@ TEST(LinkConfig, EveryKeyIsRead) {
   EXPECT_EQ(config.image_rate_hz, 15);
   EXPECT_EQ(config.coding, LinkCoding::h264);
   EXPECT_EQ(config.jpeg_quality, 70);
+  EXPECT_EQ(config.round_trip, std::chrono::milliseconds(600));
   EXPECT_FALSE(config.loopback());
 }
 
@@ -38,6 +39,7 @@ TEST(LinkConfig, WhatCannotBeIsRefusedWithItsLine) {
   EXPECT_THAT([] { read("peers: ['10.0.0.1\"/>']\n"); }, refused_as("neither an address nor the name of a host"));
   EXPECT_THAT([] { read("coding: h265\n"); }, refused_as("h264"));
   EXPECT_THAT([] { read("jpeg_quality: 0\n"); }, refused_as("jpeg_quality: is 0"));
+  EXPECT_THAT([] { read("round_trip_s: 2.5\n"); }, refused_as("round_trip_s: is 2.5; give the line's round trip"));
   EXPECT_THAT([] { read("joint_rate_hz: 0\n"); }, refused_as("give a number above 0"));
   EXPECT_THAT([] { read("image_rate_hz: 1e6\n"); }, refused_as("give at most 1000"));
 }
