@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <random>
 #include <set>
 
 #include "common/error.hpp"
@@ -171,17 +170,12 @@ std::string figures_text(const link::LineFigures& line) {
 
 namespace {
 
-std::uint64_t draw() {
-  std::random_device random;
-  return (std::uint64_t{random()} << 32) | random();
-}
-
 /// Null where keys do not let us speak, which measuring clocks and asking for pictures takes.
 std::unique_ptr<link::OperatorEnd> look_at_line(link::Participant& program, Clock& clock) {
   link::OperatorEndOptions options;
   options.seat.identity.program = FORESIGHT_VERSION;
   options.seat.identity.name = "link status";
-  options.seat.draw = draw;
+  options.seat.draw = machine_nonces();
   try {
     auto end = std::make_unique<link::OperatorEnd>(program, options, clock);
     end->start();

@@ -57,12 +57,14 @@ struct Reader::State {
   Entity reader, waiting;
   std::shared_ptr<PretendedLine> line;
   bool repaired = false;
+  std::size_t room = SIZE_MAX;          // that samples which are there may take before the oldest goes, as DDS has it
   std::multimap<RobotTime, Held> held;  // on their way over the line, by arrival
   std::size_t held_bytes = 0;
 
   void each_that_came(const std::function<void(Owner, const dds_sample_info_t&)>& visit) const;
   void take_in();
   bool is_due() const { return !held.empty() && held.begin()->first <= line->now(); }
+  Held pop();
 };
 
 void Reader::State::each_that_came(const std::function<void(Owner, const dds_sample_info_t&)>& visit) const {
@@ -90,11 +92,19 @@ void Reader::State::take_in() {
   });
 }
 
+Reader::State::Held Reader::State::pop() {
+  Held out = std::move(held.begin()->second);
+  held.erase(held.begin());
+  held_bytes -= raw_bytes(out.sample.get()).size();
+  return out;
+}
+
 Reader::Reader(Participant& participant, const Topic& topic) : state_(std::make_unique<State>()), topic_(topic.name) {
   const auto& used = participant.state_->topic(topic);
   const dds_entity_t under = participant.state_->participant.get();
   state_->line = participant.state_->line;
   state_->repaired = topic.delivery != Delivery::once;
+  if (topic.delivery != Delivery::each) state_->room = static_cast<std::size_t>(topic.depth);
   state_->reader = Entity(checked(dds_create_reader(under, used.topic.get(), qos_of(topic).get(), nullptr),
                                   "topic " + topic.name + " cannot be read"));
   checked(dds_set_status_mask(state_->reader.get(), DDS_DATA_AVAILABLE_STATUS), "topic " + topic.name);
@@ -115,11 +125,12 @@ std::size_t Reader::take(const std::function<void(const Sample&)>& visit) {
     return visited;
   }
   state_->take_in();
-  while (state_->is_due()) {
-    const State::Held one = std::move(state_->held.begin()->second);
-    state_->held.erase(state_->held.begin());
-    state_->held_bytes -= raw_bytes(one.sample.get()).size();
-    show(one.sample.get(), one.info);
+  const auto due = [&] {
+    return static_cast<std::size_t>(std::distance(state_->held.begin(), state_->held.upper_bound(state_->line->now())));
+  };
+  for (std::size_t n = due(); n > 0; --n) {
+    const State::Held one = state_->pop();
+    if (n <= state_->room) show(one.sample.get(), one.info);
   }
   return visited;
 }

@@ -2,23 +2,16 @@
 
 #include <fmt/core.h>
 
-#include <random>
-
 namespace foresight::link {
 namespace {
 
 constexpr std::size_t kRoom = 2;  // pairs that wait for the coder; only the newest goes
 
-std::uint64_t draw() {
-  std::random_device random;
-  return (std::uint64_t{random()} << 32) | random();
-}
-
 ControlDeskOptions desk_options(Identity identity, Duration round_trip) {
   ControlDeskOptions out;
   out.life.allowed_delay = round_trip;
   out.identity = std::move(identity);
-  out.draw = draw;
+  out.draw = machine_nonces();
   return out;
 }
 
@@ -28,7 +21,7 @@ RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* camer
                          std::shared_ptr<PretendedLine> line)
     : participant_(rig.link, "robot " + rig.name, Role::robot, std::move(line)),
       wall_(clock),
-      states_(participant_, {draw(), rig.joint_names()}, rig, robot, cameras, wall_, clock),
+      states_(participant_, {machine_nonces()(), rig.joint_names()}, rig, robot, cameras, wall_, clock),
       operator_(participant_, rig.gate_options(), desk_options(std::move(identity), rig.link.round_trip)) {
   if (!cameras) return;
   const auto& lenses = cameras->scene().lenses();

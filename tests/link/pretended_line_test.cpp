@@ -110,6 +110,26 @@ TEST_F(PretendedDds, SamplesPassItOnTheirWayOutAndIn) {
   EXPECT_FALSE(reader.wait(0ns));
 }
 
+// As without the line: of what is there, a reader gets the newest that its topic has room for.
+TEST_F(PretendedDds, TheNewestCountsBehindItToo) {
+  SteppedClock clock;
+  const auto pretended = std::make_shared<PretendedLine>(line(0ms, 20ms), PretendedLine::Side::robot, clock);
+  Participant program(LinkConfig{}, "test", Role::robot, pretended);
+  const Topic topic{"rt/x", Header::kType, Delivery::newest, 2};
+  Writer writer(program, topic);
+  Reader reader(program, topic);
+  for (int i = 1; i <= 5; ++i) {
+    writer.write(Header{{i, 0}, "a"});
+    pretended->step();
+    reader.wait(0ns);  // takes it in
+    clock.sleep_until(clock.now() + 1ms);
+  }
+  clock.sleep_until(clock.now() + 1s);
+  std::vector<int> came;
+  reader.take([&](const Sample& sample) { came.push_back(from_cdr<Header>(sample.cdr)->stamp.sec); });
+  EXPECT_EQ(came, (std::vector<int>{4, 5}));
+}
+
 // The same in real time: it only has to come.
 TEST_F(PretendedDds, ItsThreadDelivers) {
   MonotonicClock clock;

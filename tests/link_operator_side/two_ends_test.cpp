@@ -1,5 +1,6 @@
 // A served mock rig and an operator's end in one process, over DDS on loopback, in stepped time: frames of either
 // coding, as a display takes them, against those that were sent.
+#include "common/error.hpp"
 #include "link/dds/topics.hpp"
 #include "link/operator_view/line_feed.hpp"
 #include "link/robot_side/frame_sender.hpp"
@@ -9,8 +10,10 @@
 #include "session/encoder_poses.hpp"
 #include "sim/pan_tilt_head.hpp"
 #include "sim/synth_run.hpp"
+#include "tests/control/small_line.hpp"
 #include "tests/link/child.hpp"
 #include "tests/robot_devices/live_robot.hpp"
+#include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 #include "tests/support/moving_picture.hpp"
 #include "tests/support/private_network.hpp"
@@ -21,11 +24,6 @@ namespace {
 using namespace std::chrono_literals;
 
 const cv::Size kSize{160, 120};
-
-/// Numbers that nobody draws twice.
-DrawNonce counting(Nonce from) {
-  return [from]() mutable { return ++from; };
-}
 
 StereoLenses small_lenses() {
   sim::SynthOptions small;
@@ -183,6 +181,61 @@ TEST_F(TwoEnds, AReaderOfPiecesThatStopsHoldsUpNobody) {
   EXPECT_GE(shown_.size(), 25u);
   EXPECT_EQ(robot_.robot().status().gate.state, GateState::following);
   robot_.expect_limits_kept("while a reader takes nothing");
+}
+
+// --- in real time ---------------------------------------------------------------------------------------------------
+
+/// A robot's pairs without a robot, each side in its own threads.
+class Threads : public PrivateNetworkTest, public testing::WithParamInterface<LinkCoding> {};
+
+TEST_P(Threads, CarryPairsOfEitherCoding) {
+  MonotonicClock clock;
+  WallClock wall(clock);
+  Participant program(LinkConfig{}, "test");
+  const auto queue = std::make_shared<FrameQueue>(2);
+  FrameSender sender(program, {42, {}}, nullptr, queue, {GetParam(), 90, 1000}, wall, clock);
+  OperatorEndOptions options;
+  options.seat.draw = counting(1000);
+  OperatorEnd end(program, options, clock);
+  sender.start();
+  end.start();
+  std::uint64_t number = 0, newest = 0;
+  int came = 0;
+  EXPECT_TRUE(comes_true([&] {
+    auto frame = std::make_shared<LiveFrame>();
+    frame->number = ++number;
+    const StereoPicture picture = moving_picture(clock.now(), kSize);
+    frame->pair = {{picture.left, 0, picture.captured, 1us}, {picture.right, 0, picture.captured, 1us}};
+    queue->put(frame);
+    while (const auto got = end.frames().take_newest(0ns)) {
+      EXPECT_GT((*got)->number, newest);
+      newest = (*got)->number;
+      EXPECT_FALSE((*got)->image[0].T_world_camera) << "nobody knew it";
+      ++came;
+    }
+    end.seat([](ControlSeat& seat, OperatorTime now) { return seat.status(now).phase; });
+    return came >= 10;
+  })) << end.figures().pairs.refusal;
+  EXPECT_EQ(end.figures().pairs.refused, 0u) << end.figures().pairs.refusal;
+  end.stop();
+  sender.stop();
+  EXPECT_TRUE(end.frames().closed());
+}
+
+INSTANTIATE_TEST_SUITE_P(Either, Threads, testing::Values(LinkCoding::jpeg, LinkCoding::h264));
+
+TEST_F(TwoEnds, AnObserversKeysAreNoOperators) {
+  const TempFolder folder;
+  make_keys(folder / "keys", 1);
+  LinkConfig config;
+  config.domain = 7;
+  config.security = folder / "keys";
+  {
+    Participant observer(config, "observer", Role::observer);
+    EXPECT_THROW(OperatorEnd(observer, operator_options(), robot_.clock()), RuntimeFailure);
+  }
+  Participant operating(config, "operator", Role::operating);
+  EXPECT_NO_THROW(OperatorEnd(operating, operator_options(), robot_.clock()));
 }
 
 }  // namespace

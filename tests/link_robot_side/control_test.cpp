@@ -2,6 +2,7 @@
 #include "link/control_wire/control_wire.hpp"
 #include "link/robot_side/rig_identity.hpp"
 #include "link/robot_side/served_operator.hpp"
+#include "tests/control/small_line.hpp"
 #include "tests/link/child.hpp"
 #include "tests/robot_devices/live_robot.hpp"
 #include "tests/support/folders.hpp"
@@ -11,11 +12,6 @@ namespace foresight::link {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// Numbers that nobody draws twice.
-DrawNonce counting(Nonce from) {
-  return [from]() mutable { return ++from; };
-}
 
 class ServedControl : public PrivateNetworkTest {
  protected:
@@ -30,13 +26,13 @@ class ServedControl : public PrivateNetworkTest {
   ControlDeskOptions desk_options() {
     ControlDeskOptions out;
     out.identity = identity_;
-    out.draw = counting(1000);
+    out.draw = counting(1001);
     return out;
   }
   ControlSeatOptions seat_options() {
     ControlSeatOptions out;
     out.identity = identity_;
-    out.draw = counting(1'000'000);
+    out.draw = counting(1'000'001);
     return out;
   }
   /// 10 ms of both sides; the operator's says `positions` where it holds the lease.
