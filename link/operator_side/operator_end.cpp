@@ -30,6 +30,7 @@ OperatorEnd::OperatorEnd(Participant& participant, const OperatorEndOptions& opt
       line_(participant),
       states_(participant, topics::robot_state()),
       seat_(options.seat),
+      suspension_(options.asleep),
       queue_(options.room) {
   if (options.frames) pictures_.emplace(participant, options, clock);
 }
@@ -71,6 +72,7 @@ void OperatorEnd::step_control() {
   RobotClockTracker known;
   {
     const std::lock_guard lock(seat_mutex_);
+    if (suspension_.woke()) seat_.stood_still();
     line_.receive(seat_, now);
     seat_.advance(now);
     line_.send(seat_);
@@ -105,14 +107,18 @@ void OperatorEnd::hand_out(LineFramePtr frame, const char* coding) {
 void OperatorEnd::step_frames() {
   const RobotClockTracker robot = robot_clock();
   Pictures& in = *pictures_;
+  const auto tell = [&in] {
+    if (const auto report = in.intake.report()) in.reports.write(*report);
+  };
   in.pieces.take([&](const Sample& sample) {
-    if (const auto piece = from_cdr<StereoPiece>(sample.cdr)) hand_out(in.intake.take(*piece, robot), kH264Coding);
+    if (const auto piece = from_cdr<StereoPiece>(sample.cdr))
+      hand_out(in.intake.take(*piece, robot, tell), kH264Coding);
   });
   in.pairs.take([&](const Sample& sample) {
     if (const auto pair = from_cdr<StereoFrame>(sample.cdr))
       hand_out(in.intake.take(*pair, sample.cdr.size(), robot), kJpegCoding);
   });
-  if (const auto report = in.intake.report()) in.reports.write(*report);
+  tell();
   const std::lock_guard lock(figures_mutex_);
   figures_.pairs = in.intake.counts();
   figures_.samples_lost = in.pairs.lost();

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "common/bounded_queue.hpp"
+#include "common/suspension.hpp"
 #include "link/control_wire/control_lines.hpp"
 #include "link/operator_side/pair_intake.hpp"
 
@@ -20,6 +21,7 @@ struct OperatorEndOptions {
   Expected expected = {};   ///< names and sizes by the rig of this side; empty: any
   bool frames = true;       ///< pairs are wanted: of a robot that codes for one reader, this asks to be that one
   std::size_t room = 2;     ///< pairs that wait to be taken; > 0
+  SuspensionWatch::Asleep asleep = SuspensionWatch::machine_asleep;  ///< of this host
 };
 
 /// What is known of a line, for people.
@@ -89,6 +91,7 @@ class OperatorEnd {
   Reader states_;
   mutable std::mutex seat_mutex_;  // seat_
   ControlSeat seat_;
+  SuspensionWatch suspension_;
   mutable std::mutex heard_mutex_;  // robot_clock_, heard_
   RobotClockTracker robot_clock_;
   std::optional<HeardState> heard_;

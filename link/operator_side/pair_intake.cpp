@@ -111,7 +111,8 @@ LineFramePtr PairIntake::frame_of(const foresight::ReceivedPair& pair, OperatorT
   return hand_out(*message, picture, pair.bytes, arrived, robot);
 }
 
-LineFramePtr PairIntake::take(const StereoPiece& piece, const RobotClockTracker& robot) {
+LineFramePtr PairIntake::take(const StereoPiece& piece, const RobotClockTracker& robot,
+                              const std::function<void()>& whole) {
   if (piece.reader != reader_) {
     ++counts_.others;
     return nullptr;
@@ -123,7 +124,9 @@ LineFramePtr PairIntake::take(const StereoPiece& piece, const RobotClockTracker&
   count_packet(piece.data);
   const OperatorTime arrived = now();
   LineFramePtr newest;
-  for (const foresight::ReceivedPair& pair : receiver_->take(piece.data, receiver_time(arrived))) {
+  if (!receiver_->receive(piece.data, receiver_time(arrived))) return newest;
+  if (whole) whole();
+  for (const foresight::ReceivedPair& pair : receiver_->decode()) {
     if (!pair.newest) {
       ++counts_.late;
     } else if (LineFramePtr frame = frame_of(pair, arrived, robot)) {

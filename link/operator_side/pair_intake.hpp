@@ -5,6 +5,7 @@
 //                                  '--> acknowledgements --> StereoReport
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "common/clock.hpp"
@@ -38,7 +39,8 @@ class PairIntake {
 
   /// A message that decodes (from_cdr), of `bytes`. The pair, where it can be used and is the newest.
   LineFramePtr take(const StereoFrame& message, std::size_t bytes, const RobotClockTracker& robot);
-  LineFramePtr take(const StereoPiece& piece, const RobotClockTracker& robot);
+  /// `whole`: called before a pair is decoded, which takes milliseconds that an acknowledgement should not wait.
+  LineFramePtr take(const StereoPiece& piece, const RobotClockTracker& robot, const std::function<void()>& whole = {});
 
   /// What to send now; nothing where nothing is due.
   std::optional<StereoReport> report();

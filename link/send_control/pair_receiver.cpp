@@ -61,15 +61,20 @@ void PairReceiver::keep_bounds() {
 }
 
 std::vector<ReceivedPair> PairReceiver::take(std::span<const std::uint8_t> packet, RobotTime now) {
+  if (!receive(packet, now)) return {};
+  return decode();
+}
+
+bool PairReceiver::receive(std::span<const std::uint8_t> packet, RobotTime now) {
   const auto parsed = parse_packet(packet);
   if (const auto* question = std::get_if<Question>(&parsed)) {
     note(question->sequence, now);
-    return {};
+    return false;
   }
   const auto* piece = std::get_if<Piece>(&parsed);
   if (!piece || !note(piece->sequence, now) || !add(*piece)) {
     keep_bounds();
-    return {};
+    return false;
   }
   const auto whole = assemblies_.find(piece->pair);
   std::optional<CodedPair> pair = parse_coded_pair(whole->second.bytes);
@@ -82,8 +87,13 @@ std::vector<ReceivedPair> PairReceiver::take(std::span<const std::uint8_t> packe
     undecodable_ = piece->pair;
   }
   due_ = now;
+  return true;
+}
+
+std::vector<ReceivedPair> PairReceiver::decode() {
   std::vector<ReceivedPair> out = decode_ready();
   keep_bounds();
+  if (!due_) due_ = last_acknowledged_;  // what was decoded is to be told, too
   return out;
 }
 

@@ -27,6 +27,9 @@ class PairReceiver {
   /// Takes any bytes; returns the pictures that can be shown now, mostly none. Of pieces that came before, of other
   /// packets and of damaged ones, nothing happens.
   std::vector<ReceivedPair> take(std::span<const std::uint8_t> packet, RobotTime now);
+  /// The same in two steps, for who acknowledges before decoding takes its time. True: decode() may have something.
+  bool receive(std::span<const std::uint8_t> packet, RobotTime now);
+  std::vector<ReceivedPair> decode();
 
   /// What to send back: due kBetween after the last one, or at once where a pair was completed. Empty where nothing
   /// came since. `now` never goes back.

@@ -48,7 +48,7 @@ class Intake : public testing::Test {
       piece.sequence = piece.index + 1U;
       piece.data = std::span(bytes).subspan(piece.index * kPieceBytes);
       piece.data = piece.data.first(std::min(kPieceBytes, piece.data.size()));
-      out = intake_.take(StereoPiece{77, kReader, stream_, to_packet(piece)}, robot_);
+      out = intake_.take(StereoPiece{77, kReader, stream_, to_packet(piece)}, robot_, whole_);
     }
     return out;
   }
@@ -65,6 +65,7 @@ class Intake : public testing::Test {
   PairIntake intake_{kReader, {{}, {"elbow", "wrist", "finger"}, {{160, 120, 160, 120}}}, clock_};
   RobotClockTracker robot_;
   std::uint32_t stream_ = 0;
+  std::function<void()> whole_;
 };
 
 TEST_F(Intake, AJpegPairComesOutAsItWentIn) {
@@ -157,6 +158,30 @@ TEST_F(Intake, ReportsComeAtTheirRate) {
   int reports = 0;
   for (int i = 0; i < 1000; ++i, clock_.sleep_until(clock_.now() + 1ms)) reports += intake_.report().has_value();
   EXPECT_EQ(reports, 4);
+}
+
+// Decoding takes milliseconds, which must not look like the line's: what came is told before, what was decoded after.
+TEST_F(Intake, PiecesAreAcknowledgedBeforeTheirPairIsDecoded) {
+  std::optional<StereoReport> before;
+  std::uint64_t pairs_before = 99;
+  whole_ = [&] {
+    before = intake_.report();
+    pairs_before = intake_.counts().pairs;
+  };
+  const StereoPicture picture = moving_picture(clock_.now(), {160, 120});
+  StereoFrame notes = described(77, 1, picture);
+  notes.coding = kH264Coding;
+  ASSERT_TRUE(take_coded(notes, picture)) << intake_.counts().refusal;
+  EXPECT_EQ(pairs_before, 0u);
+  const auto after = intake_.report();
+  ASSERT_TRUE(before && after);
+  const auto told = [](const StereoReport& report) {
+    return std::get<Acknowledgement>(parse_packet(report.acknowledgement));
+  };
+  EXPECT_EQ(told(*before).newest, intake_.counts().packets);
+  EXPECT_TRUE(told(*before).decoded.empty());
+  EXPECT_EQ(told(*after).decoded, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(after->newest_shown, 1u);
 }
 
 TEST_F(Intake, PiecesOfOthersAreNotTouched) {
