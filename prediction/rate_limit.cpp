@@ -6,12 +6,12 @@
 namespace foresight {
 namespace {
 
-constexpr double kEvery = 0.02;       // s between points on the way to a far command: nearer than those that are steps
-constexpr double kLongest = 30;       // s
-constexpr double kOver = 0.1;         // s that speeds are means of
-constexpr double kLongestGap = 0.15;  // s between states that what lies between is known for
+constexpr double kEvery = 0.02;  // s between points on the way to a far command: nearer than those that are steps
+constexpr double kLongest = 30;  // s
+constexpr double kOver = 0.1;    // s that speeds are means of
+constexpr double kLongestRateGap = 0.15;  // s between states that what lies between is known for
 constexpr double kAsksForMore = 1.15;
-constexpr std::size_t kEnough = 1000;
+constexpr std::size_t kEnoughRates = 1000;
 
 }  // namespace
 
@@ -37,12 +37,12 @@ void append_limited(PositionHistory& limited, const TimedPosition& now, double s
 
 std::optional<double> speed_reached(const PositionHistory& commands, const PositionHistory& states) noexcept {
   const auto& values = states.values();
-  const std::size_t stride = values.size() / kEnough + 1;
+  const std::size_t stride = values.size() / kEnoughRates + 1;
   double reached = 0, asked = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < values.size(); i += stride) {
     const double then = values[i].time - kOver;
-    if (commands.empty() || then < commands.values()[0].time || !states.covers(then, kLongestGap)) continue;
+    if (commands.empty() || then < commands.values()[0].time || !states.covers(then, kLongestRateGap)) continue;
     reached = std::max(reached, std::abs(values[i].position - states.at(then)) / kOver);
     asked = std::max(asked, std::abs(commands.at(values[i].time) - commands.at(then)) / kOver);
     ++count;

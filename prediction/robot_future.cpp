@@ -9,7 +9,7 @@ namespace {
 constexpr double kOtherClock = 60;          // s from now: no line is that slow
 constexpr double kClockError = 0.1;         // s that an instant may seem to lie ahead
 constexpr double kExact = 0.001;            // s (docs/conventions.md, time)
-constexpr double kLongestGap = 0.2;         // s, likewise
+constexpr double kLongestLineGap = 0.2;     // s, likewise
 constexpr double kBeyond = 0.05;            // s later than what is known for certain, while a line becomes faster
 constexpr double kOften = 10, kSeldom = 5;  // s at the start in which drives are identified often; then as seldom
 constexpr double kUnknownDelay = 0.02;      // s that a drive's response may be off before it was identified
@@ -182,8 +182,8 @@ bool RobotFuture::measured(double time, PredictedRobot& out) const noexcept {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const PositionHistory& measured = joints_[i].measured;
     const double nearest = measured.nearest(time);
-    if (!measured.covers(time, kLongestGap) && nearest > kExact) return false;
-    out.position[i] = measured.at(time, std::numeric_limits<double>::infinity(), kLongestGap);
+    if (!measured.covers(time, kLongestLineGap) && nearest > kExact) return false;
+    out.position[i] = measured.at(time, std::numeric_limits<double>::infinity(), kLongestLineGap);
     if (nearest > kExact) out.status = StateStatus::interpolated;
     out.sigma[i] = nearest > kExact ? interpolation_sigma(options_.gate.joints[i].limits.acceleration, 2 * nearest) : 0;
   }
