@@ -17,6 +17,9 @@
 
 namespace foresight {
 
+/// What was not measured.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
 /// What a stage works for. Only `texture` counts as the cost of turning images into textures.
 enum class StagePart {
   texture,  ///< from the raw image to the published textures

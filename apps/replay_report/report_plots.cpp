@@ -12,7 +12,6 @@
 namespace foresight {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMiB = 1024.0 * 1024.0;
 
 using Value = std::function<double(const FrameRecord&)>;
