@@ -5,6 +5,7 @@
 //   child:     S.a  S.b  T #                      U  V  W
 //
 // FORESIGHT_TEST_NO_CHILD=1 runs all in one process, for a debugger.
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -80,6 +81,20 @@ std::string what_ended_it(int status) {
   return "crashed: " + std::string(::strsignal(WTERMSIG(status)));
 }
 
+/// LTTng's tracing, which libcamera brings along, has threads of its own. A child has none of them, and would look for
+/// them at its end, so it has to be told of the fork (lttng-ust(3), "Using LTTng-UST with daemons").
+pid_t fork_and_tell() {
+  using Tell = void (*)(sigset_t*);
+  const auto tell = [](const char* name, sigset_t& signals) {
+    if (const auto function = reinterpret_cast<Tell>(::dlsym(RTLD_DEFAULT, name))) function(&signals);
+  };
+  sigset_t signals{};
+  tell("lttng_ust_before_fork", signals);
+  const pid_t child = ::fork();
+  tell(child == 0 ? "lttng_ust_after_fork_child" : "lttng_ust_after_fork_parent", signals);
+  return child;
+}
+
 /// Runs what `filter` selects and no child has begun. Does not return.
 [[noreturn]] void run_the_rest(Progress& progress, const std::string& filter) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -117,7 +132,7 @@ int main(int argc, char** argv) {
     const std::size_t before = progress.size;
     progress.running = false;
     std::fflush(nullptr);  // else both processes write what is in the buffers
-    const pid_t child = ::fork();
+    const pid_t child = fork_and_tell();
     if (child == 0) run_the_rest(progress, filter);
     if (child < 0 || !wait_for(child, status)) return std::perror("a child for the tests"), 1;
     comes_on = progress.size > before;
