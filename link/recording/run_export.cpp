@@ -93,13 +93,13 @@ class Exporter {
     if (is(topics::frames())) {
       const auto frame = from_cdr<StereoFrame>(message.data);
       if (!intake_) begin_intake(0);
-      if (frame) put(intake_->take(*frame, message.data.size(), {}));
+      if (frame) put(intake_->take(*frame, message.data.size(), RobotClockTracker()));
     } else if (is(topics::pieces())) {
       const auto piece = from_cdr<StereoPiece>(message.data);
       if (!piece) return;
       ++pieces_;
       if (!intake_ || piece->reader != reader_) begin_intake(piece->reader);
-      if (const LineFramePtr frame = intake_->take(*piece, {})) {
+      if (const LineFramePtr frame = intake_->take(*piece, RobotClockTracker())) {
         ++decoded_pieces_;
         put(frame);
       }
