@@ -54,6 +54,10 @@ void echo_as_idl_says(int domain, const char* settings) {
   }
   for (;;) {
     for (const Pipe& pipe : pipes) {
+      // Who listens may know of us before we know of them: what was written then would be lost.
+      dds_publication_matched_status_t matched{};
+      if (dds_get_publication_matched_status(pipe.writer, &matched) != DDS_RETCODE_OK || matched.current_count == 0)
+        continue;
       void* sample = nullptr;
       dds_sample_info_t info;
       while (dds_take(pipe.reader, &sample, &info, 1, 1) == 1) {
