@@ -95,7 +95,8 @@ class Hand {
         tell_.say("must let go");
     }
     LinePositions positions = begin_;
-    positions[elbow_] += 0.15 * (1 - std::cos(std::numbers::pi * swing_));
+    // Towards zero: whoever begins anew again and again stays where the arm has room.
+    positions[elbow_] += (begin_[elbow_] > 0 ? -0.15 : 0.15) * (1 - std::cos(std::numbers::pi * swing_));
     seat_.command(now, positions, pressed_);
   }
 
