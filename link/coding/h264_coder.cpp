@@ -27,57 +27,32 @@ void H264PairEncoder::learn(std::size_t bytes, std::size_t wish, std::size_t sof
   }
 }
 
-H264PairEncoder::Lane& H264PairEncoder::choose(const PairWish& wish) {
-  // The newest that may be built on, else one that has to begin anyway, else the newest that is on its way.
-  Lane *newest = nullptr, *unused = nullptr, *on_the_way = nullptr;
-  for (Lane& lane : lanes_) {
-    if (lane.broken) {
-      if (!unused) unused = &lane;
-      continue;
-    }
-    if (!on_the_way || lane.number > on_the_way->number) on_the_way = &lane;
-    if ((lane.arrived || !wish.only_what_arrived) && (!newest || lane.number > newest->number)) newest = &lane;
-  }
-  return newest ? *newest : unused ? *unused : *on_the_way;
-}
-
 CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& wish) {
   check(picture);
   Planes planes = to_planes(picture);
   if (planes.size != size_) {
     lanes_ = {};
+    encoders_ = {};
     size_ = planes.size;
   }
-  Lane& lane = choose(wish);
-  const bool intra = lane.broken;
-  if (!lane.encoder) lane.encoder.emplace(size_);
+  const auto [lane, reference] = lanes_.place(wish);
+  const bool intra = reference == 0;
+  std::optional<H264Encoder>& encoder = encoders_[lane];
+  if (!encoder) encoder.emplace(size_);
   const std::size_t bytes = wish.bytes > kCodedPairHeader ? wish.bytes - kCodedPairHeader : 1;
   CodedPair pair{.number = wish.number, .captured = picture.captured, .coding = Coding::h264};
-  pair.lane = static_cast<std::uint8_t>(&lane - lanes_.data());
-  pair.reference = intra ? 0 : lane.number;
+  pair.lane = static_cast<std::uint8_t>(lane);
+  pair.reference = reference;
   pair.width = picture.left.cols;
   pair.height = picture.left.rows;
   pair.colour = picture.left.channels() == 3;
   pair.stereo = !picture.right.empty();
   const std::size_t softness = softness_for(bytes);
   soften(planes, kSoftness[softness] * picture.left.cols / 640);
-  pair.data = lane.encoder->encode(planes, bytes, intra);
+  pair.data = encoder->encode(planes, bytes, intra);
   if (!intra) learn(pair.data.size(), bytes, softness);
-  lane.number = wish.number;
-  lane.arrived = lane.broken = false;
+  lanes_.coded(lane, wish.number);
   return pair;
-}
-
-void H264PairEncoder::arrived(std::uint32_t number) {
-  for (Lane& lane : lanes_)
-    if (lane.number == number) lane.arrived = true;
-}
-
-void H264PairEncoder::gone(std::uint32_t number) {
-  // Later pairs of the lane build on it: whichever lane has it, its newest pair is not before it. Those of other lanes
-  // are told by their own numbers.
-  for (Lane& lane : lanes_)
-    if (lane.number == number) lane.broken = true;
 }
 
 bool H264PairDecoder::ready(const CodedPair& pair) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "link/coding/encoder_lanes.hpp"
 #include "link/coding/h264_stream.hpp"
 #include "link/coding/pair_coder.hpp"
 
@@ -11,21 +12,15 @@ namespace foresight {
 class H264PairEncoder final : public PairEncoder {
  public:
   CodedPair encode(const StereoPicture& picture, const PairWish& wish) override;
-  void arrived(std::uint32_t number) override;
-  void gone(std::uint32_t number) override;
+  void arrived(std::uint32_t number) override { lanes_.arrived(number); }
+  void gone(std::uint32_t number) override { lanes_.gone(number); }
 
  private:
-  struct Lane {
-    std::optional<H264Encoder> encoder;
-    std::uint32_t number = 0;  // of the last pair
-    bool arrived = false;      // the receiver has it
-    bool broken = true;        // has to begin anew
-  };
-  Lane& choose(const PairWish& wish);
   std::size_t softness_for(std::size_t wish) const;
   void learn(std::size_t bytes, std::size_t wish, std::size_t softness);
 
-  std::array<Lane, kMostLanes> lanes_;
+  EncoderLanes lanes_;
+  std::array<std::optional<H264Encoder>, kMostLanes> encoders_;  // one a lane
   cv::Size size_;
   std::size_t softness_ = 0;    // of the next picture, so that it fits its wish
   std::size_t last_bytes_ = 0;  // of the last predicted pair

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <random>
 
-#include "link/coding/pair_coder.hpp"
+#include "link/coding/encoder_lanes.hpp"
 
 namespace foresight {
 
-/// Pairs take about what is wished for, as far as their kind can: seeded, log-normally spread. Lanes as
-/// H264PairEncoder has them.
+/// Pairs take about what is wished for, as far as their kind can: seeded, log-normally spread. Lanes are
+/// those of H264PairEncoder.
 class ModelPairEncoder final : public PairEncoder {
  public:
   struct Options {
@@ -23,10 +23,10 @@ class ModelPairEncoder final : public PairEncoder {
   explicit ModelPairEncoder(const Options& options) : options_(options), random_(options.seed) {}
 
   CodedPair encode(const StereoPicture& picture, const PairWish& wish) override {
-    Lane& lane = choose(wish);
+    const auto [lane, reference] = lanes_.place(wish);
     CodedPair pair{.number = wish.number, .captured = picture.captured, .coding = Coding::h264};
-    pair.lane = static_cast<std::uint8_t>(&lane - lanes_.data());
-    pair.reference = lane.broken ? 0 : lane.number;
+    pair.lane = static_cast<std::uint8_t>(lane);
+    pair.reference = reference;
     pair.width = picture.left.cols;
     pair.height = picture.left.rows;
     // Box and Muller: the library's own normal distribution differs between libraries.
@@ -34,41 +34,18 @@ class ModelPairEncoder final : public PairEncoder {
                  v = static_cast<double>(random_() >> 11) * 0x1p-53;
     const double normal = std::sqrt(-2 * std::log(u)) * std::cos(2 * M_PI * v);
     const double bytes = static_cast<double>(wish.bytes) * std::exp(options_.spread * normal);
-    const auto least = lane.broken ? options_.least_intra : options_.least_predicted;
+    const auto least = reference == 0 ? options_.least_intra : options_.least_predicted;
     pair.data.resize(std::clamp(static_cast<std::size_t>(bytes), least, options_.most));
-    lane = {.number = wish.number, .arrived = false, .broken = false};
+    lanes_.coded(lane, wish.number);
     return pair;
   }
-  void arrived(std::uint32_t number) override {
-    for (Lane& lane : lanes_)
-      if (lane.number == number) lane.arrived = true;
-  }
-  void gone(std::uint32_t number) override {
-    for (Lane& lane : lanes_)
-      if (lane.number == number) lane.broken = true;
-  }
+  void arrived(std::uint32_t number) override { lanes_.arrived(number); }
+  void gone(std::uint32_t number) override { lanes_.gone(number); }
 
  private:
-  struct Lane {
-    std::uint32_t number = 0;
-    bool arrived = false, broken = true;
-  };
-  Lane& choose(const PairWish& wish) {
-    Lane *newest = nullptr, *unused = nullptr, *on_the_way = nullptr;
-    for (Lane& lane : lanes_) {
-      if (lane.broken) {
-        if (!unused) unused = &lane;
-        continue;
-      }
-      if (!on_the_way || lane.number > on_the_way->number) on_the_way = &lane;
-      if ((lane.arrived || !wish.only_what_arrived) && (!newest || lane.number > newest->number)) newest = &lane;
-    }
-    return newest ? *newest : unused ? *unused : *on_the_way;
-  }
-
   Options options_;
   std::mt19937_64 random_;
-  std::array<Lane, kMostLanes> lanes_;
+  EncoderLanes lanes_;
 };
 
 /// Shows a grey pixel as bright as the pair's number says.
