@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cstdio>
-#include <random>
 
 #include "apps/command_line/named_files.hpp"
 #include "common/clock.hpp"
@@ -11,6 +10,7 @@
 #include "common/read_file.hpp"
 #include "common/stop_signal.hpp"
 #include "common/text.hpp"
+#include "link/control/motion_permit.hpp"
 #include "link/recording/line_recorder.hpp"
 #include "link/recording/playback.hpp"
 #include "link/recording/rig_files.hpp"
@@ -24,10 +24,6 @@ using namespace std::chrono_literals;
 constexpr Duration kTake = 4ms;
 constexpr Duration kDiscovery = 1s;
 constexpr Duration kLook = 500ms;
-
-unsigned long long number(std::uint64_t n) {
-  return n;
-}
 
 void say(const char* command, const std::string& words) {
   std::fprintf(stderr, "%s: %s\n", command, words.c_str());
@@ -52,10 +48,9 @@ void write_head(link::RecordingFile& file, const RecordLineOptions& options, con
 }
 
 std::string counts_text(const link::RecordingCounts& counts, std::uint64_t lost) {
-  std::string out =
-      fmt::format("{} messages, {:.1f} MB", number(counts.written), 1e-6 * static_cast<double>(counts.bytes));
-  if (counts.dropped) out += fmt::format("; {} dropped: the disk was too slow or full", number(counts.dropped));
-  if (lost) out += fmt::format("; {} lost on the way", number(lost));
+  std::string out = fmt::format("{} messages, {:.1f} MB", counts.written, 1e-6 * static_cast<double>(counts.bytes));
+  if (counts.dropped) out += fmt::format("; {} dropped: the disk was too slow or full", counts.dropped);
+  if (lost) out += fmt::format("; {} lost on the way", lost);
   return out;
 }
 
@@ -103,16 +98,16 @@ class Player {
     std::size_t shown = 0;
     for (const auto& [topic, count] : playback_.left_out()) {
       if (++shown > kShown) continue;
-      left += fmt::format("{}{} ({})", left.empty() ? "" : ", ", in_quotes(topic), number(count));
+      left += fmt::format("{}{} ({})", left.empty() ? "" : ", ", in_quotes(topic), count);
     }
     if (shown > kShown) left += fmt::format(" and {} more", shown - kShown);
-    say("play", fmt::format("{} messages", number(sent_)));
+    say("play", fmt::format("{} messages", sent_));
     if (!left.empty()) say("play", "not played, as the robot does not say it or somebody could follow it: " + left);
     if (const auto& pieces = playback_.pieces(); pieces.came && pieces.pairs == 0)
       say("play",
           "no coded pair (h264) could be decoded: a stream is recorded from its beginning on if the recorder is "
           "there before the operator's program");
-    if (playback_.damaged()) say("play", fmt::format("{} messages are damaged", number(playback_.damaged())));
+    if (playback_.damaged()) say("play", fmt::format("{} messages are damaged", playback_.damaged()));
     if (!outcome.trouble.empty()) say("play", "the recording is cut: " + outcome.trouble);
   }
   std::uint64_t sent() const { return sent_; }
@@ -122,8 +117,7 @@ class Player {
   static constexpr Duration kStart = 300ms;  // until the first message: readers have to find its topic
 
   static link::PlaybackOptions playback_options(const PlayOptions& options) {
-    std::random_device random;
-    return {options.rate, seconds(options.from), (std::uint64_t{random()} << 32) | random()};
+    return {options.rate, seconds(options.from), machine_nonces()()};
   }
 
   const PlayOptions& options_;
@@ -203,7 +197,7 @@ int export_run(const ExportRunOptions& options) {
   if (!options.scene.empty()) wanted.scene = options.scene;
   const link::RunExport run = link::export_run(wanted);
   std::fputs(run.remarks.c_str(), stderr);
-  say("export-run", fmt::format("{} pairs, {} of them without a pose", number(run.pairs), number(run.without_pose)));
+  say("export-run", fmt::format("{} pairs, {} of them without a pose", run.pairs, run.without_pose));
   std::printf("%s\n", options.out.c_str());
   return 0;
 }

@@ -51,12 +51,7 @@ std::optional<link::Topic> find_topic(const link::Participant& program, const st
     for (const link::Peer& peer : program.peers())
       for (const link::Peer::Endpoint& endpoint : peer.endpoints) {
         if (!endpoint.writes) continue;
-        if (endpoint.topic == topic)
-          return link::Topic{topic, endpoint.type,
-                             endpoint.kept   ? link::Delivery::kept
-                             : endpoint.once ? link::Delivery::once
-                                             : link::Delivery::newest,
-                             kRoom};
+        if (endpoint.topic == topic) return link::Topic{topic, endpoint.type, endpoint.delivery, kRoom};
         written.insert(endpoint.topic);
       }
     clock.sleep_until(clock.now() + kLook);

@@ -116,14 +116,12 @@ void each_alive(dds_entity_t reader, Visit&& visit) {
   dds_return_loan(reader, samples.data(), count);
 }
 
-bool is_kept(const dds_qos_t* qos) {
-  dds_durability_kind_t kind = DDS_DURABILITY_VOLATILE;
-  return dds_qget_durability(qos, &kind) && kind != DDS_DURABILITY_VOLATILE;
-}
-
-bool is_once(const dds_qos_t* qos) {
-  dds_reliability_kind_t kind = DDS_RELIABILITY_RELIABLE;
-  return dds_qget_reliability(qos, &kind, nullptr) && kind == DDS_RELIABILITY_BEST_EFFORT;
+Delivery delivery_of(const dds_qos_t* qos) {
+  dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
+  if (dds_qget_durability(qos, &durability) && durability != DDS_DURABILITY_VOLATILE) return Delivery::kept;
+  dds_reliability_kind_t reliability = DDS_RELIABILITY_RELIABLE;
+  const bool known = dds_qget_reliability(qos, &reliability, nullptr);
+  return known && reliability == DDS_RELIABILITY_BEST_EFFORT ? Delivery::once : Delivery::newest;
 }
 
 Peer peer_of(const dds_builtintopic_participant_t& participant) {
@@ -258,8 +256,7 @@ std::vector<Peer> Participant::peers() const {
         (writes ? s.publications : s.subscriptions).get(), [&](const dds_builtintopic_endpoint_t& one) {
           const auto of = std::ranges::find(out, id_of(one.participant_key), &Peer::id);
           if (of != out.end())
-            of->endpoints.push_back(
-                {shown(one.topic_name), shown(one.type_name), writes, is_kept(one.qos), is_once(one.qos)});
+            of->endpoints.push_back({shown(one.topic_name), shown(one.type_name), writes, delivery_of(one.qos)});
         });
   for (Peer& peer : out)
     std::ranges::sort(peer.endpoints, [](const auto& a, const auto& b) { return a.topic < b.topic; });

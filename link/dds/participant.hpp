@@ -40,8 +40,8 @@ struct Peer {
   struct Endpoint {
     std::string topic, type;
     bool writes = false;
-    bool kept = false;  ///< who comes late is to get the last one (Delivery::kept)
-    bool once = false;  ///< Delivery::once: who reads it has to read it so, too
+    /// What who reads it should ask for: kept, once, or newest.
+    Delivery delivery = Delivery::newest;
   };
   std::vector<Endpoint> endpoints;  ///< by topic
 };

@@ -48,17 +48,13 @@ void LineRecorder::look_around() {
 }
 
 void LineRecorder::add(const std::string& writer, const Peer::Endpoint& endpoint) {
-  const Topic topic{endpoint.topic, endpoint.type,
-                    endpoint.kept   ? Delivery::kept
-                    : endpoint.once ? Delivery::once
-                                    : Delivery::newest,
-                    kRoom};
+  const Topic topic{endpoint.topic, endpoint.type, endpoint.delivery, kRoom};
   try {
     Recorded recorded{topic_in_ros(topic.name), std::make_unique<Reader>(participant_, topic)};
     recorded.channel = file_.add_channel(recorded.topic, topic.type,
                                          {{"dds_topic", topic.name},
                                           {"dds_type", topic.type},
-                                          {"kept", endpoint.kept ? "yes" : "no"},
+                                          {"kept", endpoint.delivery == Delivery::kept ? "yes" : "no"},
                                           {"writer", writer}});
     topics_.push_back(std::move(recorded));
     news_.push_back(fmt::format("{} ({}) of {}", topics_.back().topic, ros_name(topic.type), writer));
