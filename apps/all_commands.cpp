@@ -5,6 +5,7 @@
 #include "apps/can_command.hpp"
 #include "apps/doctor_command.hpp"
 #include "apps/export_command.hpp"
+#include "apps/input_command.hpp"
 #include "apps/line_recording_command.hpp"
 #include "apps/link_command.hpp"
 #include "apps/record_command.hpp"
@@ -26,6 +27,7 @@ void add_commands(Command& app, std::function<int()>& action) {
   add_bench_command(app, action);
   add_rig_command(app, action);
   add_robot_command(app, action);
+  add_input_command(app, action);
   add_link_command(app, action);
   add_line_recording_commands(app, action);
   add_doctor_command(app, action);

@@ -47,6 +47,8 @@ const std::map<std::string, CommandWords>& table() {
       {"export-run", {{"FILE", {"@line.mcap"}}, {"--out", {"@new/exported"}}}},
       {"link keys", {{"DIR", {"@new/keys"}}}},
       {"robot", {{"RIG", {"@rig.yaml"}}, {"--stepped", {}}}},
+      {"input list", {}},
+      {"input show", {{"DEVICE", {"@tip.csv"}}}},
       {"doctor", {{"RIG", {"@rig.yaml"}}}},
       {"rig new", {{"--urdf", {"@arm.urdf"}}, {"--out", {"@new/rig.yaml"}}}},
       {"rig view", {{"RIG", {"@rig.yaml"}}, {"--out", {"@new/rig.png"}}}},
@@ -90,6 +92,7 @@ Victim::Victim() {
   write("rig.yaml", rig_text());
   fs::copy_file(source_folder() / "configs/arm.urdf", *this / "arm.urdf");
   write("motion.csv", "time_s,elbow\n0,0.2\n1,0.6\n");
+  write("tip.csv", "time_s,x,y,z,qx,qy,qz,qw,gripper\n0,0,0,0,0,0,0,1,100\n1,0,0,0.1,0,0,0,1,50\n");
   write("session.log", "(1700000000.000000) can0 080#\n(1700000000.010000) can0 701#05\n");
   write("corners.vnl", "# filename x y level\na.png 10 10 0\nb.png - - -\n");
   write("poses.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");

@@ -1,0 +1,65 @@
+// Which joints of a rig a hand moves.
+#include "input/hand_of_rig.hpp"
+
+#include <gmock/gmock.h>
+
+#include "common/error.hpp"
+#include "tests/support/folders.hpp"
+
+namespace foresight {
+namespace {
+
+class HandOfRigTest : public testing::Test {
+ protected:
+  Rig rig_ = read_rig(source_folder() / "configs/minerva.yaml");
+};
+
+TEST_F(HandOfRigTest, TheLastLinkThatTheArmMovesIsTheTool) {
+  EXPECT_EQ(tool_link(rig_), "arm_7");
+  const HandOptions options = hand_options(rig_);
+  ASSERT_TRUE(options.arm);
+  EXPECT_EQ(options.arm_joints, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(options.roles[7], JointRole::gripper);
+  EXPECT_EQ(options.roles[8], JointRole::other);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_LE(options.arm->joints()[i].velocity, options.gate.joints[i].limits.velocity);
+    EXPECT_GE(options.arm->joints()[i].lower, options.gate.joints[i].limits.min_position);
+    EXPECT_LE(options.arm->joints()[i].upper, options.gate.joints[i].limits.max_position);
+  }
+  HandControl(options, "minerva");
+}
+
+TEST_F(HandOfRigTest, ALinkThatIsNotThereIsRefusedAndSoIsOneThatTheArmDoesNotReach) {
+  EXPECT_THROW(hand_options(rig_, "hand"), InputError);
+  const HandOptions finger = hand_options(rig_, "finger_left");
+  try {
+    HandControl(finger, "minerva");
+    FAIL() << "the finger is no joint of the arm";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("finger"));
+  }
+}
+
+TEST_F(HandOfRigTest, WithoutAModelJointsAreMovedAlone) {
+  rig_.robot.reset();
+  const HandOptions options = hand_options(rig_);
+  EXPECT_FALSE(options.arm);
+  EXPECT_EQ(HandControl(options, "minerva").last().mode, HandMode::joints);
+}
+
+TEST_F(HandOfRigTest, OptionsThatContradictThemselvesAreRefused) {
+  const auto refused = [&](const std::function<void(HandOptions&)>& change) {
+    HandOptions options = hand_options(rig_);
+    change(options);
+    EXPECT_THROW(HandControl(options, "minerva"), InputError);
+  };
+  refused([](HandOptions& o) { o.roles.pop_back(); });
+  refused([](HandOptions& o) { o.arm_joints[2] = 99; });
+  refused([](HandOptions& o) { o.arm_joints.pop_back(); });
+  refused([](HandOptions& o) { o.gate.joints[3].limits.velocity *= 0.5; });
+  refused([](HandOptions& o) { o.leash = 0; });
+  refused([](HandOptions& o) { o.joint_speed = std::nan(""); });
+}
+
+}  // namespace
+}  // namespace foresight

@@ -1,0 +1,111 @@
+// Keys and the mouse as a window tells of them.
+#include "input/keyboard_mouse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+class KeyboardMouseTest : public testing::Test {
+ protected:
+  /// A round of the window, 10 ms later.
+  TrackerState round(bool looks = true) {
+    now_ = now_ + 10ms;
+    if (looks) device_.looked(now_);
+    return device_.read(now_);
+  }
+  TrackerState rounds(int count, bool looks = true) {
+    TrackerState out;
+    for (int i = 0; i < count; ++i) out = round(looks);
+    return out;
+  }
+  OperatorTime now_{1'000'000'000};
+  KeyboardMouse device_;
+};
+
+TEST_F(KeyboardMouseTest, EveryKeyIsNamedOnceAndFound) {
+  std::set<int> codes;
+  std::set<std::string> names;
+  for (const KeyBinding& binding : key_bindings()) {
+    EXPECT_TRUE(codes.insert(binding.code).second) << binding.printed;
+    EXPECT_TRUE(names.insert(binding.printed).second) << binding.printed;
+    EXPECT_EQ(hand_key(binding.code), binding.key) << binding.printed;
+    EXPECT_NE(std::string(binding.does), "");
+  }
+  EXPECT_EQ(codes.size(), kHandKeys);
+  EXPECT_FALSE(hand_key(-1));
+}
+
+TEST_F(KeyboardMouseTest, KeysMoveAtABoundedSpeedAndOnlyWhileTheyAreDown) {
+  round();
+  device_.key(HandKey::forward, true);
+  device_.key(HandKey::up, true);
+  const TrackerState moved = rounds(100);
+  EXPECT_NEAR(moved.T_space_hand.translation().norm(), 0.15, 1e-9);
+  EXPECT_GT(moved.T_space_hand.translation().x(), 0.1);
+  EXPECT_GT(moved.T_space_hand.translation().z(), 0.1);
+  device_.key(HandKey::forward, false);
+  device_.key(HandKey::up, false);
+  EXPECT_EQ(rounds(100).T_space_hand.matrix(), moved.T_space_hand.matrix());
+}
+
+TEST_F(KeyboardMouseTest, TheSwitchIsAKeyOrTheMousesButton) {
+  EXPECT_FALSE(round().buttons.held(TrackerButton::deadman));
+  device_.key(HandKey::deadman, true);
+  EXPECT_TRUE(round().buttons.held(TrackerButton::deadman));
+  device_.key(HandKey::deadman, false);
+  device_.mouse_button(KeyboardMouse::MouseButton::left, true);
+  EXPECT_TRUE(round().buttons.held(TrackerButton::clutch));
+}
+
+TEST_F(KeyboardMouseTest, AWindowThatLosesTheKeyboardLetsGoOfAll) {
+  device_.key(HandKey::deadman, true);
+  device_.key(HandKey::left, true);
+  const TrackerState before = rounds(5);
+  ASSERT_TRUE(before.buttons.held(TrackerButton::deadman));
+  device_.focus_lost();
+  const TrackerState after = rounds(50);
+  EXPECT_FALSE(after.buttons.held(TrackerButton::deadman));
+  EXPECT_EQ(after.T_space_hand.matrix(), before.T_space_hand.matrix());
+}
+
+TEST_F(KeyboardMouseTest, AWindowThatHangsLetsGoOfAll) {
+  device_.key(HandKey::deadman, true);
+  device_.key(HandKey::right, true);
+  ASSERT_TRUE(rounds(5).buttons.held(TrackerButton::deadman));
+  const TrackerState hung = rounds(60, false), later = rounds(60, false);
+  EXPECT_FALSE(hung.buttons.held(TrackerButton::deadman));
+  EXPECT_EQ(later.T_space_hand.matrix(), hung.T_space_hand.matrix()) << "no key moves on for ever";
+  EXPECT_FALSE(rounds(5).buttons.held(TrackerButton::deadman)) << "what was held has to be pressed again";
+}
+
+TEST_F(KeyboardMouseTest, TheMouseMovesTheHandNoFasterThanKeysAndNotForLong) {
+  round();
+  device_.mouse_moved(100, 0);
+  EXPECT_EQ(rounds(10).T_space_hand.translation().norm(), 0) << "without its button";
+  device_.mouse_button(KeyboardMouse::MouseButton::left, true);
+  device_.mouse_moved(10, -4);
+  const Eigen::Vector3d there = rounds(20).T_space_hand.translation();
+  EXPECT_NEAR(there.y(), -0.005, 1e-9) << "to the right";
+  EXPECT_NEAR(there.z(), 0.002, 1e-9) << "and up";
+  device_.mouse_moved(1e6, 0);
+  const TrackerState one = round();
+  EXPECT_LE((one.T_space_hand.translation() - there).norm(), 0.15 * 0.01 + 1e-12);
+  EXPECT_NEAR((rounds(100).T_space_hand.translation() - there).norm(), 0.015, 1e-6) << "a tenth of a second of it";
+}
+
+TEST_F(KeyboardMouseTest, JointsAreChosenByNumberAndMovedByKeys) {
+  device_.key(HandKey::joint_4, true);
+  EXPECT_EQ(round().joint, 3u);
+  EXPECT_FALSE(round().joint) << "once";
+  device_.key(HandKey::joint_less, true);
+  device_.key(HandKey::slow, true);
+  EXPECT_NEAR(round().joint_rate, -0.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace foresight
