@@ -87,6 +87,17 @@ std::string Gamepad::name() const {
   return name ? std::string("gamepad '") + name + "'" : "gamepad " + std::to_string(device_->index);
 }
 
+bool Gamepad::sticks_are_stale(OperatorTime now) noexcept {
+  std::array<int, 4> sticks{};
+  for (std::size_t i = 0; i < sticks.size(); ++i) {
+    const auto axis = static_cast<SDL_GameControllerAxis>(SDL_CONTROLLER_AXIS_LEFTX + static_cast<int>(i));
+    sticks[i] = SDL_GameControllerGetAxis(device_->pad, axis);
+  }
+  if (!moved_ || sticks != sticks_) moved_ = now;
+  sticks_ = sticks;
+  return now - *moved_ > options_.stale_after;
+}
+
 TrackerState Gamepad::read(OperatorTime now) noexcept {
   SdlPads::update();
   if (device_->pad && SDL_GameControllerGetAttached(device_->pad) != SDL_TRUE) device_->close();
@@ -102,7 +113,10 @@ TrackerState Gamepad::read(OperatorTime now) noexcept {
   }
   out.connected = out.tracked = true;
   const Device& d = *device_;
-  const auto stick = [&](SDL_GameControllerAxis axis) { return without_dead_zone(d.axis(axis), options_.dead_zone); };
+  const bool stale = sticks_are_stale(now);
+  const auto stick = [&](SDL_GameControllerAxis axis) {
+    return stale ? 0 : without_dead_zone(d.axis(axis), options_.dead_zone);
+  };
   const double left_x = stick(SDL_CONTROLLER_AXIS_LEFTX), left_y = stick(SDL_CONTROLLER_AXIS_LEFTY);
   const double right_x = stick(SDL_CONTROLLER_AXIS_RIGHTX), right_y = stick(SDL_CONTROLLER_AXIS_RIGHTY);
   const bool turns = d.button(SDL_CONTROLLER_BUTTON_LEFTSHOULDER);

@@ -72,7 +72,7 @@ const HandCycle& HandControl::cycle(const HandInput& input) noexcept {
   }
   if (verdict.buttons == HandFault::none) take_presses(input.device);
   if (paused) seen_open_ = false;
-  heed_switch(input, verdict.buttons, paused);
+  heed_switch(input, verdict, paused);
   if (held_) {
     const HandReason fault = fault_of_robot(input);
     if (fault != HandReason::none)
@@ -86,18 +86,20 @@ const HandCycle& HandControl::cycle(const HandInput& input) noexcept {
   return out_;
 }
 
-void HandControl::heed_switch(const HandInput& input, HandFault device, bool paused) noexcept {
-  if (device != HandFault::none) return refuse(HandReason::device, device);
-  if (!input.device.buttons.held(TrackerButton::deadman)) return let_go();
+void HandControl::heed_switch(const HandInput& input, const HandWatch::Verdict& verdict, bool paused) noexcept {
+  if (verdict.buttons != HandFault::none) return refuse(HandReason::device, verdict.buttons);
+  if (!input.device.buttons.held(TrackerButton::deadman)) return let_go(verdict.pose);
   if (held_ && paused) return refuse(HandReason::paused);
   if (!held_ && out_.phase != HandPhase::refused) press(input);
 }
 
-void HandControl::let_go() noexcept {
+// A hand that nobody sees is told of before the switch is pressed for nothing.
+void HandControl::let_go(HandFault pose) noexcept {
+  const bool tells = pose != HandFault::none && pose != HandFault::jumped && out_.mode == HandMode::tool;
   out_.phase = HandPhase::released;
-  out_.reason = HandReason::none;
-  out_.fault = HandFault::none;
-  out_.trouble = out_.cure = "";
+  out_.reason = tells ? HandReason::device : HandReason::none;
+  out_.fault = tells ? pose : HandFault::none;
+  if (!tells) out_.trouble = out_.cure = "";
   held_.reset();
   seen_open_ = true;
 }

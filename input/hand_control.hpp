@@ -109,7 +109,8 @@ enum class HandReason : std::uint8_t {
 /// What came of a cycle: what to send (ControlSeat::command()), and what to show.
 struct HandCycle {
   HandPhase phase = HandPhase::released;
-  HandReason reason = HandReason::none;  ///< of `refused`, and of a clutch that connects nothing
+  HandReason reason =
+      HandReason::none;  ///< of `refused`, of a clutch that connects nothing, and of a hand that could not
   HandFault fault = HandFault::none;
   const char* trouble = "";  ///< the device's own words for it, or ""
   const char* cure = "";
@@ -170,8 +171,8 @@ class HandControl {
   void see(const HandInput& input, const HandWatch::Verdict& verdict) noexcept;
   void take_presses(const TrackerState& device) noexcept;
   void recentre() noexcept;
-  void heed_switch(const HandInput& input, HandFault device, bool paused) noexcept;
-  void let_go() noexcept;
+  void heed_switch(const HandInput& input, const HandWatch::Verdict& verdict, bool paused) noexcept;
+  void let_go(HandFault pose) noexcept;
   bool rest(const HandRobot& robot) noexcept;
   void press(const HandInput& input) noexcept;
   void refuse(HandReason reason, HandFault fault = HandFault::none) noexcept;

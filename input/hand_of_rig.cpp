@@ -7,9 +7,14 @@
 namespace foresight {
 namespace {
 
-bool is_arm(const Rig& rig, const std::string& joint) {
-  return std::ranges::any_of(rig.joints,
-                             [&](const RigJoint& j) { return j.drive.name == joint && j.group == JointGroup::arm; });
+bool is_of(const Rig& rig, JointGroup group, const std::string& joint) {
+  return std::ranges::any_of(rig.joints, [&](const RigJoint& j) { return j.drive.name == joint && j.group == group; });
+}
+
+// The joint whose drive moves it: itself, or the one that it follows.
+const std::string& mover_of(const UrdfRobot& robot, std::size_t joint) {
+  const int source = source_of(robot, joint).joint;
+  return robot.joints[source < 0 ? joint : static_cast<std::size_t>(source)].name;
 }
 
 JointRole role_of(JointGroup group) {
@@ -21,7 +26,7 @@ JointRole role_of(JointGroup group) {
   return JointRole::other;
 }
 
-ArmChain within(const ArmChain& chain, const HandOptions& options, const std::string& where) {
+ArmChain within(const ArmChain& chain, const HandOptions& options, const Pose& T_tip_tool, const std::string& where) {
   std::vector<ArmJoint> joints(chain.joints().begin(), chain.joints().end());
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const JointLimits& limits = options.gate.joints[options.arm_joints[i]].limits;
@@ -30,7 +35,7 @@ ArmChain within(const ArmChain& chain, const HandOptions& options, const std::st
     joints[i].velocity = joints[i].velocity_known ? std::min(joints[i].velocity, limits.velocity) : limits.velocity;
     joints[i].velocity_known = true;
   }
-  return {std::move(joints), chain.tip_at_zero(), where};
+  return {std::move(joints), chain.tip_at_zero() * T_tip_tool, where};
 }
 
 }  // namespace
@@ -43,7 +48,7 @@ std::string tool_link(const Rig& rig) {
   bool two = false;
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const auto child = static_cast<std::size_t>(robot.joints[i].child);
-    const bool arm = is_arm(rig, robot.joints[i].name);
+    const bool arm = is_of(rig, JointGroup::arm, robot.joints[i].name);
     arm_joints[child] = arm_joints[static_cast<std::size_t>(robot.links[child].parent)] + (arm ? 1 : 0);
     if (!arm || arm_joints[child] < most) continue;
     two = arm_joints[child] == most;
@@ -55,7 +60,31 @@ std::string tool_link(const Rig& rig) {
   return found;
 }
 
-HandOptions hand_options(const Rig& rig, const std::string& tip) {
+Pose grip_point(const Rig& rig, const std::string& tip) {
+  const UrdfRobot& robot = *rig.robot;
+  const auto found = std::ranges::find(robot.links, tip, &Node::name);
+  if (found == robot.links.end()) throw InputError(rig.name, "has no link '" + tip + "'", "name one that it has");
+  const auto at = static_cast<std::size_t>(found - robot.links.begin());
+  std::vector<Pose> T_tip_link(robot.links.size(), Pose::Identity());
+  std::vector<bool> beyond(robot.links.size(), false), grips(robot.links.size(), false);
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const auto child = static_cast<std::size_t>(robot.joints[i].child);
+    const auto parent = static_cast<std::size_t>(robot.links[child].parent);
+    if (parent != at && !beyond[parent]) continue;
+    beyond[child] = true;
+    T_tip_link[child] = T_tip_link[parent] * robot.links[child].T_parent_node;
+    grips[child] = grips[parent] || is_of(rig, JointGroup::gripper, mover_of(robot, i));
+    if (!grips[child]) continue;
+    for (const Eigen::Vector3f& vertex : robot.body(child).vertices)
+      box.extend(T_tip_link[child] * vertex.cast<double>());
+  }
+  Pose out = Pose::Identity();
+  if (!box.isEmpty()) out.translation() = box.center();
+  return out;
+}
+
+HandOptions hand_options(const Rig& rig, const std::string& tip, const Pose& T_tip_tool) {
   HandOptions out;
   out.gate = rig.gate_options();
   for (const RigJoint& joint : rig.joints) out.roles.push_back(role_of(joint.group));
@@ -70,7 +99,7 @@ HandOptions hand_options(const Rig& rig, const std::string& tip) {
                        "name another link: --tip LINK");
     out.arm_joints.push_back(static_cast<std::size_t>(found - names.begin()));
   }
-  out.arm = within(chain, out, rig.name);
+  out.arm = within(chain, out, T_tip_tool, rig.name);
   return out;
 }
 

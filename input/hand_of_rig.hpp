@@ -10,9 +10,14 @@ namespace foresight {
 /// far (two arms), or none of the rig's arm joints is in its URDF; the rig must have one.
 std::string tool_link(const Rig& rig);
 
+/// The place between the fingers, by the link `tip`: the middle of what the rig's grippers move beyond it, with the
+/// tip's axes. The tip itself where they move nothing there. A hand that turns turns the tool about it.
+Pose grip_point(const Rig& rig, const std::string& tip);
+
 /// All that HandControl needs of a rig; `tip`: the tool's link, or "" for tool_link(). The arm's base is the root link
-/// of the rig's URDF, which stands at Rig::T_world_robot. A rig without a URDF has joints alone. Throws InputError
+/// of the rig's URDF, which stands at Rig::T_world_robot; the
+/// tool stands at `T_tip_tool` on that link. A rig without a URDF has joints alone. Throws InputError
 /// naming the rig: no such link, joints on the way to it that are not the arm's.
-HandOptions hand_options(const Rig& rig, const std::string& tip = "");
+HandOptions hand_options(const Rig& rig, const std::string& tip = "", const Pose& T_tip_tool = Pose::Identity());
 
 }  // namespace foresight

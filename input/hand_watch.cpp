@@ -17,7 +17,8 @@ HandFault HandWatch::of_time(OperatorTime now, const TrackerState& state) noexce
     newest_.reset();
     return HandFault::device_gone;
   }
-  if (state.time - now > options_.ahead || now - state.time > options_.other_clock) return HandFault::wrong_clock;
+  // Compared, not subtracted: an instant of another clock may be any number.
+  if (state.time > now + options_.ahead || state.time < now - options_.other_clock) return HandFault::wrong_clock;
   // What comes out of order tells nothing new.
   newest_ = newest_ ? std::max(*newest_, state.time) : state.time;
   return now - *newest_ > options_.frozen_after ? HandFault::frozen : HandFault::none;

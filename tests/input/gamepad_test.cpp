@@ -89,6 +89,47 @@ TEST_F(GamepadTest, UnpluggedWhileDrivingItHasGoneAtOnceAndIsFoundAgain) {
   EXPECT_TRUE(rounds(pad, 2).connected);
 }
 
+TEST_F(GamepadTest, SticksOfAPadThatWentOutOfRangeDoNotMoveOn) {
+  plug();
+  Gamepad pad;
+  axis(SDL_CONTROLLER_AXIS_LEFTY, -1);
+  const TrackerState moved = rounds(pad, 220);
+  EXPECT_NEAR(moved.T_space_hand.translation().x(), 0.15 * 2.0, 0.01);
+  EXPECT_EQ(rounds(pad, 300).T_space_hand.matrix(), moved.T_space_hand.matrix());
+  axis(SDL_CONTROLLER_AXIS_LEFTY, -0.9);
+  EXPECT_NE(rounds(pad, 5).T_space_hand.matrix(), moved.T_space_hand.matrix()) << "it is there after all";
+}
+
+TEST_F(GamepadTest, ItsMotorsFeelAContact) {
+  struct Motors {
+    int low = 0;
+    static int run(void* self, Uint16 low, Uint16) {
+      static_cast<Motors*>(self)->low = low;
+      return 0;
+    }
+  } motors;
+  SDL_VirtualJoystickDesc desc{};
+  desc.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;
+  desc.type = SDL_JOYSTICK_TYPE_GAMECONTROLLER;
+  desc.naxes = SDL_CONTROLLER_AXIS_MAX;
+  desc.nbuttons = SDL_CONTROLLER_BUTTON_MAX;
+  desc.userdata = &motors;
+  desc.Rumble = &Motors::run;
+  index_ = SDL_JoystickAttachVirtualEx(&desc);
+  ASSERT_GE(index_, 0) << SDL_GetError();
+  {
+    Gamepad pad;
+    ASSERT_TRUE(rounds(pad, 1).connected);
+    pad.push(now_, {{0, 0, 1}, 0.01, 0});
+    EXPECT_NEAR(motors.low, 32767, 2);
+    pad.push(now_, {{0, 0, 1}, 5, 0});
+    EXPECT_EQ(motors.low, 65535);
+    pad.push(now_, {});
+    EXPECT_EQ(motors.low, 0);
+  }
+  unplug();
+}
+
 TEST_F(GamepadTest, WhatIsThereIsListed) {
   const std::size_t before = find_gamepads().size();
   plug();

@@ -29,6 +29,17 @@ TEST_F(HandOfRigTest, TheLastLinkThatTheArmMovesIsTheTool) {
   HandControl(options, "minerva");
 }
 
+TEST_F(HandOfRigTest, TheToolMayBeBetweenTheFingers) {
+  const Pose grip = grip_point(rig_, "arm_7");
+  EXPECT_NEAR(grip.translation().x(), 0, 1e-6);
+  EXPECT_NEAR(grip.translation().y(), 0, 1e-6) << "both fingers count";
+  EXPECT_NEAR(grip.translation().z(), 0.1, 1e-3);
+  const HandOptions flange = hand_options(rig_), fingers = hand_options(rig_, "", grip);
+  const JointVector q = flange.arm->middle();
+  EXPECT_TRUE(fingers.arm->tip_pose(q).isApprox(flange.arm->tip_pose(q) * grip, 1e-12));
+  EXPECT_TRUE(grip_point(rig_, "finger_left").isApprox(Pose::Identity())) << "nothing grips beyond it";
+}
+
 TEST_F(HandOfRigTest, ALinkThatIsNotThereIsRefusedAndSoIsOneThatTheArmDoesNotReach) {
   EXPECT_THROW(hand_options(rig_, "hand"), InputError);
   const HandOptions finger = hand_options(rig_, "finger_left");

@@ -1,0 +1,36 @@
+// Several devices on one table: whichever switch is pressed first is in charge until it is let go of.
+#pragma once
+
+#include <vector>
+
+#include "input/tracker.hpp"
+
+namespace foresight {
+
+/// Only who presses a switch while nobody is in charge takes over: not one who held it before, nor a device that comes
+/// with its switch held. One that goes while it is in charge has gone; another takes another press. Views, recentring,
+/// single joints and the camera listen to all of them. One thread.
+class AnyTracker final : public Tracker {
+ public:
+  /// At least one; they outlive this.
+  explicit AnyTracker(std::vector<Tracker*> devices) : devices_(devices.begin(), devices.end()) {}
+
+  /// Of the one in charge, or that was last.
+  std::string name() const override { return devices_[shown_].tracker->name(); }
+  TrackerState read(OperatorTime now) noexcept override;
+
+ private:
+  struct Device {
+    explicit Device(Tracker* device) : tracker(device) {}
+    Tracker* tracker;
+    TrackerState state;
+    bool open = false;  // was there with its switch open when it was read before
+  };
+  bool take_charge() noexcept;
+
+  std::vector<Device> devices_;
+  std::size_t shown_ = 0;
+  bool in_charge_ = false;
+};
+
+}  // namespace foresight
