@@ -36,9 +36,12 @@ void require_arm(const HandOptions& options, const std::string& where) {
 void check(const HandOptions& options, const std::string& where) {
   options.gate.validate(where);
   require(options.roles.size() == options.gate.joints.size(), where, "not every joint has a role", "give each one");
-  for (const double share : {options.joint_speed, options.gripper_speed})
+  for (const double share : {options.joint_speed, options.gripper_speed, options.look_speed})
     require(share > 0 && share <= 1, where, "a share of a joint's velocity is " + std::to_string(share),
             "choose more than 0, and at most 1");
+  for (const auto& joint : {options.pan, options.tilt})
+    require(!joint || (*joint < options.roles.size() && options.roles[*joint] == JointRole::other), where,
+            "pan or tilt is a joint of the arm or the gripper", "give it the role `other`");
   require(options.leash > 0 && options.leash_turn > 0, where, "the leash has no length", "choose more than 0");
   require(options.longest_cycle.count() > 0, where, "the longest cycle has no length", "choose more than 0");
   require_arm(options, where);
@@ -204,11 +207,7 @@ void HandControl::hold(const HandInput& input, const HandWatch::Verdict& verdict
     heed_clutch(input.device, verdict.pose, dt);
   if (!held_) return;
   move_grippers(input.device, dt);
-  for (std::size_t i = 0; i < out_.joints; ++i) {
-    const bool jogged = out_.mode == HandMode::joints && out_.joint == i;
-    if (options_.roles[i] == JointRole::other && !jogged && input.others[i] && std::isfinite(*input.others[i]))
-      move_to(i, *input.others[i], dt, 1);
-  }
+  move_others(input, dt);
 }
 
 void HandControl::heed_clutch(const TrackerState& device, HandFault fault, double dt) noexcept {

@@ -39,10 +39,13 @@ struct HandOptions {
   std::vector<JointRole> roles;  ///< one per joint
   /// The arm between the robot's base and the tool, within the gate's limits; without it single joints can be moved.
   std::optional<ArmChain> arm;
-  std::vector<std::size_t> arm_joints;  ///< of the robot, per joint of `arm`
-  bool gripper_opens_up = true;         ///< larger positions are wider open
-  double joint_speed = 0.3;             ///< share of a joint's velocity at which it is jogged
-  double gripper_speed = 1;             ///< share of its velocity at which a gripper opens and closes
+  std::vector<std::size_t> arm_joints;   ///< of the robot, per joint of `arm`
+  std::optional<std::size_t> pan, tilt;  ///< the joints that the device's pan and tilt rates move
+  bool tilt_looks_down = true;           ///< larger positions of `tilt` look farther down
+  double look_speed = 0.3;               ///< share of their velocity
+  bool gripper_opens_up = true;          ///< larger positions are wider open
+  double joint_speed = 0.3;              ///< share of a joint's velocity at which it is jogged
+  double gripper_speed = 1;              ///< share of its velocity at which a gripper opens and closes
   /// How far the target may get ahead of the tool. Beyond it, it slips: what the arm cannot follow is not made up for
   /// later.
   double leash = 0.3;       ///< m
@@ -86,7 +89,8 @@ struct HandInput {
   HandRobot robot;
   Pose T_base_view =
       Pose::Identity();  ///< the camera that the operator looks through (optical frame), by the arm's base
-  /// Where joints with the role `other` shall go, at no more than their velocity; those that are not given hold.
+  /// Where joints with the role `other` shall go, at no more than their velocity; those that are not given hold, or go
+  /// as the device's pan and tilt rates say.
   std::array<std::optional<double>, kMostJoints> others{};
 };
 
@@ -184,6 +188,8 @@ class HandControl {
   void follow_target(double dt) noexcept;
   void leash(const FollowStep& step) noexcept;
   void jog(double rate, double dt) noexcept;
+  void look(const TrackerState& device, double dt) noexcept;
+  void move_others(const HandInput& input, double dt) noexcept;
   void move_grippers(const TrackerState& device, double dt) noexcept;
   bool trigger_catches(double grip, std::size_t joint) noexcept;
   double grip_position(std::size_t joint, double grip) const noexcept;

@@ -77,6 +77,26 @@ void HandControl::jog(double rate, double dt) noexcept {
           options_.joint_speed * std::min(std::abs(rate), 1.0));
 }
 
+void HandControl::move_others(const HandInput& input, double dt) noexcept {
+  if (out_.mode == HandMode::tool) look(input.device, dt);
+  for (std::size_t i = 0; i < out_.joints; ++i) {
+    const bool jogged = out_.mode == HandMode::joints && out_.joint == i;
+    if (options_.roles[i] == JointRole::other && !jogged && input.others[i] && std::isfinite(*input.others[i]))
+      move_to(i, *input.others[i], dt, 1);
+  }
+}
+
+void HandControl::look(const TrackerState& device, double dt) noexcept {
+  const auto turn = [&](const std::optional<std::size_t>& joint, double rate) {
+    if (!joint || !std::isfinite(rate) || rate == 0) return;
+    const JointLimits& limits = options_.gate.joints[*joint].limits;
+    move_to(*joint, rate > 0 ? limits.max_position : limits.min_position, dt,
+            options_.look_speed * std::min(std::abs(rate), 1.0));
+  };
+  turn(options_.pan, device.pan_rate);
+  turn(options_.tilt, options_.tilt_looks_down ? -device.tilt_rate : device.tilt_rate);
+}
+
 double HandControl::grip_position(std::size_t joint, double grip) const noexcept {
   const JointLimits& limits = options_.gate.joints[joint].limits;
   const double open = options_.gripper_opens_up ? limits.max_position : limits.min_position;

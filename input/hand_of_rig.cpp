@@ -87,7 +87,10 @@ Pose grip_point(const Rig& rig, const std::string& tip) {
 HandOptions hand_options(const Rig& rig, const std::string& tip, const Pose& T_tip_tool) {
   HandOptions out;
   out.gate = rig.gate_options();
-  for (const RigJoint& joint : rig.joints) out.roles.push_back(role_of(joint.group));
+  for (std::size_t i = 0; i < rig.joints.size(); ++i) {
+    out.roles.push_back(role_of(rig.joints[i].group));
+    if (rig.joints[i].group == JointGroup::pan_tilt) (out.pan ? out.tilt : out.pan) = i;  // in this order, as rigs say
+  }
   const bool any_arm = std::ranges::find(out.roles, JointRole::arm) != out.roles.end();
   if (!rig.robot || (!any_arm && tip.empty())) return out;
   const ArmChain chain = arm_chain(*rig.robot, tip.empty() ? tool_link(rig) : tip, "", rig.name);

@@ -169,6 +169,36 @@ TEST_F(HandControlTest, AProgramThatStoodStillDoesNotReturnToAnOldTarget) {
   EXPECT_EQ(world_.shaft(3), stood) << "it goes on from where the robot stands";
 }
 
+TEST_F(HandControlTest, NoTargetOfBeforeIsGoneBackTo) {
+  for (const bool lets_go : {false, true}) {
+    engage();
+    go(at_ + Vector3d(0.25, 0, 0), 25);  // faster than the arm
+    ASSERT_GT(world_.hand().last().position_error, 0.03);
+    stay(200, !lets_go, false);
+    const Vector3d stood = tool();
+    stay(250);
+    ASSERT_EQ(world_.hand().last().phase, HandPhase::driving) << words();
+    go(at_ + Vector3d(0, 0, 0.01), 50);
+    stay(100);
+    EXPECT_NEAR((tool() - stood - Vector3d(0, 0, 0.01)).norm(), 0, 1e-3) << lets_go;
+    stay(100, false);
+    go({0, 0, 0}, 100, false);
+  }
+}
+
+TEST_F(HandControlTest, AModeThatChangesInMotionDoesNotGoBackEither) {
+  engage();
+  go({0.25, 0, 0}, 25);
+  world_.hand().set_mode(HandMode::joints);
+  stay(200);
+  const Vector3d stood = tool();
+  world_.hand().set_mode(HandMode::tool);
+  stay(20);
+  go(at_ + Vector3d(0, 0, 0.01), 50);
+  stay(100);
+  EXPECT_NEAR((tool() - stood - Vector3d(0, 0, 0.01)).norm(), 0, 1e-3);
+}
+
 TEST_F(HandControlTest, ARobotThatStopsTakesAnotherPress) {
   engage();
   go({0.05, 0, 0}, 30);
@@ -352,6 +382,21 @@ TEST_F(HandControlTest, AHeadMovesThePanTiltWithinItsVelocity) {
   EXPECT_EQ(out.positions[9], -0.2);
   world_.others[0] = 2;
   EXPECT_EQ(stay(50).positions[0], 0.2) << "the arm is the hand's";
+}
+
+TEST_F(HandControlTest, ADeviceMovesTheCameraToo) {
+  engage();
+  TrackerState device = device_at(at_, true);
+  device.pan_rate = 1;
+  device.tilt_rate = 0.5;
+  const JointValues before = world_.hand().last().positions;
+  const HandCycle& out = world_.cycles(125, device);
+  EXPECT_NEAR(out.positions[8] - before[8], 0.3 * 2, 5e-3) << "left, a second long";
+  EXPECT_NEAR(out.positions[9] - before[9], -0.3, 5e-3) << "and up, at half of the speed";
+  device.pan_rate = NAN;
+  device.tilt_rate = 0;
+  const JointValues there = out.positions;
+  EXPECT_EQ(world_.cycles(20, device).positions, there);
 }
 
 TEST_F(HandControlTest, ARobotThatDoesNotFollowEndsIt) {

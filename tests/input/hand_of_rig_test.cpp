@@ -21,6 +21,8 @@ TEST_F(HandOfRigTest, TheLastLinkThatTheArmMovesIsTheTool) {
   EXPECT_EQ(options.arm_joints, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(options.roles[7], JointRole::gripper);
   EXPECT_EQ(options.roles[8], JointRole::other);
+  EXPECT_EQ(options.pan, 8u);
+  EXPECT_EQ(options.tilt, 9u);
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_LE(options.arm->joints()[i].velocity, options.gate.joints[i].limits.velocity);
     EXPECT_GE(options.arm->joints()[i].lower, options.gate.joints[i].limits.min_position);

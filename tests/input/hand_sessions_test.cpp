@@ -74,6 +74,7 @@ class Session {
     const double angle = 0.8 * std::sin(1.3 * seconds_);
     out.T_space_hand.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d(0.6, 0, 0.8)).toRotationMatrix();
     out.joint = 3;
+    out.tilt_rate = std::cos(seconds_);
     out.joint_rate = std::sin(seconds_);
     return out;
   }
