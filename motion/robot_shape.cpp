@@ -4,9 +4,6 @@
 
 #include <algorithm>
 
-#include "common/error.hpp"
-#include "common/text.hpp"
-
 namespace foresight {
 namespace {
 
@@ -115,34 +112,17 @@ std::string to_text(const GuardedLinks& guarded) {
   return out;
 }
 
-RobotShape::RobotShape(UrdfRobot robot, std::vector<std::string> joints, const Pose& T_world_root,
+RobotShape::RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, const Pose& T_world_root,
                        const std::string& where)
-    : robot_(std::move(robot)) {
-  std::vector<std::string> names;
-  for (const UrdfJoint& joint : robot_.joints) names.push_back(joint.name);
-  for (const std::string& joint : joints)
-    if (!joint.empty() && std::find(names.begin(), names.end(), joint) == names.end())
-      throw InputError(where, "the URDF has no joint " + in_quotes(joint),
-                       "did you mean '" + nearest_word(joint, names) + "'?");
-  for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
-    const JointSource source = source_of(robot_, j);
-    const UrdfJoint& moved = robot_.joints[static_cast<std::size_t>(source.joint)];
-    const auto given = std::find(joints.begin(), joints.end(), moved.name);
-    const double rest = given == joints.end() ? source.factor * std::clamp(0.0, moved.lower, moved.upper) : 0;
-    input_.push_back(given == joints.end() ? -1 : static_cast<int>(given - joints.begin()));
-    factor_.push_back(source.factor);
-    offset_.push_back(rest + source.offset);
-  }
-  T_world_link_.assign(robot_.links.size(), T_world_root);
+    : robot_(std::move(robot)), posed_(robot_, joints, T_world_root, where) {
   placed_.resize(robot_.links.size());
   links_.resize(robot_.links.size());
   for (std::size_t i = 0; i < links_.size(); ++i) {
     Link& link = links_[i];
-    const Node& node = robot_.links[i];
     const Mesh& body = robot_.body(i);
     link.has_body = !body.vertices.empty();
     if (link.has_body) link.body = capsule_around(body);
-    link.moves = node.parent >= 0 && (input_[i - 1] >= 0 || links_[static_cast<std::size_t>(node.parent)].moves);
+    link.moves = posed_.moves(i);
   }
   surround({});
 }
@@ -167,16 +147,11 @@ void RobotShape::surround(const Surroundings& surroundings) {
 }
 
 void RobotShape::pose(std::span<const double> positions) noexcept {
-  for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
-    const UrdfJoint& joint = robot_.joints[j];
-    const int input = input_[j];
-    const double q = offset_[j] + (input < 0 ? 0 : factor_[j] * positions[static_cast<std::size_t>(input)]);
-    const auto child = static_cast<std::size_t>(joint.child);
-    const auto parent = static_cast<std::size_t>(robot_.links[child].parent);
-    T_world_link_[child] = T_world_link_[parent] * joint.T_parent_joint * joint_transform(joint, q);
+  posed_.pose(positions);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Pose& T = posed_.T_world_link(i);
+    placed_[i] = {T * links_[i].body.a, T * links_[i].body.b, links_[i].body.radius};
   }
-  for (std::size_t i = 0; i < links_.size(); ++i)
-    placed_[i] = {T_world_link_[i] * links_[i].body.a, T_world_link_[i] * links_[i].body.b, links_[i].body.radius};
 }
 
 double RobotShape::margin(const Couple& couple) const noexcept {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "motion/posed_links.hpp"
 #include "scene/urdf_reader.hpp"
 
 namespace foresight {
@@ -57,10 +58,9 @@ std::string to_text(const GuardedLinks& guarded);
 /// A robot's links as capsules around their meshes (UrdfRobot::body). Thread: one at a time.
 class RobotShape {
  public:
-  /// `joints`: those whose positions obstructed() gets, in its order, "" for one that is not of this robot (a pan-tilt
-  /// head's); all others stay at 0 or their nearest limit. Mimic joints follow. Throws InputError at `where` for a
-  /// joint that the robot does not have.
-  RobotShape(UrdfRobot robot, std::vector<std::string> joints, const Pose& T_world_root, const std::string& where);
+  /// `joints`: those whose positions obstructed() gets; they and `where` as PosedLinks takes them.
+  RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, const Pose& T_world_root,
+             const std::string& where);
 
   /// What it must stay clear of from now on; of a new shape, only its own links. Allocates.
   void surround(const Surroundings& surroundings);
@@ -99,9 +99,7 @@ class RobotShape {
   double margin(const Couple& couple) const noexcept;
 
   UrdfRobot robot_;
-  std::vector<int> input_;  ///< per URDF joint, the index of its position, or -1
-  std::vector<double> factor_, offset_;
-  std::vector<Pose> T_world_link_;
+  PosedLinks posed_;
   std::vector<Link> links_;
   std::vector<Capsule> placed_;
   Surroundings surroundings_;

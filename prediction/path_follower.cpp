@@ -38,10 +38,15 @@ struct PathFollower::Cycle {
 
 PathFollower::PathFollower(const InverseKinematics& kinematics, const JointVector& start, const FollowOptions& options)
     : kinematics_(kinematics), chain_(kinematics.chain()), options_(options) {
-  q_ = start.size() == chain_.middle().size() && start.allFinite()
-           ? start.cwiseMax(chain_.lower()).cwiseMin(chain_.upper()).eval()
-           : chain_.middle();
+  stand_at(start);
+}
+
+void PathFollower::stand_at(const JointVector& q) noexcept {
+  q_ = q.size() == chain_.middle().size() && q.allFinite() ? q.cwiseMax(chain_.lower()).cwiseMin(chain_.upper()).eval()
+                                                           : chain_.middle();
   hand_ = chain_.tip_pose(q_);
+  detour_.reset();
+  stuck_target_.reset();
 }
 
 // Away from limits (the fourth power of how far a joint is from its middle) and towards where the hand is mobile in all

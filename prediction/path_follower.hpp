@@ -55,6 +55,8 @@ class PathFollower {
 
   const JointVector& joints() const noexcept { return q_; }
   const Pose& hand() const noexcept { return hand_; }
+  /// The arm is there instead, wherever it was: something else moved it. `q` as `start`.
+  void stand_at(const JointVector& q) noexcept;
   /// The cycle of `dt` seconds in which the hand goes for `T_base_tip`.
   FollowStep step(const Pose& T_base_tip, double dt) noexcept;
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "apps/bench/prediction_contact.hpp"
 #include "apps/bench/prediction_hand.hpp"
 #include "apps/bench/prediction_head.hpp"
 #include "apps/bench/prediction_ik.hpp"
@@ -36,6 +37,30 @@ void add_ik(Command& prediction, std::function<int()>& action) {
       "Example: foresight bench prediction ik --urdf configs/arm.urdf --tip arm_7 --json ik.json\n"
       "Exit code: 1 where a joint stepped farther than its velocity allows.");
   command->callback([options, &action] { action = [options] { return bench_prediction_ik(*options); }; });
+}
+
+void add_contact(Command& prediction, std::function<int()>& action) {
+  auto* command = prediction.add_subcommand("contact", "What touches and what is near, of a robot in the lab");
+  auto options = std::make_shared<PredictionContactOptions>();
+  command->add_option("--urdf", options->urdf, "Robot, with its meshes; else the lab's own arm")->reads();
+  command
+      ->add_option("--triangles", options->triangles,
+                   "Of each link and of what it carries: split or simplified; 0: as they are")
+      ->check(from_to(0, 100'000))
+      ->capture_default_str();
+  command->add_option("--poses", options->poses, "Uniform joint vectors, and pictures in motion")
+      ->check(from_to(1, 1'000'000))
+      ->capture_default_str();
+  command
+      ->add_option("--peer-poses", options->peer_poses,
+                   "How many of them Bullet gets for distances; FCL gets ten times as many")
+      ->check(from_to(0, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "Example: foresight bench prediction contact --urdf arm.urdf --json contact.json\n"
+      "Exit code: 1 where FCL, used plainly, answers otherwise.");
+  command->callback([options, &action] { action = [options] { return bench_prediction_contact(*options); }; });
 }
 
 void add_head(Command& prediction, std::function<int()>& action) {
@@ -113,6 +138,7 @@ void add_prediction_benches(Command& bench, std::function<int()>& action) {
   auto* prediction = bench.add_subcommand("prediction", "How well the robot that will be is predicted");
   prediction->require_subcommand();
   add_ik(*prediction, action);
+  add_contact(*prediction, action);
   add_head(*prediction, action);
   add_hand(*prediction, action);
   add_response(*prediction, action);

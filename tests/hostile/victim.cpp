@@ -35,6 +35,8 @@ const std::map<std::string, CommandWords>& table() {
       {"bench camera", {}},
       {"bench prediction ik",
        {{"--urdf", {"@arm.urdf"}}, {"--tip", {"arm_7"}}, {"--poses", {"20"}}, {"--paths", {"1"}}}},
+      {"bench prediction contact",
+       {{"--urdf", {"@arm.urdf"}}, {"--triangles", {"0"}}, {"--poses", {"3"}}, {"--peer-poses", {"1"}}}},
       {"bench prediction head", {{"RECORDING", {"@poses.txt"}}}},
       {"bench prediction hand", {{"RECORDING", {"@poses.txt"}}}},
       {"bench prediction response", {{"--commands", {"@poses.txt"}}, {"--states", {"@points.txt"}}}},

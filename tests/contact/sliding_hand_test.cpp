@@ -1,0 +1,278 @@
+#include "prediction/contact/sliding_hand.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "common/error.hpp"
+#include "scene/primitives.hpp"
+#include "tests/contact/made_robot.hpp"
+
+namespace foresight {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+constexpr double kPicture = 1.0 / 60;
+
+double any(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+// A ball of 3 cm on three slides, 1 m/s each.
+struct Gantry {
+  explicit Gantry(const SceneModel* scene, std::vector<double> start = {0, 0, 0.2}, RobotShape* gate = nullptr)
+      : robot(made_gantry(make_sphere(0.03))),
+        kinematics(arm_chain(robot, "tool", "base", "test")),
+        model(robot, gantry_joints(), scene, Pose::Identity(), "test"),
+        hand(model, kinematics, gantry_joints(), start, Pose::Identity(), gate, "test") {}
+  HandStep go(double x, double y, double z) {
+    return hand.step(shifted(x, y, z), std::vector<double>(3, 0.0), {}, kPicture);
+  }
+  UrdfRobot robot;
+  InverseKinematics kinematics;
+  ContactModel model;
+  SlidingHand hand;
+};
+
+struct LabArm {
+  explicit LabArm(const SceneModel* scene, std::vector<double> start = {0, 0.9, 0, 0.9, 0, -0.3, 0, 0.02},
+                  double velocity = 2)
+      : robot(made_lab_arm(velocity)),
+        kinematics(arm_chain(robot, "arm_7", "stand", "test")),
+        model(robot, lab_arm_joints(), scene, Pose::Identity(), "test"),
+        hand(model, kinematics, lab_arm_joints(), start, Pose::Identity(), nullptr, "test") {}
+  UrdfRobot robot;
+  InverseKinematics kinematics;
+  ContactModel model;
+  SlidingHand hand;
+};
+
+SceneModel table() {
+  return made_scene({{"table", make_box({2, 2, 0.02}), shifted(0, 0, -0.01)}});
+}
+
+double step_over_limit(const ArmChain& chain, std::span<const double> before, std::span<const double> after) {
+  double most = 0;
+  for (std::size_t i = 0; i < chain.size(); ++i)
+    most = std::max(most, std::abs(after[i] - before[i]) / (chain.joints()[i].velocity * kPicture));
+  return most;
+}
+
+TEST(SlidingHand, InTheOpenItIsWhereTheHandIs) {
+  const SceneModel scene = table();
+  Gantry gantry(&scene);
+  for (int i = 1; i <= 50; ++i) {
+    const HandStep step = gantry.go(0.005 * i, -0.003 * i, 0.2);
+    ASSERT_TRUE(step.valid);
+    EXPECT_FALSE(step.ghost.shown);
+    EXPECT_EQ(step.ghost.reason, GhostReason::none);
+    EXPECT_LT((step.T_base_tip.translation() - Vector3d(0.005 * i, -0.003 * i, 0.2)).norm(), 1e-8);
+  }
+}
+
+TEST(SlidingHand, StopsAtTheTableAndTheGhostSaysWhy) {
+  const SceneModel scene = table();
+  Gantry gantry(&scene);
+  HandStep step;
+  for (int i = 1; i <= 60; ++i) step = gantry.go(0.1, 0, 0.2 - 0.005 * i);
+  EXPECT_NEAR(step.T_base_tip.translation().z(), 0.03 + kSkin, 1e-4);
+  EXPECT_NEAR(step.T_base_tip.translation().x(), 0.1, 1e-3);
+  EXPECT_TRUE(step.ghost.shown);
+  EXPECT_EQ(step.ghost.reason, GhostReason::contact);
+  EXPECT_EQ(step.ghost.words, "tool touches table");
+  EXPECT_LT((step.ghost.out - Vector3d(0, 0, 1)).norm(), 1e-3);
+  EXPECT_NEAR(step.ghost.depth, 0.131, 2e-3);
+  ASSERT_FALSE(step.near.empty());
+  EXPECT_NEAR(step.near[0].distance, kSkin, 1e-4);
+}
+
+TEST(SlidingHand, SlidesAlongWithTheRestOfTheMotion) {
+  const SceneModel scene = table();
+  Gantry gantry(&scene);
+  for (int i = 1; i <= 40; ++i) gantry.go(0, 0, 0.2 - 0.006 * i);
+  HandStep step;
+  for (int i = 1; i <= 60; ++i) {
+    step = gantry.go(0.006 * i, -0.004 * i, -0.05 - 0.001 * i);
+    EXPECT_GT(step.near.at(0).distance, kLeastSkin);
+    EXPECT_LT(step.T_base_tip.translation().z(), 0.03 + 2 * kSkin);
+  }
+  const Vector3d tool = step.T_base_tip.translation();
+  EXPECT_GT(tool.x(), 0.99 * 0.36);  // of the way along the table
+  EXPECT_LT(tool.y(), -0.99 * 0.24);
+}
+
+TEST(SlidingHand, ComesBackWithoutAJump) {
+  const SceneModel scene = table();
+  Gantry gantry(&scene);
+  HandStep step;
+  for (int i = 1; i <= 60; ++i) gantry.go(0, 0, 0.2 - 0.006 * i);
+  std::vector<double> before(gantry.hand.positions().begin(), gantry.hand.positions().end());
+  for (int i = 60; i >= 0; --i) {
+    step = gantry.go(0, 0, 0.2 - 0.006 * i);
+    EXPECT_LE(step_over_limit(gantry.kinematics.chain(), before, step.positions), 1.0);
+    // It waits for the hand to come out again.
+    if (0.2 - 0.006 * i < 0.03) {
+      EXPECT_NEAR(step.T_base_tip.translation().z(), 0.031, 1e-3);
+    }
+    before = step.positions;
+  }
+  EXPECT_FALSE(step.ghost.shown);
+  EXPECT_LT((step.T_base_tip.translation() - Vector3d(0, 0, 0.2)).norm(), 1e-8);
+}
+
+TEST(SlidingHand, AStillHandMovesNothingBitForBit) {
+  const SceneModel scene = table();
+  LabArm arm(&scene);
+  const Pose at = arm.hand.step(Pose::Identity(), arm.hand.positions(), {}, 1e-9).T_base_tip;
+  const std::vector<double> before(arm.hand.positions().begin(), arm.hand.positions().end());
+  for (int i = 0; i < 20; ++i) {
+    const HandStep step = arm.hand.step(at, arm.hand.positions(), {}, kPicture);
+    ASSERT_TRUE(step.valid);
+    ASSERT_EQ(step.positions, before);
+    EXPECT_FALSE(step.ghost.shown);
+  }
+}
+
+// A sheet without thickness that no arm gets round, hands that jump anywhere at any time, and arms of up to 20 rad/s.
+TEST(SlidingHand, NothingGoesThroughAThinWallAtAnySpeed) {
+  const double wall = 0.38;
+  const SceneModel scene = made_scene({{"wall", made_sheet(6), shifted(wall, 0, 0)}});
+  int pressed = 0, shown = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    std::mt19937_64 random(seed);
+    LabArm arm(&scene, {any(random, -0.5, 0.5), -0.6, 0, 1.2, any(random, -1, 1), 0.5, 0, 0.02}, any(random, 1, 20));
+    ASSERT_EQ(arm.model.pose(arm.hand.positions()), nullptr);
+    ASSERT_TRUE(arm.model.touching().empty()) << seed;
+    const double speed = any(random, 0.2, 20);  // m/s
+    Pose hand = arm.hand.step(Pose::Identity(), arm.hand.positions(), {}, 1e-9).T_base_tip, target = hand;
+    for (int i = 0; i < 16; ++i) {
+      if (i % 6 == 0) {
+        target.translation() = Vector3d(any(random, 0.2, 0.9), any(random, -0.4, 0.4), any(random, 1.0, 1.6));
+        target.linear() =
+            Eigen::AngleAxisd(any(random, -2, 2), Vector3d(0, 1, any(random, -1, 1)).normalized()).toRotationMatrix();
+      }
+      const double left = (target.translation() - hand.translation()).norm();
+      hand = pose_between(hand, target, std::min(1.0, speed * kPicture / std::max(left, 1e-9)));
+      const std::vector<double> before(arm.hand.positions().begin(), arm.hand.positions().end());
+      const HandStep step = arm.hand.step(hand, arm.hand.positions(), {}, kPicture);
+      ASSERT_TRUE(step.valid);
+      ASSERT_LE(step_over_limit(arm.kinematics.chain(), before, step.positions), 1.0);
+      ASSERT_LE(step.parts, 64);
+      arm.model.pose(step.positions);
+      for (std::size_t link = 0; link < arm.robot.links.size(); ++link)
+        for (const auto& v : arm.robot.body(link).vertices)
+          ASSERT_LT((arm.model.links().T_world_link(link) * v.cast<double>()).x(), wall) << seed << ' ' << i;
+      ASSERT_TRUE(arm.model.touching().empty()) << seed << ' ' << i;
+      pressed += step.ghost.reason == GhostReason::contact;
+      shown += step.ghost.shown;
+    }
+  }
+  EXPECT_GT(pressed, 500);
+  EXPECT_GT(shown, 500);
+}
+
+TEST(SlidingHand, AnArmSlidesAlongAWallTooFarForIt) {
+  const SceneModel scene = made_scene({{"wall", made_sheet(6), shifted(0.5, 0, 0)}});
+  LabArm arm(&scene, {0, -0.3, 0, 1.4, 0, 0.5, 0, 0.02});
+  const Pose start = arm.hand.step(Pose::Identity(), arm.hand.positions(), {}, 1e-9).T_base_tip;
+  Pose hand = start;
+  hand.translation().x() = 0.6;
+  HandStep step;
+  for (int i = 0; i < 90; ++i) step = arm.hand.step(hand, arm.hand.positions(), {}, kPicture);
+  ASSERT_EQ(step.ghost.reason, GhostReason::contact);
+  const double y = step.T_base_tip.translation().y(), z = step.T_base_tip.translation().z();
+  for (int i = 1; i <= 120; ++i) {
+    hand.translation().y() = start.translation().y() + 0.001 * i;
+    hand.translation().z() = start.translation().z() - 0.0005 * i;
+    step = arm.hand.step(hand, arm.hand.positions(), {}, kPicture);
+    EXPECT_LT(step.near.at(0).distance, 2 * kSkin);
+  }
+  EXPECT_GT(step.T_base_tip.translation().y() - y, 0.85 * 0.12);
+  EXPECT_LT(step.T_base_tip.translation().z() - z, -0.7 * 0.06);
+}
+
+TEST(SlidingHand, StopsWhereTheGateWouldStopTheRobot) {
+  const SceneModel scene = table();
+  const UrdfRobot robot = made_gantry(make_sphere(0.03));
+  RobotShape gate(robot, gantry_joints(), Pose::Identity(), "test");
+  gate.surround({{}, {{"table", {Vector3d(-1, -1, -0.02), Vector3d(1, 1, 0)}}}, 0.02});
+  Gantry gantry(&scene, {0, 0, 0.2}, &gate);
+  HandStep step;
+  for (int i = 1; i <= 60; ++i) {
+    step = gantry.go(0.002 * i, 0, 0.2 - 0.005 * i);
+    ASSERT_EQ(gate.obstructed(step.positions), nullptr);
+  }
+  EXPECT_EQ(step.ghost.reason, GhostReason::gate);
+  EXPECT_THAT(step.ghost.words, HasSubstr("comes too close to obstacle 'table'"));
+  EXPECT_GT(step.T_base_tip.translation().z(), 0.05);
+  EXPECT_LT(step.T_base_tip.translation().z(), 0.056);
+  EXPECT_NEAR(step.T_base_tip.translation().x(), 0.12, 2e-3);  // and slides
+}
+
+TEST(SlidingHand, FingersCloseAsFarAsTheThing) {
+  const SceneModel scene = made_scene({{"thing", make_box({0.04, 0.04, 0.04})}});
+  LabArm arm(&scene, {0, 0.9, 0, 0.9, 0, -0.3, 0, 0.04});
+  arm.model.pose(arm.hand.positions());
+  const Pose T_palm = arm.model.links().T_world_link(7);
+  const std::vector<Pose> nodes{T_palm * shifted(0, 0, 0.12)};
+  const Pose at = arm.kinematics.chain().tip_pose(Eigen::Map<const Eigen::VectorXd>(arm.hand.positions().data(), 7));
+  std::vector<double> others(8, 0.0);
+  HandStep step;
+  for (int i = 1; i <= 30; ++i) {
+    others[7] = std::max(0.0, 0.04 - 0.0016 * i);
+    step = arm.hand.step(at, others, nodes, kPicture);
+    ASSERT_TRUE(step.valid);
+  }
+  // Each finger is 15 mm wide about 10 mm beside its joint.
+  EXPECT_NEAR(step.positions[7], 0.02 + 0.0075 - 0.01 + kSkin, 2e-4);
+  others[7] = 0.03;
+  for (int i = 0; i < 5; ++i) step = arm.hand.step(at, others, nodes, kPicture);
+  EXPECT_NEAR(step.positions[7], 0.03, 1e-9);
+}
+
+TEST(SlidingHand, WhatCameIntoTheArmIsLeftButNotEnteredDeeper) {
+  const SceneModel scene = table();
+  Gantry gantry(&scene);
+  gantry.go(0, 0, 0.2);
+  const std::vector<Pose> raised{shifted(0, 0, 0.165)};  // the table's top is 5 mm inside of the ball
+  const auto go = [&](double x, double z) {
+    return gantry.hand.step(shifted(x, 0, z), std::vector<double>(3, 0.0), raised, kPicture);
+  };
+  HandStep step;
+  for (int i = 0; i < 20; ++i) step = go(0, 0.15);
+  EXPECT_NEAR(step.T_base_tip.translation().z(), 0.2, 1e-4);
+  EXPECT_EQ(step.ghost.reason, GhostReason::contact);
+  ASSERT_FALSE(step.near.empty());
+  EXPECT_EQ(step.near[0].distance, 0);
+  for (int i = 0; i < 30; ++i) step = go(0.02, 0.26);
+  EXPECT_LT((step.T_base_tip.translation() - Vector3d(0.02, 0, 0.26)).norm(), 1e-8);
+  EXPECT_FALSE(step.ghost.shown);
+}
+
+TEST(SlidingHand, WhatIsNotKnownMovesNothing) {
+  const SceneModel scene = table();
+  Gantry gantry(&scene);
+  const std::vector<double> before(gantry.hand.positions().begin(), gantry.hand.positions().end());
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  HandStep step = gantry.go(none, 0, 0);
+  EXPECT_FALSE(step.valid);
+  EXPECT_EQ(step.ghost.reason, GhostReason::bad_target);
+  EXPECT_THAT(step.ghost.words, HasSubstr("no finite rigid pose"));
+  step = gantry.hand.step(shifted(0, 0, 0.1), std::vector{0.0, none, 0.0}, {}, kPicture);
+  EXPECT_FALSE(step.valid);
+  const std::vector<Pose> lost{shifted(none, 0, 0)};
+  step = gantry.hand.step(shifted(0, 0, 0.1), std::vector(3, 0.0), lost, kPicture);
+  EXPECT_FALSE(step.valid);
+  EXPECT_EQ(step.ghost.reason, GhostReason::unknown);
+  EXPECT_TRUE(step.ghost.shown);
+  EXPECT_EQ(std::vector<double>(gantry.hand.positions().begin(), gantry.hand.positions().end()), before);
+  EXPECT_THROW(Gantry(&scene, {0, 0}), InputError);
+  EXPECT_THROW(Gantry(&scene, {0, 0, none}), InputError);
+}
+
+}  // namespace
+}  // namespace foresight
