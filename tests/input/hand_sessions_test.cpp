@@ -138,6 +138,17 @@ TEST(HandSessionsTest, NoJointStepsTooFarAndNothingMovesWhileTheSwitchIsOpen) {
   EXPECT_GT(faults, sessions);
 }
 
+TEST(HandSessionsTest, ASessionOfBothSidesRepeatsBitForBit) {
+  const auto digest = [](std::uint64_t seed) {
+    std::srand(static_cast<unsigned>(seed));
+    Session session(seed);
+    session.run(500);
+    return session.world().digest;
+  };
+  EXPECT_EQ(digest(3), digest(3));
+  EXPECT_NE(digest(3), digest(4));
+}
+
 // Other people's hands, whole.
 class RecordedSessionTest : public testing::TestWithParam<const char*> {};
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+
 #include "tests/support/folders.hpp"
 
 namespace foresight {
@@ -56,6 +58,9 @@ HandWorld::HandWorld(Duration delay)
 }
 
 void HandWorld::judge(const HandRobot& robot, const HandCycle& out) {
+  for (std::size_t i = 0; i < out.joints; ++i)
+    for (const double position : {out.positions[i], drives_[i].state.position})
+      digest = digest * 1'099'511'628'211U + std::bit_cast<std::uint64_t>(position);
   driving += out.phase == HandPhase::driving;
   const bool begins = out.deadman && !sent_;
   presses += begins;

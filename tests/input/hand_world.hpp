@@ -42,6 +42,7 @@ class HandWorld {
   int shafts_moved_at_rest = 0;  ///< drives that moved though the gate neither followed nor stopped
   // And these show that something was tried.
   int driving = 0, presses = 0, following = 0;
+  std::uint64_t digest = 0;  ///< of all set-points and shafts, bit by bit
 
  private:
   void step(bool operator_runs, const TrackerState* device, bool stamped);

@@ -119,7 +119,7 @@ TEST_F(TrackerTraceTest, RecordedControllersAreReadInOurFrames) {
   }
   EXPECT_GT(tracked, 900);
   EXPECT_GT(held, 10) << "the left squeeze is used in it";
-  const auto first = read_tracker_trace(file).rows.front().state.T_space_hand.translation();
+  const Eigen::Vector3d first = read_tracker_trace(file).rows.front().state.T_space_hand.translation();
   EXPECT_LT(first.y(), left.rows.front().state.T_space_hand.translation().y()) << "the right hand is to the right";
 }
 
