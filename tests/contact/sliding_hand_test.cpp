@@ -234,6 +234,23 @@ TEST(SlidingHand, FingersCloseAsFarAsTheThing) {
   EXPECT_NEAR(step.positions[7], 0.03, 1e-9);
 }
 
+// Picked up from the table that it stands on, to the last bit, carried along it and set down again.
+TEST(SlidingHand, WhatIsCarriedStopsTheArmAndComesOffItsTable) {
+  const SceneModel scene = made_scene({{"table", make_box({2, 2, 0.02}), shifted(0, 0, -0.01)},
+                                       {"thing", make_box({0.05, 0.05, 0.1}), shifted(0, 0, 0.05)}});
+  Gantry gantry(&scene);
+  HandStep step;
+  for (int i = 1; i <= 40; ++i) step = gantry.go(0, 0, 0.2 - 0.002 * i);
+  EXPECT_EQ(step.ghost.words, "tool touches thing");
+  gantry.model.attach(1, 3, shifted(0, 0, 0.05 - step.T_base_tip.translation().z()));
+  for (int i = 1; i <= 30; ++i) step = gantry.go(0.005 * i, 0, 0.14 + 0.002 * i);
+  EXPECT_FALSE(step.ghost.shown);
+  EXPECT_LT((step.T_base_tip.translation() - Vector3d(0.15, 0, 0.2)).norm(), 1e-8);
+  for (int i = 1; i <= 60; ++i) step = gantry.go(0.15, 0, 0.2 - 0.003 * i);
+  EXPECT_EQ(step.ghost.words, "thing touches table");
+  EXPECT_NEAR(step.T_base_tip.translation().z(), 0.132, 3e-4);  // both skins
+}
+
 TEST(SlidingHand, WhatCameIntoTheArmIsLeftButNotEnteredDeeper) {
   const SceneModel scene = table();
   Gantry gantry(&scene);
