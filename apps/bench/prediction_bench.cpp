@@ -59,7 +59,7 @@ void add_contact(Command& prediction, std::function<int()>& action) {
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer(
       "Example: foresight bench prediction contact --urdf arm.urdf --json contact.json\n"
-      "Exit code: 1 where FCL, used plainly, answers otherwise.");
+      "Exit code: 1 where FCL, used plainly, answers otherwise, or the arm that is shown touches.");
   command->callback([options, &action] { action = [options] { return bench_prediction_contact(*options); }; });
 }
 

@@ -101,6 +101,7 @@ void carry_ball(ContactLab& lab) {
   }
   Pose T = Pose::Identity();
   T.translation() << box.center().x(), box.center().y(), box.max().z() + double{kBall} / 2;
+  lab.hand = lab.robot.links[hand].name;
   lab.model->attach(0, hand, T, holding);
 }
 
@@ -138,10 +139,10 @@ ContactLab make_contact_lab(const std::optional<std::filesystem::path>& urdf, st
     nodes.push_back({world.parts[i].name, mesh_of(world.parts[i]), -1, world.parts[i].T_world_part});
   }
   lab.scene = SceneModel(std::move(nodes));
-  Pose T_world_root = sim::T_world_stand();
-  if (urdf) T_world_root.translation().z() = 0;  // as high as the table
-  lab.model =
-      std::make_unique<ContactModel>(lab.robot, lab.joints, &lab.scene, T_world_root, urdf ? urdf->string() : "lab");
+  lab.T_world_root = sim::T_world_stand();
+  if (urdf) lab.T_world_root.translation().z() = 0;  // as high as the table
+  lab.model = std::make_unique<ContactModel>(lab.robot, lab.joints, &lab.scene, lab.T_world_root,
+                                             urdf ? urdf->string() : "lab");
   carry_ball(lab);
   return lab;
 }

@@ -15,6 +15,8 @@ struct ContactLab {
   UrdfRobot robot;
   std::vector<std::string> joints;  ///< all that move by themselves
   SceneModel scene;                 ///< node 0 is carried
+  Pose T_world_root = Pose::Identity();
+  std::string hand;  ///< the link that carries it
   std::unique_ptr<ContactModel> model;
   std::size_t triangles = 0;  ///< of the robot and what it carries
 

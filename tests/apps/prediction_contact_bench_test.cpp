@@ -16,6 +16,8 @@ TEST(PredictionContact, AllThreeSayTheSameTouchesAndDistancesAreFcls) {
   EXPECT_GT(all["touching"], 0.02);
   EXPECT_LT(all["touching"], 0.9);
   EXPECT_GT(all["near_couples"], 0.1);
+  EXPECT_EQ(all["hand_touching"], 0.0);
+  EXPECT_GT(all["hand_mean_ms"], 0);
   for (const std::string prefix : {"", "motion_"}) {
     EXPECT_EQ(all[prefix + "touching_agree"], 1.0);
     EXPECT_LT(all[prefix + "distances_differ_mm"], 1e-3);
