@@ -31,6 +31,8 @@ struct Arguments {
   bool cameras = true;
   bool mock = false, stepped = false, may_home = false, check_only = false;
   bool rig_view = false, serve = false;
+  bool physics = false;
+  unsigned physics_seed = 1;
   bool view = false, window = false;  // the rest only with `view`
   std::optional<double> delay_ms;
   std::string scene;
@@ -112,6 +114,8 @@ std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& d
   if (!arguments.record.empty()) options.record = arguments.record;
   options.frames = arguments.view || arguments.serve;
   if (!arguments.scene.empty()) options.scene = arguments.scene;
+  options.physics = arguments.physics;
+  options.physics_seed = arguments.physics_seed;
   if (options.mock || rig.cameras->mock()) say_robot("lighting the lab");
   return std::make_unique<RobotCameras>(rig, devices, robot, clock, options);
 }
@@ -226,6 +230,15 @@ void check_view(const Rig& rig, const Arguments& arguments) {
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
 }
 
+void check_physics(const Rig& rig, const Arguments& arguments) {
+  if (arguments.physics_seed != Arguments{}.physics_seed && !arguments.physics)
+    throw InputError("--physics-seed", "belongs to --physics", "add --physics, or leave it out");
+  if (!arguments.physics) return;
+  if (!rig.cameras || !arguments.cameras || (!arguments.mock && !rig.cameras->mock()))
+    throw InputError("--physics", "belongs to the mock lab, which mock cameras look at",
+                     "give a rig with cameras, and --mock");
+}
+
 /// What the OutputGuard cannot know: the rig says how many logs there are, and how they are called.
 void check_logs(const Rig& rig, const Arguments& arguments) {
   namespace fs = std::filesystem;
@@ -247,6 +260,7 @@ int run(const Arguments& arguments) {
   check_logs(rig, arguments);
   check_rig_view(arguments);
   check_view(rig, arguments);
+  check_physics(rig, arguments);
   parse_mock_faults(arguments.faults, rig, arguments.mock);
   if (!arguments.record.empty() && (!rig.cameras || !arguments.cameras))
     throw InputError("--record", rig.cameras ? "stands beside --no-cameras" : "the rig has no cameras",
@@ -299,6 +313,12 @@ void add_robot_command(Command& app, std::function<int()>& action) {
       ->add_option("--scene", arguments->scene,
                    "With --view, --rig-view or --record: the scene around the robot, in place of the rig's `scene:`")
       ->reads();
+  command->add_flag(
+      "--physics", arguments->physics,
+      "With mock cameras: the mock lab's things, and bricks and a tray besides, can be grasped, pushed and\n"
+      "dropped, and throw their shadows where they are");
+  command->add_option("--physics-seed", arguments->physics_seed,
+                      "With --physics: of how masses, friction and places differ from the model's (default 1)");
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag(
       "--serve", arguments->serve,

@@ -45,6 +45,13 @@ std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world) {
   lab.board = world.board;
   lab.things = world.things;
   lab.furniture = world.furniture;
+  if (world.physics) {
+    if (!world.furniture)
+      throw InputError("physics", "belongs to the things of the built-in lab, and the rig has a scene of its own",
+                       "leave it out, or the scene");
+    lab.task = true;
+    for (const sim::LooseThing& thing : world.physics->things) lab.loose.push_back(thing.name);
+  }
   return std::make_shared<const sim::LiveLab>(lab);
 }
 
@@ -76,8 +83,16 @@ sim::MockCameraOptions mock_options(const StereoConfig& config) {
 
 OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock, const MockWorld& world) {
   OpenStereo out;
-  if (config.mock())
-    out.mock = std::make_shared<sim::MockStereo>(mock_lab(world), shafts, mock_options(config), clock);
+  if (config.mock()) {
+    const auto lab = mock_lab(world);
+    sim::MockCameraOptions options = mock_options(config);
+    if (world.physics) {
+      out.physics = std::make_shared<sim::PhysicalLab>(lab, shafts, clock.now(), *world.physics);
+      options.state = [physics = out.physics](RobotTime time) { return physics->state_at(time); };
+      options.moving_light = true;
+    }
+    out.mock = std::make_shared<sim::MockStereo>(lab, shafts, options, clock);
+  }
   std::array<std::unique_ptr<Camera>, 2> cameras;
   for (const Side side : {Side::left, Side::right}) {
     const auto index = static_cast<std::size_t>(side);

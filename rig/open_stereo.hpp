@@ -9,12 +9,14 @@
 #include "drivers/camera/stereo_camera.hpp"
 #include "scene/robot_scene.hpp"
 #include "sim/live_view/mock_camera.hpp"
+#include "sim/physics/physical_lab.hpp"
 
 namespace foresight {
 
 /// Two cameras, not yet started, and what mock ones see.
 struct OpenStereo {
-  std::shared_ptr<sim::MockStereo> mock;  ///< null: real cameras
+  std::shared_ptr<sim::PhysicalLab> physics;  ///< of a MockWorld with physics; else null
+  std::shared_ptr<sim::MockStereo> mock;      ///< null: real cameras
   std::unique_ptr<StereoCamera> cameras;
 };
 
@@ -25,13 +27,16 @@ struct MockWorld {
   sim::HiddenDeviations hidden;
   std::shared_ptr<const RobotScene> things;  ///< LiveLab::Options::things; null: the lab's own arm
   bool furniture = true;                     ///< with `things`: the lab's own around them
+  /// The lab's things, and more for a hand to work with, can be grasped, pushed and dropped, and their shadows move.
+  std::optional<sim::PhysicsOptions> physics = {};
 };
 
 /// What a rig with this map of tags sees in the mock lab: the tags, of the family tag36h11; none without a map. Throws
 /// what read_tag_map() and sim::tag_prints() do.
 MockWorld mock_world(const std::optional<std::filesystem::path>& tags);
 
-/// The world itself, not lit: for who wants to know what stands in it. Throws what sim::LiveLab does.
+/// The world itself, not lit: for who wants to know what stands in it. Throws what sim::LiveLab does, and InputError
+/// where physics is wanted of a world without the lab's things.
 std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world);
 
 /// The same description with the mock lab's cameras in place of its own: size, rate, exposure and lenses stay. Throws

@@ -28,7 +28,8 @@ LiveScene::LiveScene(std::shared_ptr<const sim::LiveLab> world, const StereoLens
     : lenses_(lenses), lab_(std::move(world)) {
   const sim::Lab& lab = lab_->lab();
   model_ = std::make_shared<const SceneModel>(sim::model_of(lab, lab_->modelled_rest()));
-  for (const sim::Part& part : lab.parts) moves_.push_back(part.moves && part.name != sim::kBall);  // it has no encoder
+  for (std::size_t i = 0; i < lab.parts.size(); ++i)  // what is loose has no encoder
+    moves_.push_back(lab.parts[i].moves && lab.parts[i].name != sim::kBall && !lab_->is_loose(i));
 }
 
 LiveScene::LiveScene(const StereoConfig& cameras, const Rig* rig, const std::optional<fs::path>& scene_file)

@@ -18,7 +18,9 @@ RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, const Ro
     : rig_(rig), devices_(devices), clock_(clock) {
   const StereoConfig config = options.mock ? as_mock(*rig.cameras) : *rig.cameras;
   if (config.mock()) world_ = mock_world(rig, options.scene);
+  if (options.physics) add_physics(config, options.physics_seed);
   if (config.mock() || options.record) ready_ = open(config);
+  physics_ = ready_.physics;
   if (options.frames || options.record) {
     scene_ = ready_.mock ? std::make_shared<const LiveScene>(*ready_.mock)
                          : std::make_shared<const LiveScene>(config, &rig, options.scene);
@@ -32,6 +34,16 @@ RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, const Ro
       [this](const StereoPair& pair) {
         if (frames_) frames_->add(pair);
       });
+}
+
+void RobotCameras::add_physics(const StereoConfig& config, unsigned seed) {
+  if (!config.mock())
+    throw InputError("physics", "belongs to the mock lab, and the rig's cameras are real", "use mock cameras");
+  sim::PhysicsOptions& physics = world_.physics.emplace();
+  physics.hidden.seed = seed;
+  physics.jaws.clear();
+  for (const RigJoint& joint : rig_.joints)
+    if (joint.group == JointGroup::gripper) physics.jaws.push_back(joint.drive.name);
 }
 
 void RobotCameras::start_recording(const Rig& rig, const std::filesystem::path& out, bool posed) {

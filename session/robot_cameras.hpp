@@ -23,6 +23,8 @@ struct RobotCameraOptions {
   std::optional<std::filesystem::path> record = {};  ///< folder for a run (RunRecorder) of all pairs
   bool frames = false;                               ///< frames() is wanted; also where it records
   std::optional<std::filesystem::path> scene = {};   ///< in place of the rig's
+  bool physics = false;                              ///< of mock cameras: MockWorld::physics, with the rig's gripper
+  unsigned physics_seed = 1;                         ///< HiddenPhysics::seed
   LiveFrameOptions live = {};
 };
 
@@ -45,6 +47,8 @@ class RobotCameras {
   /// Only with RobotCameraOptions::frames or ::record.
   LiveFrames& frames() { return *frames_; }
   const LiveScene& scene() const { return *scene_; }
+  /// Where things truly are, in a mock lab with physics; else null.
+  const std::shared_ptr<sim::PhysicalLab>& physics() const { return physics_; }
   /// What the newest pair lacks: why it could not be registered at all, or which joints nobody knows; "" where nothing
   /// is amiss, or nobody wants poses.
   std::string registration_trouble() const;
@@ -55,6 +59,7 @@ class RobotCameras {
 
  private:
   OpenStereo open(const StereoConfig& config) const;
+  void add_physics(const StereoConfig& config, unsigned seed);
   void start_recording(const Rig& rig, const std::filesystem::path& out, bool posed);
 
   const Rig& rig_;
@@ -62,6 +67,7 @@ class RobotCameras {
   Clock& clock_;
   MockWorld world_;
   OpenStereo ready_;  // until the watch takes the cameras
+  std::shared_ptr<sim::PhysicalLab> physics_;
   std::shared_ptr<const LiveScene> scene_;
   std::unique_ptr<LiveFrames> frames_;
   std::unique_ptr<RunRecorder> recorder_;

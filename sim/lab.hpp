@@ -47,10 +47,12 @@ struct Lab {
 };
 
 /// `texel`: metres per texel of the finest pictures. `seed` varies grain and small print.
-/// With a ball, that is one more part at the end, "ball", which moves.
-Lab make_lab(double texel, unsigned seed, bool with_ball = false);
-/// The lab with `things` (sim/things.hpp) in place of its arm; with the ball or, without `furniture`, nothing but them.
-Lab make_lab_with(const RobotScene& things, bool furniture, double texel, unsigned seed);
+/// With a ball, that is one more part at the end, "ball", which moves. With a task, things for it (sim/lab_task.hpp)
+/// come last.
+Lab make_lab(double texel, unsigned seed, bool with_ball = false, bool with_task = false);
+/// The lab with `things` (sim/things.hpp) in place of its arm, and with the ball; without `furniture`, nothing but
+/// them.
+Lab make_lab_with(const RobotScene& things, bool furniture, double texel, unsigned seed, bool with_task = false);
 inline constexpr float kBallRadius = 0.03f;  ///< metres
 
 /// The part's triangles over welded vertices, exactly as they are rendered.

@@ -200,11 +200,11 @@ void LightMap::fill(const Grid& grid, std::vector<std::uint8_t>& unusable, Irrad
   }
 }
 
-LightMap::Irradiance LightMap::lit(const LabState& T_world_part) const {
+LightMap::Irradiance LightMap::lit(const LabState& T_world_part, int quicker) const {
   Irradiance out(samples_.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = direct_[i] + ambient_[i];
   if (moving_.empty()) {
-    shade_still({}, out);
+    shade_still({}, kShadeRays, out);
     return out;
   }
   Movers movers;
@@ -221,18 +221,18 @@ LightMap::Irradiance LightMap::lit(const LabState& T_world_part) const {
     movers.occluders.emplace_back(placed);
   }
   movers.tracer.emplace(std::move(all));
-  light_movers(T_world_part, movers, out);
-  shade_still(movers, out);
+  light_movers(T_world_part, movers, kMoverRays / quicker, out);
+  shade_still(movers, kShadeRays / quicker, out);
   return out;
 }
 
-void LightMap::light_movers(const LabState& T_world_part, const Movers& movers, Irradiance& out) const {
+void LightMap::light_movers(const LabState& T_world_part, const Movers& movers, int rays_each, Irradiance& out) const {
   std::vector<std::uint8_t> unusable(samples_.size(), 0);
   for (const Range& range : moving_) {
     const Eigen::Isometry3f T = T_world_part[static_cast<std::size_t>(range.part)].cast<float>();
     for (int i = range.first_sample; i < range.end_sample; ++i) {
       const Sample s{T * samples_[i].p, T.linear() * samples_[i].n, T.linear() * samples_[i].g};
-      const Gather g = gather(s, kMoverRays, &movers);
+      const Gather g = gather(s, rays_each, &movers);
       unusable[i] = g.inside;
       std::uint64_t seen = g.inside ? 0 : lamp_points_seen(s);
       const LampRays rays(off_surface(s.p, s.n, s.g));
@@ -244,7 +244,7 @@ void LightMap::light_movers(const LabState& T_world_part, const Movers& movers, 
   }
 }
 
-void LightMap::shade_still(const Movers& movers, Irradiance& out) const {
+void LightMap::shade_still(const Movers& movers, int rays_each, Irradiance& out) const {
   std::vector<std::uint8_t> unusable = inside_;
   std::vector<Eigen::AlignedBox3f> reach;
   for (const Occluder& o : movers.occluders)
@@ -265,14 +265,14 @@ void LightMap::shade_still(const Movers& movers, Irradiance& out) const {
           unusable[i] = 1;
           continue;
         }
-        for (int k = 0; k < kShadeRays; ++k) {
-          const auto hit = movers.tracer->nearest(origin, cosine_direction(s.n, k, kShadeRays), kReach);
+        for (int k = 0; k < rays_each; ++k) {
+          const auto hit = movers.tracer->nearest(origin, cosine_direction(s.n, k, rays_each), kReach);
           if (hit) shaded += (1 - hit->t / kReach) * (1 - hit->t / kReach);
         }
       }
       if (seen == seen_[i] && shaded == 0) continue;
       out[i] = (seen == seen_[i] ? direct_[i] : lamp::irradiance(s.p, s.n, seen)) +
-               (1 - 0.85f * shaded / kShadeRays) * ambient_[i];
+               (1 - 0.85f * shaded / static_cast<float>(rays_each)) * ambient_[i];
     }
   for (const Range& range : still_)
     for (int f = range.first_facet; f < range.end_facet; ++f) fill(grids_[f], unusable, out);

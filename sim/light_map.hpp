@@ -34,8 +34,9 @@ class LightMap {
   /// `poll`, which may be empty, is called now and then from all threads; what it throws stops the work.
   LightMap(const Lab& lab, double coarser, const std::function<void()>& poll = {});
 
-  /// The light while the parts stand at `T_world_part`. One thread.
-  Irradiance lit(const LabState& T_world_part) const;
+  /// The light while the parts stand at `T_world_part`. One thread. `quicker`, 1 .. 8: takes so much less care of the
+  /// daylight around what moves; the lamp's shadows are the same.
+  Irradiance lit(const LabState& T_world_part, int quicker = 1) const;
 
   /// Irradiance on a facet at barycentric weights of its corners 1 and 2.
   Eigen::Vector3f at(const Irradiance& irradiance, int facet, float b1, float b2) const;
@@ -69,8 +70,8 @@ class LightMap {
   std::uint64_t lamp_points_seen(const Sample& s) const;
   Gather gather(const Sample& s, int rays, const Movers* movers) const;
   void fill(const Grid& grid, std::vector<std::uint8_t>& unusable, Irradiance& irradiance) const;
-  void light_movers(const LabState& T_world_part, const Movers& movers, Irradiance& out) const;
-  void shade_still(const Movers& movers, Irradiance& out) const;
+  void light_movers(const LabState& T_world_part, const Movers& movers, int rays, Irradiance& out) const;
+  void shade_still(const Movers& movers, int rays, Irradiance& out) const;
 
   std::vector<Grid> grids_;              // one per facet
   std::vector<int> grid_samples_;        // index into samples_

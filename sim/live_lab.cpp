@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <set>
 
 #include "common/error.hpp"
+#include "sim/evenly.hpp"
 #include "sim/motion.hpp"
 
 namespace foresight::sim {
@@ -17,19 +17,14 @@ namespace {
 constexpr double kBallPeriod = 8, kBallWay = 0.22;  // seconds; metres to either side
 constexpr const char* kMovable[] = {"mug", "can", "bottle"};
 
-// The generator's own numbers, without the library's distributions, which differ between libraries.
-double evenly(std::mt19937& random, double size) {
-  return size * (2.0 * random() / 4294967295.0 - 1);
-}
-
 void check(const char* field, double value, double most) {
   if (!(value >= 0 && value <= most))
     throw InputError(field, fmt::format("{:.9g} is outside 0 .. {:.9g}", value, most), "choose a value inside");
 }
 
 Lab lab_for(const LiveLab::Options& options) {
-  if (!options.things) return make_lab(options.texel, options.seed, true);
-  Lab lab = make_lab_with(*options.things, options.furniture, options.texel, options.seed);
+  if (!options.things) return make_lab(options.texel, options.seed, true, options.task);
+  Lab lab = make_lab_with(*options.things, options.furniture, options.texel, options.seed, options.task);
   std::set<std::string> names;
   for (const Part& part : lab.parts)
     if (!names.insert(part.name).second)
@@ -44,8 +39,12 @@ PanTilt head_shafts(const ShaftPositions& shafts) {
 }  // namespace
 
 LiveLab::LiveLab(const Options& options) : lab_(lab_for(options)), things_(options.things) {
-  for (std::size_t i = 0; i < lab_.parts.size(); ++i)
-    if (lab_.parts[i].name == kBall && (!things_ || options.furniture)) ball_ = static_cast<int>(i);
+  for (std::size_t i = 0; i < lab_.parts.size(); ++i) {
+    Part& part = lab_.parts[i];
+    loose_.push_back(std::ranges::find(options.loose, part.name) != options.loose.end());
+    part.moves = part.moves || loose_[i];
+    if (part.name == kBall && !loose_[i] && (!things_ || options.furniture)) ball_ = static_cast<int>(i);
+  }
   const HiddenDeviations& hidden = options.hidden;
   check("hidden object_m", hidden.object_m, 0.05);
   check("hidden object_rad", hidden.object_rad, std::numbers::pi);

@@ -17,6 +17,8 @@ namespace foresight::sim {
 /// Position of a joint's shaft by name (those of sim/arm.hpp without the mimic, "pan", "tilt"); rad or m. Nothing for
 /// one that the world should leave at rest.
 using ShaftPositions = std::function<std::optional<double>(std::string_view joint)>;
+/// The same at an instant, for the present and shortly before.
+using ShaftsAt = std::function<std::optional<double>(std::string_view joint, RobotTime)>;
 
 /// What the model does not know. Each value is drawn evenly from -size .. size, but for the object's way, which has
 /// exactly that length.
@@ -42,6 +44,10 @@ class LiveLab {
     /// In place of the lab's own arm: the rig's robot, or a whole scene with it. Null: the lab's own arm.
     std::shared_ptr<const RobotScene> things = {};
     bool furniture = true;  ///< with `things`: the lab's own around them, and the ball
+    bool task = false;      ///< bricks and a tray on the table (sim/lab_task.hpp)
+    /// Parts that may be anywhere, as in a physical lab (sim/physics): true_state() leaves them at rest, the ball too.
+    /// Names that the lab does not have are left out.
+    std::vector<std::string> loose = {};
   };
   /// Throws InputError (a deviation out of range; what check() says of a print; a part that the lab does not have; a
   /// thing that has the name of a part of the lab).
@@ -53,6 +59,7 @@ class LiveLab {
   const LabState& modelled_rest() const { return modelled_rest_; }
   /// Those that stand still, then the board where there is one. No parts of lab(): they are painted on what stands.
   const std::vector<Print>& prints() const { return prints_; }
+  bool is_loose(std::size_t part) const { return loose_[part]; }
   int displaced() const { return displaced_; }  ///< part that is not where the model has it; -1: none
 
   /// Where every part truly stands `t` seconds after the start. The arm and the ball know nothing of each other.
@@ -75,6 +82,7 @@ class LiveLab {
 
   Lab lab_;
   LabState modelled_rest_;
+  std::vector<bool> loose_;  // of each part
   std::shared_ptr<const RobotScene> things_;
   std::array<double, 7> joint_offsets_{};
   PanTilt head_offset_;

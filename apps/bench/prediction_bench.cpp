@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/bench/prediction_contact.hpp"
+#include "apps/bench/prediction_grasp.hpp"
 #include "apps/bench/prediction_hand.hpp"
 #include "apps/bench/prediction_head.hpp"
 #include "apps/bench/prediction_ik.hpp"
@@ -132,6 +133,28 @@ void add_robot(Command& prediction, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_prediction_robot(*options); }; });
 }
 
+void add_grasp(Command& prediction, std::function<int()>& action) {
+  auto* command = prediction.add_subcommand("grasp", "Things that a hand takes along, over a delayed line");
+  auto options = std::make_shared<PredictionGraspOptions>();
+  command
+      ->add_option("--rig", options->rig,
+                   "Rig whose robot is the mock lab's arm (default configs/minerva.yaml); its drives are emulated")
+      ->reads();
+  command->add_option("--runs", options->runs, "Bricks to grasp, carry and set down")
+      ->check(from_to(1, 10'000))
+      ->capture_default_str();
+  command->add_option("--delay-ms", options->delay_ms, "Of the line, each way")
+      ->check(from_to(0, 1400))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of places, masses, frictions, accidents and noise")
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "Example: foresight bench prediction grasp --runs 200 --json grasp.json\n"
+      "Exit code: 1 where a grasp that failed was not noticed within the delay and 0.3 s.");
+  command->callback([options, &action] { action = [options] { return bench_prediction_grasp(*options); }; });
+}
+
 }  // namespace
 
 void add_prediction_benches(Command& bench, std::function<int()>& action) {
@@ -143,6 +166,7 @@ void add_prediction_benches(Command& bench, std::function<int()>& action) {
   add_hand(*prediction, action);
   add_response(*prediction, action);
   add_robot(*prediction, action);
+  add_grasp(*prediction, action);
 }
 
 }  // namespace foresight

@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prediction/grasp/hand_path.hpp"
+
 namespace foresight {
 namespace {
 
-constexpr double kRoom = 0.005;   // m more than the gate keeps clear
+constexpr double kRoom = 0.005;  // m more than the gate keeps clear
 constexpr double kRange = 0.7;   // of each joint's range
 constexpr double kAtOnce = 0.3;  // share of legs whose end is asked for at once
 constexpr double kPeak = 1.875;  // of minimum jerk, times the mean speed
 constexpr int kTries = 300, kSamples = 24;
-
-double minimum_jerk(double s) {
-  return s * s * s * (10 + s * (6 * s - 15));
-}
 
 }  // namespace
 

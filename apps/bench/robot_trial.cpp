@@ -157,14 +157,17 @@ class OperatorSide {
   }
   void advance(RobotTime now) { future_.advance(now); }
   /// `judged`: it counts.
-  void show(RobotTime now, bool judged) {
+  PredictedRobot show(RobotTime now, bool judged) {
     const RobotTime instant = future_.instant_to_show(now);
     const PredictedRobot robot = future_.show(instant);
-    const PredictedTool tool = tool_.show(robot);
-    if (!judged) {
+    tool_.show(robot);
+    if (judged)
+      judge(robot);
+    else
       last_shown_.reset();
-      return;
-    }
+    return robot;
+  }
+  void judge(const PredictedRobot& robot) {
     ++figures_.pictures;
     if (robot.status == StateStatus::invalid) {
       ++figures_.invalid;
@@ -173,8 +176,8 @@ class OperatorSide {
       return;
     }
     measure_step(robot);
+    const RobotTime instant = robot.time;
     others_.push_back({instant, tool_.place(held()), tool_.place(went_on(instant)), tool_.place(asked_)});
-    (void)tool;
   }
   /// `held_back` says whether the gate did so at an instant.
   template <typename HeldBack>
@@ -277,23 +280,27 @@ class OperatorSide {
 /// Both sides and the line between them.
 class Trial {
  public:
-  Trial(const Rig& rig, const RobotTrialOptions& options, RobotTrialFigures& figures)
-      : rig_(rig), options_(options), figures_(figures), robot_(rig, clock_), operator_(rig, options, figures) {}
+  Trial(const Rig& rig, const RobotTrialOptions& options, const RobotTrialHooks& hooks, RobotTrialFigures& figures)
+      : rig_(rig),
+        options_(options),
+        hooks_(hooks),
+        figures_(figures),
+        robot_(rig, clock_),
+        operator_(rig, options, figures) {}
 
   void run() {
     robot_.start();
     begin_ = clock_.now();
-    JointValues start{};
-    for (std::size_t i = 0; i < rig_.joints.size(); ++i) start[i] = robot_.last().joint[i].position;
-    motion_.emplace(rig_, start, options_.seed);
+    for (std::size_t i = 0; i < rig_.joints.size(); ++i) start_[i] = robot_.last().joint[i].position;
+    if (!hooks_.wish) motion_.emplace(rig_, start_, options_.seed);
     down_.emplace(options_.line.down, begin_, options_.line.seed);
     up_.emplace(options_.line.up, begin_, options_.line.seed + 1);
     lasts_ = options_.line.down.delay + options_.line.down.jitter + kSpareLife;
     next_cycle_ = next_report_ = next_sent_ = next_shown_ = begin_ + robot_.period();
     const RobotTime end = begin_ + seconds(options_.learning + options_.seconds);
-    while (clock_.now() < end) step();
+    while (clock_.now() < end && !(hooks_.over && hooks_.over())) step();
     operator_.finish();
-    figures_.time_s = to_seconds(end - begin_);
+    figures_.time_s = to_seconds(clock_.now() - begin_);
   }
 
  private:
@@ -311,7 +318,8 @@ class Trial {
     if (now >= next_sent_) send(now);
     operator_.advance(now);
     if (now >= next_shown_) {
-      operator_.show(now, to_seconds(now - begin_) > options_.learning);
+      const PredictedRobot shown = operator_.show(now, to_seconds(now - begin_) > options_.learning);
+      if (hooks_.shown) hooks_.shown(robot_.devices(), now, shown);
       next_shown_ = next_shown_ + seconds(1 / options_.pictures_hz);
     }
     figures_.cpu_s += cpu_seconds(CLOCK_THREAD_CPUTIME_ID) - cpu;
@@ -338,7 +346,9 @@ class Trial {
     next_sent_ = next_sent_ + seconds(1 / options_.set_points_hz);
     const bool pressed = now - begin_ > kOpen;
     if (!pressed) pressed_ = now;
-    const SentSetPoint set_point = operator_.set_point(now, motion_->at(to_seconds(now - pressed_)), pressed, lasts_);
+    const double t = to_seconds(now - pressed_);
+    const JointValues asked = hooks_.wish ? hooks_.wish(t, start_) : motion_->at(t);
+    const SentSetPoint set_point = operator_.set_point(now, asked, pressed, lasts_);
     operator_.sent(set_point, now);
     if (const auto arrival = down_->send(now, kSetPointBytes)) on_the_way_down_.emplace(*arrival, set_point);
   }
@@ -349,7 +359,9 @@ class Trial {
 
   const Rig& rig_;
   const RobotTrialOptions& options_;
+  const RobotTrialHooks& hooks_;
   RobotTrialFigures& figures_;
+  JointValues start_{};
   SteppedClock clock_;
   RobotSide robot_;
   OperatorSide operator_;
@@ -364,11 +376,11 @@ class Trial {
 
 }  // namespace
 
-RobotTrialFigures try_robot(const Rig& rig, const RobotTrialOptions& options) {
+RobotTrialFigures try_robot(const Rig& rig, const RobotTrialOptions& options, const RobotTrialHooks& hooks) {
   if (!rig.robot)
     throw InputError(rig.name, "the rig has no robot", "give it a `robot:` section with a URDF, which moves a tool");
   RobotTrialFigures figures;
-  Trial(rig, options, figures).run();
+  Trial(rig, options, hooks, figures).run();
   return figures;
 }
 

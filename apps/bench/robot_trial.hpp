@@ -6,11 +6,13 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "link/line/line_spec.hpp"
-#include "rig/rig.hpp"
+#include "prediction/robot_future.hpp"
+#include "rig/robot_devices.hpp"
 
 namespace foresight {
 
@@ -46,7 +48,16 @@ struct RobotTrialFigures {
   double time_s = 0;                        ///< that was simulated, with the learning
 };
 
+/// Who moves the robot in place of RandomMotion, and watches. All are called in stepped time, one after the other.
+struct RobotTrialHooks {
+  /// What is asked for now, so many seconds after the robot was ready; `start`: where it stood then.
+  std::function<JointValues(double seconds, const JointValues& start)> wish;
+  /// Every picture, judged or not.
+  std::function<void(const RobotDevices&, RobotTime now, const PredictedRobot& shown)> shown;
+  std::function<bool()> over;  ///< ends the trial before RobotTrialOptions::seconds are over
+};
+
 /// Throws InputError: a rig without a robot's URDF or without the tool, RuntimeFailure: its drives do not come up.
-RobotTrialFigures try_robot(const Rig& rig, const RobotTrialOptions& options);
+RobotTrialFigures try_robot(const Rig& rig, const RobotTrialOptions& options, const RobotTrialHooks& hooks = {});
 
 }  // namespace foresight

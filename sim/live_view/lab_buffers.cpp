@@ -10,9 +10,8 @@ namespace {
 struct Vertex {
   Eigen::Vector3f p, n;
   Eigen::Vector2f uv;
-  Eigen::Vector3f irradiance;
 };
-static_assert(sizeof(Vertex) == 11 * sizeof(float));
+static_assert(sizeof(Vertex) == 8 * sizeof(float));
 
 LabBuffers::Picture upload(const Material& material) {
   const Texture& from = material.picture;
@@ -41,9 +40,7 @@ LabBuffers::Picture upload(const Material& material) {
 }
 
 // The triangles of one facet's grid of light samples.
-void add_facet(const Facet& facet, int number, const LightMap& light, const LightMap::Irradiance& irradiance,
-               std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices) {
-  const int n = light.steps(number);
+void add_facet(const Facet& facet, int n, std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices) {
   const auto first = static_cast<std::uint32_t>(vertices.size());
   const auto place = [&](int i, int j) {
     return first + static_cast<std::uint32_t>(i + j * (n + 1) - j * (j - 1) / 2);
@@ -55,7 +52,7 @@ void add_facet(const Facet& facet, int number, const LightMap& light, const Ligh
                   b2 = static_cast<float>(j) / static_cast<float>(n);
       const float b0 = 1 - b1 - b2;
       vertices.push_back({b0 * c[0].p + b1 * c[1].p + b2 * c[2].p, b0 * c[0].n + b1 * c[1].n + b2 * c[2].n,
-                          b0 * c[0].uv + b1 * c[1].uv + b2 * c[2].uv, light.at(irradiance, number, b1, b2)});
+                          b0 * c[0].uv + b1 * c[1].uv + b2 * c[2].uv});
     }
   for (int j = 0; j < n; ++j)
     for (int i = 0; i + j < n; ++i) {
@@ -72,11 +69,10 @@ LabBuffers::LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Ir
   for (const Material& material : lab.materials) pictures_.push_back(upload(material));
   std::vector<Vertex> vertices;
   std::map<std::tuple<bool, int, int>, std::vector<std::uint32_t>> sorted;  // glossy, part, material
-  int number = 0;
   for (int k = 0; k < static_cast<int>(lab.parts.size()); ++k)
     for (const Facet& facet : lab.parts[static_cast<std::size_t>(k)].facets) {
       const bool glossy = lab.materials[static_cast<std::size_t>(facet.material)].gloss > 0;
-      add_facet(facet, number++, light, irradiance, vertices, sorted[{glossy, k, facet.material}]);
+      add_facet(facet, light.steps(facets_++), vertices, sorted[{glossy, k, facet.material}]);
     }
   std::vector<std::uint32_t> indices;
   for (const auto& [key, some] : sorted) {
@@ -86,24 +82,40 @@ LabBuffers::LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Ir
   triangles_ = indices.size() / 3;
   vertices_ = gl::Buffer(vertices.size() * sizeof(Vertex), "lab vertices");
   vertices_.write(std::span<const Vertex>(vertices));
+  light_ = gl::Buffer(vertices.size() * sizeof(Eigen::Vector3f), "lab light");
+  light_anew(light, irradiance);
   indices_ = gl::Buffer(indices.size() * sizeof(std::uint32_t), "lab indices");
   indices_.write(std::span<const std::uint32_t>(indices));
+}
+
+// In the order in which add_facet() made the vertices.
+void LabBuffers::light_anew(const LightMap& light, const LightMap::Irradiance& irradiance) {
+  irradiance_.clear();
+  for (int number = 0; number < facets_; ++number) {
+    const int n = light.steps(number);
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i + j <= n; ++i)
+        irradiance_.push_back(light.at(irradiance, number, static_cast<float>(i) / static_cast<float>(n),
+                                       static_cast<float>(j) / static_cast<float>(n)));
+  }
+  light_.write(std::span<const Eigen::Vector3f>(irradiance_));
 }
 
 gl::VertexArray LabBuffers::create_vertex_array() const {
   gl::VertexArray array = gl::create_vertex_array("lab");
   glVertexArrayVertexBuffer(array.name(), 0, vertices_.name(), 0, sizeof(Vertex));
+  glVertexArrayVertexBuffer(array.name(), 1, light_.name(), 0, sizeof(Eigen::Vector3f));
   glVertexArrayElementBuffer(array.name(), indices_.name());
   constexpr struct {
     GLint size;
     std::size_t offset;
-  } kAttributes[] = {
-      {3, offsetof(Vertex, p)}, {3, offsetof(Vertex, n)}, {2, offsetof(Vertex, uv)}, {3, offsetof(Vertex, irradiance)}};
+    GLuint buffer;
+  } kAttributes[] = {{3, offsetof(Vertex, p), 0}, {3, offsetof(Vertex, n), 0}, {2, offsetof(Vertex, uv), 0}, {3, 0, 1}};
   for (GLuint i = 0; i < 4; ++i) {
     glEnableVertexArrayAttrib(array.name(), i);
     glVertexArrayAttribFormat(array.name(), i, kAttributes[i].size, GL_FLOAT, GL_FALSE,
                               static_cast<GLuint>(kAttributes[i].offset));
-    glVertexArrayAttribBinding(array.name(), i, 0);
+    glVertexArrayAttribBinding(array.name(), i, kAttributes[i].buffer);
   }
   return array;
 }

@@ -1,4 +1,4 @@
-// The lab in GPU memory, lit once.
+// The lab in GPU memory, and the light on it.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 namespace foresight::sim {
 
 /// Triangles between the light's samples, with the irradiance there; the materials' pictures with mipmaps. The light
-/// is that of one state of the lab: parts that move carry it along, and their shadows stay where they were. Immutable;
-/// usable from every context of the share group.
+/// is that of one state of the lab, until it is lit anew: parts that move carry it along, and their shadows stay where
+/// they were. Usable from every context of the share group.
 class LabBuffers {
  public:
   struct Draw {
@@ -28,6 +28,9 @@ class LabBuffers {
   LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Irradiance& irradiance,
              std::span<const Print> prints = {});
 
+  /// The light of another state, for what is drawn from now on.
+  void light_anew(const LightMap& light, const LightMap::Irradiance& irradiance);
+
   const std::vector<Draw>& draws() const { return draws_; }  ///< ordered by gloss, then by part
   const Picture& picture(int material) const { return pictures_[static_cast<std::size_t>(material)]; }
   const std::vector<PrintPicture>& prints() const { return prints_; }
@@ -40,7 +43,9 @@ class LabBuffers {
   std::vector<Picture> pictures_;
   std::vector<PrintPicture> prints_;
   std::vector<Draw> draws_;
-  gl::Buffer vertices_, indices_;
+  gl::Buffer vertices_, light_, indices_;
+  std::vector<Eigen::Vector3f> irradiance_;  // of each vertex
+  int facets_ = 0;
   std::size_t triangles_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <pthread.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,6 +22,8 @@ constexpr Duration kPoll = 1ms;       // for finished images
 constexpr Duration kStopTime = 50ms;  // so long the renderer takes to stop in stepped time
 constexpr Duration kDrawTime = 60s;   // of one pair, on the slowest machine; more is a driver that hangs
 constexpr Duration kExposureUnit = 100us;
+constexpr int kQuicker = 4, kLightRest = 2;
+constexpr double kSameLight = 1e-5;  // parts that went less are where they were
 constexpr const char* kControl = "exposure_time_absolute";
 
 void check(const MockCameraOptions& o) {
@@ -96,6 +99,8 @@ void MockStereo::close(Side side) noexcept {
 void MockStereo::render(const std::stop_token& stop, std::promise<void>& ready) noexcept {
   if (!stepped_) make_background();  // a software renderer takes all that there is
   try {
+    lit_.clear();
+    light_due_ = clock_.now();
     StereoRenderer renderer(*world_, *light_, irradiance_, options_.lenses, options_.sensor);
     ready.set_value();
     stepped_ ? run_stepped(stop, renderer) : run_real(stop, renderer);
@@ -107,12 +112,23 @@ void MockStereo::render(const std::stop_token& stop, std::promise<void>& ready) 
   }
 }
 
+void MockStereo::light_anew(StereoRenderer& renderer, const LabState& state) {
+  const auto alike = [](const Pose& a, const Pose& b) { return a.isApprox(b, kSameLight); };
+  if (lit_.size() == state.size() && std::ranges::equal(lit_, state, alike)) return;
+  const RobotTime begin = clock_.now();
+  if (begin < light_due_) return;
+  renderer.light_anew(*light_, light_->lit(state, kQuicker));
+  lit_ = state;
+  light_due_ = clock_.now() + kLightRest * (clock_.now() - begin);  // stepped time stands still meanwhile
+}
+
 bool MockStereo::draw(StereoRenderer& renderer, RobotTime end_of_exposure, std::uint64_t number) {
   const std::int64_t exposure = exposure_;
   const RobotTime middle = end_of_exposure - exposure * kExposureUnit / 2;
   const ShaftPositions shafts = [&](std::string_view joint) { return shafts_(joint, middle); };
   const double t = to_seconds(middle - epoch_);
-  const LabState state = world_->true_state(shafts, t);
+  const LabState state = options_.state ? options_.state(middle) : world_->true_state(shafts, t);
+  if (options_.moving_light) light_anew(renderer, state);
   return renderer.draw(world_->T_world_left(shafts), state, world_->true_prints(state, t),
                        static_cast<double>(exposure) / kExposure, {middle, number});
 }

@@ -22,20 +22,22 @@ namespace foresight::sim {
 
 class StereoRenderer;
 
-/// Position of a joint's shaft at an instant, for the present and shortly before; see ShaftPositions.
-using ShaftsAt = std::function<std::optional<double>(std::string_view joint, RobotTime)>;
-
 struct MockCameraOptions {
   StereoLenses lenses{{}, {}, T_head_left_right()};  ///< of even width
   double rate = 30;                                  ///< frames per second, > 0
   Sensor sensor = {.noise = 1.5};                    ///< its exposure drift is not used
   double light_coarser = 4;                          ///< LightMap's; fewer triangles to draw
+  /// Where every part truly stands, asked as the shafts are; empty: LiveLab::true_state().
+  std::function<LabState(RobotTime)> state = {};
+  /// Lights the world anew for images of a state that differs: shadows move with what throws them. In real time that
+  /// takes a third of the renderer's time at most, and shadows come later. Else the light is that of the world at rest,
+  /// and moving parts carry theirs along.
+  bool moving_light = false;
 };
 
 /// The renderer behind both cameras: a thread of its own, with its own OpenGL context, asks where the shafts were in
-/// the middle of the exposure, draws both images and hands each camera its newest one. The light is that of the world
-/// at rest: moving parts carry theirs along. Both cameras see the same instant; there is no motion blur and no rolling
-/// shutter. Any thread.
+/// the middle of the exposure, draws both images and hands each camera its newest one. Both cameras see the same
+/// instant; there is no motion blur and no rolling shutter. Any thread.
 ///
 /// In real time the renderer goes on by itself, in the background (make_background) lest it disturbs a robot's loop,
 /// and leaves instants out that it has no time for. At a SteppedClock, images belong to instants a period apart since
@@ -78,6 +80,7 @@ class MockStereo {
   void run_real(const std::stop_token& stop, StereoRenderer& renderer);
   void run_stepped(const std::stop_token& stop, StereoRenderer& renderer);
   bool draw(StereoRenderer& renderer, RobotTime end_of_exposure, std::uint64_t number);
+  void light_anew(StereoRenderer& renderer, const LabState& state);
   void hand_over(StereoRenderer& renderer, bool wait);
 
   const std::shared_ptr<const LiveLab> world_;
@@ -88,6 +91,8 @@ class MockStereo {
   const bool stepped_;
   std::unique_ptr<LightMap> light_;
   LightMap::Irradiance irradiance_;
+  LabState lit_;  // the state that the light is of; of the renderer's thread
+  RobotTime light_due_;
   std::array<LatestValue<CameraFrame>, 2> newest_;
   std::atomic<std::int64_t> exposure_{kExposure};
   std::array<std::atomic<clockid_t>, 2> consumers_{};

@@ -11,11 +11,11 @@ StereoRenderer::StereoRenderer(const LiveLab& world, const LightMap& light, cons
                                const StereoLenses& lenses, const Sensor& sensor)
     : context_(gl::create_headless_context()), T_left_right_(lenses.T_left_right) {
   gl::set_up_context();
-  const auto buffers = std::make_shared<const LabBuffers>(world.lab(), light, irradiance, world.prints());
+  buffers_ = std::make_shared<LabBuffers>(world.lab(), light, irradiance, world.prints());
   Sensor other = sensor;
   other.seed += kOtherSeed;
-  views_[0].emplace(buffers, lenses.left, sensor);
-  views_[1].emplace(buffers, lenses.right, other);
+  views_[0].emplace(buffers_, lenses.left, sensor);
+  views_[1].emplace(buffers_, lenses.right, other);
   const LabState state = world.lab().at_rest();
   draw(T_world_head_left(kHeadAtTable), state, world.true_prints(state, 0), 1, {});
   take(true);

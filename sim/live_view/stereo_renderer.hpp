@@ -29,6 +29,10 @@ class StereoRenderer {
   StereoRenderer(const LiveLab& world, const LightMap& light, const LightMap::Irradiance& irradiance,
                  const StereoLenses& lenses, const Sensor& sensor);
 
+  /// The light of another state, for the pairs that are drawn from now on.
+  void light_anew(const LightMap& light, const LightMap::Irradiance& irradiance) {
+    buffers_->light_anew(light, irradiance);
+  }
   /// Starts a pair, of the parts, the world's prints and the left camera where they are given. `gain`: factor on the
   /// light. False, and nothing is done, where kUnderWay are.
   bool draw(const Pose& T_world_left, const LabState& T_world_part, std::span<const Pose> T_world_print, double gain,
@@ -41,6 +45,7 @@ class StereoRenderer {
   void fetch(std::size_t eye);
 
   std::unique_ptr<gl::Context> context_;
+  std::shared_ptr<LabBuffers> buffers_;
   Pose T_left_right_;
   std::array<std::optional<LiveView>, 2> views_;
   std::deque<Instant> instants_;  // oldest first

@@ -92,6 +92,34 @@ TEST_F(MockCameraTest, PairsShowTheWorldAtTheirCaptureTime) {
   }
 }
 
+TEST_F(MockCameraTest, ShadowsMoveWithWhatThrowsThem) {
+  const auto bright = [](std::string_view joint, RobotTime t) {
+    return shafts_in_motion(joint, to_seconds(t - RobotTime{}));
+  };
+  const auto against_truth = [&](bool moving) {
+    options_.moving_light = moving;
+    SteppedClock clock;
+    const auto stereo = std::make_shared<MockStereo>(world(), bright, options_, clock);
+    MockCamera camera("left", Side::left, stereo);
+    camera.start();
+    clock.sleep_until(RobotTime{} + 3s);  // the hand is down at the mat
+    CameraFrame frame;
+    EXPECT_EQ(camera.wait_frame(1s, frame), CameraStatus::ok);
+    cv::Mat bgr;
+    EXPECT_EQ(to_bgr(frame, bgr), Conversion::ok);
+    const ShaftPositions shafts = [&](std::string_view joint) { return bright(joint, frame.time); };
+    const LabState state = world()->true_state(shafts, to_seconds(frame.time - RobotTime{}));
+    const LightMap light(world()->lab(), options_.light_coarser);
+    const Picture truth =
+        Renderer(world()->lab(), light)
+            .render(RayTable(options_.lenses.left), world()->T_world_left(shafts), state, light.lit(state));
+    return cv::PSNR(options_.sensor.develop(truth.light, 0, 0), bgr);
+  };
+  const double moving = against_truth(true);
+  EXPECT_GT(moving, 27);
+  EXPECT_GT(moving, against_truth(false) + 1);
+}
+
 TEST_F(MockCameraTest, InRealTimeImagesAreTrueToo) {
   MonotonicClock clock;
   const auto stereo = stereo_at(clock);

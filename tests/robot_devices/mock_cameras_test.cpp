@@ -100,6 +100,43 @@ TEST_F(MockCameras, SeeTheShaftsWhereTheyWereInTheMiddleOfTheExposure) {
   EXPECT_GT(moved, 0.01) << "the head moves";
 }
 
+TEST_F(MockCameras, WithPhysicsThingsAreInTheSceneAndWhereTheWorldHasThem) {
+  std::shared_ptr<sim::PhysicalLab> physics;
+  {
+    RobotCameras cameras(rig_, live_.devices(), live_.robot(), live_.clock(),
+                         {.mock = true, .record = folder_ / "run", .physics = true, .physics_seed = 3});
+    bool on = true;
+    live_.clock().every(10ms, [&](RobotTime) {
+      if (on) cameras.step();
+    });
+    live_.move(500ms);
+    on = false;
+    physics = cameras.physics();
+    ASSERT_TRUE(physics);
+    const auto brick = static_cast<std::size_t>(physics->lab().lab().find("brick_red"));
+    const RobotTime now = live_.clock().now();
+    const double off =
+        (physics->thing_at("brick_red", now).translation() - physics->lab().modelled_rest()[brick].translation())
+            .norm();
+    EXPECT_GT(off, 1e-4) << "truth and model differ";
+    EXPECT_LT(off, 5e-3);
+    const sim::LabState state = physics->state_at(now);
+    const auto finger = static_cast<std::size_t>(physics->lab().lab().find("finger_left"));
+    const sim::LabState by_shafts = physics->lab().true_state(shafts_at(now - 1ms), 0);
+    EXPECT_LT((state[finger].translation() - by_shafts[finger].translation()).norm(), 5e-3) << "driven by the shafts";
+    cameras.finish();
+    live_.move(20ms);
+  }
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  EXPECT_GE(run.frames().size(), 4u);
+  for (const char* name : {"brick_red", "brick_blue", "tray"}) EXPECT_TRUE(run.scene()->find(name)) << name;
+}
+
+TEST_F(MockCameras, PhysicsIsForMockCameras) {
+  for (CameraConfig& camera : rig_.cameras->cameras) camera.driver = CameraDriver::v4l2;
+  EXPECT_THROW(RobotCameras(rig_, live_.devices(), live_.robot(), live_.clock(), {.physics = true}), InputError);
+}
+
 /// The lab's head by its drawing, as a result of `calibrate pan-tilt`.
 std::filesystem::path drawn_head(const TempFolder& folder) {
   return folder.write(
