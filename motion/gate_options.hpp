@@ -37,4 +37,13 @@ struct GateOptions {
   static constexpr double kFirstSpeed = 0.1;  ///< of the ramp
 };
 
+/// What a safety gate does, as far as who predicts it has to know.
+enum class GateDoing : std::uint8_t {
+  idle,       ///< would follow who presses the switch
+  following,  ///< goes where the set-points say
+  stopping,   ///< slows down to rest
+  stopped,    ///< latched: set-points brake, nothing is followed until somebody resets it
+  away,       ///< set-points say nothing of where the robot is: without torque, enabling, looking for home
+};
+
 }  // namespace foresight

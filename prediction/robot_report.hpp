@@ -21,14 +21,6 @@ struct SentSetPoint {
   JointValues position{};  ///< rad or m, in the robot's order
 };
 
-enum class GateDoing : std::uint8_t {
-  idle,       ///< would follow who presses the switch
-  following,  ///< goes where the set-points say
-  stopping,   ///< slows down to rest
-  stopped,    ///< latched: set-points brake, nothing is followed until somebody resets it
-  away,       ///< set-points say nothing of where the robot is: without torque, enabling, looking for home
-};
-
 struct ReportedJoint {
   RobotTime time;  ///< of `position`: when the drive told it
   double position = std::numeric_limits<double>::quiet_NaN();

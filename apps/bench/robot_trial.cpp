@@ -8,6 +8,7 @@
 #include "apps/bench/random_motion.hpp"
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
+#include "input/hand_of_rig.hpp"
 #include "link/line/delay_line.hpp"
 #include "operators/robot_start.hpp"
 #include "prediction/future_tool.hpp"
@@ -24,28 +25,6 @@ constexpr Duration kOpen = 200ms;        // that the switch is seen open first
 constexpr double kStillHeld = 0.5;       // s: what held the robot back may still be in what is shown
 constexpr double kVelocityOver = 0.035;  // s
 constexpr double kFocal = 525;           // px
-
-GateDoing doing(const RobotCycle& cycle) {
-  if (cycle.phase == RobotPhase::stopped) return GateDoing::stopped;
-  if (cycle.phase != RobotPhase::ready) return GateDoing::away;
-  switch (cycle.gate) {
-    case GateState::idle: return GateDoing::idle;
-    case GateState::following: return GateDoing::following;
-    case GateState::stopping: return GateDoing::stopping;
-    case GateState::stopped: return GateDoing::stopped;
-    case GateState::homing: break;
-  }
-  return GateDoing::away;
-}
-
-std::string last_arm_link(const Rig& rig) {
-  std::string out;
-  for (const RigJoint& joint : rig.joints)
-    for (const UrdfJoint& candidate : rig.robot->joints)
-      if (joint.group == JointGroup::arm && candidate.name == joint.drive.name)
-        out = rig.robot->links[static_cast<std::size_t>(candidate.child)].name;
-  return out;
-}
 
 /// The robot with its drives, and the set-points that came.
 class RobotSide {
@@ -90,7 +69,7 @@ class RobotSide {
   RobotReport report() const {
     RobotReport out;
     out.time = last_.time;
-    out.doing = doing(last_);
+    out.doing = doing_of(last_.phase, last_.gate);
     out.speed = robot_->status().gate.speed;
     out.newest_set_point = newest_.number;
     out.newest_came = newest_came_;
@@ -139,7 +118,7 @@ class OperatorSide {
         figures_(figures),
         shape_(rig.shape()),
         future_(future_options(rig), shape_.get()),
-        tool_(arm_chain(*rig.robot, options.tool.empty() ? last_arm_link(rig) : options.tool, "", rig.name),
+        tool_(arm_chain(*rig.robot, options.tool.empty() ? tool_link(rig) : options.tool, "", rig.name),
               rig.joint_names(), rig.name),
         lens_(Lens::Parameters{LensModel::plumb_bob, 640, 480, kFocal, kFocal, 319.5, 239.5, {}}) {}
 

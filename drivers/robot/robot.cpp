@@ -26,6 +26,19 @@ bool is_faulty(const DriveFeedback& f) {
 
 }  // namespace
 
+GateDoing doing_of(RobotPhase phase, GateState gate) noexcept {
+  if (phase == RobotPhase::stopped) return GateDoing::stopped;
+  if (phase != RobotPhase::ready) return GateDoing::away;
+  switch (gate) {
+    case GateState::idle: return GateDoing::idle;
+    case GateState::following: return GateDoing::following;
+    case GateState::stopping: return GateDoing::stopping;
+    case GateState::stopped: return GateDoing::stopped;
+    case GateState::homing: break;
+  }
+  return GateDoing::away;
+}
+
 Robot::Robot(GateOptions options, RobotShape* shape, std::vector<DriveNetwork*> networks, std::vector<Drive*> drives)
     : gate_(std::move(options), shape),
       rest_(velocities(gate_.options()), gate_.options().feedback_age_s),

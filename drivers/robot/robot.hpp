@@ -97,6 +97,9 @@ struct RobotCycle {
   std::array<JointCycle, kMostJoints> joint{};
 };
 
+/// For who predicts it.
+GateDoing doing_of(RobotPhase phase, GateState gate) noexcept;
+
 inline constexpr std::size_t kCommandsKept = 64, kRequestsKept = 64;
 /// How many cycles a reader may be behind: 4 s at 250 Hz.
 inline constexpr std::size_t kCyclesKept = 1024;

@@ -147,6 +147,7 @@ void ControlDesk::take(DeskPeer& from, const SetPoint& set_point, RobotTime now)
     if (fault != SetPointFault::out_of_order) fault_ = fault;
   }
   ++counts_.faults[static_cast<std::size_t>(fault)];
+  if (fault == SetPointFault::none) taken_ = {from.theirs, set_point.sequence, now};
   if (fault == SetPointFault::none && set_point.deadman) ++counts_.followed;
 }
 
@@ -155,7 +156,7 @@ RequestOutcome ControlDesk::judge(const DeskPeer& from, const Request& request, 
   if (from.theirs != holder_ || request.lease != permit_.lease()) return RequestOutcome::not_holder;
   const auto given = from.clock.to_here(request.given);
   const bool timely = given && given->earliest() <= now &&
-                      now <= given->earliest() + std::clamp(request.lasts, Duration{0}, kRequestLife);
+                      now <= given->earliest() + std::clamp(request.lasts, Duration{0}, kRequestLife + options_.life.allowed_delay);
   if (!timely || requests_.size() >= kMostRequests) return RequestOutcome::expired;
   return request.consent == permit_.consent() ? RequestOutcome::taken : RequestOutcome::before_stop;
 }

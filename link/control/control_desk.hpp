@@ -34,7 +34,7 @@ class ControlDesk {
  public:
   static constexpr Duration kLease = std::chrono::seconds(2);     ///< without a word of the holder
   static constexpr Duration kAsksFor = std::chrono::seconds(10);  ///< after an Ask
-  static constexpr Duration kRequestLife = std::chrono::seconds(1);
+  static constexpr Duration kRequestLife = std::chrono::seconds(1);  ///< beside a slow line's allowed delay
 
   explicit ControlDesk(ControlDeskOptions options);
 
@@ -61,6 +61,8 @@ class ControlDesk {
   std::string asking_name(RobotTime now);
   const MotionPermit& permit() const { return permit_; }
   const DeskCounts& counts() const { return counts_; }
+  /// The newest set-point that was not refused, pressed or open.
+  const TakenSetPoint& taken() const { return taken_; }
   Nonce session() const { return session_; }
   std::vector<DeskPeer>& peers() { return peers_.all(); }
 
@@ -96,6 +98,7 @@ class ControlDesk {
   RobotView robot_;
   SetPointFault fault_ = SetPointFault::none;
   DeskCounts counts_;
+  TakenSetPoint taken_;
   std::vector<Queued> requests_;
   std::vector<FromRobot> out_;
   std::uint64_t states_ = 0;

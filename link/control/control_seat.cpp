@@ -14,7 +14,6 @@ using namespace std::chrono_literals;
 
 constexpr Duration kGreetEvery = 500ms;
 constexpr Duration kAskEvery = 500ms;
-constexpr Duration kAnsweredWithin = 2s;
 constexpr Duration kSeenWithin = 500ms;  // a state, or we are blind
 constexpr Duration kPause = 250ms;
 constexpr Duration kRepeatEvery = 200ms;  // a request
@@ -121,8 +120,8 @@ void ControlSeat::take_state(const ControlState& state, OperatorTime now) {
 }
 
 void ControlSeat::connect(OperatorTime now) {
-  const bool mute = now - state_came_ > kAnsweredWithin;
-  if (desk_ != 0 && (mute || now - answered_ > kAnsweredWithin)) {
+  const bool mute = now - state_came_ > options_.answered_within;
+  if (desk_ != 0 && (mute || now - answered_ > options_.answered_within)) {
     desk_ = lease_ = 0;
     // Whatever number it had: what the robot tells after this is the newest.
     state_ = {};
@@ -167,7 +166,7 @@ bool ControlSeat::hand_over() {
 }
 
 std::uint64_t ControlSeat::request(LineRequest what, OperatorTime now) {
-  Request request{++request_id_, what, lease_, state_.consent, now, kRequestLife};
+  Request request{++request_id_, what, lease_, state_.consent, now, kRequestLife + state_.life};
   if (open_.size() >= kMostOpen) {
     fates_.push_back({open_.front().request.id, open_.front().request.what, std::nullopt});
     open_.erase(open_.begin());
@@ -190,7 +189,7 @@ std::vector<RequestFate> ControlSeat::take_fates() {
 
 void ControlSeat::repeat_requests(OperatorTime now) {
   for (Open& open : open_) {
-    const Duration most = open.request.what == LineRequest::emergency_stop ? kStopRepeated : kRequestLife + 1s;
+    const Duration most = open.request.what == LineRequest::emergency_stop ? kStopRepeated : open.request.lasts + 1s;
     if (now - open.request.given > most) {
       fates_.push_back({open.request.id, open.request.what, std::nullopt});
       open.request.id = 0;
@@ -224,14 +223,15 @@ void ControlSeat::advance(OperatorTime now) {
   repeat_requests(now);
 }
 
-void ControlSeat::command(OperatorTime now, const LinePositions& position, bool deadman) {
+std::optional<SetPoint> ControlSeat::command(OperatorTime now, const LinePositions& position, bool deadman) {
   const bool pressed = deadman && !std::exchange(held_, deadman);
   held_ = deadman;
   if (!deadman) withdraw();
   if (pressed && sees_robot(now)) agreed_ = state_.consent;
-  if (lease_ == 0 || desk_ == 0) return;
+  if (lease_ == 0 || desk_ == 0) return std::nullopt;
   SetPoint out{lease_, agreed_, ++sequence_, now, state_.life, deadman, state_.joints, position};
   send(out);
+  return out;
 }
 
 ControlSeatStatus ControlSeat::status(OperatorTime now) const {

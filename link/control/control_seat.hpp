@@ -1,7 +1,7 @@
 // The operator's side of control over the line: finds the robot, asks for the lease, sends set-points and requests.
 //
 //   connecting --Welcome--> connected --Verdict: granted--> holding --the state names another holder--> connected
-//       ^---------------- no answer for two seconds, or another start of the robot ---------------------'
+//       ^---------------- no answer for long, or another start of the robot ---------------------'
 //
 // It agrees to motion with each press of the switch, by the consent that the robot's newest state asks for. What comes
 // later, such as a robot that stopped meanwhile, needs another press: it never agrees by itself.
@@ -24,6 +24,8 @@ struct ControlSeatOptions {
   DrawNonce draw;
   /// Who looks at a robot as it was longer ago does not agree to any motion.
   Duration oldest_state = std::chrono::seconds(1);
+  /// A robot that does not answer for longer is looked for anew.
+  Duration answered_within = std::chrono::seconds(2);
 };
 
 struct ControlSeatStatus {
@@ -69,8 +71,8 @@ class ControlSeat {
   /// Each once.
   std::vector<RequestFate> take_fates();
   /// Where the robot shall be, many times a second, the switch held or not. With the switch, positions begin at
-  /// begin(), or the robot does not follow.
-  void command(OperatorTime now, const LinePositions& position, bool deadman);
+  /// begin(), or the robot does not follow. What was sent; nothing where nobody would take it.
+  std::optional<SetPoint> command(OperatorTime now, const LinePositions& position, bool deadman);
 
   /// Where set-points have to begin: the robot, by its newest state.
   const LinePositions& begin() const { return state_.begin; }
@@ -78,6 +80,8 @@ class ControlSeat {
   const ControlState& state() const { return state_; }
   ControlSeatStatus status(OperatorTime now) const;
   const RobotClockTracker& clock() const { return clock_; }
+  /// By which the robot's side knows this start of the program: its messages' `from`.
+  Nonce session() const { return session_; }
 
  private:
   struct Open {

@@ -65,6 +65,12 @@ struct SetPoint {
   LinePositions position{};
 };
 enum class LineRequest : std::uint8_t { none, enable, disable, home, reset, set_up, emergency_stop };
+/// A set-point that was taken, as the robot's side knows it.
+struct TakenSetPoint {
+  Nonce from = 0;              ///< the envelope's
+  std::uint64_t sequence = 0;  ///< 0: none
+  RobotTime came;
+};
 /// Repeated, with the same id, until an Answer comes. An emergency stop needs neither lease nor consent nor haste.
 struct Request {
   std::uint64_t id = 0;  ///< grows strictly

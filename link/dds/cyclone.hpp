@@ -56,7 +56,8 @@ class Complaints {
 };
 
 struct Participant::State {
-  Complaints complaints;                // the first: it hears what the others' ends complain about
+  std::shared_ptr<Complaints> complaints;  // the first: it hears what the others' ends complain about
+  int domain_id = 0;
   std::shared_ptr<PretendedLine> line;  // null: none
   Entity domain, participant, programs, publications, subscriptions;
   struct UsedTopic {

@@ -215,6 +215,7 @@ const Participant::State::UsedTopic& Participant::State::topic(const Topic& want
 Participant::Participant(const LinkConfig& config, const std::string& name, Role role,
                          std::shared_ptr<PretendedLine> line)
     : state_(std::make_unique<State>()) {
+  state_->complaints = std::make_shared<Complaints>();
   state_->line = std::move(line);
   check_network(config);
   if (config.security) check_keys(*config.security, role, config.where);
@@ -223,21 +224,35 @@ Participant::Participant(const LinkConfig& config, const std::string& name, Role
   try {
     const std::string settings = cyclone_settings(config, granted_receive_buffer());
     s.domain = Entity(checked(dds_create_domain(domain, settings.c_str()), "the link cannot be opened"));
-    s.participant = Entity(checked(dds_create_participant(domain, participant_qos(config, name, role).get(), nullptr),
-                                   "the link cannot be opened"));
-    const auto reader = [&](dds_entity_t topic) {
-      return Entity(checked(dds_create_reader(s.participant.get(), topic, nullptr, nullptr), "discovery"));
-    };
-    s.programs = reader(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT);
-    s.publications = reader(DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
-    s.subscriptions = reader(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
+    open(config.domain, participant_qos(config, name, role).get());
   } catch (const RuntimeFailure&) {
-    const std::string why = s.complaints.last();
+    const std::string why = s.complaints->last();
     if (why.empty()) throw;
     throw RuntimeFailure(fmt::format("{}: the link cannot be opened on domain {}, interface {}: {}", config.where,
                                      config.domain, config.interface, why),
                          "end the programs that use the domain's ports, or choose another link.domain on both sides");
   }
+}
+
+Participant::Participant(Participant& first, const std::string& name, std::shared_ptr<PretendedLine> line)
+    : state_(std::make_unique<State>()) {
+  state_->complaints = first.state_->complaints;
+  state_->line = std::move(line);
+  open(first.state_->domain_id, participant_qos(LinkConfig{}, name, Role::observer).get());
+}
+
+void Participant::open(int domain, const void* qos) {
+  State& s = *state_;
+  s.domain_id = domain;
+  s.participant = Entity(
+      checked(dds_create_participant(static_cast<dds_domainid_t>(domain), static_cast<const dds_qos_t*>(qos), nullptr),
+              "the link cannot be opened"));
+  const auto reader = [&](dds_entity_t topic) {
+    return Entity(checked(dds_create_reader(s.participant.get(), topic, nullptr, nullptr), "discovery"));
+  };
+  s.programs = reader(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT);
+  s.publications = reader(DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
+  s.subscriptions = reader(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
 }
 
 Participant::~Participant() = default;
@@ -265,8 +280,8 @@ std::vector<Peer> Participant::peers() const {
 }
 
 std::string Participant::trouble() const {
-  const auto count = static_cast<unsigned long long>(state_->complaints.count());
-  return count == 0 ? "" : fmt::format("{} ({} such messages)", state_->complaints.last(), count);
+  const auto count = static_cast<unsigned long long>(state_->complaints->count());
+  return count == 0 ? "" : fmt::format("{} ({} such messages)", state_->complaints->last(), count);
 }
 
 }  // namespace foresight::link

@@ -46,7 +46,7 @@ struct Peer {
   std::vector<Endpoint> endpoints;  ///< by topic
 };
 
-/// Any thread. One at a time for each domain in a process.
+/// Any thread. One at a time for each domain in a process, but for those that are made beside it.
 class Participant {
  public:
   /// `name`: as others see it, such as "robot minerva". `role`: whose keys it uses, where the link has any. Throws
@@ -56,6 +56,9 @@ class Participant {
   /// `line`: null, or what all samples pass, on their way out and in.
   Participant(const LinkConfig& config, const std::string& name, Role role = Role::observer,
               std::shared_ptr<PretendedLine> line = nullptr);
+  /// Another program of the same domain in this process, so that a test or a trial holds both ends of a line: what one
+  /// writes is at the other when write() returns. `first` must outlive it.
+  Participant(Participant& first, const std::string& name, std::shared_ptr<PretendedLine> line = nullptr);
   ~Participant();
 
   /// All programs that are heard of, this one included, by name.
@@ -68,6 +71,7 @@ class Participant {
   friend class Writer;
   friend class Reader;
   struct State;
+  void open(int domain, const void* qos);
   std::unique_ptr<State> state_;
 };
 

@@ -17,6 +17,10 @@ inline Topic pieces() {
 inline Topic robot_state() {
   return {"rt/foresight/robot_state", RobotState::kType, Delivery::kept, 1};
 }
+/// Each once: the next one is newer.
+inline Topic gate_motion() {
+  return {"rt/foresight/gate_motion", GateMotion::kType, Delivery::once, 16};
+}
 // From the operator side.
 inline Topic reports() {
   return {"rt/foresight/reports", StereoReport::kType, Delivery::once, 32};

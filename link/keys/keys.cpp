@@ -62,7 +62,7 @@ std::string may_write(Role role) {
     case Role::robot:
       return publish({"rt/joint_states", "rt/tf", "rt/tf_static", "rt/diagnostics", "rt/left/*", "rt/right/*",
                       "rt/foresight/frames", "rt/foresight/pieces", "rt/foresight/robot_state", "rt/foresight/set_points",
-                      "rt/foresight/control/robot/*"});
+                      "rt/foresight/gate_motion", "rt/foresight/control/robot/*"});
     case Role::operating: return publish({"rt/foresight/reports", "rt/foresight/control/operator/*"});
     case Role::observer: break;
   }

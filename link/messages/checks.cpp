@@ -228,6 +228,15 @@ std::string objection(const StereoReport& m, const Expected&) {
   return of_packet("acknowledgement", m.acknowledgement.size(), 0);
 }
 
+std::string objection(const GateMotion& m, const Expected& expected) {
+  return first_of([&] { return of_fields(m); }, [&] { return of_instant("time_ns", m.time_ns, expected); },
+                  [&]() -> std::string {
+                    if (m.doing > 4) return fmt::format("doing is {}", m.doing);
+                    if (m.speed < 0 || m.speed > 1) return fmt::format("speed is {}", m.speed);
+                    return expected.joints.empty() ? "" : of_count("joints", m.joints.size(), expected.joints.size());
+                  });
+}
+
 std::string objection(const RobotState& m, const Expected& expected) {
   std::vector<std::string> names;
   for (const DriveLine& drive : m.drives) names.push_back(drive.name);

@@ -38,6 +38,7 @@ std::string objection(const DiagnosticArray& message, const Expected& expected =
 std::string objection(const StereoFrame& message, const Expected& expected = {});
 std::string objection(const StereoPiece& message, const Expected& expected = {});
 std::string objection(const StereoReport& message, const Expected& expected = {});
+std::string objection(const GateMotion& message, const Expected& expected = {});
 std::string objection(const RobotState& message, const Expected& expected = {});
 
 }  // namespace foresight::link

@@ -165,6 +165,43 @@ struct LoopLines {
   }
 };
 
+/// A joint in one cycle of the control loop.
+struct GateMotionJoint {
+  static constexpr const char* kType = "foresight_msgs::msg::dds_::GateMotionJoint_";
+  bool known = false;        ///< `position` is that of the joint: homed, and heard of; else 0
+  double position = 0;       ///< measured, rad or m
+  std::int32_t told_us = 0;  ///< before `time_ns`, when the drive told it
+  double set_point = 0;      ///< sent in the cycle
+  float velocity = 0;        ///< of the set-point
+  float acceleration = 0;    ///< likewise
+  template <typename Self, typename V>
+  static void visit(Self& m, V&& v) {
+    v("known", m.known)("position", m.position)("told_us", m.told_us)("set_point", m.set_point)("velocity", m.velocity)(
+        "acceleration", m.acceleration);
+  }
+};
+
+/// What the safety gate did in one cycle, for who predicts what it will do (prediction/robot_report.hpp).
+struct GateMotion {
+  static constexpr const char* kType = "foresight_msgs::msg::dds_::GateMotion_";
+  std::uint64_t session = 0;  ///< StereoFrame::session
+  std::uint64_t number = 0;   ///< from 1 on
+  std::int64_t time_ns = 0;   ///< begin of the cycle
+  std::uint8_t doing = 4;     ///< GateDoing: 0 idle, 1 following, 2 stopping, 3 stopped, 4 away
+  double speed = 0;           ///< 0 .. 1: where the ramp is
+  /// The newest set-point over the line that the gate had by then: whose (his start of his program), its number, when
+  /// it came; 0: none.
+  std::uint64_t commander = 0, set_point = 0;
+  std::int64_t set_point_came_ns = 0;
+  std::vector<GateMotionJoint> joints;  ///< all of them, in the rig's order
+  template <typename Self, typename V>
+  static void visit(Self& m, V&& v) {
+    v("session", m.session)("number", m.number)("time_ns", m.time_ns)("doing", m.doing)("speed", m.speed)(
+        "commander", m.commander)("set_point", m.set_point)("set_point_came_ns", m.set_point_came_ns)("joints",
+                                                                                                      m.joints);
+  }
+};
+
 /// What the robot does and why, its drives, its cameras and its loop.
 struct RobotState {
   static constexpr const char* kType = "foresight_msgs::msg::dds_::RobotState_";

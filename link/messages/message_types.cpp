@@ -104,7 +104,7 @@ constexpr std::array<MessageType, sizeof...(T)> table() {
 }
 constexpr auto kTypes =
     table<JointStateMessage, TFMessage, PoseStamped, Twist, ImageMessage, CompressedImage, CameraInfoMessage,
-          JointTrajectory, DiagnosticArray, StereoFrame, StereoPiece, StereoReport, RobotState>();
+          JointTrajectory, DiagnosticArray, StereoFrame, StereoPiece, StereoReport, GateMotion, RobotState>();
 
 }  // namespace
 

@@ -29,6 +29,7 @@ OperatorEnd::OperatorEnd(Participant& participant, const OperatorEndOptions& opt
       expected_(options.expected),
       line_(participant),
       states_(participant, topics::robot_state()),
+      motions_(participant, topics::gate_motion()),
       seat_(options.seat),
       suspension_(options.asleep),
       queue_(options.room) {
@@ -83,6 +84,10 @@ void OperatorEnd::step_control() {
   std::optional<RobotState> newest;
   states_.take<RobotState>(expected, [&](RobotState&& state, const Sample&) { newest = std::move(state); });
   const std::lock_guard lock(heard_mutex_);
+  motions_.take<GateMotion>(expected, [&](GateMotion&& motion, const Sample&) {
+    if (heard_motions_.size() == kMostMotions) heard_motions_.pop_front();
+    heard_motions_.push_back({std::move(motion), now});
+  });
   robot_clock_ = known;
   if (!newest) return;
   const RobotTime time{newest->time_ns};
@@ -132,6 +137,14 @@ RobotClockTracker OperatorEnd::robot_clock() const {
 std::optional<OperatorEnd::HeardState> OperatorEnd::robot_state() const {
   const std::lock_guard lock(heard_mutex_);
   return heard_;
+}
+
+std::vector<OperatorEnd::HeardMotion> OperatorEnd::take_motions() {
+  const std::lock_guard lock(heard_mutex_);
+  std::vector<HeardMotion> out(std::make_move_iterator(heard_motions_.begin()),
+                               std::make_move_iterator(heard_motions_.end()));
+  heard_motions_.clear();
+  return out;
 }
 
 LineFigures OperatorEnd::figures() const {

@@ -40,7 +40,7 @@ struct LineFigures {
 /// caller's. `participant` and `clock` must outlive it.
 class OperatorEnd {
  public:
-  static constexpr std::size_t kMostAges = 1000;
+  static constexpr std::size_t kMostAges = 1000, kMostMotions = 256;
 
   /// Throws RuntimeFailure where this program's certificate does not permit to write what an operator writes.
   OperatorEnd(Participant& participant, const OperatorEndOptions& options, Clock& clock);
@@ -62,6 +62,12 @@ class OperatorEnd {
   };
   /// The robot's newest; nothing before the first.
   std::optional<HeardState> robot_state() const;
+  struct HeardMotion {
+    GateMotion motion;
+    OperatorTime came;
+  };
+  /// What came since the last call, oldest first; of the newest kMostMotions.
+  std::vector<HeardMotion> take_motions();
   LineFigures figures() const;
   /// The clocks, as they are known now.
   RobotClockTracker robot_clock() const;
@@ -88,13 +94,14 @@ class OperatorEnd {
 
   // Of the control thread, but for what is locked.
   SeatLine line_;
-  Reader states_;
+  Reader states_, motions_;
   mutable std::mutex seat_mutex_;  // seat_
   ControlSeat seat_;
   SuspensionWatch suspension_;
-  mutable std::mutex heard_mutex_;  // robot_clock_, heard_
+  mutable std::mutex heard_mutex_;  // robot_clock_, heard_, heard_motions_
   RobotClockTracker robot_clock_;
   std::optional<HeardState> heard_;
+  std::deque<HeardMotion> heard_motions_;
 
   // Of the frames' thread, but for what is locked.
   std::optional<Pictures> pictures_;   // where they are wanted

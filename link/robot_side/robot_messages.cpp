@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "scene/camera_info.hpp"
 
@@ -97,6 +99,28 @@ JointStateMessage joint_states(const JointState& joints, const RobotCycle& cycle
     if (std::isfinite(cycle.joint[i].velocity)) out.velocity.push_back(cycle.joint[i].velocity);
   }
   if (out.velocity.size() != out.name.size()) out.velocity.clear();
+  return out;
+}
+
+GateMotion gate_motion(const RobotCycle& cycle, double speed, const TakenSetPoint& taken) {
+  GateMotion out;
+  out.time_ns = cycle.time.ns;
+  out.doing = static_cast<std::uint8_t>(doing_of(cycle.phase, cycle.gate));
+  out.speed = std::clamp(finite_or_0(speed), 0.0, 1.0);
+  out.commander = taken.from;
+  out.set_point = taken.sequence;
+  out.set_point_came_ns = taken.came.ns;
+  for (std::size_t i = 0; i < cycle.joints; ++i) {
+    const JointCycle& joint = cycle.joint[i];
+    GateMotionJoint& to = out.joints.emplace_back();
+    to.known = joint.homed && joint.time.ns != 0 && std::isfinite(joint.position);
+    if (to.known) to.position = joint.position;
+    constexpr std::int64_t kMostUs = std::numeric_limits<std::int32_t>::max();
+    to.told_us = static_cast<std::int32_t>(std::clamp((cycle.time - joint.time).count() / 1000, -kMostUs, kMostUs));
+    to.set_point = finite_or_0(joint.set_point.position);
+    to.velocity = static_cast<float>(finite_or_0(joint.set_point.velocity));
+    to.acceleration = static_cast<float>(finite_or_0(joint.set_point.acceleration));
+  }
   return out;
 }
 

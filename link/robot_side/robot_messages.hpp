@@ -1,6 +1,7 @@
 // What the robot side knows, as messages. Pure functions: nothing here waits, sends or asks for the time.
 #pragma once
 
+#include "link/control/messages.hpp"
 #include "link/messages/foresight_messages.hpp"
 #include "rig/rig.hpp"
 #include "scene/stereo_lenses.hpp"
@@ -12,6 +13,8 @@ namespace foresight::link {
 /// Of the joints that are known at that instant; `velocity` only where all of these have one. `cycle`: the newest.
 JointStateMessage joint_states(const JointState& joints, const RobotCycle& cycle, const std::vector<std::string>& names,
                                RosTime stamp);
+/// All but session and number. `speed`: where the gate's ramp is; `taken`: the newest set-point that it had by then.
+GateMotion gate_motion(const RobotCycle& cycle, double speed, const TakenSetPoint& taken);
 /// What was sent to the drives in that cycle, as one point of a trajectory; nobody drives by it.
 JointTrajectory set_points(const RobotCycle& cycle, const std::vector<std::string>& names, RosTime stamp);
 

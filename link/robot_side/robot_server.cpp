@@ -19,10 +19,21 @@ ControlDeskOptions desk_options(Identity identity, Duration round_trip) {
 
 RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock,
                          std::shared_ptr<PretendedLine> line)
-    : participant_(rig.link, "robot " + rig.name, Role::robot, std::move(line)),
+    : RobotServer(std::make_unique<Participant>(rig.link, "robot " + rig.name, Role::robot, std::move(line)), nullptr,
+                  rig, robot, cameras, std::move(identity), clock) {}
+
+RobotServer::RobotServer(Participant& participant, const Rig& rig, const Robot& robot, RobotCameras* cameras,
+                         Identity identity, Clock& clock)
+    : RobotServer(nullptr, &participant, rig, robot, cameras, std::move(identity), clock) {}
+
+RobotServer::RobotServer(std::unique_ptr<Participant> own, Participant* others, const Rig& rig, const Robot& robot,
+                         RobotCameras* cameras, Identity identity, Clock& clock)
+    : own_(std::move(own)),
+      participant_(own_ ? *own_ : *others),
       wall_(clock),
-      states_(participant_, {machine_nonces()(), rig.joint_names()}, rig, robot, cameras, wall_, clock),
-      operator_(participant_, rig.gate_options(), desk_options(std::move(identity), rig.link.round_trip)) {
+      operator_(participant_, rig.gate_options(), desk_options(std::move(identity), rig.link.round_trip)),
+      states_(participant_, {machine_nonces()(), rig.joint_names()}, rig, robot, cameras, wall_, clock,
+              &operator_.taken()) {
   if (!cameras) return;
   const auto& lenses = cameras->scene().lenses();
   frames_ = std::make_unique<FrameSender>(
@@ -33,6 +44,11 @@ RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* camer
 void RobotServer::start() {
   states_.start();
   if (frames_) frames_->start();
+}
+
+void RobotServer::step(RobotTime now) {
+  states_.step(now);
+  if (frames_) frames_->step(Duration{0});
 }
 
 void RobotServer::stop() noexcept {

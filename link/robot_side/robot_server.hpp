@@ -15,11 +15,15 @@ class RobotServer {
   /// must outlive this. Throws what Participant does.
   RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock,
               std::shared_ptr<PretendedLine> line = nullptr);
+  /// The same with a participant that somebody else has; it must outlive this.
+  RobotServer(Participant& participant, const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity,
+              Clock& clock);
 
   /// Whoever commands over the line; to be asked in one thread, that of all commanders.
   Commander& commander() { return operator_; }
 
   void start();
+  void step(RobotTime now);  ///< in stepped time, in place of start()
   void stop() noexcept;
 
   /// One line for people: who listens, what goes out, what is wrong with the line.
@@ -27,10 +31,14 @@ class RobotServer {
   FrameCounts counts() const noexcept { return frames_ ? frames_->counts() : FrameCounts{}; }
 
  private:
-  Participant participant_;
+  RobotServer(std::unique_ptr<Participant> own, Participant* others, const Rig& rig, const Robot& robot,
+              RobotCameras* cameras, Identity identity, Clock& clock);
+
+  std::unique_ptr<Participant> own_;
+  Participant& participant_;
   WallClock wall_;
-  StateSender states_;
   ServedOperator operator_;
+  StateSender states_;
   std::unique_ptr<FrameSender> frames_;
 };
 

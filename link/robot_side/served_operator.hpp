@@ -3,6 +3,7 @@
 
 #include "common/suspension.hpp"
 #include "link/control_wire/control_lines.hpp"
+#include "link/robot_side/set_point_history.hpp"
 #include "operators/line_operator.hpp"
 
 namespace foresight::link {
@@ -20,15 +21,19 @@ class ServedOperator final : public Commander {
     line_.receive(operator_.desk(), now);
     OperatorWish wish = operator_.tick(now, status);
     line_.send(operator_.desk());
+    taken_.add(operator_.desk().taken());
     return wish;
   }
 
   ControlDesk& desk() { return operator_.desk(); }
+  /// For any thread.
+  const SetPointHistory& taken() const { return taken_; }
 
  private:
   DeskLine line_;
   LineOperator operator_;
   SuspensionWatch suspension_;
+  SetPointHistory taken_;
 };
 
 }  // namespace foresight::link

@@ -13,17 +13,19 @@ constexpr Duration kDiagnostics = 1s;
 }  // namespace
 
 StateSender::StateSender(Participant& participant, SenderName name, const Rig& rig, const Robot& robot,
-                         const RobotCameras* cameras, WallClock& wall, Clock& clock)
+                         const RobotCameras* cameras, WallClock& wall, Clock& clock, const SetPointHistory* taken)
     : name_(std::move(name)),
       rig_(rig),
       robot_(robot),
       cameras_(cameras),
       wall_(wall),
       clock_(clock),
+      taken_(taken),
       joint_period_(seconds(1 / rig.link.joint_rate_hz)),
       state_period_(seconds(1 / rig.link.state_rate_hz)),
       cycles_(robot.cycles()),
       joints_(rig.joints.size()),
+      motion_(participant, topics::gate_motion()),
       joint_states_(participant, topics::joint_states()),
       set_points_(participant, topics::set_points()),
       transforms_(participant, topics::transforms()),
@@ -62,6 +64,7 @@ void StateSender::step(RobotTime now) noexcept {
     listen();
     if (newest_ && now >= joints_due_) {
       joints_due_ = std::max(joints_due_ + joint_period_, now);
+      send_motion();
       send_joints();
     }
     if (changed_ || now >= state_due_) {
@@ -71,6 +74,14 @@ void StateSender::step(RobotTime now) noexcept {
     }
   } catch (const std::exception&) {  // no memory: what is due next is newer anyway
   }
+}
+
+void StateSender::send_motion() {
+  GateMotion motion =
+      gate_motion(*newest_, robot_.status().gate.speed, taken_ ? taken_->newest_by(newest_->time) : TakenSetPoint{});
+  motion.session = name_.session;
+  motion.number = ++motions_;
+  motion_.write(motion);
 }
 
 void StateSender::send_joints() {

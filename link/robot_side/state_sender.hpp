@@ -4,18 +4,21 @@
 #include <thread>
 
 #include "link/robot_side/frame_sender.hpp"
+#include "link/robot_side/set_point_history.hpp"
 #include "session/robot_cameras.hpp"
 
 namespace foresight::link {
 
-/// Joint states, set-points and transforms at `joint_rate_hz`; the robot's state at `state_rate_hz`, and at once when
-/// its phase, gate or reason changes; diagnostics once a second. It takes the control loop's cycles from a ring of its
-/// own: the loop knows nothing of it. start() gives it a thread; step() does the same in the caller's.
+/// What the gate did, joint states, set-points and transforms at `joint_rate_hz`; the robot's state at `state_rate_hz`,
+/// and at once when its phase, gate or reason changes; diagnostics once a second. It takes the control loop's cycles
+/// from a ring of its own: the loop knows nothing of it. start() gives it a thread; step() does the same in the
+/// caller's.
 class StateSender {
  public:
-  /// `cameras` may be null. All references must outlive this.
+  /// `cameras` may be null, and so may `taken`: then nobody commands over the line. All that is pointed at must outlive
+  /// this.
   StateSender(Participant& participant, SenderName name, const Rig& rig, const Robot& robot,
-              const RobotCameras* cameras, WallClock& wall, Clock& clock);
+              const RobotCameras* cameras, WallClock& wall, Clock& clock, const SetPointHistory* taken = nullptr);
   ~StateSender() { stop(); }
 
   void start();
@@ -26,6 +29,7 @@ class StateSender {
 
  private:
   void listen();
+  void send_motion();
   void send_joints();
   void send_state(RobotTime now);
 
@@ -35,6 +39,7 @@ class StateSender {
   const RobotCameras* cameras_;
   WallClock& wall_;
   Clock& clock_;
+  const SetPointHistory* taken_;
   const Duration joint_period_, state_period_;
 
   BroadcastRing<RobotCycle>::Reader cycles_;
@@ -43,9 +48,9 @@ class StateSender {
   bool changed_ = true;                                 // since the last state that was sent
   RobotTime joints_due_, state_due_, diagnostics_due_;  // by the clock
   RobotTime sent_joints_;                               // the instant that they were of
-  std::uint64_t number_ = 0;
+  std::uint64_t number_ = 0, motions_ = 0;
 
-  Writer joint_states_, set_points_, transforms_, static_transforms_, states_, diagnostics_;
+  Writer motion_, joint_states_, set_points_, transforms_, static_transforms_, states_, diagnostics_;
   std::jthread thread_;
 };
 

@@ -217,6 +217,17 @@ TEST_F(SlowLineTest, CarriesThemWhereTheRobotsSideAllowsForItsDelay) {
   EXPECT_LE(now_ - cut, 600ms + 250ms + 20ms) << "from the last that was sent: its way, and its life besides";
 }
 
+TEST_F(SlowLineTest, CarriesRequestsWhereTheRobotsSideAllowsForItsDelay) {
+  ControlDeskOptions options = desk_options();
+  options.life.allowed_delay = 1300ms;
+  desk_ = ControlDesk(options);
+  anna_.seat.want_control(true);
+  run(8s);
+  anna_.seat.request(LineRequest::enable, time_of(anna_));
+  run(4s);
+  EXPECT_THAT(executed_, testing::ElementsAre(LineRequest::enable));
+}
+
 TEST_F(ControlDeskTest, ALeapOfTheOperatorsClockStops) {
   for (const Duration leap : {Duration(1s), Duration(-1s)}) {
     engage(anna_);

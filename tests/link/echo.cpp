@@ -23,6 +23,7 @@ const dds_topic_descriptor_t* const kTypes[] = {&sensor_msgs_msg_dds__JointState
                                                 &foresight_msgs_msg_dds__StereoFrame__desc,
                                                 &foresight_msgs_msg_dds__StereoPiece__desc,
                                                 &foresight_msgs_msg_dds__StereoReport__desc,
+                                                &foresight_msgs_msg_dds__GateMotion__desc,
                                                 &foresight_msgs_msg_dds__RobotState__desc};
 
 /// Topics may not have colons.

@@ -22,6 +22,7 @@ class RandomFields {
 
   void fill(bool& value) { value = random_() % 2 == 1; }
   void fill(double& value) { value = std::uniform_real_distribution<double>(-10, 10)(random_); }
+  void fill(float& value) { value = std::uniform_real_distribution<float>(-10, 10)(random_); }
   template <std::integral T>
   void fill(T& value) {
     value = static_cast<T>((std::uint64_t{random_()} << 32) | random_());
@@ -70,6 +71,7 @@ void each_message_type(Visit&& visit) {
   visit.template operator()<StereoFrame>();
   visit.template operator()<StereoPiece>();
   visit.template operator()<StereoReport>();
+  visit.template operator()<GateMotion>();
   visit.template operator()<RobotState>();
 }
 
