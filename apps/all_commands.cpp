@@ -8,6 +8,7 @@
 #include "apps/input_command.hpp"
 #include "apps/line_recording_command.hpp"
 #include "apps/link_command.hpp"
+#include "apps/operator/operator_command.hpp"
 #include "apps/record_command.hpp"
 #include "apps/replay_command.hpp"
 #include "apps/rig_command.hpp"
@@ -28,6 +29,7 @@ void add_commands(Command& app, std::function<int()>& action) {
   add_rig_command(app, action);
   add_robot_command(app, action);
   add_input_command(app, action);
+  add_operator_command(app, action);
   add_link_command(app, action);
   add_line_recording_commands(app, action);
   add_doctor_command(app, action);

@@ -10,7 +10,7 @@
 #include "common/error.hpp"
 #include "display/live_source.hpp"
 #include "display/view_window.hpp"
-#include "sim/live_lab.hpp"
+#include "seat/view_setup.hpp"
 
 namespace foresight {
 namespace {
@@ -26,26 +26,6 @@ LiveFeed feed_from(std::shared_ptr<FrameQueue> frames, std::function<std::string
             return LiveImage{(*frame)->number, (*frame)->posed};
           },
           [frames] { return frames->closed(); }, std::move(trouble)};
-}
-
-/// What will be looked at, for the size of charts.
-std::vector<ExpectedView> expected_views(const LiveScene& scene) {
-  if (!scene.is_mock()) return {};
-  const JointPositions at_rest = [](std::string_view joint) { return sim::shafts_at_rest(joint); };
-  return {{scene.T_world_left(at_rest), scene.state_at({}, at_rest, StateStatus::predicted)}};
-}
-
-ViewSetup live_setup(const LiveScene& scene) {
-  if (!scene.lenses())
-    throw InputError("--view", "the cameras have no calibration", "give it as `lens` in the rig (docs/rig-files.md)");
-  if (!scene.model()) throw InputError("--view", "there is no model of what the cameras see", "give one as `scene:` in the rig, or with --scene");
-  ViewSetup setup;
-  setup.scene = scene.model();
-  setup.left = scene.lenses()->left;
-  setup.right = scene.lenses()->right;
-  setup.surface = surface_for(*setup.scene, setup.left, expected_views(scene));
-  setup.textures.depth_tolerance = setup.scene->accuracy().value_or(setup.textures.depth_tolerance);
-  return setup;
 }
 
 std::unique_ptr<gl::Window> open_window(const Lens& lens) {
@@ -120,7 +100,7 @@ struct LiveView::Work {
        const Clock& clock, const LiveViewOptions& given)
       : options(given),
         frames(std::move(queue)),
-        setup(live_setup(scene)),
+        setup(live_view_setup(scene, "--view")),
         window(options.window ? open_window(setup.left) : nullptr),
         headless(window ? nullptr : gl::create_headless_context()),
         session(std::make_unique<ViewSession>(window ? static_cast<gl::Context&>(*window) : *headless, setup)),

@@ -3,30 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "apps/replay_report/image_metrics.hpp"
-#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
 namespace foresight {
 namespace {
 
-namespace fs = std::filesystem;
-
 cv::Mat as_colour(const cv::Mat& pixels) {
   if (pixels.channels() == 3) return pixels;
   cv::Mat colour;
   cv::cvtColor(pixels, colour, cv::COLOR_GRAY2BGR);
   return colour;
-}
-
-void write_png(const fs::path& file, const cv::Mat& picture) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 3});
-  write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace
@@ -56,12 +46,7 @@ void add_texture_options(RunRecord& record, const TextureOptions& textures) {
 
 ViewMeasures::ViewMeasures(RunRecord record, ViewOutputs outputs, const TextureOptions& textures)
     : record_(std::move(record)), outputs_(std::move(outputs)), textures_(textures) {
-  if (!outputs_.out) return;
-  const std::filesystem::path folder = *outputs_.out / "predicted";
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw RuntimeFailure("cannot make the folder " + folder.string() + ": " + error.message(), "check the disk");
+  if (outputs_.out) make_folder(*outputs_.out / "predicted");
 }
 
 void ViewMeasures::arrived(const PosedFrame& frame) {

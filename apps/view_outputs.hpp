@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/command_line/command_line.hpp"
 #include "apps/replay_report/instants.hpp"
@@ -19,8 +20,13 @@ struct ViewOutputs {
   bool any() const { return out || report || html; }
 };
 
-/// Adds --out, --report and --html. `outputs` must live as long as `command`.
-void add_view_outputs(Command& command, ViewOutputs& outputs);
+/// Adds --out, --report and --html. `outputs` must live as long as `command`; `folders`: of pictures, within --out.
+void add_view_outputs(Command& command, ViewOutputs& outputs, const std::vector<std::string>& folders = {"predicted"});
+
+/// Atomically. Throws RuntimeFailure.
+void write_png(const std::filesystem::path& file, const cv::Mat& picture);
+/// Throws RuntimeFailure.
+void make_folder(const std::filesystem::path& folder);
 
 /// Writes all but the predicted pictures: `title` is the contact sheet's. Throws RuntimeFailure.
 void write_reports(const ViewOutputs& outputs, const RunRecord& record, std::span<const Instant> instants,

@@ -51,7 +51,12 @@ Window::Window(int width, int height, const std::string& title) : glfw_(start_li
 void Window::listen() {
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-    if (action != GLFW_RELEASE) static_cast<Window*>(glfwGetWindowUserPointer(window))->press(key, action);
+    auto* const self = static_cast<Window*>(glfwGetWindowUserPointer(window));
+    if (action != GLFW_REPEAT) self->input_.key_events.push_back({key, action == GLFW_PRESS});
+    if (action != GLFW_RELEASE) self->press(key, action);
+  });
+  glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int focused) {
+    if (!focused) static_cast<Window*>(glfwGetWindowUserPointer(window))->input_.lost_focus = true;
   });
   glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double up) {
     static_cast<Window*>(glfwGetWindowUserPointer(window))->input_.scrolled += up;

@@ -29,6 +29,12 @@ struct WindowInput {
   double scrolled = 0;               ///< steps, upwards
   std::string keys;                  ///< letters, in lower case, and digits that were pressed
   std::vector<Arrow> arrows;         ///< pressed or held long enough to repeat
+  struct Key {
+    int code = 0;  ///< GLFW's: the key's place on the keyboard, whatever is printed there
+    bool down = false;
+  };
+  std::vector<Key> key_events;  ///< each press and release, oldest first
+  bool lost_focus = false;      ///< somebody else had the keyboard, if only for a moment: releases may have been missed
 };
 
 /// A GLFW window. All methods on the main thread (a rule of GLFW); only make_current() of shared

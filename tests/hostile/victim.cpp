@@ -51,6 +51,7 @@ const std::map<std::string, CommandWords>& table() {
       {"robot", {{"RIG", {"@rig.yaml"}}, {"--stepped", {}}}},
       {"input list", {}},
       {"input show", {{"DEVICE", {"@tip.csv"}}}},
+      {"operator", {{"RIG", {"@rig.yaml"}}, {"--scripted", {"tour"}}, {"--seconds", {"1"}}, {"--no-zero-delay", {}}}},
       {"doctor", {{"RIG", {"@rig.yaml"}}}},
       {"rig new", {{"--urdf", {"@arm.urdf"}}, {"--out", {"@new/rig.yaml"}}}},
       {"rig view", {{"RIG", {"@rig.yaml"}}, {"--out", {"@new/rig.png"}}}},

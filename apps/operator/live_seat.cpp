@@ -1,0 +1,148 @@
+#include "apps/operator/live_seat.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+
+#include "apps/operator/seat_window.hpp"
+#include "common/error.hpp"
+#include "common/stop_signal.hpp"
+#include "input/open_tracker.hpp"
+#include "link/dds/pretended_line.hpp"
+#include "link/line/line_spec.hpp"
+#include "link/robot_side/rig_identity.hpp"
+#include "seat/hand_driver.hpp"
+#include "seat/seat_options.hpp"
+#include "seat/view_setup.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr int kWindowWidth = 1280, kWindowHeight = 800;
+
+std::shared_ptr<link::PretendedLine> pretended(const LiveSeatOptions& options, const Clock& clock) {
+  if (!options.line) return nullptr;
+  auto out =
+      std::make_shared<link::PretendedLine>(read_line_spec(*options.line), link::PretendedLine::Side::operating, clock);
+  out->start();
+  return out;
+}
+
+Identity identity_of(const Rig& rig, const LiveSeatOptions& options) {
+  Identity out = link::rig_identity(rig, options.rig_file, FORESIGHT_VERSION);
+  out.name = options.name;
+  return out;
+}
+
+std::unique_ptr<gl::Window> open_seat_window(const std::string& title) {
+  try {
+    return std::make_unique<gl::Window>(kWindowWidth, kWindowHeight, title);
+  } catch (const gl::NoWindow& error) {
+    throw RuntimeFailure(error.what(), "`--scripted` operates without a window");
+  }
+}
+
+/// Everything of a seat; what is above outlives what is below.
+class LiveSeat {
+ public:
+  LiveSeat(const Rig& rig, const LiveSeatOptions& options)
+      : rig_(rig),
+        options_(options),
+        line_(pretended(options, clock_)),
+        participant_(rig.link, options.name, link::Role::operating, line_),
+        scene_(std::make_shared<const LiveScene>(live_scene_of(rig, options.mock_cameras, options.scene))),
+        setup_(live_view_setup(*scene_, rig.name)),
+        end_(participant_, seat_end_options(rig, identity_of(rig, options), *scene_), clock_),
+        driver_(rig, options.device.empty() ? nullptr : open_tracker(options.device)),
+        seat_(rig, end_, driver_, clock_),
+        window_(open_seat_window("Foresight: " + rig.name)),
+        session_(*window_, setup_),
+        source_(rig, scene_, end_, seat_, clock_, source_options()),
+        shown_(*window_, seat_, source_, window_options()) {}
+
+  int run() {
+    end_.start();
+    seat_.start();
+    std::vector<ViewObserver*> observers{&shown_};
+    ViewLoop loop(session_, source_, observers, [] { return stop_requested(); });
+    loop.run();
+    // Whatever was held is let go of: the robot comes to rest by itself as set-points end, this only says it sooner.
+    driver_.let_go();
+    clock_.sleep_until(clock_.now() + std::chrono::milliseconds(60));
+    seat_.stop();
+    end_.stop();
+    return stop_requested() ? kStopped : 0;
+  }
+
+ private:
+  PredictedSourceOptions source_options() const {
+    PredictedSourceOptions out;
+    out.rate_hz = options_.rate_hz;
+    return out;
+  }
+  SeatWindowOptions window_options() {
+    SeatWindowOptions out;
+    out.title = rig_.name;
+    out.joints = rig_.joint_names();
+    out.font_scale = options_.font_scale;
+    out.keys = HandDriver::keys();
+    out.keys.insert(out.keys.begin(), {{"space", "stop at once"},
+                                       {"E, H, X", "enable, home, reset"},
+                                       {"G", "give control back, take it again"},
+                                       {"T", "hand control over to who asks"},
+                                       {"Tab", "what is shown"},
+                                       {"F1", "these keys"},
+                                       {"P", "screenshot"},
+                                       {"Q, Esc", "end"}});
+    out.input = [this](const gl::WindowInput& input) { take(input); };
+    out.more_lines = [this] { return driver_.lines(); };
+    return out;
+  }
+
+  void take(const gl::WindowInput& input) {
+    if (window_->take_space()) driver_.ask(LineRequest::emergency_stop);
+    for (const char key : input.keys) press(key);
+    for (const auto& event : input.key_events) {
+      constexpr int kF1 = 290, kTab = 258;  // GLFW's
+      if (event.down && event.code == kF1) shown_.toggle_help();
+      if (event.down && event.code == kTab) shown_.next_picture();
+    }
+    driver_.look_from(source_.place().T_world_camera);
+    driver_.take(input, {clock_.now().ns});
+  }
+  void press(char key) {
+    switch (key) {
+      case 'e': return driver_.ask(LineRequest::enable);
+      case 'h': return driver_.ask(LineRequest::home);
+      case 'x': return driver_.ask(LineRequest::reset);
+      case 'g': return driver_.toggle_control();
+      case 't': return driver_.hand_over();
+      case 'p': return shown_.save_next(options_.screenshot.value_or("foresight.png"));
+      default: return;
+    }
+  }
+
+  const Rig& rig_;
+  const LiveSeatOptions& options_;
+  MonotonicClock clock_;
+  std::shared_ptr<link::PretendedLine> line_;
+  link::Participant participant_;
+  std::shared_ptr<const LiveScene> scene_;
+  ViewSetup setup_;
+  link::OperatorEnd end_;
+  HandDriver driver_;
+  Seat seat_;
+  std::unique_ptr<gl::Window> window_;
+  ViewSession session_;
+  PredictedSource source_;
+  SeatWindow shown_;
+};
+
+}  // namespace
+
+int run_live_seat(const Rig& rig, const LiveSeatOptions& options) {
+  poll_stop_signals();
+  return LiveSeat(rig, options).run();
+}
+
+}  // namespace foresight

@@ -1,0 +1,27 @@
+// A seat at a real line: threads, window, devices.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "rig/rig.hpp"
+
+namespace foresight {
+
+struct LiveSeatOptions {
+  std::filesystem::path rig_file;
+  std::string name;                           ///< of the operator, as the robot's side shows it
+  std::optional<std::filesystem::path> line;  ///< that everything passes, to try things out
+  std::optional<std::filesystem::path> scene;
+  bool mock_cameras = false;  ///< the robot's are the mock lab's, whatever the rig says
+  std::string device;  ///< beside keyboard and mouse: as open_tracker() takes it; "" none
+  double rate_hz = 30;
+  double font_scale = 1;
+  std::optional<std::filesystem::path> screenshot;  ///< key P writes it
+};
+
+/// Until somebody closes the window. The exit code. Throws what its parts do.
+int run_live_seat(const Rig& rig, const LiveSeatOptions& options);
+
+}  // namespace foresight

@@ -1,0 +1,189 @@
+#include "apps/operator/operator_command.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/operator/live_seat.hpp"
+#include "apps/operator/seat_trial.hpp"
+#include "apps/view_outputs.hpp"
+#include "common/error.hpp"
+#include "common/numbers_file.hpp"
+#include "common/stop_signal.hpp"
+#include "rig/rig.hpp"
+#include "seat/tool_script.hpp"
+
+namespace foresight {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string rig, name = "operator", scene, device;
+  bool mock = false;
+  double rate_hz = 30, font_scale = 1;
+  std::string script;
+  double delay_ms = 0;
+  std::string line;
+  unsigned seed = 1;
+  double seconds = 30;
+  double pictures_hz = 5;
+  bool still_head = false, zero_delay = true;
+  ViewOutputs outputs;
+};
+
+void say(const std::string& words) {
+  std::fprintf(stderr, "operator: %s\n", words.c_str());
+}
+
+LineSpec line_of(const Arguments& arguments) {
+  LineSpec out;
+  if (!arguments.line.empty()) out = read_line_spec(arguments.line);
+  const Duration delay = seconds(arguments.delay_ms * 1e-3);
+  out.up.delay += delay;
+  out.down.delay += delay;
+  out.seed = arguments.seed;
+  return out;
+}
+
+nlohmann::json number(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+nlohmann::ordered_json report_of(const SeatTrialFigures& figures, const Arguments& arguments) {
+  nlohmann::ordered_json out;
+  out["predicted_db"] = number(figures.predicted_db);
+  out["delayed_db"] = number(figures.delayed_db);
+  out["zero_delay_db"] = number(figures.zero_delay_db);
+  out["moving_predicted_db"] = number(figures.moving_predicted_db);
+  out["moving_delayed_db"] = number(figures.moving_delayed_db);
+  out["moving_share"] = number(figures.moving_share);
+  out["succeeded"] = figures.succeeded;
+  out["failure"] = figures.failure;
+  out["task_s"] = figures.task_s;
+  out["delay_ms"] = arguments.delay_ms;
+  out["seed"] = arguments.seed;
+  out["acts_after_ms"] = 1e3 * figures.delay_s;
+  out["image_age_ms"] = figures.image_age_s ? nlohmann::json(1e3 * *figures.image_age_s) : nlohmann::json();
+  out["joints_p95"] = figures.joints_p95;
+  out["invalid_share"] = figures.invalid_share;
+  out["losses"] = figures.losses;
+  out["view"] = to_json(figures.record);
+  return out;
+}
+
+void print(const SeatTrialFigures& f) {
+  const auto db = [](const std::optional<double>& value) { return value ? fmt::format("{:.2f} dB", *value) : "-"; };
+  fmt::print("shown {}, delayed image {}, without a line {}\n", db(f.predicted_db), db(f.delayed_db),
+             db(f.zero_delay_db));
+  fmt::print("where something moved ({:.1f} % of what is seen): shown {}, delayed image {}\n",
+             1e2 * f.moving_share.value_or(0), db(f.moving_predicted_db), db(f.moving_delayed_db));
+  fmt::print("joints shown within {:.2g} mrad or mm (95 %); commands act after {:.0f} ms; {:.1f} s, {}\n",
+             1e3 * f.joints_p95, 1e3 * f.delay_s, f.task_s, f.succeeded ? "succeeded" : "failed: " + f.failure);
+}
+
+int run_scripted(const Rig& given, const Arguments& arguments) {
+  Rig rig = given;
+  SeatTrialOptions options;
+  options.rig_file = arguments.rig;
+  options.line = line_of(arguments);
+  options.delay_s = arguments.delay_ms * 1e-3;
+  options.script = arguments.script;
+  options.seed = arguments.seed;
+  options.most_s = arguments.seconds;
+  options.pictures_hz = arguments.pictures_hz;
+  options.zero_delay = arguments.zero_delay;
+  options.out = arguments.outputs.out;
+  // What the line takes by its file is known; the robot's side is told, as the rig's round_trip_s does.
+  rig.link.round_trip = std::max(rig.link.round_trip, options.line.up.delay + options.line.down.delay + seconds(0.5));
+  HeadSway sway;
+  if (arguments.still_head) sway.pan = sway.tilt = 0;
+  ToolScript script(rig, tour(rig, arguments.seed, 40), sway);
+  const SeatTrialFigures figures = try_seat(
+      rig, options, script, [] { return stop_requested(); }, say);
+  print(figures);
+  ViewOutputs reports = arguments.outputs;
+  reports.report.reset();
+  write_reports(reports, figures.record, figures.instants, "Foresight, an operator's seat at " + rig.name);
+  if (arguments.outputs.report) write_numbers(arguments.outputs.report, report_of(figures, arguments).dump(2));
+  return stop_requested() ? kStopped : figures.succeeded ? 0 : 1;
+}
+
+int run_live(const Rig& rig, const Arguments& arguments) {
+  LiveSeatOptions options;
+  options.rig_file = arguments.rig;
+  options.name = arguments.name;
+  if (!arguments.line.empty()) options.line = arguments.line;
+  if (!arguments.scene.empty()) options.scene = arguments.scene;
+  options.mock_cameras = arguments.mock;
+  options.device = arguments.device;
+  options.rate_hz = arguments.rate_hz;
+  options.font_scale = arguments.font_scale;
+  return run_live_seat(rig, options);
+}
+
+void check(const Rig& rig, const Arguments& arguments) {
+  if (!rig.cameras)
+    throw InputError(arguments.rig, "the rig has no cameras, of which a view could be made",
+                     "add them to the rig (docs/rig-files.md)");
+  if (!arguments.line.empty()) read_line_spec(arguments.line);  // known before anything is opened
+  const bool scripted_only[] = {arguments.outputs.any(), arguments.delay_ms != 0, arguments.still_head};
+  const char* const names[] = {"--out, --report, --html", "--delay-ms", "--still-head"};
+  for (std::size_t i = 0; i < std::size(names) && arguments.script.empty(); ++i)
+    if (scripted_only[i]) throw InputError(names[i], "belongs to --scripted", "add --scripted, or leave it out");
+}
+
+int run(const Arguments& arguments) {
+  const Rig rig = read_rig(arguments.rig);
+  check(rig, arguments);
+  return arguments.script.empty() ? run_live(rig, arguments) : run_scripted(rig, arguments);
+}
+
+}  // namespace
+
+void add_operator_command(Command& app, std::function<int()>& action) {
+  auto* command = app.add_subcommand("operator", "An operator's seat: shows the robot as it will be, and drives it");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->reads()->required();
+  command->add_option("--name", arguments->name, "Of the operator, as the robot's side shows it (default operator)");
+  command->add_flag("--mock", arguments->mock, "The robot's side runs with --mock: its cameras see the mock lab");
+  command->add_option("--scene", arguments->scene, "The scene around the robot, in place of the rig's `scene:`")
+      ->reads();
+  command->add_option(
+      "--device", arguments->device,
+      "Beside keyboard and mouse: gamepad, gamepad:1, spacemouse, or the recording of one (docs/input.md)");
+  command->add_option("--rate-hz", arguments->rate_hz, "Pictures a second, at most (default 30)")
+      ->check(from_to(1.0, 240.0));
+  command->add_option("--font-scale", arguments->font_scale, "Of all words in the window (default 1)")
+      ->check(from_to(0.5, 4.0));
+  command
+      ->add_option("--scripted", arguments->script,
+                   "A program operates, both sides in stepped time, without a window: tour")
+      ->check(one_of({"tour"}));
+  command->add_option("--delay-ms", arguments->delay_ms, "With --scripted: what the line takes each way (default 0)")
+      ->check(from_to(0.0, 1e4));
+  command->add_option("--line", arguments->line, "File of a line (docs/line.md) that everything passes")->reads();
+  command->add_option("--seed", arguments->seed, "With --scripted: another seed, another motion");
+  command->add_option("--seconds", arguments->seconds, "With --scripted: of motion, at most (default 30)")
+      ->check(from_to(1.0, 1e4));
+  command
+      ->add_option("--pictures-hz", arguments->pictures_hz, "With --scripted: measured pictures a second (default 5)")
+      ->check(from_to(0.1, 60.0));
+  command->add_flag("--still-head", arguments->still_head, "With --scripted: the head does not move");
+  command->add_flag("!--no-zero-delay", arguments->zero_delay,
+                    "With --scripted: does not also draw each view as it would be without a line");
+  add_view_outputs(*command, arguments->outputs, {"shown", "delayed", "true"});
+  command->footer(
+      "The robot's side is `foresight robot RIG --serve`; both have the same rig file, URDF and calibrations. The "
+      "window\n"
+      "shows every key. While the left shift key is held, the hand moves the tool; released, the robot comes to rest.\n"
+      "A software stop does not replace a hardware emergency stop.\n\n"
+      "Exit codes: 0 done, 1 the script failed or a device did, 2 wrong input, 130 Ctrl-C or SIGTERM.\n\n"
+      "Example: foresight robot configs/minerva.yaml --mock --serve, and in another terminal\n"
+      "foresight operator configs/minerva.yaml --mock");
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace foresight

@@ -1,0 +1,52 @@
+// An operator who is a program at a seat, both sides in stepped time: what he is shown for each instant, against what
+// the robot's camera saw then.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/replay_report/instants.hpp"
+#include "apps/replay_report/replay_report.hpp"
+#include "link/line/line_spec.hpp"
+#include "rig/rig.hpp"
+#include "seat/scripted_driver.hpp"
+
+namespace foresight {
+
+struct SeatTrialOptions {
+  std::filesystem::path rig_file;
+  LineSpec line;
+  double delay_s = 0;  ///< each way, for the report
+  std::string script = "look";
+  unsigned seed = 1;
+  double most_s = 120;                       ///< of motion
+  double pictures_hz = 5;                    ///< that are measured, at most
+  bool zero_delay = true;                    ///< also draws each view as it would be without a line
+  std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
+};
+
+/// Means over the pictures that were shown while the robot was driven; nothing where none could be measured.
+struct SeatTrialFigures {
+  bool succeeded = false;
+  std::string failure;                                            ///< why not
+  double task_s = 0;                                              ///< from the first press of the switch to the end
+  std::optional<double> predicted_db, delayed_db, zero_delay_db;  ///< PSNR over all seen pixels
+  std::optional<double> moving_predicted_db, moving_delayed_db;   ///< over those that changed over the delay
+  std::optional<double> moving_share;                             ///< of the seen pixels
+  double invalid_share = 0;                                       ///< of pictures without a prediction to trust
+  double delay_s = 0;                                             ///< measured: of what is commanded
+  std::optional<double> image_age_s;  ///< of the newest image against the shown instant, mean
+  double joints_p95 = 0;              ///< of what was shown, rad or m
+  int losses = 0;
+  RunRecord record;
+  std::vector<Instant> instants;
+};
+
+/// `rig` is mock. Throws what its parts do. `say`: progress, now and then.
+SeatTrialFigures try_seat(const Rig& rig, const SeatTrialOptions& options, ScriptedMotion& motion,
+                          const std::function<bool()>& stopped, const std::function<void(const std::string&)>& say);
+
+}  // namespace foresight

@@ -1,0 +1,121 @@
+#include "apps/operator/seat_window.hpp"
+
+#include <fmt/core.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "apps/view_outputs.hpp"
+#include "display/view_window.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr int kGap = 4;    // px around pictures
+constexpr int kInset = 4;  // share of the window's width that the delayed image takes in its corner
+
+ViewTarget corner_of(const ViewTarget& whole, int width, int height) {
+  ViewTarget out = whole;
+  out.width = std::max(1, whole.width / kInset);
+  out.height = std::max(1, out.width * height / std::max(1, width));
+  out.x = whole.x + whole.width - out.width - kGap;
+  out.y = whole.y + whole.height - out.height - kGap;  // windows begin at the bottom
+  return out;
+}
+
+cv::Mat read_window(const ViewTarget& whole) {
+  cv::Mat out(whole.height, whole.width, CV_8UC3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, whole.width, whole.height, GL_BGR, GL_UNSIGNED_BYTE, out.data);
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  cv::flip(out, out, 0);
+  return out;
+}
+
+}  // namespace
+
+const char* to_string(SeatPicture picture) {
+  switch (picture) {
+    case SeatPicture::predicted: return "as it will be";
+    case SeatPicture::delayed: return "the newest image";
+    case SeatPicture::both: return "newest image | as it will be";
+  }
+  return "";
+}
+
+SeatWindow::SeatWindow(gl::Window& window, Seat& seat, PredictedSource& source, SeatWindowOptions options)
+    : window_(window),
+      seat_(seat),
+      source_(source),
+      options_(std::move(options)),
+      hud_(options_.font_scale),
+      delayed_("newest image") {}
+
+void SeatWindow::next_picture() {
+  options_.picture = static_cast<SeatPicture>((static_cast<int>(options_.picture) + 1) % 3);
+}
+
+bool SeatWindow::trusted() const {
+  return source_.fault().empty() && source_.robot().status != StateStatus::invalid;
+}
+
+void SeatWindow::stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& session) {
+  drawn_ = drawn_ || step.drawn;
+  present(drawn_ ? &session.picture() : nullptr);
+}
+
+void SeatWindow::waiting(FrameSource& /*source*/, ViewSession& session) {
+  present(drawn_ ? &session.picture() : nullptr);
+}
+
+HudContent SeatWindow::words(bool is_trusted) const {
+  const SeatStatus status = seat_.status();
+  HudContent out;
+  out.title = fmt::format("{}: {}", options_.title,
+                          is_trusted || options_.picture == SeatPicture::delayed
+                              ? to_string(options_.picture)
+                              : "the newest image, as prediction cannot be trusted");
+  out.next = next_step(status);
+  out.lines = seat_lines(status, options_.joints, source_.fault());
+  if (options_.more_lines)
+    for (SeatLine& line : options_.more_lines()) out.lines.push_back(std::move(line));
+  if (help_) out.keys = options_.keys;
+  return out;
+}
+
+void SeatWindow::present(const gl::Texture* predicted) {
+  if (options_.input) options_.input(window_.take_input());
+  if (const auto& newest = source_.newest(); newest && newest != uploaded_) {
+    delayed_.upload(newest->image[0].bgr);
+    uploaded_ = newest;
+  }
+  const ViewTarget whole = window_target(window_);
+  if (whole.width < 1 || whole.height < 1) {  // minimised
+    window_.present();
+    return;
+  }
+  const bool is_trusted = trusted();
+  clear_behind_pictures(whole, !is_trusted && drawn_);
+  const auto show = [&](const gl::Texture& picture, const ViewTarget& place) {
+    copy_(picture, fitted(place, picture.width(), picture.height()));
+  };
+  SeatPicture picture = options_.picture;
+  if (!is_trusted && picture == SeatPicture::predicted) picture = SeatPicture::delayed;
+  if (picture == SeatPicture::both) {
+    if (!delayed_.empty()) show(delayed_.texture(), column(whole, 0, 2, kGap));
+    if (predicted) show(*predicted, column(whole, 1, 2, kGap));
+  } else if (picture == SeatPicture::delayed) {
+    if (!delayed_.empty()) show(delayed_.texture(), column(whole, 0, 1, kGap));
+  } else if (predicted) {
+    show(*predicted, column(whole, 0, 1, 0));
+    if (!delayed_.empty()) {
+      const gl::Texture& texture = delayed_.texture();
+      copy_(texture, corner_of(whole, texture.width(), texture.height()));
+    }
+  }
+  hud_.draw(words(is_trusted), whole);
+  if (save_) write_png(*save_, read_window(whole));
+  save_.reset();
+  window_.present();
+}
+
+}  // namespace foresight

@@ -1,0 +1,65 @@
+// An operator's seat at a desktop: the window, its pictures and its words.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "display/uploaded_picture.hpp"
+#include "display/view_loop.hpp"
+#include "gl/glfw_window.hpp"
+#include "seat/hud.hpp"
+#include "seat/predicted_source.hpp"
+
+namespace foresight {
+
+/// What fills the window.
+enum class SeatPicture : std::uint8_t { predicted, delayed, both };
+const char* to_string(SeatPicture picture);
+
+struct SeatWindowOptions {
+  std::string title;
+  std::vector<std::string> joints;  ///< names
+  double font_scale = 1;
+  SeatPicture picture = SeatPicture::predicted;
+  std::vector<std::pair<std::string, std::string>> keys;
+  /// Keys, mouse and focus since the last picture. The window's thread.
+  std::function<void(const gl::WindowInput&)> input = {};
+  std::function<std::vector<SeatLine>()> more_lines = {};  ///< of devices
+};
+
+/// Shows the robot as it will be; where that cannot be trusted, the newest image that came, and says so. Belongs to the
+/// window's context.
+class SeatWindow final : public ViewObserver {
+ public:
+  /// All must outlive this.
+  SeatWindow(gl::Window& window, Seat& seat, PredictedSource& source, SeatWindowOptions options);
+
+  void stepped(const ViewStep& step, FrameSource& source, ViewSession& session) override;
+  void waiting(FrameSource& source, ViewSession& session) override;
+  bool wants_more() const override { return !window_.should_close(); }
+
+  void next_picture();
+  void toggle_help() { help_ = !help_; }
+  /// The next picture goes into this file, too.
+  void save_next(const std::filesystem::path& file) { save_ = file; }
+
+ private:
+  void present(const gl::Texture* predicted);
+  HudContent words(bool trusted) const;
+  bool trusted() const;
+
+  gl::Window& window_;
+  Seat& seat_;
+  PredictedSource& source_;
+  SeatWindowOptions options_;
+  PictureCopy copy_;
+  Hud hud_;
+  UploadedPicture delayed_;
+  link::LineFramePtr uploaded_;
+  bool help_ = true, drawn_ = false;
+  std::optional<std::filesystem::path> save_;
+};
+
+}  // namespace foresight

@@ -1,0 +1,70 @@
+#include "apps/operator/stepped_sides.hpp"
+
+#include <unistd.h>
+
+#include <array>
+
+#include "link/robot_side/rig_identity.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr int kFirstDomain = 100, kDomains = 100;  // a trial's own, so that nothing else on this machine hears it
+
+LinkConfig own_network() {
+  LinkConfig out;
+  out.domain = kFirstDomain + static_cast<int>(::getpid()) % kDomains;
+  return out;
+}
+
+RobotDeviceOptions mock_drives() {
+  RobotDeviceOptions out;
+  out.mock = true;
+  return out;
+}
+
+RobotCameraOptions mock_cameras() {
+  RobotCameraOptions out;
+  out.mock = true;
+  out.frames = true;
+  return out;
+}
+
+}  // namespace
+
+SteppedRobotSide::SteppedRobotSide(const Rig& rig, const std::filesystem::path& file, SteppedClock& clock,
+                                   const LineSpec& line)
+    : rig_(rig),
+      clock_(clock),
+      identity_(link::rig_identity(rig, file, FORESIGHT_VERSION)),
+      line_(std::make_shared<link::PretendedLine>(line, link::PretendedLine::Side::robot, clock)),
+      participant_(own_network(), "robot " + rig.name, link::Role::robot, line_),
+      devices_(rig, clock, mock_drives()),
+      shape_(rig.shape()),
+      robot_(std::make_unique<Robot>(rig.gate_options(), shape_.get(), devices_.networks(), devices_.drives())),
+      cameras_(std::make_unique<RobotCameras>(rig, devices_, *robot_, clock, mock_cameras())),
+      server_(std::make_unique<link::RobotServer>(participant_, rig, *robot_, cameras_.get(), identity_, clock)),
+      period_(seconds(1 / rig.rate_hz)),
+      next_(clock.now()) {
+  devices_.bring_up([](const std::string&) {});
+  clock.every(kTick, [this](RobotTime) { cameras_->step(); });
+  clock.every(kTick, [this](RobotTime now) {
+    Commander* const commander = &server_->commander();
+    serve(std::span(&commander, 1), *robot_, now);
+  });
+  clock.every(std::chrono::milliseconds(2), [this](RobotTime now) {
+    server_->step(now);
+    line_->step();
+  });
+  next_ = clock.now();
+}
+
+SteppedRobotSide::~SteppedRobotSide() = default;
+
+void SteppedRobotSide::cycle() {
+  next_ = std::max(next_ + period_, clock_.now());
+  clock_.sleep_until(next_);
+  robot_->cycle(clock_.now());
+}
+
+}  // namespace foresight

@@ -1,0 +1,110 @@
+#include "seat/hand_driver.hpp"
+
+#include "input/hand_of_rig.hpp"
+
+namespace foresight {
+namespace {
+
+HandRobot hand_robot(const SeatView& view) {
+  HandRobot out;
+  out.joints = view.joints;
+  out.begin = view.begin;
+  out.ready = view.ready;
+  out.follows = view.control.follows;
+  out.must_let_go = view.control.must_let_go;
+  return out;
+}
+
+}  // namespace
+
+HandDriver::HandDriver(const Rig& rig, std::unique_ptr<Tracker> device)
+    : rig_(rig),
+      options_(hand_options(rig)),
+      hand_(options_, rig.name),
+      device_(std::move(device)),
+      any_(device_ ? std::vector<Tracker*>{&keyboard_, device_.get()} : std::vector<Tracker*>{&keyboard_}) {}
+
+void HandDriver::take(const gl::WindowInput& input, OperatorTime now) {
+  const std::lock_guard lock(mutex_);
+  if (input.lost_focus) keyboard_.focus_lost();
+  for (const auto& event : input.key_events)
+    if (const auto key = hand_key(event.code)) keyboard_.key(*key, event.down);
+  keyboard_.mouse_button(KeyboardMouse::MouseButton::left, input.left);
+  keyboard_.mouse_button(KeyboardMouse::MouseButton::right, input.other);
+  keyboard_.mouse_moved(input.moved_x, input.moved_y);
+  keyboard_.wheel(input.scrolled);
+  keyboard_.looked(now);
+}
+
+void HandDriver::look_from(const Pose& T_world_camera) {
+  const std::lock_guard lock(mutex_);
+  T_world_camera_ = T_world_camera;
+}
+
+void HandDriver::ask(LineRequest request) {
+  const std::lock_guard lock(mutex_);
+  requests_.push_back(request);
+}
+
+void HandDriver::toggle_control() {
+  const std::lock_guard lock(mutex_);
+  control_ = !control_;
+}
+
+void HandDriver::hand_over() {
+  const std::lock_guard lock(mutex_);
+  hand_over_ = true;
+}
+
+void HandDriver::let_go() {
+  const std::lock_guard lock(mutex_);
+  ended_ = true;
+}
+
+SeatWish HandDriver::tick(const SeatView& view) {
+  const std::lock_guard lock(mutex_);
+  HandInput input;
+  input.now = view.now;
+  input.device = any_.read(view.now);
+  input.robot = hand_robot(view);
+  input.T_base_view = rig_.T_world_robot.inverse() * T_world_camera_;
+  const HandCycle& cycle = hand_.cycle(input);
+  SeatWish wish;
+  wish.deadman = cycle.deadman && !ended_;
+  wish.position = cycle.positions;
+  wish.control = control_;
+  wish.hand_over = std::exchange(hand_over_, false);
+  if (!requests_.empty()) {
+    wish.request = requests_.front();
+    requests_.erase(requests_.begin());
+  }
+  return wish;
+}
+
+std::vector<SeatLine> HandDriver::lines() const {
+  const std::lock_guard lock(mutex_);
+  const HandWords words = describe(hand_.last(), options_.gate.joints);
+  if (words.name.empty()) return {};
+  return {
+      {"hand", words.name, words.cure, hand_.last().phase == HandPhase::refused ? Urgency::trouble : Urgency::note}};
+}
+
+std::vector<std::pair<std::string, std::string>> HandDriver::keys() {
+  const auto printed = [](std::initializer_list<HandKey> keys) {
+    std::string out;
+    for (const HandKey key : keys)
+      out += (out.empty() ? "" : " ") + std::string(key_bindings()[static_cast<std::size_t>(key)].printed);
+    return out;
+  };
+  using enum HandKey;
+  return {{printed({deadman}), "held: the robot moves"},
+          {printed({slow}), "held: slowly"},
+          {printed({forward, left, back, right, up, down}), "the tool: forward, left, back, right, up, down"},
+          {printed({pitch_down, yaw_left, pitch_up, yaw_right, roll_left, roll_right}), "it turns"},
+          {"arrows", "the camera"},
+          {printed({gripper_close, gripper_open}), "gripper closes, opens"},
+          {printed({joint_mode}) + ", 1 .. 0, - =", "single joints, which one, to and fro"},
+          {printed({recentre, home_view}), "forward is where you look; the view as it began"}};
+}
+
+}  // namespace foresight

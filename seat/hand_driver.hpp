@@ -1,0 +1,55 @@
+// Hands at devices as the seat's driver: what the window and the devices say becomes set-points.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gl/glfw_window.hpp"
+#include "input/any_tracker.hpp"
+#include "input/hand_control.hpp"
+#include "input/keyboard_mouse.hpp"
+#include "seat/seat_driver.hpp"
+#include "seat/seat_words.hpp"
+
+namespace foresight {
+
+/// tick() in the seat's thread, all else in the window's.
+class HandDriver final : public SeatDriver {
+ public:
+  /// Keyboard and mouse, and `device` where there is one: whichever has its switch held drives. `rig` must outlive
+  /// this. Throws what hand_options() does.
+  explicit HandDriver(const Rig& rig, std::unique_ptr<Tracker> device = nullptr);
+
+  /// Since the last call; at each round of the window, or its keys do not count.
+  void take(const gl::WindowInput& input, OperatorTime now);
+  /// The camera that the operator looks through: directions are meant as he sees them.
+  void look_from(const Pose& T_world_camera);
+  void ask(LineRequest request);
+  void toggle_control();
+  void hand_over();
+  /// All switches are open from now on.
+  void let_go();
+
+  /// What keeps the hand from driving, for the head-up display.
+  std::vector<SeatLine> lines() const;
+  /// Of devices, and what they do.
+  static std::vector<std::pair<std::string, std::string>> keys();
+
+  SeatWish tick(const SeatView& view) override;
+
+ private:
+  const Rig& rig_;
+  mutable std::mutex mutex_;  // all below
+  const HandOptions options_;
+  HandControl hand_;
+  KeyboardMouse keyboard_;
+  std::unique_ptr<Tracker> device_;
+  AnyTracker any_;
+  Pose T_world_camera_ = Pose::Identity();
+  std::vector<LineRequest> requests_;
+  bool control_ = true, hand_over_ = false, ended_ = false;
+};
+
+}  // namespace foresight

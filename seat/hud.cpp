@@ -1,0 +1,132 @@
+#include "seat/hud.hpp"
+
+#include <imgui.h>
+
+#include <backends/imgui_impl_opengl3.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "common/error.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr float kFontPx = 16;
+constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
+                                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus;
+const char* const kFonts[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"};
+
+ImVec4 colour(Urgency urgency) {
+  switch (urgency) {
+    case Urgency::fine: return {0.92f, 0.94f, 0.96f, 1};
+    case Urgency::note: return {1.00f, 0.86f, 0.45f, 1};
+    case Urgency::trouble: return {1.00f, 0.62f, 0.55f, 1};
+  }
+  return {1, 1, 1, 1};
+}
+
+void write(const std::string& text) {
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+}
+
+void write(const SeatLine& line, float words_at, float width) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colour(line.urgency));
+  write(mark(line.urgency) + line.label);
+  ImGui::SameLine(words_at);
+  ImGui::PushTextWrapPos(width);
+  write(line.cure.empty() ? line.words : line.words + " - " + line.cure);
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+}  // namespace
+
+struct Hud::Work {
+  ImGuiContext* context;
+  ImFont* large = nullptr;
+  float scale;
+
+  explicit Work(double wanted) : context(ImGui::CreateContext()), scale(static_cast<float>(wanted)) {
+    ImGui::SetCurrentContext(context);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = io.LogFilename = nullptr;
+    const auto font = std::ranges::find_if(kFonts, [](const char* file) { return std::filesystem::exists(file); });
+    const auto add = [&](float px) {
+      if (font != std::end(kFonts)) return io.Fonts->AddFontFromFileTTF(*font, px);
+      ImFontConfig config;
+      config.SizePixels = px;
+      return io.Fonts->AddFontDefault(&config);
+    };
+    add(kFontPx * scale);
+    large = add(1.5f * kFontPx * scale);
+    if (!ImGui_ImplOpenGL3_Init("#version 330"))
+      throw RuntimeFailure("the head-up display cannot be drawn", "check the graphics driver");
+    ImGui::GetStyle().WindowRounding = 4;
+    ImGui::GetStyle().WindowBorderSize = 0;
+  }
+  ~Work() {
+    ImGui::SetCurrentContext(context);
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext(context);
+  }
+
+  void panel(const char* name, ImVec2 at, ImVec2 pivot) const {
+    ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
+    ImGui::SetNextWindowBgAlpha(0.62f);
+    ImGui::Begin(name, nullptr, kPanel);
+  }
+  void draw(const HudContent& content, float width, float height) const;
+};
+
+void Hud::Work::draw(const HudContent& content, float width, float height) const {
+  const float gap = 8 * scale, words_at = 115 * scale;
+  panel("lines", {gap, gap}, {0, 0});
+  write(content.title);
+  ImGui::Separator();
+  const float wrap = std::clamp(0.5f * width, 260 * scale, 700 * scale);
+  for (const SeatLine& line : content.lines) write(line, words_at, wrap);
+  ImGui::End();
+
+  if (!content.keys.empty()) {
+    panel("keys", {gap, height - gap}, {0, 1});
+    for (const auto& [key, does] : content.keys) {
+      write(key);
+      ImGui::SameLine(1.2f * words_at);
+      write(does);
+    }
+    ImGui::End();
+  }
+  if (content.next.words.empty()) return;
+  panel("next", {width - gap, height - gap}, {1, 1});
+  ImGui::PushFont(large);
+  ImGui::PushStyleColor(ImGuiCol_Text, colour(content.next.urgency));
+  write(mark(content.next.urgency) + content.next.words);
+  if (!content.next.cure.empty()) write("   " + content.next.cure);
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+  ImGui::End();
+}
+
+Hud::Hud(double scale) : work_(std::make_unique<Work>(scale)) {}
+
+Hud::~Hud() = default;
+
+void Hud::draw(const HudContent& content, const ViewTarget& target) {
+  if (target.width < 1 || target.height < 1) return;
+  ImGui::SetCurrentContext(work_->context);
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(target.width), static_cast<float>(target.height)};
+  io.DeltaTime = 1.0f / 60;
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  ImGui_ImplOpenGL3_NewFrame();
+  for (const bool is_seen : {false, true}) {  // panels are not shown before their size is known: one frame goes ahead
+    ImGui::NewFrame();
+    work_->draw(content, io.DisplaySize.x, io.DisplaySize.y);
+    is_seen ? ImGui::Render() : ImGui::EndFrame();
+  }
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+}  // namespace foresight

@@ -1,0 +1,37 @@
+// The head-up display: what an operator has to know, over the picture. Dear ImGui draws it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "display/view_target.hpp"
+#include "seat/seat_words.hpp"
+
+namespace foresight {
+
+struct HudContent {
+  std::string title;  ///< of the robot, and of the view that is shown
+  SeatLine next;      ///< what is to be done first: large, below
+  std::vector<SeatLine> lines;
+  std::vector<std::pair<std::string, std::string>> keys;  ///< each, and what it does
+};
+
+/// Belongs to one context. Nothing is told by colour alone: what is urgent has a mark before it.
+class Hud {
+ public:
+  /// `scale`: of all fonts; 1: 16 px.
+  explicit Hud(double scale = 1);
+  ~Hud();
+  Hud(const Hud&) = delete;
+
+  /// Over what is there. `target`: a window, or a texture of ours.
+  void draw(const HudContent& content, const ViewTarget& target);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace foresight

@@ -1,0 +1,90 @@
+#include "seat/predicted_source.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "link/operator_view/line_feed.hpp"
+#include "rig/rig_scene.hpp"
+
+namespace foresight {
+namespace {
+
+JointPositions positions_of(const link::LineJoints& joints) {
+  return [&joints](std::string_view name) { return joints.position(name); };
+}
+
+}  // namespace
+
+PredictedSource::PredictedSource(const Rig& rig, std::shared_ptr<const LiveScene> scene, link::OperatorEnd& end,
+                                 Seat& seat, Clock& clock, const PredictedSourceOptions& options)
+    : rig_(rig),
+      scene_(std::move(scene)),
+      end_(end),
+      seat_(seat),
+      clock_(clock),
+      options_(options),
+      places_(rig, scene_),
+      due_(clock.now()),
+      heard_(clock.now()) {}
+
+void PredictedSource::take_frames() {
+  while (const auto frame = end_.frames().take(Duration{0})) {
+    heard_ = clock_.now();
+    newest_ = *frame;
+    const auto at = [this](RobotTime time, const link::LineJoints& joints) {
+      return link::scene_at(rig_, *scene_, time, joints);
+    };
+    auto posed = link::posed_frame(**frame, at, options_.margin_px);
+    posed_ = posed.has_value();
+    if (!posed) continue;
+    any_posed_ = true;
+    places_.saw(posed->left, positions_of((*frame)->joints));
+    if (waiting_) ++overtaken_;
+    waiting_ = std::move(posed);
+  }
+}
+
+// Of the grid of the robot's own images the newest instant that may be shown, if it was not yet.
+std::optional<RobotTime> PredictedSource::next_instant(RobotTime until) {
+  if (options_.image_period.count() > 0) {
+    const Duration past = until - newest_->image[0].captured;
+    if (past.count() < 0) return std::nullopt;
+    until = newest_->image[0].captured + options_.image_period * (past / options_.image_period);
+  }
+  if (last_ && until <= *last_) return std::nullopt;
+  return until;
+}
+
+SourceState PredictedSource::advance() {
+  if (options_.real_time) {
+    clock_.sleep_until(due_);
+    due_ = std::max(due_ + seconds(1 / options_.rate_hz), clock_.now());
+  } else if (clock_.now() < due_) {
+    return SourceState::waiting;
+  }
+  const bool closed = end_.frames().closed();
+  take_frames();
+  if (closed) return SourceState::ended;
+  const auto until = seat_.instant_to_show();
+  if (!any_posed_ || !until) return SourceState::waiting;
+  const auto instant = next_instant(*until);
+  if (!instant) return SourceState::waiting;
+  if (!options_.real_time) due_ = std::max(due_ + seconds(1 / options_.rate_hz), clock_.now());
+  last_ = instant;
+  robot_ = seat_.show(*instant);
+  instant_ = {fmt::format("{:06}", static_cast<unsigned long long>(++pictures_)), *instant};
+  return SourceState::ready;
+}
+
+std::optional<PosedFrame> PredictedSource::arrived() {
+  return std::exchange(waiting_, std::nullopt);
+}
+
+std::string PredictedSource::fault() const {
+  if (const Duration silent = clock_.now() - heard_; silent > options_.silent_after)
+    return fmt::format("NO IMAGE for {:.1f} s", to_seconds(silent));
+  return posed_ ? "" : "NO POSE for the newest image";
+}
+
+}  // namespace foresight

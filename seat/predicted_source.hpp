@@ -1,0 +1,63 @@
+// Frames that come over the line, shown as the robot will be: a source for ViewLoop whose instants lie in the future.
+#pragma once
+
+#include "display/frame_source.hpp"
+#include "seat/predicted_place.hpp"
+#include "seat/seat.hpp"
+
+namespace foresight {
+
+struct PredictedSourceOptions {
+  bool real_time = true;
+  double rate_hz = 30;     ///< of pictures, at most; > 0
+  double margin_px = 1.5;  ///< LiveFrameOptions::margin_px
+  /// Above 0, pictures are of the instants of the robot's own images, which are so far apart: who measures compares
+  /// like with like.
+  Duration image_period{0};
+  Duration silent_after = std::chrono::milliseconds(1000);  ///< without an image: fault() says so
+};
+
+/// One thread. In stepped time, advance() does not wait.
+class PredictedSource final : public FrameSource {
+ public:
+  /// All must outlive this.
+  PredictedSource(const Rig& rig, std::shared_ptr<const LiveScene> scene, link::OperatorEnd& end, Seat& seat,
+                  Clock& clock, const PredictedSourceOptions& options);
+
+  bool real_time() const override { return options_.real_time; }
+  SourceState advance() override;
+  const ShownInstant& instant() const override { return instant_; }
+  std::optional<PosedFrame> arrived() override;
+  ViewPlace place() override { return places_.place(robot_); }
+  /// What the camera saw last, as far as it has come.
+  cv::Mat actual() override { return newest_ ? newest_->image[0].bgr : cv::Mat(); }
+  std::uint64_t overtaken() const override { return overtaken_; }
+  std::string fault() const override;
+
+  /// The robot as it is shown.
+  const PredictedRobot& robot() const { return robot_; }
+  /// The newest frame; null before the first.
+  const link::LineFramePtr& newest() const { return newest_; }
+
+ private:
+  void take_frames();
+  std::optional<RobotTime> next_instant(RobotTime until);
+
+  const Rig& rig_;
+  std::shared_ptr<const LiveScene> scene_;
+  link::OperatorEnd& end_;
+  Seat& seat_;
+  Clock& clock_;
+  PredictedSourceOptions options_;
+  PredictedPlaces places_;
+  link::LineFramePtr newest_;
+  std::optional<PosedFrame> waiting_;
+  bool posed_ = true, any_posed_ = false;
+  RobotTime due_, heard_;
+  std::uint64_t pictures_ = 0, overtaken_ = 0;
+  std::optional<RobotTime> last_;
+  ShownInstant instant_;
+  PredictedRobot robot_;
+};
+
+}  // namespace foresight

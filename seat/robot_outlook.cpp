@@ -1,0 +1,107 @@
+#include "seat/robot_outlook.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/statistics.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint64_t kOthers = ~std::uint64_t{0};
+constexpr Duration kClockJump = 500ms;  // by which the robot's clock may seem to go back before it is another one
+constexpr std::size_t kErrorsKept = 300;
+
+RobotFutureOptions future_options(const Rig& rig) {
+  RobotFutureOptions out;
+  out.gate = rig.gate_options();
+  return out;
+}
+
+}  // namespace
+
+RobotReport robot_report(const link::GateMotion& motion, Nonce commander) {
+  RobotReport out;
+  out.time = {motion.time_ns};
+  out.doing = static_cast<GateDoing>(motion.doing);
+  out.speed = motion.speed;
+  if (motion.set_point != 0) out.newest_set_point = motion.commander == commander ? motion.set_point : kOthers;
+  out.newest_came = {motion.set_point_came_ns};
+  out.joints = std::min(motion.joints.size(), kMostJoints);
+  for (std::size_t i = 0; i < out.joints; ++i) {
+    const link::GateMotionJoint& from = motion.joints[i];
+    ReportedJoint& to = out.joint[i];
+    to.time = out.time - std::chrono::microseconds(from.told_us);
+    if (from.known) to.position = from.position;
+    to.set_point = {from.set_point, from.velocity, from.acceleration};
+  }
+  return out;
+}
+
+RobotOutlook::RobotOutlook(const Rig& rig) : rig_(rig), shape_(rig.shape()) {
+  begin_anew();
+}
+
+void RobotOutlook::begin_anew() {
+  future_ = std::make_unique<RobotFuture>(future_options(rig_), shape_.get());
+  newest_.reset();
+  now_ = {};
+  errors_.clear();
+  figures_.error.reset();
+}
+
+void RobotOutlook::count(HistoryFault fault, const char* what) {
+  if (fault == HistoryFault::none || fault == HistoryFault::out_of_order) return;
+  ++figures_.refused;
+  figures_.refusal = std::string(what) + ": " + to_string(fault);
+}
+
+void RobotOutlook::hear(const link::GateMotion& motion, Nonce commander, RobotTime now) {
+  if (motion.session != session_) {
+    if (session_ != 0) begin_anew();
+    session_ = motion.session;
+    ++figures_.robots;
+  }
+  const RobotReport report = robot_report(motion, commander);
+  const HistoryFault fault = future_->reported(report, std::max(now, now_));
+  count(fault, "a report of the robot");
+  if (fault == HistoryFault::none) newest_ = report;
+}
+
+void RobotOutlook::sent(const SetPoint& set_point, RobotTime now) {
+  SentSetPoint sent;
+  sent.number = set_point.sequence;
+  sent.sent = std::max(now, now_);
+  sent.lasts = set_point.lasts;
+  sent.deadman = set_point.deadman;
+  sent.joints = set_point.joints;
+  sent.position = set_point.position;
+  count(future_->sent(sent, sent.sent), "a set-point");
+}
+
+void RobotOutlook::advance(RobotTime now) {
+  if (now_.ns != 0 && now < now_ - kClockJump) begin_anew();
+  now_ = std::max(now_, now);
+  future_->advance(now_);
+  score();
+}
+
+void RobotOutlook::score() {
+  bool any = false;
+  while (const auto scored = future_->take_scored()) {
+    any = true;
+    ++figures_.scored;
+    double worst = 0;
+    for (std::size_t i = 0; i < scored->shown.joints; ++i)
+      worst = std::max(worst, std::abs(scored->shown.position[i] - scored->truth[i]));
+    if (errors_.size() < kErrorsKept)
+      errors_.push_back(worst);
+    else
+      errors_[next_error_++ % kErrorsKept] = worst;
+  }
+  if (any) figures_.error = quantile(errors_, 0.95);
+}
+
+}  // namespace foresight

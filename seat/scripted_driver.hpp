@@ -1,0 +1,70 @@
+// An operator who is a program: starts the robot over the line, presses the switch, follows a motion, lets go.
+//
+//   wanting control --> enabling --> homing --> ready --> pressed, moving --> done
+//                                                 ^            |
+//                                                 '-- lost ----'  lets go, waits, presses again: goes on from there
+//
+// It knows what comes over the line and nothing else.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "seat/seat_driver.hpp"
+
+namespace foresight {
+
+/// A motion that is asked for step by step. One thread.
+class ScriptedMotion {
+ public:
+  virtual ~ScriptedMotion() = default;
+  /// The robot stands at `begin` and will follow from now on; also after a loss.
+  virtual void begin_at(const JointValues& begin) = 0;
+  /// Where it shall be `dt` seconds after the step before; `shown`: where it is shown. Nothing: the motion has ended.
+  virtual std::optional<JointValues> step(double dt, const PredictedRobot& shown) = 0;
+};
+
+struct ScriptedDriverOptions {
+  bool may_home = true;                                   ///< consents to homing
+  Duration open_before = std::chrono::milliseconds(300);  ///< the switch is seen open so long before each press
+  Duration gives_up_after = std::chrono::seconds(600);    ///< without having driven
+  int most_losses = 100;
+};
+
+/// One thread.
+class ScriptedDriver final : public SeatDriver {
+ public:
+  ScriptedDriver(ScriptedMotion& motion, const ScriptedDriverOptions& options = {});
+  /// The robot as it says it is; nothing before the first.
+  using RobotSays = std::function<std::optional<link::RobotState>()>;
+  void listen_to(RobotSays says) { says_ = std::move(says); }
+
+  SeatWish tick(const SeatView& view) override;
+  /// It drives now.
+  bool driving() const { return driving_; }
+  bool done() const { return done_ || !failure_.empty(); }
+  const std::string& failure() const { return failure_; }  ///< "" where all is well
+  int losses() const { return losses_; }                   ///< that it went on after
+  double driven_s() const { return driven_s_; }            ///< time under the switch
+
+ private:
+  LineRequest request(const SeatView& view);
+  void press(const SeatView& view);
+  void drive(const SeatView& view, SeatWish& wish);
+
+  ScriptedMotion& motion_;
+  ScriptedDriverOptions options_;
+  RobotSays says_;
+  std::optional<OperatorTime> first_, opened_, last_;
+  std::optional<OperatorTime> asked_;
+  LineRequest request_ = LineRequest::none;
+  bool driving_ = false, done_ = false;
+  int losses_ = 0;
+  double driven_s_ = 0;
+  JointValues target_{};
+  std::string failure_;
+};
+
+}  // namespace foresight

@@ -1,0 +1,133 @@
+#include "seat/seat.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kEvery = 5ms;
+constexpr std::size_t kFatesKept = 8;
+using Phase = ControlSeatStatus::Phase;
+
+}  // namespace
+
+Seat::Seat(const Rig& rig, link::OperatorEnd& end, SeatDriver& driver, Clock& clock)
+    : rig_(rig), end_(end), driver_(driver), clock_(clock), outlook_(rig) {}
+
+void Seat::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      step();
+      clock_.sleep_until(clock_.now() + kEvery);
+    }
+  });
+}
+
+void Seat::stop() noexcept {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::optional<RobotTime> Seat::robot_now() const {
+  const auto now = end_.robot_clock().to_there({clock_.now().ns});
+  return now ? std::optional(now->time) : std::nullopt;
+}
+
+SeatView Seat::look(RobotTime now) {
+  SeatView view;
+  end_.seat([&](ControlSeat& seat, OperatorTime here) {
+    view.now = here;
+    view.control = seat.status(here);
+    view.begin = seat.begin();
+    view.joints = seat.state().joints;
+    view.ready = seat.state().ready;
+  });
+  view.shown = outlook_.at(outlook_.instant_to_show(now));
+  view.engaged = engaged_;
+  return view;
+}
+
+void Seat::step() {
+  const std::lock_guard lock(mutex_);
+  const auto motions = end_.take_motions();
+  const Nonce session = end_.seat([](ControlSeat& seat, OperatorTime) { return seat.session(); });
+  const auto now = robot_now();
+  const RobotTime robot_time = now.value_or(RobotTime{});
+  if (now) {
+    for (const auto& heard : motions) outlook_.hear(heard.motion, session, *now);
+    outlook_.advance(*now);
+  }
+  const SeatView view = look(robot_time);
+  const SeatWish wish = driver_.tick(view);
+  heed_switch(wish, view);
+  command(wish, view.now);
+}
+
+void Seat::heed_switch(const SeatWish& wish, const SeatView& view) {
+  const bool held_before = std::exchange(held_, wish.deadman), pressed = wish.deadman && !held_before;
+  if (!wish.deadman) {
+    engaged_ = followed_ = false;
+    return;
+  }
+  if (pressed) engaged_ = view.control.phase == Phase::holding && !view.control.must_let_go;
+  if (view.control.follows) followed_ = true;
+  const bool lost = followed_ && !view.control.follows;
+  if (view.control.phase != Phase::holding || view.control.must_let_go || lost) engaged_ = false;
+}
+
+void Seat::command(const SeatWish& wish, OperatorTime now) {
+  const auto robot_time = robot_now();
+  end_.seat([&](ControlSeat& seat, OperatorTime here) {
+    seat.want_control(wish.control);
+    if (wish.hand_over) seat.hand_over();
+    if (wish.request != LineRequest::none && wish.request != asked_) seat.request(wish.request, here);
+    asked_ = wish.request;
+    for (RequestFate& fate : seat.take_fates()) {
+      if (fates_.size() == kFatesKept) fates_.erase(fates_.begin());
+      fates_.push_back(std::move(fate));
+    }
+    if (commanded_.ns != 0 && now - commanded_ < kSetPointEvery) return;
+    commanded_ = now;
+    const auto sent = seat.command(here, engaged_ ? wish.position : seat.begin(), engaged_);
+    if (sent && robot_time) outlook_.sent(*sent, *robot_time);
+  });
+}
+
+std::optional<RobotTime> Seat::instant_to_show() {
+  const std::lock_guard lock(mutex_);
+  const auto now = robot_now();
+  return now ? std::optional(outlook_.instant_to_show(*now)) : std::nullopt;
+}
+
+PredictedRobot Seat::show(std::optional<RobotTime> at) {
+  const std::lock_guard lock(mutex_);
+  const auto now = robot_now();
+  if (now) shown_ = outlook_.show(at ? *at : outlook_.instant_to_show(*now));
+  return shown_;
+}
+
+SeatStatus Seat::status() const {
+  SeatStatus out;
+  end_.seat([&](ControlSeat& seat, OperatorTime here) {
+    out.control = seat.status(here);
+    out.robot_control = seat.state();
+  });
+  if (auto heard = end_.robot_state()) {
+    out.robot_age = OperatorTime{clock_.now().ns} - heard->came;
+    out.robot = std::move(heard->state);
+  }
+  out.line = end_.figures();
+  const std::lock_guard lock(mutex_);
+  out.delay = outlook_.delay();
+  out.outlook = outlook_.figures();
+  out.shown = shown_;
+  out.held = held_;
+  out.engaged = engaged_;
+  out.fates = fates_;
+  return out;
+}
+
+}  // namespace foresight

@@ -1,0 +1,74 @@
+// An operator's seat without its window: what is commanded goes over the line and into the prediction.
+//
+//   SeatDriver --wish--> Seat --set-points, requests--> OperatorEnd ))) line ((( robot
+//                          '--> RobotOutlook <--what the gate did-- OperatorEnd
+//
+// The switch counts from a press on until it is let go of, or the robot is lost: by the line, the gate, another holder.
+// After that nothing moves until the driver lets go and presses again, and then the motion begins where the robot is.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "link/operator_side/operator_end.hpp"
+#include "seat/robot_outlook.hpp"
+#include "seat/seat_driver.hpp"
+
+namespace foresight {
+
+/// The seat at one moment, for people.
+struct SeatStatus {
+  ControlSeatStatus control;
+  ControlState robot_control;             ///< who holds the lease, delay of set-points
+  std::optional<link::RobotState> robot;  ///< what the robot says of itself
+  std::optional<Duration> robot_age;      ///< of that, since it came
+  link::LineFigures line;
+  PredictedDelay delay;  ///< of what is commanded
+  OutlookFigures outlook;
+  PredictedRobot shown;                ///< the last
+  bool held = false, engaged = false;  ///< the switch is held; it counts
+  std::vector<RequestFate> fates;      ///< of the last requests, oldest first
+};
+
+/// show() and status() from any thread; start() gives it one of its own, or step() does the same in the caller's.
+class Seat {
+ public:
+  static constexpr Duration kSetPointEvery = std::chrono::milliseconds(20);
+
+  /// All must outlive this. Throws what RobotOutlook does.
+  Seat(const Rig& rig, link::OperatorEnd& end, SeatDriver& driver, Clock& clock);
+  ~Seat() { stop(); }
+
+  void start();
+  void stop() noexcept;
+  void step();
+
+  /// Where the robot is to be shown now; `at`: at an instant of its clock, at most the one it is now to be shown for.
+  PredictedRobot show(std::optional<RobotTime> at = std::nullopt);
+  /// The instant of the robot's clock to show now; nothing while the clocks have not met.
+  std::optional<RobotTime> instant_to_show();
+  SeatStatus status() const;
+
+ private:
+  std::optional<RobotTime> robot_now() const;
+  SeatView look(RobotTime now);
+  void command(const SeatWish& wish, OperatorTime now);
+  void heed_switch(const SeatWish& wish, const SeatView& view);
+
+  const Rig& rig_;
+  link::OperatorEnd& end_;
+  SeatDriver& driver_;
+  Clock& clock_;
+  mutable std::mutex mutex_;  // all below
+  RobotOutlook outlook_;
+  PredictedRobot shown_;
+  bool held_ = false, engaged_ = false, followed_ = false;
+  OperatorTime commanded_;
+  LineRequest asked_ = LineRequest::none;
+  std::vector<RequestFate> fates_;
+  std::jthread thread_;
+};
+
+}  // namespace foresight

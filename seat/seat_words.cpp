@@ -1,0 +1,151 @@
+#include "seat/seat_words.hpp"
+
+#include <fmt/core.h>
+
+namespace foresight {
+namespace {
+
+using Phase = ControlSeatStatus::Phase;
+
+/// The robot's cures name the keys of its own terminal.
+std::string with_our_keys(std::string cure) {
+  for (const auto& [theirs, ours] : {std::pair{"(e)", "(E)"}, {"(h)", "(H)"}, {"(r)", "(X)"}})
+    if (const std::size_t at = cure.find(theirs); at != cure.npos) cure.replace(at, 3, ours);
+  return cure;
+}
+
+constexpr Duration kOldState = std::chrono::seconds(1);
+
+double ms(Duration d) {
+  return 1e3 * to_seconds(d);
+}
+
+SeatLine line_words(const SeatStatus& status) {
+  SeatLine out{"line", "", ""};
+  if (!status.line.clock) return {"line", "no clock of the robot yet", "wait for a round trip", Urgency::note};
+  out.words =
+      fmt::format("commands act after {:.0f} ± {:.0f} ms", 1e3 * status.delay.seconds, 2e3 * status.delay.sigma);
+  if (status.line.round_trip) out.words += fmt::format(", round trip {:.0f} ms", ms(*status.line.round_trip));
+  if (!status.line.ages.empty())
+    out.words += fmt::format(", newest image {:.0f} ms old when it came", ms(status.line.ages.back().delay));
+  return out;
+}
+
+SeatLine images_words(const SeatStatus& status, const std::string& fault) {
+  if (!fault.empty()) return {"images", fault, "what is shown grows older", Urgency::trouble};
+  const auto& pairs = status.line.pairs;
+  const double span = to_seconds(status.line.lasted);
+  return {"images",
+          fmt::format("{} pairs, {:.1f}/s, {}", static_cast<unsigned long long>(pairs.pairs),
+                      span > 0 ? static_cast<double>(pairs.pairs) / span : 0.0, status.line.coding),
+          ""};
+}
+
+SeatLine robot_words(const SeatStatus& status) {
+  if (!status.robot)
+    return {"robot", "nothing is heard of it", "see that its program runs with --serve", Urgency::trouble};
+  if (status.robot_age && *status.robot_age > kOldState)
+    return {"robot", fmt::format("silent for {:.1f} s", to_seconds(*status.robot_age)), "wait for the line",
+            Urgency::trouble};
+  const link::RobotState& robot = *status.robot;
+  SeatLine out{"robot", robot.doing.name, with_our_keys(robot.doing.cure)};
+  if (!robot.hold.empty()) out.words += "; " + robot.hold;
+  if (!robot.refused.empty()) out.words += "; refused: " + robot.refused;
+  if (!robot.bus_healthy) out.words += "; bus: " + robot.bus_reason;
+  out.urgency = !robot.bus_healthy || robot.phase.label == "stopped" ? Urgency::trouble
+                : robot.hold.empty()                                 ? Urgency::fine
+                                                                     : Urgency::note;
+  return out;
+}
+
+SeatLine drives_words(const SeatStatus& status) {
+  SeatLine out{"drives", "", ""};
+  if (!status.robot) return out;
+  std::size_t fine = 0;
+  for (const link::DriveLine& drive : status.robot->drives) {
+    const bool good = drive.fault.empty() && drive.known;
+    fine += good ? 1 : 0;
+    if (good) continue;
+    out.words += (out.words.empty() ? "" : ", ") + drive.name + ": " +
+                 (drive.fault.empty() ? drive.state + (drive.homed ? "" : ", not homed") : drive.fault);
+    out.urgency = drive.fault.empty() ? Urgency::note : Urgency::trouble;
+  }
+  if (out.words.empty()) out.words = fmt::format("all {} answer", fine);
+  return out;
+}
+
+SeatLine commander_words(const SeatStatus& status) {
+  const ControlState& state = status.robot_control;
+  SeatLine out{"in command", "", status.control.cure};
+  switch (status.control.phase) {
+    case Phase::connecting: return {"in command", status.control.words, status.control.cure, Urgency::note};
+    case Phase::connected:
+      out.words = status.control.words;
+      if (!state.holder_name.empty()) out.words += "; " + state.holder_name + " commands";
+      out.urgency = Urgency::note;
+      return out;
+    case Phase::holding: break;
+  }
+  out.words = status.control.follows ? "you; the robot follows" : "you";
+  if (!status.control.words.empty()) out.words += "; " + status.control.words;
+  if (!state.asking_name.empty()) out.words += "; " + state.asking_name + " asks for it";
+  if (status.held && !status.engaged) {
+    out.urgency = Urgency::trouble;
+    out.cure = "let go of the switch, and press it again";
+  }
+  return out;
+}
+
+SeatLine prediction_words(const SeatStatus& status, std::span<const std::string> names) {
+  const PredictedRobot& shown = status.shown;
+  if (shown.status == StateStatus::invalid)
+    return {"prediction", to_words(shown, names), "the delayed image is what counts", Urgency::trouble};
+  SeatLine out{"prediction", "", ""};
+  if (status.outlook.error)
+    out.words = fmt::format("95 % of joints within {:.2g} mrad or mm", 1e3 * *status.outlook.error);
+  else
+    out.words = "nothing to compare with yet";
+  if (shown.blocked) {
+    out.words += "; parts would come too close";
+    out.urgency = Urgency::note;
+  }
+  return out;
+}
+
+}  // namespace
+
+const char* mark(Urgency urgency) {
+  switch (urgency) {
+    case Urgency::fine: return "  ";
+    case Urgency::note: return "- ";
+    case Urgency::trouble: return "! ";
+  }
+  return "";
+}
+
+std::vector<SeatLine> seat_lines(const SeatStatus& status, std::span<const std::string> names,
+                                 const std::string& fault) {
+  std::vector<SeatLine> out{
+      commander_words(status),         robot_words(status), line_words(status), images_words(status, fault),
+      prediction_words(status, names), drives_words(status)};
+  for (const Difference& difference : status.control.differences)
+    out.push_back({difference.refuses ? "refused" : "differs", difference.words, difference.cure,
+                   difference.refuses ? Urgency::trouble : Urgency::note});
+  std::erase_if(out, [](const SeatLine& line) { return line.words.empty(); });
+  return out;
+}
+
+SeatLine next_step(const SeatStatus& status) {
+  if (status.control.phase != Phase::holding) return {"next", status.control.words, status.control.cure, Urgency::note};
+  if (status.held && !status.engaged)
+    return {"next", "the switch does not count", "let go, and press again", Urgency::trouble};
+  if (status.engaged)
+    return {"next", status.control.follows ? "driving" : "waiting for the robot to follow", "", Urgency::fine};
+  const link::RobotState* robot = status.robot ? &*status.robot : nullptr;
+  if (robot && !robot->doing.cure.empty() && !status.robot_control.ready)
+    return {"next", robot->doing.name, with_our_keys(robot->doing.cure), Urgency::note};
+  if (status.robot_control.ready) return {"next", "ready", "hold the switch and move", Urgency::fine};
+  return {"next", status.control.words, status.control.cure, Urgency::note};
+}
+
+}  // namespace foresight

@@ -1,0 +1,184 @@
+#include "seat/tool_script.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "common/error.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr double kShareOfSpeed = 0.5;  // of the joints' velocities that a script asks for
+constexpr double kPeak = 1.875;        // of minimum jerk, over its mean
+constexpr double kThere = 1e-3;        // m and rad: a line has ended
+constexpr double kLongestLine = 10;    // s more than asked for: then it goes on with the next
+constexpr int kTries = 2000;
+
+double minimum_jerk(double s) {
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+std::vector<std::size_t> of_group(const Rig& rig, JointGroup group) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < rig.joints.size(); ++i)
+    if (rig.joints[i].group == group) out.push_back(i);
+  return out;
+}
+
+HandOptions arm_of(const Rig& rig) {
+  HandOptions out = hand_options(rig);
+  if (!out.arm)
+    throw InputError(rig.name, "the rig has no robot, whose tool could be moved",
+                     "give it a `robot:` section with a URDF (docs/rig-files.md)");
+  return out;
+}
+
+}  // namespace
+
+ToolScript::ToolScript(const Rig& rig, std::vector<ToolStep> steps, const HeadSway& sway)
+    : ToolScript(rig, arm_of(rig), std::move(steps), sway) {}
+
+ToolScript::ToolScript(const Rig& rig, const HandOptions& hand, std::vector<ToolStep> steps, const HeadSway& sway)
+    : rig_(rig),
+      kinematics_(*hand.arm),
+      arm_(hand.arm_joints),
+      grippers_(of_group(rig, JointGroup::gripper)),
+      head_(of_group(rig, JointGroup::pan_tilt)),
+      steps_(std::move(steps)),
+      sway_(sway),
+      T_world_base_(rig.T_world_robot) {
+  for (const ToolStep& step : steps_) {
+    if (step.what != ToolStep::What::there && step.what != ToolStep::What::line) continue;
+    const IkAnswer answer = kinematics_.solve(T_world_base_.inverse() * step.T_world_tool);
+    if (answer.status != IkStatus::solved)
+      throw InputError("the script", "asks for a pose that the arm cannot reach", "move it nearer");
+  }
+}
+
+JointVector ToolScript::arm() const {
+  JointVector q(static_cast<Eigen::Index>(arm_.size()));
+  for (std::size_t i = 0; i < arm_.size(); ++i) q[static_cast<Eigen::Index>(i)] = position_[arm_[i]];
+  return q;
+}
+
+void ToolScript::set_arm(const JointVector& q) {
+  for (std::size_t i = 0; i < arm_.size(); ++i) position_[arm_[i]] = q[static_cast<Eigen::Index>(i)];
+}
+
+void ToolScript::begin_at(const JointValues& begin) {
+  position_ = begin;
+  if (!began_) head_begin_ = begin;
+  began_ = true;
+  begin_step();
+}
+
+void ToolScript::begin_step() {
+  in_step_ = 0;
+  follower_.reset();
+  if (at_ >= steps_.size()) return;
+  const ToolStep& step = steps_[at_];
+  lasts_ = step.seconds;
+  const Pose T_base_tool = T_world_base_.inverse() * step.T_world_tool;
+  if (step.what == ToolStep::What::there) {
+    from_ = arm();
+    to_ = kinematics_.solve(T_base_tool, from_).q;
+    for (std::size_t i = 0; i < arm_.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const double speed = kShareOfSpeed * rig_.joints[arm_[i]].drive.max_velocity;
+      lasts_ = std::max(lasts_, kPeak * std::abs(to_[k] - from_[k]) / speed);
+    }
+  } else if (step.what == ToolStep::What::line) {
+    follower_.emplace(kinematics_, arm());
+    line_from_ = follower_->hand();
+  }
+}
+
+bool ToolScript::advance(const ToolStep& step, double dt) {
+  in_step_ += dt;
+  const double share = lasts_ > 0 ? minimum_jerk(std::clamp(in_step_ / lasts_, 0.0, 1.0)) : 1;
+  switch (step.what) {
+    case ToolStep::What::there: set_arm(from_ + share * (to_ - from_)); break;
+    case ToolStep::What::line: {
+      const Pose to = T_world_base_.inverse() * step.T_world_tool;
+      const FollowStep made = follower_->step(pose_between(line_from_, to, share), dt);
+      set_arm(made.q);
+      const bool there = (made.T_base_tip.translation() - to.translation()).norm() < kThere && share == 1;
+      return there || in_step_ > lasts_ + kLongestLine;
+    }
+    case ToolStep::What::gripper: {
+      bool there = true;
+      for (const std::size_t i : grippers_) {
+        const double most = kShareOfSpeed * rig_.joints[i].drive.max_velocity * dt;
+        position_[i] += std::clamp(step.opening - position_[i], -most, most);
+        there = there && std::abs(step.opening - position_[i]) < 1e-9;
+      }
+      return there && in_step_ >= lasts_;
+    }
+    case ToolStep::What::wait: break;
+  }
+  return in_step_ >= lasts_;
+}
+
+void ToolScript::sway(double dt) {
+  swayed_ += dt;
+  const double amplitudes[] = {sway_.pan, sway_.tilt}, periods[] = {sway_.pan_s, sway_.tilt_s};
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, head_.size()); ++k) {
+    const DriveConfig& drive = rig_.joints[head_[k]].drive;
+    const double wanted = head_begin_[head_[k]] + amplitudes[k] * std::sin(2 * std::numbers::pi * swayed_ / periods[k]);
+    position_[head_[k]] = std::clamp(wanted, drive.min_position, drive.max_position);
+  }
+}
+
+std::optional<JointValues> ToolScript::step(double dt, const PredictedRobot&) {
+  if (at_ >= steps_.size()) return std::nullopt;
+  sway(dt);
+  if (advance(steps_[at_], dt)) {
+    ++at_;
+    begin_step();
+  }
+  return position_;
+}
+
+std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
+  const HandOptions hand = arm_of(rig);
+  const InverseKinematics kinematics(*hand.arm);
+  const std::vector<std::size_t>& arm = hand.arm_joints;
+  const auto shape = rig.shape();
+  if (shape) {
+    Surroundings wide = rig.surroundings;
+    wide.clearance += 0.01;
+    shape->surround(wide);
+  }
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::vector<ToolStep> out;
+  const double reach = kinematics.chain().reach();
+  const Pose& T_world_base = rig.T_world_robot;
+  for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
+    // Before the arm, at heights where things stand; the tool's z points down.
+    Pose pose = Pose::Identity();
+    const double angle = uniform(-0.9, 0.9), distance = uniform(0.35, 0.75) * reach;
+    const Eigen::Vector3d ahead = T_world_base.linear() * Eigen::Vector3d::UnitX();
+    const double yaw = std::atan2(ahead.y(), ahead.x()) + angle;
+    const Eigen::Vector3d foot = T_world_base.translation();
+    pose.translation() =
+        Eigen::Vector3d(foot.x() + distance * std::cos(yaw), foot.y() + distance * std::sin(yaw), uniform(0.30, 0.55));
+    pose.linear() = (Eigen::AngleAxisd(uniform(-1.5, 1.5), Eigen::Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
+                        .toRotationMatrix();
+    const IkAnswer answer = kinematics.solve(T_world_base.inverse() * pose);
+    if (answer.status != IkStatus::solved) continue;
+    JointValues q{};
+    for (std::size_t i = 0; i < arm.size(); ++i) q[arm[i]] = answer.q[static_cast<Eigen::Index>(i)];
+    if (shape && shape->obstructed({q.data(), rig.joints.size()}) != nullptr) continue;
+    const auto what = out.empty() || out.size() % 2 == 0 ? ToolStep::What::there : ToolStep::What::line;
+    out.push_back({what, pose, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5});
+  }
+  return out;
+}
+
+}  // namespace foresight

@@ -1,0 +1,72 @@
+// A scripted hand: the tool goes along straight lines, the gripper opens and closes, the head looks about meanwhile.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "input/hand_of_rig.hpp"
+#include "prediction/path_follower.hpp"
+#include "rig/rig.hpp"
+#include "seat/scripted_driver.hpp"
+
+namespace foresight {
+
+struct ToolStep {
+  enum class What : std::uint8_t {
+    there,    ///< all joints at once, to where the tool is at `T_world_tool`
+    line,     ///< the tool straight to it
+    gripper,  ///< to `opening`
+    wait
+  };
+  What what = What::wait;
+  Pose T_world_tool = Pose::Identity();
+  double opening = 0;  ///< m or rad, the gripper's joint
+  double seconds = 1;  ///< at least; longer where the joints take longer
+};
+
+/// The rig's pan-tilt head turns to and fro meanwhile, by so much (rad); 0: it stands still.
+struct HeadSway {
+  double pan = 0.20, tilt = 0.06;
+  double pan_s = 9, tilt_s = 6.5;  ///< periods
+};
+
+/// The same rig and steps give the same motion.
+class ToolScript final : public ScriptedMotion {
+ public:
+  /// `rig` must outlive this. Throws InputError: no arm, a pose that it cannot reach.
+  ToolScript(const Rig& rig, std::vector<ToolStep> steps, const HeadSway& sway);
+
+  void begin_at(const JointValues& begin) override;
+  std::optional<JointValues> step(double dt, const PredictedRobot& shown) override;
+
+ private:
+  ToolScript(const Rig& rig, const HandOptions& hand, std::vector<ToolStep> steps, const HeadSway& sway);
+  bool advance(const ToolStep& step, double dt);
+  void begin_step();
+  void go_there(const ToolStep& step, double dt);
+  void sway(double dt);
+  JointVector arm() const;
+  void set_arm(const JointVector& q);
+
+  const Rig& rig_;
+  InverseKinematics kinematics_;
+  std::vector<std::size_t> arm_;       // of the rig, per joint of the chain
+  std::vector<std::size_t> grippers_;  // of the rig
+  std::vector<std::size_t> head_;
+  std::vector<ToolStep> steps_;
+  HeadSway sway_;
+  Pose T_world_base_;
+  JointValues position_{}, head_begin_{};
+  std::size_t at_ = 0;
+  double in_step_ = 0, swayed_ = 0, lasts_ = 0;
+  JointVector from_, to_;
+  Pose line_from_ = Pose::Identity();
+  std::optional<PathFollower> follower_;
+  bool began_ = false;
+};
+
+/// A tour of poses above what lies in reach of the arm, the tool pointing down: `count` of them, by `seed`.
+std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count);
+
+}  // namespace foresight

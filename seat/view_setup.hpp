@@ -1,0 +1,13 @@
+// What a view of a live scene needs, before its first image.
+#pragma once
+
+#include "display/view_session.hpp"
+#include "session/live_scene.hpp"
+
+namespace foresight {
+
+/// With charts of a size that suits the cameras' own views. Throws InputError where lenses or model are not known,
+/// naming `where`.
+ViewSetup live_view_setup(const LiveScene& scene, const std::string& where);
+
+}  // namespace foresight

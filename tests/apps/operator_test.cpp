@@ -1,0 +1,48 @@
+// `foresight operator`: a program at the seat, both sides in stepped time; and the seat started wrong.
+#include "tests/apps/program.hpp"
+#include "tests/apps/runs.hpp"
+#include "tests/support/folders.hpp"
+
+namespace foresight {
+namespace {
+
+std::string rig_file() {
+  return (source_folder() / "configs" / "minerva.yaml").string();
+}
+
+// What is shown is what the camera will see, not what it saw.
+TEST(Operator, ATourIsShownAsItWillBe) {
+  const TempFolder folder;
+  const auto report = folder.path() / "report.json", out = folder.path() / "out";
+  const Outcome result =
+      run_program({"operator", rig_file(), "--scripted", "tour", "--delay-ms", "300", "--seconds", "4", "--pictures-hz",
+                   "2", "--no-zero-delay", "--report", report, "--out", out});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json all = read_json(report);
+  EXPECT_TRUE(all["succeeded"]);
+  EXPECT_GT(all["predicted_db"].get<double>(), all["delayed_db"].get<double>() + 6);
+  EXPECT_GT(all["moving_predicted_db"].get<double>(), all["moving_delayed_db"].get<double>() + 6);
+  EXPECT_LT(all["joints_p95"].get<double>(), 0.01);
+  EXPECT_NEAR(all["acts_after_ms"].get<double>(), 310, 15);
+  EXPECT_EQ(all["invalid_share"].get<double>(), 0);
+  const auto shown = names_in(out / "shown");
+  EXPECT_GE(shown.size(), 5u);
+  EXPECT_EQ(names_in(out / "true"), shown);
+  EXPECT_EQ(names_in(out / "delayed"), shown);
+}
+
+TEST(Operator, StartedWrongItSaysWhatToDo) {
+  const auto said = [](std::vector<std::string> words) {
+    words.insert(words.begin(), {"operator", rig_file()});
+    const Outcome result = run_program(words);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(said({"--delay-ms", "100"}), testing::HasSubstr("belongs to --scripted"));
+  EXPECT_THAT(said({"--line", "/no/such/line.yaml"}), testing::HasSubstr("line.yaml"));
+  EXPECT_THAT(said({"--scripted", "dance"}), testing::HasSubstr("tour"));
+  EXPECT_THAT(said({"--scripted", "tour", "--delay-ms", "nan"}), testing::HasSubstr("--delay-ms"));
+}
+
+}  // namespace
+}  // namespace foresight

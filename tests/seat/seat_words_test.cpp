@@ -1,0 +1,68 @@
+// What an operator reads at his seat.
+#include "seat/seat_words.hpp"
+
+namespace foresight {
+namespace {
+
+using Phase = ControlSeatStatus::Phase;
+
+SeatStatus driving() {
+  SeatStatus out;
+  out.control.phase = Phase::holding;
+  out.control.follows = true;
+  out.held = out.engaged = true;
+  out.robot.emplace();
+  out.robot->doing.name = "follows";
+  out.robot->bus_healthy = true;
+  out.robot_age = Duration{0};
+  out.line.clock = OffsetInterval{0, 0};
+  out.shown.status = StateStatus::predicted;
+  return out;
+}
+
+const SeatLine* find(const std::vector<SeatLine>& lines, const std::string& label) {
+  for (const SeatLine& line : lines)
+    if (line.label == label) return &line;
+  return nullptr;
+}
+
+TEST(SeatWords, WhereAllIsWellNothingIsUrgent) {
+  for (const SeatLine& line : seat_lines(driving(), {}, "")) EXPECT_NE(line.urgency, Urgency::trouble) << line.label;
+  EXPECT_EQ(next_step(driving()).words, "driving");
+}
+
+TEST(SeatWords, ASwitchThatDoesNotCountSaysWhatToDo) {
+  SeatStatus status = driving();
+  status.engaged = false;
+  EXPECT_EQ(next_step(status).urgency, Urgency::trouble);
+  EXPECT_NE(next_step(status).cure.find("press again"), std::string::npos);
+  const auto lines = seat_lines(status, {}, "");
+  ASSERT_TRUE(find(lines, "in command"));
+  EXPECT_EQ(find(lines, "in command")->urgency, Urgency::trouble);
+}
+
+TEST(SeatWords, TroubleIsToldWithoutColour) {
+  SeatStatus status = driving();
+  status.robot_age = std::chrono::seconds(5);
+  status.shown.status = StateStatus::invalid;
+  status.shown.reason = FutureReason::stale;
+  const auto lines = seat_lines(status, {}, "NO IMAGE for 3.0 s");
+  for (const char* label : {"robot", "images", "prediction"}) {
+    ASSERT_TRUE(find(lines, label)) << label;
+    EXPECT_EQ(find(lines, label)->urgency, Urgency::trouble) << label;
+  }
+  EXPECT_STRNE(mark(Urgency::trouble), mark(Urgency::fine));
+  EXPECT_STRNE(mark(Urgency::note), mark(Urgency::fine));
+}
+
+TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
+  SeatStatus status;
+  status.control.words = "looking for the robot";
+  EXPECT_EQ(next_step(status).words, "looking for the robot");
+  const auto lines = seat_lines(status, {}, "");
+  ASSERT_TRUE(find(lines, "robot"));
+  EXPECT_EQ(find(lines, "robot")->urgency, Urgency::trouble);
+}
+
+}  // namespace
+}  // namespace foresight
