@@ -62,7 +62,7 @@ void ControlDesk::take(DeskPeer& from, const ClockPong& pong, RobotTime now) {
     permit_.withdraw(RestCause::clock_jumped);
 }
 
-void ControlDesk::answer(const DeskPeer& to, Verdict verdict) {
+void ControlDesk::answer(const DeskPeer& to, LeaseVerdict verdict) {
   verdict.number = to.asked;
   send(to, std::move(verdict));
 }
@@ -155,8 +155,9 @@ RequestOutcome ControlDesk::judge(const DeskPeer& from, const Request& request, 
   if (request.what == LineRequest::emergency_stop) return RequestOutcome::taken;
   if (from.theirs != holder_ || request.lease != permit_.lease()) return RequestOutcome::not_holder;
   const auto given = from.clock.to_here(request.given);
-  const bool timely = given && given->earliest() <= now &&
-                      now <= given->earliest() + std::clamp(request.lasts, Duration{0}, kRequestLife + options_.life.allowed_delay);
+  const bool timely =
+      given && given->earliest() <= now &&
+      now <= given->earliest() + std::clamp(request.lasts, Duration{0}, kRequestLife + options_.life.allowed_delay);
   if (!timely || requests_.size() >= kMostRequests) return RequestOutcome::expired;
   return request.consent == permit_.consent() ? RequestOutcome::taken : RequestOutcome::before_stop;
 }

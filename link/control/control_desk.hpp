@@ -32,8 +32,8 @@ struct DeskCounts {
 /// Pure logic: does not wait, speaks to no device. One thread. Whatever comes may be wrong, old, or somebody else's.
 class ControlDesk {
  public:
-  static constexpr Duration kLease = std::chrono::seconds(2);     ///< without a word of the holder
-  static constexpr Duration kAsksFor = std::chrono::seconds(10);  ///< after an Ask
+  static constexpr Duration kLease = std::chrono::seconds(2);        ///< without a word of the holder
+  static constexpr Duration kAsksFor = std::chrono::seconds(10);     ///< after an Ask
   static constexpr Duration kRequestLife = std::chrono::seconds(1);  ///< beside a slow line's allowed delay
 
   explicit ControlDesk(ControlDeskOptions options);
@@ -82,7 +82,7 @@ class ControlDesk {
   void greet(Nonce theirs, const Hello& hello, RobotTime now);
   RequestOutcome judge(const DeskPeer& from, const Request& request, RobotTime now) const;
   void grant(DeskPeer& to, RobotTime now);
-  void answer(const DeskPeer& to, Verdict verdict);
+  void answer(const DeskPeer& to, LeaseVerdict verdict);
   std::string refusal(const DeskPeer& to) const;
   DeskPeer* asking(RobotTime now);
   void tell_state(RobotTime now);

@@ -50,7 +50,7 @@ void ControlSeat::receive(const FromRobot& message, OperatorTime now) {
   if (message.to != session_ || message.from != desk_) return;
   if (const auto* ping = std::get_if<ClockPing>(&message.body)) take(*ping, now);
   if (const auto* pong = std::get_if<ClockPong>(&message.body)) take(*pong, now);
-  if (const auto* verdict = std::get_if<Verdict>(&message.body)) take(*verdict, now);
+  if (const auto* verdict = std::get_if<LeaseVerdict>(&message.body)) take(*verdict, now);
   if (const auto* answer = std::get_if<Answer>(&message.body)) take(*answer);
 }
 
@@ -89,7 +89,7 @@ void ControlSeat::take(const ClockPong& pong, OperatorTime now) {
   if (news != ClockNews::nonsense && news != ClockNews::stale) answered_ = now;
 }
 
-void ControlSeat::take(const Verdict& verdict, OperatorTime now) {
+void ControlSeat::take(const LeaseVerdict& verdict, OperatorTime now) {
   if (verdict.number != ask_number_ || !wanted_) return;
   verdict_came_ = true;
   asked_ = now;

@@ -1,6 +1,6 @@
 // The operator's side of control over the line: finds the robot, asks for the lease, sends set-points and requests.
 //
-//   connecting --Welcome--> connected --Verdict: granted--> holding --the state names another holder--> connected
+//   connecting --Welcome--> connected --LeaseVerdict: granted--> holding --the state names another holder--> connected
 //       ^---------------- no answer for long, or another start of the robot ---------------------'
 //
 // It agrees to motion with each press of the switch, by the consent that the robot's newest state asks for. What comes
@@ -91,7 +91,7 @@ class ControlSeat {
   void take(const FromRobot& message, const Welcome& welcome, OperatorTime now);
   void take(const ClockPing& ping, OperatorTime now);
   void take(const ClockPong& pong, OperatorTime now);
-  void take(const Verdict& verdict, OperatorTime now);
+  void take(const LeaseVerdict& verdict, OperatorTime now);
   void take(const Answer& answer);
   void take_state(const ControlState& state, OperatorTime now);
   void connect(OperatorTime now);

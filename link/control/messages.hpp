@@ -6,7 +6,7 @@
 //                                  <---           Welcome{who I am, what differs}         both draw random numbers, and
 //      ClockPing, ClockPong       <--->           ClockPing, ClockPong                    name both in all that follows
 //      Ask                         --->
-//                                  <---           Verdict{granted: the lease} or {who holds it}
+//                                  <---           LeaseVerdict{granted: the lease} or {who holds it}
 //                                  <---           ControlState{holder, consent, joints}   many times a second
 //      SetPoint{lease, consent}    --->                                                   many times a second
 //      Request{id}                 --->           executed once
@@ -38,7 +38,7 @@ using LinePositions = std::array<double, kMostLineJoints>;  ///< rad or m, in th
 struct Hello {
   Identity identity;
 };
-/// May I command? Repeated, with the same number, until a Verdict comes.
+/// May I command? Repeated, with the same number, until a LeaseVerdict comes.
 struct Ask {
   std::uint64_t number = 0;
 };
@@ -89,7 +89,7 @@ struct Welcome {
   Identity identity;
   std::vector<Difference> differences;
 };
-struct Verdict {
+struct LeaseVerdict {
   std::uint64_t number = 0;  ///< of the Ask
   Nonce lease = 0;           ///< 0: refused
   std::string words;         ///< why, and what to do
@@ -156,6 +156,6 @@ struct Envelope {
   Body body;
 };
 using FromOperator = Envelope<std::variant<Hello, ClockPing, ClockPong, Ask, GiveBack, HandOver, SetPoint, Request>>;
-using FromRobot = Envelope<std::variant<Welcome, ClockPing, ClockPong, Verdict, Answer, ControlState>>;
+using FromRobot = Envelope<std::variant<Welcome, ClockPing, ClockPong, LeaseVerdict, Answer, ControlState>>;
 
 }  // namespace foresight

@@ -57,7 +57,7 @@ template <OneOf<Welcome> Self, typename V>
 void visit_fields(Self& m, V& v) {
   v("robot", m.robot)("identity", m.identity)("differences", m.differences);
 }
-template <OneOf<Verdict> Self, typename V>
+template <OneOf<LeaseVerdict> Self, typename V>
 void visit_fields(Self& m, V& v) {
   v("number", m.number)("lease", m.lease)("words", m.words);
 }
@@ -107,7 +107,7 @@ struct Sound {
            std::ranges::all_of(m.differences,
                                [](const Difference& d) { return is_short(d.words) && is_short(d.cure); });
   }
-  bool operator()(const Verdict& m) const { return is_short(m.words); }
+  bool operator()(const LeaseVerdict& m) const { return is_short(m.words); }
   bool operator()(const Answer& m) const { return m.outcome <= RequestOutcome::before_stop; }
   bool operator()(const ControlState& m) const {
     return m.joints <= kMostLineJoints && m.cause <= RestCause::robot_stopped &&
