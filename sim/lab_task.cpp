@@ -10,7 +10,7 @@ namespace {
 constexpr double kMatTop = 0.002;
 constexpr float kBoard = static_cast<float>(kTrayBoard);
 
-Pose at(double x, double y, double z, double yaw_deg) {
+Pose on_table(double x, double y, double z, double yaw_deg) {
   Pose pose = Pose::Identity();
   pose.translate(Eigen::Vector3d(x, y, z));
   pose.rotate(Eigen::AngleAxisd(yaw_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()));
@@ -26,12 +26,12 @@ void add_task_things(LabBuilder& b) {
     add_box(b.part(name, pose, 0.006), {0, 0, 0}, {size, size, static_cast<float>(kBrickHeight)}, 0,
             BoxPaint::all(face));
   };
-  brick("brick_red", at(-0.20, -0.10, kMatTop, 8), 0xc8432f, 'R');
-  brick("brick_blue", at(-0.13, 0.03, kMatTop, -20), 0x2f5f9e, 'B');
+  brick("brick_red", on_table(-0.20, -0.10, kMatTop, 8), 0xc8432f, 'R');
+  brick("brick_blue", on_table(-0.13, 0.03, kMatTop, -20), 0x2f5f9e, 'B');
 
   const int wood = b.material(
       [](double t, unsigned s) { return prints::wood(kTraySide, kTraySide, t, 0xd9b98c, 0xa2774a, 0.15, s); }, 1);
-  Facets& tray = b.part("tray", at(0.05, -0.17, 0, 0), 0.012);
+  Facets& tray = b.part("tray", on_table(0.05, -0.17, 0, 0), 0.012);
   const auto side = static_cast<float>(kTraySide), height = static_cast<float>(kTrayHeight);
   const float middle = (side - kBoard) / 2, inside = side - 2 * kBoard;
   add_box(tray, {0, 0, 0}, {inside - 0.0004f, inside - 0.0004f, kBoard}, 0, BoxPaint::all(wood));

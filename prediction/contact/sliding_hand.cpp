@@ -18,7 +18,7 @@ constexpr double kClose = 3 * kSkin;    // nearer than this, parts may be longer
 constexpr double kDrift = 1e-5;         // m that a part may come nearer than the skin
 constexpr double kDepthExact = 2e-5;    // m to which depths are compared
 constexpr double kGateNear = 0.03;      // m of margin within which the gate's couples close ways
-constexpr double kStill = 1e-5;         // rad or m that a step changes once the tool is as near as it gets
+constexpr double kUnmoved = 1e-5;       // rad or m that a step changes once the tool is as near as it gets
 constexpr double kDamping = 1e-4;       // of bounded_step, where 1 rad of the joints moves the tool by about 1
 constexpr double kThere = 1e-4;         // m and rad from the hand that need no reason
 constexpr double kTurnLess = 4;  // by how much more turning weighs than in the open: tools do not twist to get deeper
@@ -288,7 +288,7 @@ void SlidingHand::slide(const Pose& hand, double dt, const JointVector& start, L
     std::vector<ClosedWay> ways = closed_ways(now);
     const JointVector dq = bounded_step(change, e, kDamping, lower, upper, ways);
     lean(now, ways);
-    if (dq.cwiseAbs().maxCoeff() < kStill) return;
+    if (dq.cwiseAbs().maxCoeff() < kUnmoved) return;
     const std::vector<double> wanted = spread(dq);
     if (go_part(wanted, allowed(now, wanted, kDrift), kLeastShare, now) <= 0) return;
   }
