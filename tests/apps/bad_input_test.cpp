@@ -5,7 +5,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -209,4 +209,4 @@ TEST_F(BadInput, WithoutARunNothingHappens) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::bad_input_test

@@ -3,7 +3,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::bench_test {
 namespace {
 
 class Bench : public testing::Test {
@@ -78,4 +78,4 @@ TEST_F(Bench, WrongInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::bench_test

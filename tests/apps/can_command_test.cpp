@@ -10,7 +10,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::can_command_test {
 namespace {
 
 using testing::HasSubstr;
@@ -216,4 +216,4 @@ TEST(Can, BenchMeetsTheLimit) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::can_command_test

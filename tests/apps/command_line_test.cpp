@@ -2,7 +2,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::command_line_test {
 namespace {
 
 using testing::HasSubstr;
@@ -90,4 +90,4 @@ TEST(CommandLine, SynthStoppedByCtrlCLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::command_line_test

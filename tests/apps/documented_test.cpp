@@ -14,7 +14,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::documented_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ TEST_F(Documented, ThePageOnOnesOwnRobotKnowsItsOptions) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::documented_test

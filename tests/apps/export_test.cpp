@@ -11,7 +11,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::export_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,4 +175,4 @@ TEST_F(Export, CtrlCLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::export_test

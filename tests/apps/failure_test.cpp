@@ -8,7 +8,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::failure_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ TEST_F(Failure, TooLittleTextureMemoryIsNamed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::failure_test

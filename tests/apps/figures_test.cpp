@@ -6,7 +6,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::figures_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ TEST_F(Figures, WrongInputEndsWithCode2AndNoOutput) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::figures_test

@@ -4,7 +4,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::input_test {
 namespace {
 
 using testing::HasSubstr;
@@ -52,4 +52,4 @@ TEST_F(Input, WhatIsNotThereIsSaid) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::input_test

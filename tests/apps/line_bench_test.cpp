@@ -3,7 +3,7 @@
 #include "tests/apps/runs.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::line_bench_test {
 namespace {
 
 using testing::AllOf;
@@ -48,4 +48,4 @@ TEST(LineBench, RefusesLinesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::line_bench_test

@@ -5,7 +5,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight {
+namespace foresight::line_recording_test {
 namespace {
 
 using testing::HasSubstr;
@@ -90,4 +90,4 @@ TEST_F(LineRecording, AFullDiskIsToldAndWhatCameBeforeIsKept) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::line_recording_test

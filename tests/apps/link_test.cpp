@@ -6,7 +6,7 @@
 #include "tests/support/folders.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight {
+namespace foresight::link_test {
 namespace {
 
 using testing::HasSubstr;
@@ -96,4 +96,4 @@ TEST_F(Link, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::link_test

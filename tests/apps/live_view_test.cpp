@@ -7,7 +7,7 @@
 #include "tests/apps/runs.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::live_view_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -177,4 +177,4 @@ TEST(LiveViewInput, WrongInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::live_view_test

@@ -4,7 +4,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::long_run_test {
 namespace {
 
 using nlohmann::json;
@@ -72,4 +72,4 @@ INSTANTIATE_TEST_SUITE_P(Budgets, LongRun,
                          [](const auto& budget) { return std::string(budget.param.megabytes) + "MB"; });
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::long_run_test

@@ -3,7 +3,7 @@
 #include "tests/apps/runs.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::operator_test {
 namespace {
 
 std::string rig_file() {
@@ -45,4 +45,4 @@ TEST(Operator, StartedWrongItSaysWhatToDo) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::operator_test

@@ -7,7 +7,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::own_robot_seen_test {
 namespace {
 
 using testing::HasSubstr;
@@ -95,4 +95,4 @@ TEST_F(OwnRobotSeen, ASceneThatCannotBeReadIsNamedBeforeAnythingMoves) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::own_robot_seen_test

@@ -8,7 +8,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::own_robot_test {
 namespace {
 
 using testing::HasSubstr;
@@ -92,4 +92,4 @@ TEST(MockFault, StopsARunningRobotAndIsNamed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::own_robot_test

@@ -2,7 +2,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::prediction_bench_test {
 namespace {
 
 const std::string kArm = (source_folder() / "configs/arm.urdf").string();
@@ -67,4 +67,4 @@ TEST(Prediction, WrongInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::prediction_bench_test

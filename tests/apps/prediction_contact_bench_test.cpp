@@ -2,7 +2,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::prediction_contact_bench_test {
 namespace {
 
 TEST(PredictionContact, AllThreeSayTheSameTouchesAndDistancesAreFcls) {
@@ -40,4 +40,4 @@ TEST(PredictionContact, SaysWhatIsWrongWithARobotWithoutShapes) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::prediction_contact_bench_test

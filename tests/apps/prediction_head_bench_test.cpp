@@ -5,7 +5,7 @@
 #include "tests/apps/runs.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::prediction_head_bench_test {
 namespace {
 
 const std::string kHeader = "time_s,x,y,z,qx,qy,qz,qw\n";
@@ -103,4 +103,4 @@ TEST(PredictionHead, WrongInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::prediction_head_bench_test

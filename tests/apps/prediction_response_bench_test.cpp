@@ -5,7 +5,7 @@
 #include "tests/apps/runs.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::prediction_response_bench_test {
 namespace {
 
 nlohmann::json measured(const TempFolder& out, const std::string& commands, const std::string& states) {
@@ -103,4 +103,4 @@ TEST(PredictionResponse, WrongInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::prediction_response_bench_test

@@ -3,7 +3,7 @@
 #include "tests/apps/runs.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::prediction_robot_bench_test {
 namespace {
 
 nlohmann::json measured(const TempFolder& out, const std::string& rig, std::vector<std::string> more) {
@@ -56,4 +56,4 @@ TEST(PredictionRobot, ARigWithoutARobotIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::prediction_robot_bench_test

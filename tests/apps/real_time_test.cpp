@@ -4,7 +4,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::real_time_test {
 namespace {
 
 using nlohmann::json;
@@ -57,4 +57,4 @@ TEST(RealTime, AWindowShowsTheReplayAndCloses) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::real_time_test

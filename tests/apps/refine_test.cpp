@@ -11,7 +11,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::refine_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -206,4 +206,4 @@ TEST_F(Refine, TagsDoNotVetoGoodPoses) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::refine_test

@@ -6,7 +6,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::replay_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -246,4 +246,4 @@ TEST_F(Replay, CtrlCLeavesFinishedFramesAndValidReports) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::replay_test

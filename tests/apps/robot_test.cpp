@@ -10,7 +10,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::robot_test {
 namespace {
 
 using testing::HasSubstr;
@@ -251,4 +251,4 @@ TEST_F(RobotInput, DoctorIsUsefulWithoutAnyHardware) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::robot_test

@@ -8,7 +8,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
-namespace foresight {
+namespace foresight::synth_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -147,4 +147,4 @@ TEST_F(Synth, AFullDiskLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::synth_test

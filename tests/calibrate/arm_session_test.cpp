@@ -16,7 +16,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/support/html_check.hpp"
 
-namespace foresight {
+namespace foresight::arm_session_test {
 namespace {
 
 using testing::HasSubstr;
@@ -221,4 +221,4 @@ TEST(ArmStations, ProposesClearStationsThatTurnTheFlange) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::arm_session_test

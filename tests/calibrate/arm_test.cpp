@@ -13,7 +13,7 @@
 #include "tests/support/folders.hpp"
 #include "tests/support/html_check.hpp"
 
-namespace foresight {
+namespace foresight::arm_test {
 namespace {
 
 using testing::AllOf;
@@ -322,4 +322,4 @@ TEST_F(Arm, WrongJointsAreNamed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::arm_test

@@ -11,7 +11,7 @@
 #include "calibration/target/image_input.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
 
-namespace foresight {
+namespace foresight::capture_test {
 namespace {
 
 using testing::AllOf;
@@ -137,4 +137,4 @@ TEST_F(Capture, SaysWhichCamerasAreMissing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::capture_test

@@ -11,7 +11,7 @@
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/display_lens/simulated_display.hpp"
 
-namespace foresight {
+namespace foresight::display_images_test {
 namespace {
 
 using testing::AllOf;
@@ -91,4 +91,4 @@ TEST_F(DisplayImages, AFolderWithoutThePatternIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::display_images_test

@@ -12,7 +12,7 @@
 #include "tests/photometric/synthetic_camera.hpp"
 #include "tests/support/html_check.hpp"
 
-namespace foresight {
+namespace foresight::export_scene_display_test {
 namespace {
 
 using testing::AllOf;
@@ -153,4 +153,4 @@ TEST(PhotometricCommand, FindsTheGainOfAPair) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::export_scene_display_test

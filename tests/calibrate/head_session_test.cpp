@@ -5,7 +5,7 @@
 #include "calibration/robot/robot_results.hpp"
 #include "tests/calibrate/mock_head.hpp"
 
-namespace foresight {
+namespace foresight::head_session_test {
 namespace {
 
 using testing::AllOf;
@@ -117,4 +117,4 @@ TEST_F(HeadSession, WrongInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::head_session_test

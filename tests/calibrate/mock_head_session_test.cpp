@@ -12,7 +12,7 @@
 #include "tests/support/folders.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight {
+namespace foresight::mock_head_session_test {
 namespace {
 
 constexpr double kEvery = 0.9;  // s; beyond the window of the tags' correction: each pose stands on its own tags
@@ -182,4 +182,4 @@ TEST_F(MockLabHead, IsCalibratedByTheLabsOwnPictures) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::mock_head_session_test

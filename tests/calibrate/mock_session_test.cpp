@@ -10,7 +10,7 @@
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight {
+namespace foresight::mock_session_test {
 namespace {
 
 using testing::HasSubstr;
@@ -149,4 +149,4 @@ TEST(MockBoardPath, ShowsTheWholeBoardToBothCameras) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::mock_session_test

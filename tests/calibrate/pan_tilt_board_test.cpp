@@ -12,7 +12,7 @@
 #include "tests/support/html_check.hpp"
 #include "tests/target/drawn_board.hpp"
 
-namespace foresight {
+namespace foresight::pan_tilt_board_test {
 namespace {
 
 using testing::AllOf;
@@ -101,4 +101,4 @@ TEST_F(PanTiltBoard, TooFewViewsAreRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::pan_tilt_board_test

@@ -7,7 +7,7 @@
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/robot_calibration/synthetic_rig.hpp"
 
-namespace foresight {
+namespace foresight::scene_tag_views_test {
 namespace {
 
 using testing::AllOf;
@@ -111,4 +111,4 @@ TEST(SceneFromTagViews, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::scene_tag_views_test

@@ -8,7 +8,7 @@
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/support/html_check.hpp"
 
-namespace foresight {
+namespace foresight::session_test {
 namespace {
 
 using testing::AllOf;
@@ -185,4 +185,4 @@ TEST(CalibrateCommands, WrongInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::session_test

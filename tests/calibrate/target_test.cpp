@@ -2,7 +2,7 @@
 
 #include "tests/calibrate/run_calibrate.hpp"
 
-namespace foresight {
+namespace foresight::target_test {
 namespace {
 
 using testing::AllOf;
@@ -35,4 +35,4 @@ TEST(TargetCommand, WrongRulersLeaveNothingBehind) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::target_test

@@ -14,7 +14,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/html_check.hpp"
 
-namespace foresight {
+namespace foresight::html_report_test {
 namespace {
 
 using testing::HasSubstr;
@@ -174,4 +174,4 @@ TEST(HtmlReport, NamesTheFileThatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::html_report_test

@@ -6,7 +6,7 @@
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::result_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -155,4 +155,4 @@ TEST(ResultFile, DatesAreIso) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::result_file_test

@@ -2,7 +2,7 @@
 
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::camera_config_test {
 namespace {
 
 using testing::HasSubstr;
@@ -107,4 +107,4 @@ TEST(CameraByName, KnowsLibcamera) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::camera_config_test

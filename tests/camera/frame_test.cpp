@@ -11,7 +11,7 @@
 
 #include "common/error.hpp"
 
-namespace foresight {
+namespace foresight::frame_test {
 namespace {
 
 constexpr int kWidth = 16, kHeight = 12;
@@ -176,4 +176,4 @@ TEST(Frame, FormatsByName) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::frame_test

@@ -9,7 +9,7 @@
 
 #include "common/error.hpp"
 
-namespace foresight {
+namespace foresight::image_folder_camera_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -80,4 +80,4 @@ TEST_F(ImageFolder, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::image_folder_camera_test

@@ -6,7 +6,7 @@
 #include "drivers/camera/stereo_camera.hpp"
 #include "drivers/camera/v4l2_camera.hpp"
 
-namespace foresight {
+namespace foresight::kernel_camera_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -214,4 +214,4 @@ TEST_F(Vivid, ZUnplugged) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::kernel_camera_test

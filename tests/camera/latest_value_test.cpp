@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-namespace foresight {
+namespace foresight::latest_value_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -56,4 +56,4 @@ TEST(LatestValue, UnderThreadsNothingIsTornOrTakenTwice) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::latest_value_test

@@ -7,7 +7,7 @@
 
 #include "common/error.hpp"
 
-namespace foresight {
+namespace foresight::libcamera_camera_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -276,4 +276,4 @@ TEST(RealLibcamera, NamesWhatIsThereWhereACameraIsNot) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::libcamera_camera_test

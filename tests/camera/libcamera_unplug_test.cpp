@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-namespace foresight::libcam {
+namespace foresight::libcam::libcamera_unplug_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,4 +59,4 @@ TEST(LibcameraUnplug, SessionsEndWhenTheyWereTold) {
 }
 
 }  // namespace
-}  // namespace foresight::libcam
+}  // namespace foresight::libcam::libcamera_unplug_test

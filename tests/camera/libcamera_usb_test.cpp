@@ -5,7 +5,7 @@
 #include "drivers/camera/libcamera_camera.hpp"
 #include "tests/camera/emulated_cameras.hpp"
 
-namespace foresight {
+namespace foresight::libcamera_usb_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -115,4 +115,4 @@ TEST_F(LibcameraUsb, AnUnplugThatNobodyTellsIsFoundByTheWatchdog) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::libcamera_usb_test

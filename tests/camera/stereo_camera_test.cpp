@@ -7,7 +7,7 @@
 
 #include "common/error.hpp"
 
-namespace foresight {
+namespace foresight::stereo_camera_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -181,4 +181,4 @@ TEST_F(Stereo, StartsBothOrNone) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::stereo_camera_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-namespace foresight {
+namespace foresight::stereo_pairing_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -162,4 +162,4 @@ TEST(StereoPairing, TooFarApartIsNoPair) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::stereo_pairing_test

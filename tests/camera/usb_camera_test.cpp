@@ -5,7 +5,7 @@
 #include "drivers/camera/v4l2_camera.hpp"
 #include "tests/camera/emulated_cameras.hpp"
 
-namespace foresight {
+namespace foresight::usb_camera_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -129,4 +129,4 @@ TEST_F(UsbCameras, OneThatIsUnpluggedReturnsUnderItsSerialNumber) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::usb_camera_test

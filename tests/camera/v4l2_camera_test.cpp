@@ -7,7 +7,7 @@
 #include "common/error.hpp"
 #include "fake_v4l2.hpp"
 
-namespace foresight {
+namespace foresight::v4l2_camera_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -258,4 +258,4 @@ TEST(SystemV4l2, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::v4l2_camera_test

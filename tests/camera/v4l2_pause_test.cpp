@@ -4,7 +4,7 @@
 #include "drivers/camera/v4l2_camera.hpp"
 #include "fake_v4l2.hpp"
 
-namespace foresight {
+namespace foresight::v4l2_pause_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -92,4 +92,4 @@ TEST_F(V4l2Pause, ABufferRefusedAfterAPauseRestartsTheStream) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::v4l2_pause_test

@@ -4,7 +4,7 @@
 #include "common/error.hpp"
 #include "tests/camera_calibration/synthetic_rig.hpp"
 
-namespace foresight {
+namespace foresight::bad_input_test {
 namespace {
 
 using test::synthetic_rig;
@@ -228,4 +228,4 @@ TEST(HeldOut, AViewThatIsWrongAsAWholeIsNotHidden) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::bad_input_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::lens_slopes_test {
 namespace {
 
 LensParameters lens_of(Distortion distortion) {
@@ -83,4 +83,4 @@ TEST(LensSlopes, NothingBehindTheCamera) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::lens_slopes_test

@@ -4,7 +4,7 @@
 #include "calibration/camera/camera_calibration.hpp"
 #include "tests/camera_calibration/synthetic_rig.hpp"
 
-namespace foresight {
+namespace foresight::missing_motion_test {
 namespace {
 
 using test::synthetic_rig;
@@ -57,4 +57,4 @@ TEST(MissingMotion, NothingIsMissingOfGoodViews) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::missing_motion_test

@@ -8,7 +8,7 @@
 #include "calibration/target/corner_files.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::opencv_stereo_test {
 namespace {
 
 std::filesystem::path corner_folder() {
@@ -78,4 +78,4 @@ TEST_F(OpenCvStereo, GuessesTheImageSize) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::opencv_stereo_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace foresight {
+namespace foresight::pose_solver_test {
 namespace {
 
 /// Points of the body, and where they were measured: the residuals are linear in neither turn nor shift.
@@ -185,4 +185,4 @@ TEST(PoseSolver, EstimatesNumbersBesideThePose) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::pose_solver_test

@@ -5,7 +5,7 @@
 #include "calibration/camera/rigid_motion.hpp"
 #include "tests/camera_calibration/synthetic_rig.hpp"
 
-namespace foresight {
+namespace foresight::residual_test {
 namespace {
 
 class Residual : public testing::TestWithParam<Distortion> {};
@@ -57,4 +57,4 @@ TEST(Unproject, IsTheInverseOfProject) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::residual_test

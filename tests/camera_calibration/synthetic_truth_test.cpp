@@ -7,7 +7,7 @@
 #include "calibration/camera/rig_start.hpp"
 #include "tests/camera_calibration/synthetic_rig.hpp"
 
-namespace foresight {
+namespace foresight::synthetic_truth_test {
 namespace {
 
 struct Count {
@@ -84,4 +84,4 @@ TEST(SyntheticTruth, FindsTheWarp) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::synthetic_truth_test

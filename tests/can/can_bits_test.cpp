@@ -4,7 +4,7 @@
 
 #include "tests/can/frames.hpp"
 
-namespace foresight {
+namespace foresight::can_bits_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -121,4 +121,4 @@ TEST(CanBusLoad, IsTheShareOfTheLastSecond) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::can_bits_test

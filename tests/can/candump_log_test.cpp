@@ -7,7 +7,7 @@
 #include "tests/can/frames.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::candump_log_test {
 namespace {
 
 using testing::HasSubstr;
@@ -188,4 +188,4 @@ TEST(CandumpWriter, SaysThatTheDiskIsFull) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::candump_log_test

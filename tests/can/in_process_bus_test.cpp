@@ -4,7 +4,7 @@
 
 #include "tests/can/frames.hpp"
 
-namespace foresight {
+namespace foresight::in_process_bus_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -50,4 +50,4 @@ TEST(InProcessBus, WaitingMovesASteppedClockToTheAnswer) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::in_process_bus_test

@@ -8,7 +8,7 @@
 #include "drivers/can/in_process_bus.hpp"
 #include "tests/can/frames.hpp"
 
-namespace foresight {
+namespace foresight::in_process_faults_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -218,4 +218,4 @@ TEST(CanFaults, ValidateNamesFieldAndValue) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::in_process_faults_test

@@ -17,7 +17,7 @@
 
 #include "tests/support/allocations.hpp"
 
-namespace foresight {
+namespace foresight::link_message_test {
 namespace {
 
 /// Writes attributes one after the other, as RFC 3549 has them.
@@ -208,4 +208,4 @@ TEST(CanRestart, AsksTheKernelWithoutAllocation) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::link_message_test

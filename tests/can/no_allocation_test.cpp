@@ -8,7 +8,7 @@
 #include "tests/can/frames.hpp"
 #include "tests/support/allocations.hpp"
 
-namespace foresight {
+namespace foresight::no_allocation_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -90,4 +90,4 @@ TEST(NoAllocation, SocketCan) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::no_allocation_test

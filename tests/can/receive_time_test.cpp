@@ -5,7 +5,7 @@
 #include <ctime>
 #include <random>
 
-namespace foresight {
+namespace foresight::receive_time_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -44,4 +44,4 @@ TEST(ReceiveTime, StartsAfreshWhenAClockIsSet) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::receive_time_test

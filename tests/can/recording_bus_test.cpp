@@ -7,7 +7,7 @@
 #include "drivers/can/replay_log.hpp"
 #include "tests/can/frames.hpp"
 
-namespace foresight {
+namespace foresight::recording_bus_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -104,4 +104,4 @@ TEST(ReplayLog, StopsWhenAskedAndCountsFailures) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::recording_bus_test

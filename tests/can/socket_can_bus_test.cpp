@@ -15,7 +15,7 @@
 #include "drivers/can/kernel_frame.hpp"
 #include "tests/can/frames.hpp"
 
-namespace foresight {
+namespace foresight::socket_can_bus_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -238,4 +238,4 @@ TEST(SocketCanRestart, BringsABusBackFromBusOff) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::socket_can_bus_test

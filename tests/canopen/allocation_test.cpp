@@ -4,7 +4,7 @@
 #include "scripted_slave.hpp"
 #include "tests/support/allocations.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::allocation_test {
 namespace {
 
 TEST(Loop, DoesNotAllocate) {
@@ -35,4 +35,4 @@ TEST(Loop, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::allocation_test

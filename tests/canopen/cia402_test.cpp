@@ -4,7 +4,7 @@
 
 #include "drivers/canopen/cia402_machine.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::cia402_test {
 namespace {
 
 using S = Cia402State;
@@ -258,4 +258,4 @@ TEST_F(Machine, HomingOnlyFromEnabled) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::cia402_test

@@ -9,7 +9,7 @@
 #include "frames.hpp"
 #include "recorded.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::describe_test {
 namespace {
 
 // The recordings and what their posters say of each frame.
@@ -146,4 +146,4 @@ TEST(Describe, SaysSomethingOfEveryFrame) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::describe_test

@@ -8,7 +8,7 @@
 #include "frames.hpp"
 #include "recorded.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::described_bus_test {
 namespace {
 
 using testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(DescribedBus, SchunkArm) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::described_bus_test

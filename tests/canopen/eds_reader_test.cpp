@@ -9,7 +9,7 @@
 #include "common/error.hpp"
 #include "recorded.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::eds_reader_test {
 namespace {
 
 using testing::HasSubstr;
@@ -159,4 +159,4 @@ TEST(Eds, MutatedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::eds_reader_test

@@ -7,7 +7,7 @@
 #include "frames.hpp"
 #include "scripted_slave.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::network_fuzz_test {
 namespace {
 
 CanFrame random_frame(std::mt19937& random) {
@@ -97,4 +97,4 @@ TEST(NetworkFuzz, TruncatedAndForeignFramesChangeNothing) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::network_fuzz_test

@@ -4,7 +4,7 @@
 #include "frames.hpp"
 #include "scripted_slave.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::network_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -312,4 +312,4 @@ TEST(NetworkModes, ProfilePositionTakesEachSetPointOnce) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::network_test

@@ -6,7 +6,7 @@
 #include "drivers/canopen/nmt.hpp"
 #include "frames.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::pdo_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -74,4 +74,4 @@ TEST(Heartbeat, ParsesStatesOnly) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::pdo_test

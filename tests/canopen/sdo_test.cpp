@@ -5,7 +5,7 @@
 #include "drivers/canopen/wire.hpp"
 #include "frames.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::sdo_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -159,4 +159,4 @@ TEST_F(Sdo, EndlessUploadEnds) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::sdo_test

@@ -3,7 +3,7 @@
 #include "common/error.hpp"
 #include "scripted_slave.hpp"
 
-namespace foresight::canopen {
+namespace foresight::canopen::setup_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -206,4 +206,4 @@ TEST(Setup, ConfigsAreChecked) {
 }
 
 }  // namespace
-}  // namespace foresight::canopen
+}  // namespace foresight::canopen::setup_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/random_line.hpp"
 
-namespace foresight {
+namespace foresight::clock_tracker_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -258,4 +258,4 @@ TEST(ClockTrackerTest, NothingIsKnownBeforeAnAnswerAndNonsenseIsNotBelieved) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::clock_tracker_test

@@ -11,7 +11,7 @@
 #include "apps/command_line/named_files.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::output_guard_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -166,4 +166,4 @@ TEST_F(OutputGuardTest, PlacesThatCannotBeWrittenAreNamed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::output_guard_test

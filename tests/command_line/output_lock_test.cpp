@@ -8,7 +8,7 @@
 #include "common/partial_path.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::output_lock_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,4 +96,4 @@ TEST(Partial, AProgramThatEndedIsDeadBeforeItsParentKnows) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::output_lock_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::picture_size_test {
 namespace {
 
 TEST(PictureSize, IsTwoWholeNumbersAndNothingElse) {
@@ -14,4 +14,4 @@ TEST(PictureSize, IsTwoWholeNumbersAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::picture_size_test

@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-namespace foresight {
+namespace foresight::broadcast_ring_test {
 namespace {
 
 /// All of one put, or torn.
@@ -78,4 +78,4 @@ TEST(BroadcastRing, ThreadsSeeWholeValuesInOrderAndCountAllOthers) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::broadcast_ring_test

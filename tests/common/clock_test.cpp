@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::clock_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -39,4 +39,4 @@ TEST(MonotonicClock, SleepsUntilAnInstant) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::clock_test

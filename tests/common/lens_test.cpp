@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace foresight {
+namespace foresight::lens_test {
 namespace {
 
 Lens make(LensModel model, std::array<double, 8> d, double f = 500, int width = 640, int height = 480) {
@@ -161,4 +161,4 @@ TEST(Lens, RefusesWhatIsNoCamera) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::lens_test

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-namespace foresight {
+namespace foresight::rotation_test {
 namespace {
 
 Eigen::Matrix3d some_rotation(unsigned seed) {
@@ -57,4 +57,4 @@ TEST(PrincipalLengths, OfThePlaneAreThoseInSpace) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::rotation_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace foresight {
+namespace foresight::statistics_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -76,4 +76,4 @@ TEST(Statistics, RootMeanSquare) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::statistics_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::suspension_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -25,4 +25,4 @@ TEST(SuspensionWatch, TheMachineIsAwakeNow) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::suspension_test

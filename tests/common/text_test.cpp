@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace foresight {
+namespace foresight::text_test {
 namespace {
 
 TEST(ParseSeconds, IsExactForUnixTimes) {
@@ -69,4 +69,4 @@ TEST(InQuotes, ShortensAndCleans) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::text_test

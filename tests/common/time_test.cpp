@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-namespace foresight {
+namespace foresight::time_test {
 namespace {
 
 template <typename A, typename B>
@@ -40,4 +40,4 @@ TEST(Time, SecondsRoundToTheNearestNanosecond) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::time_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <thread>
 
-namespace foresight {
+namespace foresight::triple_buffer_test {
 namespace {
 
 TEST(TripleBuffer, GivesTheNewestOnce) {
@@ -41,4 +41,4 @@ TEST(TripleBuffer, NeverTearsOrGoesBackBetweenThreads) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::triple_buffer_test

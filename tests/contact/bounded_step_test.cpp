@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::bounded_step_test {
 namespace {
 
 // Three sliding joints: the tool's position is the joints.
@@ -52,4 +52,4 @@ TEST(BoundedStep, LimitsHoldWhereClosedWaysContradictThem) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::bounded_step_test

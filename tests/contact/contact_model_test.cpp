@@ -10,7 +10,7 @@
 #include "scene/primitives.hpp"
 #include "tests/contact/made_robot.hpp"
 
-namespace foresight {
+namespace foresight::contact_model_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -288,4 +288,4 @@ TEST(ContactModel, TrianglesThatAreNoneAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::contact_model_test

@@ -10,7 +10,7 @@
 #include "scene/primitives.hpp"
 #include "tests/contact/made_robot.hpp"
 
-namespace foresight {
+namespace foresight::sliding_hand_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -292,4 +292,4 @@ TEST(SlidingHand, WhatIsNotKnownMovesNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::sliding_hand_test

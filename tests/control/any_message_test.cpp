@@ -3,7 +3,7 @@
 
 #include "tests/control/small_line.hpp"
 
-namespace foresight {
+namespace foresight::any_message_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -61,7 +61,7 @@ class AnyMessageTest : public SmallLineTest {
     switch (random_() % 6) {
       case 0: out.body = Welcome{any(), identity(), {{"words", "cure", true}}}; break;
       case 1: out.body = ClockPong{any(), signed_any(), signed_any()}; break;
-      case 2: out.body = Verdict{any(), any(), "words"}; break;
+      case 2: out.body = LeaseVerdict{any(), any(), "words"}; break;
       case 3: out.body = Answer{any(), static_cast<RequestOutcome>(any() % 5)}; break;
       case 4: {
         ControlState state;
@@ -128,4 +128,4 @@ TEST_F(AnyMessageTest, TheSeatBearsItAndFindsTheRobotAgain) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::any_message_test

@@ -1,7 +1,7 @@
 #include "link/control/control_words.hpp"
 #include "tests/control/small_line.hpp"
 
-namespace foresight {
+namespace foresight::control_desk_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -483,4 +483,4 @@ TEST(SetPointLifeTest, GrowsWithWhatTheLineNeedsAndNoFurther) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::control_desk_test

@@ -10,7 +10,7 @@
 #include "tests/control/session_world.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::control_sessions_test {
 namespace {
 
 /// The recorded lines, where they are at hand.
@@ -67,4 +67,4 @@ TEST(ControlSessionsTest, NothingMovesLateOrWithoutConsent) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::control_sessions_test

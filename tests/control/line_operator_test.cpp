@@ -4,7 +4,7 @@
 #include "tests/control/small_line.hpp"
 #include "tests/robot/prompt_drive.hpp"
 
-namespace foresight {
+namespace foresight::line_operator_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -114,4 +114,4 @@ TEST_F(LineOperatorTest, AGripperKeepsItsGripWhereSetPointsBegin) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::line_operator_test

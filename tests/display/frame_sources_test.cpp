@@ -5,7 +5,7 @@
 #include "display/recorded_source.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::frame_sources_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -156,4 +156,4 @@ TEST_F(FrameSources, ADelayLongerThanThereIsRoomForIsCounted) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::frame_sources_test

@@ -8,7 +8,7 @@
 #include "tests/support/small_scene.hpp"
 #include "texture_gpu/texture_core.hpp"
 
-namespace foresight {
+namespace foresight::predicted_view_test {
 namespace {
 
 class PredictedViewTest : public HeadlessTest {
@@ -163,4 +163,4 @@ TEST_F(PredictedViewTest, MatchesTheGoldenView) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::predicted_view_test

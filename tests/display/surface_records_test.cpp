@@ -3,7 +3,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 
-namespace foresight {
+namespace foresight::surface_records_test {
 namespace {
 
 using SurfaceRecordsTest = HeadlessTest;
@@ -43,4 +43,4 @@ TEST_F(SurfaceRecordsTest, HoldPlanesAndPatches) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::surface_records_test

@@ -8,7 +8,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 
-namespace foresight {
+namespace foresight::view_session_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -137,4 +137,4 @@ TEST_F(ViewSessionTest, HasAViewForEachEye) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::view_session_test

@@ -4,7 +4,7 @@
 #include "display/uploaded_picture.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight {
+namespace foresight::view_target_test {
 namespace {
 
 using Pixel = std::array<std::uint8_t, 4>;
@@ -103,4 +103,4 @@ TEST_F(ViewTargetTest, GreyPicturesAreGrey) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::view_target_test

@@ -6,7 +6,7 @@
 #include "common/error.hpp"
 #include "tests/display_lens/simulated_display.hpp"
 
-namespace foresight {
+namespace foresight::display_lens_test {
 namespace {
 
 using testing::HasSubstr;
@@ -101,4 +101,4 @@ TEST(DisplayLens, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::display_lens_test

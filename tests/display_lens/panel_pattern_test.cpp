@@ -7,7 +7,7 @@
 #include "tests/display_lens/simulated_display.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::panel_pattern_test {
 namespace {
 
 using testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST(PanelPattern, ReadsPoints) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::panel_pattern_test

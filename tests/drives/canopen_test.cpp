@@ -3,7 +3,7 @@
 
 #include "tests/drives/wire.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::canopen_test {
 namespace {
 
 using testing::ElementsAre;
@@ -177,4 +177,4 @@ TEST(PdoSet, ComplainsOfAShortFrame) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::canopen_test

@@ -8,7 +8,7 @@
 #include "sim/drives/object_dictionary.hpp"
 #include "tests/drives/wire.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::cia402_test {
 namespace {
 
 constexpr int kNode = 2;
@@ -395,4 +395,4 @@ TEST(Cia402Node, RandomFramesDoNotMoveADisabledShaft) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::cia402_test

@@ -12,7 +12,7 @@
 #include "sim/drives/generic_402.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::dcf_reader_test {
 namespace {
 
 using testing::HasSubstr;
@@ -115,4 +115,4 @@ TEST(Generic402, HoldsWhatTheProfileAsksFor) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::dcf_reader_test

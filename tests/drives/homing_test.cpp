@@ -8,7 +8,7 @@
 #include "sim/drives/cia402_motion.hpp"
 #include "tests/drives/wire.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::homing_test {
 namespace {
 
 constexpr int kNode = 2;
@@ -152,4 +152,4 @@ TEST(Homing, TheHomeSwitchIsADigitalInput) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::homing_test

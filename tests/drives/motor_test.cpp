@@ -7,7 +7,7 @@
 
 #include "sim/drives/reference.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::motor_test {
 namespace {
 
 constexpr double kDt = 1e-3;
@@ -161,4 +161,4 @@ TEST(CyclicInterpolator, SetPointsThatComeUnevenlyDoNotDisturbTheMotion) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::motor_test

@@ -7,7 +7,7 @@
 #include "sim/drives/object_dictionary.hpp"
 #include "tests/drives/wire.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::powercube_test {
 namespace {
 
 constexpr int kModule = 5;
@@ -240,4 +240,4 @@ TEST(PowerCubeNode, SyncMotionStartsAllAtOnce) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::powercube_test

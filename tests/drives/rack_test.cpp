@@ -9,7 +9,7 @@
 #include "sim/drives/rack_presets.hpp"
 #include "tests/drives/wire.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::rack_test {
 namespace {
 
 using testing::HasSubstr;
@@ -146,4 +146,4 @@ TEST(DriveRack, RunsInRealTime) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::rack_test

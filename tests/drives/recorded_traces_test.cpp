@@ -9,7 +9,7 @@
 #include "tests/drives/wire.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::recorded_traces_test {
 namespace {
 
 std::filesystem::path traces() {
@@ -127,4 +127,4 @@ TEST_F(RecordedTraces, TheMakersDictionaryDrives) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::recorded_traces_test

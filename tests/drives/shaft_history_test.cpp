@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace foresight::sim {
+namespace foresight::sim::shaft_history_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -38,4 +38,4 @@ TEST(ShaftHistory, ForgetsTheOldestSteps) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::shaft_history_test

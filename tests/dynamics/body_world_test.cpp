@@ -3,7 +3,7 @@
 #include "common/error.hpp"
 #include "tests/dynamics/solids.hpp"
 
-namespace foresight {
+namespace foresight::body_world_test {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -129,4 +129,4 @@ TEST(BodyWorld, RefusesWhatIsNotPossible) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::body_world_test

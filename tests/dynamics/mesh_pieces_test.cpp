@@ -2,7 +2,7 @@
 
 #include "tests/dynamics/solids.hpp"
 
-namespace foresight {
+namespace foresight::mesh_pieces_test {
 namespace {
 
 TEST(MeshPieces, ACrateIsAsManyPiecesAsItHasBoards) {
@@ -46,4 +46,4 @@ TEST(MeshPieces, TheCentreOfMassIsThatOfTheVolume) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::mesh_pieces_test

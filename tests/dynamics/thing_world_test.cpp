@@ -3,7 +3,7 @@
 #include "common/error.hpp"
 #include "tests/dynamics/solids.hpp"
 
-namespace foresight {
+namespace foresight::thing_world_test {
 namespace {
 
 WorldPart block(double y, double friction = 0.7, double mass = 0.1, float width = 0.045f) {
@@ -97,4 +97,4 @@ TEST(ThingWorld, RefusesAJawThatMovesNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::thing_world_test

@@ -9,7 +9,7 @@
 #include "tests/formats/example_cameras.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::camera_formats_test {
 namespace {
 
 using testing::AllOf;
@@ -194,4 +194,4 @@ TEST(CameraFormats, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::camera_formats_test

@@ -8,7 +8,7 @@
 #include "tests/formats/example_cameras.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::camera_result_test {
 namespace {
 
 using testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(CameraResult, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::camera_result_test

@@ -11,7 +11,7 @@
 #include "tests/formats/example_cameras.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::rectification_test {
 namespace {
 
 struct CvSide {
@@ -119,4 +119,4 @@ TEST(Rectification, PairsOfUnlikeCamerasAreWrittenAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::rectification_test

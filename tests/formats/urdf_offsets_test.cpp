@@ -11,7 +11,7 @@
 #include "scene/urdf_reader.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::urdf_offsets_test {
 namespace {
 
 using testing::HasSubstr;
@@ -158,4 +158,4 @@ TEST(UrdfOffsets, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::urdf_offsets_test

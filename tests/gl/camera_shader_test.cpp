@@ -7,7 +7,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 
-namespace foresight::gl {
+namespace foresight::gl::camera_shader_test {
 namespace {
 
 const char* const kProbe = R"(
@@ -159,4 +159,4 @@ TEST(NodeRows, MapNodePointsToTheCamera) {
 }
 
 }  // namespace
-}  // namespace foresight::gl
+}  // namespace foresight::gl::camera_shader_test

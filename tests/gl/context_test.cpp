@@ -6,7 +6,7 @@
 #include "gl/objects.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight::gl {
+namespace foresight::gl::context_test {
 namespace {
 
 using ContextTest = HeadlessTest;
@@ -73,4 +73,4 @@ TEST_F(ContextTest, DepthIsNotRemapped) {
 }
 
 }  // namespace
-}  // namespace foresight::gl
+}  // namespace foresight::gl::context_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/small_scene.hpp"
 
-namespace foresight::gl {
+namespace foresight::gl::faces_test {
 namespace {
 
 /// Place of a ray on the face that its direction points to.
@@ -79,4 +79,4 @@ TEST(Faces, AreNeverLargerThanATextureMayBe) {
 }
 
 }  // namespace
-}  // namespace foresight::gl
+}  // namespace foresight::gl::faces_test

@@ -7,7 +7,7 @@
 #include "gl/program.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight::gl {
+namespace foresight::gl::objects_test {
 namespace {
 
 using ObjectsTest = HeadlessTest;
@@ -107,4 +107,4 @@ TEST_F(ObjectsTest, GroupsCoverEveryInvocation) {
 }
 
 }  // namespace
-}  // namespace foresight::gl
+}  // namespace foresight::gl::objects_test

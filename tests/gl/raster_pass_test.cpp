@@ -5,7 +5,7 @@
 #include "tests/support/small_scene.hpp"
 #include "tests/texture_gpu/reference/ray_caster.hpp"
 
-namespace foresight::gl {
+namespace foresight::gl::raster_pass_test {
 namespace {
 
 struct Drawn {
@@ -125,4 +125,4 @@ TEST_F(RasterPassTest, ClearsWhatWasThere) {
 }
 
 }  // namespace
-}  // namespace foresight::gl
+}  // namespace foresight::gl::raster_pass_test

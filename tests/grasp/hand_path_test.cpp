@@ -3,7 +3,7 @@
 #include "common/error.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::hand_path_test {
 namespace {
 
 const InverseKinematics& arm() {
@@ -68,4 +68,4 @@ TEST(HandPath, SaysWhichStopCannotBeReached) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::hand_path_test

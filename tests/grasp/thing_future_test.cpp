@@ -5,7 +5,7 @@
 #include "common/error.hpp"
 #include "tests/dynamics/solids.hpp"
 
-namespace foresight {
+namespace foresight::thing_future_test {
 namespace {
 
 constexpr double kPicture = 1.0 / 60;
@@ -310,4 +310,4 @@ TEST(ThingFuture, RepeatsBitForBit) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::thing_future_test

@@ -7,7 +7,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/hostile/victim.hpp"
 
-namespace foresight {
+namespace foresight::limits_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ TEST_F(Limits, NumbersThatAreNoneAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::limits_test

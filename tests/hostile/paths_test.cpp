@@ -5,7 +5,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/hostile/victim.hpp"
 
-namespace foresight {
+namespace foresight::paths_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ TEST_F(Hostile, SpecialFilesAreNoInputs) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::paths_test

@@ -6,7 +6,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/hostile/victim.hpp"
 
-namespace foresight {
+namespace foresight::signals_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ TEST(TwoPrograms, OneFolderHasOneWriter) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::signals_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::any_tracker_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -86,4 +86,4 @@ TEST_F(AnyTrackerTest, ViewsListenToAll) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::any_tracker_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace foresight {
+namespace foresight::force_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -77,4 +77,4 @@ TEST_F(ForceTest, TheRecordingKeepsTheNewest) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::force_test

@@ -4,7 +4,7 @@
 #include <SDL2/SDL.h>
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::gamepad_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -146,4 +146,4 @@ TEST_F(GamepadTest, OneThatIsNotThereIsSaidSo) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::gamepad_test

@@ -10,7 +10,7 @@
 #include "tests/support/allocations.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::hand_control_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -485,4 +485,4 @@ TEST_F(HandControlTest, EveryReasonHasWordsAndACure) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::hand_control_test

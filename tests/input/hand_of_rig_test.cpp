@@ -6,7 +6,7 @@
 #include "common/error.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::hand_of_rig_test {
 namespace {
 
 class HandOfRigTest : public testing::Test {
@@ -75,4 +75,4 @@ TEST_F(HandOfRigTest, OptionsThatContradictThemselvesAreRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::hand_of_rig_test

@@ -9,7 +9,7 @@
 #include "tests/input/hand_world.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::hand_sessions_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -183,4 +183,4 @@ INSTANTIATE_TEST_SUITE_P(Data, RecordedSessionTest,
                          });
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::hand_sessions_test

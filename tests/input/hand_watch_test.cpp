@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace foresight {
+namespace foresight::hand_watch_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -90,4 +90,4 @@ TEST_F(HandWatchTest, InstantsAtTheEndOfTheirRangeDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::hand_watch_test

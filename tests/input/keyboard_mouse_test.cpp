@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace foresight {
+namespace foresight::keyboard_mouse_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -108,4 +108,4 @@ TEST_F(KeyboardMouseTest, JointsAreChosenByNumberAndMovedByKeys) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::keyboard_mouse_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace foresight {
+namespace foresight::rate_hand_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -55,4 +55,4 @@ TEST(RateHandTest, ASticksMiddleIsRest) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::rate_hand_test

@@ -12,7 +12,7 @@
 #include "common/unique_fd.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::space_mouse_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -154,4 +154,4 @@ TEST_F(SpaceMouseTest, NonsenseDoesNoHarm) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::space_mouse_test

@@ -8,7 +8,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::tracker_trace_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -150,4 +150,4 @@ TEST_F(TrackerTraceTest, RecordedToolsAreReadWithTheirPedal) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::tracker_trace_test

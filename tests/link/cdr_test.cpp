@@ -3,7 +3,7 @@
 #include "link/messages/message_types.hpp"
 #include "random_message.hpp"
 
-namespace foresight::link {
+namespace foresight::link::cdr_test {
 namespace {
 
 using testing::HasSubstr;
@@ -236,4 +236,4 @@ TEST(CdrFuzz, NoBytesDoHarm) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::cdr_test

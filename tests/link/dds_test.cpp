@@ -8,7 +8,7 @@
 #include "random_message.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight::link {
+namespace foresight::link::dds_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -239,4 +239,4 @@ TEST_F(Dds, PacketsOfNobodyDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::dds_test

@@ -2,7 +2,7 @@
 #include "common/error.hpp"
 #include "scene/yaml_fields.hpp"
 
-namespace foresight {
+namespace foresight::link_config_test {
 namespace {
 
 using testing::HasSubstr;
@@ -45,4 +45,4 @@ TEST(LinkConfig, WhatCannotBeIsRefusedWithItsLine) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::link_config_test

@@ -4,7 +4,7 @@
 #include "link/dds/endpoints.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight::link {
+namespace foresight::link::pretended_line_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -149,4 +149,4 @@ TEST_F(PretendedDds, ItsThreadDelivers) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::pretended_line_test

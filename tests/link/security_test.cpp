@@ -10,7 +10,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight::link {
+namespace foresight::link::security_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -151,4 +151,4 @@ TEST_F(SecuredLine, WrongKeysAreToldBeforeAnythingIsSent) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::security_test

@@ -6,7 +6,7 @@
 #include "link/coding/pair_coder.hpp"
 #include "link/coding/quality_model.hpp"
 
-namespace foresight {
+namespace foresight::coded_pair_test {
 namespace {
 
 CodedPair some_pair() {
@@ -108,4 +108,4 @@ TEST(QualityModel, HalvesTheBytesInItsSteps) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::coded_pair_test

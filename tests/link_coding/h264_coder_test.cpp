@@ -6,7 +6,7 @@
 #include "link/send_control/line_trial.hpp"
 #include "tests/support/moving_picture.hpp"
 
-namespace foresight {
+namespace foresight::h264_coder_test {
 namespace {
 
 RobotTime instant(std::uint32_t i) {
@@ -177,4 +177,4 @@ TEST_F(H264Lanes, TakesGreyOddAndSinglePicturesAndChangesOfSize) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::h264_coder_test

@@ -3,7 +3,7 @@
 #include "link/send_control/line_trial.hpp"
 #include "tests/support/moving_picture.hpp"
 
-namespace foresight {
+namespace foresight::jpeg_coder_test {
 namespace {
 
 TEST(JpegCoder, CodesAPairToTheBudget) {
@@ -43,4 +43,4 @@ TEST(JpegCoder, RefusesPicturesOfAnotherSizeThanTheirPairs) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::jpeg_coder_test

@@ -4,7 +4,7 @@
 
 #include "link/line/packet_line.hpp"
 
-namespace foresight {
+namespace foresight::delay_line_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -164,4 +164,4 @@ TEST(PacketLine, GivesPacketsOutInTheOrderOfTheirArrival) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::delay_line_test

@@ -4,7 +4,7 @@
 
 #include "common/error.hpp"
 
-namespace foresight {
+namespace foresight::line_spec_test {
 namespace {
 
 using testing::AllOf;
@@ -86,4 +86,4 @@ TEST_F(LineSpecFile, RefusesNamingLineAndField) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::line_spec_test

@@ -5,7 +5,7 @@
 #include "common/error.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::trace_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -92,4 +92,4 @@ TEST(Trace, ReadsTheRecordedOnes) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::trace_test

@@ -9,7 +9,7 @@
 #include "link/robot_side/coded_stream.hpp"
 #include "link/send_control/line_trial.hpp"
 
-namespace foresight::link {
+namespace foresight::link::coded_line_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -208,4 +208,4 @@ TEST_F(CodedLine, AnOutageIsGotOverWithinItsLine) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::coded_line_test

@@ -9,7 +9,7 @@
 #include "link/send_control/packets.hpp"
 #include "tests/link/random_message.hpp"
 
-namespace foresight::link {
+namespace foresight::link::pair_intake_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -244,4 +244,4 @@ TEST_F(Intake, AnyBytesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::pair_intake_test

@@ -18,7 +18,7 @@
 #include "tests/support/moving_picture.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight::link {
+namespace foresight::link::two_ends_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -239,4 +239,4 @@ TEST_F(TwoEnds, AnObserversKeysAreNoOperators) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::two_ends_test

@@ -21,7 +21,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight::link {
+namespace foresight::link::line_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -326,4 +326,4 @@ TEST(RigFiles, NothingIsUnpackedElsewhere) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::line_test

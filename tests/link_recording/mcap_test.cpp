@@ -11,7 +11,7 @@
 
 #include <gmock/gmock.h>
 
-namespace foresight::link {
+namespace foresight::link::mcap_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -273,4 +273,4 @@ TEST(Mcap, AfterAFailureTheFileIsFinishedBehindWhatIsWhole) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::mcap_test

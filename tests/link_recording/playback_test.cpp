@@ -8,7 +8,7 @@
 #include "link/recording/line_recorder.hpp"
 #include "link/recording/playback.hpp"
 
-namespace foresight::link {
+namespace foresight::link::playback_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -186,4 +186,4 @@ TEST(PlayedTime, TakesAnyNumbers) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::playback_test

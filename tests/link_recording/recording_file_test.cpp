@@ -16,7 +16,7 @@
 #include "link/recording/recording_file.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight::link {
+namespace foresight::link::recording_file_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -218,4 +218,4 @@ TEST(MessageDefinitions, WhatRos2CannotSayStaysIdlAndStrangersKeepTheirName) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::recording_file_test

@@ -8,7 +8,7 @@
 #include "tests/support/folders.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight::link {
+namespace foresight::link::control_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -126,4 +126,4 @@ TEST_F(ServedControl, StrangersMoveNothing) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::control_test

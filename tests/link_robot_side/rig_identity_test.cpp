@@ -7,7 +7,7 @@
 #include "tests/support/folders.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight::link {
+namespace foresight::link::rig_identity_test {
 namespace {
 
 using testing::HasSubstr;
@@ -43,4 +43,4 @@ TEST_F(RigIdentity, AnotherLimitIsAnotherRig) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::rig_identity_test

@@ -5,7 +5,7 @@
 #include "session/joint_tracks.hpp"
 #include "tests/robot_devices/live_robot.hpp"
 
-namespace foresight::link {
+namespace foresight::link::robot_messages_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -156,4 +156,4 @@ TEST(LensesRevision, ChangesWithEitherLens) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::robot_messages_test

@@ -7,7 +7,7 @@
 #include "tests/robot_devices/live_robot.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight::link {
+namespace foresight::link::senders_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -237,4 +237,4 @@ TEST_F(Senders, AReaderThatStopsHoldsUpNeitherRobotNorPairs) {
 }
 
 }  // namespace
-}  // namespace foresight::link
+}  // namespace foresight::link::senders_test

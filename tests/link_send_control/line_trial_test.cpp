@@ -8,7 +8,7 @@
 #include "tests/support/moving_picture.hpp"
 #include "tests/support/synthetic_lines.hpp"
 
-namespace foresight {
+namespace foresight::line_trial_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -139,4 +139,4 @@ TEST(LineTrial, RepeatsBitForBit) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::line_trial_test

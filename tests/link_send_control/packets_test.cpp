@@ -5,7 +5,7 @@
 #include "link/send_control/pair_receiver.hpp"
 #include "link/send_control/pair_sender.hpp"
 
-namespace foresight {
+namespace foresight::packets_test {
 namespace {
 
 Acknowledgement some_acknowledgement() {
@@ -82,4 +82,4 @@ TEST(Packets, AnyBytesAreTakenWithoutHarm) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::packets_test

@@ -2,7 +2,7 @@
 
 #include "link/line/delay_line.hpp"
 
-namespace foresight {
+namespace foresight::rate_meter_test {
 namespace {
 
 TEST(RateMeter, TellsWhatTheLineCarriesThoughItIsGivenLess) {
@@ -71,4 +71,4 @@ TEST(RateMeter, CountsWhatIsOverdue) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::rate_meter_test

@@ -1,6 +1,6 @@
 #include "link/send_control/transmissions.hpp"
 
-namespace foresight {
+namespace foresight::transmissions_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -82,4 +82,4 @@ TEST(Transmissions, TakesNothingFromAcknowledgementsOfOthers) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::transmissions_test

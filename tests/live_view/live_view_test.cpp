@@ -11,7 +11,7 @@
 #include "sim/synth_run.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::live_view_test {
 namespace {
 
 /// One lit lab for all tests.
@@ -163,4 +163,4 @@ TEST_F(LiveViewTest, ExposureBrightens) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::live_view_test

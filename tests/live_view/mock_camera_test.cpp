@@ -8,7 +8,7 @@
 #include "sim/synth_run.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::mock_camera_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -182,4 +182,4 @@ TEST_F(MockCameraTest, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::mock_camera_test

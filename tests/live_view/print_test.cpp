@@ -15,7 +15,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::print_test {
 namespace {
 
 using testing::HasSubstr;
@@ -199,4 +199,4 @@ TEST(Print, WrongOnesAreNamed) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::print_test

@@ -4,7 +4,7 @@
 #include "sim/synth_run.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::stepped_camera_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -102,4 +102,4 @@ TEST_F(SteppedCamera, GivesTheNewestToOneWhoComesLate) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::stepped_camera_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace foresight {
+namespace foresight::joint_motion_test {
 namespace {
 
 constexpr double kDt = 0.004;
@@ -84,4 +84,4 @@ TEST(JointMotion, SpeedScalesTheVelocity) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::joint_motion_test

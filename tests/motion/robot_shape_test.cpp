@@ -7,7 +7,7 @@
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::robot_shape_test {
 namespace {
 
 TEST(Capsules, DistancesAreThoseOfTheirSurfaces) {
@@ -119,4 +119,4 @@ TEST_F(RobotShapeTest, RefusesAnUnknownJoint) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::robot_shape_test

@@ -3,7 +3,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::follow_file_test {
 namespace {
 
 class FollowFileTest : public testing::Test {
@@ -56,4 +56,4 @@ TEST_F(FollowFileTest, EveryMistakeHasItsMessage) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::follow_file_test

@@ -5,7 +5,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::operators_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -266,4 +266,4 @@ TEST_F(KeyOperatorTest, AnOperatorThatStartsAnewIsHeardAtOnce) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::operators_test

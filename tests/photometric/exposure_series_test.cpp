@@ -9,7 +9,7 @@
 #include "tests/photometric/synthetic_camera.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::exposure_series_test {
 namespace {
 
 using testing::HasSubstr;
@@ -90,4 +90,4 @@ TEST(ExposureSeries, BlocksThatSaturateAreDropped) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::exposure_series_test

@@ -6,7 +6,7 @@
 #include "common/error.hpp"
 #include "tests/photometric/synthetic_camera.hpp"
 
-namespace foresight {
+namespace foresight::photometric_solver_test {
 namespace {
 
 using testing::HasSubstr;
@@ -148,4 +148,4 @@ TEST(Photometric, ObjectsToPicturesThatDoNotGetBrighter) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::photometric_solver_test

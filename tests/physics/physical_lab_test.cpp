@@ -4,7 +4,7 @@
 #include "sim/lab_task.hpp"
 #include "tests/physics/lab_hand.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::physical_lab_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -139,4 +139,4 @@ TEST(PhysicalLab, RefusesWhatIsNotPossible) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::physical_lab_test

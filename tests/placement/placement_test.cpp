@@ -9,7 +9,7 @@
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::placement_test {
 namespace {
 
 using testing::AllOf;
@@ -142,4 +142,4 @@ TEST(Placement, ReadsPointsAndTags) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::placement_test

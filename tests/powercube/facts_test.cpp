@@ -5,7 +5,7 @@
 #include "drivers/powercube/protocol.hpp"
 #include "protocol_data.hpp"
 
-namespace foresight::powercube {
+namespace foresight::powercube::facts_test {
 namespace {
 
 using testing::ElementsAre;
@@ -151,4 +151,4 @@ TEST(Frames, InWords) {
 }
 
 }  // namespace
-}  // namespace foresight::powercube
+}  // namespace foresight::powercube::facts_test

@@ -6,7 +6,7 @@
 
 #include "protocol_data.hpp"
 
-namespace foresight::powercube {
+namespace foresight::powercube::motion_protocol_test {
 namespace {
 
 std::string words(const std::optional<MotionMessage>& message) {
@@ -97,4 +97,4 @@ TEST(MotionProtocol, RandomBytesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace foresight::powercube
+}  // namespace foresight::powercube::motion_protocol_test

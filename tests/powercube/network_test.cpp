@@ -10,7 +10,7 @@
 #include "scripted_module.hpp"
 #include "tests/support/allocations.hpp"
 
-namespace foresight::powercube {
+namespace foresight::powercube::network_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -405,4 +405,4 @@ TEST_F(PowerCube, RandomFramesChangeNoSetPoint) {
 }
 
 }  // namespace
-}  // namespace foresight::powercube
+}  // namespace foresight::powercube::network_test

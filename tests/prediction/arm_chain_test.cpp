@@ -5,7 +5,7 @@
 #include "tests/prediction/sample_arms.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::arm_chain_test {
 namespace {
 
 TEST(ArmChain, ItsTipIsWhereTheFramesOfTheUrdfPutIt) {
@@ -100,4 +100,4 @@ TEST(ArmChain, WhatIsWrongWithAUrdfIsSaid) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::arm_chain_test

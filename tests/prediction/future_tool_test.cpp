@@ -7,7 +7,7 @@
 #include "common/error.hpp"
 #include "tests/prediction/sample_arms.hpp"
 
-namespace foresight {
+namespace foresight::future_tool_test {
 namespace {
 
 std::vector<std::string> names_of(const ArmChain& arm) {
@@ -88,4 +88,4 @@ TEST(FutureTool, PixelsAreThoseOfTheCamera) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::future_tool_test

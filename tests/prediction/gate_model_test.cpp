@@ -8,7 +8,7 @@
 #include "drivers/robot/safety_gate.hpp"
 #include "tests/prediction/rod.hpp"
 
-namespace foresight {
+namespace foresight::gate_model_test {
 namespace {
 
 constexpr Duration kCycle = std::chrono::milliseconds(4);
@@ -126,4 +126,4 @@ TEST(GateModel, DoesWhatTheGateDoesBitForBit) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::gate_model_test

@@ -7,7 +7,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/allocations.hpp"
 
-namespace foresight {
+namespace foresight::inverse_kinematics_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -165,4 +165,4 @@ TEST(InverseKinematics, SolvingDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::inverse_kinematics_test

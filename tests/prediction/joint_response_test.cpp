@@ -10,7 +10,7 @@
 #include "common/statistics.hpp"
 #include "tests/support/allocations.hpp"
 
-namespace foresight {
+namespace foresight::joint_response_test {
 namespace {
 
 constexpr double kTick = 0.0005;  // s of the emulated shaft
@@ -225,4 +225,4 @@ TEST(JointResponse, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::joint_response_test

@@ -13,7 +13,7 @@
 #include "common/text_rows.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::line_delay_test {
 namespace {
 
 struct Outcome {
@@ -96,4 +96,4 @@ TEST(LineDelay, WrongDelaysAreNotTakenAndSilenceSaysNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::line_delay_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-namespace foresight {
+namespace foresight::online_regression_test {
 namespace {
 
 Weights numbers(std::initializer_list<double> values) {
@@ -47,4 +47,4 @@ TEST(OnlineRegression, WhatIsNotFiniteIsPassedOver) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::online_regression_test

@@ -7,7 +7,7 @@
 #include "tests/prediction/sample_arms.hpp"
 #include "tests/support/allocations.hpp"
 
-namespace foresight {
+namespace foresight::path_follower_test {
 namespace {
 
 constexpr double kCycle = 0.004;
@@ -194,4 +194,4 @@ TEST(PathFollower, AStepDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::path_follower_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/allocations.hpp"
 
-namespace foresight {
+namespace foresight::pose_filter_test {
 namespace {
 
 constexpr double kStep = 1.0 / 90;
@@ -111,4 +111,4 @@ TEST(PoseFilter, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::pose_filter_test

@@ -11,7 +11,7 @@
 #include "prediction/arm_chain.hpp"
 #include "tests/support/allocations.hpp"
 
-namespace foresight {
+namespace foresight::pose_predictor_test {
 namespace {
 
 constexpr double kStep = 1.0 / 60, kAhead = 0.1;
@@ -167,4 +167,4 @@ TEST(PosePredictor, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::pose_predictor_test

@@ -10,7 +10,7 @@
 #include "tests/prediction/future_world.hpp"
 #include "tests/support/allocations.hpp"
 
-namespace foresight {
+namespace foresight::robot_future_test {
 namespace {
 
 const std::vector<std::string> kNames{"turn", "wave"};
@@ -283,4 +283,4 @@ TEST(CorrectionBlend, IsOverInTimeAndNeverFasterThanItMay) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::robot_future_test

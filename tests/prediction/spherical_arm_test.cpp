@@ -5,7 +5,7 @@
 #include "prediction/inverse_kinematics.hpp"
 #include "tests/prediction/sample_arms.hpp"
 
-namespace foresight {
+namespace foresight::spherical_arm_test {
 namespace {
 
 // What the answer must be: the pose, within limits.
@@ -172,4 +172,4 @@ TEST(SphericalArm, NearTheLastJointsIsTheirOwnBranch) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::spherical_arm_test

@@ -4,7 +4,7 @@
 #include "lab_head.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::calibrated_head_test {
 namespace {
 
 using testing::HasSubstr;
@@ -76,4 +76,4 @@ TEST(CalibratedHead, OfPosesGivesItsLeftOutErrorAsSigma) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::calibrated_head_test

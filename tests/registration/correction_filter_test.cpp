@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace foresight {
+namespace foresight::correction_filter_test {
 namespace {
 
 // 500 px of focal length and a scene at 1 m: a metre or a radian are about 500 px.
@@ -158,4 +158,4 @@ TEST(CorrectionFilter, RefusesDisorder) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::correction_filter_test

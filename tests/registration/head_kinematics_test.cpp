@@ -4,7 +4,7 @@
 
 #include "lab_head.hpp"
 
-namespace foresight {
+namespace foresight::head_kinematics_test {
 namespace {
 
 RobotTime at(double s) {
@@ -62,4 +62,4 @@ TEST(EncoderTrack, ShaftsFollowWithPlay) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::head_kinematics_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::motion_model_test {
 namespace {
 
 const Eigen::VectorXd kPast = (Eigen::VectorXd(6) << 0, -1, -2, -3, -4, -5).finished() / 30;
@@ -45,4 +45,4 @@ TEST(MotionModel, ErrorsThatPersistAreTakenAway) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::motion_model_test

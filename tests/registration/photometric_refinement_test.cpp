@@ -7,7 +7,7 @@
 #include "calibration/registration/view_points.hpp"
 #include "two_planes.hpp"
 
-namespace foresight {
+namespace foresight::photometric_refinement_test {
 namespace {
 
 /// Rotations of some mrad and translations of some mm: a few pixels.
@@ -165,4 +165,4 @@ TEST(PhotometricRefinement, RefusesSizesThatDiffer) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::photometric_refinement_test

@@ -7,7 +7,7 @@
 #include "lab_head.hpp"
 #include "sim/tag_room.hpp"
 
-namespace foresight {
+namespace foresight::registration_test {
 namespace {
 
 RobotTime at(double s) {
@@ -127,4 +127,4 @@ TEST(Registration, RefusesARefinementThatContradictsTheTags) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::registration_test

@@ -7,7 +7,7 @@
 #include "lab_head.hpp"
 #include "sim/tag_room.hpp"
 
-namespace foresight {
+namespace foresight::tag_correction_test {
 namespace {
 
 RobotTime at(double s) {
@@ -107,4 +107,4 @@ TEST(TagCorrection, IgnoresUnknownTagsAndForgetsOldOnes) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::tag_correction_test

@@ -6,7 +6,7 @@
 #include "lab_head.hpp"
 #include "sim/tag_room.hpp"
 
-namespace foresight {
+namespace foresight::tag_detector_test {
 namespace {
 
 TEST(TagDetector, CornersLieInOurPixels) {
@@ -79,4 +79,4 @@ TEST(TagDetector, NamesTheNearestFamily) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::tag_detector_test

@@ -6,7 +6,7 @@
 
 #include "lab_head.hpp"
 
-namespace foresight {
+namespace foresight::tag_veto_test {
 namespace {
 
 const Pose& truth() {
@@ -108,4 +108,4 @@ TEST(TagVeto, AnUnsureRefinementIsNotContradicted) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::tag_veto_test

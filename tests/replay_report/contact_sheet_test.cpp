@@ -9,7 +9,7 @@
 
 #include "tests/replay_report/example_run.hpp"
 
-namespace foresight {
+namespace foresight::contact_sheet_test {
 namespace {
 
 const cv::Mat kGrey(30, 40, CV_8UC3, cv::Scalar(100, 100, 100));
@@ -86,4 +86,4 @@ TEST(Readable, HasADashForWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::contact_sheet_test

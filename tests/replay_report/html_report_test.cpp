@@ -15,7 +15,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/html_check.hpp"
 
-namespace foresight {
+namespace foresight::html_report_test {
 namespace {
 
 using testing::ElementsAre;
@@ -161,4 +161,4 @@ TEST(SvgPlot, LeavesGapsAndDrawsLonelyPoints) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::html_report_test

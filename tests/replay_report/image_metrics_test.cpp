@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace foresight {
+namespace foresight::image_metrics_test {
 namespace {
 
 cv::Mat textured(int width, int height, int seed) {
@@ -141,4 +141,4 @@ TEST(Coverage, IsReadFromAlpha) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::image_metrics_test

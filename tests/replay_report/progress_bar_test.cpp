@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::progress_bar_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -61,4 +61,4 @@ TEST(ReadableDuration, PicksTheUnit) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::progress_bar_test

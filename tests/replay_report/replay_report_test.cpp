@@ -12,7 +12,7 @@
 #include "common/error.hpp"
 #include "tests/replay_report/example_run.hpp"
 
-namespace foresight {
+namespace foresight::replay_report_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -161,4 +161,4 @@ TEST(AtomicFile, FailureNamesFileAndCureAndKeepsTheOldContent) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::replay_report_test

@@ -7,7 +7,7 @@
 #include "common/clock.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight::doctor {
+namespace foresight::doctor::camera_checks_test {
 namespace {
 
 using testing::HasSubstr;
@@ -57,4 +57,4 @@ TEST_F(CameraChecks, NameDamageAndSilence) {
 }
 
 }  // namespace
-}  // namespace foresight::doctor
+}  // namespace foresight::doctor::camera_checks_test

@@ -8,7 +8,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::rig_draft_test {
 namespace {
 
 using testing::AllOf;
@@ -257,4 +257,4 @@ TEST(RecordedRobotsRigs, AreDraftedAndStandClear) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::rig_draft_test

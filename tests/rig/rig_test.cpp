@@ -4,7 +4,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::rig_test {
 namespace {
 
 std::filesystem::path config(const char* name) {
@@ -217,4 +217,4 @@ TEST_F(BadRig, WithoutAUrdfLimitsMustBePlausible) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::rig_test

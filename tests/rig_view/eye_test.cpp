@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::eye_test {
 namespace {
 
 constexpr int kWidth = 990, kHeight = 860;
@@ -74,4 +74,4 @@ TEST(Eye, NearIsInFrontAndMouseMovesWhatItHolds) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::eye_test

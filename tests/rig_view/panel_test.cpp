@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::panel_test {
 namespace {
 
 TEST(Panel, SlidersReachBothLimitsAndRowsDoNotOverlap) {
@@ -30,4 +30,4 @@ TEST(Panel, SlidersReachBothLimitsAndRowsDoNotOverlap) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::panel_test

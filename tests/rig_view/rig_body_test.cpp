@@ -6,7 +6,7 @@
 #include "sim/live_lab.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::rig_body_test {
 namespace {
 
 using testing::AllOf;
@@ -107,4 +107,4 @@ TEST_F(RigBodyTest, WrongPositionsAreNamed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::rig_body_test

@@ -9,7 +9,7 @@
 #include "tests/support/folders.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight {
+namespace foresight::rig_picture_test {
 namespace {
 
 constexpr int kWidth = 900, kHeight = 560;
@@ -78,4 +78,4 @@ TEST_F(RigPictureTest, WordsDoNotCoverEachOther) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::rig_picture_test

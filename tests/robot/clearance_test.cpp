@@ -4,7 +4,7 @@
 #include "tests/robot/gate_fixture.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::clearance_test {
 namespace {
 
 /// A rod of 0.4 m upright on a plate, that turns about y; the plate's edge is something it must stay clear of.
@@ -120,4 +120,4 @@ TEST_F(ClearanceTest, FromDeepInsideThereIsAWayOutToo) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::clearance_test

@@ -1,6 +1,6 @@
 #include "tests/robot/gate_fixture.hpp"
 
-namespace foresight {
+namespace foresight::homing_gate_test {
 namespace {
 
 // While joint 0 looks for home.
@@ -105,4 +105,4 @@ TEST_F(HomingGateTest, ADriveThatLeavesHomingStops) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::homing_gate_test

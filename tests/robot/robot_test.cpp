@@ -9,7 +9,7 @@
 
 #include "tests/robot/prompt_drive.hpp"
 
-namespace foresight {
+namespace foresight::robot_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -384,4 +384,4 @@ TEST(LoopStatistics, CountsLatenessAndOverruns) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::robot_test

@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace foresight {
+namespace foresight::robot_words_test {
 namespace {
 
 /// All of an enumeration whose first value is 0: those that the table knows, one after the other.
@@ -83,4 +83,4 @@ TEST(RobotWords, SayWhatHoldsIt) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::robot_words_test

@@ -5,7 +5,7 @@
 #include "common/error.hpp"
 #include "tests/robot/gate_fixture.hpp"
 
-namespace foresight {
+namespace foresight::safety_gate_test {
 namespace {
 
 TEST_F(SafetyGateTest, FollowsAnOperatorWhoEngages) {
@@ -309,4 +309,4 @@ TEST(GateOptions, RefusesWhatContradictsItself) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::safety_gate_test

@@ -5,7 +5,7 @@
 #include "calibration/robot/time_offset.hpp"
 #include "synthetic_rig.hpp"
 
-namespace foresight {
+namespace foresight::hand_eye_coverage_test {
 namespace {
 
 struct Count {
@@ -85,4 +85,4 @@ TEST(Coverage, PanTilt) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::hand_eye_coverage_test

@@ -4,7 +4,7 @@
 #include "synthetic_rig.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::hand_eye_test {
 namespace {
 
 using testing::AllOf;
@@ -238,4 +238,4 @@ TEST(HandEye, ResidualsDoNotDependOnTheFramesOfTheRobot) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::hand_eye_test

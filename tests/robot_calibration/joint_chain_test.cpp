@@ -4,7 +4,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::joint_chain_test {
 namespace {
 
 using testing::AllOf;
@@ -58,4 +58,4 @@ TEST(JointChain, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::joint_chain_test

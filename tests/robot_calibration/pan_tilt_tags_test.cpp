@@ -3,7 +3,7 @@
 #include "synthetic_rig.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::pan_tilt_tags_test {
 namespace {
 
 using testing::AllOf;
@@ -177,4 +177,4 @@ TEST(PanTiltTags, RefusesWhatCannotBeSolved) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::pan_tilt_tags_test

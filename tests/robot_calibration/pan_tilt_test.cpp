@@ -4,7 +4,7 @@
 #include "synthetic_rig.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::pan_tilt_test {
 namespace {
 
 using testing::AllOf;
@@ -106,4 +106,4 @@ TEST(PanTilt, FileReadsBack) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::pan_tilt_test

@@ -8,7 +8,7 @@
 #include "scene/yaml_fields.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::recorded_data_test {
 namespace {
 
 HandEyeData read_session(const std::filesystem::path& folder, const std::string& board_text) {
@@ -91,4 +91,4 @@ TEST(RecordedData, PositionerOfTwoAxes) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::recorded_data_test

@@ -3,7 +3,7 @@
 #include "synthetic_rig.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::robot_poses_test {
 namespace {
 
 using testing::AllOf;
@@ -97,4 +97,4 @@ TEST(RobotPoses, MatchesByNameNumberAndOrder) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::robot_poses_test

@@ -3,7 +3,7 @@
 #include "synthetic_rig.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::time_offset_test {
 namespace {
 
 using testing::AllOf;
@@ -209,4 +209,4 @@ TEST(PoseStream, KeepsNanosecondsAndNamesLines) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::time_offset_test

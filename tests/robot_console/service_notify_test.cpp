@@ -5,7 +5,7 @@
 
 #include "drivers/robot/robot.hpp"
 
-namespace foresight {
+namespace foresight::service_notify_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -48,4 +48,4 @@ TEST_F(LifeOfALoop, GoesOnWhileDrivesAreSetUp) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::service_notify_test

@@ -9,7 +9,7 @@
 #include "tests/support/folders.hpp"
 #include "tests/support/html_check.hpp"
 
-namespace foresight {
+namespace foresight::session_report_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -127,4 +127,4 @@ TEST_F(SessionTest, BecomesAPageWithItsSeriesBesideIt) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::session_report_test

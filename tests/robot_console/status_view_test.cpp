@@ -4,7 +4,7 @@
 
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::status_view_test {
 namespace {
 
 TEST(StatusView, ShowsWhatAnOperatorMustKnow) {
@@ -32,4 +32,4 @@ TEST(StatusView, ShowsWhatHoldsTheRobotBack) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::status_view_test

@@ -8,7 +8,7 @@
 #include "tests/camera/fake_v4l2.hpp"
 #include "tests/robot_devices/live_robot.hpp"
 
-namespace foresight {
+namespace foresight::camera_faults_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -170,4 +170,4 @@ TEST(CameraWatch, TriesAgainWhereCamerasDoNotStart) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::camera_faults_test

@@ -6,7 +6,7 @@
 #include "sim/synth_run.hpp"
 #include "tests/robot_devices/live_robot.hpp"
 
-namespace foresight {
+namespace foresight::encoder_instants_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -103,4 +103,4 @@ INSTANTIATE_TEST_SUITE_P(Rigs, EncoderInstants, testing::Values("minerva.yaml", 
                          [](const auto& i) { return std::string(i.param).substr(0, std::string(i.param).find('.')); });
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::encoder_instants_test

@@ -7,7 +7,7 @@
 
 #include "tests/robot_devices/live_robot.hpp"
 
-namespace foresight {
+namespace foresight::faults_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -272,4 +272,4 @@ INSTANTIATE_TEST_SUITE_P(Rigs, Faults, testing::Values("minerva.yaml", "cia402.y
                          [](const auto& i) { return std::string(i.param).substr(0, std::string(i.param).find('.')); });
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::faults_test

@@ -7,7 +7,7 @@
 #include "tests/robot_devices/live_robot.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::homing_faults_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -183,4 +183,4 @@ INSTANTIATE_TEST_SUITE_P(Rigs, HomingFaults,
                          });
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::homing_faults_test

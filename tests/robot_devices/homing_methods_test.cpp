@@ -8,7 +8,7 @@
 #include "tests/robot_devices/live_robot.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::homing_methods_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -78,4 +78,4 @@ TEST(HomingMethods, OneThatADriveLacksIsSaidBeforeAnythingMoves) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::homing_methods_test

@@ -6,7 +6,7 @@
 #include "tests/support/allocations.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -94,4 +94,4 @@ INSTANTIATE_TEST_SUITE_P(Rigs, Loop, testing::Values("minerva.yaml", "cia402.yam
                          [](const auto& i) { return std::string(i.param).substr(0, std::string(i.param).find('.')); });
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::loop_test

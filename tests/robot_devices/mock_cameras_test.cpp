@@ -8,7 +8,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/headless_test.hpp"
 
-namespace foresight {
+namespace foresight::mock_cameras_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -194,4 +194,4 @@ TEST_F(MockCameras, ARigWithoutMotionKnowsItsShafts) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::mock_cameras_test

@@ -7,7 +7,7 @@
 #include "tests/robot_devices/live_robot.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::mock_faults_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -80,4 +80,4 @@ TEST(OrderedFault, SaysWhatIsWrongWithTheOrder) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::mock_faults_test

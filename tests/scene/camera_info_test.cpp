@@ -2,7 +2,7 @@
 
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::camera_info_test {
 namespace {
 
 CameraInfo read(const std::string& text) {
@@ -157,4 +157,4 @@ TEST(CameraInfo, RefusesAPlaceThatIsNotRigid) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::camera_info_test

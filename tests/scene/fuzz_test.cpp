@@ -10,7 +10,7 @@
 #include "scene/urdf_reader.hpp"
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::fuzz_test {
 namespace {
 
 int fuzz_runs() {
@@ -287,4 +287,4 @@ TEST(Fuzz, Images) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::fuzz_test

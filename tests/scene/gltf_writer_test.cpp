@@ -10,7 +10,7 @@
 #include "scene/mesh_reader.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::gltf_writer_test {
 namespace {
 
 GltfModel model() {
@@ -89,4 +89,4 @@ TEST(GltfWriter, NamesBecomeUris) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::gltf_writer_test

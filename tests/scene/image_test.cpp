@@ -4,7 +4,7 @@
 #include "scene/run_folder.hpp"
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::image_test {
 namespace {
 
 class Image : public testing::Test {
@@ -163,4 +163,4 @@ TEST(CheckRunImages, ReportsTheFirstBadImageInRunOrder) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::image_test

@@ -4,7 +4,7 @@
 #include "test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::mesh_finder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ TEST(RecordedRobots, TheirMeshesLoad) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::mesh_finder_test

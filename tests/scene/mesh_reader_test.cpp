@@ -8,7 +8,7 @@
 #include "scene/mesh_builder.hpp"
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::mesh_reader_test {
 namespace {
 
 Mesh read(const std::string& name, const std::string& content) {
@@ -303,4 +303,4 @@ TEST(MeshReader, RefusesWhatIsNoMesh) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::mesh_reader_test

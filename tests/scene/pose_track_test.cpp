@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace foresight {
+namespace foresight::pose_track_test {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -74,4 +74,4 @@ TEST(PoseTrack, RefusesSamplesThatDoNotAscend) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::pose_track_test

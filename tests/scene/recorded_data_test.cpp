@@ -4,7 +4,7 @@
 #include "scene/urdf_reader.hpp"
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::recorded_data_test {
 namespace {
 
 TEST(RecordedData, ToteBox) {
@@ -81,4 +81,4 @@ TEST(RecordedData, RobotMeshesAreReadable) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::recorded_data_test

@@ -2,7 +2,7 @@
 
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::run_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -268,4 +268,4 @@ TEST_F(Stereo, NeedsBothFilesAndThePlace) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::run_folder_test

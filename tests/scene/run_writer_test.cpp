@@ -5,7 +5,7 @@
 #include "scene/scene_writer.hpp"
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::run_writer_test {
 namespace {
 
 /// One of each model, with numbers that need all their digits.
@@ -122,4 +122,4 @@ TEST(RunWriter, SaysWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::run_writer_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace foresight {
+namespace foresight::scene_model_test {
 namespace {
 
 Mesh triangle() {
@@ -52,4 +52,4 @@ TEST(SceneModel, RefusesWhatIsNoTreeWithTriangles) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::scene_model_test

@@ -2,7 +2,7 @@
 
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::scene_reader_test {
 namespace {
 
 const std::string kArm =
@@ -99,4 +99,4 @@ TEST_F(SceneYamlTest, NamesWhatIsWrongWithRobots) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::scene_reader_test

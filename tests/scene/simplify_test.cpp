@@ -6,7 +6,7 @@
 
 #include "scene/primitives.hpp"
 
-namespace foresight {
+namespace foresight::simplify_test {
 namespace {
 
 /// A sphere of many triangles, and what each edge of a mesh has of them.
@@ -92,4 +92,4 @@ TEST(Simplify, KeepsCornersAndBorders) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::simplify_test

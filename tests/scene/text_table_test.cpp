@@ -2,7 +2,7 @@
 
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::text_table_test {
 namespace {
 
 std::vector<std::string> rows_of(const std::string& content) {
@@ -116,4 +116,4 @@ TEST(PoseFields, RefusesWhatIsNoPose) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::text_table_test

@@ -3,7 +3,7 @@
 #include "scene/primitives.hpp"
 #include "test_run.hpp"
 
-namespace foresight {
+namespace foresight::urdf_reader_test {
 namespace {
 
 std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
@@ -295,4 +295,4 @@ TEST_F(Urdf, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::urdf_reader_test

@@ -2,7 +2,7 @@
 #include "seat/hud.hpp"
 #include "gl/context.hpp"
 
-namespace foresight {
+namespace foresight::hud_test {
 namespace {
 
 cv::Mat drawn(const HudContent& content, int width, int height) {
@@ -45,4 +45,4 @@ TEST(Hud, BearsAnyWindow) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::hud_test

@@ -2,7 +2,7 @@
 #include "seat/robot_outlook.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::outlook_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -89,4 +89,4 @@ TEST_F(Outlook, AReportOfAnotherRigIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::outlook_test

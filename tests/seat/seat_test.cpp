@@ -10,7 +10,7 @@
 #include "tests/support/folders.hpp"
 #include "tests/support/private_network.hpp"
 
-namespace foresight {
+namespace foresight::seat_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -143,4 +143,4 @@ TEST_F(SeatAtARig, AfterALossNothingMovesBeforeTheSwitchIsPressedAnew) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::seat_test

@@ -1,7 +1,7 @@
 // What an operator reads at his seat.
 #include "seat/seat_words.hpp"
 
-namespace foresight {
+namespace foresight::seat_words_test {
 namespace {
 
 using Phase = ControlSeatStatus::Phase;
@@ -65,4 +65,4 @@ TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::seat_words_test

@@ -3,7 +3,7 @@
 #include "common/error.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::tool_script_test {
 namespace {
 
 Rig minerva() {
@@ -65,4 +65,4 @@ TEST(ToolScript, AnUnreachablePoseIsRefused) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::tool_script_test

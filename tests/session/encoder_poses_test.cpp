@@ -5,7 +5,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::encoder_poses_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -181,4 +181,4 @@ TEST_F(Encoders, RealCamerasWithoutACalibrationAreNowhere) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::encoder_poses_test

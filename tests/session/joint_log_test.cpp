@@ -5,7 +5,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::joint_log_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -80,4 +80,4 @@ TEST_F(JointLogTest, AJointThatFallsSilentIsNotGuessed) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::joint_log_test

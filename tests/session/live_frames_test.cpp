@@ -5,7 +5,7 @@
 #include <latch>
 #include <semaphore>
 
-namespace foresight {
+namespace foresight::live_frames_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -199,4 +199,4 @@ TEST_F(LiveFramesTest, ASlowRegistrationHoldsUpNoCamera) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::live_frames_test

@@ -6,7 +6,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
-namespace foresight {
+namespace foresight::live_scene_test {
 namespace {
 
 Rig lab_rig() {
@@ -108,4 +108,4 @@ TEST(LiveScene, FindsTheRobotInTheSceneOrAddsIt) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::live_scene_test

@@ -11,7 +11,7 @@
 #include "scene/scene_reader.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::recording_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -368,4 +368,4 @@ TEST_F(Recording, DoesNotTouchFoldersOfOthers) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::recording_test

@@ -5,7 +5,7 @@
 #include "sim/motion.hpp"
 #include "sim/tracer.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::arm_test {
 namespace {
 
 const Lab& lab() {
@@ -75,4 +75,4 @@ TEST(Arm, MovesSmoothlyWithinItsLimits) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::arm_test

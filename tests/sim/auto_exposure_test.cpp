@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace foresight::sim {
+namespace foresight::sim::auto_exposure_test {
 namespace {
 
 /// A camera with a power law before a scene whose light is `light(image)`.
@@ -46,4 +46,4 @@ TEST(AutoExposure, StaysWithinItsRange) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::auto_exposure_test

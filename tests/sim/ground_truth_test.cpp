@@ -8,7 +8,7 @@
 #include "sim/synth_run.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::ground_truth_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,4 +175,4 @@ TEST_F(Truth, SaysWhatIsWrongWithItsFiles) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::ground_truth_test

@@ -9,7 +9,7 @@
 #include "sim/motion.hpp"
 #include "sim/polygons.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::lab_test {
 namespace {
 
 const Lab& lab() {
@@ -88,4 +88,4 @@ TEST(RoomCheck, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::lab_test

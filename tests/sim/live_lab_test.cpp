@@ -6,7 +6,7 @@
 #include "scene/primitives.hpp"
 #include "sim/motion.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::live_lab_test {
 namespace {
 
 LiveLab live(const HiddenDeviations& hidden = {}) {
@@ -166,4 +166,4 @@ TEST(LiveLab, DeviationsAreHiddenFromTheModelAndTheSameEachTime) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::live_lab_test

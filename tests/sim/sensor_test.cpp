@@ -11,7 +11,7 @@
 #include "sim/synth_run.hpp"
 #include "sim/texture.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::sensor_test {
 namespace {
 
 cv::Mat grey(float light) {
@@ -110,4 +110,4 @@ TEST_F(ShutterTest, MotionBlurIsTheMeanOverTheExposure) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::sensor_test

@@ -16,7 +16,7 @@
 #include "sim/run_files.hpp"
 #include "sim/tracer.hpp"
 
-namespace foresight::sim {
+namespace foresight::sim::synth_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ TEST_F(SynthRun, LeavesNothingWhenStopped) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::synth_run_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace foresight::sim {
+namespace foresight::sim::tracer_test {
 namespace {
 
 TEST(Tracer, FindsWhatTryingEveryTriangleFinds) {
@@ -51,4 +51,4 @@ TEST(Tracer, HitsLieOnTheTriangle) {
 }
 
 }  // namespace
-}  // namespace foresight::sim
+}  // namespace foresight::sim::tracer_test

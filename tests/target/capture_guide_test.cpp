@@ -12,7 +12,7 @@
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::capture_guide_test {
 namespace {
 
 using testing::HasSubstr;
@@ -166,4 +166,4 @@ TEST(CaptureSession, TakenImagesAreASetOfPairs) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::capture_guide_test

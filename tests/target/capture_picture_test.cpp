@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::capture_picture_test {
 namespace {
 
 // Where an image of 4:3 lies.
@@ -78,4 +78,4 @@ TEST(CapturePicture, TakesAnyShapeOfImage) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::capture_picture_test

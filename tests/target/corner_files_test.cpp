@@ -6,7 +6,7 @@
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::corner_files_test {
 namespace {
 
 using testing::HasSubstr;
@@ -159,4 +159,4 @@ TEST(CornerFilesData, OpenCvStereoSet) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::corner_files_test

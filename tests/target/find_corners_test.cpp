@@ -12,7 +12,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/target/drawn_board.hpp"
 
-namespace foresight {
+namespace foresight::find_corners_test {
 namespace {
 
 const std::filesystem::path kOpenCvPictures = "/usr/share/doc/opencv-doc/examples/data";
@@ -217,4 +217,4 @@ TEST(FindCornersData, CharucoDictionaryAndMarkersFromImages) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::find_corners_test

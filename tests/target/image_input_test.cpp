@@ -11,7 +11,7 @@
 #include "tests/scene/test_run.hpp"
 #include "tests/target/drawn_board.hpp"
 
-namespace foresight {
+namespace foresight::image_input_test {
 namespace {
 
 using testing::HasSubstr;
@@ -105,4 +105,4 @@ TEST(ImageInputData, NothingIsDroppedFromGoodSets) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::image_input_test

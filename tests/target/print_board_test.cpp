@@ -12,7 +12,7 @@
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
 
-namespace foresight {
+namespace foresight::print_board_test {
 namespace {
 
 using testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST(PrintBoard, MeasuredScale) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::print_board_test

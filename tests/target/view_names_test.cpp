@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foresight {
+namespace foresight::view_names_test {
 namespace {
 
 void expect(const char* path, std::optional<PairSide> side, const char* view) {
@@ -39,4 +39,4 @@ TEST(ViewNames, ASideAloneIsTheName) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::view_names_test

@@ -9,7 +9,7 @@
 #include "texture_gpu/gltf_scene.hpp"
 #include "texture_gpu/texture_core.hpp"
 
-namespace foresight {
+namespace foresight::baked_atlas_test {
 namespace {
 
 constexpr int kLargest = 4096;
@@ -217,4 +217,4 @@ TEST_F(BakedAtlasTest, NodesKeepTheirTrianglesAndPoses) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::baked_atlas_test

@@ -9,7 +9,7 @@
 #include "texture_gpu/texture_core.hpp"
 #include "texture_gpu/texture_readback.hpp"
 
-namespace foresight {
+namespace foresight::changing_exposure_test {
 namespace {
 
 class ChangingExposure : public HeadlessTest {
@@ -193,4 +193,4 @@ TEST_F(ChangingExposure, TheGainDoesNotDrift) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::changing_exposure_test

@@ -9,7 +9,7 @@
 #include "scene/primitives.hpp"
 #include "tests/support/small_scene.hpp"
 
-namespace foresight {
+namespace foresight::chart_atlas_test {
 namespace {
 
 /// An atlas over the small scene that takes every page that may be seen as seen.
@@ -382,4 +382,4 @@ TEST(ChartAtlas, ACopiedResolutionComesFromThePublishedOne) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::chart_atlas_test

@@ -5,7 +5,7 @@
 #include "scene/primitives.hpp"
 #include "tests/support/small_scene.hpp"
 
-namespace foresight {
+namespace foresight::chart_raster_test {
 namespace {
 
 bool is_core(std::uint16_t raw) {
@@ -91,4 +91,4 @@ TEST(ChartRaster, TrianglesSmallerThanATexelAreNotLost) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::chart_raster_test

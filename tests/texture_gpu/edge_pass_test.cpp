@@ -6,7 +6,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/texture_gpu/pass_bench.hpp"
 
-namespace foresight {
+namespace foresight::edge_pass_test {
 namespace {
 
 using reference::Answer;
@@ -288,4 +288,4 @@ TEST_F(EdgePassTest, MatchesTheGoldenMask) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::edge_pass_test

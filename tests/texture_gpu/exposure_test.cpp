@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace foresight {
+namespace foresight::exposure_test {
 namespace {
 
 /// Pages of random brightness that wander over the picture, photographed with a drifting gain.
@@ -183,4 +183,4 @@ TEST(ExposureEstimator, RenewsReferencesAfterThirtyImages) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::exposure_test

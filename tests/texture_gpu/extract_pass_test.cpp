@@ -4,7 +4,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/texture_gpu/pass_bench.hpp"
 
-namespace foresight {
+namespace foresight::extract_pass_test {
 namespace {
 
 using reference::Answer;
@@ -424,4 +424,4 @@ TEST_F(ExtractTest, AnOccluderLeavesNothingBehindItself) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::extract_pass_test

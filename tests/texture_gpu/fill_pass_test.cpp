@@ -5,7 +5,7 @@
 #include "tests/texture_gpu/pass_bench.hpp"
 #include "tests/texture_gpu/reference/filling.hpp"
 
-namespace foresight {
+namespace foresight::fill_pass_test {
 namespace {
 
 class FillTest : public HeadlessTest {
@@ -196,4 +196,4 @@ TEST_F(FillTest, FilledTexelsFollowWithinEightImages) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::fill_pass_test

@@ -7,7 +7,7 @@
 #include "texture_gpu/stage_clock.hpp"
 #include "texture_gpu/work_list.hpp"
 
-namespace foresight {
+namespace foresight::gpu_helpers_test {
 namespace {
 
 using WorkListTest = HeadlessTest;
@@ -86,4 +86,4 @@ TEST_F(StageClockTest, NamesStagesInOrderAndAddsUpRepeatedOnes) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::gpu_helpers_test

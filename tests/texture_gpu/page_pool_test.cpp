@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace foresight {
+namespace foresight::page_pool_test {
 namespace {
 
 TEST(SlotPool, HandsOutEachSlotOnceLowestFirst) {
@@ -35,4 +35,4 @@ TEST(AtlasLayout, APageIsCountedWithItsPyramid) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::page_pool_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace foresight {
+namespace foresight::skyline_packer_test {
 namespace {
 
 TEST(SkylinePacker, RectanglesDoNotOverlapAndWasteLittle) {
@@ -46,4 +46,4 @@ TEST(SkylinePacker, PutsLowOnesBesideHighOnes) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::skyline_packer_test

@@ -9,7 +9,7 @@
 #include "tests/support/small_scene.hpp"
 #include "texture_gpu/chart_raster.hpp"
 
-namespace foresight {
+namespace foresight::surface_patches_test {
 namespace {
 
 SceneModel one_node(Mesh mesh) {
@@ -239,4 +239,4 @@ TEST(SurfacePatches, AreTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::surface_patches_test

@@ -4,7 +4,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/texture_gpu/pass_bench.hpp"
 
-namespace foresight {
+namespace foresight::survey_pass_test {
 namespace {
 
 using reference::Answer;
@@ -128,4 +128,4 @@ INSTANTIATE_TEST_SUITE_P(Lenses, SurveyOfLenses, testing::ValuesIn(kLensKinds),
                          [](const auto& i) { return std::string(i.param); });
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::survey_pass_test

@@ -11,7 +11,7 @@
 #include "tests/texture_gpu/reference/atlas_pixels.hpp"
 #include "texture_gpu/chart_raster.hpp"
 
-namespace foresight {
+namespace foresight::texture_core_test {
 namespace {
 
 class TextureCoreTest : public HeadlessTest {
@@ -291,4 +291,4 @@ TEST_F(TextureCoreTest, MatchesTheGoldenAtlas) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::texture_core_test

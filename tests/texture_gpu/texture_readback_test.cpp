@@ -10,7 +10,7 @@
 #include "tests/texture_gpu/reference/ray_caster.hpp"
 #include "texture_gpu/texture_core.hpp"
 
-namespace foresight {
+namespace foresight::texture_readback_test {
 namespace {
 
 /// No rim of the surface within two texels: there the picture's filter mixes in what is beside it.
@@ -199,4 +199,4 @@ TEST_F(TextureReadbackTest, ItIsACopy) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::texture_readback_test

@@ -8,7 +8,7 @@
 #include "tests/support/small_scene.hpp"
 #include "tests/texture_gpu/reference/atlas_pixels.hpp"
 
-namespace foresight {
+namespace foresight::texture_thread_test {
 namespace {
 
 class TextureThreadTest : public HeadlessTest {
@@ -125,4 +125,4 @@ TEST_F(TextureThreadTest, GivesUpWaitingAfterTheTimeOut) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::texture_thread_test

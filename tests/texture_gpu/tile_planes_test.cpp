@@ -10,7 +10,7 @@
 #include "tests/support/small_scene.hpp"
 #include "texture_gpu/atlas_layout.hpp"
 
-namespace foresight {
+namespace foresight::tile_planes_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -211,4 +211,4 @@ TEST(TilePlane, TheBacksOfABoxFaceAway) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::tile_planes_test

@@ -4,7 +4,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/thesis/texels.hpp"
 
-namespace foresight::thesis {
+namespace foresight::thesis::expansion_test {
 namespace {
 
 constexpr int kWidth = 71, kHeight = 45;  // odd sizes come back from halving, too
@@ -101,4 +101,4 @@ TEST_F(ExpansionTest, SmallTexturesKeepTheirMask) {
 }
 
 }  // namespace
-}  // namespace foresight::thesis
+}  // namespace foresight::thesis::expansion_test

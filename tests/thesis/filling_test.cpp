@@ -4,7 +4,7 @@
 #include "texture_gpu/thesis/pyramid_filling.hpp"
 #include "texture_gpu/thesis/shader_filling.hpp"
 
-namespace foresight::thesis {
+namespace foresight::thesis::filling_test {
 namespace {
 
 using Eigen::Vector2i;
@@ -161,4 +161,4 @@ TEST_F(FillingTest, TheQueryChangesNoTexel) {
 }
 
 }  // namespace
-}  // namespace foresight::thesis
+}  // namespace foresight::thesis::filling_test

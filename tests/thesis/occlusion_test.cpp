@@ -7,7 +7,7 @@
 #include "tests/thesis/texels.hpp"
 #include "texture_gpu/thesis/perspective_texture.hpp"
 
-namespace foresight::thesis {
+namespace foresight::thesis::occlusion_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -90,4 +90,4 @@ TEST_F(OcclusionTest, TheMaskIsThatOfRayCasting) {
 }
 
 }  // namespace
-}  // namespace foresight::thesis
+}  // namespace foresight::thesis::occlusion_test

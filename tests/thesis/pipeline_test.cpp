@@ -6,7 +6,7 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 
-namespace foresight {
+namespace foresight::pipeline_test {
 namespace {
 
 /// Predicted view against the true one, over pixels with colours that cameras saw.
@@ -106,4 +106,4 @@ TEST_F(ThesisPipeline, RefusesLensesThatFitNoPlane) {
 }
 
 }  // namespace
-}  // namespace foresight
+}  // namespace foresight::pipeline_test

@@ -11,7 +11,7 @@
 #include "texture_gpu/thesis/perspective_texture.hpp"
 #include "texture_gpu/thesis/polygon_frame.hpp"
 
-namespace foresight::thesis {
+namespace foresight::thesis::polygons_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -198,4 +198,4 @@ TEST(BoundingBoxTest, NothingFromBehindAndOutOfView) {
 }
 
 }  // namespace
-}  // namespace foresight::thesis
+}  // namespace foresight::thesis::polygons_test

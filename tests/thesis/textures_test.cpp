@@ -4,7 +4,7 @@
 #include "tests/thesis/texels.hpp"
 #include "texture_gpu/thesis/fusion.hpp"
 
-namespace foresight::thesis {
+namespace foresight::thesis::textures_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -140,4 +140,4 @@ TEST_F(TexturesTest, TheNewestValidColourWins) {
 }
 
 }  // namespace
-}  // namespace foresight::thesis
+}  // namespace foresight::thesis::textures_test
