@@ -33,7 +33,9 @@ void PredictedSource::take_frames() {
     heard_ = clock_.now();
     newest_ = *frame;
     const auto at = [this](RobotTime time, const link::LineJoints& joints) {
-      return link::scene_at(rig_, *scene_, time, joints);
+      SceneState state = link::scene_at(rig_, *scene_, time, joints);
+      if (things_) things_->place(state);
+      return state;
     };
     auto posed = link::posed_frame(**frame, at, options_.margin_px);
     posed_ = posed.has_value();
@@ -75,6 +77,12 @@ SourceState PredictedSource::advance() {
   robot_ = seat_.show(*instant);
   instant_ = {fmt::format("{:06}", static_cast<unsigned long long>(++pictures_)), *instant};
   return SourceState::ready;
+}
+
+ViewPlace PredictedSource::place() {
+  ViewPlace out = places_.place(robot_);
+  if (things_) things_->place(out.scene);
+  return out;
 }
 
 std::optional<PosedFrame> PredictedSource::arrived() {

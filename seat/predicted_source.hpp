@@ -4,6 +4,7 @@
 #include "display/frame_source.hpp"
 #include "seat/predicted_place.hpp"
 #include "seat/seat.hpp"
+#include "seat/things_outlook.hpp"
 
 namespace foresight {
 
@@ -28,12 +29,14 @@ class PredictedSource final : public FrameSource {
   SourceState advance() override;
   const ShownInstant& instant() const override { return instant_; }
   std::optional<PosedFrame> arrived() override;
-  ViewPlace place() override { return places_.place(robot_); }
+  ViewPlace place() override;
   /// What the camera saw last, as far as it has come.
   cv::Mat actual() override { return newest_ ? newest_->image[0].bgr : cv::Mat(); }
   std::uint64_t overtaken() const override { return overtaken_; }
   std::string fault() const override;
 
+  /// From now on things are where these say; null: where the model has them. Outlives this.
+  void show_things(const ThingsOutlook* things) { things_ = things; }
   /// The robot as it is shown.
   const PredictedRobot& robot() const { return robot_; }
   /// The newest frame; null before the first.
@@ -50,6 +53,7 @@ class PredictedSource final : public FrameSource {
   Clock& clock_;
   PredictedSourceOptions options_;
   PredictedPlaces places_;
+  const ThingsOutlook* things_ = nullptr;
   link::LineFramePtr newest_;
   std::optional<PosedFrame> waiting_;
   bool posed_ = true, any_posed_ = false;

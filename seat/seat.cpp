@@ -109,6 +109,12 @@ PredictedRobot Seat::show(std::optional<RobotTime> at) {
   return shown_;
 }
 
+PredictedRobot Seat::look_ahead() {
+  const std::lock_guard lock(mutex_);
+  const auto now = robot_now();
+  return now ? outlook_.at(outlook_.instant_to_show(*now)) : PredictedRobot{};
+}
+
 SeatStatus Seat::status() const {
   SeatStatus out;
   end_.seat([&](ControlSeat& seat, OperatorTime here) {

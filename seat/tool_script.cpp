@@ -6,6 +6,7 @@
 #include <random>
 
 #include "common/error.hpp"
+#include "prediction/grasp/hand_path.hpp"
 
 namespace foresight {
 namespace {
@@ -15,10 +16,6 @@ constexpr double kPeak = 1.875;        // of minimum jerk, over its mean
 constexpr double kThere = 1e-3;        // m and rad: a line has ended
 constexpr double kLongestLine = 10;    // s more than asked for: then it goes on with the next
 constexpr int kTries = 2000;
-
-double minimum_jerk(double s) {
-  return s * s * s * (10 + s * (6 * s - 15));
-}
 
 std::vector<std::size_t> of_group(const Rig& rig, JointGroup group) {
   std::vector<std::size_t> out;
@@ -123,10 +120,14 @@ bool ToolScript::advance(const ToolStep& step, double dt) {
 
 void ToolScript::sway(double dt) {
   swayed_ += dt;
+  constexpr double kTurns = 3;  // s
+  const double share = minimum_jerk(std::clamp(swayed_ / kTurns, 0.0, 1.0));
   const double amplitudes[] = {sway_.pan, sway_.tilt}, periods[] = {sway_.pan_s, sway_.tilt_s};
+  const std::optional<double> middles[] = {sway_.middle_pan, sway_.middle_tilt};
   for (std::size_t k = 0; k < std::min<std::size_t>(2, head_.size()); ++k) {
     const DriveConfig& drive = rig_.joints[head_[k]].drive;
-    const double wanted = head_begin_[head_[k]] + amplitudes[k] * std::sin(2 * std::numbers::pi * swayed_ / periods[k]);
+    const double first = head_begin_[head_[k]], middle = std::lerp(first, middles[k].value_or(first), share);
+    const double wanted = middle + amplitudes[k] * std::sin(2 * std::numbers::pi * swayed_ / periods[k]);
     position_[head_[k]] = std::clamp(wanted, drive.min_position, drive.max_position);
   }
 }
@@ -139,6 +140,56 @@ std::optional<JointValues> ToolScript::step(double dt, const PredictedRobot&) {
     begin_step();
   }
   return position_;
+}
+
+std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
+                                     const std::string& tray) {
+  constexpr double kTips = 0.15, kGrasp = 0.037;      // m: finger tips along the tool's z; above the thing's bottom
+  constexpr double kOpen = 0.038, kClosed = 0.016;    // m, of the jaws' joint
+  constexpr double kAbove = 0.14, kIntoTray = 0.012;  // m
+  const auto place_of = [&](const std::string& name) {
+    const auto& nodes = scene.model()->nodes();
+    const auto found = std::ranges::find(nodes, name, &Node::name);
+    if (found == nodes.end())
+      throw InputError("the scene", "has no '" + name + "'", "operate the mock lab with physics");
+    const JointPositions rest = [](std::string_view) { return std::nullopt; };
+    return scene.state_at({}, rest, StateStatus::predicted)
+        .T_world_node[static_cast<std::size_t>(found - nodes.begin())];
+  };
+  const Pose from = place_of(thing), to = place_of(tray);
+  const HandOptions hand = arm_of(rig);
+  const InverseKinematics kinematics(*hand.arm);
+  const double yaw = std::atan2(from.linear()(1, 0), from.linear()(0, 0));
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const double turn = yaw + quarter * std::numbers::pi / 2;
+    const auto at = [&](const Pose& place, double above) {
+      Pose out = Pose::Identity();
+      out.linear() = (Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) *
+                      Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
+                         .toRotationMatrix();
+      out.translation() = place.translation() + Eigen::Vector3d(0, 0, kGrasp + kTips + above);
+      return out;
+    };
+    using enum ToolStep::What;
+    std::vector<ToolStep> steps{{gripper, Pose::Identity(), kOpen, 0.2},
+                                {there, at(from, kAbove), 0, 2},
+                                {line, at(from, 0), 0, 2.5},
+                                {gripper, Pose::Identity(), kClosed, 1},
+                                {wait, Pose::Identity(), 0, 0.5},
+                                {line, at(from, kAbove), 0, 2},
+                                {line, at(to, kAbove), 0, 3},
+                                {line, at(to, kIntoTray), 0, 2},
+                                {gripper, Pose::Identity(), kOpen, 1},
+                                {wait, Pose::Identity(), 0, 0.3},
+                                {line, at(to, kAbove), 0, 2}};
+    const bool reached = std::ranges::all_of(steps, [&](const ToolStep& step) {
+      return (step.what != there && step.what != line) ||
+             kinematics.solve(rig.T_world_robot.inverse() * step.T_world_tool).status == IkStatus::solved;
+    });
+    if (reached) return steps;
+  }
+  throw InputError("the script", "the arm does not reach '" + thing + "' or '" + tray + "' from above",
+                   "use the lab's own arm");
 }
 
 std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {

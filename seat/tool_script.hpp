@@ -9,6 +9,7 @@
 #include "prediction/path_follower.hpp"
 #include "rig/rig.hpp"
 #include "seat/scripted_driver.hpp"
+#include "session/live_scene.hpp"
 
 namespace foresight {
 
@@ -29,6 +30,8 @@ struct ToolStep {
 struct HeadSway {
   double pan = 0.20, tilt = 0.06;
   double pan_s = 9, tilt_s = 6.5;  ///< periods
+  /// Where it looks in the middle, rad; nothing: where it stood at first. It gets there within seconds.
+  std::optional<double> middle_pan, middle_tilt;
 };
 
 /// The same rig and steps give the same motion.
@@ -65,6 +68,12 @@ class ToolScript final : public ScriptedMotion {
   std::optional<PathFollower> follower_;
   bool began_ = false;
 };
+
+/// With two jaws that slide along y of the rig's tool, which points along its z: from above at a thing of the mock
+/// lab's own size of bricks (sim/lab_task.hpp), and into a tray. Poses are those of the scene's model, at rest. Throws
+/// InputError: the scene lacks one of the two, or the arm does not reach them.
+std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
+                                     const std::string& tray);
 
 /// A tour of poses above what lies in reach of the arm, the tool pointing down: `count` of them, by `seed`.
 std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count);

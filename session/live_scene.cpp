@@ -47,10 +47,12 @@ Pose LiveScene::T_world_left(const JointPositions& joints) const {
   return sim::LiveLab::T_world_left_modelled(joints);
 }
 
-LiveScene live_scene_of(const Rig& rig, bool mock, const std::optional<fs::path>& scene_file) {
+LiveScene live_scene_of(const Rig& rig, bool mock, const std::optional<fs::path>& scene_file, bool physics) {
   const StereoConfig config = mock ? as_mock(*rig.cameras) : *rig.cameras;
   if (!config.mock()) return {config, &rig, scene_file};
-  return {mock_lab(mock_world(rig, scene_file)), mock_options(config).lenses};
+  MockWorld world = mock_world(rig, scene_file);
+  if (physics) world.physics.emplace();
+  return {mock_lab(world), mock_options(config).lenses};
 }
 
 }  // namespace foresight

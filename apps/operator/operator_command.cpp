@@ -14,6 +14,7 @@
 #include "common/stop_signal.hpp"
 #include "rig/rig.hpp"
 #include "seat/tool_script.hpp"
+#include "sim/pan_tilt_head.hpp"
 
 namespace foresight {
 namespace {
@@ -90,7 +91,10 @@ int run_scripted(const Rig& given, const Arguments& arguments) {
   options.rig_file = arguments.rig;
   options.line = line_of(arguments);
   options.delay_s = arguments.delay_ms * 1e-3;
-  options.script = arguments.script;
+  const bool picks = arguments.script == "pick";
+  if (picks) options.physics = arguments.seed;
+  options.thing = "brick_red";
+  options.tray = "tray";
   options.seed = arguments.seed;
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
@@ -99,10 +103,13 @@ int run_scripted(const Rig& given, const Arguments& arguments) {
   // What the line takes by its file is known; the robot's side is told, as the rig's round_trip_s does.
   rig.link.round_trip = std::max(rig.link.round_trip, options.line.up.delay + options.line.down.delay + seconds(0.5));
   HeadSway sway;
+  if (picks) sway.middle_pan = sim::kHeadAtTable.pan, sway.middle_tilt = sim::kHeadAtTable.tilt;
   if (arguments.still_head) sway.pan = sway.tilt = 0;
-  ToolScript script(rig, tour(rig, arguments.seed, 40), sway);
+  const auto scene = std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt, picks));
+  ToolScript script(
+      rig, picks ? pick_and_place(rig, *scene, options.thing, options.tray) : tour(rig, arguments.seed, 40), sway);
   const SeatTrialFigures figures = try_seat(
-      rig, options, script, [] { return stop_requested(); }, say);
+      rig, scene, options, script, [] { return stop_requested(); }, say);
   print(figures);
   ViewOutputs reports = arguments.outputs;
   reports.report.reset();
@@ -159,9 +166,10 @@ void add_operator_command(Command& app, std::function<int()>& action) {
   command->add_option("--font-scale", arguments->font_scale, "Of all words in the window (default 1)")
       ->check(from_to(0.5, 4.0));
   command
-      ->add_option("--scripted", arguments->script,
-                   "A program operates, both sides in stepped time, without a window: tour")
-      ->check(one_of({"tour"}));
+      ->add_option(
+          "--scripted", arguments->script,
+          "A program operates, both sides in stepped time, without a window: pick (a brick into a\ntray), tour")
+      ->check(one_of({"pick", "tour"}));
   command->add_option("--delay-ms", arguments->delay_ms, "With --scripted: what the line takes each way (default 0)")
       ->check(from_to(0.0, 1e4));
   command->add_option("--line", arguments->line, "File of a line (docs/line.md) that everything passes")->reads();

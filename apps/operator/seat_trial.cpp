@@ -15,6 +15,7 @@
 #include "seat/seat.hpp"
 #include "seat/seat_options.hpp"
 #include "seat/view_setup.hpp"
+#include "sim/lab_task.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
 namespace foresight {
@@ -87,12 +88,12 @@ struct Shown {
 /// The whole of it.
 class Trial {
  public:
-  Trial(const Rig& rig, const SeatTrialOptions& options, ScriptedMotion& motion)
+  Trial(const Rig& rig, std::shared_ptr<const LiveScene> scene, const SeatTrialOptions& options, ScriptedMotion& motion)
       : rig_(rig),
         options_(options),
-        robot_(rig, options.rig_file, clock_, options.line),
+        robot_(rig, options.rig_file, clock_, options.line, options.physics),
         here_(robot_.participant(), "operator " + rig.name),
-        scene_(std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt))),
+        scene_(std::move(scene)),
         end_(here_, seat_end_options(rig, named(robot_.identity()), *scene_), clock_),
         driver_(motion),
         seat_(rig, end_, driver_, clock_),
@@ -102,6 +103,11 @@ class Trial {
         source_(rig, scene_, end_, seat_, clock_, source_options()),
         truth_(robot_.cameras().frames().subscribe(1000)) {
     if (options.zero_delay) near_.emplace(setup_);
+    if (options.physics) {
+      things_.emplace(rig, scene_, mock_things());
+      source_.show_things(&*things_);
+      clock_.every(20ms, [this](RobotTime) { things_->advance(seat_.look_ahead()); });
+    }
     driver_.listen_to([this]() -> std::optional<link::RobotState> {
       auto heard = end_.robot_state();
       return heard ? std::optional(std::move(heard->state)) : std::nullopt;
@@ -137,12 +143,25 @@ class Trial {
     }
     figures_.failure = driver_.failure();
     if (!pressed && figures_.failure.empty()) figures_.failure = "it never drove: " + words();
-    figures_.succeeded = figures_.failure.empty() && ended;
+    figures_.succeeded = figures_.failure.empty() && ended && (!options_.physics || in_tray());
+    if (figures_.failure.empty() && !figures_.succeeded) figures_.failure = "the thing is not in the tray";
     if (pressed) figures_.task_s = to_seconds((ended ? *ended : clock_.now()) - *pressed);
     return finish();
   }
 
  private:
+  // In truth, which the operator's side does not know.
+  bool in_tray() {
+    sim::PhysicalLab& lab = *robot_.cameras().physics();
+    const Eigen::Vector3d thing = lab.thing_at(options_.thing, clock_.now()).translation();
+    const JointPositions rest = [](std::string_view) { return std::nullopt; };
+    const auto& nodes = scene_->model()->nodes();
+    const auto tray = std::ranges::find(nodes, options_.tray, &Node::name);
+    const Eigen::Vector3d middle = scene_->state_at({}, rest, StateStatus::predicted)
+                                       .T_world_node[static_cast<std::size_t>(tray - nodes.begin())]
+                                       .translation();
+    return (thing - middle).head<2>().cwiseAbs().maxCoeff() < sim::kTraySide / 2 && thing.z() < sim::kTrayHeight;
+  }
   PredictedSourceOptions source_options() const {
     PredictedSourceOptions out;
     out.real_time = false;
@@ -279,6 +298,7 @@ class Trial {
   std::optional<HeadlessView> near_;
   Duration period_;
   PredictedSource source_;
+  std::optional<ThingsOutlook> things_;
   std::shared_ptr<FrameQueue> truth_;
 
   cv::Mat delayed_;
@@ -293,9 +313,10 @@ class Trial {
 
 }  // namespace
 
-SeatTrialFigures try_seat(const Rig& rig, const SeatTrialOptions& options, ScriptedMotion& motion,
-                          const std::function<bool()>& stopped, const std::function<void(const std::string&)>& say) {
-  return Trial(rig, options, motion).run(stopped, say);
+SeatTrialFigures try_seat(const Rig& rig, std::shared_ptr<const LiveScene> scene, const SeatTrialOptions& options,
+                          ScriptedMotion& motion, const std::function<bool()>& stopped,
+                          const std::function<void(const std::string&)>& say) {
+  return Trial(rig, std::move(scene), options, motion).run(stopped, say);
 }
 
 }  // namespace foresight

@@ -13,14 +13,16 @@
 #include "link/line/line_spec.hpp"
 #include "rig/rig.hpp"
 #include "seat/scripted_driver.hpp"
+#include "session/live_scene.hpp"
 
 namespace foresight {
 
 struct SeatTrialOptions {
   std::filesystem::path rig_file;
   LineSpec line;
-  double delay_s = 0;  ///< each way, for the report
-  std::string script = "look";
+  double delay_s = 0;               ///< each way, for the report
+  std::optional<unsigned> physics;  ///< things can be grasped: its seed
+  std::string thing, tray;          ///< with physics: the thing shall end in the tray
   unsigned seed = 1;
   double most_s = 120;                       ///< of motion
   double pictures_hz = 5;                    ///< that are measured, at most
@@ -45,8 +47,9 @@ struct SeatTrialFigures {
   std::vector<Instant> instants;
 };
 
-/// `rig` is mock. Throws what its parts do. `say`: progress, now and then.
-SeatTrialFigures try_seat(const Rig& rig, const SeatTrialOptions& options, ScriptedMotion& motion,
-                          const std::function<bool()>& stopped, const std::function<void(const std::string&)>& say);
+/// `rig` is mock. `scene`: what the operator's side knows. Throws what its parts do. `say`: progress, now and then.
+SeatTrialFigures try_seat(const Rig& rig, std::shared_ptr<const LiveScene> scene, const SeatTrialOptions& options,
+                          ScriptedMotion& motion, const std::function<bool()>& stopped,
+                          const std::function<void(const std::string&)>& say);
 
 }  // namespace foresight

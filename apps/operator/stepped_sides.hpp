@@ -20,8 +20,9 @@ class SteppedRobotSide {
  public:
   static constexpr Duration kTick = std::chrono::milliseconds(10);  ///< as the console's
 
-  /// `clock` and `rig` must outlive this. Throws what its parts do.
-  SteppedRobotSide(const Rig& rig, const std::filesystem::path& file, SteppedClock& clock, const LineSpec& line);
+  /// `physics`: things can be grasped; its seed. `clock` and `rig` must outlive this. Throws what its parts do.
+  SteppedRobotSide(const Rig& rig, const std::filesystem::path& file, SteppedClock& clock, const LineSpec& line,
+                   std::optional<unsigned> physics = std::nullopt);
   ~SteppedRobotSide();
 
   /// One cycle of the control loop; time passes until it is due.

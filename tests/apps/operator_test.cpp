@@ -31,6 +31,18 @@ TEST(Operator, ATourIsShownAsItWillBe) {
   EXPECT_EQ(names_in(out / "delayed"), shown);
 }
 
+// Over a line of 300 ms each way, by a program that knows what comes over it and the model, and nothing else.
+TEST(Operator, ABrickIsPickedUpAndPutIntoTheTray) {
+  const TempFolder folder;
+  const auto report = folder.path() / "report.json";
+  const Outcome result = run_program({"operator", rig_file(), "--scripted", "pick", "--delay-ms", "300", "--pictures-hz",
+                                      "0.5", "--no-zero-delay", "--report", report});
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  const nlohmann::json all = read_json(report);
+  EXPECT_TRUE(all["succeeded"]);
+  EXPECT_GT(all["predicted_db"].get<double>(), all["delayed_db"].get<double>() + 6);
+}
+
 TEST(Operator, StartedWrongItSaysWhatToDo) {
   const auto said = [](std::vector<std::string> words) {
     words.insert(words.begin(), {"operator", rig_file()});
