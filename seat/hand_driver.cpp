@@ -3,20 +3,6 @@
 #include "input/hand_of_rig.hpp"
 
 namespace foresight {
-namespace {
-
-HandRobot hand_robot(const SeatView& view) {
-  HandRobot out;
-  out.joints = view.joints;
-  out.begin = view.begin;
-  out.ready = view.ready;
-  out.follows = view.control.follows;
-  out.must_let_go = view.control.must_let_go;
-  return out;
-}
-
-}  // namespace
-
 HandDriver::HandDriver(const Rig& rig, std::unique_ptr<Tracker> device)
     : rig_(rig),
       options_(hand_options(rig)),
@@ -66,7 +52,7 @@ SeatWish HandDriver::tick(const SeatView& view) {
   HandInput input;
   input.now = view.now;
   input.device = any_.read(view.now);
-  input.robot = hand_robot(view);
+  input.robot = view.robot;
   input.T_base_view = rig_.T_world_robot.inverse() * T_world_camera_;
   const HandCycle& cycle = hand_.cycle(input);
   SeatWish wish;

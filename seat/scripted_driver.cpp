@@ -19,7 +19,7 @@ ScriptedDriver::ScriptedDriver(ScriptedMotion& motion, const ScriptedDriverOptio
 // What a person would ask for by what the robot says of itself; each again after a while.
 LineRequest ScriptedDriver::request(const SeatView& view) {
   const auto robot = says_ ? says_() : std::nullopt;
-  if (!robot || view.ready) return LineRequest::none;
+  if (!robot || view.robot.ready) return LineRequest::none;
   LineRequest wanted = LineRequest::none;
   if (robot->phase.label == "disabled") wanted = LineRequest::enable;
   if (robot->phase.label == "stopped") wanted = LineRequest::reset;
@@ -31,7 +31,7 @@ LineRequest ScriptedDriver::request(const SeatView& view) {
 }
 
 void ScriptedDriver::press(const SeatView& view) {
-  const bool may = view.control.phase == Phase::holding && view.ready && !view.control.must_let_go;
+  const bool may = view.control.phase == Phase::holding && view.robot.ready && !view.control.must_let_go;
   if (!may) {
     opened_.reset();
     return;
@@ -40,8 +40,8 @@ void ScriptedDriver::press(const SeatView& view) {
   if (view.now - *opened_ < options_.open_before) return;
   driving_ = true;
   last_ = view.now;
-  target_ = view.begin;
-  motion_.begin_at(view.begin);
+  target_ = view.robot.begin;
+  motion_.begin_at(view.robot.begin);
 }
 
 void ScriptedDriver::drive(const SeatView& view, SeatWish& wish) {

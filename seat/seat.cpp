@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "input/hand_on_line.hpp"
+
 namespace foresight {
 namespace {
 
@@ -41,9 +43,7 @@ SeatView Seat::look(RobotTime now) {
   end_.seat([&](ControlSeat& seat, OperatorTime here) {
     view.now = here;
     view.control = seat.status(here);
-    view.begin = seat.begin();
-    view.joints = seat.state().joints;
-    view.ready = seat.state().ready;
+    view.robot = hand_robot(seat, here);
   });
   view.shown = outlook_.at(outlook_.instant_to_show(now));
   view.engaged = engaged_;

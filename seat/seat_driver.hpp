@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "input/hand_control.hpp"
 #include "link/control/control_seat.hpp"
 #include "link/messages/foresight_messages.hpp"
 #include "prediction/robot_future.hpp"
@@ -13,10 +14,7 @@ namespace foresight {
 struct SeatView {
   OperatorTime now;
   ControlSeatStatus control;
-  /// What presses of the switch would begin from: the robot, as it stands by its newest state.
-  JointValues begin{};
-  std::size_t joints = 0;
-  bool ready = false;  ///< the robot would follow
+  HandRobot robot;  ///< as far as its newest state tells; unknown where that is too old
   /// The switch counts. Where it is held and does not, the robot was lost meanwhile: let go, and press again.
   bool engaged = false;
   /// Where the robot is shown: at the instant at which what is commanded now acts.

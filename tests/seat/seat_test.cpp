@@ -135,8 +135,8 @@ TEST_F(SeatAtARig, AfterALossNothingMovesBeforeTheSwitchIsPressedAnew) {
 
   driver_->wish.deadman = false;
   run(1s);
-  ASSERT_TRUE(driver_->seen.ready) << driver_->seen.control.words;
-  driver_->wish.position = driver_->seen.begin;
+  ASSERT_TRUE(driver_->seen.robot.ready) << driver_->seen.control.words;
+  driver_->wish.position = driver_->seen.robot.begin;
   driver_->wish.deadman = true;
   EXPECT_TRUE(until([this] { return follows(); }, 2s)) << driver_->seen.control.words;
   EXPECT_TRUE(seat_->status().engaged);
