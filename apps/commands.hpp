@@ -1,4 +1,4 @@
-// Which subcommands a program has: all_commands.cpp, or run_commands.cpp for a first look.
+// Which subcommands a program has: all_commands.cpp, or demo_commands.cpp for a first look.
 #pragma once
 
 #include "apps/command_line/command_line.hpp"

@@ -32,7 +32,7 @@ struct Arguments {
   bool mock = false, stepped = false, may_home = false, check_only = false;
   bool rig_view = false, serve = false;
   bool physics = false;
-  unsigned physics_seed = 1;
+  unsigned physics_seed = 1, layout = 0;
   bool view = false, window = false;  // the rest only with `view`
   std::optional<double> delay_ms;
   std::string scene;
@@ -116,6 +116,7 @@ std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& d
   if (!arguments.scene.empty()) options.scene = arguments.scene;
   options.physics = arguments.physics;
   options.physics_seed = arguments.physics_seed;
+  options.layout = arguments.layout;
   if (options.mock || rig.cameras->mock()) say_robot("lighting the lab");
   return std::make_unique<RobotCameras>(rig, devices, robot, clock, options);
 }
@@ -233,6 +234,8 @@ void check_view(const Rig& rig, const Arguments& arguments) {
 void check_physics(const Rig& rig, const Arguments& arguments) {
   if (arguments.physics_seed != Arguments{}.physics_seed && !arguments.physics)
     throw InputError("--physics-seed", "belongs to --physics", "add --physics, or leave it out");
+  if (arguments.layout != 0 && !arguments.physics)
+    throw InputError("--layout", "belongs to --physics", "add --physics, or leave it out");
   if (!arguments.physics) return;
   if (!rig.cameras || !arguments.cameras || (!arguments.mock && !rig.cameras->mock()))
     throw InputError("--physics", "belongs to the mock lab, which mock cameras look at",
@@ -319,6 +322,8 @@ void add_robot_command(Command& app, std::function<int()>& action) {
       "dropped, and throw their shadows where they are");
   command->add_option("--physics-seed", arguments->physics_seed,
                       "With --physics: of how masses, friction and places differ from the model's (default 1)");
+  command->add_option("--layout", arguments->layout,
+                      "With --physics: of bricks and tray, another number another one (default 0)");
   command->add_flag("!--no-cameras", arguments->cameras, "Leaves the rig's cameras alone");
   command->add_flag(
       "--serve", arguments->serve,

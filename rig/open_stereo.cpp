@@ -49,7 +49,7 @@ std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world) {
     if (!world.furniture)
       throw InputError("physics", "belongs to the things of the built-in lab, and the rig has a scene of its own",
                        "leave it out, or the scene");
-    lab.task = true;
+    lab.task = world.layout;
     for (const sim::LooseThing& thing : world.physics->things) lab.loose.push_back(thing.name);
   }
   return std::make_shared<const sim::LiveLab>(lab);

@@ -29,6 +29,7 @@ struct MockWorld {
   bool furniture = true;                     ///< with `things`: the lab's own around them
   /// The lab's things, and more for a hand to work with, can be grasped, pushed and dropped, and their shadows move.
   std::optional<sim::PhysicsOptions> physics = {};
+  unsigned layout = 0;  ///< with physics: of the things for a hand, sim::task_layout()
 };
 
 /// What a rig with this map of tags sees in the mock lab: the tags, of the family tag36h11; none without a map. Throws

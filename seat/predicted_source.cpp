@@ -32,6 +32,7 @@ void PredictedSource::take_frames() {
   while (const auto frame = end_.frames().take(Duration{0})) {
     heard_ = clock_.now();
     newest_ = *frame;
+    if (listener_) listener_(*newest_);
     const auto at = [this](RobotTime time, const link::LineJoints& joints) {
       SceneState state = link::scene_at(rig_, *scene_, time, joints);
       if (things_) things_->place(state);

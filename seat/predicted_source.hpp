@@ -1,6 +1,8 @@
 // Frames that come over the line, shown as the robot will be: a source for ViewLoop whose instants lie in the future.
 #pragma once
 
+#include <functional>
+
 #include "display/frame_source.hpp"
 #include "seat/predicted_place.hpp"
 #include "seat/seat.hpp"
@@ -37,6 +39,8 @@ class PredictedSource final : public FrameSource {
 
   /// From now on things are where these say; null: where the model has them. Outlives this.
   void show_things(const ThingsOutlook* things) { things_ = things; }
+  /// Of every frame that comes, in this source's thread.
+  void listen(std::function<void(const link::LineFrame&)> heard) { listener_ = std::move(heard); }
   /// The robot as it is shown.
   const PredictedRobot& robot() const { return robot_; }
   /// The newest frame; null before the first.
@@ -54,6 +58,7 @@ class PredictedSource final : public FrameSource {
   PredictedSourceOptions options_;
   PredictedPlaces places_;
   const ThingsOutlook* things_ = nullptr;
+  std::function<void(const link::LineFrame&)> listener_;
   link::LineFramePtr newest_;
   std::optional<PosedFrame> waiting_;
   bool posed_ = true, any_posed_ = false;

@@ -142,21 +142,21 @@ std::optional<JointValues> ToolScript::step(double dt, const PredictedRobot&) {
   return position_;
 }
 
+Pose place_at_rest(const LiveScene& scene, const std::string& node) {
+  const auto& nodes = scene.model()->nodes();
+  const auto found = std::ranges::find(nodes, node, &Node::name);
+  if (found == nodes.end()) throw InputError("the scene", "has no '" + node + "'", "operate the mock lab with physics");
+  const JointPositions rest = [](std::string_view) { return std::nullopt; };
+  const SceneState state = scene.state_at({}, rest, StateStatus::predicted);
+  return state.T_world_node[static_cast<std::size_t>(found - nodes.begin())];
+}
+
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray) {
   constexpr double kTips = 0.15, kGrasp = 0.037;      // m: finger tips along the tool's z; above the thing's bottom
   constexpr double kOpen = 0.038, kClosed = 0.016;    // m, of the jaws' joint
   constexpr double kAbove = 0.14, kIntoTray = 0.012;  // m
-  const auto place_of = [&](const std::string& name) {
-    const auto& nodes = scene.model()->nodes();
-    const auto found = std::ranges::find(nodes, name, &Node::name);
-    if (found == nodes.end())
-      throw InputError("the scene", "has no '" + name + "'", "operate the mock lab with physics");
-    const JointPositions rest = [](std::string_view) { return std::nullopt; };
-    return scene.state_at({}, rest, StateStatus::predicted)
-        .T_world_node[static_cast<std::size_t>(found - nodes.begin())];
-  };
-  const Pose from = place_of(thing), to = place_of(tray);
+  const Pose from = place_at_rest(scene, thing), to = place_at_rest(scene, tray);
   const HandOptions hand = arm_of(rig);
   const InverseKinematics kinematics(*hand.arm);
   const double yaw = std::atan2(from.linear()(1, 0), from.linear()(0, 0));

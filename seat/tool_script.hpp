@@ -69,6 +69,9 @@ class ToolScript final : public ScriptedMotion {
   bool began_ = false;
 };
 
+/// Of a node of the scene's model, while nothing has moved yet. Throws InputError: there is none of that name.
+Pose place_at_rest(const LiveScene& scene, const std::string& node);
+
 /// With two jaws that slide along y of the rig's tool, which points along its z: from above at a thing of the mock
 /// lab's own size of bricks (sim/lab_task.hpp), and into a tray. Poses are those of the scene's model, at rest. Throws
 /// InputError: the scene lacks one of the two, or the arm does not reach them.

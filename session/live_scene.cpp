@@ -47,11 +47,13 @@ Pose LiveScene::T_world_left(const JointPositions& joints) const {
   return sim::LiveLab::T_world_left_modelled(joints);
 }
 
-LiveScene live_scene_of(const Rig& rig, bool mock, const std::optional<fs::path>& scene_file, bool physics) {
+LiveScene live_scene_of(const Rig& rig, bool mock, const std::optional<fs::path>& scene_file, bool physics,
+                        unsigned layout) {
   const StereoConfig config = mock ? as_mock(*rig.cameras) : *rig.cameras;
   if (!config.mock()) return {config, &rig, scene_file};
   MockWorld world = mock_world(rig, scene_file);
   if (physics) world.physics.emplace();
+  world.layout = layout;
   return {mock_lab(world), mock_options(config).lenses};
 }
 

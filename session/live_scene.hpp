@@ -44,9 +44,9 @@ class LiveScene {
 };
 
 /// What the robot of this rig knows of its surroundings, without opening a camera. `mock`: as_mock() stands for the
-/// rig's cameras, which it has; `physics`: of the mock lab, RobotCameraOptions::physics is. Throws what LiveScene,
-/// as_mock() and mock_world() do.
+/// rig's cameras, which it has; `physics`, `layout`: of the mock lab, what RobotCameraOptions has. Throws what
+/// LiveScene, as_mock() and mock_world() do.
 LiveScene live_scene_of(const Rig& rig, bool mock, const std::optional<std::filesystem::path>& scene_file,
-                        bool physics = false);
+                        bool physics = false, unsigned layout = 0);
 
 }  // namespace foresight

@@ -18,6 +18,7 @@ RobotCameras::RobotCameras(const Rig& rig, const RobotDevices& devices, const Ro
     : rig_(rig), devices_(devices), clock_(clock) {
   const StereoConfig config = options.mock ? as_mock(*rig.cameras) : *rig.cameras;
   if (config.mock()) world_ = mock_world(rig, options.scene);
+  world_.layout = options.layout;
   if (options.physics) add_physics(config, options.physics_seed);
   if (config.mock() || options.record) ready_ = open(config);
   physics_ = ready_.physics;

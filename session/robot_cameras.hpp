@@ -25,6 +25,7 @@ struct RobotCameraOptions {
   std::optional<std::filesystem::path> scene = {};   ///< in place of the rig's
   bool physics = false;                              ///< of mock cameras: MockWorld::physics, with the rig's gripper
   unsigned physics_seed = 1;                         ///< HiddenPhysics::seed
+  unsigned layout = 0;                               ///< MockWorld::layout
   LiveFrameOptions live = {};
 };
 

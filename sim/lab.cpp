@@ -224,25 +224,25 @@ int Lab::find(const std::string& name) const {
   throw std::out_of_range("the lab has no part " + name);
 }
 
-Lab make_lab(double texel, unsigned seed, bool with_ball, bool with_task) {
+Lab make_lab(double texel, unsigned seed, bool with_ball, std::optional<unsigned> task) {
   LabBuilder builder(texel, seed);
   add_all_but_robot(builder);
   const int arm = static_cast<int>(builder.part_count());
   add_arm(builder);
   if (with_ball) add_ball(builder);
-  if (with_task) add_task_things(builder);
+  if (task) add_task_things(builder, *task);
   Lab lab = builder.finish();
   lab.arm = arm;
   return lab;
 }
 
-Lab make_lab_with(const RobotScene& things, bool furniture, double texel, unsigned seed, bool with_task) {
+Lab make_lab_with(const RobotScene& things, bool furniture, double texel, unsigned seed, std::optional<unsigned> task) {
   LabBuilder builder(texel, seed);
   if (furniture) add_all_but_robot(builder);
   const int first = static_cast<int>(builder.part_count());
   add_things(builder, things);
   if (furniture) add_ball(builder);
-  if (furniture && with_task) add_task_things(builder);
+  if (furniture && task) add_task_things(builder, *task);
   Lab lab = builder.finish();
   lab.arm = -1;
   lab.things = first;

@@ -6,6 +6,7 @@
 // Renderer::render looks at it. Whoever drives the lab, a recorded motion or a live one, makes states.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,10 +50,11 @@ struct Lab {
 /// `texel`: metres per texel of the finest pictures. `seed` varies grain and small print.
 /// With a ball, that is one more part at the end, "ball", which moves. With a task, things for it (sim/lab_task.hpp)
 /// come last.
-Lab make_lab(double texel, unsigned seed, bool with_ball = false, bool with_task = false);
+Lab make_lab(double texel, unsigned seed, bool with_ball = false, std::optional<unsigned> task = {});
 /// The lab with `things` (sim/things.hpp) in place of its arm, and with the ball; without `furniture`, nothing but
 /// them.
-Lab make_lab_with(const RobotScene& things, bool furniture, double texel, unsigned seed, bool with_task = false);
+Lab make_lab_with(const RobotScene& things, bool furniture, double texel, unsigned seed,
+                  std::optional<unsigned> task = {});
 inline constexpr float kBallRadius = 0.03f;  ///< metres
 
 /// The part's triangles over welded vertices, exactly as they are rendered.

@@ -43,8 +43,8 @@ class LiveLab {
     std::optional<MovingPrint> board = {};
     /// In place of the lab's own arm: the rig's robot, or a whole scene with it. Null: the lab's own arm.
     std::shared_ptr<const RobotScene> things = {};
-    bool furniture = true;  ///< with `things`: the lab's own around them, and the ball
-    bool task = false;      ///< bricks and a tray on the table (sim/lab_task.hpp)
+    bool furniture = true;              ///< with `things`: the lab's own around them, and the ball
+    std::optional<unsigned> task = {};  ///< bricks and a tray on the table: task_layout() (sim/lab_task.hpp)
     /// Parts that may be anywhere, as in a physical lab (sim/physics): true_state() leaves them at rest, the ball too.
     /// Names that the lab does not have are left out.
     std::vector<std::string> loose = {};

@@ -50,7 +50,8 @@ class LiveSeat {
         options_(options),
         line_(pretended(options, clock_)),
         participant_(rig.link, options.name, link::Role::operating, line_),
-        scene_(std::make_shared<const LiveScene>(live_scene_of(rig, options.mock_cameras, options.scene))),
+        scene_(std::make_shared<const LiveScene>(
+            live_scene_of(rig, options.mock_cameras, options.scene, options.physics, options.layout))),
         setup_(live_view_setup(*scene_, rig.name)),
         end_(participant_, seat_end_options(rig, identity_of(rig, options), *scene_), clock_),
         driver_(rig, options.device.empty() ? nullptr : open_tracker(options.device)),
@@ -58,7 +59,11 @@ class LiveSeat {
         window_(open_seat_window("Foresight: " + rig.name)),
         session_(*window_, setup_),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
-        shown_(*window_, seat_, source_, window_options()) {}
+        shown_(*window_, seat_, source_, window_options()) {
+    if (!options.physics) return;
+    things_.emplace(rig, scene_, mock_things());
+    source_.show_things(&*things_);
+  }
 
   int run() {
     end_.start();
@@ -95,6 +100,7 @@ class LiveSeat {
                                        {"P", "screenshot"},
                                        {"Q, Esc", "end"}});
     out.input = [this](const gl::WindowInput& input) { take(input); };
+    out.log = [](const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); };
     out.more_lines = [this] { return driver_.lines(); };
     return out;
   }
@@ -107,6 +113,7 @@ class LiveSeat {
       if (event.down && event.code == kF1) shown_.toggle_help();
       if (event.down && event.code == kTab) shown_.next_picture();
     }
+    if (things_) things_->advance(seat_.look_ahead());
     driver_.look_from(source_.place().T_world_camera);
     driver_.take(input, {clock_.now().ns});
   }
@@ -135,6 +142,7 @@ class LiveSeat {
   std::unique_ptr<gl::Window> window_;
   ViewSession session_;
   PredictedSource source_;
+  std::optional<ThingsOutlook> things_;
   SeatWindow shown_;
 };
 

@@ -15,7 +15,9 @@ struct LiveSeatOptions {
   std::optional<std::filesystem::path> line;  ///< that everything passes, to try things out
   std::optional<std::filesystem::path> scene;
   bool mock_cameras = false;  ///< the robot's are the mock lab's, whatever the rig says
-  std::string device;         ///< beside keyboard and mouse: as open_tracker() takes it; "" none
+  bool physics = false;       ///< that lab has things that can be grasped: RobotCameraOptions::physics and layout
+  unsigned layout = 0;
+  std::string device;  ///< beside keyboard and mouse: as open_tracker() takes it; "" none
   double rate_hz = 30;
   double font_scale = 1;
   std::optional<std::filesystem::path> screenshot;  ///< key P writes it

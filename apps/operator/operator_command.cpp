@@ -8,6 +8,7 @@
 
 #include "apps/operator/live_seat.hpp"
 #include "apps/operator/seat_trial.hpp"
+#include "apps/operator/served_trial.hpp"
 #include "apps/view_outputs.hpp"
 #include "common/error.hpp"
 #include "common/numbers_file.hpp"
@@ -23,7 +24,8 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string rig, name = "operator", scene, device;
-  bool mock = false;
+  bool mock = false, physics = false, served = false;
+  unsigned layout = 0;
   double rate_hz = 30, font_scale = 1;
   std::string script;
   double delay_ms = 0;
@@ -55,65 +57,112 @@ nlohmann::json number(const std::optional<double>& value) {
 
 nlohmann::ordered_json report_of(const SeatTrialFigures& figures, const Arguments& arguments) {
   nlohmann::ordered_json out;
-  out["predicted_db"] = number(figures.predicted_db);
-  out["delayed_db"] = number(figures.delayed_db);
-  out["zero_delay_db"] = number(figures.zero_delay_db);
-  out["moving_predicted_db"] = number(figures.moving_predicted_db);
-  out["moving_delayed_db"] = number(figures.moving_delayed_db);
-  out["moving_share"] = number(figures.moving_share);
+  const SeatFidelity& seen = figures.fidelity;
+  out["predicted_db"] = number(seen.predicted_db);
+  out["delayed_db"] = number(seen.delayed_db);
+  out["zero_delay_db"] = number(seen.zero_delay_db);
+  out["moving_predicted_db"] = number(seen.moving_predicted_db);
+  out["moving_delayed_db"] = number(seen.moving_delayed_db);
+  out["moving_share"] = number(seen.moving_share);
   out["succeeded"] = figures.succeeded;
   out["failure"] = figures.failure;
   out["task_s"] = figures.task_s;
   out["delay_ms"] = arguments.delay_ms;
   out["seed"] = arguments.seed;
   out["acts_after_ms"] = 1e3 * figures.delay_s;
-  out["image_age_ms"] = figures.image_age_s ? nlohmann::json(1e3 * *figures.image_age_s) : nlohmann::json();
+  out["image_age_ms"] = seen.image_age_s ? nlohmann::json(1e3 * *seen.image_age_s) : nlohmann::json();
   out["joints_p95"] = figures.joints_p95;
-  out["invalid_share"] = figures.invalid_share;
+  out["invalid_share"] = seen.invalid_share;
   out["losses"] = figures.losses;
-  out["view"] = to_json(figures.record);
+  out["view"] = to_json(seen.record);
   return out;
 }
 
 void print(const SeatTrialFigures& f) {
   const auto db = [](const std::optional<double>& value) { return value ? fmt::format("{:.2f} dB", *value) : "-"; };
-  fmt::print("shown {}, delayed image {}, without a line {}\n", db(f.predicted_db), db(f.delayed_db),
-             db(f.zero_delay_db));
+  const SeatFidelity& seen = f.fidelity;
+  fmt::print("shown {}, delayed image {}, without a line {}\n", db(seen.predicted_db), db(seen.delayed_db),
+             db(seen.zero_delay_db));
   fmt::print("where something moved ({:.1f} % of what is seen): shown {}, delayed image {}\n",
-             1e2 * f.moving_share.value_or(0), db(f.moving_predicted_db), db(f.moving_delayed_db));
+             1e2 * seen.moving_share.value_or(0), db(seen.moving_predicted_db), db(seen.moving_delayed_db));
   fmt::print("joints shown within {:.2g} mrad or mm (95 %); commands act after {:.0f} ms; {:.1f} s, {}\n",
              1e3 * f.joints_p95, 1e3 * f.delay_s, f.task_s, f.succeeded ? "succeeded" : "failed: " + f.failure);
 }
 
-int run_scripted(const Rig& given, const Arguments& arguments) {
-  Rig rig = given;
+/// What the program shall do.
+struct Task {
+  bool picks = false;
+  std::string thing, tray = "tray";
+  unsigned layout = 0;
+};
+
+/// Seeds pick one brick or the other, from one arrangement or another.
+Task task_of(const Arguments& arguments) {
+  Task out;
+  out.picks = arguments.script == "pick";
+  out.thing = arguments.seed % 2 == 1 ? "brick_red" : "brick_blue";
+  out.layout = arguments.served ? arguments.layout : arguments.seed - 1;
+  return out;
+}
+
+SeatTrialFigures run_stepped(const Rig& rig, const Arguments& arguments, const Task& task,
+                             std::shared_ptr<const LiveScene> scene, ScriptedMotion& motion) {
   SeatTrialOptions options;
   options.rig_file = arguments.rig;
   options.line = line_of(arguments);
   options.delay_s = arguments.delay_ms * 1e-3;
-  const bool picks = arguments.script == "pick";
-  if (picks) options.physics = arguments.seed;
-  options.thing = "brick_red";
-  options.tray = "tray";
+  if (task.picks) options.physics = arguments.seed;
+  options.layout = task.layout;
+  options.thing = task.thing;
+  options.tray = task.tray;
   options.seed = arguments.seed;
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
   options.zero_delay = arguments.zero_delay;
   options.out = arguments.outputs.out;
+  return try_seat(
+      rig, std::move(scene), options, motion, [] { return stop_requested(); }, say);
+}
+
+SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Task& task,
+                            std::shared_ptr<const LiveScene> scene, ScriptedMotion& motion) {
+  ServedTrialOptions options;
+  options.rig_file = arguments.rig;
+  options.name = arguments.name;
+  if (arguments.delay_ms > 0 || !arguments.line.empty()) options.line = line_of(arguments);
+  options.things = task.picks;
+  options.thing = task.thing;
+  options.tray = task.tray;
+  options.most_s = arguments.seconds;
+  options.pictures_hz = arguments.pictures_hz;
+  options.out = arguments.outputs.out;
+  return try_served_seat(
+      rig, std::move(scene), options, motion, [] { return stop_requested(); }, say);
+}
+
+int run_scripted(const Rig& given, const Arguments& arguments) {
+  Rig rig = given;
   // What the line takes by its file is known; the robot's side is told, as the rig's round_trip_s does.
-  rig.link.round_trip = std::max(rig.link.round_trip, options.line.up.delay + options.line.down.delay + seconds(0.5));
+  const LineSpec line = line_of(arguments);
+  rig.link.round_trip = std::max(rig.link.round_trip, line.up.delay + line.down.delay + seconds(0.5));
+  const Task task = task_of(arguments);
   HeadSway sway;
-  if (picks) sway.middle_pan = sim::kHeadAtTable.pan, sway.middle_tilt = sim::kHeadAtTable.tilt;
+  if (task.picks) sway.middle_pan = sim::kHeadAtTable.pan, sway.middle_tilt = sim::kHeadAtTable.tilt;
   if (arguments.still_head) sway.pan = sway.tilt = 0;
-  const auto scene = std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt, picks));
+  const bool mock = !arguments.served || arguments.mock;
+  const std::optional<fs::path> scene_file =
+      arguments.scene.empty() ? std::nullopt : std::optional<fs::path>(arguments.scene);
+  const auto scene = std::make_shared<const LiveScene>(
+      live_scene_of(rig, mock, arguments.served ? scene_file : std::nullopt, task.picks, task.layout));
   ToolScript script(
-      rig, picks ? pick_and_place(rig, *scene, options.thing, options.tray) : tour(rig, arguments.seed, 40), sway);
-  const SeatTrialFigures figures = try_seat(
-      rig, scene, options, script, [] { return stop_requested(); }, say);
+      rig, task.picks ? pick_and_place(rig, *scene, task.thing, task.tray) : tour(rig, arguments.seed, 40), sway);
+  const SeatTrialFigures figures = arguments.served ? run_served(rig, arguments, task, scene, script)
+                                                    : run_stepped(rig, arguments, task, scene, script);
   print(figures);
   ViewOutputs reports = arguments.outputs;
   reports.report.reset();
-  write_reports(reports, figures.record, figures.instants, "Foresight, an operator's seat at " + rig.name);
+  write_reports(reports, figures.fidelity.record, figures.fidelity.instants,
+                "Foresight, an operator's seat at " + rig.name);
   if (arguments.outputs.report) write_numbers(arguments.outputs.report, report_of(figures, arguments).dump(2));
   return stop_requested() ? kStopped : figures.succeeded ? 0 : 1;
 }
@@ -125,6 +174,8 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   if (!arguments.line.empty()) options.line = arguments.line;
   if (!arguments.scene.empty()) options.scene = arguments.scene;
   options.mock_cameras = arguments.mock;
+  options.physics = arguments.physics;
+  options.layout = arguments.layout;
   options.device = arguments.device;
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
@@ -136,10 +187,18 @@ void check(const Rig& rig, const Arguments& arguments) {
     throw InputError(arguments.rig, "the rig has no cameras, of which a view could be made",
                      "add them to the rig (docs/rig-files.md)");
   if (!arguments.line.empty()) read_line_spec(arguments.line);  // known before anything is opened
-  const bool scripted_only[] = {arguments.outputs.any(), arguments.delay_ms != 0, arguments.still_head};
-  const char* const names[] = {"--out, --report, --html", "--delay-ms", "--still-head"};
+  const bool scripted_only[] = {arguments.outputs.any(), arguments.delay_ms != 0, arguments.still_head,
+                                arguments.served};
+  const char* const names[] = {"--out, --report, --html", "--delay-ms", "--still-head", "--served"};
   for (std::size_t i = 0; i < std::size(names) && arguments.script.empty(); ++i)
     if (scripted_only[i]) throw InputError(names[i], "belongs to --scripted", "add --scripted, or leave it out");
+  const bool live = arguments.script.empty() || arguments.served;
+  if (arguments.layout != 0 && (!live || !arguments.mock))
+    throw InputError("--layout", "is of a robot's side that runs with --mock --physics",
+                     live ? "add --mock" : "leave it out: --seed says it, too");
+  if (arguments.physics && (!arguments.script.empty() || !arguments.mock))
+    throw InputError("--physics", "is of a robot's side that runs with --mock", "add --mock, without --scripted");
+  if (arguments.seed == 0) throw InputError("--seed", "is 0", "give one from 1 on");
 }
 
 int run(const Arguments& arguments) {
@@ -156,6 +215,10 @@ void add_operator_command(Command& app, std::function<int()>& action) {
   command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->reads()->required();
   command->add_option("--name", arguments->name, "Of the operator, as the robot's side shows it (default operator)");
   command->add_flag("--mock", arguments->mock, "The robot's side runs with --mock: its cameras see the mock lab");
+  command->add_flag("--physics", arguments->physics,
+                    "With --mock: the robot's side runs with --physics, too; things go with the hand at once");
+  command->add_option("--layout", arguments->layout,
+                      "With --mock: the robot's side has this --layout, too (default 0)");
   command->add_option("--scene", arguments->scene, "The scene around the robot, in place of the rig's `scene:`")
       ->reads();
   command->add_option(
@@ -170,6 +233,9 @@ void add_operator_command(Command& app, std::function<int()>& action) {
           "--scripted", arguments->script,
           "A program operates, both sides in stepped time, without a window: pick (a brick into a\ntray), tour")
       ->check(one_of({"pick", "tour"}));
+  command->add_flag(
+      "--served", arguments->served,
+      "With --scripted: the robot's side is a program of its own (foresight robot --serve), in real time");
   command->add_option("--delay-ms", arguments->delay_ms, "With --scripted: what the line takes each way (default 0)")
       ->check(from_to(0.0, 1e4));
   command->add_option("--line", arguments->line, "File of a line (docs/line.md) that everything passes")->reads();

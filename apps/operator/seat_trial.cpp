@@ -2,9 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <deque>
 #include <map>
-#include <opencv2/imgproc.hpp>
 
 #include "apps/operator/stepped_sides.hpp"
 #include "apps/view_measures.hpp"
@@ -14,6 +12,7 @@
 #include "seat/predicted_source.hpp"
 #include "seat/seat.hpp"
 #include "seat/seat_options.hpp"
+#include "seat/tool_script.hpp"
 #include "seat/view_setup.hpp"
 #include "sim/lab_task.hpp"
 #include "texture_gpu/stage_clock.hpp"
@@ -24,42 +23,11 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr double kMoved = 10;             // grey levels between two true images
-constexpr std::size_t kLeastMoved = 100;  // pixels that are worth a figure
-constexpr Duration kTruthKept = 20s;
-constexpr Duration kSameInstant = 1ms;
 constexpr Duration kLongest = 1200s;
-
-class Mean {
- public:
-  void add(std::optional<double> value) {
-    if (!value) return;
-    sum_ += *value;
-    ++count_;
-  }
-  std::optional<double> mean() const {
-    return count_ ? std::optional(sum_ / static_cast<double>(count_)) : std::nullopt;
-  }
-
- private:
-  double sum_ = 0;
-  std::size_t count_ = 0;
-};
 
 Identity named(Identity identity) {
   identity.name = "the operator's program";
   return identity;
-}
-
-/// 255 where two images differ by more than kMoved in any channel.
-cv::Mat moved_mask(const cv::Mat& one, const cv::Mat& other, const cv::Mat& seen) {
-  cv::Mat difference, out;
-  cv::absdiff(one, other, difference);
-  std::vector<cv::Mat> channels;
-  cv::split(difference, channels);
-  for (std::size_t i = 1; i < channels.size(); ++i) channels[0] = cv::max(channels[0], channels[i]);
-  cv::threshold(channels[0], out, kMoved, 255, cv::THRESH_BINARY);
-  return out & seen;
 }
 
 /// A view, with a context of its own.
@@ -77,21 +45,13 @@ class HeadlessView {
   std::unique_ptr<ViewSession> session_;
 };
 
-struct Shown {
-  RobotTime instant, newest;
-  std::string stem;
-  cv::Mat predicted, delayed;  // BGRA; BGR
-  bool invalid = false;
-  FrameRecord record;
-};
-
 /// The whole of it.
 class Trial {
  public:
   Trial(const Rig& rig, std::shared_ptr<const LiveScene> scene, const SeatTrialOptions& options, ScriptedMotion& motion)
       : rig_(rig),
         options_(options),
-        robot_(rig, options.rig_file, clock_, options.line, options.physics),
+        robot_(rig, options.rig_file, clock_, options.line, options.physics, options.layout),
         here_(robot_.participant(), "operator " + rig.name),
         scene_(std::move(scene)),
         end_(here_, seat_end_options(rig, named(robot_.identity()), *scene_), clock_),
@@ -101,8 +61,12 @@ class Trial {
         view_(setup_),
         period_(seconds(1 / mock_options(as_mock(*rig.cameras)).rate)),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
-        truth_(robot_.cameras().frames().subscribe(1000)) {
-    if (options.zero_delay) near_.emplace(setup_);
+        truth_(robot_.cameras().frames().subscribe(1000)),
+        measures_(described(), options.out) {
+    if (options.zero_delay) {
+      near_.emplace(setup_);
+      measures_.compare_without_line([this](RobotTime instant) { return without_line(instant); });
+    }
     if (options.physics) {
       things_.emplace(rig, scene_, mock_things());
       source_.show_things(&*things_);
@@ -116,11 +80,6 @@ class Trial {
       end_.step();
       seat_.step();
     });
-    for (const char* folder : {"shown", "delayed", "true"})
-      if (options.out) make_folder(*options.out / folder);
-    figures_.record = describe(view_.session(), setup_);
-    figures_.record.run = rig.name;
-    add_texture_options(figures_.record, setup_.textures);
   }
 
   SeatTrialFigures run(const std::function<bool()>& stopped, const std::function<void(const std::string&)>& say) {
@@ -135,11 +94,11 @@ class Trial {
       if (!driver_.failure().empty()) break;
       look(pressed && !ended);
       learn_truth();
-      if (ended && shown_.empty()) break;
+      if (ended && !measures_.waits()) break;
       if (now - told < 10s) continue;
       told = now;
       say(fmt::format("{:.0f} s: {}", to_seconds(now - begin),
-                      pressed ? fmt::format("{} pictures", measured_) : words()));
+                      pressed ? fmt::format("{} pictures", measures_.measured()) : words()));
     }
     figures_.failure = driver_.failure();
     if (!pressed && figures_.failure.empty()) figures_.failure = "it never drove: " + words();
@@ -152,15 +111,8 @@ class Trial {
  private:
   // In truth, which the operator's side does not know.
   bool in_tray() {
-    sim::PhysicalLab& lab = *robot_.cameras().physics();
-    const Eigen::Vector3d thing = lab.thing_at(options_.thing, clock_.now()).translation();
-    const JointPositions rest = [](std::string_view) { return std::nullopt; };
-    const auto& nodes = scene_->model()->nodes();
-    const auto tray = std::ranges::find(nodes, options_.tray, &Node::name);
-    const Eigen::Vector3d middle = scene_->state_at({}, rest, StateStatus::predicted)
-                                       .T_world_node[static_cast<std::size_t>(tray - nodes.begin())]
-                                       .translation();
-    return (thing - middle).head<2>().cwiseAbs().maxCoeff() < sim::kTraySide / 2 && thing.z() < sim::kTrayHeight;
+    return sim::lies_in_tray(robot_.cameras().physics()->thing_at(options_.thing, clock_.now()),
+                             place_at_rest(*scene_, options_.tray));
   }
   PredictedSourceOptions source_options() const {
     PredictedSourceOptions out;
@@ -185,102 +137,49 @@ class Trial {
     }
     const ViewPlace place = source_.place();
     if (!session.draw(place.T_world_camera, place.scene) || !counts) return;
-    Shown shown{source_.instant().time, newest_, source_.instant().name, session.read(), delayed_.clone()};
-    shown.invalid = source_.robot().status == StateStatus::invalid;
-    shown.record.stem = shown.stem;
-    shown_.push_back(std::move(shown));
+    const ShownInstant& instant = source_.instant();
+    measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(),
+                    source_.robot().status == StateStatus::invalid});
   }
 
   void learn_truth() {
     while (const auto frame = truth_->take(Duration{0})) {
       const RobotTime time = (*frame)->pair.left.time;
-      truths_[time] = *frame;
-      while (truths_.begin()->first < time - kTruthKept) truths_.erase(truths_.begin());
+      if (near_) truths_[time] = *frame;
+      while (!truths_.empty() && truths_.begin()->first < time - SeatMeasures::kTruthKept)
+        truths_.erase(truths_.begin());
+      measures_.saw(time, (*frame)->pair.left.bgr);
     }
-    while (!shown_.empty() && !truths_.empty()) {
-      const LiveFramePtr truth = true_frame_at(shown_.front().instant);
-      if (!truth && shown_.front().instant > truths_.rbegin()->first) break;  // not taken yet
-      if (truth) measure(shown_.front(), *truth);
-      shown_.pop_front();
-    }
-  }
-
-  LiveFramePtr true_frame_at(RobotTime time) const {
-    const auto found = truths_.lower_bound(time - kSameInstant);
-    return found != truths_.end() && found->first <= time + kSameInstant ? found->second : nullptr;
   }
 
   // With all images but this instant's own, as they would come without a line.
-  std::optional<double> without_line(const LiveFrame& live, const ImageComparison& all) {
-    if (!near_ || !live.posed) return std::nullopt;
+  cv::Mat without_line(RobotTime instant) {
+    const auto live = truths_.lower_bound(instant - SeatMeasures::kSameInstant);
+    if (live == truths_.end() || !live->second->posed) return {};
     ViewSession& session = near_->session();
-    for (auto next = truths_.upper_bound(fed_); next != truths_.end() && next->first < live.pair.left.time; ++next) {
-      const bool last = std::next(next) == truths_.end() || std::next(next)->first >= live.pair.left.time;
+    for (auto next = truths_.upper_bound(fed_); next != truths_.end() && next->first < live->first; ++next) {
       // Images between two pictures change little: the last one counts, and one now and then for what the head passes.
-      if (!last && next->first < fed_ + seconds(0.5 / options_.pictures_hz)) continue;
+      if (std::next(next) != live && next->first < fed_ + seconds(0.5 / options_.pictures_hz)) continue;
       fed_ = next->first;
       if (next->second->posed) session.process(*next->second->posed);
     }
-    if (!session.draw(live.posed->left.T_world_camera, live.posed->left.scene)) return std::nullopt;
-    return all.psnr_db(session.read());
+    const PosedImage& left = live->second->posed->left;
+    return session.draw(left.T_world_camera, left.scene) ? session.read() : cv::Mat();
   }
 
-  void measure(Shown& shown, const LiveFrame& live) {
-    const cv::Mat& truth = live.pair.left.bgr;
-    const cv::Mat seen = seen_mask(shown.predicted);
-    const ImageComparison all(truth, seen);
-    FrameRecord& record = shown.record;
-    record.time_s = 1e-9 * static_cast<double>(shown.instant.ns);
-    record.delay_s = to_seconds(shown.instant - shown.newest);
-    record.predicted = all.measure(shown.predicted);
-    record.delayed = all.measure(shown.delayed);
-    record.coverage = measure_coverage(shown.predicted);
-    ages_.add(record.delay_s);
-    invalid_ += shown.invalid ? 1 : 0;
-    ++measured_;
-    if (const LiveFramePtr before = true_frame_at(shown.newest))
-      measure_moved(shown, truth, before->pair.left.bgr, seen);
-    zero_.add(without_line(live, all));
-    keeper_.offer(record, shown.delayed, shown.predicted, truth);
-    write_pictures(shown, truth);
-    figures_.record.frames.push_back(record);
-  }
-
-  void measure_moved(const Shown& shown, const cv::Mat& truth, const cv::Mat& before, const cv::Mat& seen) {
-    const cv::Mat moved = moved_mask(truth, before, seen);
-    const auto count = static_cast<std::size_t>(cv::countNonZero(moved));
-    moved_share_.add(static_cast<double>(count) / std::max(1, cv::countNonZero(seen)));
-    if (count < kLeastMoved) return;
-    const ImageComparison there(truth, moved);
-    moving_predicted_.add(there.psnr_db(shown.predicted));
-    moving_delayed_.add(there.psnr_db(shown.delayed));
-  }
-
-  void write_pictures(const Shown& shown, const cv::Mat& truth) const {
-    if (!options_.out) return;
-    const std::string name = shown.stem + ".png";
-    write_png(*options_.out / "shown" / name, shown.predicted);
-    write_png(*options_.out / "delayed" / name, shown.delayed);
-    write_png(*options_.out / "true" / name, truth);
+  RunRecord described() {
+    RunRecord out = describe(view_.session(), setup_);
+    out.run = rig_.name;
+    add_texture_options(out, setup_.textures);
+    return out;
   }
 
   SeatTrialFigures finish() {
-    const Summary all = summarise(figures_.record);
-    if (all.frames > 0) {
-      figures_.predicted_db = all.predicted.psnr_db.mean;
-      figures_.delayed_db = all.delayed.psnr_db.mean;
-    }
-    figures_.zero_delay_db = zero_.mean();
-    figures_.moving_predicted_db = moving_predicted_.mean();
-    figures_.moving_delayed_db = moving_delayed_.mean();
-    figures_.moving_share = moved_share_.mean();
-    figures_.image_age_s = ages_.mean();
-    figures_.invalid_share = measured_ ? static_cast<double>(invalid_) / static_cast<double>(measured_) : 1;
+    figures_.fidelity = measures_.finish();
     const SeatStatus status = seat_.status();
     figures_.delay_s = status.delay.seconds;
     figures_.joints_p95 = status.outlook.error.value_or(0);
     figures_.losses = driver_.losses();
-    figures_.instants = keeper_.instants();
     return std::move(figures_);
   }
 
@@ -300,14 +199,11 @@ class Trial {
   PredictedSource source_;
   std::optional<ThingsOutlook> things_;
   std::shared_ptr<FrameQueue> truth_;
+  SeatMeasures measures_;
 
   cv::Mat delayed_;
   RobotTime newest_, fed_;
-  std::deque<Shown> shown_;
-  std::map<RobotTime, LiveFramePtr> truths_;
-  std::uint64_t measured_ = 0, invalid_ = 0;
-  Mean zero_, moving_predicted_, moving_delayed_, moved_share_, ages_;
-  InstantKeeper keeper_{4};
+  std::map<RobotTime, LiveFramePtr> truths_;  // where views without a line are wanted
   SeatTrialFigures figures_;
 };
 

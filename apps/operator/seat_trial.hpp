@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/replay_report/instants.hpp"
-#include "apps/replay_report/replay_report.hpp"
+#include "apps/operator/seat_measures.hpp"
 #include "link/line/line_spec.hpp"
 #include "rig/rig.hpp"
 #include "seat/scripted_driver.hpp"
@@ -22,6 +21,7 @@ struct SeatTrialOptions {
   LineSpec line;
   double delay_s = 0;               ///< each way, for the report
   std::optional<unsigned> physics;  ///< things can be grasped: its seed
+  unsigned layout = 0;              ///< of things: sim::task_layout()
   std::string thing, tray;          ///< with physics: the thing shall end in the tray
   unsigned seed = 1;
   double most_s = 120;                       ///< of motion
@@ -30,21 +30,14 @@ struct SeatTrialOptions {
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
 };
 
-/// Means over the pictures that were shown while the robot was driven; nothing where none could be measured.
 struct SeatTrialFigures {
   bool succeeded = false;
-  std::string failure;                                            ///< why not
-  double task_s = 0;                                              ///< from the first press of the switch to the end
-  std::optional<double> predicted_db, delayed_db, zero_delay_db;  ///< PSNR over all seen pixels
-  std::optional<double> moving_predicted_db, moving_delayed_db;   ///< over those that changed over the delay
-  std::optional<double> moving_share;                             ///< of the seen pixels
-  double invalid_share = 0;                                       ///< of pictures without a prediction to trust
-  double delay_s = 0;                                             ///< measured: of what is commanded
-  std::optional<double> image_age_s;  ///< of the newest image against the shown instant, mean
-  double joints_p95 = 0;              ///< of what was shown, rad or m
+  std::string failure;    ///< why not
+  double task_s = 0;      ///< from the first press of the switch to the end
+  double delay_s = 0;     ///< measured: of what is commanded
+  double joints_p95 = 0;  ///< of what was shown, rad or m
   int losses = 0;
-  RunRecord record;
-  std::vector<Instant> instants;
+  SeatFidelity fidelity;  ///< of the pictures that were shown while the robot was driven
 };
 
 /// `rig` is mock. `scene`: what the operator's side knows. Throws what its parts do. `say`: progress, now and then.

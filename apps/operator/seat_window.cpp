@@ -82,6 +82,21 @@ HudContent SeatWindow::words(bool is_trusted) const {
   return out;
 }
 
+void SeatWindow::save(const ViewTarget& whole) {
+  if (!save_) return;
+  write_png(*save_, read_window(whole));
+  if (options_.log) options_.log("wrote " + save_->string());
+  save_.reset();
+}
+
+void SeatWindow::log(const HudContent& content) {
+  if (!options_.log) return;
+  std::vector<SeatLine> lines = content.lines;
+  lines.push_back(content.next);
+  lines.push_back({"shown", content.title, ""});
+  for (const std::string& news : log_.news(lines)) options_.log(news);
+}
+
 void SeatWindow::present(const gl::Texture* predicted) {
   if (options_.input) options_.input(window_.take_input());
   if (const auto& newest = source_.newest(); newest && newest != uploaded_) {
@@ -112,9 +127,10 @@ void SeatWindow::present(const gl::Texture* predicted) {
       copy_(texture, corner_of(whole, texture.width(), texture.height()));
     }
   }
-  hud_.draw(words(is_trusted), whole);
-  if (save_) write_png(*save_, read_window(whole));
-  save_.reset();
+  const HudContent content = words(is_trusted);
+  log(content);
+  hud_.draw(content, whole);
+  save(whole);
   window_.present();
 }
 

@@ -11,6 +11,7 @@
 #include "gl/glfw_window.hpp"
 #include "seat/hud.hpp"
 #include "seat/predicted_source.hpp"
+#include "seat/seat_log.hpp"
 
 namespace foresight {
 
@@ -27,6 +28,7 @@ struct SeatWindowOptions {
   /// Keys, mouse and focus since the last picture. The window's thread.
   std::function<void(const gl::WindowInput&)> input = {};
   std::function<std::vector<SeatLine>()> more_lines = {};  ///< of devices
+  std::function<void(const std::string&)> log = {};        ///< of what changes
 };
 
 /// Shows the robot as it will be; where that cannot be trusted, the newest image that came, and says so. Belongs to the
@@ -48,6 +50,8 @@ class SeatWindow final : public ViewObserver {
  private:
   void present(const gl::Texture* predicted);
   HudContent words(bool trusted) const;
+  void log(const HudContent& content);
+  void save(const ViewTarget& whole);
   bool trusted() const;
 
   gl::Window& window_;
@@ -56,6 +60,7 @@ class SeatWindow final : public ViewObserver {
   SeatWindowOptions options_;
   PictureCopy copy_;
   Hud hud_;
+  SeatLog log_;
   UploadedPicture delayed_;
   link::LineFramePtr uploaded_;
   bool help_ = true, drawn_ = false;

@@ -23,19 +23,20 @@ RobotDeviceOptions mock_drives() {
   return out;
 }
 
-RobotCameraOptions mock_cameras(const std::optional<unsigned>& physics) {
+RobotCameraOptions mock_cameras(const std::optional<unsigned>& physics, unsigned layout) {
   RobotCameraOptions out;
   out.mock = true;
   out.frames = true;
   out.physics = physics.has_value();
   out.physics_seed = physics.value_or(1);
+  out.layout = layout;
   return out;
 }
 
 }  // namespace
 
 SteppedRobotSide::SteppedRobotSide(const Rig& rig, const std::filesystem::path& file, SteppedClock& clock,
-                                   const LineSpec& line, std::optional<unsigned> physics)
+                                   const LineSpec& line, std::optional<unsigned> physics, unsigned layout)
     : rig_(rig),
       clock_(clock),
       identity_(link::rig_identity(rig, file, FORESIGHT_VERSION)),
@@ -44,7 +45,7 @@ SteppedRobotSide::SteppedRobotSide(const Rig& rig, const std::filesystem::path& 
       devices_(rig, clock, mock_drives()),
       shape_(rig.shape()),
       robot_(std::make_unique<Robot>(rig.gate_options(), shape_.get(), devices_.networks(), devices_.drives())),
-      cameras_(std::make_unique<RobotCameras>(rig, devices_, *robot_, clock, mock_cameras(physics))),
+      cameras_(std::make_unique<RobotCameras>(rig, devices_, *robot_, clock, mock_cameras(physics, layout))),
       server_(std::make_unique<link::RobotServer>(participant_, rig, *robot_, cameras_.get(), identity_, clock)),
       period_(seconds(1 / rig.rate_hz)),
       next_(clock.now()) {

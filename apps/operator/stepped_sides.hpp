@@ -20,9 +20,10 @@ class SteppedRobotSide {
  public:
   static constexpr Duration kTick = std::chrono::milliseconds(10);  ///< as the console's
 
-  /// `physics`: things can be grasped; its seed. `clock` and `rig` must outlive this. Throws what its parts do.
+  /// `physics`: things can be grasped; its seed; `layout`: sim::task_layout(). `clock` and `rig` must outlive this.
+  /// Throws what its parts do.
   SteppedRobotSide(const Rig& rig, const std::filesystem::path& file, SteppedClock& clock, const LineSpec& line,
-                   std::optional<unsigned> physics = std::nullopt);
+                   std::optional<unsigned> physics = std::nullopt, unsigned layout = 0);
   ~SteppedRobotSide();
 
   /// One cycle of the control loop; time passes until it is due.

@@ -38,6 +38,8 @@ class Program {
 
   pid_t pid() const { return pid_; }
   bool running();
+  /// What it has said on stderr so far.
+  std::string said() const { return read("err"); }
   void interrupt(int signal = SIGINT) const;  ///< SIGINT, as Ctrl-C sends it, or another one
 
   /// Waits; kills it and reports exit code 137 after `timeout`.

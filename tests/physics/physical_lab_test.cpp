@@ -14,7 +14,7 @@ constexpr RobotTime kStart{5'000'000'000};
 
 std::shared_ptr<const LiveLab> lab() {
   static const auto world =
-      std::make_shared<const LiveLab>(LiveLab::Options{.texel = 0.02, .task = true, .loose = lab_thing_names()});
+      std::make_shared<const LiveLab>(LiveLab::Options{.texel = 0.02, .task = 0u, .loose = lab_thing_names()});
   return world;
 }
 

@@ -1,0 +1,205 @@
+#include "apps/operator/served_trial.hpp"
+
+#include <fmt/core.h>
+
+#include <mutex>
+
+#include "apps/view_measures.hpp"
+#include "common/error.hpp"
+#include "link/dds/pretended_line.hpp"
+#include "link/robot_side/rig_identity.hpp"
+#include "seat/predicted_source.hpp"
+#include "seat/seat_options.hpp"
+#include "seat/tool_script.hpp"
+#include "seat/view_setup.hpp"
+#include "sim/lab_task.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kTruthComesWithin = 10s;  // after the end, for what was shown last
+
+/// What becomes of the script, for another thread than the seat's.
+class WatchedDriver final : public SeatDriver {
+ public:
+  struct State {
+    bool driving = false, done = false;
+    std::string failure;
+    int losses = 0;
+  };
+
+  WatchedDriver(ScriptedMotion& motion, const ScriptedDriverOptions& options, link::OperatorEnd& end)
+      : driver_(motion, options) {
+    driver_.listen_to([&end]() -> std::optional<link::RobotState> {
+      auto heard = end.robot_state();
+      return heard ? std::optional(std::move(heard->state)) : std::nullopt;
+    });
+  }
+  SeatWish tick(const SeatView& view) override {
+    const std::lock_guard lock(mutex_);
+    return driver_.tick(view);
+  }
+  State state() const {
+    const std::lock_guard lock(mutex_);
+    return {driver_.driving(), driver_.done(), driver_.failure(), driver_.losses()};
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  ScriptedDriver driver_;
+};
+
+ScriptedDriverOptions driver_options(double found_within_s) {
+  ScriptedDriverOptions out;
+  out.gives_up_after = seconds(found_within_s);
+  return out;
+}
+
+Identity identity_of(const Rig& rig, const ServedTrialOptions& options) {
+  Identity out = link::rig_identity(rig, options.rig_file, FORESIGHT_VERSION);
+  out.name = options.name;
+  return out;
+}
+
+std::shared_ptr<link::PretendedLine> pretended(const std::optional<LineSpec>& spec, const Clock& clock) {
+  if (!spec) return nullptr;
+  auto out = std::make_shared<link::PretendedLine>(*spec, link::PretendedLine::Side::operating, clock);
+  out->start();
+  return out;
+}
+
+/// Everything of a seat; what is above outlives what is below.
+class ServedTrial final : ViewObserver {
+ public:
+  ServedTrial(const Rig& rig, std::shared_ptr<const LiveScene> scene, const ServedTrialOptions& options,
+              ScriptedMotion& motion, const std::function<void(const std::string&)>& say)
+      : options_(options),
+        say_(say),
+        participant_(rig.link, options.name, link::Role::operating, pretended(options.line, clock_)),
+        scene_(std::move(scene)),
+        setup_(live_view_setup(*scene_, rig.name)),
+        end_(participant_, seat_end_options(rig, identity_of(rig, options), *scene_), clock_),
+        driver_(motion, driver_options(options.found_within_s), end_),
+        seat_(rig, end_, driver_, clock_),
+        context_(gl::create_headless_context()),
+        session_(*context_, setup_),
+        source_(rig, scene_, end_, seat_, clock_, source_options(rig)),
+        measures_(described(rig), options.out) {
+    source_.listen(
+        [this](const link::LineFrame& frame) { measures_.saw(frame.image[0].captured, frame.image[0].bgr); });
+    if (!options.things) return;
+    things_.emplace(rig, scene_, mock_things());
+    source_.show_things(&*things_);
+  }
+
+  SeatTrialFigures run(const std::function<bool()>& stopped) {
+    end_.start();
+    seat_.start();
+    ViewLoop loop(session_, source_, {this}, stopped);
+    told_ = clock_.now();
+    while (loop.step() != SourceState::ended && advance()) {
+    }
+    // The robot comes to rest by itself as set-points end.
+    seat_.stop();
+    const SeatStatus status = seat_.status();
+    end_.stop();
+    return finish(status);
+  }
+
+ private:
+  PredictedSourceOptions source_options(const Rig& rig) const {
+    PredictedSourceOptions out;
+    out.rate_hz = options_.pictures_hz;
+    out.image_period = seconds(1 / rig.cameras->camera(Side::left).settings.rate);
+    return out;
+  }
+  RunRecord described(const Rig& rig) const {
+    RunRecord out = describe(session_, setup_);
+    out.run = rig.name;
+    add_texture_options(out, setup_.textures);
+    return out;
+  }
+
+  void stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& session) override {
+    if (!step.drawn || !pressed_ || ended_) return;
+    const link::LineFrame& newest = *source_.newest();
+    measures_.show({step.instant.time, newest.image[0].captured, step.instant.name, session.read(), newest.image[0].bgr,
+                    source_.robot().status == StateStatus::invalid});
+  }
+
+  // False: there is nothing left to be done.
+  bool advance() {
+    if (things_) things_->advance(seat_.look_ahead());
+    const RobotTime now = clock_.now();
+    state_ = driver_.state();
+    if (!pressed_ && state_.driving) pressed_ = now;
+    if (!state_.failure.empty()) return false;
+    if (pressed_ && !ended_ && (state_.done || to_seconds(now - *pressed_) > options_.most_s)) ended_ = now;
+    tell(now);
+    return !ended_ || (measures_.waits() && now - *ended_ < kTruthComesWithin);
+  }
+
+  void tell(RobotTime now) {
+    constexpr Duration kTellEvery = 5s;
+    if (now - told_ < kTellEvery) return;
+    told_ = now;
+    const SeatStatus status = seat_.status();
+    say_(pressed_ ? fmt::format("{:.0f} s: {} pictures", to_seconds(now - *pressed_), measures_.measured())
+                  : status.control.words + (status.robot ? "; " + status.robot->doing.name : ""));
+  }
+
+  bool in_tray() const {
+    const JointPositions rest = [](std::string_view) { return std::nullopt; };
+    SceneState state = scene_->state_at(source_.robot().time, rest, StateStatus::predicted);
+    things_->place(state);
+    const auto& nodes = scene_->model()->nodes();
+    const auto thing = std::ranges::find(nodes, options_.thing, &Node::name);
+    return sim::lies_in_tray(state.T_world_node[static_cast<std::size_t>(thing - nodes.begin())],
+                             place_at_rest(*scene_, options_.tray));
+  }
+
+  SeatTrialFigures finish(const SeatStatus& status) {
+    SeatTrialFigures out;
+    out.failure = state_.failure;
+    if (!pressed_ && out.failure.empty()) out.failure = "it never drove: " + status.control.words;
+    out.succeeded = out.failure.empty() && ended_ && (!things_ || in_tray());
+    if (out.failure.empty() && !out.succeeded) out.failure = ended_ ? "the thing is not in the tray" : "stopped";
+    if (pressed_) out.task_s = to_seconds(ended_.value_or(clock_.now()) - *pressed_);
+    out.delay_s = status.delay.seconds;
+    out.joints_p95 = status.outlook.error.value_or(0);
+    out.losses = state_.losses;
+    out.fidelity = measures_.finish();
+    return out;
+  }
+
+  const ServedTrialOptions& options_;
+  const std::function<void(const std::string&)>& say_;
+  MonotonicClock clock_;
+  link::Participant participant_;
+  std::shared_ptr<const LiveScene> scene_;
+  ViewSetup setup_;
+  link::OperatorEnd end_;
+  WatchedDriver driver_;
+  Seat seat_;
+  std::unique_ptr<gl::Context> context_;
+  ViewSession session_;
+  PredictedSource source_;
+  std::optional<ThingsOutlook> things_;
+  SeatMeasures measures_;
+  WatchedDriver::State state_;
+  std::optional<RobotTime> pressed_, ended_;
+  RobotTime told_;
+};
+
+}  // namespace
+
+SeatTrialFigures try_served_seat(const Rig& rig, std::shared_ptr<const LiveScene> scene,
+                                 const ServedTrialOptions& options, ScriptedMotion& motion,
+                                 const std::function<bool()>& stopped,
+                                 const std::function<void(const std::string&)>& say) {
+  return ServedTrial(rig, std::move(scene), options, motion, say).run(stopped);
+}
+
+}  // namespace foresight

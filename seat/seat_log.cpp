@@ -1,0 +1,45 @@
+#include "seat/seat_log.hpp"
+
+#include <algorithm>
+
+namespace foresight {
+namespace {
+
+/// Lines of these labels are states rather than figures.
+constexpr const char* kStates[] = {"next", "in command", "robot", "drives", "shown"};
+
+std::string without_figures(const SeatLine& line) {
+  std::string out = line.words + "|" + line.cure;
+  std::erase_if(out, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+  return out;
+}
+
+std::string text_of(const SeatLine& line) {
+  return line.label + ": " + mark(line.urgency) + line.words + (line.cure.empty() ? "" : " -> " + line.cure);
+}
+
+}  // namespace
+
+std::vector<std::string> SeatLog::news(std::span<const SeatLine> lines) {
+  std::vector<std::string> out;
+  for (auto& [label, told] : told_) told.now = false;
+  for (const SeatLine& line : lines) {
+    Told& told = told_[line.label];
+    told.now = true;
+    const std::string words = without_figures(line);
+    const bool state = std::ranges::find(kStates, line.label) != std::end(kStates);
+    const bool worse = line.urgency != Urgency::fine && words != told.words;
+    const bool over = line.urgency == Urgency::fine && told.urgency != Urgency::fine;
+    if (worse || over || (state && words != told.words)) out.push_back(text_of(line));
+    told.words = words;
+    told.urgency = line.urgency;
+  }
+  for (auto& [label, told] : told_) {
+    if (told.now || told.urgency == Urgency::fine) continue;
+    out.push_back(label + ": no longer");
+    told = {};
+  }
+  return out;
+}
+
+}  // namespace foresight
