@@ -26,10 +26,11 @@ std::shared_ptr<void> start_library() {
   return {nullptr, [](void*) { glfwTerminate(); }};
 }
 
-GLFWwindow* create(int width, int height, const char* title, bool visible, GLFWwindow* share) {
+GLFWwindow* create(int width, int height, const char* title, bool visible, GLFWwindow* share, Window::ContextApi api) {
   glfwDefaultWindowHints();
   // EGL on X11 too, so that contexts with and without a window come from one interface.
-  glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+  const bool by_egl = api == Window::ContextApi::egl;
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, by_egl ? GLFW_EGL_CONTEXT_API : GLFW_NATIVE_CONTEXT_API);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -39,8 +40,8 @@ GLFWwindow* create(int width, int height, const char* title, bool visible, GLFWw
 
 }  // namespace
 
-Window::Window(int width, int height, const std::string& title) : glfw_(start_library()) {
-  window_ = create(width, height, title.c_str(), true, nullptr);
+Window::Window(int width, int height, const std::string& title, ContextApi api) : glfw_(start_library()), api_(api) {
+  window_ = create(width, height, title.c_str(), true, nullptr, api_);
   if (!window_) fail("no window with OpenGL 4.5");
   make_current();
   glfwSwapInterval(1);
@@ -99,8 +100,8 @@ WindowInput Window::take_input() {
   return out;
 }
 
-Window::Window(Window& share, int) : glfw_(share.glfw_) {
-  window_ = create(16, 16, "", false, share.window_);
+Window::Window(Window& share, int) : glfw_(share.glfw_), api_(share.api_) {
+  window_ = create(16, 16, "", false, share.window_, api_);
   if (!window_) fail("no second OpenGL context");
 }
 

@@ -41,9 +41,13 @@ struct WindowInput {
 /// contexts may be called elsewhere.
 class Window final : public Context {
  public:
+  /// How contexts are made: by EGL, as those without a window are, or by the desktop's own way (GLX), which some
+  /// runtimes of head displays want.
+  enum class ContextApi { egl, native };
+
   /// Opens a window of `width` x `height` screen units, shown at once, its context current.
   /// Throws NoWindow with GLFW's own description.
-  Window(int width, int height, const std::string& title);
+  Window(int width, int height, const std::string& title, ContextApi api = ContextApi::egl);
   ~Window() override;
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -66,6 +70,7 @@ class Window final : public Context {
   void listen();
   void press(int key, int action);
   std::shared_ptr<void> glfw_;  // glfwTerminate with the last window
+  ContextApi api_;
   GLFWwindow* window_ = nullptr;
   bool space_ = false;
   WindowInput input_;

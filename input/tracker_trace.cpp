@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/error.hpp"
+#include "input/room_axes.hpp"
 #include "input/trace_columns.hpp"
 
 namespace foresight {
@@ -26,16 +27,6 @@ constexpr std::array kButtons{TrackerButton::deadman,       TrackerButton::clutc
 static_assert(kButtons.size() == kTrackerButtons);
 
 constexpr const char* kHead = "head_";
-
-// WebXR: x right, y up, z backwards, of the room and of each device alike.
-Pose from_webxr(const Pose& T_xr) {
-  Eigen::Matrix3d R;
-  R << 0, 0, -1, -1, 0, 0, 0, 1, 0;
-  Pose out = Pose::Identity();
-  out.translation() = R * T_xr.translation();
-  out.linear() = R * T_xr.linear() * R.transpose();
-  return out;
-}
 
 void hold_switch(TrackerState& state, bool held) {
   state.buttons.set(TrackerButton::deadman, held);
@@ -72,9 +63,9 @@ TrackerState controller_row(const TraceColumns& columns, const TextRow& row, con
   TrackerState out;
   out.connected = true;
   out.tracked = columns.flag(row, side + "valid");
-  out.T_space_head = from_webxr(columns.pose(row, kHead));
+  out.T_space_head = from_room_axes(columns.pose(row, kHead));
   if (!out.tracked) return out;
-  out.T_space_hand = from_webxr(columns.pose(row, side + "grip_"));
+  out.T_space_hand = from_room_axes(columns.pose(row, side + "grip_"));
   hold_switch(out, columns.number(row, side + "squeeze") > kHalf);
   out.grip = std::clamp(columns.number(row, side + "trigger"), 0.0, 1.0);
   const auto pressed = static_cast<std::int64_t>(std::clamp(columns.number(row, side + "pressed"), 0.0, 65535.0));
@@ -92,9 +83,9 @@ TrackerState hand_row(const TraceColumns& columns, const TextRow& row, const std
   TrackerState out;
   out.connected = true;
   out.tracked = columns.flag(row, side + "valid");
-  out.T_space_head = from_webxr(columns.pose(row, kHead));
+  out.T_space_head = from_room_axes(columns.pose(row, kHead));
   if (!out.tracked) return out;
-  out.T_space_hand = from_webxr(columns.pose(row, side + "wrist_"));
+  out.T_space_hand = from_room_axes(columns.pose(row, side + "wrist_"));
   Eigen::Vector3d apart;
   for (int i = 0; i < 3; ++i) {
     const std::string axis(1, static_cast<char>('x' + i));

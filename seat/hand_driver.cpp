@@ -1,14 +1,27 @@
 #include "seat/hand_driver.hpp"
 
+#include <utility>
+
+#include "display/head/eye_geometry.hpp"
 #include "input/hand_of_rig.hpp"
 
 namespace foresight {
-HandDriver::HandDriver(const Rig& rig, std::unique_ptr<Tracker> device)
+namespace {
+
+std::vector<Tracker*> all_of(KeyboardMouse& keyboard, const std::vector<std::unique_ptr<Tracker>>& devices) {
+  std::vector<Tracker*> out{&keyboard};
+  for (const auto& device : devices) out.push_back(device.get());
+  return out;
+}
+
+}  // namespace
+
+HandDriver::HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> devices)
     : rig_(rig),
       options_(hand_options(rig)),
       hand_(options_, rig.name),
-      device_(std::move(device)),
-      any_(device_ ? std::vector<Tracker*>{&keyboard_, device_.get()} : std::vector<Tracker*>{&keyboard_}) {}
+      devices_(std::move(devices)),
+      any_(all_of(keyboard_, devices_)) {}
 
 void HandDriver::take(const gl::WindowInput& input, OperatorTime now) {
   const std::lock_guard lock(mutex_);
@@ -25,6 +38,19 @@ void HandDriver::take(const gl::WindowInput& input, OperatorTime now) {
 void HandDriver::look_from(const Pose& T_world_camera) {
   const std::lock_guard lock(mutex_);
   T_world_camera_ = T_world_camera;
+}
+
+void HandDriver::look_within(const std::optional<Pose>& T_world_space) {
+  const std::lock_guard lock(mutex_);
+  T_world_space_ = T_world_space;
+  hand_.settings().view_turns_with_head = T_world_space.has_value();
+}
+
+void HandDriver::interrupt(const char* trouble, const char* cure) {
+  const std::lock_guard lock(mutex_);
+  interruption_.emplace();  // as of a device that is not there
+  interruption_->trouble = trouble;
+  interruption_->cure = cure;
 }
 
 void HandDriver::ask(LineRequest request) {
@@ -52,8 +78,15 @@ SeatWish HandDriver::tick(const SeatView& view) {
   HandInput input;
   input.now = view.now;
   input.device = any_.read(view.now);
+  if (const auto interruption = std::exchange(interruption_, std::nullopt)) {
+    input.device = *interruption;
+    input.device.time = view.now;
+  }
   input.robot = view.robot;
-  input.T_base_view = rig_.T_world_robot.inverse() * T_world_camera_;
+  // Of the same moment as the hand: a head that turns moves no tool.
+  const auto& head = input.device.T_space_head;
+  const Pose T_world_view = T_world_space_ && head ? *T_world_space_ * *head * head::T_body_camera() : T_world_camera_;
+  input.T_base_view = rig_.T_world_robot.inverse() * T_world_view;
   const HandCycle& cycle = hand_.cycle(input);
   SeatWish wish;
   wish.deadman = cycle.deadman && !ended_;

@@ -18,14 +18,19 @@ namespace foresight {
 /// tick() in the seat's thread, all else in the window's.
 class HandDriver final : public SeatDriver {
  public:
-  /// Keyboard and mouse, and `device` where there is one: whichever has its switch held drives. `rig` must outlive
-  /// this. Throws what hand_options() does.
-  explicit HandDriver(const Rig& rig, std::unique_ptr<Tracker> device = nullptr);
+  /// Keyboard and mouse, and `devices`: whichever has its switch held drives. `rig` must outlive this. Throws what
+  /// hand_options() does.
+  explicit HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> devices = {});
 
   /// Since the last call; at each round of the window, or its keys do not count.
   void take(const gl::WindowInput& input, OperatorTime now);
   /// The camera that the operator looks through: directions are meant as he sees them.
   void look_from(const Pose& T_world_camera);
+  /// The operator looks through a head display, whose space lies there in the world: a hand that is tracked in it moves
+  /// the tool the way it moves in the picture. Nothing: he looks at a window.
+  void look_within(const std::optional<Pose>& T_world_space);
+  /// The robot has to be driven anew: whoever holds a switch lets go of it first. Static text.
+  void interrupt(const char* trouble, const char* cure);
   void ask(LineRequest request);
   void toggle_control();
   void hand_over();
@@ -45,9 +50,11 @@ class HandDriver final : public SeatDriver {
   const HandOptions options_;
   HandControl hand_;
   KeyboardMouse keyboard_;
-  std::unique_ptr<Tracker> device_;
+  std::vector<std::unique_ptr<Tracker>> devices_;
   AnyTracker any_;
   Pose T_world_camera_ = Pose::Identity();
+  std::optional<Pose> T_world_space_;
+  std::optional<TrackerState> interruption_;  // of the next cycle
   std::vector<LineRequest> requests_;
   bool control_ = true, hand_over_ = false, ended_ = false;
 };

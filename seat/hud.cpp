@@ -126,7 +126,13 @@ void Hud::draw(const HudContent& content, const ViewTarget& target) {
     work_->draw(content, io.DisplaySize.x, io.DisplaySize.y);
     is_seen ? ImGui::Render() : ImGui::EndFrame();
   }
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  // It draws into what begins in the framebuffer's first row and column: the target lies in that, to the right and
+  // above.
+  ImDrawData* const data = ImGui::GetDrawData();
+  const auto x = static_cast<float>(target.x), y = static_cast<float>(target.y);
+  data->DisplayPos = {-x, 0};
+  data->DisplaySize = {x + io.DisplaySize.x, y + io.DisplaySize.y};
+  ImGui_ImplOpenGL3_RenderDrawData(data);
 }
 
 }  // namespace foresight

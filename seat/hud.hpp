@@ -26,7 +26,7 @@ class Hud {
   ~Hud();
   Hud(const Hud&) = delete;
 
-  /// Over what is there. `target`: a window, or a texture of ours.
+  /// Over what is there. `target`: of a window, or of a texture whose first row is at the bottom, too.
   void draw(const HudContent& content, const ViewTarget& target);
 
  private:

@@ -3,10 +3,13 @@
 #include <fmt/core.h>
 
 #include <cstdio>
+#include <cstdlib>
 
+#include "apps/operator/seat_head.hpp"
 #include "apps/operator/seat_window.hpp"
 #include "common/error.hpp"
 #include "common/stop_signal.hpp"
+#include "display/head/runtime_offer.hpp"
 #include "input/open_tracker.hpp"
 #include "link/dds/pretended_line.hpp"
 #include "link/line/line_spec.hpp"
@@ -19,6 +22,7 @@ namespace foresight {
 namespace {
 
 constexpr int kWindowWidth = 1280, kWindowHeight = 800;
+constexpr double kEyesApart = 0.063;  // m, of most people
 
 std::shared_ptr<link::PretendedLine> pretended(const LiveSeatOptions& options, const Clock& clock) {
   if (!options.line) return nullptr;
@@ -34,9 +38,24 @@ Identity identity_of(const Rig& rig, const LiveSeatOptions& options) {
   return out;
 }
 
-std::unique_ptr<gl::Window> open_seat_window(const std::string& title) {
+// A head display's runtime that takes contexts of GLX only gets one.
+gl::Window::ContextApi context_api(const LiveSeatOptions& options) {
+  if (options.head_display != HeadDisplayKind::openxr) return gl::Window::ContextApi::egl;
+  const head::RuntimeOffer offer = head::ask_runtime();
+  return offer.opengl && !offer.egl ? gl::Window::ContextApi::native : gl::Window::ContextApi::egl;
+}
+
+std::vector<std::unique_ptr<Tracker>> open_devices(const LiveSeatOptions& options,
+                                                   const std::shared_ptr<head::HeldControllers>& controllers) {
+  std::vector<std::unique_ptr<Tracker>> out;
+  if (!options.device.empty()) out.push_back(open_tracker(options.device));
+  if (options.head_display == HeadDisplayKind::openxr) out.push_back(std::make_unique<head::HeadHands>(controllers));
+  return out;
+}
+
+std::unique_ptr<gl::Window> open_seat_window(const std::string& title, gl::Window::ContextApi api) {
   try {
-    return std::make_unique<gl::Window>(kWindowWidth, kWindowHeight, title);
+    return std::make_unique<gl::Window>(kWindowWidth, kWindowHeight, title, api);
   } catch (const gl::NoWindow& error) {
     throw RuntimeFailure(error.what(), "`--scripted` operates without a window");
   }
@@ -54,12 +73,14 @@ class LiveSeat {
             live_scene_of(rig, options.mock_cameras, options.scene, options.physics, options.layout))),
         setup_(live_view_setup(*scene_, rig.name)),
         end_(participant_, seat_end_options(rig, identity_of(rig, options), *scene_), clock_),
-        driver_(rig, options.device.empty() ? nullptr : open_tracker(options.device)),
+        driver_(rig, open_devices(options, controllers_)),
         seat_(rig, end_, driver_, clock_),
-        window_(open_seat_window("Foresight: " + rig.name)),
+        window_(open_seat_window("Foresight: " + rig.name, context_api(options))),
         session_(*window_, setup_),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
-        shown_(*window_, seat_, source_, window_options()) {
+        shown_(*window_, session_, setup_.left, seat_, source_, window_options()) {
+    if (options.head_display == HeadDisplayKind::openxr)
+      head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
     if (!options.physics) return;
     things_.emplace(rig, scene_, mock_things());
     source_.show_things(&*things_);
@@ -69,6 +90,7 @@ class LiveSeat {
     end_.start();
     seat_.start();
     std::vector<ViewObserver*> observers{&shown_};
+    if (head_) observers.push_back(&*head_);
     ViewLoop loop(session_, source_, observers, [] { return stop_requested(); });
     loop.run();
     // Whatever was held is let go of: the robot comes to rest by itself as set-points end, this only says it sooner.
@@ -76,6 +98,7 @@ class LiveSeat {
     clock_.sleep_until(clock_.now() + std::chrono::milliseconds(60));
     seat_.stop();
     end_.stop();
+    if (head_ && !head_->stop()) end_with_runtime_hanging();
     return stop_requested() ? kStopped : 0;
   }
 
@@ -101,8 +124,28 @@ class LiveSeat {
                                        {"Q, Esc", "end"}});
     out.input = [this](const gl::WindowInput& input) { take(input); };
     out.log = [](const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); };
-    out.more_lines = [this] { return driver_.lines(); };
+    out.more_lines = [this] {
+      std::vector<SeatLine> lines = driver_.lines();
+      if (head_)
+        for (SeatLine& line : head_->lines()) lines.push_back(std::move(line));
+      return lines;
+    };
+    if (options_.head_display == HeadDisplayKind::side_by_side) out.eyes_apart = kEyesApart;
     return out;
+  }
+
+  // A head display that goes away takes its picture from who looks through it, whatever he drives with.
+  void heed_head() {
+    if (!head_) return;
+    const bool shows = head_->shows();
+    if (head_shown_ && !shows) driver_.interrupt("the headset has gone", "look at the window; press the switch anew");
+    head_shown_ = shows;
+    driver_.look_within(shows ? head_->T_world_space() : std::nullopt);
+  }
+  // Its thread may never come back, and uses what would be destroyed now. The robot is at rest, and nothing is open.
+  [[noreturn]] static void end_with_runtime_hanging() {
+    std::fprintf(stderr, "operator: the headset's runtime does not answer; ended without it: start it again\n");
+    std::_Exit(1);
   }
 
   void take(const gl::WindowInput& input) {
@@ -115,6 +158,7 @@ class LiveSeat {
     }
     if (things_) things_->advance(seat_.look_ahead());
     driver_.look_from(source_.place().T_world_camera);
+    heed_head();
     driver_.take(input, {clock_.now().ns});
   }
   void press(char key) {
@@ -124,6 +168,7 @@ class LiveSeat {
       case 'x': return driver_.ask(LineRequest::reset);
       case 'g': return driver_.toggle_control();
       case 't': return driver_.hand_over();
+      case 'n': return head_ ? head_->centre() : void();
       case 'p': return shown_.save_next(options_.screenshot.value_or("foresight.png"));
       default: return;
     }
@@ -137,6 +182,7 @@ class LiveSeat {
   std::shared_ptr<const LiveScene> scene_;
   ViewSetup setup_;
   link::OperatorEnd end_;
+  std::shared_ptr<head::HeldControllers> controllers_ = std::make_shared<head::HeldControllers>();
   HandDriver driver_;
   Seat seat_;
   std::unique_ptr<gl::Window> window_;
@@ -144,6 +190,8 @@ class LiveSeat {
   PredictedSource source_;
   std::optional<ThingsOutlook> things_;
   SeatWindow shown_;
+  std::optional<SeatHead> head_;
+  bool head_shown_ = false;
 };
 
 }  // namespace

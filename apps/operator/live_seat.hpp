@@ -9,6 +9,9 @@
 
 namespace foresight {
 
+/// Where the view is shown, beside the window.
+enum class HeadDisplayKind { none, openxr, side_by_side };
+
 struct LiveSeatOptions {
   std::filesystem::path rig_file;
   std::string name;                           ///< of the operator, as the robot's side shows it
@@ -18,6 +21,7 @@ struct LiveSeatOptions {
   bool physics = false;       ///< that lab has things that can be grasped: RobotCameraOptions::physics and layout
   unsigned layout = 0;
   std::string device;  ///< beside keyboard and mouse: as open_tracker() takes it; "" none
+  HeadDisplayKind head_display = HeadDisplayKind::none;
   double rate_hz = 30;
   double font_scale = 1;
   std::optional<std::filesystem::path> screenshot;  ///< key P writes it

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string rig, name = "operator", scene, device;
+  std::string rig, name = "operator", scene, device, head_display = "none";
   bool mock = false, physics = false, served = false;
   unsigned layout = 0;
   double rate_hz = 30, font_scale = 1;
@@ -177,6 +177,8 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.physics = arguments.physics;
   options.layout = arguments.layout;
   options.device = arguments.device;
+  if (arguments.head_display == "openxr") options.head_display = HeadDisplayKind::openxr;
+  if (arguments.head_display == "side-by-side") options.head_display = HeadDisplayKind::side_by_side;
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
   return run_live_seat(rig, options);
@@ -198,6 +200,8 @@ void check(const Rig& rig, const Arguments& arguments) {
                      live ? "add --mock" : "leave it out: --seed says it, too");
   if (arguments.physics && (!arguments.script.empty() || !arguments.mock))
     throw InputError("--physics", "is of a robot's side that runs with --mock", "add --mock, without --scripted");
+  if (arguments.head_display != "none" && !arguments.script.empty())
+    throw InputError("--head-display", "is of a seat with a window", "leave out --scripted");
   if (arguments.seed == 0) throw InputError("--seed", "is 0", "give one from 1 on");
 }
 
@@ -224,6 +228,10 @@ void add_operator_command(Command& app, std::function<int()>& action) {
   command->add_option(
       "--device", arguments->device,
       "Beside keyboard and mouse: gamepad, gamepad:1, spacemouse, or the recording of one (docs/input.md)");
+  command
+      ->add_option("--head-display", arguments->head_display,
+                   "Beside the window: openxr (a headset, docs/head-display.md), side-by-side, none (default)")
+      ->check(one_of({"openxr", "side-by-side", "none"}));
   command->add_option("--rate-hz", arguments->rate_hz, "Pictures a second, at most (default 30)")
       ->check(from_to(1.0, 240.0));
   command->add_option("--font-scale", arguments->font_scale, "Of all words in the window (default 1)")

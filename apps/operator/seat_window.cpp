@@ -42,13 +42,16 @@ const char* to_string(SeatPicture picture) {
   return "";
 }
 
-SeatWindow::SeatWindow(gl::Window& window, Seat& seat, PredictedSource& source, SeatWindowOptions options)
+SeatWindow::SeatWindow(gl::Window& window, ViewSession& session, const Lens& lens, Seat& seat, PredictedSource& source,
+                       SeatWindowOptions options)
     : window_(window),
       seat_(seat),
       source_(source),
       options_(std::move(options)),
       hud_(options_.font_scale),
-      delayed_("newest image") {}
+      delayed_("newest image") {
+  if (options_.eyes_apart) eyes_.emplace(session, lens, *options_.eyes_apart);
+}
 
 void SeatWindow::next_picture() {
   options_.picture = static_cast<SeatPicture>((static_cast<int>(options_.picture) + 1) % 3);
@@ -60,6 +63,10 @@ bool SeatWindow::trusted() const {
 
 void SeatWindow::stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& session) {
   drawn_ = drawn_ || step.drawn;
+  if (eyes_ && step.drawn) {
+    const ViewPlace place = source_.place();
+    eyes_->draw(place.T_world_camera, place.scene);
+  }
   present(drawn_ ? &session.picture() : nullptr);
 }
 
@@ -97,6 +104,26 @@ void SeatWindow::log(const HudContent& content) {
   for (const std::string& news : log_.news(lines)) options_.log(news);
 }
 
+void SeatWindow::show_pictures(const ViewTarget& place, const gl::Texture* predicted, bool is_trusted) const {
+  const auto show = [&](const gl::Texture& picture, const ViewTarget& part) {
+    copy_(picture, fitted(part, picture.width(), picture.height()));
+  };
+  SeatPicture picture = options_.picture;
+  if (!is_trusted && picture == SeatPicture::predicted) picture = SeatPicture::delayed;
+  if (picture == SeatPicture::both) {
+    if (!delayed_.empty()) show(delayed_.texture(), column(place, 0, 2, kGap));
+    if (predicted) show(*predicted, column(place, 1, 2, kGap));
+  } else if (picture == SeatPicture::delayed) {
+    if (!delayed_.empty()) show(delayed_.texture(), column(place, 0, 1, kGap));
+  } else if (predicted) {
+    show(*predicted, column(place, 0, 1, 0));
+    if (!delayed_.empty()) {
+      const gl::Texture& texture = delayed_.texture();
+      copy_(texture, corner_of(place, texture.width(), texture.height()));
+    }
+  }
+}
+
 void SeatWindow::present(const gl::Texture* predicted) {
   if (options_.input) options_.input(window_.take_input());
   if (const auto& newest = source_.newest(); newest && newest != uploaded_) {
@@ -110,26 +137,15 @@ void SeatWindow::present(const gl::Texture* predicted) {
   }
   const bool is_trusted = trusted();
   clear_behind_pictures(whole, !is_trusted && drawn_);
-  const auto show = [&](const gl::Texture& picture, const ViewTarget& place) {
-    copy_(picture, fitted(place, picture.width(), picture.height()));
-  };
-  SeatPicture picture = options_.picture;
-  if (!is_trusted && picture == SeatPicture::predicted) picture = SeatPicture::delayed;
-  if (picture == SeatPicture::both) {
-    if (!delayed_.empty()) show(delayed_.texture(), column(whole, 0, 2, kGap));
-    if (predicted) show(*predicted, column(whole, 1, 2, kGap));
-  } else if (picture == SeatPicture::delayed) {
-    if (!delayed_.empty()) show(delayed_.texture(), column(whole, 0, 1, kGap));
-  } else if (predicted) {
-    show(*predicted, column(whole, 0, 1, 0));
-    if (!delayed_.empty()) {
-      const gl::Texture& texture = delayed_.texture();
-      copy_(texture, corner_of(whole, texture.width(), texture.height()));
-    }
-  }
   const HudContent content = words(is_trusted);
+  const int eyes = eyes_ ? 2 : 1;
+  for (int eye = 0; eye < eyes; ++eye) {
+    const ViewTarget part = column(whole, eye, eyes, 0);
+    const bool has_own = predicted && eyes_;
+    show_pictures(part, has_own ? &eyes_->picture(static_cast<std::size_t>(eye)) : predicted, is_trusted);
+    hud_.draw(content, part);
+  }
   log(content);
-  hud_.draw(content, whole);
   save(whole);
   window_.present();
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "display/eye_pair.hpp"
 #include "display/uploaded_picture.hpp"
 #include "display/view_loop.hpp"
 #include "gl/glfw_window.hpp"
@@ -29,6 +30,7 @@ struct SeatWindowOptions {
   std::function<void(const gl::WindowInput&)> input = {};
   std::function<std::vector<SeatLine>()> more_lines = {};  ///< of devices
   std::function<void(const std::string&)> log = {};        ///< of what changes
+  std::optional<double> eyes_apart = {};                   ///< m: the view is shown to two eyes, side by side
 };
 
 /// Shows the robot as it will be; where that cannot be trusted, the newest image that came, and says so. Belongs to the
@@ -36,7 +38,8 @@ struct SeatWindowOptions {
 class SeatWindow final : public ViewObserver {
  public:
   /// All must outlive this.
-  SeatWindow(gl::Window& window, Seat& seat, PredictedSource& source, SeatWindowOptions options);
+  SeatWindow(gl::Window& window, ViewSession& session, const Lens& lens, Seat& seat, PredictedSource& source,
+             SeatWindowOptions options);
 
   void stepped(const ViewStep& step, FrameSource& source, ViewSession& session) override;
   void waiting(FrameSource& source, ViewSession& session) override;
@@ -47,12 +50,17 @@ class SeatWindow final : public ViewObserver {
   /// The next picture goes into this file, too.
   void save_next(const std::filesystem::path& file) { save_ = file; }
 
+  /// What there is to say now.
+  HudContent words() const { return words(trusted()); }
+  /// What is predicted may be shown.
+  bool trusted() const;
+
  private:
   void present(const gl::Texture* predicted);
-  HudContent words(bool trusted) const;
+  void show_pictures(const ViewTarget& place, const gl::Texture* predicted, bool is_trusted) const;
+  HudContent words(bool is_trusted) const;
   void log(const HudContent& content);
   void save(const ViewTarget& whole);
-  bool trusted() const;
 
   gl::Window& window_;
   Seat& seat_;
@@ -62,6 +70,7 @@ class SeatWindow final : public ViewObserver {
   Hud hud_;
   SeatLog log_;
   UploadedPicture delayed_;
+  std::optional<EyePair> eyes_;
   link::LineFramePtr uploaded_;
   bool help_ = true, drawn_ = false;
   std::optional<std::filesystem::path> save_;

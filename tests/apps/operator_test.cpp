@@ -1,4 +1,8 @@
 // `foresight operator`: a program at the seat, both sides in stepped time; and the seat started wrong.
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 #include "tests/support/folders.hpp"
@@ -14,9 +18,8 @@ std::string rig_file() {
 TEST(Operator, ATourIsShownAsItWillBe) {
   const TempFolder folder;
   const auto report = folder.path() / "report.json", out = folder.path() / "out";
-  const Outcome result =
-      run_program({"operator", rig_file(), "--scripted", "tour", "--delay-ms", "300", "--seconds", "4", "--pictures-hz",
-                   "2", "--no-zero-delay", "--report", report, "--out", out});
+  const Outcome result = run_program({"operator", rig_file(), "--scripted", "tour", "--delay-ms", "300", "--seconds",
+                                      "4", "--pictures-hz", "2", "--no-zero-delay", "--report", report, "--out", out});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json all = read_json(report);
   EXPECT_TRUE(all["succeeded"]);
@@ -35,12 +38,41 @@ TEST(Operator, ATourIsShownAsItWillBe) {
 TEST(Operator, ABrickIsPickedUpAndPutIntoTheTray) {
   const TempFolder folder;
   const auto report = folder.path() / "report.json";
-  const Outcome result = run_program({"operator", rig_file(), "--scripted", "pick", "--delay-ms", "300", "--pictures-hz",
-                                      "0.5", "--no-zero-delay", "--report", report});
+  const Outcome result = run_program({"operator", rig_file(), "--scripted", "pick", "--delay-ms", "300",
+                                      "--pictures-hz", "0.5", "--no-zero-delay", "--report", report});
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
   const nlohmann::json all = read_json(report);
   EXPECT_TRUE(all["succeeded"]);
   EXPECT_GT(all["predicted_db"].get<double>(), all["delayed_db"].get<double>() + 6);
+}
+
+// Whatever becomes of the headset, the seat goes on, and says how it is.
+TEST(Operator, TheSeatOutlivesItsHeadset) {
+  if (!std::getenv("DISPLAY")) GTEST_SKIP() << "no DISPLAY; scripts/test gives one";
+  const auto sit = [](const std::string& runtime, const std::string& script, const std::vector<std::string>& words) {
+    Program seat({"operator", rig_file(), "--mock", "--head-display", "openxr"},
+                 {.environment = {{"XR_RUNTIME_JSON", runtime}, {"FORESIGHT_TEST_XR", script}}});
+    const auto said_all = [&] {  // in that order
+      const std::string said = seat.said();
+      std::size_t from = 0;
+      for (const std::string& word : words) {
+        from = said.find(word, from);
+        if (from == std::string::npos) return false;
+      }
+      return true;
+    };
+    for (int i = 0; i < 600 && seat.running() && !said_all(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_TRUE(said_all()) << seat.said();
+    seat.interrupt();
+    const Outcome outcome = seat.wait();
+    EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+  };
+  sit(FORESIGHT_TEST_RUNTIME, "real-time lose-session@60",
+      {"simulated headset", "the headset was lost", "simulated headset"});
+  sit(FORESIGHT_TEST_RUNTIME, "real-time no-egl", {"simulated headset, 90 Hz"});
+  sit(FORESIGHT_TEST_RUNTIME, "no-opengl", {"does not know OpenGL"});
+  sit("/nowhere/runtime.json", "", {"no OpenXR runtime"});
 }
 
 TEST(Operator, StartedWrongItSaysWhatToDo) {
@@ -53,6 +85,8 @@ TEST(Operator, StartedWrongItSaysWhatToDo) {
   EXPECT_THAT(said({"--delay-ms", "100"}), testing::HasSubstr("belongs to --scripted"));
   EXPECT_THAT(said({"--line", "/no/such/line.yaml"}), testing::HasSubstr("line.yaml"));
   EXPECT_THAT(said({"--scripted", "dance"}), testing::HasSubstr("tour"));
+  EXPECT_THAT(said({"--head-display", "goggles"}), testing::HasSubstr("side-by-side"));
+  EXPECT_THAT(said({"--scripted", "tour", "--head-display", "openxr"}), testing::HasSubstr("--head-display"));
   EXPECT_THAT(said({"--scripted", "tour", "--delay-ms", "nan"}), testing::HasSubstr("--delay-ms"));
 }
 

@@ -35,6 +35,25 @@ TEST(Hud, SaysWhatItIsToldAndLeavesTheRestAlone) {
   EXPECT_GT(changed(drawn(content, 640, 480)), changed(few));
 }
 
+TEST(Hud, StaysWithinItsPartOfAWindow) {
+  const auto context = gl::create_headless_context();
+  gl::Texture texture(GL_RGBA8, 640, 480, 0, 1, "hud");
+  const TextureTarget whole(texture.name(), 640, 480);
+  fill(whole.whole(), 0.2f, 0.2f, 0.2f);
+  ViewTarget part = whole.whole();
+  part.x = 320, part.y = 40, part.width = 320, part.height = 440;
+  HudContent content;
+  content.title = "a robot";
+  content.keys = {{"space", "stop"}};
+  Hud().draw(content, part);
+  cv::Mat out(480, 640, CV_8UC4);
+  glGetTextureImage(texture.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
+  EXPECT_EQ(changed(out.colRange(0, 320)), 0);
+  EXPECT_EQ(changed(out.rowRange(0, 40)), 0);
+  EXPECT_GT(changed(out.rowRange(40, 120)), 0.005) << "the keys, at its lower end";
+  EXPECT_GT(changed(out.rowRange(400, 480)), 0.005) << "the title, at its upper end";
+}
+
 TEST(Hud, BearsAnyWindow) {
   const auto context = gl::create_headless_context();
   HudContent content;

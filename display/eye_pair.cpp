@@ -1,0 +1,19 @@
+#include "display/eye_pair.hpp"
+
+namespace foresight {
+
+EyePair::EyePair(ViewSession& session, const Lens& lens, double separation)
+    : session_(session), separation_(separation) {
+  for (int eye = 0; eye < 2; ++eye) eyes_.push_back(session.make_view(lens));
+}
+
+bool EyePair::draw(const Pose& T_world_camera, const SceneState& state) {
+  bool drawn = true;
+  for (std::size_t eye = 0; eye < eyes_.size(); ++eye) {
+    const Eigen::Vector3d right((eye == 0 ? -0.5 : 0.5) * separation_, 0, 0);
+    drawn = session_.draw(eyes_[eye], T_world_camera * Eigen::Translation3d(right), state) && drawn;
+  }
+  return drawn;
+}
+
+}  // namespace foresight

@@ -1,0 +1,25 @@
+// Two eyes beside each other where the view's camera is, for a display that shows them side by side.
+#pragma once
+
+#include "display/view_session.hpp"
+
+namespace foresight {
+
+/// Belongs to the session's context and thread.
+class EyePair {
+ public:
+  /// Eyes `separation` m apart, each through `lens`. The session, not with `thesis`, must outlive this.
+  EyePair(ViewSession& session, const Lens& lens, double separation);
+
+  /// As ViewSession::draw, the eyes to the left and right of the camera.
+  bool draw(const Pose& T_world_camera, const SceneState& state);
+  /// 0: left.
+  const gl::Texture& picture(std::size_t eye) const { return eyes_[eye].picture(); }
+
+ private:
+  ViewSession& session_;
+  double separation_;
+  std::vector<PredictedView> eyes_;
+};
+
+}  // namespace foresight

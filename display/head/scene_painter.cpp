@@ -1,0 +1,126 @@
+#include "display/head/scene_painter.hpp"
+
+namespace foresight::head {
+namespace {
+
+constexpr double kDrawTimeout = 20;                                       // s
+constexpr std::size_t kMostDrawings = 4;                                  // two eyes of two frames
+constexpr double kWordsWidth = 0.9, kWordsAway = 1.4, kWordsDown = 0.45;  // m
+constexpr double kImageWidth = 0.6, kImageAway = 1.5, kImageRight = 0.75, kImageUp = 0.3;
+constexpr double kLargeImage = 1.6;
+
+/// Faces who is at the origin.
+Pose facing(const Eigen::Vector3d& at) {
+  Pose out = Pose::Identity();
+  out.translation() = at;
+  const double left = std::atan2(at.y(), at.x()), down = std::atan2(-at.z(), at.head<2>().norm());
+  out.linear() = (Eigen::AngleAxisd(left, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(down, Eigen::Vector3d::UnitY()))
+                     .toRotationMatrix();
+  return out;
+}
+
+}  // namespace
+
+ScenePainter::ScenePainter(const ViewSession& session, const HeldControllers& hands, SharedPicture* words,
+                           SharedPicture* image)
+    : session_(session), hands_(hands), pictures_{words, image} {}
+
+void ScenePainter::show(HeadScene scene) {
+  const std::lock_guard lock(mutex_);
+  scene_ = std::move(scene);
+  any_scene_ = true;
+}
+
+std::optional<Pose> ScenePainter::T_world_space() const {
+  const std::lock_guard lock(mutex_);
+  return T_world_space_;
+}
+
+bool ScenePainter::centre_pressed() {
+  bool held = false;
+  for (const HeldController& hand : hands_.hands) {
+    const TrackerState state = hand.heard();
+    held |= state.connected &&
+            (state.buttons.held(TrackerButton::recentre) || state.buttons.held(TrackerButton::home_view));
+  }
+  const bool pressed = held && !pressed_;
+  pressed_ = held;
+  return pressed;
+}
+
+void ScenePainter::look(const HeadFrame& frame) {
+  if (!copy_) copy_.emplace();
+  if (centre_pressed() || frame.space_moved) centre_ = true;
+  place_space(frame);
+  place_panels();
+}
+
+void ScenePainter::place_space(const HeadFrame& frame) {
+  const std::lock_guard lock(mutex_);
+  if (!any_scene_) return;
+  shown_ = scene_;
+  if (!frame.T_space_head || !shown_.trusted || (T_world_space_ && !centre_.exchange(false))) return;
+  T_world_space_ = T_world_space_for(shown_.place.T_world_camera, *frame.T_space_head);
+  T_space_centre_ = levelled(*frame.T_space_head);
+}
+
+void ScenePainter::place_panels() {
+  const auto put = [this](std::size_t i, double width, const Pose& pose) {
+    Panel& panel = panels_[i];
+    SharedPicture* const picture = pictures_[i];
+    panel.shown = picture != nullptr;
+    if (!picture) return;
+    panel.changed = picture->fresh();
+    panel.width_px = picture->width();
+    panel.height_px = picture->height();
+    panel.width = width;
+    panel.T_frame_panel = pose;
+  };
+  put(0, kWordsWidth, facing({kWordsAway, 0, -kWordsDown}));
+  panels_[0].head_fixed = true;
+  if (shown_.trusted)
+    put(1, kImageWidth, T_space_centre_ * facing({kImageAway, -kImageRight, kImageUp}));
+  else
+    put(1, kLargeImage, T_space_centre_ * facing({kImageAway, 0, 0}));
+}
+
+void ScenePainter::draw_eye(std::size_t eye, const EyeView& view, const ViewTarget& target) {
+  if (!shown_.trusted)
+    fill(target, 0.25f, 0.03f, 0.03f);  // what is shown is old, and the words say why
+  else if (!draw_scene(eye, view, target))
+    fill(target, 0.12f, 0.13f, 0.15f);
+}
+
+bool ScenePainter::draw_scene(std::size_t eye, const EyeView& view, const ViewTarget& target) {
+  while (!drawings_.empty() && drawings_.front().end.signalled()) drawings_.pop_front();
+  if (drawings_.size() >= kMostDrawings) {
+    drawings_.front().end.wait(kDrawTimeout);
+    drawings_.pop_front();
+  }
+  TextureLease textures = session_.textures();
+  if (!textures || !T_world_space_ || shown_.place.scene.T_world_node.empty()) return false;
+  auto& own = eyes_[eye];
+  const bool fits = own && alike(own->fov, view.fov) && own->view.picture().width() == target.width &&
+                    own->view.picture().height() == target.height;
+  if (!fits) own.reset();
+  if (!own) own.emplace(Eye{view.fov, session_.make_view(eye_lens(view.fov, target.width, target.height))});
+  own->view.draw(*T_world_space_ * view.T_space_eye * T_body_camera(), shown_.place.scene, *textures);
+  (*copy_)(own->view.picture(), target);
+  drawings_.push_back({std::move(textures), gl::Fence::insert()});
+  return true;
+}
+
+void ScenePainter::draw_panel(std::size_t panel, const ViewTarget& target) {
+  if (pictures_[panel]->show(*copy_, target)) return;
+  constexpr float kNothing[4] = {0, 0, 0, 0};
+  glClearNamedFramebufferfv(target.framebuffer, GL_COLOR, 0, kNothing);
+}
+
+void ScenePainter::release() {
+  for (const Drawing& drawing : drawings_) drawing.end.wait(kDrawTimeout);
+  drawings_.clear();
+  for (auto& eye : eyes_) eye.reset();
+  copy_.reset();
+}
+
+}  // namespace foresight::head

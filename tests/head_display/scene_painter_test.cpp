@@ -1,0 +1,224 @@
+// The scene in a head display: each eye sees what a camera in its place would.
+#include "display/head/scene_painter.hpp"
+
+#include "display/head/head_thread.hpp"
+#include "display/eye_pair.hpp"
+#include "tests/head_display/xr_test.hpp"
+#include "tests/support/small_scene.hpp"
+
+namespace foresight::scene_painter_test {
+namespace {
+
+using namespace std::chrono_literals;
+using openxr_runtime::looking;
+using openxr_runtime::runtime;
+using openxr_runtime::World;
+
+cv::Mat pixels(unsigned texture, int width, int height) {
+  cv::Mat out(height, width, CV_8UC4);
+  glGetTextureImage(texture, 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
+  return out;
+}
+
+class SceneInAHead : public HeadDisplayTest {
+ protected:
+  void SetUp() override {
+    HeadDisplayTest::SetUp();
+    if (IsSkipped()) return;
+    const Lens lens = small_lens("pinhole");
+    ViewSetup setup{scene_, surface_for(*scene_, lens, {}), lens, std::nullopt, {}, {}};
+    setup.textures.memory_bytes = 6 << 20;
+    session_.emplace(*context_, setup);
+    session_->process({posed_photograph(*scene_, state_of(*scene_), lens, usual_view()), std::nullopt});
+    painter_in_scene_.emplace(*session_, *held_, nullptr, &image_.emplace(32, 24, "image"));
+    settings_.shown = [this](const openxr_runtime::ShownFrame& frame) {
+      panels_ = frame.panels.size();
+      for (std::size_t i = 0; i < 2; ++i)
+        if (frame.eyes[i]) seen_[i] = pixels(frame.eyes[i], 64, 64);
+    };
+    runtime().reset(settings_);
+  }
+  void TearDown() override {
+    display_.reset();
+    if (painter_in_scene_) painter_in_scene_->release();
+    painter_in_scene_.reset();
+    session_.reset();
+    image_.reset();
+    HeadDisplayTest::TearDown();
+  }
+  void turn(int rounds) {
+    for (int i = 0; i < rounds; ++i) display_->step(*painter_in_scene_);
+  }
+  void begin() {
+    painter_in_scene_->show({{usual_view(), state_of(*scene_)}, true});
+    for (int i = 0; i < 20 && !display_->status().focused; ++i) turn(1);
+    turn(2);
+    ASSERT_TRUE(display_->status().focused) << display_->status().trouble;
+  }
+  // What the eye sees from there, first row at the bottom.
+  cv::Mat expected(std::size_t eye, const Pose& T_world_eye) {
+    const auto& f = settings_.fov;
+    const head::EyeFov fov = eye == 0 ? head::EyeFov{f[0], f[1], f[2], f[3]} : head::EyeFov{-f[1], -f[0], f[2], f[3]};
+    PredictedView view = session_->make_view(head::eye_lens(fov, 64, 64));
+    session_->draw(view, T_world_eye * head::T_body_camera(), state_of(*scene_));
+    cv::Mat out = pixels(view.picture().name(), 64, 64);
+    cv::flip(out, out, 0);
+    return out;
+  }
+  void expect_same(std::size_t eye, const Pose& T_world_eye) {
+    const cv::Mat wanted = expected(eye, T_world_eye);
+    cv::Mat apart;
+    cv::absdiff(wanted, seen_[eye], apart);
+    // Poses pass through the runtime's floats: a pixel at an edge may fall to the other side.
+    EXPECT_LT(cv::mean(apart.reshape(1))[0], 0.5) << "eye " << eye;
+    cv::Mat mean, deviation;
+    cv::meanStdDev(wanted.reshape(1), mean, deviation);
+    EXPECT_GT(deviation.at<double>(0), 10) << "there is something to see";
+  }
+
+  std::shared_ptr<const SceneModel> scene_ = small_scene();
+  std::optional<ViewSession> session_;
+  std::optional<head::SharedPicture> image_;
+  std::optional<head::ScenePainter> painter_in_scene_;
+  std::array<cv::Mat, 2> seen_;
+  std::size_t panels_ = 0;
+};
+
+TEST_F(SceneInAHead, EachEyeSeesWhatACameraInItsPlaceWould) {
+  const Pose T_head = *head::checked_pose({0.3, 1.1, 0.2}, Eigen::Quaterniond(1, 0, 0, 0));
+  World world;
+  world.head = looking({0.3f, 1.1f, 0.2f}, 0);
+  settings_.world = [&world](double) { return world; };
+  runtime().reset(settings_);
+  begin();
+  ASSERT_TRUE(painter_in_scene_->T_world_space());
+  const Pose T_world_space = head::T_world_space_for(usual_view(), T_head);
+  EXPECT_TRUE(painter_in_scene_->T_world_space()->isApprox(T_world_space, 1e-6));
+  EXPECT_LT(((T_world_space * T_head).translation() - usual_view().translation()).norm(), 1e-9);
+  const auto eye_at = [&](const Pose& T_space_head, std::size_t eye) {
+    return T_world_space * T_space_head * Eigen::Translation3d(0, eye == 0 ? 0.0315 : -0.0315, 0);
+  };
+  // The head leans forward and looks down, to where the scene is.
+  world.head = looking({0.35f, 1.05f, 0.1f}, 0.1, -0.5);
+  turn(2);
+  const auto& q = world.head.orientation;
+  const Pose T_leaning =
+      *head::checked_pose({0.35, 1.05, 0.1}, Eigen::Quaternionf(q[3], q[0], q[1], q[2]).cast<double>());
+  for (std::size_t eye = 0; eye < 2; ++eye) expect_same(eye, eye_at(T_leaning, eye));
+  EXPECT_GT(cv::norm(seen_[0], seen_[1], cv::NORM_L1), 0) << "from two places";
+  EXPECT_EQ(complaints(), "");
+}
+
+TEST_F(SceneInAHead, CentredAnewTheHeadIsWhereTheCameraIs) {
+  World world;
+  settings_.world = [&world](double) { return world; };
+  runtime().reset(settings_);
+  begin();
+  world.head = looking({0.5f, 1, 0}, 0.7);
+  turn(2);
+  const Pose before = *painter_in_scene_->T_world_space();
+  world.hands[0].stick_pressed = true;
+  turn(2);
+  const Pose after = *painter_in_scene_->T_world_space();
+  EXPECT_FALSE(after.isApprox(before, 1e-3));
+  const auto& q = world.head.orientation;
+  const Pose T_head = *head::checked_pose({0.5, 1, 0}, Eigen::Quaternionf(q[3], q[0], q[1], q[2]).cast<double>());
+  EXPECT_LT(((after * T_head).translation() - usual_view().translation()).norm(), 1e-6);
+  world.head = looking({0.1f, 1, 0}, 0.2);
+  turn(3);
+  EXPECT_TRUE(painter_in_scene_->T_world_space()->isApprox(after)) << "once for a press";
+  runtime().recentre(looking({0.2f, 0, 0}, 0.1));
+  turn(8);
+  EXPECT_FALSE(painter_in_scene_->T_world_space()->isApprox(after, 1e-3)) << "the runtime's own way of centring";
+  EXPECT_EQ(complaints(), "");
+}
+
+TEST_F(SceneInAHead, WhatCannotBeTrustedIsNotShown) {
+  image_->write([](const ViewTarget& target) { fill(target, 0, 0, 1); });
+  begin();
+  turn(2);
+  const double before = cv::mean(seen_[0])[0];
+  painter_in_scene_->show({{usual_view(), state_of(*scene_)}, false});
+  turn(2);
+  EXPECT_EQ(panels_, 1u) << "the newest image stands in its place";
+  EXPECT_NE(cv::mean(seen_[0])[0], before);
+  EXPECT_EQ(seen_[0].at<cv::Vec4b>(10, 10), seen_[0].at<cv::Vec4b>(50, 50)) << "one colour";
+  EXPECT_EQ(complaints(), "");
+}
+
+TEST_F(SceneInAHead, BeforeTheFirstStateNothingIsDrawnOfIt) {
+  turn(20);
+  EXPECT_TRUE(display_->status().focused);
+  EXPECT_FALSE(painter_in_scene_->T_world_space());
+  EXPECT_EQ(seen_[0].at<cv::Vec4b>(10, 10), seen_[0].at<cv::Vec4b>(50, 50));
+}
+
+TEST_F(SceneInAHead, APictureOfAnotherContextIsShownWhole) {
+  head::SharedPicture picture(16, 8, "shared");
+  const auto reader = context_->create_shared();
+  const auto shown = [&] {
+    reader->make_current();
+    gl::Texture texture(GL_RGBA8, 16, 8, 0, 1, "target");
+    cv::Mat out;
+    {
+      const PictureCopy copy;
+      const TextureTarget target(texture.name(), 16, 8);
+      glFinish();
+      if (picture.show(copy, target.whole())) out = pixels(texture.name(), 16, 8);
+    }
+    context_->make_current();
+    return out;
+  };
+  EXPECT_FALSE(picture.fresh());
+  EXPECT_TRUE(shown().empty());
+  for (int i = 1; i <= 10; ++i) {
+    picture.write([&](const ViewTarget& target) { fill(target, static_cast<float>(i) / 255, 0, 0); });
+    glFinish();
+    if (i % 3 == 0) continue;  // some are overtaken
+    EXPECT_TRUE(picture.fresh());
+    const cv::Mat out = shown();
+    ASSERT_FALSE(out.empty());
+    EXPECT_EQ(out.at<cv::Vec4b>(4, 8)[0], i);
+    EXPECT_FALSE(picture.fresh());
+  }
+}
+
+TEST_F(SceneInAHead, SideBySideEyesAreApart) {
+  EyePair none(*session_, small_lens("pinhole"), 0), eyes(*session_, small_lens("pinhole"), 0.065);
+  ASSERT_TRUE(none.draw(usual_view(), state_of(*scene_)));
+  ASSERT_TRUE(eyes.draw(usual_view(), state_of(*scene_)));
+  const auto read = [](const gl::Texture& picture) { return pixels(picture.name(), 160, 120); };
+  EXPECT_EQ(cv::norm(read(none.picture(0)), read(none.picture(1)), cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(read(eyes.picture(0)), read(eyes.picture(1)), cv::NORM_INF), 0);
+  ASSERT_TRUE(session_->draw(usual_view() * Eigen::Translation3d(-0.0325, 0, 0), state_of(*scene_)));
+  EXPECT_EQ(cv::norm(read(session_->picture()), read(eyes.picture(0)), cv::NORM_INF), 0) << "the left one is left";
+}
+
+// In a thread of its own: a runtime that stands still holds up nobody, and is not waited for for ever.
+TEST_F(SceneInAHead, AThreadEndsOrSaysThatItCannot) {
+  settings_.tick = {};
+  settings_.shown = {};
+  settings_.real_time = true;
+  runtime().reset(settings_);
+  MonotonicClock clock;
+  painter_in_scene_->show({{usual_view(), state_of(*scene_)}, true});
+  std::atomic<bool> released{false};
+  head::HeadThread thread(context_->create_shared(), {}, clock, held_, *painter_in_scene_, [&] {
+    painter_in_scene_->release();
+    released = true;
+  });
+  for (int i = 0; i < 1000 && thread.status().frames < 5; ++i) clock.sleep_until(clock.now() + 10ms);
+  ASSERT_GE(thread.status().frames, 5u) << thread.status().trouble;
+  runtime().stop_frames(1.0);
+  for (int i = 0; i < 100 && !head::stands_still(thread.status(), {clock.now().ns}, 200ms); ++i)
+    clock.sleep_until(clock.now() + 10ms);
+  EXPECT_TRUE(head::stands_still(thread.status(), {clock.now().ns}, 200ms));
+  EXPECT_FALSE(thread.stop(1ms));
+  EXPECT_TRUE(thread.stop(20s));
+  EXPECT_TRUE(released);
+  EXPECT_TRUE(thread.status().ended);
+  EXPECT_EQ(complaints(), "");
+}
+
+}  // namespace
+}  // namespace foresight::scene_painter_test
