@@ -10,6 +10,8 @@
 namespace foresight {
 namespace {
 
+constexpr Duration kLongestWait = std::chrono::milliseconds(50);  // FrameSource::advance()
+
 JointPositions positions_of(const link::LineJoints& joints) {
   return [&joints](std::string_view name) { return joints.position(name); };
 }
@@ -61,7 +63,8 @@ std::optional<RobotTime> PredictedSource::next_instant(RobotTime until) {
 
 SourceState PredictedSource::advance() {
   if (options_.real_time) {
-    clock_.sleep_until(due_);
+    clock_.sleep_until(std::min(due_, clock_.now() + kLongestWait));
+    if (clock_.now() < due_) return SourceState::waiting;
     due_ = std::max(due_ + seconds(1 / options_.rate_hz), clock_.now());
   } else if (clock_.now() < due_) {
     return SourceState::waiting;

@@ -142,6 +142,7 @@ void MockStereo::hand_over(StereoRenderer& renderer, bool wait) {
 
 void MockStereo::run_real(const std::stop_token& stop, StereoRenderer& renderer) {
   std::uint64_t number = 0;
+  // As a real camera, it keeps its beat: an image that could not be drawn in time never was, and none is late.
   for (RobotTime due = clock_.now() + period(); !stop.stop_requested(); ++number) {
     while (clock_.now() < due && !stop.stop_requested()) {
       hand_over(renderer, false);
@@ -149,10 +150,10 @@ void MockStereo::run_real(const std::stop_token& stop, StereoRenderer& renderer)
     }
     hand_over(renderer, false);
     if (renderer.under_way() < StereoRenderer::kUnderWay)
-      draw(renderer, clock_.now(), number);
+      draw(renderer, due, number);
     else
       ++skipped_;
-    due = std::max(due + period(), clock_.now());
+    due = due + period() * std::max<std::int64_t>(1, (clock_.now() - due + period()) / period());
   }
 }
 
