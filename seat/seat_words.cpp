@@ -9,7 +9,7 @@ using Phase = ControlSeatStatus::Phase;
 
 /// The robot's cures name the keys of its own terminal.
 std::string with_our_keys(std::string cure) {
-  for (const auto& [theirs, ours] : {std::pair{"(e)", "(E)"}, {"(h)", "(H)"}, {"(r)", "(X)"}, {"(c)", "(N)"}})
+  for (const auto& [theirs, ours] : {std::pair{"(e)", "(E)"}, {"(h)", "(H)"}, {"(r)", "(X)"}, {"(c)", "(Z)"}})
     if (const std::size_t at = cure.find(theirs); at != cure.npos) cure.replace(at, 3, ours);
   return cure;
 }

@@ -115,7 +115,7 @@ class LiveSeat {
     out.font_scale = options_.font_scale;
     out.keys = HandDriver::keys();
     out.keys.insert(out.keys.begin(), {{"space", "stop at once"},
-                                       {"E, H, X, N", "enable, home, reset, configure drives anew"},
+                                       {"E, H, X, Z", "enable, home, reset, configure drives anew"},
                                        {"G", "give control back, take it again"},
                                        {"T", "hand control over to who asks"},
                                        {"Tab", "what is shown"},
@@ -166,7 +166,7 @@ class LiveSeat {
       case 'e': return driver_.ask(LineRequest::enable);
       case 'h': return driver_.ask(LineRequest::home);
       case 'x': return driver_.ask(LineRequest::reset);
-      case 'n': return driver_.ask(LineRequest::set_up);
+      case 'z': return driver_.ask(LineRequest::set_up);
       case 'g': return driver_.toggle_control();
       case 't': return driver_.hand_over();
       case 'n': return head_ ? head_->centre() : void();

@@ -112,7 +112,7 @@ class OperatorWindow : public testing::Test {
       const std::string next = line_at(at);
       if (next.find("next:   ready ->") != std::string::npos) return testing::AssertionSuccess();
       if (next.find("let go") != std::string::npos) hold("shift", false);
-      for (const char key : {'E', 'H', 'N', 'X'})
+      for (const char key : {'E', 'H', 'Z', 'X'})
         if (next.find(std::string("(") + key + ")") != std::string::npos)
           press(std::string(1, static_cast<char>(key + 32)));
       const std::size_t after = at + 1;
