@@ -49,41 +49,67 @@ vec4 cubic_weights(float f) {
               f * f * (-0.5 + 0.5 * f));
 }
 
-// As gather_taps() at level 0, but cubic where all 16 texels around the point are seen: two linear
-// filters one after the other, in the extraction and here, would blur.
+struct SharpTaps {
+  Taps linear;
+  vec4 cubic;
+  float all_seen;
+};
+
+// Slots of 2x2 pages.
+struct FourPages {
+  uint first, right, below, opposite;
+};
+
+uint slot_of_page(ChartRecord chart, ivec2 page) {
+  bool inside = all(greaterThanEqual(page, ivec2(0))) && all(lessThan(page, chart.pages));
+  uint slot = texelFetch(published_table, inside ? chart.first_page + page.y * chart.pages.x + page.x : 0).r;
+  return inside ? slot : kNoSlot;
+}
+
+// Adds the texel at `place`, counted from the first page's corner, with its weights in both filters.
+void add_tap(inout SharpTaps sum, FourPages pages, ivec2 place, float cubic, float linear) {
+  uint slot = place.y < 16 ? (place.x < 16 ? pages.first : pages.right) : (place.x < 16 ? pages.below : pages.opposite);
+  vec4 c = texelFetch(published_colours, slot_origin(slot & 0xffffffu, 0) + ivec3(place & 15, 0), 0);
+  c = slot == kNoSlot ? vec4(0.0) : vec4(min(c.rgb, vec3(BRIGHTEST)), c.a);
+  float seen = step(kSeen, c.a);
+  sum.all_seen *= seen;
+  sum.cubic += cubic * vec4(c.rgb, 1.0);
+  sum.linear.seen += linear * seen * vec4(c.rgb, 1.0);
+  sum.linear.quality += linear * seen * c.a;
+  sum.linear.filled += linear * (1.0 - seen) * step(0.5 / 255.0, c.a) * vec4(c.rgb, 1.0);
+}
+
+// As gather_taps() at level 0, but cubic where all texels that it takes were seen: two linear filters one after the
+// other, in the extraction and here, would blur. Of the 4x4 texels around the point it takes the inner four, and outside
+// of them those of the nearest row and column for all on that side: the others hardly differ, and each costs as much as
+// any other. Written out, as software renderers keep all of a loop's variables in memory.
+//
+//      . o .  .
+//      o i i  o       o: with the weight of its side
+//      . i i  .
+//      . o .  .
 Taps gather_sharp_taps(ChartRecord chart, vec2 texel) {
   ivec2 base = ivec2(floor(texel));
-  vec2 f = texel - vec2(base);
+  vec2 f = texel - vec2(base), g = 1.0 - f;
   vec4 wx = cubic_weights(f.x), wy = cubic_weights(f.y);
-  ivec2 first_page = (base - 1) >> 4;  // the texels lie on at most 2x2 pages
-  uint slots[4];
-  for (int i = 0; i < 4; ++i) {
-    ivec2 page = first_page + ivec2(i & 1, i >> 1);
-    bool inside = all(greaterThanEqual(page, ivec2(0))) && all(lessThan(page, chart.pages));
-    slots[i] = inside ? texelFetch(published_table, chart.first_page + page.y * chart.pages.x + page.x).r : kNoSlot;
-  }
-  Taps taps = Taps(vec4(0.0), 0.0, vec4(0.0));
-  vec4 cubic = vec4(0.0);
-  float all_seen = 1.0;
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i) {
-      ivec2 t = base + ivec2(i - 1, j - 1);
-      ivec2 page = (t >> 4) - first_page;
-      uint slot = page.y == 0 ? (page.x == 0 ? slots[0] : slots[1]) : (page.x == 0 ? slots[2] : slots[3]);
-      vec4 c = slot == kNoSlot ? vec4(0.0)
-                               : texelFetch(published_colours, slot_origin(slot & 0xffffffu, 0) + ivec3(t & 15, 0), 0);
-      c.rgb = min(c.rgb, vec3(BRIGHTEST));
-      float seen = step(kSeen, c.a);
-      all_seen *= seen;
-      cubic += wx[i] * wy[j] * vec4(c.rgb, 1.0);
-      bool inner = (i == 1 || i == 2) && (j == 1 || j == 2);
-      float w = inner ? (i == 2 ? f.x : 1.0 - f.x) * (j == 2 ? f.y : 1.0 - f.y) : 0.0;
-      taps.seen += w * seen * vec4(c.rgb, 1.0);
-      taps.quality += w * seen * c.a;
-      taps.filled += w * (1.0 - seen) * step(0.5 / 255.0, c.a) * vec4(c.rgb, 1.0);
-    }
-  if (all_seen > 0.5) taps.seen = vec4(clamp(mix(taps.seen.rgb, cubic.rgb / cubic.a, kSharp), 0.0, BRIGHTEST), 1.0);
-  return taps;
+  float inner_x = wx.y + wx.z, inner_y = wy.y + wy.z;
+  ivec2 page = (base - 1) >> 4;  // the texels lie on at most 2x2 pages
+  FourPages pages = FourPages(slot_of_page(chart, page), slot_of_page(chart, page + ivec2(1, 0)),
+                              slot_of_page(chart, page + ivec2(0, 1)), slot_of_page(chart, page + 1));
+  ivec2 first = (base - 1) & 15;
+  ivec2 nearest = first + 1 + ivec2(step(0.5, f));
+  SharpTaps sum = SharpTaps(Taps(vec4(0.0), 0.0, vec4(0.0)), vec4(0.0), 1.0);
+  add_tap(sum, pages, first + ivec2(1, 1), wx.y * wy.y, g.x * g.y);
+  add_tap(sum, pages, first + ivec2(2, 1), wx.z * wy.y, f.x * g.y);
+  add_tap(sum, pages, first + ivec2(1, 2), wx.y * wy.z, g.x * f.y);
+  add_tap(sum, pages, first + ivec2(2, 2), wx.z * wy.z, f.x * f.y);
+  add_tap(sum, pages, ivec2(first.x, nearest.y), wx.x * inner_y, 0.0);
+  add_tap(sum, pages, ivec2(first.x + 3, nearest.y), wx.w * inner_y, 0.0);
+  add_tap(sum, pages, ivec2(nearest.x, first.y), wy.x * inner_x, 0.0);
+  add_tap(sum, pages, ivec2(nearest.x, first.y + 3), wy.w * inner_x, 0.0);
+  if (sum.all_seen > 0.5)
+    sum.linear.seen = vec4(clamp(mix(sum.linear.seen.rgb, sum.cubic.rgb / sum.cubic.a, kSharp), 0.0, BRIGHTEST), 1.0);
+  return sum.linear;
 }
 
 // Colour and resolution code (alpha) from seen texels only; alpha 0 where there is none.

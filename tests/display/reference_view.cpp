@@ -43,7 +43,8 @@ ViewPixel View::at(const Lens& lens, const Pose& T_world_camera, const Eigen::Ve
 
 namespace {
 
-/// Catmull-Rom over 16 texels; nothing where one of them was not seen.
+/// Catmull-Rom, in which the outer texels of each side are all as the one in the nearest row or column, without the
+/// corners; nothing where one that it takes was not seen.
 template <typename Fetch>
 std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at, Fetch&& fetch) {
   const auto kernel = [](double d) {
@@ -53,10 +54,13 @@ std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at, Fetch&& fetch) {
   Eigen::Vector3d sum(0, 0, 0);
   double weights = 0;
   const Eigen::Vector2i base = at.array().floor().cast<int>();
+  const Eigen::Vector2i nearest = (at.array() + 0.5).floor().cast<int>();
   for (int y = -1; y <= 2; ++y)
     for (int x = -1; x <= 2; ++x) {
+      const bool outer_x = x < 0 || x > 1, outer_y = y < 0 || y > 1;
+      if (outer_x && outer_y) continue;
       const Eigen::Vector2i t = base + Eigen::Vector2i(x, y);
-      const Eigen::Vector4d c = fetch(t);
+      const Eigen::Vector4d c = fetch(Eigen::Vector2i(outer_y ? nearest.x() : t.x(), outer_x ? nearest.y() : t.y()));
       if (255 * c.w() < 1.5) return std::nullopt;
       const double w = kernel(at.x() - t.x()) * kernel(at.y() - t.y());
       sum += w * c.head<3>();
@@ -114,8 +118,11 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
       seen += weight * share * opaque;
       if (code > 0.5) filled += weight * (1 - share) * opaque;
     });
-    if (const auto sharp = level == 0 ? cubic(at, fetch) : std::nullopt)
+    if (const auto sharp = level == 0 ? cubic(at, fetch) : std::nullopt) {
       seen.head<3>() = (0.4 * seen.head<3>() + 0.6 * *sharp).cwiseMax(0).cwiseMin(1);
+      const Eigen::Array2d middle = at.array() + 0.5;
+      out.borderline |= (middle - middle.round()).abs().minCoeff() < 1e-3;  // between two rows or columns
+    }
     out.borderline |= std::abs(seen.w() - 0.25) < 1e-3;
     if (seen.w() >= 0.25) return with(seen.head<3>() / seen.w(), kSeen);
     const Eigen::Vector4d all = seen + filled;
