@@ -102,7 +102,9 @@ int export_model(const ExportOptions& given) {
   poll_stop_signals();
 
   const auto context = gl::create_headless_context();
-  ViewSession session(*context, view_setup(run, options.textures));
+  ViewSetup setup = view_setup(run, options.textures);
+  setup.newest_image = false;  // textures are all that is wanted
+  ViewSession session(*context, setup);
   if (!extract(session, run, count, options.textures.margin_px)) {
     std::cerr << "\nforesight: stopped by " << stopped_by() << ", nothing was written\n";
     return kStopped;

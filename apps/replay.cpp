@@ -98,7 +98,8 @@ int play(const RunFolder& run, const ReplayOptions& options, std::vector<std::si
   const auto window = options.window ? open_window(run.lens_left()) : nullptr;
   const auto headless = window ? nullptr : gl::create_headless_context();
   gl::Context& context = window ? static_cast<gl::Context&>(*window) : *headless;
-  const ViewSetup setup = view_setup(run, options.textures, thesis_options(options));
+  ViewSetup setup = view_setup(run, options.textures, thesis_options(options));
+  setup.newest_image = options.projection;
   ViewSession session(context, setup);
 
   RecordedSource recorded(run, std::move(arrived), options.textures.margin_px, options.real_time);

@@ -33,6 +33,7 @@ RunRecord describe(const ViewSession& session, const ViewSetup& setup) {
   record.renderer = session.driver().renderer + ", OpenGL " + session.driver().version;
   record.version = FORESIGHT_VERSION;
   record.options.push_back({"pipeline", std::string(setup.thesis ? "thesis" : "core")});
+  record.options.push_back({"projection", setup.newest_image && !setup.thesis});
   return record;
 }
 
@@ -59,6 +60,8 @@ void ViewMeasures::stepped(const ViewStep& step, FrameSource& source, ViewSessio
   for (const ExtractionReport& report : step.reports) take(report, record);
   if (step.instant.blind) return;
   record.arrival_to_publish_ms = step.arrival_to_publish_ms;
+  record.arrival_to_visible_ms = step.arrival_to_visible_ms;
+  record.arrival_to_visible_cpu_ms = step.arrival_to_visible_cpu_ms;
   if (!step.instant.late) record.delay_s = to_seconds(step.instant.time - delayed_time_);
   if (step.drawn)
     measure(record, step.draw_cpu_ms, source, session);
@@ -134,6 +137,9 @@ void print_summary(const RunRecord& record) {
               s.coverage.filled, s.coverage.empty(), s.predicted.sharpness.mean);
   std::printf("%.1f images per core-second, %.1f CPU-ms per image; renderer: %s\n", s.images_per_core_second,
               s.texture_cpu_ms, record.renderer.c_str());
+  if (std::isfinite(s.arrival_to_visible_ms.median))
+    std::printf("an image is seen %.0f ms after it arrived, %.0f CPU-ms\n", s.arrival_to_visible_ms.median,
+                s.arrival_to_visible_cpu_ms.median);
   for (const std::string& note : record.notes) std::printf("%s\n", note.c_str());
 }
 

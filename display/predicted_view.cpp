@@ -1,5 +1,7 @@
 #include "display/predicted_view.hpp"
 
+#include <array>
+
 #include "display/lens_rays.hpp"
 #include "texture_gpu/shaders.hpp"
 
@@ -20,21 +22,85 @@ const gl::ShaderSources& sources() {
   return all;
 }
 
+// As in view.comp.
+constexpr unsigned kGroup = 64;  // invocations of a group over a list
+constexpr GLuint kListUnit = 5;
+constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
+
+enum class Cases { newest_image, usual, every };
+
+struct Pixels {
+  bool listed = false;   // not all of them
+  bool blended = false;  // with the newest image, which the picture holds
+};
+
+gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
+  auto defines = gl::camera_defines(lenses);
+  defines.push_back("CASES " + std::to_string(static_cast<int>(cases)));
+  defines.push_back("LISTED " + std::to_string(pixels.listed));
+  defines.push_back("BLENDED " + std::to_string(pixels.blended));
+  return gl::Program::compute(sources(), "view.comp", defines);
+}
+
 }  // namespace
 
+PredictedView::Projection::Projection(const Lens& view, const Lens& lens)
+    : newest(view_program(std::array{view, lens}, Cases::newest_image, {})),
+      usual(view_program({&view, 1}, Cases::usual, {.listed = true, .blended = true})),
+      rest(view_program({&view, 1}, Cases::every, {.listed = true, .blended = true})),
+      unseen("pixels that the newest image does not see", kGroup) {}
+
 PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
-                             std::shared_ptr<const SurfaceRecords> surface, const Lens& lens)
+                             std::shared_ptr<const SurfaceRecords> surface, const Lens& lens, ViewPrograms programs)
     : lens_(lens),
       surface_(std::move(surface)),
       faces_(gl::faces_for(lens, 2), true),
       raster_(std::move(scene), true),
-      program_(gl::Program::compute(sources(), "view.comp")),
+      programs_(programs),
+      all_(view_program({&lens, 1}, programs == ViewPrograms::two ? Cases::usual : Cases::every, {})),
+      rest_("pixels of the view", kGroup),
       camera_(sizeof(gl::CameraBlock), "view camera"),
       node_poses_(GL_RGBA32F, 16, "view node poses"),
       rays_(make_lens_rays(lens)),
-      picture_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view") {}
+      picture_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view") {
+  if (programs_ == ViewPrograms::two) listed_ = view_program({&lens, 1}, Cases::every, {.listed = true});
+}
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
+  start(T_world_camera, state, textures);
+  all_.set("gain", textures.display_gain);
+  if (programs_ == ViewPrograms::single) {
+    dispatch_all(all_);
+  } else {
+    start(rest_);
+    dispatch_all(all_);
+    dispatch(rest_, listed_, textures.display_gain);
+  }
+  finish();
+}
+
+void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+                         const PublishedImage& newest) {
+  if (!projection_) projection_ = std::make_unique<Projection>(lens_, newest.camera->lens());
+  Projection& p = *projection_;
+  start(T_world_camera, state, textures);
+  const CameraInput* camera = newest.camera.get();
+  const PosedImage* image = &newest.image;
+  p.image.update({&camera, 1}, {&image, 1}, {&newest.tone, 1});
+  p.image.bind(p.newest, newest.depth_tolerance, kSeenBlock, kSeenUnit);
+  start(p.unseen);
+  dispatch_all(p.newest);
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  p.unseen.finish(kListUnit);
+  start(rest_);
+  p.usual.set("gain", newest.gain);
+  p.usual.use();
+  p.unseen.dispatch();
+  dispatch(rest_, p.rest, newest.gain);
+  finish();
+}
+
+void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
   raster_(T_world_camera, state, faces_);
 
   const gl::CameraBlock block = gl::make_camera_block(lens_, faces_.faces);
@@ -46,8 +112,6 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   }
   node_poses_.assign(std::span<const Eigen::Vector4f>(rows));
 
-  program_.use();
-  program_.set("gain", textures.display_gain);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   glBindTextureUnit(0, node_poses_.texture());
   glBindTextureUnit(1, faces_.surface.name());
@@ -55,8 +119,26 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   glBindTextureUnit(3, surface_->patches());
   glBindTextureUnit(4, rays_.name());
   textures.bind();
-  glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
+}
+
+void PredictedView::start(WorkList& list) const {
+  list.start(static_cast<std::size_t>(lens_.width()) * static_cast<std::size_t>(lens_.height()));
+}
+
+void PredictedView::dispatch_all(const gl::Program& program) const {
+  program.use();
   glDispatchCompute(gl::groups(lens_.width(), 8), gl::groups(lens_.height(), 8), 1);
+}
+
+void PredictedView::dispatch(const WorkList& list, const gl::Program& program, float gain) {
+  list.finish(kListUnit);
+  program.set("gain", gain);
+  program.use();
+  list.dispatch();
+}
+
+void PredictedView::finish() const {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 

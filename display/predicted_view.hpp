@@ -3,14 +3,24 @@
 
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "display/surface_records.hpp"
 #include "gl/camera_block.hpp"
 #include "gl/program.hpp"
 #include "gl/raster_pass.hpp"
+#include "texture_gpu/published_image.hpp"
 #include "texture_gpu/published_textures.hpp"
+#include "texture_gpu/seen_inputs.hpp"
+#include "texture_gpu/work_list.hpp"
 
 namespace foresight {
+
+/// How pixels are shared out among programs; the picture is the same.
+enum class ViewPrograms {
+  two,     ///< the usual case for all, then every case for the pixels that it listed: cheaper on software renderers
+  single,  ///< every case for all: to compare with
+};
 
 /// Renders through one lens. First the scene's triangles are rasterised into pinhole faces; then
 /// each pixel follows its own ray through the lens model to the triangle seen there, to the exact
@@ -19,10 +29,14 @@ namespace foresight {
 class PredictedView {
  public:
   PredictedView(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_ptr<const SurfaceRecords> surface,
-                const Lens& lens);
+                const Lens& lens, ViewPrograms programs = ViewPrograms::two);
 
   /// Draws into picture(). `textures` must stay leased until the GPU has finished.
   void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
+  /// The same, but where `newest` saw a surface point, and about as sharply as the view shows it, the colour comes from
+  /// there; towards its rim it gives way to the textures. Both must stay leased.
+  void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+            const PublishedImage& newest);
 
   /// RGBA8, straight alpha, row 0 at the top: 255 colour from a camera image, 128 filled hole,
   /// 64 model without any colour, 0 no model.
@@ -35,11 +49,27 @@ class PredictedView {
   const gl::FaceImages& faces() const { return faces_; }
 
  private:
+  /// What the newest image needs besides.
+  struct Projection {
+    Projection(const Lens& view, const Lens& image);
+    gl::Program newest, usual, rest;
+    WorkList unseen;  // by the newest image
+    SeenInputs image;
+  };
+  void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
+  void finish() const;
+  void dispatch_all(const gl::Program& program) const;
+  void start(WorkList& list) const;
+  static void dispatch(const WorkList& list, const gl::Program& program, float gain);
+
   Lens lens_;
   std::shared_ptr<const SurfaceRecords> surface_;
   gl::FaceImages faces_;
   gl::RasterPass raster_;
-  gl::Program program_;
+  ViewPrograms programs_;
+  gl::Program all_, listed_;  // view.comp: the first for every pixel, the other for those that it listed
+  WorkList rest_;
+  std::unique_ptr<Projection> projection_;  // from the first such draw() on
   gl::Buffer camera_;
   gl::BufferTexture node_poses_;  // T_node_camera: three rows a node
   gl::Texture rays_;              // RGB32F directions, only for lenses with distortion

@@ -1,18 +1,51 @@
-// The predicted view: per pixel, lens ray -> triangle -> surface point -> chart -> texels.
+// The predicted view: per pixel, lens ray -> triangle -> surface point -> chart -> texels, or -> newest image.
+//
+// Software renderers run both sides of every branch. So most pixels are drawn by a program that knows only the usual
+// case, texels about as large as pixels, and lists the others; a second program draws what is listed. Where the newest
+// image is looked up directly, that comes before them, and they go through what it did not see.
+//
+// Defines: CASES 0: the newest image, what it does not see is listed; 1: the usual case, others are listed; 2: every case.
+//          LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds the newest image already.
+#define NEWEST_IMAGE 0
+#define USUAL 1
+#define EVERY 2
+#if LISTED
+#define ITEMS_PER_GROUP 64
+#endif
 #include "camera.glsl"
+#if CASES == NEWEST_IMAGE
+#define SEEN_BLOCK 1
+#define SEEN_UNIT 16
+#include "seen.glsl"
+#include "image_taps.glsl"
+#else
 #include "chart_record.glsl"
 #include "atlas.glsl"
 uniform float gain;
 #define BRIGHTEST (1.0 / gain)
 #include "lookup.glsl"
+#endif
+#if CASES != EVERY
+#include "work_list.glsl"
+#endif
+#if LISTED
+#define WORK_UNIT 5
+#include "work_item.glsl"
+layout(local_size_x = 64) in;
+#else
 layout(local_size_x = 8, local_size_y = 8) in;
+#endif
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
-layout(binding = 0) uniform samplerBuffer node_poses;    // T_node_camera
+layout(binding = 0) uniform samplerBuffer view_nodes;    // T_node_camera
 layout(binding = 1) uniform usampler2DArray surfaces;    // triangle + 1
 layout(binding = 2) uniform samplerBuffer triangles;
 layout(binding = 3) uniform samplerBuffer patches;
 layout(binding = 4) uniform sampler2D rays;
+#if BLENDED
+layout(binding = 0, rgba8) uniform image2D picture;
+#else
 layout(binding = 0, rgba8) uniform writeonly image2D picture;
+#endif
 
 // A pixel counts as seen when at least this share of its filter weight lies on seen texels.
 const float kSeenShare = 0.25;
@@ -27,58 +60,165 @@ bool ray_through(ivec2 pixel, out vec3 ray) {
   return r.w > 0.5;
 }
 
-vec4 shade(vec3 ray) {
+// The surface point that a pixel shows.
+struct Point {
+  int patch_index, node;
+  vec3 normal;  // in the node's frame, as all of it
+  vec3 sight;   // the pixel's ray, not of unit length
+  float t;      // the point lies so many of `sight` from the camera
+  vec3 p;
+};
+
+// False where no model is.
+bool find_point(ivec2 pixel, out Point found) {
+  vec3 ray;
+  if (!ray_through(pixel, ray)) return false;
   vec3 place;
   float inverse_z;
-  if (!project_face(camera, ray, place, inverse_z)) return vec4(0.0);
+  if (!project_face(camera, ray, place, inverse_z)) return false;
   uint surface = texelFetch(surfaces, ivec3(ivec2(floor(place.xy + 0.5)), int(place.z)), 0).r;
-  if (surface == 0u) return vec4(0.0);
+  if (surface == 0u) return false;
   vec4 plane = texelFetch(triangles, 2 * int(surface - 1u));
   vec4 ids = texelFetch(triangles, 2 * int(surface - 1u) + 1);
   int node = int(ids.y);
 
   // The ray in the node's frame meets the triangle's plane.
-  vec3 d = rotate_to_camera(node_poses, node, ray);
-  vec3 o = vec3(texelFetch(node_poses, 3 * node).w, texelFetch(node_poses, 3 * node + 1).w, texelFetch(node_poses, 3 * node + 2).w);
+  vec4 x = texelFetch(view_nodes, 3 * node), y = texelFetch(view_nodes, 3 * node + 1), z = texelFetch(view_nodes, 3 * node + 2);
+  vec3 d = vec3(dot(x.xyz, ray), dot(y.xyz, ray), dot(z.xyz, ray));
+  vec3 o = vec3(x.w, y.w, z.w);
   float facing = dot(plane.xyz, d);
   float t = (plane.w - dot(plane.xyz, o)) / (abs(facing) > 1e-9 ? facing : 1e-9);
-  vec3 p = o + t * d;
+  found = Point(int(ids.x), node, plane.xyz, d, t, o + t * d);
+  return true;
+}
 
-  int patch_index = 4 * int(ids.x);
-  vec4 a = texelFetch(patches, patch_index), b = texelFetch(patches, patch_index + 1),
-       c = texelFetch(patches, patch_index + 2), e = texelFetch(patches, patch_index + 3);
-  vec2 uv = vec2(dot(p - a.xyz, b.xyz), dot(p - a.xyz, c.xyz));
+#if CASES == NEWEST_IMAGE
+// Less than this share of the view's resolution is clearly worse than what older images may have seen, and more than
+// that would flicker: coarser levels of the textures hold means.
+const float kCoarsest = 0.3, kFinest = 1.5;
+const float kSharp = 0.6;  // as in lookup.glsl
+const float kRim = 6.0;  // px of the image within which it gives way to older ones
+
+// The newest image's colour at the point, and its weight beside what older images saw; 0 where it does not see it.
+vec4 newest_colour(Point point) {
+  vec3 q = node_to_camera(node_poses, point.node, point.p);
+  vec2 pixel;
+  if (!is_seen(0, q, pixel)) return vec4(0.0);
+  // Pixels per area of the surface, of the image and of the view.
+  vec3 normal = rotate_to_camera(node_poses, point.node, point.normal);
+  float to_image = length(q), to_view = abs(point.t) * length(point.sight);
+  vec2 f = cameras[0].focal.xy, g = camera.focal.xy;
+  float image_pixels = f.x * f.y * abs(dot(normal, q)) / (to_image * to_image * to_image);
+  float view_pixels = g.x * g.y * abs(dot(point.normal, point.sight)) * abs(point.t) / (to_view * to_view * to_view);
+  float share = sqrt(image_pixels / max(view_pixels, 1e-12));
+  if (share < kCoarsest || share > kFinest) return vec4(0.0);
+  vec2 size = cameras[0].size.xy;
+  vec2 inside = min(pixel, size - 1.0 - pixel);
+  float weight = clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0);
+  vec3 colour = sample_sharply(image0, pixel, size, kSharp) * without_vignetting(cameras[0].tone, pixel, size);
+  return vec4(min(colour, vec3(1.0)), weight);
+}
+#else
+// What a pixel shows of a chart.
+struct Place {
+  int chart_index;
+  ChartRecord chart;
+  vec2 texel;  // of level 0
+  int level;   // whose texels are about as large as the pixel
+};
+
+Place place_of(Point point) {
+  Place place;
+  int first = 4 * point.patch_index;
+  vec4 a = texelFetch(patches, first), b = texelFetch(patches, first + 1), c = texelFetch(patches, first + 2),
+       e = texelFetch(patches, first + 3);
+  vec2 uv = vec2(dot(point.p - a.xyz, b.xyz), dot(point.p - a.xyz, c.xyz));
   ivec2 cells = ivec2(int(a.w), int(b.w));
   ivec2 cell = clamp(ivec2(floor(uv / e.xy)), ivec2(0), cells - 1);
-  int chart_index = int(c.w) + cell.y * cells.x + cell.x;
-  ChartRecord chart = read_chart(published_charts, chart_index);
+  place.chart_index = int(c.w) + cell.y * cells.x + cell.x;
+  place.chart = read_chart(published_charts, place.chart_index);
+  place.texel = (uv - place.chart.uv0) * place.chart.density;
+  // Where even the less crowded axis has more texels than pixels, coarser levels hold the means.
+  vec3 sight = normalize(point.sight);
+  vec3 du = place.chart.eu - sight * dot(sight, place.chart.eu), dv = place.chart.ev - sight * dot(sight, place.chart.ev);
+  float pixels_per_texel = max(camera.focal.x, camera.focal.y) * max(length(du), length(dv)) / (abs(point.t) * length(point.sight));
+  float lod = -log2(max(pixels_per_texel, 1e-6));
+  place.level = clamp(int(floor(lod + 0.15)), 0, 4);
+  return place;
+}
+
+const float kFromImage = 1.0, kFromFill = 128.0 / 255.0, kBare = 64.0 / 255.0;
+
+vec4 shown(vec4 sum, float alpha) {
+  return vec4(min(sum.rgb / sum.a * gain, vec3(1.0)), alpha);
+}
+
+// Of texels around the place; a 0 where none of them has a colour.
+vec4 shown(Taps taps) {
+  if (taps.seen.a >= kSeenShare) return shown(taps.seen, kFromImage);
+  vec4 all = taps.seen + taps.filled;
+  return all.a > 0.0 ? shown(all, kFromFill) : vec4(0.0);
+}
+
+vec4 shade(Place place) {
   vec4 fallback = vec4(0.0);
-  if (chart.density.x > 0.0) {
-    vec2 texel = (uv - chart.uv0) * chart.density;
-    // Where even the less crowded axis has more texels than pixels, coarser levels hold the means.
-    vec3 sight = normalize(d);
-    vec3 du = chart.eu - sight * dot(sight, chart.eu), dv = chart.ev - sight * dot(sight, chart.ev);
-    float pixels_per_texel = max(camera.focal.x, camera.focal.y) * max(length(du), length(dv)) / (abs(t) * length(ray));
-    float lod = -log2(max(pixels_per_texel, 1e-6));
-    int level = clamp(int(floor(lod + 0.15)), 0, 4);
+  if (place.chart.density.x > 0.0) {
     Taps taps;
-    if (level == 0)
-      taps = gather_sharp_taps(chart, texel);
+    if (place.level == 0)
+      taps = gather_sharp_taps(place.chart, place.texel);
     else
-      taps = gather_taps(chart, texel, level);
-    if (taps.seen.a >= kSeenShare) return vec4(min(taps.seen.rgb / taps.seen.a * gain, vec3(1.0)), 1.0);
-    if (taps.seen.a + taps.filled.a > 0.0)
-      return vec4(min((taps.seen.rgb + taps.filled.rgb) / (taps.seen.a + taps.filled.a) * gain, vec3(1.0)), 128.0 / 255.0);
-    fallback = coarse_colour(chart, chart_index, texel);
+      taps = gather_taps(place.chart, place.texel, place.level);
+    vec4 colour = shown(taps);
+    if (colour.a > 0.0) return colour;
+    fallback = coarse_colour(place.chart, place.chart_index, place.texel);
   } else {
-    fallback = texelFetch(published_means, chart_index);
+    fallback = texelFetch(published_means, place.chart_index);
   }
-  return fallback.a > 0.0 ? vec4(min(fallback.rgb * gain, vec3(1.0)), 128.0 / 255.0) : vec4(vec3(0.0), 64.0 / 255.0);
+  return fallback.a > 0.0 ? shown(vec4(fallback.rgb, 1.0), kFromFill) : vec4(vec3(0.0), kBare);
+}
+#endif
+
+#if CASES != EVERY
+void leave_to_next(ivec2 pixel) {
+  append_work(uint(pixel.x) | uint(pixel.y) << 16);
+}
+#endif
+
+void draw(ivec2 pixel, vec4 colour) {
+#if BLENDED
+  vec4 newest = imageLoad(picture, pixel);  // its weight in alpha
+  if (newest.a > 0.0) colour = vec4(mix(newest.rgb, colour.rgb, colour.a == kFromImage ? 1.0 - newest.a : 0.0), 1.0);
+#endif
+  imageStore(picture, pixel, colour);
 }
 
 void main() {
+#if LISTED
+  uint item;
+  if (!next_work(item)) return;
+  ivec2 pixel = ivec2(item & 0xffffu, item >> 16);
+#else
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
-  vec3 ray;
-  imageStore(picture, pixel, ray_through(pixel, ray) ? shade(ray) : vec4(0.0));
+#endif
+  Point point;
+  bool on_model = find_point(pixel, point);
+  vec4 colour = vec4(0.0);
+#if CASES == NEWEST_IMAGE
+  if (on_model) colour = newest_colour(point);
+  if (on_model && colour.a < 1.0) leave_to_next(pixel);
+  draw(pixel, colour);
+#elif CASES == USUAL
+  if (on_model) {
+    Place place = place_of(point);
+    if (place.level == 0) colour = shown(gather_sharp_taps(place.chart, place.texel));
+  }
+  if (on_model && colour.a == 0.0)
+    leave_to_next(pixel);
+  else
+    draw(pixel, colour);
+#else
+  if (on_model) colour = shade(place_of(point));
+  draw(pixel, colour);
+#endif
 }

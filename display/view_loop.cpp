@@ -34,6 +34,7 @@ SourceState ViewLoop::step() {
     feed(step);
     if (done()) return SourceState::ended;
     if (!step.instant.blind) draw(step);
+    follow(step);
   }
   for (ViewObserver* observer : observers_) observer->stepped(step, source_, session_);
   return SourceState::ready;
@@ -48,15 +49,25 @@ void ViewLoop::feed(ViewStep& step) {
       submit(std::move(*frame));
       continue;
     }
-    const auto arrival = Clock::now();
-    step.reports.push_back(session_.process(std::move(*frame)));
-    step.arrival_to_publish_ms = milliseconds(Clock::now() - arrival);
+    follow(step);
+    arrival_ = Arrival{Clock::now(), process_cpu_ms()};
+    session_.show(std::move(*frame));
   }
   if (!source_.real_time()) return;
   if (auto report = session_.take_report()) {
     step.arrival_to_publish_ms = latency(*report);
     step.reports.push_back(std::move(*report));
   }
+}
+
+/// The textures of the frame that was shown last, if they did not follow yet.
+void ViewLoop::follow(ViewStep& step) {
+  if (!arrival_) return;
+  if (auto report = session_.follow()) {
+    step.arrival_to_publish_ms = milliseconds(report->published_at - arrival_->time);
+    step.reports.push_back(std::move(*report));
+  }
+  arrival_.reset();
 }
 
 void ViewLoop::submit(PosedFrame frame) {
@@ -74,6 +85,11 @@ void ViewLoop::draw(ViewStep& step) {
   const double before = process_cpu_ms();
   const ViewPlace place = source_.place();
   step.drawn = session_.draw(place.T_world_camera, place.scene);
+  if (arrival_) {
+    session_.finish();
+    step.arrival_to_visible_ms = milliseconds(Clock::now() - arrival_->time);
+    step.arrival_to_visible_cpu_ms = process_cpu_ms() - arrival_->cpu_ms;
+  }
   step.draw_cpu_ms = process_cpu_ms() - before;
 }
 

@@ -20,6 +20,9 @@ struct ViewStep {
   std::vector<ExtractionReport> reports = {};  ///< of frames that were finished since the step before, oldest first
   /// Of the last of the reports: from its frame's arrival to its textures.
   std::optional<double> arrival_to_publish_ms = {};
+  /// From the arrival of the newest frame to the end of the drawing in which it is seen for the first time; only where
+  /// a frame arrived, and not in real time. CPU: of all threads.
+  std::optional<double> arrival_to_visible_ms = {}, arrival_to_visible_cpu_ms = {};
 };
 
 /// Looks on; called in the loop's thread, with the session's context current.
@@ -50,7 +53,12 @@ class ViewLoop {
  private:
   using Clock = std::chrono::steady_clock;
   bool done() const;
+  struct Arrival {
+    Clock::time_point time;
+    double cpu_ms;
+  };
   void feed(ViewStep& step);
+  void follow(ViewStep& step);
   void submit(PosedFrame frame);
   std::optional<double> latency(const ExtractionReport& report);
   void draw(ViewStep& step);
@@ -60,6 +68,7 @@ class ViewLoop {
   std::vector<ViewObserver*> observers_;
   std::function<bool()> stopped_;
   std::deque<std::pair<Clock::time_point, RobotTime>> submitted_;  // real time: when each frame came
+  std::optional<Arrival> arrival_;                                 // not in real time: of a frame whose textures follow
 };
 
 }  // namespace foresight

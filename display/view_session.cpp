@@ -1,6 +1,8 @@
 #include "display/view_session.hpp"
 
 #include <algorithm>
+#include <utility>
+
 namespace foresight {
 namespace {
 
@@ -17,7 +19,10 @@ std::shared_ptr<const SurfacePatches> surface_for(const SceneModel& scene, const
 }
 
 ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
-    : driver_(gl::query_driver()), lens_(setup.left), surface_(setup.surface) {
+    : driver_(gl::query_driver()),
+      lens_(setup.left),
+      surface_(setup.surface),
+      newest_image_(setup.newest_image && !setup.thesis) {
   gl::set_up_context();
   if (setup.thesis) {
     thesis_ =
@@ -27,7 +32,7 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
   }
   thread_ = std::make_unique<TextureThread>(
       context.create_shared(),
-      TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures});
+      TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures, newest_image_});
   context.make_current();
   buffers_ = std::make_shared<const gl::SceneBuffers>(*setup.scene);
   records_ = std::make_shared<const SurfaceRecords>(*setup.surface);
@@ -44,6 +49,21 @@ ExtractionReport ViewSession::process(PosedFrame frame) {
   if (thesis_) return thesis_->process(frame);
   finish_drawings();
   return thread_->process(std::move(frame));
+}
+
+void ViewSession::show(PosedFrame frame) {
+  if (!newest_image_) {
+    shown_ = process(std::move(frame));
+    return;
+  }
+  finish_drawings();
+  thread_->show(std::move(frame));
+}
+
+std::optional<ExtractionReport> ViewSession::follow() {
+  if (!newest_image_) return std::exchange(shown_, std::nullopt);
+  finish_drawings();
+  return thread_->follow();
 }
 
 void ViewSession::submit(PosedFrame frame) {
@@ -66,8 +86,12 @@ bool ViewSession::draw(PredictedView& view, const Pose& T_world_camera, const Sc
   if (drawings_.size() >= kMostDrawings) finish_drawings();
   TextureLease textures = thread_->textures().acquire();
   if (!textures) return false;
-  view.draw(T_world_camera, state, *textures);
-  drawings_.push_back({std::move(textures), gl::Fence::insert()});
+  ImageLease image = thread_->image().acquire();
+  if (image)
+    view.draw(T_world_camera, state, *textures, *image);
+  else
+    view.draw(T_world_camera, state, *textures);
+  drawings_.push_back({std::move(textures), std::move(image), gl::Fence::insert()});
   gl::check_errors("the predicted view");
   return true;
 }
@@ -82,6 +106,11 @@ cv::Mat ViewSession::read() {
 cv::Mat ViewSession::read_range() {
   if (!range_) range_.emplace(lens_, view_->faces().faces);
   return range_->read(view_->faces());
+}
+
+void ViewSession::finish() {
+  glFinish();
+  finish_drawings();
 }
 
 void ViewSession::give_back() {

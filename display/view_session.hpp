@@ -22,6 +22,7 @@ struct ViewSetup {
   std::optional<Lens> right;
   TextureOptions textures;
   std::optional<thesis::Options> thesis;  ///< that pipeline replaces the texture core
+  bool newest_image = true;               ///< views look the newest image up directly; not with `thesis`
 };
 
 /// The model's surface, cut into charts of a size that suits such views.
@@ -43,6 +44,12 @@ class ViewSession {
   /// Extracts one frame and returns when its textures are there.
   ExtractionReport process(PosedFrame frame);
 
+  /// The same in two steps, so that a view can be drawn in between: the frame is in it, from its image alone; its
+  /// textures follow. Without ViewSetup::newest_image the first does it all. TextureThread::show and follow; not with
+  /// `thesis`.
+  void show(PosedFrame frame);
+  std::optional<ExtractionReport> follow();
+
   /// TextureThread::submit, take_report and replaced: for real time. Not with `thesis`.
   void submit(PosedFrame frame);
   std::optional<ExtractionReport> take_report();
@@ -62,6 +69,9 @@ class ViewSession {
   /// The same for such a view.
   bool draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state);
 
+  /// Waits until all that was drawn is there.
+  void finish();
+
   /// For whoever measures. Both wait for the GPU. picture() as CV_8UC4 (BGRA); ViewRange::read() of the last draw(),
   /// not with `thesis`.
   cv::Mat read();
@@ -74,6 +84,7 @@ class ViewSession {
  private:
   struct Drawing {
     TextureLease textures;
+    ImageLease image;
     gl::Fence end;
   };
   void finish_drawings();
@@ -89,6 +100,8 @@ class ViewSession {
   std::deque<Drawing> drawings_;  // that the GPU may not have finished
   std::unique_ptr<thesis::Pipeline> thesis_;
   std::unique_ptr<ThesisView> thesis_view_;
+  bool newest_image_;
+  std::optional<ExtractionReport> shown_;  // of a frame that show() has processed as a whole
 };
 
 }  // namespace foresight

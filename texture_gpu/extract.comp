@@ -7,6 +7,7 @@
 // large, larger (ExtractPass::Work::minify_above).
 #include "camera.glsl"
 #include "seen.glsl"
+#include "image_taps.glsl"
 #include "atlas.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform samplerBuffer geometry;  // per job and camera four texels (ChartAtlas::write_job_geometry)
@@ -21,10 +22,7 @@ uniform float worse;  // new colours below this share of the old resolution do n
 
 // Factor from the image's values to the reference exposure (exposure.hpp).
 float tone(int c, vec2 pixel) {
-  vec2 half_size = 0.5 * (cameras[c].size.xy - 1.0);
-  vec2 offset = (pixel - half_size) / length(half_size);
-  float r2 = dot(offset, offset);
-  return cameras[c].tone.x * exp(-r2 * (cameras[c].tone.y + r2 * cameras[c].tone.z));
+  return cameras[c].tone.x * without_vignetting(cameras[c].tone, pixel, cameras[c].size.xy);
 }
 
 vec3 fetch_image(int c, vec2 pixel, float lod) {
@@ -56,17 +54,8 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
     }
   return sum / float(taps.x * taps.y);
 #else
-  // Catmull-Rom in five bilinear taps.
-  vec2 center = floor(pixel) ;
-  vec2 f = pixel - center;
-  vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f)), w1 = 1.0 + f * f * (-2.5 + 1.5 * f), w2 = f * (0.5 + f * (2.0 - 1.5 * f)),
-       w3 = f * f * (-0.5 + 0.5 * f);
-  vec2 w12 = w1 + w2, at12 = center + w2 / w12;
-  vec4 wc = vec4(w12.x * w0.y, w0.x * w12.y, w3.x * w12.y, w12.x * w3.y);
-  float wm = w12.x * w12.y;
-  vec3 sum = wm * fetch_image(c, at12, 0.0) + wc.x * fetch_image(c, vec2(at12.x, center.y - 1.0), 0.0) + wc.y * fetch_image(c, vec2(center.x - 1.0, at12.y), 0.0) +
-             wc.z * fetch_image(c, vec2(center.x + 2.0, at12.y), 0.0) + wc.w * fetch_image(c, vec2(at12.x, center.y + 2.0), 0.0);
-  return clamp(sum / (wm + wc.x + wc.y + wc.z + wc.w), 0.0, 1.0);
+  vec2 size = cameras[c].size.xy;
+  return c == 0 ? sample_sharply(image0, pixel, size, 1.0) : sample_sharply(image1, pixel, size, 1.0);
 #endif
 }
 

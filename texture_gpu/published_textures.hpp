@@ -5,12 +5,11 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
-#include <utility>
 #include <vector>
 
 #include "common/time.hpp"
 #include "gl/objects.hpp"
+#include "texture_gpu/lease.hpp"
 
 namespace foresight {
 
@@ -41,52 +40,7 @@ struct PublishedTextures {
   mutable std::atomic<int> leases{0};
 };
 
-/// Keeps one generation from being written over. Hold it until the GPU has finished the commands
-/// that read it (a fence has passed), not only until they are issued. The last one may delete
-/// textures: let go of it where a context of their share group is current.
-class TextureLease {
- public:
-  TextureLease() = default;
-  explicit TextureLease(std::shared_ptr<const PublishedTextures> textures) : textures_(std::move(textures)) {}
-  TextureLease(TextureLease&& other) noexcept : textures_(std::move(other.textures_)) {}
-  TextureLease& operator=(TextureLease&& other) noexcept {
-    if (this != &other) {
-      reset();
-      textures_ = std::move(other.textures_);
-    }
-    return *this;
-  }
-  ~TextureLease() { reset(); }
-
-  explicit operator bool() const { return textures_ != nullptr; }
-  const PublishedTextures& operator*() const { return *textures_; }
-  const PublishedTextures* operator->() const { return textures_.get(); }
-
- private:
-  void reset() {
-    if (textures_) textures_->leases.fetch_sub(1, std::memory_order_release);
-    textures_.reset();
-  }
-  std::shared_ptr<const PublishedTextures> textures_;
-};
-
-/// The table flip: one pointer, swapped whole. Any thread; holds its lock for a few instructions.
-class LatestTextures {
- public:
-  /// The newest generation, or an empty lease before the first.
-  TextureLease acquire() const {
-    const std::scoped_lock lock(mutex_);
-    if (latest_) latest_->leases.fetch_add(1, std::memory_order_relaxed);
-    return TextureLease(latest_);
-  }
-  void publish(std::shared_ptr<const PublishedTextures> next) {
-    const std::scoped_lock lock(mutex_);
-    latest_.swap(next);
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::shared_ptr<const PublishedTextures> latest_;
-};
+using TextureLease = Lease<PublishedTextures>;
+using LatestTextures = Latest<PublishedTextures>;
 
 }  // namespace foresight

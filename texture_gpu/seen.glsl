@@ -1,12 +1,17 @@
-// Whether a camera saw a surface point, and how sharply. Needs camera.glsl.
-layout(std140, binding = 0) uniform Cameras { CameraBlock cameras[2]; };
-layout(binding = 0) uniform samplerBuffer node_poses;  // camera 0's nodes, then camera 1's
-layout(binding = 1) uniform sampler2DArray depth0;
-layout(binding = 2) uniform sampler2DArray depth1;
-layout(binding = 3) uniform sampler2DArray uncertain0;
-layout(binding = 4) uniform sampler2DArray uncertain1;
-layout(binding = 5) uniform sampler2D image0;
-layout(binding = 6) uniform sampler2D image1;
+// Whether a camera saw a surface point, and how sharply. Needs camera.glsl. SEEN_BLOCK, SEEN_UNIT: first binding of each
+// kind, as given to SeenInputs::bind().
+#ifndef SEEN_UNIT
+#define SEEN_BLOCK 0
+#define SEEN_UNIT 0
+#endif
+layout(std140, binding = SEEN_BLOCK) uniform Cameras { CameraBlock cameras[2]; };
+layout(binding = SEEN_UNIT) uniform samplerBuffer node_poses;  // camera 0's nodes, then camera 1's
+layout(binding = SEEN_UNIT + 1) uniform sampler2DArray depth0;
+layout(binding = SEEN_UNIT + 2) uniform sampler2DArray depth1;
+layout(binding = SEEN_UNIT + 3) uniform sampler2DArray uncertain0;
+layout(binding = SEEN_UNIT + 4) uniform sampler2DArray uncertain1;
+layout(binding = SEEN_UNIT + 5) uniform sampler2D image0;
+layout(binding = SEEN_UNIT + 6) uniform sampler2D image1;
 uniform int node_count;
 const float kBehind = 0.05;  // share of the tolerance for what lies behind the drawn surface
 uniform float depth_tolerance;  // metres: surfaces nearer to each other than this count as one

@@ -20,19 +20,19 @@ void SeenInputs::update(std::span<const CameraInput* const> cameras, std::span<c
   node_poses_.assign(std::span<const Eigen::Vector4f>(rows));
 }
 
-void SeenInputs::bind(const gl::Program& program, double depth_tolerance) const {
+void SeenInputs::bind(const gl::Program& program, double depth_tolerance, GLuint block, GLuint unit) const {
   program.use();
   program.set("node_count", node_count_);
   program.set("depth_tolerance", static_cast<float>(depth_tolerance));
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, uniform_.name());
-  glBindTextureUnit(0, node_poses_.texture());
+  glBindBufferBase(GL_UNIFORM_BUFFER, block, uniform_.name());
+  glBindTextureUnit(unit, node_poses_.texture());
   for (int i = 0; i < 2; ++i) {
     // A single camera is bound twice: every sampler must have a complete texture.
     const CameraInput& input = camera(std::min(i, camera_count() - 1));
-    const auto unit = static_cast<GLuint>(i);
-    glBindTextureUnit(1 + unit, input.faces().depth.name());
-    glBindTextureUnit(3 + unit, input.uncertain().name());
-    glBindTextureUnit(5 + unit, input.image().name());
+    const GLuint first = unit + static_cast<GLuint>(i);
+    glBindTextureUnit(first + 1, input.faces().depth.name());
+    glBindTextureUnit(first + 3, input.uncertain().name());
+    glBindTextureUnit(first + 5, input.image().name());
   }
 }
 

@@ -18,8 +18,8 @@ class SeenInputs {
   void update(std::span<const CameraInput* const> cameras, std::span<const PosedImage* const> images,
               std::span<const Eigen::Vector3f> tones);
 
-  /// Binds uniform block 0 and texture units 0 to 6, and sets the shared uniforms of `program`.
-  void bind(const gl::Program& program, double depth_tolerance) const;
+  /// Binds uniform block `block` and seven texture units from `unit` on, and sets the shared uniforms of `program`.
+  void bind(const gl::Program& program, double depth_tolerance, GLuint block = 0, GLuint unit = 0) const;
 
   int camera_count() const { return static_cast<int>(cameras_.size()); }
   const CameraInput& camera(int i) const { return *cameras_[static_cast<std::size_t>(i)]; }

@@ -41,6 +41,7 @@ std::vector<StageCost> StageClock::read() {
     return static_cast<double>(ns);
   };
   for (std::size_t i = 1; i < marks_.size(); ++i) {
+    if (!marks_[i].stage) continue;
     StageCost time{marks_[i].stage, marks_[i].cpu_ms - marks_[i - 1].cpu_ms, std::nullopt};
     if (!software_) time.gpu_ms = (gpu_ns(marks_[i].query) - gpu_ns(marks_[i - 1].query)) * 1e-6;
     bool merged = false;

@@ -23,8 +23,10 @@ class StageClock {
   explicit StageClock(bool software_renderer) : software_(software_renderer) {}
 
   void start();
-  /// Ends the stage that began at the previous mark (or start()).
+  /// Ends the stage that began at the previous mark (or start(), resume()).
   void mark(const char* stage);
+  /// What passed since the previous mark counts for no stage.
+  void resume() { record(nullptr); }
   /// Call after the fence of the image has passed.
   std::vector<StageCost> read();
 

@@ -1,5 +1,6 @@
 #include "texture_gpu/texture_core.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -33,8 +34,8 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
       fill_(*surface),
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
-  cameras_.push_back(std::make_unique<CameraInput>(left, options.margin_px));
-  if (right) cameras_.push_back(std::make_unique<CameraInput>(*right, options.margin_px));
+  cameras_.push_back(std::make_shared<CameraInput>(left, options.margin_px));
+  if (right) cameras_.push_back(std::make_shared<CameraInput>(*right, options.margin_px));
   // The first image is fused with an empty generation.
   current_ = next_generation();
   atlas_.write_table(table_);
@@ -47,15 +48,31 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
 }
 
 ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& latest) {
-  ExtractionReport report;
   clock_.start();
   look(frame);
+  return extract(frame, latest);
+}
+
+bool TextureCore::look(const PosedFrame& frame, LatestImage& latest) {
+  clock_.start();
+  choose_cameras();
+  look(frame);
+  if (number_ == 0) return false;
+  // The pages of the image before tell the exposure as well as its own, which are not planned yet.
+  estimate_exposure();
+  publish(frame.left, latest);
+  return true;
+}
+
+ExtractionReport TextureCore::extract(const PosedFrame& frame, LatestTextures& latest) {
+  ExtractionReport report;
+  clock_.resume();
   ChartAtlas::Allocation allocation;
   if (!allocate(allocation)) return report;
   extract_.upload_heights(atlas_, allocation.new_heights, store_);
   if (!allocation.new_heights.empty()) survey_.set_pages(records_ = atlas_.placed_records());
   clock_.mark("prepare");
-  estimate_exposure();
+  if (!exposure_known_) estimate_exposure();
 
   Generation next = next_generation();
   atlas_.write_table(table_);
@@ -96,8 +113,35 @@ ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& l
   return report;
 }
 
+/// A published image stays as it is while it is shown: the next one goes to another place.
+void TextureCore::choose_cameras() {
+  const auto free = std::ranges::find_if(images_lent_, [&](const auto& image) {
+    return image != newest_image_ && image->leases.load(std::memory_order_acquire) == 0;
+  });
+  if (free != images_lent_.end()) {
+    newest_image_ = *free;
+  } else {
+    newest_image_ = images_lent_.emplace_back(std::make_shared<PublishedImage>());
+    newest_image_->camera = std::make_shared<CameraInput>(cameras_[0]->lens(), options_.margin_px);
+  }
+  cameras_[0] = newest_image_->camera;
+}
+
+void TextureCore::publish(const PosedImage& image, LatestImage& latest) {
+  PublishedImage& out = *newest_image_;
+  out.image = {{}, image.time, image.T_world_camera, image.scene, image.margin_px};
+  out.tone = {1, static_cast<float>(exposures_[0].vignetting().x()),
+              static_cast<float>(exposures_[0].vignetting().y())};
+  out.gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
+  out.depth_tolerance = options_.depth_tolerance;
+  gl::Fence::insert().wait(kGpuTimeout);
+  latest.publish(newest_image_);
+  clock_.mark("publish");
+}
+
 /// Image upload, depth and uncertain edges of every camera of the frame.
 void TextureCore::look(const PosedFrame& frame) {
+  exposure_known_ = false;
   images_ = {&frame.left};
   if (frame.right && cameras_.size() > 1) images_.push_back(&*frame.right);
   active_.clear();
@@ -157,6 +201,7 @@ void TextureCore::estimate_exposure() {
                        exposures_[i].vignetting().y());
   }
   inputs_.update(active_, images_, tones);
+  exposure_known_ = true;
   clock_.mark("exposure");
 }
 

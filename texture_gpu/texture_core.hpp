@@ -9,6 +9,7 @@
 #include "texture_gpu/extract_pass.hpp"
 #include "texture_gpu/extraction_report.hpp"
 #include "texture_gpu/fill_pass.hpp"
+#include "texture_gpu/published_image.hpp"
 #include "texture_gpu/survey_pass.hpp"
 
 namespace foresight {
@@ -27,10 +28,18 @@ class TextureCore {
   /// of texture memory at the lowest resolution, context lost.
   ExtractionReport process(const PosedFrame& frame, LatestTextures& latest);
 
+  /// The same in two steps. The first makes the image ready to be looked up, and publishes that to `latest`; the
+  /// textures follow. False where there are no textures yet, beside which it could be shown: nothing is published then.
+  bool look(const PosedFrame& frame, LatestImage& latest);
+  /// Of the frame that look() was given, which must still be there.
+  ExtractionReport extract(const PosedFrame& frame, LatestTextures& latest);
+
  private:
   using Generation = std::shared_ptr<PublishedTextures>;
 
   void look(const PosedFrame& frame);
+  void choose_cameras();
+  void publish(const PosedImage& image, LatestImage& latest);
   void estimate_exposure();
   bool allocate(ChartAtlas::Allocation& out);
   bool wait_for_slots(std::size_t needed);
@@ -43,7 +52,7 @@ class TextureCore {
   TextureOptions options_;
   ChartAtlas atlas_;
   AtlasStore store_;
-  std::vector<std::unique_ptr<CameraInput>> cameras_;
+  std::vector<std::shared_ptr<CameraInput>> cameras_;
   std::vector<ExposureEstimator> exposures_;
   gl::RasterPass raster_;
   EdgePass edges_;
@@ -58,6 +67,7 @@ class TextureCore {
   std::vector<const PosedImage*> images_;
   std::vector<AtlasView> views_;
   std::span<const PageRecord> records_;
+  bool exposure_known_ = false;
   gl::BufferTexture charts_;  // planned resolutions, before they are part of a generation
   std::vector<Eigen::Vector4f> chart_rows_, geometry_;
   std::vector<std::uint32_t> table_, dirty_, chart_of_page_;
@@ -71,6 +81,8 @@ class TextureCore {
   Generation current_;
   std::vector<Generation> pool_;
   std::deque<Retired> retired_;
+  std::vector<std::shared_ptr<PublishedImage>> images_lent_;
+  std::shared_ptr<PublishedImage> newest_image_;
   std::int64_t image_ = 0;
   std::uint64_t number_ = 0;
 };

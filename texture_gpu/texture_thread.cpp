@@ -31,19 +31,21 @@ void TextureThread::run(const std::stop_token& stop, const Setup& setup) {
         ready_ = true;
       }
       changed_.notify_all();
-      work(stop, core);
+      work(stop, core, setup.images);
+      latest_image_.publish(nullptr);
       latest_.publish(nullptr);  // its textures go with the core
     }
   } catch (...) {
     const std::scoped_lock lock(mutex_);
     error_ = std::current_exception();
   }
+  latest_image_.publish(nullptr);
   latest_.publish(nullptr);
   changed_.notify_all();
   context_->release();
 }
 
-void TextureThread::work(const std::stop_token& stop, TextureCore& core) {
+void TextureThread::work(const std::stop_token& stop, TextureCore& core, bool images) {
   while (!stop.stop_requested()) {
     std::unique_lock lock(mutex_);
     // The time-out only bounds the wait; a stop request wakes the thread at once.
@@ -52,10 +54,24 @@ void TextureThread::work(const std::stop_token& stop, TextureCore& core) {
     waiting_.reset();
     const std::uint64_t number = submitted_;
     lock.unlock();
-    ExtractionReport report = core.process(frame, latest_);
+    ExtractionReport report;
+    if (images) {
+      if (core.look(frame, latest_image_)) {
+        lock.lock();
+        looked_at_ = number;
+        changed_.notify_all();
+        while (hold_ && !stop.stop_requested())
+          changed_.wait_for(lock, stop, std::chrono::seconds(1), [&] { return !hold_; });
+        lock.unlock();
+        if (stop.stop_requested()) return;
+      }
+      report = core.extract(frame, latest_);
+    } else {
+      report = core.process(frame, latest_);
+    }
     lock.lock();
     report_ = std::move(report);
-    finished_ = number;
+    looked_at_ = finished_ = number;
     lock.unlock();
     changed_.notify_all();
   }
@@ -65,15 +81,23 @@ void TextureThread::rethrow_locked() {
   if (error_) std::rethrow_exception(error_);
 }
 
-void TextureThread::submit(PosedFrame frame) {
+/// The frame's number.
+std::uint64_t TextureThread::hand_over(PosedFrame frame, bool hold) {
+  std::uint64_t number = 0;
   {
     const std::scoped_lock lock(mutex_);
     rethrow_locked();
     if (waiting_) ++replaced_;
     waiting_ = std::move(frame);
-    ++submitted_;
+    hold_ = hold;
+    number = ++submitted_;
   }
   changed_.notify_all();
+  return number;
+}
+
+void TextureThread::submit(PosedFrame frame) {
+  hand_over(std::move(frame), false);
 }
 
 std::optional<ExtractionReport> TextureThread::take_report() {
@@ -82,16 +106,37 @@ std::optional<ExtractionReport> TextureThread::take_report() {
   return std::exchange(report_, std::nullopt);
 }
 
-ExtractionReport TextureThread::process(PosedFrame frame, double timeout_s) {
-  submit(std::move(frame));
-  std::unique_lock lock(mutex_);
-  const bool done = changed_.wait_for(lock, std::chrono::duration<double>(timeout_s),
-                                      [&] { return error_ || finished_ == submitted_; });
+/// Until `condition`; rethrows an error of the thread.
+template <typename Condition>
+void TextureThread::wait_until(std::unique_lock<std::mutex>& lock, double timeout_s, Condition&& condition) {
+  const bool done =
+      changed_.wait_for(lock, std::chrono::duration<double>(timeout_s), [&] { return error_ || condition(); });
   rethrow_locked();
   if (!done)
     throw RuntimeFailure("the texture thread did not finish an image within " + std::to_string(timeout_s) + " s",
                          "look for a GPU fault with `dmesg`");
+}
+
+ExtractionReport TextureThread::process(PosedFrame frame, double timeout_s) {
+  submit(std::move(frame));
+  std::unique_lock lock(mutex_);
+  wait_until(lock, timeout_s, [&] { return finished_ == submitted_; });
   return std::move(*std::exchange(report_, std::nullopt));
+}
+
+void TextureThread::show(PosedFrame frame, double timeout_s) {
+  follow(timeout_s);
+  const std::uint64_t number = hand_over(std::move(frame), true);
+  std::unique_lock lock(mutex_);
+  wait_until(lock, timeout_s, [&] { return looked_at_ == number; });
+}
+
+std::optional<ExtractionReport> TextureThread::follow(double timeout_s) {
+  std::unique_lock lock(mutex_);
+  hold_ = false;
+  changed_.notify_all();
+  wait_until(lock, timeout_s, [&] { return finished_ == submitted_; });
+  return std::exchange(report_, std::nullopt);
 }
 
 std::uint64_t TextureThread::replaced() const {

@@ -21,6 +21,7 @@ class TextureThread {
     Lens left;
     std::optional<Lens> right;
     TextureOptions options;
+    bool images = false;  ///< publish each image before its textures
   };
 
   /// `context`: shares objects with the display's context; used by this thread only from now on.
@@ -31,6 +32,8 @@ class TextureThread {
   TextureThread& operator=(const TextureThread&) = delete;
 
   const LatestTextures& textures() const { return latest_; }
+  /// The newest image, published before its textures; none where Setup::images is false.
+  const LatestImage& image() const { return latest_image_; }
 
   /// Hands over a frame and returns at once. A frame that still waits is replaced and counted.
   /// Rethrows an error of the thread.
@@ -43,22 +46,34 @@ class TextureThread {
   /// RuntimeFailure after `timeout_s`.
   ExtractionReport process(PosedFrame frame, double timeout_s = 120);
 
+  /// The same in two steps, of which the first returns when the image is published (the very first: its textures), the
+  /// second when its textures are. The thread rests in between: whoever draws then gets the same picture in
+  /// every run. follow() without show() returns nothing; show() first does what follow() would. Only with
+  /// Setup::images.
+  void show(PosedFrame frame, double timeout_s = 120);
+  std::optional<ExtractionReport> follow(double timeout_s = 120);
+
   std::uint64_t replaced() const;  ///< frames that were never extracted because a newer one came
 
  private:
   void run(const std::stop_token& stop, const Setup& setup);
-  void work(const std::stop_token& stop, TextureCore& core);
+  void work(const std::stop_token& stop, TextureCore& core, bool images);
+  std::uint64_t hand_over(PosedFrame frame, bool hold);
+  template <typename Condition>
+  void wait_until(std::unique_lock<std::mutex>& lock, double timeout_s, Condition&& condition);
   void rethrow_locked();
 
   std::unique_ptr<gl::Context> context_;
   LatestTextures latest_;
+  LatestImage latest_image_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<PosedFrame> waiting_;
   std::optional<ExtractionReport> report_;
   std::exception_ptr error_;
-  std::uint64_t replaced_ = 0, submitted_ = 0, finished_ = 0;
+  std::uint64_t replaced_ = 0, submitted_ = 0, looked_at_ = 0, finished_ = 0;
   bool ready_ = false;
+  bool hold_ = false;    // rest between an image and its textures
   std::jthread thread_;  // last: it uses all of the above
 };
 

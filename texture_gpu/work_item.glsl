@@ -1,6 +1,9 @@
 // Reads what append_work() (work_list.glsl) stored: the item of this work group, or of this
 // invocation where ITEMS_PER_GROUP is the group's size, as in the WorkList.
-layout(binding = 15) uniform usamplerBuffer work;
+#ifndef WORK_UNIT
+#define WORK_UNIT 15
+#endif
+layout(binding = WORK_UNIT) uniform usamplerBuffer work;
 
 #ifndef ITEMS_PER_GROUP
 #define ITEMS_PER_GROUP 1

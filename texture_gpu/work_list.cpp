@@ -23,14 +23,14 @@ void WorkList::start(std::size_t most) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffer_.buffer().name());
 }
 
-void WorkList::finish() const {
+void WorkList::finish(unsigned unit) const {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   args_.use();
   args_.set("items_per_group", items_per_group_);
   glDispatchCompute(1, 1, 1);
   // The last bit is for the next start(), which writes the header again.
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  glBindTextureUnit(15, buffer_.texture());
+  glBindTextureUnit(unit, buffer_.texture());
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer_.buffer().name());
 }
 

@@ -15,9 +15,9 @@ class WorkList {
   /// Empties the list, makes room for `most` items, and binds it for append_work().
   void start(std::size_t most);
 
-  /// After the filling dispatch: binds the list for next_work() and as indirect arguments. Runs a
-  /// program of its own.
-  void finish() const;
+  /// After the filling dispatch: binds the list for next_work() (`unit`: WORK_UNIT there) and as indirect arguments.
+  /// Runs a program of its own.
+  void finish(unsigned unit = 15) const;
 
   /// Dispatches the current program over the list.
   void dispatch() const;

@@ -13,6 +13,7 @@
 #include "apps/bench/prediction_bench.hpp"
 #include "apps/bench/registration_bench.hpp"
 #include "apps/bench/robot_bench.hpp"
+#include "apps/bench/view_bench.hpp"
 #include "apps/run_options.hpp"
 
 namespace foresight {
@@ -169,6 +170,20 @@ void add_line(Command& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_line(*options); }; });
 }
 
+void add_view(Command& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("view", "CPU time of drawing one predicted view");
+  auto options = std::make_shared<ViewBenchOptions>();
+  command->add_option("RUN", options->run, "A run")->reads()->required();
+  command->add_option("--images", options->images, "Take only the first so many images; the later half is drawn")
+      ->check(from_to(2, 1000000))
+      ->capture_default_str();
+  command->add_option("--rounds", options->rounds, "Drawings of each view, of which the median counts")
+      ->check(from_to(1, 1000))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->callback([options, &action] { action = [options] { return bench_view(*options); }; });
+}
+
 }  // namespace
 
 void add_bench_command(Command& app, std::function<int()>& action) {
@@ -185,6 +200,7 @@ void add_bench_command(Command& app, std::function<int()>& action) {
   add_robot(*bench, action);
   add_link(*bench, action);
   add_registration(*bench, action);
+  add_view(*bench, action);
 }
 
 }  // namespace foresight

@@ -18,6 +18,13 @@ ExtractionReport BenchCore::process(const PosedFrame& frame) {
   return report;
 }
 
+ExtractionReport BenchCore::process(const PosedFrame& frame, LatestImage& newest) {
+  core_.look(frame, newest);
+  ExtractionReport report = core_.extract(frame, latest_);
+  if (!report.published) throw RuntimeFailure("the core dropped a frame", "give it more memory");
+  return report;
+}
+
 void StageSums::add(const ExtractionReport& report) {
   ++count_;
   for (const StageCost& stage : report.stages) {

@@ -106,6 +106,8 @@ Json json_of(const FrameRecord& f) {
     json["coverage"] = json_of(f.coverage);
   }
   json["arrival_to_publish_ms"] = number(f.arrival_to_publish_ms);
+  json["arrival_to_visible_ms"] = number(f.arrival_to_visible_ms);
+  json["arrival_to_visible_cpu_ms"] = number(f.arrival_to_visible_cpu_ms);
   json["texture_bytes_used"] = f.texture_bytes_used;
   json["texture_bytes_budget"] = f.texture_bytes_budget;
   json["gain"] = number(f.gain);
@@ -126,6 +128,8 @@ Json json_of(const RunRecord& run, const Summary& s) {
           {"texture_gpu_ms_per_image", number(s.texture_gpu_ms)},
           {"images_per_core_second", number(s.images_per_core_second)},
           {"arrival_to_publish_ms", json_of(s.arrival_to_publish_ms)},
+          {"arrival_to_visible_ms", json_of(s.arrival_to_visible_ms)},
+          {"arrival_to_visible_cpu_ms", json_of(s.arrival_to_visible_cpu_ms)},
           {"texture_bytes_max", s.texture_bytes_max},
           {"texture_bytes_budget", s.texture_bytes_budget},
           {"bytes_per_texel", number(s.bytes_per_texel)}};
@@ -170,6 +174,8 @@ Summary summarise(const RunRecord& run) {
                 mean_share(run, &Coverage::uncoloured), mean_share(run, &Coverage::no_model)};
   s.coloured_of_model = over_frames(run, [](const FrameRecord& f) { return f.coverage.coloured_of_model(); });
   s.arrival_to_publish_ms = over_frames(run, [](const FrameRecord& f) { return f.arrival_to_publish_ms; });
+  s.arrival_to_visible_ms = over_frames(run, [](const FrameRecord& f) { return f.arrival_to_visible_ms; });
+  s.arrival_to_visible_cpu_ms = over_frames(run, [](const FrameRecord& f) { return f.arrival_to_visible_cpu_ms; });
   summarise_stages(run, s);
   s.bytes_per_texel = run.texels ? static_cast<double>(s.texture_bytes_max) / static_cast<double>(run.texels) : kNaN;
   return s;

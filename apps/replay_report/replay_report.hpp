@@ -44,6 +44,9 @@ struct FrameRecord {
   Coverage coverage;
   std::vector<StageTime> stages;                ///< in the order in which they run
   std::optional<double> arrival_to_publish_ms;  ///< of the newest image; empty if none arrived
+  /// From the arrival of the newest image to the end of the first drawing that shows it, and CPU time of all threads
+  /// in between; empty if none arrived, and in real time.
+  std::optional<double> arrival_to_visible_ms, arrival_to_visible_cpu_ms;
   std::uint64_t texture_bytes_used = 0;
   std::uint64_t texture_bytes_budget = 0;
   double gain = 1;       ///< exposure gain that was applied to the newest image, linear light
@@ -116,7 +119,7 @@ struct Summary {
   double texture_cpu_ms = 0;          ///< per image, StagePart::texture
   double texture_gpu_ms = 0;          ///< likewise; NaN without a timed GPU
   double images_per_core_second = 0;  ///< 1000 / texture_cpu_ms; NaN where nothing was timed
-  Statistic arrival_to_publish_ms;
+  Statistic arrival_to_publish_ms, arrival_to_visible_ms, arrival_to_visible_cpu_ms;
   std::uint64_t texture_bytes_max = 0;
   std::uint64_t texture_bytes_budget = 0;
   double bytes_per_texel = 0;  ///< texture_bytes_max / texels; NaN without texels

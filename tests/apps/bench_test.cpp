@@ -37,6 +37,16 @@ TEST_F(Bench, ExtractionComparesBothPipelines) {
   EXPECT_GT(all["texels_per_image"], 1000);
 }
 
+TEST_F(Bench, ViewIsDrawnInBothWays) {
+  const std::string file = out_ / "view.json";
+  const Outcome outcome = run_program({"bench", "view", run(), "--images", "6", "--rounds", "1", "--json", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json all = read_json(file);
+  for (const char* way : {"single", "two", "newest"}) EXPECT_GT(all[way]["cpu_ms"], 0) << way;
+  EXPECT_NEAR(all["two"]["psnr_db"], all["single"]["psnr_db"], 0.01);
+  EXPECT_GT(all["newest"]["psnr_db"], 20);
+}
+
 TEST_F(Bench, MarginCountsByTruth) {
   const std::string json = out_ / "margin.json", plot = out_ / "margin.svg";
   const Outcome outcome = run_program({"bench", "margin", run(), "--images", "2", "--json", json, "--plot", plot});
@@ -67,6 +77,7 @@ TEST_F(Bench, WrongInputIsRefused) {
       {{"bench", "margin", (out_ / "none")}, "none"},
       {{"bench", "margin", run(), "--images", "0"}, "--images"},
       {{"bench", "extraction", run(), "--images", "1"}, "--images"},
+      {{"bench", "view", run(), "--rounds", "0"}, "--rounds"},
       {{"bench", "extraction", run(), "--json", run() + "/scene.yaml"}, "--json"},
       {{"bench", "extraction", (out_ / "none")}, "none"},
   };

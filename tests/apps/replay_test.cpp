@@ -71,6 +71,8 @@ TEST_F(Replay, WritesPicturesAndReports) {
     expect_quality(frame["delayed"]);
     expect_view(picture(stem + ".png"), frame["coverage"]);
     EXPECT_GT(frame["arrival_to_publish_ms"], 0);
+    EXPECT_GT(frame["arrival_to_visible_ms"], 0);
+    EXPECT_GT(frame["arrival_to_visible_cpu_ms"], 0);
     EXPECT_GT(frame["texture_bytes_used"], 0);
     EXPECT_LE(frame["texture_bytes_used"], frame["texture_bytes_budget"]);
     EXPECT_GE(frame["stages"].size(), 5u);
@@ -89,6 +91,7 @@ TEST_F(Replay, WritesPicturesAndReports) {
   for (const char* name : {"seen", "filled", "empty"}) EXPECT_TRUE(summary["coverage"][name].is_number()) << name;
   EXPECT_GT(summary["arrival_to_publish_ms"]["median"], 0);
   EXPECT_GE(summary["arrival_to_publish_ms"]["p99"], summary["arrival_to_publish_ms"]["median"]);
+  EXPECT_GT(summary["arrival_to_visible_cpu_ms"]["median"], 0);
   EXPECT_GT(summary["images_per_core_second"], 0);
   EXPECT_GT(summary["bytes_per_texel"], 0);
   EXPECT_GT(summary["coverage"]["seen"], 0.4);

@@ -81,6 +81,24 @@ TEST_P(ViewOfLenses, EveryPixelIsThatOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(Lenses, ViewOfLenses, testing::ValuesIn(kLensKinds),
                          [](const auto& i) { return std::string(i.param); });
 
+TEST_P(ViewOfLenses, TwoProgramsDrawWhatOneDraws) {
+  extract({usual_view()}, "pinhole", 0.9);
+  PredictedView view = view_through(small_lens(GetParam()));
+  PredictedView single(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_),
+                       small_lens(GetParam()), ViewPrograms::single);
+  const TextureLease lease = latest_.acquire();
+  int off = 0;
+  for (const Pose& T_world_camera :
+       {look_at({-0.4, -0.4, 0.3}, {0.05, 0.1, 0.1}), look_at({-3, -1.5, 2.2}, {0, 0, 0.1})}) {
+    view.draw(T_world_camera, state_of(*scene_, 0.12), *lease);
+    single.draw(T_world_camera, state_of(*scene_, 0.12), *lease);
+    cv::Mat difference;
+    cv::absdiff(view.read(), single.read(), difference);
+    off += cv::countNonZero(difference.reshape(1) > 1);  // compiled apart, they may round differently
+  }
+  EXPECT_LE(off, 8);
+}
+
 // The loop closed: photographed, extracted, shown again from the same place, it is the photograph.
 TEST_P(ViewOfLenses, ShowsThePhotographAgain) {
   const Lens lens = small_lens(GetParam());

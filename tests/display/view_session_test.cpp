@@ -46,10 +46,11 @@ class Witness final : public ViewObserver {
 
 class ViewSessionTest : public HeadlessTest {
  protected:
-  std::unique_ptr<ViewSession> make_session() {
+  std::unique_ptr<ViewSession> make_session(bool newest_image = true) {
     ViewSetup setup{scene_, surface_for(*scene_, small_lens("pinhole"), {}), small_lens("pinhole"), std::nullopt, {},
                     {}};
     setup.textures.memory_bytes = 6 << 20;
+    setup.newest_image = newest_image;
     return std::make_unique<ViewSession>(*context_, setup);
   }
   LiveFeed feed(int images) {
@@ -112,6 +113,43 @@ TEST_F(ViewSessionTest, DrawingWithoutReadingHoldsNothingUp) {
     EXPECT_TRUE(report.published);
     for (int eye = 0; eye < 4; ++eye) EXPECT_TRUE(session->draw(usual_view(), state));
   }
+}
+
+// The frame is in the view before its textures are made.
+TEST_F(ViewSessionTest, ShowsAFrameBeforeItsTextures) {
+  const auto session = make_session();
+  const PosedFrame first = moving_frame(*scene_, 0), second = moving_frame(*scene_, 5);
+  session->show(first);
+  EXPECT_EQ(session->textures()->newest_image, first.left.time) << "beside nothing else it cannot be shown";
+  EXPECT_TRUE(session->follow());
+  session->show(second);
+  EXPECT_EQ(session->textures()->newest_image, first.left.time);
+  ASSERT_TRUE(session->draw(second.left.T_world_camera, second.left.scene));
+  const cv::Mat picture = session->read();
+  int seen = 0;
+  double sum = 0;
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) {
+      const cv::Vec4b got = picture.at<cv::Vec4b>(y, x);
+      const cv::Vec3b true_colour = second.left.pixels.at<cv::Vec3b>(y, x);
+      seen += got[3] == 255;
+      for (int c = 0; c < 3 && got[3] == 255; ++c) sum += std::abs(got[c] - true_colour[c]) / 3.0;
+    }
+  EXPECT_GT(seen, 8000);
+  EXPECT_LT(sum / seen, 0.7) << "no filter lies between, at the same place";
+  const auto report = session->follow();
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->newest_image, second.left.time);
+  EXPECT_EQ(session->textures()->newest_image, second.left.time);
+  EXPECT_FALSE(session->follow()) << "there is nothing left";
+}
+
+TEST_F(ViewSessionTest, ShowsTexturesAloneWhereAsked) {
+  const auto session = make_session(false);
+  session->show(moving_frame(*scene_, 0));
+  session->show(moving_frame(*scene_, 5));
+  EXPECT_EQ(session->textures()->newest_image, moving_frame(*scene_, 5).left.time);
+  EXPECT_TRUE(session->follow());
 }
 
 // Each through its own lens, from its own place, with one set of textures.

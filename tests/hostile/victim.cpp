@@ -27,6 +27,7 @@ const std::map<std::string, CommandWords>& table() {
       {"bench figures", {{"RUN", {"@run"}}, {"--out", {"@new/figures"}}}},
       {"bench extraction", {{"RUN", {"@run"}}}},
       {"bench margin", {{"RUN", {"@run"}}}},
+      {"bench view", {{"RUN", {"@run"}}, {"--rounds", {"1"}}}},
       {"bench can", {}},
       {"bench robot", {{"RIG", {"@rig.yaml"}}}},
       {"bench calibration", {{"CORNERS", {"@corners.vnl"}}, {"--board", {"chessboard:3x3:0.1"}}}},

@@ -1,0 +1,210 @@
+// The newest image looked up directly: where it saw a point, its own colour is shown, and nothing else has changed.
+#include <array>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "display/predicted_view.hpp"
+#include "tests/support/headless_test.hpp"
+#include "tests/support/small_scene.hpp"
+#include "tests/texture_gpu/reference/ray_caster.hpp"
+#include "texture_gpu/texture_core.hpp"
+
+namespace foresight::newest_image_test {
+namespace {
+
+/// Red and blue change places: a colour tells which image it is from.
+cv::Vec3d other_hue(const Eigen::Vector3d& bgr) {
+  return {255 * bgr.z(), 255 * bgr.y(), 255 * bgr.x()};
+}
+
+struct Kinds {
+  const char* image;
+  const char* view;
+};
+
+class NewestImage : public HeadlessTest, public testing::WithParamInterface<Kinds> {
+ protected:
+  void SetUp() override {
+    HeadlessTest::SetUp();
+    if (IsSkipped()) return;
+    core_ = std::make_unique<TextureCore>(scene_, surface_, small_lens(GetParam().image), std::nullopt,
+                                          TextureOptions{.memory_bytes = 6 << 20, .even_exposure = false},
+                                          driver_.is_software);
+  }
+  PosedFrame seen_from(const Pose& T_world_camera, const SceneState& state) const {
+    return {posed_photograph(*scene_, state, small_lens(GetParam().image), T_world_camera), std::nullopt};
+  }
+  PredictedView view() const {
+    return {std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_),
+            small_lens(GetParam().view)};
+  }
+
+  std::shared_ptr<const SceneModel> scene_ = small_scene();
+  std::shared_ptr<const SurfacePatches> surface_ = std::make_shared<SurfacePatches>(find_surface_patches(*scene_, {}));
+  std::unique_ptr<TextureCore> core_;
+  LatestTextures textures_;
+  LatestImage image_;
+};
+
+/// A point that a view's pixel shows.
+struct Shown {
+  int node;
+  Eigen::Vector3d p_node;
+  std::array<Eigen::Vector3d, 4> around;  // of the same node, half a pixel to the left, right, above, below
+};
+
+/// What the image's camera has in view, judged by rays alone.
+class Witness {
+ public:
+  Witness(const SceneModel& scene, const SceneState& state, const Lens& lens, const Pose& T_world_camera)
+      : caster_(scene, state), state_(state), lens_(lens), T_world_camera_(T_world_camera) {}
+
+  enum class Answer { seen, hidden, hard_to_say };
+  /// `p` of a node.
+  Answer sees(const Eigen::Vector3d& p_node, int node) const {
+    const Eigen::Vector3d p = state_.T_world_node[static_cast<std::size_t>(node)] * p_node;
+    const auto pixel = lens_.project(T_world_camera_.inverse() * p);
+    constexpr double kBeside = 4, kRim = 8;  // px
+    if (!pixel || pixel->x() < -1 || pixel->y() < -1 || pixel->x() > lens_.width() || pixel->y() > lens_.height())
+      return Answer::hidden;
+    if (pixel->x() < kRim || pixel->y() < kRim || pixel->x() > lens_.width() - kRim ||
+        pixel->y() > lens_.height() - kRim)
+      return Answer::hard_to_say;
+    int same = 0, others = 0;
+    for (int i = 0; i < 9; ++i) {
+      const auto ray = lens_.unproject(*pixel + kBeside * Eigen::Vector2d(i % 3 - 1, i / 3 - 1));
+      if (!ray) return Answer::hard_to_say;
+      const auto hit = caster_.cast(T_world_camera_.translation(), T_world_camera_.linear() * *ray, gl::kNearPlane);
+      const bool near = hit && hit->node == node && (hit->p_world - p).norm() < 0.15;
+      const bool before = hit && (hit->p_world - T_world_camera_.translation()).norm() + 0.05 <
+                                     (p - T_world_camera_.translation()).norm();
+      same += near && !before;
+      others += before;
+    }
+    return same == 9 ? Answer::seen : others == 9 ? Answer::hidden : Answer::hard_to_say;
+  }
+
+  /// How far apart the image shows what the view shows a pixel apart: the root of an area.
+  double pixels_between(const Shown& point) const;
+
+ private:
+  reference::RayCaster caster_;
+  SceneState state_;
+  Lens lens_;
+  Pose T_world_camera_;
+};
+
+double Witness::pixels_between(const Shown& point) const {
+  const auto project = [&](std::size_t i) {
+    const Eigen::Vector3d p = state_.T_world_node[static_cast<std::size_t>(point.node)] * point.around[i];
+    return lens_.project(T_world_camera_.inverse() * p).value_or(Eigen::Vector2d::Zero());
+  };
+  Eigen::Matrix2d area;
+  area << project(1) - project(0), project(3) - project(2);
+  return std::sqrt(std::abs(area.determinant()));
+}
+
+/// Nothing where another renderer might show another triangle.
+std::optional<Shown> shown_at(const reference::RayCaster& caster, const SceneState& state, const Lens& lens,
+                              const Pose& T_world_camera, const Eigen::Vector2d& pixel) {
+  const auto hit_at = [&](double dx, double dy) {
+    const auto ray = lens.unproject(pixel + Eigen::Vector2d(dx, dy));
+    return ray ? caster.cast(T_world_camera.translation(), T_world_camera.linear() * *ray, gl::kNearPlane)
+               : std::nullopt;
+  };
+  const auto hit = hit_at(0, 0);
+  if (!hit) return std::nullopt;
+  for (int i = 0; i < 4; ++i) {
+    const auto beside = hit_at(i % 2 ? 1.5 : -1.5, i / 2 ? 1.5 : -1.5);
+    if (!beside || beside->triangle != hit->triangle) return std::nullopt;
+  }
+  const Pose T_node_world = state.T_world_node[static_cast<std::size_t>(hit->node)].inverse();
+  const auto around = [&](double dx, double dy) { return (T_node_world * hit_at(dx, dy)->p_world).eval(); };
+  return Shown{
+      hit->node, T_node_world * hit->p_world, {around(-0.5, 0), around(0.5, 0), around(0, -0.5), around(0, 0.5)}};
+}
+
+struct Count {
+  int seen = 0, wrong = 0, hidden = 0, changed = 0;
+};
+
+void compare(const Witness& witness, const Shown& point, const cv::Vec4b& with, const cv::Vec4b& without,
+             Count& count) {
+  const Witness::Answer answer = witness.sees(point.p_node, point.node);
+  if (answer == Witness::Answer::hidden) {
+    ++count.hidden;
+    count.changed += cv::norm(with, without, cv::NORM_INF) > 1;
+  }
+  // Shown far coarser or finer than it was seen, it comes from the textures.
+  const double pixels = witness.pixels_between(point);
+  if (answer != Witness::Answer::seen || pixels < 0.4 || pixels > 1.2) return;
+  ++count.seen;
+  const cv::Vec3d difference = cv::Vec3d(with[0], with[1], with[2]) - other_hue(paint(point.node, point.p_node));
+  count.wrong += with[3] != 255 || cv::norm(difference, cv::NORM_INF) > 8;
+}
+
+TEST_P(NewestImage, IsShownWhereItSawAPoint) {
+  const SceneState before = state_of(*scene_), then = state_of(*scene_, 0.1), shown = state_of(*scene_, 0.2);
+  core_->process(seen_from(look_at({-0.5, -1.1, 0.9}, {0.1, 0, 0.1}), before), textures_);
+  core_->process(seen_from(usual_view(), before), textures_);
+  PosedFrame newest = seen_from(usual_view(), then);
+  cv::cvtColor(newest.left.pixels, newest.left.pixels, cv::COLOR_BGR2RGB);
+  ASSERT_TRUE(core_->look(newest, image_));
+  const ImageLease image = image_.acquire();
+  const TextureLease textures = textures_.acquire();
+  ASSERT_TRUE(image);
+
+  PredictedView with = view(), without = view();
+  const Lens lens = small_lens(GetParam().view);
+  const Witness witness(*scene_, then, small_lens(GetParam().image), usual_view());
+  const reference::RayCaster caster(*scene_, shown);
+  Count count;
+  for (const Pose& T_world_camera :
+       {look_at({-0.7, -0.9, 0.75}, {0, 0, 0.1}), look_at({-0.4, -0.9, 0.5}, {0.1, 0, 0.1})}) {
+    with.draw(T_world_camera, shown, *textures, *image);
+    without.draw(T_world_camera, shown, *textures);
+    const cv::Mat picture = with.read(), old = without.read();
+    for (int y = 2; y < picture.rows - 2; y += 2)
+      for (int x = 2; x < picture.cols - 2; x += 2)
+        if (const auto point = shown_at(caster, shown, lens, T_world_camera, {x, y}))
+          compare(witness, *point, picture.at<cv::Vec4b>(y, x), old.at<cv::Vec4b>(y, x), count);
+  }
+  EXPECT_GT(count.seen, 100);
+  EXPECT_GT(count.hidden, 20);
+  EXPECT_LE(count.wrong, count.seen / 200);
+  EXPECT_EQ(count.changed, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, NewestImage,
+                         testing::Values(Kinds{"pinhole", "pinhole"}, Kinds{"plumb_bob", "plumb_bob"},
+                                         Kinds{"fisheye", "pinhole"}),
+                         [](const auto& i) { return std::string(i.param.image) + "_in_" + i.param.view; });
+
+// Whoever draws with an image keeps it, however many come after.
+TEST_P(NewestImage, StaysAsItIsWhileItIsLeased) {
+  core_->process(seen_from(usual_view(), state_of(*scene_)), textures_);
+  core_->look(seen_from(usual_view(), state_of(*scene_)), image_);
+  const ImageLease kept = image_.acquire();
+  const auto pixels = [](const PublishedImage& image) {
+    const gl::Texture& texture = image.camera->image();
+    cv::Mat out(texture.height(), texture.width(), CV_8UC4);
+    glGetTextureImage(texture.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
+    return out;
+  };
+  const cv::Mat before = pixels(*kept);
+  std::map<const PublishedImage*, int> places;
+  for (int i = 1; i <= 6; ++i) {
+    const PosedFrame frame = seen_from(look_at({-0.9, -0.9 + 0.1 * i, 0.7}, {0, 0, 0.1}), state_of(*scene_, 0.02 * i));
+    ASSERT_TRUE(core_->look(frame, image_));
+    core_->extract(frame, textures_);
+    const ImageLease newest = image_.acquire();
+    ++places[&*newest];
+    EXPECT_GT(cv::norm(pixels(*newest), before, cv::NORM_INF), 0);
+  }
+  EXPECT_EQ(cv::norm(pixels(*kept), before, cv::NORM_INF), 0);
+  EXPECT_EQ(places.size(), 2u) << "two places take turns";
+}
+
+}  // namespace
+}  // namespace foresight::newest_image_test
