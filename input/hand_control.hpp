@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "input/hand_guard.hpp"
 #include "input/hand_watch.hpp"
 #include "motion/gate_options.hpp"
 #include "prediction/path_follower.hpp"
@@ -143,7 +144,7 @@ HandWords describe(const HandCycle& cycle, const std::vector<GateJoint>& joints)
 HandWords words_for(HandFault fault);
 HandWords words_for(FollowReason reason, const std::string& joint);
 
-/// Pure logic: does not wait. One thread. cycle() neither throws nor allocates.
+/// Pure logic: does not wait. One thread. cycle() neither throws nor, but for what a guard does, allocates.
 class HandControl {
  public:
   /// Throws InputError at `where`: options that contradict themselves.
@@ -153,6 +154,8 @@ class HandControl {
 
   HandSettings& settings() noexcept { return settings_; }
   void set_mode(HandMode mode) noexcept;
+  /// From now on the arm goes only where `guard` lets it, in both modes; null: anywhere. Borrowed.
+  void set_guard(HandGuard* guard) noexcept { guard_ = guard; }
   /// Every 2 to 20 ms, with `now` that never goes back.
   const HandCycle& cycle(const HandInput& input) noexcept;
   const HandCycle& last() const noexcept { return out_; }
@@ -186,6 +189,7 @@ class HandControl {
   void close_clutch() noexcept;
   void go_with_hand(double dt) noexcept;
   void follow_target(double dt) noexcept;
+  void tell(const FollowStep& step) noexcept;
   void leash(const FollowStep& step) noexcept;
   void jog(double rate, double dt) noexcept;
   void look(const TrackerState& device, double dt) noexcept;
@@ -201,6 +205,7 @@ class HandControl {
   HandOptions options_;
   std::optional<InverseKinematics> kinematics_;
   std::optional<PathFollower> follower_;
+  HandGuard* guard_ = nullptr;
   HandSettings settings_;
   HandWatch watch_;
   PoseFilter filter_;

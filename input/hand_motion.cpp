@@ -50,14 +50,19 @@ void HandControl::go_with_hand(double dt) noexcept {
 }
 
 void HandControl::follow_target(double dt) noexcept {
-  const FollowStep step = follower_->step(target_, dt * ramp_);
+  const FollowStep step =
+      guard_ ? guard_->step(out_.positions, target_, dt * ramp_) : follower_->step(target_, dt * ramp_);
   for (std::size_t i = 0; i < options_.arm_joints.size(); ++i)
     move_to(options_.arm_joints[i], step.q[static_cast<Eigen::Index>(i)], dt, 1);
-  out_.follow = step.reason;
-  out_.follow_joint = step.joint < 0 ? -1 : static_cast<int>(options_.arm_joints[static_cast<std::size_t>(step.joint)]);
+  tell(step);
   out_.position_error = step.position_error;
   out_.rotation_error = step.rotation_error;
   leash(step);
+}
+
+void HandControl::tell(const FollowStep& step) noexcept {
+  out_.follow = step.reason;
+  out_.follow_joint = step.joint < 0 ? -1 : static_cast<int>(options_.arm_joints[static_cast<std::size_t>(step.joint)]);
 }
 
 void HandControl::leash(const FollowStep& step) noexcept {
@@ -73,8 +78,16 @@ void HandControl::jog(double rate, double dt) noexcept {
   if (!std::isfinite(rate) || rate == 0) return;
   out_.phase = HandPhase::driving;
   const JointLimits& limits = options_.gate.joints[out_.joint].limits;
+  const JointValues before = out_.positions;
   move_to(out_.joint, rate > 0 ? limits.max_position : limits.min_position, dt,
           options_.joint_speed * std::min(std::abs(rate), 1.0));
+  const auto of_arm = std::ranges::find(options_.arm_joints, out_.joint);
+  if (!guard_ || of_arm == options_.arm_joints.end() || out_.positions[out_.joint] == before[out_.joint]) return;
+  const FollowStep step = guard_->go(before, out_.positions);
+  const double to = step.q[of_arm - options_.arm_joints.begin()];
+  out_.positions[out_.joint] = std::clamp(to, std::min(before[out_.joint], out_.positions[out_.joint]),
+                                          std::max(before[out_.joint], out_.positions[out_.joint]));
+  tell(step);
 }
 
 void HandControl::move_others(const HandInput& input, double dt) noexcept {

@@ -67,6 +67,8 @@ HandWords words_for(FollowReason reason, const std::string& joint) {
     case FollowReason::out_of_reach: return {"the hand is out of the arm's reach", "come back"};
     case FollowReason::other_branch:
       return {"the arm would have to come round another way", "move single joints, or come another way"};
+    case FollowReason::contact: return {"something is in the way", "move away"};
+    case FollowReason::unknown: return {"what is around the arm is not known", "wait; let go, and press again"};
     case FollowReason::bad_target: return {"the hand's target is no pose", "let go, and press again"};
   }
   return {};

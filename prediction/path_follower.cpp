@@ -24,6 +24,8 @@ const char* name_of(FollowReason reason) noexcept {
     case FollowReason::singularity: return "singularity";
     case FollowReason::out_of_reach: return "out of reach";
     case FollowReason::other_branch: return "other branch";
+    case FollowReason::contact: return "contact";
+    case FollowReason::unknown: return "unknown";
     case FollowReason::bad_target: return "bad target";
   }
   return "";

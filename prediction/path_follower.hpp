@@ -25,6 +25,8 @@ enum class FollowReason {
   singularity,   ///< the arm can hardly move the hand in some direction (stretched, folded, axes in line)
   out_of_reach,  ///< no joints within limits bring it there: it goes to the nearest pose
   other_branch,  ///< only joints far from the present ones bring it there: the arm would have to be brought round
+  contact,       ///< parts would touch, or come too close; only where somebody looks out for that (prediction/contact)
+  unknown,       ///< so looked out for, but what is around the arm is not known: it stands
   bad_target,    ///< not a finite rigid pose, or a cycle of no time: it stands
 };
 

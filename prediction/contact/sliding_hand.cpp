@@ -32,6 +32,8 @@ GhostReason ghost_reason(FollowReason reason) {
     case FollowReason::singularity: return GhostReason::singularity;
     case FollowReason::out_of_reach: return GhostReason::out_of_reach;
     case FollowReason::other_branch: return GhostReason::other_branch;
+    case FollowReason::contact: return GhostReason::contact;
+    case FollowReason::unknown: return GhostReason::unknown;
     case FollowReason::bad_target: return GhostReason::bad_target;
   }
   return GhostReason::unknown;
@@ -250,6 +252,10 @@ std::vector<ClosedWay> SlidingHand::closed_ways(const Look& now) {
   return ways;
 }
 
+std::string SlidingHand::touch_words(std::size_t couple) const {
+  return model_.name(couple) + " touches " + model_.other_name(couple);
+}
+
 // On what the last step leant hardest.
 void SlidingHand::lean(const Look& now, std::span<const ClosedWay> ways) {
   leans_ = GhostReason::none;
@@ -260,7 +266,7 @@ void SlidingHand::lean(const Look& now, std::span<const ClosedWay> ways) {
     const Nearness& n = now.near[index];
     leans_ = GhostReason::contact;
     out_ = now.direction(n);
-    words_ = model_.name(n.couple) + " touches " + model_.other_name(n.couple);
+    words_ = touch_words(n.couple);
     return;
   }
   leans_ = GhostReason::gate;
@@ -292,6 +298,40 @@ void SlidingHand::slide(const Pose& hand, double dt, const JointVector& start, L
     const std::vector<double> wanted = spread(dq);
     if (go_part(wanted, allowed(now, wanted, kDrift), kLeastShare, now) <= 0) return;
   }
+}
+
+// The arm is taken to be within its limits, to the last bit.
+void SlidingHand::settle_arm() {
+  follower_.stand_at(of_arm(positions_));
+  for (std::size_t i = 0; i < arm_.size(); ++i) positions_[arm_[i]] = follower_.joints()[static_cast<Eigen::Index>(i)];
+}
+
+bool SlidingHand::fits(std::span<const double> positions) const {
+  return positions.size() == positions_.size() &&
+         std::ranges::all_of(positions, [](double q) { return std::isfinite(q); });
+}
+
+bool SlidingHand::stand_at(std::span<const double> positions) {
+  if (!fits(positions)) return false;
+  positions_.assign(positions.begin(), positions.end());
+  depths_.clear();
+  settle_arm();
+  return true;
+}
+
+// What a way that ended early ended at.
+void SlidingHand::blame(const Look& now) {
+  if (!now.near.empty() && now.near.front().distance < kClose) {
+    const Nearness& n = now.near.front();
+    leans_ = GhostReason::contact;
+    out_ = now.direction(n);
+    words_ = touch_words(n.couple);
+    return;
+  }
+  const auto tightest = std::ranges::min_element(now.margins);
+  if (tightest == now.margins.end() || *tightest > kGateNear) return;
+  leans_ = GhostReason::gate;
+  words_ = gate_->message(static_cast<std::size_t>(tightest - now.margins.begin()));
 }
 
 HandStep SlidingHand::unknown(const Pose& hand, std::string why) const {
@@ -327,8 +367,7 @@ GhostHand SlidingHand::ghost(const Pose& hand, GhostReason otherwise) const {
 
 HandStep SlidingHand::step(const Pose& hand, std::span<const double> others, std::span<const Pose> T_world_node,
                            double dt) {
-  if (others.size() != positions_.size() || !std::ranges::all_of(others, [](double q) { return std::isfinite(q); }))
-    return unknown(hand, "not one finite position for each joint");
+  if (!fits(others)) return unknown(hand, "not one finite position for each joint");
   if (const char* why = model_.pose(positions_, T_world_node)) return unknown(hand, why);
   parts_ = 0;
   leans_ = GhostReason::none;
@@ -351,19 +390,44 @@ HandStep SlidingHand::step(const Pose& hand, std::span<const double> others, std
   } else {  // without what rounding left of it
     for (std::size_t i = 0; i < arm_.size(); ++i) positions_[arm_[i]] = follow.q[static_cast<Eigen::Index>(i)];
   }
-  const JointVector q = of_arm(positions_);
-  if (!(q == follower_.joints())) {
-    follower_.stand_at(q);  // within the limits, to the last bit
-    for (std::size_t i = 0; i < arm_.size(); ++i)
-      positions_[arm_[i]] = follower_.joints()[static_cast<Eigen::Index>(i)];
-  }
+  if (!(of_arm(positions_) == follower_.joints())) settle_arm();
+  HandStep out = finish(now);
+  out.ghost = ghost(hand, reason);
+  out.joint = out.ghost.reason == ghost_reason(follow.reason) ? follow.joint : -1;
+  return out;
+}
 
+HandStep SlidingHand::go_to(std::span<const double> positions, std::span<const Pose> T_world_node) {
+  if (!fits(positions)) return unknown(follower_.hand(), "not one finite position for each joint");
+  if (const char* why = model_.pose(positions_, T_world_node)) return unknown(follower_.hand(), why);
+  parts_ = 0;
+  leans_ = GhostReason::none;
+  std::vector<double> change(positions.begin(), positions.end());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= positions_[i];
+  Look now = look(2 * kClose + model_.farthest(change));
+  settle_depths(now, T_world_node);
+  const bool all = advance(change, now);
+  if (all)
+    positions_.assign(positions.begin(), positions.end());
+  else
+    blame(now);
+  settle_arm();
+  HandStep out = finish(now);
+  const Pose hand = kinematics_.chain().tip_pose(of_arm(positions));
+  out.ghost = ghost(hand, all ? GhostReason::none : GhostReason::joint_speed);
+  if (!all && out.ghost.reason == GhostReason::none) {  // so short a way that the tool is almost there
+    out.ghost.reason = leans_ == GhostReason::none ? GhostReason::joint_speed : leans_;
+    out.ghost.words = leans_ == GhostReason::none ? name_of(out.ghost.reason) : words_;
+  }
+  return out;
+}
+
+HandStep SlidingHand::finish(Look& now) {
   HandStep out;
   out.valid = true;
   out.positions = positions_;
   out.T_base_tip = follower_.hand();
   out.near = now.within < kContactReach ? model_.near(kContactReach) : std::move(now.near);
-  out.ghost = ghost(hand, reason);
   out.parts = parts_;
   return out;
 }

@@ -60,6 +60,7 @@ struct HandStep {
   std::vector<double> positions;  ///< of all of the model's joints, at the end of the picture
   Pose T_base_tip = Pose::Identity();
   GhostHand ghost;
+  int joint = -1;              ///< of the arm, that is the ghost's reason; -1: none in particular
   std::vector<Nearness> near;  ///< couples within kContactReach there, the nearest first
   int parts = 0;               ///< into which the way was cut
 };
@@ -80,6 +81,13 @@ class SlidingHand {
   /// things do that came to the arm, get no deeper. A hand that is where the tool is moves nothing.
   HandStep step(const Pose& T_base_hand, std::span<const double> others, std::span<const Pose> T_world_node, double dt);
 
+  /// One picture in which all joints go straight to `positions`, as far as nothing is in their way: nothing slides. How
+  /// fast they go is up to who asks. The ghost is the tool as it would be there.
+  HandStep go_to(std::span<const double> positions, std::span<const Pose> T_world_node);
+  /// All joints are there instead: something else moved them. `positions` as `start`, the arm's put within its limits;
+  /// false where there is not one finite number for each joint: then nothing changes.
+  bool stand_at(std::span<const double> positions);
+
   std::span<const double> positions() const noexcept { return positions_; }
 
  private:
@@ -95,6 +103,11 @@ class SlidingHand {
   void slide(const Pose& hand, double dt, const JointVector& start, Look& now);
   std::vector<ClosedWay> closed_ways(const Look& now);
   void lean(const Look& now, std::span<const ClosedWay> ways);
+  void blame(const Look& now);
+  std::string touch_words(std::size_t couple) const;
+  void settle_arm();
+  bool fits(std::span<const double> positions) const;
+  HandStep finish(Look& now);
   std::vector<double> spread(const JointVector& change) const;
   JointVector of_arm(std::span<const double> all) const;
   HandStep unknown(const Pose& hand, std::string why) const;

@@ -270,6 +270,39 @@ TEST(SlidingHand, WhatCameIntoTheArmIsLeftButNotEnteredDeeper) {
   EXPECT_FALSE(step.ghost.shown);
 }
 
+TEST(SlidingHand, AStraightWayOfJointsEndsAtContact) {
+  const SceneModel scene = table();
+  Gantry gantry(&scene);
+  HandStep step = gantry.hand.go_to(std::vector<double>{0.02, 0.01, 0.15}, {});
+  EXPECT_EQ(step.positions, (std::vector<double>{0.02, 0.01, 0.15})) << "to the last bit";
+  EXPECT_EQ(step.ghost.reason, GhostReason::none);
+  step = gantry.hand.go_to(std::vector<double>{0.10, 0.01, -0.05}, {});
+  ASSERT_TRUE(step.valid);
+  EXPECT_NEAR(step.positions[2], 0.03 + kSkin, 3e-3);
+  const double share = (0.15 - step.positions[2]) / 0.20;
+  EXPECT_NEAR(step.positions[0], 0.02 + share * 0.08, 1e-9) << "on the way, not along the table";
+  EXPECT_EQ(step.ghost.reason, GhostReason::contact);
+  EXPECT_EQ(step.ghost.words, "tool touches table");
+  EXPECT_LT((step.ghost.T_base_hand.translation() - Vector3d(0.10, 0.01, -0.05)).norm(), 1e-12);
+  const std::vector<double> there(gantry.hand.positions().begin(), gantry.hand.positions().end());
+  EXPECT_FALSE(gantry.hand.go_to(std::vector<double>{0, 0, std::nan("")}, {}).valid);
+  EXPECT_FALSE(gantry.hand.go_to(std::vector<double>{0, 0}, {}).valid);
+  EXPECT_TRUE(std::ranges::equal(gantry.hand.positions(), there));
+}
+
+TEST(SlidingHand, GoesOnFromWhereItIsPut) {
+  const SceneModel scene = table();
+  Gantry gantry(&scene);
+  for (int i = 1; i <= 60; ++i) gantry.go(0, 0, 0.2 - 0.006 * i);  // leans on the table
+  ASSERT_TRUE(gantry.hand.stand_at(std::vector<double>{0.3, 0.2, 0.4}));
+  const HandStep step = gantry.go(0.3, 0.2, 0.4);
+  EXPECT_LT((step.T_base_tip.translation() - Vector3d(0.3, 0.2, 0.4)).norm(), 1e-9);
+  EXPECT_FALSE(step.ghost.shown);
+  EXPECT_FALSE(gantry.hand.stand_at(std::vector<double>{0.3, std::nan(""), 0.4}));
+  EXPECT_FALSE(gantry.hand.stand_at(std::vector<double>{0.3}));
+  EXPECT_EQ(gantry.hand.positions()[0], 0.3);
+}
+
 TEST(SlidingHand, WhatIsNotKnownMovesNothing) {
   const SceneModel scene = table();
   Gantry gantry(&scene);
