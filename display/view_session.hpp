@@ -64,6 +64,9 @@ class ViewSession {
   /// RGBA8, straight alpha as PredictedView has it, row 0 at the top.
   const gl::Texture& picture() const { return thesis_ ? thesis_view_->picture() : view_->picture(); }
 
+  /// What the last draw() put the model into: for who draws over it. Not with `thesis`.
+  const gl::FaceImages& faces() const { return view_->faces(); }
+
   /// Another view of the same textures, such as that of an eye through its own lens. Not with `thesis`.
   PredictedView make_view(const Lens& lens) const { return {buffers_, records_, lens}; }
   /// The same for such a view.
