@@ -9,10 +9,8 @@ EyePair::EyePair(ViewSession& session, const Lens& lens, double separation)
 
 bool EyePair::draw(const Pose& T_world_camera, const SceneState& state) {
   bool drawn = true;
-  for (std::size_t eye = 0; eye < eyes_.size(); ++eye) {
-    const Eigen::Vector3d right((eye == 0 ? -0.5 : 0.5) * separation_, 0, 0);
-    drawn = session_.draw(eyes_[eye], T_world_camera * Eigen::Translation3d(right), state) && drawn;
-  }
+  for (std::size_t eye = 0; eye < eyes_.size(); ++eye)
+    drawn = session_.draw(eyes_[eye], T_world_camera * T_view_eye(eye), state) && drawn;
   return drawn;
 }
 

@@ -15,6 +15,10 @@ class EyePair {
   bool draw(const Pose& T_world_camera, const SceneState& state);
   /// 0: left.
   const gl::Texture& picture(std::size_t eye) const { return eyes_[eye].picture(); }
+  const gl::FaceImages& faces(std::size_t eye) const { return eyes_[eye].faces(); }
+  Pose T_view_eye(std::size_t eye) const {
+    return Pose(Eigen::Translation3d((eye == 0 ? -0.5 : 0.5) * separation_, 0, 0));
+  }
 
  private:
   ViewSession& session_;

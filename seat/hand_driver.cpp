@@ -1,5 +1,6 @@
 #include "seat/hand_driver.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "display/head/eye_geometry.hpp"
@@ -7,6 +8,8 @@
 
 namespace foresight {
 namespace {
+
+constexpr Duration kCycleEvery = std::chrono::milliseconds(10);  // a look at what is near costs milliseconds
 
 std::vector<Tracker*> all_of(KeyboardMouse& keyboard, const std::vector<std::unique_ptr<Tracker>>& devices) {
   std::vector<Tracker*> out{&keyboard};
@@ -16,12 +19,16 @@ std::vector<Tracker*> all_of(KeyboardMouse& keyboard, const std::vector<std::uni
 
 }  // namespace
 
-HandDriver::HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> devices)
+HandDriver::HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> devices,
+                       std::shared_ptr<const SceneModel> scene)
     : rig_(rig),
       options_(hand_options(rig)),
+      guard_(options_.arm ? std::make_unique<ContactGuard>(rig, options_, std::move(scene)) : nullptr),
       hand_(options_, rig.name),
       devices_(std::move(devices)),
-      any_(all_of(keyboard_, devices_)) {}
+      any_(all_of(keyboard_, devices_)) {
+  hand_.set_guard(guard_.get());
+}
 
 void HandDriver::take(const gl::WindowInput& input, OperatorTime now) {
   const std::lock_guard lock(mutex_);
@@ -53,6 +60,11 @@ void HandDriver::interrupt(const char* trouble, const char* cure) {
   interruption_->cure = cure;
 }
 
+void HandDriver::scene_stands(std::span<const Pose> T_world_node) {
+  const std::lock_guard lock(mutex_);
+  if (guard_) guard_->scene_stands(T_world_node);
+}
+
 void HandDriver::ask(LineRequest request) {
   const std::lock_guard lock(mutex_);
   requests_.push_back(request);
@@ -75,6 +87,20 @@ void HandDriver::let_go() {
 
 SeatWish HandDriver::tick(const SeatView& view) {
   const std::lock_guard lock(mutex_);
+  if (!cycled_ || view.now - *cycled_ >= kCycleEvery || view.now < *cycled_) cycle(view);
+  SeatWish wish = wish_;
+  wish.deadman = wish.deadman && !ended_;
+  wish.control = control_;
+  wish.hand_over = std::exchange(hand_over_, false);
+  if (!requests_.empty()) {
+    wish.request = requests_.front();
+    requests_.erase(requests_.begin());
+  }
+  return wish;
+}
+
+void HandDriver::cycle(const SeatView& view) {
+  cycled_ = view.now;
   HandInput input;
   input.now = view.now;
   input.device = any_.read(view.now);
@@ -88,24 +114,36 @@ SeatWish HandDriver::tick(const SeatView& view) {
   const Pose T_world_view = T_world_space_ && head ? *T_world_space_ * *head * head::T_body_camera() : T_world_camera_;
   input.T_base_view = rig_.T_world_robot.inverse() * T_world_view;
   const HandCycle& cycle = hand_.cycle(input);
-  SeatWish wish;
-  wish.deadman = cycle.deadman && !ended_;
-  wish.position = cycle.positions;
-  wish.control = control_;
-  wish.hand_over = std::exchange(hand_over_, false);
-  if (!requests_.empty()) {
-    wish.request = requests_.front();
-    requests_.erase(requests_.begin());
-  }
-  return wish;
+  wish_.deadman = cycle.deadman;
+  wish_.position = cycle.positions;
+}
+
+HandSight HandDriver::sight() const {
+  const std::lock_guard lock(mutex_);
+  const HandCycle& cycle = hand_.last();
+  HandSight out;
+  out.phase = cycle.phase;
+  if (cycle.T_base_target) out.T_world_hand = rig_.T_world_robot * *cycle.T_base_target;
+  out.T_world_tool = rig_.T_world_robot * cycle.T_base_tip;
+  out.joints = cycle.joints;
+  out.positions = cycle.positions;
+  out.follow = cycle.follow;
+  out.follow_joint = cycle.follow_joint;
+  if (guard_) out.touch = guard_->sight();
+  if (cycle.joints > 0) out.limits = near_limits(options_, cycle.positions);
+  return out;
 }
 
 std::vector<SeatLine> HandDriver::lines() const {
+  const HandSight seen = sight();
+  std::vector<SeatLine> out = hand_lines(seen, rig_.joint_names());
+  // What touches is told by name.
+  if (std::ranges::find(out, "hand", &SeatLine::label) != out.end()) return out;
   const std::lock_guard lock(mutex_);
   const HandWords words = describe(hand_.last(), options_.gate.joints);
-  if (words.name.empty()) return {};
-  return {
-      {"hand", words.name, words.cure, hand_.last().phase == HandPhase::refused ? Urgency::trouble : Urgency::note}};
+  const Urgency urgency = hand_.last().phase == HandPhase::refused ? Urgency::trouble : Urgency::note;
+  if (!words.name.empty()) out.insert(out.begin(), {"hand", words.name, words.cure, urgency});
+  return out;
 }
 
 std::vector<std::pair<std::string, std::string>> HandDriver::keys() {

@@ -10,6 +10,7 @@
 #include "input/any_tracker.hpp"
 #include "input/hand_control.hpp"
 #include "input/keyboard_mouse.hpp"
+#include "seat/hand_sight.hpp"
 #include "seat/seat_driver.hpp"
 #include "seat/seat_words.hpp"
 
@@ -18,9 +19,11 @@ namespace foresight {
 /// tick() in the seat's thread, all else in the window's.
 class HandDriver final : public SeatDriver {
  public:
-  /// Keyboard and mouse, and `devices`: whichever has its switch held drives. `rig` must outlive this. Throws what
-  /// hand_options() does.
-  explicit HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> devices = {});
+  /// Keyboard and mouse, and `devices`: whichever has its switch held drives. `rig` must outlive this. `scene`: what
+  /// stands around the arm, which then stops and slides where it would touch (contact_guard.hpp); null: nothing is
+  /// known of it. Throws what hand_options() and ContactGuard do.
+  explicit HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> devices = {},
+                      std::shared_ptr<const SceneModel> scene = nullptr);
 
   /// Since the last call; at each round of the window, or its keys do not count.
   void take(const gl::WindowInput& input, OperatorTime now);
@@ -31,6 +34,8 @@ class HandDriver final : public SeatDriver {
   void look_within(const std::optional<Pose>& T_world_space);
   /// The robot has to be driven anew: whoever holds a switch lets go of it first. Static text.
   void interrupt(const char* trouble, const char* cure);
+  /// Where the nodes of the scene are shown.
+  void scene_stands(std::span<const Pose> T_world_node);
   void ask(LineRequest request);
   void toggle_control();
   void hand_over();
@@ -39,15 +44,21 @@ class HandDriver final : public SeatDriver {
 
   /// What keeps the hand from driving, for the head-up display.
   std::vector<SeatLine> lines() const;
+  /// What there is to see of the hand.
+  HandSight sight() const;
+  const HandOptions& options() const { return options_; }
   /// Of devices, and what they do.
   static std::vector<std::pair<std::string, std::string>> keys();
 
   SeatWish tick(const SeatView& view) override;
 
  private:
+  void cycle(const SeatView& view);
+
   const Rig& rig_;
   mutable std::mutex mutex_;  // all below
   const HandOptions options_;
+  std::unique_ptr<ContactGuard> guard_;
   HandControl hand_;
   KeyboardMouse keyboard_;
   std::vector<std::unique_ptr<Tracker>> devices_;
@@ -56,6 +67,8 @@ class HandDriver final : public SeatDriver {
   std::optional<Pose> T_world_space_;
   std::optional<TrackerState> interruption_;  // of the next cycle
   std::vector<LineRequest> requests_;
+  SeatWish wish_;
+  std::optional<OperatorTime> cycled_;
   bool control_ = true, hand_over_ = false, ended_ = false;
 };
 

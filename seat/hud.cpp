@@ -78,10 +78,41 @@ struct Hud::Work {
     ImGui::Begin(name, nullptr, kPanel);
   }
   void draw(const HudContent& content, float width, float height) const;
+  void draw(const std::vector<HudLabel>& labels, float width, float height) const;
 };
+
+// Beside their places, behind the panels, none over another.
+void Hud::Work::draw(const std::vector<HudLabel>& labels, float width, float height) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float pad = 3 * scale, beside = 34 * scale;
+  std::vector<ImVec4> taken;  // left, top, right, bottom
+  for (const HudLabel& label : labels) {
+    const std::string words = mark(label.urgency) + label.words;
+    const ImVec2 size = ImGui::CalcTextSize(words.data(), words.data() + words.size());
+    const float w = size.x + 2 * pad, h = size.y + 2 * pad;
+    const auto place = [](double wanted, float room) {
+      return std::clamp(static_cast<float>(wanted), 0.0f, std::max(0.0f, room));
+    };
+    const float left = place(label.x + beside, width - w);
+    float top = place(label.y - 0.5 * h, height - h);
+    const auto covers = [&](const ImVec4& other) {
+      return left < other.z && other.x < left + w && top < other.w && other.y < top + h;
+    };
+    for (std::size_t tries = 0; tries < labels.size() && std::ranges::any_of(taken, covers); ++tries)
+      top = std::ranges::find_if(taken, covers)->w + 1;
+    if (top + h > height) continue;
+    taken.emplace_back(left, top, left + w, top + h);
+    list.AddLine({static_cast<float>(label.x), static_cast<float>(label.y)}, {left, top + 0.5f * h},
+                 IM_COL32(15, 15, 18, 200), 2 * scale);
+    list.AddRectFilled({left, top}, {left + w, top + h}, IM_COL32(15, 15, 18, 190), 3 * scale);
+    list.AddText({left + pad, top + pad}, ImGui::ColorConvertFloat4ToU32(colour(label.urgency)), words.data(),
+                 words.data() + words.size());
+  }
+}
 
 void Hud::Work::draw(const HudContent& content, float width, float height) const {
   const float gap = 8 * scale, words_at = 115 * scale;
+  draw(content.labels, width, height);
   panel("lines", {gap, gap}, {0, 0});
   write(content.title);
   ImGui::Separator();

@@ -11,11 +11,19 @@
 
 namespace foresight {
 
+/// Words at a place of the picture.
+struct HudLabel {
+  double x = 0, y = 0;  ///< px from the target's top left
+  std::string words;
+  Urgency urgency = Urgency::fine;
+};
+
 struct HudContent {
   std::string title;  ///< of the robot, and of the view that is shown
   SeatLine next;      ///< what is to be done first: large, below
   std::vector<SeatLine> lines;
   std::vector<std::pair<std::string, std::string>> keys;  ///< each, and what it does
+  std::vector<HudLabel> labels;                           ///< the first matter most: others make way for them
 };
 
 /// Belongs to one context. Nothing is told by colour alone: what is urgent has a mark before it.

@@ -115,6 +115,20 @@ PredictedRobot Seat::look_ahead() {
   return now ? outlook_.at(outlook_.instant_to_show(*now)) : PredictedRobot{};
 }
 
+std::vector<PredictedRobot> Seat::under_way(std::size_t count) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<PredictedRobot> out;
+  const auto& known = outlook_.newest();
+  if (!known || shown_.status == StateStatus::invalid || shown_.time <= known->time || count < 2) return out;
+  const Duration step = (shown_.time - known->time) / static_cast<std::int64_t>(count - 1);
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    PredictedRobot then = outlook_.at(known->time + step * static_cast<std::int64_t>(i));
+    if (then.status != StateStatus::invalid) out.push_back(then);
+  }
+  out.push_back(shown_);
+  return out;
+}
+
 SeatStatus Seat::status() const {
   SeatStatus out;
   end_.seat([&](ControlSeat& seat, OperatorTime here) {

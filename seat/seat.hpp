@@ -52,6 +52,9 @@ class Seat {
   /// Where it would be shown now; nothing is remembered of that.
   PredictedRobot look_ahead();
   SeatStatus status() const;
+  /// Where the robot will be between what is known of it and what was shown last: what it does because it was sent
+  /// already. At most `count` (>= 2) instants, evenly, oldest first; those that cannot be told are left out.
+  std::vector<PredictedRobot> under_way(std::size_t count) const;
 
  private:
   std::optional<RobotTime> robot_now() const;

@@ -22,7 +22,8 @@ namespace foresight {
 namespace {
 
 constexpr int kWindowWidth = 1280, kWindowHeight = 800;
-constexpr double kEyesApart = 0.063;  // m, of most people
+constexpr double kEyesApart = 0.063;   // m, of most people
+constexpr std::size_t kUnderWay = 16;  // instants of what the robot will do as it was sent already
 
 std::shared_ptr<link::PretendedLine> pretended(const LiveSeatOptions& options, const Clock& clock) {
   if (!options.line) return nullptr;
@@ -73,11 +74,12 @@ class LiveSeat {
             live_scene_of(rig, options.mock_cameras, options.scene, options.physics, options.layout))),
         setup_(live_view_setup(*scene_, rig.name)),
         end_(participant_, seat_end_options(rig, identity_of(rig, options), *scene_), clock_),
-        driver_(rig, open_devices(options, controllers_)),
+        driver_(rig, open_devices(options, controllers_), scene_->model()),
         seat_(rig, end_, driver_, clock_),
         window_(open_seat_window("Foresight: " + rig.name, context_api(options))),
         session_(*window_, setup_),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
+        hand_(rig, driver_.options()),
         shown_(*window_, session_, setup_.left, seat_, source_, window_options()) {
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
@@ -131,6 +133,7 @@ class LiveSeat {
       return lines;
     };
     if (options_.head_display == HeadDisplayKind::side_by_side) out.eyes_apart = kEyesApart;
+    out.hand = [this] { return hand_.draw(driver_.sight(), seat_.under_way(kUnderWay)); };
     return out;
   }
 
@@ -157,7 +160,9 @@ class LiveSeat {
       if (event.down && event.code == kTab) shown_.next_picture();
     }
     if (things_) things_->advance(seat_.look_ahead());
-    driver_.look_from(source_.place().T_world_camera);
+    const ViewPlace place = source_.place();
+    driver_.look_from(place.T_world_camera);
+    driver_.scene_stands(place.scene.T_world_node);
     heed_head();
     driver_.take(input, {clock_.now().ns});
   }
@@ -190,6 +195,7 @@ class LiveSeat {
   ViewSession session_;
   PredictedSource source_;
   std::optional<ThingsOutlook> things_;
+  HandOverlay hand_;
   SeatWindow shown_;
   std::optional<SeatHead> head_;
   bool head_shown_ = false;

@@ -49,6 +49,8 @@ SeatWindow::SeatWindow(gl::Window& window, ViewSession& session, const Lens& len
       source_(source),
       options_(std::move(options)),
       hud_(options_.font_scale),
+      lens_(lens),
+      overlay_(lens),
       delayed_("newest image") {
   if (options_.eyes_apart) eyes_.emplace(session, lens, *options_.eyes_apart);
 }
@@ -61,17 +63,39 @@ bool SeatWindow::trusted() const {
   return source_.fault().empty() && source_.robot().status != StateStatus::invalid;
 }
 
-void SeatWindow::stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& session) {
+void SeatWindow::stepped(const ViewStep& step, FrameSource& source, ViewSession& session) {
   drawn_ = drawn_ || step.drawn;
-  if (eyes_ && step.drawn) {
-    const ViewPlace place = source_.place();
-    eyes_->draw(place.T_world_camera, place.scene);
+  if (step.drawn) {
+    const ViewPlace place = source.place();
+    T_world_camera_ = place.T_world_camera;
+    faces_ = &session.faces();
+    if (eyes_) eyes_->draw(place.T_world_camera, place.scene);
   }
   present(drawn_ ? &session.picture() : nullptr);
 }
 
 void SeatWindow::waiting(FrameSource& /*source*/, ViewSession& session) {
   present(drawn_ ? &session.picture() : nullptr);
+}
+
+SeatWindow::DrawnView SeatWindow::drawn_view(const gl::Texture* predicted, std::size_t eye) const {
+  if (!eyes_ || !predicted) return {predicted, T_world_camera_, faces_};
+  return {&eyes_->picture(eye), T_world_camera_ * eyes_->T_view_eye(eye), &eyes_->faces(eye)};
+}
+
+// The view, and over it what there is to see of the hand, whose words go beside it.
+std::vector<HudLabel> SeatWindow::show_predicted(const DrawnView& predicted, const ViewTarget& place) {
+  const ViewTarget view = fitted(place, predicted.picture->width(), predicted.picture->height());
+  copy_(*predicted.picture, view);
+  std::vector<HudLabel> labels;
+  if (!options_.hand || !predicted.faces || !trusted()) return labels;
+  const HandPicture hand = options_.hand();
+  overlay_.draw(hand.lines, predicted.T_world_camera, *predicted.faces, view);
+  const int height = window_target(window_).height;
+  for (const WorldLabel& label : hand.labels)
+    if (const auto at = seen_at(label.at, lens_, predicted.T_world_camera, view, height))
+      labels.push_back({at->x(), at->y(), label.words, label.urgency});
+  return labels;
 }
 
 HudContent SeatWindow::words(bool is_trusted) const {
@@ -104,24 +128,26 @@ void SeatWindow::log(const HudContent& content) {
   for (const std::string& news : log_.news(lines)) options_.log(news);
 }
 
-void SeatWindow::show_pictures(const ViewTarget& place, const gl::Texture* predicted, bool is_trusted) const {
+std::vector<HudLabel> SeatWindow::show_pictures(const ViewTarget& place, const DrawnView& predicted, bool is_trusted) {
   const auto show = [&](const gl::Texture& picture, const ViewTarget& part) {
     copy_(picture, fitted(part, picture.width(), picture.height()));
   };
+  std::vector<HudLabel> labels;
   SeatPicture picture = options_.picture;
   if (!is_trusted && picture == SeatPicture::predicted) picture = SeatPicture::delayed;
   if (picture == SeatPicture::both) {
     if (!delayed_.empty()) show(delayed_.texture(), column(place, 0, 2, kGap));
-    if (predicted) show(*predicted, column(place, 1, 2, kGap));
+    if (predicted.picture) labels = show_predicted(predicted, column(place, 1, 2, kGap));
   } else if (picture == SeatPicture::delayed) {
     if (!delayed_.empty()) show(delayed_.texture(), column(place, 0, 1, kGap));
-  } else if (predicted) {
-    show(*predicted, column(place, 0, 1, 0));
+  } else if (predicted.picture) {
+    labels = show_predicted(predicted, column(place, 0, 1, 0));
     if (!delayed_.empty()) {
       const gl::Texture& texture = delayed_.texture();
       copy_(texture, corner_of(place, texture.width(), texture.height()));
     }
   }
+  return labels;
 }
 
 void SeatWindow::present(const gl::Texture* predicted) {
@@ -137,15 +163,18 @@ void SeatWindow::present(const gl::Texture* predicted) {
   }
   const bool is_trusted = trusted();
   clear_behind_pictures(whole, !is_trusted && drawn_);
-  const HudContent content = words(is_trusted);
+  HudContent content = words(is_trusted);
+  log(content);
   const int eyes = eyes_ ? 2 : 1;
   for (int eye = 0; eye < eyes; ++eye) {
     const ViewTarget part = column(whole, eye, eyes, 0);
-    const bool has_own = predicted && eyes_;
-    show_pictures(part, has_own ? &eyes_->picture(static_cast<std::size_t>(eye)) : predicted, is_trusted);
+    content.labels = show_pictures(part, drawn_view(predicted, static_cast<std::size_t>(eye)), is_trusted);
+    for (HudLabel& label : content.labels) {
+      label.x -= part.x;
+      label.y -= whole.height - part.y - part.height;
+    }
     hud_.draw(content, part);
   }
-  log(content);
   save(whole);
   window_.present();
 }

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "display/eye_pair.hpp"
+#include "display/scene_overlay.hpp"
 #include "display/uploaded_picture.hpp"
 #include "display/view_loop.hpp"
 #include "gl/glfw_window.hpp"
+#include "seat/hand_overlay.hpp"
 #include "seat/hud.hpp"
 #include "seat/predicted_source.hpp"
 #include "seat/seat_log.hpp"
@@ -31,6 +33,7 @@ struct SeatWindowOptions {
   std::function<std::vector<SeatLine>()> more_lines = {};  ///< of devices
   std::function<void(const std::string&)> log = {};        ///< of what changes
   std::optional<double> eyes_apart = {};                   ///< m: the view is shown to two eyes, side by side
+  std::function<HandPicture()> hand = {};                  ///< drawn over the robot as it will be
 };
 
 /// Shows the robot as it will be; where that cannot be trusted, the newest image that came, and says so. Belongs to the
@@ -57,7 +60,14 @@ class SeatWindow final : public ViewObserver {
 
  private:
   void present(const gl::Texture* predicted);
-  void show_pictures(const ViewTarget& place, const gl::Texture* predicted, bool is_trusted) const;
+  struct DrawnView {
+    const gl::Texture* picture = nullptr;  // null: none yet
+    Pose T_world_camera = Pose::Identity();
+    const gl::FaceImages* faces = nullptr;
+  };
+  DrawnView drawn_view(const gl::Texture* predicted, std::size_t eye) const;
+  std::vector<HudLabel> show_pictures(const ViewTarget& place, const DrawnView& predicted, bool is_trusted);
+  std::vector<HudLabel> show_predicted(const DrawnView& predicted, const ViewTarget& place);
   HudContent words(bool is_trusted) const;
   void log(const HudContent& content);
   void save(const ViewTarget& whole);
@@ -69,6 +79,10 @@ class SeatWindow final : public ViewObserver {
   PictureCopy copy_;
   Hud hud_;
   SeatLog log_;
+  Lens lens_;
+  SceneOverlay overlay_;
+  Pose T_world_camera_ = Pose::Identity();  // of the picture that is shown
+  const gl::FaceImages* faces_ = nullptr;   // likewise
   UploadedPicture delayed_;
   std::optional<EyePair> eyes_;
   link::LineFramePtr uploaded_;
