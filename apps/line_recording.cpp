@@ -104,9 +104,7 @@ class Player {
     say("play", fmt::format("{} messages", sent_));
     if (!left.empty()) say("play", "not played, as the robot does not say it or somebody could follow it: " + left);
     if (const auto& pieces = playback_.pieces(); pieces.came && pieces.pairs == 0)
-      say("play",
-          "no coded pair (h264) could be decoded: a stream is recorded from its beginning on if the recorder is "
-          "there before the operator's program");
+      say("play", link::RecordedStream::kNothingWhole);
     if (playback_.damaged()) say("play", fmt::format("{} messages are damaged", playback_.damaged()));
     if (!outcome.trouble.empty()) say("play", "the recording is cut: " + outcome.trouble);
   }

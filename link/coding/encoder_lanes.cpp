@@ -32,4 +32,8 @@ void EncoderLanes::gone(std::uint32_t number) {
     if (lane.number == number) lane.broken = true;
 }
 
+void EncoderLanes::begin_anew() {
+  for (Lane& lane : lanes_) lane.broken = true;
+}
+
 }  // namespace foresight

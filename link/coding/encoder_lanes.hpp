@@ -21,6 +21,7 @@ class EncoderLanes {
   void coded(std::size_t lane, std::uint32_t number);
   void arrived(std::uint32_t number);  ///< as of PairEncoder
   void gone(std::uint32_t number);     ///< as of PairEncoder
+  void begin_anew();                   ///< as of PairEncoder
 
  private:
   struct Lane {

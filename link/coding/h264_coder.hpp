@@ -14,6 +14,7 @@ class H264PairEncoder final : public PairEncoder {
   CodedPair encode(const StereoPicture& picture, const PairWish& wish) override;
   void arrived(std::uint32_t number) override { lanes_.arrived(number); }
   void gone(std::uint32_t number) override { lanes_.gone(number); }
+  void begin_anew() override { lanes_.begin_anew(); }
 
  private:
   std::size_t softness_for(std::size_t wish) const;

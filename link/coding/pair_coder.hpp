@@ -22,17 +22,24 @@ struct PairWish {
   bool only_what_arrived = false;  ///< predict from pairs that the receiver has decoded, not from ones on the way
 };
 
-/// One thread.
-class PairEncoder {
+/// Who is told what becomes of pairs.
+class PairFates {
  public:
-  virtual ~PairEncoder() = default;
+  virtual ~PairFates() = default;
 
-  /// Throws InputError for pictures of other kinds than StereoPicture says, RuntimeFailure where a library fails.
-  virtual CodedPair encode(const StereoPicture& picture, const PairWish& wish) = 0;
   /// The receiver has decoded this pair.
   virtual void arrived(std::uint32_t number) = 0;
   /// The receiver will never have this pair; what builds on it is lost too.
   virtual void gone(std::uint32_t number) = 0;
+};
+
+/// One thread.
+class PairEncoder : public PairFates {
+ public:
+  /// Throws InputError for pictures of other kinds than StereoPicture says, RuntimeFailure where a library fails.
+  virtual CodedPair encode(const StereoPicture& picture, const PairWish& wish) = 0;
+  /// No pair from now on builds on one from before: for who has not seen those.
+  virtual void begin_anew() {}
 };
 
 /// One thread.

@@ -76,12 +76,7 @@ LinkConfig read_link_config(const YamlMap& map) {
     out.coding = map.choice<LinkCoding>("coding", {{"jpeg", LinkCoding::jpeg}, {"h264", LinkCoding::h264}});
   if (map.has("jpeg_quality")) out.jpeg_quality = map.integer("jpeg_quality", 1, 100);
   if (map.has("round_trip_s")) out.round_trip = read_round_trip(map);
-  if (map.has("security")) {
-    out.security = map.file().parent_path() / map.text("security");
-    if (!std::filesystem::is_directory(*out.security))
-      throw InputError(map.where("security"), "there is no folder " + out.security->string(),
-                       "make one with `foresight link keys`, and give its path, relative to the rig file");
-  }
+  if (map.has("security")) out.security = map.file().parent_path() / map.text("security");
   return out;
 }
 

@@ -38,8 +38,9 @@ struct LinkConfig {
 };
 
 /// Reads `map`, the section. Throws InputError naming file, line and field: unknown keys, numbers out of range, a name
-/// that cannot be one of an interface, a peer that is neither an address nor a host's name. Whether interface and peers
-/// exist is known where the link is opened: a rig file is read on other machines, too.
+/// that cannot be one of an interface, a peer that is neither an address nor a host's name. Whether interface, peers
+/// and keys exist is known where the link is opened: a rig file is read on other machines, too, and out of recordings,
+/// which have no keys in them.
 LinkConfig read_link_config(const YamlMap& map);
 
 }  // namespace foresight

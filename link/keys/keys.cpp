@@ -4,6 +4,7 @@
 
 #include <array>
 #include <ctime>
+#include <vector>
 
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
@@ -52,21 +53,35 @@ std::string rules() {
 }
 
 /// Topics that a role may write, of what others must be able to rely on. Everything may be read by all who are let in.
-std::string may_write(Role role) {
-  const auto publish = [](std::initializer_list<const char*> topics) {
-    std::string out = "        <publish><topics>\n";
-    for (const char* topic : topics) out += fmt::format("          <topic>{}</topic>\n", topic);
-    return out + "        </topics></publish>\n";
-  };
+std::vector<std::string> writes(Role role) {
   switch (role) {
     case Role::robot:
-      return publish({"rt/joint_states", "rt/tf", "rt/tf_static", "rt/diagnostics", "rt/left/*", "rt/right/*",
-                      "rt/foresight/frames", "rt/foresight/pieces", "rt/foresight/robot_state", "rt/foresight/set_points",
-                      "rt/foresight/gate_motion", "rt/foresight/control/robot/*"});
-    case Role::operating: return publish({"rt/foresight/reports", "rt/foresight/control/operator/*"});
+      return {"rt/joint_states",
+              "rt/tf",
+              "rt/tf_static",
+              "rt/diagnostics",
+              "rt/left/*",
+              "rt/right/*",
+              "rt/foresight/frames",
+              "rt/foresight/pieces",
+              "rt/foresight/robot_state",
+              "rt/foresight/set_points",
+              "rt/foresight/gate_motion",
+              "rt/foresight/control/robot/*"};
+    case Role::operating: return {"rt/foresight/reports", "rt/foresight/control/operator/*"};
     case Role::observer: break;
   }
-  return "";
+  return {};
+}
+
+std::string topic_element(const std::string& topic) {
+  return fmt::format("<topic>{}</topic>", topic);
+}
+
+std::string may_write(Role role) {
+  std::string out;
+  for (const std::string& topic : writes(role)) out += "          " + topic_element(topic) + "\n";
+  return out.empty() ? out : "        <publish><topics>\n" + out + "        </topics></publish>\n";
 }
 
 std::string date(std::time_t time) {
@@ -150,6 +165,9 @@ void make_keys(const fs::path& folder, int days) {
 }
 
 void check_keys(const fs::path& folder, Role role, const std::string& where) {
+  if (!fs::is_directory(folder))
+    throw InputError(where, "there is no folder " + folder.string() + " with keys",
+                     "make one with `foresight link keys`, and give its path, relative to the rig file");
   const KeyFiles files = key_files(folder, role);
   const std::string authority = read(files.authority, where, role), certificate = read(files.certificate, where, role),
                     key = read(files.key, where, role), signed_rules = read(files.rules, where, role),
@@ -166,6 +184,11 @@ void check_keys(const fs::path& folder, Role role, const std::string& where) {
     if (!is_signed_by(text, authority)) refuse(file, "was not signed by this authority, or was changed");
   if (signed_permissions.find("CN=" + subject_of(role) + "<") == std::string::npos)
     refuse(files.permissions, "does not permit the role " + std::string(to_string(role)));
+  // Signed by a version that knew fewer topics: what is missing would be told by no word of DDS's, or by one that names
+  // neither file nor cure.
+  for (const std::string& topic : writes(role))
+    if (signed_permissions.find(topic_element(topic)) == std::string::npos)
+      refuse(files.permissions, "is of an older version: it does not permit to write " + topic);
 }
 
 }  // namespace foresight::link

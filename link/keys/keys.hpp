@@ -33,9 +33,10 @@ struct KeyFiles {
 };
 KeyFiles key_files(const std::filesystem::path& folder, Role role);
 
-/// Throws InputError at `where` for what would keep the role off the line, saying which: a file that is missing or
-/// damaged, a certificate that has expired or does not count yet (with the date), one that another authority made, a
-/// key that is not the certificate's, permissions that are another role's or that another authority signed.
+/// Throws InputError at `where` for what would keep the role off the line, saying which: no folder, a file that is
+/// missing or damaged, a certificate that has expired or does not count yet (with the date), one that another authority
+/// made, a key that is not the certificate's, permissions that are another role's or that another authority signed, or
+/// that an older version made, which knew fewer topics.
 void check_keys(const std::filesystem::path& folder, Role role, const std::string& where);
 
 }  // namespace foresight::link

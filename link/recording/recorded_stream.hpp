@@ -17,6 +17,11 @@ class RecordedStream {
     StereoFrame frame;  ///< without data
     StereoPicture picture;
   };
+  /// For people, where pieces came and take() has given nothing.
+  static constexpr const char* kNothingWhole =
+      "no coded pair (h264) could be decoded: too much was lost on the way to the recorder, or an older version of the "
+      "robot's program served its operator alone";
+
   /// The newest pair that can be decoded now; mostly nothing. Takes any piece. `now` must not fall.
   std::optional<Pair> take(const StereoPiece& piece, RobotTime now);
 

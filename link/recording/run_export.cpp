@@ -12,6 +12,7 @@
 #include "link/operator_view/line_feed.hpp"
 #include "link/recording/line_recorder.hpp"
 #include "link/recording/mcap_reader.hpp"
+#include "link/recording/recorded_stream.hpp"
 #include "link/recording/rig_files.hpp"
 #include "link/robot_side/robot_messages.hpp"
 #include "session/recorder_options.hpp"
@@ -64,10 +65,7 @@ class Exporter {
     std::string out;
     if (!outcome.trouble.empty()) out += "the recording is cut: " + outcome.trouble + "\n";
     if (refused_) out += fmt::format("{} pairs left out, the last as {}\n", refused_, refusal_);
-    if (pieces_ && decoded_pieces_ == 0)
-      out +=
-          "no coded pair (h264) could be decoded: a stream is recorded from its beginning on if the recorder is there "
-          "before the operator's program\n";
+    if (pieces_ && decoded_pieces_ == 0) out += std::string(RecordedStream::kNothingWhole) + "\n";
     if (other_lenses_)
       out += fmt::format(
           "{} pairs were taken through lenses of another calibration than this rig's: export with the robot's own\n",

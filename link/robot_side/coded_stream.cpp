@@ -1,24 +1,55 @@
 #include "link/robot_side/coded_stream.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "link/messages/pair_notes.hpp"
 
 namespace foresight::link {
 
-void CodedStream::begin(std::uint64_t reader, RobotTime now) {
+void CodedStream::Fates::tell(Fate fate) {
+  // Whoever reports may say anything: of what came, the newest lanes matter alone. What is given up is bounded by
+  // what was pending.
+  constexpr std::size_t kMostKept = 1024;
+  if (!busy)
+    fate.arrived ? encoder->arrived(fate.pair) : encoder->gone(fate.pair);
+  else if (!fate.arrived || kept.size() < kMostKept)
+    kept.push_back(fate);
+}
+
+void CodedStream::Fates::coder_is_done() {
+  busy = false;
+  for (const Fate& fate : std::exchange(kept, {})) tell(fate);
+}
+
+void PairToCode::code(const Clock& clock) {
+  frame_.coding = kH264Coding;
+  frame_.stamps.taken_ns = clock.now().ns;
+  // Notes are of the pair's share. When it was coded is not known yet: it takes the same number of bytes.
+  const std::size_t notes = to_notes(frame_).size();
+  wish_.bytes -= std::min(notes, wish_.bytes / 2);
+  CodedPair coded = encoder_->encode(picture_, wish_);
+  frame_.stamps.coded_ns = clock.now().ns;
+  coded.notes = to_notes(frame_);
+  coded_ = std::move(coded);
+}
+
+void CodedStream::begin_stream(std::uint64_t reader, RobotTime now) {
   stream_.emplace(Stream{.number = ++streams_, .reader = reader, .heard = now, .sender = PairSender(options_)});
+  if (readers_ > 1) stream_->anew_due = now + kAnewEvery;
 }
 
 void CodedStream::take(const StereoReport& report) {
   const RobotTime now = clock_.now();
   if (!stream_ || (stream_->reader != report.reader && now - stream_->heard > kYields)) {
-    begin(report.reader, now);
+    begin_stream(report.reader, now);
   } else if (stream_->reader != report.reader) {
     ++counts_.refused;
     return;
   }
   stream_->heard = now;
   if (report.session == session_ && report.stream == stream_->number)
-    stream_->sender.take(report.acknowledgement, now, *stream_->encoder);
+    stream_->sender.take(report.acknowledgement, now, stream_->fates);
 }
 
 void CodedStream::offer(StereoFrame frame, StereoPicture picture) {
@@ -27,44 +58,59 @@ void CodedStream::offer(StereoFrame frame, StereoPicture picture) {
   waiting_ = Waiting{std::move(frame), std::move(picture)};
 }
 
-/// The pair that waits, into the line.
-void CodedStream::code(Stream& stream) {
-  Waiting pair = std::move(*waiting_);
-  waiting_.reset();
-  const RobotTime begin = clock_.now();
-  pair.frame.coding = kH264Coding;
-  pair.frame.stamps.taken_ns = begin.ns;
-  PairWish wish = stream.sender.wish(begin);
-  // Notes are of the pair's share. When it was coded is not known yet: it takes the same number of bytes.
-  const std::size_t notes = to_notes(pair.frame).size();
-  wish.bytes -= std::min(notes, wish.bytes / 2);
-  CodedPair coded = stream.encoder->encode(pair.picture, wish);
-  const RobotTime end = clock_.now();
-  pair.frame.stamps.coded_ns = end.ns;
-  coded.notes = to_notes(pair.frame);
-  stream.sender.hand_over(coded, end);
-  ++counts_.coded;
-}
-
-void CodedStream::take_packets(Stream& stream, std::vector<StereoPiece>& out) {
-  for (Packet& packet : stream.sender.packets(clock_.now(), *stream.encoder)) {
-    counts_.bytes += packet.size();
-    out.push_back({session_, stream.reader, stream.number, std::move(packet)});
+void CodedStream::watched_by(std::size_t readers) {
+  const bool came = readers > readers_;
+  readers_ = readers;
+  if (!stream_) return;
+  if (readers <= 1) {
+    stream_->anew_due.reset();
+  } else if (came) {
+    const RobotTime now = clock_.now();
+    stream_->anew_due = stream_->last_anew ? std::max(now, *stream_->last_anew + kAgain) : now;
+    stream_->again = true;
   }
 }
 
-std::vector<StereoPiece> CodedStream::step() {
+void CodedStream::begin_anew_if_due(Stream& stream, RobotTime now) const {
+  if (!stream.anew_due || now < *stream.anew_due) return;
+  stream.fates.encoder->begin_anew();
+  stream.last_anew = now;
+  stream.anew_due = now + (std::exchange(stream.again, false) ? kAgain : kAnewEvery);
+}
+
+std::optional<PairToCode> CodedStream::begin() {
+  const RobotTime now = clock_.now();
+  if (!waiting_ || !stream_ || stream_->fates.busy || !stream_->sender.wants_pair(now)) return std::nullopt;
+  begin_anew_if_due(*stream_, now);
+  PairToCode out;
+  out.stream_ = stream_->number;
+  out.encoder_ = stream_->fates.encoder;
+  out.wish_ = stream_->sender.wish(now);
+  out.frame_ = std::move(waiting_->frame);
+  out.picture_ = std::move(waiting_->picture);
+  waiting_.reset();
+  stream_->fates.busy = true;
+  return out;
+}
+
+void CodedStream::finish(PairToCode pair) {
+  if (!stream_ || stream_->number != pair.stream_) return;  // its reader has gone meanwhile
+  stream_->fates.coder_is_done();
+  if (!pair.coded_) return;
+  stream_->sender.hand_over(*pair.coded_, clock_.now());
+  ++counts_.coded;
+}
+
+std::vector<StereoPiece> CodedStream::packets() {
   if (stream_ && clock_.now() - stream_->heard > kForgets) stream_.reset();
   std::vector<StereoPiece> out;
   if (!stream_) {
     waiting_.reset();
     return out;
   }
-  // What was lost goes first: its packets count as on the way when the next pair is judged.
-  take_packets(*stream_, out);
-  if (waiting_ && stream_->sender.wants_pair(clock_.now())) {
-    code(*stream_);
-    take_packets(*stream_, out);
+  for (Packet& packet : stream_->sender.packets(clock_.now(), stream_->fates)) {
+    counts_.bytes += packet.size();
+    out.push_back({session_, stream_->reader, stream_->number, std::move(packet)});
   }
   return out;
 }

@@ -1,5 +1,7 @@
 #include "link/robot_side/frame_sender.hpp"
 
+#include <utility>
+
 #include "link/coding/jpeg_coder.hpp"
 #include "link/dds/topics.hpp"
 
@@ -15,7 +17,7 @@ constexpr Duration kLook = 4ms;  // while somebody reports: for reports, and for
 }  // namespace
 
 FrameSender::Thin::Thin(Participant& participant, std::uint64_t session, const Clock& clock)
-    : stream(session, clock), pieces(participant, topics::pieces()), reports(participant, topics::reports()) {}
+    : reports(participant, topics::reports()), stream(session, clock), pieces(participant, topics::pieces()) {}
 
 FrameSender::FrameSender(Participant& participant, SenderName name, const StereoLenses* lenses,
                          std::shared_ptr<FrameQueue> frames, const FrameSenderOptions& options, WallClock& wall,
@@ -40,19 +42,27 @@ FrameSender::FrameSender(Participant& participant, SenderName name, const Stereo
 }
 
 void FrameSender::start() {
+  if (thin_)
+    thin_->coder = std::jthread([this](const std::stop_token& stop) {
+      while (!stop.stop_requested())
+        if (auto pair = thin_->to_code.take(100ms)) code(std::move(*pair));
+    });
   thread_ = std::jthread([this](const std::stop_token& stop) {
     while (!stop.stop_requested() && !frames_->closed()) step(100ms);
   });
 }
 
 void FrameSender::stop() noexcept {
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
+  for (std::jthread* thread : {&thread_, thin_ ? &thin_->coder : nullptr}) {
+    if (!thread) continue;
+    thread->request_stop();
+    if (thread->joinable()) thread->join();
+  }
 }
 
 /// The next pair to go, if it is time for one.
 std::optional<LiveFramePtr> FrameSender::next(Duration timeout) noexcept {
-  auto frame = frames_->take_newest(thin_ && thin_->stream.has_reader() ? std::min(timeout, kLook) : timeout);
+  auto frame = frames_->take_newest(thin_ && counts().watched ? std::min(timeout, kLook) : timeout);
   if (frame && last_.ns != INT64_MIN && (*frame)->pair.left.time - last_ < period_) frame.reset();
   return frame;
 }
@@ -66,7 +76,7 @@ void FrameSender::step(Duration timeout) noexcept {
   } catch (const std::exception&) {  // OpenCV's coder, or no memory: the next pair is another one
     count_failure();
   }
-  if (thin_) send_pieces();
+  if (thin_) serve_line();
 }
 
 void FrameSender::send(const LiveFrame& frame) {
@@ -77,7 +87,11 @@ void FrameSender::send(const LiveFrame& frame) {
   if (pairs_) {
     send_jpeg(message, frame);
   } else {
-    thin_->stream.offer(message, {frame.pair.left.bgr, frame.pair.right.bgr, frame.pair.left.time});
+    {
+      const std::lock_guard lock(thin_->mutex);
+      thin_->stream.offer(message, {frame.pair.left.bgr, frame.pair.right.bgr, frame.pair.left.time});
+    }
+    serve_line();  // before copies are made, which takes milliseconds
   }
   send_copies(frame, message);
 }
@@ -97,13 +111,47 @@ void FrameSender::send_jpeg(StereoFrame& message, const LiveFrame& frame) {
   pairs_->write(std::move(cdr));
 }
 
-void FrameSender::send_pieces() {
+void FrameSender::serve_line() {
+  std::optional<PairToCode> pair;
   try {
+    const std::lock_guard lock(thin_->mutex);
     thin_->reports.take<StereoReport>({}, [this](StereoReport&& report, const Sample&) { thin_->stream.take(report); });
-    for (const StereoPiece& piece : thin_->stream.step()) thin_->pieces.write(piece);
+    thin_->stream.watched_by(thin_->pieces.readers());
+    send_pieces();
+    pair = thin_->stream.begin();
   } catch (const std::exception&) {
     count_failure();
   }
+  if (!pair) return;
+  if (thin_->coder.joinable())
+    thin_->to_code.put(std::move(*pair));
+  else
+    code(std::move(*pair));
+}
+
+/// This pair, and what the line wants when it is done.
+void FrameSender::code(PairToCode pair) noexcept {
+  for (std::optional<PairToCode> next(std::move(pair)); next;) {
+    PairToCode now = std::move(*std::exchange(next, std::nullopt));
+    try {
+      now.code(clock_);
+    } catch (const std::exception&) {  // the library, or no memory: the next pair is another one
+      count_failure();
+    }
+    try {
+      const std::lock_guard lock(thin_->mutex);
+      thin_->stream.finish(std::move(now));
+      send_pieces();
+      next = thin_->stream.begin();
+    } catch (const std::exception&) {
+      count_failure();
+    }
+  }
+}
+
+/// Thin's mutex is held.
+void FrameSender::send_pieces() {
+  for (const StereoPiece& piece : thin_->stream.packets()) thin_->pieces.write(piece);
   const CodedStream::Counts now = thin_->stream.counts();
   const std::lock_guard lock(mutex_);
   counts_.sent = now.coded;

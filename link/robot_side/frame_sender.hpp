@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "common/latest_value.hpp"
 #include "link/dds/endpoints.hpp"
 #include "link/robot_side/coded_stream.hpp"
 #include "link/robot_side/robot_messages.hpp"
@@ -39,7 +40,8 @@ struct FrameSenderOptions {
 };
 
 /// Always the newest pair: a coder or a line that is slow costs pairs, not age, and nobody waits for a reader.
-/// Copies are made only while somebody reads them. start() gives it a thread; step() does the same in the caller's.
+/// Copies are made only while somebody reads them. start() gives it a thread, and the coder of h264 one of its own, so
+/// that reports are taken and lost pieces sent again while it is busy; step() does the same in the caller's.
 class FrameSender {
  public:
   /// `lenses` may be null. `participant`, `wall` and `clock` must outlive this.
@@ -58,13 +60,18 @@ class FrameSender {
   /// Of h264.
   struct Thin {
     Thin(Participant& participant, std::uint64_t session, const Clock& clock);
+    Reader reports;
+    std::mutex mutex;  // stream, pieces
     CodedStream stream;
     Writer pieces;
-    Reader reports;
+    LatestValue<PairToCode> to_code;  // one at most: there is no other one until it is finished
+    std::jthread coder;
   };
   std::optional<LiveFramePtr> next(Duration timeout) noexcept;
   void send(const LiveFrame& frame);
   void send_jpeg(StereoFrame& message, const LiveFrame& frame);
+  void serve_line();
+  void code(PairToCode pair) noexcept;
   void send_pieces();
   void send_copies(const LiveFrame& frame, const StereoFrame& message);
   void count_failure() noexcept;
@@ -83,7 +90,7 @@ class FrameSender {
   std::optional<Thin> thin_;     // of h264
   Writer transforms_;
   std::array<Writer, 2> images_, infos_;
-  mutable std::mutex mutex_;  // counts_
+  mutable std::mutex mutex_;  // counts_; taken after Thin's
   FrameCounts counts_;
   std::jthread thread_;
 };

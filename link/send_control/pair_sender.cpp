@@ -80,15 +80,15 @@ bool PairSender::worth_sending(const Pending& pending, std::size_t lost, RobotTi
   return age < kOfUse || (age < kNeverOfUse && 2 * lost < pending.arrived.size());
 }
 
-void PairSender::give_up(std::uint32_t pair, PairEncoder& encoder) {
-  encoder.gone(pair);
+void PairSender::give_up(std::uint32_t pair, PairFates& fates) {
+  fates.gone(pair);
   pending_.erase(pair);
   // What builds on it is of no use either.
   for (auto next = pending_.upper_bound(pair); next != pending_.end(); ++next)
-    if (next->second.reference == pair) return give_up(next->first, encoder);
+    if (next->second.reference == pair) return give_up(next->first, fates);
 }
 
-void PairSender::take(std::span<const std::uint8_t> packet, RobotTime now, PairEncoder& encoder) {
+void PairSender::take(std::span<const std::uint8_t> packet, RobotTime now, PairFates& fates) {
   const auto parsed = parse_packet(packet);
   const auto* acknowledgement = std::get_if<Acknowledgement>(&parsed);
   if (!acknowledgement) return;
@@ -100,7 +100,7 @@ void PairSender::take(std::span<const std::uint8_t> packet, RobotTime now, PairE
   }
   for (const std::uint32_t pair : acknowledgement->decoded) {
     if (pair > last_number_) continue;
-    encoder.arrived(pair);
+    fates.arrived(pair);
     const auto pending = pending_.find(pair);
     if (pending == pending_.end()) continue;
     if (!shown_ || pending->second.handed_over > *shown_) shown_ = pending->second.handed_over;
@@ -108,11 +108,11 @@ void PairSender::take(std::span<const std::uint8_t> packet, RobotTime now, PairE
   }
   if (acknowledgement->undecodable > last_undecodable_ && acknowledgement->undecodable <= last_number_) {
     last_undecodable_ = acknowledgement->undecodable;
-    give_up(last_undecodable_, encoder);
+    give_up(last_undecodable_, fates);
   }
 }
 
-std::vector<Packet> PairSender::packets(RobotTime now, PairEncoder& encoder) {
+std::vector<Packet> PairSender::packets(RobotTime now, PairFates& fates) {
   std::vector<Packet> out;
   std::map<std::uint32_t, std::vector<std::uint16_t>> lost;
   for (const Transmissions::Sent& sent : transmissions_.lost(now))
@@ -121,7 +121,7 @@ std::vector<Packet> PairSender::packets(RobotTime now, PairEncoder& encoder) {
     const auto pending = pending_.find(pair);
     if (pending == pending_.end()) continue;
     if (!worth_sending(pending->second, pieces.size(), now)) {
-      give_up(pair, encoder);
+      give_up(pair, fates);
       continue;
     }
     for (const std::uint16_t index : pieces) send_piece(pair, index, now, out);
@@ -130,7 +130,7 @@ std::vector<Packet> PairSender::packets(RobotTime now, PairEncoder& encoder) {
   fresh_.clear();
   if (transmissions_.question_due(now))
     out.push_back(to_packet(Question{transmissions_.send(0, 0, to_packet(Question{}).size(), now)}));
-  while (pending_.size() > kMostPending) give_up(pending_.begin()->first, encoder);
+  while (pending_.size() > kMostPending) give_up(pending_.begin()->first, fates);
   return out;
 }
 

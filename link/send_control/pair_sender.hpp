@@ -43,10 +43,10 @@ class PairSender {
   /// use, they are sent again.
   void hand_over(const CodedPair& pair, RobotTime now);
 
-  /// Takes any bytes; of what is no acknowledgement nothing happens. What it says about pairs goes to `encoder`.
-  void take(std::span<const std::uint8_t> packet, RobotTime now, PairEncoder& encoder);
-  /// Packets to send now. Tells `encoder` which pairs are given up.
-  std::vector<Packet> packets(RobotTime now, PairEncoder& encoder);
+  /// Takes any bytes; of what is no acknowledgement nothing happens. What it says about pairs goes to `fates`.
+  void take(std::span<const std::uint8_t> packet, RobotTime now, PairFates& fates);
+  /// Packets to send now. Tells `fates` which pairs are given up.
+  std::vector<Packet> packets(RobotTime now, PairFates& fates);
   /// When `packets` may have something without anything else happening.
   std::optional<RobotTime> due() const { return transmissions_.due(); }
 
@@ -62,7 +62,7 @@ class PairSender {
     std::size_t missing = 0;
   };
   void send_piece(std::uint32_t pair, std::uint16_t index, RobotTime now, std::vector<Packet>& out);
-  void give_up(std::uint32_t pair, PairEncoder& encoder);
+  void give_up(std::uint32_t pair, PairFates& fates);
   bool worth_sending(const Pending& pending, std::size_t lost, RobotTime now) const;
   int pairs_on_the_way() const;
 

@@ -18,7 +18,7 @@ auto refused_as(const char* text) {
 TEST(LinkConfig, EveryKeyIsRead) {
   const LinkConfig config = read(
       "domain: 7\ninterface: wg0\npeers: [10.8.0.2, operator.lab]\njoint_rate_hz: 100\nstate_rate_hz: 5\n"
-      "image_rate_hz: 15\ncoding: h264\njpeg_quality: 70\nround_trip_s: 0.6\n");
+      "image_rate_hz: 15\ncoding: h264\njpeg_quality: 70\nround_trip_s: 0.6\nsecurity: keys\n");
   EXPECT_EQ(config.domain, 7);
   EXPECT_EQ(config.interface, "wg0");
   EXPECT_EQ(config.peers, (std::vector<std::string>{"10.8.0.2", "operator.lab"}));
@@ -28,6 +28,7 @@ TEST(LinkConfig, EveryKeyIsRead) {
   EXPECT_EQ(config.coding, LinkCoding::h264);
   EXPECT_EQ(config.jpeg_quality, 70);
   EXPECT_EQ(config.round_trip, std::chrono::milliseconds(600));
+  EXPECT_EQ(config.security, "keys") << "whether it is there matters where the link is opened";
   EXPECT_FALSE(config.loopback());
 }
 

@@ -5,7 +5,10 @@
 
 #include "child.hpp"
 #include "common/error.hpp"
+#include "common/read_file.hpp"
 #include "link/dds/endpoints.hpp"
+#include "link/dds/topics.hpp"
+#include "link/keys/certificates.hpp"
 #include "link/keys/keys.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/private_network.hpp"
@@ -45,6 +48,11 @@ TEST_F(Keys, WhatIsMissingIsNamed) {
   EXPECT_EQ(refusal(Role::observer), "no error") << "others do not need it";
 }
 
+TEST_F(Keys, AFolderThatIsMissingIsNamed) {
+  fs::remove_all(folder_ / "keys");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("rig.yaml:4: link.security: there is no folder "), HasSubstr("link keys")));
+}
+
 TEST_F(Keys, WhatHasExpiredIsNamedWithItsDate) {
   make_keys(folder_ / "old", -1);
   fs::remove_all(folder_ / "keys");
@@ -77,6 +85,22 @@ TEST_F(Keys, WhatWasChangedIsNamed) {
   EXPECT_THAT(refusal(Role::observer), HasSubstr("was not signed by this authority, or was changed"));
   std::ofstream(file("robot", "certificate.pem")) << "-----BEGIN CERTIFICATE-----\nnonsense\n";
   EXPECT_THAT(refusal(), HasSubstr("certificate.pem is no certificate"));
+}
+
+TEST_F(Keys, WhatAnOlderVersionMadeIsNamedWithWhatItLacks) {
+  const std::string signed_text = read_file(file("robot", "permissions.p7s"));
+  const std::size_t begin = signed_text.find("<?xml"), end = signed_text.find("</dds>");
+  ASSERT_LT(begin, end);
+  std::string text = signed_text.substr(begin, end - begin) + "</dds>\n";
+  const std::string topic = "<topic>rt/foresight/gate_motion</topic>";
+  const std::size_t at = text.find(topic);
+  ASSERT_NE(at, text.npos);
+  text.erase(at, topic.size());
+  const Identity authority{read_file(file("authority", "key.pem")), read_file(file("authority", "certificate.pem"))};
+  std::ofstream(file("robot", "permissions.p7s")) << sign(authority, text);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("permissions.p7s is of an older version: it does not permit to write "
+                                         "rt/foresight/gate_motion"),
+                               HasSubstr("make keys anew with `foresight link keys`")));
 }
 
 // --- on the wire ----------------------------------------------------------------------------------------------------
@@ -142,6 +166,17 @@ TEST_F(SecuredLine, AnOperatorCannotSpeakForTheRobot) {
         Writer(program, {"rt/foresight/frames", Header::kType});
       },
       testing::ThrowsMessage<RuntimeFailure>(HasSubstr("certificate does not permit it")));
+}
+
+// Whatever this version writes, its keys permit.
+TEST_F(SecuredLine, ARobotMayWriteAllTopicsOfARobot) {
+  Participant robot(with("keys"), "robot", Role::robot);
+  for (const Topic& topic :
+       {topics::frames(), topics::pieces(), topics::robot_state(), topics::gate_motion(), topics::joint_states(),
+        topics::set_points(), topics::transforms(), topics::static_transforms(), topics::diagnostics(),
+        topics::compressed_images("left"), topics::compressed_images("right"), topics::camera_info("left"),
+        topics::camera_info("right")})
+    EXPECT_NO_THROW(Writer(robot, topic)) << topic.name;
 }
 
 TEST_F(SecuredLine, WrongKeysAreToldBeforeAnythingIsSent) {

@@ -1,5 +1,6 @@
 // The robot's coded stream and the operator's intake with a line between them, in stepped time: bytes as DDS carries
 // them, nothing of DDS.
+#include <algorithm>
 #include <map>
 
 #include "described.hpp"
@@ -49,10 +50,23 @@ class CodedLine : public testing::Test {
       sent_[++number_] = picture;
       stream_->offer(described(session_, number_, picture), picture);
     }
-    for (const StereoPiece& piece : stream_->step()) {
+    send_pieces();
+    if (!in_coder_)
+      if (auto pair = stream_->begin()) {
+        pair->code(clock_);
+        in_coder_.emplace(now + coding_takes_, std::move(*pair));
+      }
+    if (!in_coder_ || now < in_coder_->first) return;
+    stream_->finish(std::move(in_coder_->second));
+    in_coder_.reset();
+    send_pieces();
+  }
+  void send_pieces() {
+    for (const StereoPiece& piece : stream_->packets()) {
       ASSERT_EQ(objection(piece), "");
       ++pieces_;
-      up_.send(now, to_cdr(piece));
+      while_coding_ += in_coder_.has_value();
+      up_.send(clock_.now(), to_cdr(piece));
     }
   }
   void operator_step() {
@@ -61,11 +75,14 @@ class CodedLine : public testing::Test {
       const auto piece = from_cdr<StereoPiece>(*packet);
       ASSERT_TRUE(piece);
       if (const LineFramePtr frame = intake_->take(*piece, RobotClockTracker())) came_.push_back(frame);
+      if (!onlooker_) continue;
+      for (const foresight::ReceivedPair& pair : onlooker_->take(piece->data, now)) seen_.push_back(pair.picture);
     }
     if (!listens_) return;
     if (const auto report = intake_->report()) down_.send(now, to_cdr(*report));
   }
   void restart_robot() {
+    in_coder_.reset();
     stream_.emplace(++session_, clock_);
     number_ = 0;
     sent_.clear();
@@ -112,6 +129,11 @@ class CodedLine : public testing::Test {
   std::map<std::uint64_t, StereoPicture> sent_;
   std::vector<LineFramePtr> came_;
   std::size_t pieces_ = 0, reports_ = 0;
+  Duration coding_takes_{0};
+  std::optional<std::pair<RobotTime, PairToCode>> in_coder_;  // until then
+  std::size_t while_coding_ = 0;                              // pieces
+  std::optional<PairReceiver> onlooker_;                      // hears what the reader hears, and reports nothing
+  std::vector<StereoPicture> seen_;
 };
 
 TEST_F(CodedLine, EveryPairKnowsItsInstantItsPosesAndItsJoints) {
@@ -204,6 +226,57 @@ TEST_F(CodedLine, AnOutageIsGotOverWithinItsLine) {
   run(1500ms);
   ASSERT_FALSE(came_.empty());
   EXPECT_GT(came_.back()->image[0].captured, end) << "pairs of after the outage";
+  expect_true(28);
+}
+
+// Reports are taken and what was lost is sent again while a pair is with the coder for five periods of the camera; what
+// is said of pairs meanwhile reaches it.
+TEST_F(CodedLine, ACoderThatTakesLongHoldsUpNothingButPairs) {
+  LineSpec line = good_line();
+  line.up.loss = 0.1;
+  up_ = PacketLine(line.up, RobotTime{}, 5);
+  coding_takes_ = 160ms;
+  run(8s);
+  EXPECT_GT(came_.size(), 35u) << "of 50 that the coder has time for";
+  EXPECT_EQ(intake_->counts().refused, 0u) << intake_->counts().refusal;
+  EXPECT_GT(while_coding_, 10u) << "what was lost, again, and questions";
+  std::vector<double> ages_ms;
+  for (const LineFramePtr& frame : came_)
+    ages_ms.push_back(1e-6 * static_cast<double>(frame->arrived.ns - frame->image[0].captured.ns));
+  std::ranges::sort(ages_ms);
+  EXPECT_LT(ages_ms[ages_ms.size() * 9 / 10], 500) << "coding, two ways and a copy";
+  expect_true(26);
+}
+
+TEST_F(CodedLine, WhoLooksOnLaterHasPairsToo) {
+  run(2s);
+  const auto look_on = [this] {
+    onlooker_.emplace(make_pair_decoder());
+    seen_.clear();
+    came_.clear();
+  };
+  const auto expect_the_same = [this] {
+    for (const StereoPicture& picture : seen_) {
+      const auto there = std::ranges::find(came_, picture.captured,
+                                           [](const LineFramePtr& frame) { return frame->image[0].captured; });
+      ASSERT_NE(there, came_.end());
+      EXPECT_EQ(cv::norm((*there)->image[0].bgr, picture.left, cv::NORM_INF), 0);
+    }
+  };
+  stream_->watched_by(1);
+  look_on();
+  run(1s);
+  EXPECT_EQ(seen_.size(), 0u) << "or nothing is shown here: pairs build on earlier ones";
+  look_on();
+  stream_->watched_by(2);
+  run(1s);
+  EXPECT_GT(seen_.size() + 3, came_.size());
+  expect_the_same();
+  look_on();  // it alone lost some
+  run(CodedStream::kAnewEvery + 1s);
+  EXPECT_GT(seen_.size(), 0u);
+  expect_the_same();
+  onlooker_.reset();
   expect_true(28);
 }
 

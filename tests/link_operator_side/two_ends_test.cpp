@@ -53,6 +53,7 @@ class TwoEnds : public PrivateNetworkTest {
     out.seat.identity = identity_;
     out.seat.draw = counting(1'000'000);
     out.expected = {{}, robot_.rig().joint_names(), {{160, 120, 160, 120}}};
+    out.asleep = [this] { return asleep_; };
     return out;
   }
   /// 8 ms of both sides; a pair every 40 ms.
@@ -78,6 +79,58 @@ class TwoEnds : public PrivateNetworkTest {
         if (const auto frame = source.arrived()) shown_.emplace_back(number_of(frame->left.time), *frame);
       }
     }
+  }
+  /// 8 ms of both sides, the operator's commanding where it holds the lease, unless its program stands still.
+  void drive(const LinePositions& positions, bool deadman, bool stands_still = false) {
+    robot_.run(8ms);
+    const RobotTime now = robot_.clock().now();
+    states_.step(now);
+    Commander* const commander = &served_;
+    foresight::serve(std::span(&commander, 1), robot_.robot(), now);
+    if (stands_still) return;
+    end_.seat([&](ControlSeat& seat, OperatorTime here) {
+      if (seat.status(here).phase == ControlSeatStatus::Phase::holding) seat.command(here, positions, deadman);
+    });
+    end_.step();
+  }
+  ControlState told() {
+    return end_.seat([](ControlSeat& seat, OperatorTime) { return seat.state(); });
+  }
+  ControlSeatStatus seat_status() {
+    return end_.seat([](ControlSeat& seat, OperatorTime now) { return seat.status(now); });
+  }
+  /// Until the robot is ready for a press, and the open switch was seen. Where set-points begin then.
+  LinePositions get_ready() {
+    for (int i = 0; i < 500 && !(told().ready && seat_status().phase == ControlSeatStatus::Phase::holding); ++i)
+      drive({}, false);
+    EXPECT_TRUE(told().ready) << seat_status().words;
+    for (int i = 0; i < 5; ++i) drive(told().begin, false);
+    return told().begin;
+  }
+  /// The elbow goes by 0.2 rad in a second; what was commanded last.
+  LinePositions swing() {
+    LinePositions positions = get_ready();
+    for (int i = 0; i < 125; ++i) {
+      drive(positions, true);
+      positions[robot_.joint("elbow")] += 0.0016;
+    }
+    EXPECT_EQ(robot_.robot().status().gate.state, GateState::following) << seat_status().words;
+    return positions;
+  }
+  /// Its program goes on with what it had under way, farther, and the switch held: nothing moves until it is let go of.
+  void expect_no_motion_before_another_press(LinePositions positions) {
+    robot_.expect_at_rest("when the operator's program goes on");
+    const std::size_t elbow = robot_.joint("elbow");
+    const double rest = robot_.shaft(elbow).position;
+    positions[elbow] += 0.3;
+    for (int i = 0; i < 400; ++i) {  // long enough for the lease to be there again
+      drive(positions, true);
+      ASSERT_NE(robot_.robot().status().gate.state, GateState::following) << i;
+    }
+    EXPECT_NEAR(robot_.shaft(elbow).position, rest, 1e-4);
+    EXPECT_TRUE(seat_status().must_let_go) << seat_status().words;
+    swing();
+    robot_.expect_limits_kept("all the while");
   }
   std::uint64_t number_of(RobotTime time) const {
     for (const auto& [number, frame] : sent_frames_)
@@ -105,6 +158,7 @@ class TwoEnds : public PrivateNetworkTest {
     }
   }
 
+  Duration asleep_{0};  // the operator's host
   LiveRobot robot_{"minerva.yaml"};
   Identity identity_ = rig_identity(robot_.rig(), source_folder() / "configs" / "minerva.yaml", "test");
   StereoLenses lenses_ = small_lenses();
@@ -181,6 +235,36 @@ TEST_F(TwoEnds, AReaderOfPiecesThatStopsHoldsUpNobody) {
   EXPECT_GE(shown_.size(), 25u);
   EXPECT_EQ(robot_.robot().status().gate.state, GateState::following);
   robot_.expect_limits_kept("while a reader takes nothing");
+}
+
+/// An operator's end that commands, in place of who moved the robot so far.
+class Driven : public TwoEnds {
+ protected:
+  void SetUp() override {
+    TwoEnds::SetUp();
+    if (IsSkipped()) return;
+    robot_.robot().submit(robot_.command(false));
+    robot_.run(2s);
+    end_.seat([](ControlSeat& seat, OperatorTime) { seat.want_control(true); });
+  }
+};
+
+// Stopped by a signal or a debugger, or its host swaps: time goes on, and set-points expire.
+TEST_F(Driven, AfterTheOperatorsProgramStoodStillNothingMovesWithoutAnotherPress) {
+  const LinePositions positions = swing();
+  for (int i = 0; i < 625; ++i) {  // 5 s
+    drive({}, true, /*stands_still=*/true);
+    if (i > 125) robot_.expect_at_rest("a second after the last word");
+  }
+  expect_no_motion_before_another_press(positions);
+}
+
+// Its host was suspended: its own clock stood still meanwhile, and what it had under way looks fresh to it.
+TEST_F(Driven, AfterTheOperatorsHostWasSuspendedNothingMovesWithoutAnotherPress) {
+  LinePositions positions = swing();
+  asleep_ += 5s;
+  for (int i = 0; i < 125; ++i) drive(positions, true);
+  expect_no_motion_before_another_press(positions);
 }
 
 // --- in real time ---------------------------------------------------------------------------------------------------

@@ -266,6 +266,44 @@ TEST_F(RecordedLine, PairsOfAThinLineBecomeARunToo) {
   EXPECT_EQ(played, shown.size());
 }
 
+// The stream has gone on for a while; who records reports nothing, and asks for nothing.
+TEST_F(RecordedLine, ARecorderThatComesLateHasPairsFromThenOn) {
+  const auto queue = std::make_shared<FrameQueue>(2);
+  FrameSender thin(program_, {1, robot_.rig().joint_names()}, &*scene_.lenses(), queue, {LinkCoding::h264, 90, 30},
+                   wall_, robot_.clock());
+  PairIntake intake(42, {}, robot_.clock());
+  Reader pieces(program_, topics::pieces());
+  Writer reports(program_, topics::reports());
+  std::vector<LineFramePtr> before, since;
+  constexpr int kComes = 150;
+  for (int i = 0; i < 300; ++i) {
+    robot_.run(10ms);
+    if (i >= kComes) {
+      recorder_.step(robot_.clock().now());
+      file_.step();
+    }
+    if (i % 10 == 0) queue->put(next_pair());
+    thin.step(0ns);
+    pieces.take<StereoPiece>({}, [&](StereoPiece&& piece, const Sample&) {
+      if (const LineFramePtr frame = intake.take(piece, RobotClockTracker()))
+        (i < kComes ? before : since).push_back(frame);
+    });
+    if (const auto report = intake.report()) reports.write(*report);
+  }
+  finish();
+  ASSERT_GT(before.size(), 8u);
+  ASSERT_GT(since.size(), 8u);
+  const RunExport made = export_run({path_, folder_ / "run", {}, {}, false});
+  EXPECT_GE(made.pairs + 2, since.size());
+  const RunFolder run = RunFolder::open(folder_ / "run", {});
+  for (const auto& [left, right] : run.frames()) {
+    const auto shown =
+        std::ranges::find(since, left.time, [](const LineFramePtr& frame) { return frame->image[0].captured; });
+    ASSERT_NE(shown, since.end());
+    EXPECT_EQ(cv::norm(read_run_image(left, run.lens_left()), (*shown)->image[0].bgr, cv::NORM_INF), 0);
+  }
+}
+
 // The same robot, and one that was started anew, hear all that the operator said once more.
 TEST_F(RecordedLine, RecordedCommandsMoveNothing) {
   move_and_send_pairs();

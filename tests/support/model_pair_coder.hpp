@@ -41,6 +41,7 @@ class ModelPairEncoder final : public PairEncoder {
   }
   void arrived(std::uint32_t number) override { lanes_.arrived(number); }
   void gone(std::uint32_t number) override { lanes_.gone(number); }
+  void begin_anew() override { lanes_.begin_anew(); }
 
  private:
   Options options_;

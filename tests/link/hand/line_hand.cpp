@@ -80,8 +80,7 @@ class Hand {
   }
 
   void hold(OperatorTime now, const ControlSeatStatus& status) {
-    if (std::exchange(press_anew, 0)) pressed_ = followed_ = false;
-    if (pressed_ && !followed_ && now - *ready_ > 2s) pressed_ = false;
+    if (std::exchange(press_anew, 0) || (pressed_ && !followed_ && now - *ready_ > 2s)) let_go();
     if (status.follows) {
       followed_ = true;
       tell_.say("follows");
@@ -98,6 +97,12 @@ class Hand {
     // Towards zero: whoever begins anew again and again stays where the arm has room.
     positions[elbow_] += (begin_[elbow_] > 0 ? -0.15 : 0.15) * (1 - std::cos(std::numbers::pi * swing_));
     seat_.command(now, positions, pressed_);
+  }
+
+  /// For as long as a robot that is ready is looked at before a press, so that the open switch is seen.
+  void let_go() {
+    pressed_ = followed_ = false;
+    ready_.reset();
   }
 
   /// Asks for all that may be missing; what is not is refused. Presses once the robot has been ready for a while.
