@@ -10,6 +10,7 @@
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "rig/joint_limits.hpp"
+#include "rig/loose_things.hpp"
 #include "scene/yaml_fields.hpp"
 
 namespace foresight {
@@ -277,7 +278,7 @@ std::unique_ptr<RobotShape> Rig::shape() const {
 
 Rig read_rig(const std::filesystem::path& file) {
   const YamlMap map = YamlMap::load(file);
-  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "scene", "cameras", "calibration", "link"});
+  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "scene", "cameras", "calibration", "link", "things"});
   Rig rig;
   rig.name = map.text("name");
   if (map.has("robot")) read_robot(map.map("robot"), rig);
@@ -294,6 +295,7 @@ Rig read_rig(const std::filesystem::path& file) {
   }
   if (map.has("link")) rig.link = read_link_config(map.map("link"));
   rig.link.where = map.where("link");
+  read_loose_things(map);  // who predicts them reads them; a mistake in them is told by all commands
   rig.gate_options().validate(file.string());
   return rig;
 }

@@ -45,9 +45,24 @@ void PredictedSource::take_frames() {
     if (!posed) continue;
     any_posed_ = true;
     places_.saw(posed->left, positions_of((*frame)->joints));
+    if (things_) let_things_see(*frame, *posed);
     if (waiting_) ++overtaken_;
     waiting_ = std::move(posed);
   }
+}
+
+// What the image itself says of where things were in it counts for its own textures, too.
+void PredictedSource::let_things_see(const link::LineFramePtr& frame, PosedFrame& posed) {
+  things_->saw(posed, [frame](std::string_view name) { return frame->joints.position(name); });
+  things_->place(posed.left.scene);
+  if (posed.right) things_->place(posed.right->scene);
+}
+
+// Often enough for what is gripped and falls, whatever the rate of pictures.
+void PredictedSource::advance_things() {
+  if (!things_ || clock_.now() < things_due_) return;
+  things_due_ = clock_.now() + kThingsEvery;
+  things_->advance(seat_.look_ahead());
 }
 
 // Of the grid of the robot's own images the newest instant that may be shown, if it was not yet.
@@ -62,6 +77,7 @@ std::optional<RobotTime> PredictedSource::next_instant(RobotTime until) {
 }
 
 SourceState PredictedSource::advance() {
+  advance_things();
   if (options_.real_time) {
     clock_.sleep_until(std::min(due_, clock_.now() + kLongestWait));
     if (clock_.now() < due_) return SourceState::waiting;

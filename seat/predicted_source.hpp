@@ -37,8 +37,9 @@ class PredictedSource final : public FrameSource {
   std::uint64_t overtaken() const override { return overtaken_; }
   std::string fault() const override;
 
-  /// From now on things are where these say; null: where the model has them. Outlives this.
-  void show_things(const ThingsOutlook* things) { things_ = things; }
+  /// From now on things are where these say, which are told of the robot and shown all images; null: where the model
+  /// has them. Outlives this.
+  void show_things(ThingsOutlook* things) { things_ = things; }
   /// Of every frame that comes, in this source's thread.
   void listen(std::function<void(const link::LineFrame&)> heard) { listener_ = std::move(heard); }
   /// The robot as it is shown.
@@ -47,7 +48,11 @@ class PredictedSource final : public FrameSource {
   const link::LineFramePtr& newest() const { return newest_; }
 
  private:
+  static constexpr Duration kThingsEvery = std::chrono::milliseconds(20);
+
   void take_frames();
+  void let_things_see(const link::LineFramePtr& frame, PosedFrame& posed);
+  void advance_things();
   std::optional<RobotTime> next_instant(RobotTime until);
 
   const Rig& rig_;
@@ -57,7 +62,8 @@ class PredictedSource final : public FrameSource {
   Clock& clock_;
   PredictedSourceOptions options_;
   PredictedPlaces places_;
-  const ThingsOutlook* things_ = nullptr;
+  ThingsOutlook* things_ = nullptr;
+  RobotTime things_due_;
   std::function<void(const link::LineFrame&)> listener_;
   link::LineFramePtr newest_;
   std::optional<PosedFrame> waiting_;

@@ -2,33 +2,40 @@
 
 #include <algorithm>
 
+#include "common/real_time.hpp"
 #include "rig/rig_scene.hpp"
 #include "seat/predicted_place.hpp"
 #include "sim/physics/lab_things.hpp"
 
 namespace foresight {
 
-std::vector<KnownThing> mock_things() {
-  std::vector<KnownThing> out;
-  for (const sim::LooseThing& thing : sim::lab_things()) out.push_back({thing.name, thing.mass, thing.surface});
+std::vector<LooseThing> things_about(const std::filesystem::path& rig_file, const LiveScene& scene, bool physics) {
+  std::vector<LooseThing> out = loose_things(rig_file);
+  if (!out.empty() || !scene.is_mock() || !physics) return out;
+  for (const sim::LooseThing& thing : sim::lab_things()) out.push_back({thing.name, thing.mass, thing.surface, {}});
   return out;
 }
 
-ThingsOutlook::ThingsOutlook(const Rig& rig, std::shared_ptr<const LiveScene> scene, std::vector<KnownThing> things)
-    : rig_(rig), scene_(std::move(scene)) {
+ThingsOutlook::ThingsOutlook(const Rig& rig, std::shared_ptr<const LiveScene> scene,
+                             const std::vector<LooseThing>& things, bool in_background)
+    : rig_(rig), scene_(std::move(scene)), in_background_(in_background) {
   for (const RigJoint& joint : rig.joints)
     if (joint.group == JointGroup::gripper) options_.jaws.push_back(joint.drive.name);
-  const std::vector<Node>& nodes = scene_->model()->nodes();
-  for (KnownThing& thing : things) {
-    const auto found = std::ranges::find(nodes, thing.node, &Node::name);
-    if (found == nodes.end()) continue;
-    nodes_.push_back(static_cast<std::size_t>(found - nodes.begin()));
-    options_.things.push_back(std::move(thing));
+  if (!scene_->model()) return;
+  std::vector<SoughtThing> sought;
+  for (const LooseThing& thing : things) {
+    const auto node = scene_->model()->find(thing.node);
+    if (!node) continue;
+    nodes_.push_back(static_cast<std::size_t>(*node));
+    options_.things.push_back({thing.node, thing.mass, thing.surface});
+    sought.push_back({nodes_.back(), thing.tag});
   }
+  if (!sought.empty() && scene_->lenses())
+    finder_ = std::make_unique<ThingFinder>(scene_->model(), std::move(sought), *scene_->lenses());
 }
 
 void ThingsOutlook::advance(const PredictedRobot& robot) {
-  if (robot.status == StateStatus::invalid || (!past_.empty() && robot.time <= past_.back().time)) return;
+  if (robot.status == StateStatus::invalid || (future_ && robot.time <= future_->time())) return;
   const JointPositions by_name = positions_of(rig_, robot.position);
   const JointPositions joints = [&](std::string_view name) { return by_name(shaft_name(rig_, name)); };
   if (!future_) {
@@ -41,17 +48,74 @@ void ThingsOutlook::advance(const PredictedRobot& robot) {
     future_ = std::make_unique<ThingFuture>(*scene_->model(), driven, poses, options_, robot.time, joints);
   }
   future_->advance(robot.time, joints);
-  Moment& now = past_.emplace_back();
-  now.time = robot.time;
-  for (std::size_t i = 0; i < future_->size(); ++i) now.T_world_thing.push_back(future_->thing(i).T_world_thing);
-  while (robot.time - past_.front().time > seconds(kRemembered)) past_.pop_front();
+  take_looked();
+}
+
+void ThingsOutlook::saw(const PosedFrame& frame, const JointPositions& joints) {
+  take_looked();
+  if (!finder_ || !future_) return;
+  if (look_) {
+    ++counts_.skipped;
+    return;
+  }
+  std::vector<ExpectedThing> expected;
+  for (std::size_t i = 0; i < future_->size(); ++i) {
+    const auto then = future_->at(i, frame.left.time);
+    if (!then) return;  // of before all that is remembered
+    const PredictedThing now = future_->thing(i);
+    expected.push_back({*then, now.held, now.status == ThingStatus::falling});
+  }
+  ++counts_.looked;
+  const JointPositions named = [&rig = rig_, joints](std::string_view name) { return joints(shaft_name(rig, name)); };
+  if (!in_background_) {
+    learn(finder_->look(frame, expected), named, frame.left.time);
+    return;
+  }
+  look_.emplace(named, frame.left.time, std::async(std::launch::async, [finder = finder_.get(), frame, expected] {
+                  make_background();
+                  return finder->look(frame, expected);
+                }));
+}
+
+void ThingsOutlook::take_looked() {
+  if (!look_ || look_->found.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  const FoundThings found = look_->found.get();
+  learn(found, look_->joints, look_->captured);
+  look_.reset();
+}
+
+void ThingsOutlook::learn(const FoundThings& found, const JointPositions& joints, RobotTime captured) {
+  for (const ThingSighting& sighting : found.sightings) {
+    const SightingResult result = future_->correct(sighting, &joints);
+    counts_.taken += result == SightingResult::taken ? 1 : 0;
+    counts_.moved += result == SightingResult::moved ? 1 : 0;
+    counts_.taken_back += result == SightingResult::taken_back ? 1 : 0;
+  }
+  for (const std::size_t thing : found.missing) {
+    ++counts_.missing;
+    future_->absent(thing, captured);
+  }
 }
 
 void ThingsOutlook::place(SceneState& state) const {
-  if (past_.empty()) return;
-  auto after = std::ranges::lower_bound(past_, state.time, {}, &Moment::time);
-  if (after == past_.end()) --after;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) state.T_world_node[nodes_[i]] = after->T_world_thing[i];
+  if (!future_) return;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const auto then = state.time < future_->time() ? future_->at(i, state.time) : std::nullopt;
+    state.T_world_node[nodes_[i]] = then ? *then : future_->thing(i).T_world_thing;
+  }
+}
+
+std::vector<std::string> ThingsOutlook::lines() const {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; future_ && i < future_->size(); ++i) {
+    const PredictedThing thing = future_->thing(i);
+    const std::string& name = options_.things[i].node;
+    if (thing.status == ThingStatus::unsure)
+      out.push_back(name + (std::isinf(thing.sigma) ? ": not where it was, not found" : ": images show it elsewhere"));
+    else if (thing.held)
+      out.push_back(name + ": in the hand");
+  }
+  return out;
 }
 
 }  // namespace foresight

@@ -78,14 +78,13 @@ class LiveSeat {
         seat_(rig, end_, driver_, clock_),
         window_(open_seat_window("Foresight: " + rig.name, context_api(options))),
         session_(*window_, setup_),
+        things_(rig, scene_, things_about(options.rig_file, *scene_, options.physics), true),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
         hand_(rig, driver_.options()),
         shown_(*window_, session_, setup_.left, seat_, source_, window_options()) {
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
-    if (!options.physics) return;
-    things_.emplace(rig, scene_, mock_things());
-    source_.show_things(&*things_);
+    source_.show_things(&things_);
   }
 
   int run() {
@@ -159,7 +158,6 @@ class LiveSeat {
       if (event.down && event.code == kF1) shown_.toggle_help();
       if (event.down && event.code == kTab) shown_.next_picture();
     }
-    if (things_) things_->advance(seat_.look_ahead());
     const ViewPlace place = source_.place();
     driver_.look_from(place.T_world_camera);
     driver_.scene_stands(place.scene.T_world_node);
@@ -193,8 +191,8 @@ class LiveSeat {
   Seat seat_;
   std::unique_ptr<gl::Window> window_;
   ViewSession session_;
+  ThingsOutlook things_;
   PredictedSource source_;
-  std::optional<ThingsOutlook> things_;
   HandOverlay hand_;
   SeatWindow shown_;
   std::optional<SeatHead> head_;

@@ -68,9 +68,8 @@ class Trial {
       measures_.compare_without_line([this](RobotTime instant) { return without_line(instant); });
     }
     if (options.physics) {
-      things_.emplace(rig, scene_, mock_things());
+      things_.emplace(rig, scene_, things_about(options.rig_file, *scene_, true), false);
       source_.show_things(&*things_);
-      clock_.every(20ms, [this](RobotTime) { things_->advance(seat_.look_ahead()); });
     }
     driver_.listen_to([this]() -> std::optional<link::RobotState> {
       auto heard = end_.robot_state();

@@ -90,7 +90,7 @@ class ServedTrial final : ViewObserver {
     source_.listen(
         [this](const link::LineFrame& frame) { measures_.saw(frame.image[0].captured, frame.image[0].bgr); });
     if (!options.things) return;
-    things_.emplace(rig, scene_, mock_things());
+    things_.emplace(rig, scene_, things_about(options.rig_file, *scene_, true), true);
     source_.show_things(&*things_);
   }
 

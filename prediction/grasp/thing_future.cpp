@@ -85,6 +85,7 @@ ThingFuture::ThingFuture(const SceneModel& model, const std::vector<bool>& drive
   world.jaws = options_.jaws;
   world.jaw_force = options_.jaw_force;
   world_ = std::make_unique<ThingWorld>(parts, robot_, world, joints);
+  opening_.assign(options_.jaws.size(), 1);
   for (Thing& thing : things_) {
     begin_spell(thing, Kind::rest, rest[thing.node], options_.model * options_.model,
                 options_.model_rad * options_.model_rad);
@@ -193,7 +194,8 @@ void ThingFuture::take_along(Thing& thing, std::size_t jaw, const JointPositions
   begin_spell(thing, Kind::carried, T_grip_thing, before.variance + options_.grasp * options_.grasp,
               before.variance_rad + options_.grasp_rad * options_.grasp_rad);
   thing.spells.back().jaw = jaw;
-  world_->block_jaw(jaw, world_->jaw(jaw).force >= 0 ? 1 : -1);
+  opening_[jaw] = world_->jaw(jaw).force >= 0 ? 1 : -1;
+  world_->block_jaw(jaw, opening_[jaw]);
   world_->hold(thing.node, true);
   world_->place(thing.node, model_pose(thing));
 }
@@ -233,9 +235,13 @@ SightingResult ThingFuture::correct(const ThingSighting& sighting, const JointPo
     return SightingResult::moved;
   }
   const std::size_t jaw = spell->kind == Kind::carried ? spell->jaw : 0;
-  const JointPositions shown = joints_at(sighting.captured);
-  const Pose T_world_grip =
-      options_.jaws.empty() ? Pose::Identity() : world_->grip_frame(jaw, joints ? *joints : shown);
+  const JointPositions then_shown = joints_at(sighting.captured);
+  const JointPositions& true_joints = joints ? *joints : then_shown;
+  const Pose T_world_grip = options_.jaws.empty() ? Pose::Identity() : world_->grip_frame(jaw, true_joints);
+  if (is_in_hand(thing, sighting, true_joints)) {
+    take_back(thing, sighting);
+    return SightingResult::taken_back;
+  }
   if (spell->kind == Kind::moving) {
     thing.doubts.clear();
     return SightingResult::in_motion;
@@ -358,6 +364,7 @@ PredictedThing ThingFuture::thing(std::size_t at) const {
   const Spell& spell = thing.spells.back();
   PredictedThing out;
   out.T_world_thing = shown(thing, model_pose(thing));
+  out.held = spell.kind == Kind::carried;
   out.sigma = thing.gone ? kInfinity : std::sqrt(spell.variance);
   out.sigma_rad = thing.gone ? kInfinity : std::sqrt(spell.variance_rad);
   if (thing.gone || !thing.doubts.empty())
@@ -369,6 +376,17 @@ PredictedThing ThingFuture::thing(std::size_t at) const {
   else
     out.status = spell.any_seen ? ThingStatus::seen : ThingStatus::predicted;
   return out;
+}
+
+std::optional<Pose> ThingFuture::at(std::size_t number, RobotTime time) const {
+  const Thing& thing = things_.at(number);
+  const auto after = std::upper_bound(thing.past.begin(), thing.past.end(), time,
+                                      [](RobotTime t, const Moment& moment) { return t < moment.time; });
+  if (after == thing.past.begin() || time > now_) return std::nullopt;
+  const Moment& then = *std::prev(after);
+  const auto spell = std::ranges::find(thing.spells, then.spell, &Spell::number);
+  if (spell == thing.spells.end() || spell->kind == Kind::moving) return then.T_world_thing;
+  return spell->kind == Kind::rest ? spell->T : Pose(world_->grip_frame(spell->jaw, joints_at(time)) * spell->T);
 }
 
 std::vector<Pose> ThingFuture::poses() const {

@@ -43,6 +43,7 @@ struct PredictedThing {
   ThingStatus status = ThingStatus::unsure;
   Pose T_world_thing = Pose::Identity();
   double sigma = 0, sigma_rad = 0;  ///< one standard deviation of its place, and of its rotation; infinite where absent
+  bool held = false;                ///< in the hand, also while that is doubted
 };
 
 /// Where cameras found a thing at one instant: by its tag, by its textured mesh, by whatever means.
@@ -58,6 +59,7 @@ enum class SightingResult : std::uint8_t {
   taken,        ///< agrees, and is blended in
   doubted,      ///< contradicts; a second one will decide
   moved,        ///< contradicts again: the thing is where it is seen now
+  taken_back,   ///< goes with the hand that it was thought to have slipped from: it is in it
   not_a_thing,  ///< no thing of that number
   not_a_pose,   ///< numbers that are not finite, no rotation, or a sigma that is not positive
   not_known,    ///< of an instant before all that is remembered, or not yet shown
@@ -102,6 +104,9 @@ class ThingFuture {
   RobotTime time() const { return now_; }
   /// As shown for time().
   PredictedThing thing(std::size_t thing) const;
+  /// Where it was at `time`, by all that is known of it by now: what has just been learnt counts for the past too.
+  /// Nothing for instants that are not remembered, or after time().
+  std::optional<Pose> at(std::size_t thing, RobotTime time) const;
   /// T_world_node of all nodes for time(): the robot with its jaws where what they hold lets them be, and the things.
   std::vector<Pose> poses() const;
   /// Things that were found elsewhere than shown while they should have been in the hand.
@@ -129,6 +134,7 @@ class ThingFuture {
   };
   struct Thing {
     std::string name;
+    std::deque<Doubt> seen;  // sightings of the last second, by the grip that held it last
     std::size_t node = 0;
     std::deque<Spell> spells;  // oldest first; the last is of now
     std::deque<Moment> past;
@@ -148,6 +154,8 @@ class ThingFuture {
   bool agree(Thing& thing, Spell& spell, const Pose& expected, const ThingSighting& sighting, const Pose& T_world_grip);
   SightingResult contradict(Thing& thing, const Spell& spell, const ThingSighting& sighting, const Pose& T_world_grip);
   void put_where_seen(Thing& thing, const ThingSighting& sighting, std::uint64_t since);
+  bool is_in_hand(Thing& thing, const ThingSighting& sighting, const JointPositions& joints) const;
+  void take_back(Thing& thing, const ThingSighting& sighting);
   void show_evenly(Thing& thing, const Pose& before, const Pose& after) const;
   Pose model_pose(const Thing& thing) const { return world_->motion(thing.node).T_world_body; }
   Pose shown(const Thing& thing, const Pose& T_world_thing) const;
@@ -165,6 +173,7 @@ class ThingFuture {
   };
   std::deque<Posture> postures_;  // of each step, oldest first; never empty
   RobotTime now_;
+  std::vector<int> opening_;  // of each jaw: the way it opened when it last held something
   std::uint64_t spell_ = 0;
   std::size_t failed_ = 0;
 };

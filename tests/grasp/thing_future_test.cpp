@@ -221,6 +221,51 @@ TEST(ThingFuture, AGraspThatFailedIsNoticedAndTheThingPutWhereItIsSeen) {
   EXPECT_EQ(camera.moved, 1) << "once is enough";
 }
 
+TEST(ThingFuture, WhatWasTakenForLostAndGoesWithTheHandIsTakenBack) {
+  Bench bench;
+  Camera camera(bench);
+  Pose T_hand_block = Pose::Identity();
+  camera.truth = [&] { return bench.height > 0.031 ? Pose(bench.hand() * T_hand_block) : lifted(0, 0, kSide / 2); };
+  T_hand_block.translation().z() = kSide / 2 - 0.03;
+  bench.wait(0.5, [&] { camera(); });
+  bench.move(bench.grip, 0.015, 1, [&] { camera(); });
+  bench.move(bench.height, 0.18, 1, [&] { camera(); });
+  ASSERT_EQ(bench.block().status, ThingStatus::carried);
+  // Two pictures that were misread, alike, while the hand goes on.
+  const RobotTime begin = bench.now;
+  bool back = false;
+  camera.truth = [&] {
+    const double t = to_seconds(bench.now - begin);
+    return t > 0.3 && t < 0.52 ? lifted(0.1, 0.1, kSide / 2) : Pose(bench.hand() * T_hand_block);
+  };
+  bench.move(bench.along, -0.22, 2.2, [&] {
+    camera();
+    back = back || camera.last == SightingResult::taken_back;
+  });
+  EXPECT_GE(camera.moved, 1);
+  EXPECT_TRUE(back);
+  bench.wait(0.5, [&] { camera(); });
+  EXPECT_EQ(bench.block().status, ThingStatus::carried);
+  EXPECT_LT((bench.place() - camera.truth().translation()).norm(), 3e-3);
+  bench.move(bench.grip, 0.04, 0.6);
+  bench.wait(1.5);
+  EXPECT_NEAR(bench.place().z(), kSide / 2, 3e-3) << "opened jaws let it go, as ever";
+}
+
+TEST(ThingFuture, WhatTheHandPushesIsNotTakenIntoIt) {
+  Bench bench;
+  Camera camera(bench);
+  bench.move(bench.along, -0.15, 0.5);
+  bench.grip = 0.008;
+  bench.wait(0.2);
+  camera.truth = [&] { return lifted(std::max(0.0, bench.along + 0.04), 0, kSide / 2); };
+  bench.move(bench.along, 0.3, 3, [&] {
+    camera();
+    EXPECT_NE(camera.last, SightingResult::taken_back);
+    EXPECT_NE(bench.block().status, ThingStatus::carried);
+  });
+}
+
 TEST(ThingFuture, OneWrongSightingMovesNothing) {
   Bench bench;
   Camera camera(bench);
