@@ -21,6 +21,7 @@
 namespace foresight {
 namespace {
 
+constexpr double kUnpaced = 1000;  // Hz, of the source: FramePacer decides
 constexpr int kWindowWidth = 1280, kWindowHeight = 800;
 constexpr double kEyesApart = 0.063;   // m, of most people
 constexpr std::size_t kUnderWay = 16;  // instants of what the robot will do as it was sent already
@@ -81,6 +82,7 @@ class LiveSeat {
         things_(rig, scene_, things_about(options.rig_file, *scene_, options.physics), true),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
         hand_(rig, driver_.options()),
+        pacer_(clock_, {.rate_hz = options.rate_hz}),
         shown_(*window_, session_, setup_.left, seat_, source_, window_options()) {
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
@@ -93,7 +95,10 @@ class LiveSeat {
     std::vector<ViewObserver*> observers{&shown_};
     if (head_) observers.push_back(&*head_);
     ViewLoop loop(session_, source_, observers, [] { return stop_requested(); });
-    loop.run();
+    for (SourceState state = SourceState::ready; state != SourceState::ended; state = loop.step()) {
+      pacer_.wait();
+      shown_.take_input();
+    }
     // Whatever was held is let go of: the robot comes to rest by itself as set-points end, this only says it sooner.
     driver_.let_go();
     clock_.sleep_until(clock_.now() + std::chrono::milliseconds(60));
@@ -106,7 +111,7 @@ class LiveSeat {
  private:
   PredictedSourceOptions source_options() const {
     PredictedSourceOptions out;
-    out.rate_hz = options_.rate_hz;
+    out.rate_hz = kUnpaced;
     return out;
   }
   SeatWindowOptions window_options() {
@@ -114,6 +119,7 @@ class LiveSeat {
     out.title = rig_.name;
     out.joints = rig_.joint_names();
     out.font_scale = options_.font_scale;
+    out.pacer = &pacer_;
     out.keys = HandDriver::keys();
     out.keys.insert(out.keys.begin(), {{"space", "stop at once"},
                                        {"E, H, X, Z", "enable, home, reset, configure drives anew"},
@@ -194,6 +200,7 @@ class LiveSeat {
   ThingsOutlook things_;
   PredictedSource source_;
   HandOverlay hand_;
+  FramePacer pacer_;
   SeatWindow shown_;
   std::optional<SeatHead> head_;
   bool head_shown_ = false;

@@ -59,6 +59,17 @@ void SeatWindow::next_picture() {
   options_.picture = static_cast<SeatPicture>((static_cast<int>(options_.picture) + 1) % 3);
 }
 
+void SeatWindow::take_input() {
+  window_.wait_events(0);
+  if (options_.input) options_.input(window_.take_input());
+}
+
+void SeatWindow::swap() {
+  if (options_.pacer) options_.pacer->drawn();
+  window_.present();
+  if (options_.pacer) options_.pacer->swapped();
+}
+
 bool SeatWindow::trusted() const {
   return source_.fault().empty() && source_.robot().status != StateStatus::invalid;
 }
@@ -151,14 +162,13 @@ std::vector<HudLabel> SeatWindow::show_pictures(const ViewTarget& place, const D
 }
 
 void SeatWindow::present(const gl::Texture* predicted) {
-  if (options_.input) options_.input(window_.take_input());
   if (const auto& newest = source_.newest(); newest && newest != uploaded_) {
     delayed_.upload(newest->image[0].bgr);
     uploaded_ = newest;
   }
   const ViewTarget whole = window_target(window_);
   if (whole.width < 1 || whole.height < 1) {  // minimised
-    window_.present();
+    swap();
     return;
   }
   const bool is_trusted = trusted();
@@ -176,7 +186,7 @@ void SeatWindow::present(const gl::Texture* predicted) {
     hud_.draw(content, part);
   }
   save(whole);
-  window_.present();
+  swap();
 }
 
 }  // namespace foresight

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "display/eye_pair.hpp"
+#include "display/frame_pacer.hpp"
 #include "display/scene_overlay.hpp"
 #include "display/uploaded_picture.hpp"
 #include "display/view_loop.hpp"
@@ -28,6 +29,8 @@ struct SeatWindowOptions {
   double font_scale = 1;
   SeatPicture picture = SeatPicture::predicted;
   std::vector<std::pair<std::string, std::string>> keys;
+  /// Is told when a picture is drawn and when swapped; outlives the window. Null: nobody.
+  FramePacer* pacer = nullptr;
   /// Keys, mouse and focus since the last picture. The window's thread.
   std::function<void(const gl::WindowInput&)> input = {};
   std::function<std::vector<SeatLine>()> more_lines = {};  ///< of devices
@@ -48,6 +51,8 @@ class SeatWindow final : public ViewObserver {
   void waiting(FrameSource& source, ViewSession& session) override;
   bool wants_more() const override { return !window_.should_close(); }
 
+  /// What the operator has done by now, before a picture is drawn.
+  void take_input();
   void next_picture();
   void toggle_help() { help_ = !help_; }
   /// The next picture goes into this file, too.
@@ -60,6 +65,7 @@ class SeatWindow final : public ViewObserver {
 
  private:
   void present(const gl::Texture* predicted);
+  void swap();
   struct DrawnView {
     const gl::Texture* picture = nullptr;  // null: none yet
     Pose T_world_camera = Pose::Identity();

@@ -1,0 +1,24 @@
+#include "display/frame_pacer.hpp"
+
+#include "gl/objects.hpp"
+
+namespace foresight {
+
+FramePacer::FramePacer(Clock& clock, const FramePacingOptions& options)
+    : clock_(clock), pacing_(options, clock.now()) {}
+
+void FramePacer::wait() {
+  clock_.sleep_until(pacing_.wake());
+}
+
+void FramePacer::drawn() {
+  glFinish();
+  pacing_.drawn(clock_.now());
+}
+
+// The extraction always has images to come: it gets its rest.
+void FramePacer::swapped() {
+  pacing_.swapped(clock_.now(), true);
+}
+
+}  // namespace foresight
