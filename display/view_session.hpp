@@ -7,6 +7,7 @@
 
 #include "display/predicted_view.hpp"
 #include "display/thesis_view.hpp"
+#include "display/trust_pass.hpp"
 #include "display/view_range.hpp"
 #include "display/view_target.hpp"
 #include "gl/context.hpp"
@@ -71,6 +72,9 @@ class ViewSession {
   PredictedView make_view(const Lens& lens) const { return {buffers_, records_, lens}; }
   /// The same for such a view.
   bool draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state);
+  /// What says how far pixels of the view that was drawn last can be trusted, and that view. Not with `thesis`.
+  TrustPass make_trust_pass() const { return {buffers_, records_, lens_, *view_}; }
+  const PredictedView& view() const { return *view_; }
 
   /// Waits until all that was drawn is there.
   void finish();

@@ -105,6 +105,12 @@ ViewPlace PredictedSource::place() {
   return out;
 }
 
+std::string PredictedSource::why_invalid() const {
+  if (const std::string images = fault(); !images.empty()) return images;
+  if (robot_.status != StateStatus::invalid) return "";
+  return to_words(robot_, rig_.joint_names());
+}
+
 std::optional<PosedFrame> PredictedSource::arrived() {
   return std::exchange(waiting_, std::nullopt);
 }

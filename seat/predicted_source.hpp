@@ -44,6 +44,9 @@ class PredictedSource final : public FrameSource {
   void listen(std::function<void(const link::LineFrame&)> heard) { listener_ = std::move(heard); }
   /// The robot as it is shown.
   const PredictedRobot& robot() const { return robot_; }
+  /// Why it cannot be trusted, in words; "" where it can.
+  std::string why_invalid() const;
+  const PredictedPlaces& places() const { return places_; }
   /// The newest frame; null before the first.
   const link::LineFramePtr& newest() const { return newest_; }
 

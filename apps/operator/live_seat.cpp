@@ -81,6 +81,7 @@ class LiveSeat {
         session_(*window_, setup_),
         things_(rig, scene_, things_about(options.rig_file, *scene_, options.physics), true),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
+        trust_(session_, setup_, clock_, options.trust),
         hand_(rig, driver_.options()),
         pacer_(clock_, {.rate_hz = options.rate_hz}),
         shown_(*window_, session_, setup_.left, seat_, source_, window_options()) {
@@ -120,12 +121,14 @@ class LiveSeat {
     out.joints = rig_.joint_names();
     out.font_scale = options_.font_scale;
     out.pacer = &pacer_;
+    out.trust = &trust_;
     out.keys = HandDriver::keys();
     out.keys.insert(out.keys.begin(), {{"space", "stop at once"},
                                        {"E, H, X, Z", "enable, home, reset, configure drives anew"},
                                        {"G", "give control back, take it again"},
                                        {"T", "hand control over to who asks"},
                                        {"Tab", "what is shown"},
+                                       {"B", "what is not exact, and was wrong"},
                                        {"F1", "these keys"},
                                        {"P", "screenshot"},
                                        {"Q, Esc", "end"}});
@@ -179,6 +182,7 @@ class LiveSeat {
       case 'g': return driver_.toggle_control();
       case 't': return driver_.hand_over();
       case 'n': return head_ ? head_->centre() : void();
+      case 'b': return shown_.next_marks();
       case 'p': return shown_.save_next(options_.screenshot.value_or("foresight.png"));
       default: return;
     }
@@ -199,6 +203,7 @@ class LiveSeat {
   ViewSession session_;
   ThingsOutlook things_;
   PredictedSource source_;
+  ViewTrust trust_;
   HandOverlay hand_;
   FramePacer pacer_;
   SeatWindow shown_;

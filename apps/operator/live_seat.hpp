@@ -6,6 +6,7 @@
 #include <string>
 
 #include "rig/rig.hpp"
+#include "seat/view_trust.hpp"
 
 namespace foresight {
 
@@ -24,6 +25,7 @@ struct LiveSeatOptions {
   HeadDisplayKind head_display = HeadDisplayKind::none;
   double rate_hz = 30;
   double font_scale = 1;
+  ViewTrustOptions trust;
   std::optional<std::filesystem::path> screenshot;  ///< key P writes it
 };
 

@@ -26,7 +26,7 @@ struct Arguments {
   std::string rig, name = "operator", scene, device, head_display = "none";
   bool mock = false, physics = false, served = false;
   unsigned layout = 0;
-  double rate_hz = 30, font_scale = 1;
+  double rate_hz = 30, font_scale = 1, fidelity_db = TrustSwitchOptions{}.lowest_db;
   std::string script;
   double delay_ms = 0;
   std::string line;
@@ -74,6 +74,12 @@ nlohmann::ordered_json report_of(const SeatTrialFigures& figures, const Argument
   out["joints_p95"] = figures.joints_p95;
   out["invalid_share"] = seen.invalid_share;
   out["losses"] = figures.losses;
+  out["exact_share"] = number(seen.trust.exact_share);
+  out["exact_wrong"] = number(seen.trust.exact_wrong);
+  out["exact_wrong_any_channel"] = number(seen.trust.exact_wrong_any);
+  out["wrong_share"] = number(seen.trust.wrong_share);
+  out["unconfirmed_share"] = number(seen.trust.unconfirmed);
+  out["fallback_share"] = number(seen.trust.fallback_share);
   out["view"] = to_json(seen.record);
   return out;
 }
@@ -87,6 +93,7 @@ void print(const SeatTrialFigures& f) {
              1e2 * seen.moving_share.value_or(0), db(seen.moving_predicted_db), db(seen.moving_delayed_db));
   fmt::print("joints shown within {:.2g} mrad or mm (95 %); commands act after {:.0f} ms; {:.1f} s, {}\n",
              1e3 * f.joints_p95, 1e3 * f.delay_s, f.task_s, f.succeeded ? "succeeded" : "failed: " + f.failure);
+  if (seen.trust.exact_share) fmt::print("{}\n", to_sentence(seen.trust));
 }
 
 /// What the program shall do.
@@ -119,6 +126,7 @@ SeatTrialFigures run_stepped(const Rig& rig, const Arguments& arguments, const T
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
   options.zero_delay = arguments.zero_delay;
+  options.fall_back.lowest_db = arguments.fidelity_db;
   options.out = arguments.outputs.out;
   return try_seat(
       rig, std::move(scene), options, motion, [] { return stop_requested(); }, say);
@@ -181,6 +189,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   if (arguments.head_display == "side-by-side") options.head_display = HeadDisplayKind::side_by_side;
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
+  options.trust.fall_back.lowest_db = arguments.fidelity_db;
   return run_live_seat(rig, options);
 }
 
@@ -236,6 +245,10 @@ void add_operator_command(Command& app, std::function<int()>& action) {
       ->check(from_to(1.0, 240.0));
   command->add_option("--font-scale", arguments->font_scale, "Of all words in the window (default 1)")
       ->check(from_to(0.5, 4.0));
+  command
+      ->add_option("--fidelity-db", arguments->fidelity_db,
+                   "The newest image is shown instead where the view was less like the images that came (default 20)")
+      ->check(from_to(0.0, 60.0));
   command
       ->add_option(
           "--scripted", arguments->script,

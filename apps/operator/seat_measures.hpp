@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/operator/trust_measures.hpp"
 #include "apps/replay_report/instants.hpp"
 #include "apps/replay_report/replay_report.hpp"
 #include "common/time.hpp"
@@ -18,12 +19,15 @@ namespace foresight {
 
 /// As it was shown.
 struct ShownPicture {
-  RobotTime instant;     ///< that it was shown for
-  RobotTime newest;      ///< capture instant of `delayed`
-  std::string stem;      ///< file name
-  cv::Mat predicted;     ///< CV_8UC4, as PredictedView::read()
-  cv::Mat delayed;       ///< CV_8UC3: the newest image that had come
-  bool invalid = false;  ///< prediction was not to be trusted
+  RobotTime instant;       ///< that it was shown for
+  RobotTime newest;        ///< capture instant of `delayed`
+  std::string stem;        ///< file name
+  cv::Mat predicted;       ///< CV_8UC4, as PredictedView::read()
+  cv::Mat delayed;         ///< CV_8UC3: the newest image that had come
+  bool invalid = false;    ///< prediction was not to be trusted
+  cv::Mat doubt = {};      ///< CV_8UC1 (display/trust_pass.hpp); empty: trust is not measured
+  double limit = 0;        ///< of doubt, up to which pixels were shown as exact
+  bool fell_back = false;  ///< the newest image was shown instead
 };
 
 /// Means over the pictures that were measured; nothing where none could be.
@@ -33,6 +37,7 @@ struct SeatFidelity {
   std::optional<double> moving_share;                             ///< of the seen pixels
   double invalid_share = 0;                                       ///< of pictures without a prediction to trust
   std::optional<double> image_age_s;                              ///< of the newest image against the shown instant
+  TrustFigures trust;                                             ///< of pictures with their doubt
   RunRecord record;
   std::vector<Instant> instants;
 };
@@ -83,6 +88,7 @@ class SeatMeasures {
   std::map<RobotTime, cv::Mat> truths_;
   std::uint64_t measured_ = 0, invalid_ = 0;
   Mean zero_, moving_predicted_, moving_delayed_, moved_share_, ages_;
+  TrustMeasures trust_;
   InstantKeeper keeper_{4};
   RunRecord record_;
 };

@@ -14,6 +14,7 @@
 #include "seat/seat_options.hpp"
 #include "seat/tool_script.hpp"
 #include "seat/view_setup.hpp"
+#include "seat/view_trust.hpp"
 #include "sim/lab_task.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
@@ -35,6 +36,10 @@ class HeadlessView {
  public:
   explicit HeadlessView(const ViewSetup& setup)
       : context_(gl::create_headless_context()), session_(std::make_unique<ViewSession>(*context_, setup)) {}
+  ~HeadlessView() {
+    context_->make_current();
+    session_.reset();
+  }
   ViewSession& session() {
     context_->make_current();
     return *session_;
@@ -61,6 +66,7 @@ class Trial {
         view_(setup_),
         period_(seconds(1 / mock_options(as_mock(*rig.cameras)).rate)),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
+        trust_(view_.session(), setup_, clock_, trust_options()),
         truth_(robot_.cameras().frames().subscribe(1000)),
         measures_(described(), options.out) {
     if (options.zero_delay) {
@@ -80,6 +86,8 @@ class Trial {
       seat_.step();
     });
   }
+
+  ~Trial() { view_.session(); }  // its context is that of what is given back first
 
   SeatTrialFigures run(const std::function<bool()>& stopped, const std::function<void(const std::string&)>& say) {
     const RobotTime begin = clock_.now();
@@ -120,6 +128,13 @@ class Trial {
     out.image_period = period_;
     return out;
   }
+  ViewTrustOptions trust_options() const {
+    ViewTrustOptions out;
+    out.fall_back = options_.fall_back;
+    out.remember_every = Duration{0};
+    out.wait = true;
+    return out;
+  }
   std::string words() const {
     const SeatStatus status = seat_.status();
     return status.control.words + (status.robot ? "; " + status.robot->doing.name : "");
@@ -131,14 +146,19 @@ class Trial {
     ViewSession& session = view_.session();
     if (auto frame = source_.arrived()) {
       newest_ = frame->left.time;
+      trust_.saw(*frame);
       frame->left.pixels.copyTo(delayed_);
       session.process(std::move(*frame));
     }
     const ViewPlace place = source_.place();
-    if (!session.draw(place.T_world_camera, place.scene) || !counts) return;
+    if (!session.draw(place.T_world_camera, place.scene)) return;
+    trust_.drew(source_, place, TrustMarks::hatch);
+    trust_.judge(source_.why_invalid());
+    if (!counts) return;
     const ShownInstant& instant = source_.instant();
     measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(),
-                    source_.robot().status == StateStatus::invalid});
+                    source_.robot().status == StateStatus::invalid, trust_.doubt(), trust_.limit(),
+                    trust_.falls_back()});
   }
 
   void learn_truth() {
@@ -196,6 +216,7 @@ class Trial {
   std::optional<HeadlessView> near_;
   Duration period_;
   PredictedSource source_;
+  ViewTrust trust_;
   std::optional<ThingsOutlook> things_;
   std::shared_ptr<FrameQueue> truth_;
   SeatMeasures measures_;

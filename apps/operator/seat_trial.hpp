@@ -12,6 +12,7 @@
 #include "link/line/line_spec.hpp"
 #include "rig/rig.hpp"
 #include "seat/scripted_driver.hpp"
+#include "seat/trust_switch.hpp"
 #include "session/live_scene.hpp"
 
 namespace foresight {
@@ -24,8 +25,9 @@ struct SeatTrialOptions {
   unsigned layout = 0;              ///< of things: sim::task_layout()
   std::string thing, tray;          ///< with physics: the thing shall end in the tray
   unsigned seed = 1;
-  double most_s = 120;                       ///< of motion
-  double pictures_hz = 5;                    ///< that are measured, at most
+  double most_s = 120;     ///< of motion
+  double pictures_hz = 5;  ///< that are measured, at most
+  TrustSwitchOptions fall_back;
   bool zero_delay = true;                    ///< also draws each view as it would be without a line
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
 };

@@ -70,8 +70,19 @@ void SeatWindow::swap() {
   if (options_.pacer) options_.pacer->swapped();
 }
 
+void SeatWindow::next_marks() {
+  if (options_.trust) marks_ = static_cast<TrustMarks>((static_cast<int>(marks_) + 1) % 3);
+}
+
 bool SeatWindow::trusted() const {
-  return source_.fault().empty() && source_.robot().status != StateStatus::invalid;
+  const std::string why = source_.why_invalid();
+  if (!options_.trust) return why.empty();
+  options_.trust->judge(why);
+  return !options_.trust->falls_back();
+}
+
+void SeatWindow::arrived(const PosedFrame& frame) {
+  if (options_.trust) options_.trust->saw(frame);
 }
 
 void SeatWindow::stepped(const ViewStep& step, FrameSource& source, ViewSession& session) {
@@ -82,6 +93,7 @@ void SeatWindow::stepped(const ViewStep& step, FrameSource& source, ViewSession&
     faces_ = &session.faces();
     if (eyes_) eyes_->draw(place.T_world_camera, place.scene);
   }
+  if (step.drawn && options_.trust) options_.trust->drew(source_, source_.place(), marks_);
   present(drawn_ ? &session.picture() : nullptr);
 }
 
@@ -116,8 +128,10 @@ HudContent SeatWindow::words(bool is_trusted) const {
                           is_trusted || options_.picture == SeatPicture::delayed
                               ? to_string(options_.picture)
                               : "the newest image, as prediction cannot be trusted");
+  if (marks_ != TrustMarks::none) out.title += fmt::format(" ({})", to_string(marks_));
   out.next = next_step(status);
   out.lines = seat_lines(status, options_.joints, source_.fault());
+  if (options_.trust) out.lines.push_back(fidelity_line(*options_.trust));
   if (options_.more_lines)
     for (SeatLine& line : options_.more_lines()) out.lines.push_back(std::move(line));
   if (help_) out.keys = options_.keys;
@@ -172,6 +186,7 @@ void SeatWindow::present(const gl::Texture* predicted) {
     return;
   }
   const bool is_trusted = trusted();
+  if (predicted && marks_ != TrustMarks::none) predicted = &options_.trust->marked();
   clear_behind_pictures(whole, !is_trusted && drawn_);
   HudContent content = words(is_trusted);
   log(content);

@@ -16,6 +16,7 @@
 #include "seat/hud.hpp"
 #include "seat/predicted_source.hpp"
 #include "seat/seat_log.hpp"
+#include "seat/view_trust.hpp"
 
 namespace foresight {
 
@@ -27,6 +28,7 @@ struct SeatWindowOptions {
   std::string title;
   std::vector<std::string> joints;  ///< names
   double font_scale = 1;
+  ViewTrust* trust = nullptr;  ///< outlives the window; null: only what cannot be predicted gives way
   SeatPicture picture = SeatPicture::predicted;
   std::vector<std::pair<std::string, std::string>> keys;
   /// Is told when a picture is drawn and when swapped; outlives the window. Null: nobody.
@@ -47,6 +49,7 @@ class SeatWindow final : public ViewObserver {
   SeatWindow(gl::Window& window, ViewSession& session, const Lens& lens, Seat& seat, PredictedSource& source,
              SeatWindowOptions options);
 
+  void arrived(const PosedFrame& frame) override;
   void stepped(const ViewStep& step, FrameSource& source, ViewSession& session) override;
   void waiting(FrameSource& source, ViewSession& session) override;
   bool wants_more() const override { return !window_.should_close(); }
@@ -55,6 +58,7 @@ class SeatWindow final : public ViewObserver {
   void take_input();
   void next_picture();
   void toggle_help() { help_ = !help_; }
+  void next_marks();
   /// The next picture goes into this file, too.
   void save_next(const std::filesystem::path& file) { save_ = file; }
 
@@ -93,6 +97,7 @@ class SeatWindow final : public ViewObserver {
   std::optional<EyePair> eyes_;
   link::LineFramePtr uploaded_;
   bool help_ = true, drawn_ = false;
+  TrustMarks marks_ = TrustMarks::none;
   std::optional<std::filesystem::path> save_;
 };
 

@@ -28,10 +28,25 @@ TEST(Operator, ATourIsShownAsItWillBe) {
   EXPECT_LT(all["joints_p95"].get<double>(), 0.01);
   EXPECT_NEAR(all["acts_after_ms"].get<double>(), 310, 15);
   EXPECT_EQ(all["invalid_share"].get<double>(), 0);
+  EXPECT_GT(all["exact_share"].get<double>(), 0.6);
+  EXPECT_LT(all["exact_wrong"].get<double>(), 0.03);
+  EXPECT_LT(all["exact_wrong"].get<double>(), 0.7 * all["wrong_share"].get<double>()) << "else the marks say nothing";
+  EXPECT_EQ(all["fallback_share"].get<double>(), 0);
   const auto shown = names_in(out / "shown");
   EXPECT_GE(shown.size(), 5u);
   EXPECT_EQ(names_in(out / "true"), shown);
   EXPECT_EQ(names_in(out / "delayed"), shown);
+}
+
+// What is shown is not good enough for an operator who asks for this much: the newest image takes its place.
+TEST(Operator, ThatTheViewIsPoorIsNoticedAsImagesCome) {
+  const TempFolder folder;
+  const auto report = folder.path() / "report.json";
+  const Outcome result =
+      run_program({"operator", rig_file(), "--scripted", "tour", "--delay-ms", "100", "--seconds", "3", "--pictures-hz",
+                   "3", "--no-zero-delay", "--fidelity-db", "58", "--report", report});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_json(report)["fallback_share"].get<double>(), 1);
 }
 
 // Over a line of 300 ms each way, by a program that knows what comes over it and the model, and nothing else.

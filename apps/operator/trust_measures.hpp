@@ -1,0 +1,34 @@
+// How much of what was shown was said to be exact, and was it? Against what the robot's camera saw at the instant.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+namespace foresight {
+
+/// Over all pictures; nothing where no pixel was there to ask about.
+struct TrustFigures {
+  std::optional<double> exact_share;      ///< of the pixels with a colour of an image, those said to be exact
+  std::optional<double> exact_wrong;      ///< of those, the ones that differ from the truth by more than 10 grey levels
+  std::optional<double> exact_wrong_any;  ///< likewise, by more than 10 levels in any of red, green and blue
+  std::optional<double> wrong_share;      ///< of all pixels with a colour of an image, by grey
+  std::optional<double> unconfirmed;      ///< of the same, those that no camera has confirmed (trust_pass.hpp)
+  std::optional<double> fallback_share;   ///< of pictures, those for which the newest image was shown instead
+};
+/// A full sentence for a report.
+std::string to_sentence(const TrustFigures& figures);
+
+class TrustMeasures {
+ public:
+  /// `predicted`: CV_8UC4; `doubt`, `limit`: as they were when it was shown; `truth`: CV_8UC3 of the same size.
+  void add(const cv::Mat& predicted, const cv::Mat& doubt, double limit, const cv::Mat& truth, bool fell_back);
+  TrustFigures figures() const;
+
+ private:
+  std::uint64_t pictures_ = 0, fallbacks_ = 0;
+  std::uint64_t seen_ = 0, exact_ = 0, unconfirmed_ = 0, wrong_ = 0, exact_wrong_ = 0, exact_wrong_any_ = 0;
+};
+
+}  // namespace foresight

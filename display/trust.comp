@@ -1,0 +1,138 @@
+// How far each pixel of a drawn view can be trusted, and the view with all else hatched. A pixel's point goes back with
+// its node to where it was when each of the last images was taken; the newest one that saw it says what is known of it:
+//
+//   view --depth--> point --moves with its node--> image 0, 1, 2 ... newest first: outside, hidden or seen
+//
+// Defines: FRAMES, how many of them are remembered.
+#include "camera.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
+layout(binding = 0) uniform sampler2D shown;
+layout(binding = 1) uniform usampler2DArray surfaces;  // triangle + 1
+layout(binding = 2) uniform sampler2DArray depth;
+layout(binding = 3) uniform samplerBuffer triangles;
+layout(binding = 4) uniform sampler2D rays;
+layout(binding = 5) uniform samplerBuffer node_px;  // by how many pixels each node may be elsewhere
+// Per image and node: rows of T_then_now, from the view's camera to that image's for what moves with the node; and by
+// how much the node has turned since. The last set belongs to the image that was compared.
+layout(binding = 6) uniform samplerBuffer ways;
+layout(binding = 7) uniform sampler2DArray seen_depth;  // faces of image 0, of image 1, ...
+layout(binding = 8) uniform sampler2D disagreed;        // pixels of the compared image that were shown otherwise
+layout(binding = 0, r8) uniform writeonly image2D doubt;
+layout(binding = 1, rgba8) uniform writeonly image2D marked;
+uniform int layer_of[FRAMES];  // each image's first
+uniform int frame_count, node_count;
+uniform float limit;  // of doubt, 0 .. 1
+uniform bool has_compared;
+
+const float kUnconfirmed = 1.0;
+const float kMostDoubt = 254.0 / 255.0;
+const float kOwnPx = 0.7;        // how exactly images, lenses and model agree where nothing is predicted
+const float kSameSurface = 0.02;  // share of the distance within which a surface is the one that was seen
+const float kTurned = 0.5;       // share of a part's brightness that its turning by a radian may change
+
+bool ray_through(ivec2 pixel, out vec3 ray) {
+  if (lens_model(camera) == 0) {
+    ray = vec3((vec2(pixel) - camera.focal.zw) / camera.focal.xy, 1.0);
+    return true;
+  }
+  vec4 r = texelFetch(rays, pixel, 0);
+  ray = r.xyz;
+  return r.w > 0.5;
+}
+
+vec3 where(int set, int node, vec3 p) {
+  int row = 4 * (set * node_count + node);
+  vec4 h = vec4(p, 1.0);
+  return vec3(dot(texelFetch(ways, row), h), dot(texelFetch(ways, row + 1), h), dot(texelFetch(ways, row + 2), h));
+}
+
+const int kOutside = 0, kHidden = 1, kSeen = 2;
+int look(int frame, vec3 p) {
+  vec3 place;
+  float inverse_z;
+  vec2 pixel;
+  if (!project_face(camera, p, place, inverse_z) || !project_lens(camera, p, pixel)) return kOutside;
+  if (any(lessThan(pixel, vec2(0.5))) || any(greaterThan(pixel, camera.size.xy - 1.5))) return kOutside;
+  vec4 near_over_z = textureGather(seen_depth, vec3((place.xy + 0.5) / camera.size.zw, place.z + float(layer_of[frame])));
+  vec4 known = mix(near_over_z, vec4(1e30), equal(near_over_z, vec4(0.0)));
+  float farthest = min(min(known.x, known.y), min(known.z, known.w)) / kNear;
+  return farthest > inverse_z * (1.0 + kSameSurface) ? kHidden : kSeen;
+}
+
+// Levels per pixel that the view changes by around here.
+float contrast_at(ivec2 pixel) {
+  vec3 low = vec3(1.0), high = vec3(0.0);
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      vec3 c = texelFetch(shown, clamp(pixel + ivec2(x, y), ivec2(0), ivec2(camera.size.xy) - 1), 0).rgb;
+      low = min(low, c);
+      high = max(high, c);
+    }
+  vec3 range = high - low;
+  return 0.5 * max(range.r, max(range.g, range.b));
+}
+
+int node_at(ivec3 place) {
+  uint surface = texelFetch(surfaces, place, 0).r;
+  return surface == 0u ? -1 : int(texelFetch(triangles, 2 * int(surface - 1u) + 1).y);
+}
+
+// Of the surface seen here and of those beside it, which may cover it or uncover what is behind.
+float uncertain_px(ivec3 place, int node) {
+  float px = texelFetch(node_px, node).r;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 step = ivec2(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0);
+    int beside = node_at(ivec3(clamp(place.xy + step, ivec2(0), ivec2(camera.size.zw) - 1), place.z));
+    if (beside >= 0 && beside != node) px = max(px, texelFetch(node_px, beside).r);
+  }
+  return px;
+}
+
+bool was_wrong(int node, vec3 p) {
+  vec2 pixel;
+  if (!has_compared || !project_lens(camera, where(FRAMES, node, p), pixel)) return false;
+  return textureLod(disagreed, (pixel + 0.5) / camera.size.xy, 0.0).r > 0.5;
+}
+
+float doubt_at(ivec2 pixel, vec3 colour) {
+  vec3 ray, place;
+  float inverse_z;
+  if (!ray_through(pixel, ray) || !project_face(camera, ray, place, inverse_z)) return kUnconfirmed;
+  ivec3 at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
+  int node = node_at(at);
+  float near_over_z = texelFetch(depth, at, 0).r;
+  if (node < 0 || near_over_z <= 0.0) return kUnconfirmed;
+  vec3 p = ray * (kNear / near_over_z * inverse_z);
+
+  int found = -1, newest = kOutside;
+  for (int frame = 0; frame < frame_count && found < 0; ++frame) {
+    int seen = look(frame, where(frame, node, p));
+    if (frame == 0) newest = seen;
+    if (seen == kSeen) found = frame;
+  }
+  // What covered it in the newest image may have left its shadow there, or have pushed it.
+  if (found < 0 || newest == kHidden || was_wrong(node, p)) return kUnconfirmed;
+  float own = length(vec2(kOwnPx, uncertain_px(at, node)));
+  float turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
+  return min(contrast_at(pixel) * own + kTurned * turned * dot(colour, vec3(0.299, 0.587, 0.114)), kMostDoubt);
+}
+
+// Stripes that differ from the picture's own brightness; those of filled holes lean to the other side.
+vec4 hatched(ivec2 pixel, vec4 colour) {
+  int along = colour.a > 0.99 ? pixel.x + pixel.y : pixel.x - pixel.y + 6 * int(camera.size.y);
+  if (along % 6 >= 2) return colour;
+  bool bright = dot(colour.rgb, vec3(0.299, 0.587, 0.114)) > 0.5;
+  return vec4(mix(colour.rgb, vec3(bright ? 0.0 : 1.0), 0.45), colour.a);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
+  vec4 colour = texelFetch(shown, pixel, 0);
+  bool seen = colour.a > 0.99;
+  float value = seen ? doubt_at(pixel, colour.rgb) : kUnconfirmed;
+  imageStore(doubt, pixel, vec4(value));
+  bool hatch = value > limit && colour.a > 0.4;
+  imageStore(marked, pixel, hatch ? hatched(pixel, colour) : colour);
+}

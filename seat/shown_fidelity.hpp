@@ -1,0 +1,74 @@
+// What was shown, beside the image of the same instant once it has come: how alike they are, where they are not, and
+// how much doubt a pixel may carry and still be right.
+//
+//   shown for t1  t2  t3 ...                  image of t2 comes
+//         '---'---'---> kept -----------------> fidelity of t2, worst part of the view, limit of doubt
+#pragma once
+
+#include <array>
+#include <deque>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "display/picture_readback.hpp"
+
+namespace foresight {
+
+struct FidelityOptions {
+  Duration same_instant = std::chrono::milliseconds(20);  ///< by which picture and image may be apart, > 0
+  std::size_t kept = 48;                                  ///< pictures that wait for their image, > 0
+  double wrong_levels = 10;                               ///< grey levels beyond which a pixel is wrong
+  double wrong_share = 0.016;                             ///< of the pixels that count as exact, that may be wrong
+  double least_limit = 6, most_limit = 90;                ///< of doubt, grey levels
+};
+
+/// How alike what was shown for an instant and the image of it are, over pixels that images have coloured.
+struct Fidelity {
+  static constexpr std::size_t kColumns = 6, kRows = 4;  ///< tiles of the view
+  RobotTime instant;
+  std::optional<double> psnr_db, ssim;         ///< nothing where no pixel has a colour
+  std::array<double, kColumns * kRows> wrong;  ///< share of each tile's pixels, row by row
+  std::size_t worst = 0;                       ///< tile
+  double exact_share = 0;                      ///< of the coloured pixels
+  double exact_wrong = 0;                      ///< of the exact ones
+  /// CV_8UC1, 255 in and around patches that were shown wrong: something moves there that is not foretold.
+  cv::Mat patches;
+};
+/// "top left", "middle", ...
+std::string place_of(std::size_t tile);
+/// The pixels of a tile in a picture of that size.
+cv::Rect tile_of(std::size_t tile, cv::Size size);
+
+/// Pixels that count as exact: coloured by an image, with doubt up to `limit`. CV_8UC1, 255 or 0.
+cv::Mat exact_mask(const cv::Mat& picture, const cv::Mat& doubt, double limit);
+/// Differences of grey (ITU-R BT.601), CV_8UC1. Pictures: CV_8UC3 or CV_8UC4, of one size.
+cv::Mat grey_difference(const cv::Mat& one, const cv::Mat& other);
+
+/// One thread.
+class ShownFidelity {
+ public:
+  explicit ShownFidelity(FidelityOptions options = {});
+
+  /// Was shown; later than what was shown before, else all that is kept goes.
+  void shown(RememberedView picture);
+  /// The image of an instant came, in the order of their instants: nothing where no picture was shown for it, or one of
+  /// another size. `image`: CV_8UC3.
+  std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image);
+  /// Of doubt, up to which pixels count as exact: the largest up to which of late no more were wrong than may be.
+  double limit() const { return limit_; }
+
+ private:
+  struct Counts {
+    double all = 0, wrong = 0;
+  };
+  void learn(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong);
+
+  FidelityOptions options_;
+  std::deque<RememberedView> kept_;
+  std::array<Counts, 255> by_doubt_{};  // of late
+  double limit_;
+};
+
+}  // namespace foresight

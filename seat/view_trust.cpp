@@ -1,0 +1,100 @@
+#include "seat/view_trust.hpp"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+namespace foresight {
+namespace {
+
+constexpr double kWorthNaming = 0.1;  // share of a tile that is wrong
+constexpr int kFramePx = 2;
+
+}  // namespace
+
+const char* to_string(TrustMarks marks) {
+  switch (marks) {
+    case TrustMarks::none: return "no marks";
+    case TrustMarks::hatch: return "striped where it is not exact";
+    case TrustMarks::tiles: return "striped where it is not exact, framed where it was wrong";
+  }
+  return "";
+}
+
+ViewTrust::ViewTrust(const ViewSession& session, const ViewSetup& setup, const Clock& clock, ViewTrustOptions options)
+    : session_(session),
+      clock_(clock),
+      options_(options),
+      lens_(setup.left),
+      middles_(node_middles(*setup.scene)),
+      pass_(session.make_trust_pass()),
+      marked_(pass_.marked().name(), pass_.marked().width(), pass_.marked().height()),
+      shown_(options.fidelity),
+      switch_(options.fall_back) {}
+
+void ViewTrust::collect() {
+  while (auto picture = readback_.take(options_.wait)) {
+    if (options_.wait) doubt_ = picture->doubt;
+    shown_.shown(std::move(*picture));
+  }
+}
+
+void ViewTrust::saw(const PosedFrame& frame) {
+  collect();
+  pass_.saw(frame.left);
+  if (auto fidelity = shown_.arrived(frame.left.time, frame.left.pixels)) {
+    pass_.compared(fidelity->patches);
+    if (fidelity->psnr_db) switch_.compared(now(), *fidelity->psnr_db);
+    fidelity_ = std::move(fidelity);
+  }
+}
+
+void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, TrustMarks marks) {
+  collect();
+  const RobotTime instant = source.instant().time;
+  const bool is_due = !remembered_ || instant < *remembered_ || instant - *remembered_ >= options_.remember_every;
+  const std::optional<ViewPlace> before = std::exchange(drawn_at_, place);
+  if (!is_due && marks == TrustMarks::none) return;
+  const auto px = node_doubt_px(source.places(), source.robot(), lens_, middles_, before);
+  pass_(session_.view(), place.T_world_camera, place.scene, px, shown_.limit());
+  if (is_due && readback_.start(session_.picture(), pass_.doubt(), instant)) remembered_ = instant;
+  if (options_.wait) collect();
+  if (marks == TrustMarks::tiles) frame_tiles();
+}
+
+void ViewTrust::frame_tiles() const {
+  if (!fidelity_) return;
+  for (std::size_t i = 0; i < fidelity_->wrong.size(); ++i) {
+    if (fidelity_->wrong[i] <= kWorthNaming) continue;
+    const cv::Rect tile = tile_of(i, {lens_.width(), lens_.height()});
+    const auto bar = [&](int x, int y, int width, int height) {
+      ViewTarget side = marked_.whole();
+      side.x = tile.x + x;
+      side.y = tile.y + y;
+      side.width = width;
+      side.height = height;
+      fill(side, 1, 0.85f, 0.2f);
+    };
+    bar(1, 1, tile.width - 2, kFramePx);
+    bar(1, tile.height - 1 - kFramePx, tile.width - 2, kFramePx);
+    bar(1, 1, kFramePx, tile.height - 2);
+    bar(tile.width - 1 - kFramePx, 1, kFramePx, tile.height - 2);
+  }
+}
+
+SeatLine fidelity_line(const ViewTrust& trust) {
+  if (!trust.fidelity() || !trust.fidelity()->psnr_db) return {"fidelity", "nothing to compare with yet", ""};
+  const Fidelity& of = *trust.fidelity();
+  SeatLine out{"fidelity", fmt::format("{:.0f} dB", *of.psnr_db), ""};
+  if (of.ssim) out.words += fmt::format(", SSIM {:.2f}", *of.ssim);
+  out.words += fmt::format("; {:.0f} % exact", 1e2 * of.exact_share);
+  if (of.wrong[of.worst] > kWorthNaming) out.words += "; worst: " + place_of(of.worst);
+  if (trust.falls_back()) {
+    out.words = trust.why();
+    out.cure = "the newest image counts until it is better";
+    out.urgency = Urgency::trouble;
+  }
+  return out;
+}
+
+}  // namespace foresight

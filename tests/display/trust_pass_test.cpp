@@ -1,0 +1,159 @@
+// Pixels are said to be exact only where an image of late has seen what they show.
+#include "display/trust_pass.hpp"
+
+#include <opencv2/imgproc.hpp>
+
+#include "display/picture_readback.hpp"
+#include "tests/support/headless_test.hpp"
+#include "tests/support/small_scene.hpp"
+#include "texture_gpu/texture_core.hpp"
+
+namespace foresight::trust_pass_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Where the block stands at rest (its middle on the table), beside the box, and a corner of the table.
+const Eigen::Vector3d kUnderBlock(-0.2, -0.25, 0), kOnBlock(-0.2, -0.25, 0.1), kOnTable(-0.5, 0.3, 0);
+constexpr double kMove = 0.3;  // m, of the block: clear of where it stood
+
+class TrustPassTest : public HeadlessTest, public testing::WithParamInterface<const char*> {
+ protected:
+  void SetUp() override {
+    HeadlessTest::SetUp();
+    if (IsSkipped()) return;
+    lens_ = small_lens(GetParam());
+    core_ = std::make_unique<TextureCore>(scene_, surface_, lens_, std::nullopt,
+                                          TextureOptions{.memory_bytes = 6 << 20}, driver_.is_software);
+    const auto buffers = std::make_shared<gl::SceneBuffers>(*scene_);
+    const auto records = std::make_shared<SurfaceRecords>(*surface_);
+    view_ = std::make_unique<PredictedView>(buffers, records, lens_);
+    trust_ = std::make_unique<TrustPass>(buffers, records, lens_, *view_);
+  }
+  PosedImage image(double block_x, Duration when) {
+    PosedImage out = posed_photograph(*scene_, state_of(*scene_, block_x), lens_, usual_view());
+    out.time = RobotTime{} + when;
+    return out;
+  }
+  void see(double block_x, Duration when) {
+    const PosedImage seen = image(block_x, when);
+    core_->process({seen, std::nullopt}, latest_);
+    trust_->saw(seen);
+  }
+  /// The view with the block there, and its doubt.
+  RememberedView draw(double block_x, std::vector<double> px = {}, double limit = 10) {
+    const TextureLease lease = latest_.acquire();
+    const SceneState state = state_of(*scene_, block_x);
+    view_->draw(usual_view(), state, *lease);
+    (*trust_)(*view_, usual_view(), state, px, limit);
+    PictureReadback readback;
+    EXPECT_TRUE(readback.start(view_->picture(), trust_->doubt(), RobotTime{1}));
+    auto out = readback.take(true);
+    EXPECT_TRUE(out);
+    EXPECT_FALSE(readback.take(true));
+    return std::move(*out);
+  }
+  cv::Point pixel_of(const Eigen::Vector3d& p_world) const {
+    const Eigen::Vector2d pixel = lens_.project(usual_view().inverse() * p_world).value();
+    return {static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))};
+  }
+  static int at(const cv::Mat& doubt, cv::Point pixel) { return doubt.at<uchar>(pixel); }
+  cv::Mat marked() const {
+    cv::Mat out(lens_.height(), lens_.width(), CV_8UC4);
+    glGetTextureImage(trust_->marked().name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4),
+                      out.data);
+    return out;
+  }
+
+  std::shared_ptr<const SceneModel> scene_ = small_scene();
+  std::shared_ptr<const SurfacePatches> surface_ = std::make_shared<SurfacePatches>(find_surface_patches(*scene_, {}));
+  Lens lens_;
+  LatestTextures latest_;
+  std::unique_ptr<TextureCore> core_;
+  std::unique_ptr<PredictedView> view_;
+  std::unique_ptr<TrustPass> trust_;
+};
+
+TEST_P(TrustPassTest, OnlyWhatWasSeenIsConfirmed) {
+  core_->process({image(0, 100ms), std::nullopt}, latest_);  // that the pass was not told of
+  const RememberedView before = draw(0);
+  EXPECT_EQ(cv::countNonZero(before.doubt != kUnconfirmed), 0);
+  trust_->saw(image(0, 200ms));
+  const RememberedView after = draw(0);
+  cv::Mat alpha;
+  cv::extractChannel(after.picture, alpha, 3);
+  const cv::Mat seen = alpha == 255;
+  EXPECT_GT(cv::countNonZero(seen), 1500);
+  EXPECT_GT(cv::countNonZero((after.doubt < kUnconfirmed) & seen), 0.95 * cv::countNonZero(seen));
+  EXPECT_EQ(cv::countNonZero((after.doubt < kUnconfirmed) & ~seen), 0) << "what is filled is not exact";
+}
+
+TEST_P(TrustPassTest, WhatAPartLeavesBehindIsNotConfirmedUntilItIsSeenAgain) {
+  see(kMove, 100ms);  // the table where the block will be is seen
+  see(0, 200ms);
+  const RememberedView moved = draw(kMove);
+  EXPECT_EQ(at(moved.doubt, pixel_of(kUnderBlock)), kUnconfirmed) << "it covered this in the newest image";
+  EXPECT_LT(at(moved.doubt, pixel_of(kOnTable)), kUnconfirmed);
+  EXPECT_LT(at(moved.doubt, pixel_of(kOnBlock + Eigen::Vector3d(kMove, 0, 0))), kUnconfirmed)
+      << "the block takes its picture along";
+  see(kMove, 300ms);
+  EXPECT_LT(at(draw(kMove).doubt, pixel_of(kUnderBlock)), kUnconfirmed);
+}
+
+TEST_P(TrustPassTest, DoubtGrowsWithHowFarOffAPartMayBe) {
+  see(0, 100ms);
+  const bool is_large = std::string(GetParam()) != "wide_fisheye";  // else the block is few pixels wide
+  const int reach = is_large ? 3 : 0;
+  const auto sum_on_block = [&](double px) {
+    std::vector<double> all(scene_->nodes().size(), 0);
+    all[kBlock] = px;
+    const cv::Point middle = pixel_of(kOnBlock);
+    return cv::sum(draw(0, all).doubt(cv::Rect(middle.x - reach, middle.y - reach, 2 * reach + 1, 2 * reach + 1)))[0];
+  };
+  const double still = sum_on_block(0), little = sum_on_block(2), far = sum_on_block(6);
+  EXPECT_GT(still, 0);
+  EXPECT_GT(little, 1.5 * still);
+  EXPECT_GT(far, 1.5 * little);
+  if (is_large) EXPECT_NEAR(little / still, std::hypot(0.7, 2) / 0.7, 0.8);
+}
+
+TEST_P(TrustPassTest, WhatWasShownWrongIsNotConfirmed) {
+  see(0, 100ms);
+  cv::Mat wrong = cv::Mat::zeros(lens_.height(), lens_.width(), CV_8UC1);
+  const cv::Point on_table = pixel_of(kOnTable), on_block = pixel_of(kOnBlock);
+  cv::circle(wrong, on_table, 3, 255, -1);
+  trust_->compared(wrong);
+  const cv::Mat doubt = draw(0).doubt;
+  EXPECT_EQ(at(doubt, on_table), kUnconfirmed);
+  EXPECT_LT(at(doubt, on_block), kUnconfirmed);
+}
+
+TEST_P(TrustPassTest, WhatIsNotExactIsHatched) {
+  see(kMove, 100ms);
+  see(0, 200ms);
+  const double limit = 8;
+  const RememberedView view = draw(kMove, {}, limit);
+  const cv::Mat shown = marked();
+  int exact = 0, others = 0, striped = 0;
+  for (int y = 0; y < shown.rows; ++y)
+    for (int x = 0; x < shown.cols; ++x) {
+      const auto before = view.picture.at<cv::Vec4b>(y, x), after = shown.at<cv::Vec4b>(y, x);
+      if (before[3] < 128) continue;
+      if (view.doubt.at<uchar>(y, x) <= limit) {
+        ++exact;
+        ASSERT_EQ(before, after) << x << ' ' << y;
+      } else {
+        ++others;
+        striped += cv::norm(before, after) > 40 ? 1 : 0;
+      }
+    }
+  EXPECT_GT(exact, 500);
+  EXPECT_GT(others, 100);
+  EXPECT_NEAR(striped / static_cast<double>(others), 1.0 / 3, 0.1) << "so that the picture shows between the stripes";
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, TrustPassTest, testing::Values("pinhole", "rational", "wide_fisheye"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace foresight::trust_pass_test
