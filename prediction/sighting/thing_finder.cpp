@@ -9,10 +9,10 @@
 namespace foresight {
 namespace {
 
-constexpr std::size_t kCandidates = 10;
+constexpr std::size_t kCandidates = 16;
 constexpr double kBesideHand = 0.008;    // m: starts of a fit about a thing in the hand
 constexpr double kLeastUncovered = 0.7;  // share of the surface, before anything is said to be missing
-constexpr double kNotThere = 1.5;        // of the largest difference: what is seen there is something else
+constexpr double kNotThere = 2.6;        // of the largest difference: what is seen there is something else
 constexpr double kOwn = 0.6;             // of a thing's radius: nearer, two things are at one place
 // Of what rests on something: it does so, at the height that is known, and level.
 const Eigen::Vector3d kRestPlace(0.03, 0.03, 0.0015), kRestTurn(0.02, 0.02, 0.2);
@@ -127,6 +127,7 @@ std::optional<ThingFinder::Fit> ThingFinder::search(const Thing& thing, const Lo
   std::optional<Fit> best;
   const auto consider = [&](const Pose& start, bool held) {
     auto fit = agreeing(thing, looked, start, held);
+    if (fit && thing.colours.known() && -fit->worth > options_.found_difference) return;
     if (fit && (!best || fit->worth > best->worth)) best = std::move(fit);
   };
   if (expected.held) {

@@ -40,7 +40,8 @@ struct ExpectedThing {
 struct ThingFinderOptions {
   double least_agreement = 0.6;               ///< EdgeFit::agreement
   double most_sigma = 0.006;                  ///< m
-  double most_difference = 14;                ///< grey levels: ColourFit::difference
+  double most_difference = 8;                 ///< grey levels: ColourFit::difference, where it should be
+  double found_difference = 4.5;              ///< of one that is sought: of many poses one may look alike by chance
   double farthest = 0.03;                     ///< m that one fit may move it by
   double search_reach = 0.06;                 ///< m
   double floor_m = 0.0008, floor_rad = 0.01;  ///< what every pose is off by, beside its own sigma

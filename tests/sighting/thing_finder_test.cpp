@@ -88,6 +88,19 @@ TEST_P(FinderTest, SeesAThingThatIsElsewhere) {
   }
 }
 
+TEST_P(FinderTest, SeesAThingThatIsCarriedAndTurned) {
+  look();
+  truth(0) = moved(truth(0), 0.06, 0.02, 0.1, 0.4);
+  thought(0) = moved(truth(0), 0.004, -0.003, 0.004, 0.05);
+  held_ = 0;
+  const FoundThings found = look();
+  print(found);
+  const auto red = std::ranges::find(found.sightings, std::size_t{0}, &ThingSighting::thing);
+  ASSERT_NE(red, found.sightings.end());
+  EXPECT_LT(off(*red), GetParam() == 640 ? 0.004 : 0.01) << "20 px in the coarse picture, and in other light";
+  EXPECT_LT(off(*red), 4 * red->sigma);
+}
+
 TEST_P(FinderTest, WhatShouldBeInTheHandIsSeenOnTheTable) {
   look();
   thought(0) = moved(truth(0), 0.05, 0.02, 0.12, 0.1);
