@@ -218,12 +218,27 @@ FutureReason RobotFuture::obstacle(RobotTime time, int& joint) const noexcept {
 // Why there is a prediction, but no trust in it.
 FutureReason RobotFuture::doubt(const Shown& shown, int& joint) const noexcept {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (options_.gate.joints[i].keeps_grip) continue;
     joint = static_cast<int>(i);
-    if (joints_[i].held.doubted || joints_[i].missed.doubted) return FutureReason::astray;
-    if (shown.robot.sigma[i] > joints_[i].least_sure) return FutureReason::unsure;
+    if (const FutureReason reason = doubt(shown, i); reason != FutureReason::none) return reason;
   }
   joint = -1;
   return FutureReason::none;
+}
+
+FutureReason RobotFuture::doubt(const Shown& shown, std::size_t joint) const noexcept {
+  if (joints_[joint].held.doubted || joints_[joint].missed.doubted) return FutureReason::astray;
+  return shown.robot.sigma[joint] > joints_[joint].least_sure ? FutureReason::unsure : FutureReason::none;
+}
+
+// Jaws that hold something stand elsewhere than they are asked to for as long as they do, and carry neither tool nor
+// camera: they alone are shown as they were measured.
+void RobotFuture::fall_back_jaws(Shown& shown) const noexcept {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (!options_.gate.joints[i].keeps_grip || doubt(shown, i) == FutureReason::none) continue;
+    shown.robot.position[i] = joints_[i].measured.values().newest().position;
+    shown.robot.sigma[i] = std::numeric_limits<double>::infinity();
+  }
 }
 
 RobotFuture::Shown RobotFuture::predict(RobotTime time) const noexcept {
@@ -261,6 +276,8 @@ RobotFuture::Shown RobotFuture::predict(RobotTime time) const noexcept {
   robot.blocked = (cycle != nullptr ? *cycle : last).blocked;
   if (const FutureReason doubtful = doubt(out, joint); doubtful != FutureReason::none)
     fall_back(robot, doubtful, joint);
+  else
+    fall_back_jaws(out);
   return out;
 }
 
@@ -274,7 +291,7 @@ PredictedRobot RobotFuture::show(RobotTime time) noexcept {
   const double passed = goes_on ? std::max(0.0, to_seconds(time - shown_)) : 0;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     Joint& joint = joints_[i];
-    if (!goes_on || shown.robot.status != StateStatus::predicted) {
+    if (!goes_on || shown.robot.status != StateStatus::predicted || std::isinf(shown.robot.sigma[i])) {
       joint.correction.forget();
       continue;
     }
@@ -318,7 +335,8 @@ void RobotFuture::score(const Shown& shown) noexcept {
   const bool trusted = shown.robot.status == StateStatus::predicted;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     Joint& joint = joints_[i];
-    const double off = std::abs((trusted ? shown.robot.position[i] : shown.predicted[i]) - truth.position[i]);
+    const bool as_shown = trusted && std::isfinite(shown.robot.sigma[i]);
+    const double off = std::abs((as_shown ? shown.robot.position[i] : shown.predicted[i]) - truth.position[i]);
     joint.scale.score(CalibratedSigma::usual_part(off / shown.prior[i], shown.scale[i]), shown.scale[i], passed);
     const double usual = std::max(joint.precise, 3 * shown.scale[i] * shown.prior[i]);
     // What a line loses is shown wrongly until the report of it has come: a way there and back.

@@ -46,7 +46,8 @@ struct PredictedRobot {
   std::size_t joints = 0;
   /// Where `invalid`: as last measured, to fall back on (not a number before that).
   JointValues position{};
-  /// The truth lies within twice of it in 95 % of cases; 0 where exact; infinite where invalid.
+  /// The truth lies within twice of it in 95 % of cases; 0 where exact; infinite where invalid, and for jaws
+  /// (GateJoint::keeps_grip) that cannot be predicted, as they hold something: these alone are as last measured then.
   JointValues sigma{};
   bool blocked = false;  ///< the gate will keep the robot from where it is asked to be: parts would come too close
 };
@@ -135,6 +136,8 @@ class RobotFuture {
   Shown predict(RobotTime time) const noexcept;
   FutureReason obstacle(RobotTime time, int& joint) const noexcept;
   FutureReason doubt(const Shown& shown, int& joint) const noexcept;
+  FutureReason doubt(const Shown& shown, std::size_t joint) const noexcept;
+  void fall_back_jaws(Shown& shown) const noexcept;
   void fall_back(PredictedRobot& out, FutureReason reason, int joint) const noexcept;
 
   RobotFutureOptions options_;

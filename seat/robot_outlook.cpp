@@ -95,7 +95,8 @@ void RobotOutlook::score() {
     ++figures_.scored;
     double worst = 0;
     for (std::size_t i = 0; i < scored->shown.joints; ++i)
-      worst = std::max(worst, std::abs(scored->shown.position[i] - scored->truth[i]));
+      if (std::isfinite(scored->shown.sigma[i]))
+        worst = std::max(worst, std::abs(scored->shown.position[i] - scored->truth[i]));
     if (errors_.size() < kErrorsKept)
       errors_.push_back(worst);
     else

@@ -17,6 +17,7 @@ struct WorldOptions {
   double loss = 0;        // share of set-points and reports
   double lag = 0.015;     // s, of the drives
   double quantum = 1e-5;  // rad, of the encoders
+  bool jaws = false;      // the first joint is that of a gripper
   unsigned seed = 1;
 };
 
@@ -26,8 +27,8 @@ class FutureWorld {
       : options_(options),
         robot_shape_(rod_.shape()),
         model_shape_(rod_.shape()),
-        gate_(rod_.options(), robot_shape_.get()),
-        future_(with(rod_.options()), model_shape_.get()),
+        gate_(gate_options(), robot_shape_.get()),
+        future_(with(gate_options()), model_shape_.get()),
         random_(options.seed) {
     GateModel::State state;
     state.time = now_;
@@ -71,6 +72,11 @@ class FutureWorld {
 
  private:
   static constexpr double kSag = 5e-4;  // rad by which weight bends what the motor turns: no linear response
+  GateOptions gate_options() const {
+    GateOptions out = rod_.options();
+    out.joints[0].keeps_grip = options_.jaws;
+    return out;
+  }
   static RobotFutureOptions with(const GateOptions& gate) {
     RobotFutureOptions out;
     out.gate = gate;

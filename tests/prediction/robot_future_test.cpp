@@ -134,6 +134,22 @@ TEST(RobotFuture, WhatHoldsAJointIsNoticed) {
   EXPECT_EQ(world.pictures().back().status, StateStatus::predicted) << to_words(world.pictures().back(), kNames);
 }
 
+TEST(RobotFuture, JawsThatHoldSomethingAreMeasuredAndTheArmIsPredicted) {
+  FutureWorld world({.jaws = true});
+  world.run(12);
+  world.jammed = true;
+  world.run(0.3 + 0.35);
+  const PredictedRobot held = world.pictures().back();
+  EXPECT_EQ(held.status, StateStatus::predicted);
+  EXPECT_TRUE(std::isinf(held.sigma[0]));
+  EXPECT_NEAR(held.position[0], world.truth_at(world.now())[0], 1e-3) << "it stands where it was measured";
+  world.jammed = false;
+  world.run(6);
+  EXPECT_LT(held.sigma[1], 0.02);
+  EXPECT_NEAR(held.position[1], world.truth_at(held.time)[1], 2 * held.sigma[1] + 1e-3);
+  EXPECT_TRUE(std::isfinite(world.pictures().back().sigma[0]));
+}
+
 TEST(RobotFuture, SaysWhyItCannotKnow) {
   FutureWorld world;
   const auto reason = [&](Duration ahead = Duration{0}) { return world.future().at(world.now() + ahead).reason; };
