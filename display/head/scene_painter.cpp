@@ -104,9 +104,14 @@ bool ScenePainter::draw_scene(std::size_t eye, const EyeView& view, const ViewTa
                     own->view.picture().height() == target.height;
   if (!fits) own.reset();
   if (!own) own.emplace(Eye{view.fov, session_.make_view(eye_lens(view.fov, target.width, target.height))});
-  own->view.draw(*T_world_space_ * view.T_space_eye * T_body_camera(), shown_.place.scene, *textures);
+  ImageLease image = session_.image();
+  const Pose T_world_eye = *T_world_space_ * view.T_space_eye * T_body_camera();
+  if (image)
+    own->view.draw(T_world_eye, shown_.place.scene, *textures, *image);
+  else
+    own->view.draw(T_world_eye, shown_.place.scene, *textures);
   (*copy_)(own->view.picture(), target);
-  drawings_.push_back({std::move(textures), gl::Fence::insert()});
+  drawings_.push_back({std::move(textures), std::move(image), gl::Fence::insert()});
   return true;
 }
 

@@ -52,6 +52,7 @@ class ScenePainter final : public HeadPainter {
   };
   struct Drawing {
     TextureLease textures;
+    ImageLease image;
     gl::Fence end;
   };
   bool centre_pressed();
