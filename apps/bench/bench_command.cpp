@@ -7,6 +7,7 @@
 #include "apps/bench/can_bench.hpp"
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
+#include "apps/bench/head_bench.hpp"
 #include "apps/bench/line_bench.hpp"
 #include "apps/bench/link_bench.hpp"
 #include "apps/bench/margin.hpp"
@@ -137,6 +138,21 @@ void add_camera(Command& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_camera(*options); }; });
 }
 
+void add_head(Command& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("head", "What warping a drawn view to where the head is now costs and shows");
+  auto options = std::make_shared<HeadBenchOptions>();
+  command->add_option("RUN", options->run, "A run, whose images give the textures")->reads()->required();
+  command->add_option("--width", options->width, "Pixels of an eye")->check(from_to(16, 4096))->capture_default_str();
+  command->add_option("--height", options->height, "Pixels")->check(from_to(16, 4096))->capture_default_str();
+  command->add_option("--views", options->views, "So many motions")->check(from_to(1, 10000))->capture_default_str();
+  command->add_option("--degrees", options->degrees, "Of each")->check(from_to(0.0, 20.0))->capture_default_str();
+  command->add_option("--metres", options->metres, "Of each")->check(from_to(0.0, 1.0))->capture_default_str();
+  command->add_option("--seed", options->seed, "Another seed, other motions");
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer("Example: foresight synth lab && foresight bench head lab --json bench.json");
+  command->callback([options, &action] { action = [options] { return bench_head(*options); }; });
+}
+
 void add_line(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("line", "Age and quality of the images that a line lets through");
   auto options = std::make_shared<LineBenchOptions>();
@@ -194,6 +210,7 @@ void add_bench_command(Command& app, std::function<int()>& action) {
   add_can(*bench, action);
   add_extraction(*bench, action);
   add_figures(*bench, action);
+  add_head(*bench, action);
   add_line(*bench, action);
   add_margin(*bench, action);
   add_prediction_benches(*bench, action);

@@ -69,6 +69,21 @@ TEST_F(Bench, MarginCountsByTruth) {
   EXPECT_EQ(plots[0]["series"][1]["y"][4].get<double>(), off["core"]["wrong"].get<double>() / 1e3);
 }
 
+TEST_F(Bench, HeadWarpsWhatItDrew) {
+  const std::string file = out_ / "head.json";
+  const Outcome outcome =
+      run_program({"bench", "head", run(), "--views", "3", "--width", "160", "--height", "120", "--json", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json all = read_json(file);
+  for (const char* which : {"warped_motion", "warped_second_eye"}) {
+    EXPECT_GT(all[which]["db"]["worst"], 20) << which;
+    EXPECT_GE(all[which]["db"]["median"], all[which]["db"]["worst"]) << which;
+    EXPECT_LT(all[which]["holes"]["most"], 0.1) << which;
+    EXPECT_GT(all[which]["warped_cpu_ms"], 0) << which;
+    EXPECT_GT(all[which]["drawn_cpu_ms"], 0) << which;
+  }
+}
+
 TEST_F(Bench, WrongInputIsRefused) {
   const SmallRun distorted;
   std::filesystem::remove_all(distorted / "truth");
@@ -78,6 +93,7 @@ TEST_F(Bench, WrongInputIsRefused) {
       {{"bench", "margin", run(), "--images", "0"}, "--images"},
       {{"bench", "extraction", run(), "--images", "1"}, "--images"},
       {{"bench", "view", run(), "--rounds", "0"}, "--rounds"},
+      {{"bench", "head", run(), "--views", "0"}, "--views"},
       {{"bench", "extraction", run(), "--json", run() + "/scene.yaml"}, "--json"},
       {{"bench", "extraction", (out_ / "none")}, "none"},
   };

@@ -34,6 +34,7 @@ const std::map<std::string, CommandWords>& table() {
       {"bench line", {{"--size", {"32x32"}}, {"--seconds", {"1"}}, {"--pictures", {"2"}}}},
       {"bench registration", {}},
       {"bench camera", {}},
+      {"bench head", {{"RUN", {"@run"}}, {"--views", {"1"}}, {"--width", {"64"}}, {"--height", {"48"}}}},
       {"bench prediction ik",
        {{"--urdf", {"@arm.urdf"}}, {"--tip", {"arm_7"}}, {"--poses", {"20"}}, {"--paths", {"1"}}}},
       {"bench prediction contact",

@@ -1,0 +1,176 @@
+// A warped picture beside the one that is drawn from the new pose.
+#include "display/warp/depth_warp.hpp"
+
+#include <random>
+
+#include "display/view_session.hpp"
+#include "tests/support/headless_test.hpp"
+#include "tests/support/small_scene.hpp"
+#include "tests/texture_gpu/reference/ray_caster.hpp"
+
+namespace foresight::depth_warp_test {
+namespace {
+
+/// The same pinhole with so many pixels more at each border.
+Lens with_guard(const Lens& lens, int guard) {
+  Lens::Parameters p = lens.parameters();
+  p.width += 2 * guard;
+  p.height += 2 * guard;
+  p.cx += guard;
+  p.cy += guard;
+  return Lens(p);
+}
+
+Lens eye() {
+  Lens::Parameters p;
+  p.width = 240;
+  p.height = 180;
+  p.fx = p.fy = 220;
+  p.cx = 119.5;
+  p.cy = 89.5;
+  return Lens(p);
+}
+
+cv::Mat pixels(const gl::Texture& texture, GLenum format, int type) {
+  cv::Mat out(texture.height(), texture.width(), type);
+  glGetTextureImage(texture.name(), 0, format, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * out.elemSize()),
+                    out.data);
+  return out;
+}
+
+// Over all pixels and three channels.
+double decibels(const cv::Mat& a, const cv::Mat& b) {
+  double sum = 0;
+  for (int y = 0; y < a.rows; ++y)
+    for (int x = 0; x < a.cols; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const double d = a.at<cv::Vec4b>(y, x)[c] - b.at<cv::Vec4b>(y, x)[c];
+        sum += d * d;
+      }
+  return 10 * std::log10(255 * 255 / (sum / (3.0 * static_cast<double>(a.total()))));
+}
+
+class DepthWarpTest : public HeadlessTest {
+ protected:
+  static constexpr int kGuard = 24;
+  void SetUp() override {
+    HeadlessTest::SetUp();
+    if (IsSkipped()) return;
+    ViewSetup setup{scene_, surface_for(*scene_, small_lens("pinhole"), {}), small_lens("pinhole"), std::nullopt, {},
+                    {}};
+    setup.textures.memory_bytes = 12 << 20;
+    session_.emplace(*context_, setup);
+    for (const Pose& from :
+         {usual_view(), look_at({-0.4, -1.0, 0.8}, {0, 0, 0.1}), look_at({-1.0, -0.3, 0.8}, {0, 0, 0.1})})
+      session_->process({posed_photograph(*scene_, state_, small_lens("pinhole"), from), std::nullopt});
+    source_.emplace(session_->make_view(with_guard(eye(), kGuard)));
+    truth_.emplace(session_->make_view(eye()));
+    warp_.emplace(eye());
+  }
+  void TearDown() override {
+    warp_.reset();
+    source_.reset();
+    truth_.reset();
+    session_.reset();
+    HeadlessTest::TearDown();
+  }
+  /// From where the source was drawn to where it is warped to: decibels against drawing it there.
+  double warped(const Pose& from, const Pose& to) {
+    session_->draw(*source_, from, state_);
+    (*warp_)({&source_->picture(), &source_->faces().depth, with_guard(eye(), kGuard), from}, to);
+    session_->draw(*truth_, to, state_);
+    drawn_ = pixels(truth_->picture(), GL_RGBA, CV_8UC4);
+    shown_ = pixels(warp_->picture(), GL_RGBA, CV_8UC4);
+    holes_ = pixels(warp_->holes(), GL_RED, CV_8UC1);
+    return decibels(drawn_, shown_);
+  }
+  double holes() const { return cv::countNonZero(holes_) / static_cast<double>(holes_.total()); }
+
+  std::shared_ptr<const SceneModel> scene_ = small_scene();
+  SceneState state_ = state_of(*scene_);
+  std::optional<ViewSession> session_;
+  std::optional<PredictedView> source_, truth_;
+  std::optional<DepthWarp> warp_;
+  cv::Mat drawn_, shown_, holes_;
+};
+
+Pose moved(const Pose& T, const Eigen::Vector3d& by, double turn, const Eigen::Vector3d& axis) {
+  Pose step = Pose::Identity();
+  step.translation() = by;
+  step.linear() = Eigen::AngleAxisd(turn, axis.normalized()).toRotationMatrix();
+  return T * step;
+}
+
+TEST_F(DepthWarpTest, WithoutMotionItIsThePictureItself) {
+  const double db = warped(usual_view(), usual_view());
+  EXPECT_GT(db, 55);
+  EXPECT_EQ(holes(), 0);
+}
+
+// 2 degrees and 2 cm: what a head does in a tenth of a second.
+TEST_F(DepthWarpTest, AHeadsSmallMotionsAreShownAsIfDrawnAnew) {
+  std::mt19937 random(1);
+  std::normal_distribution some(0.0, 1.0);
+  const auto any = [&] { return Eigen::Vector3d(some(random), some(random), some(random)).normalized().eval(); };
+  double worst = 1e9, most_holes = 0, sum = 0;
+  constexpr int kViews = 12;
+  for (int i = 0; i < kViews; ++i) {
+    const Pose to = moved(usual_view(), 0.02 * any(), 2 * EIGEN_PI / 180, any());
+    const double db = warped(usual_view(), to);
+    worst = std::min(worst, db);
+    most_holes = std::max(most_holes, holes());
+    sum += db;
+    EXPECT_EQ(cv::countNonZero(holes_ == 255), 0) << "the guard band reaches";
+  }
+  RecordProperty("mean_db", std::to_string(sum / kViews));
+  RecordProperty("worst_db", std::to_string(worst));
+  RecordProperty("most_holes", std::to_string(most_holes));
+  EXPECT_GT(worst, 30);
+  EXPECT_GT(sum / kViews, 32);
+  EXPECT_LT(most_holes, 0.02) << "of a small picture, where borders count for more";
+  std::printf("mean %.2f dB, worst %.2f dB, holes at most %.2f %%\n", sum / kViews, worst, 100 * most_holes);
+}
+
+// Whoever only turns the picture leaves near things behind.
+TEST_F(DepthWarpTest, DepthIsWorthIt) {
+  const Pose to = moved(usual_view(), {0.02, 0, 0}, 0, Eigen::Vector3d::UnitX());
+  const double db = warped(usual_view(), to);
+  cv::Mat unmoved = pixels(source_->picture(), GL_RGBA, CV_8UC4)(cv::Rect(kGuard, kGuard, 240, 180)).clone();
+  EXPECT_GT(db, decibels(drawn_, unmoved) + 8);
+}
+
+// A hole is a place that the source did not see; and what it saw is no hole.
+TEST_F(DepthWarpTest, HolesAreWhatTheSourceDidNotSee) {
+  const Pose from = usual_view(), to = moved(from, {0.06, 0.02, 0}, 0.01, Eigen::Vector3d::UnitY());
+  warped(from, to);
+  ASSERT_GT(holes(), 0.002);
+  const reference::RayCaster rays(*scene_, state_);
+  int hidden = 0, told = 0, right = 0;
+  for (int y = 0; y < holes_.rows; y += 2)
+    for (int x = 0; x < holes_.cols; x += 2) {
+      const Eigen::Vector3d d = to.linear() * eye().unproject({x, y})->normalized();
+      const auto hit = rays.cast(to.translation(), d, gl::kNearPlane);
+      if (!hit) continue;
+      const Eigen::Vector3d sight = hit->p_world - from.translation();
+      const auto seen = rays.cast(from.translation(), sight.normalized(), gl::kNearPlane);
+      const bool is_hidden = seen && seen->t < sight.norm() - 0.01;
+      hidden += is_hidden;
+      told += holes_.at<std::uint8_t>(y, x) != 0;
+      right += is_hidden && holes_.at<std::uint8_t>(y, x) != 0;
+    }
+  std::printf("%d hidden, %d told of, %d of them hidden\n", hidden, told, right);
+  EXPECT_GT(right, 0.75 * hidden);
+  EXPECT_GT(right, 0.6 * told) << "borders are a pixel wide";
+}
+
+TEST_F(DepthWarpTest, RefusesWhatItCannotDo) {
+  EXPECT_THROW(DepthWarp(small_lens("fisheye")), std::invalid_argument);
+  session_->draw(*source_, usual_view(), state_);
+  EXPECT_THROW((*warp_)({&source_->picture(), &source_->faces().depth, eye(), usual_view()}, usual_view()),
+               std::invalid_argument)
+      << "of another size";
+  EXPECT_THROW((*warp_)({nullptr, nullptr, eye(), usual_view()}, usual_view()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace foresight::depth_warp_test
