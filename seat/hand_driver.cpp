@@ -50,7 +50,6 @@ void HandDriver::look_from(const Pose& T_world_camera) {
 void HandDriver::look_within(const std::optional<Pose>& T_world_space) {
   const std::lock_guard lock(mutex_);
   T_world_space_ = T_world_space;
-  hand_.settings().view_turns_with_head = T_world_space.has_value();
 }
 
 void HandDriver::interrupt(const char* trouble, const char* cure) {
@@ -111,7 +110,9 @@ void HandDriver::cycle(const SeatView& view) {
   input.robot = view.robot;
   // Of the same moment as the hand: a head that turns moves no tool.
   const auto& head = input.device.T_space_head;
-  const Pose T_world_view = T_world_space_ && head ? *T_world_space_ * *head * head::T_body_camera() : T_world_camera_;
+  const bool within = T_world_space_ && head;  // keys mean what the camera sees
+  hand_.settings().view_turns_with_head = within;
+  const Pose T_world_view = within ? *T_world_space_ * *head * head::T_body_camera() : T_world_camera_;
   input.T_base_view = rig_.T_world_robot.inverse() * T_world_view;
   const HandCycle& cycle = hand_.cycle(input);
   wish_.deadman = cycle.deadman;

@@ -12,7 +12,6 @@ constexpr double kAlong = 0.02;        // m that it goes with the hand
 constexpr double kSameInHand = 0.008;  // m, at least, within which it then stays in it
 constexpr double kAsBefore = 0.04;     // m: in the hand about where it was when it was lost
 constexpr double kSigmas = 4;
-constexpr double kOpened = 5e-4;  // m or rad
 
 }  // namespace
 
@@ -30,7 +29,7 @@ bool ThingFuture::is_in_hand(Thing& thing, const ThingSighting& sighting, const 
   if ((T_grip_thing.translation() - held->T.translation()).norm() > kAsBefore) return false;
   const std::string& joint = options_.jaws[held->jaw];
   const auto then = joints(joint), now = joints_now()(joint);
-  if (!then || !now || opening_[held->jaw] * (*now - *then) > kOpened) return false;
+  if (!then || !now || opening_[held->jaw] * (*now - *then) > kJawsOpened) return false;
   const double same = std::max(kSameInHand, kSigmas * sighting.sigma);
   for (auto before = thing.seen.rbegin() + 1; before != thing.seen.rend(); ++before) {
     if ((before->T_grip_thing.translation() - T_grip_thing.translation()).norm() > same) return false;

@@ -10,8 +10,7 @@
 namespace foresight {
 namespace {
 
-constexpr int kGripSteps = 3;     // in a row, until a thing counts as held
-constexpr double kOpened = 5e-4;  // m or rad that jaws go back before it is let go
+constexpr int kGripSteps = 3;  // in a row, until a thing counts as held
 constexpr double kStillSpeed = 0.01, kStillTurning = 0.15;
 constexpr double kStillTime = 0.1;    // s
 constexpr double kGate = 4;           // sigmas
@@ -156,7 +155,7 @@ void ThingFuture::follow(Thing& thing, const JointPositions& joints) {
   const double dt = world_->seconds_per_step();
   if (spell.kind == Kind::carried) {
     spell.variance += options_.slip * options_.slip * dt;
-    if (world_->opened_by(spell.jaw) > kOpened) let_go(thing, Kind::moving, model_pose(thing));
+    if (world_->opened_by(spell.jaw) > kJawsOpened) let_go(thing, Kind::moving, model_pose(thing));
     return;
   }
   const int jaw = world_->gripped_by(thing.node);

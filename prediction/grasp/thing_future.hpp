@@ -23,6 +23,8 @@
 
 namespace foresight {
 
+inline constexpr double kJawsOpened = 5e-4;  ///< m or rad that jaws go back before what they hold is let go
+
 enum class ThingStatus : std::uint8_t {
   seen,       ///< at rest where cameras saw it
   carried,    ///< in the hand

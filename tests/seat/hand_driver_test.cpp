@@ -1,0 +1,114 @@
+// A hand at the seat: what it does is what the operator sees it do, in a window or through a head display.
+#include "seat/hand_driver.hpp"
+
+#include <cmath>
+
+#include "input/hand_of_rig.hpp"
+#include "tests/support/folders.hpp"
+
+namespace foresight::hand_driver_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Says what a test has it say.
+class ToldHand final : public Tracker {
+ public:
+  std::string name() const override { return "a hand"; }
+  TrackerState read(OperatorTime now) noexcept override {
+    state.time = now;
+    return state;
+  }
+  TrackerState state;
+};
+
+class HandAtTheSeat : public testing::Test {
+ protected:
+  HandAtTheSeat() {
+    auto device = std::make_unique<ToldHand>();
+    hand_ = device.get();
+    hand_->state.connected = hand_->state.tracked = true;
+    std::vector<std::unique_ptr<Tracker>> devices;
+    devices.push_back(std::move(device));
+    driver_.emplace(rig_, std::move(devices));
+    view_.robot.joints = rig_.joints.size();
+    view_.robot.begin = {0.2, 0.6, -0.1, 1.2, 0.3, 0.7, -0.2, 0.03, 0.1, -0.2};
+    view_.robot.ready = true;
+    cycles(20);
+  }
+  void hold(bool held) {
+    hand_->state.buttons.set(TrackerButton::deadman, held);
+    hand_->state.buttons.set(TrackerButton::clutch, held);
+  }
+  /// The head looks about meanwhile, and the hand goes `by` m each time.
+  void cycles(int count, const Eigen::Vector3d& by = Eigen::Vector3d::Zero()) {
+    for (int i = 0; i < count; ++i) {
+      view_.now = view_.now + 20ms;
+      Pose head = Pose::Identity();
+      head.linear() = Eigen::AngleAxisd(0.8 * std::sin(0.1 * turns_++), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      hand_->state.T_space_head = head;
+      hand_->state.T_space_hand.translation() += by;
+      wish_ = driver_->tick(view_);
+      view_.robot.follows = wish_.deadman;
+      if (wish_.deadman) view_.robot.begin = wish_.position;
+    }
+  }
+  Eigen::Vector3d tip_in_world() const {
+    const HandOptions options = hand_options(rig_);
+    JointVector arm(static_cast<Eigen::Index>(options.arm_joints.size()));
+    for (std::size_t i = 0; i < options.arm_joints.size(); ++i)
+      arm[static_cast<Eigen::Index>(i)] = wish_.position[options.arm_joints[i]];
+    return rig_.T_world_robot * options.arm->tip_pose(arm).translation();
+  }
+  Eigen::Vector3d way_of_the_tool() {
+    hold(true);
+    cycles(5);
+    EXPECT_TRUE(wish_.deadman);
+    const Eigen::Vector3d before = tip_in_world();
+    cycles(30, {0.001, 0, 0});
+    const Eigen::Vector3d out = tip_in_world() - before;
+    hold(false);
+    cycles(5);
+    return out;
+  }
+
+  Rig rig_ = read_rig(source_folder() / "configs" / "minerva.yaml");
+  ToldHand* hand_ = nullptr;
+  std::optional<HandDriver> driver_;
+  SeatView view_;
+  SeatWish wish_;
+  int turns_ = 0;
+};
+
+TEST_F(HandAtTheSeat, ThroughAHeadDisplayTheToolGoesAsTheHandIsSeenToGo) {
+  for (const double turned : {0.0, 1.2, -2.0}) {
+    Pose T_world_space = Pose::Identity();
+    T_world_space.linear() = Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    driver_->look_within(T_world_space);
+    const Eigen::Vector3d way = way_of_the_tool();
+    ASSERT_GT(way.norm(), 0.005);
+    EXPECT_GT(way.normalized().dot(T_world_space.linear().col(0)), 0.98)
+        << "wherever the head looked: " << way.transpose();
+  }
+}
+
+TEST_F(HandAtTheSeat, AnInterruptedHandHasToPressAnew) {
+  hold(true);
+  cycles(10, {0.0005, 0, 0});
+  ASSERT_TRUE(wish_.deadman);
+  driver_->interrupt("the headset has gone", "look at the window");
+  cycles(1, {0.0005, 0, 0});
+  EXPECT_FALSE(wish_.deadman);
+  ASSERT_EQ(driver_->lines().size(), 1u);
+  EXPECT_EQ(driver_->lines()[0].urgency, Urgency::trouble);
+  cycles(50, {0.0005, 0, 0});
+  EXPECT_FALSE(wish_.deadman) << "it has been held all the time";
+  hold(false);
+  cycles(5);
+  hold(true);
+  cycles(2);
+  EXPECT_TRUE(wish_.deadman);
+}
+
+}  // namespace
+}  // namespace foresight::hand_driver_test
