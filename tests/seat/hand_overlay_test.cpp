@@ -163,7 +163,8 @@ TEST_F(HandOverlayPicture, IsSeenThroughTheHeadsLens) {
   cv::inRange(drawn, cv::Scalar(0, 100, 200, 0), cv::Scalar(90, 200, 255, 255), orange);
   cv::inRange(drawn, cv::Scalar(200, 150, 0, 0), cv::Scalar(255, 255, 130, 255), blue);
   EXPECT_GT(cv::countNonZero(orange), 300) << "the ghost";
-  EXPECT_GT(cv::countNonZero(blue), 300) << "what is under way";
+  // Of a path between links, most of which the wrist hides, what is not: its hidden dots are dimmer than this range.
+  EXPECT_GT(cv::countNonZero(blue), 60) << "what is under way";
   const cv::Mat before = drawn.clone();
   Hud().draw(content, target.whole());
   read();
