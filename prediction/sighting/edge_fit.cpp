@@ -11,10 +11,10 @@ namespace foresight {
 namespace {
 
 constexpr std::size_t kMostPoints = 500;
-constexpr double kHuber = 1;     // px
-constexpr double kAcross = 0.8;  // cosine between an edge's slope and the way across the projected one
-constexpr double kOn = 1.5;      // px: lies on the edge
-constexpr double kAside = 1e-4;  // m along an edge, for its direction in the picture
+constexpr double kHuberPx = 1;       // px
+constexpr double kAcross = 0.8;      // cosine between an edge's slope and the way across the projected one
+constexpr double kOn = 1.5;          // px: lies on the edge
+constexpr double kEdgeAside = 1e-4;  // m along an edge, for its direction in the picture
 constexpr double kRounds[] = {1, 1, 0.7, 0.5, 0.35, 0.35};  // of the reach
 constexpr double kLeastReach = 1.5;                         // px
 
@@ -31,7 +31,7 @@ struct Projected {
 
 std::optional<Projected> project(const SeenBy& camera, const Pose& T_camera_thing, const OutlinePoint& point) {
   const auto pixel = camera.lens->project(T_camera_thing * point.p);
-  const auto aside = camera.lens->project(T_camera_thing * (point.p + kAside * point.along));
+  const auto aside = camera.lens->project(T_camera_thing * (point.p + kEdgeAside * point.along));
   if (!pixel || !aside) return std::nullopt;
   const Eigen::Vector2d along = *aside - *pixel;
   const double length = along.norm();
@@ -85,14 +85,14 @@ struct MatchProblem {
       const auto pixel = match.camera->lens->project(p_camera);
       if (!pixel) return false;
       const double r = match.n.dot(*pixel - match.seen), size = std::abs(r);
-      sum.cost += size > kHuber ? kHuber * (size - kHuber / 2) : size * size / 2;
+      sum.cost += size > kHuberPx ? kHuberPx * (size - kHuberPx / 2) : size * size / 2;
       if (!derivatives) continue;
       const auto slope = projection_slope(*match.camera->lens, p_camera);
       if (!slope) return false;
       const Eigen::RowVector3d by_place = match.n.transpose() * *slope * T_camera_thing.linear();
       Vector6d j;
       j << match.p.cross(by_place.transpose()), by_place.transpose();
-      const double w = size > kHuber ? kHuber / size : 1;
+      const double w = size > kHuberPx ? kHuberPx / size : 1;
       sum.H.noalias() += w * j * j.transpose();
       sum.g += w * r * j;
     }

@@ -14,7 +14,7 @@ namespace {
 constexpr int kLongest = 20;         // sightings that a colour is the mean of
 constexpr std::size_t kFewest = 40;  // points that can be compared
 constexpr double kBorder = 5;        // px
-constexpr double kHuber = 10;        // grey levels
+constexpr double kHuberLevels = 10;  // grey levels
 constexpr double kLeastSpread = 4;   // grey levels, of |r|
 constexpr double kAlike = 10;        // neighbouring points that err alike
 constexpr double kMostOff = 60;      // grey levels
@@ -123,13 +123,13 @@ struct SurfaceColours::Problem {
       const auto pixel = camera.lens->project(p_camera);
       const auto seen = pixel ? camera.picture->colour(level, *pixel) : std::nullopt;
       if (!seen) {
-        sum.cost += 3 * kHuber * (2 * kHuber);
+        sum.cost += 3 * kHuberLevels * (2 * kHuberLevels);
         continue;
       }
       const Eigen::Vector3d r = *seen - gain * colours.colours_[view.point].mean[level];
       for (int c = 0; c < 3; ++c) {
         const double size = std::abs(r[c]);
-        sum.cost += size > kHuber ? kHuber * (size - kHuber / 2) : size * size / 2;
+        sum.cost += size > kHuberLevels ? kHuberLevels * (size - kHuberLevels / 2) : size * size / 2;
       }
       if (derivatives) add(camera, T_camera_thing, p, *pixel, r, sum);
     }
@@ -150,7 +150,7 @@ struct SurfaceColours::Problem {
     }
     const Eigen::Matrix3d by_place = of_picture * *slope * T_camera_thing.linear();
     for (int c = 0; c < 3; ++c) {
-      const double size = std::abs(r[c]), w = size > kHuber ? kHuber / size : 1;
+      const double size = std::abs(r[c]), w = size > kHuberLevels ? kHuberLevels / size : 1;
       Vector6d j;
       j << p.cross(by_place.row(c).transpose()), by_place.row(c).transpose();
       sum.H.noalias() += w * j * j.transpose();
@@ -175,7 +175,7 @@ std::optional<ColourFit> SurfaceColours::fit(const ThingShape& shape, std::size_
     const double g = gain(shape, cameras, views, level, out.T_world_thing);
     const Problem problem{*this, shape, cameras, views, level, g};
     // Residuals are in grey levels: information about the pose in their scale.
-    solver.prior = kHuber * kHuber * kAlike * prior;
+    solver.prior = kHuberLevels * kHuberLevels * kAlike * prior;
     const auto solution = solve_pose<0>({out.T_world_thing, {}}, problem, solver);
     if (!solution.usable || !solution.at.T.matrix().allFinite()) return std::nullopt;
     out.T_world_thing = solution.at.T;
