@@ -1,5 +1,7 @@
 #include "display/frame_pacer.hpp"
 
+#include <algorithm>
+
 #include "gl/objects.hpp"
 
 namespace foresight {
@@ -7,8 +9,9 @@ namespace foresight {
 FramePacer::FramePacer(Clock& clock, const FramePacingOptions& options)
     : clock_(clock), pacing_(options, clock.now()) {}
 
-void FramePacer::wait() {
-  clock_.sleep_until(pacing_.wake());
+bool FramePacer::wait(Duration most) {
+  clock_.sleep_until(std::min(pacing_.wake(), clock_.now() + most));
+  return clock_.now() >= pacing_.wake();
 }
 
 void FramePacer::drawn() {

@@ -12,7 +12,8 @@ class FramePacer {
   /// `clock` must outlive this.
   FramePacer(Clock& clock, const FramePacingOptions& options);
 
-  void wait();   ///< until the frame is to begin
+  /// Until the frame is to begin, or so long at most: true where it is. Who asks looks at its input in between.
+  bool wait(Duration most);
   void drawn();  ///< all of it is ordered: waits for the GPU, so that the swap alone is left
   void swapped();
 

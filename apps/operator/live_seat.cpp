@@ -21,6 +21,8 @@
 namespace foresight {
 namespace {
 
+// Without a look at what the operator does: the switch is let go of between pictures, too.
+constexpr Duration kLongestWait = std::chrono::milliseconds(20);
 constexpr double kUnpaced = 1000;  // Hz, of the source: FramePacer decides
 constexpr int kWindowWidth = 1280, kWindowHeight = 800;
 constexpr double kEyesApart = 0.063;   // m, of most people
@@ -97,7 +99,7 @@ class LiveSeat {
     if (head_) observers.push_back(&*head_);
     ViewLoop loop(session_, source_, observers, [] { return stop_requested(); });
     for (SourceState state = SourceState::ready; state != SourceState::ended; state = loop.step()) {
-      pacer_.wait();
+      while (!pacer_.wait(kLongestWait) && shown_.wants_more() && !stop_requested()) shown_.take_input();
       shown_.take_input();
     }
     // Whatever was held is let go of: the robot comes to rest by itself as set-points end, this only says it sooner.
