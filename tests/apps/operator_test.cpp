@@ -43,10 +43,10 @@ TEST(Operator, ThatTheViewIsPoorIsNoticedAsImagesCome) {
   const TempFolder folder;
   const auto report = folder.path() / "report.json";
   const Outcome result =
-      run_program({"operator", rig_file(), "--scripted", "tour", "--delay-ms", "100", "--seconds", "3", "--pictures-hz",
-                   "3", "--no-zero-delay", "--fidelity-db", "58", "--report", report});
+      run_program({"operator", rig_file(), "--scripted", "tour", "--delay-ms", "100", "--seconds", "2", "--pictures-hz",
+                   "10", "--no-zero-delay", "--fidelity-db", "58", "--report", report});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(read_json(report)["fallback_share"].get<double>(), 1);
+  EXPECT_GT(read_json(report)["fallback_share"].get<double>(), 0.7);
 }
 
 // Over a line of 300 ms each way, by a program that knows what comes over it and the model, and nothing else.
