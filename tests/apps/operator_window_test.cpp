@@ -183,11 +183,11 @@ TEST_F(OperatorWindow, ConnectsDrivesLosesTheRobotAndRecovers) {
   EXPECT_TRUE(shows("as it will be", false));
   const cv::Mat still = look();
 
-  // Without the switch a key moves nothing; with it the tool goes.
-  ASSERT_TRUE(hold("r", true));
+  // Without the switch a key moves nothing; with it the camera turns, and what is shown with it at once.
+  ASSERT_TRUE(hold("Left", true));
   ASSERT_TRUE(drives());
   ASSERT_TRUE(comes_true([&] { return changed(still, look()) > 0.02 || !drives(); }));
-  ASSERT_TRUE(hold("r", false));
+  ASSERT_TRUE(hold("Left", false));
 
   // Nothing comes any more under the held switch: the newest image, in red.
   ASSERT_TRUE(drives());
