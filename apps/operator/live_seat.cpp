@@ -5,15 +5,14 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "apps/operator/seat_begin.hpp"
 #include "apps/operator/seat_head.hpp"
 #include "apps/operator/seat_window.hpp"
 #include "common/error.hpp"
 #include "common/stop_signal.hpp"
 #include "display/head/runtime_offer.hpp"
 #include "input/open_tracker.hpp"
-#include "link/dds/pretended_line.hpp"
 #include "link/line/line_spec.hpp"
-#include "link/robot_side/rig_identity.hpp"
 #include "seat/hand_driver.hpp"
 #include "seat/seat_options.hpp"
 #include "seat/view_setup.hpp"
@@ -27,20 +26,6 @@ constexpr double kUnpaced = 1000;  // Hz, of the source: FramePacer decides
 constexpr int kWindowWidth = 1280, kWindowHeight = 800;
 constexpr double kEyesApart = 0.063;   // m, of most people
 constexpr std::size_t kUnderWay = 16;  // instants of what the robot will do as it was sent already
-
-std::shared_ptr<link::PretendedLine> pretended(const LiveSeatOptions& options, const Clock& clock) {
-  if (!options.line) return nullptr;
-  auto out =
-      std::make_shared<link::PretendedLine>(read_line_spec(*options.line), link::PretendedLine::Side::operating, clock);
-  out->start();
-  return out;
-}
-
-Identity identity_of(const Rig& rig, const LiveSeatOptions& options) {
-  Identity out = link::rig_identity(rig, options.rig_file, FORESIGHT_VERSION);
-  out.name = options.name;
-  return out;
-}
 
 // A head display's runtime that takes contexts of GLX only gets one.
 gl::Window::ContextApi context_api(const LiveSeatOptions& options) {
@@ -71,12 +56,12 @@ class LiveSeat {
   LiveSeat(const Rig& rig, const LiveSeatOptions& options)
       : rig_(rig),
         options_(options),
-        line_(pretended(options, clock_)),
+        line_(begin_line(options.line ? std::optional(read_line_spec(*options.line)) : std::nullopt, clock_)),
         participant_(rig.link, options.name, link::Role::operating, line_),
         scene_(std::make_shared<const LiveScene>(
             live_scene_of(rig, options.mock_cameras, options.scene, options.physics, options.layout))),
         setup_(live_view_setup(*scene_, rig.name)),
-        end_(participant_, seat_end_options(rig, identity_of(rig, options), *scene_), clock_),
+        end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         driver_(rig, open_devices(options, controllers_), scene_->model()),
         seat_(rig, end_, driver_, clock_),
         window_(open_seat_window("Foresight: " + rig.name, context_api(options))),

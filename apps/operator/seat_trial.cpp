@@ -4,8 +4,8 @@
 
 #include <map>
 
+#include "apps/operator/seat_begin.hpp"
 #include "apps/operator/stepped_sides.hpp"
-#include "apps/view_measures.hpp"
 #include "apps/view_outputs.hpp"
 #include "common/error.hpp"
 #include "display/view_session.hpp"
@@ -68,7 +68,7 @@ class Trial {
         source_(rig, scene_, end_, seat_, clock_, source_options()),
         trust_(view_.session(), setup_, clock_, trust_options()),
         truth_(robot_.cameras().frames().subscribe(1000)),
-        measures_(described(), options.out) {
+        measures_(describe_seat(rig, view_.session(), setup_), options.out) {
     if (options.zero_delay) {
       near_.emplace(setup_);
       measures_.compare_without_line([this](RobotTime instant) { return without_line(instant); });
@@ -77,10 +77,7 @@ class Trial {
       things_.emplace(rig, scene_, things_about(options.rig_file, *scene_, true), false);
       source_.show_things(&*things_);
     }
-    driver_.listen_to([this]() -> std::optional<link::RobotState> {
-      auto heard = end_.robot_state();
-      return heard ? std::optional(std::move(heard->state)) : std::nullopt;
-    });
+    driver_.listen_to(robot_says(end_));
     clock_.every(5ms, [this](RobotTime) {
       end_.step();
       seat_.step();
@@ -184,13 +181,6 @@ class Trial {
     }
     const PosedImage& left = live->second->posed->left;
     return session.draw(left.T_world_camera, left.scene) ? session.read() : cv::Mat();
-  }
-
-  RunRecord described() {
-    RunRecord out = describe(view_.session(), setup_);
-    out.run = rig_.name;
-    add_texture_options(out, setup_.textures);
-    return out;
   }
 
   SeatTrialFigures finish() {

@@ -4,10 +4,8 @@
 
 #include <mutex>
 
-#include "apps/view_measures.hpp"
-#include "common/error.hpp"
-#include "link/dds/pretended_line.hpp"
-#include "link/robot_side/rig_identity.hpp"
+#include "apps/operator/seat_begin.hpp"
+#include "display/view_loop.hpp"
 #include "seat/predicted_source.hpp"
 #include "seat/seat_options.hpp"
 #include "seat/tool_script.hpp"
@@ -32,10 +30,7 @@ class WatchedDriver final : public SeatDriver {
 
   WatchedDriver(ScriptedMotion& motion, const ScriptedDriverOptions& options, link::OperatorEnd& end)
       : driver_(motion, options) {
-    driver_.listen_to([&end]() -> std::optional<link::RobotState> {
-      auto heard = end.robot_state();
-      return heard ? std::optional(std::move(heard->state)) : std::nullopt;
-    });
+    driver_.listen_to(robot_says(end));
   }
   SeatWish tick(const SeatView& view) override {
     const std::lock_guard lock(mutex_);
@@ -57,19 +52,6 @@ ScriptedDriverOptions driver_options(double found_within_s) {
   return out;
 }
 
-Identity identity_of(const Rig& rig, const ServedTrialOptions& options) {
-  Identity out = link::rig_identity(rig, options.rig_file, FORESIGHT_VERSION);
-  out.name = options.name;
-  return out;
-}
-
-std::shared_ptr<link::PretendedLine> pretended(const std::optional<LineSpec>& spec, const Clock& clock) {
-  if (!spec) return nullptr;
-  auto out = std::make_shared<link::PretendedLine>(*spec, link::PretendedLine::Side::operating, clock);
-  out->start();
-  return out;
-}
-
 /// Everything of a seat; what is above outlives what is below.
 class ServedTrial final : ViewObserver {
  public:
@@ -77,16 +59,16 @@ class ServedTrial final : ViewObserver {
               ScriptedMotion& motion, const std::function<void(const std::string&)>& say)
       : options_(options),
         say_(say),
-        participant_(rig.link, options.name, link::Role::operating, pretended(options.line, clock_)),
+        participant_(rig.link, options.name, link::Role::operating, begin_line(options.line, clock_)),
         scene_(std::move(scene)),
         setup_(live_view_setup(*scene_, rig.name)),
-        end_(participant_, seat_end_options(rig, identity_of(rig, options), *scene_), clock_),
+        end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         driver_(motion, driver_options(options.found_within_s), end_),
         seat_(rig, end_, driver_, clock_),
         context_(gl::create_headless_context()),
         session_(*context_, setup_),
         source_(rig, scene_, end_, seat_, clock_, source_options(rig)),
-        measures_(described(rig), options.out) {
+        measures_(describe_seat(rig, session_, setup_), options.out) {
     source_.listen(
         [this](const link::LineFrame& frame) { measures_.saw(frame.image[0].captured, frame.image[0].bgr); });
     if (!options.things) return;
@@ -115,13 +97,6 @@ class ServedTrial final : ViewObserver {
     out.image_period = seconds(1 / rig.cameras->camera(Side::left).settings.rate);
     return out;
   }
-  RunRecord described(const Rig& rig) const {
-    RunRecord out = describe(session_, setup_);
-    out.run = rig.name;
-    add_texture_options(out, setup_.textures);
-    return out;
-  }
-
   void stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& session) override {
     if (!step.drawn || !pressed_ || ended_) return;
     const link::LineFrame& newest = *source_.newest();
@@ -131,7 +106,6 @@ class ServedTrial final : ViewObserver {
 
   // False: there is nothing left to be done.
   bool advance() {
-    if (things_) things_->advance(seat_.look_ahead());
     const RobotTime now = clock_.now();
     state_ = driver_.state();
     if (!pressed_ && state_.driving) pressed_ = now;
