@@ -6,12 +6,14 @@
 
 namespace foresight {
 
-FramePacer::FramePacer(Clock& clock, const FramePacingOptions& options)
-    : clock_(clock), pacing_(options, clock.now()) {}
+FramePacer::FramePacer(Clock& clock, const FramePacingOptions& options, std::shared_ptr<FrameGate> gate)
+    : clock_(clock), pacing_(options, clock.now()), gate_(std::move(gate)) {}
 
 bool FramePacer::wait(Duration most) {
   clock_.sleep_until(std::min(pacing_.wake(), clock_.now() + most));
-  return clock_.now() >= pacing_.wake();
+  if (clock_.now() < pacing_.wake()) return false;
+  if (gate_) gate_->frame_begins();
+  return true;
 }
 
 void FramePacer::drawn() {
@@ -19,9 +21,9 @@ void FramePacer::drawn() {
   pacing_.drawn(clock_.now());
 }
 
-// The extraction always has images to come: it gets its rest.
 void FramePacer::swapped() {
-  pacing_.swapped(clock_.now(), true);
+  pacing_.swapped(clock_.now(), gate_ && gate_->take_work_waits());
+  if (gate_) gate_->frame_ends(pacing_.wake());
 }
 
 }  // namespace foresight

@@ -1,16 +1,19 @@
-// Frames in time: FramePacing with a clock.
+// Frames in time: FramePacing with a clock, and the extraction let in between them.
 #pragma once
+
+#include <memory>
 
 #include "common/clock.hpp"
 #include "display/frame_pacing.hpp"
+#include "texture_gpu/frame_gate.hpp"
 
 namespace foresight {
 
 /// For each frame: wait(), look and draw, drawn(), swap, swapped(). The display's thread, its context current.
 class FramePacer {
  public:
-  /// `clock` must outlive this.
-  FramePacer(Clock& clock, const FramePacingOptions& options);
+  /// `clock` must outlive this. `gate`: what the texture thread asks (ViewSetup::gate); null: nobody asks.
+  FramePacer(Clock& clock, const FramePacingOptions& options, std::shared_ptr<FrameGate> gate = nullptr);
 
   /// Until the frame is to begin, or so long at most: true where it is. Who asks looks at its input in between.
   bool wait(Duration most);
@@ -22,6 +25,7 @@ class FramePacer {
  private:
   Clock& clock_;
   FramePacing pacing_;
+  std::shared_ptr<FrameGate> gate_;
 };
 
 }  // namespace foresight

@@ -32,7 +32,7 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
   }
   thread_ = std::make_unique<TextureThread>(
       context.create_shared(),
-      TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures, newest_image_});
+      TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures, newest_image_, setup.gate});
   context.make_current();
   buffers_ = std::make_shared<const gl::SceneBuffers>(*setup.scene);
   records_ = std::make_shared<const SurfaceRecords>(*setup.surface);

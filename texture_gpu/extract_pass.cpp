@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "texture_gpu/frame_gate.hpp"
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
@@ -39,6 +40,18 @@ void dispatch_groups(const gl::Program& program, std::size_t count) {
   for (std::size_t first = 0; first < count; first += kMost) {
     program.set("first_group", static_cast<int>(first));
     glDispatchCompute(static_cast<GLuint>(std::min(kMost, count - first)), 1, 1);
+  }
+}
+
+void dispatch_slices(const gl::Program& program, std::size_t count, FrameGate* gate, const char* kind) {
+  if (!gate) return dispatch_groups(program, count);
+  constexpr std::size_t kMost = 65535;
+  for (std::size_t first = 0, now = 0; first < count; first += now) {
+    glFinish();
+    gate->end();
+    now = gate->begin(kind, std::min(kMost, count - first));
+    program.set("first_group", static_cast<int>(first));
+    glDispatchCompute(static_cast<GLuint>(now), 1, 1);
   }
 }
 
@@ -113,7 +126,8 @@ void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
   for (const auto& tiles : seen_tiles_) tile_count_ += tiles.size();
 }
 
-void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse) {
+void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse,
+                      FrameGate* gate) {
   const auto& tiles = seen_tiles_[size];
   if (tiles.empty()) return;
   const gl::Program& program = extract_[kSizes * static_cast<std::size_t>(inputs.camera_count() - 1) + size];
@@ -130,12 +144,13 @@ void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_t
   tiles_[size].assign(std::span<const std::uint32_t>(tiles));
   glBindTextureUnit(7, geometry_.texture());
   glBindTextureUnit(10, tiles_[size].texture());
-  dispatch_groups(program, (tiles.size() + 3) / 4);
+  static constexpr const char* kKinds[kSizes] = {"tiles", "tiles of 2x2 taps", "tiles of 4x4 taps", "tiles of levels"};
+  dispatch_slices(program, (tiles.size() + 3) / 4, gate, kKinds[size]);
   filter(GL_LINEAR);
 }
 
 void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
-                          double worse) {
+                          double worse, FrameGate* gate) {
   sort_tiles(work, inputs);
   if (work.jobs.empty()) return;
   jobs_.assign(work.jobs);
@@ -146,7 +161,8 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   glBindTextureUnit(11, store.colours->name());
   glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
-  for (std::size_t size = 0; size < kSizes; ++size) run(size, inputs, depth_tolerance, worse);
+  for (std::size_t size = 0; size < kSizes; ++size) run(size, inputs, depth_tolerance, worse, gate);
+  next_slice(gate, "copied tiles");
 
   copy_.use();
   copy_tiles_.assign(std::span<const std::uint32_t>(unseen_tiles_));

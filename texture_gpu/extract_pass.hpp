@@ -10,6 +10,8 @@
 
 namespace foresight {
 
+class FrameGate;
+
 /// One context. Leaves the colours visible to texture fetches and image loads that follow.
 class ExtractPass {
  public:
@@ -34,8 +36,9 @@ class ExtractPass {
   };
   /// Extracts the images of `inputs` into all jobs (extract.comp); tiles that no camera sees are
   /// carried over (copy.comp).
+  /// `gate`: in slices; may be null.
   void extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
-               double worse);
+               double worse, FrameGate* gate = nullptr);
 
   /// Of the last extract(): its jobs, and for each whether it has texels that no camera saw.
   const gl::BufferTexture& jobs() const { return jobs_; }
@@ -47,7 +50,7 @@ class ExtractPass {
   static constexpr std::size_t kSizes = 4;       // of texels in pixels, as TEXELS in extract.comp
   std::array<gl::Program, 2 * kSizes> extract_;  // kSizes * (cameras - 1) + size
   void sort_tiles(const Work& work, const SeenInputs& inputs);
-  void run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse);
+  void run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse, FrameGate* gate);
 
   gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_[kSizes], copy_tiles_, holes_, staged_, slots_;
   std::array<std::vector<std::uint32_t>, kSizes> seen_tiles_;  // by size; job << 4 | tile << 2 | cameras
@@ -58,5 +61,7 @@ class ExtractPass {
 /// Runs a one-dimensional dispatch of any length: the API allows 65,535 groups at once. The
 /// program's uniform `first_group` tells where each part begins.
 void dispatch_groups(const gl::Program& program, std::size_t count);
+/// The same in slices of `kind`, whose units are groups.
+void dispatch_slices(const gl::Program& program, std::size_t count, FrameGate* gate, const char* kind);
 
 }  // namespace foresight

@@ -1,6 +1,7 @@
 #include "texture_gpu/fill_pass.hpp"
 
 #include "texture_gpu/atlas_layout.hpp"
+#include "texture_gpu/frame_gate.hpp"
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
@@ -55,11 +56,14 @@ FillPass::FillPass(const SurfacePatches& surface)
 }
 
 void FillPass::operator()(const ExtractPass& extracted, const Work& work, const AtlasStore& store,
-                          const PublishedTextures& previous, PublishedTextures& next) {
+                          const PublishedTextures& previous, PublishedTextures& next, FrameGate* gate) {
   glBindTextureUnit(7, extracted.jobs().texture());
   push(work.job_count, store);
+  next_slice(gate, "means");
   means(work, store, previous, next);
+  next_slice(gate, "spread");
   spread(next);
+  next_slice(gate, "pull");
   glBindTextureUnit(7, extracted.jobs().texture());
   pull(work.job_count, extracted.holes(), store, next);
   turn_ = (turn_ + 1) % kRefresh;

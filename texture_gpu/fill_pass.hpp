@@ -20,9 +20,9 @@ class FillPass {
     std::span<const std::array<int, 3>> kept;      ///< runs of pages to keep: first before, first now, count
   };
   /// Writes the pyramids of the jobs, and the coarse colours and chart means of `next`, starting
-  /// from those of `previous`.
+  /// from those of `previous`. `gate`: in slices; may be null.
   void operator()(const ExtractPass& extracted, const Work& work, const AtlasStore& store,
-                  const PublishedTextures& previous, PublishedTextures& next);
+                  const PublishedTextures& previous, PublishedTextures& next, FrameGate* gate = nullptr);
 
  private:
   void push(std::size_t job_count, const AtlasStore& store) const;

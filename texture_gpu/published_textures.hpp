@@ -31,6 +31,7 @@ struct PublishedTextures {
   gl::BufferTexture charts;                    ///< RGBA32F: five texels a chart (chart_record.glsl)
   gl::BufferTexture coarse;                    ///< RGBA16F: filled mean of each page
   gl::BufferTexture means;                     ///< RGBA16F: filled mean of each chart
+  gl::BufferTexture ages;                      ///< R32F: for how long no image saw each page, s; -1: none ever did
   std::vector<ChartPlace> places;              ///< one per chart
   std::shared_ptr<const gl::Texture> colours;  ///< the atlas, shared by all generations
 

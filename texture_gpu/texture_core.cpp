@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gl/context.hpp"
+#include "texture_gpu/frame_gate.hpp"
 
 namespace foresight {
 namespace {
@@ -47,6 +48,12 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
   current_->coarse.buffer().clear_to_zero();
 }
 
+/// A stage ends. What follows may have to wait for the display.
+void TextureCore::mark(const char* stage) {
+  clock_.mark(stage);
+  next_slice(gate_, stage);
+}
+
 ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& latest) {
   clock_.start();
   look(frame);
@@ -67,25 +74,27 @@ bool TextureCore::look(const PosedFrame& frame, LatestImage& latest) {
 ExtractionReport TextureCore::extract(const PosedFrame& frame, LatestTextures& latest) {
   ExtractionReport report;
   clock_.resume();
+  if (gate_) gate_->begin("pages");
   ChartAtlas::Allocation allocation;
   if (!allocate(allocation)) return report;
   extract_.upload_heights(atlas_, allocation.new_heights, store_);
   if (!allocation.new_heights.empty()) survey_.set_pages(records_ = atlas_.placed_records());
-  clock_.mark("prepare");
+  mark("prepare");
   if (!exposure_known_) estimate_exposure();
 
   Generation next = next_generation();
   atlas_.write_table(table_);
   next->table.assign(std::span<const std::uint32_t>(table_));
   next->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
+  write_ages(frame.left.time, *next);
   next->places.clear();
   for (const AtlasChart& chart : atlas_.charts()) next->places.push_back({chart.raster.density, chart.first_page});
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
-  clock_.mark("prepare");
+  mark("prepare");
   atlas_.write_job_geometry(allocation.jobs, views_, geometry_);
   extract_.extract({allocation.jobs, allocation.masks, geometry_}, inputs_, store_, options_.depth_tolerance,
-                   options_.worse);
-  clock_.mark("extract");
+                   options_.worse, gate_);
+  mark("extract");
   fill_and_finish(allocation, *next);
 
   next->number = ++number_;
@@ -96,6 +105,7 @@ ExtractionReport TextureCore::extract(const PosedFrame& frame, LatestTextures& l
   current_ = next;
   latest.publish(next);
   clock_.mark("publish");
+  if (gate_) gate_->end();
   ++image_;
 
   report.published = true;
@@ -142,6 +152,7 @@ void TextureCore::publish(const PosedImage& image, LatestImage& latest) {
 /// Image upload, depth and uncertain edges of every camera of the frame.
 void TextureCore::look(const PosedFrame& frame) {
   exposure_known_ = false;
+  if (gate_) gate_->begin("image");
   images_ = {&frame.left};
   if (frame.right && cameras_.size() > 1) images_.push_back(&*frame.right);
   active_.clear();
@@ -150,10 +161,10 @@ void TextureCore::look(const PosedFrame& frame) {
     cameras_[i]->upload(images_[i]->pixels);
     active_.push_back(cameras_[i].get());
   }
-  clock_.mark("upload");
+  mark("upload");
   for (std::size_t i = 0; i < images_.size(); ++i)
     raster_(images_[i]->T_world_camera, images_[i]->scene, cameras_[i]->faces());
-  clock_.mark("depth");
+  mark("depth");
   for (std::size_t i = 0; i < images_.size(); ++i) {
     edges_(*cameras_[i], images_[i]->margin_px.value_or(options_.margin_px), options_.depth_tolerance);
     AtlasView view{&cameras_[i]->lens(), &cameras_[i]->faces().faces, {}};
@@ -162,7 +173,7 @@ void TextureCore::look(const PosedFrame& frame) {
       view.T_camera_node.push_back(T_camera_world * T_world_node);
     views_.push_back(std::move(view));
   }
-  clock_.mark("edges");
+  mark("edges");
   inputs_.update(active_, images_, std::vector<Eigen::Vector3f>(images_.size(), {1, 0, 0}));
 }
 
@@ -180,7 +191,7 @@ bool TextureCore::allocate(ChartAtlas::Allocation& out) {
     out = atlas_.allocate(masks, image_);
     if (out.fits) break;
   }
-  clock_.mark("plan");
+  mark("plan");
   return true;
 }
 
@@ -202,7 +213,23 @@ void TextureCore::estimate_exposure() {
   }
   inputs_.update(active_, images_, tones);
   exposure_known_ = true;
-  clock_.mark("exposure");
+  mark("exposure");
+}
+
+void TextureCore::write_ages(RobotTime now, PublishedTextures& next) {
+  constexpr std::size_t kRemembered = 4096;  // images; what was seen before them is taken as seen with the oldest
+  image_times_.push_back(now);
+  if (image_times_.size() > kRemembered) image_times_.pop_front();
+  const std::int64_t oldest = image_ + 1 - static_cast<std::int64_t>(image_times_.size());
+  ages_.clear();
+  for (const AtlasChart& chart : atlas_.charts())
+    for (const AtlasPage& page : chart.page)
+      ages_.push_back(
+          page.last_seen < 0
+              ? -1.0f
+              : static_cast<float>(to_seconds(
+                    now - image_times_[static_cast<std::size_t>(std::max(page.last_seen - oldest, std::int64_t{0}))])));
+  next.ages.assign(std::span<const float>(ages_));
 }
 
 /// Coarse colours of charts that did not change move with their place in the page table.
@@ -234,7 +261,7 @@ void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, Publ
   list_fill_work(allocation);
   next.coarse.reserve(static_cast<std::size_t>(atlas_.page_count()) * atlas::kTexelBytes);
   next.means.reserve(atlas_.charts().size() * atlas::kTexelBytes);
-  fill_(extract_, {allocation.jobs.size(), dirty_, chart_of_page_, kept_}, store_, *current_, next);
+  fill_(extract_, {allocation.jobs.size(), dirty_, chart_of_page_, kept_}, store_, *current_, next, gate_);
   // The flip must not show what the GPU has not finished.
   gl::Fence::insert().wait(kGpuTimeout);
   gl::check_errors("texture extraction");
@@ -271,6 +298,7 @@ TextureCore::Generation TextureCore::next_generation() {
   fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
   fresh->coarse = gl::BufferTexture(atlas::kColourFormat, 16, "page means");
   fresh->means = gl::BufferTexture(atlas::kColourFormat, 16, "chart means");
+  fresh->ages = gl::BufferTexture(GL_R32F, 16, "page ages");
   fresh->colours = store_.colours;
   return fresh;
 }

@@ -28,6 +28,9 @@ class TextureCore {
   /// of texture memory at the lowest resolution, context lost.
   ExtractionReport process(const PosedFrame& frame, LatestTextures& latest);
 
+  /// From now on it works in slices, when a display leaves time for them. `gate` outlives this; null: at once.
+  void use(FrameGate* gate) { gate_ = gate; }
+
   /// The same in two steps. The first makes the image ready to be looked up, and publishes that to `latest`; the
   /// textures follow. False where there are no textures yet, beside which it could be shown: nothing is published then.
   bool look(const PosedFrame& frame, LatestImage& latest);
@@ -37,6 +40,7 @@ class TextureCore {
  private:
   using Generation = std::shared_ptr<PublishedTextures>;
 
+  void mark(const char* stage);
   void look(const PosedFrame& frame);
   void choose_cameras();
   void publish(const PosedImage& image, LatestImage& latest);
@@ -45,6 +49,7 @@ class TextureCore {
   bool wait_for_slots(std::size_t needed);
   void reclaim();
   Generation next_generation();
+  void write_ages(RobotTime now, PublishedTextures& next);
   void list_fill_work(const ChartAtlas::Allocation& allocation);
   void fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next);
 
@@ -61,6 +66,7 @@ class TextureCore {
   FillPass fill_;
   SeenInputs inputs_;
   StageClock clock_;
+  FrameGate* gate_ = nullptr;
 
   // Of the frame in work.
   std::vector<const CameraInput*> active_;
@@ -73,6 +79,8 @@ class TextureCore {
   std::vector<std::uint32_t> table_, dirty_, chart_of_page_;
   std::vector<std::array<int, 3>> kept_;
   std::vector<int> first_page_before_;  // of the published generation
+  std::deque<RobotTime> image_times_;   // of the last images
+  std::vector<float> ages_;
 
   struct Retired {
     Generation generation;  // still shows the slots

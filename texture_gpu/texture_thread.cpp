@@ -31,6 +31,7 @@ void TextureThread::run(const std::stop_token& stop, const Setup& setup) {
         ready_ = true;
       }
       changed_.notify_all();
+      core.use(setup.gate.get());
       work(stop, core, setup.images);
       latest_image_.publish(nullptr);
       latest_.publish(nullptr);  // its textures go with the core

@@ -22,6 +22,8 @@ class TextureThread {
     std::optional<Lens> right;
     TextureOptions options;
     bool images = false;  ///< publish each image before its textures
+    /// The display's: extraction goes on when its frames leave time. Null: whenever there is an image.
+    std::shared_ptr<FrameGate> gate = nullptr;
   };
 
   /// `context`: shares objects with the display's context; used by this thread only from now on.

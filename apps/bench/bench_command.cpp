@@ -5,6 +5,7 @@
 #include "apps/bench/calibration_bench.hpp"
 #include "apps/bench/camera_bench.hpp"
 #include "apps/bench/can_bench.hpp"
+#include "apps/bench/display_bench.hpp"
 #include "apps/bench/extraction.hpp"
 #include "apps/bench/figures.hpp"
 #include "apps/bench/head_bench.hpp"
@@ -153,6 +154,20 @@ void add_head(Command& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_head(*options); }; });
 }
 
+void add_display(Command& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("display", "How punctual frames are beside the extraction, and what it is left");
+  auto options = std::make_shared<DisplayBenchOptions>();
+  command->add_option("--size", options->size, "WIDTHxHEIGHT of the view, px")->capture_default_str();
+  command->add_option("--seconds", options->seconds, "Of each round")->check(from_to(0.2, 3600))->capture_default_str();
+  command->add_option("--rate", options->rate_hz, "Frames a second: this alone, in place of 25, 33, 50 and 100")
+      ->check(from_to(1, 240));
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "Example: foresight bench display --seconds 20 --json display.json\n"
+      "Exit code: 1 where a bar of docs/performance.md is missed at 25 frames a second.");
+  command->callback([options, &action] { action = [options] { return bench_display(*options); }; });
+}
+
 void add_line(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("line", "Age and quality of the images that a line lets through");
   auto options = std::make_shared<LineBenchOptions>();
@@ -208,6 +223,7 @@ void add_bench_command(Command& app, std::function<int()>& action) {
   add_calibration(*bench, action);
   add_camera(*bench, action);
   add_can(*bench, action);
+  add_display(*bench, action);
   add_extraction(*bench, action);
   add_figures(*bench, action);
   add_head(*bench, action);

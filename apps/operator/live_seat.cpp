@@ -60,7 +60,8 @@ class LiveSeat {
         participant_(rig.link, options.name, link::Role::operating, line_),
         scene_(std::make_shared<const LiveScene>(
             live_scene_of(rig, options.mock_cameras, options.scene, options.physics, options.layout))),
-        setup_(live_view_setup(*scene_, rig.name)),
+        gate_(std::make_shared<FrameGate>(clock_)),
+        setup_(view_setup(rig)),
         end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         driver_(rig, open_devices(options, controllers_), scene_->model()),
         seat_(rig, end_, driver_, clock_),
@@ -70,7 +71,7 @@ class LiveSeat {
         source_(rig, scene_, end_, seat_, clock_, source_options()),
         trust_(session_, setup_, clock_, options.trust),
         hand_(rig, driver_.options()),
-        pacer_(clock_, {.rate_hz = options.rate_hz}),
+        pacer_(clock_, {.rate_hz = options.rate_hz}, gate_),
         shown_(*window_, session_, setup_.left, seat_, source_, window_options()) {
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
@@ -97,6 +98,11 @@ class LiveSeat {
   }
 
  private:
+  ViewSetup view_setup(const Rig& rig) const {
+    ViewSetup out = live_view_setup(*scene_, rig.name);
+    out.gate = gate_;
+    return out;
+  }
   PredictedSourceOptions source_options() const {
     PredictedSourceOptions out;
     out.rate_hz = kUnpaced;
@@ -181,6 +187,7 @@ class LiveSeat {
   std::shared_ptr<link::PretendedLine> line_;
   link::Participant participant_;
   std::shared_ptr<const LiveScene> scene_;
+  std::shared_ptr<FrameGate> gate_;
   ViewSetup setup_;
   link::OperatorEnd end_;
   std::shared_ptr<head::HeldControllers> controllers_ = std::make_shared<head::HeldControllers>();

@@ -35,6 +35,7 @@ const std::map<std::string, CommandWords>& table() {
       {"bench registration", {}},
       {"bench camera", {}},
       {"bench head", {{"RUN", {"@run"}}, {"--views", {"1"}}, {"--width", {"64"}}, {"--height", {"48"}}}},
+      {"bench display", {{"--size", {"32x24"}}, {"--seconds", {"0.2"}}, {"--rate", {"25"}}}},
       {"bench prediction ik",
        {{"--urdf", {"@arm.urdf"}}, {"--tip", {"arm_7"}}, {"--poses", {"20"}}, {"--paths", {"1"}}}},
       {"bench prediction contact",

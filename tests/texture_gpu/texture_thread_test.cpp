@@ -7,16 +7,18 @@
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 #include "tests/texture_gpu/reference/atlas_pixels.hpp"
+#include "texture_gpu/frame_gate.hpp"
 
 namespace foresight::texture_thread_test {
 namespace {
 
 class TextureThreadTest : public HeadlessTest {
  protected:
-  std::unique_ptr<TextureThread> start(std::uint64_t memory_bytes = 6 << 20) {
+  std::unique_ptr<TextureThread> start(std::uint64_t memory_bytes = 6 << 20,
+                                       std::shared_ptr<FrameGate> gate = nullptr) {
     return std::make_unique<TextureThread>(
         context_->create_shared(),
-        TextureThread::Setup{scene_, surface_, lens_, std::nullopt, {.memory_bytes = memory_bytes}});
+        TextureThread::Setup{scene_, surface_, lens_, std::nullopt, {.memory_bytes = memory_bytes}, false, std::move(gate)});
   }
   PosedFrame frame(std::int64_t ns) const {
     PosedFrame out = picture_;
@@ -72,6 +74,30 @@ TEST_F(TextureThreadTest, TheNewestFrameWinsAndTheOthersAreCounted) {
   // Every frame was either extracted or replaced.
   EXPECT_EQ(finished + thread->replaced(), static_cast<std::uint64_t>(kFrames));
   EXPECT_GT(thread->replaced(), 0u);
+}
+
+// In slices between the frames of a display that leaves little: the same textures, to the last bit.
+TEST_F(TextureThreadTest, SlicesBesideADisplayChangeNothing) {
+  MonotonicClock clock;
+  const auto gate = std::make_shared<FrameGate>(clock);
+  const auto at_once = start(), in_slices = start(6 << 20, gate);
+  std::jthread display([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      gate->frame_begins();
+      std::this_thread::sleep_for(std::chrono::milliseconds(3));
+      gate->frame_ends(clock.now() + std::chrono::milliseconds(4));
+      std::this_thread::sleep_for(std::chrono::milliseconds(4));
+    }
+  });
+  for (int i = 1; i <= 3; ++i) {
+    EXPECT_TRUE(at_once->process(frame(i)).published);
+    EXPECT_TRUE(in_slices->process(frame(i)).published);
+    const TextureLease one = at_once->textures().acquire(), other = in_slices->textures().acquire();
+    const auto a = shown(*one), b = shown(*other);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k) ASSERT_TRUE(a[k] == b[k]) << "image " << i << ", texel " << k;
+  }
+  EXPECT_TRUE(gate->take_work_waits());
 }
 
 TEST_F(TextureThreadTest, AnErrorReachesTheCallerAndStays) {

@@ -1,0 +1,163 @@
+#include "apps/bench/display_trial.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include "apps/bench/taken_cores.hpp"
+#include "common/clock.hpp"
+#include "common/statistics.hpp"
+#include "display/frame_pacer.hpp"
+
+namespace foresight {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kInputs = 8;   // instants of an input that are looked at, per frame
+constexpr double kLate = 3;  // intervals
+constexpr Duration kLongestWait = 1s;
+constexpr const char* kRenderer = "llvmpipe";  // what its threads are called
+
+struct Shown {
+  RobotTime look, swapped;
+  double taken_s = 0;
+};
+
+double ms(Duration d) {
+  return 1e3 * to_seconds(d);
+}
+
+/// As the seat did before frames were paced: the next one an interval after this one began.
+class EachInterval {
+ public:
+  EachInterval(Clock& clock, double rate_hz) : clock_(clock), interval_(seconds(1 / rate_hz)), due_(clock.now()) {}
+  bool wait(Duration /*most*/) {
+    clock_.sleep_until(due_);
+    due_ = std::max(due_ + interval_, clock_.now());
+    return true;
+  }
+  void drawn() { glFinish(); }
+  void swapped() {}
+
+ private:
+  Clock& clock_;
+  Duration interval_;
+  RobotTime due_;
+};
+
+template <typename Pacer>
+std::vector<Shown> show(PredictedView& view, const SceneState& state, const DisplayRound& round,
+                        const LatestTextures& textures, Clock& clock, Pacer pacer) {
+  std::vector<Shown> out;
+  TakenCores taken(kRenderer);
+  const RobotTime end = clock.now() + seconds(round.seconds);
+  while (clock.now() < end) {
+    while (!pacer.wait(kLongestWait)) {
+    }
+    Shown frame;
+    frame.look = clock.now();
+    const TextureLease lease = textures.acquire();
+    view.draw(round.T_world_eye, state, *lease);
+    pacer.drawn();
+    frame.swapped = clock.now();
+    pacer.swapped();
+    frame.taken_s = taken.since_last();
+    out.push_back(frame);
+  }
+  return out;
+}
+
+DisplayFigures figures_of(const std::vector<Shown>& shown, double rate_hz) {
+  std::vector<double> intervals, drawings, inputs, beyond;
+  const double interval = 1e3 / rate_hz;
+  double late = 0, late_own = 0;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (std::size_t i = 1; i < shown.size(); ++i) {
+    intervals.push_back(ms(shown[i].swapped - shown[i - 1].swapped));
+    drawings.push_back(ms(shown[i].swapped - shown[i].look));
+    late += intervals.back() > kLate * interval;
+    late_own += intervals.back() - 1e3 * shown[i].taken_s > kLate * interval;
+    for (int k = 0; k < kInputs; ++k) {
+      const double before_look = share(random) * ms(shown[i].look - shown[i - 1].look);
+      inputs.push_back(before_look + drawings.back());
+      beyond.push_back(before_look);
+    }
+  }
+  const double count = std::max<double>(1, static_cast<double>(intervals.size()));
+  return {.frames = shown.size(),
+          .interval_p50 = quantile(intervals, 0.5),
+          .interval_p99 = quantile(intervals, 0.99),
+          .drawing_p50 = quantile(drawings, 0.5),
+          .drawing_p99 = quantile(drawings, 0.99),
+          .input_to_swap_p99 = quantile(inputs, 0.99),
+          .input_beyond_drawing_p99 = quantile(beyond, 0.99),
+          .late_share = late / count,
+          .late_share_own = late_own / count};
+}
+
+}  // namespace
+
+BusyTextures::BusyTextures(gl::Context& context, const DisplayScene& scene, std::shared_ptr<FrameGate> gate)
+    : scene_(scene),
+      thread_(context.create_shared(),
+              {scene.model, scene.surface, scene.camera, std::nullopt, {}, false, std::move(gate)}) {
+  context.make_current();
+  feeder_ = std::jthread([this](const std::stop_token& stop) {
+    try {
+      feed(stop);
+    } catch (...) {
+      error_ = std::current_exception();
+      failed_ = true;
+    }
+  });
+}
+
+void BusyTextures::feed(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    busy_ = works_.load();
+    if (busy_) {
+      thread_.process(next());
+      ++finished_;
+    } else {
+      std::this_thread::sleep_for(1ms);
+    }
+  }
+}
+
+void BusyTextures::check() const {
+  if (failed_) std::rethrow_exception(error_);
+}
+
+BusyTextures::~BusyTextures() = default;
+
+PosedFrame BusyTextures::next() {
+  return scene_.images[next_++ % scene_.images.size()];
+}
+
+void BusyTextures::finish(std::size_t images) {
+  const std::uint64_t until = finished_ + images;
+  works_ = true;
+  while (finished_ < until && !failed_) std::this_thread::sleep_for(1ms);
+  works_ = false;
+  while (busy_ && !failed_) std::this_thread::sleep_for(1ms);
+  check();
+}
+
+DisplayFigures show_frames(PredictedView& view, const SceneState& state, const DisplayRound& round,
+                           BusyTextures& textures, const std::shared_ptr<FrameGate>& gate) {
+  MonotonicClock clock;
+  const std::uint64_t before = textures.finished();
+  const RobotTime start = clock.now();
+  FramePacingOptions pacing;
+  pacing.rate_hz = round.rate_hz;
+  const auto shown = round.paced
+                         ? show(view, state, round, textures.textures(), clock, FramePacer(clock, pacing, gate))
+                         : show(view, state, round, textures.textures(), clock, EachInterval(clock, round.rate_hz));
+  textures.check();
+  DisplayFigures out = figures_of(shown, round.rate_hz);
+  out.images_per_s = static_cast<double>(textures.finished() - before) / to_seconds(clock.now() - start);
+  return out;
+}
+
+}  // namespace foresight

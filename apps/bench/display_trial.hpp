@@ -1,0 +1,73 @@
+// A display beside the extraction, on one machine: how punctual the frames are, and what is left for the textures.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "display/predicted_view.hpp"
+#include "gl/context.hpp"
+#include "scene/posed_frame.hpp"
+#include "texture_gpu/texture_thread.hpp"
+
+namespace foresight {
+
+/// What is looked at.
+struct DisplayScene {
+  std::shared_ptr<const SceneModel> model;
+  std::shared_ptr<const SurfacePatches> surface;
+  Lens camera;                     ///< of `images`
+  std::vector<PosedFrame> images;  ///< what the extraction gets, in turn; not empty
+};
+
+/// Extracts the scene's images one after the other, as quickly as it is let, in threads of its own.
+class BusyTextures {
+ public:
+  /// `context`: of the display, current. `gate` as TextureThread::Setup::gate. Rests at first.
+  BusyTextures(gl::Context& context, const DisplayScene& scene, std::shared_ptr<FrameGate> gate);
+  ~BusyTextures();
+
+  void run(bool works) { works_ = works; }
+  std::uint64_t finished() const { return finished_; }  ///< images
+  void finish(std::size_t images);                      ///< waits for so many more, then rests
+  void check() const;                                   ///< throws what ended the extraction
+  const LatestTextures& textures() const { return thread_.textures(); }
+
+ private:
+  PosedFrame next();
+  void feed(const std::stop_token& stop);
+  const DisplayScene& scene_;
+  TextureThread thread_;
+  std::atomic<bool> works_ = false, busy_ = false, failed_ = false;
+  std::exception_ptr error_;  // once it failed
+  std::atomic<std::uint64_t> finished_ = 0;
+  std::size_t next_ = 0;
+  std::jthread feeder_;  // last
+};
+
+struct DisplayRound {
+  double rate_hz = 25;  ///< asked for
+  double seconds = 5;
+  bool paced = true;  ///< else as without pacing: a frame each interval, whatever else goes on
+  Pose T_world_eye;
+};
+
+/// Times in ms.
+struct DisplayFigures {
+  std::size_t frames = 0;
+  double interval_p50 = 0, interval_p99 = 0;  ///< from swap to swap
+  double drawing_p50 = 0, drawing_p99 = 0;    ///< from the look at what is newest to the swap
+  double input_to_swap_p99 = 0;               ///< of inputs at any instant
+  double input_beyond_drawing_p99 = 0;        ///< the same, less its own frame's drawing
+  double late_share = 0;                      ///< of frames later than 3 intervals
+  double late_share_own = 0;                  ///< the same without time that other programs took
+  double images_per_s = 0;                    ///< extracted meanwhile
+};
+
+/// Draws `view` with `textures` for a while; each frame ends when the GPU has finished it. `gate`: of `textures`, where
+/// the round is paced.
+DisplayFigures show_frames(PredictedView& view, const SceneState& state, const DisplayRound& round,
+                           BusyTextures& textures, const std::shared_ptr<FrameGate>& gate);
+
+}  // namespace foresight

@@ -1,0 +1,121 @@
+// Slices of work beside frames: in the rests, never never, and by schedules alone.
+#include "texture_gpu/slice_budget.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <thread>
+
+#include "texture_gpu/frame_gate.hpp"
+
+namespace foresight::slice_budget_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Outcome {
+  double share = 0;        // of the time, that slices got
+  double worst_delay = 0;  // ms that a slice kept a frame from beginning
+  int slices = 0, beside_frames = 0;
+};
+
+/// One processor: a frame of `draw` ms each `interval` ms, slices of `slice` ms in between.
+Outcome simulate(double interval, double draw, double slice, double seconds) {
+  SliceBudget budget;
+  const auto at = [](double ms) { return RobotTime{std::llround(1e6 * ms)}; };
+  Outcome out;
+  double now = 0, due = interval, worked = 0;
+  budget.frame_ends(at(0), at(due));
+  while (now < 1e3 * seconds) {
+    if (now >= due) {  // the frame has the processor
+      if (now > due) out.worst_delay = std::max(out.worst_delay, now - due);
+      budget.frame_begins(at(now));
+      while (!budget.wait(at(now), "slice")) {  // it is so late that it does not wait for the frame's end
+        budget.ran(at(now), at(now + slice), "slice");
+        now += slice;
+        worked += slice;
+        ++out.beside_frames;
+      }
+      now += draw;
+      due = std::max(due + interval, now);
+      budget.frame_ends(at(now), at(due));
+    }
+    const auto until = budget.wait(at(now), "slice");
+    if (!until) {
+      budget.ran(at(now), at(now + slice), "slice");
+      now += slice;
+      worked += slice;
+      ++out.slices;
+    } else {
+      EXPECT_GT(until->ns, at(now).ns);
+      now = std::min(1e-6 * static_cast<double>(until->ns), std::max(due, now));
+      if (now < due) now = std::min(now + 1e-3, due);
+    }
+  }
+  out.share = worked / now;
+  return out;
+}
+
+TEST(SliceBudget, SlicesRunInTheRestsAndDelayNoFrame) {
+  const Outcome outcome = simulate(40, 15, 3, 20);
+  EXPECT_LE(outcome.worst_delay, 3) << "the first slice's cost is not known";
+  EXPECT_EQ(outcome.beside_frames, 0);
+  EXPECT_GT(outcome.share, 0.5) << "of the 62 % that the frames leave";
+}
+
+// Frames that leave nothing, or less than a slice: it comes to its turn all the same, and they to theirs.
+TEST(SliceBudget, NeverStarves) {
+  for (const auto& [draw, slice] : {std::pair{40.0, 3.0}, {39.0, 6.0}, {60.0, 3.0}, {38.0, 25.0}}) {
+    const Outcome outcome = simulate(40, draw, slice, 30);
+    EXPECT_GT(outcome.share, 0.2) << draw << " " << slice;
+    EXPECT_LT(outcome.share, 0.45) << draw << " " << slice;
+    EXPECT_LE(outcome.worst_delay, slice + 20) << draw << " " << slice;
+  }
+}
+
+TEST(SliceBudget, WithoutADisplayNothingWaits) {
+  SliceBudget budget;
+  EXPECT_FALSE(budget.wait(RobotTime{0}, "slice"));
+  budget.frame_begins(RobotTime{0});
+  const auto until = budget.wait(RobotTime{1'000'000}, "slice");
+  ASSERT_TRUE(until) << "a frame is drawn";
+  EXPECT_FALSE(budget.wait(*until, "slice")) << "a drawing that hangs holds up nobody";
+  budget.frame_ends(*until, *until + 10ms);
+  EXPECT_FALSE(budget.wait(*until + 400ms, "slice")) << "nor one that does not begin";
+}
+
+TEST(SliceBudget, LearnsWhatAUnitCosts) {
+  SliceBudget budget;
+  EXPECT_EQ(budget.units_within(3ms, "tiles", 500), 500) << "nothing is known yet";
+  for (int i = 0; i < 20; ++i)
+    budget.ran(RobotTime{0}, RobotTime{} + (i % 10 == 9 ? 90ms : 2ms), "tiles", 100);  // now and then preempted
+  EXPECT_EQ(budget.units_within(3ms, "tiles", 500), 150);
+  EXPECT_EQ(budget.units_within(3ms, "tiles", 40), 40);
+  EXPECT_EQ(budget.units_within(1ns, "tiles", 40), 1);
+  EXPECT_EQ(budget.expected("tiles", 150), 3ms);
+  EXPECT_EQ(budget.expected("other", 150), 0ms);
+}
+
+// By a clock that runs: whoever works waits while a frame is drawn, and goes on when it ends.
+TEST(FrameGate, HoldsTheWorkWhileAFrameIsDrawn) {
+  MonotonicClock clock;
+  FrameGate gate(clock);
+  EXPECT_FALSE(gate.take_work_waits());
+  gate.frame_begins();
+  std::atomic<bool> passed = false;
+  std::jthread worker([&] {
+    gate.begin("slice");
+    passed = true;
+    gate.end();
+  });
+  while (!gate.take_work_waits()) std::this_thread::yield();
+  const bool early = passed;
+  gate.frame_ends(clock.now() + 1s);
+  worker.join();
+  EXPECT_FALSE(early);
+  EXPECT_TRUE(passed);
+}
+
+}  // namespace
+}  // namespace foresight::slice_budget_test

@@ -1,0 +1,53 @@
+#include "texture_gpu/frame_gate.hpp"
+
+#include <algorithm>
+
+#include "gl/objects.hpp"
+
+namespace foresight {
+namespace {
+
+// Short against a frame, long against what it costs to wait for the renderer at a slice's end.
+constexpr Duration kSlice = std::chrono::milliseconds(3);
+constexpr Duration kLongestSleep = std::chrono::milliseconds(50);
+
+}  // namespace
+
+void FrameGate::frame_begins() {
+  const std::scoped_lock lock(mutex_);
+  budget_.frame_begins(clock_.now());
+}
+
+void FrameGate::frame_ends(RobotTime next) {
+  {
+    const std::scoped_lock lock(mutex_);
+    budget_.frame_ends(clock_.now(), next);
+  }
+  frame_ended_.notify_all();
+}
+
+std::size_t FrameGate::begin(const char* kind, std::size_t units) {
+  std::unique_lock lock(mutex_);
+  kind_ = kind;
+  units_ = std::max<std::size_t>(
+      1, static_cast<std::size_t>(budget_.units_within(kSlice, kind, static_cast<double>(units))));
+  work_waits_ = true;
+  while (const auto until = budget_.wait(clock_.now(), kind, static_cast<double>(units_)))
+    frame_ended_.wait_for(lock, std::clamp(*until - clock_.now(), Duration{1}, kLongestSleep));
+  began_ = clock_.now();
+  return units_;
+}
+
+void FrameGate::end() {
+  const std::scoped_lock lock(mutex_);
+  budget_.ran(began_, clock_.now(), kind_, static_cast<double>(units_));
+}
+
+void next_slice(FrameGate* gate, const char* kind) {
+  if (!gate) return;
+  glFinish();
+  gate->end();
+  gate->begin(kind);
+}
+
+}  // namespace foresight

@@ -1,0 +1,46 @@
+// Between a display that has to be in time and the extraction beside it: who has the processors now.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+
+#include "common/clock.hpp"
+#include "texture_gpu/slice_budget.hpp"
+
+namespace foresight {
+
+/// The display's thread says when it draws; the thread that works asks before each slice, and waits until it may. Where
+/// a software renderer draws, both need the same cores; on a GPU, the same queue. The clock runs by itself.
+class FrameGate {
+ public:
+  /// `clock` must outlive this.
+  explicit FrameGate(Clock& clock, const SliceBudgetOptions& options = {}) : clock_(clock), budget_(options) {}
+  FrameGate(const FrameGate&) = delete;
+
+  /// The display's thread.
+  void frame_begins();
+  void frame_ends(RobotTime next);
+  /// Work has run or waited since the last call.
+  bool take_work_waits() { return work_waits_.exchange(false); }
+
+  /// The working thread: waits until a slice may run, and says how many of `units` it is to do, at least 1. Slices of
+  /// one kind cost alike per unit. end() once the GPU has finished it.
+  std::size_t begin(const char* kind, std::size_t units = 1);
+  void end();
+
+ private:
+  Clock& clock_;
+  std::mutex mutex_;
+  std::condition_variable frame_ended_;
+  SliceBudget budget_;
+  std::atomic<bool> work_waits_ = false;
+  RobotTime began_;
+  const char* kind_ = "";
+  std::size_t units_ = 0;
+};
+
+/// The slice in work ends here, GPU included, and one of `kind` begins when it may. Null: nothing waits.
+void next_slice(FrameGate* gate, const char* kind);
+
+}  // namespace foresight
