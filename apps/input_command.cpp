@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 constexpr Duration kRound = 10ms;
 constexpr int kRoundsPerLine = 10;
 
-struct Arguments {
+struct InputArguments {
   std::string device, record;
   double seconds = 10;
   TrackerTraceOptions trace;
@@ -68,7 +68,7 @@ std::string line_of(const TrackerState& state) {
 }
 
 /// What was seen of a device.
-struct Seen {
+struct SeenOfDevice {
   int rounds = 0, connected = 0, tracked = 0, held = 0;
   void count(const TrackerState& state) {
     ++rounds;
@@ -79,7 +79,7 @@ struct Seen {
   double percent(int of) const { return rounds > 0 ? 100.0 * of / rounds : 0; }
 };
 
-int show_device(const Arguments& arguments) {
+int show_device(const InputArguments& arguments) {
   poll_stop_signals();
   const std::unique_ptr<Tracker> device = open_tracker(arguments.device, arguments.trace);
   // A recording need not be waited for.
@@ -91,7 +91,7 @@ int show_device(const Arguments& arguments) {
   const RobotTime begin = clock.now();
   const auto* const recording = dynamic_cast<const RecordedTracker*>(device.get());
   std::string rows = trace_heading();
-  Seen seen;
+  SeenOfDevice seen;
   while (!stop_requested() && clock.now() - begin < seconds(arguments.seconds)) {
     const Duration passed = clock.now() - begin;
     const TrackerState state = device->read({clock.now().ns});
@@ -113,7 +113,7 @@ int show_device(const Arguments& arguments) {
 
 void add_show(Command& input, std::function<int()>& action) {
   auto* command = input.add_subcommand("show", "Prints what a device says");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<InputArguments>();
   command->add_option("DEVICE", arguments->device, "gamepad, gamepad:1, spacemouse, or the file of a recording")
       ->reads()
       ->required();

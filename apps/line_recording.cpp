@@ -22,8 +22,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kTake = 4ms;
-constexpr Duration kDiscovery = 1s;
-constexpr Duration kLook = 500ms;
+constexpr Duration kSettle = 1s;
+constexpr Duration kLookEvery = 500ms;
 
 void say(const char* command, const std::string& words) {
   std::fprintf(stderr, "%s: %s\n", command, words.c_str());
@@ -85,7 +85,7 @@ class Player {
       writer->write(std::move(message.cdr));
       ++sent_;
       if (clock_.now() < look_due_) continue;
-      look_due_ = clock_.now() + kLook;
+      look_due_ = clock_.now() + kLookEvery;
       if (const std::string robot = robot_beside(program_); !robot.empty())
         throw RuntimeFailure("the recording stopped beside " + robot + ", which has just come", kOtherDomain);
     }
@@ -167,7 +167,7 @@ int play(const PlayOptions& options) {
   const std::string name = "robot played from " + std::filesystem::path(options.file).filename().string();
   link::Participant program(link_config_of(options.place), name, link::Role::robot);
   MonotonicClock clock;
-  if (!wait_until(clock, clock.now() + kDiscovery)) return kStopped;
+  if (!wait_until(clock, clock.now() + kSettle)) return kStopped;
   if (const std::string robot = robot_beside(program); !robot.empty())
     throw InputError(options.file,
                      "cannot be played beside " + robot + ": an operator would see the recording and move the robot",
@@ -185,7 +185,7 @@ int play(const PlayOptions& options) {
     throw InputError(options.file,
                      "has nothing that a robot says" + (outcome.trouble.empty() ? "" : "; " + outcome.trouble),
                      "record with `foresight record --line` while `foresight robot --serve` runs");
-  wait_until(clock, clock.now() + kDiscovery);  // for who asks for the last messages again
+  wait_until(clock, clock.now() + kSettle);  // for who asks for the last messages again
   return 0;
 }
 

@@ -20,9 +20,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kLook = 100ms;
+constexpr Duration kPollEvery = 100ms;
 constexpr Duration kDiscovery = 3s;  // another vendor's program may need a second
-constexpr int kRoom = 256;           // samples that a reader of ours may be behind, so that none goes uncounted
+constexpr int kReaderRoom = 256;     // samples that a reader of ours may be behind, so that none goes uncounted
 
 unsigned long long number(std::uint64_t n) {
   return n;
@@ -51,10 +51,10 @@ std::optional<link::Topic> find_topic(const link::Participant& program, const st
     for (const link::Peer& peer : program.peers())
       for (const link::Peer::Endpoint& endpoint : peer.endpoints) {
         if (!endpoint.writes) continue;
-        if (endpoint.topic == topic) return link::Topic{topic, endpoint.type, endpoint.delivery, kRoom};
+        if (endpoint.topic == topic) return link::Topic{topic, endpoint.type, endpoint.delivery, kReaderRoom};
         written.insert(endpoint.topic);
       }
-    clock.sleep_until(clock.now() + kLook);
+    clock.sleep_until(clock.now() + kPollEvery);
   }
   if (stop_requested()) return std::nullopt;
   const std::vector<std::string> names(written.begin(), written.end());
@@ -74,7 +74,7 @@ void measure(link::Reader& reader, const link::MessageType* type, Duration lengt
   MonotonicClock clock;
   std::optional<RobotTime> last;
   for (const RobotTime end = clock.now() + length; clock.now() < end && !stop_requested();) {
-    reader.wait(kLook);
+    reader.wait(kPollEvery);
     const RobotTime now = clock.now();
     reader.take([&](const link::Sample& sample) {
       const std::int64_t unix_now =
@@ -190,7 +190,7 @@ int link_status(const LinkStatusOptions& options) {
   link::Participant program(config, "link status", link::Role::observer, line_of(options.place, clock));
   const auto end = look_at_line(program, clock);
   for (const RobotTime until = clock.now() + seconds(options.seconds); clock.now() < until && !stop_requested();)
-    clock.sleep_until(std::min(until, clock.now() + kLook));
+    clock.sleep_until(std::min(until, clock.now() + kPollEvery));
   if (stop_requested()) return kStopped;
   const auto peers = program.peers();
   const std::size_t others = peers.empty() ? 0 : peers.size() - 1;
@@ -226,7 +226,7 @@ int link_listen(const LinkListenOptions& options) {
   std::uint64_t shown = 0, strange = 0;
   while (!stop_requested() && (!options.count || shown < *options.count) &&
          (!options.seconds || clock.now() - begin < seconds(*options.seconds))) {
-    reader.wait(kLook);
+    reader.wait(kPollEvery);
     reader.take([&](const link::Sample& sample) {
       if (options.count && shown >= *options.count) return;
       const auto reading = type->read(sample.cdr, true);

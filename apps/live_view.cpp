@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWindowWidth = 1280;
+constexpr int kLiveWindowWidth = 1280;
 
 LiveFeed feed_from(std::shared_ptr<FrameQueue> frames, std::function<std::string()> trouble) {
   return {[frames](Duration timeout) -> std::optional<LiveImage> {
@@ -28,10 +28,10 @@ LiveFeed feed_from(std::shared_ptr<FrameQueue> frames, std::function<std::string
           [frames] { return frames->closed(); }, std::move(trouble)};
 }
 
-std::unique_ptr<gl::Window> open_window(const Lens& lens) {
-  const int height = std::max(kWindowWidth * lens.height() / (2 * lens.width()), 120);
+std::unique_ptr<gl::Window> open_live_window(const Lens& lens) {
+  const int height = std::max(kLiveWindowWidth * lens.height() / (2 * lens.width()), 120);
   try {
-    return std::make_unique<gl::Window>(kWindowWidth, height, "Foresight");
+    return std::make_unique<gl::Window>(kLiveWindowWidth, height, "Foresight");
   } catch (const gl::NoWindow& error) {
     throw RuntimeFailure(std::string("--view: ") + error.what(), "or do without a window: give --out or --report");
   }
@@ -101,7 +101,7 @@ struct LiveView::Work {
       : options(given),
         frames(std::move(queue)),
         setup(live_view_setup(scene, "--view")),
-        window(options.window ? open_window(setup.left) : nullptr),
+        window(options.window ? open_live_window(setup.left) : nullptr),
         headless(window ? nullptr : gl::create_headless_context()),
         session(std::make_unique<ViewSession>(window ? static_cast<gl::Context&>(*window) : *headless, setup)),
         source(feed_from(frames, std::move(trouble)), clock,

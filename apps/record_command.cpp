@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RecordArguments {
   std::string out, rig, left, right, format = "yuyv";
   std::vector<std::string> images;
   std::string camera, camera_right, scene;
@@ -42,7 +42,7 @@ Pose parse_pose(const std::vector<double>& v) {
   return pose;
 }
 
-void check(const Arguments& a) {
+void check(const RecordArguments& a) {
   const int kinds = int(!a.images.empty()) + int(!a.left.empty() || !a.right.empty()) + int(!a.rig.empty());
   if (kinds > 1 || (a.mock && kinds > 0 && a.rig.empty()))
     throw InputError(a.mock ? "--mock" : "--left, --right, --images, --rig", "stand beside other cameras",
@@ -70,7 +70,7 @@ struct Described {
   std::optional<fs::path> tags, scene;  // the rig's; --scene goes before it
 };
 
-Described described(const Arguments& a) {
+Described described(const RecordArguments& a) {
   Described all;
   StereoConfig& out = all.cameras;
   if (!a.scene.empty()) all.scene = a.scene;
@@ -119,7 +119,8 @@ LiveScene scene_of(const Described& all, const OpenStereo& opened) {
   return LiveScene(all.cameras, nullptr, all.scene);
 }
 
-GivenPoses poses_of(const Arguments& a, const std::shared_ptr<const LiveScene>& scene, const sim::ShaftsAt& shafts) {
+GivenPoses poses_of(const RecordArguments& a, const std::shared_ptr<const LiveScene>& scene,
+                    const sim::ShaftsAt& shafts) {
   if (scene->is_mock())
     return {scene,
             [scene, shafts](RobotTime t) {
@@ -131,7 +132,7 @@ GivenPoses poses_of(const Arguments& a, const std::shared_ptr<const LiveScene>& 
   return {scene, {}};
 }
 
-int record_and_report(const Arguments& a, const OpenStereo& opened, LiveFrames& frames, RecorderOptions options,
+int record_and_report(const RecordArguments& a, const OpenStereo& opened, LiveFrames& frames, RecorderOptions options,
                       Clock& clock) {
   RunRecorder recorder(a.out, std::move(options), frames.subscribe(RunRecorder::kRoom));
   RecordingLimits limits;
@@ -149,7 +150,7 @@ int record_and_report(const Arguments& a, const OpenStereo& opened, LiveFrames& 
   return 1;
 }
 
-int run_line(const Arguments& a) {
+int run_line(const RecordArguments& a) {
   const std::pair<const char*, bool> cameras[] = {
       {"OUT", !a.out.empty()},         {"--left, --right", !a.left.empty() || !a.right.empty()},
       {"--images", !a.images.empty()}, {"--camera, --camera-right", !(a.camera + a.camera_right).empty()},
@@ -164,7 +165,7 @@ int run_line(const Arguments& a) {
   return record_line(options);
 }
 
-int run(const Arguments& a) {
+int run(const RecordArguments& a) {
   if (!a.line.file.empty()) return run_line(a);
   const LinkPlace& place = a.line.place;
   if (place.domain || !(place.interface + place.keys).empty() || !place.peers.empty() || a.line.pictures)
@@ -198,7 +199,7 @@ int run(const Arguments& a) {
 
 void add_record_command(Command& app, std::function<int()>& action) {
   auto* command = app.add_subcommand("record", "Write what two cameras see as a run, or what is said on a line");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RecordArguments>();
   command->add_option("OUT", a->out, "Folder to write; an earlier recording in it is replaced")
       ->writes(recording_outputs);
   command

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLastPicture = 3;  // seconds for which the window shows the last instant
-constexpr int kWindowWidth = 1440;
+constexpr int kReplayWindowWidth = 1440;
 
 /// Throws InputError for a delay that no image outlives.
 std::vector<std::size_t> arrivals(const RunFolder& run, const ReplayOptions& options) {
@@ -70,21 +70,21 @@ RunRecord described(const ViewSession& session, const ViewSetup& setup, const Ru
 class Progress final : public ViewObserver {
  public:
   Progress(const RecordedSource& source, std::size_t images)
-      : source_(source), bar_("replay", "images", images, Clock::now(), ProgressBar::for_stderr()) {}
+      : source_(source), bar_("replay", "images", images, SteadyClock::now(), ProgressBar::for_stderr()) {}
   void stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& /*session*/) override {
-    if (step.drawn) std::cerr << bar_.update(source_.index() + 1, Clock::now()) << std::flush;
+    if (step.drawn) std::cerr << bar_.update(source_.index() + 1, SteadyClock::now()) << std::flush;
   }
-  void finish(std::size_t images) { std::cerr << bar_.finish(images, Clock::now()); }
+  void finish(std::size_t images) { std::cerr << bar_.finish(images, SteadyClock::now()); }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using SteadyClock = std::chrono::steady_clock;
   const RecordedSource& source_;
   ProgressBar bar_;
 };
 
-std::unique_ptr<gl::Window> open_window(const Lens& lens) {
-  const int height = kWindowWidth * lens.height() / (3 * lens.width());
-  return std::make_unique<gl::Window>(kWindowWidth, std::max(height, 120), "Foresight replay");
+std::unique_ptr<gl::Window> open_replay_window(const Lens& lens) {
+  const int height = kReplayWindowWidth * lens.height() / (3 * lens.width());
+  return std::make_unique<gl::Window>(kReplayWindowWidth, std::max(height, 120), "Foresight replay");
 }
 
 std::string window_title(const RunRecord& record) {
@@ -95,7 +95,7 @@ std::string window_title(const RunRecord& record) {
 }
 
 int play(const RunFolder& run, const ReplayOptions& options, std::vector<std::size_t> arrived) {
-  const auto window = options.window ? open_window(run.lens_left()) : nullptr;
+  const auto window = options.window ? open_replay_window(run.lens_left()) : nullptr;
   const auto headless = window ? nullptr : gl::create_headless_context();
   gl::Context& context = window ? static_cast<gl::Context&>(*window) : *headless;
   ViewSetup setup = view_setup(run, options.textures, thesis_options(options));

@@ -20,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RigNewArguments {
   std::string urdf, out, protocol = "cia402", eds, dcf, mesh_root;
 };
 
-RigDraftOptions options_of(const Arguments& arguments) {
+RigDraftOptions options_of(const RigNewArguments& arguments) {
   RigDraftOptions out;
   out.urdf = arguments.urdf;
   if (!arguments.mesh_root.empty() && !fs::is_directory(arguments.mesh_root))
@@ -74,7 +74,7 @@ void tell(const RigDraft& draft, const std::string& file) {
   std::printf("try it: foresight doctor %s; foresight robot %s\n", file.c_str(), file.c_str());
 }
 
-int run(const Arguments& arguments) {
+int run(const RigNewArguments& arguments) {
   if (arguments.out.empty()) throw InputError("--out", "is empty", "name the rig file to be written");
   const fs::path file = arguments.out;
   std::error_code error;
@@ -99,7 +99,7 @@ int run(const Arguments& arguments) {
 void add_rig_new_command(Command& rig, std::function<int()>& action) {
   Command* const command =
       rig.add_subcommand("new", "Makes the first rig file of your own robot, for mock drives and mock cameras");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RigNewArguments>();
   command->add_option("--urdf", arguments->urdf, "The robot")->reads()->required();
   command->add_option("--out", arguments->out, "The rig file; never one that is there already")
       ->writes([](const std::filesystem::path& file) { return std::vector{new_output(file, Output::Kind::file)}; })

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RigViewArguments {
   std::string rig, joints, scene, out, size = "1320x860";
   std::vector<std::string> hide;
   std::optional<LookFrom> from;
@@ -54,7 +54,7 @@ std::string ending_of(const fs::path& out) {
   return ending;
 }
 
-int write_picture(RigBody& body, const Arguments& arguments, const std::vector<double>& positions) {
+int write_picture(RigBody& body, const RigViewArguments& arguments, const std::vector<double>& positions) {
   const cv::Size size = picture_size(arguments.size);
   const std::string ending = ending_of(arguments.out);
   const auto context = gl::create_headless_context();
@@ -80,7 +80,7 @@ int write_picture(RigBody& body, const Arguments& arguments, const std::vector<d
   return 0;
 }
 
-int run(const Arguments& arguments) {
+int run(const RigViewArguments& arguments) {
   const Rig rig = read_rig(arguments.rig);
   RigBody body(rig, arguments.scene.empty() ? std::nullopt : std::optional<fs::path>(arguments.scene));
   std::vector<double> positions = body.rest();
@@ -97,7 +97,7 @@ int run(const Arguments& arguments) {
 
 void add_rig_view_command(Command& rig, std::function<int()>& action) {
   auto* command = rig.add_subcommand("view", "Shows a rig in three dimensions: what the gate guards, limits, cameras");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RigViewArguments>();
   command->add_option("RIG", a->rig, "Rig file (docs/rig-files.md)")->reads()->required();
   command->add_option("--joints", a->joints, "Where joints stand: NAME=VALUE,... in rad or m; the others at rest");
   command->add_option("--scene", a->scene, "What stands around, in place of the rig's `scene:`")->reads();

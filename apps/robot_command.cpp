@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kTick = 10ms;
 
-struct Arguments {
+struct RobotArguments {
   std::string rig;
   std::string follow;
   std::string log, record, session;
@@ -106,7 +106,7 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
 
 /// Null where there are none to run. In stepped time, pictures that nobody keeps are not drawn.
 std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& devices, const Robot& robot,
-                                           Clock& clock, const Arguments& arguments) {
+                                           Clock& clock, const RobotArguments& arguments) {
   if (!rig.cameras || !arguments.cameras || (arguments.stepped && arguments.record.empty() && !arguments.view))
     return nullptr;
   RobotCameraOptions options;
@@ -123,7 +123,7 @@ std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& d
 
 /// Null without --view.
 std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCameras* cameras, const Clock& clock,
-                                    const Arguments& arguments) {
+                                    const RobotArguments& arguments) {
   if (!arguments.view || !cameras) return nullptr;
   constexpr std::size_t kRoom = 64;
   const LiveViewOptions options{rig.name,
@@ -141,7 +141,7 @@ std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCam
 
 /// Null without --serve.
 std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock,
-                                               const Arguments& arguments) {
+                                               const RobotArguments& arguments) {
   if (!arguments.serve) return nullptr;
   std::shared_ptr<link::PretendedLine> line;
   if (!arguments.line.empty()) {
@@ -157,7 +157,7 @@ std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robo
   return server;
 }
 
-ConsoleOptions console_options(const Arguments& arguments, link::RobotServer* server) {
+ConsoleOptions console_options(const RobotArguments& arguments, link::RobotServer* server) {
   ConsoleOptions options;
   if (server) options.line = [server] { return server->line(); };
   if (server && arguments.follow.empty()) options.commander = &server->commander();
@@ -171,7 +171,7 @@ ConsoleOptions console_options(const Arguments& arguments, link::RobotServer* se
 }
 
 template <typename ClockKind>
-int run_with(const Rig& rig, const Arguments& arguments,
+int run_with(const Rig& rig, const RobotArguments& arguments,
              int (*run)(ClockKind&, Robot&, Console&, RobotDevices&, RobotCameras*, const Windows&)) {
   ClockKind clock;
   RobotDeviceOptions options;
@@ -207,7 +207,7 @@ int run_with(const Rig& rig, const Arguments& arguments,
   return run(clock, robot, console, devices, cameras.get(), windows);
 }
 
-void check_rig_view(const Arguments& arguments) {
+void check_rig_view(const RobotArguments& arguments) {
   if (!arguments.rig_view) return;
   for (const auto& [given, other] : {std::pair{arguments.view, "--view"}, {arguments.stepped, "--stepped"}})
     if (given)
@@ -215,7 +215,7 @@ void check_rig_view(const Arguments& arguments) {
                        "leave one out; `foresight rig view RIG --out` draws without a window");
 }
 
-void check_view(const Rig& rig, const Arguments& arguments) {
+void check_view(const Rig& rig, const RobotArguments& arguments) {
   const bool asked[] = {arguments.delay_ms.has_value(), arguments.outputs.out.has_value(),
                         arguments.outputs.report.has_value(), arguments.outputs.html.has_value(), arguments.window};
   const char* const names[] = {"--delay-ms", "--out", "--report", "--html", "--window"};
@@ -231,8 +231,8 @@ void check_view(const Rig& rig, const Arguments& arguments) {
                      rig.cameras ? "leave one out" : "add them to the rig (docs/rig-files.md)");
 }
 
-void check_physics(const Rig& rig, const Arguments& arguments) {
-  if (arguments.physics_seed != Arguments{}.physics_seed && !arguments.physics)
+void check_physics(const Rig& rig, const RobotArguments& arguments) {
+  if (arguments.physics_seed != RobotArguments{}.physics_seed && !arguments.physics)
     throw InputError("--physics-seed", "belongs to --physics", "add --physics, or leave it out");
   if (arguments.layout != 0 && !arguments.physics)
     throw InputError("--layout", "belongs to --physics", "add --physics, or leave it out");
@@ -243,7 +243,7 @@ void check_physics(const Rig& rig, const Arguments& arguments) {
 }
 
 /// What the OutputGuard cannot know: the rig says how many logs there are, and how they are called.
-void check_logs(const Rig& rig, const Arguments& arguments) {
+void check_logs(const Rig& rig, const RobotArguments& arguments) {
   namespace fs = std::filesystem;
   if (arguments.log.empty() || rig.buses.size() < 2) return;
   if (fs::exists(arguments.log) && !fs::is_regular_file(arguments.log))
@@ -258,7 +258,7 @@ void check_logs(const Rig& rig, const Arguments& arguments) {
   }
 }
 
-int run(const Arguments& arguments) {
+int run(const RobotArguments& arguments) {
   const Rig rig = read_rig(arguments.rig);
   check_logs(rig, arguments);
   check_rig_view(arguments);
@@ -282,7 +282,7 @@ int run(const Arguments& arguments) {
 
 void add_robot_command(Command& app, std::function<int()>& action) {
   auto* command = app.add_subcommand("robot", "Runs the robot side of a rig: drives behind a safety gate");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RobotArguments>();
   command->add_option("RIG", arguments->rig, "Rig file (docs/rig-files.md)")->reads()->required();
   command->add_flag("--mock", arguments->mock,
                     "Emulated drives on every bus, and the mock lab before the cameras, whatever the rig says");

@@ -21,11 +21,11 @@
 namespace foresight {
 namespace {
 
-struct Arguments {
+struct SimArguments {
   std::string can, rack, rig, profile = "powercube";
 };
 
-std::vector<sim::NodeConfig> nodes_of(const Arguments& arguments) {
+std::vector<sim::NodeConfig> nodes_of(const SimArguments& arguments) {
   if (!arguments.rack.empty()) return read_rack(arguments.rack);
   if (!arguments.rig.empty()) {
     const Rig rig = read_rig(arguments.rig);
@@ -106,7 +106,7 @@ void obey_stdin(sim::DriveRack& rack) {
   }
 }
 
-int run(const Arguments& arguments) {
+int run(const SimArguments& arguments) {
   const std::vector<sim::NodeConfig> nodes = nodes_of(arguments);
   MonotonicClock clock;
   sim::DriveRack rack(clock, std::make_unique<SocketCanBus>(arguments.can), nodes);
@@ -125,7 +125,7 @@ void add_sim_command(Command& app, std::function<int()>& action) {
   Command* const sim = app.add_subcommand("sim", "Emulated hardware");
   sim->require_subcommand();
   Command* const command = sim->add_subcommand("drives", "Emulated drives on a CAN interface, for any master");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SimArguments>();
   command->add_option("--can", arguments->can, "CAN interface, such as can0 or vcan0")->required();
   const Option* const rack =
       command->add_option("--rack", arguments->rack, "YAML file with a list of drives, instead of the built-in ones")

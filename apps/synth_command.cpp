@@ -12,7 +12,7 @@
 namespace foresight {
 namespace {
 
-struct Arguments {
+struct SynthArguments {
   std::string out;
   std::string size = "751x570";
   std::string head_path;
@@ -36,7 +36,7 @@ std::vector<Output> synth_outputs(const std::filesystem::path& out) {
            }}};
 }
 
-int run(Arguments arguments) {
+int run(SynthArguments arguments) {
   parse_size(arguments.size, arguments.options);
   arguments.options.shutter.exposure_s = arguments.motion_blur_ms * 1e-3;
   arguments.options.shutter.readout_s = arguments.rolling_shutter_ms * 1e-3;
@@ -69,7 +69,7 @@ int run(Arguments arguments) {
 
 void add_synth_command(Command& app, std::function<int()>& action) {
   Command* command = app.add_subcommand("synth", "Write a synthetic run: a lab with a moving arm, and its exact truth");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SynthArguments>();
   sim::SynthOptions& options = arguments->options;
   command->add_option("OUT", arguments->out, "Folder to write; an earlier synthetic run in it is replaced")
       ->writes(synth_outputs)

@@ -1,6 +1,6 @@
-# foresight_module(NAME [COMMANDS] SOURCES a.cpp ... [SHADERS x.comp ...] [LINK target ...])
+# foresight_module(NAME SOURCES a.cpp ... [SHADERS x.comp ...] [LINK target ...])
 #
-# COMMANDS: its files hold a command each, whose names are all alike (Arguments, run): they are never compiled together.
+# The files of a module may be compiled together (FORESIGHT_UNITY): what they keep to themselves has names of its own.
 #
 # One static library per module folder. Headers are included from the project
 # root ("common/lens.hpp"), so a reader sees in every #include which module is used.
@@ -26,11 +26,11 @@ set(FORESIGHT_PCH_HEADERS <array> <cmath> <cstdint> <filesystem> <functional> <m
                           <vector> <Eigen/Geometry> <opencv2/core.hpp>)
 
 function(foresight_module name)
-  cmake_parse_arguments(ARG "COMMANDS" "" "SOURCES;SHADERS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;SHADERS;LINK" ${ARGN})
   set(target foresight_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   target_link_libraries(${target} PUBLIC foresight_options ${ARG_LINK})
-  if(FORESIGHT_UNITY AND NOT ARG_COMMANDS)
+  if(FORESIGHT_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
   endif()
   if(ARG_SHADERS)

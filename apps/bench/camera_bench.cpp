@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kLargestShare = 0.1;
+constexpr double kLargestCameraShare = 0.1;
 
 struct Round {
   double seconds = 0, process = 0, copying = 0, consuming = 0;  ///< CPU time but for `seconds`
@@ -79,7 +79,7 @@ int bench_camera(const CameraBenchOptions& options) {
                  {"copying_ms", 1e3 * round.per_pair(round.copying)},
                  {"consuming_ms", 1e3 * round.per_pair(round.consuming)}};
   }
-  const bool met = steady.pairs > 0 && share < kLargestShare;
+  const bool met = steady.pairs > 0 && share < kLargestCameraShare;
   std::printf("not rendering, at %.3g Hz: %.2f %% of a core (limit 10 %%: %s)\n", options.rate, 100 * share,
               met ? "met" : "MISSED");
   all["share_of_core_not_rendering"] = share;

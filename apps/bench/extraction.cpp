@@ -17,7 +17,7 @@ namespace foresight {
 namespace {
 
 using nlohmann::json;
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 struct Comparison {
   std::vector<double> core_ms, thesis_ms;
@@ -33,7 +33,7 @@ Comparison compare(const BenchSetup& setup) {
   options.texels_per_metre = setup.texels_per_metre;
   options.max_texture = setup.max_texture;
   thesis::Pipeline thesis = make_thesis(setup, options);
-  ProgressBar bar("compare", "images", setup.frames.size(), Clock::now(), ProgressBar::for_stderr());
+  ProgressBar bar("compare", "images", setup.frames.size(), SteadyClock::now(), ProgressBar::for_stderr());
   Comparison out;
   for (std::size_t i = 0; i < setup.frames.size(); ++i) {
     ExtractionReport of_core, of_thesis;
@@ -41,9 +41,9 @@ Comparison compare(const BenchSetup& setup) {
     out.thesis_ms.push_back(cpu_ms_of([&] { of_thesis = thesis.process(setup.frames[i]); }));
     out.texels += static_cast<double>(of_core.tiles) * 64 / static_cast<double>(setup.frames.size());
     out.polygons += static_cast<double>(of_thesis.pages) / static_cast<double>(setup.frames.size());
-    std::cerr << bar.update(i + 1, Clock::now()) << std::flush;
+    std::cerr << bar.update(i + 1, SteadyClock::now()) << std::flush;
   }
-  std::cerr << bar.finish(setup.frames.size(), Clock::now());
+  std::cerr << bar.finish(setup.frames.size(), SteadyClock::now());
   return out;
 }
 

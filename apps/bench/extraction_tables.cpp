@@ -10,9 +10,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kFrames = 24;     // of which the tables take means
-constexpr std::size_t kFewFrames = 6;   // where every setting needs a pipeline of its own
-constexpr double kThesisTotal = 125.7;  // ms, table 7.1
+constexpr std::size_t kTableFrames = 24;  // of which the tables take means
+constexpr std::size_t kFewFrames = 6;     // where every setting needs a pipeline of its own
+constexpr double kThesisTotal = 125.7;    // ms, table 7.1
 
 thesis::Options profiled(const BenchSetup& setup) {
   thesis::Options options;
@@ -67,7 +67,7 @@ json bench_stages(const BenchSetup& setup) {
                            {"fusion", "fusion", 2.3},
                            {"hole filling", "hole filling, pyramid", 66.2},
                            {"other", "other (upload, undistortion, waiting)", 9.1}};
-  const StageSums thesis = profile(setup, profiled(setup), kFrames, 2);
+  const StageSums thesis = profile(setup, profiled(setup), kTableFrames, 2);
   const double total = total_of(thesis.means());
   std::printf("\nTable 7.1: stages of the thesis' pipeline (profiled: every step waits for the last)\n");
   std::printf("%-40s %12s %7s %12s %7s\n", "", "thesis [ms]", "[%]", "here [CPU-ms]", "[%]");
@@ -91,7 +91,7 @@ json bench_stages(const BenchSetup& setup) {
   for (const PosedFrame& frame : setup.frames) {
     const ExtractionReport report = core->process(frame);
     if (done++ >= 2) sums.add(report);
-    if (done >= 4 * kFrames) break;
+    if (done >= 4 * kTableFrames) break;
   }
   std::printf("\nStages of the core\n");
   for (const StageCost& stage : sums.means()) {

@@ -11,7 +11,7 @@ namespace {
 constexpr int kStarts = 4;     // images tried as the first of a pair
 constexpr int kPolygons = 24;  // largest polygons in view tried for their mask
 constexpr int kClearly = 40;   // 8-bit values
-constexpr int kVisible = 255, kHidden = 0;
+constexpr int kMarkedVisible = 255, kMarkedHidden = 0;
 
 [[noreturn]] void nothing_hidden(const FigureLab& lab) {
   throw InputError(lab.run().root().string(), "nothing in it hides anything else that a later image shows",
@@ -110,7 +110,7 @@ std::size_t choose_half_hidden(const FigureLab& lab, FigureTextures& textures, c
   std::size_t best = 0;
   for (const auto& [size, i] : by_size) {
     const cv::Mat mask = textures.pipeline.alpha_mask(image, i, thesis::Expansion::none, 0);
-    const int score = std::min(cv::countNonZero(mask == kVisible), cv::countNonZero(mask == kHidden));
+    const int score = std::min(cv::countNonZero(mask == kMarkedVisible), cv::countNonZero(mask == kMarkedHidden));
     if (score > most) best = i;
     most = std::max(most, score);
   }

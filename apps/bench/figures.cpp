@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFewest = 20;  // images
+constexpr std::size_t kFewestImages = 20;  // images
 constexpr std::array kNames{"fig_4_08", "fig_4_15", "fig_4_20", "fig_5_09",
                             "fig_5_11", "fig_5_19", "fig_5_23", "core_vs_thesis"};
 
@@ -24,9 +24,9 @@ void check_run(const RunFolder& run) {
   if (!thesis::CameraFrame::can_undistort(run.lens_left()))
     throw InputError(where, "the lens sees more than one picture plane can hold, as the thesis' pipeline needs it",
                      "take a run with a lens of less than 120 degrees");
-  if (run.frames().size() < kFewest)
+  if (run.frames().size() < kFewestImages)
     throw InputError(where, "holds only " + std::to_string(run.frames().size()) + " images",
-                     "take a run of at least " + std::to_string(kFewest));
+                     "take a run of at least " + std::to_string(kFewestImages));
 }
 
 std::vector<FigurePage> draw_all(const RunFolder& run, const TextureOptions& core) {

@@ -30,11 +30,11 @@ Lens eye_of(const Lens& camera, const HeadBenchOptions& options, int guard) {
   return Lens(p);
 }
 
-struct Figures {
+struct WarpFigures {
   std::vector<double> db, drawn_ms, warped_ms, holes, beyond;
 };
 
-nlohmann::json to_json(const Figures& f) {
+nlohmann::json to_json(const WarpFigures& f) {
   return {{"db", {{"median", median(f.db)}, {"worst", *std::ranges::min_element(f.db)}}},
           {"drawn_cpu_ms", median(f.drawn_ms)},
           {"warped_cpu_ms", median(f.warped_ms)},
@@ -42,7 +42,7 @@ nlohmann::json to_json(const Figures& f) {
           {"beyond_border", *std::ranges::max_element(f.beyond)}};
 }
 
-void print(const char* what, const Figures& f) {
+void print(const char* what, const WarpFigures& f) {
   std::printf("%-28s %6.2f dB (worst %.2f), holes %.2f %% (most %.2f %%), warped in %.1f CPU-ms, drawn in %.1f\n", what,
               median(f.db), *std::ranges::min_element(f.db), 100 * median(f.holes),
               100 * *std::ranges::max_element(f.holes), median(f.warped_ms), median(f.drawn_ms));
@@ -98,7 +98,7 @@ class HeadLab {
     from_ = from;
     session_.draw(source_, from, state_);
   }
-  void measure(const Pose& to, Figures& out) {
+  void measure(const Pose& to, WarpFigures& out) {
     out.drawn_ms.push_back(gpu_cpu_ms([&] { session_.draw(truth_, to, state_); }));
     out.warped_ms.push_back(gpu_cpu_ms([&] { warp_({&source_.picture(), &source_.faces().depth, wide_, from_}, to); }));
     out.db.push_back(decibels(pixels(truth_.picture(), GL_RGBA, CV_8UC4), pixels(warp_.picture(), GL_RGBA, CV_8UC4)));
@@ -147,7 +147,7 @@ int bench_head(const HeadBenchOptions& options) {
     out.linear() = turn.toRotationMatrix();
     return out;
   };
-  Figures motion, second;
+  WarpFigures motion, second;
   for (int i = 0; i < options.views; ++i) {
     const Pose from = lab.T_world_camera() * step(0.05 * any(), Eigen::AngleAxisd(0.1 * some(random), any()));
     lab.draw_source(from);

@@ -11,7 +11,7 @@
 namespace foresight {
 namespace {
 
-struct Columns {
+struct JointColumns {
   std::size_t count = 0;
   std::optional<TimeColumn> time;
   std::vector<std::size_t> fields;  // of the table's columns
@@ -24,9 +24,9 @@ bool is_numbered(std::string_view name, std::string_view prefix) {
   return std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-Columns read_header(const TextRow& line, JointTable& table) {
+JointColumns read_header(const TextRow& line, JointTable& table) {
   const std::vector<std::string> names(line.fields.begin(), line.fields.end());
-  Columns columns{names.size(), TimeColumn::find(names), {}};
+  JointColumns columns{names.size(), TimeColumn::find(names), {}};
   if (!columns.time || names.size() < 2)
     throw InputError(line.where(), "names no time_s (or timestamp), or no column beside it",
                      "write the names of the columns in the first line: time_s,q1,q2,...");
@@ -51,7 +51,7 @@ const JointColumn* JointTable::find(const std::string& name) const {
 
 JointTable read_joint_table(const std::filesystem::path& csv) {
   JointTable table;
-  Columns columns;
+  JointColumns columns;
   for_each_row(csv, {RowForm::Between::commas}, [&](const TextRow& line) {
     if (!columns.time) {
       columns = read_header(line, table);

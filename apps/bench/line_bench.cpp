@@ -56,7 +56,7 @@ double nearest_rank(std::vector<double> values, double share) {
   return *place;
 }
 
-double mean(const std::vector<double>& values) {
+double mean_or_none(const std::vector<double>& values) {
   if (values.empty()) return -1;
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -80,7 +80,7 @@ nlohmann::json figures(const LineTrialResult& result, double length_s) {
           {"age_p95_ms", nearest_rank(outside, 0.95)},
           {"age_all_p95_ms", nearest_rank(result.age_beyond_ms, 0.95)},
           {"pairs_per_s", static_cast<double>(result.pairs.size()) / length_s},
-          {"psnr_db", mean(psnr)},
+          {"psnr_db", mean_or_none(psnr)},
           {"psnr_p5_db", nearest_rank(psnr, 0.05)},
           {"bytes_per_s", static_cast<double>(result.up_bytes) / length_s},
           {"down_bytes_per_s", static_cast<double>(result.down_bytes) / length_s},

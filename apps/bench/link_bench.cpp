@@ -30,7 +30,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kLook = 100ms;
+constexpr Duration kReaderWait = 100ms;
 constexpr std::size_t kPictures = 16;
 
 /// What the receiving process tells of each pair.
@@ -84,7 +84,7 @@ void write_all(int fd, const Arrival& arrival) {
 /// Decodes the newest pair, as an operator's program does beside the one that receives.
 void decode(LatestValue<link::StereoFrame>& newest, const Clock& clock, int to, const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const auto frame = newest.take(kLook);
+    const auto frame = newest.take(kReaderWait);
     if (!frame) continue;
     const std::int64_t begin = clock.now().ns;
     const auto decoded = [](const link::CodedImage& image) {
@@ -128,7 +128,7 @@ void decode(LatestValue<link::StereoFrame>& newest, const Clock& clock, int to, 
     if (coded) receive_pieces(program, clock, to);
     link::Reader reader(program, link::topics::frames());
     for (;;) {
-      reader.wait(kLook);
+      reader.wait(kReaderWait);
       reader.take<link::StereoFrame>({}, [&](link::StereoFrame&& frame, const link::Sample& sample) {
         const std::int64_t here = clock.now().ns;
         write_all(to, {frame.number, Arrival::came, ms(here - frame.stamps.coded_ns), ms(here - frame.left.capture_ns),

@@ -17,7 +17,7 @@
 namespace foresight {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 constexpr double kErrors[] = {0, 0.5, 1, 2, 3};  // px
 constexpr double kTexelsPerMetre = 500;
@@ -136,14 +136,14 @@ int bench_margin(const MarginBenchOptions& options) {
   const auto frames = spread(run.frames().size(), static_cast<std::size_t>(options.images));
   const MarginBench bench(run, driver.is_software);
   std::vector<MarginRow> rows;
-  ProgressBar bar("margin", "errors", std::size(kErrors), Clock::now(), ProgressBar::for_stderr());
+  ProgressBar bar("margin", "errors", std::size(kErrors), SteadyClock::now(), ProgressBar::for_stderr());
   for (double error : kErrors) {
     const auto images = images_with(run, truth, frames, error);
     rows.push_back({error, bench.core(images, TextureOptions().margin_px), bench.core(images, 0),
                     bench.thesis(images, 3), bench.thesis(images, 0)});
-    std::cerr << bar.update(rows.size(), Clock::now()) << std::flush;
+    std::cerr << bar.update(rows.size(), SteadyClock::now()) << std::flush;
   }
-  std::cerr << bar.finish(rows.size(), Clock::now());
+  std::cerr << bar.finish(rows.size(), SteadyClock::now());
   print(rows);
   nlohmann::json all;
   all["images"] = frames.size();

@@ -14,18 +14,18 @@ namespace {
 
 constexpr std::array kParts{"x", "y", "z", "qx", "qy", "qz", "qw"};
 
-struct Columns {
+struct PoseColumns {
   std::size_t count = 0;
   std::optional<TimeColumn> time;
   std::vector<std::array<std::size_t, kParts.size()>> poses;  // of the table's series
 };
 
-Columns read_header(const TextRow& line, PoseTable& table) {
+PoseColumns read_header(const TextRow& line, PoseTable& table) {
   const std::vector<std::string> names(line.fields.begin(), line.fields.end());
   const auto find = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   };
-  Columns columns{names.size(), TimeColumn::find(names), {}};
+  PoseColumns columns{names.size(), TimeColumn::find(names), {}};
   for (const std::string& name : names) {
     if (!name.ends_with("qw")) continue;
     const std::string prefix = name.substr(0, name.size() - 2);
@@ -69,7 +69,7 @@ std::optional<Pose> read_pose(const TextRow& line, const std::array<std::size_t,
 
 PoseTable read_pose_table(const std::filesystem::path& csv) {
   PoseTable table;
-  Columns columns;
+  PoseColumns columns;
   std::int64_t first = 0;
   for_each_row(csv, {RowForm::Between::commas}, [&](const TextRow& line) {
     if (columns.count == 0) {

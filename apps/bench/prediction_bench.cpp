@@ -64,7 +64,7 @@ void add_contact(Command& prediction, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_prediction_contact(*options); }; });
 }
 
-void add_head(Command& prediction, std::function<int()>& action) {
+void add_prediction_head(Command& prediction, std::function<int()>& action) {
   auto* command = prediction.add_subcommand("head", "Where a head will be when its picture is seen");
   auto options = std::make_shared<PredictionHeadOptions>();
   command
@@ -109,7 +109,7 @@ void add_response(Command& prediction, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_prediction_response(*options); }; });
 }
 
-void add_robot(Command& prediction, std::function<int()>& action) {
+void add_prediction_robot(Command& prediction, std::function<int()>& action) {
   auto* command = prediction.add_subcommand("robot", "Where a robot will be when set-points act that are on their way");
   auto options = std::make_shared<PredictionRobotOptions>();
   command->add_option("--rig", options->rig, "Rig; its drives are emulated")->reads()->required();
@@ -162,10 +162,10 @@ void add_prediction_benches(Command& bench, std::function<int()>& action) {
   prediction->require_subcommand();
   add_ik(*prediction, action);
   add_contact(*prediction, action);
-  add_head(*prediction, action);
+  add_prediction_head(*prediction, action);
   add_hand(*prediction, action);
   add_response(*prediction, action);
-  add_robot(*prediction, action);
+  add_prediction_robot(*prediction, action);
   add_grasp(*prediction, action);
 }
 

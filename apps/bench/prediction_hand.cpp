@@ -14,16 +14,16 @@ namespace foresight {
 namespace {
 
 constexpr double kLowPass = 0.03;  // s
-constexpr std::size_t kFewest = 30;
-constexpr double kDegree = 180 / 3.14159265358979323846;
+constexpr std::size_t kFewestHandPoses = 30;
+constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 
 // Sums over instants of one filter.
-struct Figures {
+struct HandFigures {
   double way = 0, turn = 0, bend = 0, twist = 0;  // squares
   double along = 0, speed = 0;                    // of the position's offset on its velocity
   std::size_t scored = 0, bends = 0;
 
-  void add(const Figures& other) {
+  void add(const HandFigures& other) {
     way += other.way;
     turn += other.turn;
     bend += other.bend;
@@ -38,16 +38,16 @@ struct Figures {
       return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
     };
     all[before + "noise_mm"] = rms(way, scored) * 1e3;
-    all[before + "noise_deg"] = rms(turn, scored) * kDegree;
+    all[before + "noise_deg"] = rms(turn, scored) * kDegreesPerRadian;
     all[before + "jitter_mm"] = rms(bend, bends) * 1e3;
-    all[before + "jitter_deg"] = rms(twist, bends) * kDegree;
+    all[before + "jitter_deg"] = rms(twist, bends) * kDegreesPerRadian;
     all[before + "lag_ms"] = speed > 0 ? -along / speed * 1e3 : 0;
   }
 };
 
 constexpr std::array kMethods{"filtered", "recorded", "low-pass of 30 ms"};
 constexpr std::array kKeys{"", "raw_", "low_pass_"};
-using AllFigures = std::array<Figures, kMethods.size()>;
+using AllFigures = std::array<HandFigures, kMethods.size()>;
 
 // A stretch without gaps and jumps, and what the filters made of it.
 struct Stretch {
@@ -101,7 +101,7 @@ void score(const Stretch& stretch, AllFigures& figures) {
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
       const auto& poses = stretch.filtered[m];
       const Vector6 off = pose_difference(samples[i].pose, poses[i]) - *offset;
-      Figures& f = figures[m];
+      HandFigures& f = figures[m];
       f.way += off.head<3>().squaredNorm();
       f.turn += off.tail<3>().squaredNorm();
       f.along += off.head<3>().dot(velocity);
@@ -152,7 +152,7 @@ int bench_prediction_hand(const PredictionHandOptions& options) {
     poses.push_back(numbers);
     for (std::size_t m = 0; m < kMethods.size(); ++m) pooled[m].add(figures[m]);
   }
-  if (pooled[0].scored < kFewest)
+  if (pooled[0].scored < kFewestHandPoses)
     throw InputError(options.csv.string(), "has only " + std::to_string(pooled[0].scored) + " poses of hands to judge",
                      "name a recording of some seconds, with poses at least every 25 ms, of more than the head");
   nlohmann::json all = numbers_of(pooled);

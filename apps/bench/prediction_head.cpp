@@ -17,7 +17,7 @@ namespace foresight {
 namespace {
 
 constexpr Duration kWindow{50'000'000};
-constexpr std::size_t kFewest = 30;
+constexpr std::size_t kFewestHeadPoses = 30;
 
 struct Method {
   const char* name;
@@ -133,7 +133,7 @@ int bench_prediction_head(const PredictionHeadOptions& options) {
     }
     last = i;
   }
-  if (methods[0].way.size() < kFewest)
+  if (methods[0].way.size() < kFewestHeadPoses)
     throw InputError(options.csv.string(),
                      "has only " + std::to_string(methods[0].way.size()) + " poses whose future it shows",
                      "name a recording of some seconds, with a pose at least every 200 ms");

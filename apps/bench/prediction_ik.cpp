@@ -182,7 +182,7 @@ int bench_prediction_ik(const PredictionIkOptions& options) {
   const auto paths = options.path ? recorded_paths(kinematics, *options.path)
                                   : random_paths(kinematics, static_cast<std::size_t>(options.paths));
   const FollowFigures figures = follow(kinematics, paths);
-  for (const HandPath& path : paths)
+  for (const PosePath& path : paths)
     if (path.scale < 1) std::printf("%s: scaled by %.3f\n", path.name.c_str(), path.scale);
   report(figures, all);
   write_numbers(options.json, all.dump(2));

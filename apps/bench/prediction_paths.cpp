@@ -47,7 +47,7 @@ JointVector roomy_start(const InverseKinematics& kinematics) {
 }
 
 // The recorded motion about its first pose, about the pose of `start` instead.
-void move_into_workspace(const InverseKinematics& kinematics, HandPath& path) {
+void move_into_workspace(const InverseKinematics& kinematics, PosePath& path) {
   const auto first = std::find_if(path.T_base_tip.begin(), path.T_base_tip.end(),
                                   [](const Pose& T) { return T.matrix().allFinite(); });
   if (first == path.T_base_tip.end()) return;
@@ -66,10 +66,10 @@ void move_into_workspace(const InverseKinematics& kinematics, HandPath& path) {
 
 }  // namespace
 
-std::vector<HandPath> random_paths(const InverseKinematics& kinematics, std::size_t count) {
+std::vector<PosePath> random_paths(const InverseKinematics& kinematics, std::size_t count) {
   UniformJoints joints(kinematics.chain(), 11);
-  std::vector<HandPath> paths(count);
-  for (HandPath& path : paths) {
+  std::vector<PosePath> paths(count);
+  for (PosePath& path : paths) {
     path.name = "random";
     path.start = joints.next();
     const Pose from = kinematics.chain().tip_pose(path.start), to = kinematics.chain().tip_pose(joints.next());
@@ -85,13 +85,13 @@ std::vector<HandPath> random_paths(const InverseKinematics& kinematics, std::siz
   return paths;
 }
 
-std::vector<HandPath> recorded_paths(const InverseKinematics& kinematics, const std::filesystem::path& csv) {
+std::vector<PosePath> recorded_paths(const InverseKinematics& kinematics, const std::filesystem::path& csv) {
   const PoseTable table = read_pose_table(csv);
   const JointVector start = roomy_start(kinematics);
-  std::vector<HandPath> paths;
+  std::vector<PosePath> paths;
   for (const PoseSeries& series : table.series) {
     if (series.prefix == "head_") continue;
-    HandPath& path = paths.emplace_back();
+    PosePath& path = paths.emplace_back();
     path.name = series.prefix.empty() ? csv.stem().string() : series.prefix;
     path.start = start;
     for (std::size_t i = 0; i < series.poses.size(); ++i) {
@@ -105,9 +105,9 @@ std::vector<HandPath> recorded_paths(const InverseKinematics& kinematics, const 
   return paths;
 }
 
-FollowFigures follow(const InverseKinematics& kinematics, const std::vector<HandPath>& paths) {
+FollowFigures follow(const InverseKinematics& kinematics, const std::vector<PosePath>& paths) {
   FollowFigures figures;
-  for (const HandPath& path : paths) {
+  for (const PosePath& path : paths) {
     PathFollower follower(kinematics, path.start);
     FollowStep step;
     for (std::size_t i = 0; i < path.dt.size(); ++i) {

@@ -11,7 +11,7 @@
 namespace foresight {
 
 /// One hand: where it wants to be, cycle after cycle.
-struct HandPath {
+struct PosePath {
   std::string name;
   std::vector<double> dt;        ///< s, of the cycle that ends with the pose
   std::vector<Pose> T_base_tip;  ///< not finite where the hand was not seen
@@ -21,12 +21,12 @@ struct HandPath {
 
 /// Straight lines, evenly along and around, between the poses of uniform joint vectors, at 0.1 m/s and 0.5 rad/s at
 /// most, 100 poses a second. Always the same ones.
-std::vector<HandPath> random_paths(const InverseKinematics& kinematics, std::size_t count);
+std::vector<PosePath> random_paths(const InverseKinematics& kinematics, std::size_t count);
 
 /// All hands of a CSV: columns PREFIXx PREFIXy PREFIXz PREFIXqx PREFIXqy PREFIXqz PREFIXqw for each prefix there is,
 /// and time_s. The first pose is put where the arm has room, and motion about it scaled down to a sphere of a quarter
 /// of the arm's reach where it is larger. Heads are left out. Throws InputError with file and line.
-std::vector<HandPath> recorded_paths(const InverseKinematics& kinematics, const std::filesystem::path& csv);
+std::vector<PosePath> recorded_paths(const InverseKinematics& kinematics, const std::filesystem::path& csv);
 
 /// Shares are of all cycles.
 struct FollowFigures {
@@ -38,6 +38,6 @@ struct FollowFigures {
   double cpu_seconds = 0, slowest_cycle = 0;
 };
 
-FollowFigures follow(const InverseKinematics& kinematics, const std::vector<HandPath>& paths);
+FollowFigures follow(const InverseKinematics& kinematics, const std::vector<PosePath>& paths);
 
 }  // namespace foresight

@@ -23,7 +23,7 @@ constexpr double kFarthestCommand = 1.1;  // s: commands are known so far ahead
 constexpr double kVelocityOver = 0.02;    // s
 constexpr double kLongestGap = 0.15;      // s between states that judge what lies between
 constexpr std::size_t kMostInstants = 20'000;
-constexpr std::size_t kFewest = 30;
+constexpr std::size_t kFewestInstants = 30;
 
 using Series = std::vector<TimedPosition>;
 
@@ -222,7 +222,7 @@ int bench_prediction_response(const PredictionResponseOptions& options) {
   Scores scores;
   for (const Joint& joint : joints) measure(joint, scores);
   const auto& ours = scores.methods[0].at;
-  if (ours[0].size() < kFewest)
+  if (ours[0].size() < kFewestInstants)
     throw InputError(options.states.string(), "has only " + std::to_string(ours[0].size()) + " states to judge by",
                      "name a recording of some seconds");
   write_numbers(options.json, report(scores).dump(2));

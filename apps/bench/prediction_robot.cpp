@@ -22,7 +22,7 @@ DirectionSpec direction(const PredictionRobotOptions& options) {
   return out;
 }
 
-double share(std::size_t part, std::size_t all) {
+double share_of(std::size_t part, std::size_t all) {
   return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0;
 }
 
@@ -37,8 +37,8 @@ nlohmann::json report(const RobotTrialFigures& f, const PredictionRobotOptions& 
           {"tool_worst_mm", 1e3 * *std::max_element(tool.begin(), tool.end())},
           {"tool_p95_deg", quantile(f.rotation, 0.95) / kDegree},
           {"tool_sigma_median_mm", 1e3 * median(f.tool_sigma)},
-          {"tool_inside_2_sigma", share(f.tool_inside, tool.size())},
-          {"joints_inside_2_sigma", share(f.joints_inside, f.joints_judged)},
+          {"tool_inside_2_sigma", share_of(f.tool_inside, tool.size())},
+          {"joints_inside_2_sigma", share_of(f.joints_inside, f.joints_judged)},
           {"joint_p95_rad", quantile(f.joints, 0.95)},
           {"pixel_p95_px", quantile(f.pixels, 0.95)},
           {"shaft_tool_p95_mm", p95_mm(f.shafts)},
@@ -49,7 +49,7 @@ nlohmann::json report(const RobotTrialFigures& f, const PredictionRobotOptions& 
           {"held", f.held.size()},
           {"pictures", f.pictures},
           {"judged", tool.size()},
-          {"invalid", share(f.invalid, f.pictures)},
+          {"invalid", share_of(f.invalid, f.pictures)},
           {"invalid_words", f.invalid_words},
           {"largest_step_over_limit", f.largest_step_share},
           {"delay_ms_told", 1e3 * f.delay_s},
@@ -59,7 +59,7 @@ nlohmann::json report(const RobotTrialFigures& f, const PredictionRobotOptions& 
           {"fastest_share", f.fastest_share}};
 }
 
-void print(const nlohmann::json& all) {
+void print_robot(const nlohmann::json& all) {
   const auto number = [&](const char* key) { return all[key].is_number() ? all[key].get<double>() : 0.0; };
   std::printf("tool, 95 %% of %.0f pictures are nearer, %.0f ms and 0 to %.0f ms more each way, %.1f %% lost\n",
               number("judged"), number("delay_ms"), number("jitter_ms"), 100 * number("loss"));
@@ -94,7 +94,7 @@ int bench_prediction_robot(const PredictionRobotOptions& options) {
     return 1;
   }
   const nlohmann::json all = report(figures, options);
-  print(all);
+  print_robot(all);
   write_numbers(options.json, all.dump(2));
   return 0;
 }

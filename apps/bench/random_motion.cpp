@@ -8,10 +8,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kRoom = 0.005;  // m more than the gate keeps clear
-constexpr double kRange = 0.7;   // of each joint's range
-constexpr double kAtOnce = 0.3;  // share of legs whose end is asked for at once
-constexpr double kPeak = 1.875;  // of minimum jerk, times the mean speed
+constexpr double kMoreClearance = 0.005;  // m more than the gate keeps clear
+constexpr double kRange = 0.7;            // of each joint's range
+constexpr double kAtOnce = 0.3;           // share of legs whose end is asked for at once
+constexpr double kPeak = 1.875;           // of minimum jerk, times the mean speed
 constexpr int kTries = 300, kSamples = 24;
 
 }  // namespace
@@ -19,7 +19,7 @@ constexpr int kTries = 300, kSamples = 24;
 RandomMotion::RandomMotion(const Rig& rig, const JointValues& start, unsigned seed)
     : rig_(rig), shape_(rig.shape()), random_(seed) {
   Surroundings wide = rig.surroundings;
-  wide.clearance += kRoom;
+  wide.clearance += kMoreClearance;
   if (shape_) shape_->surround(wide);
   leg_.from = leg_.to = start;
 }

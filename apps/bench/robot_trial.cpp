@@ -20,11 +20,11 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kSetPointBytes = 200, kReportBytes = 900;
-constexpr Duration kSpareLife = 250ms;   // of set-points, beyond the line's delay
-constexpr Duration kOpen = 200ms;        // that the switch is seen open first
-constexpr double kStillHeld = 0.5;       // s: what held the robot back may still be in what is shown
-constexpr double kVelocityOver = 0.035;  // s
-constexpr double kFocal = 525;           // px
+constexpr Duration kSpareLife = 250ms;      // of set-points, beyond the line's delay
+constexpr Duration kOpenFirst = 200ms;      // that the switch is seen open first
+constexpr double kStillHeld = 0.5;          // s: what held the robot back may still be in what is shown
+constexpr double kTipVelocityOver = 0.035;  // s
+constexpr double kFocal = 525;              // px
 
 /// The robot with its drives, and the set-points that came.
 class RobotSide {
@@ -132,7 +132,7 @@ class OperatorSide {
     if (fault != HistoryFault::out_of_order) count(fault);
     if (fault != HistoryFault::none) return;
     reports_.push_back(report);
-    if (reports_.size() > 1 && to_seconds(report.time - reports_[1].time) > kVelocityOver) reports_.pop_front();
+    if (reports_.size() > 1 && to_seconds(report.time - reports_[1].time) > kTipVelocityOver) reports_.pop_front();
   }
   void advance(RobotTime now) { future_.advance(now); }
   /// `judged`: it counts.
@@ -257,9 +257,9 @@ class OperatorSide {
 };
 
 /// Both sides and the line between them.
-class Trial {
+class RobotTrial {
  public:
-  Trial(const Rig& rig, const RobotTrialOptions& options, const RobotTrialHooks& hooks, RobotTrialFigures& figures)
+  RobotTrial(const Rig& rig, const RobotTrialOptions& options, const RobotTrialHooks& hooks, RobotTrialFigures& figures)
       : rig_(rig),
         options_(options),
         hooks_(hooks),
@@ -323,7 +323,7 @@ class Trial {
   }
   void send(RobotTime now) {
     next_sent_ = next_sent_ + seconds(1 / options_.set_points_hz);
-    const bool pressed = now - begin_ > kOpen;
+    const bool pressed = now - begin_ > kOpenFirst;
     if (!pressed) pressed_ = now;
     const double t = to_seconds(now - pressed_);
     const JointValues asked = hooks_.wish ? hooks_.wish(t, start_) : motion_->at(t);
@@ -359,7 +359,7 @@ RobotTrialFigures try_robot(const Rig& rig, const RobotTrialOptions& options, co
   if (!rig.robot)
     throw InputError(rig.name, "the rig has no robot", "give it a `robot:` section with a URDF, which moves a tool");
   RobotTrialFigures figures;
-  Trial(rig, options, hooks, figures).run();
+  RobotTrial(rig, options, hooks, figures).run();
   return figures;
 }
 

@@ -5,7 +5,7 @@
 namespace foresight {
 namespace {
 
-constexpr double kWrong = 0.020;         // metres between a texel and what its pixel shows
+constexpr double kWrongPlace = 0.020;    // metres between a texel and what its pixel shows
 constexpr double kUnit = 0.002 * 0.002;  // m^2 of a counted texel
 constexpr int kSteps = 32, kStep = 8;    // 32 values of a channel, eight apart: rounding cannot mix them up
 constexpr int kMark = 100;               // the blue channel of all coded pictures
@@ -61,7 +61,7 @@ void TexelJudge::judge(const JudgedImage& image, int node, const Eigen::Vector3d
     if (u >= 0 && v >= 0 && u < image.truth.width() && v < image.truth.height()) shown = image.truth.at(u, v);
   }
   const bool right =
-      shown && (T_world_node[static_cast<std::size_t>(shown->node)] * shown->p_node - p).norm() <= kWrong;
+      shown && (T_world_node[static_cast<std::size_t>(shown->node)] * shown->p_node - p).norm() <= kWrongPlace;
   (right ? out.right : out.wrong) += amount;
   if (!right && shown && moves_[static_cast<std::size_t>(shown->node)] && !moves_[static_cast<std::size_t>(node)])
     out.arm_stray += amount;

@@ -19,7 +19,7 @@ namespace foresight {
 namespace {
 
 using nlohmann::json;
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 /// A way of drawing, and what it took and gave.
 struct Way {
@@ -67,12 +67,12 @@ int bench_view(const ViewBenchOptions& options) {
                 {"newest", {buffers, records, run.lens_left()}, {}, {}, {}}};
 
   LatestImage newest;
-  ProgressBar bar("view", "images", images - 1, Clock::now(), ProgressBar::for_stderr());
+  ProgressBar bar("view", "images", images - 1, SteadyClock::now(), ProgressBar::for_stderr());
   for (std::size_t i = 0; i + 1 < images; ++i) {
     PosedFrame frame = load_posed_frame(run, i);
     frame.right.reset();
     core.process(frame, newest);
-    std::cerr << bar.update(i + 1, Clock::now()) << std::flush;
+    std::cerr << bar.update(i + 1, SteadyClock::now()) << std::flush;
     if (i + 1 < images / 2) continue;
     const PosedImage next = load_posed_frame(run, i + 1).left;
     const TextureLease lease = core.textures().acquire();
@@ -82,7 +82,7 @@ int bench_view(const ViewBenchOptions& options) {
         way.draw({next.T_world_camera, next.scene}, *lease, &way == &ways[2] && image ? &*image : nullptr);
     for (Way& way : ways) way.judge(next.pixels);
   }
-  std::cerr << bar.finish(images - 1, Clock::now());
+  std::cerr << bar.finish(images - 1, SteadyClock::now());
 
   const Lens& lens = run.lens_left();
   std::printf("a view of %d x %d, %zu triangles; %s\n", lens.width(), lens.height(), run.scene()->triangle_count(),

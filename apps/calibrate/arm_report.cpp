@@ -12,7 +12,7 @@
 namespace foresight {
 namespace {
 
-constexpr std::size_t kMostPictures = 24;
+constexpr std::size_t kMostArmPictures = 24;
 
 nlohmann::ordered_json numbers_of(const HandEyeView& view) {
   return {{"name", view.name},
@@ -99,7 +99,7 @@ void draw_frames(const HandEyeSummary& s, const ArmViews& views, HtmlReport& rep
 void show_pictures(const HandEyeSummary& s, const ArmViews& views, HtmlReport& report) {
   const std::vector<int> number = view_numbers(names_of(s));
   std::vector<HtmlReport::Picture> pictures;
-  for (const std::size_t v : some_of(s.views.size(), kMostPictures)) {
+  for (const std::size_t v : some_of(s.views.size(), kMostArmPictures)) {
     const HandEyeView& view = s.views[v];
     const auto file = views.files.find(view.name);
     if (file == views.files.end()) continue;

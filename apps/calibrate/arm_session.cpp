@@ -24,9 +24,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kTick = 10ms;
-constexpr Duration kSilent = 5s;       // without a pair
+constexpr Duration kPairsSilent = 5s;  // without a pair
 constexpr int kMostMissesInARow = 25;  // stations at which nothing was seen
-constexpr std::size_t kFewest = 8;
+constexpr std::size_t kFewestViews = 8;
 constexpr double kBoardBeyondFlange = 0.19;  // m, along the flange's z: beyond the mock lab's fingers
 
 void say(const std::string& line) {
@@ -80,7 +80,7 @@ class Session {
   void finish() const {
     if (!operator_.failure().empty()) throw RuntimeFailure(operator_.failure(), "see why, and start again");
     if (!failure_.empty()) throw RuntimeFailure(failure_, cure_);
-    if (views_.size() < kFewest)
+    if (views_.size() < kFewestViews)
       throw RuntimeFailure("the board was seen at " + std::to_string(views_.size()) + " stations only",
                            "start where the camera sees it whole and from the front, with room around");
     std::string table = "image";
@@ -103,7 +103,7 @@ class Session {
     }
     const auto pair = cameras_.take(Duration{0});
     if (!pair || pair->left.time < operator_.still_since()) {
-      if (now - operator_.still_since() > kSilent)
+      if (now - operator_.still_since() > kPairsSilent)
         fail("no picture came in 5 s: " + fault_text(cameras_.status()), "check the cameras of the rig");
       return;
     }

@@ -15,7 +15,7 @@ constexpr std::size_t kWrist = 3;
 constexpr int kProposals = 60;
 constexpr int kSteps = 24;           // on the way between two stations
 constexpr double kFromLimit = 0.05;  // rad or m
-constexpr double kFar = 0.8;         // rad: farther turns are no more worth than that
+constexpr double kFarTurn = 0.8;     // rad: farther turns are no more worth than that
 constexpr double kLeastReach = 0.25, kWider = 1.1, kNarrower = 0.8;
 
 }  // namespace
@@ -78,7 +78,7 @@ JointValues ArmStations::propose() {
 
 double ArmStations::novelty(const JointValues& positions) {
   const Pose flange = flange_pose(chain_, of_chain(positions), "station");
-  double least = kFar;
+  double least = kFarTurn;
   for (const Pose& taken : taken_)
     least = std::min(least, rotation_vector(taken.linear().transpose() * flange.linear()).norm());
   return least;
@@ -92,7 +92,7 @@ std::optional<JointValues> ArmStations::next() {
     proposed_ = start_;
     return start_;  // the gate says whether it can be reached, and what is in the way
   }
-  for (int i = 0; i < kProposals && most < kFar; ++i) {
+  for (int i = 0; i < kProposals && most < kFarTurn; ++i) {
     const JointValues one = propose();
     if (const double far = novelty(one); far > most && clear_way(one)) best = one, most = far;
   }

@@ -9,11 +9,6 @@
 #include "common/text.hpp"
 
 namespace foresight {
-namespace {
-
-constexpr double kWorseThanScore = 1.5;  // as of lenses: new views differ from those of the session
-
-}  // namespace
 
 int verify_arm(const ArmVerify& options) {
   const ResultFile file = read_result(options.result, "arm");

@@ -5,10 +5,14 @@
 
 namespace foresight {
 
+/// The limits of `verify`, as a multiple of a result's own score: new views differ from those of the session, a moved
+/// lens differs far more.
+constexpr double kWorseThanScore = 1.5;
+
 struct ArmVerify {
   std::filesystem::path result;
   ArmInput input;
-  std::optional<double> px;  ///< limit; nothing: 1.5 times the result's own score
+  std::optional<double> px;  ///< limit; nothing: kWorseThanScore times the result's own score
   std::optional<std::filesystem::path> json;
 };
 

@@ -12,10 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::size_t cameras(const CameraCalibration& c) {
-  return static_cast<std::size_t>(c.views.cameras);
-}
-
 Json score_json(const HeldOutScore& score, bool pair) {
   Json json{{"joint_px", score.joint_px}};
   if (pair) json["cross_px"] = score.cross_px, json["epipolar_px"] = score.epipolar_px;
@@ -63,9 +59,9 @@ void add_pair(const CameraCalibration& c, Json& json) {
 
 ResultHeader header_of(const CameraCalibration& c, const std::vector<std::string>& serials) {
   ResultHeader header;
-  const bool pair = cameras(c) == 2;
+  const bool pair = c.cameras() == 2;
   header.kind = pair ? "stereo" : "intrinsics";
-  for (std::size_t i = 0; i < std::min(serials.size(), cameras(c)); ++i)
+  for (std::size_t i = 0; i < std::min(serials.size(), c.cameras()); ++i)
     header.devices[camera_name(static_cast<int>(i), c.views.cameras)] = serials[i];
   header.score_name = pair ? "loo_joint_px" : "loo_px";
   header.score = c.held_out.joint_px;
@@ -96,7 +92,7 @@ void add_camera_output(Command& command, CameraOutput& output) {
 }
 
 nlohmann::ordered_json camera_numbers(const CameraCalibration& c) {
-  const bool pair = cameras(c) == 2;
+  const bool pair = c.cameras() == 2;
   const LensParameters& lens = c.solution.rig.cameras[0].lens;
   Json json{{"in_sample_px", c.solution.rms_px},
             {"rejected_points", c.solution.rejected.size()},

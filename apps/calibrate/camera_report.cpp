@@ -12,11 +12,7 @@
 namespace foresight {
 namespace {
 
-constexpr std::size_t kMostPictures = 28;
-
-std::size_t cameras(const CameraCalibration& c) {
-  return static_cast<std::size_t>(c.views.cameras);
-}
+constexpr std::size_t kMostCameraPictures = 28;
 
 std::string title(const std::string& name) {
   std::string text = name;
@@ -37,17 +33,17 @@ void add_scores(const CameraCalibration& c, HtmlReport& report) {
   const auto row = [&](const std::string& name, double value) { rows.push_back({name, readable(value, 4, " px")}); };
   row("in sample, RMS per corner", c.solution.rms_px);
   row("left out, joint", c.held_out.joint_px);
-  if (cameras(c) == 2) {
+  if (c.cameras() == 2) {
     row("left out, cross", c.held_out.cross_px);
     row("left out, epipolar (mean)", c.held_out.epipolar_px);
   }
   const std::string without = ", without " + counted(c.held_out.rejected_points, "outlier");
   row("left out, joint" + without, c.held_out.joint_inlier_px);
-  if (cameras(c) == 2) {
+  if (c.cameras() == 2) {
     row("left out, cross" + without, c.held_out.cross_inlier_px);
     row("left out, epipolar (mean)" + without, c.held_out.epipolar_inlier_px);
   }
-  for (std::size_t i = 0; i < cameras(c); ++i)
+  for (std::size_t i = 0; i < c.cameras(); ++i)
     row("odd and even views, " + camera_name(static_cast<int>(i), c.views.cameras), c.odd_even_px[i]);
   report.table({"what", "error"}, rows);
 }
@@ -67,8 +63,8 @@ double rms_of(const std::vector<Eigen::Vector2d>& errors) {
 
 void add_residuals(const CameraCalibration& c, const RigErrors& errors, HtmlReport& report) {
   const std::vector<int> number = numbers_of(c);
-  std::vector<HtmlReport::Series> clouds(cameras(c)), by_view(cameras(c));
-  for (std::size_t i = 0; i < cameras(c); ++i) {
+  std::vector<HtmlReport::Series> clouds(c.cameras()), by_view(c.cameras());
+  for (std::size_t i = 0; i < c.cameras(); ++i) {
     clouds[i].name = by_view[i].name = camera_name(static_cast<int>(i), c.views.cameras);
     for (std::size_t v = 0; v < errors.size(); ++v) {
       for (const Eigen::Vector2d& error : errors[v][i])
@@ -84,7 +80,7 @@ void add_residuals(const CameraCalibration& c, const RigErrors& errors, HtmlRepo
 void add_coverage(const CameraCalibration& c, HtmlReport& report) {
   report.heading("Coverage");
   report.paragraph("Every corner that was seen, in the whole image. Where none was, the lens is not known.");
-  for (std::size_t i = 0; i < cameras(c); ++i) {
+  for (std::size_t i = 0; i < c.cameras(); ++i) {
     HtmlReport::Series places{camera_name(static_cast<int>(i), c.views.cameras), {}, false};
     for (const RigView& view : c.views.views)
       for (const Corner& corner : view.corners[i]) places.points.push_back(corner.pixel);
@@ -107,7 +103,7 @@ void add_drawing(const CameraCalibration& c, HtmlReport& report) {
                   T * Eigen::Vector3d(size.x(), size.y(), 0), T * Eigen::Vector3d(0, size.y(), 0)},
                  "k5", true);
   }
-  for (std::size_t i = 0; i < cameras(c); ++i) {
+  for (std::size_t i = 0; i < c.cameras(); ++i) {
     const CameraModel& model = rig.cameras[i];
     const Pose T = i == 0 ? T_drawing_left : Pose(T_drawing_left * rig.T_left_right);
     drawing.frame(camera_name(static_cast<int>(i), c.views.cameras), T, 0.6 * depth);
@@ -121,15 +117,15 @@ void add_pictures(const CameraCalibration& c, const RigErrors& errors, const Pic
                   HtmlReport& report) {
   const std::vector<int> number = numbers_of(c);
   std::vector<HtmlReport::Picture> pictures;
-  for (const std::size_t v : some_of(errors.size(), kMostPictures / cameras(c))) {
+  for (const std::size_t v : some_of(errors.size(), kMostCameraPictures / c.cameras())) {
     const RigView& view = c.views.views[v];
     const auto found = files.find(view.name);
-    for (std::size_t i = 0; found != files.end() && i < cameras(c); ++i) {
+    for (std::size_t i = 0; found != files.end() && i < c.cameras(); ++i) {
       if (found->second[i].empty() || view.corners[i].empty()) continue;
       std::vector<ShownPoint> points;
       for (std::size_t k = 0; k < view.corners[i].size(); ++k)
         points.push_back({view.corners[i][k].pixel, view.corners[i][k].pixel + errors[v][i][k]});
-      const std::string side = cameras(c) == 2 ? ", " + camera_name(static_cast<int>(i), 2) : "";
+      const std::string side = c.cameras() == 2 ? ", " + camera_name(static_cast<int>(i), 2) : "";
       pictures.push_back({draw_view(found->second[i], points), std::to_string(number[v]) + side,
                           view.name + ": " + readable(rms_of(errors[v][i]), 2, " px")});
     }
@@ -144,7 +140,7 @@ void add_pictures(const CameraCalibration& c, const RigErrors& errors, const Pic
 void add_maps(const CameraCalibration& c, HtmlReport& report) {
   report.heading("Projection uncertainty");
   report.paragraph("How far the image of a point that stands still would move if all corners were measured again.");
-  for (std::size_t i = 0; i < cameras(c); ++i) {
+  for (std::size_t i = 0; i < c.cameras(); ++i) {
     const CameraModel& model = c.solution.rig.cameras[i];
     const std::string name = title(camera_name(static_cast<int>(i), c.views.cameras));
     report.heat_map(name + ", at infinity", image_of(c.at_infinity[i].px), model.width, model.height, "px");
@@ -157,7 +153,7 @@ void add_maps(const CameraCalibration& c, HtmlReport& report) {
 
 HtmlReport camera_report(const CameraCalibration& c, const PicturesOfViews& files) {
   const RigErrors errors = rig_errors(c.views, c.solution);
-  HtmlReport report(cameras(c) == 2 ? "Calibration of a stereo pair" : "Calibration of a camera");
+  HtmlReport report(c.cameras() == 2 ? "Calibration of a stereo pair" : "Calibration of a camera");
   std::istringstream lines(c.full());
   for (std::string line; std::getline(lines, line);) report.paragraph(line);
   add_scores(c, report);

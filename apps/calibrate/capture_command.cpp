@@ -16,7 +16,7 @@
 namespace foresight {
 namespace {
 
-struct Arguments {
+struct CaptureArguments {
   std::string board, out, pictures, rig, only, left, right, camera;
   std::vector<std::string> images;
   std::vector<double> exposures;  // s; of a still scene, in place of a board
@@ -29,7 +29,7 @@ struct Arguments {
   std::optional<std::filesystem::path> json;
 };
 
-void require_one_source(const Arguments& a) {
+void require_one_source(const CaptureArguments& a) {
   const int kinds =
       int(!a.images.empty()) + int(!a.left.empty() || !a.right.empty()) + int(!a.rig.empty()) + int(!a.camera.empty());
   if (kinds > 1 || (kinds == 0 && !a.mock))
@@ -45,11 +45,11 @@ void require_one_source(const Arguments& a) {
     throw InputError("--mock", "stands beside --camera", "give one of them; --mock goes with --rig or alone");
 }
 
-bool is_stereo(const Arguments& a) {
+bool is_stereo(const CaptureArguments& a) {
   return a.camera.empty() && a.only.empty() && a.images.size() != 1;
 }
 
-StereoConfig described(const Arguments& a) {
+StereoConfig described(const CaptureArguments& a) {
   StereoConfig config;
   if (!a.rig.empty()) {
     const Rig rig = read_rig(a.rig);
@@ -64,7 +64,7 @@ StereoConfig described(const Arguments& a) {
   return a.mock ? as_mock(config) : config;
 }
 
-CameraConfig lone_camera(const Arguments& a) {
+CameraConfig lone_camera(const CaptureArguments& a) {
   CameraConfig config;
   if (!a.camera.empty()) {
     config = camera_by_name(a.camera);
@@ -77,7 +77,7 @@ CameraConfig lone_camera(const Arguments& a) {
   return config;
 }
 
-bool wants_window(const Arguments& a) {
+bool wants_window(const CaptureArguments& a) {
   return a.window || (!a.no_window && has_display());
 }
 
@@ -92,7 +92,7 @@ struct Opened {
 };
 
 /// Mock cameras that nobody watches run in stepped time: repeatable, and as fast as the machine is.
-Opened open_source(const Arguments& a, const Board& board, Clocks& clocks) {
+Opened open_source(const CaptureArguments& a, const Board& board, Clocks& clocks) {
   if (!a.images.empty()) return {folder_source(a.images), clocks.real};
   if (!is_stereo(a))
     return {lone_source(make_camera(a.only.empty() ? "camera" : a.only, lone_camera(a), clocks.real)), clocks.real};
@@ -104,7 +104,7 @@ Opened open_source(const Arguments& a, const Board& board, Clocks& clocks) {
   return {mock_board_source(config, board, a.seed, clock), clock};
 }
 
-CaptureEnd capture(const Arguments& a, CaptureSource& source, CaptureSession& session, const Clock& clock) {
+CaptureEnd capture(const CaptureArguments& a, CaptureSource& source, CaptureSession& session, const Clock& clock) {
   CaptureLoopOptions options{a.pictures, seconds(a.seconds)};
   if (wants_window(a)) try {
       return capture_with_window(source, session, clock, options);
@@ -118,7 +118,7 @@ CaptureEnd capture(const Arguments& a, CaptureSource& source, CaptureSession& se
   return capture_with_pictures(source, session, clock, options);
 }
 
-void print_next_command(const Arguments& a, const CaptureSession& session) {
+void print_next_command(const CaptureArguments& a, const CaptureSession& session) {
   const std::string board = to_string(session.board());
   if (session.stereo())
     std::printf("foresight calibrate stereo --board %s --left %s/left --right %s/right\n", board.c_str(), a.out.c_str(),
@@ -127,7 +127,7 @@ void print_next_command(const Arguments& a, const CaptureSession& session) {
     std::printf("foresight calibrate intrinsics --board %s --images %s\n", board.c_str(), a.out.c_str());
 }
 
-int report(const Arguments& a, const CaptureSession& session, CaptureEnd end) {
+int report(const CaptureArguments& a, const CaptureSession& session, CaptureEnd end) {
   const CaptureProgress progress = session.progress();
   nlohmann::ordered_json numbers{{"board", to_string(session.board())},
                                  {"cameras", session.stereo() ? 2 : 1},
@@ -157,7 +157,7 @@ int report(const Arguments& a, const CaptureSession& session, CaptureEnd end) {
 /// Slow enough that the middles of the exposures come one after the other.
 constexpr double kMockSeriesRate = 20;
 
-std::unique_ptr<ExposedCameras> open_exposed(const Arguments& a, StereoConfig config, Clocks& clocks) {
+std::unique_ptr<ExposedCameras> open_exposed(const CaptureArguments& a, StereoConfig config, Clocks& clocks) {
   if (config.mock()) {
     for (CameraConfig& camera : config.cameras) camera.settings.rate = kMockSeriesRate;
     const MockWorld world = a.rig.empty() ? MockWorld{} : mock_world(read_rig(a.rig));
@@ -173,7 +173,7 @@ std::unique_ptr<ExposedCameras> open_exposed(const Arguments& a, StereoConfig co
   return reopened_cameras(open, clocks.real);
 }
 
-int run_exposures(const Arguments& a) {
+int run_exposures(const CaptureArguments& a) {
   if (!a.board.empty() || !a.images.empty())
     throw InputError("--exposures", std::string("stands beside ") + (a.board.empty() ? "--images" : "--board"),
                      "give one of them: pictures of a board, or of a still scene at several exposure times");
@@ -202,7 +202,7 @@ int run_exposures(const Arguments& a) {
   return 0;
 }
 
-int run(const Arguments& a) {
+int run(const CaptureArguments& a) {
   require_one_source(a);
   if (!a.exposures.empty()) return run_exposures(a);
   if (a.board.empty())
@@ -230,7 +230,7 @@ void refuse_files(const std::string& where, const std::filesystem::path& folder)
                        "name a new folder, or empty it");
 }
 
-std::vector<Output> capture_outputs(const Arguments& a, const std::filesystem::path& out) {
+std::vector<Output> capture_outputs(const CaptureArguments& a, const std::filesystem::path& out) {
   std::vector<Output> all;
   if (a.pictures.empty() && a.exposures.empty()) all = now_outputs(out.string() + "-seen");
   all.push_back({out, Output::Kind::folder, {}, refuse_files});
@@ -242,7 +242,7 @@ std::vector<Output> capture_outputs(const Arguments& a, const std::filesystem::p
 void add_capture(Command& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand(
       "capture", "Take images of a board until they are enough, or of a still scene at several exposures");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CaptureArguments>();
   command->add_option("--board", a->board, "chessboard|charuco|apriltag|circles:COLSxROWS:SIZE_M[:EXTRA[:FAMILY]]");
   command
       ->add_option("--exposures", a->exposures,

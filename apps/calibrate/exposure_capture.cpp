@@ -18,9 +18,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kUnit = 100us;
-constexpr Duration kSilent = 5s;  // without a picture
-constexpr int kSettle = 5;        // pictures after a start or a change
-constexpr std::size_t kFewest = 3;
+constexpr Duration kPicturesSilent = 5s;  // without a picture
+constexpr int kSettle = 5;                // pictures after a start or a change
+constexpr std::size_t kFewestExposures = 3;
 constexpr int kLeastRatio = 2;
 
 class ReopenedCameras final : public ExposedCameras {
@@ -32,7 +32,7 @@ class ReopenedCameras final : public ExposedCameras {
     const std::unique_ptr<CaptureSource> source = open_(exposure);
     source->start();
     int seen = 0;
-    for (RobotTime heard = clock_.now(); clock_.now() - heard <= kSilent && !stop_requested();) {
+    for (RobotTime heard = clock_.now(); clock_.now() - heard <= kPicturesSilent && !stop_requested();) {
       auto images = source->take(100ms);
       if (!images) continue;
       heard = clock_.now();
@@ -97,7 +97,7 @@ std::vector<Duration> exposure_times(const std::vector<double>& all, Duration lo
                        "give shorter ones; real cameras expose longer at a smaller --rate");
   }
   const std::set<Duration> different(out.begin(), out.end());
-  if (different.size() < kFewest || different.size() < out.size())
+  if (different.size() < kFewestExposures || different.size() < out.size())
     throw InputError("--exposures",
                      different.size() < out.size() ? "the same exposure time is given twice"
                                                    : "only " + counted(out.size(), "exposure time") + " is given",

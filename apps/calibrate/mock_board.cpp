@@ -13,11 +13,11 @@ namespace foresight {
 namespace {
 
 constexpr sim::PanTilt kHead{0.15, -0.2};
-constexpr double kRoom = 1.2;                    // metres from the cameras to what stands before the wall
-constexpr double kRim = 6;                       // px around the board
-constexpr double kStill = 0.7, kBefore = 0.1;    // seconds; so long before its instant it stands already
-constexpr int kColumns = 4, kRows = 3;           // of the image's parts
-constexpr double kShares[] = {0.45, 0.6, 0.36};  // of the image's width that the board takes
+constexpr double kRoom = 1.2;                      // metres from the cameras to what stands before the wall
+constexpr double kRim = 6;                         // px around the board
+constexpr double kStandsFor = 0.7, kBefore = 0.1;  // seconds; so long before its instant it stands already
+constexpr int kColumns = 4, kRows = 3;             // of the image's parts
+constexpr double kShares[] = {0.45, 0.6, 0.36};    // of the image's width that the board takes
 // Nearer, the two images would differ by more than this share of their width, and the outer parts of one stay empty.
 constexpr double kMostDisparity = 0.15;
 
@@ -161,7 +161,7 @@ sim::MovingPrint MockBoard::print() const {
 Pose MockBoard::T_world_board(double t) const {
   const double since = std::max(0.0, t) / kStation + kBefore;
   const auto station = static_cast<std::size_t>(since);
-  const double moved = (since - static_cast<double>(station) - kStill) / (1 - kStill);
+  const double moved = (since - static_cast<double>(station) - kStandsFor) / (1 - kStandsFor);
   const Pose& a = T_left_board_[station % kStations];
   const Pose& b = T_left_board_[(station + 1) % kStations];
   return sim::T_world_head_left(kHead) * (moved > 0 ? between(a, b, moved) : a);

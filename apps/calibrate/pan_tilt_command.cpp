@@ -25,7 +25,7 @@ struct PanTiltCommandOptions {
   CalibrateOutputs outputs;
 };
 
-nlohmann::ordered_json json_of(const PanTiltErrors& errors) {
+nlohmann::ordered_json errors_json(const PanTiltErrors& errors) {
   return {
       {"mm", errors.mm}, {"mrad", errors.mrad}, {"median_mm", errors.median_mm}, {"median_mrad", errors.median_mrad}};
 }
@@ -35,15 +35,15 @@ nlohmann::ordered_json numbers_of(const PanTiltSummary& s, const PanTiltSummary&
   out["loo_mm"] = s.loo.mm, out["loo_mrad"] = s.loo.mrad;
   out["plain_loo_mm"] = plain.loo.mm, out["plain_loo_mrad"] = plain.loo.mrad;
   out["poses"] = poses, out["outliers"] = s.outliers;
-  out["in_sample"] = json_of(s.in_sample), out["left_out"] = json_of(s.loo);
-  out["plain_in_sample"] = json_of(plain.in_sample), out["plain_left_out"] = json_of(plain.loo);
+  out["in_sample"] = errors_json(s.in_sample), out["left_out"] = errors_json(s.loo);
+  out["plain_in_sample"] = errors_json(plain.in_sample), out["plain_left_out"] = errors_json(plain.loo);
   out["noise_mm"] = s.sigma_mm, out["noise_mrad"] = s.sigma_mrad;
   out["poses_are"] = s.inverted ? "camera-world" : "world-camera";
   const PanTiltModel& m = s.model;
-  out["model"] = {{"T_world_pan", foresight::json_of(m.T_world_pan)},
+  out["model"] = {{"T_world_pan", json_of(m.T_world_pan)},
                   {"length_m", m.length_m},
                   {"twist_rad", m.twist_rad},
-                  {"T_tilt_camera", foresight::json_of(m.T_tilt_camera)},
+                  {"T_tilt_camera", json_of(m.T_tilt_camera)},
                   {"gain", m.gain},
                   {"backlash_rad", m.backlash_rad}};
   out["sigmas"] = sigmas_of(s);

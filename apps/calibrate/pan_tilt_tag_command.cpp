@@ -17,7 +17,7 @@ constexpr double kMoves = 0.02;           // rad/s: a head that moves tells the 
 constexpr std::size_t kFewestMoving = 8;  // views
 constexpr double kSettled = 1e-4;         // s
 constexpr int kRounds = 8;
-constexpr std::size_t kMostPictures = 12;
+constexpr std::size_t kMostTagPictures = 12;
 
 struct Solved {
   PanTiltTagSummary summary;
@@ -76,7 +76,7 @@ void show_pictures(const Solved& solved, const TagViews& all, HtmlReport& report
   const std::vector<PanTiltView> views = views_at(all, solved.offset_s.value_or(0));
   const std::vector<int> number = view_numbers(solved.summary.view_names);
   std::vector<HtmlReport::Picture> pictures;
-  for (const std::size_t i : some_of(solved.summary.view_names.size(), kMostPictures)) {
+  for (const std::size_t i : some_of(solved.summary.view_names.size(), kMostTagPictures)) {
     const auto view = std::find_if(views.begin(), views.end(),
                                    [&](const PanTiltView& v) { return v.name == solved.summary.view_names[i]; });
     const auto files = all.files.find(solved.summary.view_names[i]);

@@ -20,7 +20,7 @@
 namespace foresight {
 namespace {
 
-constexpr double kFar = 0.5;  // of the model's size: points farther from it belong to another model
+constexpr double kFarPoint = 0.5;  // of the model's size: points farther from it belong to another model
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 struct SceneOptions {
@@ -52,7 +52,7 @@ void require_near(const SceneModel& model, const std::vector<PointPair>& points)
   for (std::size_t i = 0; i < poses.size(); ++i)
     for (const auto& v : model.nodes()[i].mesh.vertices) box.extend(poses[i] * v.cast<double>());
   for (const PointPair& p : points)
-    if (const double d = box.exteriorDistance(p.p_model); d > kFar * model.diagonal())
+    if (const double d = box.exteriorDistance(p.p_model); d > kFarPoint * model.diagonal())
       throw InputError(
           p.name,
           "lies " + readable(d, 2) + " m outside of the model, which is " + readable(model.diagonal(), 2) + " m large",

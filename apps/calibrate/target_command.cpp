@@ -17,7 +17,7 @@
 namespace foresight {
 namespace {
 
-struct Arguments {
+struct TargetArguments {
   std::string board, out, paper = "A4", measured;
   std::optional<std::filesystem::path> json;
 };
@@ -51,7 +51,7 @@ std::string ask() {
   return line;
 }
 
-int run(const Arguments& a) {
+int run(const TargetArguments& a) {
   const Board board = parse_board(a.board);
   if (a.out.empty() && a.measured.empty())
     throw InputError("--out", "is missing", "name a .pdf file, or give --measured for a board that is printed");
@@ -85,7 +85,7 @@ int run(const Arguments& a) {
 
 void add_target(Command& calibrate, std::function<int()>& action) {
   auto* command = calibrate.add_subcommand("target", "Print a board at true scale, and check the print");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<TargetArguments>();
   command->add_option("--board", a->board, "chessboard|charuco|apriltag|circles:COLSxROWS:SIZE_M[:EXTRA[:FAMILY]]")
       ->required();
   command->add_option("--out", a->out, "PDF to write")->writes(board_form());

@@ -17,8 +17,6 @@
 namespace foresight {
 namespace {
 
-constexpr double kWorseThanScore = 1.5;  // new views differ from those of the session, a moved lens far more
-
 struct VerifyOptions {
   std::filesystem::path result;
   CornerInput input;

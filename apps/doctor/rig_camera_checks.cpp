@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kLook = 2s;
+constexpr Duration kListen = 2s;
 constexpr double kUsb2 = 35e6;        // bytes/s that a USB 2 controller carries in practice
 constexpr double kOftenEnough = 0.9;  // of the rate asked for
 
@@ -40,21 +40,21 @@ double bytes_per_second(const CameraSettings& s) {
   }
 }
 
-/// What a camera delivered within kLook.
-struct Seen {
+/// What a camera delivered within kListen.
+struct Delivered {
   std::uint64_t frames = 0, corrupt = 0, backwards = 0;
   double rate = 0;
   Duration youngest = Duration::max(), oldest = Duration::min();  ///< ages of the capture times on arrival
 };
 
-Seen look(Camera& camera, const Clock& clock) {
-  Seen out;
+Delivered look(Camera& camera, const Clock& clock) {
+  Delivered out;
   CameraFrame frame;
   camera.wait_frame(2s, frame);  // the first is often late or torn
   RobotTime last{INT64_MIN};
   const RobotTime start = clock.now();
-  for (RobotTime now = start; now - start < kLook; now = clock.now()) {
-    const CameraStatus status = camera.wait_frame(kLook - (now - start), frame);
+  for (RobotTime now = start; now - start < kListen; now = clock.now()) {
+    const CameraStatus status = camera.wait_frame(kListen - (now - start), frame);
     if (status == CameraStatus::corrupt) ++out.corrupt;
     if (status == CameraStatus::lost) break;
     if (status != CameraStatus::ok) continue;
@@ -69,8 +69,8 @@ Seen look(Camera& camera, const Clock& clock) {
   return out;
 }
 
-void judge(const Seen& seen, const CameraSettings& settings, const PairingOptions& pairing, const std::string& subject,
-           Findings& out) {
+void judge(const Delivered& seen, const CameraSettings& settings, const PairingOptions& pairing,
+           const std::string& subject, Findings& out) {
   if (seen.frames == 0) {
     out.push_back(
         {Verdict::bad, subject, "delivers no images", "unplug it and plug it in again; another cable or port"});
@@ -100,9 +100,9 @@ void check_pairs(const StereoConfig& config, Findings& out) {
     opened.cameras->start();
     opened.cameras->take(2s);
     const std::uint64_t before = opened.cameras->status().pairing.pairs;
-    clock.sleep_until(clock.now() + kLook);
+    clock.sleep_until(clock.now() + kListen);
     const StereoStatus status = opened.cameras->status();
-    const double rate = static_cast<double>(status.pairing.pairs - before) / to_seconds(kLook);
+    const double rate = static_cast<double>(status.pairing.pairs - before) / to_seconds(kListen);
     const std::string fault = fault_text(status);
     const bool often = rate >= kOftenEnough * config.camera(Side::left).settings.rate;
     const std::string what = fmt::format("{:.1f} pairs per second", rate) + (fault.empty() ? "" : "; " + fault);

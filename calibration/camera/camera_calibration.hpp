@@ -40,6 +40,7 @@ struct CameraCalibration {
   std::map<std::string, double> sigma;     ///< name with unit -> standard deviation
 
   bool usable() const { return verdict.usable(); }
+  std::size_t cameras() const { return static_cast<std::size_t>(views.cameras); }
   std::string brief() const;  ///< one line
   std::string full() const;   ///< a page
 };
