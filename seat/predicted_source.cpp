@@ -31,21 +31,27 @@ PredictedSource::PredictedSource(const Rig& rig, std::shared_ptr<const LiveScene
       heard_(clock.now()) {}
 
 void PredictedSource::take_frames() {
-  while (const auto frame = end_.frames().take(Duration{0})) {
+  std::vector<link::LineFramePtr> came;
+  while (auto frame = end_.frames().take(Duration{0})) came.push_back(std::move(*frame));
+  for (std::size_t i = 0; i < came.size(); ++i) {
     heard_ = clock_.now();
-    newest_ = *frame;
+    newest_ = came[i];
     if (listener_) listener_(*newest_);
+    if (i + kLookedAt < came.size()) {
+      ++overtaken_;
+      continue;
+    }
     const auto at = [this](RobotTime time, const link::LineJoints& joints) {
       SceneState state = link::scene_at(rig_, *scene_, time, joints);
       if (things_) things_->place(state);
       return state;
     };
-    auto posed = link::posed_frame(**frame, at, options_.margin_px);
+    auto posed = link::posed_frame(*newest_, at, options_.margin_px);
     posed_ = posed.has_value();
     if (!posed) continue;
     any_posed_ = true;
-    places_.saw(posed->left, positions_of((*frame)->joints));
-    if (things_) let_things_see(*frame, *posed);
+    places_.saw(posed->left, positions_of(newest_->joints));
+    if (things_) let_things_see(newest_, *posed);
     if (waiting_) ++overtaken_;
     waiting_ = std::move(posed);
   }

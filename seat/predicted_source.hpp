@@ -52,6 +52,7 @@ class PredictedSource final : public FrameSource {
 
  private:
   static constexpr Duration kThingsEvery = std::chrono::milliseconds(20);
+  static constexpr std::size_t kLookedAt = 2;  // frames between two pictures, of more the newest
 
   void take_frames();
   void let_things_see(const link::LineFramePtr& frame, PosedFrame& posed);

@@ -33,6 +33,13 @@ struct ScriptedDriverOptions {
   int most_losses = 100;
 };
 
+/// What became of a script so far.
+struct ScriptState {
+  bool driving = false, done = false;
+  std::string failure;  ///< "" where all is well
+  int losses = 0;       ///< that it went on after
+};
+
 /// One thread.
 class ScriptedDriver final : public SeatDriver {
  public:
@@ -42,12 +49,8 @@ class ScriptedDriver final : public SeatDriver {
   void listen_to(RobotSays says) { says_ = std::move(says); }
 
   SeatWish tick(const SeatView& view) override;
-  /// It drives now.
-  bool driving() const { return driving_; }
+  ScriptState state() const { return {driving_, done(), failure_, losses_}; }
   bool done() const { return done_ || !failure_.empty(); }
-  const std::string& failure() const { return failure_; }  ///< "" where all is well
-  int losses() const { return losses_; }                   ///< that it went on after
-  double driven_s() const { return driven_s_; }            ///< time under the switch
 
  private:
   LineRequest request(const SeatView& view);

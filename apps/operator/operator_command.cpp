@@ -29,7 +29,7 @@ struct Arguments {
   double rate_hz = 30, font_scale = 1, fidelity_db = TrustSwitchOptions{}.lowest_db;
   std::string script;
   double delay_ms = 0;
-  std::string line;
+  std::string line, coding;
   unsigned seed = 1;
   double seconds = 30;
   double pictures_hz = 5;
@@ -51,6 +51,12 @@ LineSpec line_of(const Arguments& arguments) {
   return out;
 }
 
+/// Over a line that is written down, pairs are coded as they would be on it.
+LinkCoding coding_of(const Rig& rig, const Arguments& arguments) {
+  if (arguments.coding.empty()) return arguments.line.empty() ? rig.link.coding : LinkCoding::h264;
+  return arguments.coding == "h264" ? LinkCoding::h264 : LinkCoding::jpeg;
+}
+
 nlohmann::json number(const std::optional<double>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json();
 }
@@ -63,14 +69,19 @@ nlohmann::ordered_json report_of(const SeatTrialFigures& figures, const Argument
   out["zero_delay_db"] = number(seen.zero_delay_db);
   out["moving_predicted_db"] = number(seen.moving_predicted_db);
   out["moving_delayed_db"] = number(seen.moving_delayed_db);
+  out["video_db"] = number(seen.video_db);
+  out["moving_video_db"] = number(seen.moving_video_db);
   out["moving_share"] = number(seen.moving_share);
-  out["succeeded"] = figures.succeeded;
-  out["failure"] = figures.failure;
-  out["task_s"] = figures.task_s;
+  out["succeeded"] = figures.task.succeeded;
+  out["failure"] = figures.task.failure;
+  out["task_s"] = figures.task.seconds;
   out["delay_ms"] = arguments.delay_ms;
+  if (!arguments.line.empty()) out["line"] = arguments.line;
   out["seed"] = arguments.seed;
   out["acts_after_ms"] = 1e3 * figures.delay_s;
   out["image_age_ms"] = seen.image_age_s ? nlohmann::json(1e3 * *seen.image_age_s) : nlohmann::json();
+  out["coding"] = figures.line.coding;
+  out["pairs"] = figures.line.pairs.pairs;
   out["joints_p95"] = figures.joints_p95;
   out["invalid_share"] = seen.invalid_share;
   out["losses"] = figures.losses;
@@ -89,10 +100,12 @@ void print(const SeatTrialFigures& f) {
   const SeatFidelity& seen = f.fidelity;
   fmt::print("shown {}, delayed image {}, without a line {}\n", db(seen.predicted_db), db(seen.delayed_db),
              db(seen.zero_delay_db));
+  if (seen.video_db) fmt::print("one eye as a video in the same bytes {}\n", db(seen.video_db));
   fmt::print("where something moved ({:.1f} % of what is seen): shown {}, delayed image {}\n",
              1e2 * seen.moving_share.value_or(0), db(seen.moving_predicted_db), db(seen.moving_delayed_db));
   fmt::print("joints shown within {:.2g} mrad or mm (95 %); commands act after {:.0f} ms; {:.1f} s, {}\n",
-             1e3 * f.joints_p95, 1e3 * f.delay_s, f.task_s, f.succeeded ? "succeeded" : "failed: " + f.failure);
+             1e3 * f.joints_p95, 1e3 * f.delay_s, f.task.seconds,
+             f.task.succeeded ? "succeeded" : "failed: " + f.task.failure);
   if (seen.trust.exact_share) fmt::print("{}\n", to_sentence(seen.trust));
 }
 
@@ -152,6 +165,7 @@ int run_scripted(const Rig& given, const Arguments& arguments) {
   Rig rig = given;
   // What the line takes by its file is known; the robot's side is told, as the rig's round_trip_s does.
   const LineSpec line = line_of(arguments);
+  if (!arguments.served) rig.link.coding = coding_of(rig, arguments);
   rig.link.round_trip = std::max(rig.link.round_trip, line.up.delay + line.down.delay + seconds(0.5));
   const Task task = task_of(arguments);
   HeadSway sway;
@@ -172,7 +186,7 @@ int run_scripted(const Rig& given, const Arguments& arguments) {
   write_reports(reports, figures.fidelity.record, figures.fidelity.instants,
                 "Foresight, an operator's seat at " + rig.name);
   if (arguments.outputs.report) write_numbers(arguments.outputs.report, report_of(figures, arguments).dump(2));
-  return stop_requested() ? kStopped : figures.succeeded ? 0 : 1;
+  return stop_requested() ? kStopped : figures.task.succeeded ? 0 : 1;
 }
 
 int run_live(const Rig& rig, const Arguments& arguments) {
@@ -203,6 +217,9 @@ void check(const Rig& rig, const Arguments& arguments) {
   const char* const names[] = {"--out, --report, --html", "--delay-ms", "--still-head", "--served"};
   for (std::size_t i = 0; i < std::size(names) && arguments.script.empty(); ++i)
     if (scripted_only[i]) throw InputError(names[i], "belongs to --scripted", "add --scripted, or leave it out");
+  if (!arguments.coding.empty() && (arguments.script.empty() || arguments.served))
+    throw InputError("--coding", "is of --scripted with both sides in one program",
+                     "leave it out: the rig of the robot's side says it (link: coding)");
   const bool live = arguments.script.empty() || arguments.served;
   if (arguments.layout != 0 && (!live || !arguments.mock))
     throw InputError("--layout", "is of a robot's side that runs with --mock --physics",
@@ -260,6 +277,10 @@ void add_operator_command(Command& app, std::function<int()>& action) {
   command->add_option("--delay-ms", arguments->delay_ms, "With --scripted: what the line takes each way (default 0)")
       ->check(from_to(0.0, 1e4));
   command->add_option("--line", arguments->line, "File of a line (docs/line.md) that everything passes")->reads();
+  command
+      ->add_option("--coding", arguments->coding,
+                   "With --scripted: of pairs on the line, jpeg or h264 (default: h264 with --line, else the rig's)")
+      ->check(one_of({"jpeg", "h264"}));
   command->add_option("--seed", arguments->seed, "With --scripted: another seed, another motion");
   command->add_option("--seconds", arguments->seconds, "With --scripted: of motion, at most (default 30)")
       ->check(from_to(1.0, 1e4));

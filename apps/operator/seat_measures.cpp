@@ -67,6 +67,7 @@ void SeatMeasures::measure(ShownPicture& shown, const cv::Mat& truth) {
   record.predicted = all.measure(shown.predicted);
   record.delayed = all.measure(shown.delayed);
   record.coverage = measure_coverage(shown.predicted);
+  if (!shown.video.empty()) video_.add(all.psnr_db(shown.video));
   ages_.add(record.delay_s);
   invalid_ += shown.invalid ? 1 : 0;
   ++measured_;
@@ -88,6 +89,7 @@ void SeatMeasures::measure_moved(const ShownPicture& shown, const cv::Mat& truth
   const ImageComparison there(truth, moved);
   moving_predicted_.add(there.psnr_db(shown.predicted));
   moving_delayed_.add(there.psnr_db(shown.delayed));
+  if (!shown.video.empty()) moving_video_.add(there.psnr_db(shown.video));
 }
 
 void SeatMeasures::write_pictures(const ShownPicture& shown, const cv::Mat& truth) const {
@@ -106,6 +108,8 @@ SeatFidelity SeatMeasures::finish() {
     out.delayed_db = all.delayed.psnr_db.mean;
   }
   out.zero_delay_db = zero_.mean();
+  out.video_db = video_.mean();
+  out.moving_video_db = moving_video_.mean();
   out.moving_predicted_db = moving_predicted_.mean();
   out.moving_delayed_db = moving_delayed_.mean();
   out.moving_share = moved_share_.mean();

@@ -24,6 +24,7 @@ struct ShownPicture {
   std::string stem;        ///< file name
   cv::Mat predicted;       ///< CV_8UC4, as PredictedView::read()
   cv::Mat delayed;         ///< CV_8UC3: the newest image that had come
+  cv::Mat video = {};      ///< likewise, as a video of one eye in the same bytes would have it; empty: not made
   bool invalid = false;    ///< prediction was not to be trusted
   cv::Mat doubt = {};      ///< CV_8UC1 (display/trust_pass.hpp); empty: trust is not measured
   double limit = 0;        ///< of doubt, up to which pixels were shown as exact
@@ -34,6 +35,7 @@ struct ShownPicture {
 struct SeatFidelity {
   std::optional<double> predicted_db, delayed_db, zero_delay_db;  ///< PSNR over all seen pixels
   std::optional<double> moving_predicted_db, moving_delayed_db;   ///< over those that changed over the delay
+  std::optional<double> video_db, moving_video_db;                ///< as delayed_db: ShownPicture::video
   std::optional<double> moving_share;                             ///< of the seen pixels
   double invalid_share = 0;                                       ///< of pictures without a prediction to trust
   std::optional<double> image_age_s;                              ///< of the newest image against the shown instant
@@ -64,6 +66,8 @@ class SeatMeasures {
   /// Pictures whose instant is still to come.
   bool waits() const { return !shown_.empty(); }
   std::uint64_t measured() const { return measured_; }
+  /// What saw() was told of that instant; empty where it was not, or no longer.
+  cv::Mat image_at(RobotTime time) const;
   SeatFidelity finish();
 
  private:
@@ -77,7 +81,6 @@ class SeatMeasures {
     std::size_t count_ = 0;
   };
 
-  cv::Mat image_at(RobotTime time) const;
   void measure(ShownPicture& shown, const cv::Mat& truth);
   void measure_moved(const ShownPicture& shown, const cv::Mat& truth, const cv::Mat& before, const cv::Mat& seen);
   void write_pictures(const ShownPicture& shown, const cv::Mat& truth) const;
@@ -87,7 +90,7 @@ class SeatMeasures {
   std::deque<ShownPicture> shown_;
   std::map<RobotTime, cv::Mat> truths_;
   std::uint64_t measured_ = 0, invalid_ = 0;
-  Mean zero_, moving_predicted_, moving_delayed_, moved_share_, ages_;
+  Mean zero_, moving_predicted_, moving_delayed_, video_, moving_video_, moved_share_, ages_;
   TrustMeasures trust_;
   InstantKeeper keeper_{4};
   RunRecord record_;

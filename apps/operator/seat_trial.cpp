@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "apps/operator/line_video.hpp"
 #include "apps/operator/seat_begin.hpp"
 #include "apps/operator/stepped_sides.hpp"
 #include "apps/view_outputs.hpp"
@@ -12,6 +13,7 @@
 #include "seat/predicted_source.hpp"
 #include "seat/seat.hpp"
 #include "seat/seat_options.hpp"
+#include "seat/task_watch.hpp"
 #include "seat/tool_script.hpp"
 #include "seat/view_setup.hpp"
 #include "seat/view_trust.hpp"
@@ -25,11 +27,35 @@ using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
 constexpr Duration kLongest = 1200s;
+constexpr std::size_t kFramesKept = 1000;  // that come between two pictures: none is to be missed
 
 Identity named(Identity identity) {
   identity.name = "the operator's program";
   return identity;
 }
+
+link::OperatorEndOptions end_options(const Rig& rig, const Identity& identity, const LiveScene& scene) {
+  link::OperatorEndOptions out = seat_end_options(rig, named(identity), scene);
+  out.room = kFramesKept;
+  return out;
+}
+
+/// A script, whose wishes others are told of.
+class ToldDriver final : public SeatDriver {
+ public:
+  ToldDriver(ScriptedMotion& motion, const std::function<void(OperatorTime, const SeatWish&)>& told)
+      : script_(motion), told_(told) {}
+  SeatWish tick(const SeatView& view) override {
+    const SeatWish wish = script_.tick(view);
+    if (told_) told_(view.now, wish);
+    return wish;
+  }
+  ScriptedDriver& script() { return script_; }
+
+ private:
+  ScriptedDriver script_;
+  const std::function<void(OperatorTime, const SeatWish&)>& told_;
+};
 
 /// A view, with a context of its own.
 class HeadlessView {
@@ -59,15 +85,16 @@ class Trial {
         robot_(rig, options.rig_file, clock_, options.line, options.physics, options.layout),
         here_(robot_.participant(), "operator " + rig.name),
         scene_(std::move(scene)),
-        end_(here_, seat_end_options(rig, named(robot_.identity()), *scene_), clock_),
-        driver_(motion),
+        end_(here_, end_options(rig, robot_.identity(), *scene_), clock_),
+        driver_(motion, options.asked),
         seat_(rig, end_, driver_, clock_),
         setup_(live_view_setup(*scene_, rig.name)),
         view_(setup_),
         period_(seconds(1 / mock_options(as_mock(*rig.cameras)).rate)),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
         trust_(view_.session(), setup_, clock_, trust_options()),
-        truth_(robot_.cameras().frames().subscribe(1000)),
+        truth_(robot_.cameras().frames().subscribe(kFramesKept)),
+        task_(options.most_s),
         measures_(describe_seat(rig, view_.session(), setup_), options.out) {
     if (options.zero_delay) {
       near_.emplace(setup_);
@@ -77,7 +104,11 @@ class Trial {
       things_.emplace(rig, scene_, things_about(options.rig_file, *scene_, true), false);
       source_.show_things(&*things_);
     }
-    driver_.listen_to(robot_says(end_));
+    driver_.script().listen_to(robot_says(end_));
+    source_.listen([this](const link::LineFrame& frame) {
+      const RobotTime captured = frame.image[0].captured;
+      if (const cv::Mat seen = measures_.image_at(captured); !seen.empty()) video_.add(captured, seen, frame.bytes);
+    });
     clock_.every(5ms, [this](RobotTime) {
       end_.step();
       seat_.step();
@@ -89,26 +120,19 @@ class Trial {
   SeatTrialFigures run(const std::function<bool()>& stopped, const std::function<void(const std::string&)>& say) {
     const RobotTime begin = clock_.now();
     RobotTime told = begin;
-    std::optional<RobotTime> pressed, ended;
     while (!stopped() && clock_.now() - begin < kLongest) {
       robot_.cycle();
       const RobotTime now = clock_.now();
-      if (!pressed && driver_.driving()) pressed = now;
-      if (pressed && !ended && (driver_.done() || to_seconds(now - *pressed) > options_.most_s)) ended = now;
-      if (!driver_.failure().empty()) break;
-      look(pressed && !ended);
+      task_.see(now, driver_.script().state());
+      if (task_.failed()) break;
+      look(task_.under_way());
       learn_truth();
-      if (ended && !measures_.waits()) break;
+      if (task_.ended() && !measures_.waits()) break;
       if (now - told < 10s) continue;
       told = now;
       say(fmt::format("{:.0f} s: {}", to_seconds(now - begin),
-                      pressed ? fmt::format("{} pictures", measures_.measured()) : words()));
+                      task_.began() ? fmt::format("{} pictures", measures_.measured()) : words()));
     }
-    figures_.failure = driver_.failure();
-    if (!pressed && figures_.failure.empty()) figures_.failure = "it never drove: " + words();
-    figures_.succeeded = figures_.failure.empty() && ended && (!options_.physics || in_tray());
-    if (figures_.failure.empty() && !figures_.succeeded) figures_.failure = "the thing is not in the tray";
-    if (pressed) figures_.task_s = to_seconds((ended ? *ended : clock_.now()) - *pressed);
     return finish();
   }
 
@@ -153,7 +177,7 @@ class Trial {
     trust_.judge(source_.why_invalid());
     if (!counts) return;
     const ShownInstant& instant = source_.instant();
-    measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(),
+    measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(), video_.newest().clone(),
                     source_.robot().status == StateStatus::invalid, trust_.doubt(), trust_.limit(),
                     trust_.falls_back()});
   }
@@ -164,7 +188,8 @@ class Trial {
       if (near_) truths_[time] = *frame;
       while (!truths_.empty() && truths_.begin()->first < time - SeatMeasures::kTruthKept)
         truths_.erase(truths_.begin());
-      measures_.saw(time, (*frame)->pair.left.bgr);
+      const cv::Mat& seen = (*frame)->pair.left.bgr;
+      measures_.saw(time, options_.truth ? options_.truth(seen) : seen);
     }
   }
 
@@ -184,11 +209,13 @@ class Trial {
   }
 
   SeatTrialFigures finish() {
+    figures_.task = task_.outcome(clock_.now(), words(), [this] { return !options_.physics || in_tray(); });
     figures_.fidelity = measures_.finish();
     const SeatStatus status = seat_.status();
     figures_.delay_s = status.delay.seconds;
     figures_.joints_p95 = status.outlook.error.value_or(0);
-    figures_.losses = driver_.losses();
+    figures_.line = status.line;
+    figures_.losses = driver_.script().state().losses;
     return std::move(figures_);
   }
 
@@ -199,7 +226,7 @@ class Trial {
   link::Participant here_;
   std::shared_ptr<const LiveScene> scene_;
   link::OperatorEnd end_;
-  ScriptedDriver driver_;
+  ToldDriver driver_;
   Seat seat_;
   ViewSetup setup_;
   HeadlessView view_;
@@ -209,7 +236,9 @@ class Trial {
   ViewTrust trust_;
   std::optional<ThingsOutlook> things_;
   std::shared_ptr<FrameQueue> truth_;
+  TaskWatch task_;
   SeatMeasures measures_;
+  LineVideo video_;
 
   cv::Mat delayed_;
   RobotTime newest_, fed_;

@@ -10,8 +10,10 @@
 
 #include "apps/operator/seat_measures.hpp"
 #include "link/line/line_spec.hpp"
+#include "link/operator_side/operator_end.hpp"
 #include "rig/rig.hpp"
 #include "seat/scripted_driver.hpp"
+#include "seat/task_watch.hpp"
 #include "seat/trust_switch.hpp"
 #include "session/live_scene.hpp"
 
@@ -30,15 +32,18 @@ struct SeatTrialOptions {
   TrustSwitchOptions fall_back;
   bool zero_delay = true;                    ///< also draws each view as it would be without a line
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
+  /// What the camera saw, as it is to be scored; none: as it was. The operator does not know it.
+  std::function<cv::Mat(const cv::Mat&)> truth;
+  /// Is told all that the operator asks for.
+  std::function<void(OperatorTime, const SeatWish&)> asked;
 };
 
 struct SeatTrialFigures {
-  bool succeeded = false;
-  std::string failure;    ///< why not
-  double task_s = 0;      ///< from the first press of the switch to the end
+  TaskOutcome task;
   double delay_s = 0;     ///< measured: of what is commanded
   double joints_p95 = 0;  ///< of what was shown, rad or m
   int losses = 0;
+  link::LineFigures line;
   SeatFidelity fidelity;  ///< of the pictures that were shown while the robot was driven
 };
 

@@ -22,12 +22,6 @@ constexpr Duration kTruthComesWithin = 10s;  // after the end, for what was show
 /// What becomes of the script, for another thread than the seat's.
 class WatchedDriver final : public SeatDriver {
  public:
-  struct State {
-    bool driving = false, done = false;
-    std::string failure;
-    int losses = 0;
-  };
-
   WatchedDriver(ScriptedMotion& motion, const ScriptedDriverOptions& options, link::OperatorEnd& end)
       : driver_(motion, options) {
     driver_.listen_to(robot_says(end));
@@ -36,9 +30,9 @@ class WatchedDriver final : public SeatDriver {
     const std::lock_guard lock(mutex_);
     return driver_.tick(view);
   }
-  State state() const {
+  ScriptState state() const {
     const std::lock_guard lock(mutex_);
-    return {driver_.driving(), driver_.done(), driver_.failure(), driver_.losses()};
+    return driver_.state();
   }
 
  private:
@@ -68,6 +62,7 @@ class ServedTrial final : ViewObserver {
         context_(gl::create_headless_context()),
         session_(*context_, setup_),
         source_(rig, scene_, end_, seat_, clock_, source_options(rig)),
+        task_(options.most_s),
         measures_(describe_seat(rig, session_, setup_), options.out) {
     source_.listen(
         [this](const link::LineFrame& frame) { measures_.saw(frame.image[0].captured, frame.image[0].bgr); });
@@ -98,21 +93,24 @@ class ServedTrial final : ViewObserver {
     return out;
   }
   void stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& session) override {
-    if (!step.drawn || !pressed_ || ended_) return;
+    if (!step.drawn || !task_.under_way()) return;
     const link::LineFrame& newest = *source_.newest();
-    measures_.show({step.instant.time, newest.image[0].captured, step.instant.name, session.read(), newest.image[0].bgr,
+    measures_.show({step.instant.time,
+                    newest.image[0].captured,
+                    step.instant.name,
+                    session.read(),
+                    newest.image[0].bgr,
+                    {},
                     source_.robot().status == StateStatus::invalid});
   }
 
   // False: there is nothing left to be done.
   bool advance() {
     const RobotTime now = clock_.now();
-    state_ = driver_.state();
-    if (!pressed_ && state_.driving) pressed_ = now;
-    if (!state_.failure.empty()) return false;
-    if (pressed_ && !ended_ && (state_.done || to_seconds(now - *pressed_) > options_.most_s)) ended_ = now;
+    task_.see(now, driver_.state());
+    if (task_.failed()) return false;
     tell(now);
-    return !ended_ || (measures_.waits() && now - *ended_ < kTruthComesWithin);
+    return !task_.ended() || (measures_.waits() && now - *task_.ended() < kTruthComesWithin);
   }
 
   void tell(RobotTime now) {
@@ -120,8 +118,8 @@ class ServedTrial final : ViewObserver {
     if (now - told_ < kTellEvery) return;
     told_ = now;
     const SeatStatus status = seat_.status();
-    say_(pressed_ ? fmt::format("{:.0f} s: {} pictures", to_seconds(now - *pressed_), measures_.measured())
-                  : status.control.words + (status.robot ? "; " + status.robot->doing.name : ""));
+    say_(task_.began() ? fmt::format("{:.0f} s: {} pictures", task_.seconds(now), measures_.measured())
+                       : status.control.words + (status.robot ? "; " + status.robot->doing.name : ""));
   }
 
   bool in_tray() const {
@@ -136,14 +134,11 @@ class ServedTrial final : ViewObserver {
 
   SeatTrialFigures finish(const SeatStatus& status) {
     SeatTrialFigures out;
-    out.failure = state_.failure;
-    if (!pressed_ && out.failure.empty()) out.failure = "it never drove: " + status.control.words;
-    out.succeeded = out.failure.empty() && ended_ && (!things_ || in_tray());
-    if (out.failure.empty() && !out.succeeded) out.failure = ended_ ? "the thing is not in the tray" : "stopped";
-    if (pressed_) out.task_s = to_seconds(ended_.value_or(clock_.now()) - *pressed_);
+    out.task = task_.outcome(clock_.now(), status.control.words, [this] { return !things_ || in_tray(); });
     out.delay_s = status.delay.seconds;
     out.joints_p95 = status.outlook.error.value_or(0);
-    out.losses = state_.losses;
+    out.line = status.line;
+    out.losses = driver_.state().losses;
     out.fidelity = measures_.finish();
     return out;
   }
@@ -161,9 +156,8 @@ class ServedTrial final : ViewObserver {
   ViewSession session_;
   PredictedSource source_;
   std::optional<ThingsOutlook> things_;
+  TaskWatch task_;
   SeatMeasures measures_;
-  WatchedDriver::State state_;
-  std::optional<RobotTime> pressed_, ended_;
   RobotTime told_;
 };
 

@@ -101,6 +101,8 @@ TEST(Operator, StartedWrongItSaysWhatToDo) {
   EXPECT_THAT(said({"--line", "/no/such/line.yaml"}), testing::HasSubstr("line.yaml"));
   EXPECT_THAT(said({"--scripted", "dance"}), testing::HasSubstr("tour"));
   EXPECT_THAT(said({"--head-display", "goggles"}), testing::HasSubstr("side-by-side"));
+  EXPECT_THAT(said({"--scripted", "tour", "--coding", "mpeg"}), testing::HasSubstr("h264"));
+  EXPECT_THAT(said({"--scripted", "tour", "--served", "--coding", "h264"}), testing::HasSubstr("--coding"));
   EXPECT_THAT(said({"--scripted", "tour", "--head-display", "openxr"}), testing::HasSubstr("--head-display"));
   EXPECT_THAT(said({"--scripted", "tour", "--delay-ms", "nan"}), testing::HasSubstr("--delay-ms"));
 }

@@ -110,7 +110,7 @@ TEST_F(SeatAtARig, StartsARobotDrivesItAndShowsItWhereItWillBe) {
   }
   EXPECT_GT(way, 0.2) << "rad: it hardly moved";
   EXPECT_TRUE(follows());
-  EXPECT_EQ(operator_->losses(), 0) << driver_->seen.control.words;
+  EXPECT_EQ(operator_->state().losses, 0) << driver_->seen.control.words;
   const SeatStatus status = seat_->status();
   EXPECT_NEAR(status.delay.seconds, 0.065, 0.02);
   EXPECT_NE(status.shown.status, StateStatus::invalid) << to_words(status.shown, robot_.rig().joint_names());

@@ -1,0 +1,79 @@
+// When a task that a program does began, when it ended, and how.
+#include "seat/task_watch.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace foresight::task_watch_test {
+namespace {
+
+const ScriptState kWaits{}, kDrives{.driving = true}, kDone{.done = true};
+
+RobotTime at(double t) {
+  return RobotTime{} + seconds(t);
+}
+bool yes() {
+  return true;
+}
+bool no() {
+  return false;
+}
+
+TEST(TaskWatch, LastsFromTheFirstPressToTheEndOfTheScript) {
+  TaskWatch task(60);
+  task.see(at(1), kWaits);
+  EXPECT_FALSE(task.began());
+  task.see(at(2), kDrives);
+  EXPECT_TRUE(task.under_way());
+  task.see(at(5), kWaits);  // lost: it lets go, and will press again
+  EXPECT_TRUE(task.under_way());
+  task.see(at(6), kDrives);
+  task.see(at(9), kDone);
+  EXPECT_FALSE(task.under_way());
+  ASSERT_TRUE(task.ended());
+  EXPECT_EQ(*task.ended(), at(9));
+  task.see(at(12), kDone);
+  const TaskOutcome out = task.outcome(at(12), "", yes);
+  EXPECT_TRUE(out.succeeded);
+  EXPECT_EQ(out.failure, "");
+  EXPECT_DOUBLE_EQ(out.seconds, 7);
+}
+
+TEST(TaskWatch, EndsWhereTheScriptTakesTooLong) {
+  TaskWatch task(10);
+  task.see(at(0), kDrives);
+  task.see(at(10), kDrives);
+  EXPECT_TRUE(task.under_way());
+  task.see(at(10.1), kDrives);
+  EXPECT_TRUE(task.ended());
+  EXPECT_FALSE(task.outcome(at(11), "", no).succeeded);
+  EXPECT_THAT(task.outcome(at(11), "", no).failure, testing::HasSubstr("tray"));
+}
+
+TEST(TaskWatch, SaysWhyItDidNotSucceedAndAsksForNothingElse) {
+  const auto never = [] {
+    ADD_FAILURE() << "asked where things are, of a task that did not end";
+    return true;
+  };
+  TaskWatch idle(10);
+  idle.see(at(0), kWaits);
+  EXPECT_THAT(idle.outcome(at(1), "no robot heard of", never).failure, testing::HasSubstr("no robot heard of"));
+
+  TaskWatch stopped(10);
+  stopped.see(at(0), kDrives);
+  const TaskOutcome half = stopped.outcome(at(3), "", never);
+  EXPECT_FALSE(half.succeeded);
+  EXPECT_THAT(half.failure, testing::HasSubstr("stopped"));
+  EXPECT_DOUBLE_EQ(half.seconds, 3);
+
+  TaskWatch failed(10);
+  failed.see(at(0), kDrives);
+  failed.see(at(2), {.done = true, .failure = "lost too often"});
+  EXPECT_TRUE(failed.failed());
+  EXPECT_FALSE(failed.under_way());
+  EXPECT_FALSE(failed.ended());
+  EXPECT_EQ(failed.outcome(at(2), "", never).failure, "lost too often");
+}
+
+}  // namespace
+}  // namespace foresight::task_watch_test

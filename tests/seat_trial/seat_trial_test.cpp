@@ -1,0 +1,81 @@
+// A program at a seat, both sides in stepped time in this process: what it does depends on what the line brings alone.
+#include "apps/operator/seat_trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include "seat/tool_script.hpp"
+#include "tests/support/folders.hpp"
+
+namespace foresight::seat_trial_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// All that was asked for at one tick.
+struct Asked {
+  OperatorTime time;
+  SeatWish wish;
+
+  bool operator==(const Asked& other) const {
+    return time == other.time && wish.deadman == other.wish.deadman && wish.position == other.wish.position &&
+           wish.request == other.wish.request && wish.control == other.wish.control &&
+           wish.hand_over == other.wish.hand_over;
+  }
+};
+
+struct Outcome {
+  SeatTrialFigures figures;
+  std::vector<Asked> asked;
+};
+
+/// A pick that is cut off after `seconds`, with few images.
+Outcome try_pick(double seconds, LinkCoding coding, std::function<cv::Mat(const cv::Mat&)> truth) {
+  SeatTrialOptions options;
+  options.rig_file = source_folder() / "configs" / "minerva.yaml";
+  Rig rig = read_rig(options.rig_file);
+  for (CameraConfig& camera : rig.cameras->cameras) camera.settings.rate = 5;
+  rig.link.coding = coding;
+  options.line.up.delay = options.line.down.delay = 200ms;
+  options.line.up.bytes_per_s = 100'000;
+  options.physics = 1;
+  options.thing = "brick_red";
+  options.tray = "tray";
+  options.most_s = seconds;
+  options.pictures_hz = 2;
+  options.zero_delay = false;
+  options.truth = std::move(truth);
+  Outcome out;
+  options.asked = [&](OperatorTime time, const SeatWish& wish) { out.asked.push_back({time, wish}); };
+  const auto scene = std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt, true, 0));
+  ToolScript script(rig, pick_and_place(rig, *scene, options.thing, options.tray), {});
+  out.figures = try_seat(
+      rig, scene, options, script, [] { return false; }, [](const std::string&) {});
+  return out;
+}
+
+TEST(SeatTrial, WhatTheProgramAsksForIsTheSameWhateverItIsScoredBy) {
+  const Outcome seen = try_pick(2.5, LinkCoding::h264, {});
+  cv::RNG random(7);
+  const Outcome noise = try_pick(2.5, LinkCoding::h264, [&](const cv::Mat& image) {
+    cv::Mat out(image.size(), image.type());
+    random.fill(out, cv::RNG::UNIFORM, 0, 256);
+    return out;
+  });
+  ASSERT_GT(seen.asked.size(), 1000u);
+  ASSERT_EQ(seen.asked.size(), noise.asked.size());
+  for (std::size_t i = 0; i < seen.asked.size(); ++i) ASSERT_TRUE(seen.asked[i] == noise.asked[i]) << "tick " << i;
+  const SeatFidelity& figures = seen.figures.fidelity;
+  ASSERT_TRUE(figures.predicted_db && figures.video_db && noise.figures.fidelity.predicted_db)
+      << seen.figures.task.failure << "; " << figures.record.frames.size() << " pictures, "
+      << seen.figures.line.pairs.pairs << " pairs " << seen.figures.line.coding << ", "
+      << seen.figures.line.pairs.refusal << ", " << seen.figures.task.seconds << " s";
+  // Else nothing was swapped, or nothing was done.
+  EXPECT_GT(seen.figures.fidelity.predicted_db.value(), 20);
+  EXPECT_LT(noise.figures.fidelity.predicted_db.value(), 12);
+  EXPECT_TRUE(seen.asked.back().wish.position != seen.asked.front().wish.position);
+  EXPECT_EQ(seen.figures.line.coding, "h264") << "pairs are to pass the coder, as they would on a line";
+  EXPECT_GT(seen.figures.fidelity.video_db.value(), 10);
+}
+
+}  // namespace
+}  // namespace foresight::seat_trial_test
