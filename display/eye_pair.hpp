@@ -13,6 +13,10 @@ class EyePair {
 
   /// As ViewSession::draw, the eyes to the left and right of the camera.
   bool draw(const Pose& T_world_camera, const SceneState& state);
+  /// PredictedView::set_paint, of both.
+  void set_paint(ViewPaint paint) {
+    for (PredictedView& eye : eyes_) eye.set_paint(paint);
+  }
   /// 0: left.
   const gl::Texture& picture(std::size_t eye) const { return eyes_[eye].picture(); }
   const gl::FaceImages& faces(std::size_t eye) const { return eyes_[eye].faces(); }

@@ -53,6 +53,7 @@ Duration FramePacing::expected_cost() const {
 void FramePacing::drawn(RobotTime now) {
   drawn_ = now;
   const double cost = std::max(0.0, ns(now - wake_));
+  last_cost_ = rounded(cost);
   if (costs_.size() < kCosts)
     costs_.push_back(cost);
   else
@@ -76,7 +77,10 @@ Duration FramePacing::off_grid(RobotTime at) const {
 // The first instant that lies an interval after the last target and leaves time for the drawing, and for what waits.
 void FramePacing::plan(RobotTime now, bool work_waits) {
   const Duration cost = expected_cost() + options_.reserve;
-  const Duration rest = work_waits ? rounded(ns(cost) * options_.rest_share / (1 - options_.rest_share)) : Duration{0};
+  // In proportion to what this drawing took, but a stall's is none.
+  const Duration drawing = std::min(last_cost_ + options_.reserve, cost);
+  const Duration rest =
+      work_waits ? rounded(ns(drawing) * options_.rest_share / (1 - options_.rest_share)) : Duration{0};
   if (phase_ == PacingPhase::locked) {
     const double steps = std::max(1.0, std::round(ns(interval_) / refresh_ns_));
     const RobotTime wanted = target_ + rounded(steps * refresh_ns_);

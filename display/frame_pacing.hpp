@@ -74,6 +74,7 @@ class FramePacing {
   Duration interval_;
   std::vector<double> costs_;  // ns, the last ones, in a ring
   std::size_t next_cost_ = 0;
+  Duration last_cost_{0};
   RobotTime wake_, target_, drawn_;
   std::vector<Swap> swaps_;  // of this phase
   PacingPhase phase_ = PacingPhase::own_clock;

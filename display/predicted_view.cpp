@@ -3,24 +3,10 @@
 #include <array>
 
 #include "display/lens_rays.hpp"
-#include "texture_gpu/shaders.hpp"
-
-namespace foresight::gl {
-const ShaderSources& display_shaders();
-}  // namespace foresight::gl
+#include "display/shaders.hpp"
 
 namespace foresight {
 namespace {
-
-/// The display's own shaders and those of the texture lookup.
-const gl::ShaderSources& sources() {
-  static const gl::ShaderSources all = [] {
-    gl::ShaderSources s = gl::display_shaders();
-    s.insert(gl::texture_gpu_shaders().begin(), gl::texture_gpu_shaders().end());
-    return s;
-  }();
-  return all;
-}
 
 // As in view.comp.
 constexpr unsigned kGroup = 64;  // invocations of a group over a list
@@ -39,7 +25,7 @@ gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixel
   defines.push_back("CASES " + std::to_string(static_cast<int>(cases)));
   defines.push_back("LISTED " + std::to_string(pixels.listed));
   defines.push_back("BLENDED " + std::to_string(pixels.blended));
-  return gl::Program::compute(sources(), "view.comp", defines);
+  return gl::Program::compute(display_and_lookup_shaders(), "view.comp", defines);
 }
 
 }  // namespace
@@ -66,6 +52,18 @@ PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
   if (programs_ == ViewPrograms::two) listed_ = view_program({&lens, 1}, Cases::every, {.listed = true});
 }
 
+void PredictedView::set_lens(const Lens& lens) {
+  lens_ = lens;
+  faces_ = gl::FaceImages(gl::faces_for(lens, 2), true);
+  rays_ = make_lens_rays(lens);
+  picture_ = gl::Texture(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view");
+}
+
+void PredictedView::set_paint(ViewPaint paint) {
+  paint_ = paint;
+  if (paint != ViewPaint::colours && !painter_) painter_ = std::make_unique<PaintPass>();
+}
+
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
   start(T_world_camera, state, textures);
   all_.set("gain", textures.display_gain);
@@ -76,7 +74,7 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
     dispatch_all(all_);
     dispatch(rest_, listed_, textures.display_gain);
   }
-  finish();
+  finish(textures);
 }
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
@@ -97,7 +95,7 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   p.usual.use();
   p.unseen.dispatch();
   dispatch(rest_, p.rest, newest.gain);
-  finish();
+  finish(textures);
 }
 
 void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
@@ -138,7 +136,8 @@ void PredictedView::dispatch(const WorkList& list, const gl::Program& program, f
   list.dispatch();
 }
 
-void PredictedView::finish() const {
+void PredictedView::finish(const PublishedTextures& textures) const {
+  if (paint_ != ViewPaint::colours) (*painter_)(paint_, picture_, textures);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "display/paint_pass.hpp"
 #include "display/surface_records.hpp"
 #include "gl/camera_block.hpp"
 #include "gl/program.hpp"
@@ -30,6 +31,12 @@ class PredictedView {
  public:
   PredictedView(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_ptr<const SurfaceRecords> surface,
                 const Lens& lens, ViewPrograms programs = ViewPrograms::two);
+
+  /// From now on the view is as large as this lens says, and seen through it; of the same kind as the one before.
+  void set_lens(const Lens& lens);
+  const Lens& lens() const { return lens_; }
+  /// From now on it is painted so.
+  void set_paint(ViewPaint paint);
 
   /// Draws into picture(). `textures` must stay leased until the GPU has finished.
   void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
@@ -57,7 +64,7 @@ class PredictedView {
     SeenInputs image;
   };
   void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
-  void finish() const;
+  void finish(const PublishedTextures& textures) const;
   void dispatch_all(const gl::Program& program) const;
   void start(WorkList& list) const;
   static void dispatch(const WorkList& list, const gl::Program& program, float gain);
@@ -74,6 +81,8 @@ class PredictedView {
   gl::BufferTexture node_poses_;  // T_node_camera: three rows a node
   gl::Texture rays_;              // RGB32F directions, only for lenses with distortion
   gl::Texture picture_;
+  ViewPaint paint_ = ViewPaint::colours;
+  std::unique_ptr<PaintPass> painter_;  // once it is needed
 };
 
 }  // namespace foresight

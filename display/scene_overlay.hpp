@@ -17,6 +17,9 @@ class SceneOverlay {
   /// For views through `lens`, whose model is rasterised into faces of `faces_for(lens, 2)` (PredictedView).
   explicit SceneOverlay(const Lens& lens);
 
+  /// From now on for views through this one.
+  void set_lens(const Lens& lens) { lens_ = lens; }
+
   /// Over what is in `target`, which a view from `T_world_camera` fills. `faces`: of that view, with its depth. Each
   /// stroke has a dark rim, so that it is seen on any ground. Nothing outside of the target is touched.
   void draw(const OverlayLines& lines, const Pose& T_world_camera, const gl::FaceImages& faces,

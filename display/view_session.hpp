@@ -22,9 +22,9 @@ struct ViewSetup {
   Lens left;                                      ///< the view is drawn through it, too
   std::optional<Lens> right;
   TextureOptions textures;
-  std::optional<thesis::Options> thesis;  ///< that pipeline replaces the texture core
-  bool newest_image = true;               ///< views look the newest image up directly; not with `thesis`
-  std::shared_ptr<FrameGate> gate;        ///< TextureThread::Setup::gate; not with `thesis`
+  std::optional<thesis::Options> thesis;      ///< that pipeline replaces the texture core
+  bool newest_image = true;                   ///< views look the newest image up directly; not with `thesis`
+  std::shared_ptr<FrameGate> gate = nullptr;  ///< TextureThread::Setup::gate; not with `thesis`
 };
 
 /// The model's surface, cut into charts of a size that suits such views.

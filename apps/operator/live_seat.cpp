@@ -24,7 +24,7 @@ namespace {
 constexpr Duration kLongestWait = std::chrono::milliseconds(20);
 constexpr double kUnpaced = 1000;  // Hz, of the source: FramePacer decides
 constexpr int kWindowWidth = 1280, kWindowHeight = 800;
-constexpr double kEyesApart = 0.063;   // m, of most people
+constexpr double kDrawingShare = 0.6;  // of the time between pictures
 constexpr std::size_t kUnderWay = 16;  // instants of what the robot will do as it was sent already
 
 // A head display's runtime that takes contexts of GLX only gets one.
@@ -72,7 +72,7 @@ class LiveSeat {
         trust_(session_, setup_, clock_, options.trust),
         hand_(rig, driver_.options()),
         pacer_(clock_, {.rate_hz = options.rate_hz}, gate_),
-        shown_(*window_, session_, setup_.left, seat_, source_, window_options()) {
+        shown_(*window_, seat_, source_, window_options()) {
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
     source_.show_things(&things_);
@@ -120,7 +120,10 @@ class LiveSeat {
                                        {"E, H, X, Z", "enable, home, reset, configure drives anew"},
                                        {"G", "give control back, take it again"},
                                        {"T", "hand control over to who asks"},
-                                       {"Tab", "what is shown"},
+                                       {"Tab", "prediction, newest image, both, split (drag its border)"},
+                                       {"F2, F5", "for two eyes: which way; swap the eyes"},
+                                       {"F3", "from beside: the mouse looks around"},
+                                       {"F4", "wireframe, age, confidence"},
                                        {"B", "what is not exact, and was wrong"},
                                        {"F1", "these keys"},
                                        {"P", "screenshot"},
@@ -133,7 +136,10 @@ class LiveSeat {
         for (SeatLine& line : head_->lines()) lines.push_back(std::move(line));
       return lines;
     };
-    if (options_.head_display == HeadDisplayKind::side_by_side) out.eyes_apart = kEyesApart;
+    out.views.left = setup_.left;
+    out.views.right = setup_.right;
+    out.views.most_drawing_ms = kDrawingShare * 1e3 / options_.rate_hz;
+    if (options_.head_display == HeadDisplayKind::side_by_side) out.views.mode = ViewMode::two_eyes;
     out.hand = [this] { return hand_.draw(driver_.sight(), seat_.under_way(kUnderWay)); };
     return out;
   }
@@ -155,16 +161,26 @@ class LiveSeat {
   void take(const gl::WindowInput& input) {
     if (window_->take_space()) driver_.ask(LineRequest::emergency_stop);
     for (const char key : input.keys) press(key);
-    for (const auto& event : input.key_events) {
-      constexpr int kF1 = 290, kTab = 258;  // GLFW's
-      if (event.down && event.code == kF1) shown_.toggle_help();
-      if (event.down && event.code == kTab) shown_.next_picture();
-    }
+    for (const auto& event : input.key_events)
+      if (event.down) press_code(event.code);
     const ViewPlace place = source_.place();
-    driver_.look_from(place.T_world_camera);
+    driver_.look_from(shown_.views().looks_from(place.T_world_camera));
     driver_.scene_stands(place.scene.T_world_node);
     heed_head();
     driver_.take(input, {clock_.now().ns});
+  }
+  void press_code(int code) {
+    constexpr int kTab = 258, kF1 = 290, kF2 = 291, kF3 = 292, kF4 = 293, kF5 = 294;  // GLFW's
+    SeatViews& views = shown_.views();
+    switch (code) {
+      case kTab: return views.next_main();
+      case kF1: return shown_.toggle_help();
+      case kF2: return views.next_stereo();
+      case kF3: return views.toggle_observer();
+      case kF4: return views.next_paint();
+      case kF5: return views.swap_eyes();
+      default: return;
+    }
   }
   void press(char key) {
     switch (key) {

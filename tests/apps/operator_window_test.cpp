@@ -181,6 +181,11 @@ TEST_F(OperatorWindow, ConnectsDrivesLosesTheRobotAndRecovers) {
   ASSERT_TRUE(screen_->input("search --sync --name Foresight windowfocus"));
   ASSERT_TRUE(gets_ready());  // consent: enabling, homing
   EXPECT_TRUE(shows("as it will be", false));
+  for (const auto& [key, words] :
+       {std::pair{"F3", "from beside"}, {"F2", "left eye | right eye"}, {"Tab", "as it will be"}}) {
+    ASSERT_TRUE(press(key));
+    EXPECT_TRUE(shows(words, false));
+  }
   const cv::Mat still = look();
 
   // Without the switch a key moves nothing; with it the camera turns, and what is shown with it at once.

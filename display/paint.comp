@@ -1,0 +1,59 @@
+// Paints a drawn view by what is known of its textures, in place. Classes differ in hatching, not in colour alone.
+#include "camera.glsl"
+#include "chart_record.glsl"
+#include "atlas.glsl"
+#define BRIGHTEST 65504.0
+#include "lookup.glsl"
+#include "surface_at.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
+layout(binding = 0, rgba8) uniform image2D picture;
+uniform int paint;  // as ViewPaint
+
+const vec3 kClasses[4] = vec3[](vec3(0.35, 0.75, 0.95), vec3(0.95, 0.85, 0.35), vec3(0.90, 0.40, 0.20), vec3(0.75, 0.35, 0.75));
+
+// Plain, thin lines, dense lines, checked.
+bool is_hatched(ivec2 pixel, int level) {
+  if (level == 1) return ((pixel.x + pixel.y) % 12) == 0;
+  if (level == 2) return ((pixel.x + pixel.y) % 5) < 2;
+  return level == 3 && (((pixel.x >> 3) ^ (pixel.y >> 3)) & 1) == 1;
+}
+
+// 0 .. 3
+int age_class(SurfaceAt at) {
+  if (seen_colour(at.chart, at.texel, 0).a < kSeen) return 3;  // of a page that was seen in part
+  ivec2 page = ivec2(floor(at.texel)) >> 4;
+  page = clamp(page, ivec2(0), at.chart.pages - 1);
+  float age = texelFetch(page_ages, at.chart.first_page + page.y * at.chart.pages.x + page.x).r;
+  return age < 0.0 ? 3 : age < 1.0 ? 0 : age < 5.0 ? 1 : 2;
+}
+
+int confidence_class(SurfaceAt at) {
+  vec4 seen = seen_colour(at.chart, at.texel, 0);
+  if (seen.a < kSeen) return 3;
+  float image_px_per_texel = exp2((seen.a * 255.0 - 2.0) / 253.0 * 8.0 - 8.0);
+  float share = image_px_per_texel / max(at.pixels_per_texel, 1e-6);  // image pixels for a pixel of the view
+  return share > 0.7 ? 0 : share > 0.25 ? 1 : 2;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
+  vec3 ray;
+  if (!ray_through(pixel, ray)) return;
+  uint surface = surface_of(ray);
+  vec4 shown = imageLoad(picture, pixel);
+  float grey = dot(shown.rgb, vec3(0.299, 0.587, 0.114));
+  if (paint == 1) {
+    vec3 right, below;
+    bool border = ray_through(pixel + ivec2(1, 0), right) && surface_of(right) != surface;
+    border = border || (ray_through(pixel + ivec2(0, 1), below) && surface_of(below) != surface);
+    imageStore(picture, pixel, vec4(border ? vec3(0.55, 1.0, 0.65) : vec3(0.3 * grey), shown.a));
+    return;
+  }
+  if (surface == 0u) return;
+  SurfaceAt at = surface_at(ray, surface);
+  int level = at.chart.density.x <= 0.0 ? 3 : paint == 2 ? age_class(at) : confidence_class(at);
+  float light = (0.35 + 0.65 * grey) * (is_hatched(pixel, level) ? 0.45 : 1.0);
+  imageStore(picture, pixel, vec4(light * kClasses[level], shown.a));
+}

@@ -1,0 +1,18 @@
+#include "display/paint_pass.hpp"
+
+#include "display/shaders.hpp"
+
+namespace foresight {
+
+PaintPass::PaintPass() : program_(gl::Program::compute(display_and_lookup_shaders(), "paint.comp")) {}
+
+void PaintPass::operator()(ViewPaint paint, const gl::Texture& picture, const PublishedTextures& textures) const {
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // the view was stored by the pass before
+  program_.use();
+  program_.set("paint", static_cast<int>(paint));
+  glBindTextureUnit(10, textures.ages.texture());
+  glBindImageTexture(0, picture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
+  glDispatchCompute(gl::groups(picture.width(), 8), gl::groups(picture.height(), 8), 1);
+}
+
+}  // namespace foresight

@@ -1,0 +1,22 @@
+// A drawn view painted by what is known of its textures: wireframe, age, confidence.
+#pragma once
+
+#include "display/view_modes.hpp"
+#include "gl/program.hpp"
+#include "texture_gpu/published_textures.hpp"
+
+namespace foresight {
+
+/// Belongs to one context.
+class PaintPass {
+ public:
+  PaintPass();
+  /// Over `picture`, the view that PredictedView has just drawn: what it bound for that is bound still. Not for
+  /// ViewPaint::colours.
+  void operator()(ViewPaint paint, const gl::Texture& picture, const PublishedTextures& textures) const;
+
+ private:
+  gl::Program program_;
+};
+
+}  // namespace foresight

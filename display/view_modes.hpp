@@ -1,0 +1,77 @@
+// What fills an operator's window, and how it is painted. Plain descriptions, without OpenGL.
+#pragma once
+
+#include <optional>
+
+#include "common/lens.hpp"
+#include "display/view_target.hpp"
+
+namespace foresight {
+
+enum class ViewMode : std::uint8_t {
+  predicted,         ///< the scene as it will be
+  newest,            ///< the newest image
+  both,              ///< newest image | as it will be
+  split,             ///< one picture, cut by a border that the mouse drags: left of it the newest image
+  two_eyes,          ///< left eye | right eye
+  interlaced,        ///< rows of the screen in turn, for screens whose rows are polarised alike
+  anaglyph,          ///< red | cyan spectacles, grey: without colours that fight between the eyes
+  anaglyph_colours,  ///< the same, half coloured
+  observer,          ///< from beside the robot, the operator's view as a spotlight
+};
+inline constexpr int kMainModes = 4;  ///< the first ones
+/// In words, for the window.
+const char* to_string(ViewMode mode);
+constexpr bool has_two_eyes(ViewMode mode) {
+  return mode >= ViewMode::two_eyes && mode <= ViewMode::anaglyph_colours;
+}
+
+/// What the pixels of a view tell. Each class of a false colour has a hatching of its own, too.
+enum class ViewPaint : std::uint8_t {
+  colours,     ///< the scene's own
+  wireframe,   ///< borders of triangles
+  age,         ///< for how long no image has shown what is there
+  confidence,  ///< how finely images have shown it, against how finely it is shown
+};
+inline constexpr int kViewPaints = 4;
+/// In words, with what the colours mean; "" for colours.
+const char* to_string(ViewPaint paint);
+
+/// The camera's lens with another number of pixels, the largest that fits into width x height px in the camera's
+/// proportions. Both at least 1.
+Lens fitted_lens(const Lens& camera, int width, int height);
+
+/// Is the operator's view worth drawing a second time, with more pixels than the camera has? Those of its place in the
+/// window, as far as all can be drawn in time: the camera's own view, which images are compared with, is drawn anyhow.
+class ViewSize {
+ public:
+  /// Drawings may take `most_ms` in all.
+  ViewSize(const Lens& camera, double most_ms) : camera_(camera), most_ms_(most_ms) {}
+
+  /// The place has width x height px, and a picture takes `drawing_ms` as it is drawn now; 0: not known. Changes its
+  /// mind only after a place has stayed the same for some calls, and where it is worth it.
+  void choose(int width, int height, double drawing_ms);
+  /// Nothing: the camera's own view is as good, or all that can be drawn.
+  const std::optional<Lens>& lens() const { return lens_; }
+
+ private:
+  Lens camera_;
+  double most_ms_;
+  std::optional<Lens> lens_;
+  int width_ = 0, height_ = 0, calls_ = 0;  // of the place
+  double cost_ms_ = 0;                      // of a picture, without its noise
+};
+
+/// Where the border of a split picture lies, as a share of the width; the mouse takes it where it is pressed near it.
+class SplitBorder {
+ public:
+  /// `x`: of the pointer from the picture's left side, px. True: the border is held.
+  bool drag(double x, double width, bool pressed, bool held);
+  double at() const { return at_; }
+
+ private:
+  double at_ = 0.5;
+  bool dragging_ = false;
+};
+
+}  // namespace foresight

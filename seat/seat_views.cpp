@@ -1,0 +1,296 @@
+#include "seat/seat_views.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+constexpr int kGap = 4;             // px around pictures
+constexpr int kInset = 4;           // share of the width that the newest image takes in its corner
+constexpr double kLookedAt = 0.8;   // m before the operator's camera: what an observer looks at first
+constexpr double kBesideRad = 0.7;  // to his right
+constexpr double kAboveRad = 0.5;
+constexpr double kObserverDistance = 1.9;  // m
+constexpr double kObserverPixels = 1.3;    // of the camera's, at most: who looks on needs no more
+
+ViewTarget corner_of(const ViewTarget& place, int width, int height) {
+  ViewTarget out = place;
+  out.width = std::max(1, place.width / kInset);
+  out.height = std::max(1, out.width * height / std::max(1, width));
+  out.x = place.x + place.width - out.width - kGap;
+  out.y = place.y + place.height - out.height - kGap;  // windows begin at the bottom
+  return out;
+}
+
+Eye beside(const Pose& T_world_operator) {
+  const Eigen::Vector3d forward = T_world_operator.linear().col(2);
+  Eye out;
+  out.target = T_world_operator * Eigen::Vector3d(0, 0, kLookedAt);
+  out.azimuth = std::atan2(-forward.y(), -forward.x()) + kBesideRad;
+  out.elevation = kAboveRad;
+  out.distance = kObserverDistance;
+  return out;
+}
+
+/// `view`, made if there is none, through `lens`.
+PredictedView& view_through(std::optional<PredictedView>& view, const ViewSession& session, const Lens& lens) {
+  if (!view)
+    view.emplace(session.make_view(lens));
+  else if (view->lens().width() != lens.width() || view->lens().height() != lens.height())
+    view->set_lens(lens);
+  return *view;
+}
+
+}  // namespace
+
+SeatViews::SeatViews(const SeatViewsSetup& setup)
+    : setup_(setup),
+      mode_(setup.mode),
+      size_(setup.left, setup.most_drawing_ms),
+      overlay_(setup.left),
+      overlay_beside_(setup.left),
+      newest_{UploadedPicture("newest left image"), UploadedPicture("newest right image")},
+      on_panel_{UploadedPicture("left panel"), UploadedPicture("right panel")} {}
+
+void SeatViews::next_main() {
+  const int mode = static_cast<int>(mode_);
+  mode_ = static_cast<ViewMode>(mode < kMainModes ? (mode + 1) % kMainModes : 0);
+}
+
+void SeatViews::next_stereo() {
+  if (!has_two_eyes(mode_))
+    mode_ = ViewMode::two_eyes;
+  else if (mode_ == ViewMode::anaglyph_colours)
+    mode_ = ViewMode::predicted;
+  else
+    mode_ = static_cast<ViewMode>(static_cast<int>(mode_) + 1);
+}
+
+void SeatViews::toggle_observer() {
+  mode_ = mode_ == ViewMode::observer ? ViewMode::predicted : ViewMode::observer;
+}
+
+void SeatViews::next_paint() {
+  paint_ = static_cast<ViewPaint>((static_cast<int>(paint_) + 1) % kViewPaints);
+}
+
+// Without trust, what shows both still does, side by side and told apart.
+ViewMode SeatViews::mode_now(bool trusted) const {
+  const bool has_newest = !newest_[0].empty();
+  if (!trusted && (mode_ == ViewMode::predicted || mode_ == ViewMode::observer)) return ViewMode::newest;
+  if (mode_ == ViewMode::observer && !has_beside_) return ViewMode::predicted;
+  if (mode_ == ViewMode::split && !has_newest) return ViewMode::predicted;
+  if (has_two_eyes(mode_) && trusted && !has_eyes_) return ViewMode::predicted;
+  return mode_;
+}
+
+std::string SeatViews::words(bool trusted) const {
+  std::string out = to_string(mode_);
+  const bool shows_both = mode_ == ViewMode::both || mode_ == ViewMode::split;
+  if (!trusted && shows_both)
+    out += " (as prediction cannot be trusted, look at the newest image)";
+  else if (!trusted && mode_ != ViewMode::newest)
+    return "the newest image, as prediction cannot be trusted";
+  if (eyes_swapped_ && has_two_eyes(mode_)) out += ", eyes swapped";
+  if (paint_ != ViewPaint::colours && mode_ != ViewMode::newest) out += std::string("; ") + to_string(paint_);
+  return out;
+}
+
+void SeatViews::take_mouse(gl::WindowInput& input, const ViewTarget& whole) {
+  bool ours = mode_ == ViewMode::observer;
+  if (ours && eye_) {
+    if (input.left) eye_->orbit(input.moved_x, input.moved_y);
+    if (input.other) eye_->shift(input.moved_x, input.moved_y, std::max(1, whole.height));
+    if (input.scrolled != 0) eye_->zoom(input.scrolled);
+  } else if (mode_ == ViewMode::split) {
+    const ViewTarget place = fitted(whole, setup_.left.width(), setup_.left.height());
+    ours = border_.drag(input.x - place.x, place.width, input.pressed, input.left);
+  }
+  keeps_mouse_ = (keeps_mouse_ || ours) && (input.left || input.other);
+  if (!ours && !keeps_mouse_) return;
+  input.left = input.other = input.pressed = false;
+  input.moved_x = input.moved_y = input.scrolled = 0;
+}
+
+Pose SeatViews::looks_from(const Pose& T_world_operator) const {
+  return mode_ == ViewMode::observer && eye_ ? eye_->T_world_eye() : T_world_operator;
+}
+
+void SeatViews::upload_newest(const cv::Mat& left, const cv::Mat& right) {
+  newest_[0].upload(left);
+  if (!right.empty()) newest_[1].upload(right);
+}
+
+void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms) {
+  drawn_ = place;
+  shows_again_ = has_eyes_ = has_beside_ = false;
+  if (whole.width < 1 || whole.height < 1) return;  // minimised
+  if (has_two_eyes(mode_)) {
+    if (!eyes_) eyes_.emplace(session, setup_.left, setup_.eyes_apart);
+    eyes_->set_paint(paint_);
+    has_eyes_ = eyes_->draw(place.T_world_camera, place.scene);
+  } else if (mode_ == ViewMode::observer) {
+    draw_observer(session, place, whole);
+  } else {
+    draw_again(session, place, whole, drawing_ms);
+  }
+}
+
+// The operator's eye with more pixels, or painted.
+void SeatViews::draw_again(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms) {
+  if (mode_ == ViewMode::newest) return;
+  const ViewTarget part = mode_ == ViewMode::both ? column(whole, 1, 2, kGap) : whole;
+  size_.choose(part.width, part.height, drawing_ms);
+  if (!size_.lens() && paint_ == ViewPaint::colours) return;
+  PredictedView& view = view_through(again_, session, size_.lens().value_or(setup_.left));
+  view.set_paint(paint_);
+  shows_again_ = session.draw(view, place.T_world_camera, place.scene);
+}
+
+std::vector<CameraPanel> SeatViews::panels() {
+  std::vector<CameraPanel> out;
+  if (!frame_) return out;
+  if (on_panel_[0].empty() || frame_->left.time != on_panels_) {
+    on_panel_[0].upload(frame_->left.pixels);
+    if (frame_->right) on_panel_[1].upload(frame_->right->pixels);
+    on_panels_ = frame_->left.time;
+  }
+  out.push_back({setup_.left, frame_->left.T_world_camera, &on_panel_[0].texture()});
+  if (frame_->right)
+    out.push_back({setup_.right.value_or(setup_.left), frame_->right->T_world_camera, &on_panel_[1].texture()});
+  return out;
+}
+
+void SeatViews::draw_observer(ViewSession& session, const ViewPlace& place, const ViewTarget& whole) {
+  if (!eye_) eye_ = beside(place.T_world_camera);
+  const double pixels = static_cast<double>(whole.width) * whole.height,
+               most = kObserverPixels * setup_.left.width() * setup_.left.height();
+  const double scale = std::min(1.0, std::sqrt(most / std::max(1.0, pixels)));
+  const int width = std::max(1, static_cast<int>(scale * whole.width)),
+            height = std::max(1, static_cast<int>(scale * whole.height));
+  const Lens lens = observer_lens(width, height, eye_->distance / (eye_->metres_per_pixel(height) * height));
+  PredictedView& view = view_through(beside_, session, lens);
+  overlay_beside_.set_lens(lens);
+  view.set_paint(paint_);
+  if (!session.draw(view, eye_->T_world_eye(), place.scene)) return;
+  if (!observer_) observer_.emplace();
+  const std::vector<CameraPanel> all = panels();
+  (*observer_)(view, eye_->T_world_eye(), session.view(), place.T_world_camera, all);
+  has_beside_ = true;
+}
+
+SeatViews::Sight SeatViews::predicted(const ViewSession& session, const SeatPicture& what) const {
+  if (!drawn_) return {};
+  const bool with_marks = what.marked && shows_marks();
+  const gl::Texture& plain = shows_again_ ? again_->picture() : session.picture();
+  // Whatever its size, it is seen through the same lens: lines lie by the camera's own depths.
+  return {with_marks ? what.marked : &plain, &session.faces(), drawn_->T_world_camera};
+}
+
+SeatViews::Sight SeatViews::newest(std::size_t eye) const {
+  const UploadedPicture& picture = newest_[eye == 1 && !newest_[1].empty() ? 1 : 0];
+  return picture.empty() ? Sight{} : Sight{&picture.texture()};
+}
+
+SeatViews::Sight SeatViews::eye(std::size_t index, bool trusted) const {
+  if (!trusted || !has_eyes_) return newest(index);
+  return {&eyes_->picture(index), &eyes_->faces(index), drawn_->T_world_camera * eyes_->T_view_eye(index)};
+}
+
+// The picture, and over it what there is to see of the hand, whose words go beside it.
+void SeatViews::put(const Sight& sight, const ViewTarget& place, const SeatPicture& what, std::vector<HudLabel>& labels,
+                    const ViewTarget& whole) {
+  if (!sight.picture) return;
+  const ViewTarget view = fitted(place, sight.picture->width(), sight.picture->height());
+  copy_(*sight.picture, view);
+  if (!sight.faces || !what.hand || !what.trusted) return;
+  const bool from_beside = has_beside_ && sight.picture == &beside_->picture();
+  (from_beside ? overlay_beside_ : overlay_).draw(what.hand->lines, sight.T_world_eye, *sight.faces, view);
+  const Lens& lens = from_beside ? beside_->lens() : setup_.left;
+  for (const WorldLabel& label : what.hand->labels)
+    if (const auto at = seen_at(label.at, lens, sight.T_world_eye, view, whole.height))
+      labels.push_back({at->x(), at->y(), label.words, label.urgency});
+}
+
+const ViewTarget& SeatViews::canvas(std::size_t index, const ViewTarget& place) {
+  Canvas& canvas = canvas_[index];
+  if (!canvas.target || canvas.picture.width() != place.width || canvas.picture.height() != place.height) {
+    canvas.target.reset();
+    canvas.picture = gl::Texture(GL_RGBA8, place.width, place.height, 0, 1, "eye's canvas");
+    canvas.target.emplace(canvas.picture.name(), place.width, place.height);
+  }
+  fill(canvas.target->whole(), 0, 0, 0);  // pictures may leave a row or a column by rounding
+  return canvas.target->whole();
+}
+
+// Mixed at the place's own size: its rows are the screen's. Words stand where the second picture has them: in a split,
+// it is the one that is predicted; else they are seen by both eyes, at the depth of the screen.
+void SeatViews::put_mixed(const Sight& first, const Sight& second, const ViewTarget& place, const ViewTarget& whole,
+                          PictureMix::Way way, const SeatPicture& what, std::vector<HudLabel>& labels) {
+  if (!first.picture || !second.picture) return;
+  const ViewTarget part = fitted(place, setup_.left.width(), setup_.left.height());
+  std::vector<HudLabel> of_first;
+  const bool swaps = eyes_swapped_ && way != PictureMix::Way::split;
+  put(swaps ? second : first, canvas(0, part), what, of_first, whole);
+  put(swaps ? first : second, canvas(1, part), what, labels, whole);
+  const double top = whole.height - part.y - part.height;
+  for (HudLabel& label : labels) label.x += part.x, label.y += top;
+  if (way == PictureMix::Way::split)
+    std::erase_if(labels, [&](const HudLabel& label) { return label.x < part.x + border_.at() * part.width; });
+  copy_(mix_(canvas_[0].picture, canvas_[1].picture, part.width, part.height, {way, border_.at(), false}), part);
+}
+
+void SeatViews::put_inset(const ViewTarget& place) const {
+  if (newest_[0].empty()) return;
+  const gl::Texture& picture = newest_[0].texture();
+  copy_(picture, corner_of(place, picture.width(), picture.height()));
+}
+
+std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const ViewTarget& whole,
+                                             const SeatPicture& what) {
+  const ViewMode mode = mode_now(what.trusted);
+  // What is not to be trusted has a frame around it, of what is behind the pictures.
+  const ViewTarget place = what.trusted ? whole : column(whole, 0, 1, kGap);
+  std::vector<Part> parts{{whole}};
+  std::vector<HudLabel>& labels = parts.front().labels;
+  const auto mixed_eyes = [&](PictureMix::Way way) {
+    put_mixed(eye(0, what.trusted), eye(1, what.trusted), place, whole, way, what, labels);
+    if (what.trusted) put_inset(place);
+  };
+  switch (mode) {
+    case ViewMode::predicted:
+      put(predicted(session, what), place, what, labels, whole);
+      put_inset(place);
+      break;
+    case ViewMode::newest: put(newest(0), column(whole, 0, 1, kGap), what, labels, whole); break;
+    case ViewMode::both:
+      put(newest(0), column(whole, 0, 2, kGap), what, labels, whole);
+      put(predicted(session, what), column(whole, 1, 2, kGap), what, labels, whole);
+      break;
+    case ViewMode::split:
+      put_mixed(newest(0), predicted(session, what), place, whole, PictureMix::Way::split, what, labels);
+      break;
+    case ViewMode::two_eyes:
+      parts = {{column(place, 0, 2, 0)}, {column(place, 1, 2, 0)}};
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        put(eye(eyes_swapped_ ? 1 - i : i, what.trusted), parts[i].place, what, parts[i].labels, whole);
+        if (what.trusted) put_inset(parts[i].place);
+      }
+      break;
+    case ViewMode::interlaced: mixed_eyes(PictureMix::Way::rows); break;
+    case ViewMode::anaglyph: mixed_eyes(PictureMix::Way::anaglyph); break;
+    case ViewMode::anaglyph_colours: mixed_eyes(PictureMix::Way::anaglyph_colours); break;
+    case ViewMode::observer:
+      put({&beside_->picture(), &beside_->faces(), eye_->T_world_eye()}, place, what, labels, whole);
+      break;
+  }
+  for (Part& part : parts)
+    for (HudLabel& label : part.labels) {
+      label.x -= part.place.x;
+      label.y -= whole.height - part.place.y - part.place.height;
+    }
+  return parts;
+}
+
+}  // namespace foresight

@@ -1,0 +1,132 @@
+// What fills an operator's window: one eye or two, newest image or prediction, or both; or all from beside.
+//
+//   session's view (camera's pixels; images are compared with it) --.
+//   larger or painted view of the same eye -------------------------+--> mode --> window, lines of the hand over it
+//   two eyes; from beside ------------------------------------------+
+//   newest images --------------------------------------------------'
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "display/eye_pair.hpp"
+#include "display/frame_source.hpp"
+#include "display/observer_pass.hpp"
+#include "display/picture_mix.hpp"
+#include "display/scene_overlay.hpp"
+#include "display/uploaded_picture.hpp"
+#include "display/view_modes.hpp"
+#include "gl/glfw_window.hpp"
+#include "rig_view/eye.hpp"
+#include "seat/hand_overlay.hpp"
+#include "seat/hud.hpp"
+
+namespace foresight {
+
+struct SeatViewsSetup {
+  Lens left;                       ///< of the cameras
+  std::optional<Lens> right = {};  ///< nothing: as the left one
+  double eyes_apart = 0.063;       ///< m, of most people
+  double most_drawing_ms = 20;     ///< ViewSize
+  ViewMode mode = ViewMode::predicted;
+};
+
+/// What there is to be shown of a picture.
+struct SeatPicture {
+  bool trusted = true;                  ///< else the newest image stands in for the prediction
+  const gl::Texture* marked = nullptr;  ///< the session's view with marks on it; null: no marks are wanted
+  const HandPicture* hand = nullptr;    ///< drawn over what is predicted; null: nothing
+};
+
+/// Belongs to the session's context, but for mouse and keys, which need none. These choose what is seen and never move
+/// the robot: what the views take of the mouse, the hand does not get, until all buttons are let go of.
+class SeatViews {
+ public:
+  explicit SeatViews(const SeatViewsSetup& setup);
+
+  ViewMode mode() const { return mode_; }
+  ViewPaint paint() const { return paint_; }
+  void set_mode(ViewMode mode) { mode_ = mode; }
+  void next_main();    ///< prediction, newest image, both, split
+  void next_stereo();  ///< two eyes, interlaced, the anaglyphs, one eye
+  void toggle_observer();
+  void next_paint();
+  void swap_eyes() { eyes_swapped_ = !eyes_swapped_; }
+  /// What is shown, and what colours mean. `trusted`: the prediction.
+  std::string words(bool trusted) const;
+  /// SeatPicture::marked would be seen.
+  bool shows_marks() const {
+    return mode_ != ViewMode::newest && mode_ <= ViewMode::split && paint_ == ViewPaint::colours;
+  }
+
+  /// Takes what is meant for the views out of `input`. `whole`: the window.
+  void take_mouse(gl::WindowInput& input, const ViewTarget& whole);
+  /// From where keys mean left and forward as they are seen: the operator's camera, or who looks on from beside.
+  Pose looks_from(const Pose& T_world_operator) const;
+
+  /// A frame has come: its poses and images, for panels in the scene.
+  void arrived(const PosedFrame& frame) { frame_ = frame; }
+  /// The newest images that have come, CV_8UC3; the second may be empty.
+  void upload_newest(const cv::Mat& left, const cv::Mat& right);
+  /// The session has drawn the view of `place`: draws what the mode needs besides. `drawing_ms`: what all drawing
+  /// takes.
+  void draw(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
+  bool drawn() const { return drawn_.has_value(); }
+
+  /// Where pictures were put: each such part has words of its own.
+  struct Part {
+    ViewTarget place;
+    std::vector<HudLabel> labels = {};  ///< px from its top left
+  };
+  std::vector<Part> show(const ViewSession& session, const ViewTarget& whole, const SeatPicture& what);
+
+ private:
+  /// A picture of one eye.
+  struct Sight {
+    const gl::Texture* picture = nullptr;   // null: there is none yet
+    const gl::FaceImages* faces = nullptr;  // of the drawing; null: an image
+    Pose T_world_eye = Pose::Identity();
+  };
+  struct Canvas {
+    gl::Texture picture;
+    std::optional<TextureTarget> target;
+  };
+  void draw_again(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
+  void draw_observer(ViewSession& session, const ViewPlace& place, const ViewTarget& whole);
+  std::vector<CameraPanel> panels();
+  ViewMode mode_now(bool trusted) const;
+  Sight predicted(const ViewSession& session, const SeatPicture& what) const;
+  Sight newest(std::size_t eye) const;
+  Sight eye(std::size_t index, bool trusted) const;
+  void put(const Sight& sight, const ViewTarget& place, const SeatPicture& what, std::vector<HudLabel>& labels,
+           const ViewTarget& whole);
+  void put_mixed(const Sight& first, const Sight& second, const ViewTarget& place, const ViewTarget& whole,
+                 PictureMix::Way way, const SeatPicture& what, std::vector<HudLabel>& labels);
+  void put_inset(const ViewTarget& place) const;
+  const ViewTarget& canvas(std::size_t index, const ViewTarget& place);
+
+  SeatViewsSetup setup_;
+  ViewMode mode_;
+  ViewPaint paint_ = ViewPaint::colours;
+  bool eyes_swapped_ = false;
+  ViewSize size_;
+  SplitBorder border_;
+  bool keeps_mouse_ = false;
+  std::optional<PosedFrame> frame_;
+  RobotTime on_panels_{};
+  PictureCopy copy_;
+  PictureMix mix_;
+  SceneOverlay overlay_, overlay_beside_;
+  std::array<Canvas, 2> canvas_;
+  std::optional<PredictedView> again_, beside_;
+  bool shows_again_ = false, has_eyes_ = false, has_beside_ = false;  // drawn for the last place
+  std::optional<EyePair> eyes_;
+  std::optional<ObserverPass> observer_;
+  std::optional<Eye> eye_;
+  std::optional<ViewPlace> drawn_;  // the operator's
+  std::array<UploadedPicture, 2> newest_, on_panel_;
+};
+
+}  // namespace foresight

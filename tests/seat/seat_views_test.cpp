@@ -1,0 +1,271 @@
+// What keys and mouse make of the operator's window, and that they never reach the robot by it.
+#include "seat/seat_views.hpp"
+
+#include <gmock/gmock.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "display/view_session.hpp"
+#include "tests/support/headless_test.hpp"
+#include "tests/support/small_scene.hpp"
+
+namespace foresight::seat_views_test {
+namespace {
+
+constexpr ViewTarget kWindow{.width = 800, .height = 600};
+
+gl::WindowInput mouse(double x, bool left, bool pressed = false, double moved = 0) {
+  gl::WindowInput out;
+  out.x = x;
+  out.left = left;
+  out.pressed = pressed;
+  out.moved_x = moved;
+  return out;
+}
+
+class SeatViewsTest : public HeadlessTest {
+ protected:
+  void SetUp() override {
+    HeadlessTest::SetUp();
+    if (context_) views_.emplace(SeatViewsSetup{.left = small_lens("pinhole")});
+  }
+  /// Is the left button, as the hand gets it, held?
+  bool hand_gets(gl::WindowInput input) {
+    views_->take_mouse(input, kWindow);
+    if (!input.left) EXPECT_EQ(input.moved_x, 0);
+    return input.left;
+  }
+  void TearDown() override {
+    views_.reset();
+    HeadlessTest::TearDown();
+  }
+  std::optional<SeatViews> views_;
+};
+
+TEST_F(SeatViewsTest, KeysGoRound) {
+  std::vector<ViewMode> seen;
+  for (int i = 0; i < 4; ++i) views_->next_main(), seen.push_back(views_->mode());
+  EXPECT_THAT(seen, testing::ElementsAre(ViewMode::newest, ViewMode::both, ViewMode::split, ViewMode::predicted));
+  seen.clear();
+  for (int i = 0; i < 5; ++i) views_->next_stereo(), seen.push_back(views_->mode());
+  EXPECT_THAT(seen, testing::ElementsAre(ViewMode::two_eyes, ViewMode::interlaced, ViewMode::anaglyph,
+                                         ViewMode::anaglyph_colours, ViewMode::predicted));
+  views_->toggle_observer();
+  views_->next_main();
+  EXPECT_EQ(views_->mode(), ViewMode::predicted) << "Tab leads back from everywhere";
+  std::vector<std::string> words;
+  for (int i = 0; i < kViewPaints; ++i) words.push_back(views_->words(true)), views_->next_paint();
+  EXPECT_EQ(views_->paint(), ViewPaint::colours);
+  EXPECT_THAT(words, testing::Contains(testing::HasSubstr("never seen")));
+}
+
+TEST_F(SeatViewsTest, TheHandHasTheMouseUnlessAViewTakesIt) {
+  EXPECT_TRUE(hand_gets(mouse(400, true, true)));
+  EXPECT_TRUE(hand_gets(mouse(450, true, false, 50)));
+  views_->set_mode(ViewMode::split);
+  EXPECT_FALSE(hand_gets(mouse(402, true, true))) << "the border is pressed";
+  EXPECT_FALSE(hand_gets(mouse(500, true, false, 98)));
+  EXPECT_FALSE(hand_gets(mouse(500, false)));
+  EXPECT_TRUE(hand_gets(mouse(100, true, true))) << "elsewhere, it is the hand's";
+}
+
+// A button that was pressed for a view does not become the switch when the view changes.
+TEST_F(SeatViewsTest, AButtonIsLetGoOfFirst) {
+  for (const ViewMode mode : {ViewMode::observer, ViewMode::split}) {
+    views_->set_mode(mode);
+    const double border = 400;
+    EXPECT_FALSE(hand_gets(mouse(border, true, true)));
+    views_->set_mode(ViewMode::predicted);
+    EXPECT_FALSE(hand_gets(mouse(border, true, false, 10)));
+    EXPECT_FALSE(hand_gets(mouse(border, true, false, 10)));
+    EXPECT_FALSE(hand_gets(mouse(border, false)));
+    EXPECT_TRUE(hand_gets(mouse(border, true, true)));
+    EXPECT_FALSE(hand_gets(mouse(border, false)));
+  }
+  EXPECT_TRUE(hand_gets(mouse(300, true, true)));
+  views_->toggle_observer();
+  EXPECT_FALSE(hand_gets(mouse(300, true, false, 10))) << "a held switch is let go of, too";
+}
+
+/// The small scene, seen by a session; the newest images are plain colours, to be told apart.
+class SeatViewsPictures : public HeadlessTest {
+ protected:
+  static constexpr int kWidth = 320, kHeight = 240;
+  void SetUp() override {
+    HeadlessTest::SetUp();
+    if (!context_) return;
+    ViewSetup setup{scene_, surface_for(*scene_, lens_, {}), lens_, std::nullopt, {}, {}};
+    setup.textures.memory_bytes = 6 << 20;
+    session_.emplace(*context_, setup);
+    window_ = gl::Texture(GL_RGBA8, kWidth, kHeight, 0, 1, "window");
+    target_.emplace(window_.name(), kWidth, kHeight, -1, false);
+    views_.emplace(SeatViewsSetup{.left = lens_, .eyes_apart = 0.1});
+    PosedFrame frame{posed_photograph(*scene_, place_.scene, lens_, place_.T_world_camera), std::nullopt};
+    frame.left.time = RobotTime{} + std::chrono::seconds(1);
+    session_->process(frame);
+    frame.left.pixels.setTo(cv::Scalar(255, 0, 255));
+    views_->arrived(frame);
+    views_->upload_newest(cv::Mat(120, 160, CV_8UC3, cv::Scalar(255, 0, 255)),
+                          cv::Mat(120, 160, CV_8UC3, cv::Scalar(0, 255, 0)));
+    hand_.lines.line({-0.3, 0, 0.3}, {0.3, 0, 0.3}, {.colour = {1, 1, 0}, .width_px = 6});
+    hand_.labels.push_back({{0, 0, 0.3}, "here"});
+  }
+  void TearDown() override {
+    views_.reset();
+    target_.reset();
+    session_.reset();
+    window_ = {};
+    HeadlessTest::TearDown();
+  }
+
+  /// The window in that mode, BGR, on a white ground; parts_ are told.
+  cv::Mat shown(ViewMode mode, bool trusted = true, double drawing_ms = 0) {
+    views_->set_mode(mode);
+    session_->draw(place_.T_world_camera, place_.scene);
+    views_->draw(*session_, place_, target_->whole(), drawing_ms);
+    fill(target_->whole(), 1, 1, 1);
+    parts_ = views_->show(*session_, target_->whole(), {.trusted = trusted, .hand = &hand_});
+    cv::Mat out(kHeight, kWidth, CV_8UC4);
+    glGetTextureImage(window_.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
+    cv::flip(out, out, 0);
+    cv::cvtColor(out, out, cv::COLOR_BGRA2BGR);
+    if (const char* folder = std::getenv("FORESIGHT_PICTURES"))
+      cv::imwrite(std::string(folder) + "/" + to_string(mode) + (trusted ? "" : "_untrusted") + ".png", out);
+    return out;
+  }
+  static std::string to_string(ViewMode mode) { return "mode_" + std::to_string(static_cast<int>(mode)); }
+  static double share(const cv::Mat& picture, const cv::Scalar& colour) {
+    cv::Mat in;
+    cv::inRange(picture, colour - cv::Scalar::all(12), colour + cv::Scalar::all(12), in);
+    return cv::countNonZero(in) / static_cast<double>(in.total());
+  }
+  static double late(const cv::Mat& picture) { return share(picture, {255, 0, 255}); }  // the left newest image
+  static double late_right(const cv::Mat& picture) { return share(picture, {0, 255, 0}); }
+  static double line(const cv::Mat& picture) { return share(picture, {0, 255, 255}); }
+
+  Lens lens_ = small_lens("pinhole");
+  std::shared_ptr<const SceneModel> scene_ = small_scene();
+  ViewPlace place_{usual_view(), state_of(*scene_)};
+  HandPicture hand_;
+  gl::Texture window_;
+  std::optional<TextureTarget> target_;
+  std::optional<ViewSession> session_;
+  std::optional<SeatViews> views_;
+  std::vector<SeatViews::Part> parts_;
+};
+
+const cv::Rect kLeft(2, 60, 150, 120), kRight(170, 60, 150, 120);
+
+TEST_F(SeatViewsPictures, OneEyeSeesPredictionAndImageWhereTheModeSaysSo) {
+  cv::Mat picture = shown(ViewMode::predicted);
+  EXPECT_NEAR(late(picture), 1.0 / 16, 0.01) << "in its corner";
+  EXPECT_GT(line(picture), 0.005);
+  EXPECT_EQ(parts_.at(0).labels.size(), 1u);
+  picture = shown(ViewMode::newest);
+  EXPECT_GT(late(picture), 0.9);
+  EXPECT_EQ(line(picture), 0) << "an image is shown as it is";
+  picture = shown(ViewMode::both);
+  EXPECT_GT(late(picture(kLeft)), 0.85);
+  EXPECT_EQ(late(picture(kRight)), 0);
+  EXPECT_GT(line(picture(kRight)), 0.003);
+  picture = shown(ViewMode::split);
+  EXPECT_GT(late(picture(kLeft)), 0.95);
+  EXPECT_EQ(line(picture(kLeft)), 0);
+  EXPECT_EQ(late(picture(kRight)), 0);
+  EXPECT_GT(line(picture(kRight)), 0.003);
+}
+
+TEST_F(SeatViewsPictures, TheBorderGoesWhereItIsDragged) {
+  shown(ViewMode::split);
+  gl::WindowInput press = mouse(160, true, true), drag = mouse(80, true);
+  views_->take_mouse(press, target_->whole());
+  views_->take_mouse(drag, target_->whole());
+  const cv::Mat picture = shown(ViewMode::split);
+  EXPECT_GT(late(picture.colRange(0, 76)), 0.95);
+  EXPECT_EQ(late(picture.colRange(84, kWidth)), 0);
+}
+
+TEST_F(SeatViewsPictures, EachEyeSeesItsOwn) {
+  const cv::Mat eyes = shown(ViewMode::two_eyes);
+  EXPECT_EQ(parts_.size(), 2u) << "each eye has the words";
+  const cv::Rect left(0, 60, 160, 120), right(160, 60, 160, 120), middle(40, 30, 60, 60);
+  EXPECT_GT(cv::norm(eyes(left)(middle), eyes(right)(middle), cv::NORM_L1) / middle.area(), 3);
+  views_->swap_eyes();
+  const cv::Mat swapped = shown(ViewMode::two_eyes);
+  EXPECT_EQ(cv::norm(eyes(left), swapped(right), cv::NORM_L1), 0);
+  EXPECT_EQ(cv::norm(eyes(right), swapped(left), cv::NORM_L1), 0);
+  views_->swap_eyes();
+  for (const ViewMode mode : {ViewMode::interlaced, ViewMode::anaglyph, ViewMode::anaglyph_colours}) {
+    const cv::Mat mixed = shown(mode);
+    EXPECT_EQ(parts_.size(), 1u);
+    EXPECT_LT(late(mixed), 0.08) << "the image is in its corner only";
+    EXPECT_EQ(parts_[0].labels.size(), 1u);
+  }
+  // Every other row of the interlaced picture is an eye's own.
+  const cv::Mat rows = shown(ViewMode::interlaced, false);
+  for (int y = 20; y < kHeight - 20; ++y) {
+    EXPECT_GT(late(rows.row(y)) + late_right(rows.row(y)), 0.9) << "the newest pair, an image for each eye";
+    EXPECT_NE(late(rows.row(y)) > 0.5, late(rows.row(y + 1)) > 0.5) << y;
+  }
+}
+
+TEST_F(SeatViewsPictures, WhatIsNotTrustedGivesWayInAFrame) {
+  for (int i = 0; i <= static_cast<int>(ViewMode::observer); ++i) {
+    const auto mode = static_cast<ViewMode>(i);
+    shown(mode);
+    const cv::Mat picture = shown(mode, false);
+    EXPECT_EQ(line(picture), 0) << i << ": what the hand does is predicted, too";
+    EXPECT_EQ(share(picture.colRange(0, 3), cv::Scalar::all(255)), 1) << i << ": the ground is to be seen";
+    EXPECT_NE(views_->words(false).find("cannot be trusted") == std::string::npos, mode != ViewMode::newest) << i;
+    if (mode == ViewMode::anaglyph || mode == ViewMode::anaglyph_colours) continue;  // of other colours
+    const bool shows_both = mode == ViewMode::both || mode == ViewMode::split;
+    EXPECT_GT(late(picture) + late_right(picture), shows_both ? 0.2 : mode == ViewMode::two_eyes ? 0.4 : 0.8) << i;
+  }
+}
+
+TEST_F(SeatViewsPictures, FromBesideThePanelAndTheHandAreInTheScene) {
+  const cv::Mat picture = shown(ViewMode::observer);
+  EXPECT_GT(late(picture), 0.005) << "the panel";
+  EXPECT_LT(late(picture), 0.3);
+  EXPECT_GT(line(picture), 0.0005);
+  ASSERT_EQ(parts_.at(0).labels.size(), 1u);
+  const auto& label = parts_[0].labels[0];
+  const cv::Rect around =
+      cv::Rect(static_cast<int>(label.x) - 8, static_cast<int>(label.y) - 8, 16, 16) & cv::Rect(0, 0, kWidth, kHeight);
+  EXPECT_GT(line(picture(around)), 0.1) << "words stand where their place is seen";
+  EXPECT_FALSE(views_->looks_from(place_.T_world_camera).isApprox(place_.T_world_camera))
+      << "keys mean what is seen from there";
+  views_->toggle_observer();
+  EXPECT_TRUE(views_->looks_from(place_.T_world_camera).isApprox(place_.T_world_camera));
+}
+
+// Paint and size are the window's: the session's own view, which images are compared with, stays as it is.
+TEST_F(SeatViewsPictures, TheSessionsViewIsLeftAlone) {
+  const cv::Mat plain = shown(ViewMode::predicted), own = session_->read();
+  for (int i = 0; i < 80; ++i) shown(ViewMode::predicted, true, 0.1);  // a renderer that has time
+  EXPECT_EQ(cv::norm(own, session_->read(), cv::NORM_L1), 0);
+  const cv::Mat larger = shown(ViewMode::predicted, true, 0.1);
+  EXPECT_GT(cv::norm(plain, larger, cv::NORM_L1), 0) << "it has more pixels";
+  EXPECT_LT(cv::norm(plain, larger, cv::NORM_L1) / static_cast<double>(plain.total() * 3), 8) << "of the same";
+  views_->next_paint();
+  EXPECT_GT(cv::norm(larger, shown(ViewMode::predicted), cv::NORM_L1), 1e5);
+  EXPECT_EQ(cv::norm(own, session_->read(), cv::NORM_L1), 0);
+}
+
+TEST_F(SeatViewsPictures, WindowsOfAllSizesAreBorne) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {3, 200}, {200, 2}, {0, 0}}) {
+    ViewTarget small = target_->whole();
+    small.width = width;
+    small.height = height;
+    for (int i = 0; i <= static_cast<int>(ViewMode::observer); ++i) {
+      views_->set_mode(static_cast<ViewMode>(i));
+      session_->draw(place_.T_world_camera, place_.scene);
+      views_->draw(*session_, place_, small, 1);
+      if (width > 0) views_->show(*session_, small, {.trusted = i % 2 == 0, .hand = &hand_});
+    }
+  }
+}
+
+}  // namespace
+}  // namespace foresight::seat_views_test
