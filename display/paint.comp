@@ -5,19 +5,11 @@
 #define BRIGHTEST 65504.0
 #include "lookup.glsl"
 #include "surface_at.glsl"
+#include "classes.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
 layout(binding = 0, rgba8) uniform image2D picture;
 uniform int paint;  // as ViewPaint
-
-const vec3 kClasses[4] = vec3[](vec3(0.35, 0.75, 0.95), vec3(0.95, 0.85, 0.35), vec3(0.90, 0.40, 0.20), vec3(0.75, 0.35, 0.75));
-
-// Plain, thin lines, dense lines, checked.
-bool is_hatched(ivec2 pixel, int level) {
-  if (level == 1) return ((pixel.x + pixel.y) % 12) == 0;
-  if (level == 2) return ((pixel.x + pixel.y) % 5) < 2;
-  return level == 3 && (((pixel.x >> 3) ^ (pixel.y >> 3)) & 1) == 1;
-}
 
 // 0 .. 3
 int age_class(SurfaceAt at) {
@@ -54,6 +46,5 @@ void main() {
   if (surface == 0u) return;
   SurfaceAt at = surface_at(ray, surface);
   int level = at.chart.density.x <= 0.0 ? 3 : paint == 2 ? age_class(at) : confidence_class(at);
-  float light = (0.35 + 0.65 * grey) * (is_hatched(pixel, level) ? 0.45 : 1.0);
-  imageStore(picture, pixel, vec4(light * kClasses[level], shown.a));
+  imageStore(picture, pixel, vec4(class_colour(pixel, level, grey), shown.a));
 }

@@ -12,7 +12,7 @@ class PaintPass {
  public:
   PaintPass();
   /// Over `picture`, the view that PredictedView has just drawn: what it bound for that is bound still. Not for
-  /// ViewPaint::colours.
+  /// ViewPaint::colours and doubt.
   void operator()(ViewPaint paint, const gl::Texture& picture, const PublishedTextures& textures) const;
 
  private:

@@ -44,6 +44,8 @@ const char* to_string(ViewPaint paint) {
     case ViewPaint::age: return "age: plain under 1 s, thin lines to 5 s, dense lines beyond, checked: never seen";
     case ViewPaint::confidence:
       return "seen how finely: plain at least as shown, thin lines to a quarter, dense lines below, checked: never";
+    case ViewPaint::doubt:
+      return "may be off by: plain to 10 grey levels, thin lines to 30, dense lines beyond, checked: not known";
   }
   return "";
 }

@@ -93,7 +93,10 @@ std::string SeatViews::words(bool trusted) const {
   else if (!trusted && mode_ != ViewMode::newest)
     return "the newest image, as prediction cannot be trusted";
   if (eyes_swapped_ && has_two_eyes(mode_)) out += ", eyes swapped";
-  if (paint_ != ViewPaint::colours && mode_ != ViewMode::newest) out += std::string("; ") + to_string(paint_);
+  if (paint_ == ViewPaint::doubt && !is_one_eyes())
+    out += "; errors are shown to one eye only";
+  else if (paint_ != ViewPaint::colours && mode_ != ViewMode::newest)
+    out += std::string("; ") + to_string(paint_);
   return out;
 }
 
@@ -128,7 +131,7 @@ void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTar
   if (whole.width < 1 || whole.height < 1) return;  // minimised
   if (has_two_eyes(mode_)) {
     if (!eyes_) eyes_.emplace(session, setup_.left, setup_.eyes_apart);
-    eyes_->set_paint(paint_);
+    eyes_->set_paint(paint_of_views());
     has_eyes_ = eyes_->draw(place.T_world_camera, place.scene);
   } else if (mode_ == ViewMode::observer) {
     draw_observer(session, place, whole);
@@ -142,9 +145,9 @@ void SeatViews::draw_again(ViewSession& session, const ViewPlace& place, const V
   if (mode_ == ViewMode::newest) return;
   const ViewTarget part = mode_ == ViewMode::both ? column(whole, 1, 2, kGap) : whole;
   size_.choose(part.width, part.height, drawing_ms);
-  if (!size_.lens() && paint_ == ViewPaint::colours) return;
+  if (!size_.lens() && paint_of_views() == ViewPaint::colours) return;
   PredictedView& view = view_through(again_, session, size_.lens().value_or(setup_.left));
-  view.set_paint(paint_);
+  view.set_paint(paint_of_views());
   shows_again_ = session.draw(view, place.T_world_camera, place.scene);
 }
 
@@ -172,7 +175,7 @@ void SeatViews::draw_observer(ViewSession& session, const ViewPlace& place, cons
   const Lens lens = observer_lens(width, height, eye_->distance / (eye_->metres_per_pixel(height) * height));
   PredictedView& view = view_through(beside_, session, lens);
   overlay_beside_.set_lens(lens);
-  view.set_paint(paint_);
+  view.set_paint(paint_of_views());
   if (!session.draw(view, eye_->T_world_eye(), place.scene)) return;
   if (!observer_) observer_.emplace();
   const std::vector<CameraPanel> all = panels();
@@ -180,12 +183,19 @@ void SeatViews::draw_observer(ViewSession& session, const ViewPlace& place, cons
   has_beside_ = true;
 }
 
-SeatViews::Sight SeatViews::predicted(const ViewSession& session, const SeatPicture& what) const {
+SeatViews::Sight SeatViews::predicted(const ViewSession& session, const SeatPicture& what) {
   if (!drawn_) return {};
-  const bool with_marks = what.marked && shows_marks();
-  const gl::Texture& plain = shows_again_ ? again_->picture() : session.picture();
   // Whatever its size, it is seen through the same lens: lines lie by the camera's own depths.
-  return {with_marks ? what.marked : &plain, &session.faces(), drawn_->T_world_camera};
+  Sight out{&session.picture(), &session.faces(), drawn_->T_world_camera};
+  if (what.doubt && shows_doubt()) {
+    if (!doubt_) doubt_.emplace();
+    out.picture = &(*doubt_)(session.picture(), *what.doubt);
+  } else if (what.marked && shows_marks()) {
+    out.picture = what.marked;
+  } else if (shows_again_) {
+    out.picture = &again_->picture();
+  }
+  return out;
 }
 
 SeatViews::Sight SeatViews::newest(std::size_t eye) const {

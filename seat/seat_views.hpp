@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "display/doubt_paint.hpp"
 #include "display/eye_pair.hpp"
 #include "display/frame_source.hpp"
 #include "display/observer_pass.hpp"
@@ -37,6 +38,7 @@ struct SeatViewsSetup {
 struct SeatPicture {
   bool trusted = true;                  ///< else the newest image stands in for the prediction
   const gl::Texture* marked = nullptr;  ///< the session's view with marks on it; null: no marks are wanted
+  const gl::Texture* doubt = nullptr;   ///< of the session's view; null: not known
   const HandPicture* hand = nullptr;    ///< drawn over what is predicted; null: nothing
 };
 
@@ -56,10 +58,10 @@ class SeatViews {
   void swap_eyes() { eyes_swapped_ = !eyes_swapped_; }
   /// What is shown, and what colours mean. `trusted`: the prediction.
   std::string words(bool trusted) const;
+  /// SeatPicture::doubt would be seen.
+  bool shows_doubt() const { return is_one_eyes() && paint_ == ViewPaint::doubt; }
   /// SeatPicture::marked would be seen.
-  bool shows_marks() const {
-    return mode_ != ViewMode::newest && mode_ <= ViewMode::split && paint_ == ViewPaint::colours;
-  }
+  bool shows_marks() const { return is_one_eyes() && paint_ == ViewPaint::colours; }
 
   /// Takes what is meant for the views out of `input`. `whole`: the window.
   void take_mouse(gl::WindowInput& input, const ViewTarget& whole);
@@ -93,11 +95,14 @@ class SeatViews {
     gl::Texture picture;
     std::optional<TextureTarget> target;
   };
+  bool is_one_eyes() const { return mode_ != ViewMode::newest && mode_ <= ViewMode::split; }
+  /// As views paint themselves.
+  ViewPaint paint_of_views() const { return paint_ == ViewPaint::doubt ? ViewPaint::colours : paint_; }
   void draw_again(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
   void draw_observer(ViewSession& session, const ViewPlace& place, const ViewTarget& whole);
   std::vector<CameraPanel> panels();
   ViewMode mode_now(bool trusted) const;
-  Sight predicted(const ViewSession& session, const SeatPicture& what) const;
+  Sight predicted(const ViewSession& session, const SeatPicture& what);
   Sight newest(std::size_t eye) const;
   Sight eye(std::size_t index, bool trusted) const;
   void put(const Sight& sight, const ViewTarget& place, const SeatPicture& what, std::vector<HudLabel>& labels,
@@ -118,6 +123,7 @@ class SeatViews {
   RobotTime on_panels_{};
   PictureCopy copy_;
   PictureMix mix_;
+  std::optional<DoubtPaint> doubt_;
   SceneOverlay overlay_, overlay_beside_;
   std::array<Canvas, 2> canvas_;
   std::optional<PredictedView> again_, beside_;

@@ -54,6 +54,7 @@ class ViewTrust {
   double limit() const { return shown_.limit(); }
   /// The view that was drawn last, marked.
   const gl::Texture& marked() const { return pass_.marked(); }
+  const gl::Texture& doubt_picture() const { return pass_.doubt(); }
   /// Of the last picture, CV_8UC1; only where it waits for it.
   const cv::Mat& doubt() const { return doubt_; }
 

@@ -123,7 +123,7 @@ class LiveSeat {
                                        {"Tab", "prediction, newest image, both, split (drag its border)"},
                                        {"F2, F5", "for two eyes: which way; swap the eyes"},
                                        {"F3", "from beside: the mouse looks around"},
-                                       {"F4", "wireframe, age, confidence"},
+                                       {"F4", "wireframe, age, confidence, error"},
                                        {"B", "what is not exact, and was wrong"},
                                        {"F1", "these keys"},
                                        {"P", "screenshot"},

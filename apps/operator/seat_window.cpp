@@ -58,10 +58,15 @@ void SeatWindow::arrived(const PosedFrame& frame) {
   if (options_.trust) options_.trust->saw(frame);
 }
 
+TrustMarks SeatWindow::marks_to_draw() const {
+  if (views_.shows_doubt()) return TrustMarks::hatch;  // these need as much to be known
+  return views_.shows_marks() ? marks_ : TrustMarks::none;
+}
+
 void SeatWindow::stepped(const ViewStep& step, FrameSource& source, ViewSession& session) {
   if (step.drawn) {
     const ViewPlace place = source.place();
-    if (options_.trust) options_.trust->drew(source_, place, views_.shows_marks() ? marks_ : TrustMarks::none);
+    if (options_.trust) options_.trust->drew(source_, place, marks_to_draw());
     const double drawing_ms = options_.pacer ? 1e3 * to_seconds(options_.pacer->figures().cost) : 0;
     views_.draw(session, place, window_target(window_), drawing_ms);
   }
@@ -119,6 +124,7 @@ void SeatWindow::present(const ViewSession& session) {
   SeatPicture picture;
   picture.trusted = is_trusted;
   if (options_.trust && marks_ != TrustMarks::none) picture.marked = &options_.trust->marked();
+  if (options_.trust) picture.doubt = &options_.trust->doubt_picture();
   const HandPicture hand = options_.hand && is_trusted ? options_.hand() : HandPicture{};
   picture.hand = &hand;
   for (SeatViews::Part& part : views_.show(session, whole, picture)) {

@@ -60,6 +60,7 @@ class SeatWindow final : public ViewObserver {
   bool trusted() const;
 
  private:
+  TrustMarks marks_to_draw() const;
   void present(const ViewSession& session);
   void swap();
   HudContent words(bool is_trusted) const;

@@ -78,7 +78,7 @@ press e
 sleep 3
 press h
 says "next:   ready"
-drive 1.7 Down
+drive 2.1 Down
 press F1
 sleep 1
 xdotool keydown shift keydown w
@@ -100,6 +100,9 @@ press F4
 shows "as it will be; age"
 picture age
 press F4 F4
+shows "may be off by"
+picture errors
+press F4
 shows "as it will be"
 press b
 shows stripe

@@ -33,7 +33,9 @@ class SeatViewsTest : public HeadlessTest {
   /// Is the left button, as the hand gets it, held?
   bool hand_gets(gl::WindowInput input) {
     views_->take_mouse(input, kWindow);
-    if (!input.left) EXPECT_EQ(input.moved_x, 0);
+    if (!input.left) {
+      EXPECT_EQ(input.moved_x, 0);
+    }
     return input.left;
   }
   void TearDown() override {
@@ -116,6 +118,7 @@ class SeatViewsPictures : public HeadlessTest {
     target_.reset();
     session_.reset();
     window_ = {};
+    doubt_ = {};
     HeadlessTest::TearDown();
   }
 
@@ -125,7 +128,8 @@ class SeatViewsPictures : public HeadlessTest {
     session_->draw(place_.T_world_camera, place_.scene);
     views_->draw(*session_, place_, target_->whole(), drawing_ms);
     fill(target_->whole(), 1, 1, 1);
-    parts_ = views_->show(*session_, target_->whole(), {.trusted = trusted, .hand = &hand_});
+    parts_ = views_->show(*session_, target_->whole(),
+                          {.trusted = trusted, .doubt = doubt_ ? &doubt_ : nullptr, .hand = &hand_});
     cv::Mat out(kHeight, kWidth, CV_8UC4);
     glGetTextureImage(window_.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
     cv::flip(out, out, 0);
@@ -148,7 +152,7 @@ class SeatViewsPictures : public HeadlessTest {
   std::shared_ptr<const SceneModel> scene_ = small_scene();
   ViewPlace place_{usual_view(), state_of(*scene_)};
   HandPicture hand_;
-  gl::Texture window_;
+  gl::Texture window_, doubt_;
   std::optional<TextureTarget> target_;
   std::optional<ViewSession> session_;
   std::optional<SeatViews> views_;
@@ -251,6 +255,26 @@ TEST_F(SeatViewsPictures, TheSessionsViewIsLeftAlone) {
   views_->next_paint();
   EXPECT_GT(cv::norm(larger, shown(ViewMode::predicted), cv::NORM_L1), 1e5);
   EXPECT_EQ(cv::norm(own, session_->read(), cv::NORM_L1), 0);
+}
+
+TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
+  doubt_ = gl::Texture(GL_R8, lens_.width(), lens_.height(), 0, 1, "doubt");
+  while (views_->paint() != ViewPaint::doubt) views_->next_paint();
+  std::vector<cv::Mat> seen;
+  for (const int levels : {3, 20, 100, 255}) {
+    const auto value = static_cast<std::uint8_t>(levels);
+    glClearTexImage(doubt_.name(), 0, GL_RED, GL_UNSIGNED_BYTE, &value);
+    seen.push_back(shown(ViewMode::predicted)(cv::Rect(110, 110, 80, 60)).clone());
+  }
+  const auto hue = [](const cv::Mat& picture) { return cv::mean(picture); };
+  EXPECT_GT(hue(seen[0])[0], hue(seen[0])[2]) << "blue: little";
+  EXPECT_GT(hue(seen[1])[1], hue(seen[1])[0]) << "yellow";
+  EXPECT_GT(hue(seen[2])[2], 1.5 * hue(seen[2])[0]) << "red";
+  EXPECT_GT(hue(seen[3])[0], hue(seen[3])[1]) << "violet: not known";
+  EXPECT_TRUE(views_->shows_doubt());
+  shown(ViewMode::two_eyes);
+  EXPECT_FALSE(views_->shows_doubt());
+  EXPECT_THAT(views_->words(true), testing::HasSubstr("one eye only"));
 }
 
 TEST_F(SeatViewsPictures, WindowsOfAllSizesAreBorne) {
