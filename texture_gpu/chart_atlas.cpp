@@ -63,11 +63,12 @@ std::uint32_t ChartAtlas::page_capacity(std::uint64_t memory_bytes) {
 }
 
 std::uint64_t ChartAtlas::bytes_in_use() const {
-  return colours_.used() * atlas::kColourBytes + heights_.used() * atlas::kHeightBytes;
+  return Slots{colours_.used(), heights_.used()}.bytes();
 }
 
-std::uint64_t ChartAtlas::bytes_reserved() const {
-  return colours_.capacity() * atlas::kColourBytes + heights_.capacity() * atlas::kHeightBytes;
+void ChartAtlas::limit(const Slots& slots) {
+  colours_.limit(slots.colours);
+  heights_.limit(slots.heights);
 }
 
 Eigen::Vector2i ChartAtlas::wanted_level(int index) const {
@@ -232,6 +233,17 @@ std::size_t ChartAtlas::slots_needed(std::span<const std::uint32_t> masks) const
   for (std::size_t i = 0; i < records_.size(); ++i)
     if (masks[i] || needs_relevel(charts_[records_[i].chart], page_index(records_[i]))) ++count;
   return count;
+}
+
+ChartAtlas::Slots ChartAtlas::reach(std::span<const std::uint32_t> masks) const {
+  std::size_t heights = 0;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const AtlasChart& chart = charts_[records_[i].chart];
+    const int page = page_index(records_[i]);
+    const bool placed = chart.page[static_cast<std::size_t>(page)].height != atlas::kNoSlot;
+    if (!placed && (masks[i] || needs_relevel(chart, page))) ++heights;
+  }
+  return {colours_.reach(slots_needed(masks)), heights_.reach(heights)};
 }
 
 /// Frees height slots until `needed` are there, by evicting pages that image `image` does not see,

@@ -91,7 +91,15 @@ class ChartAtlas {
   std::uint32_t colour_capacity() const { return colours_.capacity(); }
   std::uint32_t height_capacity() const { return heights_.capacity(); }
   std::uint64_t bytes_in_use() const;
-  std::uint64_t bytes_reserved() const;
+
+  struct Slots {
+    std::uint32_t colours = 0, heights = 0;
+    std::uint64_t bytes() const { return colours * atlas::kColourBytes + heights * atlas::kHeightBytes; }
+  };
+  /// All places that allocate() may give for these masks lie below.
+  Slots reach(std::span<const std::uint32_t> masks) const;
+  /// The GPU cannot hold more: from now on the memory policy makes do with so many places.
+  void limit(const Slots& slots);
 
   /// Chooses each chart's resolution for the views of image number `image` and rasterises what
   /// changed. Returns the pages that may be seen, in table order.

@@ -21,7 +21,7 @@ struct ExtractionReport {
   std::size_t pages = 0;             ///< pages written; the thesis' pipeline: polygons
   std::size_t tiles = 0;             ///< tiles of 64 texels written
   std::uint64_t bytes_in_use = 0;    ///< of all textures; the atlas counts both generations
-  std::uint64_t bytes_reserved = 0;  ///< the budget, at most TextureOptions::memory_bytes
+  std::uint64_t bytes_reserved = 0;  ///< held for it, at most TextureOptions::memory_bytes
   std::uint64_t texels_resident = 0;
   ChartAtlas::Policy policy;
 };

@@ -13,8 +13,9 @@ struct TextureOptions {
   /// Most texels along a side of a flat polygon, or of a chart where that is longer (thesis, r_max in
   /// eqs. 4.28/4.29); 0: only memory limits.
   int max_texture = 0;
-  /// All that the atlas may hold at any instant, both generations counted. Reserved at the start,
-  /// so that a session does not run out of memory in the middle.
+  /// All that the atlas may hold, both generations counted. It is reserved as pages are seen, half as much again each
+  /// time; while a generation made before is still shown, what was reserved then is held beside it. Where the GPU has
+  /// no more, the atlas makes do with what it has.
   std::uint64_t memory_bytes = std::uint64_t{1024} << 20;
   /// Pixels on the far side of a depth discontinuity that are not trusted, besides the outermost one
   /// on its near side; follows the registration's uncertainty. 0: all are trusted. Range 0 .. 32.

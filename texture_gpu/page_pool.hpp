@@ -1,6 +1,7 @@
-// Hands out numbered slots of a fixed store.
+// Hands out numbered slots of a store.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +17,13 @@ class SlotPool {
   std::uint32_t capacity() const { return capacity_; }
   std::uint32_t free() const { return capacity_ - next_ + static_cast<std::uint32_t>(returned_.size()); }
   std::uint32_t used() const { return capacity_ - free(); }
+  /// All slots taken so far, and those that the next `more` will be, lie below this one.
+  std::uint32_t reach(std::size_t more) const {
+    return next_ + static_cast<std::uint32_t>(
+                       std::min<std::size_t>(more - std::min(more, returned_.size()), capacity_ - next_));
+  }
+  /// From now on there are no more than `capacity`, or than were taken already.
+  void limit(std::uint32_t capacity) { capacity_ = std::clamp(capacity, next_, capacity_); }
 
   /// A slot that nobody holds; kNoSlot where none is free.
   std::uint32_t take() {

@@ -117,7 +117,7 @@ ExtractionReport TextureCore::extract(const PosedFrame& frame, LatestTextures& l
   report.pages = allocation.jobs.size();
   report.tiles = extract_.tiles();
   report.bytes_in_use = atlas_.bytes_in_use();
-  report.bytes_reserved = atlas_.bytes_reserved();
+  report.bytes_reserved = store_.held().bytes();
   report.texels_resident = std::uint64_t{atlas_.resident_pages()} * atlas::kPage * atlas::kPage;
   report.policy = atlas_.policy();
   return report;
@@ -188,6 +188,7 @@ bool TextureCore::allocate(ChartAtlas::Allocation& out) {
     survey_.set_pages(records_);
     const auto masks = survey_.cull(inputs_, charts_, options_.depth_tolerance);
     if (!wait_for_slots(atlas_.slots_needed(masks))) return false;
+    if (!store_.hold(atlas_.reach(masks))) atlas_.limit(store_.held());
     out = atlas_.allocate(masks, image_);
     if (out.fits) break;
   }
@@ -273,6 +274,7 @@ void TextureCore::reclaim() {
   while (!retired_.empty() && retired_.front().generation->leases.load(std::memory_order_acquire) == 0) {
     atlas_.give_back_colours(retired_.front().slots);
     pool_.push_back(std::move(retired_.front().generation));
+    pool_.back()->colours.reset();  // an atlas that was outgrown goes with the last that shows it
     retired_.pop_front();
   }
 }
@@ -291,6 +293,7 @@ TextureCore::Generation TextureCore::next_generation() {
   if (!pool_.empty()) {
     Generation reused = std::move(pool_.back());
     pool_.pop_back();
+    reused->colours = store_.colours;
     return reused;
   }
   auto fresh = std::make_shared<PublishedTextures>();

@@ -106,6 +106,33 @@ TEST(ChartAtlas, ResolutionRisesWithACloserViewAndStaysWhenItLeaves) {
   EXPECT_EQ(levels(), near);
 }
 
+TEST(ChartAtlas, TellsHowFarPlacesWillReach) {
+  Atlas atlas;
+  for (int image = 0; image < 6; ++image) {
+    const auto records = atlas->plan(atlas.view(closer(1 - 0.1 * image)), image);
+    const std::vector<std::uint32_t> masks(records.size(), 0x55);
+    const ChartAtlas::Slots reach = atlas->reach(masks);
+    const auto out = atlas->allocate(masks, image);
+    ASSERT_TRUE(out.fits);
+    for (const PageJob& job : out.jobs) {
+      EXPECT_LT(job.new_slot, reach.colours);
+      EXPECT_LT(job.height_slot, reach.heights);
+    }
+    atlas->commit();
+    atlas->give_back_colours(out.retired);
+  }
+}
+
+TEST(ChartAtlas, MakesDoWithWhatTheGpuHas) {
+  Atlas atlas;
+  atlas.take(usual_view());
+  const std::uint32_t pages = atlas->resident_pages();
+  atlas->limit({2 * pages, pages});
+  atlas.take(closer(0.4));  // nearer: four times as many texels, were there room
+  EXPECT_LE(atlas->resident_pages(), pages);
+  EXPECT_GT(atlas->policy().steps_down, 0);
+}
+
 TEST(ChartAtlas, DensityIsLimitedAndLargestSizeIsKept) {
   Atlas free;
   free.take(usual_view());

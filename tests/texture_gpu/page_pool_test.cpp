@@ -26,6 +26,26 @@ TEST(SlotPool, CountsWhatComesBackAndHandsItOutAgain) {
   EXPECT_EQ(pool.take(), atlas::kNoSlot);
 }
 
+TEST(SlotPool, KnowsHowFarTheNextSlotsReachAndKeepsToALimit) {
+  SlotPool pool(10);
+  for (int i = 0; i < 4; ++i) pool.take();
+  EXPECT_EQ(pool.reach(0), 4u);
+  EXPECT_EQ(pool.reach(3), 7u);
+  pool.give_back(1), pool.give_back(2);
+  EXPECT_EQ(pool.reach(3), 5u) << "two of three come from those that came back";
+  EXPECT_EQ(pool.reach(100), 10u);
+  const std::uint32_t reach = pool.reach(3);
+  for (int i = 0; i < 3; ++i) EXPECT_LT(pool.take(), reach);
+
+  pool.limit(7);
+  EXPECT_EQ(pool.free(), 2u);
+  pool.limit(9);
+  EXPECT_EQ(pool.capacity(), 7u) << "what is not there does not come back";
+  pool.limit(0);
+  EXPECT_EQ(pool.capacity(), 5u) << "slots that were taken stay";
+  EXPECT_EQ(pool.take(), atlas::kNoSlot);
+}
+
 TEST(AtlasLayout, APageIsCountedWithItsPyramid) {
   std::uint64_t texels = 0;
   for (int level = 0, side = atlas::kPage; level < atlas::kLevels; ++level, side /= 2)

@@ -65,6 +65,8 @@ const std::vector<std::uint32_t>& PassBench::cull() {
 }
 
 const ChartAtlas::Allocation& PassBench::allocate() {
+  if (!store.hold(atlas.reach(masks))) throw std::runtime_error("the atlas could not grow");
+  next->colours = store.colours;
   allocation = atlas.allocate(masks, image);
   if (!allocation.fits) throw std::logic_error("the bench's atlas is too small");
   std::vector<std::uint32_t> table;
