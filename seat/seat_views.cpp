@@ -6,10 +6,10 @@
 namespace foresight {
 namespace {
 
-constexpr int kGap = 4;             // px around pictures
-constexpr int kInset = 4;           // share of the width that the newest image takes in its corner
-constexpr double kLookedAt = 0.8;   // m before the operator's camera: what an observer looks at first
-constexpr double kBesideRad = 0.7;  // to his right
+constexpr int kBetweenPictures = 4;  // px around pictures
+constexpr int kInset = 4;            // share of the width that the newest image takes in its corner
+constexpr double kObservedAt = 0.8;  // m before the operator's camera: what an observer looks at first
+constexpr double kBesideRad = 0.7;   // to his right
 constexpr double kAboveRad = 0.5;
 constexpr double kObserverDistance = 1.9;  // m
 constexpr double kObserverPixels = 1.3;    // of the camera's, at most: who looks on needs no more
@@ -18,15 +18,15 @@ ViewTarget corner_of(const ViewTarget& place, int width, int height) {
   ViewTarget out = place;
   out.width = std::max(1, place.width / kInset);
   out.height = std::max(1, out.width * height / std::max(1, width));
-  out.x = place.x + place.width - out.width - kGap;
-  out.y = place.y + place.height - out.height - kGap;  // windows begin at the bottom
+  out.x = place.x + place.width - out.width - kBetweenPictures;
+  out.y = place.y + place.height - out.height - kBetweenPictures;  // windows begin at the bottom
   return out;
 }
 
-Eye beside(const Pose& T_world_operator) {
+Eye eye_beside(const Pose& T_world_operator) {
   const Eigen::Vector3d forward = T_world_operator.linear().col(2);
   Eye out;
-  out.target = T_world_operator * Eigen::Vector3d(0, 0, kLookedAt);
+  out.target = T_world_operator * Eigen::Vector3d(0, 0, kObservedAt);
   out.azimuth = std::atan2(-forward.y(), -forward.x()) + kBesideRad;
   out.elevation = kAboveRad;
   out.distance = kObserverDistance;
@@ -143,7 +143,7 @@ void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTar
 // The operator's eye with more pixels, or painted.
 void SeatViews::draw_again(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms) {
   if (mode_ == ViewMode::newest) return;
-  const ViewTarget part = mode_ == ViewMode::both ? column(whole, 1, 2, kGap) : whole;
+  const ViewTarget part = mode_ == ViewMode::both ? column(whole, 1, 2, kBetweenPictures) : whole;
   size_.choose(part.width, part.height, drawing_ms);
   if (!size_.lens() && paint_of_views() == ViewPaint::colours) return;
   PredictedView& view = view_through(again_, session, size_.lens().value_or(setup_.left));
@@ -166,7 +166,7 @@ std::vector<CameraPanel> SeatViews::panels() {
 }
 
 void SeatViews::draw_observer(ViewSession& session, const ViewPlace& place, const ViewTarget& whole) {
-  if (!eye_) eye_ = beside(place.T_world_camera);
+  if (!eye_) eye_ = eye_beside(place.T_world_camera);
   const double pixels = static_cast<double>(whole.width) * whole.height,
                most = kObserverPixels * setup_.left.width() * setup_.left.height();
   const double scale = std::min(1.0, std::sqrt(most / std::max(1.0, pixels)));
@@ -261,7 +261,7 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
                                              const SeatPicture& what) {
   const ViewMode mode = mode_now(what.trusted);
   // What is not to be trusted has a frame around it, of what is behind the pictures.
-  const ViewTarget place = what.trusted ? whole : column(whole, 0, 1, kGap);
+  const ViewTarget place = what.trusted ? whole : column(whole, 0, 1, kBetweenPictures);
   std::vector<Part> parts{{whole}};
   std::vector<HudLabel>& labels = parts.front().labels;
   const auto mixed_eyes = [&](PictureMix::Way way) {
@@ -273,10 +273,10 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
       put(predicted(session, what), place, what, labels, whole);
       put_inset(place);
       break;
-    case ViewMode::newest: put(newest(0), column(whole, 0, 1, kGap), what, labels, whole); break;
+    case ViewMode::newest: put(newest(0), column(whole, 0, 1, kBetweenPictures), what, labels, whole); break;
     case ViewMode::both:
-      put(newest(0), column(whole, 0, 2, kGap), what, labels, whole);
-      put(predicted(session, what), column(whole, 1, 2, kGap), what, labels, whole);
+      put(newest(0), column(whole, 0, 2, kBetweenPictures), what, labels, whole);
+      put(predicted(session, what), column(whole, 1, 2, kBetweenPictures), what, labels, whole);
       break;
     case ViewMode::split:
       put_mixed(newest(0), predicted(session, what), place, whole, PictureMix::Way::split, what, labels);
