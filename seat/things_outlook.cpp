@@ -1,6 +1,9 @@
 #include "seat/things_outlook.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "common/real_time.hpp"
 #include "rig/rig_scene.hpp"
@@ -105,6 +108,12 @@ void ThingsOutlook::place(SceneState& state) const {
   }
 }
 
+std::vector<std::string> ThingsOutlook::names() const {
+  std::vector<std::string> out;
+  for (const KnownThing& thing : options_.things) out.push_back(thing.node);
+  return out;
+}
+
 std::vector<std::string> ThingsOutlook::lines() const {
   std::vector<std::string> out;
   for (std::size_t i = 0; future_ && i < future_->size(); ++i) {
@@ -113,7 +122,7 @@ std::vector<std::string> ThingsOutlook::lines() const {
     if (thing.status == ThingStatus::unsure)
       out.push_back(name + (std::isinf(thing.sigma) ? ": not where it was, not found" : ": images show it elsewhere"));
     else if (thing.held)
-      out.push_back(name + ": in the hand");
+      out.push_back(fmt::format("{}: in the hand, within {:.0f} mm", name, std::ceil(2e3 * thing.sigma)));
   }
   return out;
 }

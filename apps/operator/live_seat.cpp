@@ -132,6 +132,7 @@ class LiveSeat {
     out.log = [](const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); };
     out.more_lines = [this] {
       std::vector<SeatLine> lines = driver_.lines();
+      for (std::string& words : things_.lines()) lines.push_back({"things", std::move(words), "", Urgency::fine});
       if (head_)
         for (SeatLine& line : head_->lines()) lines.push_back(std::move(line));
       return lines;

@@ -16,8 +16,8 @@ inline const std::vector<std::string> kBricks = {"brick_red", "brick_blue"};
 class PicturedRoom {
  public:
   explicit PicturedRoom(int width)
-      : live_(std::make_shared<const LiveLab>(LiveLab::Options{.texel = 0.001, .task = true, .loose = kBricks})),
-        light_(live_->lab(), 4),
+      : live_(shared_lab()),
+        light_(shared_light()),
         model_(std::make_shared<const SceneModel>(model_of(live_->lab(), live_->modelled_rest()))) {
     SynthOptions options;
     options.width = width;
@@ -56,8 +56,19 @@ class PicturedRoom {
     return out;
   }
 
+  // Building and lighting the lab is what takes long, and does not depend on the pictures' size.
+  static const std::shared_ptr<const LiveLab>& shared_lab() {
+    static const auto built =
+        std::make_shared<const LiveLab>(LiveLab::Options{.texel = 0.001, .task = true, .loose = kBricks});
+    return built;
+  }
+  static const LightMap& shared_light() {
+    static const LightMap built(shared_lab()->lab(), 4);
+    return built;
+  }
+
   std::shared_ptr<const LiveLab> live_;
-  LightMap light_;
+  const LightMap& light_;
   std::shared_ptr<const SceneModel> model_;
 };
 
