@@ -80,6 +80,22 @@ ContactGuard::ContactGuard(const Rig& rig, const HandOptions& hand, std::shared_
   sliding_.emplace(model_, kinematics_, urdf_joints(rig), anywhere, T_world_base_, gate_.get(), rig.name);
 }
 
+void ContactGuard::may_push(std::span<const std::string> nodes) {
+  loose_.clear();
+  for (std::size_t k = 0; k < model_.parts(); ++k)
+    if (std::ranges::find(nodes, model_.part_name(k)) != nodes.end()) loose_.push_back(k);
+  tell_loose();
+}
+
+// What is in the hand is part of it.
+void ContactGuard::tell_loose() {
+  std::vector<std::size_t> parts = loose_;
+  if (grip_)
+    std::erase_if(parts, [&](std::size_t k) { return model_.part_name(k) == scene_->nodes()[grip_->node].name; });
+  sliding_->may_push(std::move(parts));
+  still_.reset();
+}
+
 void ContactGuard::scene_stands(std::span<const Pose> T_world_node) {
   const bool same =
       std::ranges::equal(given_, T_world_node, [](const Pose& a, const Pose& b) { return a.matrix() == b.matrix(); });
@@ -122,6 +138,7 @@ std::vector<double> ContactGuard::heed_grip(const JointValues& positions) {
   left_.push_back({grip_->node, given, T_world_of(grip_->node)});
   model_.detach(grip_->node);
   grip_.reset();
+  tell_loose();
   return out;
 }
 
@@ -157,6 +174,7 @@ void ContactGuard::look_for_grip(const JointValues& asked) {
     if (!node) return;
     model_.attach(*node, tool_, model_.links().T_world_link(tool_).inverse() * T_world_of(*node));
     grip_ = Grip{*node, i, last_.positions[i], closes};
+    tell_loose();
     return;
   }
 }

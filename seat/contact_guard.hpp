@@ -4,6 +4,7 @@
 //
 // A thing between jaws that are pressed together is carried: it is part of the robot until they open, and then thought
 // to stay where it was let go of, unless the scene moves it. Jaws themselves are not held back: they have to press.
+// Things that are known to be loose are pushed aside, as far as the scene then shows them give way.
 #pragma once
 
 #include <memory>
@@ -42,6 +43,8 @@ class ContactGuard final : public HandGuard {
   /// ContactModel does.
   ContactGuard(const Rig& rig, const HandOptions& hand, std::shared_ptr<const SceneModel> scene);
 
+  /// These nodes of the scene are loose; names that it lacks are passed over.
+  void may_push(std::span<const std::string> nodes);
   /// Nodes of the scene stand there from now on; none: at rest.
   void scene_stands(std::span<const Pose> T_world_node);
 
@@ -70,6 +73,7 @@ class ContactGuard final : public HandGuard {
   };
   void stand_at(const JointValues& from);
   std::vector<double> heed_grip(const JointValues& positions);
+  void tell_loose();
   void look_for_grip(const JointValues& asked);
   std::optional<std::size_t> between_jaws() const;
   Pose T_world_of(std::size_t node) const;
@@ -86,6 +90,7 @@ class ContactGuard final : public HandGuard {
   std::vector<std::string> jaw_names_;  // of links that the grippers move
   std::vector<Pose> given_;             // T_world_node; empty: at rest
   std::optional<SlidingHand> sliding_;
+  std::vector<std::size_t> loose_;  // parts of the model
   std::optional<Grip> grip_;
   std::vector<LeftThere> left_;
   HandStep last_;

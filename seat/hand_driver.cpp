@@ -59,6 +59,11 @@ void HandDriver::interrupt(const char* trouble, const char* cure) {
   interruption_->cure = cure;
 }
 
+void HandDriver::may_push(std::span<const std::string> nodes) {
+  const std::lock_guard lock(mutex_);
+  if (guard_) guard_->may_push(nodes);
+}
+
 void HandDriver::scene_stands(std::span<const Pose> T_world_node) {
   const std::lock_guard lock(mutex_);
   if (guard_) guard_->scene_stands(T_world_node);

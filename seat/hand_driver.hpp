@@ -34,6 +34,8 @@ class HandDriver final : public SeatDriver {
   void look_within(const std::optional<Pose>& T_world_space);
   /// The robot has to be driven anew: whoever holds a switch lets go of it first. Static text.
   void interrupt(const char* trouble, const char* cure);
+  /// Nodes of the scene that the hand may push aside.
+  void may_push(std::span<const std::string> nodes);
   /// Where the nodes of the scene are shown.
   void scene_stands(std::span<const Pose> T_world_node);
   void ask(LineRequest request);

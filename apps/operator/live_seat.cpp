@@ -76,6 +76,7 @@ class LiveSeat {
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
     source_.show_things(&things_);
+    driver_.may_push(things_.names());
   }
 
   int run() {

@@ -21,7 +21,8 @@ constexpr double kGateNear = 0.03;      // m of margin within which the gate's c
 constexpr double kUnmoved = 1e-5;       // rad or m that a step changes once the tool is as near as it gets
 constexpr double kDamping = 1e-4;       // of bounded_step, where 1 rad of the joints moves the tool by about 1
 constexpr double kThere = 1e-4;         // m and rad from the hand that need no reason
-constexpr double kTurnLess = 4;  // by how much more turning weighs than in the open: tools do not twist to get deeper
+constexpr double kTurnLess = 4;    // by how much more turning weighs than in the open: tools do not twist to get deeper
+constexpr double kSideways = 0.5;  // of what is pushed: the most that the way out may go up or down
 constexpr double kGhostAhead = 0.002, kGhostTurned = 0.0175;  // from which on the ghost is shown
 
 GhostReason ghost_reason(FollowReason reason) {
@@ -69,10 +70,11 @@ const char* name_of(GhostReason reason) noexcept {
 
 // What is near where the joints are.
 struct SlidingHand::Look {
-  double within = 0;  // all couples that are nearer are in `near`
+  double within = 0;  // all couples that are nearer are in `near`, but those that give way
   std::vector<Nearness> near;
   std::map<std::size_t, Penetration> deep;  // of those that touch
   std::vector<double> margins;              // the gate's
+  std::vector<Nearness> pushed;             // what gives way, the nearest first
 
   double distance(std::size_t couple) const {
     const auto found = std::ranges::find(near, couple, &Nearness::couple);
@@ -125,11 +127,21 @@ SlidingHand::Look SlidingHand::look(double within) {
   now.near = model_.near(now.within);
   for (const Nearness& n : now.near)
     if (n.distance <= 0) now.deep[n.couple] = model_.penetration(n.couple);
+  for (const Nearness& n : now.near)
+    if (gives_way(n, now)) now.pushed.push_back(n);
+  if (!now.pushed.empty()) std::erase_if(now.near, [&](const Nearness& n) { return gives_way(n, now); });
   if (gate_) {
     now.margins.resize(gate_->couples());
     gate_->margins(positions_, now.margins);
   }
   return now;
+}
+
+bool SlidingHand::gives_way(const Nearness& near, const Look& now) const {
+  if (!pushes_ || std::ranges::find(pushed_, model_.parts_of(near.couple)[1]) == pushed_.end()) return false;
+  const Eigen::Vector3d out = now.direction(near);
+  if (out.isZero() || std::abs(out.z()) > kSideways) return false;
+  return near.distance > 0 || now.deep.at(near.couple).depth <= kPushDepth;
 }
 
 // What came to the arm may touch it as deep as it does; what the arm goes into may not, by no small step either.
@@ -140,7 +152,8 @@ void SlidingHand::settle_depths(Look& now, std::span<const Pose> T_world_node) {
   std::map<std::size_t, double> depths;
   for (const auto& [couple, deep] : now.deep) {
     const auto before = depths_.find(couple);
-    depths[couple] = before == depths_.end() ? deep.depth : std::min(before->second, deep.depth);
+    const bool pushed = std::ranges::find(pushed_, model_.parts_of(couple)[1]) != pushed_.end();
+    depths[couple] = pushed || before == depths_.end() ? deep.depth : std::min(before->second, deep.depth);
   }
   depths_ = std::move(depths);
 }
@@ -274,6 +287,17 @@ void SlidingHand::lean(const Look& now, std::span<const ClosedWay> ways) {
   words_ = gate_->message(static_cast<std::size_t>(tightest - now.margins.begin()));
 }
 
+// What gives way no more.
+void SlidingHand::lean_on_pushed(const Look& now) {
+  for (const Nearness& n : now.pushed) {
+    if (n.distance > 0 || now.deep.at(n.couple).depth < 0.7 * kPushDepth) continue;
+    leans_ = GhostReason::contact;
+    out_ = now.direction(n);
+    words_ = touch_words(n.couple);
+    return;
+  }
+}
+
 void SlidingHand::slide(const Pose& hand, double dt, const JointVector& start, Look& now) {
   const ArmChain& chain = kinematics_.chain();
   const DescentGoal goal{hand, kinematics_.position_only(), kTurnLess * kinematics_.length()};
@@ -380,12 +404,17 @@ HandStep SlidingHand::step(const Pose& hand, std::span<const double> others, std
   for (const std::size_t i : arm_) change[i] = 0;
   const std::vector<double> way = spread(follow.q - start);
   // Nothing farther than the most that can be gone matters before the end.
-  Look now = look(2 * kClose + model_.farthest(change) + model_.farthest(way));
+  const double within = 2 * kClose + model_.farthest(change) + model_.farthest(way);
+  pushes_ = false;
+  Look now = look(within);
   settle_depths(now, T_world_node);
   advance(change, now);
+  pushes_ = !pushed_.empty();
+  if (pushes_) now = look(within);
   GhostReason reason = ghost_reason(follow.reason);
   if (!advance(way, now)) {
     slide(hand, dt, start, now);
+    if (leans_ == GhostReason::none) lean_on_pushed(now);
     if (leans_ == GhostReason::none) reason = GhostReason::joint_speed;
   } else {  // without what rounding left of it
     for (std::size_t i = 0; i < arm_.size(); ++i) positions_[arm_[i]] = follow.q[static_cast<Eigen::Index>(i)];
@@ -404,6 +433,8 @@ HandStep SlidingHand::go_to(std::span<const double> positions, std::span<const P
   leans_ = GhostReason::none;
   std::vector<double> change(positions.begin(), positions.end());
   for (std::size_t i = 0; i < change.size(); ++i) change[i] -= positions_[i];
+  const JointVector arm_change = of_arm(change);
+  pushes_ = !pushed_.empty() && spread(arm_change) == change;  // jaws stay as they are
   Look now = look(2 * kClose + model_.farthest(change));
   settle_depths(now, T_world_node);
   const bool all = advance(change, now);
@@ -427,7 +458,7 @@ HandStep SlidingHand::finish(Look& now) {
   out.valid = true;
   out.positions = positions_;
   out.T_base_tip = follower_.hand();
-  out.near = now.within < kContactReach ? model_.near(kContactReach) : std::move(now.near);
+  out.near = now.within < kContactReach || !now.pushed.empty() ? model_.near(kContactReach) : std::move(now.near);
   out.parts = parts_;
   return out;
 }

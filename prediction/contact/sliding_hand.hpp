@@ -26,6 +26,7 @@ namespace foresight {
 
 inline constexpr double kSkin = 0.001;        ///< m that the shown arm keeps from what it touches
 inline constexpr double kLeastSkin = 0.0002;  ///< m that it never goes below
+inline constexpr double kPushDepth = 0.015;   ///< m that it may be ahead of what it pushes
 
 /// What keeps the shown hand from the operator's.
 enum class GhostReason {
@@ -84,6 +85,10 @@ class SlidingHand {
   /// One picture in which all joints go straight to `positions`, as far as nothing is in their way: nothing slides. How
   /// fast they go is up to who asks. The ghost is the tool as it would be there.
   HandStep go_to(std::span<const double> positions, std::span<const Pose> T_world_node);
+  /// These parts of the model, of the scene, are loose: the arm pushes them aside. It may go into them from the side as
+  /// deep as kPushDepth, as they are shown a moment later than what is asked for now; what gives way no more, as
+  /// something stands behind it, stops it there. Pressed from above or lifted, they are as firm as anything.
+  void may_push(std::vector<std::size_t> parts) { pushed_ = std::move(parts); }
   /// All joints are there instead: something else moved them. `positions` as `start`, the arm's put within its limits;
   /// false where there is not one finite number for each joint: then nothing changes.
   bool stand_at(std::span<const double> positions);
@@ -94,6 +99,7 @@ class SlidingHand {
   struct Look;
 
   Look look(double within);
+  bool gives_way(const Nearness& near, const Look& now) const;
   void settle_depths(Look& now, std::span<const Pose> T_world_node);
   double allowed(const Look& now, std::span<const double> change, double drift) const;
   bool go(const std::vector<double>& change, Look& now);
@@ -103,6 +109,7 @@ class SlidingHand {
   void slide(const Pose& hand, double dt, const JointVector& start, Look& now);
   std::vector<ClosedWay> closed_ways(const Look& now);
   void lean(const Look& now, std::span<const ClosedWay> ways);
+  void lean_on_pushed(const Look& now);
   void blame(const Look& now);
   std::string touch_words(std::size_t couple) const;
   void settle_arm();
@@ -120,6 +127,8 @@ class SlidingHand {
   PathFollower follower_;
   std::vector<std::size_t> arm_;  // index of each of the arm's joints
   std::vector<double> positions_;
+  std::vector<std::size_t> pushed_;       // parts that are loose
+  bool pushes_ = false;                   // it is the arm that moves: jaws press instead
   std::map<std::size_t, double> depths_;  // that couples which touched already may have
   std::vector<Pose> nodes_;               // as of the last picture
   std::size_t arrangement_ = 0;

@@ -213,6 +213,80 @@ TEST_F(PressingHand, WhereTheSceneIsNotKnownNothingMoves) {
   EXPECT_NE(world_.hand().last().positions, before) << "it goes on";
 }
 
+/// A closed hand that starts at a place by the brick and is asked to go on; nothing else moves.
+class HandByBrick {
+ public:
+  explicit HandByBrick(bool loose) : guard_(lab_rig(), hand_, live_.model()), kinematics_(*hand_.arm) {
+    const std::string names[] = {"brick_red", "no such thing"};
+    if (loose) guard_.may_push(names);
+    const std::vector<ToolStep> steps = pick_and_place(lab_rig(), live_, "brick_red", "tray");
+    const auto close = std::ranges::find_if(steps.begin() + 1, steps.end(),
+                                            [](const ToolStep& s) { return s.what == ToolStep::What::gripper; });
+    T_base_brick_ = lab_rig().T_world_robot.inverse() * (close - 1)->T_world_tool;
+    q_[7] = 0.004;
+  }
+  /// `by`: from where it would grasp the brick, along the tool's axes.
+  void stand(const Vector3d& by) {
+    const JointVector arm = kinematics_.solve(at(by)).q;
+    for (std::size_t i = 0; i < 7; ++i) q_[hand_.arm_joints[i]] = arm[static_cast<Eigen::Index>(i)];
+  }
+  /// Where it gets when it is drawn to there, likewise.
+  Vector3d go(const Vector3d& to) {
+    FollowStep out;
+    for (int i = 0; i < 150; ++i) {
+      out = guard_.step(q_, at(to), 0.01);
+      for (std::size_t k = 0; k < 7; ++k) q_[hand_.arm_joints[k]] = out.q[static_cast<Eigen::Index>(k)];
+    }
+    return T_base_brick_.inverse() * out.T_base_tip.translation();
+  }
+  void move_brick(const Vector3d& by) {
+    std::vector<Pose> nodes = live_.model()->rest_poses();
+    const auto brick = static_cast<std::size_t>(*live_.model()->find("brick_red"));
+    nodes[brick].translation() += (lab_rig().T_world_robot * T_base_brick_).linear() * by;
+    guard_.scene_stands(nodes);
+  }
+  const ContactGuard& guard() const { return guard_; }
+
+ private:
+  Pose at(const Vector3d& by) const {
+    Pose out = T_base_brick_;
+    out.translation() += T_base_brick_.linear() * by;
+    return out;
+  }
+  const LiveScene live_ = live_scene_of(lab_rig(), true, std::nullopt, true);
+  const HandOptions hand_ = hand_options(lab_rig());
+  ContactGuard guard_;
+  InverseKinematics kinematics_;
+  Pose T_base_brick_;
+  JointValues q_{};
+};
+
+TEST(ContactGuard, WhatIsLooseIsPushedAsideAsFarAsItGivesWay) {
+  const Vector3d beside(-0.07, 0, 0), through(0.05, 0, 0);
+  HandByBrick firm(false), loose(true);
+  firm.stand(beside);
+  loose.stand(beside);
+  const double stopped = firm.go(through).x();
+  EXPECT_THAT(firm.guard().sight().ghost.words, testing::HasSubstr("touches brick_red"));
+  EXPECT_LT(stopped, -0.02);
+  const double pushes = loose.go(through).x();
+  EXPECT_NEAR(pushes - stopped, kPushDepth, 0.004) << "ahead of what the scene shows";
+  EXPECT_THAT(loose.guard().sight().ghost.words, testing::HasSubstr("touches brick_red")) << "it does not give way";
+  loose.move_brick({0.03, 0, 0});
+  EXPECT_NEAR(loose.go(through).x() - pushes, 0.03, 0.004);
+  EXPECT_LT(loose.go(beside).x(), beside.x() + 1e-3) << "and back";
+}
+
+TEST(ContactGuard, WhatIsLooseIsNotPressedOntoItsTable) {
+  const Vector3d above(0, 0, -0.06), down(0, 0, 0.02);
+  HandByBrick firm(false), loose(true);
+  firm.stand(above);
+  loose.stand(above);
+  const double stopped = firm.go(down).z();
+  EXPECT_LT(stopped, -0.005);
+  EXPECT_NEAR(loose.go(down).z(), stopped, 5e-4);
+}
+
 // A brick between jaws that press: it goes along, and stays where it is let go of.
 TEST(ContactGuard, WhatTheJawsHoldIsCarried) {
   const LiveScene live = live_scene_of(lab_rig(), true, std::nullopt, true);
