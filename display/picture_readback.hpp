@@ -15,7 +15,7 @@ namespace foresight {
 struct RememberedView {
   RobotTime instant;
   cv::Mat picture;  ///< CV_8UC4, BGRA as PredictedView has it
-  cv::Mat doubt;    ///< CV_8UC1 of the same size (trust_pass.hpp)
+  cv::Mat doubt;    ///< CV_8UC1 of the same size (doubt_kinds.hpp)
 };
 
 /// Belongs to one context.

@@ -1,4 +1,4 @@
-// How far each pixel of a drawn view can be trusted, and the view with all else hatched. A pixel's point goes back with
+// Of what kind each pixel of a drawn view is, of those that can be trusted more or less, and the view with all else hatched. A pixel's point goes back with
 // its node to where it was when each of the last images was taken; the newest one that saw it says what is known of it:
 //
 //   view --depth--> point --moves with its node--> image 0, 1, 2 ... newest first: outside, hidden or seen
@@ -22,14 +22,13 @@ layout(binding = 0, r8) uniform writeonly image2D doubt;
 layout(binding = 1, rgba8) uniform writeonly image2D marked;
 uniform int layer_of[FRAMES];  // each image's first
 uniform int frame_count, node_count;
-uniform float limit;  // of doubt, 0 .. 1
+uniform uint exact[8];  // a bit for each kind of pixel (doubt_kinds.hpp): it counts as exact
 uniform bool has_compared;
 
 const float kUnconfirmed = 1.0;
-const float kMostDoubt = 254.0 / 255.0;
-const float kOwnPx = 0.7;        // how exactly images, lenses and model agree where nothing is predicted
 const float kSameSurface = 0.02;  // share of the distance within which a surface is the one that was seen
-const float kTurned = 0.5;       // share of a part's brightness that its turning by a radian may change
+const float kTurned = 0.5;         // share of a part's brightness that its turning by a radian may change
+const float kWrong = 10.0 / 255.0;  // levels by which light on a part may change until it has to be seen anew
 
 bool ray_through(ivec2 pixel, out vec3 ray) {
   if (lens_model(camera) == 0) {
@@ -60,17 +59,20 @@ int look(int frame, vec3 p) {
   return farthest > inverse_z * (1.0 + kSameSurface) ? kHidden : kSeen;
 }
 
-// Levels per pixel that the view changes by around here.
-float contrast_at(ivec2 pixel) {
-  vec3 low = vec3(1.0), high = vec3(0.0);
+float grey(vec3 colour) {
+  return dot(colour, vec3(0.299, 0.587, 0.114));
+}
+
+// Grey levels by which the pixels around differ from this one.
+float contrast_at(ivec2 pixel, float here) {
+  float sum = 0.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
       vec3 c = texelFetch(shown, clamp(pixel + ivec2(x, y), ivec2(0), ivec2(camera.size.xy) - 1), 0).rgb;
-      low = min(low, c);
-      high = max(high, c);
+      float difference = grey(c) - here;
+      sum += difference * difference;
     }
-  vec3 range = high - low;
-  return 0.5 * max(range.r, max(range.g, range.b));
+  return 255.0 * sqrt(sum / 8.0);
 }
 
 int node_at(ivec3 place) {
@@ -95,7 +97,15 @@ bool was_wrong(int node, vec3 p) {
   return textureLod(disagreed, (pixel + 0.5) / camera.size.xy, 0.0).r > 0.5;
 }
 
-float doubt_at(ivec2 pixel, vec3 colour) {
+// Steps as DoubtKind has them (doubt_kinds.hpp).
+int step_of_contrast(float levels) {
+  return clamp(int(4.0 * log2(1.0 + levels / 3.0)), 0, 15);
+}
+int step_of_reach(float px) {
+  return clamp(int(floor(log2(max(px, 0.01)))) + 2, 0, 5);
+}
+
+float kind_at(ivec2 pixel, vec3 colour) {
   vec3 ray, place;
   float inverse_z;
   if (!ray_through(pixel, ray) || !project_face(camera, ray, place, inverse_z)) return kUnconfirmed;
@@ -112,17 +122,18 @@ float doubt_at(ivec2 pixel, vec3 colour) {
     if (seen == kSeen) found = frame;
   }
   // What covered it in the newest image may have left its shadow there, or have pushed it.
-  if (found < 0 || newest == kHidden || was_wrong(node, p)) return kUnconfirmed;
-  float own = length(vec2(kOwnPx, uncertain_px(at, node)));
-  float turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
-  return min(contrast_at(pixel) * own + kTurned * turned * dot(colour, vec3(0.299, 0.587, 0.114)), kMostDoubt);
+  if (found < 0 || newest == kHidden) return kUnconfirmed;
+  float here = grey(colour), turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
+  bool suspect = was_wrong(node, p) || kTurned * turned * here > kWrong;
+  int kind = step_of_contrast(contrast_at(pixel, here)) + 16 * step_of_reach(uncertain_px(at, node)) + (suspect ? 96 : 0);
+  return float(kind) / 255.0;
 }
 
 // Stripes that differ from the picture's own brightness; those of filled holes lean to the other side.
 vec4 hatched(ivec2 pixel, vec4 colour) {
   int along = colour.a > 0.99 ? pixel.x + pixel.y : pixel.x - pixel.y + 6 * int(camera.size.y);
   if (along % 6 >= 2) return colour;
-  bool bright = dot(colour.rgb, vec3(0.299, 0.587, 0.114)) > 0.5;
+  bool bright = grey(colour.rgb) > 0.5;
   return vec4(mix(colour.rgb, vec3(bright ? 0.0 : 1.0), 0.45), colour.a);
 }
 
@@ -131,8 +142,9 @@ void main() {
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
   vec4 colour = texelFetch(shown, pixel, 0);
   bool seen = colour.a > 0.99;
-  float value = seen ? doubt_at(pixel, colour.rgb) : kUnconfirmed;
+  float value = seen ? kind_at(pixel, colour.rgb) : kUnconfirmed;
   imageStore(doubt, pixel, vec4(value));
-  bool hatch = value > limit && colour.a > 0.4;
+  uint kind = uint(round(255.0 * value));
+  bool hatch = (exact[kind >> 5] >> (kind & 31u) & 1u) == 0u && colour.a > 0.4;
   imageStore(marked, pixel, hatch ? hatched(pixel, colour) : colour);
 }

@@ -66,9 +66,8 @@ void TrustPass::saw(const PosedImage& image) {
   seen_.insert(seen_.begin(), Seen{image.time, image.T_world_camera, image.scene, layer});
 }
 
-void TrustPass::compared(const cv::Mat& wrong) {
-  if (seen_.empty()) return;
-  compared_ = seen_.front();
+void TrustPass::compared(const PosedImage& image, const cv::Mat& wrong) {
+  compared_ = Seen{image.time, image.T_world_camera, image.scene};
   glTextureSubImage2D(wrong_.name(), 0, 0, 0, wrong.cols, wrong.rows, GL_RED, GL_UNSIGNED_BYTE, wrong.data);
 }
 
@@ -98,7 +97,7 @@ void TrustPass::list_ways(const Pose& T_world_camera, const SceneState& state) {
 }
 
 void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera, const SceneState& state,
-                           std::span<const double> node_px, double limit) {
+                           std::span<const double> node_px, const ExactKinds& exact) {
   list_ways(T_world_camera, state);
   ways_.assign(std::span<const Eigen::Vector4f>(rows_));
   std::vector<float> px(node_px.begin(), node_px.end());
@@ -112,7 +111,11 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
                       static_cast<GLsizei>(layers.size()), layers.data());
   program_.set("frame_count", static_cast<int>(seen_.size()));
   program_.set("node_count", static_cast<int>(state.T_world_node.size()));
-  program_.set("limit", static_cast<float>((std::clamp(limit, 0.0, 254.0) + 0.5) / 255));
+  std::array<GLuint, 8> bits{};
+  for (std::size_t kind = 0; kind < exact.size(); ++kind)
+    if (exact[kind]) bits[kind / 32] |= GLuint{1} << (kind % 32);
+  glProgramUniform1uiv(program_.name(), glGetUniformLocation(program_.name(), "exact"),
+                       static_cast<GLsizei>(bits.size()), bits.data());
   program_.set("has_compared", compared_ ? 1 : 0);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   const GLuint units[] = {

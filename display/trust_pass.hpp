@@ -1,12 +1,8 @@
-// Which pixels of a drawn view a camera has confirmed, and how far the others may be off.
+// Which pixels of a drawn view a camera has confirmed, and what kind of doubt there is about them.
 //
-//   doubt 0 .. 254   grey levels that the pixel may be off by: the view's contrast there times the pixels by which the
-//                    surface may be elsewhere, and the light on a part that has turned since it was seen
-//   255              nothing is known: no image of late saw the point, something covered it in the newest one, or
-//                    what was shown there was wrong when last an image could be compared
-//
-// Where doubt is at most a limit, which who compares views with images knows (seat/shown_fidelity.hpp), a pixel counts
-// as exact.
+// Nothing is known of a pixel whose surface point no image of late saw, or that something covered in the newest one:
+// what moves on may leave a shadow, or have pushed it. Of others, a byte tells contrast, how far the surface may be
+// from where it is drawn, and whether something is suspect about it (doubt_kinds.hpp).
 #pragma once
 
 #include <memory>
@@ -14,12 +10,11 @@
 #include <span>
 #include <vector>
 
+#include "display/doubt_kinds.hpp"
 #include "display/predicted_view.hpp"
 #include "scene/posed_frame.hpp"
 
 namespace foresight {
-
-inline constexpr int kUnconfirmed = 255;  ///< doubt of what no camera has confirmed
 
 /// Belongs to one context: that of the view.
 class TrustPass {
@@ -30,15 +25,15 @@ class TrustPass {
 
   /// An image came, later than the one before: where its camera and all nodes were.
   void saw(const PosedImage& image);
-  /// What was shown for the newest image's instant was wrong where this is not 0 (CV_8UC1 of the lens's size).
-  void compared(const cv::Mat& wrong);
+  /// What was shown for this image's instant was wrong where this is not 0 (CV_8UC1 of the lens's size).
+  void compared(const PosedImage& image, const cv::Mat& wrong);
 
   /// Fills doubt() and marked() for the view that was drawn last. `node_px`: by how many pixels each node of `state`
-  /// may be elsewhere (one standard deviation). `limit`: of doubt, in grey levels. Does not wait for the GPU.
+  /// may be elsewhere (one standard deviation). `exact`: what is not hatched. Does not wait for the GPU.
   void operator()(const PredictedView& view, const Pose& T_world_camera, const SceneState& state,
-                  std::span<const double> node_px, double limit);
+                  std::span<const double> node_px, const ExactKinds& exact);
 
-  /// R8, row 0 at the top.
+  /// R8 (DoubtKind, or kUnconfirmed), row 0 at the top.
   const gl::Texture& doubt() const { return doubt_; }
   /// The view, RGBA8, with what is not exact hatched.
   const gl::Texture& marked() const { return marked_; }

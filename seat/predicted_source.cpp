@@ -36,22 +36,25 @@ void PredictedSource::take_frames() {
   for (std::size_t i = 0; i < came.size(); ++i) {
     heard_ = clock_.now();
     newest_ = came[i];
-    if (listener_) listener_(*newest_);
-    if (i + kLookedAt < came.size()) {
-      ++overtaken_;
-      continue;
-    }
     const auto at = [this](RobotTime time, const link::LineJoints& joints) {
       SceneState state = link::scene_at(rig_, *scene_, time, joints);
       if (things_) things_->place(state);
       return state;
     };
     auto posed = link::posed_frame(*newest_, at, options_.margin_px);
+    const bool is_looked_at = i + kLookedAt >= came.size();
+    if (posed && is_looked_at) {
+      any_posed_ = true;
+      places_.saw(posed->left, positions_of(newest_->joints));
+      if (things_) let_things_see(newest_, *posed);
+    }
+    if (listener_) listener_(*newest_, posed ? &*posed : nullptr);
+    if (!is_looked_at) {
+      ++overtaken_;
+      continue;
+    }
     posed_ = posed.has_value();
     if (!posed) continue;
-    any_posed_ = true;
-    places_.saw(posed->left, positions_of(newest_->joints));
-    if (things_) let_things_see(newest_, *posed);
     if (waiting_) ++overtaken_;
     waiting_ = std::move(posed);
   }

@@ -40,8 +40,9 @@ class PredictedSource final : public FrameSource {
   /// From now on things are where these say, which are told of the robot and shown all images; null: where the model
   /// has them. Outlives this.
   void show_things(ThingsOutlook* things) { things_ = things; }
-  /// Of every frame that comes, in this source's thread.
-  void listen(std::function<void(const link::LineFrame&)> heard) { listener_ = std::move(heard); }
+  /// Of every frame that comes, in this source's thread; the other is null where its poses are not known.
+  using Listener = std::function<void(const link::LineFrame&, const PosedFrame*)>;
+  void listen(Listener heard) { listener_ = std::move(heard); }
   /// The robot as it is shown.
   const PredictedRobot& robot() const { return robot_; }
   /// Why it cannot be trusted, in words; "" where it can.
@@ -68,7 +69,7 @@ class PredictedSource final : public FrameSource {
   PredictedPlaces places_;
   ThingsOutlook* things_ = nullptr;
   RobotTime things_due_;
-  std::function<void(const link::LineFrame&)> listener_;
+  Listener listener_;
   link::LineFramePtr newest_;
   std::optional<PosedFrame> waiting_;
   bool posed_ = true, any_posed_ = false;

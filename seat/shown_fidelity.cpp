@@ -1,17 +1,22 @@
 #include "seat/shown_fidelity.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 
 #include "apps/replay_report/image_metrics.hpp"
-#include "display/trust_pass.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr double kFirstLimit = 10;       // before anything was compared: as many grey levels as count as wrong
-constexpr double kMemory = 0.8;          // weight of what was compared before against what is compared now
-constexpr double kPatch = 0.6;           // share of a neighbourhood that is wrong where more than an outline is
+constexpr double kMemory = 0.9;         // weight of what was compared before against what is compared now
+constexpr double kAssumed = 1.0 / 256;  // of a picture's pixels: as many of each kind are taken to have been as assumed
+constexpr double kOwnPx = 0.7;          // how exactly images, lenses and model agree where nothing is predicted
+constexpr double kReachOfSigma = 0.5;   // joints are off by less than they may be
+constexpr double kSuspectWrong = 0.1;   // at least, of what is suspect
+constexpr double kPatch = 0.6;          // share of a neighbourhood that is wrong where more than an outline is
 constexpr int kPatchPx[] = {5, 11, 21};  // sides of neighbourhoods
 
 /// What is wrong as a patch, not as the outline of what is shown a pixel aside, and room around it: over the next delay
@@ -29,6 +34,14 @@ cv::Mat patches_of(const cv::Mat& wrong) {
 
 double share_of(const cv::Mat& part, const cv::Mat& whole) {
   return cv::countNonZero(part & whole) / std::max(1.0, static_cast<double>(cv::countNonZero(whole)));
+}
+
+/// Before anything is known: a surface that is off by normally distributed pixels changes grey by so many times the
+/// contrast around.
+double assumed_risk(const DoubtKind& kind, double wrong_levels) {
+  const double sigma = kind.levels() * std::hypot(kOwnPx, kReachOfSigma * kind.px());
+  const double out = std::erfc(wrong_levels / (std::numbers::sqrt2 * sigma));
+  return kind.suspect ? std::max(out, kSuspectWrong) : out;
 }
 
 cv::Mat grey_of(const cv::Mat& picture) {
@@ -57,8 +70,12 @@ std::string place_of(std::size_t tile) {
   return kNames[std::min<std::size_t>(row, 2)][column];
 }
 
-cv::Mat exact_mask(const cv::Mat& picture, const cv::Mat& doubt, double limit) {
-  return seen_mask(picture) & (doubt <= std::min(limit, kUnconfirmed - 1.0));
+cv::Mat exact_mask(const cv::Mat& picture, const cv::Mat& doubt, const ExactKinds& exact) {
+  cv::Mat table(1, static_cast<int>(exact.size()), CV_8UC1), out;
+  for (std::size_t kind = 0; kind < exact.size(); ++kind)
+    table.at<uchar>(static_cast<int>(kind)) = exact[kind] && kind != kUnconfirmed ? 255 : 0;
+  cv::LUT(doubt, table, out);
+  return out & seen_mask(picture);
 }
 
 cv::Mat grey_difference(const cv::Mat& one, const cv::Mat& other) {
@@ -67,10 +84,15 @@ cv::Mat grey_difference(const cv::Mat& one, const cv::Mat& other) {
   return out;
 }
 
-ShownFidelity::ShownFidelity(FidelityOptions options) : options_(options), limit_(kFirstLimit) {}
+ShownFidelity::ShownFidelity(FidelityOptions options) : options_(options) {
+  learn({}, 1);
+  choose({});
+}
 
 void ShownFidelity::shown(RememberedView picture) {
   if (!kept_.empty() && picture.instant <= kept_.back().instant) kept_.clear();  // another clock
+  const cv::Mat seen = seen_mask(picture.picture);
+  choose(count(seen, picture.doubt, cv::Mat::zeros(seen.size(), CV_8UC1)));
   kept_.push_back(std::move(picture));
   if (kept_.size() > options_.kept) kept_.pop_front();
 }
@@ -86,7 +108,7 @@ std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat&
   kept_.erase(kept_.begin(), std::next(nearest));
   if (picture.picture.size() != image.size() || image.type() != CV_8UC3) return std::nullopt;
 
-  const cv::Mat seen = seen_mask(picture.picture), exact = exact_mask(picture.picture, picture.doubt, limit_);
+  const cv::Mat seen = seen_mask(picture.picture), exact = exact_mask(picture.picture, picture.doubt, exact_);
   const cv::Mat wrong = (grey_difference(picture.picture, image) > options_.wrong_levels) & seen;
   const ImageComparison comparison(image, seen);
   Fidelity out{picture.instant, comparison.psnr_db(picture.picture), comparison.ssim(picture.picture), {}};
@@ -98,27 +120,43 @@ std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat&
   out.exact_share = share_of(exact, seen);
   out.exact_wrong = share_of(wrong, exact);
   out.patches = patches_of(wrong);
-  learn(seen, picture.doubt, wrong);
+  learn(count(seen, picture.doubt, wrong), kAssumed * static_cast<double>(seen.total()));
   return out;
 }
 
-void ShownFidelity::learn(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong) {
-  for (Counts& counts : by_doubt_) counts.all *= kMemory, counts.wrong *= kMemory;
+ShownFidelity::ByKind ShownFidelity::count(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong) {
+  ByKind out{};
   for (int y = 0; y < seen.rows; ++y)
     for (int x = 0; x < seen.cols; ++x) {
-      const std::size_t level = doubt.at<uchar>(y, x);
-      if (!seen.at<uchar>(y, x) || level >= by_doubt_.size()) continue;
-      by_doubt_[level].all += 1;
-      by_doubt_[level].wrong += wrong.at<uchar>(y, x) ? 1 : 0;
+      const std::size_t kind = doubt.at<uchar>(y, x);
+      if (!seen.at<uchar>(y, x) || kind >= out.size()) continue;
+      out[kind].all += 1;
+      out[kind].wrong += wrong.at<uchar>(y, x) ? 1 : 0;
     }
-  Counts sum;
-  double best = options_.least_limit;
-  for (std::size_t level = 0; level < by_doubt_.size() && static_cast<double>(level) <= options_.most_limit; ++level) {
-    sum.all += by_doubt_[level].all;
-    sum.wrong += by_doubt_[level].wrong;
-    if (sum.wrong <= options_.wrong_share * sum.all) best = std::max(best, static_cast<double>(level));
+  return out;
+}
+
+void ShownFidelity::learn(const ByKind& counts, double assumed) {
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    of_late_[i].all = kMemory * of_late_[i].all + counts[i].all;
+    of_late_[i].wrong = kMemory * of_late_[i].wrong + counts[i].wrong;
+    const double risk = assumed_risk(kind_of(static_cast<int>(i)), options_.wrong_levels);
+    risk_[i] = (of_late_[i].wrong + assumed * risk) / (of_late_[i].all + assumed);
   }
-  if (sum.all > 0) limit_ = best;
+}
+
+void ShownFidelity::choose(const ByKind& shown) {
+  std::array<std::size_t, DoubtKind::kCount> order;
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [this](std::size_t i) { return risk_[i]; });
+  exact_.reset();
+  double all = 0, wrong = 0;
+  for (const std::size_t i : order) {
+    all += shown[i].all;
+    wrong += shown[i].all * risk_[i];
+    if (all > 0 ? wrong > options_.wrong_share * all : risk_[i] > options_.wrong_share) return;
+    exact_.set(i);
+  }
 }
 
 }  // namespace foresight

@@ -1,8 +1,8 @@
 // What was shown, beside the image of the same instant once it has come: how alike they are, where they are not, and
-// how much doubt a pixel may carry and still be right.
+// of what kind the pixels are that are nearly always right.
 //
 //   shown for t1  t2  t3 ...                  image of t2 comes
-//         '---'---'---> kept -----------------> fidelity of t2, worst part of the view, limit of doubt
+//         '---'---'---> kept -----------------> fidelity of t2, worst part of the view, kinds that are exact
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "display/doubt_kinds.hpp"
 #include "display/picture_readback.hpp"
 
 namespace foresight {
@@ -21,7 +22,6 @@ struct FidelityOptions {
   std::size_t kept = 48;                                  ///< pictures that wait for their image, > 0
   double wrong_levels = 10;                               ///< grey levels beyond which a pixel is wrong
   double wrong_share = 0.016;                             ///< of the pixels that count as exact, that may be wrong
-  double least_limit = 6, most_limit = 90;                ///< of doubt, grey levels
 };
 
 /// How alike what was shown for an instant and the image of it are, over pixels that images have coloured.
@@ -41,8 +41,8 @@ std::string place_of(std::size_t tile);
 /// The pixels of a tile in a picture of that size.
 cv::Rect tile_of(std::size_t tile, cv::Size size);
 
-/// Pixels that count as exact: coloured by an image, with doubt up to `limit`. CV_8UC1, 255 or 0.
-cv::Mat exact_mask(const cv::Mat& picture, const cv::Mat& doubt, double limit);
+/// Pixels that count as exact: coloured by an image, of kinds that do. CV_8UC1, 255 or 0.
+cv::Mat exact_mask(const cv::Mat& picture, const cv::Mat& doubt, const ExactKinds& exact);
 /// Differences of grey (ITU-R BT.601), CV_8UC1. Pictures: CV_8UC3 or CV_8UC4, of one size.
 cv::Mat grey_difference(const cv::Mat& one, const cv::Mat& other);
 
@@ -56,19 +56,24 @@ class ShownFidelity {
   /// The image of an instant came, in the order of their instants: nothing where no picture was shown for it, or one of
   /// another size. `image`: CV_8UC3.
   std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image);
-  /// Of doubt, up to which pixels count as exact: the largest up to which of late no more were wrong than may be.
-  double limit() const { return limit_; }
+  /// Which kinds of pixels count as exact: those that were wrong most rarely, as many as it takes until
+  /// FidelityOptions::wrong_share of all such pixels in what was shown last have to be expected to be wrong.
+  const ExactKinds& exact() const { return exact_; }
 
  private:
   struct Counts {
     double all = 0, wrong = 0;
   };
-  void learn(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong);
+  using ByKind = std::array<Counts, DoubtKind::kCount>;
+  static ByKind count(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong);
+  void learn(const ByKind& counts, double assumed);
+  void choose(const ByKind& shown);
 
   FidelityOptions options_;
   std::deque<RememberedView> kept_;
-  std::array<Counts, 255> by_doubt_{};  // of late
-  double limit_;
+  ByKind of_late_{};
+  std::array<double, DoubtKind::kCount> risk_{};  // of a pixel of each kind to be wrong
+  ExactKinds exact_;
 };
 
 }  // namespace foresight

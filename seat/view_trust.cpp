@@ -39,14 +39,19 @@ void ViewTrust::collect() {
   }
 }
 
+// Nothing of OpenGL: images are heard in between pictures, whatever context is current.
+void ViewTrust::heard(RobotTime captured, const cv::Mat& image, const PosedFrame* posed) {
+  auto fidelity = shown_.arrived(captured, image);
+  if (!fidelity) return;
+  if (fidelity->psnr_db) switch_.compared(now(), *fidelity->psnr_db);
+  fidelity_ = std::move(fidelity);
+  if (!posed) return;
+  compared_ = posed->left;
+  compared_->pixels.release();
+}
+
 void ViewTrust::saw(const PosedFrame& frame) {
-  collect();
   pass_.saw(frame.left);
-  if (auto fidelity = shown_.arrived(frame.left.time, frame.left.pixels)) {
-    pass_.compared(fidelity->patches);
-    if (fidelity->psnr_db) switch_.compared(now(), *fidelity->psnr_db);
-    fidelity_ = std::move(fidelity);
-  }
 }
 
 void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, TrustMarks marks) {
@@ -56,7 +61,9 @@ void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, Trus
   const std::optional<ViewPlace> before = std::exchange(drawn_at_, place);
   if (!is_due && marks == TrustMarks::none) return;
   const auto px = node_doubt_px(source.places(), source.robot(), lens_, middles_, before);
-  pass_(session_.view(), place.T_world_camera, place.scene, px, shown_.limit());
+  if (compared_) pass_.compared(*compared_, fidelity_->patches);
+  compared_.reset();
+  pass_(session_.view(), place.T_world_camera, place.scene, px, shown_.exact());
   if (is_due && readback_.start(session_.picture(), pass_.doubt(), instant)) remembered_ = instant;
   if (options_.wait) collect();
   if (marks == TrustMarks::tiles) frame_tiles();

@@ -1,8 +1,9 @@
 // What is known of how good the view is: pixel by pixel, of the last that could be compared, and whether it is shown.
 //
-//   frames that come --> TrustPass (what was seen when) ----> doubt, marked view
-//          '-----------> ShownFidelity (as it was shown) ---> fidelity, limit of doubt --> TrustSwitch --> falls back
-//                            ^ PictureReadback <-- views that are drawn
+//   images that come --> ShownFidelity (as it was shown) --> fidelity, kinds that are exact --> TrustSwitch --> falls
+//   back
+//                             ^ PictureReadback <-- views that are drawn
+//   frames that are handed out --> TrustPass (what was seen when) ----> doubt, marked view
 #pragma once
 
 #include <memory>
@@ -41,7 +42,10 @@ class ViewTrust {
   /// `session` and `clock` must outlive this; not with the thesis' pipeline.
   ViewTrust(const ViewSession& session, const ViewSetup& setup, const Clock& clock, ViewTrustOptions options = {});
 
-  /// A frame came, before it becomes textures.
+  /// An image came (CV_8UC3), whether or not its frame is ever handed out: what was shown for its instant is compared.
+  /// `posed`: where its camera and all nodes were, if that is known.
+  void heard(RobotTime captured, const cv::Mat& image, const PosedFrame* posed);
+  /// A frame is handed out, before it becomes textures.
   void saw(const PosedFrame& frame);
   /// The session has drawn the source's instant at `place`. Without marks, marked() may stay as it is.
   void drew(const PredictedSource& source, const ViewPlace& place, TrustMarks marks);
@@ -51,7 +55,7 @@ class ViewTrust {
   bool falls_back() const { return switch_.falls_back(); }
   std::string why() const { return switch_.why(); }
   const std::optional<Fidelity>& fidelity() const { return fidelity_; }
-  double limit() const { return shown_.limit(); }
+  const ExactKinds& exact() const { return shown_.exact(); }
   /// The view that was drawn last, marked.
   const gl::Texture& marked() const { return pass_.marked(); }
   const gl::Texture& doubt_picture() const { return pass_.doubt(); }
@@ -74,6 +78,7 @@ class ViewTrust {
   ShownFidelity shown_;
   TrustSwitch switch_;
   std::optional<Fidelity> fidelity_;
+  std::optional<PosedImage> compared_;  // without pixels: the pass was not told of its patches yet
   std::optional<RobotTime> remembered_;
   std::optional<ViewPlace> drawn_at_;
   cv::Mat doubt_;

@@ -77,6 +77,9 @@ class LiveSeat {
       head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
     source_.show_things(&things_);
     driver_.may_push(things_.names());
+    source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
+      trust_.heard(frame.image[0].captured, frame.image[0].bgr, posed);
+    });
   }
 
   int run() {

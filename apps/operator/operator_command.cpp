@@ -156,6 +156,7 @@ SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Ta
   options.tray = task.tray;
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
+  options.fall_back.lowest_db = arguments.fidelity_db;
   options.out = arguments.outputs.out;
   return try_served_seat(
       rig, std::move(scene), options, motion, [] { return stop_requested(); }, say);

@@ -71,7 +71,7 @@ void SeatMeasures::measure(ShownPicture& shown, const cv::Mat& truth) {
   ages_.add(record.delay_s);
   invalid_ += shown.invalid ? 1 : 0;
   ++measured_;
-  if (!shown.doubt.empty()) trust_.add(shown.predicted, shown.doubt, shown.limit, truth, shown.fell_back);
+  if (!shown.doubt.empty()) trust_.add(shown.predicted, shown.doubt, shown.exact, truth, shown.fell_back);
   if (const cv::Mat before = image_at(shown.newest); !before.empty()) measure_moved(shown, truth, before, seen);
   if (without_line_)
     if (const cv::Mat view = without_line_(shown.instant); !view.empty()) zero_.add(all.psnr_db(view));

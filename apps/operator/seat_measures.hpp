@@ -26,8 +26,8 @@ struct ShownPicture {
   cv::Mat delayed;         ///< CV_8UC3: the newest image that had come
   cv::Mat video = {};      ///< likewise, as a video of one eye in the same bytes would have it; empty: not made
   bool invalid = false;    ///< prediction was not to be trusted
-  cv::Mat doubt = {};      ///< CV_8UC1 (display/trust_pass.hpp); empty: trust is not measured
-  double limit = 0;        ///< of doubt, up to which pixels were shown as exact
+  cv::Mat doubt = {};      ///< CV_8UC1 (display/doubt_kinds.hpp); empty: trust is not measured
+  ExactKinds exact = {};   ///< of doubt, of which pixels were shown as exact
   bool fell_back = false;  ///< the newest image was shown instead
 };
 

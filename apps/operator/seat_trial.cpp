@@ -105,8 +105,9 @@ class Trial {
       source_.show_things(&*things_);
     }
     driver_.script().listen_to(robot_says(end_));
-    source_.listen([this](const link::LineFrame& frame) {
+    source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
       const RobotTime captured = frame.image[0].captured;
+      trust_.heard(captured, frame.image[0].bgr, posed);
       if (const cv::Mat seen = measures_.image_at(captured); !seen.empty()) video_.add(captured, seen, frame.bytes);
     });
     clock_.every(5ms, [this](RobotTime) {
@@ -178,7 +179,7 @@ class Trial {
     if (!counts) return;
     const ShownInstant& instant = source_.instant();
     measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(), video_.newest().clone(),
-                    source_.robot().status == StateStatus::invalid, trust_.doubt(), trust_.limit(),
+                    source_.robot().status == StateStatus::invalid, trust_.doubt(), trust_.exact(),
                     trust_.falls_back()});
   }
 

@@ -10,6 +10,7 @@
 #include "seat/seat_options.hpp"
 #include "seat/tool_script.hpp"
 #include "seat/view_setup.hpp"
+#include "seat/view_trust.hpp"
 #include "sim/lab_task.hpp"
 
 namespace foresight {
@@ -62,10 +63,13 @@ class ServedTrial final : ViewObserver {
         context_(gl::create_headless_context()),
         session_(*context_, setup_),
         source_(rig, scene_, end_, seat_, clock_, source_options(rig)),
+        trust_(session_, setup_, clock_, trust_options(options)),
         task_(options.most_s),
         measures_(describe_seat(rig, session_, setup_), options.out) {
-    source_.listen(
-        [this](const link::LineFrame& frame) { measures_.saw(frame.image[0].captured, frame.image[0].bgr); });
+    source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
+      trust_.heard(frame.image[0].captured, frame.image[0].bgr, posed);
+      measures_.saw(frame.image[0].captured, frame.image[0].bgr);
+    });
     if (!options.things) return;
     things_.emplace(rig, scene_, things_about(options.rig_file, *scene_, true), true);
     source_.show_things(&*things_);
@@ -92,8 +96,19 @@ class ServedTrial final : ViewObserver {
     out.image_period = seconds(1 / rig.cameras->camera(Side::left).settings.rate);
     return out;
   }
+  static ViewTrustOptions trust_options(const ServedTrialOptions& options) {
+    ViewTrustOptions out;
+    out.fall_back = options.fall_back;
+    out.remember_every = Duration{0};
+    out.wait = true;  // pictures are read back in any case
+    return out;
+  }
+  void arrived(const PosedFrame& frame) override { trust_.saw(frame); }
   void stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& session) override {
-    if (!step.drawn || !task_.under_way()) return;
+    if (!step.drawn) return;
+    trust_.drew(source_, source_.place(), TrustMarks::hatch);
+    trust_.judge(source_.why_invalid());
+    if (!task_.under_way()) return;
     const link::LineFrame& newest = *source_.newest();
     measures_.show({step.instant.time,
                     newest.image[0].captured,
@@ -101,7 +116,10 @@ class ServedTrial final : ViewObserver {
                     session.read(),
                     newest.image[0].bgr,
                     {},
-                    source_.robot().status == StateStatus::invalid});
+                    source_.robot().status == StateStatus::invalid,
+                    trust_.doubt(),
+                    trust_.exact(),
+                    trust_.falls_back()});
   }
 
   // False: there is nothing left to be done.
@@ -155,6 +173,7 @@ class ServedTrial final : ViewObserver {
   std::unique_ptr<gl::Context> context_;
   ViewSession session_;
   PredictedSource source_;
+  ViewTrust trust_;
   std::optional<ThingsOutlook> things_;
   TaskWatch task_;
   SeatMeasures measures_;

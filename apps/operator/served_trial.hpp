@@ -17,6 +17,7 @@ struct ServedTrialOptions {
   double most_s = 120;                       ///< of motion
   double found_within_s = 60;                ///< the robot has to be driven within that time
   double pictures_hz = 5;                    ///< at most
+  TrustSwitchOptions fall_back;              ///< of the view that would be shown
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
 };
 

@@ -5,7 +5,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/replay_report/image_metrics.hpp"
-#include "display/trust_pass.hpp"
 #include "seat/shown_fidelity.hpp"
 
 namespace foresight {
@@ -35,11 +34,11 @@ cv::Mat any_channel_wrong(const cv::Mat& predicted, const cv::Mat& truth) {
 
 }  // namespace
 
-void TrustMeasures::add(const cv::Mat& predicted, const cv::Mat& doubt, double limit, const cv::Mat& truth,
+void TrustMeasures::add(const cv::Mat& predicted, const cv::Mat& doubt, const ExactKinds& kinds, const cv::Mat& truth,
                         bool fell_back) {
   ++pictures_;
   fallbacks_ += fell_back ? 1 : 0;
-  const cv::Mat seen = seen_mask(predicted), exact = exact_mask(predicted, doubt, limit);
+  const cv::Mat seen = seen_mask(predicted), exact = exact_mask(predicted, doubt, kinds);
   const cv::Mat wrong = (grey_difference(predicted, truth) > kWrong) & seen;
   seen_ += count(seen);
   exact_ += count(exact);

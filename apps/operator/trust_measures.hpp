@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "display/doubt_kinds.hpp"
+
 namespace foresight {
 
 /// Over all pictures; nothing where no pixel was there to ask about.
@@ -14,7 +16,7 @@ struct TrustFigures {
   std::optional<double> exact_wrong;      ///< of those, the ones that differ from the truth by more than 10 grey levels
   std::optional<double> exact_wrong_any;  ///< likewise, by more than 10 levels in any of red, green and blue
   std::optional<double> wrong_share;      ///< of all pixels with a colour of an image, by grey
-  std::optional<double> unconfirmed;      ///< of the same, those that no camera has confirmed (trust_pass.hpp)
+  std::optional<double> unconfirmed;      ///< of the same, those that no camera has confirmed (doubt_kinds.hpp)
   std::optional<double> fallback_share;   ///< of pictures, those for which the newest image was shown instead
 };
 /// A full sentence for a report.
@@ -22,8 +24,9 @@ std::string to_sentence(const TrustFigures& figures);
 
 class TrustMeasures {
  public:
-  /// `predicted`: CV_8UC4; `doubt`, `limit`: as they were when it was shown; `truth`: CV_8UC3 of the same size.
-  void add(const cv::Mat& predicted, const cv::Mat& doubt, double limit, const cv::Mat& truth, bool fell_back);
+  /// `predicted`: CV_8UC4; `doubt`, `kinds`: as they were when it was shown; `truth`: CV_8UC3 of the same size.
+  void add(const cv::Mat& predicted, const cv::Mat& doubt, const ExactKinds& kinds, const cv::Mat& truth,
+           bool fell_back);
   TrustFigures figures() const;
 
  private:

@@ -41,11 +41,11 @@ class TrustPassTest : public HeadlessTest, public testing::WithParamInterface<co
     trust_->saw(seen);
   }
   /// The view with the block there, and its doubt.
-  RememberedView draw(double block_x, std::vector<double> px = {}, double limit = 10) {
+  RememberedView draw(double block_x, std::vector<double> px = {}, const ExactKinds& exact = {}) {
     const TextureLease lease = latest_.acquire();
     const SceneState state = state_of(*scene_, block_x);
     view_->draw(usual_view(), state, *lease);
-    (*trust_)(*view_, usual_view(), state, px, limit);
+    (*trust_)(*view_, usual_view(), state, px, exact);
     PictureReadback readback;
     EXPECT_TRUE(readback.start(view_->picture(), trust_->doubt(), RobotTime{1}));
     auto out = readback.take(true);
@@ -100,46 +100,70 @@ TEST_P(TrustPassTest, WhatAPartLeavesBehindIsNotConfirmedUntilItIsSeenAgain) {
   EXPECT_LT(at(draw(kMove).doubt, pixel_of(kUnderBlock)), kUnconfirmed);
 }
 
-TEST_P(TrustPassTest, DoubtGrowsWithHowFarOffAPartMayBe) {
+TEST_P(TrustPassTest, DoubtTellsHowFarOffAPartMayBe) {
   see(0, 100ms);
-  const bool is_large = std::string(GetParam()) != "wide_fisheye";  // else the block is few pixels wide
-  const int reach = is_large ? 3 : 0;
-  const auto sum_on_block = [&](double px) {
+  const cv::Point middle = pixel_of(kOnBlock);
+  const auto on_block = [&](double px) {
     std::vector<double> all(scene_->nodes().size(), 0);
     all[kBlock] = px;
-    const cv::Point middle = pixel_of(kOnBlock);
-    return cv::sum(draw(0, all).doubt(cv::Rect(middle.x - reach, middle.y - reach, 2 * reach + 1, 2 * reach + 1)))[0];
+    return kind_of(at(draw(0, all).doubt, middle));
   };
-  const double still = sum_on_block(0), little = sum_on_block(2), far = sum_on_block(6);
-  EXPECT_GT(still, 0);
-  EXPECT_GT(little, 1.5 * still);
-  EXPECT_GT(far, 1.5 * little);
-  if (is_large) EXPECT_NEAR(little / still, std::hypot(0.7, 2) / 0.7, 0.8);
+  const DoubtKind still = on_block(0);
+  EXPECT_EQ(still.reach, 0);
+  EXPECT_FALSE(still.suspect);
+  for (const double px : {0.6, 1.1, 2.2, 6.0, 30.0}) {
+    const DoubtKind kind = on_block(px);
+    EXPECT_EQ(kind.contrast, still.contrast);
+    EXPECT_NEAR(std::log2(kind.px() / std::min(px, 12.0)), 0, 0.51) << px;
+  }
 }
 
-TEST_P(TrustPassTest, WhatWasShownWrongIsNotConfirmed) {
+TEST_P(TrustPassTest, DoubtTellsContrast) {
+  see(0, 100ms);
+  const RememberedView view = draw(0);
+  cv::Mat grey;
+  cv::cvtColor(view.picture, grey, cv::COLOR_BGRA2GRAY);
+  int compared = 0;
+  for (int y = 1; y + 1 < grey.rows; ++y)
+    for (int x = 1; x + 1 < grey.cols; ++x) {
+      if (view.doubt.at<uchar>(y, x) == kUnconfirmed) continue;
+      cv::Mat around;
+      grey(cv::Rect(x - 1, y - 1, 3, 3)).convertTo(around, CV_64F);
+      const double levels = std::sqrt(cv::norm(around - around.at<double>(1, 1), cv::NORM_L2SQR) / 8);
+      const DoubtKind kind = kind_of(view.doubt.at<uchar>(y, x));
+      const double low = 3 * (std::exp2(kind.contrast / 4.0) - 1),
+                   high = 3 * (std::exp2((kind.contrast + 1) / 4.0) - 1);
+      ASSERT_GE(levels, low - 1.1) << x << ' ' << y;
+      ASSERT_TRUE(levels <= high + 1.1 || kind.contrast + 1 == DoubtKind::kContrasts) << x << ' ' << y;
+      ++compared;
+    }
+  EXPECT_GT(compared, 1000);
+}
+
+TEST_P(TrustPassTest, WhatWasShownWrongIsSuspect) {
   see(0, 100ms);
   cv::Mat wrong = cv::Mat::zeros(lens_.height(), lens_.width(), CV_8UC1);
   const cv::Point on_table = pixel_of(kOnTable), on_block = pixel_of(kOnBlock);
   cv::circle(wrong, on_table, 3, 255, -1);
-  trust_->compared(wrong);
+  trust_->compared(image(0, 100ms), wrong);
   const cv::Mat doubt = draw(0).doubt;
-  EXPECT_EQ(at(doubt, on_table), kUnconfirmed);
-  EXPECT_LT(at(doubt, on_block), kUnconfirmed);
+  EXPECT_TRUE(kind_of(at(doubt, on_table)).suspect);
+  EXPECT_FALSE(kind_of(at(doubt, on_block)).suspect);
 }
 
 TEST_P(TrustPassTest, WhatIsNotExactIsHatched) {
   see(kMove, 100ms);
   see(0, 200ms);
-  const double limit = 8;
-  const RememberedView view = draw(kMove, {}, limit);
+  ExactKinds kinds;
+  for (int i = 0; i < DoubtKind::kCount; ++i) kinds[static_cast<std::size_t>(i)] = kind_of(i).contrast < 8;
+  const RememberedView view = draw(kMove, {}, kinds);
   const cv::Mat shown = marked();
   int exact = 0, others = 0, striped = 0;
   for (int y = 0; y < shown.rows; ++y)
     for (int x = 0; x < shown.cols; ++x) {
       const auto before = view.picture.at<cv::Vec4b>(y, x), after = shown.at<cv::Vec4b>(y, x);
       if (before[3] < 128) continue;
-      if (view.doubt.at<uchar>(y, x) <= limit) {
+      if (kinds[view.doubt.at<uchar>(y, x)]) {
         ++exact;
         ASSERT_EQ(before, after) << x << ' ' << y;
       } else {

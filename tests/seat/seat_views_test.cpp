@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "display/doubt_kinds.hpp"
 #include "display/view_session.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
@@ -261,8 +262,10 @@ TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
   doubt_ = gl::Texture(GL_R8, lens_.width(), lens_.height(), 0, 1, "doubt");
   while (views_->paint() != ViewPaint::doubt) views_->next_paint();
   std::vector<cv::Mat> seen;
-  for (const int levels : {3, 20, 100, 255}) {
-    const auto value = static_cast<std::uint8_t>(levels);
+  const int doubts[] = {doubt_of({3, 0, false}), doubt_of({12, 0, false}), doubt_of({15, 4, false}), kUnconfirmed,
+                        doubt_of({3, 0, true})};
+  for (const int doubt : doubts) {
+    const auto value = static_cast<std::uint8_t>(doubt);
     glClearTexImage(doubt_.name(), 0, GL_RED, GL_UNSIGNED_BYTE, &value);
     seen.push_back(shown(ViewMode::predicted)(cv::Rect(110, 110, 80, 60)).clone());
   }
@@ -271,6 +274,7 @@ TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
   EXPECT_GT(hue(seen[1])[1], hue(seen[1])[0]) << "yellow";
   EXPECT_GT(hue(seen[2])[2], 1.5 * hue(seen[2])[0]) << "red";
   EXPECT_GT(hue(seen[3])[0], hue(seen[3])[1]) << "violet: not known";
+  EXPECT_GT(hue(seen[4])[2], 1.5 * hue(seen[4])[0]) << "red: it was wrong of late";
   EXPECT_TRUE(views_->shows_doubt());
   shown(ViewMode::two_eyes);
   EXPECT_FALSE(views_->shows_doubt());

@@ -6,8 +6,6 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "display/trust_pass.hpp"
-
 namespace foresight::shown_fidelity_test {
 namespace {
 
@@ -67,30 +65,66 @@ TEST(ShownFidelity, ALineIsNoPatch) {
   EXPECT_EQ(cv::countNonZero(fidelity.arrived(at(100ms), truth)->patches), 0);
 }
 
-// Pixels are wrong the more often, the more doubt they carry: the limit goes to where the wrong ones are few enough.
-TEST(ShownFidelity, LearnsHowMuchDoubtIsStillRight) {
-  ShownFidelity fidelity;
-  std::mt19937 random(1);
-  std::uniform_int_distribution<int> doubt(0, 120), percent(0, 99);
-  const auto round = [&](int i, int wrong_beyond) {
-    RememberedView shown = view(i * 100ms);
+/// Pixels of all contrasts, of which 30 % are wrong beyond one; those that are suspect beyond another.
+class LearntKinds {
+ public:
+  Fidelity round(int wrong_beyond, int suspects_wrong_beyond) {
+    RememberedView shown = view(rounds_ * 100ms);
     cv::Mat truth = image();
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
-        const int d = doubt(random);
-        shown.doubt.at<uchar>(y, x) = static_cast<uchar>(d);
-        if (d > wrong_beyond && percent(random) < 30) truth.at<cv::Vec3b>(y, x) = {180, 180, 180};
+        const DoubtKind kind{contrast_(random_), 0, percent_(random_) < 50};
+        shown.doubt.at<uchar>(y, x) = static_cast<uchar>(doubt_of(kind));
+        const bool risky = kind.contrast > (kind.suspect ? suspects_wrong_beyond : wrong_beyond);
+        if (risky && percent_(random_) < 30) truth.at<cv::Vec3b>(y, x) = {180, 180, 180};
       }
-    fidelity.shown(std::move(shown));
-    return fidelity.arrived(at(i * 100ms), truth)->exact_wrong;
-  };
-  for (int i = 0; i < 20; ++i) round(i, 20);
-  EXPECT_NEAR(fidelity.limit(), 21, 1.5);
-  EXPECT_LT(round(20, 20), 0.02);
-  for (int i = 21; i < 60; ++i) round(i, 6);
-  EXPECT_NEAR(fidelity.limit(), 6.5, 1.5) << "it has become worse";
-  for (int i = 60; i < 120; ++i) round(i, 110);
-  EXPECT_EQ(fidelity.limit(), FidelityOptions{}.most_limit) << "all is well: not beyond what was asked for";
+    fidelity_.shown(std::move(shown));
+    return fidelity_.arrived(at(rounds_++ * 100ms), truth).value();
+  }
+  /// How many contrasts count as exact.
+  std::vector<int> exact() const {
+    std::vector<int> out(2);
+    for (int i = 0; i < DoubtKind::kCount; ++i)
+      if (kind_of(i).reach == 0) out[kind_of(i).suspect] += fidelity_.exact()[static_cast<std::size_t>(i)] ? 1 : 0;
+    return out;
+  }
+
+ private:
+  ShownFidelity fidelity_;
+  std::mt19937 random_{1};
+  std::uniform_int_distribution<int> contrast_{0, DoubtKind::kContrasts - 1}, percent_{0, 99};
+  int rounds_ = 0;
+};
+
+TEST(ShownFidelity, KindsOfDoubtFitAByte) {
+  for (int i = 0; i < DoubtKind::kCount; ++i) EXPECT_EQ(doubt_of(kind_of(i)), i);
+  EXPECT_LT(DoubtKind::kCount, kUnconfirmed);
+}
+
+TEST(ShownFidelity, BeforeAnythingWasComparedLittleContrastIsExact) {
+  const ShownFidelity fidelity;
+  EXPECT_TRUE(fidelity.exact()[doubt_of({0, 0, false})]);
+  EXPECT_FALSE(fidelity.exact()[doubt_of({15, 0, false})]);
+  EXPECT_FALSE(fidelity.exact()[doubt_of({0, 0, true})]);
+  EXPECT_FALSE(fidelity.exact()[kUnconfirmed]);
+  int before = DoubtKind::kContrasts;
+  for (int reach = 0; reach < DoubtKind::kReaches; ++reach) {
+    int contrasts = 0;
+    for (int i = 0; i < DoubtKind::kContrasts; ++i) contrasts += fidelity.exact()[doubt_of({i, reach, false})] ? 1 : 0;
+    EXPECT_LE(contrasts, before) << "the farther off a surface may be";
+    before = contrasts;
+  }
+}
+
+TEST(ShownFidelity, LearnsOfWhatKindPixelsAreRight) {
+  LearntKinds learnt;
+  for (int i = 0; i < 20; ++i) learnt.round(9, 3);
+  EXPECT_EQ(learnt.exact(), (std::vector{10, 4}));
+  EXPECT_LT(learnt.round(9, 3).exact_wrong, 0.02);
+  for (int i = 0; i < 60; ++i) learnt.round(5, -1);
+  EXPECT_EQ(learnt.exact(), (std::vector{6, 0})) << "it has become worse";
+  for (int i = 0; i < 80; ++i) learnt.round(15, 15);
+  EXPECT_EQ(learnt.exact(), (std::vector{16, 16})) << "all is well";
 }
 
 TEST(ShownFidelity, WhatNoImageColouredIsLeftOut) {
