@@ -7,6 +7,7 @@
 #include "apps/bench/prediction_hand.hpp"
 #include "apps/bench/prediction_head.hpp"
 #include "apps/bench/prediction_ik.hpp"
+#include "apps/bench/prediction_operators.hpp"
 #include "apps/bench/prediction_response.hpp"
 #include "apps/bench/prediction_robot.hpp"
 
@@ -155,6 +156,34 @@ void add_grasp(Command& prediction, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_prediction_grasp(*options); }; });
 }
 
+void add_operators(Command& prediction, std::function<int()>& action) {
+  auto* command =
+      prediction.add_subcommand("operators", "A model operator with the newest image, and with the prediction");
+  auto options = std::make_shared<PredictionOperatorsOptions>();
+  command
+      ->add_option("--rig", options->rig,
+                   "Rig whose robot is the mock lab's arm (default configs/minerva.yaml); its drives are emulated")
+      ->reads();
+  command->add_option("--runs", options->runs, "Bricks to put into a tray, for each row")
+      ->check(from_to(1, 10'000))
+      ->capture_default_str();
+  command->add_option("--delay-ms", options->delays_ms, "Of the line, each way (default 0 100 300 500 1000)")
+      ->check(from_to(0, 1400));
+  command
+      ->add_option("--accident", options->accident,
+                   "What happens to the brick: none, slips (out of the hand), moved (by 6 cm); default: each in turn")
+      ->check(one_of({"none", "slips", "moved"}));
+  command->add_option("--seed", options->seed, "Of places, masses, frictions and noise")
+      ->check(from_to(1, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "A simulation and no more than that: the operator moves, waits for what comes of it, and corrects, as Ferrell\n"
+      "(1965) found that people do.\n\n"
+      "Example: foresight bench prediction operators --delay-ms 500 --runs 20 --json operators.json");
+  command->callback([options, &action] { action = [options] { return bench_prediction_operators(*options); }; });
+}
+
 }  // namespace
 
 void add_prediction_benches(Command& bench, std::function<int()>& action) {
@@ -167,6 +196,7 @@ void add_prediction_benches(Command& bench, std::function<int()>& action) {
   add_response(*prediction, action);
   add_prediction_robot(*prediction, action);
   add_grasp(*prediction, action);
+  add_operators(*prediction, action);
 }
 
 }  // namespace foresight

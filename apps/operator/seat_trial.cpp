@@ -170,6 +170,7 @@ class Trial {
       newest_ = frame->left.time;
       trust_.saw(*frame);
       frame->left.pixels.copyTo(delayed_);
+      video_.newest().copyTo(as_video_);  // of the same instant
       session.process(std::move(*frame));
     }
     const ViewPlace place = source_.place();
@@ -178,7 +179,7 @@ class Trial {
     trust_.judge(source_.why_invalid());
     if (!counts) return;
     const ShownInstant& instant = source_.instant();
-    measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(), video_.newest().clone(),
+    measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(), as_video_.clone(),
                     source_.robot().status == StateStatus::invalid, trust_.doubt(), trust_.exact(),
                     trust_.falls_back()});
   }
@@ -241,7 +242,7 @@ class Trial {
   SeatMeasures measures_;
   LineVideo video_;
 
-  cv::Mat delayed_;
+  cv::Mat delayed_, as_video_;
   RobotTime newest_, fed_;
   std::map<RobotTime, LiveFramePtr> truths_;  // where views without a line are wanted
   SeatTrialFigures figures_;

@@ -26,6 +26,22 @@ TEST(Prediction, IkSolvesAllOfTheLabArmsPosesWithinItsLimits) {
   EXPECT_NEAR(sum, 1, 1e-9);
 }
 
+// Late images make the model operator wait; the prediction does not.
+TEST(Prediction, AModelOperatorIsFasterWithThePrediction) {
+  const TempFolder out;
+  const std::string json = out / "operators.json";
+  const Outcome outcome =
+      run_program({"bench", "prediction", "operators", "--rig", (source_folder() / "configs/minerva.yaml").string(),
+                   "--runs", "1", "--delay-ms", "500", "--accident", "none", "--json", json});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json trials = read_json(json)["trials"];
+  ASSERT_EQ(trials.size(), 2u);
+  EXPECT_EQ(trials[0]["sees"], "image");
+  EXPECT_EQ(trials[1]["sees"], "prediction");
+  for (const auto& trial : trials) EXPECT_EQ(trial["failed"], 0);
+  EXPECT_GT(trials[0]["task_s"].get<double>(), trials[1]["task_s"].get<double>() + 4);
+}
+
 TEST(Prediction, ARecordedPathIsFollowedWhereverItWasRecorded) {
   const TempFolder out;
   std::string rows = "time_s,x,y,z,qx,qy,qz,qw\n";

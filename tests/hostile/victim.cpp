@@ -45,6 +45,7 @@ const std::map<std::string, CommandWords>& table() {
       {"bench prediction response", {{"--commands", {"@poses.txt"}}, {"--states", {"@points.txt"}}}},
       {"bench prediction robot", {{"--rig", {"@rig.yaml"}}, {"--seconds", {"1"}}, {"--delay-ms", {"20"}}}},
       {"bench prediction grasp", {{"--rig", {"@rig.yaml"}}, {"--runs", {"1"}}, {"--delay-ms", {"20"}}}},
+      {"bench prediction operators", {{"--rig", {"@rig.yaml"}}, {"--runs", {"1"}}, {"--delay-ms", {"20"}}}},
       {"bench link", {{"--seconds", {"1"}}}},
       {"link status", {{"--seconds", {"0.5"}}}},
       {"link listen", {{"TOPIC", {"joint_states"}}, {"--seconds", {"0.1"}}}},
