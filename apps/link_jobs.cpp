@@ -12,6 +12,7 @@
 #include "common/text.hpp"
 #include "link/dds/endpoints.hpp"
 #include "link/dds/pretended_line.hpp"
+#include "link/dds/topic_watch.hpp"
 #include "link/messages/message_types.hpp"
 #include "rig/rig.hpp"
 
@@ -224,10 +225,11 @@ int link_listen(const LinkListenOptions& options) {
   link::Reader reader(program, *topic);
   const RobotTime begin = clock.now();
   std::uint64_t shown = 0, strange = 0;
+  link::TopicWatch watch(topic->name, begin);
   while (!stop_requested() && (!options.count || shown < *options.count) &&
          (!options.seconds || clock.now() - begin < seconds(*options.seconds))) {
     reader.wait(kPollEvery);
-    reader.take([&](const link::Sample& sample) {
+    const std::size_t came = reader.take([&](const link::Sample& sample) {
       if (options.count && shown >= *options.count) return;
       const auto reading = type->read(sample.cdr, true);
       ++shown;
@@ -239,6 +241,7 @@ int link_listen(const LinkListenOptions& options) {
       }
     });
     std::fflush(stdout);
+    warn(watch.news(reader.writers(), came, clock.now()));
   }
   if (stop_requested() && shown == 0) return kStopped;
   return shown == 0 || strange > 0 ? 1 : 0;

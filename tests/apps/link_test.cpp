@@ -1,4 +1,5 @@
 // `foresight robot --serve` and `foresight link`, in a network of the test's own.
+#include <optional>
 #include <thread>
 
 #include "tests/apps/program.hpp"
@@ -39,6 +40,32 @@ TEST_F(Link, ARunningRobotIsSeenAndReadAndNamesAreHelpedWith) {
   const Outcome end = robot.wait();
   EXPECT_EQ(end.exit_code, 130) << end.err;
   EXPECT_THAT(end.err, HasSubstr("robot: serving on domain 0, interface lo"));
+}
+
+// The robot is killed: who listens is told, waits with words, and hears the next one.
+TEST_F(Link, ARobotThatHasGoneIsToldToWhoListens) {
+  const auto robot = [] { return Program({"robot", rig(), "--mock", "--no-cameras", "--serve"}); };
+  const auto said = [](Program& listener, const char* words) {
+    while (listener.running() && listener.said().find(words) == std::string::npos)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_THAT(listener.said(), HasSubstr(words));
+  };
+  std::optional<Program> listener;
+  {
+    Program first = robot();
+    const Outcome there = run_program({"link", "listen", "foresight/robot_state", "--count", "1"});
+    ASSERT_EQ(there.exit_code, 0) << there.err;
+    listener.emplace(std::vector<std::string>{"link", "listen", "foresight/robot_state", "--count", "100000"});
+    const Outcome more = run_program({"link", "listen", "foresight/robot_state", "--count", "20"});
+    ASSERT_EQ(more.exit_code, 0) << more.err;
+    first.interrupt(SIGKILL);
+    first.wait();
+  }
+  said(*listener, "nobody writes rt/foresight/robot_state any more");
+  Program second = robot();
+  said(*listener, "rt/foresight/robot_state is written again");
+  listener->interrupt();
+  EXPECT_EQ(listener->wait().exit_code, 0) << listener->said();
 }
 
 /// The number after `words` in `text`; -1 where they are not there.

@@ -5,6 +5,7 @@
 #include "echo.hpp"
 #include "link/dds/endpoints.hpp"
 #include "link/dds/settings.hpp"
+#include "link/dds/topic_watch.hpp"
 #include "random_message.hpp"
 #include "tests/support/private_network.hpp"
 
@@ -62,6 +63,33 @@ TEST_F(Dds, WhoComesLateGetsWhatWasKept) {
     return !names.empty();
   }));
   EXPECT_EQ(names, std::vector<std::string>{"second"});
+}
+
+// Who listens is told when the last writer goes, comes back, and is there without a word.
+TEST_F(Dds, ATopicThatFallsSilentIsTold) {
+  Participant program(LinkConfig{}, "test");
+  const Topic topic{"rt/x", Header::kType};
+  auto writer = std::make_unique<Writer>(program, topic);
+  Reader reader(program, topic);
+  RobotTime now{};
+  TopicWatch watch(topic.name, now);
+  EXPECT_EQ(watch.news(0, 0, now + 2 * TopicWatch::kSilent), "") << "nobody has come yet";
+  ASSERT_TRUE(comes_true([&] { return reader.writers() == 1; }));
+  EXPECT_EQ(watch.news(reader.writers(), 1, now), "");
+  EXPECT_EQ(watch.news(1, 0, now + TopicWatch::kSilent - 1ms), "");
+  now = now + TopicWatch::kSilent;
+  EXPECT_THAT(watch.news(1, 0, now),
+              HasSubstr("rt/x is written by a program that is there, but nothing has come for 5"));
+  EXPECT_EQ(watch.news(1, 0, now + 2 * TopicWatch::kSilent), "") << "said once";
+  EXPECT_EQ(watch.news(1, 1, now), "");
+  writer.reset();
+  ASSERT_TRUE(comes_true([&] { return reader.writers() == 0; }));
+  EXPECT_THAT(watch.news(reader.writers(), 0, now), HasSubstr("nobody writes rt/x any more"));
+  EXPECT_EQ(watch.news(0, 0, now), "") << "said once";
+  writer = std::make_unique<Writer>(program, topic);
+  ASSERT_TRUE(comes_true([&] { return reader.writers() == 1; }));
+  EXPECT_EQ(watch.news(reader.writers(), 0, now), "rt/x is written again");
+  EXPECT_EQ(watch.news(1, 0, now), "");
 }
 
 TEST_F(Dds, RequestsComeEachAndInOrder) {
