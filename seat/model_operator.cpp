@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSeenToMove = 0.002, kSeenToTurn = 0.02;  // m (also of the jaws), rad: less is taken for rest
 constexpr double kNeverSeen = 4;                           // s beyond the lag: then it looks again
+constexpr double kGhost = 0.005;                           // m from the tool: the hand is drawn as a ghost
 constexpr double kAboveThing = 0.012, kAtThing = 0.006, kAboveTray = 0.02, kInTray = 0.012;  // m, near enough
 constexpr double kAligned = 0.08;                                                            // rad
 constexpr double kTrayFloor = 0.014, kTrayReach = 0.065;  // m: where a thing is let go of; from the tray's middle
@@ -110,10 +111,19 @@ ModelOperator::Way ModelOperator::way_to(const OperatorSees& seen) const {
   return out;
 }
 
-void ModelOperator::go(double t, const Way& way) {
+// Where something held the tool back, the hand is ahead of it as a ghost, and is brought back to it: what was asked for
+// in vain is not added to what is asked for next.
+OperatorHand ModelOperator::at_tool(double t, const OperatorSees& seen) const {
+  OperatorHand out = hand(t);
+  const double ahead = (out.T_world_tool.translation() - seen.T_world_tool.translation()).norm();
+  if (ahead > kGhost) out.T_world_tool = seen.T_world_tool;
+  return out;
+}
+
+void ModelOperator::go(double t, const Way& way, const OperatorSees& seen) {
   const double far = way.shift.norm(), left = options_.left_of_move;
   from_ = hand(t);
-  to_ = from_;
+  to_ = at_tool(t, seen);
   for (int k = 0; k < 3; ++k) to_.T_world_tool.translation()[k] += way.shift[k] + normal(left * far / std::sqrt(3.0));
   to_.T_world_tool.linear() =
       Eigen::AngleAxisd(way.turn + normal(left * std::abs(way.turn)), Eigen::Vector3d::UnitZ()) *
@@ -181,7 +191,7 @@ bool ModelOperator::pursue(double t, const OperatorSees& seen) {
         return then(above);
       Way up;
       up.shift.z() = options_.above;
-      go(t, up);
+      go(t, up, seen);
       aim_ = next;
       return true;
     }
@@ -190,7 +200,7 @@ bool ModelOperator::pursue(double t, const OperatorSees& seen) {
   }
   const Way way = way_to(seen);
   if (way.good) return then(aim_ == above ? down : aim_ == down ? close : aim_ == carry ? lower : open);
-  go(t, way);
+  go(t, way, seen);
   return true;
 }
 

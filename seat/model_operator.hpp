@@ -75,7 +75,8 @@ class ModelOperator {
   OperatorSees glance(const OperatorSees& sees);
   Way way_to(const OperatorSees& seen) const;
   bool holds(const OperatorSees& seen) const;
-  void go(double t, const Way& way);
+  OperatorHand at_tool(double t, const OperatorSees& seen) const;
+  void go(double t, const Way& way, const OperatorSees& seen);
   void use_jaws(double t, double opening, Aim next);
   void lost(double t, const OperatorSees& seen);
   double normal(double sigma) { return std::normal_distribution<double>(0, sigma)(random_); }

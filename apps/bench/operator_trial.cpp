@@ -10,7 +10,7 @@
 #include "common/error.hpp"
 #include "input/hand_of_rig.hpp"
 #include "prediction/grasp/thing_future.hpp"
-#include "prediction/path_follower.hpp"
+#include "seat/contact_guard.hpp"
 #include "seat/model_operator.hpp"
 #include "seat/tool_script.hpp"
 #include "sim/lab_task.hpp"
@@ -38,8 +38,10 @@ struct OperatorImage {
 /// What happens in one run.
 struct OperatorTask {
   std::shared_ptr<const sim::LiveLab> lab;
+  std::shared_ptr<const SceneModel> model;
   std::shared_ptr<sim::PhysicalLab> physics;
   std::unique_ptr<ThingFuture> future;
+  std::unique_ptr<ContactGuard> guard;
   std::unique_ptr<ModelOperator> operating;
   std::deque<OperatorImage> images;  // on their way
   OperatorImage newest;
@@ -88,6 +90,7 @@ class OperatorTrial {
       return;
     }
     strike(devices, now);
+    task.guard->scene_stands(stands(robot));
     task.operating->see(t_ - begun_, sees(robot));
     const double passed = to_seconds(now - task.begin);
     // What it did last has yet to happen.
@@ -118,9 +121,10 @@ class OperatorTrial {
     return along_tool(rig_.T_world_robot * kinematics_.chain().tip_pose(arm(position)), kTipsOfTool);
   }
 
+  // As at the seat: what is sent goes into no contact, and not to where the robot's gate would hold it.
   void follow(const OperatorHand& hand, double dt) {
     const Pose T_base_tool = rig_.T_world_robot.inverse() * along_tool(hand.T_world_tool, -kTipsOfTool);
-    const FollowStep made = follower_->step(T_base_tool, dt);
+    const FollowStep made = task_->guard->step(*asked_, T_base_tool, dt);
     for (std::size_t i = 0; i < hand_.arm_joints.size(); ++i)
       (*asked_)[hand_.arm_joints[i]] = made.q[static_cast<Eigen::Index>(i)];
     for (const std::size_t jaw : jaws_) {
@@ -145,7 +149,7 @@ class OperatorTrial {
     task_.emplace();
     rests_.reset();
     done_.reset();
-    approach_.emplace(rig_, approach(), HeadSway{.pan = 0, .tilt = 0});
+    approach_.emplace(rig_, approach(), HeadSway{.pan = 0, .tilt = 0, .middle_pan = {}, .middle_tilt = {}});
     approach_->begin_at(*asked_);
     task_->lab = std::make_shared<const sim::LiveLab>(
         sim::LiveLab::Options{.texel = 0.02, .task = layout(), .loose = kLooseInTask});
@@ -169,15 +173,17 @@ class OperatorTrial {
     for (std::size_t i = 0; i < parts.parts.size(); ++i)
       driven.push_back(parts.parts[i].moves && !task_->lab->is_loose(i));
     const PartPoses poses = [lab = task_->lab](const JointPositions& joints) { return lab->modelled_state(joints); };
-    task_->future = std::make_unique<ThingFuture>(sim::model_of(parts, task_->lab->modelled_rest()), driven, poses,
-                                                  future, robot.time, named(robot.position));
+    task_->model = std::make_shared<const SceneModel>(sim::model_of(parts, task_->lab->modelled_rest()));
+    task_->future =
+        std::make_unique<ThingFuture>(*task_->model, driven, poses, future, robot.time, named(robot.position));
+    task_->guard = std::make_unique<ContactGuard>(rig_, hand_, task_->model);
+    task_->guard->may_push(kLooseInTask);
     task_->next_image = now;
   }
 
   void begin_operating(RobotTime now) {
     ModelOperatorOptions options;
     options.seed = static_cast<unsigned>(random_());
-    follower_.emplace(kinematics_, arm(*asked_));
     task_->operating = std::make_unique<ModelOperator>(options, OperatorHand{tips(*asked_), (*asked_)[jaws_[0]]});
     task_->begin = now;
     begun_ = t_;
@@ -214,12 +220,26 @@ class OperatorTrial {
     return out;
   }
 
+  bool sees_image(const PredictedRobot& robot) const {
+    return !options_.predicted || robot.status == StateStatus::invalid;
+  }
   OperatorSees sees(const PredictedRobot& robot) const {
     const OperatorTask& task = *task_;
-    if (!options_.predicted || robot.status == StateStatus::invalid)
+    if (sees_image(robot))
       return {tips(task.newest.joints), task.newest.joints[jaws_[0]], task.newest.things[0], task.newest.things[1]};
     return {tips(robot.position), robot.position[jaws_[0]], task.future->thing(0).T_world_thing,
             task.future->thing(1).T_world_thing};
+  }
+
+  // Where the nodes are, as far as the operator is shown it.
+  std::vector<Pose> stands(const PredictedRobot& robot) const {
+    const OperatorTask& task = *task_;
+    if (!sees_image(robot)) return task.future->poses();
+    std::vector<Pose> out = task.lab->modelled_state(named(task.newest.joints));
+    const std::array names{kTaskBrick, kTaskTray};
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (const auto node = task.model->find(names[i])) out[static_cast<std::size_t>(*node)] = task.newest.things[i];
+    return out;
   }
 
   // The accident, once.
@@ -253,7 +273,6 @@ class OperatorTrial {
     run.regrasps = task.operating->regrasps();
     runs_.push_back(run);
     task_.reset();
-    follower_.reset();
   }
 
   static constexpr double kAboveBrick = 0.03;  // m: the hand is above it
@@ -266,7 +285,6 @@ class OperatorTrial {
   std::vector<std::size_t> jaws_;
   std::optional<JointValues> asked_;
   std::optional<ToolScript> approach_;
-  std::optional<PathFollower> follower_;
   std::optional<OperatorTask> task_;
   std::optional<RobotTime> rests_, done_;
   double t_ = 0, begun_ = 0;

@@ -36,22 +36,32 @@ class World {
     if (held_) now_.T_world_thing.translation() += grip - grip_;
     if (!closed) now_.T_world_thing.translation().z() = 0;
     grip_ = grip;
-    now_.T_world_tool = hand.T_world_tool;
+    if (!stuck(hand)) now_.T_world_tool = hand.T_world_tool;
     now_.opening = hand.opening;
     past_.push_back({t, now_});
     while (past_.size() > 1 && past_[1].first <= t - late_) past_.pop_front();
   }
   const OperatorSees& seen() const { return past_.front().second; }
+  double ahead() const { return ahead_; }  ///< m: the farthest that the hand was from the tool
   bool in_tray() const {
     return (now_.T_world_thing.translation() - now_.T_world_tray.translation()).head<2>().norm() < 0.07;
   }
-  bool drops = false;  ///< once, when it has been lifted
+  bool drops = false;   ///< once, when it has been lifted
+  bool sticks = false;  ///< once, on the way down: the tool stays for half a minute, whatever the hand does
 
  private:
+  bool stuck(const OperatorHand& hand) {
+    if (sticks && now_.T_world_tool.translation().z() < 0.15) sticks = false, stuck_cycles_ = 3000;
+    ahead_ = std::max(ahead_, (hand.T_world_tool.translation() - now_.T_world_tool.translation()).norm());
+    return stuck_cycles_ > 0 && stuck_cycles_-- > 0;
+  }
+
   double late_;
   OperatorSees now_{pointing_down(0, 0, 0.25), 0.038, at(0.1, 0.05, 0), at(-0.1, 0.1, 0)};
   Eigen::Vector3d grip_ = Eigen::Vector3d::Zero();
   bool held_ = false;
+  int stuck_cycles_ = 0;
+  double ahead_ = 0;
   std::deque<std::pair<double, OperatorSees>> past_;
 };
 
@@ -61,9 +71,7 @@ struct Trial {
   int moves = 0, regrasps = 0;
 };
 
-Trial try_it(double late, unsigned seed, bool drops = false) {
-  World world(late);
-  world.drops = drops;
+Trial try_it(World& world, unsigned seed) {
   ModelOperatorOptions options;
   options.seed = seed;
   ModelOperator person(options, {pointing_down(0, 0, 0.25), 0.038});
@@ -73,6 +81,12 @@ Trial try_it(double late, unsigned seed, bool drops = false) {
     person.see(t, world.seen());
   }
   return {t, world.in_tray(), person.moves(), person.regrasps()};
+}
+
+Trial try_it(double late, unsigned seed, bool drops = false) {
+  World world(late);
+  world.drops = drops;
+  return try_it(world, seed);
 }
 
 // Ferrell: the time grows with the delay, by as much for each move that is waited for; the moves stay as many.
@@ -93,6 +107,18 @@ TEST(ModelOperator, TakesAThingAgainThatFell) {
     EXPECT_TRUE(fell.in_tray);
     EXPECT_EQ(fell.regrasps, 1);
     EXPECT_GT(fell.seconds, try_it(late, 5).seconds + 3);
+  }
+}
+
+// A hand that asks ever farther because nothing comes of it would never find back.
+TEST(ModelOperator, BringsAHandBackThatTheToolDidNotFollow) {
+  for (const double late : {0.0, 1.0}) {
+    World world(late);
+    world.sticks = true;
+    const Trial stuck = try_it(world, 3);
+    EXPECT_TRUE(stuck.in_tray) << late;
+    EXPECT_GT(stuck.seconds, 30) << late;
+    EXPECT_LT(world.ahead(), 0.2) << "one move, however often it is tried; " << late;
   }
 }
 
