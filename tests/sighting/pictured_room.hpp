@@ -1,6 +1,9 @@
 // The lab with things for a hand, and pictures of it by the ray caster, which shares no code with what looks at them.
 #pragma once
 
+#include <algorithm>
+#include <deque>
+
 #include "scene/posed_frame.hpp"
 #include "scene/stereo_lenses.hpp"
 #include "sim/live_lab.hpp"
@@ -32,11 +35,11 @@ class PicturedRoom {
 
   /// Pictures of `truth`, with everything thought to be at `thought`.
   PosedFrame frame(const LabState& truth, const LabState& thought, std::int64_t number) const {
-    const auto irradiance = light_.lit(truth, 8);
     const Pose T_world_left = live_->T_world_left(shafts_at_rest);
+    const Pictures& pictures = pictures_of(truth);
     PosedFrame out;
-    out.left = image(lenses.left, T_world_left, truth, irradiance, number);
-    out.right = image(lenses.right, T_world_left * lenses.T_left_right, truth, irradiance, number);
+    out.left = image(pictures.left, T_world_left, number);
+    out.right = image(pictures.right, T_world_left * lenses.T_left_right, number);
     out.left.scene = out.right->scene = {out.left.time, StateStatus::exact, thought};
     return out;
   }
@@ -45,9 +48,23 @@ class PicturedRoom {
   std::vector<std::size_t> nodes;
 
  private:
-  PosedImage image(const Lens& lens, const Pose& T_world_camera, const LabState& truth,
-                   const LightMap::Irradiance& irradiance, std::int64_t number) const {
-    const Picture picture = Renderer(live_->lab(), light_).render(RayTable(lens), T_world_camera, truth, irradiance);
+  struct Pictures {
+    LabState truth;
+    Picture left, right;
+  };
+  // Rays are what takes long, and tests begin from the same room: only the noise is another each time.
+  const Pictures& pictures_of(const LabState& truth) const {
+    for (const Pictures& known : pictures_)
+      if (std::ranges::equal(known.truth, truth, [](const Pose& a, const Pose& b) { return a.matrix() == b.matrix(); }))
+        return known;
+    const auto irradiance = light_.lit(truth, 8);
+    const Pose T_world_left = live_->T_world_left(shafts_at_rest);
+    const Renderer renderer(live_->lab(), light_);
+    return pictures_.emplace_back(
+        Pictures{truth, renderer.render(RayTable(lenses.left), T_world_left, truth, irradiance),
+                 renderer.render(RayTable(lenses.right), T_world_left * lenses.T_left_right, truth, irradiance)});
+  }
+  static PosedImage image(const Picture& picture, const Pose& T_world_camera, std::int64_t number) {
     const Sensor sensor{.noise = 1.5};
     PosedImage out;
     out.pixels = sensor.develop(picture.light, 0, static_cast<int>(number));
@@ -70,6 +87,7 @@ class PicturedRoom {
   std::shared_ptr<const LiveLab> live_;
   const LightMap& light_;
   std::shared_ptr<const SceneModel> model_;
+  mutable std::deque<Pictures> pictures_;  // those that were asked for; tests have one thread
 };
 
 }  // namespace foresight::sim

@@ -75,8 +75,8 @@ TEST_P(FinderTest, SeesThingsWhereTheyAre) {
 }
 
 TEST_P(FinderTest, SeesAThingThatIsElsewhere) {
-  if (GetParam() == 640) look();  // prints beside the outline are edges of their own here: its colours are needed
   if (takes_too_long()) GTEST_SKIP() << "in the large pictures only with FORESIGHT_LONG=1";
+  if (GetParam() == 640) look();  // prints beside the outline are edges of their own here: its colours are needed
   for (const double way : {0.015, -0.03, 0.045}) {
     thought_ = truth_ = room_.rest();
     truth(0) = moved(truth(0), 0.6 * way, -0.8 * way, 0, 5 * way);
