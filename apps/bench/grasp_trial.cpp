@@ -19,7 +19,7 @@ constexpr double kDepth = 0.037;  // m: tips above the brick's bottom
 constexpr double kOpen = 0.038, kClosed = 0.016, kAbove = 0.14;
 constexpr double kLook = 2.5, kLookAgain = 2.5;  // s before and after the script
 constexpr double kVisible = 0.01;                // m that one sees
-constexpr double kAllowed = 0.3;                 // s, beyond the delay
+constexpr double kAllowed = 0.3 + 1e-6;          // s, beyond the delay; instants are rounded to ns, each by itself
 constexpr double kBlend = 0.3;                   // s in which a correction is shown
 constexpr double kLifted = 0.005, kMissed = 0.03, kStill = 2e-4;
 constexpr int kStillPictures = 6;
@@ -280,6 +280,7 @@ class GraspTrial {
         if (!failed || !run_->visible || instant < *run_->visible) figures_.carried.push_back(error);
       if (failed) {
         ++figures_.failed;
+        figures_.never_off += !run_->visible;
         if (run_->visible && run_->noticed) {
           figures_.lateness.push_back(to_seconds(*run_->noticed - *run_->visible) - options_.delay);
           figures_.noticed += figures_.lateness.back() <= kAllowed ? 1 : 0;

@@ -25,6 +25,7 @@ struct GraspTrialOptions {
 struct GraspTrialFigures {
   std::vector<double> carried, rest, unseen;  ///< m, of each picture
   int failed = 0, noticed = 0, false_alarms = 0, runs = 0;
+  int never_off = 0;  ///< of those that failed: shown where it was all the time, so that nothing was there to notice
   std::vector<double> lateness;  ///< s, of failed grasps that were noticed: from visible to noticed, less the delay
   double sighting_hz = 0;
 };

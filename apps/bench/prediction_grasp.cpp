@@ -22,6 +22,8 @@ nlohmann::json report(const GraspTrialFigures& f, const GraspTrialOptions& optio
           {"object_unseen_p95_mm", p95_mm(f.unseen)},
           {"failed_grasps", f.failed},
           {"failed_grasps_noticed", f.noticed},
+          {"failed_grasps_never_off", f.never_off},
+          {"failed_grasps_not_noticed", f.failed - f.never_off - static_cast<int>(f.lateness.size())},
           {"noticed_slowest_ms", 1e3 * slowest},
           {"false_alarms", f.false_alarms},
           {"runs", f.runs},
@@ -42,6 +44,8 @@ void print(const nlohmann::json& all) {
   std::printf("  failed grasps %.0f, noticed in time %.0f (slowest %.0f ms beyond the delay), false alarms %.0f\n",
               number("failed_grasps"), number("failed_grasps_noticed"), number("noticed_slowest_ms"),
               number("false_alarms"));
+  std::printf("    never noticed %.0f, shown where they were all the time %.0f\n", number("failed_grasps_not_noticed"),
+              number("failed_grasps_never_off"));
 }
 
 }  // namespace

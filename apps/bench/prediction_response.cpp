@@ -1,5 +1,6 @@
 #include "apps/bench/prediction_response.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -25,11 +26,21 @@ constexpr double kLongestGap = 0.15;      // s between states that judge what li
 constexpr std::size_t kMostInstants = 20'000;
 constexpr std::size_t kFewestInstants = 30;
 
+constexpr double kHole = 0.2, kHoleShare = 10;  // s, and intervals: commands that are so far apart lack some
+constexpr double kSettles = 1;                  // s after a hole, until what was commanded in it is over
+
 using Series = std::vector<TimedPosition>;
+
+/// Between two commands: what was asked for there is not known.
+struct Hole {
+  double from = 0, to = 0;
+  std::size_t next = 0;  // the command that ends it
+};
 
 struct Joint {
   std::string name;
   Series commands, states;
+  std::vector<Hole> holes;
   std::vector<double> velocities;  // of the states; empty: not recorded
 };
 
@@ -57,13 +68,28 @@ Series integrated(const Series& velocities, double start) {
   return positions;
 }
 
+std::vector<Hole> holes_of(const Series& commands) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < commands.size(); ++i) intervals.push_back(commands[i].time - commands[i - 1].time);
+  const double usual = quantile(intervals, 0.5);
+  std::vector<Hole> holes;
+  for (std::size_t i = 0; i < intervals.size(); ++i)
+    if (intervals[i] > std::max(kHole, kHoleShare * usual))
+      holes.push_back({commands[i].time, commands[i + 1].time, i + 1});
+  return holes;
+}
+
+bool any_hole(const std::vector<Hole>& holes, double from, double to) {
+  return std::ranges::any_of(holes, [&](const Hole& hole) { return hole.from < to && hole.to > from; });
+}
+
 std::vector<Joint> read_joints(const PredictionResponseOptions& options) {
   const JointTable commands = read_joint_table(options.commands), states = read_joint_table(options.states);
   const std::int64_t epoch = states.time_ns.front();
   std::vector<Joint> joints;
   for (const JointColumn& column : states.columns) {
     if (column.name.starts_with("dq")) continue;
-    Joint joint{column.name, {}, series_of(states, column.values, epoch), {}};
+    Joint joint{column.name, {}, series_of(states, column.values, epoch), {}, {}};
     if (const JointColumn* positions = commands.find(column.name))
       joint.commands = series_of(commands, positions->values, epoch);
     else if (const JointColumn* velocities = commands.find("d" + column.name))
@@ -71,6 +97,7 @@ std::vector<Joint> read_joints(const PredictionResponseOptions& options) {
     else
       continue;
     if (const JointColumn* velocities = states.find("d" + column.name)) joint.velocities = velocities->values;
+    joint.holes = holes_of(joint.commands);
     joints.push_back(std::move(joint));
   }
   if (joints.empty())
@@ -87,9 +114,15 @@ std::vector<Joint> read_joints(const PredictionResponseOptions& options) {
 // A learner and how far it has been fed.
 struct Learner {
   JointResponse response;
-  std::size_t next_command = 0;
+  std::size_t next_command = 0, next_hole = 0;
 
+  // In a hole it learns nothing, and begins anew after it.
   void take(const Joint& joint, const TimedPosition& state) {
+    for (; next_hole < joint.holes.size() && joint.holes[next_hole].to <= state.time; ++next_hole) {
+      response.begin_anew();
+      next_command = joint.holes[next_hole].next;
+    }
+    if (any_hole(joint.holes, state.time, state.time)) return;
     for (; next_command < joint.commands.size(); ++next_command) {
       const TimedPosition& command = joint.commands[next_command];
       if (command.time > state.time + kFarthestCommand) break;
@@ -152,6 +185,7 @@ void score(const Joint& joint, const Truth& truth, std::size_t i, const std::arr
   for (std::size_t h = 0; h < kAhead.size(); ++h) {
     const double then = now.time + kAhead[h];
     if (then > truth.end || !truth.states.covers(then, kLongestGap)) continue;
+    if (any_hole(joint.holes, now.time - kSettles, then)) continue;
     const PredictedPosition predicted = learners[0]->at(then), online = learners[1]->at(then);
     const double there = truth.states.at(then);
     const double way = truth.commands.at(then) - truth.commands.at(now.time);
@@ -222,10 +256,19 @@ int bench_prediction_response(const PredictionResponseOptions& options) {
   Scores scores;
   for (const Joint& joint : joints) measure(joint, scores);
   const auto& ours = scores.methods[0].at;
+  const std::vector<Hole>& holes = joints.front().holes;
+  double missing = 0;
+  for (const Hole& hole : holes) missing += hole.to - hole.from;
+  if (!holes.empty())
+    std::printf("%zu hole%s in the commands, %s s in all: nothing is learnt there, and nothing judged about there\n",
+                holes.size(), holes.size() == 1 ? "" : "s", readable(missing, 1).c_str());
   if (ours[0].size() < kFewestInstants)
     throw InputError(options.states.string(), "has only " + std::to_string(ours[0].size()) + " states to judge by",
                      "name a recording of some seconds");
-  write_numbers(options.json, report(scores).dump(2));
+  nlohmann::json all = report(scores);
+  all["holes"] = holes.size();
+  all["holes_s"] = missing;
+  write_numbers(options.json, all.dump(2));
   return 0;
 }
 

@@ -45,6 +45,23 @@ double wish(double t) {
   return 0.5 * std::sin(1.2 * t) + 0.1 * std::sin(4 * t);
 }
 
+// What was commanded in a hole nobody knows: nothing is guessed of it.
+TEST(PredictionResponse, HolesInTheCommandsAreNotJudged) {
+  const TempFolder out;
+  std::string commands = "time_s,q1\n", states = "time_s,q1\n";
+  for (int i = 0; i < 4000; ++i) {
+    const double t = i * 0.005;
+    if (t < 6 || t > 7.5) commands += number(t) + "," + number(wish(t)) + "\n";
+    states += number(t) + "," + number(wish(std::max(0.0, t - 0.04))) + "\n";
+  }
+  const auto all = measured(out, out.write("c.csv", commands).string(), out.write("s.csv", states).string());
+  EXPECT_EQ(all["holes"], 1);
+  EXPECT_NEAR(all["holes_s"], 1.5, 0.02);
+  EXPECT_LT(all["p95_rad_1000ms"].get<double>(), 0.001);
+  EXPECT_LT(all["online_p95_rad_1000ms"].get<double>(), 0.001);
+  EXPECT_GE(all["inside_2_sigma_1000ms"].get<double>(), 0.9);
+}
+
 // One joint that follows 40 ms later; commanded by position, or by velocity.
 TEST(PredictionResponse, CommandsAreTakenAsPositionsOrVelocities) {
   const TempFolder out;
