@@ -8,7 +8,7 @@ namespace foresight {
 namespace {
 
 constexpr std::uint16_t kMark = 0x4650;
-constexpr std::uint8_t kColour = 1, kStereo = 2;
+constexpr std::uint8_t kColour = 1, kStereo = 2, kHalved = 4;
 
 std::uint32_t checksum(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size()));
@@ -18,7 +18,7 @@ bool within_bounds(const CodedPair& pair) {
   return pair.number > 0 && pair.reference < pair.number && pair.lane < kMostLanes &&
          (pair.coding == Coding::jpeg || pair.coding == Coding::h264) && pair.width > 0 && pair.height > 0 &&
          pair.width <= kLargestPictureSide && pair.height <= kLargestPictureSide && !pair.data.empty() &&
-         pair.left_bytes <= pair.data.size();
+         pair.left_bytes <= pair.data.size() && !(pair.halved && pair.coding == Coding::jpeg);
 }
 
 }  // namespace
@@ -29,7 +29,8 @@ std::vector<std::uint8_t> to_bytes(const CodedPair& pair) {
   put(body, kMark);
   put(body, static_cast<std::uint8_t>(pair.coding));
   put(body, pair.lane);
-  put(body, static_cast<std::uint8_t>((pair.colour ? kColour : 0) | (pair.stereo ? kStereo : 0)));
+  put(body, static_cast<std::uint8_t>((pair.colour ? kColour : 0) | (pair.stereo ? kStereo : 0) |
+                                      (pair.halved ? kHalved : 0)));
   put(body, std::uint8_t{0});
   put(body, static_cast<std::uint16_t>(pair.width));
   put(body, static_cast<std::uint16_t>(pair.height));
@@ -59,6 +60,7 @@ std::optional<CodedPair> parse_coded_pair(std::span<const std::uint8_t> bytes) {
   const auto flags = reader.take<std::uint8_t>();
   pair.colour = (flags & kColour) != 0;
   pair.stereo = (flags & kStereo) != 0;
+  pair.halved = (flags & kHalved) != 0;
   reader.take<std::uint8_t>();
   pair.width = reader.take<std::uint16_t>();
   pair.height = reader.take<std::uint16_t>();

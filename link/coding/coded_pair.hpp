@@ -33,6 +33,7 @@ struct CodedPair {
   int width = 0, height = 0;    ///< px, of one eye
   bool colour = false;
   bool stereo = false;
+  bool halved = false;           ///< H.264: coded at half of width and height, rounded up
   std::uint32_t left_bytes = 0;  ///< JPEG: where the right picture begins
   std::vector<std::uint8_t> data{};
   std::vector<std::uint8_t> notes{};  ///< what else is to be known with the picture, as whoever sends it has agreed

@@ -1,30 +1,47 @@
 #include "link/coding/h264_coder.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace foresight {
 namespace {
 
-constexpr std::array<double, 4> kSoftness{0, 1.5, 3, 6};  // standard deviation in pixels, of an eye 640 wide
-constexpr double kTooLarge = 1.5;                         // bytes over wish
+constexpr std::array<double, 4> kSoftness{0, 1.5, 3, 6};         // standard deviation in pixels, of an eye 640 wide
+constexpr std::array<double, 4> kFirstShare{1, 0.6, 0.4, 0.25};  // of the bytes of a pair predicted from none
+constexpr double kFirstTimes = 3;                                // bytes over wish that such a pair may take
+constexpr double kFirstBytes = 0.03;                             // per pixel, until one was coded
+constexpr double kTooLarge = 1.5;                                // bytes over wish
 constexpr std::size_t kSuddenly = 4;  // a wish that so much less than the last pair took is not waited for
+constexpr double kMostAsked = 2.5, kAskingGain = 0.25;
 
 }  // namespace
 
 // Even the coarsest step has a floor: what moves has to be said somehow. A softer picture has a lower one.
-std::size_t H264PairEncoder::softness_for(std::size_t wish) const {
-  if (wish * kSuddenly < last_bytes_) return std::max<std::size_t>(softness_, 2);
-  return softness_;
+std::size_t H264PairEncoder::softness_for(std::size_t wish, bool intra) const {
+  if (!intra) return wish * kSuddenly < last_bytes_ ? std::max<std::size_t>(softness_, 2) : softness_;
+  const double area = size_.area() * (halved_ ? 0.25 : 1.0);
+  const double bytes = area * (first_bytes_per_px_ > 0 ? first_bytes_per_px_ : kFirstBytes);
+  std::size_t softness = 0;
+  while (softness + 1 < kSoftness.size() && bytes * kFirstShare[softness] > kFirstTimes * static_cast<double>(wish))
+    ++softness;
+  return softness;
 }
 
-void H264PairEncoder::learn(std::size_t bytes, std::size_t wish, std::size_t softness) {
+void H264PairEncoder::learn(std::size_t bytes, std::size_t wish, std::size_t softness, bool intra) {
+  const double ratio = static_cast<double>(bytes) / static_cast<double>(wish);
+  if (intra) {
+    const double area = size_.area() * (halved_ ? 0.25 : 1.0);
+    first_bytes_per_px_ = static_cast<double>(bytes) / area / kFirstShare[softness];
+    return;
+  }
   last_bytes_ = bytes;
   softness_ = softness;
-  if (static_cast<double>(bytes) > kTooLarge * static_cast<double>(wish)) {
+  if (ratio > kTooLarge) {
     softness_ = std::min(softness + 1, kSoftness.size() - 1);
   } else if (bytes <= wish && softness > 0) {
     --softness_;
   }
+  if (softness == 0) asked_ = std::clamp(asked_ * std::pow(ratio, -kAskingGain), 1.0, kMostAsked);
 }
 
 CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& wish) {
@@ -33,13 +50,22 @@ CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& 
   if (planes.size != size_) {
     lanes_ = {};
     encoders_ = {};
+    scale_ = {};
     size_ = planes.size;
   }
+  const std::size_t bytes = wish.bytes > kCodedPairHeader ? wish.bytes - kCodedPairHeader : 1;
+  if (const bool halved = scale_.halved(planes, bytes); halved != halved_) {
+    halved_ = halved;
+    lanes_.begin_anew();
+    encoders_ = {};
+    first_bytes_per_px_ = 0;
+    asked_ = 1;
+  }
+  if (halved_) planes = to_planes(halve(picture));
   const auto [lane, reference] = lanes_.place(wish);
   const bool intra = reference == 0;
   std::optional<H264Encoder>& encoder = encoders_[lane];
-  if (!encoder) encoder.emplace(size_);
-  const std::size_t bytes = wish.bytes > kCodedPairHeader ? wish.bytes - kCodedPairHeader : 1;
+  if (!encoder) encoder.emplace(planes.size);
   CodedPair pair{.number = wish.number, .captured = picture.captured, .coding = Coding::h264};
   pair.lane = static_cast<std::uint8_t>(lane);
   pair.reference = reference;
@@ -47,10 +73,12 @@ CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& 
   pair.height = picture.left.rows;
   pair.colour = picture.left.channels() == 3;
   pair.stereo = !picture.right.empty();
-  const std::size_t softness = softness_for(bytes);
-  soften(planes, kSoftness[softness] * picture.left.cols / 640);
-  pair.data = encoder->encode(planes, bytes, intra);
-  if (!intra) learn(pair.data.size(), bytes, softness);
+  pair.halved = halved_;
+  const std::size_t softness = softness_for(bytes, intra);
+  soften(planes, kSoftness[softness] * planes.size.width / 640);
+  const double asked = static_cast<double>(bytes) * (intra || softness > 0 || wish.only_what_arrived ? 1 : asked_);
+  pair.data = encoder->encode(planes, static_cast<std::size_t>(asked), intra);
+  learn(pair.data.size(), bytes, softness, intra);
   lanes_.coded(lane, wish.number);
   return pair;
 }
@@ -65,12 +93,15 @@ std::optional<StereoPicture> H264PairDecoder::decode(const CodedPair& pair) {
   if (!ready(pair) || pair.number <= lane.number) return std::nullopt;
   if (!lane.decoder || pair.reference == 0) lane.decoder.emplace();
   lane.number = 0;
-  cv::Size size = even_size(pair.width, pair.height);
+  const cv::Size whole(pair.width, pair.height);
+  const cv::Size coded = pair.halved ? cv::Size((whole.width + 1) / 2, (whole.height + 1) / 2) : whole;
+  cv::Size size = even_size(coded.width, coded.height);
   if (pair.stereo) size.height *= 2;
   const std::optional<Planes> planes = lane.decoder->decode(pair.data, size);
   if (!planes) return std::nullopt;
   lane.number = pair.number;
-  StereoPicture out = from_planes(*planes, pair.width, pair.height, pair.colour, pair.stereo);
+  StereoPicture out = from_planes(*planes, coded.width, coded.height, pair.colour, pair.stereo);
+  if (pair.halved) out = enlarge(out, whole);
   out.captured = pair.captured;
   return out;
 }

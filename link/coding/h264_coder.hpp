@@ -6,6 +6,7 @@
 #include "link/coding/encoder_lanes.hpp"
 #include "link/coding/h264_stream.hpp"
 #include "link/coding/pair_coder.hpp"
+#include "link/coding/picture_scale.hpp"
 
 namespace foresight {
 
@@ -17,14 +18,18 @@ class H264PairEncoder final : public PairEncoder {
   void begin_anew() override { lanes_.begin_anew(); }
 
  private:
-  std::size_t softness_for(std::size_t wish) const;
-  void learn(std::size_t bytes, std::size_t wish, std::size_t softness);
+  std::size_t softness_for(std::size_t wish, bool intra) const;
+  void learn(std::size_t bytes, std::size_t wish, std::size_t softness, bool intra);
 
   EncoderLanes lanes_;
   std::array<std::optional<H264Encoder>, kMostLanes> encoders_;  // one a lane
-  cv::Size size_;
-  std::size_t softness_ = 0;    // of the next picture, so that it fits its wish
-  std::size_t last_bytes_ = 0;  // of the last predicted pair
+  cv::Size size_;                                                // of the planes of whole pictures
+  PictureScale scale_;
+  bool halved_ = false;
+  std::size_t softness_ = 0;       // of the next picture, so that it fits its wish
+  std::size_t last_bytes_ = 0;     // of the last predicted pair
+  double asked_ = 1;               // times the wish: what the library is asked for, as it gives less
+  double first_bytes_per_px_ = 0;  // of pairs that are predicted from none, were they not softened
 };
 
 class H264PairDecoder {

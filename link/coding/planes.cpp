@@ -68,6 +68,21 @@ Planes to_planes(const StereoPicture& picture) {
   return planes;
 }
 
+StereoPicture halve(const StereoPicture& picture) {
+  const cv::Size size((picture.left.cols + 1) / 2, (picture.left.rows + 1) / 2);
+  StereoPicture out{.captured = picture.captured};
+  cv::resize(picture.left, out.left, size, 0, 0, cv::INTER_AREA);
+  if (!picture.right.empty()) cv::resize(picture.right, out.right, size, 0, 0, cv::INTER_AREA);
+  return out;
+}
+
+StereoPicture enlarge(const StereoPicture& picture, cv::Size size) {
+  StereoPicture out{.captured = picture.captured};
+  cv::resize(picture.left, out.left, size, 0, 0, cv::INTER_CUBIC);
+  if (!picture.right.empty()) cv::resize(picture.right, out.right, size, 0, 0, cv::INTER_CUBIC);
+  return out;
+}
+
 void soften(Planes& planes, double sigma) {
   if (sigma < 1.0 / 3) return;
   const auto smooth = [](std::uint8_t* pixels, cv::Size size, double by) {

@@ -24,6 +24,11 @@ struct Planes {
 /// BT.601, video range, as cv::COLOR_BGR2YUV_I420; grey pictures keep their full range and have no chroma.
 Planes to_planes(const StereoPicture& picture);
 
+/// Of pictures half as wide and high, rounded up; each pixel is the mean of what it covers.
+StereoPicture halve(const StereoPicture& picture);
+/// And back to `size`, smoothly.
+StereoPicture enlarge(const StereoPicture& picture, cv::Size size);
+
 /// Smooths all planes by a Gaussian of this standard deviation, in luma pixels; below a third of one not at all.
 void soften(Planes& planes, double sigma);
 

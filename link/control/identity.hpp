@@ -10,7 +10,7 @@
 namespace foresight {
 
 /// Grows whenever the messages change so that an older program would misunderstand them.
-inline constexpr std::uint32_t kLineProtocol = 1;
+inline constexpr std::uint32_t kLineProtocol = 2;
 
 /// Of a file's bytes: FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo). Tells apart what differs by mistake; who wants
 /// to deceive is for the line's security to keep out. Never 0.

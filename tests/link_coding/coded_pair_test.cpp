@@ -13,7 +13,7 @@ CodedPair some_pair() {
   CodedPair pair{.number = 7, .captured = {-123'456'789'012}, .coding = Coding::h264, .lane = 2, .reference = 5};
   pair.width = 640;
   pair.height = 480;
-  pair.colour = pair.stereo = true;
+  pair.colour = pair.stereo = pair.halved = true;
   pair.left_bytes = 2;
   pair.data = {1, 2, 3, 4, 5};
   pair.notes = {9, 8, 7};
@@ -33,7 +33,7 @@ TEST(CodedPair, ComesBackAsItWas) {
   EXPECT_EQ(back->reference, pair.reference);
   EXPECT_EQ(back->width, pair.width);
   EXPECT_EQ(back->height, pair.height);
-  EXPECT_TRUE(back->colour && back->stereo);
+  EXPECT_TRUE(back->colour && back->stereo && back->halved);
   EXPECT_EQ(back->left_bytes, pair.left_bytes);
   EXPECT_EQ(back->data, pair.data);
   EXPECT_EQ(back->notes, pair.notes);
@@ -58,6 +58,7 @@ TEST(CodedPair, RefusesWhatIsOutOfBoundsThoughItsChecksumIsRight) {
   };
   EXPECT_FALSE(refused([](CodedPair&) {}));
   EXPECT_TRUE(refused([](CodedPair& pair) { pair.lane = kMostLanes; }));
+  EXPECT_TRUE(refused([](CodedPair& pair) { pair.coding = Coding::jpeg; })) << "no JPEG is halved";
   EXPECT_TRUE(refused([](CodedPair& pair) { pair.reference = pair.number; }));
   EXPECT_TRUE(refused([](CodedPair& pair) { pair.number = pair.reference = 0; }));
   EXPECT_TRUE(refused([](CodedPair& pair) { pair.width = 0; }));

@@ -176,5 +176,64 @@ TEST_F(H264Lanes, TakesGreyOddAndSinglePicturesAndChangesOfSize) {
     }
 }
 
+// A thin line: pictures cross it at half their size, and as before when it carries more again; each change begins a
+// lane anew, and all are shown as large as they were, odd sizes too.
+TEST_F(H264Lanes, ThinLinesGetHalvedPictures) {
+  for (const cv::Size size : {cv::Size(320, 240), cv::Size(175, 157)}) {
+    H264PairEncoder encoder;
+    H264PairDecoder decoder, mirror;
+    std::size_t halved = 0, whole = 0;
+    bool before = false;
+    double thin = 0;
+    for (std::uint32_t i = 1; i <= 60; ++i) {
+      const StereoPicture picture = moving_picture(instant(2 * i), size);
+      const std::size_t budget = i > 10 && i <= 30 ? static_cast<std::size_t>(2 * size.area()) / 220 : 12'000;
+      const CodedPair pair = encoder.encode(picture, {.number = i, .bytes = budget});
+      EXPECT_TRUE(pair.halved == before || pair.reference == 0) << i;
+      before = pair.halved;
+      const auto shown = decoder.decode(parse_coded_pair(to_bytes(pair)).value()), made = mirror.decode(pair);
+      ASSERT_TRUE(shown && made) << i;
+      EXPECT_EQ(shown->left.size(), size);
+      EXPECT_TRUE(equal(*shown, *made));
+      (pair.halved ? halved : whole) += 1;
+      if (i == 30) thin = luma_psnr_db(picture, *shown);
+    }
+    EXPECT_GE(halved, 20U);
+    EXPECT_GE(whole, 10U);
+    EXPECT_FALSE(before) << "it stayed halved";
+    EXPECT_GT(thin, 18);
+  }
+}
+
+Planes planes_at(std::uint32_t i) {
+  return to_planes(moving_picture(instant(i), {320, 240}));
+}
+
+TEST(PictureScale, HalvesWhatMovesWhereTheLineStaysThin) {
+  PictureScale scale;
+  const std::size_t thin = 600, ample = 6000;  // of 600 places, nearly all of which move
+  std::uint32_t i = 0;
+  for (; i < 30; ++i) EXPECT_FALSE(scale.halved(planes_at(3 * i), i % 3 == 2 ? ample : thin)) << "it comes and goes";
+  int until = 0;
+  while (!scale.halved(planes_at(3 * ++i), thin)) ++until;
+  EXPECT_LE(until, 4);
+  for (int k = 0; k < 30; ++k) EXPECT_TRUE(scale.halved(planes_at(3 * ++i), k % 5 == 4 ? thin : ample));
+  for (until = 0; scale.halved(planes_at(3 * ++i), ample);) ++until;
+  EXPECT_LE(until, 20);
+}
+
+TEST(PictureScale, LeavesAStillSceneSharp) {
+  PictureScale scale;
+  for (std::uint32_t i = 0; i < 40; ++i) scale.halved(to_planes(moving_picture(instant(7), {320, 240})), 6000);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    StereoPicture still = moving_picture(instant(7), {320, 240}, true, 0);
+    cv::Mat grain(still.left.size(), CV_16SC3);
+    cv::RNG random(i + 1);
+    random.fill(grain, cv::RNG::NORMAL, 0, 4);
+    cv::add(still.left, grain, still.left, cv::noArray(), CV_8UC3);
+    EXPECT_FALSE(scale.halved(to_planes(still), 600)) << "noise is no motion";
+  }
+}
+
 }  // namespace
 }  // namespace foresight::h264_coder_test
