@@ -16,7 +16,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kStillRays = 96, kMoverRays = 40, kShadeRays = 16;
 constexpr float kReach = 0.25f;  // metres around what moves within which it shades the daylight
 constexpr float kOffGeometry = 2e-4f, kOffRounded = 1e-3f;  // metres: no surface shades itself
@@ -149,14 +148,12 @@ LightMap::Gather LightMap::gather(const Sample& s, int rays, const Movers* mover
   int behind = 0;
   for (int k = 0; k < rays; ++k) {
     const Vector3f d = cosine_direction(s.n, k, rays);
-    const auto hit = still_tracer_->nearest(origin, d);
-    if (movers) {
-      const auto nearer = movers->tracer->nearest(origin, d, hit ? hit->t : 10);
-      if (nearer) {
-        if (movers->normals[nearer->triangle].dot(d) > 0) ++behind;
-        out.light += 2 * kBounce * albedo_[movers->facets[nearer->triangle]];
-        continue;
-      }
+    const auto moving = movers ? movers->tracer->nearest(origin, d) : std::nullopt;
+    const auto hit = moving ? still_tracer_->nearest(origin, d, moving->t) : still_tracer_->nearest(origin, d);
+    if (moving && !hit) {
+      if (movers->normals[moving->triangle].dot(d) > 0) ++behind;
+      out.light += 2 * kBounce * albedo_[movers->facets[moving->triangle]];
+      continue;
     }
     if (!hit) {
       out.light += lamp::daylight(d);
@@ -164,10 +161,10 @@ LightMap::Gather LightMap::gather(const Sample& s, int rays, const Movers* mover
     }
     const int facet = still_facets_[hit->triangle];
     if (still_g_[hit->triangle].dot(d) > 0) ++behind;
-    const Vector3f lit = at(direct_, facet, hit->b1, hit->b2) + Vector3f::Constant(kBounce * kPi);
-    out.light += albedo_[facet].cwiseProduct(lit) / kPi;
+    const Vector3f lit = at(direct_, facet, hit->b1, hit->b2) + Vector3f::Constant(kBounce * std::numbers::pi_v<float>);
+    out.light += albedo_[facet].cwiseProduct(lit) / std::numbers::pi_v<float>;
   }
-  out.light *= kPi / static_cast<float>(rays);
+  out.light *= std::numbers::pi_v<float> / static_cast<float>(rays);
   out.inside = 3 * behind > rays;
   return out;
 }
