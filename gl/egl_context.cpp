@@ -23,25 +23,25 @@ std::string egl_error() {
 
 /// A display connection shared by all contexts on it; terminated with the last. EGL knows one connection per device in
 /// the whole process, and to terminate it ends the contexts of all who opened it: hence the count.
-class Display {
+class SharedDisplay {
  public:
   /// Null where EGL refuses; eglGetError() says why.
-  static std::shared_ptr<Display> open(EGLDisplay display) {
+  static std::shared_ptr<SharedDisplay> open(EGLDisplay display) {
     const std::scoped_lock lock(opened().mutex);
     if (!eglInitialize(display, nullptr, nullptr)) return nullptr;
     ++opened().times[display];
-    return std::shared_ptr<Display>(new Display(display));
+    return std::shared_ptr<SharedDisplay>(new SharedDisplay(display));
   }
-  ~Display() {
+  ~SharedDisplay() {
     const std::scoped_lock lock(opened().mutex);
     if (--opened().times[display_] == 0) eglTerminate(display_);
   }
-  Display(const Display&) = delete;
-  Display& operator=(const Display&) = delete;
+  SharedDisplay(const SharedDisplay&) = delete;
+  SharedDisplay& operator=(const SharedDisplay&) = delete;
   EGLDisplay get() const { return display_; }
 
  private:
-  explicit Display(EGLDisplay display) : display_(display) {}
+  explicit SharedDisplay(EGLDisplay display) : display_(display) {}
   struct Opened {
     std::mutex mutex;
     std::map<EGLDisplay, int> times;
@@ -65,7 +65,8 @@ EGLContext create_context(EGLDisplay display, EGLContext share, const EGLint* at
 
 class EglContext final : public Context {
  public:
-  EglContext(std::shared_ptr<Display> display, EGLContext context) : display_(std::move(display)), context_(context) {}
+  EglContext(std::shared_ptr<SharedDisplay> display, EGLContext context)
+      : display_(std::move(display)), context_(context) {}
   ~EglContext() override {
     if (eglGetCurrentContext() == context_) release();
     eglDestroyContext(display_->get(), context_);
@@ -90,12 +91,12 @@ class EglContext final : public Context {
   }
 
  private:
-  std::shared_ptr<Display> display_;
+  std::shared_ptr<SharedDisplay> display_;
   EGLContext context_;
 };
 
 /// What the display has instead of OpenGL 4.5, such as "llvmpipe, OpenGL 3.3 (Mesa 22.3.6)".
-std::string found_instead(const std::shared_ptr<Display>& display) {
+std::string found_instead(const std::shared_ptr<SharedDisplay>& display) {
   const std::string error = egl_error();
   const EGLint any_version[] = {EGL_NONE};
   const EGLContext context = create_context(display->get(), EGL_NO_CONTEXT, any_version);
@@ -113,7 +114,7 @@ std::unique_ptr<Context> try_display(EGLDisplay handle, const std::string& name,
     return nullptr;
   };
   if (handle == EGL_NO_DISPLAY) return fail("no display");
-  const auto display = Display::open(handle);
+  const auto display = SharedDisplay::open(handle);
   if (!display) return fail(egl_error());
   const EGLContext context = create_context(handle, EGL_NO_CONTEXT);
   if (context == EGL_NO_CONTEXT) return fail(found_instead(display));

@@ -5,7 +5,7 @@
 namespace foresight {
 namespace {
 
-constexpr Duration kPatience = std::chrono::seconds(20);
+constexpr Duration kEnabledWithin = std::chrono::seconds(20);
 
 }  // namespace
 
@@ -27,7 +27,7 @@ RobotStart::Progress RobotStart::tick(RobotTime now, const RobotStatus& status) 
     if (!may_home_) return {.failure = "not all joints are homed; give --home to let them look for home, slowly"};
     return ask(RobotRequest::home);
   }
-  if (now - *since_ > kPatience) return {.failure = "the drives were not enabled in time"};
+  if (now - *since_ > kEnabledWithin) return {.failure = "the drives were not enabled in time"};
   return ask(RobotRequest::enable);
 }
 

@@ -9,11 +9,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kReleasedFor = 50ms;  // before engaging
-constexpr Duration kHeldBack = 2s;       // without a step nearer
-constexpr Duration kStillFor = 300ms;    // measured positions, before anybody looks
-constexpr double kReached = 1e-3;        // rad or m, of set-points
-constexpr double kStill = 5e-4;          // rad or m: more than encoders' noise, less than a camera sees
+constexpr Duration kOpenFor = 50ms;    // before engaging
+constexpr Duration kHeldBack = 2s;     // without a step nearer
+constexpr Duration kStillFor = 300ms;  // measured positions, before anybody looks
+constexpr double kArrived = 1e-3;      // rad or m, of set-points
+constexpr double kStill = 5e-4;        // rad or m: more than encoders' noise, less than a camera sees
 
 }  // namespace
 
@@ -82,7 +82,7 @@ OperatorWish StationOperator::tick(RobotTime now, const RobotStatus& status) {
     }
     case Step::wait: watch_rest(now, status); return {};
     case Step::engage:
-      if (now - since_ > kReleasedFor) enter(Step::move, now);
+      if (now - since_ > kOpenFor) enter(Step::move, now);
       return command(now, false);
     case Step::move: {
       const bool in_charge = status.gate.state == GateState::following && status.gate.operator_id == kId;
@@ -97,7 +97,7 @@ OperatorWish StationOperator::tick(RobotTime now, const RobotStatus& status) {
       if (now - moved_ > kHeldBack) {
         missed_ = kept_from(status, now);
         enter(Step::release, now);
-      } else if (farthest < kReached) {
+      } else if (farthest < kArrived) {
         enter(Step::release, now);
       }
       return command(now, step_ == Step::move);

@@ -9,7 +9,7 @@
 namespace foresight {
 namespace {
 
-const Colour kAround{0.80f, 0.78f, 0.72f, 1};
+const Colour kNoLink{0.80f, 0.78f, 0.72f, 1};
 const Colour kLinks[] = {{0.70f, 0.73f, 0.77f, 1}, {0.58f, 0.61f, 0.66f, 1}};  // neighbours tell apart
 
 /// A bar of a round length in the lower left corner, true at the target's distance.
@@ -42,7 +42,7 @@ cv::Mat RigPicture::operator()(const RigBody& body, const PlacedRig& placed, con
   std::vector<Colour> colours;
   std::size_t links = 0;
   for (std::size_t i = 0; i < is_link_.size(); ++i) {
-    Colour colour = is_link_[i] ? kLinks[links % std::size(kLinks)] : kAround;
+    Colour colour = is_link_[i] ? kLinks[links % std::size(kLinks)] : kNoLink;
     if (is_link_[i] && !body.nodes().nodes()[i].mesh.triangles.empty()) ++links;
     if (is_link_[i] && !shows(state.layers, Layer::links)) colour[3] = 0;
     colours.push_back(colour);

@@ -9,7 +9,7 @@ namespace {
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kSize = 0.44;
 constexpr int kGap = 3;  // px between words
-const cv::Scalar kPaper(246, 245, 244);
+const cv::Scalar kHalo(246, 245, 244);
 
 struct Place {
   cv::Point2i anchor;
@@ -58,9 +58,9 @@ std::size_t write_words(cv::Mat& picture, const std::vector<Drawing::Word>& word
     const cv::Rect box = free_box(anchor, size, taken, picture.size());
     taken.push_back({anchor, box});
     const cv::Point start(std::clamp(anchor.x, box.x, box.x + box.width), box.y + box.height / 2);
-    cv::line(picture, anchor, start, bgr(word.colour) * 0.6 + kPaper * 0.4, 1, cv::LINE_AA);
+    cv::line(picture, anchor, start, bgr(word.colour) * 0.6 + kHalo * 0.4, 1, cv::LINE_AA);
     const cv::Point baseline(box.x, box.y + box.height - below);
-    cv::putText(picture, word.text, baseline, kFont, kSize, kPaper, 3, cv::LINE_AA);
+    cv::putText(picture, word.text, baseline, kFont, kSize, kHalo, 3, cv::LINE_AA);
     cv::putText(picture, word.text, baseline, kFont, kSize, bgr(word.colour), 1, cv::LINE_AA);
   }
   return taken.size();

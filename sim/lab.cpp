@@ -18,7 +18,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kMugRadius = 0.040f, kCanRadius = 0.034f, kBottleRadius = 0.036f;
 constexpr double kTableY = 0.14;  // the arm's stand takes the place on the right
 constexpr double kMugHeight = 0.095, kCanHeight = 0.110, kBottleHeight = 0.235;
@@ -202,7 +201,7 @@ void add_ball(LabBuilder& b) {
   constexpr int kBands = 16;
   std::vector<ProfilePoint> profile;
   for (int i = 0; i <= kBands; ++i) {
-    const float angle = kPi * static_cast<float>(i) / kBands;
+    const float angle = std::numbers::pi_v<float> * static_cast<float>(i) / kBands;
     const bool pole = i == 0 || i == kBands;
     profile.push_back({pole ? 0 : kBallRadius * std::sin(angle), -kBallRadius * std::cos(angle), colours[i / 4 % 2]});
   }

@@ -9,8 +9,6 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 // A face frame of a box: outward normal, and right and up of its picture.
 struct Face {
   Vector3f n, right, up;
@@ -99,8 +97,10 @@ void add_turned(Facets& out, const std::vector<ProfilePoint>& profile, int segme
     return Vector2f((own + band_normal(neighbour)).normalized());
   };
   const auto corner = [&](const ProfilePoint& at, const Vector2f& n, int segment) {
-    const float angle = 2 * kPi * static_cast<float>(segment % segments) / static_cast<float>(segments);
-    const float u = 2 * kPi * static_cast<float>(segment) / static_cast<float>(segments) * picture_radius;
+    const float angle =
+        2 * std::numbers::pi_v<float> * static_cast<float>(segment % segments) / static_cast<float>(segments);
+    const float u =
+        2 * std::numbers::pi_v<float> * static_cast<float>(segment) / static_cast<float>(segments) * picture_radius;
     const float c = std::cos(angle), s = std::sin(angle);
     return Corner{{at.radius * c, at.radius * s, at.z}, {n.x() * c, n.x() * s, n.y()}, {u, picture_top - at.z}};
   };
@@ -115,8 +115,8 @@ void add_turned(Facets& out, const std::vector<ProfilePoint>& profile, int segme
 void add_handle(Facets& out, const Vector3f& centre, float bow_radius, float tube_radius, int material) {
   constexpr int kAlong = 8, kAround = 6;
   const auto corner = [&](int i, int j) {
-    const float bow = kPi * (static_cast<float>(i) / kAlong - 0.5f);
-    const float around = 2 * kPi * static_cast<float>(j % kAround) / kAround;
+    const float bow = std::numbers::pi_v<float> * (static_cast<float>(i) / kAlong - 0.5f);
+    const float around = 2 * std::numbers::pi_v<float> * static_cast<float>(j % kAround) / kAround;
     const Vector3f out_dir(std::cos(bow), 0, std::sin(bow));
     const Vector3f n = std::cos(around) * out_dir + std::sin(around) * Vector3f::UnitY();
     return Corner{centre + bow_radius * out_dir + tube_radius * n, n, {0, 0}};

@@ -7,8 +7,8 @@
 namespace foresight::sim {
 namespace {
 
-constexpr int kRays = 3;     // along each side of a pixel
-constexpr double kBits = 8;  // of a tag36h11 across its black border
+constexpr int kRaysAlong = 3;  // along each side of a pixel
+constexpr double kBits = 8;    // of a tag36h11 across its black border
 constexpr double kInk = 25, kPaper = 225, kTable = 120, kWall = 150;
 
 Pose on_table(double x, double y, double turn) {
@@ -96,9 +96,10 @@ cv::Mat TagRoom::picture(const cv::Mat& rays, const Pose& T_world_camera, double
       // The lens is linear enough within a pixel.
       const Eigen::Vector3d a = ray(u, v), across = ray(u + 1, v) - a, down = ray(u, v + 1) - a;
       double sum = 0;
-      for (int k = 0; k < kRays * kRays; ++k)
-        sum += grey(origin, a + (k % kRays + 0.5) / kRays * across + (k / kRays + 0.5) / kRays * down);
-      out.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(sum / (kRays * kRays) + normal(random));
+      for (int k = 0; k < kRaysAlong * kRaysAlong; ++k)
+        sum +=
+            grey(origin, a + (k % kRaysAlong + 0.5) / kRaysAlong * across + (k / kRaysAlong + 0.5) / kRaysAlong * down);
+      out.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(sum / (kRaysAlong * kRaysAlong) + normal(random));
     }
   return out;
 }

@@ -43,6 +43,9 @@ struct CameraCounters {
   std::uint64_t losses = 0;    ///< times that the device went
 };
 
+/// A stream that hangs is started anew this often before its device counts as lost.
+inline constexpr int kHangsUntilLost = 3;
+
 /// One owner thread calls everything between start() and stop(). Set-up (start, controls) blocks and throws;
 /// wait_frame() does not throw.
 class Camera {

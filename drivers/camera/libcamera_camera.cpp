@@ -6,11 +6,6 @@
 #include "drivers/camera/capture_time.hpp"
 
 namespace foresight {
-namespace {
-
-constexpr int kHangsUntilLost = 3;
-
-}  // namespace
 
 LibcameraCamera::LibcameraCamera(std::string name, const Options& options, Clock& clock, libcam::Library& library)
     : name_(std::move(name)), options_(options), settings_(options.settings), clock_(clock), library_(library) {

@@ -15,7 +15,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kHangsUntilLost = 3;
 constexpr int kExposureFrames = 30;  // reading a control of a USB camera takes a millisecond
 
 v4l2_buffer capture_buffer(std::uint32_t index = 0) {

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr ObjectRef kDeviceType{0x1000, 0, 4}, kConsumerCount{0x1016, 0, 1}, kProducer{0x1017, 0, 2};
 constexpr ObjectRef kVendor{0x1018, 1, 4}, kProduct{0x1018, 2, 4}, kSerial{0x1018, 4, 4};
 constexpr ObjectRef kAbortOption{0x6007, 0, 2, true}, kControlWord{0x6040, 0, 2}, kStatusWord{0x6041, 0, 2};
-constexpr ObjectRef kQuickStopOption{0x605A, 0, 2, true}, kMode{0x6060, 0, 1, true}, kModeShown{0x6061, 0, 1, true};
+constexpr ObjectRef kQuickStopOption{0x605A, 0, 2, true}, kMode{0x6060, 0, 1, true}, kModeDisplay{0x6061, 0, 1, true};
 constexpr ObjectRef kActual{0x6064, 0, 4, true}, kErrorCode{0x603F, 0, 2}, kSupportedModes{0x6502, 0, 4};
 constexpr Duration kStateTime = 1s;
 
@@ -202,7 +202,7 @@ void Cia402Drive::write_mode() {
   need(config_.mode);
   if (config_.homing_method != 0) need(OperationMode::homing);
   access_.write(kMode, static_cast<int>(config_.mode));
-  const auto shown = [&] { return access_.read(kModeShown) == static_cast<int>(config_.mode); };
+  const auto shown = [&] { return access_.read(kModeDisplay) == static_cast<int>(config_.mode); };
   if (!access_.wait(kStateTime, shown))
     throw RuntimeFailure(access_.device() + " does not show the mode " + to_string(config_.mode) + " (6061h)",
                          "check that the drive supports it");

@@ -5,7 +5,7 @@
 namespace foresight::canopen {
 namespace {
 
-std::uint32_t key(std::uint16_t index, std::uint8_t sub) {
+std::uint32_t object_key(std::uint16_t index, std::uint8_t sub) {
   return std::uint32_t{index} << 8 | sub;
 }
 
@@ -49,17 +49,17 @@ bool is_signed(DataType type) {
 }
 
 bool ObjectDictionary::add(ObjectEntry entry) {
-  const std::uint32_t at = key(entry.index, entry.sub);
+  const std::uint32_t at = object_key(entry.index, entry.sub);
   return entries_.emplace(at, std::move(entry)).second;
 }
 
 const ObjectEntry* ObjectDictionary::find(std::uint16_t index, std::uint8_t sub) const {
-  const auto found = entries_.find(key(index, sub));
+  const auto found = entries_.find(object_key(index, sub));
   return found == entries_.end() ? nullptr : &found->second;
 }
 
 bool ObjectDictionary::has(std::uint16_t index) const {
-  const auto first = entries_.lower_bound(key(index, 0));
+  const auto first = entries_.lower_bound(object_key(index, 0));
   return first != entries_.end() && first->second.index == index;
 }
 

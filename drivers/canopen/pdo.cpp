@@ -7,7 +7,7 @@
 namespace foresight::canopen {
 namespace {
 
-constexpr std::uint32_t kInvalid = 0x80000000, kNoRemote = 0x40000000, kIdBits = 0x1fffffff;
+constexpr std::uint32_t kInvalid = 0x80000000, kNoRemote = 0x40000000, kCobIdBits = 0x1fffffff;
 
 std::uint64_t mask(int bits) {
   return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
@@ -90,7 +90,7 @@ void configure_pdo(SdoAccess& sdo, const Pdo& pdo) {
                std::uint32_t{e.index} << 16 | std::uint32_t{e.sub} << 8 | e.bits);
   }
   sdo.write({communication, 1, 4}, id);
-  sdo.expect({communication, 1, 4}, id, kInvalid | kIdBits);
+  sdo.expect({communication, 1, 4}, id, kInvalid | kCobIdBits);
 }
 
 void disable_pdo(SdoAccess& sdo, PdoDirection direction, int number) {

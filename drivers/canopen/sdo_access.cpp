@@ -12,7 +12,7 @@
 namespace foresight::canopen {
 namespace {
 
-std::string hex(std::uint64_t value) {
+std::string in_hex(std::uint64_t value) {
   return fmt::format("0x{:X}", value);
 }
 
@@ -51,7 +51,7 @@ void SdoAccess::fail(const char* operation, ObjectRef object) const {
       throw RuntimeFailure(what + " got no answer", "check power, wiring, bit rate and node id");
     case SdoStatus::aborted:
       throw RuntimeFailure(
-          what + " was aborted with " + hex(client_.abort_code()) + " (" + abort_name(client_.abort_code()) + ")",
+          what + " was aborted with " + in_hex(client_.abort_code()) + " (" + abort_name(client_.abort_code()) + ")",
           "check that the device supports it");
     default:
       throw RuntimeFailure(what + " broke the SDO protocol (" + abort_name(client_.abort_code()) + ")",
@@ -89,8 +89,8 @@ void SdoAccess::expect(ObjectRef object, std::int64_t value, std::uint64_t mask)
   const std::uint64_t kept = cut(read(object), object.bytes) & mask, wanted = cut(value, object.bytes) & mask;
   if (kept != wanted)
     throw InputError(device_,
-                     "object " + object_name(object.index, object.sub) + " reads " + hex(kept) + " after " +
-                         hex(wanted) + " was written",
+                     "object " + object_name(object.index, object.sub) + " reads " + in_hex(kept) + " after " +
+                         in_hex(wanted) + " was written",
                      "give a value that the device accepts");
 }
 

@@ -8,7 +8,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kScanTime = 200ms;
-constexpr Duration kFeedTime = 30ms;       // 40 ms, less what a late cycle may take
+constexpr Duration kFedWithin = 30ms;       // 40 ms, less what a late cycle may take
 constexpr int kMostFramesPerCycle = 2048;  // a babbling bus must not hold the loop
 
 }  // namespace
@@ -78,7 +78,7 @@ void Network::send(RobotTime now) noexcept {
     for (const auto& module : modules_) module->request(DriveRequest::quick_stop);
   // Set-points first: what else there is to send in a cycle must not change when they arrive.
   for (const auto& module : modules_) module->send(now, bus_);
-  if (!fed_ || now + options_.cycle - *fed_ > kFeedTime) {
+  if (!fed_ || now + options_.cycle - *fed_ > kFedWithin) {
     if (bus_.send(broadcast(Command::watchdog_refresh)) == CanSend::sent) fed_ = now;
   }
   for (const auto& module : modules_) module->ask(bus_);

@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr auto kLook = 200ms;
+constexpr auto kFlushLook = 200ms;
 
 RuntimeFailure cannot_write(const fs::path& path, int error) {
   return {"cannot write " + path.string() + " (" + std::strerror(error) + ")", cure_of_write_error(error)};
@@ -81,7 +81,7 @@ void RecordingFile::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     {
       std::unique_lock lock(mutex_);
-      came_.wait_for(lock, stop, kLook, [this] { return !waiting_.empty(); });
+      came_.wait_for(lock, stop, kFlushLook, [this] { return !waiting_.empty(); });
     }
     step();
   }

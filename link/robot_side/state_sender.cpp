@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kLook = 4ms;  // a cycle of the usual rate
+constexpr Duration kStateLook = 4ms;  // a cycle of the usual rate
 constexpr Duration kDiagnostics = 1s;
 
 }  // namespace
@@ -40,7 +40,7 @@ void StateSender::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       step(clock_.now());
-      clock_.sleep_until(clock_.now() + kLook);
+      clock_.sleep_until(clock_.now() + kStateLook);
     }
   });
 }

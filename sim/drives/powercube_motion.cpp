@@ -113,7 +113,7 @@ std::uint32_t PowerCubeNode::state_word() const {
   std::uint32_t out = errors_;
   const auto add = [&](bool on, std::uint32_t bit) { out |= on ? bit : 0; };
   add(homed_, kHomeOk);
-  add(std::abs(shaft.position - config_.home_position) < 0.01, kHomeSwitch);
+  add(std::abs(shaft.position - config_.home_position) < 0.01, powercube::kHomeSwitch);
   add(shaft.position <= config_.low_switch, kSwitch1);
   add(shaft.position >= config_.high_switch, kSwitch2);
   add(shaft.brake_closed, kBrakeActive);
@@ -135,7 +135,7 @@ std::uint8_t PowerCubeNode::short_state() const {
   std::uint8_t out = 0;
   const auto add = [&](bool on, unsigned bit) { out = static_cast<std::uint8_t>(out | (on ? bit : 0)); };
   add((state & (kError | kHalted)) != 0 || (state & kHomeOk) == 0, 0x01);
-  add(state & kHomeSwitch, 0x02);
+  add(state & powercube::kHomeSwitch, 0x02);
   add(state & kSwitch1, 0x04);
   add(state & kSwitch2, 0x08);
   add(state & kMotion, 0x10);
