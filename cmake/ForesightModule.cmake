@@ -20,6 +20,11 @@ if(FORESIGHT_SANITIZE)
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:$<TARGET_OBJECTS:foresight_keep_libraries>>)
 endif()
 
+# Compiled together, files take a few hundred MB that are mostly kept to the end: collecting garbage only costs time.
+if(FORESIGHT_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(foresight_options INTERFACE --param=ggc-min-expand=300 --param=ggc-min-heapsize=1000000)
+endif()
+
 # The third-party headers are by far the most expensive part of a build: one
 # precompiled header serves all modules.
 set(FORESIGHT_PCH_HEADERS <array> <cmath> <cstdint> <filesystem> <functional> <memory> <optional> <span> <string>
@@ -31,7 +36,7 @@ function(foresight_module name)
   add_library(${target} STATIC ${ARG_SOURCES})
   target_link_libraries(${target} PUBLIC foresight_options ${ARG_LINK})
   if(FORESIGHT_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   endif()
   if(ARG_SHADERS)
     foresight_embed_shaders(${target} ${name} ${ARG_SHADERS})

@@ -1,6 +1,8 @@
 // `foresight operator`: a program at the seat, both sides in stepped time; and the seat started wrong.
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "tests/apps/program.hpp"
@@ -49,12 +51,22 @@ TEST(Operator, ThatTheViewIsPoorIsNoticedAsImagesCome) {
   EXPECT_GT(read_json(report)["fallback_share"].get<double>(), 0.7);
 }
 
-// Over a line of 300 ms each way, by a program that knows what comes over it and the model, and nothing else.
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Over a line of 300 ms each way, by a program that knows what comes over it and the model, and nothing else. With five
+// images a second: drawing them is most of the work.
 TEST(Operator, ABrickIsPickedUpAndPutIntoTheTray) {
   const TempFolder folder;
+  std::string rig = text_of(rig_file());
+  for (auto at = rig.find("rate_hz: 10"); at != std::string::npos; at = rig.find("rate_hz: 10"))
+    rig.replace(at, 11, "rate_hz: 5");
+  folder.write("arm.urdf", text_of(source_folder() / "configs/arm.urdf"));
   const auto report = folder.path() / "report.json";
-  const Outcome result = run_program({"operator", rig_file(), "--scripted", "pick", "--delay-ms", "300",
-                                      "--pictures-hz", "0.5", "--no-zero-delay", "--report", report});
+  const Outcome result = run_program({"operator", folder.write("rig.yaml", rig), "--scripted", "pick", "--delay-ms",
+                                      "300", "--pictures-hz", "0.5", "--no-zero-delay", "--report", report});
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
   const nlohmann::json all = read_json(report);
   EXPECT_TRUE(all["succeeded"]);
