@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSeenToMove = 0.002, kSeenToTurn = 0.02;  // m (also of the jaws), rad: less is taken for rest
 constexpr double kNeverSeen = 4;                           // s beyond the lag: then it looks again
-constexpr double kGhost = 0.005;                           // m from the tool: the hand is drawn as a ghost
+constexpr double kGhostBeyond = 0.005;                     // m from the tool: the hand is drawn as a ghost
 constexpr double kAboveThing = 0.012, kAtThing = 0.006, kAboveTray = 0.02, kInTray = 0.012;  // m, near enough
 constexpr double kAligned = 0.08;                                                            // rad
 constexpr double kTrayFloor = 0.014, kTrayReach = 0.065;  // m: where a thing is let go of; from the tray's middle
@@ -116,7 +116,7 @@ ModelOperator::Way ModelOperator::way_to(const OperatorSees& seen) const {
 OperatorHand ModelOperator::at_tool(double t, const OperatorSees& seen) const {
   OperatorHand out = hand(t);
   const double ahead = (out.T_world_tool.translation() - seen.T_world_tool.translation()).norm();
-  if (ahead > kGhost) out.T_world_tool = seen.T_world_tool;
+  if (ahead > kGhostBeyond) out.T_world_tool = seen.T_world_tool;
   return out;
 }
 
