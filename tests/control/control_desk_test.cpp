@@ -402,7 +402,7 @@ TEST_F(ControlDeskTest, WhatDiffersIsNamedAndRefusedWhereItMatters) {
   other.joints[1] = "elbow";
   SmallSeat wrong(other, 300'000);
   other = sample_identity("newer");
-  other.protocol = 2;
+  other.protocol = kLineProtocol + 1;
   SmallSeat newer(other, 400'000);
   seats_ = {&wrong, &newer};
   for (SmallSeat* seat : seats_) seat->seat.want_control(true);
