@@ -17,6 +17,13 @@ LinkConfig own_network() {
   return out;
 }
 
+/// The same in each trial: names and stamps are in the notes of pairs, which are deflated, so that others would be of
+/// another size, and all that waits for them on a thin line be somewhere else.
+link::RobotServer::Start same_start(const Clock& clock) {
+  return {.draw = [next = std::make_shared<Nonce>(1)] { return (*next)++; },
+          .wall = [&clock] { return clock.now().ns; }};
+}
+
 RobotDeviceOptions mock_drives() {
   RobotDeviceOptions out;
   out.mock = true;
@@ -46,7 +53,8 @@ SteppedRobotSide::SteppedRobotSide(const Rig& rig, const std::filesystem::path& 
       shape_(rig.shape()),
       robot_(std::make_unique<Robot>(rig.gate_options(), shape_.get(), devices_.networks(), devices_.drives())),
       cameras_(std::make_unique<RobotCameras>(rig, devices_, *robot_, clock, mock_cameras(physics, layout))),
-      server_(std::make_unique<link::RobotServer>(participant_, rig, *robot_, cameras_.get(), identity_, clock)),
+      server_(std::make_unique<link::RobotServer>(participant_, rig, *robot_, cameras_.get(), identity_, clock,
+                                                  same_start(clock))),
       period_(seconds(1 / rig.rate_hz)),
       next_(clock.now()) {
   devices_.bring_up([](const std::string&) {});

@@ -185,10 +185,11 @@ LineRequest ControlDesk::take_request() {
 }
 
 void ControlDesk::tell_state(RobotTime now) {
-  const bool news = permit_.consent() != told_consent_;
-  if (!news && now - told_ < options_.state_every) return;
+  const Told present{permit_.consent(), holder_, permit_.cause(), fault_, robot_.ready};
+  const bool lost = present.consent != told_state_.consent, news = present != told_state_;
+  if (!lost && now - told_ < (news ? options_.state_every : std::max(repeat_every_, options_.state_every))) return;
   told_ = now;
-  told_consent_ = permit_.consent();
+  told_state_ = present;
   ControlState state;
   state.sequence = ++states_;
   state.time = now;

@@ -18,7 +18,7 @@ namespace foresight {
 struct ControlDeskOptions {
   Identity identity;  ///< the robot's
   SetPointLifeOptions life;
-  Duration state_every = std::chrono::milliseconds(20);
+  Duration state_every = std::chrono::milliseconds(20);  ///< and at once when consent changes
   DrawNonce draw;
 };
 
@@ -45,6 +45,8 @@ class ControlDesk {
   void stood_still();
   /// What to send, oldest first; each once.
   std::vector<FromRobot> take_outgoing();
+  /// On a thin line: a state that says nothing new only this often, at most as often as `state_every`.
+  void repeat_states_every(Duration every) { repeat_every_ = every; }
 
   /// What the robot is to do, now; asked after advance().
   LineMotion motion(RobotTime now) const { return permit_.motion(now); }
@@ -102,8 +104,15 @@ class ControlDesk {
   std::vector<Queued> requests_;
   std::vector<FromRobot> out_;
   std::uint64_t states_ = 0;
+  Duration repeat_every_{0};
   RobotTime told_, advanced_;
-  Nonce told_consent_ = 0;
+  struct Told {
+    Nonce consent = 0, holder = 0;
+    RestCause cause = RestCause::nobody;
+    SetPointFault fault = SetPointFault::none;
+    bool ready = false;
+    bool operator==(const Told&) const = default;
+  } told_state_;
 };
 
 }  // namespace foresight

@@ -32,7 +32,8 @@ Writer::Writer(Participant& participant, const Topic& topic) : state_(std::make_
 Writer::~Writer() = default;
 
 bool Writer::write(Bytes cdr) noexcept {
-  if (!state_->line) return state_->write(std::move(cdr));
+  // What nobody reads takes nothing of the line.
+  if (!state_->line || readers() == 0) return state_->write(std::move(cdr));
   const std::size_t bytes = cdr.size();
   state_->line->send(bytes, state_->repaired, [weak = std::weak_ptr(state_), cdr = std::move(cdr)]() mutable {
     if (const auto state = weak.lock()) state->write(std::move(cdr));

@@ -122,7 +122,7 @@ std::optional<RobotTime> CodedStream::due() const {
 CodedStream::Counts CodedStream::counts() const {
   Counts out = counts_;
   if (!stream_) return out;
-  out.bytes_per_s = stream_->sender.bytes_per_s(clock_.now());
+  out.bytes_per_s = stream_->sender.known_bytes_per_s(clock_.now()).value_or(0);
   out.loss = stream_->sender.transmissions().loss();
   return out;
 }

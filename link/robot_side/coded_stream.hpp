@@ -75,7 +75,7 @@ class CodedStream {
     std::uint64_t replaced = 0;  ///< by newer ones, before the line wanted one
     std::uint64_t bytes = 0;     ///< of pieces
     std::uint64_t refused = 0;   ///< reports of others than the reader
-    double bytes_per_s = 0;      ///< that the line is taken to carry; 0: nobody reads
+    double bytes_per_s = 0;      ///< that the line carries; 0: not known
     double loss = 0;             ///< share of packets
   };
   Counts counts() const;

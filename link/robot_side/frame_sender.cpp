@@ -27,6 +27,7 @@ FrameSender::FrameSender(Participant& participant, SenderName name, const Stereo
       revision_(lenses ? lenses_revision(*lenses) : ""),
       frames_(std::move(frames)),
       quality_(options.jpeg_quality),
+      capacity_(options.capacity),
       period_(seconds((1 - kEarly) / options.rate_hz)),
       wall_(wall),
       clock_(clock),
@@ -159,6 +160,7 @@ void FrameSender::send_pieces() {
   counts_.bytes = now.bytes;
   counts_.watched = thin_->stream.has_reader();
   counts_.bytes_per_s = now.bytes_per_s;
+  if (capacity_) capacity_->bytes_per_s = now.bytes_per_s;
 }
 
 void FrameSender::count_failure() noexcept {

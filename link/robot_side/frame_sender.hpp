@@ -11,6 +11,7 @@
 #include "common/latest_value.hpp"
 #include "link/dds/endpoints.hpp"
 #include "link/robot_side/coded_stream.hpp"
+#include "link/robot_side/line_share.hpp"
 #include "link/robot_side/robot_messages.hpp"
 #include "link/robot_side/wall_clock.hpp"
 #include "scene/stereo_lenses.hpp"
@@ -32,11 +33,12 @@ struct FrameCounts {
   double bytes_per_s = 0;      ///< of h264: what the line is taken to carry; 0: not known
 };
 
-/// What of LinkConfig concerns pairs.
+/// What of LinkConfig concerns pairs; `capacity` is told what of h264 is known of the line, and outlives the sender.
 struct FrameSenderOptions {
   LinkCoding coding = LinkCoding::jpeg;
   int jpeg_quality = 85;
   double rate_hz = 30;  ///< at most
+  LineCapacity* capacity = nullptr;
 };
 
 /// Always the newest pair: a coder or a line that is slow costs pairs, not age, and nobody waits for a reader.
@@ -81,6 +83,7 @@ class FrameSender {
   const std::string revision_;
   std::shared_ptr<FrameQueue> frames_;
   const int quality_;
+  LineCapacity* const capacity_;
   const Duration period_;
   WallClock& wall_;
   const Clock& clock_;

@@ -7,11 +7,11 @@ namespace {
 
 constexpr std::size_t kRoom = 2;  // pairs that wait for the coder; only the newest goes
 
-ControlDeskOptions desk_options(Identity identity, Duration round_trip) {
+ControlDeskOptions desk_options(Identity identity, Duration round_trip, DrawNonce draw) {
   ControlDeskOptions out;
   out.life.allowed_delay = round_trip;
   out.identity = std::move(identity);
-  out.draw = machine_nonces();
+  out.draw = std::move(draw);
   return out;
 }
 
@@ -20,25 +20,26 @@ ControlDeskOptions desk_options(Identity identity, Duration round_trip) {
 RobotServer::RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock,
                          std::shared_ptr<PretendedLine> line)
     : RobotServer(std::make_unique<Participant>(rig.link, "robot " + rig.name, Role::robot, std::move(line)), nullptr,
-                  rig, robot, cameras, std::move(identity), clock) {}
+                  rig, robot, cameras, std::move(identity), clock, {}) {}
 
 RobotServer::RobotServer(Participant& participant, const Rig& rig, const Robot& robot, RobotCameras* cameras,
-                         Identity identity, Clock& clock)
-    : RobotServer(nullptr, &participant, rig, robot, cameras, std::move(identity), clock) {}
+                         Identity identity, Clock& clock, const Start& start)
+    : RobotServer(nullptr, &participant, rig, robot, cameras, std::move(identity), clock, start) {}
 
 RobotServer::RobotServer(std::unique_ptr<Participant> own, Participant* others, const Rig& rig, const Robot& robot,
-                         RobotCameras* cameras, Identity identity, Clock& clock)
+                         RobotCameras* cameras, Identity identity, Clock& clock, const Start& start)
     : own_(std::move(own)),
       participant_(own_ ? *own_ : *others),
-      wall_(clock),
-      operator_(participant_, rig.gate_options(), desk_options(std::move(identity), rig.link.round_trip)),
-      states_(participant_, {machine_nonces()(), rig.joint_names()}, rig, robot, cameras, wall_, clock,
-              &operator_.taken()) {
+      wall_(clock, start.wall),
+      operator_(participant_, rig.gate_options(), desk_options(std::move(identity), rig.link.round_trip, start.draw),
+                &capacity_),
+      states_(participant_, {start.draw(), rig.joint_names()}, rig, robot, cameras, wall_, clock, &operator_.taken(),
+              &capacity_) {
   if (!cameras) return;
   const auto& lenses = cameras->scene().lenses();
   frames_ = std::make_unique<FrameSender>(
       participant_, states_.name(), lenses ? &*lenses : nullptr, cameras->frames().subscribe(kRoom),
-      FrameSenderOptions{rig.link.coding, rig.link.jpeg_quality, rig.link.image_rate_hz}, wall_, clock);
+      FrameSenderOptions{rig.link.coding, rig.link.jpeg_quality, rig.link.image_rate_hz, &capacity_}, wall_, clock);
 }
 
 void RobotServer::start() {

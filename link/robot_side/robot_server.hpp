@@ -15,9 +15,14 @@ class RobotServer {
   /// must outlive this. Throws what Participant does.
   RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock,
               std::shared_ptr<PretendedLine> line = nullptr);
+  /// What a start of the program has that no other has. Seeded and stepped, a session repeats itself byte by byte.
+  struct Start {
+    DrawNonce draw = machine_nonces();  ///< names of the start itself, of leases and consents
+    WallClock::Now wall = WallClock::machine_unix_ns;
+  };
   /// The same with a participant that somebody else has; it must outlive this.
   RobotServer(Participant& participant, const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity,
-              Clock& clock);
+              Clock& clock, const Start& start);
 
   /// Whoever commands over the line; to be asked in one thread, that of all commanders.
   Commander& commander() { return operator_; }
@@ -32,11 +37,12 @@ class RobotServer {
 
  private:
   RobotServer(std::unique_ptr<Participant> own, Participant* others, const Rig& rig, const Robot& robot,
-              RobotCameras* cameras, Identity identity, Clock& clock);
+              RobotCameras* cameras, Identity identity, Clock& clock, const Start& start);
 
   std::unique_ptr<Participant> own_;
   Participant& participant_;
   WallClock wall_;
+  LineCapacity capacity_;
   ServedOperator operator_;
   StateSender states_;
   std::unique_ptr<FrameSender> frames_;

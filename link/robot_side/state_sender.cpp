@@ -13,7 +13,8 @@ constexpr Duration kDiagnostics = 1s;
 }  // namespace
 
 StateSender::StateSender(Participant& participant, SenderName name, const Rig& rig, const Robot& robot,
-                         const RobotCameras* cameras, WallClock& wall, Clock& clock, const SetPointHistory* taken)
+                         const RobotCameras* cameras, WallClock& wall, Clock& clock, const SetPointHistory* taken,
+                         const LineCapacity* line)
     : name_(std::move(name)),
       rig_(rig),
       robot_(robot),
@@ -21,6 +22,7 @@ StateSender::StateSender(Participant& participant, SenderName name, const Rig& r
       wall_(wall),
       clock_(clock),
       taken_(taken),
+      line_(line),
       joint_period_(seconds(1 / rig.link.joint_rate_hz)),
       state_period_(seconds(1 / rig.link.state_rate_hz)),
       cycles_(robot.cycles()),
@@ -59,16 +61,20 @@ void StateSender::listen() {
   }
 }
 
+Duration StateSender::thinned_for_line(Duration asked, const LineShare& share) const {
+  return line_ ? thinned(asked, share, line_->bytes_per_s) : asked;
+}
+
 void StateSender::step(RobotTime now) noexcept {
   try {
     listen();
     if (newest_ && now >= joints_due_) {
-      joints_due_ = std::max(joints_due_ + joint_period_, now);
+      joints_due_ = std::max(joints_due_ + thinned_for_line(joint_period_, kMotionShare), now);
       send_motion();
       send_joints();
     }
     if (changed_ || now >= state_due_) {
-      state_due_ = now + state_period_;
+      state_due_ = now + thinned_for_line(state_period_, kWordsShare);
       changed_ = false;
       send_state(now);
     }

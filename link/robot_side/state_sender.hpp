@@ -4,21 +4,24 @@
 #include <thread>
 
 #include "link/robot_side/frame_sender.hpp"
+#include "link/robot_side/line_share.hpp"
 #include "link/robot_side/set_point_history.hpp"
 #include "session/robot_cameras.hpp"
 
 namespace foresight::link {
 
 /// What the gate did, joint states, set-points and transforms at `joint_rate_hz`; the robot's state at `state_rate_hz`,
-/// and at once when its phase, gate or reason changes; diagnostics once a second. It takes the control loop's cycles
+/// and at once when its phase, gate or reason changes; diagnostics once a second. On a thin
+/// line they go less often. It takes the control loop's cycles
 /// from a ring of its own: the loop knows nothing of it. start() gives it a thread; step() does the same in the
 /// caller's.
 class StateSender {
  public:
-  /// `cameras` may be null, and so may `taken`: then nobody commands over the line. All that is pointed at must outlive
-  /// this.
+  /// `cameras` may be null, and so may `taken`: then nobody commands over the line; and `line`: then it is never thin.
+  /// All that is pointed at must outlive this.
   StateSender(Participant& participant, SenderName name, const Rig& rig, const Robot& robot,
-              const RobotCameras* cameras, WallClock& wall, Clock& clock, const SetPointHistory* taken = nullptr);
+              const RobotCameras* cameras, WallClock& wall, Clock& clock, const SetPointHistory* taken = nullptr,
+              const LineCapacity* line = nullptr);
   ~StateSender() { stop(); }
 
   void start();
@@ -32,6 +35,7 @@ class StateSender {
   void send_motion();
   void send_joints();
   void send_state(RobotTime now);
+  Duration thinned_for_line(Duration asked, const LineShare& share) const;
 
   const SenderName name_;
   const Rig& rig_;
@@ -40,6 +44,7 @@ class StateSender {
   WallClock& wall_;
   Clock& clock_;
   const SetPointHistory* taken_;
+  const LineCapacity* line_;
   const Duration joint_period_, state_period_;
 
   BroadcastRing<RobotCycle>::Reader cycles_;

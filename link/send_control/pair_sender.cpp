@@ -17,10 +17,20 @@ constexpr std::size_t kMostPending = 64;
 
 }  // namespace
 
+/// The line, or nothing came back yet to tell.
+bool PairSender::waits() const {
+  const auto trip = transmissions_.round_trip(), least = transmissions_.least_round_trip();
+  return !trip || *trip - *least > kNoQueue;
+}
+
+std::optional<double> PairSender::known_bytes_per_s(RobotTime now) const {
+  const bool known = transmissions_.rate(now) || (transmissions_.round_trip() && waits());
+  return known ? std::optional(bytes_per_s(now)) : std::nullopt;
+}
+
 double PairSender::bytes_per_s(RobotTime now) const {
   const double measured = transmissions_.rate(now).value_or(options_.first_bytes_per_s) * kPrudence;
-  const auto trip = transmissions_.round_trip(), least = transmissions_.least_round_trip();
-  if (!trip || *trip - *least > kNoQueue) return measured;
+  if (waits()) return measured;
   // Nothing waits in the line: it carries more than it is given, though pairs of one piece would never show that.
   const double given =
       static_cast<double>(transmissions_.acknowledged_recently(now)) / to_seconds(Transmissions::kRecent);

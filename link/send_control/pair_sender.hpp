@@ -52,8 +52,11 @@ class PairSender {
 
   const Transmissions& transmissions() const { return transmissions_; }
   double bytes_per_s(RobotTime now) const;  ///< that the line is taken to carry
+  /// The same, nothing as long as nothing had to wait for the line: then it carries more than it was ever given.
+  std::optional<double> known_bytes_per_s(RobotTime now) const;
 
  private:
+  bool waits() const;
   struct Pending {
     std::uint32_t reference = 0;
     RobotTime handed_over;

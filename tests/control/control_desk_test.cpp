@@ -47,6 +47,23 @@ TEST_F(ControlDeskTest, NothingMovesBeforeTheSwitchWasSeenOpen) {
   EXPECT_TRUE(robot_.follows);
 }
 
+TEST_F(ControlDeskTest, StatesThatSayNothingNewMayBeRareAndNewsComesAtOnce) {
+  engage(anna_);
+  const auto states_in = [&](Duration time) {
+    const std::uint64_t before = anna_.seat.state().sequence;
+    run(time);
+    return anna_.seat.state().sequence - before;
+  };
+  EXPECT_NEAR(static_cast<double>(states_in(1s)), 50, 3);
+  desk_.repeat_states_every(200ms);
+  EXPECT_NEAR(static_cast<double>(states_in(1s)), 5, 1);
+  EXPECT_TRUE(status(anna_).follows);
+  anna_.held = false;
+  const RobotTime let_go = now_;
+  while (status(anna_).follows && now_ - let_go < 1s) step();
+  EXPECT_LE(now_ - let_go, 60ms) << "both ways of the line, and a state's usual time";
+}
+
 TEST_F(ControlDeskTest, AnOutageStopsItAndItStaysSo) {
   engage(anna_);
   anna_.up_cut = true;

@@ -83,6 +83,21 @@ TEST(PretendedLine, AQueueWithoutEndHasAnEndHere) {
 
 class PretendedDds : public PrivateNetworkTest {};
 
+TEST_F(PretendedDds, WhatNobodyReadsTakesNothingOfTheLine) {
+  SteppedClock clock;
+  LineSpec thin = line(0ms, 0ms);
+  thin.up.bytes_per_s = 1000;
+  const auto robot = std::make_shared<PretendedLine>(thin, PretendedLine::Side::robot, clock);
+  Participant program(LinkConfig{}, "test", Role::robot, robot);
+  const Topic topic{"rt/x", Header::kType, Delivery::newest, 8};
+  Writer writer(program, topic);
+  for (int i = 0; i < 10; ++i) writer.write(Header{{i, 0}, "a"});
+  EXPECT_EQ(robot->counts().crossed, 0u);
+  const Reader reader(program, topic);
+  for (int i = 0; i < 10; ++i) writer.write(Header{{i, 0}, "a"});
+  EXPECT_EQ(robot->counts().crossed, 10u);
+}
+
 // One program is the robot's, and hears itself: what it writes goes up, and comes in as if it came down.
 TEST_F(PretendedDds, SamplesPassItOnTheirWayOutAndIn) {
   SteppedClock clock;

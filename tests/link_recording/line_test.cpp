@@ -231,7 +231,7 @@ TEST_F(RecordedLine, PairsOfAThinLineBecomeARunToo) {
     if (i >= 30 && i % 10 == 0) queue->put(next_pair());
     thin.step(0ns);
     pieces.take<StereoPiece>({}, [&](StereoPiece&& piece, const Sample&) {
-      if (const LineFramePtr frame = intake.take(piece, {})) shown.push_back(frame);
+      if (const LineFramePtr frame = intake.take(piece, RobotClockTracker())) shown.push_back(frame);
     });
     if (const auto report = intake.report()) reports.write(*report);
   }

@@ -61,7 +61,7 @@ class ServedControl : public PrivateNetworkTest {
   LiveRobot robot_{"minerva.yaml"};
   Identity identity_ = rig_identity(robot_.rig(), source_folder() / "configs" / "minerva.yaml", "test");
   Participant program_{LinkConfig{}, "test"};
-  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options(),
+  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options(), nullptr,
                          SuspensionWatch([this] { return asleep_; })};
   SeatLine operator_line_{program_};
   ControlSeat seat_{seat_options()};

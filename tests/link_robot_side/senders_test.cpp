@@ -77,6 +77,38 @@ TEST_F(Senders, StatesComeAtTheirRateAndAtOnceWhenTheyChange) {
   EXPECT_EQ(changed[0].number, before.back().number + 1);
 }
 
+// What a line carries is told by the sender of pictures; here it is simply said.
+TEST_F(Senders, StatesLeaveAThinLineToThePictures) {
+  LiveRobot robot("minerva.yaml");
+  Participant program(LinkConfig{}, "test");
+  WallClock wall = same_as(robot.clock());
+  LineCapacity line;
+  StateSender sender(program, {1, robot.rig().joint_names()}, robot.rig(), robot.robot(), nullptr, wall, robot.clock(),
+                     nullptr, &line);
+  Topic topic = topics::gate_motion();
+  topic.depth = 1000;
+  Reader motions(program, topic);
+  robot.get_moving();
+  const auto came_in_2s = [&](double bytes_per_s) {
+    line.bytes_per_s = bytes_per_s;
+    sender.step(robot.clock().now());
+    motions.take([](const Sample&) {});
+    for (int i = 0; i < 250; ++i) {
+      robot.move(8ms);
+      sender.step(robot.clock().now());
+    }
+    std::size_t bytes = 0, count = 0;
+    motions.take([&](const Sample& sample) { bytes += sample.cdr.size(), ++count; });
+    return std::pair(count, static_cast<double>(bytes));
+  };
+  EXPECT_NEAR(static_cast<double>(came_in_2s(0).first), 100, 2) << "nothing is known of the line";
+  EXPECT_NEAR(static_cast<double>(came_in_2s(1e6).first), 100, 2) << "it carries plenty";
+  const auto [count, bytes] = came_in_2s(50'000);
+  EXPECT_LT(bytes, 0.12 * 2 * 50'000) << count;
+  EXPECT_GT(bytes, 0.05 * 2 * 50'000) << count;
+  EXPECT_GE(came_in_2s(1000).first, 9u) << "however thin, five times a second";
+}
+
 // --- pairs ----------------------------------------------------------------------------------------------------------
 
 LiveFramePtr frame_at(std::uint64_t number, RobotTime time, int width = 64, int height = 48) {

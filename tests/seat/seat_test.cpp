@@ -51,7 +51,8 @@ class SeatAtARig : public PrivateNetworkTest {
     there_.emplace(LinkConfig{}, "robot", link::Role::robot, line_);
     here_.emplace(*there_, "operator");
     const Identity identity = link::rig_identity(robot_.rig(), source_folder() / "configs" / "minerva.yaml", "test");
-    server_.emplace(*there_, robot_.rig(), robot_.robot(), nullptr, identity, robot_.clock());
+    server_.emplace(*there_, robot_.rig(), robot_.robot(), nullptr, identity, robot_.clock(),
+                     link::RobotServer::Start{});
     link::OperatorEndOptions options;
     options.seat.identity = identity;
     options.seat.draw = machine_nonces();

@@ -36,7 +36,8 @@ Outcome try_pick(double seconds, LinkCoding coding, std::function<cv::Mat(const 
   for (CameraConfig& camera : rig.cameras->cameras) camera.settings.rate = 5;
   rig.link.coding = coding;
   options.line.up.delay = options.line.down.delay = 200ms;
-  options.line.up.bytes_per_s = 500'000;
+  // States at their full rate would fill it, and be seconds old: no press would ever be answered.
+  options.line.up.bytes_per_s = 100'000;
   options.physics = 1;
   options.thing = "brick_red";
   options.tray = "tray";
