@@ -155,6 +155,10 @@ ArmChain arm_chain(const UrdfRobot& robot, const std::string& tip, const std::st
   Pose T = Pose::Identity();
   std::vector<ArmJoint> joints;
   for (const std::size_t j : joints_between(robot, first, find_link(robot, tip, where), where)) {
+    if (robot.joints[j].loose)
+      throw InputError(where + ": joint " + in_quotes(robot.joints[j].name),
+                       "is floating or planar, but lies between base and tip: no drive tells where it stands",
+                       "choose a base below it");
     T = T * robot.joints[j].T_parent_joint;
     if (robot.joints[j].kind != UrdfJoint::Kind::fixed) joints.push_back(arm_joint(robot.joints[j], T, where));
   }

@@ -73,7 +73,8 @@ class ArmChain {
 /// The joints from link `base` (empty: the root) to link `tip`. Visuals are not read: a URDF without its meshes will
 /// do. Throws InputError naming file, link or joint: what read_urdf refuses; no such link (with the nearest); a tip
 /// that is not below the base, or with no moving joint between the two, or more than kMostArmJoints; a joint on the way
-/// that follows another, whose limits leave it no way to move, or whose numbers are not finite.
+/// that follows another or is floating or planar, whose limits leave it no way to move, or whose numbers are not
+/// finite.
 ArmChain read_arm_chain(const std::filesystem::path& urdf, const std::string& tip, const std::string& base = "");
 /// The same of a robot that was read; messages name `where`.
 ArmChain arm_chain(const UrdfRobot& robot, const std::string& tip, const std::string& base, const std::string& where);

@@ -205,6 +205,7 @@ class RobotBuilder {
     joint.axis = {from.axis.x, from.axis.y, from.axis.z};
     const bool moves = from.type == urdf::Joint::REVOLUTE || from.type == urdf::Joint::CONTINUOUS ||
                        from.type == urdf::Joint::PRISMATIC;
+    joint.loose = from.type == urdf::Joint::FLOATING || from.type == urdf::Joint::PLANAR;
     if (moves) {
       joint.kind = from.type == urdf::Joint::PRISMATIC ? UrdfJoint::Kind::sliding : UrdfJoint::Kind::rotating;
       if (!(joint.axis.norm() > 1e-6 && joint.axis.norm() < kFarthest))

@@ -21,7 +21,8 @@ struct UrdfJoint {
 
   std::string name;
   Kind kind = Kind::fixed;
-  int child = -1;                          ///< index of the link that it moves
+  bool loose = false;  ///< floating or planar in the file, of which nothing tells the place: counts as fixed
+  int child = -1;      ///< index of the link that it moves
   Pose T_parent_joint = Pose::Identity();  ///< parent link to joint frame at position 0
   Eigen::Vector3d axis{1, 0, 0};           ///< unit vector, in the joint frame
   double lower = 0, upper = 0;             ///< rad or m; infinite for a continuous joint
@@ -47,13 +48,12 @@ struct UrdfRobot {
 /// kept clear of things, too.
 enum class UrdfShapes { none, visual, all };
 
-/// Reads links, joints and geometry: meshes (with their scale), boxes, cylinders and spheres; all visuals of a link become
-/// its one mesh. Every <visual> and <collision> yields its shape, or the file is refused as check_urdf() does; with
-/// UrdfShapes::all, also where a link's body is smaller than 1 mm or larger than 20 m: its unit is another one. Meshes are
-/// looked for as find_mesh() says.
-/// Links stand at joint positions 0. Floating and planar joints count as fixed. Throws InputError
-/// naming the file and the link or joint: not a URDF, no single tree, a missing mesh, a size or
-/// axis that is no such thing.
+/// Reads links, joints and geometry: meshes (with their scale), boxes, cylinders and spheres; all visuals of a link
+/// become its one mesh. Every <visual> and <collision> yields its shape, or the file is refused as check_urdf() does;
+/// with UrdfShapes::all, also where a link's body is smaller than 1 mm or larger than 20 m: its unit is another one.
+/// Meshes are looked for as find_mesh() says. Links stand at joint positions 0. Floating and planar joints count as
+/// fixed. Throws InputError naming the file and the link or joint: not a URDF, no single tree, a missing mesh, a size
+/// or axis that is no such thing.
 UrdfRobot read_urdf(const std::filesystem::path& file, const MeshSearch& search = {},
                     UrdfShapes shapes = UrdfShapes::visual);
 /// The same of a run folder: meshes lie in the folder of the URDF or in those above it, up to `root`.

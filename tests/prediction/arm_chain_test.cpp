@@ -96,6 +96,12 @@ TEST(ArmChain, WhatIsWrongWithAUrdfIsSaid) {
   const std::string follower =
       "<link name='finger'/><joint name='f' type='revolute'><parent link='hand'/><child link='finger'/>" + good +
       "<mimic joint='turn'/></joint>";
+  for (const char* type : {"floating", "planar"}) {
+    const std::string under = std::string("<link name='world'/><joint name='drift' type='") + type +
+                              "'><parent link='world'/><child link='a'/></joint>";
+    EXPECT_THAT(fault(arm_urdf(good, under), "hand"), says("joint 'drift'", "floating or planar", "base below"));
+    EXPECT_EQ(fault(arm_urdf(good, under), "hand", "a"), "no error");
+  }
   EXPECT_THAT(fault(arm_urdf(good, follower), "finger"), says("joint 'f'", "follows another", "tip above"));
 }
 
