@@ -36,8 +36,8 @@ struct ScriptedDriverOptions {
 /// What became of a script so far.
 struct ScriptState {
   bool driving = false, done = false;
-  std::string failure;  ///< "" where all is well
-  int losses = 0;       ///< that it went on after
+  std::string failure = {};  ///< "" where all is well
+  int losses = 0;            ///< that it went on after
 };
 
 /// One thread.

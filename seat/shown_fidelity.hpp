@@ -34,7 +34,7 @@ struct Fidelity {
   double exact_share = 0;                      ///< of the coloured pixels
   double exact_wrong = 0;                      ///< of the exact ones
   /// CV_8UC1, 255 in and around patches that were shown wrong: something moves there that is not foretold.
-  cv::Mat patches;
+  cv::Mat patches = {};
 };
 /// "top left", "middle", ...
 std::string place_of(std::size_t tile);

@@ -156,7 +156,7 @@ struct Bench {
   BenchLab lab = make_bench_lab(image_size);
   std::unique_ptr<gl::Context> context = gl::create_headless_context();
   gl::DriverInfo driver = gl::query_driver();
-  MonotonicClock clock;
+  MonotonicClock clock = {};
   std::shared_ptr<FrameGate> gate = std::make_shared<FrameGate>(clock);
   std::vector<Bar> bars = {};
   json rows = json::array();

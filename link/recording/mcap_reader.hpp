@@ -21,6 +21,9 @@ struct McapChannel {
   std::map<std::string, std::string> metadata;
   std::shared_ptr<const McapSchema> schema;  ///< not null; without name where the channel has none
 };
+/// A file may say anything: nobody needs a later time than this one, to which differences may still be added, ns.
+constexpr std::int64_t kLatestLog = 4'000'000'000'000'000'000;
+
 /// While it is visited.
 struct McapMessage {
   const McapChannel& channel;

@@ -69,8 +69,7 @@ PlayedType played(Topic topic) {
           }};
 }
 
-constexpr std::size_t kFrames = 0;                           // in played_types()
-constexpr std::int64_t kLatest = 4'000'000'000'000'000'000;  // ns; a file may say anything
+constexpr std::size_t kFrames = 0;  // in played_types()
 
 const std::vector<PlayedType>& played_types() {
   static const std::vector<PlayedType> all{played<StereoFrame>(topics::frames()),
@@ -144,7 +143,7 @@ std::vector<Playback::Message> Playback::take_piece(const McapMessage& message) 
     return {};
   }
   ++pieces_.came;
-  stream_time_ = std::max(stream_time_, RobotTime{std::min<std::int64_t>(message.log_ns, kLatest)});
+  stream_time_ = std::max(stream_time_, RobotTime{std::min<std::int64_t>(message.log_ns, kLatestLog)});
   auto pair = stream_.take(*piece, stream_time_);
   if (!pair) return {};
   ++pieces_.pairs;

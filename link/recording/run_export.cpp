@@ -85,8 +85,7 @@ class Exporter {
 
   /// Time goes as it went when the recorder took the messages: the intake judges by it which robot it hears.
   void take(const McapMessage& message) {
-    constexpr std::int64_t kLatest = 4'000'000'000'000'000'000;  // ns; a file may say anything
-    clock_.sleep_until(RobotTime{std::clamp<std::int64_t>(message.log_ns, 0, kLatest)});
+    clock_.sleep_until(RobotTime{std::clamp<std::int64_t>(message.log_ns, 0, kLatestLog)});
     const auto is = [&](const Topic& topic) { return message.channel.topic == topic_in_ros(topic.name); };
     if (is(topics::frames())) {
       const auto frame = from_cdr<StereoFrame>(message.data);

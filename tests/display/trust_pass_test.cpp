@@ -177,7 +177,7 @@ TEST_P(TrustPassTest, WhatIsNotExactIsHatched) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lenses, TrustPassTest, testing::Values("pinhole", "rational", "wide_fisheye"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& lens) { return std::string(lens.param); });
 
 }  // namespace
 }  // namespace foresight::trust_pass_test

@@ -200,8 +200,12 @@ TEST_F(TextureCoreTest, SmallBudgetsAreKept) {
     EXPECT_LE(most, budget);
     EXPECT_LE(report.bytes_reserved, budget);
     EXPECT_LE(most, report.bytes_reserved);
-    if (budget < kPlenty) EXPECT_GT(report.bytes_reserved, budget / 2);
-    if (budget == kPlenty) EXPECT_LT(report.bytes_reserved, 3 * most) << "what nobody needs is not reserved";
+    if (budget < kPlenty) {
+      EXPECT_GT(report.bytes_reserved, budget / 2);
+    }
+    if (budget == kPlenty) {
+      EXPECT_LT(report.bytes_reserved, 3 * most) << "what nobody needs is not reserved";
+    }
     if (budget == kTight) {
       EXPECT_GT(report.policy.evicted_pages + static_cast<std::uint64_t>(report.policy.steps_down), 0u);
     }
