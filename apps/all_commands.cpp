@@ -14,6 +14,7 @@
 #include "apps/rig_command.hpp"
 #include "apps/robot_command.hpp"
 #include "apps/sim_command.hpp"
+#include "apps/stereogram_command.hpp"
 #include "apps/synth_command.hpp"
 
 namespace foresight {
@@ -22,6 +23,7 @@ void add_commands(Command& app, std::function<int()>& action) {
   add_replay_command(app, action);
   add_record_command(app, action);
   add_export_command(app, action);
+  add_stereogram_command(app, action);
   add_synth_command(app, action);
   add_can_command(app, action);
   add_sim_command(app, action);

@@ -32,6 +32,7 @@ const char* to_string(ViewMode mode) {
     case ViewMode::interlaced: return "rows for two eyes";
     case ViewMode::anaglyph: return "red-cyan spectacles, grey";
     case ViewMode::anaglyph_colours: return "red-cyan spectacles, half coloured";
+    case ViewMode::stereogram: return "stereogram";
     case ViewMode::observer: return "from beside: drag to look around";
   }
   return "";

@@ -17,6 +17,7 @@ enum class ViewMode : std::uint8_t {
   interlaced,        ///< rows of the screen in turn, for screens whose rows are polarised alike
   anaglyph,          ///< red | cyan spectacles, grey: without colours that fight between the eyes
   anaglyph_colours,  ///< the same, half coloured
+  stereogram,        ///< one picture of dots for both eyes, on any screen: depth alone
   observer,          ///< from beside the robot, the operator's view as a spotlight
 };
 inline constexpr int kMainModes = 4;  ///< the first ones

@@ -73,6 +73,8 @@ class ViewSession {
 
   /// Another view of the same textures, such as that of an eye through its own lens. Not with `thesis`.
   PredictedView make_view(const Lens& lens) const { return {buffers_, records_, lens}; }
+  /// Draws the model's depth alone. Not with `thesis`.
+  gl::RasterPass make_depth_pass() const { return {buffers_, false}; }
   /// The same for such a view.
   bool draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state);
   /// What says how far pixels of the view that was drawn last can be trusted, and that view. Not with `thesis`.

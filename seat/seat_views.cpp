@@ -71,6 +71,10 @@ void SeatViews::toggle_observer() {
   mode_ = mode_ == ViewMode::observer ? ViewMode::predicted : ViewMode::observer;
 }
 
+void SeatViews::toggle_stereogram() {
+  mode_ = mode_ == ViewMode::stereogram ? ViewMode::predicted : ViewMode::stereogram;
+}
+
 void SeatViews::next_paint() {
   paint_ = static_cast<ViewPaint>((static_cast<int>(paint_) + 1) % kViewPaints);
 }
@@ -78,7 +82,9 @@ void SeatViews::next_paint() {
 // Without trust, what shows both still does, side by side and told apart.
 ViewMode SeatViews::mode_now(bool trusted) const {
   const bool has_newest = !newest_[0].empty();
-  if (!trusted && (mode_ == ViewMode::predicted || mode_ == ViewMode::observer)) return ViewMode::newest;
+  if (!trusted && (mode_ == ViewMode::predicted || mode_ == ViewMode::stereogram || mode_ == ViewMode::observer))
+    return ViewMode::newest;
+  if (mode_ == ViewMode::stereogram && !has_stereogram_) return ViewMode::predicted;
   if (mode_ == ViewMode::observer && !has_beside_) return ViewMode::predicted;
   if (mode_ == ViewMode::split && !has_newest) return ViewMode::predicted;
   if (has_two_eyes(mode_) && trusted && !has_eyes_) return ViewMode::predicted;
@@ -92,6 +98,7 @@ std::string SeatViews::words(bool trusted) const {
     out += " (as prediction cannot be trusted, look at the newest image)";
   else if (!trusted && mode_ != ViewMode::newest)
     return "the newest image, as prediction cannot be trusted";
+  if (mode_ == ViewMode::stereogram) return out + ": " + stereogram_look_.words();
   if (eyes_swapped_ && has_two_eyes(mode_)) out += ", eyes swapped";
   if (paint_ == ViewPaint::doubt && !is_one_eyes())
     out += "; errors are shown to one eye only";
@@ -127,12 +134,17 @@ void SeatViews::upload_newest(const cv::Mat& left, const cv::Mat& right) {
 
 void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms) {
   drawn_ = place;
-  shows_again_ = has_eyes_ = has_beside_ = false;
+  shows_again_ = has_eyes_ = has_beside_ = has_stereogram_ = false;
   if (whole.width < 1 || whole.height < 1) return;  // minimised
   if (has_two_eyes(mode_)) {
     if (!eyes_) eyes_.emplace(session, setup_.left, setup_.eyes_apart);
     eyes_->set_paint(paint_of_views());
     has_eyes_ = eyes_->draw(place.T_world_camera, place.scene);
+  } else if (mode_ == ViewMode::stereogram) {
+    const ViewTarget part = fitted(whole, setup_.left.width(), setup_.left.height());
+    if (!stereogram_) stereogram_.emplace(session.make_depth_pass());
+    stereogram_->draw(stereogram_look_, place.T_world_camera, place.scene, setup_.left, part.width, part.height);
+    has_stereogram_ = true;
   } else if (mode_ == ViewMode::observer) {
     draw_observer(session, place, whole);
   } else {
@@ -291,6 +303,10 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
     case ViewMode::interlaced: mixed_eyes(PictureMix::Way::rows); break;
     case ViewMode::anaglyph: mixed_eyes(PictureMix::Way::anaglyph); break;
     case ViewMode::anaglyph_colours: mixed_eyes(PictureMix::Way::anaglyph_colours); break;
+    case ViewMode::stereogram:
+      put({&stereogram_->picture()}, place, what, labels, whole);
+      put_inset(place);
+      break;
     case ViewMode::observer:
       put({&beside_->picture(), &beside_->faces(), eye_->T_world_eye()}, place, what, labels, whole);
       break;

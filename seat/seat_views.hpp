@@ -2,7 +2,7 @@
 //
 //   session's view (camera's pixels; images are compared with it) --.
 //   larger or painted view of the same eye -------------------------+--> mode --> window, lines of the hand over it
-//   two eyes; from beside ------------------------------------------+
+//   two eyes; stereogram; from beside ------------------------------+
 //   newest images --------------------------------------------------'
 #pragma once
 
@@ -17,6 +17,7 @@
 #include "display/observer_pass.hpp"
 #include "display/picture_mix.hpp"
 #include "display/scene_overlay.hpp"
+#include "display/stereogram/live_stereogram.hpp"
 #include "display/uploaded_picture.hpp"
 #include "display/view_modes.hpp"
 #include "gl/glfw_window.hpp"
@@ -54,6 +55,8 @@ class SeatViews {
   void next_main();    ///< prediction, newest image, both, split
   void next_stereo();  ///< two eyes, interlaced, the anaglyphs, one eye
   void toggle_observer();
+  void toggle_stereogram();
+  StereogramLook& stereogram() { return stereogram_look_; }
   void next_paint();
   void swap_eyes() { eyes_swapped_ = !eyes_swapped_; }
   /// What is shown, and what colours mean. `trusted`: the prediction.
@@ -127,8 +130,11 @@ class SeatViews {
   SceneOverlay overlay_, overlay_beside_;
   std::array<Canvas, 2> canvas_;
   std::optional<PredictedView> again_, beside_;
-  bool shows_again_ = false, has_eyes_ = false, has_beside_ = false;  // drawn for the last place
+  bool shows_again_ = false, has_eyes_ = false, has_beside_ = false,
+       has_stereogram_ = false;  // drawn for the last place
   std::optional<EyePair> eyes_;
+  StereogramLook stereogram_look_;
+  std::optional<LiveStereogram> stereogram_;
   std::optional<ObserverPass> observer_;
   std::optional<Eye> eye_;
   std::optional<ViewPlace> drawn_;  // the operator's

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "apps/bench/stereogram_figures.hpp"
 #include "common/cpu_time.hpp"
 #include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
@@ -165,6 +166,7 @@ int bench_head(const HeadBenchOptions& options) {
   all["degrees"] = options.degrees;
   all["metres"] = options.metres;
   all["renderer"] = driver.renderer + ", OpenGL " + driver.version;
+  all["stereograms"] = stereogram_figures(run);
   write_numbers(options.json, all.dump(2));
   return 0;
 }

@@ -18,7 +18,7 @@ struct HeadBenchOptions {
 
 /// Textures of the run's first images, then `views` random motions of the head: each drawn anew, and warped from the
 /// view before it. Prints decibels over all pixels, holes before filling, CPU time of both; likewise of a second eye
-/// warped from the first. Returns 0.
+/// warped from the first; then what stereograms of the scene cost. Returns 0.
 int bench_head(const HeadBenchOptions& options);
 
 }  // namespace foresight

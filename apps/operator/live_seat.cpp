@@ -126,6 +126,7 @@ class LiveSeat {
                                        {"T", "hand control over to who asks"},
                                        {"Tab", "prediction, newest image, both, split (drag its border)"},
                                        {"F2, F5", "for two eyes: which way; swap the eyes"},
+                                       {"F6; F7 F8 F9", "a stereogram; its depth, pattern, variant"},
                                        {"F3", "from beside: the mouse looks around"},
                                        {"F4", "wireframe, age, confidence, error"},
                                        {"B", "what is not exact, and was wrong"},
@@ -175,7 +176,8 @@ class LiveSeat {
     driver_.take(input, {clock_.now().ns});
   }
   void press_code(int code) {
-    constexpr int kTab = 258, kF1 = 290, kF2 = 291, kF3 = 292, kF4 = 293, kF5 = 294;  // GLFW's
+    constexpr int kTab = 258, kF1 = 290, kF2 = 291, kF3 = 292, kF4 = 293, kF5 = 294, kF6 = 295, kF7 = 296, kF8 = 297,
+                  kF9 = 298;  // GLFW's
     SeatViews& views = shown_.views();
     switch (code) {
       case kTab: return views.next_main();
@@ -184,6 +186,10 @@ class LiveSeat {
       case kF3: return views.toggle_observer();
       case kF4: return views.next_paint();
       case kF5: return views.swap_eyes();
+      case kF6: return views.toggle_stereogram();
+      case kF7: return views.stereogram().next_depth();
+      case kF8: return views.stereogram().next_pattern();
+      case kF9: return views.stereogram().next_variant();
       default: return;
     }
   }

@@ -17,6 +17,7 @@ const std::map<std::string, CommandWords>& table() {
       {"replay", {{"RUN", {"@run"}}}},
       {"record", {{"OUT", {"@new/record"}}, {"--mock", {}}}},
       {"export", {{"RUN", {"@run"}}, {"--out", {"@new/model.glb"}}}},
+      {"stereogram", {{"INPUT", {"@run"}}, {"--out", {"@new/dots.png"}}}},
       {"synth", {{"OUT", {"@new/synth"}}, {"--frames", {"1"}}, {"--size", {"32x24"}}}},
       {"can scan", {}},
       {"can dump", {{"IF", {"nocan0"}}}},
