@@ -1,5 +1,6 @@
 #include "display/predicted_view.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "display/lens_rays.hpp"
@@ -10,6 +11,7 @@ namespace {
 
 // As in view.comp.
 constexpr unsigned kGroup = 64;  // invocations of a group over a list
+constexpr int kBand = 64;        // rows: fewer cost as much as these, as each band is waited for
 constexpr GLuint kListUnit = 5;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
 
@@ -64,16 +66,28 @@ void PredictedView::set_paint(ViewPaint paint) {
   if (paint != ViewPaint::colours && !painter_) painter_ = std::make_unique<PaintPass>();
 }
 
+template <typename DrawRows>
+void PredictedView::draw_rows(DrawRows draw) const {
+  if (!gate_) return draw(Rows{0, lens_.height()});
+  for (Rows rows; rows.last < lens_.height();) {
+    rows.first = rows.last;
+    const auto bands = static_cast<std::size_t>((lens_.height() - rows.first + kBand - 1) / kBand);
+    rows.last = std::min(rows.first + kBand * static_cast<int>(gate_->begin("rows of a view", bands)), lens_.height());
+    draw(rows);
+    glFinish();
+    gate_->end();
+  }
+}
+
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
   start(T_world_camera, state, textures);
   all_.set("gain", textures.display_gain);
-  if (programs_ == ViewPrograms::single) {
-    dispatch_all(all_);
-  } else {
+  draw_rows([&](Rows rows) {
+    if (programs_ == ViewPrograms::single) return dispatch_all(all_, rows);
     start(rest_);
-    dispatch_all(all_);
+    dispatch_all(all_, rows);
     dispatch(rest_, listed_, textures.display_gain);
-  }
+  });
   finish(textures);
 }
 
@@ -86,20 +100,27 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   const PosedImage* image = &newest.image;
   p.image.update({&camera, 1}, {&image, 1}, {&newest.tone, 1});
   p.image.bind(p.newest, newest.depth_tolerance, kSeenBlock, kSeenUnit);
-  start(p.unseen);
-  dispatch_all(p.newest);
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  p.unseen.finish(kListUnit);
-  start(rest_);
   p.usual.set("gain", newest.gain);
-  p.usual.use();
-  p.unseen.dispatch();
-  dispatch(rest_, p.rest, newest.gain);
+  draw_rows([&](Rows rows) {
+    start(p.unseen);
+    dispatch_all(p.newest, rows);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    p.unseen.finish(kListUnit);
+    start(rest_);
+    p.usual.use();
+    p.unseen.dispatch();
+    dispatch(rest_, p.rest, newest.gain);
+  });
   finish(textures);
 }
 
 void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
+  if (gate_) gate_->begin("depth of a view");
   raster_(T_world_camera, state, faces_);
+  if (gate_) {
+    glFinish();
+    gate_->end();
+  }
 
   const gl::CameraBlock block = gl::make_camera_block(lens_, faces_.faces);
   camera_.write(std::span(&block, 1));
@@ -124,9 +145,10 @@ void PredictedView::start(WorkList& list) const {
   list.start(static_cast<std::size_t>(lens_.width()) * static_cast<std::size_t>(lens_.height()));
 }
 
-void PredictedView::dispatch_all(const gl::Program& program) const {
+void PredictedView::dispatch_all(const gl::Program& program, Rows rows) const {
   program.use();
-  glDispatchCompute(gl::groups(lens_.width(), 8), gl::groups(lens_.height(), 8), 1);
+  program.set("rows", Eigen::Vector2i(rows.first, rows.last));
+  glDispatchCompute(gl::groups(lens_.width(), 8), gl::groups(rows.last - rows.first, 8), 1);
 }
 
 void PredictedView::dispatch(const WorkList& list, const gl::Program& program, float gain) {

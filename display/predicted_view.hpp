@@ -10,6 +10,7 @@
 #include "gl/camera_block.hpp"
 #include "gl/program.hpp"
 #include "gl/raster_pass.hpp"
+#include "texture_gpu/frame_gate.hpp"
 #include "texture_gpu/published_image.hpp"
 #include "texture_gpu/published_textures.hpp"
 #include "texture_gpu/seen_inputs.hpp"
@@ -38,6 +39,10 @@ class PredictedView {
   /// From now on it is painted so.
   void set_paint(ViewPaint paint);
 
+  /// From now on views are drawn in bands of rows, each when `gate` lets it; draw() has finished on the GPU then. Null:
+  /// at once. It must outlive this.
+  void use(FrameGate* gate) { gate_ = gate; }
+
   /// Draws into picture(). `textures` must stay leased until the GPU has finished.
   void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
   /// The same, but where `newest` saw a surface point, and about as sharply as the view shows it, the colour comes from
@@ -65,7 +70,12 @@ class PredictedView {
   };
   void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
   void finish(const PublishedTextures& textures) const;
-  void dispatch_all(const gl::Program& program) const;
+  struct Rows {
+    int first = 0, last = 0;  // beyond the last
+  };
+  template <typename DrawRows>
+  void draw_rows(DrawRows draw) const;
+  void dispatch_all(const gl::Program& program, Rows rows) const;
   void start(WorkList& list) const;
   static void dispatch(const WorkList& list, const gl::Program& program, float gain);
 
@@ -81,6 +91,7 @@ class PredictedView {
   gl::BufferTexture node_poses_;  // T_node_camera: three rows a node
   gl::Texture rays_;              // RGB32F directions, only for lenses with distortion
   gl::Texture picture_;
+  FrameGate* gate_ = nullptr;
   ViewPaint paint_ = ViewPaint::colours;
   std::unique_ptr<PaintPass> painter_;  // once it is needed
 };

@@ -34,6 +34,7 @@ uniform float gain;
 layout(local_size_x = 64) in;
 #else
 layout(local_size_x = 8, local_size_y = 8) in;
+uniform ivec2 rows;  // first, and beyond the last
 #endif
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
 layout(binding = 0) uniform samplerBuffer view_nodes;    // T_node_camera
@@ -198,8 +199,8 @@ void main() {
   if (!next_work(item)) return;
   ivec2 pixel = ivec2(item & 0xffffu, item >> 16);
 #else
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, rows.x);
+  if (pixel.x >= int(camera.size.x) || pixel.y >= rows.y) return;
 #endif
   Point point;
   bool on_model = find_point(pixel, point);

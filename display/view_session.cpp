@@ -21,6 +21,7 @@ std::shared_ptr<const SurfacePatches> surface_for(const SceneModel& scene, const
 ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
     : driver_(gl::query_driver()),
       lens_(setup.left),
+      scene_(setup.scene),
       surface_(setup.surface),
       newest_image_(setup.newest_image && !setup.thesis) {
   gl::set_up_context();

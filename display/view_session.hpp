@@ -42,6 +42,7 @@ class ViewSession {
   /// Surfaces with a texture of their own: the core's charts, the thesis' polygons.
   std::size_t surface_count() const;
   const std::shared_ptr<const SurfacePatches>& surface() const { return surface_; }
+  const SceneModel& scene() const { return *scene_; }
 
   /// Extracts one frame and returns when its textures are there.
   ExtractionReport process(PosedFrame frame);
@@ -103,6 +104,7 @@ class ViewSession {
 
   gl::DriverInfo driver_;
   Lens lens_;
+  std::shared_ptr<const SceneModel> scene_;
   std::shared_ptr<const SurfacePatches> surface_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;
   std::shared_ptr<const SurfaceRecords> records_;

@@ -34,12 +34,13 @@ TextureTarget::TextureTarget(GLuint texture, int width, int height, int layer, b
 
 PictureCopy::PictureCopy() : source_(gl::create_framebuffer("picture to copy")) {}
 
-void PictureCopy::operator()(const gl::Texture& picture, const ViewTarget& target) const {
+void PictureCopy::operator()(const gl::Texture& picture, const ViewTarget& target, int columns) const {
+  const int width = columns > 0 ? columns : picture.width();
   glNamedFramebufferTexture(source_.name(), GL_COLOR_ATTACHMENT0, picture.name(), 0);
   const int top = target.first_row_at_top ? target.y : target.y + target.height;
   const int bottom = target.first_row_at_top ? target.y + target.height : target.y;
-  const bool same = picture.width() == target.width && picture.height() == target.height;
-  glBlitNamedFramebuffer(source_.name(), target.framebuffer, 0, 0, picture.width(), picture.height(), target.x, top,
+  const bool same = width == target.width && picture.height() == target.height;
+  glBlitNamedFramebuffer(source_.name(), target.framebuffer, 0, 0, width, picture.height(), target.x, top,
                          target.x + target.width, bottom, GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
   glNamedFramebufferTexture(source_.name(), GL_COLOR_ATTACHMENT0, 0, 0);  // the picture may go before this
 }

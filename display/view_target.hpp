@@ -39,8 +39,8 @@ class PictureCopy {
  public:
   PictureCopy();
   /// Fills `target` with `picture` (RGBA8), scaled by linear interpolation; alpha comes along. Nothing outside of it
-  /// is touched.
-  void operator()(const gl::Texture& picture, const ViewTarget& target) const;
+  /// is touched. `columns`: of the picture, from the left; 0: all.
+  void operator()(const gl::Texture& picture, const ViewTarget& target, int columns = 0) const;
 
  private:
   gl::Framebuffer source_;

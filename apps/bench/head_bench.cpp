@@ -1,35 +1,24 @@
 #include "apps/bench/head_bench.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <opencv2/core.hpp>
 #include <random>
 
+#include "apps/bench/head_lab.hpp"
+#include "apps/bench/head_motion_figures.hpp"
+#include "apps/bench/head_server_figures.hpp"
+#include "apps/bench/pose_table.hpp"
 #include "apps/bench/stereogram_figures.hpp"
-#include "common/cpu_time.hpp"
 #include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
-#include "display/recorded_source.hpp"
-#include "display/view_session.hpp"
 #include "display/warp/depth_warp.hpp"
+#include "display/warp/second_eye.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr std::size_t kMostImages = 12;
-constexpr double kGuardShare = 0.08;  // of the width: 2 degrees at a field of view of 60
-
-Lens eye_of(const Lens& camera, const HeadBenchOptions& options, int guard) {
-  Lens::Parameters p;
-  p.width = options.width + 2 * guard;
-  p.height = options.height + 2 * guard;
-  p.fx = p.fy = camera.parameters().fx * options.width / camera.width();
-  p.cx = (p.width - 1) / 2.0;
-  p.cy = (p.height - 1) / 2.0;
-  return Lens(p);
-}
+constexpr double kSideShare = 0.13;  // what the second eye sees beyond the first one's border, 65 mm at 0.5 m
 
 struct WarpFigures {
   std::vector<double> db, drawn_ms, warped_ms, holes, beyond;
@@ -49,92 +38,91 @@ void print(const char* what, const WarpFigures& f) {
               100 * *std::ranges::max_element(f.holes), median(f.warped_ms), median(f.drawn_ms));
 }
 
-cv::Mat pixels(const gl::Texture& texture, GLenum format, int type) {
-  cv::Mat out(texture.height(), texture.width(), type);
-  glGetTextureImage(texture.name(), 0, format, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * out.elemSize()),
-                    out.data);
-  return out;
-}
-
-double decibels(const cv::Mat& a, const cv::Mat& b) {
-  cv::Mat difference;
-  cv::absdiff(a, b, difference);
-  difference.convertTo(difference, CV_64F);
-  const cv::Scalar squares = cv::sum(difference.mul(difference));
-  const double mean = (squares[0] + squares[1] + squares[2]) / (3.0 * static_cast<double>(a.total()));
-  return mean > 0 ? 10 * std::log10(255 * 255 / mean) : 100;
-}
-
-template <typename Work>
-double gpu_cpu_ms(Work work) {
-  glFinish();
-  const double before = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
-  work();
-  glFinish();
-  return 1e3 * (cpu_seconds(CLOCK_PROCESS_CPUTIME_ID) - before);
-}
-
 /// A view of the run's scene, with a guard band, and what is warped from it.
-class HeadLab {
+class WarpTrial {
  public:
-  HeadLab(const RunFolder& run, const HeadBenchOptions& options, gl::Context& context)
-      : setup_(setup_of(run)),
-        session_(context, setup_),
-        wide_(eye_of(setup_.left, options, static_cast<int>(kGuardShare * options.width))),
-        narrow_(eye_of(setup_.left, options, 0)),
-        source_(session_.make_view(wide_)),
-        truth_(session_.make_view(narrow_)),
-        warp_(narrow_) {
-    const std::size_t images = std::min(kMostImages, run.frames().size());
-    for (std::size_t i = 0; i < images; ++i) {
-      PosedFrame frame = load_posed_frame(run, i);
-      T_world_camera_ = frame.left.T_world_camera;
-      state_ = frame.left.scene;
-      session_.process(std::move(frame));
-    }
-  }
+  WarpTrial(HeadLab& lab, const HeadBenchOptions& options)
+      : lab_(lab),
+        wide_(bench_eye(lab.camera(), options.width, options.height, static_cast<int>(kGuardShare * options.width))),
+        narrow_(bench_eye(lab.camera(), options.width, options.height)),
+        first_(bench_eye(lab.camera(), options.width, options.height, static_cast<int>(kSideShare * options.width))),
+        parts_(std::make_shared<const WarpScene>(lab.session().scene())),
+        capture_(parts_),
+        source_(lab.session().make_view(wide_)),
+        side_source_(lab.session().make_view(first_)),
+        truth_(lab.session().make_view(narrow_)),
+        layers_(wide_),
+        side_layers_(first_),
+        warp_(parts_, narrow_),
+        second_(first_, narrow_) {}
 
-  const Pose& T_world_camera() const { return T_world_camera_; }
   void draw_source(const Pose& from) {
     from_ = from;
-    session_.draw(source_, from, state_);
+    lab_.session().draw(source_, from, lab_.state());
+    capture_(source_.picture(), source_.faces(), from, lab_.state(), layers_);
+    lab_.session().draw(side_source_, from, lab_.state());
+    capture_(side_source_.picture(), side_source_.faces(), from, lab_.state(), side_layers_);
   }
   void measure(const Pose& to, WarpFigures& out) {
-    out.drawn_ms.push_back(gpu_cpu_ms([&] { session_.draw(truth_, to, state_); }));
-    out.warped_ms.push_back(gpu_cpu_ms([&] { warp_({&source_.picture(), &source_.faces().depth, wide_, from_}, to); }));
-    out.db.push_back(decibels(pixels(truth_.picture(), GL_RGBA, CV_8UC4), pixels(warp_.picture(), GL_RGBA, CV_8UC4)));
-    const cv::Mat holes = pixels(warp_.holes(), GL_RED, CV_8UC1);
+    draw_truth(to, out);
+    out.warped_ms.push_back(gpu_cpu_ms([&] { warp_(layers_, to); }));
+    compare(warp_.picture(), warp_.holes(), out);
+  }
+  void measure_second(double apart, WarpFigures& out) {
+    draw_truth(from_ * Eigen::Translation3d(apart, 0, 0), out);
+    out.warped_ms.push_back(gpu_cpu_ms([&] { second_(side_layers_.picture, side_layers_.depth, apart); }));
+    compare(second_.picture(), second_.holes(), out);
+  }
+
+ private:
+  void draw_truth(const Pose& at, WarpFigures& out) {
+    out.drawn_ms.push_back(gpu_cpu_ms([&] { lab_.session().draw(truth_, at, lab_.state()); }));
+  }
+  void compare(const gl::Texture& picture, const gl::Texture& hole_picture, WarpFigures& out) const {
+    out.db.push_back(
+        picture_decibels(read_pixels(truth_.picture(), GL_RGBA, CV_8UC4), read_pixels(picture, GL_RGBA, CV_8UC4)));
+    const cv::Mat holes = read_pixels(hole_picture, GL_RED, CV_8UC1);
     const auto share = [&](int value) { return cv::countNonZero(holes == value) / static_cast<double>(holes.total()); };
     out.holes.push_back(share(128));
     out.beyond.push_back(share(255));
   }
 
- private:
-  static ViewSetup setup_of(const RunFolder& run) {
-    ViewSetup out;
-    out.scene = run.scene();
-    out.left = run.lens_left();
-    out.right = run.lens_right();
-    out.surface = surface_for(run);
-    return out;
-  }
-  ViewSetup setup_;
-  ViewSession session_;
-  Lens wide_, narrow_;
-  PredictedView source_, truth_;
+  HeadLab& lab_;
+  Lens wide_, narrow_, first_;
+  std::shared_ptr<const WarpScene> parts_;
+  LayerCapture capture_;
+  PredictedView source_, side_source_, truth_;
+  WarpLayers layers_, side_layers_;
   DepthWarp warp_;
-  Pose T_world_camera_ = Pose::Identity(), from_ = Pose::Identity();
-  SceneState state_;
+  SecondEye second_;
+  Pose from_ = Pose::Identity();
 };
+
+nlohmann::json server_figures(HeadLab& lab, gl::Context& context, const HeadBenchOptions& options) {
+  std::printf("frames in real time, extraction and drawing beside them, the line dead for %.1f s:\n",
+              std::min(5.0, options.seconds / 2));
+  nlohmann::json rows = nlohmann::json::array();
+  for (const auto second : {head::SecondEyeFrom::own_view, head::SecondEyeFrom::first_eye}) {
+    HeadServerTrial large{options.width, options.height, options.rate_hz, options.seconds, second};
+    rows.push_back(head_server_figures(lab, context, large));
+    HeadServerTrial small{options.width / 2, options.height / 2, 2.25 * options.rate_hz, options.seconds, second};
+    rows.push_back(head_server_figures(lab, context, small));
+  }
+  return rows;
+}
 
 }  // namespace
 
 int bench_head(const HeadBenchOptions& options) {
   const RunFolder run = RunFolder::open(options.run, {});
+  std::optional<PoseTrack> head;
+  if (options.path) head = head_track(read_pose_table(*options.path));
   const auto context = gl::create_headless_context();
   const gl::DriverInfo driver = gl::query_driver();
   gl::set_up_context();
-  HeadLab lab(run, options, *context);
+  MonotonicClock clock;
+  HeadLab lab(run, *context, clock);
+  WarpTrial trial(lab, options);
 
   std::mt19937 random(options.seed);
   std::normal_distribution some(0.0, 1.0);
@@ -151,14 +139,14 @@ int bench_head(const HeadBenchOptions& options) {
   WarpFigures motion, second;
   for (int i = 0; i < options.views; ++i) {
     const Pose from = lab.T_world_camera() * step(0.05 * any(), Eigen::AngleAxisd(0.1 * some(random), any()));
-    lab.draw_source(from);
-    lab.measure(from * step(options.metres * any(), Eigen::AngleAxisd(options.degrees * EIGEN_PI / 180, any())),
-                motion);
-    lab.measure(from * step({options.eyes_apart, 0, 0}, Eigen::AngleAxisd::Identity()), second);
+    trial.draw_source(from);
+    trial.measure(from * step(options.metres * any(), Eigen::AngleAxisd(options.degrees * EIGEN_PI / 180, any())),
+                  motion);
+    trial.measure_second(options.eyes_apart, second);
   }
   std::printf("%d views of %d x %d px; %s\n", options.views, options.width, options.height, driver.renderer.c_str());
   print("head motion", motion);
-  print("second eye", second);
+  print("second eye, row by row", second);
   nlohmann::json all;
   all["warped_motion"] = to_json(motion);
   all["warped_second_eye"] = to_json(second);
@@ -166,6 +154,8 @@ int bench_head(const HeadBenchOptions& options) {
   all["degrees"] = options.degrees;
   all["metres"] = options.metres;
   all["renderer"] = driver.renderer + ", OpenGL " + driver.version;
+  if (head) all["recorded_head"] = head_motion_figures(lab, *head, options.width, options.height);
+  if (options.seconds > 0) all["server"] = server_figures(lab, *context, options);
   all["stereograms"] = stereogram_figures(run);
   write_numbers(options.json, all.dump(2));
   return 0;

@@ -94,4 +94,19 @@ PoseTable read_pose_table(const std::filesystem::path& csv) {
   return table;
 }
 
+const PoseSeries& head_of(const PoseTable& table) {
+  for (const char* prefix : {"", "head_"})
+    for (const PoseSeries& series : table.series)
+      if (series.prefix == prefix) return series;
+  return table.series.front();
+}
+
+PoseTrack head_track(const PoseTable& table) {
+  const PoseSeries& head = head_of(table);
+  std::vector<PoseTrack::Sample> samples;
+  for (std::size_t i = 0; i < head.poses.size(); ++i)
+    if (head.poses[i]) samples.push_back({RobotTime{table.time_ns[i]}, *head.poses[i]});
+  return PoseTrack(std::move(samples));
+}
+
 }  // namespace foresight

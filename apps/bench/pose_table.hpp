@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene_model.hpp"
+#include "scene/pose_track.hpp"
 
 namespace foresight {
 
@@ -31,5 +31,10 @@ struct PoseTable {
 /// cure: no such columns, no row, a field that is no number, another number of fields, a time before that of the line
 /// before.
 PoseTable read_pose_table(const std::filesystem::path& csv);
+
+/// The series of the head, else the first one.
+const PoseSeries& head_of(const PoseTable& table);
+/// Its poses over time, without those that were lost.
+PoseTrack head_track(const PoseTable& table);
 
 }  // namespace foresight

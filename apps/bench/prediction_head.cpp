@@ -11,7 +11,6 @@
 #include "common/statistics.hpp"
 #include "prediction/arm_chain.hpp"
 #include "prediction/pose_predictor.hpp"
-#include "scene/pose_track.hpp"
 
 namespace foresight {
 namespace {
@@ -41,21 +40,6 @@ struct Method {
     all[before + "rms_deg"] = turn_rms;
   }
 };
-
-// The series of the head; else the first one.
-const PoseSeries& head_of(const PoseTable& table) {
-  for (const char* prefix : {"", "head_"})
-    for (const PoseSeries& series : table.series)
-      if (series.prefix == prefix) return series;
-  return table.series.front();
-}
-
-PoseTrack track_of(const PoseTable& table, const PoseSeries& head) {
-  std::vector<PoseTrack::Sample> samples;
-  for (std::size_t i = 0; i < head.poses.size(); ++i)
-    if (head.poses[i]) samples.push_back({RobotTime{table.time_ns[i]}, *head.poses[i]});
-  return PoseTrack(std::move(samples));
-}
 
 // `now`, gone on for `ahead` as it came from `before` in `seconds`.
 Pose gone_on(const Pose& before, const Pose& now, double seconds, double ahead) {
@@ -97,7 +81,7 @@ void print_and_write(const PredictionHeadOptions& options, const std::array<Meth
 int bench_prediction_head(const PredictionHeadOptions& options) {
   const PoseTable table = read_pose_table(options.csv);
   const PoseSeries& head = head_of(table);
-  const PoseTrack track = track_of(table, head);
+  const PoseTrack track = head_track(table);
   PosePredictorOptions predictor_options;
   predictor_options.ahead = options.ahead_ms * 1e-3;
   PosePredictor predictor(predictor_options);

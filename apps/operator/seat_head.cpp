@@ -20,7 +20,9 @@ SeatHead::SeatHead(gl::Context& context, ViewSession& session, const Lens& lens,
       words_(kWordsWidth, kWordsHeight, "words in the head display"),
       image_(lens.width(), lens.height(), "newest image in the head display"),
       newest_("newest image"),
-      painter_(session, *controllers, &words_, &image_),
+      drawer_(session, clock),
+      painter_(session, *controllers, clock, &words_, &image_, &drawer_),
+      drawing_(context.create_shared(), drawer_, clock),
       thread_(std::make_unique<head::HeadThread>(context.create_shared(), head::HeadDisplayOptions{}, clock,
                                                  controllers, painter_, [this] { painter_.release(); })) {}
 
@@ -64,6 +66,8 @@ bool SeatHead::shows() const {
 }
 
 std::vector<SeatLine> SeatHead::lines() const {
+  if (const std::string failure = drawing_.failure(); !failure.empty())
+    return {{"headset", failure, "start again", Urgency::trouble}};
   const head::HeadStatus status = thread_->status();
   if (head::stands_still(status, {clock_.now().ns}))
     return {{"headset", "shows nothing new", "start its runtime again", Urgency::trouble}};

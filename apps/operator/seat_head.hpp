@@ -11,7 +11,8 @@
 
 namespace foresight {
 
-/// The window's thread; the display has one of its own. Whatever becomes of the display, the window goes on.
+/// The window's thread; the display has one of its own, and so has the drawing of what it shows. Whatever becomes of
+/// the display, the window goes on.
 class SeatHead final : public ViewObserver {
  public:
   /// All must outlive this. `controllers`: what they say goes there.
@@ -45,7 +46,9 @@ class SeatHead final : public ViewObserver {
   UploadedPicture newest_;
   link::LineFramePtr uploaded_;
   std::optional<OperatorTime> said_;
+  head::SceneDrawer drawer_;
   head::ScenePainter painter_;
+  head::SceneThread drawing_;
   std::unique_ptr<head::HeadThread> thread_;
 };
 

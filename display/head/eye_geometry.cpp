@@ -44,6 +44,12 @@ Lens eye_lens(const EyeFov& fov, int width, int height) {
   return Lens(p);
 }
 
+bool alike(const Lens& a, const Lens& b) {
+  const auto &p = a.parameters(), &q = b.parameters();
+  return p.width == q.width && p.height == q.height && std::abs(p.fx - q.fx) < 1e-3 * p.fx &&
+         std::abs(p.fy - q.fy) < 1e-3 * p.fy && std::abs(p.cx - q.cx) < 0.05 && std::abs(p.cy - q.cy) < 0.05;
+}
+
 bool alike(const EyeFov& a, const EyeFov& b, double tolerance) {
   return std::abs(a.left - b.left) <= tolerance && std::abs(a.right - b.right) <= tolerance &&
          std::abs(a.up - b.up) <= tolerance && std::abs(a.down - b.down) <= tolerance;

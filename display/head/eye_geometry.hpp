@@ -31,6 +31,9 @@ std::optional<EyeFov> checked_fov(const EyeFov& fov);
 /// The pinhole that shows exactly `fov` in so many px. `fov` is a checked one.
 Lens eye_lens(const EyeFov& fov, int width, int height);
 
+/// They show the same, to 0.05 px at the middle and 1 in 1,000 of the scale.
+bool alike(const Lens& a, const Lens& b);
+
 /// No side differs by more than `tolerance` rad.
 bool alike(const EyeFov& a, const EyeFov& b, double tolerance = 1e-3);
 

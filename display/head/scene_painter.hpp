@@ -11,6 +11,7 @@
 #include <mutex>
 
 #include "display/frame_source.hpp"
+#include "display/head/eye_warper.hpp"
 #include "display/head/head_hands.hpp"
 #include "display/head/head_painter.hpp"
 #include "display/head/shared_picture.hpp"
@@ -29,8 +30,9 @@ struct HeadScene {
 class ScenePainter final : public HeadPainter {
  public:
   /// All must outlive this. `words` and `image`: panels; null: none. A press of `recentre` or `home_view` on `hands`
-  /// centres.
-  ScenePainter(const ViewSession& session, const HeldControllers& hands, SharedPicture* words, SharedPicture* image);
+  /// centres. `drawer`: somebody else draws with it, and each frame is warped from there; null: each frame is drawn.
+  ScenePainter(const ViewSession& session, const HeldControllers& hands, Clock& clock, SharedPicture* words,
+               SharedPicture* image, SceneDrawer* drawer = nullptr);
 
   void show(HeadScene scene);
   /// The head is where the camera is now, from the next frame on.
@@ -59,9 +61,11 @@ class ScenePainter final : public HeadPainter {
   void place_space(const HeadFrame& frame);
   void place_panels();
   bool draw_scene(std::size_t eye, const EyeView& view, const ViewTarget& target);
+  bool warp_scene(std::size_t eye, const Pose& T_world_eye, const EyeFov& fov, const ViewTarget& target);
 
   const ViewSession& session_;
   const HeldControllers& hands_;
+  Clock& clock_;
   std::array<SharedPicture*, 2> pictures_;  // words, image
   std::atomic<bool> centre_{false};
   mutable std::mutex mutex_;  // the next three
@@ -73,6 +77,8 @@ class ScenePainter final : public HeadPainter {
   bool pressed_ = false;
   std::array<Panel, 2> panels_;
   std::array<std::optional<Eye>, 2> eyes_;
+  SceneDrawer* drawer_;
+  std::optional<EyeWarper> warper_;  // of it, in the head display's thread
   std::optional<PictureCopy> copy_;
   std::deque<Drawing> drawings_;  // that the GPU may not have finished
 };

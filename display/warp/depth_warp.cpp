@@ -1,92 +1,233 @@
 #include "display/warp/depth_warp.hpp"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
-namespace foresight::gl {
-const ShaderSources& warp_shaders();
-}  // namespace foresight::gl
+#include "display/warp/warp_shaders.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr int kBlock = 16;  // px, as in the shaders
-
-int blocks_in(int pixels) {
-  return (pixels + kBlock - 1) / kBlock;
-}
+constexpr int kMostRadius = 10;                           // blocks that surfaces may have moved by
+constexpr std::size_t kMostMoved = 16, kWordsOfNode = 6;  // as in depth_warp.comp
+constexpr double kMoved = 0.3;                            // px: less does not show
+constexpr double kClosest = 0.05;                         // m: beyond that, a part reaches behind the camera
+constexpr double kMargin = 1.02;                          // of depths
 
 Eigen::Vector4f numbers(const Lens& lens) {
   const auto& p = lens.parameters();
   return Eigen::Vector4d(p.fx, p.fy, p.cx, p.cy).cast<float>();
 }
 
-void check(const WarpSource& source) {
-  const auto fits = [&](const gl::Texture* texture) {
-    return texture && texture->width() == source.lens.width() && texture->height() == source.lens.height();
+gl::Program warp_program(bool searched, bool moved, bool tells) {
+  return gl::Program::compute(
+      gl::warp_shaders(), "depth_warp.comp",
+      {"SEARCHED " + std::to_string(searched), "MOVED " + std::to_string(moved), "TELLS " + std::to_string(tells)});
+}
+
+Eigen::Vector2i tiles_of(const Lens& lens) {
+  return {warp_blocks(lens.width()), warp_blocks(lens.height())};
+}
+
+constexpr std::array<GLuint, 3> kNoGroups{0, 1, 1};
+
+std::size_t list_bytes(const Lens& target) {
+  return sizeof(kNoGroups) + sizeof(GLuint) * static_cast<std::size_t>(tiles_of(target).prod());
+}
+
+/// Three rows of T_source_target, then the third of its inverse's rotation and its product with the translation.
+std::array<Eigen::Vector4f, 4> rows_of(const Pose& T_source_target) {
+  const Eigen::Matrix4f m = T_source_target.matrix().cast<float>();
+  const Eigen::Vector3d back = T_source_target.linear().col(2);
+  Eigen::Vector4d fourth;
+  fourth << back, back.dot(T_source_target.translation());
+  return {m.row(0).transpose(), m.row(1).transpose(), m.row(2).transpose(), fourth.cast<float>()};
+}
+
+/// A node that stands elsewhere than in the source.
+struct Moved {
+  std::size_t node = 0;
+  Pose T_source_target = Pose::Identity();  // of points that go with it
+  Eigen::AlignedBox2d rectangle;            // in the target, of where it is and was, px
+  double nearest = 0, farthest = 0;         // m
+};
+
+/// Nothing where it did not move by so much that it shows, or is not seen.
+std::optional<Moved> moved_node(const Eigen::AlignedBox3d& box, const Pose& T_camera_before, const Pose& T_camera_now,
+                                const Lens& lens) {
+  Moved out;
+  out.nearest = 1e9;
+  const auto& p = lens.parameters();
+  const auto seen = [&](const Eigen::Vector3d& at) {
+    return Eigen::Vector2d(p.fx * at.x() / at.z() + p.cx, p.fy * at.y() / at.z() + p.cy);
   };
-  if (source.lens.has_distortion() || source.lens.model() == LensModel::equidistant)
-    throw std::invalid_argument("a source of warping has a distortion");
-  if (!fits(source.picture) || !fits(source.depth))
-    throw std::invalid_argument("a source of warping has textures of another size than its lens");
+  double farthest_moved = 0;
+  bool behind = false;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d at = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+    const Eigen::Vector3d before = T_camera_before * at, now = T_camera_now * at;
+    out.nearest = std::min(out.nearest, std::max(now.z(), kClosest));
+    out.farthest = std::max(out.farthest, now.z());
+    behind |= now.z() < kClosest || before.z() < kClosest;
+    if (behind) continue;
+    farthest_moved = std::max(farthest_moved, (seen(now) - seen(before)).norm());
+    out.rectangle.extend(seen(now));
+    out.rectangle.extend(seen(before));
+  }
+  if (out.farthest < kClosest) return std::nullopt;
+  const Eigen::Vector2d size(lens.width(), lens.height());
+  const Eigen::AlignedBox2d all(Eigen::Vector2d(0, 0), size);
+  if (behind) {
+    out.rectangle = all;
+    return (T_camera_before.inverse() * T_camera_now).isApprox(Pose::Identity(), 1e-6) ? std::nullopt
+                                                                                       : std::optional(out);
+  }
+  if (farthest_moved < kMoved || !all.intersects(out.rectangle)) return std::nullopt;
+  return out;
 }
 
 }  // namespace
 
-DepthWarp::DepthWarp(const Lens& target)
-    : target_(target),
-      blocks_(gl::Program::compute(gl::warp_shaders(), "blocks.comp")),
+DepthWarp::DepthWarp(std::shared_ptr<const WarpScene> scene, const Lens& target, bool tells)
+    : scene_(std::move(scene)),
+      target_(target),
+      tells_(tells),
       spread_(gl::Program::compute(gl::warp_shaders(), "spread.comp")),
-      warp_(gl::Program::compute(gl::warp_shaders(), "depth_warp.comp")),
+      tiles_(gl::Program::compute(gl::warp_shaders(), "tiles.comp")),
+      smooth_(warp_program(false, false, tells)),
+      searched_(warp_program(true, false, tells)),
+      lists_{{{GL_R32UI, list_bytes(target), "tiles of one surface"},
+              {GL_R32UI, list_bytes(target), "tiles to be searched"},
+              {GL_R32UI, list_bytes(target), "tiles of nodes that moved"}}},
+      corners_(GL_RGBA32F, 16 * static_cast<std::size_t>(tiles_of(target).prod()), "depths of tiles of one surface"),
+      slot_of_node_(GL_R8UI, 256, "nodes that moved"),
+      moved_(GL_RGBA32F, 16, "how nodes moved"),
       picture_(GL_RGBA8, target.width(), target.height(), 0, 1, "warped picture"),
-      holes_(GL_R8, target.width(), target.height(), 0, 1, "holes of the warped picture") {
+      holes_(GL_R8, tells ? target.width() : 1, tells ? target.height() : 1, 0, 1, "holes of the warped picture"),
+      depth_(GL_R32F, tells ? target.width() : 1, tells ? target.height() : 1, 0, 1, "depth of the warped picture") {
   if (target.has_distortion() || target.model() == LensModel::equidistant)
     throw std::invalid_argument("a target of warping has a distortion");
 }
 
-void DepthWarp::find_reach(const WarpSource& source) {
-  const Eigen::Vector2i pixels(source.lens.width(), source.lens.height());
-  const Eigen::Vector2i blocks(blocks_in(pixels.x()), blocks_in(pixels.y()));
-  if (near_far_.width() != blocks.x() || near_far_.height() != blocks.y()) {
-    near_far_ = gl::Texture(GL_RG32F, blocks.x(), blocks.y(), 0, 1, "depths of blocks");
-    reach_ = gl::Texture(GL_RG32F, blocks.x(), blocks.y(), 0, 1, "depths around blocks");
+int DepthWarp::find_moved(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node) {
+  std::vector<Moved> all;
+  const Pose T_camera_world = T_world_camera.inverse(), T_source_world = source.T_world_camera.inverse();
+  const std::size_t nodes =
+      std::min({T_world_node.size(), source.T_world_node.size(), scene_->boxes().size(), WarpScene::kMostNodes});
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if (scene_->boxes()[i].isEmpty()) continue;
+    // What the target would see of it where it stood, and what it sees.
+    auto moved = moved_node(scene_->boxes()[i], T_camera_world * source.T_world_node[i],
+                            T_camera_world * T_world_node[i], target_);
+    if (!moved) continue;
+    moved->node = i;
+    moved->T_source_target = T_source_world * source.T_world_node[i] * T_world_node[i].inverse() * T_world_camera;
+    all.push_back(*moved);
   }
-  blocks_.use();
-  blocks_.set("size", pixels);
-  glBindTextureUnit(0, source.depth->name());
-  glBindImageTexture(0, near_far_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-  glDispatchCompute(gl::groups(blocks.x(), 8), gl::groups(blocks.y(), 8), 1);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  spread_.use();
-  spread_.set("size", blocks);
-  glBindTextureUnit(0, near_far_.name());
-  glBindImageTexture(0, reach_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-  glDispatchCompute(gl::groups(blocks.x(), 8), gl::groups(blocks.y(), 8), 1);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  if (all.empty()) return 0;
+  std::ranges::sort(all, {}, &Moved::nearest);
+  all.resize(std::min(all.size(), kMostMoved));
+  std::array<std::uint8_t, 256> slots{};
+  std::vector<Eigen::Vector4f> words;
+  words.reserve(kWordsOfNode * all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Moved& one = all[k];
+    slots[one.node + 1] = static_cast<std::uint8_t>(k + 1);
+    for (const Eigen::Vector4f& row : rows_of(one.T_source_target)) words.push_back(row);
+    Eigen::Vector4d rectangle;
+    rectangle << one.rectangle.min(), one.rectangle.max();
+    words.push_back(rectangle.cast<float>());
+    words.push_back(Eigen::Vector4d(kMargin / one.nearest, 1 / (kMargin * one.farthest), 0, 0).cast<float>());
+  }
+  slot_of_node_.assign(std::span<const std::uint8_t>(slots));
+  moved_.assign(std::span<const Eigen::Vector4f>(words));
+  return static_cast<int>(all.size());
 }
 
-void DepthWarp::operator()(const WarpSource& source, const Pose& T_world_camera) {
-  check(source);
-  find_reach(source);
-  const Pose T_source_target = source.T_world_camera.inverse() * T_world_camera;
-  const Eigen::Matrix<float, 3, 4> rows = T_source_target.matrix().topRows<3>().cast<float>();
-  const Eigen::Vector3d back = T_source_target.linear().col(2);  // third row of the inverse
-  const Eigen::Vector4d back_row(back.x(), back.y(), back.z(), back.dot(T_source_target.translation()));
+void DepthWarp::spread(const WarpLayers& source, const Pose& T_source_target) {
+  const Eigen::Vector2i blocks(source.blocks.width(), source.blocks.height());
+  for (gl::Texture& reach : reach_)
+    if (reach.width() != blocks.x() || reach.height() != blocks.y())
+      reach = gl::Texture(GL_RGBA32F, blocks.x(), blocks.y(), 0, 1, "depths around blocks");
+  // What is half a metre away or farther moves by no more than this; what is nearer is found within half of it.
+  constexpr double kNear = 0.5;  // m
+  const double parallax = source.lens.parameters().fx * T_source_target.translation().norm() / kNear;
+  spread_.set("size", blocks);
+  spread_.set("radius", std::clamp(static_cast<int>(parallax / kWarpBlock) + 1, 1, kMostRadius));
+  spread_.use();
+  for (int pass = 0; pass < 2; ++pass) {
+    spread_.set("way", Eigen::Vector2i(1 - pass, pass));
+    glBindTextureUnit(0, pass == 0 ? source.blocks.name() : reach_[0].name());
+    glBindImageTexture(0, reach_[static_cast<std::size_t>(pass)].name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    glDispatchCompute(gl::groups(blocks.x(), 8), gl::groups(blocks.y(), 8), 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  }
+}
 
-  warp_.use();
-  warp_.set("source_lens", numbers(source.lens));
-  warp_.set("target_lens", numbers(target_));
-  warp_.set("source_size", Eigen::Vector2i(source.lens.width(), source.lens.height()));
-  warp_.set("target_size", Eigen::Vector2i(target_.width(), target_.height()));
-  warp_.set("r0", Eigen::Vector4f(rows.row(0).transpose()));
-  warp_.set("r1", Eigen::Vector4f(rows.row(1).transpose()));
-  warp_.set("r2", Eigen::Vector4f(rows.row(2).transpose()));
-  warp_.set("back", Eigen::Vector4f(back_row.cast<float>()));
-  glBindTextureUnit(0, source.depth->name());
-  glBindTextureUnit(1, source.picture->name());
-  glBindTextureUnit(2, reach_.name());
+void DepthWarp::aim(const gl::Program& program, const WarpLayers& source, const Pose& T_source_target) const {
+  const auto rows = rows_of(T_source_target);
+  program.set("source_lens", numbers(source.lens));
+  program.set("target_lens", numbers(target_));
+  program.set("source_size", Eigen::Vector2i(source.lens.width(), source.lens.height()));
+  program.set("target_size", Eigen::Vector2i(target_.width(), target_.height()));
+  program.set("r0", rows[0]);
+  program.set("r1", rows[1]);
+  program.set("r2", rows[2]);
+  program.set("back", rows[3]);
+}
+
+void DepthWarp::list_tiles(const WarpLayers& source, const Pose& T_source_target, int moved) {
+  const Eigen::Vector2i tiles = tiles_of(target_);
+  aim(tiles_, source, T_source_target);
+  tiles_.set("tiles", tiles);
+  tiles_.set("moved_count", moved);
+  tiles_.use();
+  glBindTextureUnit(0, source.blocks.name());
+  glBindTextureUnit(1, reach_[1].name());
+  glBindTextureUnit(2, moved_.texture());
+  glBindTextureUnit(3, source.depth.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, corners_.buffer().name());
+  for (GLuint i = 0; i < lists_.size(); ++i) {
+    lists_[i].buffer().write(std::span<const GLuint>(kNoGroups));
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, lists_[i].buffer().name());
+  }
+  glDispatchCompute(gl::groups(tiles.x(), 8), gl::groups(tiles.y(), 8), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void DepthWarp::work_off(Tiles which, const gl::Program& program, const WarpLayers& source,
+                         const Pose& T_source_target) const {
+  const gl::BufferTexture& list = lists_[static_cast<std::size_t>(which)];
+  aim(program, source, T_source_target);
+  program.use();
+  glBindTextureUnit(3, list.texture());
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list.buffer().name());
+  glDispatchComputeIndirect(0);
+}
+
+void DepthWarp::operator()(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node) {
+  const Pose T_source_target = source.T_world_camera.inverse() * T_world_camera;
+  const int moved = find_moved(source, T_world_camera, T_world_node);
+  spread(source, T_source_target);
+  list_tiles(source, T_source_target, moved);
+  glBindTextureUnit(0, source.depth.name());
+  glBindTextureUnit(1, source.picture.name());
+  glBindTextureUnit(2, reach_[1].name());
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glBindImageTexture(1, holes_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
-  glDispatchCompute(gl::groups(target_.width(), 8), gl::groups(target_.height(), 8), 1);
+  glBindImageTexture(2, depth_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+  glBindTextureUnit(4, corners_.texture());
+  work_off(Tiles::smooth, smooth_, source, T_source_target);
+  work_off(Tiles::searched, searched_, source, T_source_target);
+  if (moved > 0) {
+    if (!with_moved_) with_moved_ = warp_program(true, true, tells_);
+    with_moved_->set("moved_count", moved);
+    glBindTextureUnit(4, source.node.name());
+    glBindTextureUnit(5, slot_of_node_.texture());
+    glBindTextureUnit(6, moved_.texture());
+    work_off(Tiles::moved, *with_moved_, source, T_source_target);
+  }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 

@@ -71,8 +71,8 @@ TEST_F(Bench, MarginCountsByTruth) {
 
 TEST_F(Bench, HeadWarpsWhatItDrew) {
   const std::string file = out_ / "head.json";
-  const Outcome outcome =
-      run_program({"bench", "head", run(), "--views", "3", "--width", "160", "--height", "120", "--json", file});
+  const Outcome outcome = run_program({"bench", "head", run(), "--views", "3", "--width", "160", "--height", "120",
+                                       "--seconds", "0.5", "--json", file});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json all = read_json(file);
   for (const char* which : {"warped_motion", "warped_second_eye"}) {
@@ -81,6 +81,12 @@ TEST_F(Bench, HeadWarpsWhatItDrew) {
     EXPECT_LT(all[which]["holes"]["most"], 0.1) << which;
     EXPECT_GT(all[which]["warped_cpu_ms"], 0) << which;
     EXPECT_GT(all[which]["drawn_cpu_ms"], 0) << which;
+  }
+  ASSERT_EQ(all["server"].size(), 4u);
+  for (const nlohmann::json& row : all["server"]) {
+    EXPECT_GT(row["frames"], 0) << row;
+    EXPECT_GT(row["pose_to_swap_ms"]["p50"], 0) << row;
+    EXPECT_GE(row["pose_to_swap_ms"]["p99"], row["pose_to_swap_ms"]["p50"]) << row;
   }
 }
 

@@ -100,6 +100,21 @@ TEST_P(ViewOfLenses, TwoProgramsDrawWhatOneDraws) {
 }
 
 // The loop closed: photographed, extracted, shown again from the same place, it is the photograph.
+// In bands, each when a gate lets it, it is the same picture.
+TEST_P(ViewOfLenses, BandsAreOnePicture) {
+  extract({usual_view(), look_at({-0.8, -0.6, 0.7}, {0, 0, 0.1})});
+  const TextureLease lease = latest_.acquire();
+  PredictedView whole = view_through(small_lens(GetParam())), banded = view_through(small_lens(GetParam()));
+  MonotonicClock clock;
+  FrameGate gate(clock);
+  banded.use(&gate);
+  whole.draw(usual_view(), state_of(*scene_), *lease);
+  banded.draw(usual_view(), state_of(*scene_), *lease);  // what bands cost is not known yet: they are as large as it goes
+  EXPECT_TRUE(gate.take_work_waits());
+  banded.draw(usual_view(), state_of(*scene_), *lease);
+  EXPECT_EQ(cv::norm(whole.read(), banded.read(), cv::NORM_INF), 0);
+}
+
 TEST_P(ViewOfLenses, ShowsThePhotographAgain) {
   const Lens lens = small_lens(GetParam());
   extract({usual_view()}, GetParam());

@@ -1,8 +1,8 @@
 // The scene in a head display: each eye sees what a camera in its place would.
 #include "display/head/scene_painter.hpp"
 
-#include "display/head/head_thread.hpp"
 #include "display/eye_pair.hpp"
+#include "display/head/head_thread.hpp"
 #include "tests/head_display/xr_test.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -30,7 +30,7 @@ class SceneInAHead : public HeadDisplayTest {
     setup.textures.memory_bytes = 6 << 20;
     session_.emplace(*context_, setup);
     session_->process({posed_photograph(*scene_, state_of(*scene_), lens, usual_view()), std::nullopt});
-    painter_in_scene_.emplace(*session_, *held_, nullptr, &image_.emplace(32, 24, "image"));
+    painter_in_scene_.emplace(*session_, *held_, real_, nullptr, &image_.emplace(32, 24, "image"));
     settings_.shown = [this](const openxr_runtime::ShownFrame& frame) {
       panels_ = frame.panels.size();
       for (std::size_t i = 0; i < 2; ++i)
@@ -76,6 +76,7 @@ class SceneInAHead : public HeadDisplayTest {
     EXPECT_GT(deviation.at<double>(0), 10) << "there is something to see";
   }
 
+  MonotonicClock real_;
   std::shared_ptr<const SceneModel> scene_ = small_scene();
   std::optional<ViewSession> session_;
   std::optional<head::SharedPicture> image_;
@@ -107,6 +108,76 @@ TEST_F(SceneInAHead, EachEyeSeesWhatACameraInItsPlaceWould) {
   for (std::size_t eye = 0; eye < 2; ++eye) expect_same(eye, eye_at(T_leaning, eye));
   EXPECT_GT(cv::norm(seen_[0], seen_[1], cv::NORM_L1), 0) << "from two places";
   EXPECT_EQ(complaints(), "");
+}
+
+// The views are drawn now and then, and each frame is warped from them: here by turns in one context.
+TEST_F(SceneInAHead, FramesAreWarpedFromViewsThatWereDrawnBefore) {
+  head::SceneDrawer drawer(*session_, real_);
+  painter_in_scene_->release();
+  painter_in_scene_.emplace(*session_, *held_, real_, nullptr, &*image_, &drawer);
+  World world;
+  settings_.world = [&world](double) { return world; };
+  runtime().reset(settings_);
+  EXPECT_FALSE(drawer.draw()) << "nobody has aimed";
+  begin();
+  EXPECT_EQ(seen_[0].at<cv::Vec4b>(10, 10), seen_[0].at<cv::Vec4b>(50, 50)) << "nothing is drawn yet";
+  ASSERT_TRUE(drawer.draw());
+  EXPECT_FALSE(drawer.draw()) << "once for an aim";
+  const Pose T_world_space = *painter_in_scene_->T_world_space();
+  for (const double turned : {0.0, 0.02, 0.05}) {  // rad
+    world.head = looking({0.005f, 1, 0}, static_cast<float>(turned));
+    turn(2);
+    const auto& q = world.head.orientation;
+    const Pose T_head = *head::checked_pose({0.005, 1, 0}, Eigen::Quaternionf(q[3], q[0], q[1], q[2]).cast<double>());
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      const Pose T_eye = T_world_space * T_head * Eigen::Translation3d(0, eye == 0 ? 0.0315 : -0.0315, 0);
+      const cv::Mat wanted = expected(eye, T_eye);
+      cv::Mat apart;
+      cv::absdiff(wanted, seen_[eye], apart);
+      EXPECT_LT(cv::mean(apart.reshape(1))[0], 2) << "eye " << eye << " turned by " << turned;
+      EXPECT_GT(cv::norm(wanted, seen_[eye], cv::NORM_INF), 0) << "not drawn anew";
+    }
+  }
+  EXPECT_EQ(drawer.drawn(), 1u);
+  painter_in_scene_->release();
+  drawer.release();
+  EXPECT_EQ(complaints(), "");
+}
+
+TEST_F(SceneInAHead, ARightEyeIsMadeOfTheLeftOnesFrame) {
+  head::SceneDrawer drawer(*session_, real_);
+  head::EyeWarper warper(drawer, real_, head::SecondEyeFrom::first_eye);
+  const head::EyeFov fov{-0.5, 0.5, 0.4, -0.4};
+  const auto frame = [&](double apart, double turned) {
+    std::array<const gl::Texture*, 2> out{};
+    warper.begin(state_of(*scene_));
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      Pose T_eye = usual_view() * Eigen::Translation3d(eye == 0 ? 0 : apart, 0, 0);
+      if (eye == 1) T_eye.linear() = T_eye.linear() * Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY());
+      out[eye] = warper(eye, {T_eye, fov, 64, 52});
+    }
+    warper.end();
+    return out;
+  };
+  EXPECT_FALSE(frame(0.065, 0)[0]);
+  ASSERT_TRUE(drawer.draw());
+  glFinish();
+  const auto eyes = frame(0.065, 0);
+  ASSERT_TRUE(eyes[0] && eyes[1]);
+  EXPECT_EQ(warper.counts().of_first, 1u);
+  PredictedView direct = session_->make_view(head::eye_lens(fov, 64, 52));
+  session_->draw(direct, usual_view() * Eigen::Translation3d(0.065, 0, 0), state_of(*scene_));
+  cv::Mat apart;
+  cv::absdiff(pixels(direct.picture().name(), 64, 52), pixels(eyes[1]->name(), 64, 52), apart);
+  EXPECT_LT(cv::mean(apart.reshape(1))[0], 4);
+  // An eye that looks elsewhere has no such rows: it gets a view of its own.
+  frame(0.065, 0.1);
+  EXPECT_EQ(warper.counts().torn, 1u);
+  ASSERT_TRUE(drawer.draw());
+  glFinish();
+  EXPECT_TRUE(frame(0.065, 0.1)[1]);
+  EXPECT_EQ(warper.counts().of_first, 1u);
+  drawer.release();
 }
 
 TEST_F(SceneInAHead, CentredAnewTheHeadIsWhereTheCameraIs) {

@@ -1,5 +1,6 @@
 // A warped picture beside the one that is drawn from the new pose.
 #include "display/warp/depth_warp.hpp"
+#include "display/warp/second_eye.hpp"
 
 #include <random>
 
@@ -65,10 +66,16 @@ class DepthWarpTest : public HeadlessTest {
       session_->process({posed_photograph(*scene_, state_, small_lens("pinhole"), from), std::nullopt});
     source_.emplace(session_->make_view(with_guard(eye(), kGuard)));
     truth_.emplace(session_->make_view(eye()));
-    warp_.emplace(eye());
+    parts_ = std::make_shared<WarpScene>(*scene_);
+    capture_.emplace(parts_);
+    layers_.emplace(with_guard(eye(), kGuard));
+    warp_.emplace(parts_, eye());
   }
   void TearDown() override {
     warp_.reset();
+    layers_.reset();
+    capture_.reset();
+    parts_.reset();
     source_.reset();
     truth_.reset();
     session_.reset();
@@ -76,12 +83,19 @@ class DepthWarpTest : public HeadlessTest {
   }
   /// From where the source was drawn to where it is warped to: decibels against drawing it there.
   double warped(const Pose& from, const Pose& to) {
+    draw_source(from);
+    (*warp_)(*layers_, to);
+    return compared(to, state_, warp_->picture(), warp_->holes());
+  }
+  void draw_source(const Pose& from) {
     session_->draw(*source_, from, state_);
-    (*warp_)({&source_->picture(), &source_->faces().depth, with_guard(eye(), kGuard), from}, to);
-    session_->draw(*truth_, to, state_);
+    (*capture_)(source_->picture(), source_->faces(), from, state_, *layers_);
+  }
+  double compared(const Pose& to, const SceneState& state, const gl::Texture& picture, const gl::Texture& holes) {
+    session_->draw(*truth_, to, state);
     drawn_ = pixels(truth_->picture(), GL_RGBA, CV_8UC4);
-    shown_ = pixels(warp_->picture(), GL_RGBA, CV_8UC4);
-    holes_ = pixels(warp_->holes(), GL_RED, CV_8UC1);
+    shown_ = pixels(picture, GL_RGBA, CV_8UC4);
+    holes_ = pixels(holes, GL_RED, CV_8UC1);
     return decibels(drawn_, shown_);
   }
   double holes() const { return cv::countNonZero(holes_) / static_cast<double>(holes_.total()); }
@@ -90,6 +104,9 @@ class DepthWarpTest : public HeadlessTest {
   SceneState state_ = state_of(*scene_);
   std::optional<ViewSession> session_;
   std::optional<PredictedView> source_, truth_;
+  std::shared_ptr<const WarpScene> parts_;
+  std::optional<LayerCapture> capture_;
+  std::optional<WarpLayers> layers_;
   std::optional<DepthWarp> warp_;
   cv::Mat drawn_, shown_, holes_;
 };
@@ -163,13 +180,56 @@ TEST_F(DepthWarpTest, HolesAreWhatTheSourceDidNotSee) {
   EXPECT_GT(right, 0.6 * told) << "borders are a pixel wide";
 }
 
+// The second eye stands 65 mm beside the first, to either side; what only it sees is filled and told of.
+TEST_F(DepthWarpTest, ASecondEyeIsMadeOfTheFirstRowByRow) {
+  const Pose first = usual_view();
+  draw_source(first);
+  DepthWarp wide(parts_, with_guard(eye(), kGuard));  // the other eye sees beyond the border
+  wide(*layers_, first);
+  for (const double side : {0.065, -0.065}) {
+    ASSERT_TRUE(SecondEye::fits(wide.lens(), eye(), Pose(Eigen::Translation3d(side, 0, 0))));
+    SecondEye second(wide.lens(), eye());
+    second(wide.picture(), wide.depth(), side);
+    const double db = compared(first * Eigen::Translation3d(side, 0, 0), state_, second.picture(), second.holes());
+    std::printf("%+.3f m: %.2f dB, holes %.2f %%\n", side, db, 100 * holes());
+    EXPECT_GT(db, 27) << side;
+    EXPECT_LT(holes(), 0.06) << side;
+    EXPECT_GT(holes(), 0.002) << "it sees behind things";
+  }
+}
+
+TEST_F(DepthWarpTest, ASecondEyeThatLooksElsewhereIsNotMadeSo) {
+  Pose turned(Eigen::Translation3d(0.065, 0, 0));
+  turned.linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_FALSE(SecondEye::fits(eye(), eye(), turned));
+  EXPECT_FALSE(SecondEye::fits(eye(), eye(), Pose(Eigen::Translation3d(0.065, 0.01, 0))));
+  EXPECT_FALSE(SecondEye::fits(eye(), small_lens("pinhole"), Pose(Eigen::Translation3d(0.065, 0, 0))));
+  EXPECT_THROW(SecondEye(eye(), small_lens("pinhole")), std::invalid_argument);
+}
+
+// A part that goes on after the picture was drawn goes on in the warped one, and what it stood before comes out.
+TEST_F(DepthWarpTest, PartsMoveBetweenDrawnPictures) {
+  const SceneState later = state_of(*scene_, 0.06);
+  draw_source(usual_view());
+  const Pose to = moved(usual_view(), {0.005, 0, 0}, 0.01, Eigen::Vector3d::UnitY());
+  (*warp_)(*layers_, to);
+  const double still = compared(to, later, warp_->picture(), warp_->holes());
+  (*warp_)(*layers_, to, later.T_world_node);
+  const double moves = compared(to, later, warp_->picture(), warp_->holes());
+  std::printf("%.2f dB where it stands still, %.2f dB where it moves, holes %.2f %%\n", still, moves, 100 * holes());
+  EXPECT_GT(moves, still + 3);
+  EXPECT_GT(moves, 28);
+  (*warp_)(*layers_, to, state_.T_world_node);
+  EXPECT_NEAR(compared(to, later, warp_->picture(), warp_->holes()), still, 1e-9) << "nobody moved";
+}
+
 TEST_F(DepthWarpTest, RefusesWhatItCannotDo) {
-  EXPECT_THROW(DepthWarp(small_lens("fisheye")), std::invalid_argument);
+  EXPECT_THROW(DepthWarp(parts_, small_lens("fisheye")), std::invalid_argument);
+  EXPECT_THROW(WarpLayers(small_lens("fisheye")), std::invalid_argument);
   session_->draw(*source_, usual_view(), state_);
-  EXPECT_THROW((*warp_)({&source_->picture(), &source_->faces().depth, eye(), usual_view()}, usual_view()),
-               std::invalid_argument)
+  WarpLayers other(eye());
+  EXPECT_THROW((*capture_)(source_->picture(), source_->faces(), usual_view(), state_, other), std::invalid_argument)
       << "of another size";
-  EXPECT_THROW((*warp_)({nullptr, nullptr, eye(), usual_view()}, usual_view()), std::invalid_argument);
 }
 
 }  // namespace

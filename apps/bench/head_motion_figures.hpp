@@ -1,0 +1,16 @@
+// How far off what an eye sees is, where the head has gone on since it was drawn.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "apps/bench/head_lab.hpp"
+#include "scene/pose_track.hpp"
+
+namespace foresight {
+
+/// Views drawn where a recorded head was 50 ms before (axes of the recording: x to the right, y up), shown where it is:
+/// as they are, turned, and warped by depth. Error of a pixel: how far from where the right surface is seen in the
+/// drawn view the pixel is taken, px. Prints p50 and p95; keys: unwarped, turned, warped.
+nlohmann::json head_motion_figures(HeadLab& lab, const PoseTrack& head, int width, int height);
+
+}  // namespace foresight

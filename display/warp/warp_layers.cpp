@@ -1,0 +1,68 @@
+#include "display/warp/warp_layers.hpp"
+
+#include <stdexcept>
+
+#include "display/warp/warp_shaders.hpp"
+
+namespace foresight {
+
+WarpScene::WarpScene(const SceneModel& scene) {
+  std::vector<std::uint8_t> nodes;
+  nodes.reserve(scene.triangle_count());
+  for (const Node& node : scene.nodes()) {
+    Eigen::AlignedBox3d box;
+    for (const auto& p : node.mesh.vertices) box.extend(p.cast<double>());
+    boxes_.push_back(box);
+    const std::size_t number = boxes_.size() <= kMostNodes ? boxes_.size() : kMostNodes + 1;
+    nodes.insert(nodes.end(), node.mesh.triangles.size(), static_cast<std::uint8_t>(number));
+  }
+  node_of_triangle_ = gl::BufferTexture(GL_R8UI, nodes.size(), "nodes of triangles");
+  node_of_triangle_.assign(std::span<const std::uint8_t>(nodes));
+}
+
+WarpLayers::WarpLayers(const Lens& through)
+    : lens(through),
+      picture(GL_RGBA8, lens.width(), lens.height(), 0, 1, "picture to be warped"),
+      depth(GL_R32F, lens.width(), lens.height(), 0, 1, "depth to be warped"),
+      node(GL_R8UI, lens.width(), lens.height(), 0, 1, "nodes to be warped"),
+      blocks(GL_RGBA32F, warp_blocks(lens.width()), warp_blocks(lens.height()), 0, 1, "depths of blocks") {
+  if (lens.has_distortion() || lens.model() == LensModel::equidistant)
+    throw std::invalid_argument("a source of warping has a distortion");
+  glTextureParameteri(picture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(picture.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+LayerCapture::LayerCapture(std::shared_ptr<const WarpScene> scene)
+    : scene_(std::move(scene)),
+      capture_(gl::Program::compute(gl::warp_shaders(), "capture.comp")),
+      blocks_(gl::Program::compute(gl::warp_shaders(), "blocks.comp")) {}
+
+void LayerCapture::operator()(const gl::Texture& picture, const gl::FaceImages& faces, const Pose& T_world_camera,
+                              const SceneState& state, WarpLayers& layers) const {
+  const int width = layers.lens.width(), height = layers.lens.height();
+  const auto fits = [&](const gl::Texture& texture) { return texture.width() == width && texture.height() == height; };
+  if (!fits(picture) || !fits(faces.depth) || !fits(faces.surface) || faces.faces.count != 1)
+    throw std::invalid_argument("layers of warping have another size than the view");
+  layers.T_world_camera = T_world_camera;
+  layers.T_world_node = state.T_world_node;
+
+  glCopyImageSubData(picture.name(), GL_TEXTURE_2D, 0, 0, 0, 0, layers.picture.name(), GL_TEXTURE_2D, 0, 0, 0, 0, width,
+                     height, 1);
+  capture_.use();
+  capture_.set("size", Eigen::Vector2i(width, height));
+  glBindTextureUnit(0, faces.depth.name());
+  glBindTextureUnit(1, faces.surface.name());
+  glBindTextureUnit(2, scene_->node_of_triangle());
+  glBindImageTexture(0, layers.depth.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+  glBindImageTexture(1, layers.node.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8UI);
+  glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  blocks_.use();
+  blocks_.set("size", Eigen::Vector2i(width, height));
+  glBindTextureUnit(0, layers.depth.name());
+  glBindImageTexture(0, layers.blocks.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  glDispatchCompute(gl::groups(layers.blocks.width(), 8), gl::groups(layers.blocks.height(), 8), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+}  // namespace foresight
