@@ -89,7 +89,7 @@ TEST_F(RecordingFiles, ADiskThatStandsStillHoldsUpNobody) {
   file.start();
   std::uint64_t dropped = 0;
   for (int i = 0; i < 1000; ++i) dropped += file.put(channel, i, i, std::vector<std::uint8_t>(10'000, 1)) ? 0 : 1;
-  EXPECT_GE(dropped, 800u);  // 10 MB came, 1 MB may wait; what the pipe holds, or the thread took, is little
+  EXPECT_GE(dropped, 750u);  // 10 MB came, 1 MB may wait, 1 MB may be the thread's; what the pipe holds is little
   EXPECT_EQ(file.counts().dropped, dropped);
   EXPECT_EQ(file.trouble(), "");
 
