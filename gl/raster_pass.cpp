@@ -19,6 +19,14 @@ RasterPass::RasterPass(std::shared_ptr<const SceneBuffers> scene, bool with_surf
   }
 }
 
+std::vector<bool> RasterPass::seen_from(const Pose& T_world_face, const Faces& faces, const SceneState& state) const {
+  if (leaves_out_ == LeavesOut::nothing) return std::vector<bool>(scene_->boxes().box.size(), true);
+  const ViewPyramid pyramid(T_world_face, (-0.5 - faces.cx) / faces.fx, (faces.width - 0.5 - faces.cx) / faces.fx,
+                            (-0.5 - faces.cy) / faces.fy, (faces.height - 0.5 - faces.cy) / faces.fy);
+  return visible_nodes(pyramid, scene_->boxes(), state,
+                       leaves_out_ == LeavesOut::behind_walls ? scene_->cells() : nullptr);
+}
+
 void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target) const {
   const Faces& faces = target.faces;
   program_.use();
@@ -29,6 +37,7 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   const Pose T_camera_world = T_world_camera.inverse();
+  triangles_ = 0;
   for (int i = 0; i < faces.count; ++i) {
     glNamedFramebufferTextureLayer(framebuffer_.name(), GL_DEPTH_ATTACHMENT, target.depth.name(), 0, i);
     if (with_surface_)
@@ -42,7 +51,10 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
     Pose R_face_camera = Pose::Identity();
     R_face_camera.linear() = Faces::rotation(i);
     const Pose T_face_world = R_face_camera * T_camera_world;
+    const std::vector<bool> seen = seen_from(T_face_world.inverse(), faces, state);
     for (const auto& range : scene_->ranges()) {
+      if (!seen[static_cast<std::size_t>(range.node)]) continue;
+      triangles_ += static_cast<std::size_t>(range.index_count) / 3;
       const Pose T_face_node = T_face_world * state.T_world_node[static_cast<std::size_t>(range.node)];
       program_.set("T_face_node", T_face_node.matrix().cast<float>().eval());
       program_.set("first_triangle", range.first_triangle);

@@ -17,21 +17,32 @@ struct FaceImages {
   Texture surface;  ///< R32UI array: scene triangle index + 1, 0 = no model; empty without surface
 };
 
-/// Draws all nodes of the scene at the poses of one state. Belongs to the context it was built in.
+/// Draws the nodes of the scene at the poses of one state, but for those that are out of view, or hidden by the walls
+/// of cells. Belongs to the context it was built in.
 class RasterPass {
  public:
   /// `with_surface` as in the FaceImages that it will draw into.
   RasterPass(std::shared_ptr<const SceneBuffers> scene, bool with_surface);
 
+  /// Whatever is left out is at no pixel.
+  enum class LeavesOut { nothing, out_of_view, behind_walls };
+  void leave_out(LeavesOut what) { leaves_out_ = what; }
+
   /// Fills `target` as seen from T_world_camera. Leaves framebuffer 0 bound and depth test off.
   void operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target) const;
+  /// That the last call gave to the GPU, on all faces.
+  std::size_t triangles() const { return triangles_; }
 
  private:
+  std::vector<bool> seen_from(const Pose& T_world_face, const Faces& faces, const SceneState& state) const;
+
   std::shared_ptr<const SceneBuffers> scene_;
   VertexArray array_;
   Program program_;
   Framebuffer framebuffer_;
   bool with_surface_;
+  LeavesOut leaves_out_ = LeavesOut::behind_walls;
+  mutable std::size_t triangles_ = 0;
 };
 
 }  // namespace foresight::gl

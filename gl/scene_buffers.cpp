@@ -2,7 +2,8 @@
 
 namespace foresight::gl {
 
-SceneBuffers::SceneBuffers(const SceneModel& scene) {
+SceneBuffers::SceneBuffers(const SceneModel& scene) : boxes_(scene) {
+  if (scene.cells()) cells_ = *scene.cells();
   std::vector<Eigen::Vector3f> vertices;
   std::vector<std::uint32_t> indices;
   unsigned triangles = 0;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gl/objects.hpp"
-#include "scene/scene_model.hpp"
+#include "scene/visibility.hpp"
 
 namespace foresight::gl {
 
@@ -24,6 +24,9 @@ class SceneBuffers {
   explicit SceneBuffers(const SceneModel& scene);
 
   const std::vector<NodeRange>& ranges() const { return ranges_; }
+  const NodeBoxes& boxes() const { return boxes_; }
+  /// Of the scene; null where it has none.
+  const CellGraph* cells() const { return cells_ ? &*cells_ : nullptr; }
 
   /// A vertex array of the current context: attribute 0 the position, with the element buffer.
   VertexArray create_vertex_array() const;
@@ -31,6 +34,8 @@ class SceneBuffers {
  private:
   Buffer vertices_, indices_;
   std::vector<NodeRange> ranges_;
+  NodeBoxes boxes_;
+  std::optional<CellGraph> cells_;
 };
 
 }  // namespace foresight::gl

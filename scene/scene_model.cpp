@@ -6,8 +6,8 @@
 
 namespace foresight {
 
-SceneModel::SceneModel(std::vector<Node> nodes, std::optional<double> accuracy)
-    : nodes_(std::move(nodes)), accuracy_(accuracy) {
+SceneModel::SceneModel(std::vector<Node> nodes, std::optional<double> accuracy, std::optional<CellGraph> cells)
+    : nodes_(std::move(nodes)), accuracy_(accuracy), cells_(std::move(cells)) {
   if (nodes_.empty()) throw std::invalid_argument("a scene needs at least one node");
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -24,6 +24,20 @@ SceneModel::SceneModel(std::vector<Node> nodes, std::optional<double> accuracy)
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     for (const Eigen::Vector3f& v : nodes_[i].mesh.vertices) box.extend(poses[i] * v.cast<double>());
   diagonal_ = box.diagonal().norm();
+  if (cells_) check_cells(poses);
+}
+
+void SceneModel::check_cells(const std::vector<Pose>& poses) const {
+  for (const Cell& cell : cells_->cells())
+    for (const int index : cell.nodes) {
+      if (index < 0 || index >= static_cast<int>(nodes_.size()))
+        throw std::invalid_argument("cell '" + cell.name + "' holds a node that there is not");
+      const Node& node = nodes_[static_cast<std::size_t>(index)];
+      for (const Eigen::Vector3f& v : node.mesh.vertices)
+        if (cell.box.exteriorDistance(poses[static_cast<std::size_t>(index)] * v.cast<double>()) >
+            CellGraph::kTolerance)
+          throw std::invalid_argument("node '" + node.name + "' sticks out of its cell '" + cell.name + "'");
+    }
 }
 
 std::optional<int> SceneModel::find(std::string_view name) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/time.hpp"
+#include "scene/cells.hpp"
 #include "scene/mesh.hpp"
 
 namespace foresight {
@@ -30,13 +31,16 @@ class SceneModel {
   SceneModel() = default;
 
   /// Throws std::invalid_argument: no node, a parent that is not an earlier node, two nodes with
-  /// one name, no triangle at all.
-  explicit SceneModel(std::vector<Node> nodes, std::optional<double> accuracy = std::nullopt);
+  /// one name, no triangle at all; cells with a node that there is not, or that at rest sticks out of its cell.
+  explicit SceneModel(std::vector<Node> nodes, std::optional<double> accuracy = std::nullopt,
+                      std::optional<CellGraph> cells = std::nullopt);
 
   /// Largest usual distance between the model and the real surface, metres, where its maker states it.
   std::optional<double> accuracy() const { return accuracy_; }
 
   const std::vector<Node>& nodes() const { return nodes_; }
+  /// Of a building; null where nothing is said of them.
+  const CellGraph* cells() const { return cells_ ? &*cells_ : nullptr; }
   std::optional<int> find(std::string_view name) const;
 
   std::size_t triangle_count() const { return triangle_count_; }
@@ -48,10 +52,13 @@ class SceneModel {
   std::vector<Pose> rest_poses() const;
 
  private:
+  void check_cells(const std::vector<Pose>& poses) const;
+
   std::vector<Node> nodes_;
   std::size_t triangle_count_ = 0;
   double diagonal_ = 0;
   std::optional<double> accuracy_;
+  std::optional<CellGraph> cells_;
 };
 
 /// How much a state can be trusted, from best to worst.

@@ -19,10 +19,11 @@ class SceneYaml {
   SceneYaml(const fs::path& file, const fs::path& root) : file_(file), root_(root) {}
 
   std::optional<double> accuracy() const { return accuracy_; }
+  const std::optional<CellGraph>& cells() const { return cells_; }
 
   std::vector<Node> read() {
     const YamlMap yaml = YamlMap::load(file_);
-    yaml.require_known({"nodes", "robots", "accuracy_m"});
+    yaml.require_known({"nodes", "robots", "accuracy_m", "cells", "portals"});
     if (yaml.has("accuracy_m")) {
       accuracy_ = yaml.number("accuracy_m");
       if (!(*accuracy_ > 0 && *accuracy_ <= 1))
@@ -33,6 +34,7 @@ class SceneYaml {
       for (const YamlMap& node : yaml.maps("nodes")) add_node(node);
     if (yaml.has("robots"))
       for (const YamlMap& robot : yaml.maps("robots")) add_robot(robot);
+    if (yaml.has("cells") || yaml.has("portals")) read_cells(yaml);
     return std::move(nodes_);
   }
 
@@ -76,6 +78,62 @@ class SceneYaml {
     }
   }
 
+  void read_cells(const YamlMap& yaml) {
+    std::vector<Cell> cells;
+    std::vector<std::string> names;
+    if (yaml.has("cells"))
+      for (const YamlMap& one : yaml.maps("cells")) {
+        one.require_known({"name", "box", "nodes"});
+        const std::vector<double> box = one.numbers("box", 6);
+        Cell cell{one.text("name"), {}, {}};
+        cell.box.extend(Eigen::Vector3d(box[0], box[1], box[2])).extend(Eigen::Vector3d(box[3], box[4], box[5]));
+        for (const std::string& name : one.texts("nodes"))
+          cell.nodes.push_back(index_of(name, node_names(), one, "nodes"));
+        names.push_back(cell.name);
+        cells.push_back(std::move(cell));
+      }
+    std::vector<Portal> portals;
+    if (yaml.has("portals"))
+      for (const YamlMap& one : yaml.maps("portals")) {
+        one.require_known({"between", "corners"});
+        const std::vector<std::string> between = one.texts("between");
+        if (between.size() != 2)
+          throw InputError(one.where("between"), "a portal joins " + std::to_string(between.size()) + " cells",
+                           "name two");
+        Portal portal;
+        for (std::size_t i = 0; i < 2; ++i) portal.cells[i] = index_of(between[i], names, one, "between");
+        const std::vector<double> numbers = one.numbers("corners");
+        if (numbers.size() % 3 != 0)
+          throw InputError(one.where("corners"), "has " + std::to_string(numbers.size()) + " numbers",
+                           "give three to each corner");
+        for (std::size_t i = 0; i < numbers.size(); i += 3)
+          portal.corners.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+        portals.push_back(std::move(portal));
+      }
+    try {
+      cells_.emplace(std::move(cells), std::move(portals));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(file_.string() + ": cells", error.what(),
+                       "correct it, or leave cells and portals out: then all of the scene is drawn");
+    }
+  }
+
+  std::vector<std::string> node_names() const {
+    std::vector<std::string> out;
+    for (const Node& node : nodes_) out.push_back(node.name);
+    return out;
+  }
+
+  static int index_of(const std::string& name, const std::vector<std::string>& names, const YamlMap& yaml,
+                      const std::string& key) {
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it == names.end())
+      throw InputError(
+          yaml.where(key), "there is no " + in_quotes(name),
+          names.empty() ? "name one that stands above" : "did you mean '" + nearest_word(name, names) + "'?");
+    return static_cast<int>(it - names.begin());
+  }
+
   fs::path resolve(const YamlMap& yaml, const std::string& key) const {
     return resolve_inside(root_, file_.parent_path(), yaml.text(key), yaml.where(key));
   }
@@ -104,6 +162,7 @@ class SceneYaml {
   const fs::path& root_;
   std::vector<Node> nodes_;
   std::optional<double> accuracy_;
+  std::optional<CellGraph> cells_;
 };
 
 }  // namespace
@@ -111,17 +170,21 @@ class SceneYaml {
 SceneModel read_scene(const fs::path& file, const fs::path& root) {
   std::vector<Node> nodes;
   std::optional<double> accuracy;
+  std::optional<CellGraph> cells;
   if (file.extension() == ".yaml" || file.extension() == ".yml") {
     SceneYaml yaml(file, root);
     nodes = yaml.read();
     accuracy = yaml.accuracy();
+    cells = yaml.cells();
   } else {
     nodes.push_back({"scene", read_mesh(file), -1, Pose::Identity()});
   }
   try {
-    return SceneModel(std::move(nodes), accuracy);
+    return SceneModel(std::move(nodes), accuracy, cells);
   } catch (const std::invalid_argument& error) {
-    throw InputError(file.string(), error.what(), "add a node with a mesh");
+    throw InputError(file.string(), error.what(),
+                     cells ? "make its cell larger, or leave it out of the cell: then it is always drawn"
+                           : "add a node with a mesh");
   }
 }
 

@@ -21,6 +21,10 @@ namespace foresight {
 ///       pose: {...}                        # T_parent_base; optional
 ///       joints: {shoulder: 0.5}            # rad or m; unnamed joints stand at 0 (or the nearest limit)
 ///       prefix: left_                      # in front of its link names; optional
+///   cells:                                 # of a building (scene/cells.hpp); optional
+///     - {name: hall, box: [[m, m, m], [m, m, m]], nodes: [hall_walls, table]}   # two corners; nodes that do not move
+///   portals:
+///     - {between: [hall, lab], corners: [[m, m, m], ...]}   # of an opening, in order around it
 ///
 /// Links of a robot become nodes named by the link, posed by forward kinematics; visual meshes
 /// (scene/urdf_reader.hpp says where they are looked for), boxes, cylinders and spheres are read.

@@ -24,6 +24,29 @@ std::string mesh_name(std::size_t node) {
   return "meshes/" + std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits + ".ply";
 }
 
+std::string cells_yaml(const SceneModel& scene) {
+  const CellGraph& graph = *scene.cells();
+  std::string text = "cells:\n";
+  for (const Cell& cell : graph.cells()) {
+    std::string names;
+    for (const int node : cell.nodes)
+      names += (names.empty() ? "" : ", ") + quoted(scene.nodes()[static_cast<std::size_t>(node)].name);
+    const Eigen::Vector3d low = cell.box.min(), high = cell.box.max();
+    text += "  - {name: " + quoted(cell.name) + ", box: [" + list(low, 12) + ", " + list(high, 12) + "], nodes: [" +
+            names + "]}\n";
+  }
+  if (!graph.portals().empty()) text += "portals:\n";
+  for (const Portal& portal : graph.portals()) {
+    std::string corners;
+    for (const Eigen::Vector3d& corner : portal.corners) corners += (corners.empty() ? "" : ", ") + list(corner, 12);
+    const auto name = [&](std::size_t i) {
+      return quoted(graph.cells()[static_cast<std::size_t>(portal.cells[i])].name);
+    };
+    text += "  - {between: [" + name(0) + ", " + name(1) + "], corners: [" + corners + "]}\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string pose_yaml(const Pose& pose) {
@@ -62,6 +85,7 @@ void write_model(const fs::path& folder, const SceneModel& scene) {
       text += "    parent: " + quoted(scene.nodes()[static_cast<std::size_t>(node.parent)].name) + "\n";
     text += "    pose: " + pose_yaml(node.T_parent_node) + "\n";
   }
+  if (scene.cells()) text += cells_yaml(scene);
   write_text(folder / "scene.yaml", text);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kRaysAlong = 3;  // along each side of a pixel
 constexpr double kBits = 8;    // of a tag36h11 across its black border
-constexpr double kInk = 25, kPaper = 225, kTable = 120, kWall = 150;
+constexpr double kBoardInk = 25, kBoardPaper = 225, kBoardTable = 120, kBoardWall = 150;
 
 Pose on_table(double x, double y, double turn) {
   Pose T = Pose::Identity();
@@ -66,10 +66,10 @@ double TagRoom::grey(const Eigen::Vector3d& o, const Eigen::Vector3d& d) const {
     const int u = static_cast<int>(std::floor(at.x() / bit + half)),
               v = static_cast<int>(std::floor(at.y() / bit + half));
     if (u >= 0 && v >= 0 && u < sheet.bits.cols && v < sheet.bits.rows)
-      return sheet.bits.at<std::uint8_t>(v, u) ? kPaper : kInk;
+      return sheet.bits.at<std::uint8_t>(v, u) ? kBoardPaper : kBoardInk;
   }
   const double a = table ? p.x() : p.z();
-  return (table ? kTable : kWall) + 12 * std::sin(9 * a + 3 * std::sin(5 * p.y()));
+  return (table ? kBoardTable : kBoardWall) + 12 * std::sin(9 * a + 3 * std::sin(5 * p.y()));
 }
 
 cv::Mat TagRoom::corner_rays(const Lens& lens) {

@@ -150,10 +150,14 @@ void add_head(Command& bench, std::function<int()>& action) {
   command->add_option("--metres", options->metres, "Of each")->check(from_to(0.0, 1.0))->capture_default_str();
   command->add_option("--seed", options->seed, "Another seed, other motions");
   command->add_option("--path", options->path, "A recorded head, as bench prediction head takes it")->reads();
+  command->add_option("--building", options->building, "Triangles of the building that portals are measured in")
+      ->check(from_to(100, 20'000'000))
+      ->capture_default_str();
   command->add_option("--seconds", options->seconds, "Of each trial in real time; 0: none")
       ->check(from_to(0.0, 3600.0))
       ->capture_default_str();
-  command->add_option("--rate", options->rate_hz, "Stereo frames a second of them; of half the size, 2.25 times as many")
+  command
+      ->add_option("--rate", options->rate_hz, "Stereo frames a second of them; of half the size, 2.25 times as many")
       ->check(from_to(1.0, 240.0))
       ->capture_default_str();
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());

@@ -8,7 +8,9 @@
 #include "apps/bench/head_lab.hpp"
 #include "apps/bench/head_motion_figures.hpp"
 #include "apps/bench/head_server_figures.hpp"
+#include "apps/bench/portal_figures.hpp"
 #include "apps/bench/pose_table.hpp"
+#include "apps/bench/sorting_figures.hpp"
 #include "apps/bench/stereogram_figures.hpp"
 #include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
@@ -156,6 +158,8 @@ int bench_head(const HeadBenchOptions& options) {
   all["renderer"] = driver.renderer + ", OpenGL " + driver.version;
   if (head) all["recorded_head"] = head_motion_figures(lab, *head, options.width, options.height);
   if (options.seconds > 0) all["server"] = server_figures(lab, *context, options);
+  all["portals"] = portal_figures({options.building, options.views, options.seed});
+  all["sorting"] = sorting_figures(options.seed);
   all["stereograms"] = stereogram_figures(run);
   write_numbers(options.json, all.dump(2));
   return 0;

@@ -1,21 +1,19 @@
 #include "display/warp/warp_layers.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "display/warp/warp_shaders.hpp"
+#include "scene/visibility.hpp"
 
 namespace foresight {
 
-WarpScene::WarpScene(const SceneModel& scene) {
+WarpScene::WarpScene(const SceneModel& scene) : boxes_(NodeBoxes(scene).box) {
   std::vector<std::uint8_t> nodes;
   nodes.reserve(scene.triangle_count());
-  for (const Node& node : scene.nodes()) {
-    Eigen::AlignedBox3d box;
-    for (const auto& p : node.mesh.vertices) box.extend(p.cast<double>());
-    boxes_.push_back(box);
-    const std::size_t number = boxes_.size() <= kMostNodes ? boxes_.size() : kMostNodes + 1;
-    nodes.insert(nodes.end(), node.mesh.triangles.size(), static_cast<std::uint8_t>(number));
-  }
+  for (std::size_t i = 0; i < scene.nodes().size(); ++i)
+    nodes.insert(nodes.end(), scene.nodes()[i].mesh.triangles.size(),
+                 static_cast<std::uint8_t>(std::min(i, kMostNodes) + 1));
   node_of_triangle_ = gl::BufferTexture(GL_R8UI, nodes.size(), "nodes of triangles");
   node_of_triangle_.assign(std::span<const std::uint8_t>(nodes));
 }

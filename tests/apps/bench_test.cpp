@@ -72,7 +72,7 @@ TEST_F(Bench, MarginCountsByTruth) {
 TEST_F(Bench, HeadWarpsWhatItDrew) {
   const std::string file = out_ / "head.json";
   const Outcome outcome = run_program({"bench", "head", run(), "--views", "3", "--width", "160", "--height", "120",
-                                       "--seconds", "0.5", "--json", file});
+                                       "--seconds", "0.5", "--building", "2000", "--json", file});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json all = read_json(file);
   for (const char* which : {"warped_motion", "warped_second_eye"}) {
@@ -82,6 +82,8 @@ TEST_F(Bench, HeadWarpsWhatItDrew) {
     EXPECT_GT(all[which]["warped_cpu_ms"], 0) << which;
     EXPECT_GT(all[which]["drawn_cpu_ms"], 0) << which;
   }
+  EXPECT_EQ(all["portals"]["different_pixels"], 0);
+  EXPECT_LE(all["portals"]["portals"]["triangles"], all["portals"]["frustum"]["triangles"]);
   ASSERT_EQ(all["server"].size(), 4u);
   for (const nlohmann::json& row : all["server"]) {
     EXPECT_GT(row["frames"], 0) << row;

@@ -40,6 +40,7 @@ const std::map<std::string, CommandWords>& table() {
         {"--path", {"@poses.txt"}},
         {"--views", {"1"}},
         {"--seconds", {"0"}},
+        {"--building", {"200"}},
         {"--width", {"64"}},
         {"--height", {"48"}}}},
       {"bench display", {{"--size", {"32x24"}}, {"--seconds", {"0.2"}}, {"--rate", {"25"}}}},
