@@ -156,7 +156,10 @@ int bench_head(const HeadBenchOptions& options) {
   all["degrees"] = options.degrees;
   all["metres"] = options.metres;
   all["renderer"] = driver.renderer + ", OpenGL " + driver.version;
-  if (head) all["recorded_head"] = head_motion_figures(lab, *head, options.width, options.height);
+  if (head) {
+    all["recorded_head"] = head_motion_figures(lab, *head, options.width, options.height);
+    all["cube"] = cube_figures(lab, *head, options.width, options.height);
+  }
   if (options.seconds > 0) all["server"] = server_figures(lab, *context, options);
   all["portals"] = portal_figures({options.building, options.views, options.seed});
   all["sorting"] = sorting_figures(options.seed);

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/statistics.hpp"
-#include "display/warp/depth_warp.hpp"
+#include "display/warp/cube_views.hpp"
 
 namespace foresight {
 namespace {
@@ -75,6 +75,64 @@ nlohmann::json head_motion_figures(HeadLab& lab, const PoseTrack& head, int widt
   row("unwarped", "shown as it was drawn", unwarped);
   row("turned", "turned as the head turned", turned);
   row("warped", "warped by depth", warped);
+  return out;
+}
+
+nlohmann::json cube_figures(HeadLab& lab, const PoseTrack& head, int width, int height) {
+  constexpr Duration kFrame = std::chrono::milliseconds(100);
+  constexpr int kMostFrames = 200;
+  nlohmann::json out;
+  if (head.samples().size() < 2) return out;
+  const Lens eye = bench_eye(lab.camera(), width, height);
+  const auto parts = std::make_shared<const WarpScene>(lab.session().scene());
+  const LayerCapture capture(parts);
+  PredictedView truth = lab.session().make_view(eye);
+  const RobotTime begin = head.samples().front().time, end = head.samples().back().time;
+  for (const bool moves : {false, true}) {
+    CubeViews cube(parts, eye);
+    PredictedView face_view = lab.session().make_view(cube.face_lens());
+    std::vector<double> frame_ms, face_ms, drawn_ms, db;
+    int served = 0;
+    std::optional<Pose> first;
+    for (RobotTime now = begin; now < end && static_cast<int>(db.size()) < kMostFrames; now = now + kFrame) {
+      const auto at = head.at(now);
+      if (at.status == StateStatus::invalid) continue;
+      if (!first) first = at.pose;
+      Pose motion = in_camera_axes(first->inverse() * at.pose);
+      if (!moves) motion.translation().setZero();
+      const Pose from = lab.T_world_camera() * motion;
+      served += !cube.missing(from);
+      while (const auto face = cube.missing(from)) {
+        const Pose T_world_face = CubeViews::T_world_face(*face, from);
+        face_ms.push_back(gpu_cpu_ms([&] {
+          lab.session().draw(face_view, T_world_face, lab.state());
+          capture(face_view.picture(), face_view.faces(), T_world_face, lab.state(), cube.layers(*face));
+        }));
+      }
+      frame_ms.push_back(gpu_cpu_ms([&] { cube(from); }));
+      drawn_ms.push_back(gpu_cpu_ms([&] { lab.session().draw(truth, from, lab.state()); }));
+      db.push_back(
+          picture_decibels(read_pixels(truth.picture(), GL_RGBA, CV_8UC4), read_pixels(cube(from), GL_RGBA, CV_8UC4)));
+    }
+    if (db.empty()) continue;
+    const double share = served / static_cast<double>(db.size());
+    const double mean_ms =
+        median(frame_ms) + median(face_ms) * static_cast<double>(face_ms.size()) / static_cast<double>(db.size());
+    std::printf(
+        "a cube of views, head %-8s %5.1f %% of %zu frames need no new face (%zu drawn); a frame %.1f CPU-ms, with its "
+        "share of "
+        "faces of %.0f CPU-ms %.1f; drawn %.1f; %.1f dB\n",
+        moves ? "moving:" : "turning:", 100 * share, db.size(), face_ms.size(), median(frame_ms), median(face_ms),
+        mean_ms, median(drawn_ms), median(db));
+    out[moves ? "moving" : "turning"] = {{"frames", db.size()},
+                                         {"without_new_face", share},
+                                         {"faces_drawn", face_ms.size()},
+                                         {"face_cpu_ms", median(face_ms)},
+                                         {"frame_cpu_ms", median(frame_ms)},
+                                         {"frame_with_faces_cpu_ms", mean_ms},
+                                         {"drawn_cpu_ms", median(drawn_ms)},
+                                         {"db", median(db)}};
+  }
   return out;
 }
 

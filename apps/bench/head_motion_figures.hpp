@@ -13,4 +13,9 @@ namespace foresight {
 /// drawn view the pixel is taken, px. Prints p50 and p95; keys: unwarped, turned, warped.
 nlohmann::json head_motion_figures(HeadLab& lab, const PoseTrack& head, int width, int height);
 
+/// A recorded head at 10 Hz, once turning on the spot, once as it moved: how many frames need no new face of
+/// display/warp/cube_views.hpp, what frames and faces cost beside drawing each frame, and decibels against that. Prints
+/// them; keys: turning, moving.
+nlohmann::json cube_figures(HeadLab& lab, const PoseTrack& head, int width, int height);
+
 }  // namespace foresight

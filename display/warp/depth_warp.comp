@@ -1,13 +1,17 @@
 // What each pixel of the target sees, found in the source: see depth_warp.hpp. A group for each tile of a list.
 // Defines: SEARCHED: 1 where surfaces part within the tile's reach, 0 where there is one. MOVED: 1 where nodes have moved.
-// TELLS: 1 where depth and holes are asked for.
+// TELLS: 1 where depth and holes are asked for. KEEPS: 1 where what other sources have seen stays.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "warp_rays.glsl"
 layout(binding = 0) uniform sampler2D depth;    // 1/m, 0 where no model is
 layout(binding = 1) uniform sampler2D picture;  // linear
 layout(binding = 2) uniform sampler2D reach;    // of blocks: largest and smallest inverse depth around
 layout(binding = 3) uniform usamplerBuffer tiles;
+#if KEEPS
+layout(binding = 0, rgba8) uniform image2D warped;
+#else
 layout(binding = 0, rgba8) uniform writeonly image2D warped;
+#endif
 layout(binding = 1, r8) uniform writeonly image2D holes;
 layout(binding = 2, r32f) uniform writeonly image2D warped_depth;
 #if !SEARCHED
@@ -53,6 +57,9 @@ bool inside(vec2 at) {
 
 void put(ivec2 pixel, vec2 at, vec4 colour, bool found, float w) {
   bool is_inside = inside(at);
+#if KEEPS
+  if (!is_inside || (!found && imageLoad(warped, pixel).a > 0.0)) return;
+#endif
   imageStore(warped, pixel, vec4(colour.rgb, is_inside ? colour.a : 0.0));
 #if TELLS
   imageStore(holes, pixel, vec4(is_inside ? (found ? 0.0 : 128.0 / 255.0) : 1.0));

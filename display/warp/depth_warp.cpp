@@ -20,10 +20,10 @@ Eigen::Vector4f numbers(const Lens& lens) {
   return Eigen::Vector4d(p.fx, p.fy, p.cx, p.cy).cast<float>();
 }
 
-gl::Program warp_program(bool searched, bool moved, bool tells) {
-  return gl::Program::compute(
-      gl::warp_shaders(), "depth_warp.comp",
-      {"SEARCHED " + std::to_string(searched), "MOVED " + std::to_string(moved), "TELLS " + std::to_string(tells)});
+gl::Program warp_program(bool searched, bool moved, bool tells, bool keeps) {
+  return gl::Program::compute(gl::warp_shaders(), "depth_warp.comp",
+                              {"SEARCHED " + std::to_string(searched), "MOVED " + std::to_string(moved),
+                               "TELLS " + std::to_string(tells), "KEEPS " + std::to_string(keeps)});
 }
 
 Eigen::Vector2i tiles_of(const Lens& lens) {
@@ -95,8 +95,6 @@ DepthWarp::DepthWarp(std::shared_ptr<const WarpScene> scene, const Lens& target,
       tells_(tells),
       spread_(gl::Program::compute(gl::warp_shaders(), "spread.comp")),
       tiles_(gl::Program::compute(gl::warp_shaders(), "tiles.comp")),
-      smooth_(warp_program(false, false, tells)),
-      searched_(warp_program(true, false, tells)),
       lists_{{{GL_R32UI, list_bytes(target), "tiles of one surface"},
               {GL_R32UI, list_bytes(target), "tiles to be searched"},
               {GL_R32UI, list_bytes(target), "tiles of nodes that moved"}}},
@@ -177,11 +175,12 @@ void DepthWarp::aim(const gl::Program& program, const WarpLayers& source, const 
   program.set("back", rows[3]);
 }
 
-void DepthWarp::list_tiles(const WarpLayers& source, const Pose& T_source_target, int moved) {
+void DepthWarp::list_tiles(const WarpLayers& source, const Pose& T_source_target, int moved, bool keeps) {
   const Eigen::Vector2i tiles = tiles_of(target_);
   aim(tiles_, source, T_source_target);
   tiles_.set("tiles", tiles);
   tiles_.set("moved_count", moved);
+  tiles_.set("keeps", static_cast<int>(keeps));
   tiles_.use();
   glBindTextureUnit(0, source.blocks.name());
   glBindTextureUnit(1, reach_[1].name());
@@ -207,26 +206,47 @@ void DepthWarp::work_off(Tiles which, const gl::Program& program, const WarpLaye
 }
 
 void DepthWarp::operator()(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node) {
+  warp(source, T_world_camera, T_world_node, false);
+}
+
+void DepthWarp::clear() {
+  constexpr GLubyte kBeyond = 255;
+  glClearTexImage(picture_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  glClearTexImage(holes_.name(), 0, GL_RED, GL_UNSIGNED_BYTE, &kBeyond);
+  glClearTexImage(depth_.name(), 0, GL_RED, GL_FLOAT, nullptr);
+}
+
+void DepthWarp::add(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node) {
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  warp(source, T_world_camera, T_world_node, true);
+}
+
+void DepthWarp::warp(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node,
+                     bool keeps) {
   const Pose T_source_target = source.T_world_camera.inverse() * T_world_camera;
   const int moved = find_moved(source, T_world_camera, T_world_node);
   spread(source, T_source_target);
-  list_tiles(source, T_source_target, moved);
+  list_tiles(source, T_source_target, moved, keeps);
+  auto& programs = programs_[keeps ? 1 : 0];
+  if (!programs)
+    programs =
+        Programs{warp_program(false, false, tells_, keeps), warp_program(true, false, tells_, keeps), std::nullopt};
   glBindTextureUnit(0, source.depth.name());
   glBindTextureUnit(1, source.picture.name());
   glBindTextureUnit(2, reach_[1].name());
-  glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, keeps ? GL_READ_WRITE : GL_WRITE_ONLY, GL_RGBA8);
   glBindImageTexture(1, holes_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
   glBindImageTexture(2, depth_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
   glBindTextureUnit(4, corners_.texture());
-  work_off(Tiles::smooth, smooth_, source, T_source_target);
-  work_off(Tiles::searched, searched_, source, T_source_target);
+  work_off(Tiles::smooth, programs->smooth, source, T_source_target);
+  work_off(Tiles::searched, programs->searched, source, T_source_target);
   if (moved > 0) {
-    if (!with_moved_) with_moved_ = warp_program(true, true, tells_);
-    with_moved_->set("moved_count", moved);
+    if (!programs->moved) programs->moved = warp_program(true, true, tells_, keeps);
+    programs->moved->set("moved_count", moved);
     glBindTextureUnit(4, source.node.name());
     glBindTextureUnit(5, slot_of_node_.texture());
     glBindTextureUnit(6, moved_.texture());
-    work_off(Tiles::moved, *with_moved_, source, T_source_target);
+    work_off(Tiles::moved, *programs->moved, source, T_source_target);
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }

@@ -32,6 +32,11 @@ class DepthWarp {
   /// stand as they stood. Surfaces moved by at most 80 px of parallax are found.
   void operator()(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node = {});
 
+  /// Of several sources that look different ways: clear(), then each is added where it sees what the target sees; a
+  /// hole of one is filled by another that has seen what is there.
+  void clear();
+  void add(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node = {});
+
   const Lens& lens() const { return target_; }
   /// RGBA8 as the source's: alpha 255 seen, 128 filled, 64 no colour, 0 no model or beyond the source's border.
   const gl::Texture& picture() const { return picture_; }
@@ -45,20 +50,26 @@ class DepthWarp {
   /// Of the target, 8 x 8 px each.
   enum class Tiles : std::size_t { smooth, searched, moved };
 
+  struct Programs {
+    gl::Program smooth, searched;
+    std::optional<gl::Program> moved;  // once it is needed
+  };
+
+  void warp(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node, bool keeps);
   int find_moved(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node);
   void spread(const WarpLayers& source, const Pose& T_source_target);
   void aim(const gl::Program& program, const WarpLayers& source, const Pose& T_source_target) const;
-  void list_tiles(const WarpLayers& source, const Pose& T_source_target, int moved);
+  void list_tiles(const WarpLayers& source, const Pose& T_source_target, int moved, bool keeps);
   void work_off(Tiles which, const gl::Program& program, const WarpLayers& source, const Pose& T_source_target) const;
 
   std::shared_ptr<const WarpScene> scene_;
   Lens target_;
   bool tells_;
-  gl::Program spread_, tiles_, smooth_, searched_;
-  std::optional<gl::Program> with_moved_;   // once it is needed
-  std::array<gl::Texture, 2> reach_;        // along rows; then along columns, too
-  std::array<gl::BufferTexture, 3> lists_;  // of Tiles: groups to dispatch, then a tile each
-  gl::BufferTexture corners_;               // of tiles of one surface, in the list's order: inverse depths
+  gl::Program spread_, tiles_;
+  std::array<std::optional<Programs>, 2> programs_;  // once they are needed; the second keeps what is there
+  std::array<gl::Texture, 2> reach_;                 // along rows; then along columns, too
+  std::array<gl::BufferTexture, 3> lists_;           // of Tiles: groups to dispatch, then a tile each
+  gl::BufferTexture corners_;                        // of tiles of one surface, in the list's order: inverse depths
   gl::BufferTexture slot_of_node_, moved_;
   gl::Texture picture_, holes_, depth_;
 };

@@ -11,7 +11,7 @@ layout(binding = 3, std430) writeonly buffer Corners { vec4 corners[]; };  // in
 layout(binding = 3) uniform sampler2D depth;     // 1/m
 layout(binding = 2) uniform samplerBuffer moved;  // as in depth_warp.comp
 uniform ivec2 tiles;
-uniform int moved_count;
+uniform int moved_count, keeps;
 const int kWords = 6;
 const ivec2 kMostBlocks = ivec2(6);
 
@@ -36,6 +36,7 @@ void main() {
     }
     depths[corner] = w;
   }
+  if (keeps != 0 && (any(lessThan(most, vec2(-1.0))) || any(greaterThan(low, vec2(source_size))))) return;
   ivec2 first = clamp(ivec2(floor(low - 1.0)) >> 3, ivec2(0), high), last = clamp(ivec2(ceil(most + 1.0)) >> 3, ivec2(0), high);
   bool parts = any(greaterThan(last - first, kMostBlocks));
   last = min(last, first + kMostBlocks);

@@ -1,5 +1,5 @@
 // A warped picture beside the one that is drawn from the new pose.
-#include "display/warp/depth_warp.hpp"
+#include "display/warp/cube_views.hpp"
 #include "display/warp/second_eye.hpp"
 
 #include <random>
@@ -221,6 +221,44 @@ TEST_F(DepthWarpTest, PartsMoveBetweenDrawnPictures) {
   EXPECT_GT(moves, 28);
   (*warp_)(*layers_, to, state_.T_world_node);
   EXPECT_NEAR(compared(to, later, warp_->picture(), warp_->holes()), still, 1e-9) << "nobody moved";
+}
+
+// Whoever turns on the spot sees what was drawn before; whoever goes away does not.
+TEST_F(DepthWarpTest, FacesAroundTheViewerServeAHeadThatTurns) {
+  CubeViews cube(parts_, eye());
+  PredictedView face_view = session_->make_view(cube.face_lens());
+  const auto draw_missing = [&](const Pose& from) {
+    int drawn = 0;
+    while (const auto face = cube.missing(from)) {
+      const Pose at = CubeViews::T_world_face(*face, from);
+      session_->draw(face_view, at, state_);
+      (*capture_)(face_view.picture(), face_view.faces(), at, state_, cube.layers(*face));
+      if (++drawn > CubeViews::kFaces) break;
+    }
+    return drawn;
+  };
+  const auto shown = [&](const Pose& from) {
+    const gl::Texture& picture = cube(from, state_.T_world_node);
+    const double db = compared(from, state_, picture, cube.holes());
+    EXPECT_EQ(cv::countNonZero(holes_ == 255), 0) << "every direction is there";
+    return db;
+  };
+  const int first = draw_missing(usual_view());
+  EXPECT_GE(first, 1);
+  EXPECT_LE(first, 4);
+  EXPECT_GT(shown(usual_view()), 32);
+  // Small turns of the head need nothing new; all the way round, each face once.
+  const Pose turned = moved(usual_view(), {0.01, 0, 0}, 0.05, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(draw_missing(turned), 0);
+  EXPECT_GT(shown(turned), 30);
+  int all = first;
+  for (double angle = 0.3; angle < 6.3; angle += 0.3)
+    all += draw_missing(moved(usual_view(), {0, 0, 0}, angle, Eigen::Vector3d::UnitY()));
+  EXPECT_LE(all, 6);
+  EXPECT_EQ(draw_missing(usual_view()), 0);
+  EXPECT_GE(draw_missing(moved(usual_view(), {0.2, 0, 0}, 0, Eigen::Vector3d::UnitY())), 1) << "too far from there";
+  cube.forget();
+  EXPECT_EQ(draw_missing(usual_view()), first);
 }
 
 TEST_F(DepthWarpTest, RefusesWhatItCannotDo) {
