@@ -49,6 +49,14 @@ class PredictedView {
   /// there; towards its rim it gives way to the textures. Both must stay leased.
   void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
             const PublishedImage& newest);
+  /// The one or the other: with the newest image where it leases one.
+  void draw(const Pose& T_world_camera, const SceneState& state, const TextureLease& textures,
+            const ImageLease& newest) {
+    if (newest)
+      draw(T_world_camera, state, *textures, *newest);
+    else
+      draw(T_world_camera, state, *textures);
+  }
 
   /// RGBA8, straight alpha, row 0 at the top: 255 colour from a camera image, 128 filled hole,
   /// 64 model without any colour, 0 no model.

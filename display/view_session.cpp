@@ -88,10 +88,7 @@ bool ViewSession::draw(PredictedView& view, const Pose& T_world_camera, const Sc
   TextureLease textures = thread_->textures().acquire();
   if (!textures) return false;
   ImageLease image = thread_->image().acquire();
-  if (image)
-    view.draw(T_world_camera, state, *textures, *image);
-  else
-    view.draw(T_world_camera, state, *textures);
+  view.draw(T_world_camera, state, textures, image);
   drawings_.push_back({std::move(textures), std::move(image), gl::Fence::insert()});
   gl::check_errors("the predicted view");
   return true;

@@ -64,10 +64,7 @@ bool SceneDrawer::draw() {
     auto& layers = slot->eyes[eye];
     if (!layers || !alike(layers->lens, view->lens())) layers.emplace(view->lens());
     const Pose& from = aim.eyes[eye].T_world_eye;
-    if (image)
-      view->draw(from, aim.state, *textures, *image);
-    else
-      view->draw(from, aim.state, *textures);
+    view->draw(from, aim.state, textures, image);
     gate_.begin("layers of a view");
     (*capture_)(view->picture(), view->faces(), from, aim.state, *layers);
     glFinish();

@@ -117,10 +117,7 @@ bool ScenePainter::draw_scene(std::size_t eye, const EyeView& view, const ViewTa
   if (!fits) own.reset();
   if (!own) own.emplace(Eye{view.fov, session_.make_view(eye_lens(view.fov, target.width, target.height))});
   ImageLease image = session_.image();
-  if (image)
-    own->view.draw(T_world_eye, shown_.place.scene, *textures, *image);
-  else
-    own->view.draw(T_world_eye, shown_.place.scene, *textures);
+  own->view.draw(T_world_eye, shown_.place.scene, textures, image);
   (*copy_)(own->view.picture(), target);
   drawings_.push_back({std::move(textures), std::move(image), gl::Fence::insert()});
   return true;
