@@ -98,8 +98,8 @@ void ChartAtlas::drop_page(AtlasPage& page) {
 
 /// What `old` pages, laid out as `before`, knew of their brightness, for the pages that now lie there. Without it the
 /// gain of an image could not be told when the camera comes closer and many resolutions change at once.
-void ChartAtlas::hand_on_exposure(const std::vector<AtlasPage>& old, const ChartRaster& before,
-                                  const Eigen::Vector2i& pages, AtlasChart& chart) {
+void ChartAtlas::hand_on(const std::vector<AtlasPage>& old, const ChartRaster& before, const Eigen::Vector2i& pages,
+                         AtlasChart& chart) {
   if (old.empty()) return;
   for (int y = 0; y < chart.pages.y(); ++y)
     for (int x = 0; x < chart.pages.x(); ++x) {
@@ -107,10 +107,12 @@ void ChartAtlas::hand_on_exposure(const std::vector<AtlasPage>& old, const Chart
       const Eigen::Vector2d uv = chart.raster.uv0 + middle.cwiseQuotient(chart.raster.density);
       const Eigen::Array2d at = ((uv - before.uv0).cwiseProduct(before.density).array() + 0.5) / atlas::kPage;
       const Eigen::Array2i place = at.floor().cast<int>().max(0).min(pages.array() - 1);
-      PageExposure& exposure = chart.page[static_cast<std::size_t>(y * chart.pages.x() + x)].exposure;
-      exposure = old[static_cast<std::size_t>(place.y() * pages.x() + place.x())].exposure;
+      const AtlasPage& from = old[static_cast<std::size_t>(place.y() * pages.x() + place.x())];
+      AtlasPage& page = chart.page[static_cast<std::size_t>(y * chart.pages.x() + x)];
+      page.last_seen = from.last_seen;
+      page.exposure = from.exposure;
       // Of another area of the surface: to be renewed with the first image that shows the page.
-      exposure.rough = true;
+      page.exposure.rough = true;
     }
 }
 
@@ -134,7 +136,7 @@ void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
                  (chart.raster.height + atlas::kPage - 1) / atlas::kPage};
   chart.page.assign(static_cast<std::size_t>(chart.pages.prod()), {});
   describe_pages(*surface_, index, chart);
-  hand_on_exposure(page_before, raster_before, pages_before, chart);
+  hand_on(page_before, raster_before, pages_before, chart);
 }
 
 void ChartAtlas::lay_out() {

@@ -160,8 +160,8 @@ class ChartAtlas {
   bool make_room(std::size_t heights_needed, std::int64_t image);
   bool lower_resolution();
   void drop_page(AtlasPage& page);
-  static void hand_on_exposure(const std::vector<AtlasPage>& old, const ChartRaster& before,
-                               const Eigen::Vector2i& pages, AtlasChart& chart);
+  static void hand_on(const std::vector<AtlasPage>& old, const ChartRaster& before, const Eigen::Vector2i& pages,
+                      AtlasChart& chart);
   int page_index(const PageRecord& r) const;
 
   std::shared_ptr<const SurfacePatches> surface_;

@@ -358,6 +358,25 @@ TEST(ChartAtlas, TheLongestUnseenPagesGoFirst) {
       }
 }
 
+TEST(ChartAtlas, PagesAtAnotherResolutionRememberWhenTheyWereSeen) {
+  Atlas atlas;
+  atlas.take(usual_view());
+  std::vector<Eigen::Vector2i> before;
+  for (const AtlasChart& chart : atlas->charts()) before.push_back(chart.level);
+  atlas.take(closer(0.5));
+  int finer = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const AtlasChart& chart = atlas->charts()[i];
+    if (before[i].x() == AtlasChart::kNoLevel || chart.level == before[i]) continue;
+    for (const AtlasPage& page : chart.page) {
+      if (page.colour == atlas::kNoSlot) continue;
+      EXPECT_GE(page.last_seen, 0);
+      ++finer;
+    }
+  }
+  EXPECT_GT(finer, 10);
+}
+
 TEST(ChartAtlas, ResolutionsRiseAgainWhenHalfIsFree) {
   Atlas atlas({.memory_bytes = (charts_in_view(usual_view()) + 40) * kPageBytes});
   // Everything seems to be seen until the resolution fell; then it turns out that a third is.
