@@ -99,6 +99,8 @@ void add_synth_command(Command& app, std::function<int()>& action) {
       ->capture_default_str();
   command->add_flag("--auto-exposure", arguments->auto_exposure,
                     "The exposure follows what the camera sees as a webcam's does: late, in steps, within two stops");
+  command->add_option("--motion", options.motion, "Another number: the arm goes its ways in another order")
+      ->capture_default_str();
   command->add_flag("--still", options.still, "The arm stands still, only the cameras move");
   command->add_option("--vignetting", options.sensor.vignetting, "Share of the light that the corners lose")
       ->capture_default_str();

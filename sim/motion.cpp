@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <utility>
 
 namespace foresight::sim {
 namespace {
@@ -74,6 +76,15 @@ std::array<Spline, kColumns> closed_splines(const double (&keys)[kKeys][kColumns
   return out;
 }
 
+// Through the arm's keys in another order; the first stays.
+std::array<Spline, 8> arm_splines(unsigned order) {
+  double keys[kKeys][8];
+  std::copy(&kArmKeys[0][0], &kArmKeys[0][0] + kKeys * 8, &keys[0][0]);
+  std::mt19937 generator(order);
+  for (unsigned k = kKeys - 1; k > 1; --k) std::swap(keys[k], keys[1 + generator() % k]);
+  return closed_splines(keys);
+}
+
 }  // namespace
 
 Pose T_world_camera_at(double t) {
@@ -95,17 +106,18 @@ Pose T_world_camera_at(double t) {
   return pose;
 }
 
-ArmPosition arm_position_at(double t) {
-  static const auto splines = closed_splines(kArmKeys);
+ArmPosition arm_position_at(double t, unsigned order) {
+  static const auto usual = closed_splines(kArmKeys);
+  const auto splines = order == 0 ? usual : arm_splines(order);
   ArmPosition out;
   for (std::size_t j = 0; j < 7; ++j) out.joints[j] = splines[j].at(t / kArmPeriod);
   out.opening = splines[7].at(t / kArmPeriod);
   return out;
 }
 
-LabState lab_state_at(const Lab& lab, double t) {
+LabState lab_state_at(const Lab& lab, double t, unsigned order) {
   LabState state = lab.at_rest();
-  const auto links = arm_links_at(arm_position_at(t));
+  const auto links = arm_links_at(arm_position_at(t, order));
   for (std::size_t i = 1; i < links.size(); ++i) state[static_cast<std::size_t>(lab.arm) + i] = links[i];
   return state;
 }

@@ -12,11 +12,12 @@ Pose T_world_camera_at(double t);
 
 /// The arm reaches over the table, down and back: a closed cubic spline through kArmKeys in the
 /// joints, with continuous acceleration.
-ArmPosition arm_position_at(double t);
+/// `order`: another one goes from key to key in another order, 0 in that of the array.
+ArmPosition arm_position_at(double t, unsigned order = 0);
 inline constexpr double kArmPeriod = 12;  ///< seconds
 
 /// Where all parts of `lab` stand at `t`.
-LabState lab_state_at(const Lab& lab, double t);
+LabState lab_state_at(const Lab& lab, double t, unsigned order = 0);
 
 /// Right camera of the stereo rig in the left camera's frame: 65 mm to the right, slightly toed in.
 Pose T_left_right();

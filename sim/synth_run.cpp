@@ -67,7 +67,9 @@ class SynthRun {
   double time(int frame) const { return frame / options_.rate; }
   static RobotTime at(double t) { return RobotTime{} + seconds(t); }
   fs::path truth_folder(bool right) const { return target_.path() / (right ? "truth_right" : "truth"); }
-  LabState lab_state(const Lab& lab, double t) const { return lab_state_at(lab, options_.still ? 0 : t); }
+  LabState lab_state(const Lab& lab, double t) const {
+    return lab_state_at(lab, options_.still ? 0 : t, options_.motion);
+  }
 
   // Of pose errors, from image to image.
   double persistence() const {
@@ -251,6 +253,7 @@ class SynthRun {
                         o.head_path ? "given" : "built in");
     text += fmt::format("exposure: {:.9g}\nauto_exposure: {}\nstill: {}\n", o.sensor.exposure,
                         o.auto_exposure ? "true" : "false", o.still ? "true" : "false");
+    if (o.motion != 0) text += fmt::format("motion: {}\n", o.motion);
     text += fmt::format("polygons: {}\npolygons_in_view: [{}, {}]\n", summary.polygons, summary.fewest_polygons_in_view,
                         summary.most_polygons_in_view);
     write_text(target_.path() / kMarker, text);
