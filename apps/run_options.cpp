@@ -33,6 +33,10 @@ void add_run_options(Command& command, RunOptions& options) {
                   "Pixels behind a silhouette that are not trusted, besides the outermost one before it")
       ->check(from_to(0.0, 32.0))
       ->capture_default_str();
+  command.add_flag(
+      "!--no-shadows", options.textures.shadows,
+      "Leave shadows of what moves in the textures, where they were; else they are drawn where they fall, once "
+      "it is known where the lamp is");
   command
       .add_option("--model-accuracy-m", options.model_accuracy,
                   "Largest usual error of the model (default: accuracy_m of scene.yaml, else 0.02)")

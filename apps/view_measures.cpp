@@ -1,5 +1,7 @@
 #include "apps/view_measures.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -43,6 +45,7 @@ void add_texture_options(RunRecord& record, const TextureOptions& textures) {
   record.options.push_back({"max_texture", std::int64_t{textures.max_texture}});
   record.options.push_back({"texture_memory_mb", static_cast<std::int64_t>(textures.memory_bytes >> 20)});
   record.options.push_back({"model_accuracy_m", textures.depth_tolerance});
+  record.options.push_back({"shadows", textures.shadows});
 }
 
 ViewMeasures::ViewMeasures(RunRecord record, ViewOutputs outputs, const TextureOptions& textures)
@@ -91,6 +94,9 @@ void ViewMeasures::take(const ExtractionReport& report, FrameRecord& record) {
   record.gain = gain_ = std::exp(2.2 * report.log_gain);  // from 8-bit values to linear light
   record_.texels = std::max(record_.texels, report.texels_resident);
   policy_ = report.policy;
+  lamp_ = report.lamp;
+  if (lamp_.lamp && !lamp_known_from_) lamp_known_from_ = report.newest_image;
+  if (!lamp_.lamp) lamp_known_from_.reset();
 }
 
 void ViewMeasures::measure(FrameRecord& record, double draw_cpu_ms, FrameSource& source, ViewSession& session) {
@@ -108,6 +114,23 @@ void ViewMeasures::measure(FrameRecord& record, double draw_cpu_ms, FrameSource&
   keeper_.offer(record, delayed_, predicted, actual);
 }
 
+void ViewMeasures::note_lamp() {
+  if (lamp_.lamp) {
+    const Eigen::Vector3d& p = lamp_.lamp->position;
+    record_.notes.push_back(
+        fmt::format("The main lamp is at ({:.2f}, {:.2f}, {:.2f}) m, found by shadows of what moves: these are shown "
+                    "where they fall, "
+                    "with images from {:.3f} s on. They explain {:.0f} % of what was darker or brighter than usual.",
+                    p.x(), p.y(), p.z(), static_cast<double>(lamp_known_from_->ns) * 1e-9, 100 * lamp_.explained));
+  } else if (lamp_.dark > 0) {
+    record_.notes.push_back(fmt::format(
+        "It could not be told where the main lamp is: shadows of what moves are shown where they were. Of what was "
+        "darker "
+        "or brighter than usual ({} points), the best place explains {:.0f} %, the best elsewhere {:.0f} %.",
+        lamp_.dark, 100 * lamp_.explained, 100 * lamp_.elsewhere));
+  }
+}
+
 void ViewMeasures::note_policy() {
   if (policy_.evicted_pages)
     record_.notes.push_back("The texture budget was reached: " + std::to_string(policy_.evicted_pages) +
@@ -122,6 +145,7 @@ void ViewMeasures::note_policy() {
 void ViewMeasures::finish(const FrameSource& source, const ViewSession& session, const std::string& title) {
   record_.drops += source.overtaken() + session.replaced();
   note_policy();
+  note_lamp();
   write_reports(outputs_, record_, keeper_.instants(), title);
 }
 

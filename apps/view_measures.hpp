@@ -36,6 +36,7 @@ class ViewMeasures final : public ViewObserver {
   void take(const ExtractionReport& report, FrameRecord& record);
   void measure(FrameRecord& record, double draw_cpu_ms, FrameSource& source, ViewSession& session);
   void note_policy();
+  void note_lamp();
 
   RunRecord record_;
   ViewOutputs outputs_;
@@ -46,6 +47,8 @@ class ViewMeasures final : public ViewObserver {
   std::uint64_t bytes_used_ = 0;
   double gain_ = 1;
   ChartAtlas::Policy policy_;
+  LampAnswer lamp_;
+  std::optional<RobotTime> lamp_known_from_;
 };
 
 /// What was measured, in a few lines on stdout.

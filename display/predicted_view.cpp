@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "display/lens_rays.hpp"
 #include "display/shaders.hpp"
+#include "gl/lens_rays.hpp"
 
 namespace foresight {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 // As in view.comp.
 constexpr unsigned kGroup = 64;  // invocations of a group over a list
 constexpr int kBand = 64;        // rows: fewer cost as much as these, as each band is waited for
-constexpr GLuint kListUnit = 5;
+constexpr GLuint kListUnit = 5, kLightUnit = 6, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
 
 enum class Cases { newest_image, usual, every };
@@ -30,6 +30,12 @@ gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixel
   return gl::Program::compute(display_and_lookup_shaders(), "view.comp", defines);
 }
 
+void set_tone(const gl::Program& program, float gain, const PublishedTextures& textures) {
+  if (!program) return;
+  program.set("gain", gain);
+  program.set("light_age", textures.light_age);
+}
+
 }  // namespace
 
 PredictedView::Projection::Projection(const Lens& view, const Lens& lens)
@@ -42,22 +48,25 @@ PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
                              std::shared_ptr<const SurfaceRecords> surface, const Lens& lens, ViewPrograms programs)
     : lens_(lens),
       surface_(std::move(surface)),
+      scene_(std::move(scene)),
       faces_(gl::faces_for(lens, 2), true),
-      raster_(std::move(scene), true),
+      raster_(scene_, true),
       programs_(programs),
       all_(view_program({&lens, 1}, programs == ViewPrograms::two ? Cases::usual : Cases::every, {})),
       rest_("pixels of the view", kGroup),
       camera_(sizeof(gl::CameraBlock), "view camera"),
       node_poses_(GL_RGBA32F, 16, "view node poses"),
-      rays_(make_lens_rays(lens)),
+      rays_(gl::make_lens_rays(lens)),
+      unshaded_(GL_RGBA8, 1, 1, 0, 1, "no shadows"),
       picture_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view") {
+  glClearTexImage(unshaded_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, std::array<GLubyte, 4>{255, 255, 255, 255}.data());
   if (programs_ == ViewPrograms::two) listed_ = view_program({&lens, 1}, Cases::every, {.listed = true});
 }
 
 void PredictedView::set_lens(const Lens& lens) {
   lens_ = lens;
   faces_ = gl::FaceImages(gl::faces_for(lens, 2), true);
-  rays_ = make_lens_rays(lens);
+  rays_ = gl::make_lens_rays(lens);
   picture_ = gl::Texture(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view");
 }
 
@@ -80,13 +89,13 @@ void PredictedView::draw_rows(DrawRows draw) const {
 }
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
-  start(T_world_camera, state, textures);
-  all_.set("gain", textures.display_gain);
+  start(T_world_camera, state, textures, textures.light.get());
+  for (const gl::Program* program : {&all_, &listed_}) set_tone(*program, textures.display_gain, textures);
   draw_rows([&](Rows rows) {
     if (programs_ == ViewPrograms::single) return dispatch_all(all_, rows);
     start(rest_);
     dispatch_all(all_, rows);
-    dispatch(rest_, listed_, textures.display_gain);
+    dispatch(rest_, listed_);
   });
   finish(textures);
 }
@@ -95,12 +104,12 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
                          const PublishedImage& newest) {
   if (!projection_) projection_ = std::make_unique<Projection>(lens_, newest.camera->lens());
   Projection& p = *projection_;
-  start(T_world_camera, state, textures);
+  start(T_world_camera, state, textures, newest.light.get());
   const CameraInput* camera = newest.camera.get();
   const PosedImage* image = &newest.image;
   p.image.update({&camera, 1}, {&image, 1}, {&newest.tone, 1});
   p.image.bind(p.newest, newest.depth_tolerance, kSeenBlock, kSeenUnit);
-  p.usual.set("gain", newest.gain);
+  for (const gl::Program* program : {&p.usual, &p.rest}) set_tone(*program, newest.gain, textures);
   draw_rows([&](Rows rows) {
     start(p.unseen);
     dispatch_all(p.newest, rows);
@@ -109,12 +118,13 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
     start(rest_);
     p.usual.use();
     p.unseen.dispatch();
-    dispatch(rest_, p.rest, newest.gain);
+    dispatch(rest_, p.rest);
   });
   finish(textures);
 }
 
-void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
+void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+                          const SceneLight* light) {
   if (gate_) gate_->begin("depth of a view");
   raster_(T_world_camera, state, faces_);
   if (gate_) {
@@ -130,6 +140,7 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
     for (int row = 0; row < 3; ++row) rows.push_back(m.row(row).transpose());
   }
   node_poses_.assign(std::span<const Eigen::Vector4f>(rows));
+  shade(T_world_camera, state, light);
 
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   glBindTextureUnit(0, node_poses_.texture());
@@ -138,7 +149,24 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
   glBindTextureUnit(3, surface_->patches());
   glBindTextureUnit(4, rays_.name());
   textures.bind();
+  glBindTextureUnit(kAgesUnit, textures.ages.texture());
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
+}
+
+/// Binds what shadows leave of each pixel.
+void PredictedView::shade(const Pose& T_world_camera, const SceneState& state, const SceneLight* light) {
+  glBindTextureUnit(kLightUnit, unshaded_.name());
+  if (!light) return;
+  if (gate_) gate_->begin("shadows of a view");
+  if (!shadows_) shadows_.reset(new Shadows{ShadowMap(scene_), ShadowPass(lens_)});
+  if (shadows_->map.update(*light, state)) {
+    shadows_->pass({lens_, camera_, faces_, rays_, T_world_camera}, shadows_->map);
+    glBindTextureUnit(kLightUnit, shadows_->pass.light().name());
+  }
+  if (gate_) {
+    glFinish();
+    gate_->end();
+  }
 }
 
 void PredictedView::start(WorkList& list) const {
@@ -151,9 +179,8 @@ void PredictedView::dispatch_all(const gl::Program& program, Rows rows) const {
   glDispatchCompute(gl::groups(lens_.width(), 8), gl::groups(rows.last - rows.first, 8), 1);
 }
 
-void PredictedView::dispatch(const WorkList& list, const gl::Program& program, float gain) {
+void PredictedView::dispatch(const WorkList& list, const gl::Program& program) {
   list.finish(kListUnit);
-  program.set("gain", gain);
   program.use();
   list.dispatch();
 }

@@ -14,6 +14,7 @@
 #include "texture_gpu/published_image.hpp"
 #include "texture_gpu/published_textures.hpp"
 #include "texture_gpu/seen_inputs.hpp"
+#include "texture_gpu/shadow_pass.hpp"
 #include "texture_gpu/work_list.hpp"
 
 namespace foresight {
@@ -24,6 +25,8 @@ enum class ViewPrograms {
   single,  ///< every case for all: to compare with
 };
 
+/// Where the textures' light is known, shadows of what moves are drawn where they fall at the state drawn.
+///
 /// Renders through one lens. First the scene's triangles are rasterised into pinhole faces; then
 /// each pixel follows its own ray through the lens model to the triangle seen there, to the exact
 /// point on it, to its texels: one filter between texture and picture, none for the lens.
@@ -76,7 +79,14 @@ class PredictedView {
     WorkList unseen;  // by the newest image
     SeenInputs image;
   };
-  void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
+  /// What shadows need besides.
+  struct Shadows {
+    ShadowMap map;
+    ShadowPass pass;
+  };
+  void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+             const SceneLight* light);
+  void shade(const Pose& T_world_camera, const SceneState& state, const SceneLight* light);
   void finish(const PublishedTextures& textures) const;
   struct Rows {
     int first = 0, last = 0;  // beyond the last
@@ -85,10 +95,11 @@ class PredictedView {
   void draw_rows(DrawRows draw) const;
   void dispatch_all(const gl::Program& program, Rows rows) const;
   void start(WorkList& list) const;
-  static void dispatch(const WorkList& list, const gl::Program& program, float gain);
+  static void dispatch(const WorkList& list, const gl::Program& program);
 
   Lens lens_;
   std::shared_ptr<const SurfaceRecords> surface_;
+  std::shared_ptr<const gl::SceneBuffers> scene_;
   gl::FaceImages faces_;
   gl::RasterPass raster_;
   ViewPrograms programs_;
@@ -96,8 +107,10 @@ class PredictedView {
   WorkList rest_;
   std::unique_ptr<Projection> projection_;  // from the first such draw() on
   gl::Buffer camera_;
-  gl::BufferTexture node_poses_;  // T_node_camera: three rows a node
-  gl::Texture rays_;              // RGB32F directions, only for lenses with distortion
+  gl::BufferTexture node_poses_;      // T_node_camera: three rows a node
+  gl::Texture rays_;                  // RGB32F directions, only for lenses with distortion
+  std::unique_ptr<Shadows> shadows_;  // from the first known light on
+  gl::Texture unshaded_;              // one white texel
   gl::Texture picture_;
   FrameGate* gate_ = nullptr;
   ViewPaint paint_ = ViewPaint::colours;

@@ -1,6 +1,6 @@
 #include "display/thesis_view.hpp"
 
-#include "display/lens_rays.hpp"
+#include "gl/lens_rays.hpp"
 
 namespace foresight::gl {
 const ShaderSources& display_shaders();
@@ -32,7 +32,7 @@ ThesisView::ThesisView(const thesis::Pipeline& pipeline, const Lens& lens)
       plane_(gl::faces_for(lens, 2)),
       drawn_(thesis::smooth_texture(GL_RGBA8, plane_.width, plane_.height, "thesis view")),
       depth_(GL_DEPTH_COMPONENT32F, plane_.width, plane_.height, 0, 1, "thesis view depth"),
-      rays_(make_lens_rays(lens)),
+      rays_(gl::make_lens_rays(lens)),
       nothing_(GL_RGBA8, 1, 1, 0, 1, "no texture"),
       camera_(sizeof(gl::CameraBlock), "thesis view camera"),
       framebuffer_(gl::create_framebuffer("thesis view")),

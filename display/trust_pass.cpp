@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "display/lens_rays.hpp"
+#include "gl/lens_rays.hpp"
 
 namespace foresight::gl {
 const ShaderSources& display_shaders();
@@ -29,7 +29,7 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
       camera_(sizeof(gl::CameraBlock), "trusted camera"),
       node_px_(GL_R32F, 16, "node px"),
       ways_(GL_RGBA32F, 16, "ways since images"),
-      rays_(make_lens_rays(lens)),
+      rays_(gl::make_lens_rays(lens)),
       wrong_(GL_R8, lens.width(), lens.height(), 0, 1, "what was wrong"),
       doubt_(GL_R8, lens.width(), lens.height(), 0, 1, "doubt"),
       marked_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "marked view") {

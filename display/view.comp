@@ -22,6 +22,8 @@
 #include "chart_record.glsl"
 #include "atlas.glsl"
 uniform float gain;
+layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
+uniform float light_age;  // s; of colours that are older it is not known which shadows are in them
 #define BRIGHTEST (1.0 / gain)
 #include "lookup.glsl"
 #endif
@@ -42,6 +44,7 @@ layout(binding = 1) uniform usampler2DArray surfaces;    // triangle + 1
 layout(binding = 2) uniform samplerBuffer triangles;
 layout(binding = 3) uniform samplerBuffer patches;
 layout(binding = 4) uniform sampler2D rays;
+layout(binding = 6) uniform sampler2D light;  // ShadowPass::light(), or one white texel
 #if BLENDED
 layout(binding = 0, rgba8) uniform image2D picture;
 #else
@@ -50,6 +53,8 @@ layout(binding = 0, rgba8) uniform writeonly image2D picture;
 
 // A pixel counts as seen when at least this share of its filter weight lies on seen texels.
 const float kSeenShare = 0.25;
+
+vec3 pixel_light;  // what shadows of moving parts leave of the pixel's value
 
 bool ray_through(ivec2 pixel, out vec3 ray) {
   if (lens_model(camera) == 0) {
@@ -116,8 +121,8 @@ vec4 newest_colour(Point point) {
   vec2 size = cameras[0].size.xy;
   vec2 inside = min(pixel, size - 1.0 - pixel);
   float weight = clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0);
-  vec3 colour = sample_sharply(image0, pixel, size, kSharp) * without_vignetting(cameras[0].tone, pixel, size);
-  return vec4(min(colour, vec3(1.0)), weight);
+  vec3 colour = unscaled(sample_sharply(image0, pixel, size, kSharp)) * without_vignetting(cameras[0].tone, pixel, size);
+  return vec4(min(colour * pixel_light, vec3(1.0)), weight);
 }
 #else
 // What a pixel shows of a chart.
@@ -148,10 +153,17 @@ Place place_of(Point point) {
   return place;
 }
 
+// Shadows are drawn where the texture is without.
+void choose_light(Place place) {
+  ivec2 page = clamp(ivec2(place.texel) >> 4, ivec2(0), place.chart.pages - 1);
+  float age = texelFetch(page_ages, place.chart.first_page + page.y * place.chart.pages.x + page.x).r;
+  if (age > light_age) pixel_light = vec3(1.0);
+}
+
 const float kFromImage = 1.0, kFromFill = 128.0 / 255.0, kBare = 64.0 / 255.0;
 
 vec4 shown(vec4 sum, float alpha) {
-  return vec4(min(sum.rgb / sum.a * gain, vec3(1.0)), alpha);
+  return vec4(min(sum.rgb / sum.a * gain * pixel_light, vec3(1.0)), alpha);
 }
 
 // Of texels around the place; a 0 where none of them has a colour.
@@ -204,6 +216,7 @@ void main() {
 #endif
   Point point;
   bool on_model = find_point(pixel, point);
+  pixel_light = texelFetch(light, min(pixel, textureSize(light, 0) - 1), 0).rgb;
   vec4 colour = vec4(0.0);
 #if CASES == NEWEST_IMAGE
   if (on_model) colour = newest_colour(point);
@@ -212,6 +225,7 @@ void main() {
 #elif CASES == USUAL
   if (on_model) {
     Place place = place_of(point);
+    choose_light(place);
     if (place.level == 0) colour = shown(gather_sharp_taps(place.chart, place.texel));
   }
   if (on_model && colour.a == 0.0)
@@ -219,7 +233,11 @@ void main() {
   else
     draw(pixel, colour);
 #else
-  if (on_model) colour = shade(place_of(point));
+  if (on_model) {
+    Place place = place_of(point);
+    choose_light(place);
+    colour = shade(place);
+  }
   draw(pixel, colour);
 #endif
 }

@@ -53,9 +53,10 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
     const Pose T_face_world = R_face_camera * T_camera_world;
     const std::vector<bool> seen = seen_from(T_face_world.inverse(), faces, state);
     for (const auto& range : scene_->ranges()) {
-      if (!seen[static_cast<std::size_t>(range.node)]) continue;
+      const auto node = static_cast<std::size_t>(range.node);
+      if (!seen[node] || (!only_.empty() && !only_[node])) continue;
       triangles_ += static_cast<std::size_t>(range.index_count) / 3;
-      const Pose T_face_node = T_face_world * state.T_world_node[static_cast<std::size_t>(range.node)];
+      const Pose T_face_node = T_face_world * state.T_world_node[node];
       program_.set("T_face_node", T_face_node.matrix().cast<float>().eval());
       program_.set("first_triangle", range.first_triangle);
       glDrawElementsBaseVertex(GL_TRIANGLES, range.index_count, GL_UNSIGNED_INT,

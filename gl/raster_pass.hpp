@@ -27,6 +27,8 @@ class RasterPass {
   /// Whatever is left out is at no pixel.
   enum class LeavesOut { nothing, out_of_view, behind_walls };
   void leave_out(LeavesOut what) { leaves_out_ = what; }
+  /// From now on only these nodes are drawn, one entry for each of the model.
+  void draw_only(std::vector<bool> nodes) { only_ = std::move(nodes); }
 
   /// Fills `target` as seen from T_world_camera. Leaves framebuffer 0 bound and depth test off.
   void operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target) const;
@@ -41,6 +43,7 @@ class RasterPass {
   Program program_;
   Framebuffer framebuffer_;
   bool with_surface_;
+  std::vector<bool> only_;  // empty: all
   LeavesOut leaves_out_ = LeavesOut::behind_walls;
   mutable std::size_t triangles_ = 0;
 };

@@ -15,13 +15,14 @@ std::vector<ExpectedView> expected_views(const LiveScene& scene) {
 
 }  // namespace
 
-ViewSetup live_view_setup(const LiveScene& scene, const std::string& where) {
+ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, bool shadows) {
   if (!scene.lenses())
     throw InputError(where, "the cameras have no calibration", "give it as `lens` in the rig (docs/rig-files.md)");
   if (!scene.model())
     throw InputError(where, "there is no model of what the cameras see",
                      "give one as `scene:` in the rig, or with --scene");
   ViewSetup setup;
+  setup.textures.shadows = shadows;
   setup.scene = scene.model();
   setup.left = scene.lenses()->left;
   setup.right = scene.lenses()->right;

@@ -7,7 +7,7 @@
 namespace foresight {
 
 /// With charts of a size that suits the cameras' own views. Throws InputError where lenses or model are not known,
-/// naming `where`.
-ViewSetup live_view_setup(const LiveScene& scene, const std::string& where);
+/// naming `where`. `shadows`: TextureOptions::shadows.
+ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, bool shadows = true);
 
 }  // namespace foresight

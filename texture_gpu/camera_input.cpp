@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "gl/lens_rays.hpp"
+
 namespace foresight {
 namespace {
 
@@ -23,6 +25,7 @@ CameraInput::CameraInput(const Lens& lens, double largest_margin_px)
       blocks_(GL_RG32F, (faces_.faces.width + 3) / 4, (faces_.faces.height + 3) / 4, faces_.faces.count, 1,
               "depth blocks"),
       uncertain_(GL_R8, faces_.faces.width, faces_.faces.height, faces_.faces.count, 1, "uncertain edges"),
+      rays_(gl::make_lens_rays(lens)),
       block_(sizeof(gl::CameraBlock), "camera") {
   const gl::CameraBlock block = gl::make_camera_block(lens, faces_.faces);
   block_.write(std::span(&block, 1));

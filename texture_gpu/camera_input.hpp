@@ -27,6 +27,7 @@ class CameraInput {
   const Lens& lens() const { return lens_; }
   const gl::FaceImages& faces() const { return faces_; }
   const gl::Texture& image() const { return image_; }
+  const gl::Texture& rays() const { return rays_; }            ///< gl::make_lens_rays
   const gl::Buffer& block() const { return block_; }           ///< gl::CameraBlock
   const gl::Texture& blocks() const { return blocks_; }        ///< RG32F: 1/z of each 4x4 block (blocks.comp)
   const gl::Texture& uncertain() const { return uncertain_; }  ///< R8: 1 on the far side of an edge (uncertain.comp)
@@ -39,7 +40,7 @@ class CameraInput {
   };
   Lens lens_;
   gl::FaceImages faces_;
-  gl::Texture image_, blocks_, uncertain_;
+  gl::Texture image_, blocks_, uncertain_, rays_;
   gl::Buffer block_;
   std::array<Staging, 3> ring_;
   std::size_t next_ = 0;

@@ -2,6 +2,7 @@
 // points on the page. One invocation a page.
 #include "camera.glsl"
 #include "seen.glsl"
+#include "image_taps.glsl"
 #include "chart_record.glsl"
 #include "atlas.glsl"
 layout(local_size_x = 64) in;
@@ -37,7 +38,7 @@ void main() {
     vec2 pixel;
     if (!is_seen(camera, p, pixel)) continue;
     vec2 uv = (pixel + 0.5) / cameras[camera].size.xy;
-    vec3 rgb = camera == 0 ? textureLod(image0, uv, 0.0).rgb : textureLod(image1, uv, 0.0).rgb;
+    vec3 rgb = min(unscaled(camera == 0 ? textureLod(image0, uv, 0.0) : textureLod(image1, uv, 0.0)), 1.0);
     float luma = dot(rgb, vec3(0.299, 0.587, 0.114));
     sum += luma;
     highest = max(highest, max(rgb.r, max(rgb.g, rgb.b)));

@@ -25,19 +25,19 @@ float tone(int c, vec2 pixel) {
   return cameras[c].tone.x * without_vignetting(cameras[c].tone, pixel, cameras[c].size.xy);
 }
 
-vec3 fetch_image(int c, vec2 pixel, float lod) {
+vec4 fetch_image(int c, vec2 pixel, float lod) {
   vec2 uv = (pixel + 0.5) / cameras[c].size.xy;
-  return c == 0 ? textureLod(image0, uv, lod).rgb : textureLod(image1, uv, lod).rgb;
+  return c == 0 ? textureLod(image0, uv, lod) : textureLod(image1, uv, lod);
 }
 
 // Colour over the texel's footprint. Up to about one pixel a single bilinear sample is it; above,
 // taps along both axes of the footprint, from a level whose pixels are as large as their spacing.
-vec3 sample_image(int c, vec2 pixel, mat2 axes) {
+vec4 sample_image(int c, vec2 pixel, mat2 axes) {
 #if TEXELS == 1 || TEXELS == 2
   // Bilinear taps in the middles of the footprint's 2x2 or 4x4 parts. Where texels are so large
   // there are few of them: cheaper than coarser levels of the image.
   const int kSide = 2 * TEXELS;
-  vec3 sum = vec3(0.0);
+  vec4 sum = vec4(0.0);
   for (int i = 0; i < kSide * kSide; ++i)
     sum += fetch_image(c, pixel + axes * ((vec2(i % kSide, i / kSide) + 0.5) / float(kSide) - 0.5), 0.0);
   return sum / float(kSide * kSide);
@@ -46,7 +46,7 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
   ivec2 taps = ivec2(clamp(ceil(lengths - 0.5), vec2(1.0), vec2(4.0)));
   float spacing = max(lengths.x / float(taps.x), lengths.y / float(taps.y));
   float lod = max(log2(spacing), 0.0);
-  vec3 sum = vec3(0.0);
+  vec4 sum = vec4(0.0);
   for (int j = 0; j < taps.y; ++j)
     for (int i = 0; i < taps.x; ++i) {
       vec2 t = (vec2(i, j) + 0.5) / vec2(taps) - 0.5;
@@ -59,14 +59,14 @@ vec3 sample_image(int c, vec2 pixel, mat2 axes) {
 #endif
 }
 
-// What `value` of an image (0..1) says of a texel, at the reference exposure, which is `factor` away;
+// What `scaled`, a colour of an image (0..1), says of a texel, at the reference exposure, which is `factor` away;
 // `old`: what was known, or -1. White pixels tell only that the surface is at least so bright, black
 // ones that it is at most so bright: an older value that agrees is better, and at the exposure
 // of this image it looks the same. Where there is none, white is taken as a third brighter than the
 // least that it can be: while the camera closes by a stop it stays white.
 const float kWhite = 249.5 / 255.0, kBlack = 1.5 / 255.0;
-vec3 fused(vec3 old, vec3 value, float factor) {
-  vec3 fresh = value * factor;
+vec3 fused(vec3 old, vec4 scaled, float factor) {
+  vec3 value = scaled.rgb, fresh = unscaled(scaled) * factor;
   vec3 guess = fresh * (1.0 + kBeyondWhite * clamp((value - kWhite) / (1.0 - kWhite), 0.0, 1.0));
   vec3 white = step(kWhite, value) * step(0.97 * fresh, old);
   vec3 black = step(value, vec3(kBlack)) * step(0.0, old.r);
@@ -94,7 +94,8 @@ void extract_texel(Column column, int row) {
   vec4 colour = column.has_old ? texelFetch(old_colours, column.old_at + below, 0) : vec4(0.0);
   float before = colour.a;
   float best_quality = 0.0;
-  vec4 best = vec4(0.0);
+  float code = 0.0;
+  vec4 sampled = vec4(0.0);
   float best_tone = 1.0;
   for (int c = 0; c < CAMERAS; ++c) {
     View view = column.views[c];
@@ -102,14 +103,15 @@ void extract_texel(Column column, int row) {
     bool seen = is_seen(c, view.first + float(row) * view.down + height * view.height, pixel) && raw != 0u;
     if (seen && view.quality > best_quality) {
       best_quality = view.quality;
-      best = vec4(sample_image(c, pixel, view.axes), encode_quality(view.quality));
+      code = encode_quality(view.quality);
+      sampled = sample_image(c, pixel, view.axes);
       best_tone = tone(c, pixel);
     }
   }
   // The newest wins. What is clearly worse waits; the old colour's claim ages by one step
   // (1/32 of a doubling) for each image that would have replaced it.
-  bool take = colour.a < kSeen || best.a >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
-  best.rgb = fused(colour.a < kSeen ? vec3(-1.0) : colour.rgb, best.rgb, best_tone);
+  bool take = colour.a < kSeen || code >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
+  vec4 best = vec4(fused(colour.a < kSeen ? vec3(-1.0) : colour.rgb, sampled, best_tone), code);
   if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
   if (raw == 0u) colour = vec4(0.0);
   note_hole(int(column.tile >> 2), raw, before, colour.a);

@@ -7,6 +7,7 @@
 
 #include "common/time.hpp"
 #include "texture_gpu/chart_atlas.hpp"
+#include "texture_gpu/lamp/lamp_search.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
 namespace foresight {
@@ -18,6 +19,7 @@ struct ExtractionReport {
   std::chrono::steady_clock::time_point published_at;
   std::vector<StageCost> stages;
   double log_gain = 0;               ///< of the left image (exposure.hpp)
+  LampAnswer lamp;                   ///< what is known of the main lamp
   std::size_t pages = 0;             ///< pages written; the thesis' pipeline: polygons
   std::size_t tiles = 0;             ///< tiles of 64 texels written
   std::uint64_t bytes_in_use = 0;    ///< of all textures; the atlas counts both generations

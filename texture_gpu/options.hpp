@@ -28,6 +28,9 @@ struct TextureOptions {
   double worse = 0.3;
   /// Estimate each image's gain and the lens's vignetting and even them out.
   bool even_exposure = true;
+  /// Find the main lamp by the shadows of what moves; then take these out of images, and let the display draw them
+  /// where they fall at the instant that it shows.
+  bool shadows = true;
 };
 
 }  // namespace foresight

@@ -4,17 +4,19 @@
 #include "scene/posed_frame.hpp"
 #include "texture_gpu/camera_input.hpp"
 #include "texture_gpu/lease.hpp"
+#include "texture_gpu/shadow_map.hpp"
 
 namespace foresight {
 
 /// An image of the left camera with all that tells which surface points it shows. Written by the texture thread before
 /// it is published, then left alone until no lease is out.
 struct PublishedImage {
-  std::shared_ptr<CameraInput> camera;  ///< pixels, depth and uncertain edges
-  PosedImage image;                     ///< where camera and nodes stood; without the pixels
-  Eigen::Vector3f tone{1, 0, 0};        ///< 1, vignetting a and b (exposure.hpp)
-  float gain = 1;                       ///< factor on textures that shows this image's exposure
-  double depth_tolerance = 0;           ///< TextureOptions::depth_tolerance
+  std::shared_ptr<CameraInput> camera;      ///< pixels, depth and uncertain edges
+  PosedImage image;                         ///< where camera and nodes stood; without the pixels
+  Eigen::Vector3f tone{1, 0, 0};            ///< 1, vignetting a and b (exposure.hpp)
+  float gain = 1;                           ///< factor on textures that shows this image's exposure
+  std::shared_ptr<const SceneLight> light;  ///< as PublishedTextures::light
+  double depth_tolerance = 0;               ///< TextureOptions::depth_tolerance
 
   mutable std::atomic<int> leases{0};
 };

@@ -10,6 +10,7 @@
 #include "common/time.hpp"
 #include "gl/objects.hpp"
 #include "texture_gpu/lease.hpp"
+#include "texture_gpu/shadow_map.hpp"
 
 namespace foresight {
 
@@ -32,6 +33,8 @@ struct PublishedTextures {
   gl::BufferTexture coarse;                    ///< RGBA16F: filled mean of each page
   gl::BufferTexture means;                     ///< RGBA16F: filled mean of each chart
   gl::BufferTexture ages;                      ///< R32F: for how long no image saw each page, s; -1: none ever did
+  std::shared_ptr<const SceneLight> light;     ///< shadows of what moves are not in the colours; null: they may be
+  float light_age = -1;                        ///< seconds for which `light` was known then
   std::vector<ChartPlace> places;              ///< one per chart
   std::shared_ptr<const gl::Texture> colours;  ///< the atlas, shared by all generations
 

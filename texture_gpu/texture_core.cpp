@@ -30,9 +30,11 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
       atlas_(surface, options),
       store_(atlas_),
       exposures_(right ? 2 : 1),
-      raster_(std::make_shared<gl::SceneBuffers>(*scene_), false),
+      buffers_(std::make_shared<gl::SceneBuffers>(*scene_)),
+      raster_(buffers_, false),
       extract_(all_lenses(left, right)),
       fill_(*surface),
+      lamp_finder_(scene_),
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
   cameras_.push_back(std::make_shared<CameraInput>(left, options.margin_px));
@@ -99,6 +101,8 @@ ExtractionReport TextureCore::extract(const PosedFrame& frame, LatestTextures& l
 
   next->number = ++number_;
   next->newest_image = frame.left.time;
+  next->light = light_;
+  next->light_age = light_ ? static_cast<float>(to_seconds(frame.left.time - light_since_)) : -1;
   next->display_gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
   atlas_.commit();
   retired_.push_back({current_, std::move(allocation.retired)});
@@ -114,6 +118,7 @@ ExtractionReport TextureCore::extract(const PosedFrame& frame, LatestTextures& l
   report.number = number_;
   report.stages = clock_.read();
   report.log_gain = exposures_[0].log_gain();
+  report.lamp = lamp_finder_.answer();
   report.pages = allocation.jobs.size();
   report.tiles = extract_.tiles();
   report.bytes_in_use = atlas_.bytes_in_use();
@@ -143,6 +148,7 @@ void TextureCore::publish(const PosedImage& image, LatestImage& latest) {
   out.tone = {1, static_cast<float>(exposures_[0].vignetting().x()),
               static_cast<float>(exposures_[0].vignetting().y())};
   out.gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
+  out.light = light_;
   out.depth_tolerance = options_.depth_tolerance;
   gl::Fence::insert().wait(kGpuTimeout);
   latest.publish(newest_image_);
@@ -175,6 +181,40 @@ void TextureCore::look(const PosedFrame& frame) {
   }
   mark("edges");
   inputs_.update(active_, images_, std::vector<Eigen::Vector3f>(images_.size(), {1, 0, 0}));
+  if (!options_.shadows) return;
+  find_lamp();
+  take_out_shadows();
+}
+
+/// Before its shadows are taken out of the image.
+void TextureCore::find_lamp() {
+  const PosedImage& image = *images_[0];
+  if (!lamp_finder_.look(image.scene)) return;
+  if (witnesses_ != lamp_finder_.number()) witness_pass_.set_witnesses(lamp_finder_.witnesses());
+  witnesses_ = lamp_finder_.number();
+  lamp_finder_.add(image.scene, image.T_world_camera.translation(),
+                   witness_pass_.brightness(inputs_, image.T_world_camera, options_.depth_tolerance));
+  mark("lamp");
+}
+
+void TextureCore::take_out_shadows() {
+  const auto& lamp = lamp_finder_.lamp();
+  if (!lamp) return light_.reset();
+  if (!light_) light_since_ = images_[0]->time;
+  if (!light_ || light_->lamp != *lamp || light_->moving != lamp_finder_.moving())
+    light_ = std::make_shared<const SceneLight>(SceneLight{*lamp, lamp_finder_.moving()});
+  if (!shadow_map_) shadow_map_ = std::make_unique<ShadowMap>(buffers_);
+  bool shaded = false;
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    if (i == 0 || images_[i]->time != images_[0]->time) shaded = shadow_map_->update(*light_, images_[i]->scene);
+    if (!shaded) continue;
+    if (i >= shadows_.size()) shadows_.emplace_back(cameras_[i]->lens());
+    const CameraInput& camera = *cameras_[i];
+    shadows_[i]({camera.lens(), camera.block(), camera.faces(), camera.rays(), images_[i]->T_world_camera},
+                *shadow_map_);
+    shadows_[i].take_out_of(camera.image());
+  }
+  mark("shadows");
 }
 
 /// Plans resolutions, asks the GPU which pages are seen, and gives them places; again with lower

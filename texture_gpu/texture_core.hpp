@@ -9,8 +9,11 @@
 #include "texture_gpu/extract_pass.hpp"
 #include "texture_gpu/extraction_report.hpp"
 #include "texture_gpu/fill_pass.hpp"
+#include "texture_gpu/lamp/lamp_finder.hpp"
 #include "texture_gpu/published_image.hpp"
+#include "texture_gpu/shadow_pass.hpp"
 #include "texture_gpu/survey_pass.hpp"
+#include "texture_gpu/witness_pass.hpp"
 
 namespace foresight {
 
@@ -43,6 +46,8 @@ class TextureCore {
   void mark(const char* stage);
   void look(const PosedFrame& frame);
   void choose_cameras();
+  void find_lamp();
+  void take_out_shadows();
   void publish(const PosedImage& image, LatestImage& latest);
   void estimate_exposure();
   bool allocate(ChartAtlas::Allocation& out);
@@ -59,12 +64,20 @@ class TextureCore {
   AtlasStore store_;
   std::vector<std::shared_ptr<CameraInput>> cameras_;
   std::vector<ExposureEstimator> exposures_;
+  std::shared_ptr<const gl::SceneBuffers> buffers_;
   gl::RasterPass raster_;
   EdgePass edges_;
   SurveyPass survey_;
   ExtractPass extract_;
   FillPass fill_;
   SeenInputs inputs_;
+  LampFinder lamp_finder_;
+  WitnessPass witness_pass_;
+  int witnesses_ = 0;                        // LampFinder::number() of those that the pass has
+  std::shared_ptr<const SceneLight> light_;  // null as long as it is not known
+  RobotTime light_since_;
+  std::unique_ptr<ShadowMap> shadow_map_;  // from then on
+  std::vector<ShadowPass> shadows_;        // one for each camera
   StageClock clock_;
   FrameGate* gate_ = nullptr;
 

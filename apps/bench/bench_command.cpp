@@ -15,6 +15,7 @@
 #include "apps/bench/prediction_bench.hpp"
 #include "apps/bench/registration_bench.hpp"
 #include "apps/bench/robot_bench.hpp"
+#include "apps/bench/shadow_bench.hpp"
 #include "apps/bench/view_bench.hpp"
 #include "apps/run_options.hpp"
 
@@ -212,6 +213,21 @@ void add_line(Command& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_line(*options); }; });
 }
 
+void add_shadow(Command& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("shadow", "Errors in shadows of what moves, with these foretold and without");
+  auto options = std::make_shared<ShadowBenchOptions>();
+  command->add_option("RUN", options->runs, "Synthetic runs")->reads()->required();
+  command->add_option("--delay-ms", options->delay_ms, "Age of the newest image")
+      ->check(from_to(0.0, 1e5))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "A pixel counts where what stands still is behind something that moves, seen from the lab's lamp, when the "
+      "newest\n"
+      "image was taken or at the instant shown.");
+  command->callback([options, &action] { action = [options] { return bench_shadow(*options); }; });
+}
+
 void add_view(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("view", "CPU time of drawing one predicted view");
   auto options = std::make_shared<ViewBenchOptions>();
@@ -244,6 +260,7 @@ void add_bench_command(Command& app, std::function<int()>& action) {
   add_robot(*bench, action);
   add_link(*bench, action);
   add_registration(*bench, action);
+  add_shadow(*bench, action);
   add_view(*bench, action);
 }
 

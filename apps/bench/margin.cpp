@@ -58,7 +58,8 @@ class MarginBench {
     options.margin_px = margin_px;
     options.depth_tolerance = run_.scene()->accuracy().value_or(options.depth_tolerance);
     options.even_exposure = false;  // colours are codes here
-    options.worse = 1e-9;           // every image that sees a texel paints it
+    options.shadows = false;
+    options.worse = 1e-9;  // every image that sees a texel paints it
     BenchCore core(run_.scene(), surface_, run_.lens_left(), options, software_);
     TexelCount sum;
     for (const JudgedImage& image : images) {

@@ -61,7 +61,7 @@ class LiveSeat {
         scene_(std::make_shared<const LiveScene>(
             live_scene_of(rig, options.mock_cameras, options.scene, options.physics, options.layout))),
         gate_(std::make_shared<FrameGate>(clock_)),
-        setup_(view_setup(rig)),
+        setup_(view_setup(rig, options.shadows)),
         end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         driver_(rig, open_devices(options, controllers_), scene_->model()),
         seat_(rig, end_, driver_, clock_),
@@ -102,8 +102,8 @@ class LiveSeat {
   }
 
  private:
-  ViewSetup view_setup(const Rig& rig) const {
-    ViewSetup out = live_view_setup(*scene_, rig.name);
+  ViewSetup view_setup(const Rig& rig, bool shadows) const {
+    ViewSetup out = live_view_setup(*scene_, rig.name, shadows);
     out.gate = gate_;
     return out;
   }

@@ -25,6 +25,7 @@ struct LiveSeatOptions {
   HeadDisplayKind head_display = HeadDisplayKind::none;
   double rate_hz = 30;
   double font_scale = 1;
+  bool shadows = true;  ///< TextureOptions::shadows
   ViewTrustOptions trust;
   std::optional<std::filesystem::path> screenshot;  ///< key P writes it
 };

@@ -33,7 +33,7 @@ struct Arguments {
   unsigned seed = 1;
   double seconds = 30;
   double pictures_hz = 5;
-  bool still_head = false, zero_delay = true;
+  bool still_head = false, zero_delay = true, shadows = true;
   ViewOutputs outputs;
 };
 
@@ -139,6 +139,7 @@ SeatTrialFigures run_stepped(const Rig& rig, const Arguments& arguments, const T
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
   options.zero_delay = arguments.zero_delay;
+  options.shadows = arguments.shadows;
   options.fall_back.lowest_db = arguments.fidelity_db;
   options.out = arguments.outputs.out;
   return try_seat(
@@ -157,6 +158,7 @@ SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Ta
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
   options.fall_back.lowest_db = arguments.fidelity_db;
+  options.shadows = arguments.shadows;
   options.out = arguments.outputs.out;
   return try_served_seat(
       rig, std::move(scene), options, motion, [] { return stop_requested(); }, say);
@@ -204,6 +206,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   if (arguments.head_display == "side-by-side") options.head_display = HeadDisplayKind::side_by_side;
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
+  options.shadows = arguments.shadows;
   options.trust.fall_back.lowest_db = arguments.fidelity_db;
   return run_live_seat(rig, options);
 }
@@ -291,6 +294,9 @@ void add_operator_command(Command& app, std::function<int()>& action) {
   command->add_flag("--still-head", arguments->still_head, "With --scripted: the head does not move");
   command->add_flag("!--no-zero-delay", arguments->zero_delay,
                     "With --scripted: does not also draw each view as it would be without a line");
+  command->add_flag("!--no-shadows", arguments->shadows,
+                    "Shadows of what moves are shown where they were; else where they fall, once it is known where the "
+                    "lamp is");
   add_view_outputs(*command, arguments->outputs, {"shown", "delayed", "true"});
   command->footer(
       "The robot's side is `foresight robot RIG --serve`; both have the same rig file, URDF and calibrations. The "

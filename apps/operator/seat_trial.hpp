@@ -31,6 +31,7 @@ struct SeatTrialOptions {
   double pictures_hz = 5;  ///< that are measured, at most
   TrustSwitchOptions fall_back;
   bool zero_delay = true;                    ///< also draws each view as it would be without a line
+  bool shadows = true;                       ///< TextureOptions::shadows
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
   /// What the camera saw, as it is to be scored; none: as it was. The operator does not know it.
   std::function<cv::Mat(const cv::Mat&)> truth;

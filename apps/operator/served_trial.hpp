@@ -18,6 +18,7 @@ struct ServedTrialOptions {
   double found_within_s = 60;                ///< the robot has to be driven within that time
   double pictures_hz = 5;                    ///< at most
   TrustSwitchOptions fall_back;              ///< of the view that would be shown
+  bool shadows = true;                       ///< TextureOptions::shadows
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
 };
 

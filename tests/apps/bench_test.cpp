@@ -47,6 +47,16 @@ TEST_F(Bench, ViewIsDrawnInBothWays) {
   EXPECT_GT(all["newest"]["psnr_db"], 20);
 }
 
+TEST_F(Bench, ShadowSaysWhereItCannotTellTheLamp) {
+  const std::string file = out_ / "shadow.json";
+  const Outcome outcome = run_program({"bench", "shadow", run(), "--delay-ms", "100", "--json", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json row = read_json(file)["runs"][0];
+  EXPECT_GT(row["pixels"], 0) << "the arm throws a shadow";
+  EXPECT_EQ(row["views_with_lamp"], 0) << "in so few images it hardly moves";
+  EXPECT_EQ(row["error_gone"], nullptr);
+}
+
 TEST_F(Bench, MarginCountsByTruth) {
   const std::string json = out_ / "margin.json", plot = out_ / "margin.svg";
   const Outcome outcome = run_program({"bench", "margin", run(), "--images", "2", "--json", json, "--plot", plot});

@@ -28,6 +28,7 @@ const std::map<std::string, CommandWords>& table() {
       {"bench figures", {{"RUN", {"@run"}}, {"--out", {"@new/figures"}}}},
       {"bench extraction", {{"RUN", {"@run"}}}},
       {"bench margin", {{"RUN", {"@run"}}}},
+      {"bench shadow", {{"RUN", {"@run"}}, {"--delay-ms", {"100"}}}},
       {"bench view", {{"RUN", {"@run"}}, {"--rounds", {"1"}}}},
       {"bench can", {}},
       {"bench robot", {{"RIG", {"@rig.yaml"}}}},

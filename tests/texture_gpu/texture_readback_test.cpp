@@ -49,6 +49,7 @@ class TextureReadbackTest : public HeadlessTest {
     scene_ = scene;
     surface_ = std::make_shared<SurfacePatches>(find_surface_patches(*scene, patches));
     options.even_exposure = false;  // positions are no brightness
+    options.shadows = false;
     core_ = std::make_unique<TextureCore>(scene, surface_, lens_, std::nullopt, options, driver_.is_software);
     for (const Pose& T_world_camera : views) {
       const SceneState state = state_of(*scene);

@@ -1,12 +1,12 @@
-#include "display/lens_rays.hpp"
+#include "gl/lens_rays.hpp"
 
 #include <vector>
 
-namespace foresight {
+namespace foresight::gl {
 
-gl::Texture make_lens_rays(const Lens& lens) {
-  if (!lens.has_distortion()) return gl::Texture(GL_RGBA32F, 1, 1, 0, 1, "lens rays (none)");
-  gl::Texture rays(GL_RGBA32F, lens.width(), lens.height(), 0, 1, "lens rays");
+Texture make_lens_rays(const Lens& lens) {
+  if (!lens.has_distortion()) return Texture(GL_RGBA32F, 1, 1, 0, 1, "lens rays (none)");
+  Texture rays(GL_RGBA32F, lens.width(), lens.height(), 0, 1, "lens rays");
   std::vector<Eigen::Vector4f> row(static_cast<std::size_t>(lens.width()));
   for (int y = 0; y < lens.height(); ++y) {
     for (int x = 0; x < lens.width(); ++x) {
@@ -21,4 +21,4 @@ gl::Texture make_lens_rays(const Lens& lens) {
   return rays;
 }
 
-}  // namespace foresight
+}  // namespace foresight::gl

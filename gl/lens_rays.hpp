@@ -4,10 +4,10 @@
 #include "common/lens.hpp"
 #include "gl/objects.hpp"
 
-namespace foresight {
+namespace foresight::gl {
 
 /// RGBA32F, one texel per pixel: unit direction in the camera frame, and 1; all 0 where the lens
 /// sees nothing. For a lens without distortion a single texel: shaders use the pinhole formula.
-gl::Texture make_lens_rays(const Lens& lens);
+Texture make_lens_rays(const Lens& lens);
 
-}  // namespace foresight
+}  // namespace foresight::gl

@@ -1,0 +1,76 @@
+// The shadow of what moves is shown where it will be, once images have told where the lamp is.
+#include <optional>
+
+#include "display/predicted_view.hpp"
+#include "tests/support/headless_test.hpp"
+#include "tests/support/lamp_light.hpp"
+#include "tests/support/small_scene.hpp"
+#include "texture_gpu/texture_core.hpp"
+
+namespace foresight::moving_shadow_test {
+namespace {
+
+const Lamp kLamp{{0.2, 0.4, 1.2}, 0.06, {3.0, 2.5, 2.0}};
+
+class MovingShadow : public HeadlessTest {
+ protected:
+  SceneState state_at(double t) const {
+    SceneState state = state_of(*scene_);
+    state.time = RobotTime{} + seconds(t);
+    Pose& block = state.T_world_node[kBlock];
+    block.translation() = Eigen::Vector3d(-0.2 + 0.25 * std::sin(1.1 * t), -0.05 + 0.3 * std::cos(1.7 * t), 0.22);
+    block.rotate(Eigen::AngleAxisd(t, Eigen::Vector3d::UnitZ()));
+    return state;
+  }
+  PosedFrame frame(double t) const {
+    return {lit_photograph(*scene_, state_at(t), lens_, camera_, {kLamp}, 0.55), std::nullopt};
+  }
+  /// Mean squared error of a view of `t`, of the table, in grey levels; the last image is older.
+  double error_of(TextureOptions options, double t, bool& known) const {
+    TextureCore core(scene_, surface_, lens_, std::nullopt, options, driver_.is_software);
+    LatestTextures textures;
+    LatestImage image;
+    for (int i = 0; i < 30; ++i) {
+      const PosedFrame f = frame(0.4 * i);
+      core.look(f, image);
+      known = core.extract(f, textures).lamp.lamp.has_value();
+    }
+    PredictedView view(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens_);
+    const SceneState state = state_at(t);
+    view.draw(camera_, state, *textures.acquire(), *image.acquire());
+    const cv::Mat shown = view.read(), truth = frame(t).left.pixels;
+    const reference::RayCaster caster(*scene_, state);
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < shown.rows; ++y)
+      for (int x = 0; x < shown.cols; ++x) {
+        const auto hit = caster.cast(camera_.translation(), camera_.linear() * *lens_.unproject({x, y}), 0.01);
+        if (!hit || hit->node != kTable || shown.at<cv::Vec4b>(y, x)[3] != 255) continue;
+        for (int c = 0; c < 3; ++c) {
+          const double error = shown.at<cv::Vec4b>(y, x)[c] - truth.at<cv::Vec3b>(y, x)[c];
+          sum += error * error;
+          ++count;
+        }
+      }
+    EXPECT_GT(count, 10000);
+    return sum / count;
+  }
+
+  std::shared_ptr<const SceneModel> scene_ = small_scene();
+  std::shared_ptr<const SurfacePatches> surface_ = std::make_shared<SurfacePatches>(find_surface_patches(*scene_, {}));
+  const Lens lens_ = small_lens("pinhole");
+  const Pose camera_ = usual_view();
+};
+
+TEST_F(MovingShadow, IsShownWhereItWillBe) {
+  constexpr double kShown = 0.4 * 29 + 0.5;
+  bool known = false, not_asked = true;
+  const double with = error_of({.memory_bytes = 12 << 20}, kShown, known);
+  const double without = error_of({.memory_bytes = 12 << 20, .shadows = false}, kShown, not_asked);
+  EXPECT_TRUE(known);
+  EXPECT_FALSE(not_asked);
+  EXPECT_LT(with, 0.3 * without) << with << " against " << without;
+}
+
+}  // namespace
+}  // namespace foresight::moving_shadow_test

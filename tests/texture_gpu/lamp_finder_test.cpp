@@ -1,0 +1,112 @@
+// The lamp, found by shadows that were computed ray by ray.
+#include "texture_gpu/lamp/lamp_finder.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "tests/support/lamp_light.hpp"
+#include "tests/support/small_scene.hpp"
+
+namespace foresight::lamp_finder_test {
+namespace {
+
+const Eigen::Vector3d kCamera(-1.0, -0.45, 0.8);
+
+/// The block goes about above the table.
+SceneState state_at(const SceneModel& scene, int i) {
+  SceneState state = state_of(scene);
+  Pose& block = state.T_world_node[kBlock];
+  block.translation() = Eigen::Vector3d(-0.35 + 0.07 * (i % 11), -0.35 + 0.11 * (i % 7), 0.14 + 0.03 * (i % 3));
+  block.rotate(Eigen::AngleAxisd(0.5 * i, Eigen::Vector3d::UnitZ()));
+  return state;
+}
+
+struct Room {
+  std::shared_ptr<const SceneModel> scene = small_scene();
+  LampFinder finder{scene};
+  std::mt19937 generator{7};
+
+  /// `exposure`: a factor on the values of image i.
+  void show(int first, int last, const std::vector<Lamp>& lamps, double noise = 0.01) {
+    std::normal_distribution<double> normal(1, noise);
+    for (int i = first; i < last; ++i) {
+      const SceneState state = state_at(*scene, i);
+      if (!finder.look(state)) continue;
+      const reference::RayCaster caster(*scene, state);
+      std::vector<Eigen::Vector3f> values;
+      for (const Witness& w : finder.witnesses()) {
+        Eigen::Vector3d n = w.normal.cast<double>();
+        const Eigen::Vector3d p = w.point.cast<double>(), to_camera = kCamera - p;
+        if (n.dot(to_camera) < 0) n = -n;
+        const auto between = caster.cast(p + 1e-6 * n, to_camera, 1e-5);
+        Eigen::Vector3d light = Eigen::Vector3d::Ones();
+        for (const Lamp& lamp : lamps) light += lamp_light(lamp, caster, p, n, 16) - Eigen::Vector3d::Ones();
+        const double exposure = 0.2 + 0.02 * (i % 4);
+        const Eigen::Vector3d value = exposure * normal(generator) * light.array().pow(1 / kResponse);
+        values.push_back(between && between->t < 1 ? Eigen::Vector3f::Constant(-1)
+                                                   : Eigen::Vector3f(value.cast<float>()));
+      }
+      finder.add(state, kCamera, values);
+    }
+  }
+};
+
+const Lamp kLamp{{0.3, 0.5, 1.3}, 0.1, {3.0, 2.5, 2.0}};
+
+TEST(LampFinder, FindsTheLampByTheShadowsOfWhatMoves) {
+  Room room;
+  room.show(0, 30, {kLamp});
+  ASSERT_TRUE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
+  const Lamp& found = *room.finder.lamp();
+  const Eigen::Vector3d middle(0, 0, 0.1), to = found.position - middle, truly = kLamp.position - middle;
+  EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(4 * M_PI / 180)) << found.position.transpose();
+  // On the table, what the lamp adds to all other light.
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(found.strength[c] * to.z() / std::pow(to.norm(), 3) /
+                    (kLamp.strength[c] * truly.z() / std::pow(truly.norm(), 3)),
+                1, 0.25)
+        << c;
+  EXPECT_NEAR(found.radius / to.norm(), kLamp.radius / truly.norm(), 0.04);
+}
+
+TEST(LampFinder, SaysNothingWhereNoShadowTellsOfALamp) {
+  Room room;
+  room.show(0, 30, {}, 0.04);
+  EXPECT_FALSE(room.finder.lamp());
+}
+
+TEST(LampFinder, SaysNothingWhereSeveralLampsAreAsBright) {
+  std::vector<Lamp> lamps;
+  for (int i = 0; i < 4; ++i) lamps.push_back({{std::cos(1.6 * i), std::sin(1.6 * i), 1.2}, 0.05, {1, 1, 1}});
+  Room room;
+  room.show(0, 30, lamps);
+  EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
+}
+
+TEST(LampFinder, ForgetsALampThatIsSwitchedOff) {
+  Room room;
+  room.show(0, 30, {kLamp});
+  ASSERT_TRUE(room.finder.lamp());
+  room.show(30, 150, {});
+  EXPECT_FALSE(room.finder.lamp());
+}
+
+TEST(LampFinder, AsksNothingWhereNothingMoves) {
+  Room room;
+  const SceneState still = state_of(*room.scene);
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(room.finder.look(still));
+  EXPECT_THAT(room.finder.witnesses(), testing::IsEmpty());
+}
+
+TEST(LampFinder, AsksOnlyAboutWhatStandsStill) {
+  Room room;
+  room.finder.look(state_at(*room.scene, 0));
+  EXPECT_TRUE(room.finder.look(state_at(*room.scene, 1)));
+  EXPECT_GT(room.finder.witnesses().size(), 1000u);
+  for (const Witness& w : room.finder.witnesses()) EXPECT_NE(w.node, kBlock);
+  EXPECT_THAT(room.finder.moving(), testing::ElementsAre(false, false, true, false));
+}
+
+}  // namespace
+}  // namespace foresight::lamp_finder_test

@@ -1,0 +1,84 @@
+#include "texture_gpu/lamp/lamp_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace foresight {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr std::size_t kWitnesses = 6000, kRecords = 48;
+constexpr double kMoved = 5e-3, kTurned = 0.01;        // metres, radians: less is an error of a pose
+constexpr double kNewMoved = 0.02, kNewTurned = 0.06;  // since the last record: less has much the same shadows
+constexpr int kFirstSearch = 8, kAnswerTakes = 2;      // images
+constexpr double kNextSearch = 1.5;                    // when there are so many times as many
+constexpr float kDarkest = 0.02f;                      // of an image's values: below, noise and black level rule
+const Vector3f kNotKnown = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+
+}  // namespace
+
+LampFinder::LampFinder(std::shared_ptr<const SceneModel> scene)
+    : scene_(std::move(scene)), rays_(*scene_), moving_(scene_->nodes().size()) {}
+
+bool LampFinder::look(const SceneState& state) {
+  const auto far = [](const Pose& a, const Pose& b, double moved, double turned) {
+    return (a.translation() - b.translation()).norm() > moved ||
+           Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() > turned;
+  };
+  const auto& T = state.T_world_node;
+  if (first_.empty()) {
+    first_ = last_ = T;
+    return false;
+  }
+  bool more = false, differs = false;
+  for (std::size_t i = 0; i < T.size(); ++i) {
+    differs = differs || far(T[i], last_[i], kNewMoved, kNewTurned);
+    if (moving_[i] || !far(T[i], first_[i], kMoved, kTurned)) continue;
+    moving_[i] = more = true;
+  }
+  if (!differs && !more) return false;
+  last_ = T;
+  if (more && witnesses_.empty()) choose();
+  for (std::size_t i = 0; more && i < witnesses_.size(); ++i)  // what stood on it no longer tells anything
+    if (moving_[static_cast<std::size_t>(witnesses_[i].node)])
+      for (LampRecord& record : records_) record.log_brightness[i] = kNotKnown;
+  return !witnesses_.empty();
+}
+
+void LampFinder::choose() {
+  witnesses_ = choose_witnesses(*scene_, last_, moving_, kWitnesses);
+  turned_.assign(witnesses_.size(), false);
+  ++number_;
+}
+
+void LampFinder::add(const SceneState& state, const Vector3d& camera, std::span<const Vector3f> brightness) {
+  LampRecord record{state.T_world_node, {}};
+  for (std::size_t i = 0; i < witnesses_.size(); ++i) {
+    Witness& w = witnesses_[i];
+    const Vector3f& value = brightness[i];
+    const bool known = value.minCoeff() > kDarkest && !moving_[static_cast<std::size_t>(w.node)];
+    if (known && !turned_[i]) {
+      turned_[i] = true;
+      if (w.normal.dot(camera.cast<float>() - w.point) < 0) w.normal = -w.normal;
+    }
+    record.log_brightness.push_back(known ? Vector3f(value.array().log()) : kNotKnown);
+  }
+  records_.push_back(std::move(record));
+  if (records_.size() > kRecords) records_.pop_front();
+  ++recorded_;
+  if (search_.valid() && recorded_ >= answer_at_) answer_ = search_.get();
+  if (!search_.valid() && recorded_ >= std::max(ask_at_, kFirstSearch)) ask();
+}
+
+void LampFinder::ask() {
+  ask_at_ = std::min(static_cast<int>(std::ceil(kNextSearch * recorded_)), recorded_ + static_cast<int>(kRecords));
+  answer_at_ = recorded_ + kAnswerTakes;
+  search_ = std::async(std::launch::async, [this, question = LampQuestion{witnesses_, records_, moving_, lamp()}] {
+    return find_lamp(rays_, question);
+  });
+}
+
+}  // namespace foresight

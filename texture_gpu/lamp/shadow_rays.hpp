@@ -1,0 +1,43 @@
+// Whether something of a posed scene stands between two points.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scene/scene_model.hpp"
+
+namespace foresight {
+
+/// The meshes of a scene, ready to be met by rays (Embree). One thread.
+class ShadowRays {
+ public:
+  /// Throws RuntimeFailure: no memory.
+  explicit ShadowRays(const SceneModel& scene);
+  ~ShadowRays();
+  ShadowRays(const ShadowRays&) = delete;
+  ShadowRays& operator=(const ShadowRays&) = delete;
+
+  /// Some of the nodes, where they stand at one instant. Must not outlive the ShadowRays.
+  class Posed {
+   public:
+    ~Posed();
+    Posed(Posed&& other) noexcept;
+    Posed& operator=(Posed&& other) noexcept;
+
+    /// True where a triangle lies on the way, ends left out by `gap` metres. World.
+    bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap = 2e-3) const;
+
+   private:
+    friend class ShadowRays;
+    explicit Posed(void* scene) : scene_(scene) {}
+    void* scene_;
+  };
+  /// `nodes`: which of them, one for each node of the model.
+  Posed pose(const std::vector<Pose>& T_world_node, const std::vector<bool>& nodes) const;
+
+ private:
+  struct Device;
+  std::unique_ptr<Device> device_;
+};
+
+}  // namespace foresight
