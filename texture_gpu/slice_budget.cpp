@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kCosts = 16;
 constexpr double kQuantile = 0.8;  // one preempted slice does not count
-constexpr double kMostOwedNs = 50e6;
+constexpr double kMostOwedNs = 50e6;  // or as long as a slice takes: it has to come to its turn
 constexpr double kUrgentNs = 20e6;  // owed: slices run even while a frame is drawn
 
 }  // namespace
@@ -32,7 +32,7 @@ Duration SliceBudget::expected(const std::string& kind, double units) const {
 std::optional<RobotTime> SliceBudget::wait(RobotTime now, const std::string& kind, double units) {
   const Duration cost = expected(kind, units);
   if (waiting_since_) owed_ns_ += options_.least_share * static_cast<double>((now - *waiting_since_).count());
-  owed_ns_ = std::min(owed_ns_, kMostOwedNs);
+  owed_ns_ = std::min(owed_ns_, std::max(kMostOwedNs, static_cast<double>(cost.count())));
   waiting_since_ = now;
   const auto may_run = [&]() -> std::optional<RobotTime> {
     waiting_since_.reset();

@@ -74,6 +74,19 @@ TEST(SliceBudget, NeverStarves) {
   }
 }
 
+// The first one has compiled shaders on a busy machine: longer than frames are apart, and than is ever put down.
+TEST(SliceBudget, ALongSliceComesToItsTurnBetweenShortFrames) {
+  SliceBudget budget;
+  budget.ran(RobotTime{}, RobotTime{} + 160ms, "slice");
+  bool ran = false;
+  for (RobotTime frame = RobotTime{} + 200ms; frame < RobotTime{} + 2s && !ran; frame = frame + 20ms) {
+    budget.frame_begins(frame);
+    budget.frame_ends(frame + 1ms, frame + 20ms);
+    ran = !budget.wait(frame + 1ms, "slice");  // whoever waits is woken then
+  }
+  EXPECT_TRUE(ran);
+}
+
 TEST(SliceBudget, WithoutADisplayNothingWaits) {
   SliceBudget budget;
   EXPECT_FALSE(budget.wait(RobotTime{0}, "slice"));
