@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kCosts = 16;
 constexpr double kQuantile = 0.8;  // one preempted slice does not count
-constexpr double kMostOwedNs = 50e6;  // or as long as a slice takes: it has to come to its turn
+constexpr double kMostOwedNs = 50e6;  // a slice that takes longer comes to its turn with it, and pays afterwards
+constexpr double kMostDebtNs = 200e6;
 constexpr double kUrgentNs = 20e6;  // owed: slices run even while a frame is drawn
 
 }  // namespace
@@ -32,7 +33,7 @@ Duration SliceBudget::expected(const std::string& kind, double units) const {
 std::optional<RobotTime> SliceBudget::wait(RobotTime now, const std::string& kind, double units) {
   const Duration cost = expected(kind, units);
   if (waiting_since_) owed_ns_ += options_.least_share * static_cast<double>((now - *waiting_since_).count());
-  owed_ns_ = std::min(owed_ns_, std::max(kMostOwedNs, static_cast<double>(cost.count())));
+  owed_ns_ = std::min(owed_ns_, kMostOwedNs);
   waiting_since_ = now;
   const auto may_run = [&]() -> std::optional<RobotTime> {
     waiting_since_.reset();
@@ -45,14 +46,14 @@ std::optional<RobotTime> SliceBudget::wait(RobotTime now, const std::string& kin
   }
   if (!due_ || now > *due_ + options_.longest_frame) return may_run();
   if (now + cost <= *due_) return may_run();
-  const double missing = static_cast<double>(cost.count()) - owed_ns_;
+  const double missing = std::min(static_cast<double>(cost.count()), kMostOwedNs) - owed_ns_;
   if (missing <= 0) return may_run();
   return now + Duration{std::max<std::int64_t>(1, std::llround(missing / options_.least_share))};
 }
 
 void SliceBudget::ran(RobotTime begin, RobotTime end, const std::string& kind, double units) {
   const double took = static_cast<double>((end - begin).count());
-  owed_ns_ = std::max(0.0, owed_ns_ - (1 - options_.least_share) * took);
+  owed_ns_ = std::max(owed_ns_ - (1 - options_.least_share) * took, took > kMostOwedNs ? -kMostDebtNs : 0.0);
   Costs& costs = costs_[kind];
   const double unit = std::max(0.0, took) / std::max(units, 1.0);
   if (costs.ns.size() < kCosts)
