@@ -52,9 +52,18 @@ Program::Program(const std::vector<std::string>& arguments, const ProgramOptions
   ::posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
   ::posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
   if (!options.folder.empty()) ::posix_spawn_file_actions_addchdir_np(&actions, options.folder.c_str());
+  // A signal that is ignored here, as nohup does with SIGHUP, would be there, too.
+  sigset_t heard;
+  ::sigemptyset(&heard);
+  for (const int signal : {SIGHUP, SIGINT, SIGTERM}) ::sigaddset(&heard, signal);
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawnattr_setsigdefault(&attributes, &heard);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   start_ = std::chrono::steady_clock::now();
-  const int error = ::posix_spawn(&pid_, words.front().c_str(), &actions, nullptr, pointers(words).data(),
+  const int error = ::posix_spawn(&pid_, words.front().c_str(), &actions, &attributes, pointers(words).data(),
                                   pointers(environment).data());
+  ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   if (error) throw std::system_error(error, std::generic_category(), FORESIGHT_PROGRAM);
 }
