@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
-#include <opencv2/imgcodecs.hpp>
 
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/atomic_file.hpp"
@@ -12,6 +11,7 @@
 #include "common/text.hpp"
 #include "display/recorded_source.hpp"
 #include "display/view_session.hpp"
+#include "pictures/encode.hpp"
 #include "texture_gpu/gltf_scene.hpp"
 
 namespace foresight {
@@ -71,8 +71,7 @@ bool extract(ViewSession& session, const RunFolder& run, std::size_t count, doub
 }
 
 std::string as_png(const cv::Mat& picture) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".png", picture, bytes);
+  const std::vector<std::uint8_t> bytes = encode_png(picture);
   return {bytes.begin(), bytes.end()};
 }
 

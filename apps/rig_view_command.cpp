@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "apps/command_line/picture_size.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "gl/context.hpp"
+#include "pictures/encode.hpp"
 #include "rig_view/rig_picture.hpp"
 #include "rig_view/rig_window.hpp"
 
@@ -71,8 +71,7 @@ int write_picture(RigBody& body, const RigViewArguments& arguments, const std::v
   const PlacedRig placed = body.at(positions);
   const cv::Mat drawn = picture(body, placed, state, eye, size.width, size.height);
   gl::check_errors("rig view");
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(ending, drawn, bytes, {cv::IMWRITE_JPEG_QUALITY, 86});
+  const std::vector<std::uint8_t> bytes = encode_for(ending, drawn, 86);
   write_file_atomically(arguments.out, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   for (const NearCouple& couple : placed.couples)
     if (couple.margin_m < 0) std::fprintf(stderr, "rig view: %s\n", couple.text.c_str());

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "apps/command_line/picture_size.hpp"
@@ -14,8 +13,9 @@
 #include "display/stereogram/stereogram.hpp"
 #include "gl/context.hpp"
 #include "gl/raster_pass.hpp"
+#include "pictures/encode.hpp"
+#include "pictures/picture_file.hpp"
 #include "rig_view/eye.hpp"
-#include "scene/picture_file.hpp"
 #include "scene/run_folder.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -133,7 +133,7 @@ int run(const StereogramArguments& a) {
   const std::string ending = fs::path(a.out).extension().string();
   if (ending != ".png" && ending != ".jpg")
     throw InputError("--out " + a.out, "is no name of a picture", "end it in .png or .jpg");
-  const cv::Mat pattern = a.pattern == "random" ? cv::Mat() : read_picture(a.pattern, cv::IMREAD_COLOR);
+  const cv::Mat pattern = a.pattern == "random" ? cv::Mat() : read_picture(a.pattern, PictureColours::colour);
   if (!pattern.empty() && (pattern.cols < 8 || pattern.rows < 8 || pattern.cols > 8192 || pattern.rows > 8192))
     throw InputError(a.pattern, "is too small or too large for a pattern", "give a picture of 8 to 8192 px each way");
   const Seen seen = fs::is_directory(a.input) ? see_run(a, size) : see_model(a, size);
@@ -153,8 +153,7 @@ int run(const StereogramArguments& a) {
   const cv::Mat drawn = stereogram.read();
   gl::check_errors("stereogram");
 
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(ending, drawn, bytes, {cv::IMWRITE_JPEG_QUALITY, 95});
+  const std::vector<std::uint8_t> bytes = encode_for(ending, drawn, 95);
   write_file_atomically(a.out, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   std::printf(
       "%s: %.2f to %.2f m as separations of %.1f to %.1f px; %.1f %% of the surface can be read from it within 1 px\n",

@@ -1,7 +1,6 @@
 #include "apps/view_outputs.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 
 #include "apps/command_line/output_lock.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
@@ -9,6 +8,7 @@
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/partial_path.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight {
 namespace {
@@ -54,8 +54,7 @@ void add_view_outputs(Command& command, ViewOutputs& outputs, const std::vector<
 }
 
 void write_png(const fs::path& file, const cv::Mat& picture) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  const std::vector<std::uint8_t> bytes = encode_png(picture, 3);
   write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -1,5 +1,5 @@
-// Keeps the terminal to ourselves while a library decodes a file: libpng, libjpeg and OpenCV write what they think of
-// it straight to the error stream, without a handler that could be replaced.
+// Keeps the terminal to ourselves while a library is called that writes what it thinks straight to the error stream,
+// without a handler that could be replaced: OpenXR's loader, libcamera.
 #pragma once
 
 #include <mutex>

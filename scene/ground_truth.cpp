@@ -1,10 +1,9 @@
 #include "scene/ground_truth.hpp"
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "common/error.hpp"
+#include "pictures/decode.hpp"
+#include "pictures/image_structure.hpp"
 #include "scene/files.hpp"
-#include "scene/image_structure.hpp"
 #include "scene/text_table.hpp"
 #include "scene/yaml_fields.hpp"
 
@@ -29,7 +28,7 @@ cv::Mat read_plane(const fs::path& file, const Lens& lens) {
                          ", the camera's images are " + std::to_string(lens.width()) + "x" +
                          std::to_string(lens.height()),
                      kCure);
-  const cv::Mat out = cv::imdecode(std::vector<std::uint8_t>(bytes.begin(), bytes.end()), cv::IMREAD_UNCHANGED);
+  const cv::Mat out = decode_picture(bytes, PictureColours::as_stored).pixels;
   if (out.type() != CV_16UC1) throw InputError(file.string(), "cannot be decoded", kCure);
   return out;
 }

@@ -1,12 +1,12 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
-#include <opencv2/imgcodecs.hpp>
 #include <thread>
 
 #include "common/error.hpp"
+#include "pictures/decode.hpp"
+#include "pictures/image_structure.hpp"
 #include "scene/files.hpp"
-#include "scene/image_structure.hpp"
 #include "scene/run_folder.hpp"
 
 namespace foresight {
@@ -108,16 +108,9 @@ cv::Mat read_run_image(const RunImage& image, const Lens& lens) {
   const ImageForm form = read_image_form(bytes, image.file);
   require_usable(form, lens, file);
   if (bytes.size() > 0x40000000u) throw InputError(file, "the image file exceeds 1 GiB", "compress it again");
-  cv::Mat pixels;
-  std::string reason = "its compressed data are damaged";
-  try {
-    // UNCHANGED keeps grey grey and leaves the EXIF orientation alone.
-    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
-    pixels = cv::imdecode(encoded, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception& error) {
-    reason = error.err;
-  }
-  if (pixels.empty()) throw InputError(file, "cannot be decoded (" + reason + ")", "copy or record it again");
+  const cv::Mat pixels = decode_picture(bytes, PictureColours::as_stored).pixels;
+  if (pixels.empty())
+    throw InputError(file, "cannot be decoded (its compressed data are damaged)", "copy or record it again");
   if (pixels.type() != CV_8UC(form.channels) || pixels.cols != form.width || pixels.rows != form.height)
     throw InputError(file, "does not decode to what its header says", "convert it to 8-bit PNG");
   return pixels;

@@ -4,10 +4,10 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <opencv2/imgcodecs.hpp>
 
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "pictures/encode.hpp"
 #include "scene/files.hpp"
 #include "scene/number_text.hpp"
 
@@ -60,10 +60,7 @@ std::string RunWriter::image_name(bool right, std::uint64_t number) {
 }
 
 void RunWriter::write_image(const std::string& name, const cv::Mat& pixels, std::optional<int> compression) const {
-  std::vector<std::uint8_t> bytes;
-  std::vector<int> options;
-  if (compression) options = {cv::IMWRITE_PNG_COMPRESSION, *compression};
-  cv::imencode(".png", pixels, bytes, options);
+  const std::vector<std::uint8_t> bytes = encode_png(pixels, compression);
   write_bytes(folder_ / name, bytes.data(), bytes.size());
 }
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <opencv2/imgcodecs.hpp>
 
 #include "common/error.hpp"
+#include "pictures/encode.hpp"
 #include "scene/files.hpp"
 #include "scene/run_writer.hpp"
 #include "scene/scene_reader.hpp"
@@ -34,8 +34,7 @@ std::string image_name(bool right, int frame) {
 }
 
 void write_png(const fs::path& file, const cv::Mat& image) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", image, bytes);
+  const std::vector<std::uint8_t> bytes = encode_png(image);
   write_bytes(file, bytes.data(), bytes.size());
 }
 

@@ -5,7 +5,6 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 
@@ -18,6 +17,7 @@
 #include "common/error.hpp"
 #include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
+#include "pictures/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -169,8 +169,7 @@ nlohmann::ordered_json bench_detection(const std::filesystem::path& images, cons
   std::array<int, 2> found{};
   const auto files = list_images(images);
   for (const auto& file : files) {
-    const cv::Mat grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
-    if (grey.empty()) throw InputError(file.string(), "is no image that can be read", "remove it, or copy it again");
+    const cv::Mat grey = read_picture(file, PictureColours::grey);
     time[0] += cpu_of([&] { found[0] += finder.find(grey).has_value(); });
     time[1] += cpu_of([&] { found[1] += find_with_opencv(grey, board); });
   }

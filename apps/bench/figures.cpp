@@ -2,13 +2,13 @@
 
 #include <array>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 
 #include "apps/bench/core_figure.hpp"
 #include "apps/bench/mask_figures.hpp"
 #include "apps/bench/view_figures.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight {
 namespace {
@@ -56,8 +56,7 @@ std::vector<FigurePage> draw_all(const RunFolder& run, const TextureOptions& cor
 void write(const std::vector<FigurePage>& pages, const fs::path& out) {
   std::vector<std::string> bytes;
   for (const FigurePage& page : pages) {
-    std::vector<uchar> png;
-    cv::imencode(".png", draw_page(page), png);
+    const std::vector<std::uint8_t> png = encode_png(draw_page(page));
     bytes.emplace_back(png.begin(), png.end());
   }
   std::vector<FileContent> files;

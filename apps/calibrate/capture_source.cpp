@@ -1,11 +1,10 @@
 #include "apps/calibrate/capture_source.hpp"
 
 #include <array>
-#include <opencv2/imgcodecs.hpp>
 
 #include "calibration/target/image_input.hpp"
 #include "common/error.hpp"
-#include "scene/picture_file.hpp"
+#include "pictures/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -92,9 +91,7 @@ class FolderSource final : public CaptureSource {
   bool at_end() const override { return next_ >= files_.size(); }
 
  private:
-  static cv::Mat read(const fs::path& file) {
-    return read_picture(file, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-  }
+  static cv::Mat read(const fs::path& file) { return read_picture(file, PictureColours::colour); }
   std::vector<std::array<fs::path, 2>> files_;
   std::size_t next_ = 0;
 };

@@ -4,7 +4,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "apps/calibrate/lens_file.hpp"
@@ -17,8 +16,9 @@
 #include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "pictures/encode.hpp"
+#include "pictures/picture_file.hpp"
 #include "scene/files.hpp"
-#include "scene/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -53,12 +53,12 @@ Pictures find_all(const DisplayOptions& options, const PanelPattern& pattern, co
   Pictures out;
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(canonical_folder(options.images)))
-    if (entry.is_regular_file() && cv::haveImageReader(entry.path().string())) files.push_back(entry.path());
+    if (entry.is_regular_file() && names_picture(entry.path())) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   if (files.empty())
     throw InputError(options.images.string(), "holds no images", "name a folder of PNG or JPEG images");
   for (const auto& file : files) {
-    const cv::Mat image = read_picture(file, options.colours ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
+    const cv::Mat image = read_picture(file, options.colours ? PictureColours::colour : PictureColours::grey);
     if (image.cols != eye.width || image.rows != eye.height)
       throw InputError(file.string(),
                        "is " + std::to_string(image.cols) + " x " + std::to_string(image.rows) +
@@ -80,8 +80,7 @@ Pictures find_all(const DisplayOptions& options, const PanelPattern& pattern, co
 }
 
 void write_pattern(const DisplayOptions& options, const PanelPattern& pattern) {
-  std::vector<uchar> png;
-  cv::imencode(".png", draw_pattern(pattern), png);
+  const std::vector<std::uint8_t> png = encode_png(draw_pattern(pattern));
   write_file_atomically(options.pattern_out, {reinterpret_cast<const char*>(png.data()), png.size()});
   std::cout << options.pattern_out.string() << ": show it unscaled on the panel\n";
 }

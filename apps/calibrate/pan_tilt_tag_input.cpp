@@ -1,7 +1,6 @@
 #include "apps/calibrate/pan_tilt_tag_input.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <set>
 
 #include "apps/calibrate/lens_file.hpp"
@@ -14,7 +13,7 @@
 #include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
-#include "scene/picture_file.hpp"
+#include "pictures/picture_file.hpp"
 #include "session/run_recorder.hpp"
 
 namespace foresight {
@@ -39,7 +38,7 @@ struct Shot {
 };
 
 cv::Mat read_grey(const fs::path& file, const CameraModel& lens) {
-  const cv::Mat grey = read_picture(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+  const cv::Mat grey = read_picture(file, PictureColours::grey);
   if (grey.cols != lens.width || grey.rows != lens.height)
     throw InputError(file.string(),
                      "is of " + std::to_string(grey.cols) + "x" + std::to_string(grey.rows) + ", the lens of " +

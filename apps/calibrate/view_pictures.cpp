@@ -1,12 +1,11 @@
 #include "apps/calibrate/view_pictures.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "common/text.hpp"
-#include "scene/picture_file.hpp"
+#include "pictures/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -19,7 +18,7 @@ const cv::Scalar kFound(70, 200, 60), kError(60, 60, 240);
 }  // namespace
 
 cv::Mat draw_view(const std::filesystem::path& file, std::span<const ShownPoint> points) {
-  const cv::Mat whole = read_picture(file, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  const cv::Mat whole = read_picture(file, PictureColours::colour);
   const double scale = kWidth / static_cast<double>(whole.cols);
   cv::Mat out;
   cv::resize(whole, out, {kWidth, static_cast<int>(scale * whole.rows + 0.5)}, 0, 0,

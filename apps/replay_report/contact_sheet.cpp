@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "apps/replay_report/drawn_text.hpp"
 #include "common/atomic_file.hpp"
 #include "common/text.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight {
 namespace {
@@ -104,8 +104,7 @@ cv::Mat draw_contact_sheet(const std::string& title, std::span<const Instant> in
 
 void write_contact_sheet(const std::string& title, std::span<const Instant> instants,
                          const std::filesystem::path& file) {
-  std::vector<uchar> png;
-  cv::imencode(".png", draw_contact_sheet(title, instants), png);
+  const std::vector<std::uint8_t> png = encode_png(draw_contact_sheet(title, instants));
   write_file_atomically(file, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <string_view>
 
@@ -12,6 +11,7 @@
 #include "common/plot_data.hpp"
 #include "common/svg_plot.hpp"
 #include "common/text.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight {
 
@@ -37,8 +37,7 @@ std::string fill(std::string_view text, const Fields& fields) {
 }
 
 std::string image_tag(const cv::Mat& picture, const std::string& view, const std::string& alt) {
-  std::vector<uchar> jpeg;
-  cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, 88});
+  const std::vector<std::uint8_t> jpeg = encode_jpeg(picture, 88);
   return "<img data-view=\"" + view + "\" width=\"" + std::to_string(picture.cols) + "\" height=\"" +
          std::to_string(picture.rows) + "\" alt=\"" + escape_html(alt) + "\" src=\"" + data_uri("image/jpeg", jpeg) +
          "\">";

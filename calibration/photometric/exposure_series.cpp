@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <set>
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "pictures/picture_file.hpp"
 #include "scene/files.hpp"
-#include "scene/picture_file.hpp"
 #include "scene/text_table.hpp"
 
 namespace foresight {
@@ -69,15 +67,8 @@ class Exif {
   bool little_;
 };
 
-bool is_image(const fs::path& file) {
-  static const std::set<std::string> kEndings = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm", ".ppm"};
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return kEndings.contains(ending);
-}
-
 ExposedImage read_one(const fs::path& file, const std::map<std::string, double>& exposures) {
-  ExposedImage image{file.filename().string(), 0, read_picture(file, cv::IMREAD_UNCHANGED)};
+  ExposedImage image{file.filename().string(), 0, read_picture(file, PictureColours::as_stored)};
   if (image.pixels.depth() != CV_8U)
     throw InputError(file.string(), "is no 8-bit image", "give PNG or JPEG images of the camera itself");
   if (image.pixels.channels() == 4) cv::cvtColor(image.pixels, image.pixels, cv::COLOR_BGRA2BGR);
@@ -178,7 +169,7 @@ std::optional<double> exif_exposure(const fs::path& file) {
 std::vector<ExposedImage> read_series(const fs::path& folder, const std::map<std::string, double>& exposures) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(canonical_folder(folder)))
-    if (entry.is_regular_file() && is_image(entry.path())) files.push_back(entry.path());
+    if (entry.is_regular_file() && names_picture(entry.path())) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   if (files.empty()) throw InputError(folder.string(), "holds no images", "name a folder of PNG or JPEG images");
   std::vector<ExposedImage> series;

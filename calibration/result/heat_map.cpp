@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "common/statistics.hpp"
 #include "common/svg_plot.hpp"
 #include "common/text.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight {
 namespace {
@@ -50,8 +50,7 @@ std::string number(double v) {
 }
 
 std::string picture(const cv::Mat& colours, double x, double y, double width, double height) {
-  std::vector<uchar> png;
-  cv::imencode(".png", colours, png);
+  const std::vector<std::uint8_t> png = encode_png(colours);
   return "<image x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"" + number(width) + "\" height=\"" +
          number(height) + "\" preserveAspectRatio=\"none\" href=\"" + data_uri("image/png", png) + "\"/>";
 }

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "calibration/result/heat_map.hpp"
 #include "common/html_page.hpp"
 #include "common/svg_plot.hpp"
 #include "common/text.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight {
 namespace {
@@ -136,8 +136,7 @@ void HtmlReport::pictures(const std::vector<Picture>& pictures) {
   if (pictures.empty()) return;
   body_ += "<section class=\"pictures\">\n";
   for (const Picture& picture : pictures) {
-    std::vector<uchar> jpeg;
-    cv::imencode(".jpg", picture.bgr, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+    const std::vector<std::uint8_t> jpeg = encode_jpeg(picture.bgr, kQuality);
     body_ += "<figure><img alt=\"" + escape_html(picture.name) + "\" src=\"" + data_uri("image/jpeg", jpeg) +
              "\"><figcaption><b>" + escape_html(picture.name) + "</b> " + escape_html(picture.caption) +
              "</figcaption></figure>\n";

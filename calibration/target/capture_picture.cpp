@@ -1,11 +1,11 @@
 #include "calibration/target/capture_picture.hpp"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "common/atomic_file.hpp"
 #include "common/counted.hpp"
 #include "common/text.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight {
 namespace {
@@ -241,8 +241,7 @@ cv::Mat capture_picture(const CaptureMoment& moment) {
 }
 
 void write_picture(const std::filesystem::path& file, const cv::Mat& image) {
-  std::vector<uchar> bytes;
-  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1});
+  const std::vector<std::uint8_t> bytes = encode_png(image, 1);
   write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

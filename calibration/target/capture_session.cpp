@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/target/capture_picture.hpp"

@@ -7,7 +7,6 @@
 #include <cctype>
 #include <functional>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <thread>
 
 #include "calibration/target/view_names.hpp"
@@ -15,7 +14,7 @@
 #include "common/error.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
-#include "scene/picture_file.hpp"
+#include "pictures/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -23,14 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kBlurred = 0.5;  // of the median sharpness
-
-bool is_picture(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  static const std::vector<std::string> kKnown{".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".ppm", ".tif", ".tiff"};
-  return std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end();
-}
 
 /// "9.png" before "10.png": digits count as numbers.
 bool by_number(const fs::path& a, const fs::path& b) {
@@ -79,7 +70,7 @@ void for_all(std::size_t count, const std::function<void(std::size_t)>& work) {
 }
 
 cv::Mat read_grey(const fs::path& file) {
-  return read_picture(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+  return read_picture(file, PictureColours::grey);
 }
 
 std::vector<cv::Mat> some_images(const std::vector<fs::path>& files, std::size_t most) {
@@ -204,7 +195,7 @@ std::vector<fs::path> list_images(const fs::path& folder) {
   if (!fs::is_directory(where)) throw InputError(where.string(), "is no folder", "give a folder of images");
   for (const auto& entry : fs::directory_iterator(where)) {
     const bool wanted = !by_pattern || fnmatch(pattern.c_str(), entry.path().filename().c_str(), FNM_PERIOD) == 0;
-    if (wanted && is_picture(entry.path()) && entry.is_regular_file()) files.push_back(entry.path());
+    if (wanted && names_picture(entry.path()) && entry.is_regular_file()) files.push_back(entry.path());
   }
   if (files.empty())
     throw InputError(folder.string(), by_pattern ? "names no image" : "holds no image",

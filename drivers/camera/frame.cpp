@@ -1,11 +1,11 @@
 #include "drivers/camera/frame.hpp"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "pictures/decode.hpp"
 
 namespace foresight {
 namespace {
@@ -50,8 +50,8 @@ Conversion decode_jpeg(const CameraFrame& frame, cv::Mat& out) {
   if (bytes.size() < 4) return Conversion::truncated;
   if (bytes[0] != 0xFF || bytes[1] != 0xD8) return Conversion::damaged;
   if (!has_jpeg_end(bytes)) return Conversion::truncated;
-  const cv::Mat packed(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-  out = cv::imdecode(packed, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  const std::string_view packed(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  out = decode_picture(packed, PictureColours::colour).pixels;
   return out.cols == frame.width && out.rows == frame.height ? Conversion::ok : Conversion::damaged;
 }
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "pictures/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -56,8 +56,7 @@ ImageFolderCamera::ImageFolderCamera(std::string name, const std::filesystem::pa
 }
 
 void ImageFolderCamera::start() {
-  const cv::Mat first = cv::imread(files_.front().string(), cv::IMREAD_COLOR);
-  if (first.empty()) throw InputError(files_.front().string(), "not a readable image", "replace it");
+  const cv::Mat first = read_picture(files_.front(), PictureColours::colour);
   settings_ = {.width = first.cols,
                .height = first.rows,
                .rate = options_.rate,
@@ -98,7 +97,7 @@ CameraStatus ImageFolderCamera::wait_frame(Duration timeout, CameraFrame& out) n
   counters_.gaps += missed;
   cv::Mat image;
   try {
-    image = cv::imread(files_[index % files_.size()].string(), cv::IMREAD_COLOR);
+    image = read_picture(files_[index % files_.size()], PictureColours::colour);
   } catch (const std::exception&) {
     image.release();
   }

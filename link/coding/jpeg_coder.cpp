@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 
 #include "common/error.hpp"
-#include "scene/image_structure.hpp"
+#include "pictures/decode.hpp"
+#include "pictures/encode.hpp"
+#include "pictures/image_structure.hpp"
 
 namespace foresight {
 namespace {
@@ -20,12 +21,6 @@ constexpr QualityModel::Range kSteps{0, 45};
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality) {
-  std::vector<std::uint8_t> out;
-  cv::imencode(".jpg", picture, out, {cv::IMWRITE_JPEG_QUALITY, quality});
-  return out;
-}
-
 std::optional<cv::Mat> decode_jpeg(std::span<const std::uint8_t> bytes, cv::Size size, bool colour) {
   // The structure first: decoders fill with grey what a file lacks, and allocate what its header asks for.
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -35,8 +30,7 @@ std::optional<cv::Mat> decode_jpeg(std::span<const std::uint8_t> bytes, cv::Size
   } catch (const InputError&) {
     return std::nullopt;
   }
-  const cv::Mat all(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-  cv::Mat out = cv::imdecode(all, colour ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
+  cv::Mat out = decode_picture(text, colour ? PictureColours::colour : PictureColours::grey).pixels;
   if (out.size() != size) return std::nullopt;
   return out;
 }

@@ -6,8 +6,6 @@
 
 namespace foresight {
 
-/// `picture`: CV_8UC1 or CV_8UC3 (BGR). `quality`: 1 .. 100. Throws cv::Exception where the library refuses.
-std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality);
 /// Nothing where the bytes, which may be anything, are no whole JPEG of that size, in colour or not.
 std::optional<cv::Mat> decode_jpeg(std::span<const std::uint8_t> bytes, cv::Size size, bool colour);
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "link/coding/jpeg_coder.hpp"
 #include "link/dds/topics.hpp"
 #include "link/messages/message_types.hpp"
 #include "link/recording/line_recorder.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight::link {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "link/coding/jpeg_coder.hpp"
 #include "link/dds/topics.hpp"
+#include "pictures/encode.hpp"
 
 namespace foresight::link {
 namespace {

@@ -3,10 +3,10 @@
 #include <random>
 
 #include "described.hpp"
-#include "link/coding/jpeg_coder.hpp"
 #include "link/messages/pair_notes.hpp"
 #include "link/send_control/line_trial.hpp"
 #include "link/send_control/packets.hpp"
+#include "pictures/encode.hpp"
 #include "tests/link/random_message.hpp"
 
 namespace foresight::link::pair_intake_test {

@@ -1,6 +1,6 @@
 #include <opencv2/imgproc.hpp>
 
-#include "scene/image_structure.hpp"
+#include "pictures/image_structure.hpp"
 #include "scene/run_folder.hpp"
 #include "test_run.hpp"
 

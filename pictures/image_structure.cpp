@@ -1,4 +1,4 @@
-#include "scene/image_structure.hpp"
+#include "pictures/image_structure.hpp"
 
 #include <zlib.h>
 
