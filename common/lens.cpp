@@ -41,6 +41,32 @@ double equidistant_radius(const std::array<double, 8>& d, double theta) {
   return theta * (1 + t2 * (d[0] + t2 * (d[1] + t2 * (d[2] + t2 * d[3]))));
 }
 
+// Of Lens::radial().
+double radial_slope(const Lens::Parameters& p, double r) {
+  const double r2 = r * r;
+  const auto& d = p.d;
+  if (p.model == LensModel::equidistant) return 1 + r2 * (3 * d[0] + r2 * (5 * d[1] + r2 * (7 * d[2] + r2 * 9 * d[3])));
+  const double num = 1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4])), den = 1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7]));
+  const double num_slope = d[0] + r2 * (2 * d[1] + r2 * 3 * d[4]), den_slope = d[5] + r2 * (2 * d[6] + r2 * 3 * d[7]);
+  return (num * den + 2 * r2 * (num_slope * den - num * den_slope)) / (den * den);
+}
+
+// Where `radial`, which grows from 0 to `high`, is `wanted`: Newton's steps between bounds that close in; where one
+// would leave them, half way.
+template <typename Radial, typename Slope>
+double radius_at(double wanted, double high, const Radial& radial, const Slope& slope) {
+  double low = 0, r = std::min(wanted, high / 2);
+  for (int i = 0; i < 100 && high - low > 1e-16 * (1 + high); ++i) {
+    const double off = radial(r) - wanted;
+    (off < 0 ? low : high) = r;
+    double next = r - off / slope(r);
+    if (!(next >= low && next <= high)) next = (low + high) / 2;
+    if (std::abs(next - r) <= 4e-16 * (1 + r)) return next;
+    r = next;
+  }
+  return r;
+}
+
 }  // namespace
 
 std::string to_string(LensModel model) {
@@ -139,25 +165,21 @@ std::optional<Eigen::Vector2d> Lens::project(const Eigen::Vector3d& p_camera) co
 
 std::optional<Eigen::Vector3d> Lens::unproject(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d q((pixel.x() - p_.cx) / p_.fx, (pixel.y() - p_.cy) / p_.fy);
-  // The radial function grows strictly up to max_radius_, so bisection always finds the radius;
-  // Newton steps then add the tangential terms.
+  // The radial function grows strictly up to max_radius_, so its radius is always found; Newton steps then add the
+  // tangential terms.
   const double wanted = q.norm();
   if (!has_distortion_) {
     if (wanted > max_radius_) return std::nullopt;
     return Eigen::Vector3d(q.x(), q.y(), 1).normalized();
   }
-  double low = 0, high = max_radius_;
-  for (int i = 0; i < 100 && high - low > 1e-16 * (1 + high); ++i) {
-    const double mid = (low + high) / 2;
-    (radial(mid) < wanted ? low : high) = mid;
-  }
+  const double r = radius_at(
+      wanted, max_radius_, [this](double x) { return radial(x); }, [this](double x) { return radial_slope(p_, x); });
   if (p_.model == LensModel::equidistant) {
     if (wanted > radial(max_radius_)) return std::nullopt;
-    const double theta = (low + high) / 2;
     const Eigen::Vector2d direction = wanted > 1e-15 ? Eigen::Vector2d(q / wanted) : Eigen::Vector2d(0, 0);
-    return Eigen::Vector3d(direction.x() * std::sin(theta), direction.y() * std::sin(theta), std::cos(theta));
+    return Eigen::Vector3d(direction.x() * std::sin(r), direction.y() * std::sin(r), std::cos(r));
   }
-  Eigen::Vector2d n = wanted > 1e-15 ? Eigen::Vector2d(q * (low / wanted)) : q;
+  Eigen::Vector2d n = wanted > 1e-15 ? Eigen::Vector2d(q * (r / wanted)) : q;
   for (int i = 0; i < 20; ++i) {
     const Distorted at = distort(p_.d, n);
     const Eigen::Vector2d step = at.jacobian.inverse() * (q - at.point);
