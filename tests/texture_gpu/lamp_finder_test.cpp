@@ -27,8 +27,8 @@ struct Room {
   LampFinder finder{scene};
   std::mt19937 generator{7};
 
-  /// `exposure`: a factor on the values of image i.
-  void show(int first, int last, const std::vector<Lamp>& lamps, double noise = 0.01) {
+  /// `exposure`: a factor on the values of image i. `rays`: to so many points of each lamp.
+  void show(int first, int last, const std::vector<Lamp>& lamps, double noise = 0.01, int rays = 16) {
     std::normal_distribution<double> normal(1, noise);
     for (int i = first; i < last; ++i) {
       const SceneState state = state_at(*scene, i);
@@ -41,7 +41,7 @@ struct Room {
         if (n.dot(to_camera) < 0) n = -n;
         const auto between = caster.cast(p + 1e-6 * n, to_camera, 1e-5);
         Eigen::Vector3d light = Eigen::Vector3d::Ones();
-        for (const Lamp& lamp : lamps) light += lamp_light(lamp, caster, p, n, 16) - Eigen::Vector3d::Ones();
+        for (const Lamp& lamp : lamps) light += lamp_light(lamp, caster, p, n, rays) - Eigen::Vector3d::Ones();
         const double exposure = 0.2 + 0.02 * (i % 4);
         const Eigen::Vector3d value = exposure * normal(generator) * light.array().pow(1 / kResponse);
         values.push_back(between && between->t < 1 ? Eigen::Vector3f::Constant(-1)
@@ -80,7 +80,7 @@ TEST(LampFinder, SaysNothingWhereSeveralLampsAreAsBright) {
   std::vector<Lamp> lamps;
   for (int i = 0; i < 4; ++i) lamps.push_back({{std::cos(1.6 * i), std::sin(1.6 * i), 1.2}, 0.05, {1, 1, 1}});
   Room room;
-  room.show(0, 30, lamps);
+  room.show(0, 30, lamps, 0.01, 4);
   EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
 }
 
