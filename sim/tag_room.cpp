@@ -1,5 +1,6 @@
 #include "sim/tag_room.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -7,8 +8,9 @@
 namespace foresight::sim {
 namespace {
 
-constexpr int kRaysAlong = 3;  // along each side of a pixel
-constexpr double kBits = 8;    // of a tag36h11 across its black border
+constexpr int kRaysAlong = 3;     // along each side of a pixel
+constexpr double kFarAway = 1e9;  // metres
+constexpr double kBits = 8;       // of a tag36h11 across its black border
 constexpr double kBoardInk = 25, kBoardPaper = 225, kBoardTable = 120, kBoardWall = 150;
 
 Pose on_table(double x, double y, double turn) {
@@ -52,12 +54,27 @@ TagCorners TagRoom::corners() const {
   return out;
 }
 
+TagRoom::Place TagRoom::met(const Eigen::Vector3d& o, const Eigen::Vector3d& d) {
+  const double to_table = d.z() < 0 ? -o.z() / d.z() : kFarAway, to_wall = d.x() > 0 ? (0.6 - o.x()) / d.x() : kFarAway;
+  return {o + std::min(to_table, to_wall) * d, to_table < to_wall, std::min(to_table, to_wall) >= kFarAway};
+}
+
+double TagRoom::unprinted(const Place& place) {
+  if (place.nowhere) return 90;
+  const double a = place.on_table ? place.p.x() : place.p.z();
+  return (place.on_table ? kBoardTable : kBoardWall) + 12 * std::sin(9 * a + 3 * std::sin(5 * place.p.y()));
+}
+
+bool TagRoom::is_near_a_tag(const Place& place, double within) const {
+  return std::ranges::any_of(sheets_, [&](const Sheet& sheet) {
+    return (place.p - sheet.tag.T_world_tag.translation()).norm() < sheet.tag.size_m + within;
+  });
+}
+
 double TagRoom::grey(const Eigen::Vector3d& o, const Eigen::Vector3d& d) const {
-  const double to_table = d.z() < 0 ? -o.z() / d.z() : 1e9, to_wall = d.x() > 0 ? (0.6 - o.x()) / d.x() : 1e9;
-  const bool table = to_table < to_wall;
-  const double t = std::min(to_table, to_wall);
-  if (t >= 1e9) return 90;
-  const Eigen::Vector3d p = o + t * d;
+  const Place place = met(o, d);
+  if (place.nowhere) return unprinted(place);
+  const Eigen::Vector3d& p = place.p;
   for (const Sheet& sheet : sheets_) {
     if ((p - sheet.tag.T_world_tag.translation()).squaredNorm() > sheet.tag.size_m * sheet.tag.size_m) continue;
     const Eigen::Vector3d at = sheet.T_tag_world * p;
@@ -68,8 +85,7 @@ double TagRoom::grey(const Eigen::Vector3d& o, const Eigen::Vector3d& d) const {
     if (u >= 0 && v >= 0 && u < sheet.bits.cols && v < sheet.bits.rows)
       return sheet.bits.at<std::uint8_t>(v, u) ? kBoardPaper : kBoardInk;
   }
-  const double a = table ? p.x() : p.z();
-  return (table ? kBoardTable : kBoardWall) + 12 * std::sin(9 * a + 3 * std::sin(5 * p.y()));
+  return unprinted(place);
 }
 
 cv::Mat TagRoom::corner_rays(const Lens& lens) {
@@ -95,6 +111,15 @@ cv::Mat TagRoom::picture(const cv::Mat& rays, const Pose& T_world_camera, double
     for (int u = 0; u < out.cols; ++u) {
       // The lens is linear enough within a pixel.
       const Eigen::Vector3d a = ray(u, v), across = ray(u + 1, v) - a, down = ray(u, v + 1) - a;
+      const Place middle = met(origin, a + 0.5 * across + 0.5 * down);
+      double spread = 0;
+      for (const auto& corner :
+           {a, Eigen::Vector3d(a + across), Eigen::Vector3d(a + down), Eigen::Vector3d(a + across + down)})
+        spread = std::max(spread, (met(origin, corner).p - middle.p).norm());
+      if (!is_near_a_tag(middle, spread)) {  // table and wall change little within a pixel
+        out.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(unprinted(middle) + normal(random));
+        continue;
+      }
       double sum = 0;
       for (int k = 0; k < kRaysAlong * kRaysAlong; ++k)
         sum +=

@@ -40,6 +40,14 @@ class TagRoom {
     Pose T_tag_world;
     cv::Mat bits;  // CV_8UC1, one pixel a bit, with the white border
   };
+  /// What a ray meets of table and wall.
+  struct Place {
+    Eigen::Vector3d p;
+    bool on_table = false, nowhere = false;
+  };
+  static Place met(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+  static double unprinted(const Place& place);
+  bool is_near_a_tag(const Place& place, double within) const;
   double grey(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
   std::vector<Sheet> sheets_;
