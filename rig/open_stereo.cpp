@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "calibration/registration/calibrated_head.hpp"
@@ -30,6 +31,12 @@ std::unique_ptr<Camera> make_mock_camera(Side side, const CameraConfig& config,
   return camera;
 }
 
+/// How much smaller images are than those of 640 px, for which the lab is made: from half of that it is made coarser.
+double coarser_for(const StereoConfig& config) {
+  const CameraSettings& s = config.camera(Side::left).settings;
+  return std::clamp(640.0 / std::max(s.width, s.height), 2.0, 8.0);
+}
+
 }  // namespace
 
 MockWorld mock_world(const std::optional<fs::path>& tags) {
@@ -38,8 +45,9 @@ MockWorld mock_world(const std::optional<fs::path>& tags) {
   return out;
 }
 
-std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world) {
+std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world, double texel) {
   sim::LiveLab::Options lab;
+  lab.texel = texel;
   lab.hidden = world.hidden;
   lab.prints = world.prints;
   lab.board = world.board;
@@ -78,13 +86,14 @@ sim::MockCameraOptions mock_options(const StereoConfig& config) {
   if (right.calibration && right.calibration->T_left_right)
     options.lenses.T_left_right = *right.calibration->T_left_right;
   options.rate = config.camera(Side::left).settings.rate;
+  options.light_coarser = 2 * coarser_for(config);
   return options;
 }
 
 OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, Clock& clock, const MockWorld& world) {
   OpenStereo out;
   if (config.mock()) {
-    const auto lab = mock_lab(world);
+    const auto lab = mock_lab(world, 0.0005 * coarser_for(config));
     sim::MockCameraOptions options = mock_options(config);
     if (world.physics) {
       out.physics = std::make_shared<sim::PhysicalLab>(lab, shafts, clock.now(), *world.physics);

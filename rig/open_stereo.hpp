@@ -36,16 +36,17 @@ struct MockWorld {
 /// what read_tag_map() and sim::tag_prints() do.
 MockWorld mock_world(const std::optional<std::filesystem::path>& tags);
 
-/// The world itself, not lit: for who wants to know what stands in it. Throws what sim::LiveLab does, and InputError
-/// where physics is wanted of a world without the lab's things.
-std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world);
+/// The world itself, not lit: for who wants to know what stands in it. `texel`: metres, of the finest pictures on its
+/// surfaces, which take half a second to paint where cameras look at them. Throws what sim::LiveLab does, and
+/// InputError where physics is wanted of a world without the lab's things.
+std::shared_ptr<const sim::LiveLab> mock_lab(const MockWorld& world, double texel = 0.02);
 
 /// The same description with the mock lab's cameras in place of its own: size, rate, exposure and lenses stay. Throws
 /// InputError where these cannot be mock ones (two sizes, an odd width).
 StereoConfig as_mock(StereoConfig config);
 
 /// What open_stereo() gives mock cameras of this description: lenses (the usual ones of `foresight synth` where it has
-/// none), the right one's place, the rate.
+/// none), the right one's place, the rate; light as fine as images of that size can show.
 sim::MockCameraOptions mock_options(const StereoConfig& config);
 
 /// `shafts` is asked by mock cameras only (MockStereo). Blocks some seconds for these: their world is lit. Real

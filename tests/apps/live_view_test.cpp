@@ -34,16 +34,6 @@ std::set<std::string> keys_of(const json& report) {
 
 class LiveView : public testing::TestWithParam<const char*> {
  protected:
-  /// With small pictures: what is tested is not the renderer.
-  std::string rig(const std::string& name) const {
-    std::string text = text_of(config(name));
-    for (const auto& [what, instead] :
-         {std::pair<std::string, std::string>{"[320, 240]", "[160, 120]"}, {"rate_hz: 10", "rate_hz: 5"}})
-      for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + instead.size()))
-        text.replace(at, what.size(), instead);
-    fs::copy_file(config("arm.urdf"), folder_ / "arm.urdf", fs::copy_options::overwrite_existing);
-    return folder_.write("rig.yaml", text).string();
-  }
   std::string motion() const {
     return folder_
         .write("motion.csv",
@@ -52,7 +42,7 @@ class LiveView : public testing::TestWithParam<const char*> {
   }
   Outcome view(const std::string& out, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words{"robot",
-                                   rig(GetParam()),
+                                   small_rig(GetParam(), folder_),
                                    "--stepped",
                                    "--home",
                                    "--follow",
@@ -86,20 +76,17 @@ TEST_P(LiveView, RepeatsBitForBitAndReplacesAnEarlierView) {
 }
 
 // Against what the mock cameras truly see, while arm and head move.
-TEST_P(LiveView, ShowsThePresentFromThePast) {
+TEST_P(LiveView, ShowsThePresentFromThePastAndReportsAsReplayDoes) {
   ASSERT_EQ(view("out", {"--delay-ms", "400"}).exit_code, 0);
-  const json summary = read_json(folder_ / "out.json").at("summary");
+  const json report = read_json(folder_ / "out.json"), summary = report.at("summary");
   EXPECT_GT(summary.at("predicted").at("psnr_db").at("mean").get<double>(),
             summary.at("delayed").at("psnr_db").at("mean").get<double>() + 3)
       << summary.dump(1);
   EXPECT_GT(summary.at("coverage").at("seen").get<double>(), 0.5);
-}
 
-TEST_P(LiveView, ReportsAsReplayDoes) {
-  ASSERT_EQ(view("out").exit_code, 0);
   const SmallRun run;
   ASSERT_EQ(run_program({"replay", run.path(), "--delay-ms", "40", "--report", folder_ / "replay.json"}).exit_code, 0);
-  EXPECT_EQ(keys_of(read_json(folder_ / "out.json")), keys_of(read_json(folder_ / "replay.json")));
+  EXPECT_EQ(keys_of(report), keys_of(read_json(folder_ / "replay.json")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, LiveView, testing::Values("minerva.yaml", "cia402.yaml"),

@@ -1,8 +1,6 @@
 // `foresight operator`: a program at the seat, both sides in stepped time; and the seat started wrong.
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <thread>
 
 #include "tests/apps/program.hpp"
@@ -12,8 +10,9 @@
 namespace foresight::operator_test {
 namespace {
 
-std::string rig_file() {
-  return (source_folder() / "configs" / "minerva.yaml").string();
+std::string rig_file(int rate_hz = 10) {
+  static const TempFolder folder;
+  return small_rig("minerva.yaml", folder, "160, 120", rate_hz);
 }
 
 // What is shown is what the camera will see, not what it saw.
@@ -51,22 +50,12 @@ TEST(Operator, ThatTheViewIsPoorIsNoticedAsImagesCome) {
   EXPECT_GT(read_json(report)["fallback_share"].get<double>(), 0.7);
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// Over a line of 300 ms each way, by a program that knows what comes over it and the model, and nothing else. With five
-// images a second: drawing them is most of the work.
+// Over a line of 300 ms each way, by a program that knows what comes over it and the model, and nothing else.
 TEST(Operator, ABrickIsPickedUpAndPutIntoTheTray) {
   const TempFolder folder;
-  std::string rig = text_of(rig_file());
-  for (auto at = rig.find("rate_hz: 10"); at != std::string::npos; at = rig.find("rate_hz: 10"))
-    rig.replace(at, 11, "rate_hz: 5");
-  folder.write("arm.urdf", text_of(source_folder() / "configs/arm.urdf"));
   const auto report = folder.path() / "report.json";
-  const Outcome result = run_program({"operator", folder.write("rig.yaml", rig), "--scripted", "pick", "--delay-ms",
-                                      "300", "--pictures-hz", "0.5", "--no-zero-delay", "--report", report});
+  const Outcome result = run_program({"operator", rig_file(5), "--scripted", "pick", "--delay-ms", "300",
+                                      "--pictures-hz", "0.5", "--no-zero-delay", "--report", report});
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
   const nlohmann::json all = read_json(report);
   EXPECT_TRUE(all["succeeded"]);

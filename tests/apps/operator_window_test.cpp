@@ -7,11 +7,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "common/read_file.hpp"
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 #include "tests/link/child.hpp"
-#include "tests/support/folders.hpp"
 
 namespace foresight::operator_window_test {
 namespace {
@@ -58,19 +56,12 @@ class VirtualScreen {
   std::string name_;
 };
 
-/// The lab's rig with few pictures a second, on a domain that stays on this host.
-std::filesystem::path quiet_rig(const std::filesystem::path& folder) {
-  const auto configs = source_folder() / "configs";
-  std::string text = read_file(configs / "minerva.yaml");
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
-      text.replace(at, from.size(), to);
-  };
-  replace("urdf: arm.urdf", "urdf: " + (configs / "arm.urdf").string());
-  replace("rate_hz: 10", "rate_hz: 4");
-  text += "link: {interface: lo, domain: " + std::to_string(1 + ::getpid() % 99) + ", round_trip_s: 2}\n";
-  std::ofstream(folder / "rig.yaml") << text;
-  return folder / "rig.yaml";
+/// The lab's rig with few and small pictures, on a domain that stays on this host.
+std::string quiet_rig(const TempFolder& folder) {
+  const std::string rig = small_rig("minerva.yaml", folder, "160, 120", 4);
+  std::ofstream(rig, std::ios::app) << "link: {interface: lo, domain: " << 1 + ::getpid() % 99
+                                    << ", round_trip_s: 2}\n";
+  return rig;
 }
 
 class OperatorWindow : public testing::Test {
@@ -80,7 +71,7 @@ class OperatorWindow : public testing::Test {
       if (!there_is(program)) GTEST_SKIP() << "no " << program << " here; scripts/setup installs it";
     screen_.emplace();
     ASSERT_NE(screen_->name(), "") << "Xvfb does not start";
-    rig_ = quiet_rig(folder_.path());
+    rig_ = quiet_rig(folder_);
     robot_.emplace(std::vector<std::string>{"robot", rig_, "--mock", "--serve"});
     ProgramOptions options;
     options.environment["DISPLAY"] = screen_->name();
@@ -171,7 +162,7 @@ class OperatorWindow : public testing::Test {
 
   TempFolder folder_;
   std::optional<VirtualScreen> screen_;
-  std::filesystem::path rig_;
+  std::string rig_;
   std::optional<Program> robot_, seat_;
   std::size_t read_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "tests/apps/program.hpp"
+#include "tests/apps/runs.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
@@ -20,6 +21,10 @@ std::string config(const std::string& name) {
   return (source_folder() / "configs" / name).string();
 }
 
+std::string with_small_cameras(const std::string& name, const TempFolder& folder) {
+  return small_rig(name, folder, "80, 60");
+}
+
 class Robot : public testing::TestWithParam<const char*> {
  protected:
   std::string motion() const {
@@ -30,8 +35,8 @@ class Robot : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(Robot, FollowsAFileOnMockDrives) {
-  const Outcome out = run_program({"robot", config(GetParam()), "--stepped", "--home", "--follow", motion(), "--log",
-                                   (folder_ / "s.log").string()});
+  const Outcome out = run_program({"robot", with_small_cameras(GetParam(), folder_), "--stepped", "--home", "--follow",
+                                   motion(), "--log", (folder_ / "s.log").string()});
   EXPECT_EQ(out.exit_code, 0) << out.err << out.out;
   EXPECT_THAT(out.err, HasSubstr("follow: done"));
   EXPECT_GT(std::filesystem::file_size(folder_ / "s-arm.log"), 100'000u);
@@ -40,7 +45,8 @@ TEST_P(Robot, FollowsAFileOnMockDrives) {
 
 TEST_P(Robot, DoesNotHomeWithoutConsent) {
   if (std::string(GetParam()) == "cia402.yaml") GTEST_SKIP() << "its encoders are absolute: nothing is to be homed";
-  const Outcome out = run_program({"robot", config(GetParam()), "--stepped", "--follow", motion()});
+  const Outcome out =
+      run_program({"robot", with_small_cameras(GetParam(), folder_), "--stepped", "--follow", motion()});
   EXPECT_EQ(out.exit_code, 1);
   EXPECT_THAT(out.err, HasSubstr("give --home"));
 }
@@ -81,23 +87,11 @@ TEST_P(Robot, StopsUnderControlWhenItIsTerminated) {
 }
 
 TEST_P(Robot, DoctorFindsItsDrives) {
-  const Outcome out = run_program({"doctor", config(GetParam())});
+  const Outcome out = run_program({"doctor", with_small_cameras(GetParam(), folder_)});
   EXPECT_EQ(out.exit_code, 0) << out.out;
   EXPECT_THAT(out.out,
               testing::ContainsRegex("drive shoulder_yaw +answers as node [0-9]+ .*product: 0x.*, serial: [0-9]+"));
   EXPECT_THAT(out.out, HasSubstr("its drives will fill"));
-}
-
-/// The rig with small pictures, in `folder`: what is tested is not the renderer.
-std::string with_small_cameras(const std::string& name, const TempFolder& folder) {
-  std::ifstream stream(config(name));
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  for (const auto& [what, instead] :
-       {std::pair<std::string, std::string>{"[320, 240]", "[80, 60]"}, {"rate_hz: 10", "rate_hz: 5"}})
-    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + instead.size()))
-      text.replace(at, what.size(), instead);
-  std::filesystem::copy_file(config("arm.urdf"), folder / "arm.urdf");
-  return folder.write("rig.yaml", text).string();
 }
 
 TEST_P(Robot, RecordsWhatItsMockCamerasSee) {

@@ -5,7 +5,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "common/read_file.hpp"
 #include "tests/apps/program.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight {
 namespace fs = std::filesystem;
@@ -81,6 +83,17 @@ LoopedRun::LoopedRun(int images, double interval_s) {
   write("rgb.txt", list);
   write("trajectory.txt", trajectory);
   write("nodes.txt", nodes);
+}
+
+std::string small_rig(const std::string& name, const TempFolder& folder, const std::string& size, int rate_hz) {
+  const fs::path configs = source_folder() / "configs";
+  std::string text = read_file(configs / name);
+  for (const auto& [what, instead] : {std::pair<std::string, std::string>{"[320, 240]", "[" + size + "]"},
+                                      {"rate_hz: 10", "rate_hz: " + std::to_string(rate_hz)}})
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + instead.size()))
+      text.replace(at, what.size(), instead);
+  fs::copy_file(configs / "arm.urdf", folder / "arm.urdf", fs::copy_options::overwrite_existing);
+  return folder.write(name, text).string();
 }
 
 nlohmann::json read_json(const fs::path& file) {

@@ -26,6 +26,12 @@ class LoopedRun : public TempFolder {
   LoopedRun(int images, double interval_s);
 };
 
+/// The rig configs/NAME with images of `size` ("160, 120"), `rate_hz` of them a second: drawing them, and lighting and
+/// painting the lab as finely as they show it, is most of the work and not what is tested. Written into `folder` with
+/// what it refers to.
+std::string small_rig(const std::string& name, const TempFolder& folder, const std::string& size = "160, 120",
+                      int rate_hz = 5);
+
 nlohmann::json read_json(const std::filesystem::path& file);
 
 /// `report` without what differs from run to run: times.

@@ -28,12 +28,16 @@ struct Outcome {
   std::vector<Asked> asked;
 };
 
-/// A pick that is cut off after `seconds`, with few images.
+/// A pick that is cut off after `seconds`, with few and small images.
 Outcome try_pick(double seconds, LinkCoding coding, std::function<cv::Mat(const cv::Mat&)> truth) {
   SeatTrialOptions options;
   options.rig_file = source_folder() / "configs" / "minerva.yaml";
   Rig rig = read_rig(options.rig_file);
-  for (CameraConfig& camera : rig.cameras->cameras) camera.settings.rate = 5;
+  for (CameraConfig& camera : rig.cameras->cameras) {
+    camera.settings.rate = 5;
+    camera.settings.width = 160;
+    camera.settings.height = 120;
+  }
   rig.link.coding = coding;
   options.line.up.delay = options.line.down.delay = 200ms;
   // States at their full rate would fill it, and be seconds old: no press would ever be answered.
