@@ -74,7 +74,7 @@ TEST(CommandLine, SynthRefusesWhatItCannotWrite) {
 
 TEST(CommandLine, SynthStoppedByCtrlCLeavesNothing) {
   const TempFolder folder;
-  Program program({"synth", folder / "out", "--frames", "2000"});
+  Program program({"synth", folder / "out", "--frames", "10000", "--size", "64x48"});
   const auto begun = [&folder] {
     for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
       if (entry.path().string().find(".partial-") != std::string::npos) return true;

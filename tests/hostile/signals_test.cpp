@@ -58,7 +58,7 @@ TEST_P(Signals, WhatPollsEndsItselfAndLeavesNothing) {
       if (entry.is_directory() && entry.path().filename().string().find(".partial-") != std::string::npos) return true;
     return false;
   };
-  const Outcome outcome = stop("synth", {{"--frames", {"100000"}}}, works);
+  const Outcome outcome = stop("synth", {{"--frames", {"10000"}}}, works);
   EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
   EXPECT_THAT(outcome.last_line(), HasSubstr("nothing was written"));
   EXPECT_EQ(left(), 0U);
@@ -93,7 +93,7 @@ TEST(SignalsOff, NohupStaysInForce) {
 TEST(TwoPrograms, OneFolderHasOneWriter) {
   const Victim victim;
   fs::create_directory(victim / "new");
-  const auto endless = victim.line("synth", {{"--frames", {"100000"}}});
+  const auto endless = victim.line("synth", {{"--frames", {"10000"}}});
   Program first(endless);
   while (first.running() && fs::is_empty(victim / "new")) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   const Outcome second = run_program(victim.line("record", {{"OUT", {"@new/synth"}}}));
