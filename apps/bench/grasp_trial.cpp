@@ -1,5 +1,6 @@
 #include "apps/bench/grasp_trial.hpp"
 
+#include <array>
 #include <deque>
 #include <numbers>
 #include <random>
@@ -19,13 +20,13 @@ constexpr double kDepth = 0.037;  // m: tips above the brick's bottom
 constexpr double kOpen = 0.038, kClosed = 0.016, kAbove = 0.14;
 constexpr double kLook = 2.5, kLookAgain = 2.5;  // s before and after the script
 constexpr double kVisible = 0.01;                // m that one sees
-constexpr double kAllowed = 0.3 + 1e-6;          // s, beyond the delay; instants are rounded to ns, each by itself
 constexpr double kBlend = 0.3;                   // s in which a correction is shown
 constexpr double kLifted = 0.005, kMissed = 0.03, kStill = 2e-4;
 constexpr int kStillPictures = 6;
 enum Stop : std::size_t { above, down, closed, lifted, carried, lowered, opened, left };
 
-enum class Accident { none, slippery, weak, moved, lost };
+enum class Accident : std::size_t { none, slippery, weak, moved, lost };
+constexpr std::array<const char*, 5> kAccidents = {"none", "slippery", "weak", "moved", "lost"};
 
 Pose on_mat(double x, double y, double yaw) {
   Pose out = Pose::Identity();
@@ -51,7 +52,7 @@ struct Run {
   bool accident_done = false;
   std::optional<RobotTime> visible, noticed;
   std::optional<bool> failed;
-  int moved = 0;
+  int moved = 0, moved_before_visible = 0;
   std::vector<std::pair<RobotTime, double>> errors;  // while carried
 };
 
@@ -61,7 +62,7 @@ class GraspTrial {
       : rig_(rig),
         options_(options),
         kinematics_(arm_chain(*rig.robot, kLink, "", rig.name)),
-        random_(options.seed),
+        number_(options.first_run - 1),
         lab_(std::make_shared<const sim::LiveLab>(
             sim::LiveLab::Options{.texel = 0.02, .task = true, .loose = sim::lab_thing_names()})),
         model_(sim::model_of(lab_->lab(), lab_->modelled_rest())) {
@@ -100,7 +101,7 @@ class GraspTrial {
       end_run();
   }
 
-  bool over() const { return count_ > options_.runs; }
+  bool over() const { return number_ >= options_.first_run + options_.runs; }
   GraspTrialFigures take() { return std::move(figures_); }
 
  private:
@@ -131,11 +132,13 @@ class GraspTrial {
 
   void begin_run(const RobotDevices& devices, RobotTime now, const PredictedRobot& robot) {
     run_.emplace();
+    std::seed_seq seed{options_.seed, static_cast<unsigned>(number_)};
+    random_.seed(seed);
     run_->begin = now;
     run_->start = any_place();
     run_->goal = any_place();
-    constexpr Accident kAccidents[] = {Accident::slippery, Accident::weak, Accident::moved, Accident::lost};
-    if (uniform(0, 1) < options_.failing) run_->accident = kAccidents[random_() % std::size(kAccidents)];
+    if (uniform(0, 1) < options_.failing)
+      run_->accident = static_cast<Accident>(1 + random_() % (kAccidents.size() - 1));
     sim::PhysicsOptions physics;
     physics.hidden = {static_cast<unsigned>(random_()), 0.2, 0.2, 0.003, 0.03};
     physics.jaws = {kFinger};
@@ -210,6 +213,7 @@ class GraspTrial {
       };
       if (run_->things->correct(looks_.front().sighting, &joints) != SightingResult::moved || !run_->path) continue;
       ++run_->moved;
+      if (!run_->visible) ++run_->moved_before_visible;
       if (run_->visible && !run_->noticed) run_->noticed = now;
     }
   }
@@ -268,35 +272,35 @@ class GraspTrial {
     if (!rests_since_) return;
     const double seen_after = options_.delay + 2 / figures_.sighting_hz + kBlend;
     const bool seen = picture.drawn >= *rests_since_ + seconds(seen_after);
-    if (count_ > 0) (seen ? figures_.rest : figures_.unseen).push_back(error);
+    if (judged()) (seen ? figures_.rest : figures_.unseen).push_back(error);
   }
 
   void end_run() {
+    GraspRun out;
+    out.number = number_;
+    out.accident = kAccidents[static_cast<std::size_t>(run_->accident)];
     const bool missed = (last_truth_ - run_->goal.translation()).head<2>().norm() > kMissed;
-    const bool failed = run_->failed.value_or(true) || missed;
-    if (count_ > 0) {  // the drives were learnt in the first
-      ++figures_.runs;
+    out.failed = run_->failed.value_or(true) || missed;
+    if (run_->visible) out.visible = to_seconds(*run_->visible - run_->path_begin);
+    if (run_->noticed) out.lateness = to_seconds(*run_->noticed - *run_->visible) - options_.delay;
+    out.put_elsewhere = run_->moved;
+    out.before_visible = run_->moved_before_visible;
+    if (judged()) {
       for (const auto& [instant, error] : run_->errors)
-        if (!failed || !run_->visible || instant < *run_->visible) figures_.carried.push_back(error);
-      if (failed) {
-        ++figures_.failed;
-        figures_.never_off += !run_->visible;
-        if (run_->visible && run_->noticed) {
-          figures_.lateness.push_back(to_seconds(*run_->noticed - *run_->visible) - options_.delay);
-          figures_.noticed += figures_.lateness.back() <= kAllowed ? 1 : 0;
-        }
-      } else {
-        figures_.false_alarms += run_->moved;
-      }
+        if (!out.failed || !run_->visible || instant < *run_->visible) figures_.carried.push_back(error);
+      figures_.runs.push_back(out);
     }
-    ++count_;
+    ++number_;
     run_.reset();
   }
+  /// The drives are learnt in the first.
+  bool judged() const { return number_ >= options_.first_run; }
 
   const Rig& rig_;
   GraspTrialOptions options_;
   InverseKinematics kinematics_;
   std::mt19937_64 random_;
+  int number_;
   std::shared_ptr<const sim::LiveLab> lab_;
   SceneModel model_;
   std::vector<bool> driven_;
@@ -305,7 +309,6 @@ class GraspTrial {
   GraspTrialFigures figures_;
   std::optional<JointValues> asked_;
   double t_ = 0;
-  int count_ = 0;
   std::optional<Run> run_;
   std::deque<Picture> shown_;
   std::deque<Look> looks_;

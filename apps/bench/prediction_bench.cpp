@@ -144,6 +144,14 @@ void add_grasp(Command& prediction, std::function<int()>& action) {
   command->add_option("--runs", options->runs, "Bricks to grasp, carry and set down")
       ->check(from_to(1, 10'000))
       ->capture_default_str();
+  command
+      ->add_option("--first-run", options->first_run,
+                   "Number of the first: a run is drawn from its number and the seed, and can so be repeated alone")
+      ->check(from_to(1, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--failing", options->failing, "Share of runs in which something goes wrong")
+      ->check(from_to(0, 1))
+      ->capture_default_str();
   command->add_option("--delay-ms", options->delay_ms, "Of the line, each way")
       ->check(from_to(0, 1400))
       ->capture_default_str();
