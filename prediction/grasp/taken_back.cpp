@@ -23,7 +23,7 @@ bool ThingFuture::is_in_hand(Thing& thing, const ThingSighting& sighting, const 
   if (held == thing.spells.rend()) return false;
   const Pose T_grip_thing = world_->grip_frame(held->jaw, joints).inverse(Eigen::Isometry) * sighting.T_world_thing;
   if (!thing.seen.empty() && sighting.captured <= thing.seen.back().captured) return false;
-  thing.seen.push_back({sighting.captured, sighting.T_world_thing, T_grip_thing});
+  thing.seen.push_back({sighting.captured, sighting.T_world_thing, T_grip_thing, 0});
   while (to_seconds(sighting.captured - thing.seen.front().captured) > kWatched) thing.seen.pop_front();
   if (thing.spells.back().kind == Kind::carried) return false;
   if ((T_grip_thing.translation() - held->T.translation()).norm() > kAsBefore) return false;

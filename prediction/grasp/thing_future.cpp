@@ -17,6 +17,8 @@ constexpr double kGate = 4;           // sigmas
 constexpr double kGateTurned = 0.5;   // rad that nothing contradicts below
 constexpr double kSamePlace = 0.006;  // m: two sightings that mean the same place
 constexpr double kNewDoubt = 0.02;    // s between doubts that count
+constexpr double kFarOff = 2;         // gates: no noise, whatever the place
+constexpr double kFalling = 2;        // m/s: things move no faster that fell off the table or were taken away
 constexpr std::size_t kDoubtsInMotion = 3, kAbsences = 3;
 constexpr double kAbsenceTime = 1;                 // s
 constexpr double kLongestGap = 1;                  // s
@@ -246,18 +248,26 @@ SightingResult ThingFuture::correct(const ThingSighting& sighting, const JointPo
     return SightingResult::in_motion;
   }
   const Pose expected = spell->kind == Kind::carried ? T_world_grip * spell->T : spell->T;
-  if (agree(thing, *spell, expected, sighting, T_world_grip)) return SightingResult::taken;
-  return contradict(thing, *spell, sighting, T_world_grip);
+  const double off = gates_off(*spell, expected, sighting);
+  if (off > 1) return contradict(thing, *spell, sighting, T_world_grip, off);
+  agree(thing, *spell, expected, sighting, T_world_grip);
+  return SightingResult::taken;
+}
+
+/// By how much it is elsewhere, in place or in rotation: more than 1 contradicts.
+double ThingFuture::gates_off(const Spell& spell, const Pose& expected, const ThingSighting& sighting) const {
+  const Vector6 off = pose_difference(expected, sighting.T_world_thing);
+  const double sigma = std::sqrt(spell.variance + sighting.sigma * sighting.sigma);
+  const double sigma_rad = std::sqrt(spell.variance_rad + sighting.sigma_rad * sighting.sigma_rad);
+  return std::max(off.head<3>().norm() / std::max(options_.least_gate, kGate * sigma),
+                  off.tail<3>().norm() / std::max(kGateTurned, kGate * sigma_rad));
 }
 
 /// Kalman's filter of the spell's one unknown.
-bool ThingFuture::agree(Thing& thing, Spell& spell, const Pose& expected, const ThingSighting& sighting,
+void ThingFuture::agree(Thing& thing, Spell& spell, const Pose& expected, const ThingSighting& sighting,
                         const Pose& T_world_grip) {
   const Vector6 off = pose_difference(expected, sighting.T_world_thing);
   const double r = sighting.sigma * sighting.sigma, r_rad = sighting.sigma_rad * sighting.sigma_rad;
-  const double gate = std::max(options_.least_gate, kGate * std::sqrt(spell.variance + r));
-  const double gate_rad = std::max(kGateTurned, kGate * std::sqrt(spell.variance_rad + r_rad));
-  if (off.head<3>().norm() > gate || off.tail<3>().norm() > gate_rad) return false;
   thing.doubts.clear();
   thing.absences.clear();
   const double gain = spell.variance / (spell.variance + r),
@@ -271,29 +281,31 @@ bool ThingFuture::agree(Thing& thing, Spell& spell, const Pose& expected, const 
   const Eigen::Vector3d turn = gain_rad * off.tail<3>();
   if (turn.norm() > 0) better.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * expected.linear();
   spell.T = spell.kind == Kind::carried ? Pose(inverse(T_world_grip) * better) : better;
-  if (&spell != &thing.spells.back()) return true;
+  if (&spell != &thing.spells.back()) return;
   const Pose before = model_pose(thing);
   const Pose now = spell.kind == Kind::carried
                        ? Pose(world_->grip_frame(spell.jaw, world_->with_jaws(joints_now())) * spell.T)
                        : spell.T;
   world_->rest(thing.node, now);
   show_evenly(thing, before, now);
-  return true;
 }
 
-/// Once may be a mistake. Twice away from the hand is lost; twice in one place is where the thing is; what should be at
-/// rest and is seen in motion has to be seen a third time.
+/// Once may be a mistake. Twice away from the hand is lost; twice in one place is where the thing is; so is twice far
+/// off, on a way that a thing can have gone in between. What is seen otherwise has to be seen a third time.
 SightingResult ThingFuture::contradict(Thing& thing, const Spell& spell, const ThingSighting& sighting,
-                                       const Pose& T_world_grip) {
+                                       const Pose& T_world_grip, double gates_off) {
   if (!thing.doubts.empty() && to_seconds(sighting.captured - thing.doubts.back().captured) < kNewDoubt)
     return SightingResult::doubted;
-  const Doubt doubt{sighting.captured, sighting.T_world_thing, inverse(T_world_grip) * sighting.T_world_thing};
-  thing.doubts.push_back(doubt);
+  thing.doubts.push_back(
+      {sighting.captured, sighting.T_world_thing, inverse(T_world_grip) * sighting.T_world_thing, gates_off});
   if (thing.doubts.size() < 2) return SightingResult::doubted;
-  const Doubt& before = thing.doubts[thing.doubts.size() - 2];
+  const Doubt &doubt = thing.doubts.back(), &before = thing.doubts[thing.doubts.size() - 2];
+  const double way = (doubt.T_world_thing.translation() - before.T_world_thing.translation()).norm();
   const double same = std::max(kSamePlace, kGate * sighting.sigma);
-  const bool rests = (doubt.T_world_thing.translation() - before.T_world_thing.translation()).norm() < same;
-  if (!rests && spell.kind != Kind::carried && thing.doubts.size() < kDoubtsInMotion) return SightingResult::doubted;
+  const bool moves = std::min(doubt.gates_off, before.gates_off) > kFarOff &&
+                     way < same + kFalling * to_seconds(doubt.captured - before.captured);
+  const bool decided = way < same || moves || spell.kind == Kind::carried || thing.doubts.size() >= kDoubtsInMotion;
+  if (!decided) return SightingResult::doubted;
   if (spell.kind == Kind::carried || thing.spells.back().kind == Kind::carried) ++failed_;
   put_where_seen(thing, sighting, spell.number);
   return SightingResult::moved;

@@ -133,6 +133,7 @@ class ThingFuture {
   struct Doubt {
     RobotTime captured;
     Pose T_world_thing = Pose::Identity(), T_grip_thing = Pose::Identity();
+    double gates_off = 0;  // from where the thing was shown
   };
   struct Thing {
     std::string name;
@@ -153,8 +154,10 @@ class ThingFuture {
   void take_along(Thing& thing, std::size_t jaw, const JointPositions& joints);
   void let_go(Thing& thing, Kind kind, const Pose& T_world_thing);
   void begin_spell(Thing& thing, Kind kind, const Pose& T, double variance, double variance_rad);
-  bool agree(Thing& thing, Spell& spell, const Pose& expected, const ThingSighting& sighting, const Pose& T_world_grip);
-  SightingResult contradict(Thing& thing, const Spell& spell, const ThingSighting& sighting, const Pose& T_world_grip);
+  double gates_off(const Spell& spell, const Pose& expected, const ThingSighting& sighting) const;
+  void agree(Thing& thing, Spell& spell, const Pose& expected, const ThingSighting& sighting, const Pose& T_world_grip);
+  SightingResult contradict(Thing& thing, const Spell& spell, const ThingSighting& sighting, const Pose& T_world_grip,
+                            double gates_off);
   void put_where_seen(Thing& thing, const ThingSighting& sighting, std::uint64_t since);
   bool is_in_hand(Thing& thing, const ThingSighting& sighting, const JointPositions& joints) const;
   void take_back(Thing& thing, const ThingSighting& sighting);

@@ -281,6 +281,34 @@ TEST(ThingFuture, OneWrongSightingMovesNothing) {
   EXPECT_EQ(bench.future->failed_grasps(), 0u);
 }
 
+TEST(ThingFuture, WhatIsTakenAwayIsShownThereAtTheSecondLook) {
+  Bench bench;
+  Camera camera(bench);
+  camera.truth = [] { return lifted(0, 0, kSide / 2); };
+  bench.wait(1, [&] { camera(); });
+  const auto look = [&](double x) {
+    bench.wait(0.1);
+    return bench.future->correct({0, bench.now, lifted(x, 0, 0.1), 0.0015, 0.02});
+  };
+  EXPECT_EQ(look(0), SightingResult::doubted) << "lifted by 77 mm";
+  EXPECT_EQ(look(0.1), SightingResult::moved) << "at 1 m/s";
+  bench.wait(0.4);
+  EXPECT_NEAR(bench.place().x(), 0.1, 1e-3);
+}
+
+TEST(ThingFuture, TwoPlacesThatNoThingGoesBetweenAreMistakes) {
+  Bench bench;
+  bench.wait(0.5);
+  const Eigen::Vector3d before = bench.place();
+  const auto look = [&](double x) {
+    bench.wait(0.1);
+    return bench.future->correct({0, bench.now, lifted(x, 0, 0.1), 0.0015, 0.02});
+  };
+  EXPECT_EQ(look(0.3), SightingResult::doubted);
+  EXPECT_EQ(look(-0.3), SightingResult::doubted) << "at 6 m/s";
+  EXPECT_EQ(bench.place(), before);
+}
+
 TEST(ThingFuture, WhatDoesNotExistIsInNoHand) {
   Bench bench;
   bench.grasp_and_lift();
