@@ -161,6 +161,8 @@ std::string figures_text(const link::LineFigures& line) {
     out +=
         fmt::format("lost       {} of {} pairs\n", number(line.samples_lost), number(line.samples_lost + pairs.pairs));
   if (pairs.refused > 0) out += fmt::format("refused    {} pairs: {}\n", number(pairs.refused), pairs.refusal);
+  if (line.refused > 0)
+    out += fmt::format("refused    {} messages, the last: {}\n", number(line.refused), line.refusal);
   return out;
 }
 

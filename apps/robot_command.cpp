@@ -159,7 +159,10 @@ std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robo
 
 ConsoleOptions console_options(const RobotArguments& arguments, link::RobotServer* server) {
   ConsoleOptions options;
-  if (server) options.line = [server] { return server->line(); };
+  if (server) {
+    options.line = [server] { return server->line(); };
+    options.line_news = [server](RobotTime now) { return server->news(now); };
+  }
   if (server && arguments.follow.empty()) options.commander = &server->commander();
   options.follow = arguments.follow;
   options.may_home = arguments.may_home;

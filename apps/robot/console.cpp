@@ -28,7 +28,8 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
       // The keyboard can always stop and quit; it drives only where no file does.
       keys_(rig.gate_options().joints,
             options.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops),
-      line_(options.line) {
+      line_(options.line),
+      line_news_(options.line_news) {
   if (!options.follow.empty()) {
     follow_.emplace(FollowFile(options.follow, rig), options.may_home);
     commanders_.push_back(&*follow_);
@@ -42,6 +43,7 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
 
 bool Console::tick(RobotTime now) {
   for (const std::string& line : faults_.step(now)) say_robot(line);
+  if (const std::string news = line_news_ ? line_news_(now) : ""; !news.empty()) say_robot("line: " + news);
   keys_.press(keyboard_.pressed());
   const bool goes_on = serve(commanders_, robot_, now);
   const RobotStatus status = robot_.status();

@@ -27,6 +27,7 @@ struct ConsoleOptions {
   bool mock = false;                  ///< all drives are mock ones, whatever the rig says
   Commander* commander = nullptr;     ///< somebody else who may command, beside the keyboard; null: nobody
   std::function<std::string()> line;  ///< how the line to others is, in one line; empty: there is none
+  std::function<std::string(RobotTime)> line_news;  ///< what has happened on it since; mostly ""; empty as `line`
 };
 
 /// One line for whoever started the program.
@@ -67,6 +68,7 @@ class Console {
   std::optional<FollowOperator> follow_;
   std::vector<Commander*> commanders_;
   std::function<std::string()> line_;
+  std::function<std::string(RobotTime)> line_news_;
   LoopLife life_;
   RobotTime shown_, notified_;
 };

@@ -21,10 +21,11 @@ DeskLine::DeskLine(Participant& participant) : in_(participant, from_operators()
 
 void DeskLine::receive(ControlDesk& desk, RobotTime now) {
   in_.take([&](const Sample& sample) {
-    if (const auto message = from_operator(sample.cdr))
+    std::string why;
+    if (const auto message = from_operator(sample.cdr, &why))
       desk.receive(*message, now);
     else
-      ++refused_;
+      in_.refuse(why);
   });
 }
 
@@ -36,7 +37,11 @@ SeatLine::SeatLine(Participant& participant) : in_(participant, from_robots()), 
 
 void SeatLine::receive(ControlSeat& seat, OperatorTime now) {
   in_.take([&](const Sample& sample) {
-    if (const auto message = from_robot(sample.cdr)) seat.receive(*message, now);
+    std::string why;
+    if (const auto message = from_robot(sample.cdr, &why))
+      seat.receive(*message, now);
+    else
+      in_.refuse(why);
   });
 }
 

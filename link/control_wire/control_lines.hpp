@@ -11,14 +11,12 @@ namespace foresight::link {
 class DeskLine {
  public:
   explicit DeskLine(Participant& participant);
-  void receive(ControlDesk& desk, RobotTime now);     ///< what has come, to the desk
-  void send(ControlDesk& desk);                       ///< what the desk has to say
-  std::uint64_t refused() const { return refused_; }  ///< messages that are none
+  void receive(ControlDesk& desk, RobotTime now);  ///< what has come, to the desk
+  void send(ControlDesk& desk);                    ///< what the desk has to say
 
  private:
   Reader in_;
   Writer out_;
-  std::uint64_t refused_ = 0;
 };
 
 /// An operator's end. One thread: that of the seat.

@@ -1,9 +1,8 @@
 #include "link/control_wire/control_wire.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "link/messages/cdr.hpp"
+#include "link/messages/checks.hpp"
 
 namespace foresight {
 
@@ -83,43 +82,62 @@ namespace {
 
 constexpr std::size_t kMostNames = kMostLineJoints, kMostWords = 1000;
 
-bool is_short(const std::string& text) {
-  return text.size() <= kMostWords;
+// Each says what cannot be meant by what it is given, in words; "" where nothing is.
+
+std::string wrong_text(const std::string& what, const std::string& text) {
+  const std::string wrong = text_objection(text, kMostWords);
+  return wrong.empty() ? "" : what + " " + wrong;
 }
-bool is_sound(const Identity& identity) {
-  return identity.joints.size() <= kMostNames && std::ranges::all_of(identity.joints, is_short) &&
-         is_short(identity.program) && is_short(identity.name);
+std::string wrong_identity(const Identity& identity) {
+  if (identity.joints.size() > kMostNames) return std::to_string(identity.joints.size()) + " joints";
+  std::string wrong = wrong_text("program", identity.program) + wrong_text("name", identity.name);
+  for (std::size_t i = 0; i < identity.joints.size() && wrong.empty(); ++i)
+    wrong = wrong_text("joints[" + std::to_string(i) + "]", identity.joints[i]);
+  return wrong;
 }
-bool are_finite(const LinePositions& positions, std::size_t joints) {
-  return joints <= kMostLineJoints &&
-         std::all_of(positions.begin(), positions.begin() + static_cast<std::ptrdiff_t>(joints),
-                     [](double position) { return std::isfinite(position); });
+std::string wrong_positions(const LinePositions& positions, std::size_t joints) {
+  if (joints > kMostLineJoints) return std::to_string(joints) + " joints";
+  for (std::size_t i = 0; i < joints; ++i)
+    if (!std::isfinite(positions[i])) return "position[" + std::to_string(i) + "] is " + std::to_string(positions[i]);
+  return "";
+}
+template <typename Enumeration>
+std::string wrong_value(const char* what, Enumeration value, Enumeration last) {
+  return value <= last ? "" : std::string("there is no ") + what + " " + std::to_string(static_cast<unsigned>(value));
 }
 
 /// One overload for each message that can say what cannot be meant.
-struct Sound {
-  bool operator()(const auto&) const { return true; }
-  bool operator()(const Hello& m) const { return is_sound(m.identity); }
-  bool operator()(const SetPoint& m) const { return are_finite(m.position, m.joints); }
-  bool operator()(const Request& m) const { return m.what <= LineRequest::emergency_stop; }
-  bool operator()(const Welcome& m) const {
-    return is_sound(m.identity) && m.differences.size() <= kMostNames &&
-           std::ranges::all_of(m.differences,
-                               [](const Difference& d) { return is_short(d.words) && is_short(d.cure); });
+struct Objection {
+  std::string operator()(const auto&) const { return ""; }
+  std::string operator()(const Hello& m) const { return wrong_identity(m.identity); }
+  std::string operator()(const SetPoint& m) const { return wrong_positions(m.position, m.joints); }
+  std::string operator()(const Request& m) const { return wrong_value("request", m.what, LineRequest::emergency_stop); }
+  std::string operator()(const Welcome& m) const {
+    std::string wrong = wrong_identity(m.identity);
+    if (m.differences.size() > kMostNames) wrong = std::to_string(m.differences.size()) + " differences";
+    for (std::size_t i = 0; i < m.differences.size() && wrong.empty(); ++i)
+      wrong = wrong_text("words", m.differences[i].words) + wrong_text("cure", m.differences[i].cure);
+    return wrong;
   }
-  bool operator()(const LeaseVerdict& m) const { return is_short(m.words); }
-  bool operator()(const Answer& m) const { return m.outcome <= RequestOutcome::before_stop; }
-  bool operator()(const ControlState& m) const {
-    return m.joints <= kMostLineJoints && m.cause <= RestCause::robot_stopped &&
-           m.fault <= SetPointFault::robot_is_busy && is_short(m.holder_name) && is_short(m.asking_name);
+  std::string operator()(const LeaseVerdict& m) const { return wrong_text("words", m.words); }
+  std::string operator()(const Answer& m) const {
+    return wrong_value("outcome", m.outcome, RequestOutcome::before_stop);
+  }
+  std::string operator()(const ControlState& m) const {
+    if (m.joints > kMostLineJoints) return std::to_string(m.joints) + " joints";
+    return wrong_value("cause", m.cause, RestCause::robot_stopped) +
+           wrong_value("fault", m.fault, SetPointFault::robot_is_busy) + wrong_text("holder_name", m.holder_name) +
+           wrong_text("asking_name", m.asking_name);
   }
 };
 
 template <typename T>
-std::optional<T> sound(std::span<const std::uint8_t> bytes) {
+std::optional<T> sound(std::span<const std::uint8_t> bytes, std::string* why) {
   auto out = from_cdr<T>(bytes);
-  if (out && !std::visit(Sound{}, out->body)) out.reset();
-  return out;
+  const std::string wrong = out ? std::visit(Objection{}, out->body) : "bytes are no such message";
+  if (wrong.empty()) return out;
+  if (why) *why = wrong;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -130,11 +148,11 @@ std::vector<std::uint8_t> to_bytes(const FromOperator& message) {
 std::vector<std::uint8_t> to_bytes(const FromRobot& message) {
   return to_cdr(message);
 }
-std::optional<FromOperator> from_operator(std::span<const std::uint8_t> bytes) {
-  return sound<FromOperator>(bytes);
+std::optional<FromOperator> from_operator(std::span<const std::uint8_t> bytes, std::string* why) {
+  return sound<FromOperator>(bytes, why);
 }
-std::optional<FromRobot> from_robot(std::span<const std::uint8_t> bytes) {
-  return sound<FromRobot>(bytes);
+std::optional<FromRobot> from_robot(std::span<const std::uint8_t> bytes, std::string* why) {
+  return sound<FromRobot>(bytes, why);
 }
 
 }  // namespace link

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "link/control/messages.hpp"
@@ -20,8 +21,8 @@ std::vector<std::uint8_t> to_bytes(const FromRobot& message);
 
 /// Nothing where the bytes are no such message, or say what cannot be meant: an enumeration without that value, more
 /// joints than there may be, a text longer than a line, a number that is not finite where it counts. What is old,
-/// doubled or a stranger's is for ControlDesk and ControlSeat to know.
-std::optional<FromOperator> from_operator(std::span<const std::uint8_t> bytes);
-std::optional<FromRobot> from_robot(std::span<const std::uint8_t> bytes);
+/// doubled or a stranger's is for ControlDesk and ControlSeat to know. `why`: null, or gets what is wrong, in words.
+std::optional<FromOperator> from_operator(std::span<const std::uint8_t> bytes, std::string* why = nullptr);
+std::optional<FromRobot> from_robot(std::span<const std::uint8_t> bytes, std::string* why = nullptr);
 
 }  // namespace foresight::link

@@ -39,12 +39,9 @@ using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 /// Throws RuntimeFailure with Cyclone's word for `code` where it is one for an error.
 dds_entity_t checked(dds_entity_t code, const std::string& what);
 
-/// Takes what Cyclone would print, of all domains of this process, until it ends.
-class Complaints {
+/// What happens again and again is told by the last of it, and how often it did. Any thread.
+class CountedWords {
  public:
-  Complaints();
-  ~Complaints();
-  Complaints(const Complaints&) = delete;
   void note(std::string text);
   std::string last() const;  ///< "" before the first
   std::uint64_t count() const;
@@ -55,8 +52,17 @@ class Complaints {
   std::uint64_t count_ = 0;
 };
 
+/// Takes what Cyclone would print, of all domains of this process, until it ends.
+struct Complaints {
+  Complaints();
+  ~Complaints();
+  Complaints(const Complaints&) = delete;
+  CountedWords words;
+};
+
 struct Participant::State {
   std::shared_ptr<Complaints> complaints;  // the first: it hears what the others' ends complain about
+  CountedWords refusals;
   int domain_id = 0;
   std::shared_ptr<PretendedLine> line;  // null: none
   Entity domain, participant, programs, publications, subscriptions;

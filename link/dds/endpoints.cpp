@@ -56,6 +56,7 @@ struct Reader::State {
   static constexpr std::size_t kMostHeld = 64U << 20;  // bytes
 
   Entity reader, waiting;
+  CountedWords* refusals = nullptr;  // the participant's
   std::shared_ptr<PretendedLine> line;
   bool repaired = false;
   std::size_t room = SIZE_MAX;          // that samples which are there may take before the oldest goes, as DDS has it
@@ -103,6 +104,7 @@ Reader::State::Held Reader::State::pop() {
 Reader::Reader(Participant& participant, const Topic& topic) : state_(std::make_unique<State>()), topic_(topic.name) {
   const auto& used = participant.state_->topic(topic);
   const dds_entity_t under = participant.state_->participant.get();
+  state_->refusals = &participant.state_->refusals;
   state_->line = participant.state_->line;
   state_->repaired = topic.delivery != Delivery::once;
   if (topic.delivery != Delivery::each) state_->room = static_cast<std::size_t>(topic.depth);
@@ -169,9 +171,8 @@ std::uint64_t Reader::lost() const noexcept {
   return status.total_count;
 }
 
-void Reader::refuse(std::string why) {
-  ++refused_;
-  last_refusal_ = topic_ + ": " + std::move(why);
+void Reader::refuse(const std::string& why) {
+  state_->refusals->note(topic_ + ": " + why);
 }
 
 }  // namespace foresight::link

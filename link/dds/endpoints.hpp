@@ -32,6 +32,9 @@ class Writer {
   std::shared_ptr<State> state_;
 };
 
+/// Why a message is refused that cannot be read at all.
+inline constexpr const char* kNoMessage = "bytes are no such message";
+
 /// A sample while it is visited.
 struct Sample {
   std::span<const std::uint8_t> cdr;  ///< as anybody may have sent it
@@ -39,7 +42,7 @@ struct Sample {
   std::uint64_t writer = 0;           ///< one number for each writer
 };
 
-/// One thread; counts from any.
+/// One thread; counts from any. Its participant must outlive it.
 class Reader {
  public:
   Reader(Participant& participant, const Topic& topic);  ///< as Writer
@@ -55,27 +58,23 @@ class Reader {
   std::size_t writers() const noexcept;  ///< that are matched
   std::uint64_t lost() const noexcept;   ///< samples that were never seen here, of reliable writers too
 
-  /// Decodes and checks each that has come; what is wrong is counted, not visited.
+  /// Decodes and checks each that has come; what is wrong is refused, not visited.
   template <detail::Message T>
   std::size_t take(const Expected& expected, const std::function<void(T&&, const Sample&)>& visit) {
     return take([&](const Sample& sample) {
       std::optional<T> message = from_cdr<T>(sample.cdr);
-      const std::string wrong = message ? objection(*message, expected) : "bytes are no such message";
+      const std::string wrong = message ? objection(*message, expected) : kNoMessage;
       wrong.empty() ? visit(std::move(*message), sample) : refuse(wrong);
     });
   }
-  std::uint64_t refused() const noexcept { return refused_; }
-  const std::string& last_refusal() const noexcept { return last_refusal_; }  ///< in words; "" before the first
+  /// A message that was visited is none, or says what cannot be: the participant counts it, and tells why.
+  void refuse(const std::string& why);
 
  private:
-  void refuse(std::string why);
-
   struct State;
   std::unique_ptr<State> state_;
   std::string topic_;
   bool waits_for_others_ = false;
-  std::uint64_t refused_ = 0;
-  std::string last_refusal_;
 };
 
 }  // namespace foresight::link

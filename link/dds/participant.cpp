@@ -19,7 +19,7 @@ namespace {
 constexpr char kRole[] = "foresight=";  // in the participant's user data, beside what ROS 2's tools look for
 
 void note_complaint(void* complaints, const dds_log_data_t* data) {
-  static_cast<Complaints*>(complaints)->note({data->message + data->hdrsize, data->size - data->hdrsize});
+  static_cast<Complaints*>(complaints)->words.note({data->message + data->hdrsize, data->size - data->hdrsize});
 }
 
 /// Cyclone's plugins lie in a folder that the loader does not search.
@@ -146,19 +146,19 @@ Complaints::~Complaints() {
   dds_set_log_sink(nullptr, nullptr);
 }
 
-void Complaints::note(std::string text) {
+void CountedWords::note(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   const std::lock_guard lock(mutex_);
   last_ = shown(std::move(text), 200);
   ++count_;
 }
 
-std::string Complaints::last() const {
+std::string CountedWords::last() const {
   const std::lock_guard lock(mutex_);
   return last_;
 }
 
-std::uint64_t Complaints::count() const {
+std::uint64_t CountedWords::count() const {
   const std::lock_guard lock(mutex_);
   return count_;
 }
@@ -226,7 +226,7 @@ Participant::Participant(const LinkConfig& config, const std::string& name, Role
     s.domain = Entity(checked(dds_create_domain(domain, settings.c_str()), "the link cannot be opened"));
     open(config.domain, participant_qos(config, name, role).get());
   } catch (const RuntimeFailure&) {
-    const std::string why = s.complaints->last();
+    const std::string why = s.complaints->words.last();
     if (why.empty()) throw;
     throw RuntimeFailure(fmt::format("{}: the link cannot be opened on domain {}, interface {}: {}", config.where,
                                      config.domain, config.interface, why),
@@ -280,8 +280,17 @@ std::vector<Peer> Participant::peers() const {
 }
 
 std::string Participant::trouble() const {
-  const auto count = static_cast<unsigned long long>(state_->complaints->count());
-  return count == 0 ? "" : fmt::format("{} ({} such messages)", state_->complaints->last(), count);
+  const CountedWords& words = state_->complaints->words;
+  const auto count = static_cast<unsigned long long>(words.count());
+  return count == 0 ? "" : fmt::format("{} ({} such messages)", words.last(), count);
+}
+
+std::uint64_t Participant::refused() const {
+  return state_->refusals.count();
+}
+
+std::string Participant::refusal() const {
+  return state_->refusals.last();
 }
 
 }  // namespace foresight::link

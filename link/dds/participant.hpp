@@ -66,6 +66,10 @@ class Participant {
   /// The last thing that Cyclone complained about, such as a packet that makes no sense, and how often it did; "" while
   /// there is nothing.
   std::string trouble() const;
+  /// Messages that its readers refused (Reader::refuse), and the last of them in words, with its topic; "" before the
+  /// first.
+  std::uint64_t refused() const;
+  std::string refusal() const;
 
  private:
   friend class Writer;

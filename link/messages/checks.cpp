@@ -10,6 +10,15 @@
 #include "link/messages/cdr.hpp"
 
 namespace foresight::link {
+
+std::string text_objection(const std::string& text, std::size_t most) {
+  if (text.size() > most) return fmt::format("has {} characters", text.size());
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t'; };
+  if (std::ranges::any_of(text, control) || text.find('\x7f') != text.npos)
+    return "has control characters: " + in_quotes(text);
+  return "";
+}
+
 namespace {
 
 /// Walks through all fields of any message and keeps the first objection.
@@ -36,10 +45,7 @@ class FieldCheck {
     if (!std::isfinite(value)) object(fmt::format("is {}", value));
   }
   void check(const std::string& text) {
-    if (text.size() > kMostText) return object(fmt::format("has {} characters", text.size()));
-    const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t'; };
-    if (std::ranges::any_of(text, control) || text.find('\x7f') != text.npos)
-      object("has control characters: " + in_quotes(text));
+    if (const std::string wrong = text_objection(text, kMostText); !wrong.empty()) object(wrong);
   }
   void check(const std::vector<std::uint8_t>& bytes) {
     if (bytes.size() > kMostImageBytes) object(fmt::format("has {} bytes", bytes.size()));

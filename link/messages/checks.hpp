@@ -22,6 +22,10 @@ inline constexpr std::size_t kMostImageBytes = 16'000'000;  ///< of one image, c
 inline constexpr std::size_t kMostPieceBytes = 1200;        ///< of a packet in a piece or report
 inline constexpr std::uint32_t kMostPixels = 8192;          ///< along one side
 
+/// Why a text from elsewhere is not taken: longer than `most` characters, or with control characters, which a terminal
+/// would obey; "" where it is.
+std::string text_objection(const std::string& text, std::size_t most);
+
 /// What is wrong with a message, in words that begin with the field ("joints[2].position is nan"); "" where nothing is.
 /// All types: numbers that are not finite, texts that are too long or have control characters, stamps that are none.
 /// Beside that, by type: counts that do not fit each other, joints that do not exist or come twice, rotations without

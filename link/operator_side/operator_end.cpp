@@ -25,7 +25,8 @@ OperatorEnd::Pictures::Pictures(Participant& participant, const OperatorEndOptio
 }
 
 OperatorEnd::OperatorEnd(Participant& participant, const OperatorEndOptions& options, Clock& clock)
-    : clock_(clock),
+    : participant_(participant),
+      clock_(clock),
       expected_(options.expected),
       line_(participant),
       states_(participant, topics::robot_state()),
@@ -118,10 +119,14 @@ void OperatorEnd::step_frames() {
   in.pieces.take([&](const Sample& sample) {
     if (const auto piece = from_cdr<StereoPiece>(sample.cdr))
       hand_out(in.intake.take(*piece, robot, tell), kH264Coding);
+    else
+      in.pieces.refuse(kNoMessage);
   });
   in.pairs.take([&](const Sample& sample) {
     if (const auto pair = from_cdr<StereoFrame>(sample.cdr))
       hand_out(in.intake.take(*pair, sample.cdr.size(), robot), kJpegCoding);
+    else
+      in.pairs.refuse(kNoMessage);
   });
   tell();
   const std::lock_guard lock(figures_mutex_);
@@ -157,6 +162,8 @@ LineFigures OperatorEnd::figures() const {
   out.round_trip = clock.round_trip();
   out.clock = clock.bound().at(clock_.now().ns);
   out.clock_jumps = clock.bound().jumps();
+  out.refused = participant_.refused();
+  out.refusal = participant_.refusal();
   return out;
 }
 

@@ -33,6 +33,8 @@ struct LineFigures {
   Duration lasted{0};  ///< from the arrival of the first pair to that of the last
   IntakeCounts pairs;
   std::uint64_t samples_lost = 0;  ///< messages of pairs that DDS knows it has lost
+  std::uint64_t refused = 0;       ///< messages of any topic that are none, or say what cannot be
+  std::string refusal;             ///< the last of them, with its topic
   std::deque<BoundedDelay> ages;   ///< of the last pairs on their arrival, since capture
 };
 
@@ -89,6 +91,7 @@ class OperatorEnd {
   void step_frames();
   void hand_out(LineFramePtr frame, const char* coding);
 
+  const Participant& participant_;
   Clock& clock_;
   const Expected expected_;
 

@@ -67,6 +67,9 @@ std::string RobotServer::line() const {
   if (counts.bytes_per_s > 0) out += fmt::format(", the line carries {:.0f} kbit/s", 8e-3 * counts.bytes_per_s);
   if (frames_ && !counts.watched) out += ", nobody takes pictures";
   if (counts.failed) out += fmt::format(", {} could not be coded", static_cast<unsigned long long>(counts.failed));
+  if (const std::uint64_t refused = participant_.refused())
+    out += fmt::format(", {} messages refused, the last: {}", static_cast<unsigned long long>(refused),
+                       participant_.refusal());
   const std::string trouble = participant_.trouble();
   return out + (trouble.empty() ? "" : "; " + trouble);
 }

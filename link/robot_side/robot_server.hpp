@@ -1,6 +1,7 @@
 // The robot's end of the line: everything that `foresight robot --serve` publishes.
 #pragma once
 
+#include "link/dds/refusal_watch.hpp"
 #include "link/robot_side/served_operator.hpp"
 #include "link/robot_side/state_sender.hpp"
 
@@ -33,6 +34,8 @@ class RobotServer {
 
   /// One line for people: who listens, what goes out, what is wrong with the line.
   std::string line() const;
+  /// What has happened on the line since it was asked the last time, for the log; mostly "".
+  std::string news(RobotTime now) { return refusals_.news(participant_, now); }
   FrameCounts counts() const noexcept { return frames_ ? frames_->counts() : FrameCounts{}; }
 
  private:
@@ -41,6 +44,7 @@ class RobotServer {
 
   std::unique_ptr<Participant> own_;
   Participant& participant_;
+  RefusalWatch refusals_;
   WallClock wall_;
   LineCapacity capacity_;
   ServedOperator operator_;

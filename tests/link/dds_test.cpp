@@ -4,6 +4,7 @@
 #include "common/error.hpp"
 #include "echo.hpp"
 #include "link/dds/endpoints.hpp"
+#include "link/dds/refusal_watch.hpp"
 #include "link/dds/settings.hpp"
 #include "link/dds/topic_watch.hpp"
 #include "random_message.hpp"
@@ -39,11 +40,20 @@ TEST_F(Dds, SamplesGoFromWriterToReaderAndAreChecked) {
   };
   ASSERT_TRUE(comes_true([&] {
     reader.take<JointStateMessage>({}, visit);
-    return positions.size() + reader.refused() >= 4;
+    return positions.size() + program.refused() >= 4;
   }));
   EXPECT_EQ(positions, std::vector<double>{0.5});
-  EXPECT_EQ(reader.refused(), 3u);
-  EXPECT_EQ(reader.last_refusal(), "rt/joint_states: bytes are no such message");
+  EXPECT_EQ(program.refused(), 3u);
+  EXPECT_EQ(program.refusal(), "rt/joint_states: bytes are no such message");
+  RefusalWatch log;
+  EXPECT_EQ(log.news(program, RobotTime{}),
+            "3 messages refused, the last on rt/joint_states: bytes are no such message");
+  message.position = {NAN};
+  EXPECT_TRUE(writer.write(message));
+  ASSERT_TRUE(comes_true([&] { return reader.take<JointStateMessage>({}, visit) > 0; }));
+  EXPECT_EQ(log.news(program, RobotTime{} + 9s), "") << "a log is no place for a flood";
+  EXPECT_EQ(log.news(program, RobotTime{} + 10s), "1 message refused, the last on rt/joint_states: position[0] is nan");
+  EXPECT_EQ(log.news(program, RobotTime{} + 30s), "");
 }
 
 TEST_F(Dds, WhoComesLateGetsWhatWasKept) {

@@ -1,6 +1,7 @@
 // A served mock rig and an operator's end in one process, over DDS on loopback, in stepped time: frames of either
 // coding, as a display takes them, against those that were sent.
 #include "common/error.hpp"
+#include "link/control_wire/control_wire.hpp"
 #include "link/dds/topics.hpp"
 #include "link/operator_view/line_feed.hpp"
 #include "link/robot_side/frame_sender.hpp"
@@ -224,6 +225,27 @@ TEST_F(TwoEnds, ClocksStatesAndControlComeAlong) {
     const std::size_t elbow = robot_.joint("elbow");
     EXPECT_NEAR(seat.state().measured[elbow], robot_.shaft(elbow).position, 0.05);
   });
+}
+
+TEST_F(TwoEnds, MessagesThatCannotBeAreToldWithTopicAndField) {
+  serve(LinkCoding::jpeg);
+  const auto told = [this](const Topic& topic, const Bytes& bytes) {
+    Writer stranger(program_, topic);
+    stranger.write(bytes);
+    end_.step();
+    return end_.figures().refusal;
+  };
+  const Bytes none{0, 1, 0, 0, 9};
+  EXPECT_EQ(told(topics::frames(), none), "rt/foresight/frames: bytes are no such message");
+  EXPECT_EQ(told(topics::pieces(), none), "rt/foresight/pieces: bytes are no such message");
+  EXPECT_EQ(told(topics::robot_state(), none), "rt/foresight/robot_state: bytes are no such message");
+  EXPECT_EQ(told({"rt/foresight/control/robot/messages", kFromRobotType, Delivery::newest, 64}, none),
+            "rt/foresight/control/robot/messages: bytes are no such message");
+  GateMotion motion;
+  motion.joints.resize(robot_.rig().joints.size());
+  motion.joints[3].position = NAN;
+  EXPECT_EQ(told(topics::gate_motion(), to_cdr(motion)), "rt/foresight/gate_motion: joints[3].position is nan");
+  EXPECT_EQ(end_.figures().refused, 5u);
 }
 
 // A reader of pieces that takes nothing, in a program that stands still: pairs go on to the one who reports.

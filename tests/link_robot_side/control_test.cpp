@@ -122,6 +122,8 @@ TEST_F(ServedControl, StrangersMoveNothing) {
   }
   EXPECT_NEAR(robot_.shaft(elbow).position, before, 1e-3);
   EXPECT_LE(robot_.robot().status().gate.accepted, accepted + 30) << "but what the operator had sent before";
+  EXPECT_EQ(program_.refused(), 200u);
+  EXPECT_EQ(program_.refusal(), "rt/foresight/control/operator/messages: bytes are no such message");
   robot_.expect_at_rest("whatever strangers write");
 }
 

@@ -21,8 +21,8 @@ WallClock same_as(const Clock& clock) {
 template <typename T>
 std::vector<T> taken(Reader& reader) {
   std::vector<T> out;
-  reader.take<T>({}, [&](T&& message, const Sample&) { out.push_back(std::move(message)); });
-  EXPECT_EQ(reader.refused(), 0u) << reader.last_refusal();
+  const std::size_t came = reader.take<T>({}, [&](T&& message, const Sample&) { out.push_back(std::move(message)); });
+  EXPECT_EQ(out.size(), came) << "some were refused";
   return out;
 }
 
