@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/cpu_time.hpp"
+#include "link/send_control/wire_count.hpp"
 
 namespace foresight {
 namespace {
@@ -64,7 +65,10 @@ class Trial {
       result.down_bytes += packet.size();
       down_.send(now, packet);
     }
-    while (std::optional<Packet> packet = down_.receive(now)) sender_.take(*packet, now, *encoder_);
+    while (std::optional<Packet> packet = down_.receive(now)) {
+      wire_.comes(*packet, now);
+      sender_.take(*packet, now, *encoder_);
+    }
     if (now >= next_capture_) {
       newest_ = next_capture_;
       next_capture_ = next_capture_ + period();
@@ -81,13 +85,14 @@ class Trial {
     for (const Packet& packet : sender_.packets(now, *encoder_)) {
       result.up_bytes += packet.size();
       result.packets += packet.front() == 'p';
+      const std::size_t before = up_.on_the_way();
       up_.send(now, packet);
+      if (up_.on_the_way() > before) wire_.leaves(packet);
     }
   }
 
   void hand_over(RobotTime now) {
-    const Transmissions& sent = sender_.transmissions();
-    result.early += sent.unacknowledged() > sent.acknowledged_recently(now);
+    result.early += wire_.unacknowledged() > wire_.acknowledged_within(Transmissions::kRecent, now);
     const StereoPicture picture = picture_(*newest_);
     newest_.reset();
     const double begin = cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
@@ -128,6 +133,7 @@ class Trial {
   PacketLine up_, down_;
   std::unique_ptr<PairEncoder> encoder_;
   PairSender sender_;
+  WireCount wire_;  // at the sender's end
   PairReceiver receiver_;
   std::unique_ptr<PairDecoder> mirror_;        // beside the encoder, over no line
   std::map<std::uint32_t, std::size_t> made_;  // by number, what that showed

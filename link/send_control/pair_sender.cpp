@@ -8,9 +8,8 @@ namespace {
 
 constexpr double kHead_s = 0.010;   // of line time that may still be waiting
 constexpr double kPrudence = 0.85;  // lines get slower without a word
-constexpr Duration kNoQueue = std::chrono::milliseconds(20);
 constexpr double kGrowth = 1.2;
-constexpr Duration kOld = std::chrono::milliseconds(250);     // besides the road: what is shown is old, so be quick
+constexpr Duration kCalm = std::chrono::milliseconds(150);    // after which what was measured is old
 constexpr Duration kOfUse = std::chrono::milliseconds(1000);  // after which a pair that is mostly lost is given up
 constexpr Duration kNeverOfUse = std::chrono::seconds(20);
 constexpr std::size_t kMostPending = 64;
@@ -20,7 +19,7 @@ constexpr std::size_t kMostPending = 64;
 /// The line, or nothing came back yet to tell.
 bool PairSender::waits() const {
   const auto trip = transmissions_.round_trip(), least = transmissions_.least_round_trip();
-  return !trip || *trip - *least > kNoQueue;
+  return !trip || *trip - *least > Transmissions::kNoQueue;
 }
 
 std::optional<double> PairSender::known_bytes_per_s(RobotTime now) const {
@@ -44,12 +43,11 @@ int PairSender::pairs_on_the_way() const {
 
 bool PairSender::wants_pair(RobotTime now) const {
   if (!fresh_.empty()) return false;
-  const std::size_t on_the_way = transmissions_.unacknowledged();
-  if (on_the_way > transmissions_.acknowledged_recently(now)) return false;
+  if (transmissions_.unsettled(now) > transmissions_.acknowledged_recently(now)) return false;
   if (transmissions_.lost_lately(now) && pairs_on_the_way() >= options_.most_on_the_way) return false;
   // What is under way on the road itself, both ways, is no queue.
   const double road = to_seconds(transmissions_.least_round_trip().value_or(Duration{}));
-  return static_cast<double>(on_the_way) <= bytes_per_s(now) * (road + kHead_s);
+  return static_cast<double>(transmissions_.unacknowledged()) <= bytes_per_s(now) * (road + kHead_s);
 }
 
 PairWish PairSender::wish(RobotTime now) const {
