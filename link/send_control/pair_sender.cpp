@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kHead_s = 0.010;   // of line time that may still be waiting
 constexpr double kPrudence = 0.85;  // lines get slower without a word
-constexpr double kGrowth = 1.2;
+constexpr double kGrowth = 1.2, kGrowthCalm = 2;
 constexpr Duration kCalm = std::chrono::milliseconds(150);    // after which what was measured is old
 constexpr Duration kOfUse = std::chrono::milliseconds(1000);  // after which a pair that is mostly lost is given up
 constexpr Duration kNeverOfUse = std::chrono::seconds(20);
@@ -30,10 +30,11 @@ std::optional<double> PairSender::known_bytes_per_s(RobotTime now) const {
 double PairSender::bytes_per_s(RobotTime now) const {
   const double measured = transmissions_.rate(now).value_or(options_.first_bytes_per_s) * kPrudence;
   if (waits()) return measured;
-  // Nothing waits in the line: it carries more than it is given, though pairs of one piece would never show that.
+  // Nothing waits in the line: it carries more than it is given, though pairs of one piece would never show that. Where
+  // it has been so for a while, as after a thin time, how much more is found out in larger steps.
   const double given =
       static_cast<double>(transmissions_.acknowledged_recently(now)) / to_seconds(Transmissions::kRecent);
-  return std::max(measured, kGrowth * given);
+  return std::max(measured, (transmissions_.calm(now) > kCalm ? kGrowthCalm : kGrowth) * given);
 }
 
 int PairSender::pairs_on_the_way() const {

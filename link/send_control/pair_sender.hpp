@@ -26,7 +26,7 @@ class PairSender {
     double shortest_s = 0.025;              ///< of line time for a pair
     double longest_s = 0.060;               ///< where the line is so thin that pictures would suffer
     std::size_t fine_bytes = 9'000;         ///< what a pair needs to look well; takes up to longest_s
-    std::size_t least_bytes = 1'200;        ///< however thin the line
+    std::size_t least_bytes = 1'000;        ///< however thin the line; one packet, though pairs take a sixth more
     std::size_t most_bytes = 40'000;        ///< more shows little but the sensor's noise
     std::size_t most_lossy_bytes = 24'000;  ///< while packets get lost: the more pieces, the likelier one is missing
     int most_on_the_way = static_cast<int>(kMostLanes);  ///< pairs, while packets get lost

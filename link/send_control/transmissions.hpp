@@ -50,6 +50,8 @@ class Transmissions {
   std::optional<Duration> least_round_trip() const { return least_; }
   /// What the line carries, as far as it can be trusted (RateMeter::rate), with what is overdue at `now`.
   std::optional<double> rate(RobotTime now) const { return rate_.rate(overdue(now)); }
+  /// For how long nothing had to wait in the line for more than kNoQueue.
+  Duration calm(RobotTime now) const { return queued_at_ ? now - *queued_at_ : Duration{}; }
   static constexpr Duration kNoQueue = std::chrono::milliseconds(20);
   /// Share of packets that were lost, of about the last thousand.
   double loss() const { return loss_; }
@@ -85,6 +87,7 @@ class Transmissions {
   Duration newest_trip_{};    // and how long it took
   std::optional<Duration> smooth_, least_;
   Duration variation_{}, overtaking_ = std::chrono::milliseconds(5);
+  std::optional<RobotTime> queued_at_;  // the last trip that took longer than the least and kNoQueue; the first
   RobotTime last_send_, last_news_;
   int questions_ = 0;  // since the last news
   std::optional<RobotTime> last_loss_;

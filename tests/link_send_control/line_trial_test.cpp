@@ -75,6 +75,18 @@ TEST(LineTrial, GoesOnSoonAfterAGap) {
   EXPECT_EQ(result.early, 0U);
 }
 
+TEST(LineTrial, UsesALineAgainSoonAfterAThinTime) {
+  RateTrace rates{.at = {seconds(0), seconds(3), seconds(5)}, .bytes_per_s = {40'000, 500, 40'000}, .period = {}};
+  rates.period = seconds(60);
+  const LineTrialResult result = run(small({.trace = std::make_shared<const Trace>(std::move(rates))}, seconds(6)));
+  std::array<std::size_t, 6> bytes{};  // shown, by the second
+  for (const TrialPair& pair : result.pairs)
+    bytes.at(static_cast<std::size_t>(to_seconds(pair.decoded - RobotTime{}))) += pair.bytes;
+  EXPECT_LT(bytes[4], 2000U);
+  EXPECT_GT(bytes[5], bytes[2] * 6 / 10);
+  EXPECT_EQ(result.early, 0U);
+}
+
 TEST(LineTrial, AnOutageThatLosesEverythingIsSurvived) {
   for (const double rate : {0.0, 20'000.0}) {
     auto options =
@@ -123,7 +135,7 @@ TEST(LineTrial, PicturesStayRecentOnLinesOfAllKinds) {
       for (std::size_t i = 0; i < result.age_beyond_ms.size(); ++i)
         if (!result.in_gap[i]) ages.push_back(result.age_beyond_ms[i]);
       for (const TrialPair& pair : result.pairs) bytes.push_back(static_cast<double>(pair.bytes));
-      EXPECT_LT(quantile(ages, 0.95), line.name == "deep fades" ? 550 : line.name == "on and off" ? 450 : 320);
+      EXPECT_LT(quantile(ages, 0.95), line.name == "deep fades" ? 500 : line.name == "on and off" ? 450 : 320);
       EXPECT_LT(quantile(ages, 0.5), 150);
       EXPECT_GT(pairs_per_s(result, options), 9);
       EXPECT_GT(median(bytes), 2500) << "age must not be bought with pictures that show nothing";
