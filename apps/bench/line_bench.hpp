@@ -25,6 +25,7 @@ struct LineBenchOptions {
 ///                              that of a small packet on the idle line. Without the trace's gaps: times of 1 s and
 ///                              more in which it carries nothing
 ///   age_all_p95_ms             with the gaps
+///   age_worst_minute_p95_ms    age_p95_ms of the worst minute, of one each half minute; -1 in shorter runs
 ///   gaps, gaps_s               how many there were, and how much time they take
 ///   pairs_per_s, bytes_per_s   decoded and newest; sent by the robot's side without network headers
 ///   psnr_db, psnr_p5_db        of luma against the source, mean and nearest rank over the pairs; -1 without pairs
