@@ -1,7 +1,7 @@
 # Operator and robot on two hosts, which are two networks on this machine, joined by a cable; source it, do not run it.
 # Needs $programs, $root and the folder $out. Processes to be ended with the script are in `others` and $robot.
 
-others=() robot='' hand='' host=''
+others=() robot='' hand='' host='' waits=600
 
 # two_hosts: this network is the operator's, with the interface `operator`; the robot's has the interface `robot`.
 two_hosts() {
@@ -45,9 +45,9 @@ watch_joints() {
 
 # said WORDS: how often the operator's program has.
 said() { grep -c "^$1\$" "$out/hand" || true; }
-# wait_for TIMES WORDS: until the operator's program has said so that often; a minute at most.
+# wait_for TIMES WORDS: until the operator's program has said so that often; $waits tenths of a second at most.
 wait_for() {
-  for _ in $(seq 600); do
+  for _ in $(seq "$waits"); do
     [ "$(said "$2")" -lt "$1" ] || return 0
     sleep 0.1
   done
@@ -56,9 +56,9 @@ wait_for() {
   tail -3 "$out/robot.err"
   return 1
 }
-# says_now WORDS: until this is the last that it said; a minute at most.
+# says_now WORDS: until this is the last that it said; as long at most.
 says_now() {
-  for _ in $(seq 600); do
+  for _ in $(seq "$waits"); do
     [ "$(tail -1 "$out/hand")" != "$1" ] || return 0
     sleep 0.1
   done
@@ -70,11 +70,21 @@ motion_after() {
   awk -F, -v t="$1" '{ if (NR > 1 && ($2 - last > 2e-4 || last - $2 > 2e-4) && $1 > t) moved = $1; last = $2 }
     END { printf "%.0f\n", (moved > t ? (moved - t) / 1e6 : 0) }' "$out/watch.csv"
 }
+# at_rest: until nothing has moved for half a second; a minute at most.
+at_rest() {
+  sleep 1  # joint states come late on a busy machine
+  for _ in $(seq 120); do
+    sleep 0.5
+    [ "$(motion_after "$(($(date +%s%N) - 500000000))")" -ne 0 ] || return 0
+  done
+  echo "the robot does not come to rest"
+  return 1
+}
 # in_motion SINCE: until the elbow has moved; the operator presses again now and then, as on a busy machine set-points may
 # expire before the arm has set off.
 in_motion() {
   local tenths
-  for tenths in $(seq 200); do
+  for tenths in $(seq "$((waits / 3))"); do
     [ "$(motion_after "$1")" -eq 0 ] || return 0
     [ $((tenths % 40)) -ne 0 ] || kill -USR1 "$hand"
     sleep 0.1
