@@ -44,11 +44,12 @@ int PairSender::pairs_on_the_way() const {
 
 bool PairSender::wants_pair(RobotTime now) const {
   if (!fresh_.empty()) return false;
-  if (transmissions_.unsettled(now) > transmissions_.acknowledged_recently(now)) return false;
+  const std::size_t on_the_way = transmissions_.unacknowledged();
+  if (on_the_way > transmissions_.acknowledged_recently(now)) return false;
   if (transmissions_.lost_lately(now) && pairs_on_the_way() >= options_.most_on_the_way) return false;
   // What is under way on the road itself, both ways, is no queue.
   const double road = to_seconds(transmissions_.least_round_trip().value_or(Duration{}));
-  return static_cast<double>(transmissions_.unacknowledged()) <= bytes_per_s(now) * (road + kHead_s);
+  return static_cast<double>(on_the_way) <= bytes_per_s(now) * (road + kHead_s);
 }
 
 PairWish PairSender::wish(RobotTime now) const {

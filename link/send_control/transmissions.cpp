@@ -51,14 +51,13 @@ void Transmissions::take(Record& record, RobotTime now, std::vector<Sent>& out) 
     // It was only overtaken: wait longer from now on, and forget the loss.
     overtaking_ = std::min(2 * overtaking_, kMostOvertaking);
     loss_ = std::max(0.0, loss_ - kLossMemory);
-    std::erase_if(lately_lost_, [&](const Recent& one) { return one.sequence == record.sent.sequence; });
   }
   record.state = Record::State::acknowledged;
   if (record.sent.sequence > newest_) {
     newest_ = record.sent.sequence;
     newest_trip_ = now - record.sent.at;
   }
-  recent_.push_back({now, record.sent.bytes, record.sent.sequence});
+  recent_.push_back({now, record.sent.bytes});
   out.push_back(record.sent);
 }
 
@@ -120,10 +119,8 @@ std::vector<Transmissions::Sent> Transmissions::lost(RobotTime now) {
     --on_the_way_;
     loss_ += kLossMemory * (1 - loss_);
     last_loss_ = now;
-    lately_lost_.push_back({now, record.sent.bytes, record.sent.sequence});
     out.push_back(record.sent);
   }
-  while (!lately_lost_.empty() && now - lately_lost_.front().at > kRecent) lately_lost_.pop_front();
   return out;
 }
 
@@ -159,10 +156,10 @@ Duration Transmissions::overdue(RobotTime now) const {
   return now > expected ? now - expected : Duration{};
 }
 
-std::size_t Transmissions::since(const std::deque<Recent>& all, RobotTime begin) {
+std::size_t Transmissions::acknowledged_recently(RobotTime now) const {
   std::size_t bytes = 0;
-  for (const Recent& one : all)
-    if (one.at >= begin) bytes += one.bytes;
+  for (const Recent& recent : recent_)
+    if (now - recent.at <= kRecent) bytes += recent.bytes;
   return bytes;
 }
 

@@ -39,10 +39,8 @@ class Transmissions {
 
   /// Bytes on their way: sent, and neither acknowledged nor lost.
   std::size_t unacknowledged() const { return unacknowledged_; }
-  /// The same, with those that were given up for lost within kRecent: they may only be late.
-  std::size_t unsettled(RobotTime now) const { return unacknowledged_ + since(lately_lost_, now - kRecent); }
   /// Bytes whose acknowledgement came within kRecent.
-  std::size_t acknowledged_recently(RobotTime now) const { return since(recent_, now - kRecent); }
+  std::size_t acknowledged_recently(RobotTime now) const;
   static constexpr Duration kRecent = std::chrono::milliseconds(200);
 
   bool lost_lately(RobotTime now) const { return last_loss_ && now - *last_loss_ < std::chrono::seconds(10); }
@@ -76,10 +74,8 @@ class Transmissions {
   struct Recent {
     RobotTime at;
     std::size_t bytes;
-    std::uint32_t sequence;
   };
-  static std::size_t since(const std::deque<Recent>& all, RobotTime begin);  // bytes
-  std::deque<Recent> recent_, lately_lost_;  // acknowledged; lost, and not acknowledged since
+  std::deque<Recent> recent_;
   RateMeter rate_;
   std::uint32_t measured_ = 0;  // sequence up to which arrivals went into the meter
   std::optional<Duration> last_arrival_;

@@ -1,25 +1,26 @@
 #include "link/send_control/wire_count.hpp"
 
+#include <numeric>
+
 namespace foresight {
 
 void WireCount::leaves(std::span<const std::uint8_t> packet) {
   const auto parsed = parse_packet(packet);
   if (const auto* piece = std::get_if<Piece>(&parsed)) {
-    on_the_way_[piece->sequence] = packet.size();
+    unacknowledged_[sent_[piece->sequence] = {piece->pair, piece->index}] = packet.size();
   } else if (const auto* question = std::get_if<Question>(&parsed)) {
-    on_the_way_[question->sequence] = packet.size();
-  } else {
-    return;
+    unacknowledged_[sent_[question->sequence] = {0, question->sequence}] = packet.size();
   }
-  unacknowledged_ += packet.size();
 }
 
 void WireCount::acknowledge(std::uint32_t sequence, RobotTime now) {
-  const auto sent = on_the_way_.find(sequence);
-  if (sent == on_the_way_.end()) return;
-  came_.push_back({now, sent->second});
-  unacknowledged_ -= sent->second;
-  on_the_way_.erase(sent);
+  const auto sent = sent_.find(sequence);
+  if (sent == sent_.end()) return;
+  if (const auto bytes = unacknowledged_.find(sent->second); bytes != unacknowledged_.end()) {
+    came_.push_back({now, bytes->second});
+    unacknowledged_.erase(bytes);
+  }
+  sent_.erase(sent);
 }
 
 void WireCount::comes(std::span<const std::uint8_t> packet, RobotTime now) {
@@ -29,17 +30,21 @@ void WireCount::comes(std::span<const std::uint8_t> packet, RobotTime now) {
   acknowledge(told->newest, now);
   for (std::size_t i = 0; i < Acknowledgement::kBefore; ++i)
     if (told->before[i]) acknowledge(told->newest - 1 - static_cast<std::uint32_t>(i), now);
-  while (!on_the_way_.empty() && on_the_way_.begin()->first + Acknowledgement::kBefore < told->newest) {
-    unacknowledged_ -= on_the_way_.begin()->second;
-    on_the_way_.erase(on_the_way_.begin());
+  while (!sent_.empty() && sent_.begin()->first + Acknowledgement::kBefore < told->newest) {
+    unacknowledged_.erase(sent_.begin()->second);
+    sent_.erase(sent_.begin());
   }
+}
+
+std::size_t WireCount::unacknowledged() const {
+  return std::accumulate(unacknowledged_.begin(), unacknowledged_.end(), std::size_t{0},
+                         [](std::size_t sum, const auto& piece) { return sum + piece.second; });
 }
 
 std::size_t WireCount::acknowledged_within(Duration recent, RobotTime now) {
   while (!came_.empty() && now - came_.front().at > recent) came_.pop_front();
-  std::size_t bytes = 0;
-  for (const Came& one : came_) bytes += one.bytes;
-  return bytes;
+  return std::accumulate(came_.begin(), came_.end(), std::size_t{0},
+                         [](std::size_t sum, const Came& came) { return sum + came.bytes; });
 }
 
 }  // namespace foresight

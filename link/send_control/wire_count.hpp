@@ -9,7 +9,7 @@
 
 namespace foresight {
 
-/// One thread.
+/// A piece counts once, however often it was sent, until an acknowledgement of any of its packets has come. One thread.
 class WireCount {
  public:
   /// A packet leaves the sender, and is not going to be lost: of one that is, the sender cannot know.
@@ -18,15 +18,16 @@ class WireCount {
   void comes(std::span<const std::uint8_t> packet, RobotTime now);
 
   /// Bytes that left and were not acknowledged; without those of which no acknowledgement can tell any more.
-  std::size_t unacknowledged() const { return unacknowledged_; }
+  std::size_t unacknowledged() const;
   /// Bytes whose acknowledgement came within `recent`.
   std::size_t acknowledged_within(Duration recent, RobotTime now);
 
  private:
+  using Name = std::pair<std::uint32_t, std::uint32_t>;  // of the pair, and the index in it; of no pair, the sequence
   void acknowledge(std::uint32_t sequence, RobotTime now);
 
-  std::map<std::uint32_t, std::size_t> on_the_way_;  // by sequence, the bytes
-  std::size_t unacknowledged_ = 0;
+  std::map<std::uint32_t, Name> sent_;          // by sequence
+  std::map<Name, std::size_t> unacknowledged_;  // bytes
   struct Came {
     RobotTime at;
     std::size_t bytes = 0;
