@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <functional>
 
 #include "common/error.hpp"
@@ -23,6 +24,23 @@ fs::path lock_file_of(const fs::path& target) {
   if (name.size() > kLongestName) name = std::to_string(std::hash<std::string>{}(name));
   return target.parent_path() / ("." + name + ".lock");
 }
+
+/// While it lives, stop signals to this thread wait, which is the only one before the work begins.
+class StopSignalsHeld {
+ public:
+  StopSignalsHeld() {
+    sigset_t held;
+    ::sigemptyset(&held);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&held, signal);
+    ::pthread_sigmask(SIG_BLOCK, &held, &before_);
+  }
+  ~StopSignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  StopSignalsHeld(const StopSignalsHeld&) = delete;
+  StopSignalsHeld& operator=(const StopSignalsHeld&) = delete;
+
+ private:
+  sigset_t before_{};
+};
 
 bool is_still(const std::string& file, int fd) {
   struct stat open {
@@ -46,6 +64,7 @@ bool is_lock(const fs::path& path) {
 }
 
 OutputLock::OutputLock(const std::string& where, const fs::path& target) : file_(lock_file_of(target).string()) {
+  const StopSignalsHeld held;  // until who stops us knows of the file that we make
   for (;;) {
     fd_ = UniqueFd(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
     if (!fd_) break;
