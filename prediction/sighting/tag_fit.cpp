@@ -1,12 +1,12 @@
 #include "prediction/sighting/tag_fit.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <array>
 #include <cmath>
 
 #include "calibration/camera/pose_solver.hpp"
 #include "calibration/registration/projection_slope.hpp"
+#include "common/rotation.hpp"
 
 namespace foresight {
 namespace {
@@ -62,18 +62,17 @@ std::optional<Pose> start_of(const std::vector<Corner>& corners) {
     A.row(2 * i) << p, Eigen::RowVector3d::Zero(), -x.x() * p;
     A.row(2 * i + 1) << Eigen::RowVector3d::Zero(), p, -x.y() * p;
   }
-  const Eigen::Matrix<double, 9, 1> h = A.jacobiSvd(Eigen::ComputeFullV).matrixV().col(8);
+  // The last element is the depth of the tag's middle, in a unit that is found below.
+  const Eigen::Matrix<double, 8, 1> h = A.leftCols<8>().partialPivLu().solve(-A.col(8));
   Eigen::Matrix3d H;
-  H << h.head<3>().transpose(), h.segment<3>(3).transpose(), h.tail<3>().transpose();
-  if (H(2, 2) < 0) H = -H;  // in front of the camera
+  H << h.head<3>().transpose(), h.segment<3>(3).transpose(), h.tail<2>().transpose(), 1;
+  if (!H.allFinite()) return std::nullopt;
   const double scale = (H.col(0).norm() + H.col(1).norm()) / 2;
   if (!(scale > 0)) return std::nullopt;
   Eigen::Matrix3d R;
   R << H.col(0) / scale, H.col(1) / scale, H.col(0).cross(H.col(1)) / (scale * scale);
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Pose T_camera_tag = Pose::Identity();
-  T_camera_tag.linear() = svd.matrixU() * svd.matrixV().transpose();
-  if (T_camera_tag.linear().determinant() < 0) return std::nullopt;
+  T_camera_tag.linear() = nearest_rotation(R);
   T_camera_tag.translation() = H.col(2) / scale;
   return corners[0].camera->T_world_camera * T_camera_tag;
 }
