@@ -13,6 +13,7 @@
 #include "display/stereogram/stereogram.hpp"
 #include "gl/context.hpp"
 #include "gl/raster_pass.hpp"
+#include "gl/read_texture.hpp"
 #include "pictures/encode.hpp"
 #include "pictures/picture_file.hpp"
 #include "rig_view/eye.hpp"
@@ -107,9 +108,7 @@ Seen see_model(const StereogramArguments& a, cv::Size size) {
 }
 
 cv::Mat inverse_distance(const gl::Texture& depth) {
-  cv::Mat out(depth.height(), depth.width(), CV_32F);
-  glGetTextureImage(depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(4 * out.total()), out.data);
-  return out / gl::kNearPlane;
+  return gl::read_texture(depth) / gl::kNearPlane;
 }
 
 /// A ring with a dot in its middle.

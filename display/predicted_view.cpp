@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "display/shaders.hpp"
 #include "gl/lens_rays.hpp"
@@ -75,6 +76,26 @@ void PredictedView::set_paint(ViewPaint paint) {
   if (paint != ViewPaint::colours && !painter_) painter_ = std::make_unique<PaintPass>();
 }
 
+void PredictedView::draw_part(const std::optional<gl::ViewPart>& part) {
+  draws_part_ = part.has_value();
+  raster_.draw_part(part);
+  if (!part || part_) return;
+  if (lens_.has_distortion() || programs_ == ViewPrograms::single)
+    throw std::invalid_argument("a part of a view through a lens with distortion");
+  part_ = std::make_unique<Part>(Part{gl::Program::compute(display_and_lookup_shaders(), "covered.comp"),
+                                      WorkList("pixels of a part of the view", kGroup)});
+}
+
+void PredictedView::start_part() const {
+  if (draws_part_) glClearTexImage(picture_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+}
+
+void PredictedView::list_covered(Rows rows) const {
+  start(part_->pixels);
+  dispatch_all(part_->covered, rows);
+  part_->pixels.finish(kListUnit);
+}
+
 template <typename DrawRows>
 void PredictedView::draw_rows(DrawRows draw) const {
   if (!gate_) return draw(Rows{0, lens_.height()});
@@ -91,8 +112,14 @@ void PredictedView::draw_rows(DrawRows draw) const {
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
   start(T_world_camera, state, textures, textures.light.get());
   for (const gl::Program* program : {&all_, &listed_}) set_tone(*program, textures.display_gain, textures);
+  start_part();
   draw_rows([&](Rows rows) {
     if (programs_ == ViewPrograms::single) return dispatch_all(all_, rows);
+    if (draws_part_) {
+      list_covered(rows);
+      listed_.use();
+      return part_->pixels.dispatch();
+    }
     start(rest_);
     dispatch_all(all_, rows);
     dispatch(rest_, listed_);
@@ -108,11 +135,21 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   const CameraInput* camera = newest.camera.get();
   const PosedImage* image = &newest.image;
   p.image.update({&camera, 1}, {&image, 1}, {&newest.tone, 1});
-  p.image.bind(p.newest, newest.depth_tolerance, kSeenBlock, kSeenUnit);
+  if (draws_part_ && !p.newest_of_part)
+    p.newest_of_part = view_program(std::array{lens_, newest.camera->lens()}, Cases::newest_image, {.listed = true});
+  const gl::Program& newest_pixels = draws_part_ ? p.newest_of_part : p.newest;
+  p.image.bind(newest_pixels, newest.depth_tolerance, kSeenBlock, kSeenUnit);
   for (const gl::Program* program : {&p.usual, &p.rest}) set_tone(*program, newest.gain, textures);
+  start_part();
   draw_rows([&](Rows rows) {
+    if (draws_part_) list_covered(rows);
     start(p.unseen);
-    dispatch_all(p.newest, rows);
+    if (draws_part_) {
+      newest_pixels.use();
+      part_->pixels.dispatch();
+    } else {
+      dispatch_all(newest_pixels, rows);
+    }
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     p.unseen.finish(kListUnit);
     start(rest_);

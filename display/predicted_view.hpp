@@ -42,6 +42,10 @@ class PredictedView {
   /// From now on it is painted so.
   void set_paint(ViewPaint paint);
 
+  /// From now on only this part of what is seen is drawn, and costs what it covers; nothing: all of it. The textures
+  /// must outlive that. Throws std::invalid_argument: a lens with distortion, or ViewPrograms::single.
+  void draw_part(const std::optional<gl::ViewPart>& part);
+
   /// From now on views are drawn in bands of rows, each when `gate` lets it; draw() has finished on the GPU then. Null:
   /// at once. It must outlive this.
   void use(FrameGate* gate) { gate_ = gate; }
@@ -76,7 +80,8 @@ class PredictedView {
   struct Projection {
     Projection(const Lens& view, const Lens& image);
     gl::Program newest, usual, rest;
-    WorkList unseen;  // by the newest image
+    gl::Program newest_of_part;  // once it is needed
+    WorkList unseen;             // by the newest image
     SeenInputs image;
   };
   /// What shadows need besides.
@@ -91,6 +96,8 @@ class PredictedView {
   struct Rows {
     int first = 0, last = 0;  // beyond the last
   };
+  void start_part() const;
+  void list_covered(Rows rows) const;
   template <typename DrawRows>
   void draw_rows(DrawRows draw) const;
   void dispatch_all(const gl::Program& program, Rows rows) const;
@@ -105,6 +112,12 @@ class PredictedView {
   ViewPrograms programs_;
   gl::Program all_, listed_;  // view.comp: the first for every pixel, the other for those that it listed
   WorkList rest_;
+  struct Part {
+    gl::Program covered;
+    WorkList pixels;
+  };
+  std::unique_ptr<Part> part_;  // from the first draw_part() on
+  bool draws_part_ = false;
   std::unique_ptr<Projection> projection_;  // from the first such draw() on
   gl::Buffer camera_;
   gl::BufferTexture node_poses_;      // T_node_camera: three rows a node

@@ -1,5 +1,8 @@
 #include "gl/raster_pass.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace foresight::gl {
 
 FaceImages::FaceImages(const Faces& f, bool with_surface)
@@ -10,34 +13,106 @@ FaceImages::FaceImages(const Faces& f, bool with_surface)
 RasterPass::RasterPass(std::shared_ptr<const SceneBuffers> scene, bool with_surface)
     : scene_(std::move(scene)),
       array_(scene_->create_vertex_array()),
-      program_(Program::graphics(gl_shaders(), "raster.vert", with_surface ? "surface_id.frag" : "depth.frag")),
+      program_(
+          Program::graphics(gl_shaders(), "raster.vert", with_surface ? "surface_id.frag" : "depth.frag", {"PART 0"})),
       framebuffer_(create_framebuffer("faces")),
-      with_surface_(with_surface) {
+      with_surface_(with_surface),
+      leaves_out_(scene_->triangles() > kMany ? LeavesOut::hidden : LeavesOut::behind_walls) {
   if (!with_surface) {
     glNamedFramebufferDrawBuffer(framebuffer_.name(), GL_NONE);
     glNamedFramebufferReadBuffer(framebuffer_.name(), GL_NONE);
   }
 }
 
+void RasterPass::draw_part(const std::optional<ViewPart>& part) {
+  if (part && !with_surface_) throw std::invalid_argument("a part of a view without surfaces");
+  part_ = part;
+  if (part_ && !part_program_)
+    part_program_ = Program::graphics(gl_shaders(), "raster.vert", "surface_id.frag", {"PART 1"});
+}
+
+const Program& RasterPass::choose_program() const {
+  if (!part_) return program_;
+  const double nearest = std::max(part_->nearest, kNearPlane);
+  part_program_.set("between", Eigen::Vector2d(1 / part_->farthest, 1 / nearest).cast<float>().eval());
+  part_program_.set("behind", part_->seen ? 1 : 0);
+  glBindTextureUnit(0, part_->seen);
+  glBindTextureUnit(1, part_->edges);
+  return part_program_;
+}
+
 std::vector<bool> RasterPass::seen_from(const Pose& T_world_face, const Faces& faces, const SceneState& state) const {
-  if (leaves_out_ == LeavesOut::nothing) return std::vector<bool>(scene_->boxes().box.size(), true);
+  if (leaves_out_ == LeavesOut::nothing) return wanted(std::vector<bool>(scene_->boxes().box.size(), true));
   const ViewPyramid pyramid(T_world_face, (-0.5 - faces.cx) / faces.fx, (faces.width - 0.5 - faces.cx) / faces.fx,
                             (-0.5 - faces.cy) / faces.fy, (faces.height - 0.5 - faces.cy) / faces.fy);
-  return visible_nodes(pyramid, scene_->boxes(), state,
-                       leaves_out_ == LeavesOut::behind_walls ? scene_->cells() : nullptr);
+  std::vector<bool> out = visible_nodes(pyramid, scene_->boxes(), state,
+                                        leaves_out_ >= LeavesOut::behind_walls ? scene_->cells() : nullptr);
+  return wanted(std::move(out));
+}
+
+std::vector<bool> RasterPass::wanted(std::vector<bool> nodes) const {
+  for (std::size_t i = 0; i < nodes.size() && !only_.empty(); ++i) nodes[i] = nodes[i] && only_[i];
+  return nodes;
+}
+
+void RasterPass::set_node(const Program& program, const Pose& T_face_world, const SceneState& state,
+                          const SceneBuffers::NodeRange& range) const {
+  const Pose T_face_node = T_face_world * state.T_world_node[static_cast<std::size_t>(range.node)];
+  program.set("T_face_node", T_face_node.matrix().cast<float>().eval());
+  program.set("first_triangle", range.first_triangle);
+}
+
+void RasterPass::draw(const Program& program, const Pose& T_face_world, const SceneState& state,
+                      const std::vector<bool>& nodes) const {
+  for (const auto& range : scene_->ranges()) {
+    if (!nodes[static_cast<std::size_t>(range.node)]) continue;
+    triangles_ += static_cast<std::size_t>(range.index_count) / 3;
+    set_node(program, T_face_world, state, range);
+    glDrawElementsBaseVertex(GL_TRIANGLES, range.index_count, GL_UNSIGNED_INT,
+                             reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t)),
+                             range.base_vertex);
+  }
+}
+
+// What was seen last time first; of the others only what that does not hide.
+void RasterPass::draw_unhidden(const Program& program, const FaceImages& target, int face, const Pose& T_face_world,
+                               const SceneState& state, const std::vector<bool>& seen) const {
+  const auto index = static_cast<std::size_t>(face);
+  while (culling_.size() <= index) culling_.emplace_back(scene_);
+  OcclusionCulling& culling = culling_[index];
+  const std::vector<bool> first = culling.first(seen);
+  draw(program, T_face_world, state, first);
+  culling.judge(target.faces, target.depth.name(), face, T_face_world, state, seen, first);
+  culled_faces_ = index + 1;
+  program.use();
+  for (std::size_t i = 0; i < scene_->ranges().size(); ++i) {
+    const auto& range = scene_->ranges()[i];
+    const auto node = static_cast<std::size_t>(range.node);
+    if (!seen[node] || first[node]) continue;
+    set_node(program, T_face_world, state, range);
+    culling.draw(i);
+  }
+}
+
+std::size_t RasterPass::triangles() const {
+  std::size_t out = triangles_;
+  for (std::size_t i = 0; i < culled_faces_; ++i) out += culling_[i].triangles();
+  return out;
 }
 
 void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target) const {
   const Faces& faces = target.faces;
-  program_.use();
-  program_.set("face", Eigen::Vector4d(faces.fx, faces.fy, faces.cx, faces.cy).cast<float>().eval());
-  program_.set("face_size", Eigen::Vector2i(faces.width, faces.height).cast<float>().eval());
+  const Program& program = choose_program();
+  program.use();
+  program.set("face", Eigen::Vector4d(faces.fx, faces.fy, faces.cx, faces.cy).cast<float>().eval());
+  program.set("face_size", Eigen::Vector2i(faces.width, faces.height).cast<float>().eval());
   glBindVertexArray(array_.name());
   glViewport(0, 0, faces.width, faces.height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   const Pose T_camera_world = T_world_camera.inverse();
   triangles_ = 0;
+  culled_faces_ = 0;
   for (int i = 0; i < faces.count; ++i) {
     glNamedFramebufferTextureLayer(framebuffer_.name(), GL_DEPTH_ATTACHMENT, target.depth.name(), 0, i);
     if (with_surface_)
@@ -52,17 +127,10 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
     R_face_camera.linear() = Faces::rotation(i);
     const Pose T_face_world = R_face_camera * T_camera_world;
     const std::vector<bool> seen = seen_from(T_face_world.inverse(), faces, state);
-    for (const auto& range : scene_->ranges()) {
-      const auto node = static_cast<std::size_t>(range.node);
-      if (!seen[node] || (!only_.empty() && !only_[node])) continue;
-      triangles_ += static_cast<std::size_t>(range.index_count) / 3;
-      const Pose T_face_node = T_face_world * state.T_world_node[node];
-      program_.set("T_face_node", T_face_node.matrix().cast<float>().eval());
-      program_.set("first_triangle", range.first_triangle);
-      glDrawElementsBaseVertex(GL_TRIANGLES, range.index_count, GL_UNSIGNED_INT,
-                               reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t)),
-                               range.base_vertex);
-    }
+    if (leaves_out_ == LeavesOut::hidden && !part_)
+      draw_unhidden(program, target, i, T_face_world, state, seen);
+    else
+      draw(program, T_face_world, state, seen);
   }
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);

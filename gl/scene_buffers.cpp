@@ -16,6 +16,7 @@ SceneBuffers::SceneBuffers(const SceneModel& scene) : boxes_(scene) {
     for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
     triangles += static_cast<unsigned>(mesh.triangles.size());
   }
+  triangles_ = triangles;
   vertices_ = Buffer(vertices.size() * sizeof(Eigen::Vector3f), "scene vertices");
   indices_ = Buffer(indices.size() * sizeof(std::uint32_t), "scene indices");
   vertices_.write(std::span<const Eigen::Vector3f>(vertices));

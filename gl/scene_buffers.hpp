@@ -24,6 +24,7 @@ class SceneBuffers {
   explicit SceneBuffers(const SceneModel& scene);
 
   const std::vector<NodeRange>& ranges() const { return ranges_; }
+  std::size_t triangles() const { return triangles_; }
   const NodeBoxes& boxes() const { return boxes_; }
   /// Of the scene; null where it has none.
   const CellGraph* cells() const { return cells_ ? &*cells_ : nullptr; }
@@ -34,6 +35,7 @@ class SceneBuffers {
  private:
   Buffer vertices_, indices_;
   std::vector<NodeRange> ranges_;
+  std::size_t triangles_ = 0;
   NodeBoxes boxes_;
   std::optional<CellGraph> cells_;
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "gl/read_texture.hpp"
+
 namespace foresight {
 namespace {
 
@@ -50,10 +52,7 @@ std::string StereogramLook::words() const {
 void LiveStereogram::look_at_range(const Pose& T_world_camera, const SceneState& state, const Lens& lens) {
   if (!has_size(small_, lens)) small_ = std::make_unique<gl::FaceImages>(gl::faces_for(lens, 0), false);
   raster_(T_world_camera, state, *small_);
-  cv::Mat inverse(lens.height(), lens.width(), CV_32F);
-  glGetTextureImage(small_->depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(4 * inverse.total()),
-                    inverse.data);
-  const DepthRange seen = depth_range(inverse / gl::kNearPlane);
+  const DepthRange seen = depth_range(gl::read_texture(small_->depth) / gl::kNearPlane);
   if (!(seen.far > 0)) return;  // nothing there: as before
   const double share = range_.far > 0 ? kFollows : 1;
   range_ = {std::lerp(range_.near, seen.near, share), std::lerp(range_.far, seen.far, share)};

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "gl/raster_pass.hpp"
+#include "gl/read_texture.hpp"
 #include "sim/building.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
@@ -94,6 +95,50 @@ TEST_F(CullingTest, WhatWallsHideIsAtNoPixel) {
   EXPECT_LT(seen, in_view / 2);
 }
 
+// What is hidden is found by what was drawn before, of whatever view: at each pixel the same depth is seen, and the
+// same triangle but for ties.
+TEST_F(CullingTest, WhatIsHiddenIsAtNoPixel) {
+  SceneModel building = sim::make_building({.rooms_x = 4, .rooms_y = 3, .triangles = 12'000});
+  RasterPass raster(std::make_shared<SceneBuffers>(building), true);
+  const SceneState rest{{}, StateStatus::exact, building.rest_poses()};
+  const FaceImages images(faces_for(small_lens("pinhole"), 0), true);
+  std::size_t portals = 0, hidden = 0, ties = 0, pixels = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Pose from = i % 10 == 0 ? anywhere({-4, -4, 2.9}, {24, 16, 6}) : anywhere_in(building);
+    const Drawn walls = draw(raster, RasterPass::LeavesOut::behind_walls, from, rest, images);
+    const cv::Mat depth = read_texture(images.depth);
+    for (int time = 0; time < 2; ++time) {  // with what another view showed as its guess, and with its own
+      const Drawn rest_of = draw(raster, RasterPass::LeavesOut::hidden, from, rest, images);
+      const cv::Mat again = read_texture(images.depth);
+      ASSERT_EQ(cv::countNonZero(depth != again), 0) << "view " << i << " from " << from.translation().transpose();
+      for (std::size_t p = 0; p < walls.surfaces.size(); ++p) ties += walls.surfaces[p] != rest_of.surfaces[p];
+      pixels += walls.surfaces.size();
+      EXPECT_LE(rest_of.triangles, walls.triangles);
+      if (time == 0) continue;
+      portals += walls.triangles;
+      hidden += rest_of.triangles;
+    }
+  }
+  std::printf("drawn: %.1f %% of what portals show; %zu ties of %zu pixels\n",
+              100.0 * static_cast<double>(hidden) / static_cast<double>(portals), ties, pixels);
+  EXPECT_LT(hidden, portals);
+  EXPECT_LT(ties, pixels / 1000);
+}
+
+// A thing behind another one that moves away is seen at once, though nobody has seen it last time.
+TEST_F(CullingTest, WhatComesOutFromBehindIsSeenAtOnce) {
+  const auto scene = small_scene();
+  RasterPass raster(std::make_shared<SceneBuffers>(*scene), true);
+  const FaceImages images(faces_for(small_lens("pinhole"), 0), true);
+  for (const double x : {0.0, 0.4, -0.4, 0.1}) {
+    const SceneState state = state_of(*scene, x);
+    for (const Pose& from : {usual_view(), look_at({0.9, 0.2, 0.15}, {0, 0, 0.1})})
+      EXPECT_EQ(draw(raster, RasterPass::LeavesOut::nothing, from, state, images).surfaces,
+                draw(raster, RasterPass::LeavesOut::hidden, from, state, images).surfaces)
+          << x;
+  }
+}
+
 TEST_F(CullingTest, AWholeSphereIsSeenThroughDoors) {
   const SceneModel building = sim::make_building({.rooms_x = 3, .rooms_y = 2, .triangles = 3'000, .seed = 2});
   RasterPass raster(std::make_shared<SceneBuffers>(building), true);
@@ -102,9 +147,12 @@ TEST_F(CullingTest, AWholeSphereIsSeenThroughDoors) {
   ASSERT_EQ(images.faces.count, 6);
   for (int i = 0; i < 60; ++i) {
     const Pose from = anywhere_in(building);
-    EXPECT_EQ(draw(raster, RasterPass::LeavesOut::nothing, from, rest, images).surfaces,
-              draw(raster, RasterPass::LeavesOut::behind_walls, from, rest, images).surfaces)
-        << i;
+    const auto all = draw(raster, RasterPass::LeavesOut::nothing, from, rest, images).surfaces;
+    EXPECT_EQ(all, draw(raster, RasterPass::LeavesOut::behind_walls, from, rest, images).surfaces) << i;
+    const auto unhidden = draw(raster, RasterPass::LeavesOut::hidden, from, rest, images).surfaces;
+    std::size_t ties = 0;
+    for (std::size_t p = 0; p < all.size(); ++p) ties += all[p] != unhidden[p];
+    EXPECT_LT(ties, all.size() / 1000) << i;
   }
 }
 
