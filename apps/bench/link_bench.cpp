@@ -13,6 +13,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "apps/bench/temporary_folder.hpp"
 #include "apps/command_line/picture_size.hpp"
 #include "common/error.hpp"
 #include "common/latest_value.hpp"
@@ -54,26 +55,6 @@ double memory_mb() {
 double ms(std::int64_t ns) {
   return 1e-6 * static_cast<double>(ns);
 }
-
-/// Keys for as long as this lives.
-class KeyFolder {
- public:
-  KeyFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "foresight-keys-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw RuntimeFailure("no folder can be made in " + name, "free some disk space");
-    path_ = name;
-    link::make_keys(path_, 1);
-  }
-  ~KeyFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  KeyFolder(const KeyFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 void write_all(int fd, const Arrival& arrival) {
   const auto* at = reinterpret_cast<const char*>(&arrival);  // less than PIPE_BUF: whole, or not at all
@@ -240,8 +221,11 @@ int bench_link(const LinkBenchOptions& options) {
   LinkConfig config;
   config.domain = options.domain;
   config.where = "bench link";
-  std::optional<KeyFolder> keys;
-  if (options.secured) config.security = keys.emplace().path();
+  std::optional<TemporaryFolder> keys;
+  if (options.secured) {
+    config.security = keys.emplace().path();
+    link::make_keys(keys->path(), 1);
+  }
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) throw RuntimeFailure("no pipe can be made", "end other programs");
   const UniqueFd from(ends[0]), to(ends[1]);
