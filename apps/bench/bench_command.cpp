@@ -143,16 +143,28 @@ void add_camera(Command& bench, std::function<int()>& action) {
 void add_head(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("head", "What warping a drawn view to where the head is now costs and shows");
   auto options = std::make_shared<HeadBenchOptions>();
-  command->add_option("RUN", options->run, "A run, whose images give the textures")->reads()->required();
+  command->add_option("RUN", options->run, "A run, whose images give the textures (default: a synthetic lab)")->reads();
   command->add_option("--width", options->width, "Pixels of an eye")->check(from_to(16, 4096))->capture_default_str();
   command->add_option("--height", options->height, "Pixels")->check(from_to(16, 4096))->capture_default_str();
   command->add_option("--views", options->views, "So many motions")->check(from_to(1, 10000))->capture_default_str();
   command->add_option("--degrees", options->degrees, "Of each")->check(from_to(0.0, 20.0))->capture_default_str();
   command->add_option("--metres", options->metres, "Of each")->check(from_to(0.0, 1.0))->capture_default_str();
   command->add_option("--seed", options->seed, "Another seed, other motions");
-  command->add_option("--path", options->path, "A recorded head, as bench prediction head takes it")->reads();
+  command->add_option("--path", options->path, "A recorded head, as bench prediction head takes it (default: it sways)")
+      ->reads();
+  command->add_option("--head-frames", options->head_frames, "So many frames of it with views in all directions")
+      ->check(from_to(1, 100'000))
+      ->capture_default_str();
   command->add_option("--building", options->building, "Triangles of the building that portals are measured in")
       ->check(from_to(100, 20'000'000))
+      ->capture_default_str();
+  command->add_option("--building-views", options->building_views, "So many views of it")
+      ->check(from_to(1, 1'000'000))
+      ->capture_default_str();
+  command
+      ->add_option("--openxr-frames", options->openxr_frames,
+                   "Frames shown in the OpenXR runtime of this machine; 0: none")
+      ->check(from_to(0, 100'000'000))
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "Of each trial in real time; 0: none")
       ->check(from_to(0.0, 3600.0))
@@ -162,7 +174,7 @@ void add_head(Command& bench, std::function<int()>& action) {
       ->check(from_to(1.0, 240.0))
       ->capture_default_str();
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
-  command->footer("Example: foresight synth lab && foresight bench head lab --json bench.json");
+  command->footer("Example: foresight bench head --path head.csv --json head.json");
   command->callback([options, &action] { action = [options] { return bench_head(*options); }; });
 }
 

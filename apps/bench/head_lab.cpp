@@ -31,19 +31,6 @@ Lens bench_eye(const Lens& camera, int width, int height, int guard) {
   return Lens(p);
 }
 
-cv::Mat read_pixels(const gl::Texture& texture, GLenum format, int type) {
-  cv::Mat out(texture.height(), texture.width(), type);
-  glGetTextureImage(texture.name(), 0, format, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * out.elemSize()),
-                    out.data);
-  return out;
-}
-
-cv::Mat read_numbers(const gl::Texture& texture) {
-  cv::Mat out(texture.height(), texture.width(), CV_32F);
-  glGetTextureImage(texture.name(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(4 * out.total()), out.data);
-  return out;
-}
-
 double picture_decibels(const cv::Mat& a, const cv::Mat& b) {
   cv::Mat difference;
   cv::absdiff(a, b, difference);

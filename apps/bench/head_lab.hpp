@@ -14,11 +14,6 @@ constexpr double kGuardShare = 0.08;
 /// The lens of an eye as wide as the run's camera, without distortion, and `guard` px more on each side.
 Lens bench_eye(const Lens& camera, int width, int height, int guard = 0);
 
-/// Waits for the GPU. 4 channels (GL_RGBA, CV_8UC4), or one (GL_RED, CV_8UC1).
-cv::Mat read_pixels(const gl::Texture& texture, GLenum format, int type);
-/// R32F: CV_32F.
-cv::Mat read_numbers(const gl::Texture& texture);
-
 /// Over all pixels and three channels.
 double picture_decibels(const cv::Mat& a, const cv::Mat& b);
 

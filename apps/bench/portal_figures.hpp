@@ -12,8 +12,10 @@ struct PortalTrial {
 };
 
 /// Random views in a building of 4 x 3 rooms (sim/building.hpp), depth and surface, 320 x 240 px: triangles and CPU-ms
-/// with all nodes, with those in view, and with those that portals show; and at how many pixels they differ. Prints
-/// them; keys: all, frustum, portals, different_pixels. In the current context.
+/// with all nodes, with those in view, with those that portals show, and with those of them that nothing hides, once
+/// after another view and once after the same one, with portals and without; and at how many pixels they differ from
+/// the first. Prints them; keys: all, frustum, portals, hidden, hidden_again, hidden_without_cells,
+/// hidden_without_cells_again, different_pixels, ties. In the current context.
 nlohmann::json portal_figures(const PortalTrial& trial);
 
 }  // namespace foresight

@@ -10,6 +10,7 @@
 #include "display/stereogram/decode.hpp"
 #include "display/stereogram/stereogram.hpp"
 #include "gl/raster_pass.hpp"
+#include "gl/read_texture.hpp"
 
 namespace foresight {
 namespace {
@@ -36,19 +37,16 @@ cv::Mat clouds() {
 
 }  // namespace
 
-nlohmann::json stereogram_figures(const RunFolder& run) {
+nlohmann::json stereogram_figures(const RunFolder& run, int smaller) {
   const RunImage& image = run.frames().front().left;
   const gl::RasterPass raster(std::make_shared<gl::SceneBuffers>(*run.scene()), false);
   nlohmann::json rows = nlohmann::json::array();
   std::printf("stereograms                  size       strips  pattern  CPU-ms  pictures/s  read within 1 px\n");
-  for (const int width : {640, 1280}) {
+  for (const int width : {smaller, 2 * smaller}) {
     const Lens lens = pinhole(run.lens_left(), width);
     const gl::FaceImages faces(gl::faces_for(lens, 0), false);
     raster(image.T_world_camera, run.state_at(image.time), faces);
-    cv::Mat inverse(lens.height(), lens.width(), CV_32F);
-    glGetTextureImage(faces.depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(4 * inverse.total()),
-                      inverse.data);
-    inverse /= gl::kNearPlane;
+    const cv::Mat inverse = gl::read_texture(faces.depth) / gl::kNearPlane;
     const DepthRange range = depth_range(inverse);
     for (const bool dots : {true, false}) {
       Stereogram stereogram(lens.width(), lens.height(), dots ? cv::Mat() : clouds());

@@ -7,7 +7,8 @@
 
 namespace foresight {
 
-/// Prints a table; one object a row. Needs a current context. Wall time is of the GPU's work alone, waited for.
-nlohmann::json stereogram_figures(const RunFolder& run);
+/// Of pictures of `width` px, and of twice as many. Prints a table; one object a row. Needs a current context. Wall
+/// time is of the GPU's work alone, waited for.
+nlohmann::json stereogram_figures(const RunFolder& run, int width);
 
 }  // namespace foresight

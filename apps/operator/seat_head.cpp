@@ -21,7 +21,7 @@ SeatHead::SeatHead(gl::Context& context, ViewSession& session, const Lens& lens,
       image_(lens.width(), lens.height(), "newest image in the head display"),
       newest_("newest image"),
       drawer_(session, clock),
-      painter_(session, *controllers, clock, &words_, &image_, &drawer_),
+      painter_(drawer_, *controllers, clock, &words_, &image_),
       drawing_(context.create_shared(), drawer_, clock),
       thread_(std::make_unique<head::HeadThread>(context.create_shared(), head::HeadDisplayOptions{}, clock,
                                                  controllers, painter_, [this] { painter_.release(); })) {}

@@ -1,8 +1,10 @@
 #include "display/head/eye_geometry.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "input/room_axes.hpp"
 
@@ -11,8 +13,9 @@ namespace {
 
 constexpr double kRoom = 100;                    // m
 constexpr double kWidest = 89 * EIGEN_PI / 180;  // rad from straight ahead
-constexpr double kNarrowest = EIGEN_PI / 180;    // rad from side to side
-constexpr double kStraightUp = 0.1;              // sine of the angle from the vertical: no heading below
+constexpr double kWidestGuarded = 85 * EIGEN_PI / 180;
+constexpr double kNarrowest = EIGEN_PI / 180;  // rad from side to side
+constexpr double kStraightUp = 0.1;            // sine of the angle from the vertical: no heading below
 
 }  // namespace
 
@@ -44,10 +47,31 @@ Lens eye_lens(const EyeFov& fov, int width, int height) {
   return Lens(p);
 }
 
+EyeFov fov_of(const Lens& lens) {
+  constexpr int kSteps = 64;
+  Eigen::AlignedBox2d seen;  // tangents; x to the right, y down
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; j <= kSteps; ++j) {
+      const auto ray = lens.unproject({i * lens.width() / static_cast<double>(kSteps) - 0.5,
+                                       j * lens.height() / static_cast<double>(kSteps) - 0.5});
+      if (ray && ray->z() > std::cos(kWidestGuarded)) seen.extend((ray->head<2>() / ray->z()).eval());
+    }
+  if (seen.isEmpty()) throw std::invalid_argument("a lens that sees nothing ahead");
+  return {std::atan(seen.min().x()), std::atan(seen.max().x()), -std::atan(seen.min().y()), -std::atan(seen.max().y())};
+}
+
+EyeFov widened(const EyeFov& fov, double guard) {
+  return {std::max(fov.left - guard, std::min(fov.left, -kWidestGuarded)),
+          std::min(fov.right + guard, std::max(fov.right, kWidestGuarded)),
+          std::min(fov.up + guard, std::max(fov.up, kWidestGuarded)),
+          std::max(fov.down - guard, std::min(fov.down, -kWidestGuarded))};
+}
+
 bool alike(const Lens& a, const Lens& b) {
   const auto &p = a.parameters(), &q = b.parameters();
-  return p.width == q.width && p.height == q.height && std::abs(p.fx - q.fx) < 1e-3 * p.fx &&
-         std::abs(p.fy - q.fy) < 1e-3 * p.fy && std::abs(p.cx - q.cx) < 0.05 && std::abs(p.cy - q.cy) < 0.05;
+  return p.model == q.model && p.d == q.d && p.width == q.width && p.height == q.height &&
+         std::abs(p.fx - q.fx) < 1e-3 * p.fx && std::abs(p.fy - q.fy) < 1e-3 * p.fy && std::abs(p.cx - q.cx) < 0.05 &&
+         std::abs(p.cy - q.cy) < 0.05;
 }
 
 bool alike(const EyeFov& a, const EyeFov& b, double tolerance) {

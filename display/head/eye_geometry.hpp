@@ -31,7 +31,14 @@ std::optional<EyeFov> checked_fov(const EyeFov& fov);
 /// The pinhole that shows exactly `fov` in so many px. `fov` is a checked one.
 Lens eye_lens(const EyeFov& fov, int width, int height);
 
-/// They show the same, to 0.05 px at the middle and 1 in 1,000 of the scale.
+/// All that a lens sees, such as that of a head display's panel, up to 85 degrees from straight ahead. Throws
+/// std::invalid_argument: nothing.
+EyeFov fov_of(const Lens& lens);
+
+/// The same field of view, wider by `guard` rad on each side, up to 85 degrees from straight ahead.
+EyeFov widened(const EyeFov& fov, double guard);
+
+/// They show the same, to 0.05 px at the middle and 1 in 1,000 of the scale; distortions are equal.
 bool alike(const Lens& a, const Lens& b);
 
 /// No side differs by more than `tolerance` rad.

@@ -10,47 +10,62 @@ constexpr double kFrameTimeout = 20;  // s
 constexpr int kOwnFrames = 90;        // until the right eye's frame is tried again from the left one's
 constexpr double kSideGuard = 0.14;   // rad: what the right eye sees beyond the left one's border, 65 mm at 0.45 m
 
-/// The lens with more columns at its right.
-Lens with_side(const Lens& lens) {
-  Lens::Parameters p = lens.parameters();
+Lens lens_of(const EyeAim& aim) {
+  return aim.panel ? *aim.panel : eye_lens(aim.fov, aim.width, aim.height);
+}
+
+/// The same with more columns at its right.
+Lens with_side(const EyeAim& aim) {
+  Lens::Parameters p = lens_of(aim).parameters();
   p.width += static_cast<int>(std::lround(kSideGuard * p.fx));
   return Lens(p);
 }
 
 }  // namespace
 
-EyeWarper::EyeWarper(SceneDrawer& drawer, Clock& clock, SecondEyeFrom second)
-    : drawer_(drawer), clock_(clock), from_(second) {}
+EyeWarper::EyeWarper(DrawnViews& views, Clock& clock, SecondEyeFrom second)
+    : views_(views), clock_(clock), from_(second) {}
 
 void EyeWarper::begin(const SceneState& state) {
   const RobotTime now = clock_.now();
   if (began_) interval_ = now - *began_;
   began_ = now;
-  drawer_.gate().frame_begins();
-  newest_ = drawer_.newest();
+  views_.frame_begins();
+  newest_ = views_.newest();
   aim_.state = state;
   ++counts_.frames;
 }
 
+DepthWarp& EyeWarper::warp_through(std::size_t eye, const Lens& lens, bool tells) {
+  auto& own = warps_[eye];
+  if (!own || !alike(own->lens(), lens) || (tells && !own->tells())) own.emplace(views_.parts(), lens, tells);
+  return *own;
+}
+
 const gl::Texture* EyeWarper::warp(std::size_t eye, const Lens& lens, const EyeAim& aim) {
   if (!newest_ || !newest_->eyes[eye]) return nullptr;
-  auto& own = eyes_[eye];
-  if (!own || !alike(own->lens, lens)) own.reset();
-  if (!own) own = std::make_unique<Eye>(Eye{lens, DepthWarp(drawer_.parts(), lens, from_ == SecondEyeFrom::first_eye)});
-  own->warp(*newest_->eyes[eye], aim.T_world_eye, aim_.state.T_world_node);
-  return &own->warp.picture();
+  DepthWarp& own = warp_through(eye, lens, from_ == SecondEyeFrom::first_eye || newest_->behind[eye]);
+  own(*newest_->eyes[eye], aim.T_world_eye, aim_.state.T_world_node);
+  if (newest_->behind[eye]) own.mend(*newest_->behind[eye], aim.T_world_eye, aim_.state.T_world_node);
+  return &own.picture();
 }
 
 const gl::Texture* EyeWarper::make_second(const EyeAim& aim) {
-  const Lens lens = eye_lens(aim.fov, aim.width, aim.height);
+  const Lens& lens = lenses_[1](aim, lens_of);
   const Pose T_first_second = aim_.eyes[0].T_world_eye.inverse() * aim.T_world_eye;
-  const Eye* const first = eyes_[0].get();
-  const bool fits = first && newest_ && newest_->eyes[0] && SecondEye::fits(first->lens, lens, T_first_second);
+  const auto& first = warps_[0];
+  const bool fits = first && newest_ && newest_->eyes[0] && SecondEye::fits(first->lens(), lens, T_first_second);
   if (fits && own_frames_ == 0) {
-    if (!second_ || !alike(second_->lens(), lens)) second_ = std::make_unique<SecondEye>(first->lens, lens);
-    (*second_)(first->warp.picture(), first->warp.depth(), T_first_second.translation().x());
+    if (!second_ || !alike(second_->lens(), lens)) second_ = std::make_unique<SecondEye>(first->lens(), lens);
+    (*second_)(first->picture(), first->depth(), T_first_second.translation().x());
     ++counts_.of_first;
-    if (second_->unseen() > kMostTorn) {
+    double unseen = second_->unseen();
+    if (newest_->behind[0]) {
+      DepthWarp& mender = warp_through(1, lens, true);
+      mender.mend(*newest_->behind[0], aim.T_world_eye, aim_.state.T_world_node, second_->picture(), second_->holes());
+      unseen -= mender.mended();
+    }
+    if (unseen > kMostTorn) {
       own_frames_ = kOwnFrames;
       ++counts_.torn;
     }
@@ -68,22 +83,20 @@ const gl::Texture* EyeWarper::operator()(std::size_t eye, const EyeAim& aim) {
   aim_.eyes[eye] = aim;
   const bool of_first = from_ == SecondEyeFrom::first_eye;
   const gl::Texture* out = nullptr;
-  if (eye == 1 && of_first) {
+  if (eye == 1 && of_first)
     out = make_second(aim);
-  } else {
-    const Lens lens = eye_lens(aim.fov, aim.width, aim.height);
-    out = warp(eye, of_first ? with_side(lens) : lens, aim);
-  }
+  else
+    out = warp(eye, lenses_[eye](aim, of_first ? with_side : lens_of), aim);
   if (!out) ++counts_.nothing;
   return out;
 }
 
 void EyeWarper::end() {
   aim_.second_eye = from_ == SecondEyeFrom::own_view || own_frames_ > 0;
-  if (aim_.eyes[0].width > 0 && aim_.eyes[1].width > 0) drawer_.aim(aim_);
-  if (newest_) drawer_.shown();
+  if (aim_.eyes[0].width > 0 && aim_.eyes[1].width > 0) views_.aim(aim_);
+  if (newest_) views_.shown();
   gl::Fence::insert().wait(kFrameTimeout);
-  drawer_.gate().frame_ends(*began_ + interval_);
+  views_.frame_ends(*began_ + interval_);
 }
 
 }  // namespace foresight::head

@@ -23,13 +23,13 @@ struct WarpCounts {
   std::uint64_t nothing = 0;   ///< eyes for which nothing was drawn yet
 };
 
-/// Shows what a SceneDrawer draws. Belongs to the showing thread and its context.
+/// Shows what somebody draws. Belongs to the showing thread and its context.
 class EyeWarper {
  public:
-  /// More of a right eye's pixels that the left one has not seen than this, and it gets a view of its own for a while.
+  /// More of a right eye's pixels that nobody has seen than this, and it gets a view of its own for a while.
   static constexpr double kMostTorn = 0.035;
 
-  EyeWarper(SceneDrawer& drawer, Clock& clock, SecondEyeFrom second = SecondEyeFrom::own_view);
+  EyeWarper(DrawnViews& views, Clock& clock, SecondEyeFrom second = SecondEyeFrom::own_view);
 
   /// A frame begins: it is of the newest views, of nodes as in `state`.
   void begin(const SceneState& state);
@@ -43,21 +43,19 @@ class EyeWarper {
   const WarpCounts& counts() const { return counts_; }
 
  private:
-  struct Eye {
-    Lens lens;
-    DepthWarp warp;
-  };
+  DepthWarp& warp_through(std::size_t eye, const Lens& lens, bool tells);
   const gl::Texture* warp(std::size_t eye, const Lens& lens, const EyeAim& aim);
   const gl::Texture* make_second(const EyeAim& aim);
 
-  SceneDrawer& drawer_;
+  DrawnViews& views_;
   Clock& clock_;
   SecondEyeFrom from_;
   std::optional<RobotTime> began_;
   Duration interval_{};
   const DrawnEyes* newest_ = nullptr;
   HeadAim aim_;
-  std::array<std::unique_ptr<Eye>, 2> eyes_;
+  std::array<KeptLens, 2> lenses_;
+  std::array<std::optional<DepthWarp>, 2> warps_;
   std::unique_ptr<SecondEye> second_;
   int own_frames_ = 0;  // that the right eye still has of its own view
   WarpCounts counts_;

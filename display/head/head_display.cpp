@@ -102,6 +102,7 @@ void HeadDisplay::close(const std::string& trouble, const std::string& cure, boo
   if (open_ && open_->session) {
     const FrameCounts& counts = open_->session->counts();
     counted_.frames += counts.frames;
+    counted_.drawn += counts.drawn;
     counted_.without_pose += counts.without_pose;
     counted_.time_jumps += counts.time_jumps;
   }
@@ -126,6 +127,7 @@ void HeadDisplay::count() {
   const std::lock_guard lock(mutex_);
   const bool new_frame = counted_.frames + counts.frames != status_.frames;
   status_.frames = counted_.frames + counts.frames;
+  status_.drawn = counted_.drawn + counts.drawn;
   status_.without_pose = counted_.without_pose + counts.without_pose;
   status_.time_jumps = counted_.time_jumps + counts.time_jumps;
   status_.rate_hz = counts.period.count() > 0 ? 1e9 / static_cast<double>(counts.period.count()) : 0;

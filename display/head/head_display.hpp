@@ -31,6 +31,7 @@ struct HeadStatus {
   std::string trouble;  ///< what keeps it from showing, or ""
   std::string cure;
   std::uint64_t frames = 0;        ///< of all sessions
+  std::uint64_t drawn = 0;         ///< of these, with eyes in them
   std::uint64_t without_pose = 0;  ///< in which nobody knew where the head is
   std::uint64_t time_jumps = 0;
   int losses = 0;      ///< of a headset or a runtime that was there

@@ -7,32 +7,36 @@
 namespace foresight::head {
 namespace {
 
-constexpr double kWidestGuarded = 85 * EIGEN_PI / 180;  // rad
 constexpr Duration kSlowest = std::chrono::milliseconds(180), kNextTry = std::chrono::milliseconds(5);
 
-/// As many px a radian, in the middle, as `fov` has on `pixels`.
-int pixels_of(double from, double to, double wide_from, double wide_to, int pixels) {
-  return static_cast<int>(
-      std::lround(pixels * (std::tan(wide_to) - std::tan(wide_from)) / (std::tan(to) - std::tan(from))));
+/// As many px a radian, in the middle, as the eye has.
+Lens wide_lens(const EyeAim& eye) {
+  const EyeFov wide = widened(eye.fov, SceneDrawer::kGuard);
+  const Lens::Parameters of_eye = (eye.panel ? *eye.panel : eye_lens(eye.fov, eye.width, eye.height)).parameters();
+  const auto pixels = [](double focal, double from, double to) {
+    return static_cast<int>(std::lround(focal * (std::tan(to) - std::tan(from))));
+  };
+  return eye_lens(wide, pixels(of_eye.fx, wide.left, wide.right), pixels(of_eye.fy, wide.down, wide.up));
 }
 
-Lens wide_lens(const EyeAim& eye, double guard) {
-  const EyeFov &fov = eye.fov, wide = widened(fov, guard);
-  return eye_lens(wide, pixels_of(fov.left, fov.right, wide.left, wide.right, eye.width),
-                  pixels_of(fov.down, fov.up, wide.down, wide.up, eye.height));
+/// Layers of that lens: those that are there, or new ones.
+WarpLayers& fitting(std::optional<WarpLayers>& layers, const Lens& lens, bool of_part) {
+  if (!layers || !alike(layers->lens, lens)) layers.emplace(lens, of_part);
+  return *layers;
 }
 
 }  // namespace
 
-EyeFov widened(const EyeFov& fov, double guard) {
-  return {std::max(fov.left - guard, std::min(fov.left, -kWidestGuarded)),
-          std::min(fov.right + guard, std::max(fov.right, kWidestGuarded)),
-          std::min(fov.up + guard, std::max(fov.up, kWidestGuarded)),
-          std::max(fov.down - guard, std::min(fov.down, -kWidestGuarded))};
+bool same_sight(const EyeAim& a, const EyeAim& b) {
+  return a.width == b.width && a.height == b.height && a.panel == b.panel && alike(a.fov, b.fov, 0);
 }
 
-SceneDrawer::SceneDrawer(const ViewSession& session, Clock& clock)
-    : session_(session), gate_(clock), parts_(std::make_shared<const WarpScene>(session.scene())) {}
+SceneDrawer::SceneDrawer(const ViewSession& session, Clock& clock, const DrawerOptions& options)
+    : session_(session),
+      clock_(clock),
+      options_(options),
+      gate_(clock),
+      parts_(std::make_shared<const WarpScene>(session.scene())) {}
 
 void SceneDrawer::aim(HeadAim aim) {
   const std::lock_guard lock(mutex_);
@@ -52,27 +56,51 @@ bool SceneDrawer::draw() {
   if (!capture_) capture_.emplace(parts_);
   auto& slot = slots_.begin();
   if (!slot) slot.emplace();
-  for (std::size_t eye = 0; eye < 2; ++eye) {
-    if (eye == 1 && !aim.second_eye) {
-      slot->eyes[eye].reset();
-      continue;
-    }
-    const Lens lens = wide_lens(aim.eyes[eye], kGuard);
-    auto& view = views_[eye];
-    if (!view || !alike(view->lens(), lens)) view.reset();
-    if (!view) view.emplace(session_.make_view(lens)).use(&gate_);
-    auto& layers = slot->eyes[eye];
-    if (!layers || !alike(layers->lens, view->lens())) layers.emplace(view->lens());
-    const Pose& from = aim.eyes[eye].T_world_eye;
-    view->draw(from, aim.state, textures, image);
-    gate_.begin("layers of a view");
-    (*capture_)(view->picture(), view->faces(), from, aim.state, *layers);
-    glFinish();
-    gate_.end();
-  }
+  const Drawing drawing{aim, textures, image};
+  const std::size_t eyes = aim.second_eye ? 2 : 1;
+  if (eyes == 1) slot->eyes[1].reset();
+  const RobotTime begin = clock_.now();
+  for (std::size_t eye = 0; eye < eyes; ++eye) draw_front(eye, drawing, *slot);
+  const bool is_quick = clock_.now() - begin <= options_.behind_edges_within;
+  for (std::size_t eye = 0; eye < 2; ++eye)
+    if (is_quick && eye < eyes)
+      draw_behind(eye, drawing, *slot);
+    else
+      slot->behind[eye].reset();
   slots_.end();
   ++drawn_;
   return true;
+}
+
+// A part of the work that frames do not wait for.
+template <typename Work>
+void SceneDrawer::slice(const char* kind, Work work) {
+  if (options_.in_bands) gate_.begin(kind);
+  work();
+  glFinish();
+  if (options_.in_bands) gate_.end();
+}
+
+void SceneDrawer::draw_front(std::size_t eye, const Drawing& drawing, DrawnEyes& into) {
+  const Lens& lens = lenses_[eye](drawing.aim.eyes[eye], wide_lens);
+  auto& view = views_[eye];
+  if (!view || !alike(view->lens(), lens)) view.reset();
+  if (!view) view.emplace(session_.make_view(lens)).use(options_.in_bands ? &gate_ : nullptr);
+  view->draw_part(std::nullopt);
+  draw_layers(eye, drawing, fitting(into.eyes[eye], view->lens(), false));
+}
+
+void SceneDrawer::draw_behind(std::size_t eye, const Drawing& drawing, DrawnEyes& into) {
+  PredictedView& view = *views_[eye];
+  slice("edges of a view", [&] { view.draw_part(capture_->behind_edges(*into.eyes[eye])); });
+  draw_layers(eye, drawing, fitting(into.behind[eye], view.lens(), true));
+}
+
+void SceneDrawer::draw_layers(std::size_t eye, const Drawing& drawing, WarpLayers& into) {
+  PredictedView& view = *views_[eye];
+  const Pose& from = drawing.aim.eyes[eye].T_world_eye;
+  view.draw(from, drawing.aim.state, drawing.textures, drawing.image);
+  slice("layers of a view", [&] { (*capture_)(view.picture(), view.faces(), from, drawing.aim.state, into); });
 }
 
 void SceneDrawer::release() {

@@ -11,54 +11,49 @@
 #include <thread>
 
 #include "common/clock.hpp"
-#include "display/head/eye_geometry.hpp"
+#include "display/head/drawn_views.hpp"
 #include "display/head/newest_slot.hpp"
 #include "display/view_session.hpp"
-#include "display/warp/warp_layers.hpp"
 
 namespace foresight::head {
 
-/// What an eye is shown.
-struct EyeAim {
-  Pose T_world_eye = Pose::Identity();  ///< of its camera (optical frame)
-  EyeFov fov;
-  int width = 0, height = 0;  ///< px
+/// The lens for what an eye is shown, made anew only where that has become another.
+class KeptLens {
+ public:
+  template <typename Make>
+  const Lens& operator()(const EyeAim& aim, Make make) {
+    if (!lens_ || !same_sight(of_, aim)) lens_ = make(aim);
+    of_ = aim;
+    return *lens_;
+  }
+
+ private:
+  EyeAim of_;
+  std::optional<Lens> lens_;
 };
 
-/// Where eyes and scene are, as the display knows them.
-struct HeadAim {
-  std::array<EyeAim, 2> eyes;  ///< left and right
-  SceneState state;
-  bool second_eye = true;  ///< false: the right one's frames are made of the left one's
+struct DrawerOptions {
+  /// What views hide near edges is drawn, too, so that a head that moves on finds few holes, where the views of both
+  /// eyes took no longer than this: else they would come too rarely.
+  Duration behind_edges_within = std::chrono::milliseconds(100);
+  bool in_bands = true;  ///< between frames; else at once, for who draws in the showing thread or another process
 };
-
-/// A view drawn for each eye.
-struct DrawnEyes {
-  std::array<std::optional<WarpLayers>, 2> eyes;  ///< the second is empty where nobody asked for it
-};
-
-/// The same field of view, wider by `guard` rad on each side, up to 85 degrees from straight ahead.
-EyeFov widened(const EyeFov& fov, double guard);
 
 /// Draws with a guard band, so that a head that turns on finds something to see. One drawing and one showing thread.
-class SceneDrawer {
+class SceneDrawer final : public DrawnViews {
  public:
   static constexpr double kGuard = 4 * EIGEN_PI / 180;  ///< rad on each side
 
   /// Both must outlive this. In any context of the session's share group.
-  SceneDrawer(const ViewSession& session, Clock& clock);
+  SceneDrawer(const ViewSession& session, Clock& clock, const DrawerOptions& options = {});
 
-  /// Drawing goes on between frames.
-  FrameGate& gate() { return gate_; }
-
-  const std::shared_ptr<const WarpScene>& parts() const { return parts_; }
-
-  /// Showing thread: what is drawn next; the newest counts.
-  void aim(HeadAim aim);
-  /// Showing thread: the newest views that the GPU has finished, until the next call; null before the first.
-  const DrawnEyes* newest() { return slots_.newest(); }
-  /// Showing thread: has given all commands that read newest().
-  void shown() { slots_.shown(); }
+  // Showing thread.
+  const std::shared_ptr<const WarpScene>& parts() const override { return parts_; }
+  void frame_begins() override { gate_.frame_begins(); }
+  void frame_ends(RobotTime next) override { gate_.frame_ends(next); }
+  void aim(HeadAim aim) override;
+  const DrawnEyes* newest() override { return slots_.newest(); }
+  void shown() override { slots_.shown(); }
 
   /// Drawing thread, its context current: draws once, and waits for the GPU. False: nobody has aimed since the
   /// last time, or there are no textures.
@@ -68,11 +63,25 @@ class SceneDrawer {
   void release();
 
  private:
+  struct Drawing {
+    const HeadAim& aim;
+    const TextureLease& textures;
+    const ImageLease& image;
+  };
+  void draw_front(std::size_t eye, const Drawing& drawing, DrawnEyes& into);
+  void draw_behind(std::size_t eye, const Drawing& drawing, DrawnEyes& into);
+  template <typename Work>
+  void slice(const char* kind, Work work);
+  void draw_layers(std::size_t eye, const Drawing& drawing, WarpLayers& into);
+
   const ViewSession& session_;
+  Clock& clock_;
+  DrawerOptions options_;
   FrameGate gate_;
   std::shared_ptr<const WarpScene> parts_;
   std::mutex mutex_;
   std::optional<HeadAim> aim_;
+  std::array<KeptLens, 2> lenses_;
   std::array<std::optional<PredictedView>, 2> views_;
   std::optional<LayerCapture> capture_;
   NewestSlot<DrawnEyes> slots_;

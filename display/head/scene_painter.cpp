@@ -3,8 +3,6 @@
 namespace foresight::head {
 namespace {
 
-constexpr double kDrawTimeout = 20;                                       // s
-constexpr std::size_t kMostDrawings = 4;                                  // two eyes of two frames
 constexpr double kWordsWidth = 0.9, kWordsAway = 1.4, kWordsDown = 0.45;  // m
 constexpr double kImageWidth = 0.6, kImageAway = 1.5, kImageRight = 0.75, kImageUp = 0.3;
 constexpr double kLargeImage = 1.6;
@@ -21,9 +19,9 @@ Pose facing(const Eigen::Vector3d& at) {
 
 }  // namespace
 
-ScenePainter::ScenePainter(const ViewSession& session, const HeldControllers& hands, Clock& clock, SharedPicture* words,
-                           SharedPicture* image, SceneDrawer* drawer)
-    : session_(session), hands_(hands), clock_(clock), pictures_{words, image}, drawer_(drawer) {}
+ScenePainter::ScenePainter(SceneDrawer& drawer, const HeldControllers& hands, Clock& clock, SharedPicture* words,
+                           SharedPicture* image)
+    : drawer_(drawer), hands_(hands), clock_(clock), pictures_{words, image} {}
 
 void ScenePainter::show(HeadScene scene) {
   const std::lock_guard lock(mutex_);
@@ -53,8 +51,8 @@ void ScenePainter::look(const HeadFrame& frame) {
   if (centre_pressed() || frame.space_moved) centre_ = true;
   place_space(frame);
   place_panels();
-  if (drawer_ && !warper_) warper_.emplace(*drawer_, clock_);
-  if (warper_) warper_->begin(shown_.place.scene);
+  if (!warper_) warper_.emplace(drawer_, clock_);
+  warper_->begin(shown_.place.scene);
 }
 
 void ScenePainter::place_space(const HeadFrame& frame) {
@@ -93,34 +91,13 @@ void ScenePainter::draw_eye(std::size_t eye, const EyeView& view, const ViewTarg
     fill(target, 0.12f, 0.13f, 0.15f);
 }
 
-bool ScenePainter::warp_scene(std::size_t eye, const Pose& T_world_eye, const EyeFov& fov, const ViewTarget& target) {
-  const gl::Texture* const picture = (*warper_)(eye, {T_world_eye, fov, target.width, target.height});
-  if (picture) (*copy_)(*picture, target, target.width);
-  if (eye == 1) warper_->end();
-  return picture;
-}
-
 bool ScenePainter::draw_scene(std::size_t eye, const EyeView& view, const ViewTarget& target) {
   if (!T_world_space_ || shown_.place.scene.T_world_node.empty()) return false;
   const Pose T_world_eye = *T_world_space_ * view.T_space_eye * T_body_camera();
-  if (warper_) return warp_scene(eye, T_world_eye, view.fov, target);
-  while (!drawings_.empty() && drawings_.front().end.signalled()) drawings_.pop_front();
-  if (drawings_.size() >= kMostDrawings) {
-    drawings_.front().end.wait(kDrawTimeout);
-    drawings_.pop_front();
-  }
-  TextureLease textures = session_.textures();
-  if (!textures) return false;
-  auto& own = eyes_[eye];
-  const bool fits = own && alike(own->fov, view.fov) && own->view.picture().width() == target.width &&
-                    own->view.picture().height() == target.height;
-  if (!fits) own.reset();
-  if (!own) own.emplace(Eye{view.fov, session_.make_view(eye_lens(view.fov, target.width, target.height))});
-  ImageLease image = session_.image();
-  own->view.draw(T_world_eye, shown_.place.scene, textures, image);
-  (*copy_)(own->view.picture(), target);
-  drawings_.push_back({std::move(textures), std::move(image), gl::Fence::insert()});
-  return true;
+  const gl::Texture* const picture = (*warper_)(eye, {T_world_eye, view.fov, target.width, target.height});
+  if (picture) (*copy_)(*picture, target, target.width);
+  if (eye == 1) warper_->end();
+  return picture;
 }
 
 void ScenePainter::draw_panel(std::size_t panel, const ViewTarget& target) {
@@ -130,9 +107,6 @@ void ScenePainter::draw_panel(std::size_t panel, const ViewTarget& target) {
 }
 
 void ScenePainter::release() {
-  for (const Drawing& drawing : drawings_) drawing.end.wait(kDrawTimeout);
-  drawings_.clear();
-  for (auto& eye : eyes_) eye.reset();
   warper_.reset();
   copy_.reset();
 }

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <atomic>
-#include <deque>
 #include <mutex>
 
 #include "display/frame_source.hpp"
@@ -15,7 +14,6 @@
 #include "display/head/head_hands.hpp"
 #include "display/head/head_painter.hpp"
 #include "display/head/shared_picture.hpp"
-#include "display/view_session.hpp"
 
 namespace foresight::head {
 
@@ -29,10 +27,10 @@ struct HeadScene {
 /// is centred again. Painter's functions in the head display's thread, all others in any.
 class ScenePainter final : public HeadPainter {
  public:
-  /// All must outlive this. `words` and `image`: panels; null: none. A press of `recentre` or `home_view` on `hands`
-  /// centres. `drawer`: somebody else draws with it, and each frame is warped from there; null: each frame is drawn.
-  ScenePainter(const ViewSession& session, const HeldControllers& hands, Clock& clock, SharedPicture* words,
-               SharedPicture* image, SceneDrawer* drawer = nullptr);
+  /// All must outlive this. `drawer`: somebody else draws with it (SceneThread), and each frame is warped from there.
+  /// `words` and `image`: panels; null: none. A press of `recentre` or `home_view` on `hands` centres.
+  ScenePainter(SceneDrawer& drawer, const HeldControllers& hands, Clock& clock, SharedPicture* words,
+               SharedPicture* image);
 
   void show(HeadScene scene);
   /// The head is where the camera is now, from the next frame on.
@@ -48,22 +46,12 @@ class ScenePainter final : public HeadPainter {
   void release();
 
  private:
-  struct Eye {
-    EyeFov fov;
-    PredictedView view;
-  };
-  struct Drawing {
-    TextureLease textures;
-    ImageLease image;
-    gl::Fence end;
-  };
   bool centre_pressed();
   void place_space(const HeadFrame& frame);
   void place_panels();
   bool draw_scene(std::size_t eye, const EyeView& view, const ViewTarget& target);
-  bool warp_scene(std::size_t eye, const Pose& T_world_eye, const EyeFov& fov, const ViewTarget& target);
 
-  const ViewSession& session_;
+  SceneDrawer& drawer_;
   const HeldControllers& hands_;
   Clock& clock_;
   std::array<SharedPicture*, 2> pictures_;  // words, image
@@ -76,11 +64,8 @@ class ScenePainter final : public HeadPainter {
   Pose T_space_centre_ = Pose::Identity();
   bool pressed_ = false;
   std::array<Panel, 2> panels_;
-  std::array<std::optional<Eye>, 2> eyes_;
-  SceneDrawer* drawer_;
-  std::optional<EyeWarper> warper_;  // of it, in the head display's thread
+  std::optional<EyeWarper> warper_;  // these two in the head display's thread
   std::optional<PictureCopy> copy_;
-  std::deque<Drawing> drawings_;  // that the GPU may not have finished
 };
 
 }  // namespace foresight::head

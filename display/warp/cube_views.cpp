@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <stdexcept>
 
 #include "gl/faces.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr int kRays = 25;  // along each side of a view, to tell what it sees: closer than a guard is wide
+constexpr double kNear = 0.4;  // m: as near as surfaces usually are; from farther ones one may go on farther
+constexpr int kRays = 25;      // along each side of a view, to tell what it sees: closer than a guard is wide
 
 Lens lens_of_faces(const Lens& target) {
   const double f = target.parameters().fx, half = std::tan(EIGEN_PI / 4 + CubeViews::kGuard);
@@ -21,13 +24,21 @@ Lens lens_of_faces(const Lens& target) {
 
 }  // namespace
 
-CubeViews::CubeViews(std::shared_ptr<const WarpScene> scene, const Lens& target)
-    : target_(target), face_lens_(lens_of_faces(target)), warp_(std::move(scene), target) {}
+CubeViews::CubeViews(std::shared_ptr<const WarpScene> scene, const Lens& target, std::vector<double> borders)
+    : target_(target),
+      face_lens_(lens_of_faces(target)),
+      borders_(std::move(borders)),
+      warp_(std::move(scene), target),
+      shells_(borders_.size() + 1) {
+  const bool ascends = std::ranges::adjacent_find(borders_, std::greater_equal()) == borders_.end();
+  if (!ascends || (!borders_.empty() && borders_.front() < kNearestBorder))
+    throw std::invalid_argument("borders of shells that do not ascend, or are too near");
+}
 
-Pose CubeViews::T_world_face(int face, const Pose& T_world_camera) {
+Pose CubeViews::T_world_face(int side, const Pose& T_world_camera) {
   Pose out = Pose::Identity();
   out.translation() = T_world_camera.translation();
-  out.linear() = gl::Faces::rotation(face).transpose();
+  out.linear() = gl::Faces::rotation(side).transpose();
   return out;
 }
 
@@ -47,34 +58,60 @@ std::array<int, CubeViews::kFaces> CubeViews::seen_by(const Pose& T_world_camera
   return rays;
 }
 
-std::optional<int> CubeViews::missing(const Pose& T_world_camera) const {
-  const std::array<int, kFaces> rays = seen_by(T_world_camera);
-  std::optional<int> out;
-  for (int face = 0; face < kFaces; ++face) {
-    const auto i = static_cast<std::size_t>(face);
-    const auto& layers = faces_[i];
-    const bool there =
-        layers && (layers->T_world_camera.translation() - T_world_camera.translation()).norm() < kFarthest;
-    if (rays[i] > 0 && !there && (!out || rays[i] > rays[static_cast<std::size_t>(*out)])) out = face;
-  }
+double CubeViews::may_move(std::size_t shell) const {
+  return shell == 0 ? kFarthest : kFarthest * std::max(1.0, borders_[shell - 1] / kNear);
+}
+
+gl::ViewPart CubeViews::part(std::size_t shell) const {
+  gl::ViewPart out;
+  if (shell > 0) out.nearest = borders_[shell - 1] - may_move(shell - 1) - may_move(shell);
+  if (shell < borders_.size()) out.farthest = borders_[shell];
   return out;
 }
 
-WarpLayers& CubeViews::layers(int face) {
-  auto& out = faces_[static_cast<std::size_t>(face)];
-  if (!out) out.emplace(face_lens_);
-  return *out;
+std::optional<CubeViews::Face> CubeViews::missing(const Pose& T_world_camera) const {
+  const std::array<int, kFaces> rays = seen_by(T_world_camera);
+  for (std::size_t shell = 0; shell < shells_.size(); ++shell) {
+    int most = 0;
+    Face out{0, shell};
+    for (int side = 0; side < kFaces; ++side) {
+      const auto i = static_cast<std::size_t>(side);
+      const auto& [layers, is_new] = shells_[shell][i];
+      const bool there =
+          is_new && (layers->T_world_camera.translation() - T_world_camera.translation()).norm() < may_move(shell);
+      if (there || rays[i] <= most) continue;
+      most = rays[i];
+      out.side = side;
+    }
+    if (most > 0) return out;
+  }
+  return std::nullopt;
+}
+
+WarpLayers& CubeViews::layers(const Face& face) {
+  auto& [layers, is_new] = shells_[face.shell][static_cast<std::size_t>(face.side)];
+  if (!layers) layers.emplace(face_lens_, face.shell + 1 < shells_.size());
+  is_new = true;
+  return *layers;
+}
+
+void CubeViews::changed() {
+  ++changes_;
+  for (std::size_t shell = 0; shell < shells_.size() && changes_ % (1U << shell) == 0; ++shell)
+    for (Kept& face : shells_[shell]) face.is_new = false;
 }
 
 void CubeViews::forget() {
-  for (auto& face : faces_) face.reset();
+  for (auto& shell : shells_)
+    for (Kept& face : shell) face.is_new = false;
 }
 
 const gl::Texture& CubeViews::operator()(const Pose& T_world_camera, std::span<const Pose> T_world_node) {
   const std::array<int, kFaces> rays = seen_by(T_world_camera);
   warp_.clear();
-  for (std::size_t i = 0; i < faces_.size(); ++i)
-    if (rays[i] > 0 && faces_[i]) warp_.add(*faces_[i], T_world_camera, T_world_node);
+  for (auto& shell : shells_)
+    for (std::size_t i = 0; i < shell.size(); ++i)
+      if (rays[i] > 0 && shell[i].layers) warp_.add(*shell[i].layers, T_world_camera, T_world_node);
   return warp_.picture();
 }
 

@@ -1,6 +1,7 @@
 // What each pixel of the target sees, found in the source: see depth_warp.hpp. A group for each tile of a list.
 // Defines: SEARCHED: 1 where surfaces part within the tile's reach, 0 where there is one. MOVED: 1 where nodes have moved.
-// TELLS: 1 where depth and holes are asked for. KEEPS: 1 where what other sources have seen stays.
+// DISTORTED: as in warp_rays.glsl. TELLS: 1 where depth and holes are asked for. KEEPS: 1 where what other sources have seen stays, unless this one has seen something nearer. MENDS: 1 where only holes
+// are looked up, in layers of what lies behind edges.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "warp_rays.glsl"
 layout(binding = 0) uniform sampler2D depth;    // 1/m, 0 where no model is
@@ -9,11 +10,19 @@ layout(binding = 2) uniform sampler2D reach;    // of blocks: largest and smalle
 layout(binding = 3) uniform usamplerBuffer tiles;
 #if KEEPS
 layout(binding = 0, rgba8) uniform image2D warped;
+layout(binding = 2, r32f) uniform image2D warped_depth;
 #else
 layout(binding = 0, rgba8) uniform writeonly image2D warped;
-#endif
-layout(binding = 1, r8) uniform writeonly image2D holes;
 layout(binding = 2, r32f) uniform writeonly image2D warped_depth;
+#endif
+#if KEEPS || MENDS
+layout(binding = 1, r8) uniform image2D holes;
+#else
+layout(binding = 1, r8) uniform writeonly image2D holes;
+#endif
+#if MENDS
+layout(std430, binding = 4) buffer Count { uint mended; };
+#endif
 #if !SEARCHED
 layout(binding = 4) uniform samplerBuffer corners;  // of a tile: inverse target depths
 #endif
@@ -25,6 +34,9 @@ uniform int moved_count;
 const int kWords = 6;  // three rows, back, the node's rectangle in the target, its inverse depths
 uint slot = 0u;        // of what is searched for
 #endif
+#if KEEPS
+uniform int of_part;  // 1: where the source has no model, others may
+#endif
 const int kTilesFrom = 3;    // of the list: before them, the groups
 const int kMostSteps = 32, kMostTries = 4;
 const float kHit = 0.75;     // px: closer than that, the surface is the pixel's
@@ -35,6 +47,9 @@ const float kNone = 1e30;
 float depth_at(vec2 at) {
   ivec2 p = nearest_pixel(at);
   float q = texelFetch(depth, p, 0).r;
+#if MENDS
+  if (q == 0.0) return -1.0;  // nobody has looked there
+#endif
 #if MOVED
   q = texelFetch(slot_of_node, int(texelFetch(nodes, p, 0).r)).r == slot ? q : -1.0;
 #endif
@@ -58,12 +73,28 @@ bool inside(vec2 at) {
 void put(ivec2 pixel, vec2 at, vec4 colour, bool found, float w) {
   bool is_inside = inside(at);
 #if KEEPS
-  if (!is_inside || (!found && imageLoad(warped, pixel).a > 0.0)) return;
+  if (!is_inside || (of_part != 0 && w <= 0.0)) return;
+  float before = imageLoad(holes, pixel).r;
+  if (before < 0.9 && !found) return;
+  if (before < 0.1 && w <= imageLoad(warped_depth, pixel).r) return;
+#endif
+#if MENDS
+  if (!is_inside || !found) return;
+  atomicAdd(mended, 1u);
 #endif
   imageStore(warped, pixel, vec4(colour.rgb, is_inside ? colour.a : 0.0));
 #if TELLS
   imageStore(holes, pixel, vec4(is_inside ? (found ? 0.0 : 128.0 / 255.0) : 1.0));
   imageStore(warped_depth, pixel, vec4(w));
+#endif
+}
+
+// Where the target's lens sees nothing.
+void put_nothing(ivec2 pixel) {
+  imageStore(warped, pixel, vec4(0.0));
+#if TELLS
+  imageStore(holes, pixel, vec4(0.0));
+  imageStore(warped_depth, pixel, vec4(0.0));
 #endif
 }
 
@@ -154,6 +185,16 @@ void main() {
   uint tile = texelFetch(tiles, kTilesFrom + int(gl_WorkGroupID.x)).r;
   ivec2 pixel = 8 * ivec2(tile & 0xffffu, tile >> 16) + ivec2(gl_LocalInvocationID.xy);
   if (any(greaterThanEqual(pixel, target_size))) return;
+#if DISTORTED
+  if (!sees(vec2(pixel))) {
+    put_nothing(pixel);
+    return;
+  }
+#endif
+#if MENDS
+  float hole = imageLoad(holes, pixel).r;
+  if (hole < 0.25 || hole > 0.75) return;
+#endif
   aim(ray_of(vec2(pixel)), r0, r1, r2, back);
 #if SEARCHED
   vec2 far_away = place(0.0);
@@ -162,7 +203,7 @@ void main() {
   found_at = far_away;
   background_at = place(farthest);
   search(surface(far_away, around.r) * 1.02, farthest);
-#if MOVED
+#if MOVED && !MENDS
   if (found < 0.0 && background == kNone) look_around(far_away);
   search_moved(vec2(pixel));
 #endif

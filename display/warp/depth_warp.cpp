@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 
 #include "display/warp/warp_shaders.hpp"
+#include "gl/lens_rays.hpp"
 
 namespace foresight {
 namespace {
@@ -14,16 +14,16 @@ constexpr std::size_t kMostMoved = 16, kWordsOfNode = 6;  // as in depth_warp.co
 constexpr double kMoved = 0.3;                            // px: less does not show
 constexpr double kClosest = 0.05;                         // m: beyond that, a part reaches behind the camera
 constexpr double kMargin = 1.02;                          // of depths
+constexpr double kBend = 0.1;                             // of a box, through a lens with distortion
+constexpr GLuint kRaysUnit = 7, kMendedBinding = 4;       // as in warp_rays.glsl, depth_warp.comp
 
 Eigen::Vector4f numbers(const Lens& lens) {
   const auto& p = lens.parameters();
   return Eigen::Vector4d(p.fx, p.fy, p.cx, p.cy).cast<float>();
 }
 
-gl::Program warp_program(bool searched, bool moved, bool tells, bool keeps) {
-  return gl::Program::compute(gl::warp_shaders(), "depth_warp.comp",
-                              {"SEARCHED " + std::to_string(searched), "MOVED " + std::to_string(moved),
-                               "TELLS " + std::to_string(tells), "KEEPS " + std::to_string(keeps)});
+std::string define(const char* name, bool value) {
+  return name + std::string(value ? " 1" : " 0");
 }
 
 Eigen::Vector2i tiles_of(const Lens& lens) {
@@ -58,10 +58,6 @@ std::optional<Moved> moved_node(const Eigen::AlignedBox3d& box, const Pose& T_ca
                                 const Lens& lens) {
   Moved out;
   out.nearest = 1e9;
-  const auto& p = lens.parameters();
-  const auto seen = [&](const Eigen::Vector3d& at) {
-    return Eigen::Vector2d(p.fx * at.x() / at.z() + p.cx, p.fy * at.y() / at.z() + p.cy);
-  };
   double farthest_moved = 0;
   bool behind = false;
   for (int corner = 0; corner < 8; ++corner) {
@@ -69,11 +65,12 @@ std::optional<Moved> moved_node(const Eigen::AlignedBox3d& box, const Pose& T_ca
     const Eigen::Vector3d before = T_camera_before * at, now = T_camera_now * at;
     out.nearest = std::min(out.nearest, std::max(now.z(), kClosest));
     out.farthest = std::max(out.farthest, now.z());
-    behind |= now.z() < kClosest || before.z() < kClosest;
+    const auto seen_before = lens.project(before), seen_now = lens.project(now);
+    behind |= now.z() < kClosest || before.z() < kClosest || !seen_before || !seen_now;
     if (behind) continue;
-    farthest_moved = std::max(farthest_moved, (seen(now) - seen(before)).norm());
-    out.rectangle.extend(seen(now));
-    out.rectangle.extend(seen(before));
+    farthest_moved = std::max(farthest_moved, (*seen_now - *seen_before).norm());
+    out.rectangle.extend(*seen_now);
+    out.rectangle.extend(*seen_before);
   }
   if (out.farthest < kClosest) return std::nullopt;
   const Eigen::Vector2d size(lens.width(), lens.height());
@@ -82,6 +79,10 @@ std::optional<Moved> moved_node(const Eigen::AlignedBox3d& box, const Pose& T_ca
     out.rectangle = all;
     return (T_camera_before.inverse() * T_camera_now).isApprox(Pose::Identity(), 1e-6) ? std::nullopt
                                                                                        : std::optional(out);
+  }
+  if (lens.has_distortion()) {  // straight edges bend
+    const Eigen::Vector2d bend = kBend * out.rectangle.sizes();
+    out.rectangle = {out.rectangle.min() - bend, out.rectangle.max() + bend};
   }
   if (farthest_moved < kMoved || !all.intersects(out.rectangle)) return std::nullopt;
   return out;
@@ -93,19 +94,28 @@ DepthWarp::DepthWarp(std::shared_ptr<const WarpScene> scene, const Lens& target,
     : scene_(std::move(scene)),
       target_(target),
       tells_(tells),
-      spread_(gl::Program::compute(gl::warp_shaders(), "spread.comp")),
-      tiles_(gl::Program::compute(gl::warp_shaders(), "tiles.comp")),
+      distorted_(target.has_distortion()),
+      rays_(gl::make_lens_rays(target)),
+      tiles_(gl::Program::compute(gl::warp_shaders(), "tiles.comp", {define("DISTORTED", distorted_)})),
       lists_{{{GL_R32UI, list_bytes(target), "tiles of one surface"},
               {GL_R32UI, list_bytes(target), "tiles to be searched"},
               {GL_R32UI, list_bytes(target), "tiles of nodes that moved"}}},
+      mended_("count of holes that were mended"),
       corners_(GL_RGBA32F, 16 * static_cast<std::size_t>(tiles_of(target).prod()), "depths of tiles of one surface"),
       slot_of_node_(GL_R8UI, 256, "nodes that moved"),
       moved_(GL_RGBA32F, 16, "how nodes moved"),
       picture_(GL_RGBA8, target.width(), target.height(), 0, 1, "warped picture"),
       holes_(GL_R8, tells ? target.width() : 1, tells ? target.height() : 1, 0, 1, "holes of the warped picture"),
       depth_(GL_R32F, tells ? target.width() : 1, tells ? target.height() : 1, 0, 1, "depth of the warped picture") {
-  if (target.has_distortion() || target.model() == LensModel::equidistant)
-    throw std::invalid_argument("a target of warping has a distortion");
+  glTextureParameteri(rays_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(rays_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+gl::Program DepthWarp::warp_program(bool searched, bool moved, Writes what) const {
+  return gl::Program::compute(gl::warp_shaders(), "depth_warp.comp",
+                              {define("SEARCHED", searched), define("MOVED", moved), define("TELLS", tells_),
+                               define("KEEPS", what == Writes::what_others_have_not),
+                               define("MENDS", what == Writes::holes), define("DISTORTED", distorted_)});
 }
 
 int DepthWarp::find_moved(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node) {
@@ -144,23 +154,10 @@ int DepthWarp::find_moved(const WarpLayers& source, const Pose& T_world_camera, 
 }
 
 void DepthWarp::spread(const WarpLayers& source, const Pose& T_source_target) {
-  const Eigen::Vector2i blocks(source.blocks.width(), source.blocks.height());
-  for (gl::Texture& reach : reach_)
-    if (reach.width() != blocks.x() || reach.height() != blocks.y())
-      reach = gl::Texture(GL_RGBA32F, blocks.x(), blocks.y(), 0, 1, "depths around blocks");
   // What is half a metre away or farther moves by no more than this; what is nearer is found within half of it.
   constexpr double kNear = 0.5;  // m
   const double parallax = source.lens.parameters().fx * T_source_target.translation().norm() / kNear;
-  spread_.set("size", blocks);
-  spread_.set("radius", std::clamp(static_cast<int>(parallax / kWarpBlock) + 1, 1, kMostRadius));
-  spread_.use();
-  for (int pass = 0; pass < 2; ++pass) {
-    spread_.set("way", Eigen::Vector2i(1 - pass, pass));
-    glBindTextureUnit(0, pass == 0 ? source.blocks.name() : reach_[0].name());
-    glBindImageTexture(0, reach_[static_cast<std::size_t>(pass)].name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-    glDispatchCompute(gl::groups(blocks.x(), 8), gl::groups(blocks.y(), 8), 1);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  }
+  reach_(source, std::clamp(static_cast<int>(parallax / kWarpBlock) + 1, 1, kMostRadius));
 }
 
 void DepthWarp::aim(const gl::Program& program, const WarpLayers& source, const Pose& T_source_target) const {
@@ -173,6 +170,8 @@ void DepthWarp::aim(const gl::Program& program, const WarpLayers& source, const 
   program.set("r1", rows[1]);
   program.set("r2", rows[2]);
   program.set("back", rows[3]);
+  program.set("of_part", static_cast<int>(source.of_part));
+  if (distorted_) glBindTextureUnit(kRaysUnit, rays_.name());
 }
 
 void DepthWarp::list_tiles(const WarpLayers& source, const Pose& T_source_target, int moved, bool keeps) {
@@ -181,9 +180,10 @@ void DepthWarp::list_tiles(const WarpLayers& source, const Pose& T_source_target
   tiles_.set("tiles", tiles);
   tiles_.set("moved_count", moved);
   tiles_.set("keeps", static_cast<int>(keeps));
+  tiles_.set("of_part", static_cast<int>(keeps && source.of_part));
   tiles_.use();
   glBindTextureUnit(0, source.blocks.name());
-  glBindTextureUnit(1, reach_[1].name());
+  glBindTextureUnit(1, reach_.last().name());
   glBindTextureUnit(2, moved_.texture());
   glBindTextureUnit(3, source.depth.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, corners_.buffer().name());
@@ -221,6 +221,19 @@ void DepthWarp::add(const WarpLayers& source, const Pose& T_world_camera, std::s
   warp(source, T_world_camera, T_world_node, true);
 }
 
+void DepthWarp::bind(const WarpLayers& source) const {
+  glBindTextureUnit(0, source.depth.name());
+  glBindTextureUnit(1, source.picture.name());
+  glBindTextureUnit(2, reach_.last().name());
+}
+
+void DepthWarp::bind_moved(const gl::Program& program, const WarpLayers& source, int moved) const {
+  program.set("moved_count", moved);
+  glBindTextureUnit(4, source.node.name());
+  glBindTextureUnit(5, slot_of_node_.texture());
+  glBindTextureUnit(6, moved_.texture());
+}
+
 void DepthWarp::warp(const WarpLayers& source, const Pose& T_world_camera, std::span<const Pose> T_world_node,
                      bool keeps) {
   const Pose T_source_target = source.T_world_camera.inverse() * T_world_camera;
@@ -228,26 +241,56 @@ void DepthWarp::warp(const WarpLayers& source, const Pose& T_world_camera, std::
   spread(source, T_source_target);
   list_tiles(source, T_source_target, moved, keeps);
   auto& programs = programs_[keeps ? 1 : 0];
-  if (!programs)
-    programs =
-        Programs{warp_program(false, false, tells_, keeps), warp_program(true, false, tells_, keeps), std::nullopt};
-  glBindTextureUnit(0, source.depth.name());
-  glBindTextureUnit(1, source.picture.name());
-  glBindTextureUnit(2, reach_[1].name());
+  const Writes what = keeps ? Writes::what_others_have_not : Writes::all;
+  if (!programs) programs = Programs{warp_program(false, false, what), warp_program(true, false, what), std::nullopt};
+  bind(source);
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, keeps ? GL_READ_WRITE : GL_WRITE_ONLY, GL_RGBA8);
-  glBindImageTexture(1, holes_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
-  glBindImageTexture(2, depth_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+  glBindImageTexture(1, holes_.name(), 0, GL_FALSE, 0, keeps ? GL_READ_WRITE : GL_WRITE_ONLY, GL_R8);
+  glBindImageTexture(2, depth_.name(), 0, GL_FALSE, 0, keeps ? GL_READ_WRITE : GL_WRITE_ONLY, GL_R32F);
   glBindTextureUnit(4, corners_.texture());
   work_off(Tiles::smooth, programs->smooth, source, T_source_target);
   work_off(Tiles::searched, programs->searched, source, T_source_target);
   if (moved > 0) {
-    if (!programs->moved) programs->moved = warp_program(true, true, tells_, keeps);
-    programs->moved->set("moved_count", moved);
-    glBindTextureUnit(4, source.node.name());
-    glBindTextureUnit(5, slot_of_node_.texture());
-    glBindTextureUnit(6, moved_.texture());
+    if (!programs->moved) programs->moved = warp_program(true, true, what);
+    bind_moved(*programs->moved, source, moved);
     work_off(Tiles::moved, *programs->moved, source, T_source_target);
   }
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+}
+
+void DepthWarp::list_holes(const gl::Texture& holes) {
+  if (!hole_tiles_) hole_tiles_ = gl::Program::compute(gl::warp_shaders(), "hole_tiles.comp");
+  const Eigen::Vector2i tiles = tiles_of(target_);
+  gl::Buffer& list = lists_[static_cast<std::size_t>(Tiles::searched)].buffer();
+  list.write(std::span<const GLuint>(kNoGroups));
+  hole_tiles_.set("tiles", tiles);
+  hole_tiles_.use();
+  glBindTextureUnit(0, holes.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list.name());
+  glDispatchCompute(gl::groups(tiles.x(), 8), gl::groups(tiles.y(), 8), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+void DepthWarp::mend(const WarpLayers& behind, const Pose& T_world_camera, std::span<const Pose> T_world_node) {
+  mend(behind, T_world_camera, T_world_node, picture_, holes_);
+}
+
+void DepthWarp::mend(const WarpLayers& behind, const Pose& T_world_camera, std::span<const Pose> T_world_node,
+                     const gl::Texture& picture, const gl::Texture& holes) {
+  const Pose T_source_target = behind.T_world_camera.inverse() * T_world_camera;
+  const int moved = find_moved(behind, T_world_camera, T_world_node);
+  spread(behind, T_source_target);
+  list_holes(holes);
+  gl::Program& program = mending_[moved > 0 ? 1 : 0];
+  if (!program) program = warp_program(true, moved > 0, Writes::holes);
+  bind(behind);
+  if (moved > 0) bind_moved(program, behind, moved);
+  glBindImageTexture(0, picture.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  glBindImageTexture(1, holes.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R8);
+  glBindImageTexture(2, depth_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+  mended_.start(kMendedBinding);
+  work_off(Tiles::searched, program, behind, T_source_target);
+  mended_.finish();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 

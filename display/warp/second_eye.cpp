@@ -32,7 +32,7 @@ SecondEye::SecondEye(const Lens& first, const Lens& second)
       program_(gl::Program::compute(gl::warp_shaders(), "second_eye.comp")),
       picture_(GL_RGBA8, second.width(), second.height(), 0, 1, "picture of the second eye"),
       holes_(GL_R8, second.width(), second.height(), 0, 1, "holes of the second eye"),
-      count_(sizeof(GLuint), "count of holes") {
+      count_("count of holes") {
   if (!rows_fit(first, second)) throw std::invalid_argument("rows of the second eye are not those of the first");
 }
 
@@ -43,12 +43,7 @@ bool SecondEye::fits(const Lens& first, const Lens& second, const Pose& T_first_
 }
 
 void SecondEye::operator()(const gl::Texture& picture, const gl::Texture& depth, double side) {
-  if (counts_ && counted_.signalled()) {
-    GLuint holes = 0;
-    count_.read(std::span(&holes, 1));
-    unseen_ = holes / (static_cast<double>(second_.width()) * second_.height());
-  }
-  count_.clear_to_zero();
+  count_.start(0);
   const auto &a = first_.parameters(), &b = second_.parameters();
   // Column in the second = x.x * column in the first + x.y - x.z * inverse depth.
   const double scale = b.fx / a.fx;
@@ -61,12 +56,9 @@ void SecondEye::operator()(const gl::Texture& picture, const gl::Texture& depth,
   glBindTextureUnit(1, picture.name());
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glBindImageTexture(1, holes_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, count_.name());
   glDispatchCompute(gl::groups(b.height, kRows), 1, 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
-                  GL_FRAMEBUFFER_BARRIER_BIT);
-  counted_ = gl::Fence::insert();
-  counts_ = true;
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  count_.finish();
 }
 
 }  // namespace foresight

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "common/lens.hpp"
+#include "display/warp/gpu_count.hpp"
 #include "gl/program.hpp"
 #include "scene/scene_model.hpp"
 
@@ -28,7 +29,7 @@ class SecondEye {
 
   const Lens& lens() const { return second_; }
   /// Share of pixels that the first eye had not seen, of a call before the last one: nobody waits for it. 0 at first.
-  double unseen() const { return unseen_; }
+  double unseen() const { return count_.value() / (static_cast<double>(second_.width()) * second_.height()); }
   /// As DepthWarp::picture() and holes().
   const gl::Texture& picture() const { return picture_; }
   const gl::Texture& holes() const { return holes_; }
@@ -37,10 +38,7 @@ class SecondEye {
   Lens first_, second_;
   gl::Program program_;
   gl::Texture picture_, holes_;
-  gl::Buffer count_;
-  gl::Fence counted_;
-  bool counts_ = false;
-  double unseen_ = 0;
+  GpuCount count_;
 };
 
 }  // namespace foresight

@@ -11,7 +11,7 @@ layout(binding = 3, std430) writeonly buffer Corners { vec4 corners[]; };  // in
 layout(binding = 3) uniform sampler2D depth;     // 1/m
 layout(binding = 2) uniform samplerBuffer moved;  // as in depth_warp.comp
 uniform ivec2 tiles;
-uniform int moved_count, keeps;
+uniform int moved_count, keeps, of_part;
 const int kWords = 6;
 const ivec2 kMostBlocks = ivec2(6);
 
@@ -21,10 +21,15 @@ void main() {
   ivec2 high = (source_size - 1) / 8;
   vec2 low = vec2(1e9), most = vec2(-1e9);
   vec4 depths = vec4(0.0);
+  bool is_whole = true;
+  float any_model = 0.0;
   for (int corner = 0; corner < 4; ++corner) {
-    aim(ray_of(vec2(8 * tile) - 0.5 + 8.0 * vec2(corner & 1, corner >> 1)), r0, r1, r2, back);
+    vec2 at_corner = vec2(8 * tile) - 0.5 + 8.0 * vec2(corner & 1, corner >> 1);
+    is_whole = is_whole && sees(at_corner);
+    aim(ray_of(at_corner), r0, r1, r2, back);
     vec2 far_away = place(0.0);
     vec2 both = texelFetch(reach, nearest_pixel(far_away) / 8, 0).rg;
+    any_model = max(any_model, both.r);
     float nearest = surface(far_away, both.r), farthest = surface(far_away, both.g);
     vec2 a = place(nearest * 1.02), b = place(farthest * 0.98);
     low = min(low, min(a, b));
@@ -36,9 +41,10 @@ void main() {
     }
     depths[corner] = w;
   }
-  if (keeps != 0 && (any(lessThan(most, vec2(-1.0))) || any(greaterThan(low, vec2(source_size))))) return;
+  if (of_part != 0 && any_model == 0.0) return;
+  if (keeps != 0 && is_whole && (any(lessThan(most, vec2(-1.0))) || any(greaterThan(low, vec2(source_size))))) return;
   ivec2 first = clamp(ivec2(floor(low - 1.0)) >> 3, ivec2(0), high), last = clamp(ivec2(ceil(most + 1.0)) >> 3, ivec2(0), high);
-  bool parts = any(greaterThan(last - first, kMostBlocks));
+  bool parts = !is_whole || any(greaterThan(last - first, kMostBlocks));
   last = min(last, first + kMostBlocks);
   for (int y = first.y; y <= last.y; ++y)
     for (int x = first.x; x <= last.x; ++x) parts = parts || texelFetch(blocks, ivec2(x, y), 0).b > 0.0;

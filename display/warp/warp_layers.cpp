@@ -18,8 +18,9 @@ WarpScene::WarpScene(const SceneModel& scene) : boxes_(NodeBoxes(scene).box) {
   node_of_triangle_.assign(std::span<const std::uint8_t>(nodes));
 }
 
-WarpLayers::WarpLayers(const Lens& through)
+WarpLayers::WarpLayers(const Lens& through, bool is_of_part)
     : lens(through),
+      of_part(is_of_part),
       picture(GL_RGBA8, lens.width(), lens.height(), 0, 1, "picture to be warped"),
       depth(GL_R32F, lens.width(), lens.height(), 0, 1, "depth to be warped"),
       node(GL_R8UI, lens.width(), lens.height(), 0, 1, "nodes to be warped"),
@@ -55,12 +56,25 @@ void LayerCapture::operator()(const gl::Texture& picture, const gl::FaceImages& 
   glBindImageTexture(1, layers.node.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8UI);
   glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  find_blocks(layers);
+}
+
+void LayerCapture::find_blocks(const WarpLayers& layers) const {
   blocks_.use();
-  blocks_.set("size", Eigen::Vector2i(width, height));
+  blocks_.set("size", Eigen::Vector2i(layers.lens.width(), layers.lens.height()));
+  blocks_.set("of_part", static_cast<int>(layers.of_part));
   glBindTextureUnit(0, layers.depth.name());
   glBindImageTexture(0, layers.blocks.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   glDispatchCompute(gl::groups(layers.blocks.width(), 8), gl::groups(layers.blocks.height(), 8), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+gl::ViewPart LayerCapture::behind_edges(const WarpLayers& front) {
+  constexpr int kReach = 2;  // blocks: what is hidden farther from an edge stays hidden
+  gl::ViewPart out;
+  out.seen = front.depth.name();
+  out.edges = edges_(front, kReach).name();
+  return out;
 }
 
 }  // namespace foresight

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/lens.hpp"
+#include "display/warp/block_spread.hpp"
 #include "gl/program.hpp"
 #include "gl/raster_pass.hpp"
 
@@ -30,9 +31,10 @@ class WarpScene {
 /// A view as it was drawn: what it shows, how far that is, and of which node. For every context of the share group.
 struct WarpLayers {
   /// Throws std::invalid_argument: a lens with distortion, or a fish-eye.
-  explicit WarpLayers(const Lens& lens);
+  explicit WarpLayers(const Lens& lens, bool of_part = false);
 
   Lens lens;
+  bool of_part;         ///< where no model is, nobody has looked: such as what lies behind the edges of another view
   gl::Texture picture;  ///< RGBA8 as PredictedView has it
   gl::Texture depth;    ///< R32F: 1 / z in 1/m at the pixel's centre, 0 where no model is
   gl::Texture node;     ///< R8UI: index + 1, 0 where no model is
@@ -51,9 +53,17 @@ class LayerCapture {
   void operator()(const gl::Texture& picture, const gl::FaceImages& faces, const Pose& T_world_camera,
                   const SceneState& state, WarpLayers& layers) const;
 
+  /// The layers' blocks, of their depth: of layers whose pixels somebody else has written.
+  void find_blocks(const WarpLayers& layers) const;
+
+  /// What `front` hides that a head's small motions may uncover: to be drawn from the same place through the same lens,
+  /// into layers of a part. Valid until the next call.
+  gl::ViewPart behind_edges(const WarpLayers& front);
+
  private:
   std::shared_ptr<const WarpScene> scene_;
   gl::Program capture_, blocks_;
+  BlockSpread edges_;
 };
 
 }  // namespace foresight

@@ -81,21 +81,43 @@ TEST_F(Bench, MarginCountsByTruth) {
 
 TEST_F(Bench, HeadWarpsWhatItDrew) {
   const std::string file = out_ / "head.json";
-  const Outcome outcome = run_program({"bench", "head", run(), "--views", "3", "--width", "160", "--height", "120",
-                                       "--seconds", "0.5", "--building", "2000", "--json", file});
+  const Outcome outcome = run_program(
+      {"bench", "head",
+       run(),   "--views",
+       "3",     "--width",
+       "160",   "--height",
+       "120",   "--seconds",
+       "0.5",   "--building",
+       "2000",  "--building-views",
+       "5",     "--head-frames",
+       "6",     "--openxr-frames",
+       "90",    "--json",
+       file},
+      {.environment = {{"XR_RUNTIME_JSON", FORESIGHT_TEST_RUNTIME}, {"FORESIGHT_TEST_XR", "lose-session@40"}}});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json all = read_json(file);
-  for (const char* which : {"warped_motion", "warped_second_eye"}) {
-    EXPECT_GT(all[which]["db"]["worst"], 20) << which;
-    EXPECT_GE(all[which]["db"]["median"], all[which]["db"]["worst"]) << which;
-    EXPECT_LT(all[which]["holes"]["most"], 0.1) << which;
-    EXPECT_GT(all[which]["warped_cpu_ms"], 0) << which;
-    EXPECT_GT(all[which]["drawn_cpu_ms"], 0) << which;
+  for (const char* row :
+       {"head_pose_to_swap", "warped_against_rendered", "recorded_head_motion", "viewport_independent_rendering",
+        "portals", "state_sorting_buffer", "stereograms", "openxr_session"})
+    EXPECT_FALSE(all[row].is_null()) << row;
+  for (const char* which : {"motion", "second_eye", "through_panel_lens"}) {
+    const nlohmann::json& row = all["warped_against_rendered"][which];
+    EXPECT_GT(row["db"]["worst"], 20) << which;
+    EXPECT_GE(row["db"]["median"], row["db"]["worst"]) << which;
+    EXPECT_LT(row["holes"]["most"], 0.1) << which;
+    EXPECT_GT(row["warped_cpu_ms"], 0) << which;
+    EXPECT_GT(row["drawn_cpu_ms"], 0) << which;
   }
+  const nlohmann::json& headset = all["openxr_session"];
+  EXPECT_EQ(headset["runtime"], "test runtime 0.1.0");
+  EXPECT_GE(headset["frames_with_eyes"], 60) << headset;
+  EXPECT_GE(headset["losses"], 1) << headset;
+  EXPECT_EQ(headset["frames_without_pose"], 0) << headset;
+  EXPECT_GT(headset["start_to_first_frame_s"], 0) << headset;
   EXPECT_EQ(all["portals"]["different_pixels"], 0);
   EXPECT_LE(all["portals"]["portals"]["triangles"], all["portals"]["frustum"]["triangles"]);
-  ASSERT_EQ(all["server"].size(), 4u);
-  for (const nlohmann::json& row : all["server"]) {
+  ASSERT_EQ(all["head_pose_to_swap"].size(), 6u);
+  for (const nlohmann::json& row : all["head_pose_to_swap"]) {
     EXPECT_GT(row["frames"], 0) << row;
     EXPECT_GT(row["pose_to_swap_ms"]["p50"], 0) << row;
     EXPECT_GE(row["pose_to_swap_ms"]["p99"], row["pose_to_swap_ms"]["p50"]) << row;

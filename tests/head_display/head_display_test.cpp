@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "display/head/runtime_offer.hpp"
+#include "gl/read_texture.hpp"
 #include "tests/head_display/xr_test.hpp"
 
 namespace foresight::head_display_test {
@@ -27,12 +28,6 @@ World nodding(double t) {
 class HeadDisplayLife : public HeadDisplayTest {
  protected:
   bool focused() const { return display_->status().focused; }
-  // The texture's rows, from the bottom.
-  cv::Mat read(unsigned texture, int width, int height) const {
-    cv::Mat out(height, width, CV_8UC4);
-    glGetTextureImage(texture, 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
-    return out;
-  }
 };
 
 TEST_F(HeadDisplayLife, ShowsEachEyeItsOwnPicture) {
@@ -41,8 +36,8 @@ TEST_F(HeadDisplayLife, ShowsEachEyeItsOwnPicture) {
     auto settings = settings_;
     settings.shown = [&](const openxr_runtime::ShownFrame& frame) {
       if (!frame.eyes[0] || !frame.eyes[1] || !left.empty()) return;
-      left = read(frame.eyes[0], 64, 64);
-      right = read(frame.eyes[1], 64, 64);
+      left = gl::read_texture(frame.eyes[0]);  // rows from the bottom
+      right = gl::read_texture(frame.eyes[1]);
     };
     return settings;
   }());
@@ -205,7 +200,7 @@ TEST_F(HeadDisplayLife, PanelsStandInTheRoomOrGoWithTheHead) {
   settings_.world = nodding;
   settings_.shown = [&](const openxr_runtime::ShownFrame& frame) {
     panels = frame.panels.size();
-    if (panels == 2 && words.empty()) words = read(frame.panels[0], 40, 20);
+    if (panels == 2 && words.empty()) words = gl::read_texture(frame.panels[0]);
   };
   runtime().reset(settings_);
   ASSERT_TRUE(until([this] { return focused(); }));

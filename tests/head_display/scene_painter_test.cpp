@@ -3,6 +3,8 @@
 
 #include "display/eye_pair.hpp"
 #include "display/head/head_thread.hpp"
+#include "display/head/view_share.hpp"
+#include "gl/read_texture.hpp"
 #include "tests/head_display/xr_test.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -14,12 +16,6 @@ using openxr_runtime::looking;
 using openxr_runtime::runtime;
 using openxr_runtime::World;
 
-cv::Mat pixels(unsigned texture, int width, int height) {
-  cv::Mat out(height, width, CV_8UC4);
-  glGetTextureImage(texture, 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
-  return out;
-}
-
 class SceneInAHead : public HeadDisplayTest {
  protected:
   void SetUp() override {
@@ -30,11 +26,12 @@ class SceneInAHead : public HeadDisplayTest {
     setup.textures.memory_bytes = 6 << 20;
     session_.emplace(*context_, setup);
     session_->process({posed_photograph(*scene_, state_of(*scene_), lens, usual_view()), std::nullopt});
-    painter_in_scene_.emplace(*session_, *held_, real_, nullptr, &image_.emplace(32, 24, "image"));
+    drawer_.emplace(*session_, real_);
+    painter_in_scene_.emplace(*drawer_, *held_, real_, nullptr, &image_.emplace(32, 24, "image"));
     settings_.shown = [this](const openxr_runtime::ShownFrame& frame) {
       panels_ = frame.panels.size();
       for (std::size_t i = 0; i < 2; ++i)
-        if (frame.eyes[i]) seen_[i] = pixels(frame.eyes[i], 64, 64);
+        if (frame.eyes[i]) seen_[i] = gl::read_texture(frame.eyes[i]);
     };
     runtime().reset(settings_);
   }
@@ -42,12 +39,18 @@ class SceneInAHead : public HeadDisplayTest {
     display_.reset();
     if (painter_in_scene_) painter_in_scene_->release();
     painter_in_scene_.reset();
+    if (drawer_) drawer_->release();
+    drawer_.reset();
     session_.reset();
     image_.reset();
     HeadDisplayTest::TearDown();
   }
+  // Views are drawn between frames, by turns in one context, unless they are not to be.
   void turn(int rounds) {
-    for (int i = 0; i < rounds; ++i) display_->step(*painter_in_scene_);
+    for (int i = 0; i < rounds; ++i) {
+      display_->step(*painter_in_scene_);
+      if (draws_) drawer_->draw();
+    }
   }
   void begin() {
     painter_in_scene_->show({{usual_view(), state_of(*scene_)}, true});
@@ -61,16 +64,16 @@ class SceneInAHead : public HeadDisplayTest {
     const head::EyeFov fov = eye == 0 ? head::EyeFov{f[0], f[1], f[2], f[3]} : head::EyeFov{-f[1], -f[0], f[2], f[3]};
     PredictedView view = session_->make_view(head::eye_lens(fov, 64, 64));
     session_->draw(view, T_world_eye * head::T_body_camera(), state_of(*scene_));
-    cv::Mat out = pixels(view.picture().name(), 64, 64);
+    cv::Mat out = gl::read_texture(view.picture());
     cv::flip(out, out, 0);
     return out;
   }
-  void expect_same(std::size_t eye, const Pose& T_world_eye) {
+  void expect_same(std::size_t eye, const Pose& T_world_eye, double most = 2) {
     const cv::Mat wanted = expected(eye, T_world_eye);
     cv::Mat apart;
     cv::absdiff(wanted, seen_[eye], apart);
-    // Poses pass through the runtime's floats: a pixel at an edge may fall to the other side.
-    EXPECT_LT(cv::mean(apart.reshape(1))[0], 0.5) << "eye " << eye;
+    // Between the pixels of a view that is wider: edges are as sharp as linear interpolation leaves them.
+    EXPECT_LT(cv::mean(apart.reshape(1))[0], most) << "eye " << eye;
     cv::Mat mean, deviation;
     cv::meanStdDev(wanted.reshape(1), mean, deviation);
     EXPECT_GT(deviation.at<double>(0), 10) << "there is something to see";
@@ -79,6 +82,8 @@ class SceneInAHead : public HeadDisplayTest {
   MonotonicClock real_;
   std::shared_ptr<const SceneModel> scene_ = small_scene();
   std::optional<ViewSession> session_;
+  std::optional<head::SceneDrawer> drawer_;
+  bool draws_ = true;
   std::optional<head::SharedPicture> image_;
   std::optional<head::ScenePainter> painter_in_scene_;
   std::array<cv::Mat, 2> seen_;
@@ -105,16 +110,17 @@ TEST_F(SceneInAHead, EachEyeSeesWhatACameraInItsPlaceWould) {
   const auto& q = world.head.orientation;
   const Pose T_leaning =
       *head::checked_pose({0.35, 1.05, 0.1}, Eigen::Quaternionf(q[3], q[0], q[1], q[2]).cast<double>());
-  for (std::size_t eye = 0; eye < 2; ++eye) expect_same(eye, eye_at(T_leaning, eye));
-  EXPECT_GT(cv::norm(seen_[0], seen_[1], cv::NORM_L1), 0) << "from two places";
+  for (std::size_t eye = 0; eye < 2; ++eye) expect_same(eye, eye_at(T_leaning, eye), 2.5);
+  cv::Mat apart;
+  cv::absdiff(seen_[0], seen_[1], apart);
+  EXPECT_GT(cv::mean(apart.reshape(1))[0], 5) << "from two places";
   EXPECT_EQ(complaints(), "");
 }
 
-// The views are drawn now and then, and each frame is warped from them: here by turns in one context.
+// The views are drawn now and then, and each frame is warped from them.
 TEST_F(SceneInAHead, FramesAreWarpedFromViewsThatWereDrawnBefore) {
-  head::SceneDrawer drawer(*session_, real_);
-  painter_in_scene_->release();
-  painter_in_scene_.emplace(*session_, *held_, real_, nullptr, &*image_, &drawer);
+  head::SceneDrawer& drawer = *drawer_;
+  draws_ = false;
   World world;
   settings_.world = [&world](double) { return world; };
   runtime().reset(settings_);
@@ -131,21 +137,17 @@ TEST_F(SceneInAHead, FramesAreWarpedFromViewsThatWereDrawnBefore) {
     const Pose T_head = *head::checked_pose({0.005, 1, 0}, Eigen::Quaternionf(q[3], q[0], q[1], q[2]).cast<double>());
     for (std::size_t eye = 0; eye < 2; ++eye) {
       const Pose T_eye = T_world_space * T_head * Eigen::Translation3d(0, eye == 0 ? 0.0315 : -0.0315, 0);
-      const cv::Mat wanted = expected(eye, T_eye);
-      cv::Mat apart;
-      cv::absdiff(wanted, seen_[eye], apart);
-      EXPECT_LT(cv::mean(apart.reshape(1))[0], 2) << "eye " << eye << " turned by " << turned;
-      EXPECT_GT(cv::norm(wanted, seen_[eye], cv::NORM_INF), 0) << "not drawn anew";
+      SCOPED_TRACE(turned);
+      expect_same(eye, T_eye);
+      EXPECT_GT(cv::norm(expected(eye, T_eye), seen_[eye], cv::NORM_INF), 0) << "not drawn anew";
     }
   }
   EXPECT_EQ(drawer.drawn(), 1u);
-  painter_in_scene_->release();
-  drawer.release();
   EXPECT_EQ(complaints(), "");
 }
 
 TEST_F(SceneInAHead, ARightEyeIsMadeOfTheLeftOnesFrame) {
-  head::SceneDrawer drawer(*session_, real_);
+  head::SceneDrawer& drawer = *drawer_;
   head::EyeWarper warper(drawer, real_, head::SecondEyeFrom::first_eye);
   const head::EyeFov fov{-0.5, 0.5, 0.4, -0.4};
   const auto frame = [&](double apart, double turned) {
@@ -168,7 +170,7 @@ TEST_F(SceneInAHead, ARightEyeIsMadeOfTheLeftOnesFrame) {
   PredictedView direct = session_->make_view(head::eye_lens(fov, 64, 52));
   session_->draw(direct, usual_view() * Eigen::Translation3d(0.065, 0, 0), state_of(*scene_));
   cv::Mat apart;
-  cv::absdiff(pixels(direct.picture().name(), 64, 52), pixels(eyes[1]->name(), 64, 52), apart);
+  cv::absdiff(gl::read_texture(direct.picture()), gl::read_texture(*eyes[1]), apart);
   EXPECT_LT(cv::mean(apart.reshape(1))[0], 4);
   // An eye that looks elsewhere has no such rows: it gets a view of its own.
   frame(0.065, 0.1);
@@ -177,7 +179,75 @@ TEST_F(SceneInAHead, ARightEyeIsMadeOfTheLeftOnesFrame) {
   glFinish();
   EXPECT_TRUE(frame(0.065, 0.1)[1]);
   EXPECT_EQ(warper.counts().of_first, 1u);
-  drawer.release();
+}
+
+// Views that another process has drawn are warped as those of a thread: here both sides are in one.
+TEST_F(SceneInAHead, ViewsGoOverToAnotherProcess) {
+  head::ViewShare share({120 * 120, scene_->nodes().size()});
+  head::SharedViews views(share, *scene_);
+  head::EyeWarper there(views, real_), here(*drawer_, real_);
+  const head::EyeFov fov{-0.5, 0.5, 0.4, -0.4};
+  const auto frame = [&](head::EyeWarper& warper, const Pose& T_world_head) {
+    std::array<cv::Mat, 2> out;
+    warper.begin(state_of(*scene_, 0.01));
+    for (std::size_t eye = 0; eye < 2; ++eye)
+      if (const auto* const picture = warper(eye, {T_world_head * Eigen::Translation3d(0.06 * eye, 0, 0), fov, 64, 52}))
+        out[eye] = gl::read_texture(*picture);
+    warper.end();
+    return out;
+  };
+  EXPECT_TRUE(frame(there, usual_view())[0].empty());
+  auto aim = share.take_aim();
+  ASSERT_TRUE(aim);
+  EXPECT_FALSE(share.take_aim()) << "once";
+  EXPECT_TRUE(aim->eyes[1].T_world_eye.isApprox(usual_view() * Eigen::Translation3d(0.06, 0, 0)));
+  EXPECT_EQ(aim->eyes[1].width, 64);
+  EXPECT_EQ(aim->state.T_world_node.size(), scene_->nodes().size());
+  drawer_->aim(*aim);
+  ASSERT_TRUE(drawer_->draw());
+  glFinish();
+  ASSERT_TRUE(share.put(*drawer_->newest()));
+  EXPECT_EQ(share.drawn(), 1u);
+  const Pose moved = usual_view() * Eigen::Translation3d(0.02, 0, 0);
+  const auto over_there = frame(there, moved), over_here = frame(here, moved);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    ASSERT_FALSE(over_there[eye].empty());
+    EXPECT_EQ(cv::norm(over_there[eye], over_here[eye], cv::NORM_INF), 0) << eye;
+  }
+  EXPECT_FALSE(share.ended());
+  share.end();
+  EXPECT_TRUE(share.ended());
+  // What does not fit is not told, nor what would be misunderstood.
+  head::ViewShare small({10, scene_->nodes().size()});
+  EXPECT_FALSE(small.put(*drawer_->newest()));
+  aim->state.T_world_node.pop_back();
+  EXPECT_THROW(share.aim(*aim), std::invalid_argument);
+}
+
+// A panel behind a strong lens, with nobody who does away with its distortion: the same pass does.
+TEST_F(SceneInAHead, FramesAreMadeForAPanelBehindALens) {
+  head::EyeWarper warper(*drawer_, real_);
+  const auto panel = std::make_shared<const Lens>(small_lens("plumb_bob"));
+  const head::EyeFov fov = head::fov_of(*panel);
+  const auto frame = [&](const Pose& T_world_eye) {
+    warper.begin(state_of(*scene_));
+    const gl::Texture* out = nullptr;
+    for (std::size_t eye = 0; eye < 2; ++eye)
+      out = warper(eye, {T_world_eye, fov, panel->width(), panel->height(), panel});
+    warper.end();
+    return out;
+  };
+  EXPECT_FALSE(frame(usual_view()));
+  ASSERT_TRUE(drawer_->draw());
+  glFinish();
+  const Pose moved = usual_view() * Eigen::Translation3d(0.01, 0, 0);
+  const gl::Texture* const shown = frame(moved);
+  ASSERT_TRUE(shown);
+  PredictedView direct = session_->make_view(*panel);
+  session_->draw(direct, moved, state_of(*scene_));
+  cv::Mat apart;
+  cv::absdiff(gl::read_texture(direct.picture()), gl::read_texture(*shown), apart);
+  EXPECT_LT(cv::mean(apart.reshape(1))[0], 3);
 }
 
 TEST_F(SceneInAHead, CentredAnewTheHeadIsWhereTheCameraIs) {
@@ -235,7 +305,7 @@ TEST_F(SceneInAHead, APictureOfAnotherContextIsShownWhole) {
       const PictureCopy copy;
       const TextureTarget target(texture.name(), 16, 8);
       glFinish();
-      if (picture.show(copy, target.whole())) out = pixels(texture.name(), 16, 8);
+      if (picture.show(copy, target.whole())) out = gl::read_texture(texture);
     }
     context_->make_current();
     return out;
@@ -258,7 +328,7 @@ TEST_F(SceneInAHead, SideBySideEyesAreApart) {
   EyePair none(*session_, small_lens("pinhole"), 0), eyes(*session_, small_lens("pinhole"), 0.065);
   ASSERT_TRUE(none.draw(usual_view(), state_of(*scene_)));
   ASSERT_TRUE(eyes.draw(usual_view(), state_of(*scene_)));
-  const auto read = [](const gl::Texture& picture) { return pixels(picture.name(), 160, 120); };
+  const auto read = [](const gl::Texture& picture) { return gl::read_texture(picture); };
   EXPECT_EQ(cv::norm(read(none.picture(0)), read(none.picture(1)), cv::NORM_INF), 0);
   EXPECT_GT(cv::norm(read(eyes.picture(0)), read(eyes.picture(1)), cv::NORM_INF), 0);
   ASSERT_TRUE(session_->draw(usual_view() * Eigen::Translation3d(-0.0325, 0, 0), state_of(*scene_)));

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "display/view_session.hpp"
+#include "gl/read_texture.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 #include "tests/texture_gpu/reference/ray_caster.hpp"
@@ -30,13 +31,6 @@ Lens eye() {
   p.cx = 119.5;
   p.cy = 89.5;
   return Lens(p);
-}
-
-cv::Mat pixels(const gl::Texture& texture, GLenum format, int type) {
-  cv::Mat out(texture.height(), texture.width(), type);
-  glGetTextureImage(texture.name(), 0, format, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * out.elemSize()),
-                    out.data);
-  return out;
 }
 
 // Over all pixels and three channels.
@@ -93,10 +87,16 @@ class DepthWarpTest : public HeadlessTest {
   }
   double compared(const Pose& to, const SceneState& state, const gl::Texture& picture, const gl::Texture& holes) {
     session_->draw(*truth_, to, state);
-    drawn_ = pixels(truth_->picture(), GL_RGBA, CV_8UC4);
-    shown_ = pixels(picture, GL_RGBA, CV_8UC4);
-    holes_ = pixels(holes, GL_RED, CV_8UC1);
+    drawn_ = gl::read_texture(truth_->picture());
+    shown_ = gl::read_texture(picture);
+    holes_ = gl::read_texture(holes);
     return decibels(drawn_, shown_);
+  }
+  // Of pixels at which there is something: what is behind the model's own border nobody can draw.
+  double holes_on_model() const {
+    cv::Mat alpha;
+    cv::extractChannel(drawn_, alpha, 3);
+    return cv::countNonZero((holes_ != 0) & (alpha > 0)) / static_cast<double>(holes_.total());
   }
   double holes() const { return cv::countNonZero(holes_) / static_cast<double>(holes_.total()); }
 
@@ -152,7 +152,7 @@ TEST_F(DepthWarpTest, AHeadsSmallMotionsAreShownAsIfDrawnAnew) {
 TEST_F(DepthWarpTest, DepthIsWorthIt) {
   const Pose to = moved(usual_view(), {0.02, 0, 0}, 0, Eigen::Vector3d::UnitX());
   const double db = warped(usual_view(), to);
-  cv::Mat unmoved = pixels(source_->picture(), GL_RGBA, CV_8UC4)(cv::Rect(kGuard, kGuard, 240, 180)).clone();
+  cv::Mat unmoved = gl::read_texture(source_->picture())(cv::Rect(kGuard, kGuard, 240, 180)).clone();
   EXPECT_GT(db, decibels(drawn_, unmoved) + 8);
 }
 
@@ -230,7 +230,7 @@ TEST_F(DepthWarpTest, FacesAroundTheViewerServeAHeadThatTurns) {
   const auto draw_missing = [&](const Pose& from) {
     int drawn = 0;
     while (const auto face = cube.missing(from)) {
-      const Pose at = CubeViews::T_world_face(*face, from);
+      const Pose at = CubeViews::T_world_face(face->side, from);
       session_->draw(face_view, at, state_);
       (*capture_)(face_view.picture(), face_view.faces(), at, state_, cube.layers(*face));
       if (++drawn > CubeViews::kFaces) break;
@@ -261,8 +261,116 @@ TEST_F(DepthWarpTest, FacesAroundTheViewerServeAHeadThatTurns) {
   EXPECT_EQ(draw_missing(usual_view()), first);
 }
 
+// Near things are drawn again when the viewer moves or the picture changes, far ones more rarely; at each pixel the
+// nearest surface is seen, whatever is drawn from where.
+TEST_F(DepthWarpTest, ShellsOfDistanceHaveRatesOfTheirOwn) {
+  CubeViews cube(parts_, eye(), {1.05});
+  PredictedView face_view = session_->make_view(cube.face_lens());
+  const auto draw_missing = [&](const Pose& from) {
+    std::array<int, 2> drawn{};
+    while (const auto face = cube.missing(from)) {
+      const Pose at = CubeViews::T_world_face(face->side, from);
+      face_view.draw_part(cube.part(face->shell));
+      session_->draw(face_view, at, state_);
+      (*capture_)(face_view.picture(), face_view.faces(), at, state_, cube.layers(*face));
+      if (++drawn[face->shell] > CubeViews::kFaces) break;
+    }
+    return drawn;
+  };
+  const auto first = draw_missing(usual_view());
+  EXPECT_GE(first[0], 1);
+  EXPECT_EQ(first[0], first[1]);
+  EXPECT_GT(compared(usual_view(), state_, cube(usual_view()), cube.holes()), 30);
+  EXPECT_EQ(cv::countNonZero(holes_ == 255), 0);
+  // Farther than near things may be looked at from, and not so far for the others.
+  const Pose aside = moved(usual_view(), {0.08, 0, 0}, 0.02, Eigen::Vector3d::UnitY());
+  const auto again = draw_missing(aside);
+  EXPECT_GE(again[0], 1);
+  EXPECT_EQ(again[1], 0);
+  const double db = compared(aside, state_, cube(aside), cube.holes());
+  EXPECT_GT(db, 28) << "drawn from two places, with no gap and the right order between";
+  EXPECT_LT(holes_on_model(), 0.02);
+  // What has changed is seen in near things at once, in far ones with every second change.
+  for (int change = 1; change <= 4; ++change) {
+    cube.changed();
+    const auto drawn = draw_missing(aside);
+    EXPECT_GE(drawn[0], 1) << change;
+    EXPECT_EQ(drawn[1] > 0, change % 2 == 0) << change;
+  }
+  EXPECT_THROW(CubeViews(parts_, eye(), {1, 0.9}), std::invalid_argument);
+  EXPECT_THROW(CubeViews(parts_, eye(), {0.01}), std::invalid_argument);
+}
+
+// What stands behind the edges of a view is drawn once more: most holes are none then.
+TEST_F(DepthWarpTest, HolesAreLookedUpBehindEdges) {
+  const Pose from = usual_view();
+  session_->draw(*source_, from, state_);
+  (*capture_)(source_->picture(), source_->faces(), from, state_, *layers_);
+  WarpLayers behind(with_guard(eye(), kGuard), true);
+  source_->draw_part(capture_->behind_edges(*layers_));
+  session_->draw(*source_, from, state_);
+  (*capture_)(source_->picture(), source_->faces(), from, state_, behind);
+  source_->draw_part(std::nullopt);
+  const cv::Mat first = gl::read_texture(layers_->depth), second = gl::read_texture(behind.depth);
+  EXPECT_GT(cv::countNonZero(second), 200);
+  EXPECT_EQ(cv::countNonZero((second > 0) & (second >= first)), 0) << "all of it is hidden";
+  double all_before = 0, all_after = 0;
+  for (const double side : {0.02, -0.02, 0.05}) {
+    const SceneState later = state_of(*scene_, 0.5 * side);  // a part moves, too
+    const Pose to = moved(from, {side, 0.3 * side, 0}, 0.01, Eigen::Vector3d::UnitY());
+    (*warp_)(*layers_, to, later.T_world_node);
+    const double filled = compared(to, later, warp_->picture(), warp_->holes()), holes_before = holes_on_model();
+    warp_->mend(behind, to, later.T_world_node);
+    const double mended = compared(to, later, warp_->picture(), warp_->holes());
+    std::printf("%+.2f m: holes %.2f %% -> %.2f %%, %.2f -> %.2f dB\n", side, 100 * holes_before,
+                100 * holes_on_model(), filled, mended);
+    EXPECT_GT(mended, filled - 0.1) << side;
+    all_before += holes_before;
+    all_after += holes_on_model();
+  }
+  EXPECT_LT(all_after, 0.5 * all_before);
+}
+
+// The distortion of a panel's lens is part of the same pass, as if the view were drawn through that lens.
+TEST_F(DepthWarpTest, APanelsLensIsPartOfThePass) {
+  draw_source(usual_view());
+  for (const char* kind : {"plumb_bob", "rational"}) {
+    Lens::Parameters p = small_lens(kind).parameters();
+    p.fx = p.fy = 1.05 * eye().parameters().fx * p.width / eye().width();  // all of it is in the source
+    const Lens panel(p);
+    DepthWarp through(parts_, panel);
+    truth_.emplace(session_->make_view(panel));
+    for (const double side : {0.0, 0.02}) {
+      const Pose to = moved(usual_view(), {side, 0, 0}, 0.5 * side, Eigen::Vector3d::UnitY());
+      const SceneState later = state_of(*scene_, 2 * side);  // a part has moved
+      through(*layers_, to, later.T_world_node);
+      const double db = compared(to, later, through.picture(), through.holes());
+      std::printf("%s, moved by %.2f m: %.2f dB, holes %.2f %%\n", kind, side, db, 100 * holes());
+      EXPECT_GT(db, 29) << kind;
+      EXPECT_EQ(cv::countNonZero(holes_ == 255), 0) << kind << ": the guard band reaches";
+      EXPECT_LT(holes(), 0.05) << kind;
+    }
+  }
+}
+
+// What the lens does not see stays empty.
+TEST_F(DepthWarpTest, BeyondWhatALensSeesNothingIsShown) {
+  draw_source(usual_view());
+  const Lens fisheye = small_lens("wide_fisheye");
+  DepthWarp through(parts_, fisheye);
+  through(*layers_, usual_view());
+  const cv::Mat shown = gl::read_texture(through.picture());
+  for (int y = 0; y < shown.rows; ++y)
+    for (int x = 0; x < shown.cols; ++x) {
+      const auto ray = fisheye.unproject({x, y});
+      if (!ray || ray->z() < 0.05) {
+        ASSERT_EQ(shown.at<cv::Vec4b>(y, x), cv::Vec4b(0, 0, 0, 0)) << x << " " << y;
+      }
+    }
+  EXPECT_GT(shown.at<cv::Vec4b>(shown.rows / 2, shown.cols / 2)[3], 0);
+}
+
 TEST_F(DepthWarpTest, RefusesWhatItCannotDo) {
-  EXPECT_THROW(DepthWarp(parts_, small_lens("fisheye")), std::invalid_argument);
   EXPECT_THROW(WarpLayers(small_lens("fisheye")), std::invalid_argument);
   session_->draw(*source_, usual_view(), state_);
   WarpLayers other(eye());

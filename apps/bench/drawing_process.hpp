@@ -1,0 +1,28 @@
+// A process of its own that draws what this one shows.
+#pragma once
+
+#include <sys/types.h>
+
+#include "display/head/view_share.hpp"
+#include "scene/run_folder.hpp"
+
+namespace foresight {
+
+/// Has a run's first images as textures, takes in further ones at 5 Hz but for a pause, and draws views. Made before
+/// this process has threads or a context.
+class DrawingProcess {
+ public:
+  /// Begins with the first aim. `most_pixels`: of an eye's view. Throws RuntimeFailure.
+  DrawingProcess(const RunFolder& run, std::size_t most_pixels);
+  ~DrawingProcess();
+  DrawingProcess(const DrawingProcess&) = delete;
+  DrawingProcess& operator=(const DrawingProcess&) = delete;
+
+  head::ViewShare& share() { return share_; }
+
+ private:
+  head::ViewShare share_;
+  pid_t pid_;
+};
+
+}  // namespace foresight
