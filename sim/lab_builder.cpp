@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "common/parallel.hpp"
 #include "sim/lab_prints.hpp"
-#include "sim/parallel.hpp"
 
 namespace foresight::sim {
 

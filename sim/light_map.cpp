@@ -7,9 +7,9 @@
 #include <map>
 #include <numbers>
 
+#include "common/parallel.hpp"
 #include "sim/hemisphere.hpp"
 #include "sim/lamp.hpp"
-#include "sim/parallel.hpp"
 
 namespace foresight::sim {
 namespace {

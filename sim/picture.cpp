@@ -7,8 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "common/parallel.hpp"
 #include "sim/lamp.hpp"
-#include "sim/parallel.hpp"
 
 namespace foresight::sim {
 namespace {

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "common/error.hpp"
+#include "common/parallel.hpp"
 #include "pictures/encode.hpp"
 #include "scene/files.hpp"
 #include "scene/run_writer.hpp"
@@ -14,7 +15,6 @@
 #include "scene/target_folder.hpp"
 #include "sim/head_path.hpp"
 #include "sim/motion.hpp"
-#include "sim/parallel.hpp"
 #include "sim/polygons.hpp"
 #include "sim/pose_error.hpp"
 #include "sim/run_files.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "common/parallel.hpp"
 #include "sim/motion.hpp"
-#include "sim/parallel.hpp"
 #include "sim/sensor.hpp"
 #include "sim/shutter.hpp"
 #include "sim/synth_run.hpp"
@@ -29,7 +29,7 @@ LabPictures::LabPictures(cv::Size size, std::size_t count,
   const sim::Sensor sensor{.noise = kNoise};
   std::mutex mutex;
   std::size_t done = 0;
-  sim::parallel_for(count, [&](std::size_t i) {
+  parallel_for(count, [&](std::size_t i) {
     const double t = static_cast<double>(i) / kPairsPerSecond;
     const sim::LabState state = sim::lab_state_at(lab, t);
     const sim::LightMap::Irradiance lit = light.lit(state);

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace foresight::sim {
+namespace foresight {
 
 /// Calls `work(i)` once for each i in [0, count), on as many threads as there are cores, in no
 /// particular order. Blocks until all is done. The first exception stops the loop and is rethrown.
@@ -38,4 +38,4 @@ void parallel_for(std::size_t count, Work&& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace foresight::sim
+}  // namespace foresight
