@@ -4,13 +4,15 @@
 #include <cmath>
 #include <random>
 
+#include "sim/woven.hpp"
+
 namespace foresight::sim {
 namespace {
 
-const Eigen::Vector3d kRoomSize(5, 4, 2.8);                              // m
+const Eigen::Vector3d kRoomSize(5, 4, 2.8);            // m
 constexpr double kDoorWidth = 1.0, kDoorHeight = 2.1;  // m
-constexpr int kThingsInRoom = 6;                                         // in a room
-constexpr double kThingReach = 0.45;                                     // m around its middle
+constexpr int kThingsInRoom = 6;                       // in a room
+constexpr double kThingReach = 0.45;                   // m around its middle
 
 void add_room_quad(Mesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                    const Eigen::Vector3d& d) {
@@ -40,29 +42,6 @@ void add_room_wall(Mesh& mesh, const Eigen::Vector3d& from, const Eigen::Vector3
     add_room_quad(mesh, at(s, 0, kHalfWall), at(s, 0, 0), at(s, kDoorHeight, 0), at(s, kDoorHeight, kHalfWall));
   add_room_quad(mesh, at(s0, kDoorHeight, kHalfWall), at(s1, kDoorHeight, kHalfWall), at(s1, kDoorHeight, 0),
                 at(s0, kDoorHeight, 0));
-}
-
-/// A turned solid of some `triangles`, its foot at the origin.
-Mesh turned_solid(std::size_t triangles, std::mt19937& random) {
-  std::uniform_real_distribution any(0.0, 1.0);
-  const int around = std::max(6, static_cast<int>(std::sqrt(static_cast<double>(triangles) / 2)));
-  const int rings = std::max(3, static_cast<int>(triangles / (2 * static_cast<std::size_t>(around))));
-  const double height = 0.5 + any(random), waves = 1 + 4 * any(random), phase = 6 * any(random);
-  Mesh out;
-  for (int i = 0; i <= rings; ++i)
-    for (int k = 0; k < around; ++k) {
-      const double t = static_cast<double>(i) / rings, a = 2 * EIGEN_PI * k / around;
-      const double radius = kThingReach * std::sqrt(std::max(0.0, 1 - std::pow(2 * t - 1, 6))) *
-                            (0.7 + 0.3 * std::sin(waves * t * 6 + phase));
-      out.vertices.emplace_back(Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), t * height).cast<float>());
-    }
-  for (int i = 0; i < rings; ++i)
-    for (int k = 0; k < around; ++k) {
-      const auto v = [&](int ring, int step) { return static_cast<std::uint32_t>(ring * around + step % around); };
-      out.triangles.push_back({v(i, k), v(i, k + 1), v(i + 1, k + 1)});
-      out.triangles.push_back({v(i, k), v(i + 1, k + 1), v(i + 1, k)});
-    }
-  return out;
 }
 
 /// Where rooms are, and which doors there are.
@@ -145,8 +124,8 @@ SceneModel make_building(const BuildingOptions& options) {
         const double reach = kThingReach + kHalfWall;
         pose.translation() = origin + Eigen::Vector3d(reach + any(random) * (kRoomSize.x() - 2 * reach),
                                                       reach + any(random) * (kRoomSize.y() - 2 * reach), 0.01);
-        add({name + "_thing_" + std::to_string(i), turned_solid(options.triangles / (rooms * kThingsInRoom), random),
-             -1, pose});
+        add({name + "_thing_" + std::to_string(i),
+             turned_solid(options.triangles / (rooms * kThingsInRoom), kThingReach, random), -1, pose});
       }
       cells.push_back(std::move(cell));
     }
