@@ -5,9 +5,10 @@
 
 namespace foresight::gl {
 
-FaceImages::FaceImages(const Faces& f, bool with_surface)
+FaceImages::FaceImages(const Faces& f, bool with_surface, bool with_planes)
     : faces(f), depth(GL_DEPTH_COMPONENT32F, f.width, f.height, f.count, 1, "face depth") {
   if (with_surface) surface = Texture(GL_R32UI, f.width, f.height, f.count, 1, "face surfaces");
+  if (with_planes) planes = Texture(GL_RGBA32F, f.width, f.height, f.count, 1, "face planes");
 }
 
 RasterPass::RasterPass(std::shared_ptr<const SceneBuffers> scene, bool with_surface)
@@ -24,6 +25,22 @@ RasterPass::RasterPass(std::shared_ptr<const SceneBuffers> scene, bool with_surf
   }
 }
 
+void use_part(const Program& program, const ViewPart& part) {
+  const double nearest = std::max(part.nearest, kNearPlane);
+  program.set("between", Eigen::Vector2d(1 / part.farthest, 1 / nearest).cast<float>().eval());
+  program.set("behind", part.seen ? 1 : 0);
+  glBindTextureUnit(1, part.seen);
+  glBindTextureUnit(2, part.edges);
+}
+
+std::vector<bool> seen_nodes(const Pose& T_world_face, const Faces& faces, const NodeBoxes& boxes,
+                             const CellGraph* cells, const SceneState& state, LeavesOut leaves_out) {
+  if (leaves_out == LeavesOut::nothing) return std::vector<bool>(boxes.box.size(), true);
+  const ViewPyramid pyramid(T_world_face, (-0.5 - faces.cx) / faces.fx, (faces.width - 0.5 - faces.cx) / faces.fx,
+                            (-0.5 - faces.cy) / faces.fy, (faces.height - 0.5 - faces.cy) / faces.fy);
+  return visible_nodes(pyramid, boxes, state, leaves_out >= LeavesOut::behind_walls ? cells : nullptr);
+}
+
 void RasterPass::draw_part(const std::optional<ViewPart>& part) {
   if (part && !with_surface_) throw std::invalid_argument("a part of a view without surfaces");
   part_ = part;
@@ -33,21 +50,8 @@ void RasterPass::draw_part(const std::optional<ViewPart>& part) {
 
 const Program& RasterPass::choose_program() const {
   if (!part_) return program_;
-  const double nearest = std::max(part_->nearest, kNearPlane);
-  part_program_.set("between", Eigen::Vector2d(1 / part_->farthest, 1 / nearest).cast<float>().eval());
-  part_program_.set("behind", part_->seen ? 1 : 0);
-  glBindTextureUnit(0, part_->seen);
-  glBindTextureUnit(1, part_->edges);
+  use_part(part_program_, *part_);
   return part_program_;
-}
-
-std::vector<bool> RasterPass::seen_from(const Pose& T_world_face, const Faces& faces, const SceneState& state) const {
-  if (leaves_out_ == LeavesOut::nothing) return wanted(std::vector<bool>(scene_->boxes().box.size(), true));
-  const ViewPyramid pyramid(T_world_face, (-0.5 - faces.cx) / faces.fx, (faces.width - 0.5 - faces.cx) / faces.fx,
-                            (-0.5 - faces.cy) / faces.fy, (faces.height - 0.5 - faces.cy) / faces.fy);
-  std::vector<bool> out = visible_nodes(pyramid, scene_->boxes(), state,
-                                        leaves_out_ >= LeavesOut::behind_walls ? scene_->cells() : nullptr);
-  return wanted(std::move(out));
 }
 
 std::vector<bool> RasterPass::wanted(std::vector<bool> nodes) const {
@@ -126,7 +130,8 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
     Pose R_face_camera = Pose::Identity();
     R_face_camera.linear() = Faces::rotation(i);
     const Pose T_face_world = R_face_camera * T_camera_world;
-    const std::vector<bool> seen = seen_from(T_face_world.inverse(), faces, state);
+    const std::vector<bool> seen =
+        wanted(seen_nodes(T_face_world.inverse(), faces, scene_->boxes(), scene_->cells(), state, leaves_out_));
     if (leaves_out_ == LeavesOut::hidden && !part_)
       draw_unhidden(program, target, i, T_face_world, state, seen);
     else

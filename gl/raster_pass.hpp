@@ -13,12 +13,13 @@ namespace foresight::gl {
 
 /// What the pass draws into. Layers are faces.
 struct FaceImages {
-  /// `with_surface`: also hold the triangle seen at each pixel.
-  FaceImages(const Faces& faces, bool with_surface);
+  /// `with_surface`: also hold the triangle seen at each pixel; `with_planes`: and the plane that it lies in.
+  FaceImages(const Faces& faces, bool with_surface, bool with_planes = false);
 
   Faces faces;
   Texture depth;    ///< DEPTH_COMPONENT32F array: kNearPlane / z at the pixel's centre, 0 = no model
   Texture surface;  ///< R32UI array: scene triangle index + 1, 0 = no model; empty without surface
+  Texture planes;   ///< RGBA32F array: unit normal n in the node's frame and n p of its points; undefined without model
 };
 
 /// A part of what a camera sees.
@@ -33,6 +34,17 @@ struct ViewPart {
   GLuint edges = 0;
 };
 
+/// For a program with view_part.glsl: sets it, and binds its textures.
+void use_part(const Program& program, const ViewPart& part);
+
+/// What a pass does not draw. Whatever is left out is at no pixel. Each leaves out what those before do.
+enum class LeavesOut { nothing, out_of_view, behind_walls, hidden };
+
+/// For each node, whether a face from there may show it. What other nodes hide is not judged. `cells`: of the scene, or
+/// null.
+std::vector<bool> seen_nodes(const Pose& T_world_face, const Faces& faces, const NodeBoxes& boxes,
+                             const CellGraph* cells, const SceneState& state, LeavesOut leaves_out);
+
 /// Draws the nodes of the scene at the poses of one state, but for those that are out of view, or hidden by the walls
 /// of cells, or, of large scenes, by whatever is before them. Belongs to the context it was built in.
 class RasterPass {
@@ -40,9 +52,8 @@ class RasterPass {
   /// `with_surface` as in the FaceImages that it will draw into.
   RasterPass(std::shared_ptr<const SceneBuffers> scene, bool with_surface);
 
-  /// Whatever is left out is at no pixel. Each leaves out what those before do; the last is the default where there is
-  /// so much that it pays, else the one before.
-  enum class LeavesOut { nothing, out_of_view, behind_walls, hidden };
+  /// The last of them is the default where there is so much that it pays, else the one before.
+  using LeavesOut = gl::LeavesOut;
   static constexpr std::size_t kMany = 500'000;  ///< triangles
   void leave_out(LeavesOut what) { leaves_out_ = what; }
   /// From now on only this part is drawn; nothing: all of it. Only with surfaces. The textures must outlive that.
@@ -64,7 +75,6 @@ class RasterPass {
   void draw_unhidden(const Program& program, const FaceImages& target, int face, const Pose& T_face_world,
                      const SceneState& state, const std::vector<bool>& seen) const;
   std::vector<bool> wanted(std::vector<bool> nodes) const;
-  std::vector<bool> seen_from(const Pose& T_world_face, const Faces& faces, const SceneState& state) const;
 
   std::shared_ptr<const SceneBuffers> scene_;
   VertexArray array_;
