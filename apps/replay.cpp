@@ -100,6 +100,7 @@ int play(const RunFolder& run, const ReplayOptions& options, std::vector<std::si
   gl::Context& context = window ? static_cast<gl::Context&>(*window) : *headless;
   ViewSetup setup = view_setup(run, options.textures, thesis_options(options));
   setup.newest_image = options.projection;
+  setup.levels = level_settings(options.detail);
   ViewSession session(context, setup);
 
   RecordedSource recorded(run, std::move(arrived), options.textures.margin_px, options.real_time);
@@ -138,6 +139,9 @@ int replay(const ReplayOptions& given) {
   if (given.pipeline == ReplayPipeline::thesis && given.real_time)
     throw InputError("--real-time", "the thesis' pipeline draws and extracts in one thread",
                      "leave --real-time away, or use --pipeline core");
+  if (given.pipeline == ReplayPipeline::thesis && level_settings(given.detail))
+    throw InputError("--detail", "the thesis' pipeline draws polygon by polygon",
+                     "leave --detail away, or use --pipeline core");
   ReplayOptions options = given;
   const RunFolder run = open_run(options);
   const std::vector<std::size_t> arrived = arrivals(run, options);

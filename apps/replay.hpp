@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "apps/level_options.hpp"
 #include "apps/run_options.hpp"
 #include "apps/view_outputs.hpp"
 
@@ -21,6 +22,7 @@ struct ReplayOptions : RunOptions {
   bool window = false;
   bool real_time = false;
   bool projection = true;  ///< ViewSetup::newest_image; not with thesis
+  LevelArguments detail;   ///< not with thesis
   bool refine = false;     ///< poses, from images that have arrived (replay_refinement.hpp); not with thesis
 };
 

@@ -26,6 +26,7 @@ void add_replay_command(Command& app, std::function<int()>& action) {
   command->add_flag("--real-time", options->real_time, "Play by the clock and drop what comes too late");
   command->add_flag("!--no-projection", options->projection,
                     "Show textures alone: the newest image only when it has become textures");
+  add_level_options(*command, options->detail);
   command->add_flag(
       "--refine", options->refine,
       "Improve the poses by aligning each image that has arrived to the textured model; tags of the run's tags.txt "

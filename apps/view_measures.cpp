@@ -1,5 +1,7 @@
 #include "apps/view_measures.hpp"
 
+#include "apps/level_options.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -36,6 +38,8 @@ RunRecord describe(const ViewSession& session, const ViewSetup& setup) {
   record.version = FORESIGHT_VERSION;
   record.options.push_back({"pipeline", std::string(setup.thesis ? "thesis" : "core")});
   record.options.push_back({"projection", setup.newest_image && !setup.thesis});
+  record.options.push_back({"detail", to_string(setup.levels ? setup.levels->rule : LevelRule::full)});
+  for (const std::string& remark : session.level_remarks()) record.notes.push_back(remark + ".");
   return record;
 }
 

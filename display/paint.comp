@@ -33,18 +33,19 @@ void main() {
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
   vec3 ray;
   if (!ray_through(pixel, ray)) return;
-  uint surface = surface_of(ray);
+  ivec3 place, beside;
+  uint surface = surface_of(ray, place);
   vec4 shown = imageLoad(picture, pixel);
   float grey = dot(shown.rgb, vec3(0.299, 0.587, 0.114));
   if (paint == 1) {
     vec3 right, below;
-    bool border = ray_through(pixel + ivec2(1, 0), right) && surface_of(right) != surface;
-    border = border || (ray_through(pixel + ivec2(0, 1), below) && surface_of(below) != surface);
+    bool border = ray_through(pixel + ivec2(1, 0), right) && surface_of(right, beside) != surface;
+    border = border || (ray_through(pixel + ivec2(0, 1), below) && surface_of(below, beside) != surface);
     imageStore(picture, pixel, vec4(border ? vec3(0.55, 1.0, 0.65) : vec3(0.3 * grey), shown.a));
     return;
   }
   if (surface == 0u) return;
-  SurfaceAt at = surface_at(ray, surface);
+  SurfaceAt at = surface_at(ray, place, surface);
   int level = at.chart.density.x <= 0.0 ? 3 : paint == 2 ? age_class(at) : confidence_class(at);
   imageStore(picture, pixel, vec4(class_colour(pixel, level, grey), shown.a));
 }

@@ -4,7 +4,9 @@
 
 namespace foresight {
 
-PaintPass::PaintPass() : program_(gl::Program::compute(display_and_lookup_shaders(), "paint.comp")) {}
+PaintPass::PaintPass(bool levels)
+    : program_(gl::Program::compute(display_and_lookup_shaders(), "paint.comp", {"LEVELS " + std::to_string(levels)})) {
+}
 
 void PaintPass::operator()(ViewPaint paint, const gl::Texture& picture, const PublishedTextures& textures) const {
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // the view was stored by the pass before

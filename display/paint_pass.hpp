@@ -10,7 +10,8 @@ namespace foresight {
 /// Belongs to one context.
 class PaintPass {
  public:
-  PaintPass();
+  /// `levels`: the views that it paints have some (scene_raster.hpp).
+  explicit PaintPass(bool levels);
   /// Over `picture`, the view that PredictedView has just drawn: what it bound for that is bound still. Not for
   /// ViewPaint::colours and doubt.
   void operator()(ViewPaint paint, const gl::Texture& picture, const PublishedTextures& textures) const;

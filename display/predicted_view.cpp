@@ -13,12 +13,13 @@ namespace {
 // As in view.comp.
 constexpr unsigned kGroup = 64;  // invocations of a group over a list
 constexpr int kBand = 64;        // rows: fewer cost as much as these, as each band is waited for
-constexpr GLuint kListUnit = 5, kLightUnit = 6, kAgesUnit = 10;
+constexpr GLuint kListUnit = 5, kLightUnit = 6, kPlanesUnit = 7, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
 
 enum class Cases { newest_image, usual, every };
 
 struct Pixels {
+  bool levels = false;   // of a scene that is drawn with levels
   bool listed = false;   // not all of them
   bool blended = false;  // with the newest image, which the picture holds
 };
@@ -26,9 +27,14 @@ struct Pixels {
 gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
   auto defines = gl::camera_defines(lenses);
   defines.push_back("CASES " + std::to_string(static_cast<int>(cases)));
+  defines.push_back("LEVELS " + std::to_string(pixels.levels));
   defines.push_back("LISTED " + std::to_string(pixels.listed));
   defines.push_back("BLENDED " + std::to_string(pixels.blended));
   return gl::Program::compute(display_and_lookup_shaders(), "view.comp", defines);
+}
+
+bool same_place(const Pose& a, const Pose& b) {
+  return a.matrix() == b.matrix();
 }
 
 void set_tone(const gl::Program& program, float gain, const PublishedTextures& textures) {
@@ -39,21 +45,23 @@ void set_tone(const gl::Program& program, float gain, const PublishedTextures& t
 
 }  // namespace
 
-PredictedView::Projection::Projection(const Lens& view, const Lens& lens)
-    : newest(view_program(std::array{view, lens}, Cases::newest_image, {})),
-      usual(view_program({&view, 1}, Cases::usual, {.listed = true, .blended = true})),
-      rest(view_program({&view, 1}, Cases::every, {.listed = true, .blended = true})),
+PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool levels)
+    : newest(view_program(std::array{view, lens}, Cases::newest_image, {.levels = levels})),
+      usual(view_program({&view, 1}, Cases::usual, {.levels = levels, .listed = true, .blended = true})),
+      rest(view_program({&view, 1}, Cases::every, {.levels = levels, .listed = true, .blended = true})),
       unseen("pixels that the newest image does not see", kGroup) {}
 
 PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
-                             std::shared_ptr<const SurfaceRecords> surface, const Lens& lens, ViewPrograms programs)
+                             std::shared_ptr<const SurfaceRecords> surface, const Lens& lens, ViewPrograms programs,
+                             const std::optional<ViewLevels>& levels)
     : lens_(lens),
       surface_(std::move(surface)),
       scene_(std::move(scene)),
-      faces_(gl::faces_for(lens, 2), true),
-      raster_(scene_, true),
+      raster_(scene_, levels),
+      faces_(raster_.make_faces(gl::faces_for(lens, 2))),
       programs_(programs),
-      all_(view_program({&lens, 1}, programs == ViewPrograms::two ? Cases::usual : Cases::every, {})),
+      all_(view_program({&lens, 1}, programs == ViewPrograms::two ? Cases::usual : Cases::every,
+                        {.levels = raster_.has_levels()})),
       rest_("pixels of the view", kGroup),
       camera_(sizeof(gl::CameraBlock), "view camera"),
       node_poses_(GL_RGBA32F, 16, "view node poses"),
@@ -61,19 +69,20 @@ PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
       unshaded_(GL_RGBA8, 1, 1, 0, 1, "no shadows"),
       picture_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view") {
   glClearTexImage(unshaded_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, std::array<GLubyte, 4>{255, 255, 255, 255}.data());
-  if (programs_ == ViewPrograms::two) listed_ = view_program({&lens, 1}, Cases::every, {.listed = true});
+  if (programs_ == ViewPrograms::two)
+    listed_ = view_program({&lens, 1}, Cases::every, {.levels = raster_.has_levels(), .listed = true});
 }
 
 void PredictedView::set_lens(const Lens& lens) {
   lens_ = lens;
-  faces_ = gl::FaceImages(gl::faces_for(lens, 2), true);
+  faces_ = raster_.make_faces(gl::faces_for(lens, 2));
   rays_ = gl::make_lens_rays(lens);
   picture_ = gl::Texture(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view");
 }
 
 void PredictedView::set_paint(ViewPaint paint) {
   paint_ = paint;
-  if (paint != ViewPaint::colours && !painter_) painter_ = std::make_unique<PaintPass>();
+  if (paint != ViewPaint::colours && !painter_) painter_ = std::make_unique<PaintPass>(raster_.has_levels());
 }
 
 void PredictedView::draw_part(const std::optional<gl::ViewPart>& part) {
@@ -110,7 +119,7 @@ void PredictedView::draw_rows(DrawRows draw) const {
 }
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
-  start(T_world_camera, state, textures, textures.light.get());
+  start(T_world_camera, state, textures, textures.light);
   for (const gl::Program* program : {&all_, &listed_}) set_tone(*program, textures.display_gain, textures);
   start_part();
   draw_rows([&](Rows rows) {
@@ -129,14 +138,15 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
                          const PublishedImage& newest) {
-  if (!projection_) projection_ = std::make_unique<Projection>(lens_, newest.camera->lens());
+  if (!projection_) projection_ = std::make_unique<Projection>(lens_, newest.camera->lens(), raster_.has_levels());
   Projection& p = *projection_;
-  start(T_world_camera, state, textures, newest.light.get());
+  start(T_world_camera, state, textures, newest.light);
   const CameraInput* camera = newest.camera.get();
   const PosedImage* image = &newest.image;
   p.image.update({&camera, 1}, {&image, 1}, {&newest.tone, 1});
   if (draws_part_ && !p.newest_of_part)
-    p.newest_of_part = view_program(std::array{lens_, newest.camera->lens()}, Cases::newest_image, {.listed = true});
+    p.newest_of_part = view_program(std::array{lens_, newest.camera->lens()}, Cases::newest_image,
+                                    {.levels = raster_.has_levels(), .listed = true});
   const gl::Program& newest_pixels = draws_part_ ? p.newest_of_part : p.newest;
   p.image.bind(newest_pixels, newest.depth_tolerance, kSeenBlock, kSeenUnit);
   for (const gl::Program* program : {&p.usual, &p.rest}) set_tone(*program, newest.gain, textures);
@@ -161,9 +171,10 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
 }
 
 void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
-                          const SceneLight* light) {
+                          const std::shared_ptr<const SceneLight>& light) {
+  const SceneState& shown = raster_.shown(T_world_camera, state, faces_.faces);
   if (gate_) gate_->begin("depth of a view");
-  raster_(T_world_camera, state, faces_);
+  raster_(T_world_camera, shown, faces_);
   if (gate_) {
     glFinish();
     gate_->end();
@@ -172,12 +183,12 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
   const gl::CameraBlock block = gl::make_camera_block(lens_, faces_.faces);
   camera_.write(std::span(&block, 1));
   std::vector<Eigen::Vector4f> rows;
-  for (const Pose& T_world_node : state.T_world_node) {
+  for (const Pose& T_world_node : shown.T_world_node) {
     const Eigen::Matrix4f m = (T_world_node.inverse() * T_world_camera).matrix().cast<float>();
     for (int row = 0; row < 3; ++row) rows.push_back(m.row(row).transpose());
   }
   node_poses_.assign(std::span<const Eigen::Vector4f>(rows));
-  shade(T_world_camera, state, light);
+  shade(T_world_camera, shown, light);
 
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   glBindTextureUnit(0, node_poses_.texture());
@@ -185,18 +196,28 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
   glBindTextureUnit(2, surface_->triangles());
   glBindTextureUnit(3, surface_->patches());
   glBindTextureUnit(4, rays_.name());
+  if (raster_.has_levels()) glBindTextureUnit(kPlanesUnit, faces_.planes.name());
   textures.bind();
   glBindTextureUnit(kAgesUnit, textures.ages.texture());
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
 }
 
 /// Binds what shadows leave of each pixel.
-void PredictedView::shade(const Pose& T_world_camera, const SceneState& state, const SceneLight* light) {
+void PredictedView::shade(const Pose& T_world_camera, const SceneState& state,
+                          const std::shared_ptr<const SceneLight>& light) {
   glBindTextureUnit(kLightUnit, unshaded_.name());
   if (!light) return;
   if (gate_) gate_->begin("shadows of a view");
-  if (!shadows_) shadows_.reset(new Shadows{ShadowMap(scene_), ShadowPass(lens_)});
-  if (shadows_->map.update(*light, state)) {
+  if (!shadows_) shadows_.reset(new Shadows{ShadowMap(scene_), ShadowPass(lens_), {}, {}, false});
+  // The map is that of the scene, wherever it is seen from.
+  const bool is_same =
+      shadows_->of == light && std::ranges::equal(shadows_->T_world_node, state.T_world_node, same_place);
+  if (!is_same) {
+    shadows_->is_there = shadows_->map.update(*light, state);
+    shadows_->of = light;
+    shadows_->T_world_node = state.T_world_node;
+  }
+  if (shadows_->is_there) {
     shadows_->pass({lens_, camera_, faces_, rays_, T_world_camera}, shadows_->map);
     glBindTextureUnit(kLightUnit, shadows_->pass.light().name());
   }

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "display/paint_pass.hpp"
+#include "display/scene_raster.hpp"
 #include "display/surface_records.hpp"
 #include "gl/camera_block.hpp"
 #include "gl/program.hpp"
-#include "gl/raster_pass.hpp"
 #include "texture_gpu/frame_gate.hpp"
 #include "texture_gpu/published_image.hpp"
 #include "texture_gpu/published_textures.hpp"
@@ -34,7 +34,8 @@ enum class ViewPrograms {
 class PredictedView {
  public:
   PredictedView(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_ptr<const SurfaceRecords> surface,
-                const Lens& lens, ViewPrograms programs = ViewPrograms::two);
+                const Lens& lens, ViewPrograms programs = ViewPrograms::two,
+                const std::optional<ViewLevels>& levels = std::nullopt);
 
   /// From now on the view is as large as this lens says, and seen through it; of the same kind as the one before.
   void set_lens(const Lens& lens);
@@ -74,11 +75,13 @@ class PredictedView {
 
   /// The triangle seen at each pixel of the last draw()'s faces (gl::FaceImages::surface).
   const gl::FaceImages& faces() const { return faces_; }
+  /// What chooses levels of detail; null where all is drawn in full.
+  const LevelDirector* levels() const { return raster_.director(); }
 
  private:
   /// What the newest image needs besides.
   struct Projection {
-    Projection(const Lens& view, const Lens& image);
+    Projection(const Lens& view, const Lens& image, bool levels);
     gl::Program newest, usual, rest;
     gl::Program newest_of_part;  // once it is needed
     WorkList unseen;             // by the newest image
@@ -88,10 +91,14 @@ class PredictedView {
   struct Shadows {
     ShadowMap map;
     ShadowPass pass;
+    // What the map was drawn of.
+    std::shared_ptr<const SceneLight> of;
+    std::vector<Pose> T_world_node;
+    bool is_there = false;
   };
   void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
-             const SceneLight* light);
-  void shade(const Pose& T_world_camera, const SceneState& state, const SceneLight* light);
+             const std::shared_ptr<const SceneLight>& light);
+  void shade(const Pose& T_world_camera, const SceneState& state, const std::shared_ptr<const SceneLight>& light);
   void finish(const PublishedTextures& textures) const;
   struct Rows {
     int first = 0, last = 0;  // beyond the last
@@ -107,8 +114,8 @@ class PredictedView {
   Lens lens_;
   std::shared_ptr<const SurfaceRecords> surface_;
   std::shared_ptr<const gl::SceneBuffers> scene_;
+  SceneRaster raster_;
   gl::FaceImages faces_;
-  gl::RasterPass raster_;
   ViewPrograms programs_;
   gl::Program all_, listed_;  // view.comp: the first for every pixel, the other for those that it listed
   WorkList rest_;

@@ -5,6 +5,7 @@ layout(binding = 0) uniform samplerBuffer node_poses;  // T_node_camera
 layout(binding = 1) uniform usampler2DArray surfaces;  // triangle + 1
 layout(binding = 2) uniform samplerBuffer triangles;
 layout(binding = 3) uniform samplerBuffer patches;
+#include "seen_plane.glsl"
 layout(binding = 4) uniform sampler2D rays;
 
 bool ray_through(ivec2 pixel, out vec3 ray) {
@@ -17,12 +18,13 @@ bool ray_through(ivec2 pixel, out vec3 ray) {
   return r.w > 0.5;
 }
 
-// Triangle + 1; 0: no model there.
-uint surface_of(vec3 ray) {
+// Triangle + 1; 0: no model there. `at`: where on the faces.
+uint surface_of(vec3 ray, out ivec3 at) {
   vec3 place;
   float inverse_z;
   if (!project_face(camera, ray, place, inverse_z)) return 0u;
-  return texelFetch(surfaces, ivec3(ivec2(floor(place.xy + 0.5)), int(place.z)), 0).r;
+  at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
+  return texelFetch(surfaces, at, 0).r;
 }
 
 struct SurfaceAt {
@@ -31,8 +33,8 @@ struct SurfaceAt {
   float pixels_per_texel;  // of the view
 };
 
-SurfaceAt surface_at(vec3 ray, uint surface) {
-  vec4 plane = texelFetch(triangles, 2 * int(surface - 1u));
+SurfaceAt surface_at(vec3 ray, ivec3 at_face, uint surface) {
+  vec4 plane = seen_plane(at_face, surface);
   vec4 ids = texelFetch(triangles, 2 * int(surface - 1u) + 1);
   int node = int(ids.y);
   vec3 d = rotate_to_camera(node_poses, node, ray);

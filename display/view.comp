@@ -5,7 +5,7 @@
 // image is looked up directly, that comes before them, and they go through what it did not see.
 //
 // Defines: CASES 0: the newest image, what it does not see is listed; 1: the usual case, others are listed; 2: every case.
-//          LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds the newest image already.
+//          LEVELS: seen_plane.glsl. LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds the newest image already.
 #define NEWEST_IMAGE 0
 #define USUAL 1
 #define EVERY 2
@@ -43,6 +43,7 @@ layout(binding = 0) uniform samplerBuffer view_nodes;    // T_node_camera
 layout(binding = 1) uniform usampler2DArray surfaces;    // triangle + 1
 layout(binding = 2) uniform samplerBuffer triangles;
 layout(binding = 3) uniform samplerBuffer patches;
+#include "seen_plane.glsl"
 layout(binding = 4) uniform sampler2D rays;
 layout(binding = 6) uniform sampler2D light;  // ShadowPass::light(), or one white texel
 #if BLENDED
@@ -82,9 +83,10 @@ bool find_point(ivec2 pixel, out Point found) {
   vec3 place;
   float inverse_z;
   if (!project_face(camera, ray, place, inverse_z)) return false;
-  uint surface = texelFetch(surfaces, ivec3(ivec2(floor(place.xy + 0.5)), int(place.z)), 0).r;
+  ivec3 at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
+  uint surface = texelFetch(surfaces, at, 0).r;
   if (surface == 0u) return false;
-  vec4 plane = texelFetch(triangles, 2 * int(surface - 1u));
+  vec4 plane = seen_plane(at, surface);
   vec4 ids = texelFetch(triangles, 2 * int(surface - 1u) + 1);
   int node = int(ids.y);
 

@@ -32,12 +32,20 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
     return;
   }
   thread_ = std::make_unique<TextureThread>(
-      context.create_shared(),
-      TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures, newest_image_, setup.gate});
+      context.create_shared(), TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures,
+                                                    newest_image_, setup.gate});
   context.make_current();
   buffers_ = std::make_shared<const gl::SceneBuffers>(*setup.scene);
   records_ = std::make_shared<const SurfaceRecords>(*setup.surface);
-  view_ = std::make_unique<PredictedView>(buffers_, records_, setup.left);
+  if (setup.levels) {
+    auto levels = std::make_shared<const SceneLevels>(*setup.scene, setup.surface->patch_of_triangle);
+    levels_ = {std::make_shared<const gl::LevelBuffers>(*setup.scene, std::move(levels)), *setup.levels};
+  }
+  view_ = std::make_unique<PredictedView>(make_view(setup.left));
+}
+
+std::vector<std::string> ViewSession::level_remarks() const {
+  return levels_ ? levels_->buffers->levels()->remarks() : std::vector<std::string>{};
 }
 
 std::size_t ViewSession::surface_count() const {

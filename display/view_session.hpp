@@ -25,6 +25,7 @@ struct ViewSetup {
   std::optional<thesis::Options> thesis;      ///< that pipeline replaces the texture core
   bool newest_image = true;                   ///< views look the newest image up directly; not with `thesis`
   std::shared_ptr<FrameGate> gate = nullptr;  ///< TextureThread::Setup::gate; not with `thesis`
+  std::optional<LevelSettings> levels{};      ///< of detail, of all views; nothing: in full. Not with `thesis`
 };
 
 /// The model's surface, cut into charts of a size that suits such views.
@@ -73,7 +74,9 @@ class ViewSession {
   const gl::FaceImages& faces() const { return view_->faces(); }
 
   /// Another view of the same textures, such as that of an eye through its own lens. Not with `thesis`.
-  PredictedView make_view(const Lens& lens) const { return {buffers_, records_, lens}; }
+  PredictedView make_view(const Lens& lens) const { return {buffers_, records_, lens, ViewPrograms::two, levels_}; }
+  /// What cannot be drawn with fewer triangles, and why: sentences for people. None without ViewSetup::levels.
+  std::vector<std::string> level_remarks() const;
   /// Draws the model's depth alone. Not with `thesis`.
   gl::RasterPass make_depth_pass() const { return {buffers_, false}; }
   /// The same for such a view.
@@ -108,6 +111,7 @@ class ViewSession {
   std::shared_ptr<const SurfacePatches> surface_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;
   std::shared_ptr<const SurfaceRecords> records_;
+  std::optional<ViewLevels> levels_;
   std::unique_ptr<TextureThread> thread_;
   std::unique_ptr<PredictedView> view_;
   std::optional<ViewRange> range_;

@@ -15,7 +15,8 @@ std::vector<ExpectedView> expected_views(const LiveScene& scene) {
 
 }  // namespace
 
-ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, bool shadows) {
+ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, bool shadows,
+                          const std::optional<LevelSettings>& levels) {
   if (!scene.lenses())
     throw InputError(where, "the cameras have no calibration", "give it as `lens` in the rig (docs/rig-files.md)");
   if (!scene.model())
@@ -23,6 +24,7 @@ ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, bool
                      "give one as `scene:` in the rig, or with --scene");
   ViewSetup setup;
   setup.textures.shadows = shadows;
+  setup.levels = levels;
   setup.scene = scene.model();
   setup.left = scene.lenses()->left;
   setup.right = scene.lenses()->right;

@@ -61,7 +61,7 @@ class LiveSeat {
         scene_(std::make_shared<const LiveScene>(
             live_scene_of(rig, options.mock_cameras, options.scene, options.physics, options.layout))),
         gate_(std::make_shared<FrameGate>(clock_)),
-        setup_(view_setup(rig, options.shadows)),
+        setup_(view_setup(rig, options)),
         end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         driver_(rig, open_devices(options, controllers_), scene_->model()),
         seat_(rig, end_, driver_, clock_),
@@ -73,6 +73,7 @@ class LiveSeat {
         hand_(rig, driver_.options()),
         pacer_(clock_, {.rate_hz = options.rate_hz}, gate_),
         shown_(*window_, seat_, source_, window_options()) {
+    for (const std::string& remark : session_.level_remarks()) std::fprintf(stderr, "%s\n", remark.c_str());
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_.left, source_, shown_, controllers_, clock_);
     source_.show_things(&things_);
@@ -102,8 +103,8 @@ class LiveSeat {
   }
 
  private:
-  ViewSetup view_setup(const Rig& rig, bool shadows) const {
-    ViewSetup out = live_view_setup(*scene_, rig.name, shadows);
+  ViewSetup view_setup(const Rig& rig, const LiveSeatOptions& options) const {
+    ViewSetup out = live_view_setup(*scene_, rig.name, options.shadows, options.levels);
     out.gate = gate_;
     return out;
   }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "rig/rig.hpp"
+#include "scene/lod/level_director.hpp"
 #include "seat/view_trust.hpp"
 
 namespace foresight {
@@ -25,7 +26,8 @@ struct LiveSeatOptions {
   HeadDisplayKind head_display = HeadDisplayKind::none;
   double rate_hz = 30;
   double font_scale = 1;
-  bool shadows = true;  ///< TextureOptions::shadows
+  bool shadows = true;                  ///< TextureOptions::shadows
+  std::optional<LevelSettings> levels;  ///< ViewSetup::levels
   ViewTrustOptions trust;
   std::optional<std::filesystem::path> screenshot;  ///< key P writes it
 };

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/level_options.hpp"
 #include "apps/operator/live_seat.hpp"
 #include "apps/operator/seat_trial.hpp"
 #include "apps/operator/served_trial.hpp"
@@ -34,6 +35,7 @@ struct Arguments {
   double seconds = 30;
   double pictures_hz = 5;
   bool still_head = false, zero_delay = true, shadows = true;
+  LevelArguments detail;
   ViewOutputs outputs;
 };
 
@@ -140,6 +142,7 @@ SeatTrialFigures run_stepped(const Rig& rig, const Arguments& arguments, const T
   options.pictures_hz = arguments.pictures_hz;
   options.zero_delay = arguments.zero_delay;
   options.shadows = arguments.shadows;
+  options.levels = level_settings(arguments.detail);
   options.fall_back.lowest_db = arguments.fidelity_db;
   options.out = arguments.outputs.out;
   return try_seat(
@@ -159,6 +162,7 @@ SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Ta
   options.pictures_hz = arguments.pictures_hz;
   options.fall_back.lowest_db = arguments.fidelity_db;
   options.shadows = arguments.shadows;
+  options.levels = level_settings(arguments.detail);
   options.out = arguments.outputs.out;
   return try_served_seat(
       rig, std::move(scene), options, motion, [] { return stop_requested(); }, say);
@@ -207,6 +211,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
   options.shadows = arguments.shadows;
+  options.levels = level_settings(arguments.detail);
   options.trust.fall_back.lowest_db = arguments.fidelity_db;
   return run_live_seat(rig, options);
 }
@@ -297,6 +302,7 @@ void add_operator_command(Command& app, std::function<int()>& action) {
   command->add_flag("!--no-shadows", arguments->shadows,
                     "Shadows of what moves are shown where they were; else where they fall, once it is known where the "
                     "lamp is");
+  add_level_options(*command, arguments->detail);
   add_view_outputs(*command, arguments->outputs, {"shown", "delayed", "true"});
   command->footer(
       "The robot's side is `foresight robot RIG --serve`; both have the same rig file, URDF and calibrations. The "

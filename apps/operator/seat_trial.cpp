@@ -88,7 +88,7 @@ class Trial {
         end_(here_, end_options(rig, robot_.identity(), *scene_), clock_),
         driver_(motion, options.asked),
         seat_(rig, end_, driver_, clock_),
-        setup_(live_view_setup(*scene_, rig.name, options.shadows)),
+        setup_(live_view_setup(*scene_, rig.name, options.shadows, options.levels)),
         view_(setup_),
         period_(seconds(1 / mock_options(as_mock(*rig.cameras)).rate)),
         source_(rig, scene_, end_, seat_, clock_, source_options()),

@@ -12,6 +12,7 @@
 #include "link/line/line_spec.hpp"
 #include "link/operator_side/operator_end.hpp"
 #include "rig/rig.hpp"
+#include "scene/lod/level_director.hpp"
 #include "seat/scripted_driver.hpp"
 #include "seat/task_watch.hpp"
 #include "seat/trust_switch.hpp"
@@ -32,6 +33,7 @@ struct SeatTrialOptions {
   TrustSwitchOptions fall_back;
   bool zero_delay = true;                    ///< also draws each view as it would be without a line
   bool shadows = true;                       ///< TextureOptions::shadows
+  std::optional<LevelSettings> levels;       ///< ViewSetup::levels
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
   /// What the camera saw, as it is to be scored; none: as it was. The operator does not know it.
   std::function<cv::Mat(const cv::Mat&)> truth;

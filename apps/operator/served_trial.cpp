@@ -56,7 +56,7 @@ class ServedTrial final : ViewObserver {
         say_(say),
         participant_(rig.link, options.name, link::Role::operating, begin_line(options.line, clock_)),
         scene_(std::move(scene)),
-        setup_(live_view_setup(*scene_, rig.name, options.shadows)),
+        setup_(live_view_setup(*scene_, rig.name, options.shadows, options.levels)),
         end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         driver_(motion, driver_options(options.found_within_s), end_),
         seat_(rig, end_, driver_, clock_),

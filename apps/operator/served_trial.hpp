@@ -19,6 +19,7 @@ struct ServedTrialOptions {
   double pictures_hz = 5;                    ///< at most
   TrustSwitchOptions fall_back;              ///< of the view that would be shown
   bool shadows = true;                       ///< TextureOptions::shadows
+  std::optional<LevelSettings> levels;       ///< ViewSetup::levels
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
 };
 
