@@ -155,7 +155,12 @@ void add_head(Command& bench, std::function<int()>& action) {
   command->add_option("--head-frames", options->head_frames, "So many frames of it with views in all directions")
       ->check(from_to(1, 100'000))
       ->capture_default_str();
-  command->add_option("--building", options->building, "Triangles of the building that portals are measured in")
+  command->add_option("--only", options->only, "These parts alone")->check(one_of(kHeadBenchParts));
+  command->add_option("--picture", options->picture, "PNG file: the workshop in full, within 120 ms, and its levels")
+      ->writes(png_form());
+  command
+      ->add_option("--building", options->building,
+                   "Triangles of the building, and of the workshop, that drawing is measured in")
       ->check(from_to(100, 20'000'000))
       ->capture_default_str();
   command->add_option("--building-views", options->building_views, "So many views of it")

@@ -7,6 +7,7 @@
 #include "apps/bench/head_lab.hpp"
 #include "apps/bench/head_motion_figures.hpp"
 #include "apps/bench/head_server_figures.hpp"
+#include "apps/bench/level_figures.hpp"
 #include "apps/bench/openxr_figures.hpp"
 #include "apps/bench/portal_figures.hpp"
 #include "apps/bench/pose_table.hpp"
@@ -62,17 +63,55 @@ nlohmann::json server_figures(HeadLab& lab, gl::Context& context, DrawingProcess
   return rows;
 }
 
+/// Those that need no images.
+void add_scene_figures(const HeadBenchOptions& options, const PoseTrack& head, nlohmann::json& all) {
+  if (options.wants("portals"))
+    all["portals"] = portal_figures({options.building, options.building_views, options.seed});
+  if (options.wants("levels"))
+    all["time_critical_rendering"] = level_figures({.triangles = options.building,
+                                                    .width = options.width,
+                                                    .height = options.height,
+                                                    .frames = std::min(150, 4 * options.views),
+                                                    .seed = options.seed,
+                                                    .picture = options.picture},
+                                                   head);
+  if (options.wants("sorting")) all["state_sorting_buffer"] = sorting_figures(options.seed);
+}
+
+void add_lab_figures(const HeadBenchOptions& options, const PoseTrack& head, const RunFolder& run, gl::Context& context,
+                     DrawingProcess& process, nlohmann::json& all) {
+  MonotonicClock clock;
+  HeadLab lab(run, context, clock);
+  if (options.wants("warp"))
+    all["warped_against_rendered"] = warp_figures(lab, {options.width, options.height, options.views, options.degrees,
+                                                        options.metres, options.eyes_apart, options.seed});
+  if (options.wants("recorded"))
+    all["recorded_head_motion"] = head_motion_figures(lab, head, options.width, options.height);
+  if (options.wants("cube"))
+    all["viewport_independent_rendering"] = cube_figures(lab, head, options.width, options.height, options.head_frames);
+  if (options.wants("server")) all["head_pose_to_swap"] = server_figures(lab, context, process, options);
+  if (options.wants("stereograms")) all["stereograms"] = stereogram_figures(run, options.width);
+  if (options.wants("openxr")) all["openxr_session"] = openxr_figures(lab, context, options.openxr_frames);
+}
+
 }  // namespace
+
+bool HeadBenchOptions::wants(std::string_view part) const {
+  return only.empty() || std::ranges::find(only, part) != only.end();
+}
 
 int bench_head(const HeadBenchOptions& options) {
   const PoseTrack head = options.path ? head_track(read_pose_table(*options.path)) : swaying_head();
-  const BenchRun lab_run(options.run);
-  DrawingProcess process(lab_run.run(), kMostShare * static_cast<std::size_t>(options.width * options.height));
+  const bool with_lab = std::ranges::any_of(kHeadBenchLabParts, [&](const std::string& p) { return options.wants(p); });
+  std::optional<BenchRun> lab_run;
+  std::optional<DrawingProcess> process;
+  if (with_lab) {
+    lab_run.emplace(options.run);
+    process.emplace(lab_run->run(), kMostShare * static_cast<std::size_t>(options.width * options.height));
+  }
   const auto context = gl::create_headless_context();
   const gl::DriverInfo driver = gl::query_driver();
   gl::set_up_context();
-  MonotonicClock clock;
-  HeadLab lab(lab_run.run(), *context, clock);
   std::printf("%s\n", driver.renderer.c_str());
 
   nlohmann::json all;
@@ -80,15 +119,8 @@ int bench_head(const HeadBenchOptions& options) {
   all["size_px"] = {options.width, options.height};
   all["run"] = options.run ? options.run->string() : "a synthetic lab of 12 images";
   all["head"] = options.path ? options.path->string() : "made up: it sways";
-  all["warped_against_rendered"] = warp_figures(lab, {options.width, options.height, options.views, options.degrees,
-                                                      options.metres, options.eyes_apart, options.seed});
-  all["recorded_head_motion"] = head_motion_figures(lab, head, options.width, options.height);
-  all["viewport_independent_rendering"] = cube_figures(lab, head, options.width, options.height, options.head_frames);
-  all["head_pose_to_swap"] = server_figures(lab, *context, process, options);
-  all["portals"] = portal_figures({options.building, options.building_views, options.seed});
-  all["state_sorting_buffer"] = sorting_figures(options.seed);
-  all["stereograms"] = stereogram_figures(lab_run.run(), options.width);
-  all["openxr_session"] = openxr_figures(lab, *context, options.openxr_frames);
+  if (with_lab) add_lab_figures(options, head, lab_run->run(), *context, *process, all);
+  add_scene_figures(options, head, all);
   write_numbers(options.json, all.dump(2));
   return 0;
 }

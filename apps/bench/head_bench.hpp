@@ -3,8 +3,15 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace foresight {
+
+inline const std::vector<std::string> kHeadBenchLabParts{"warp", "recorded", "cube", "server", "stereograms", "openxr"};
+inline const std::vector<std::string> kHeadBenchParts{"warp",   "recorded", "cube",        "server", "portals",
+                                                      "levels", "sorting",  "stereograms", "openxr"};
 
 struct HeadBenchOptions {
   std::optional<std::filesystem::path> run;  ///< whose images give the textures; nothing: a synthetic lab of 12 images
@@ -17,15 +24,21 @@ struct HeadBenchOptions {
   int head_frames = 100;                      ///< of it, of views in all directions
   double seconds = 12;                        ///< of each trial in real time; 0: none
   double rate_hz = 20;                        ///< of them; pictures of half the size come 2.25 times as often
-  std::size_t building = 200'000;             ///< triangles of the building that portals are measured in
+  std::size_t building =
+      200'000;  ///< triangles of the building that portals, it and the workshop that levels are measured in
   int building_views = 1000;
-  int openxr_frames = 900;  ///< shown in the OpenXR runtime of this machine; 0: none
+  int openxr_frames = 900;                       ///< shown in the OpenXR runtime of this machine; 0: none
+  std::vector<std::string> only;                 ///< parts of kHeadBenchParts; none: all
+  std::optional<std::filesystem::path> picture;  ///< file for that of levels of detail
   std::optional<std::filesystem::path> json;
+
+  bool wants(std::string_view part) const;
 };
 
 /// Prints a part for each technique, and writes its numbers under its name: head_pose_to_swap,
-/// warped_against_rendered, recorded_head_motion, viewport_independent_rendering, portals, state_sorting_buffer,
-/// stereograms, openxr_session. Null: it was left out. Returns 0.
+/// warped_against_rendered, recorded_head_motion, viewport_independent_rendering, portals, time_critical_rendering,
+/// state_sorting_buffer, stereograms, openxr_session. Null: it was left out; missing: it is not one of `only`.
+/// Returns 0.
 int bench_head(const HeadBenchOptions& options);
 
 }  // namespace foresight

@@ -31,6 +31,14 @@ Lens bench_eye(const Lens& camera, int width, int height, int guard) {
   return Lens(p);
 }
 
+Pose in_camera_axes(const Pose& head) {
+  const Eigen::Vector3d mirror(1, -1, 1);  // on both sides: a motion stays one
+  Pose out = Pose::Identity();
+  out.translation() = mirror.cwiseProduct(head.translation());
+  out.linear() = mirror.asDiagonal() * head.linear() * mirror.asDiagonal();
+  return out;
+}
+
 double picture_decibels(const cv::Mat& a, const cv::Mat& b) {
   cv::Mat difference;
   cv::absdiff(a, b, difference);

@@ -14,6 +14,9 @@ constexpr double kGuardShare = 0.08;
 /// The lens of an eye as wide as the run's camera, without distortion, and `guard` px more on each side.
 Lens bench_eye(const Lens& camera, int width, int height, int guard = 0);
 
+/// Of a motion in axes x right, y up, as heads are recorded, to that of a camera, y down.
+Pose in_camera_axes(const Pose& head);
+
 /// Over all pixels and three channels.
 double picture_decibels(const cv::Mat& a, const cv::Mat& b);
 

@@ -18,15 +18,6 @@ constexpr double kSway = 0.04, kTurn = 0.12;            // m and rad of a head's
 constexpr double kSwayRate = 0.4, kTurnRate = 0.3;      // Hz
 constexpr double kSwaySeconds = 20, kSwaySamples = 60;  // a second
 
-/// Of axes x right, y up to those of a camera, y down: mirrored on both sides, a motion stays one.
-Pose in_camera_axes(const Pose& head) {
-  const Eigen::Vector3d mirror(1, -1, 1);
-  Pose out = Pose::Identity();
-  out.translation() = mirror.cwiseProduct(head.translation());
-  out.linear() = mirror.asDiagonal() * head.linear() * mirror.asDiagonal();
-  return out;
-}
-
 Eigen::Vector2d place(const Lens& lens, const Eigen::Vector3d& p) {
   const auto& k = lens.parameters();
   return {k.fx * p.x() / p.z() + k.cx, k.fy * p.y() / p.z() + k.cy};

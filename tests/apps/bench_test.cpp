@@ -116,6 +116,13 @@ TEST_F(Bench, HeadWarpsWhatItDrew) {
   EXPECT_GT(headset["start_to_first_frame_s"], 0) << headset;
   EXPECT_EQ(all["portals"]["different_pixels"], 0);
   EXPECT_LE(all["portals"]["portals"]["triangles"], all["portals"]["frustum"]["triangles"]);
+  for (const char* scene : {"building", "workshop"}) {
+    const nlohmann::json& levels = all["time_critical_rendering"][scene];
+    ASSERT_EQ(levels["budgets"].size(), 10u) << "four budgets, two rules; one without hysteresis, too";
+    for (const nlohmann::json& row : levels["budgets"]) EXPECT_GE(row["within_budget"], 0) << row;
+    EXPECT_LE(levels["by_size"]["triangles"], levels["triangles"]);
+    EXPECT_GE(levels["transitions"]["hard"]["largest_jump"], levels["transitions"]["geomorph"]["largest_jump"]);
+  }
   ASSERT_EQ(all["head_pose_to_swap"].size(), 6u);
   for (const nlohmann::json& row : all["head_pose_to_swap"]) {
     EXPECT_GT(row["frames"], 0) << row;
