@@ -101,6 +101,11 @@ void add_synth_command(Command& app, std::function<int()>& action) {
                     "The exposure follows what the camera sees as a webcam's does: late, in steps, within two stops");
   command->add_option("--motion", options.motion, "Another number: the arm goes its ways in another order")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--gloss", options.gloss,
+          "How strongly every material at least mirrors the lamp, such as 0.03 for varnish; moves with the eye")
+      ->capture_default_str();
   command->add_flag("--still", options.still, "The arm stands still, only the cameras move");
   command->add_option("--vignetting", options.sensor.vignetting, "Share of the light that the corners lose")
       ->capture_default_str();

@@ -81,7 +81,9 @@ class SynthRun {
   }
 
   SynthSummary write_all(const std::function<void(int, int)>& progress) {
-    const Lab lab = make_lab(0.0005 * std::clamp(relative_, 0.6, 8.0), options_.seed);
+    Lab lab = make_lab(0.0005 * std::clamp(relative_, 0.6, 8.0), options_.seed);
+    for (Material& material : lab.materials)
+      material.gloss = std::max(material.gloss, static_cast<float>(options_.gloss));
     if (head_path_) check_head(lab);
     RunWriter run(target_.path(), lenses_[0], "synth_left");
     if (options_.stereo) run.add_right_camera(lenses_[1], T_left_right(), "synth_right");
@@ -253,6 +255,7 @@ class SynthRun {
     text += fmt::format("exposure: {:.9g}\nauto_exposure: {}\nstill: {}\n", o.sensor.exposure,
                         o.auto_exposure ? "true" : "false", o.still ? "true" : "false");
     if (o.motion != 0) text += fmt::format("motion: {}\n", o.motion);
+    if (o.gloss != 0) text += fmt::format("gloss: {:.9g}\n", o.gloss);
     text += fmt::format("polygons: {}\npolygons_in_view: [{}, {}]\n", summary.polygons, summary.fewest_polygons_in_view,
                         summary.most_polygons_in_view);
     write_text(target_.path() / kMarker, text);
@@ -298,6 +301,7 @@ void check(const SynthOptions& o) {
   range("--exposure", "", o.sensor.exposure, 0.1, 10);
   range("--exposure-drift", "", o.sensor.exposure_drift, 0, 0.9);
   range("--vignetting", "", o.sensor.vignetting, 0, 0.9);
+  range("--gloss", "", o.gloss, 0, 1);
   range("--motion-blur", "", o.shutter.exposure_s * 1e3, 0, 1000);
   range("--rolling-shutter", "", o.shutter.readout_s * 1e3, 0, 1000);
   range("--pose-error-px", "", o.pose_error_px, 0, 100);

@@ -27,6 +27,7 @@ struct SynthOptions {
   Sensor sensor = {};      ///< noise 0 .. 100, exposure 0.1 .. 10, shares 0 .. 0.9; its seed is set from `seed`
   std::optional<AutoExposure> auto_exposure = {};  ///< of all cameras alike, metered by the left one
   unsigned motion = 0;                             ///< another one: the arm goes its ways in another order
+  double gloss = 0;                                ///< least one of every material (Material::gloss), 0 .. 1
   bool still = false;                              ///< the arm stands; only the cameras move
   double pose_error_px = 0;  ///< root mean square displacement in the image by the errors of trajectory.txt, 0 .. 100
   double pose_error_s = 0;   ///< correlation time of these errors; 0: each image has its own; 0 .. 60

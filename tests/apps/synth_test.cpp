@@ -64,6 +64,7 @@ TEST_F(Synth, OptionsOutOfRangeAreRefused) {
       {{"--rate", "0"}, "--rate", "0 is outside", "choose a value"},
       {{"--noise", "-1"}, "--noise", "-1", "choose a value"},
       {{"--vignetting", "1.5"}, "--vignetting", "1.5", "choose a value"},
+      {{"--gloss", "2"}, "--gloss", "2 is outside", "choose a value"},
       {{"--exposure-drift", "nan"}, "--exposure-drift", "nan", "give one"},
       {{"--motion-blur", "-3"}, "--motion-blur", "-3", "choose a value"},
       {{"--rolling-shutter", "inf"}, "--rolling-shutter", "inf", "give one"},

@@ -12,6 +12,7 @@
 
 #include "common/error.hpp"
 #include "scene/run_folder.hpp"
+#include "sim/lamp.hpp"
 #include "sim/motion.hpp"
 #include "sim/run_files.hpp"
 #include "sim/tracer.hpp"
@@ -199,6 +200,43 @@ TEST_F(SynthRun, ModelAndPicturesAgree) {
   // Interpolating fine print costs some levels; a wrong place costs contrast.
   EXPECT_LT(share_above(differences, 16), 0.12);
   EXPECT_GT(share_above(beside, 16), 2 * share_above(differences, 16));
+}
+
+// The lamp stands in the table where its mirror image has to be seen from the eye, and nowhere else.
+TEST_F(SynthRun, GlossMirrorsTheLampWhereTheEyeSeesIt) {
+  const fs::path path = folder_ / "path.txt";
+  std::ofstream(path) << "0 -0.45 0.1 0.5 -0.888232 0.438504 -0.060630 0.122811\n";
+  SynthOptions options{.width = 160, .height = 120, .frames = 1, .distortion = false, .still = true, .head_path = path};
+  write_synth_run(folder_ / "matt", options);
+  options.gloss = 0.03;
+  write_synth_run(folder_ / "glossy", options);
+  const RunFolder run = RunFolder::open(folder_ / "matt", {}), glossy = RunFolder::open(folder_ / "glossy", {});
+  const RunImage& image = run.frames().front().left;
+  const Lens& lens = run.lens_left();
+  const World world(run, image.time);
+  const cv::Mat without = read_run_image(image, lens), with = read_run_image(glossy.frames().front().left, lens);
+  const Eigen::Vector3f eye = image.T_world_camera.translation().cast<float>();
+  int mirrored = 0, matt = 0;
+  for (int y = 0; y < options.height; ++y)
+    for (int x = 0; x < options.width; ++x) {
+      const Eigen::Vector3f ray = (image.T_world_camera.linear() * lens.unproject({x, y}).value()).cast<float>();
+      const auto hit = world.tracer->nearest(eye, ray);
+      if (!hit) continue;
+      const Eigen::Vector3f p = eye + static_cast<float>(hit->t) * ray;
+      if (std::abs(p.z()) > 0.004f) continue;  // neither the table top nor what lies flat on it
+      const float expected = lamp::mirrored(p, Eigen::Vector3f::UnitZ(), (eye - p).normalized());
+      const int brighter = with.at<cv::Vec3b>(y, x)[1] - without.at<cv::Vec3b>(y, x)[1];
+      mirrored += expected > 0.95f;
+      matt += expected == 0;
+      if (expected > 0.95f) {
+        EXPECT_GT(brighter, 10) << x << ' ' << y;
+      }
+      if (expected == 0) {
+        EXPECT_LE(brighter, 12) << x << ' ' << y;  // blur carries some of it beside
+      }
+    }
+  EXPECT_GT(mirrored, 50);
+  EXPECT_GT(matt, 500);
 }
 
 TEST_F(SynthRun, RefusesSizesAndCountsOutOfRange) {
