@@ -310,8 +310,9 @@ RobotTime RobotFuture::instant_to_show(RobotTime now) noexcept {
   constexpr double kSlowest = 0.9, kFastest = 1.1, kTooFar = 1;  // of real time; s
   const RobotTime wanted = now + seconds(delay().seconds);
   const double passed = instant_ ? to_seconds(now - instant_asked_) : 0;
+  const bool clock_goes_on = passed >= 0 && passed < kTooFar;
   instant_asked_ = now;
-  if (!instant_ || std::abs(to_seconds(wanted - *instant_)) > kTooFar) {
+  if (!instant_ || !clock_goes_on || std::abs(to_seconds(wanted - *instant_)) > kTooFar) {
     instant_ = std::max(wanted, instant_.value_or(wanted));
   } else {
     const double step = std::clamp(to_seconds(wanted - *instant_), kSlowest * passed, kFastest * passed);

@@ -38,14 +38,14 @@ std::optional<RobotTime> Seat::robot_now() const {
   return now ? std::optional(now->time) : std::nullopt;
 }
 
-SeatView Seat::look(RobotTime now) {
+SeatView Seat::look(std::optional<RobotTime> now) {
   SeatView view;
   end_.seat([&](ControlSeat& seat, OperatorTime here) {
     view.now = here;
     view.control = seat.status(here);
     view.robot = hand_robot(seat, here);
   });
-  view.shown = outlook_.at(outlook_.instant_to_show(now));
+  if (now) view.shown = outlook_.at(outlook_.instant_to_show(*now));
   view.engaged = engaged_;
   return view;
 }
@@ -55,12 +55,11 @@ void Seat::step() {
   const auto motions = end_.take_motions();
   const Nonce session = end_.seat([](ControlSeat& seat, OperatorTime) { return seat.session(); });
   const auto now = robot_now();
-  const RobotTime robot_time = now.value_or(RobotTime{});
   if (now) {
     for (const auto& heard : motions) outlook_.hear(heard.motion, session, *now);
     outlook_.advance(*now);
   }
-  const SeatView view = look(robot_time);
+  const SeatView view = look(now);
   const SeatWish wish = driver_.tick(view);
   heed_switch(wish, view);
   command(wish, view.now);

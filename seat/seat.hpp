@@ -58,7 +58,7 @@ class Seat {
 
  private:
   std::optional<RobotTime> robot_now() const;
-  SeatView look(RobotTime now);
+  SeatView look(std::optional<RobotTime> now);
   void command(const SeatWish& wish, OperatorTime now);
   void heed_switch(const SeatWish& wish, const SeatView& view);
 

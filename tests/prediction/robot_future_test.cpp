@@ -276,6 +276,20 @@ TEST(RobotFuture, DoesNotAllocateOnceItIsMade) {
   EXPECT_EQ(allocations(), before);
 }
 
+// Who does not know the robot's time for a moment may ask for nonsense: pictures do not stand until its hour has come.
+TEST(RobotFuture, AClockThatJumpsTakesNoPictureAlong) {
+  FutureWorld world;
+  world.run(10);
+  RobotFuture& future = world.future();
+  const RobotTime now = world.now();
+  const Duration ahead = future.instant_to_show(now) - now;
+  future.instant_to_show(RobotTime{});
+  for (int i = 1; i < 100; ++i) {
+    const RobotTime then = now + i * std::chrono::milliseconds(10);
+    EXPECT_NEAR(to_seconds(future.instant_to_show(then) - then), to_seconds(ahead), 0.1) << i;
+  }
+}
+
 TEST(CorrectionBlend, IsOverInTimeAndNeverFasterThanItMay) {
   for (const double jump : {0.01, -0.2, 1.0}) {
     constexpr double kFastest = 1.5, kStep = 0.001;

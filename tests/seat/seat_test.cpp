@@ -133,6 +133,8 @@ TEST_F(SeatAtARig, AfterALossNothingMovesBeforeTheSwitchIsPressedAnew) {
   EXPECT_FALSE(seat_->status().engaged);
   EXPECT_TRUE(seat_->status().held);
   robot_.expect_at_rest("while the switch of before is still held");
+  ASSERT_TRUE(seat_->instant_to_show());
+  EXPECT_LT(to_seconds(*seat_->instant_to_show() - robot_.clock().now()), 1) << "what is shown goes on with time";
 
   driver_->wish.deadman = false;
   run(1s);
