@@ -2,9 +2,16 @@
 
 namespace foresight {
 
-EyePair::EyePair(ViewSession& session, const Lens& lens, double separation)
+EyePair::EyePair(ViewSession& session, const std::array<Lens, 2>& lenses, double separation)
     : session_(session), separation_(separation) {
-  for (int eye = 0; eye < 2; ++eye) eyes_.push_back(session.make_view(lens));
+  for (const Lens& lens : lenses) eyes_.push_back(session.make_view(lens));
+}
+
+void EyePair::set_lenses(const std::array<Lens, 2>& lenses) {
+  for (std::size_t eye = 0; eye < eyes_.size(); ++eye) {
+    const Lens &now = eyes_[eye].lens(), &wanted = lenses[eye];
+    if (now.width() != wanted.width() || now.height() != wanted.height()) eyes_[eye].set_lens(wanted);
+  }
 }
 
 bool EyePair::draw(const Pose& T_world_camera, const SceneState& state) {

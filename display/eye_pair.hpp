@@ -1,6 +1,8 @@
 // Two eyes beside each other where the view's camera is, for a display that shows them side by side.
 #pragma once
 
+#include <array>
+
 #include "display/view_session.hpp"
 
 namespace foresight {
@@ -8,8 +10,14 @@ namespace foresight {
 /// Belongs to the session's context and thread.
 class EyePair {
  public:
-  /// Eyes `separation` m apart, each through `lens`. The session, not with `thesis`, must outlive this.
-  EyePair(ViewSession& session, const Lens& lens, double separation);
+  /// Eyes `separation` m apart, each through its lens, left and right. Lenses of a head display's panels may be
+  /// distorted: the pictures are then such that its optics show them straight. The session, not with `thesis`, must
+  /// outlive this.
+  EyePair(ViewSession& session, const std::array<Lens, 2>& lenses, double separation);
+
+  /// From now on through these, of the same models as before.
+  void set_lenses(const std::array<Lens, 2>& lenses);
+  const Lens& lens(std::size_t eye) const { return eyes_[eye].lens(); }
 
   /// As ViewSession::draw, the eyes to the left and right of the camera.
   bool draw(const Pose& T_world_camera, const SceneState& state);

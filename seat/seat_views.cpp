@@ -49,7 +49,6 @@ SeatViews::SeatViews(const SeatViewsSetup& setup)
       mode_(setup.mode),
       size_(setup.left, setup.most_drawing_ms),
       overlay_(setup.left),
-      overlay_beside_(setup.left),
       newest_{UploadedPicture("newest left image"), UploadedPicture("newest right image")},
       on_panel_{UploadedPicture("left panel"), UploadedPicture("right panel")} {}
 
@@ -137,9 +136,7 @@ void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTar
   shows_again_ = has_eyes_ = has_beside_ = has_stereogram_ = false;
   if (whole.width < 1 || whole.height < 1) return;  // minimised
   if (has_two_eyes(mode_)) {
-    if (!eyes_) eyes_.emplace(session, setup_.left, setup_.eyes_apart);
-    eyes_->set_paint(paint_of_views());
-    has_eyes_ = eyes_->draw(place.T_world_camera, place.scene);
+    draw_eyes(session, place, whole);
   } else if (mode_ == ViewMode::stereogram) {
     const ViewTarget part = fitted(whole, setup_.left.width(), setup_.left.height());
     if (!stereogram_) stereogram_.emplace(session.make_depth_pass());
@@ -150,6 +147,23 @@ void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTar
   } else {
     draw_again(session, place, whole, drawing_ms);
   }
+}
+
+// Panels have more pixels than there are in a window's half, and than can be drawn in time.
+std::array<Lens, 2> SeatViews::eye_lenses(const ViewTarget& whole) const {
+  if (!shows_panels()) return {setup_.left, setup_.left};
+  const ViewTarget half = column(whole, 0, 2, 0);
+  const auto fits = [&](const Lens& panel) { return fitted_lens(panel, half.width, half.height); };
+  return {fits((*setup_.panels)[0]), fits((*setup_.panels)[1])};
+}
+
+void SeatViews::draw_eyes(ViewSession& session, const ViewPlace& place, const ViewTarget& whole) {
+  const std::array<Lens, 2> lenses = eye_lenses(whole);
+  std::optional<EyePair>& pair = shows_panels() ? panels_ : eyes_;
+  if (!pair) pair.emplace(session, lenses, setup_.eyes_apart);
+  pair->set_lenses(lenses);
+  pair->set_paint(paint_of_views());
+  has_eyes_ = pair->draw(place.T_world_camera, place.scene);
 }
 
 // The operator's eye with more pixels, or painted.
@@ -186,7 +200,6 @@ void SeatViews::draw_observer(ViewSession& session, const ViewPlace& place, cons
             height = std::max(1, static_cast<int>(scale * whole.height));
   const Lens lens = observer_lens(width, height, eye_->distance / (eye_->metres_per_pixel(height) * height));
   PredictedView& view = view_through(beside_, session, lens);
-  overlay_beside_.set_lens(lens);
   view.set_paint(paint_of_views());
   if (!session.draw(view, eye_->T_world_eye(), place.scene)) return;
   if (!observer_) observer_.emplace();
@@ -198,7 +211,7 @@ void SeatViews::draw_observer(ViewSession& session, const ViewPlace& place, cons
 SeatViews::Sight SeatViews::predicted(const ViewSession& session, const SeatPicture& what) {
   if (!drawn_) return {};
   // Whatever its size, it is seen through the same lens: lines lie by the camera's own depths.
-  Sight out{&session.picture(), &session.faces(), drawn_->T_world_camera};
+  Sight out{&session.picture(), &session.faces(), &setup_.left, drawn_->T_world_camera};
   if (what.doubt && shows_doubt()) {
     if (!doubt_) doubt_.emplace();
     out.picture = &(*doubt_)(session.picture(), *what.doubt);
@@ -217,7 +230,8 @@ SeatViews::Sight SeatViews::newest(std::size_t eye) const {
 
 SeatViews::Sight SeatViews::eye(std::size_t index, bool trusted) const {
   if (!trusted || !has_eyes_) return newest(index);
-  return {&eyes_->picture(index), &eyes_->faces(index), drawn_->T_world_camera * eyes_->T_view_eye(index)};
+  const EyePair& pair = shows_panels() ? *panels_ : *eyes_;
+  return {&pair.picture(index), &pair.faces(index), &pair.lens(index), drawn_->T_world_camera * pair.T_view_eye(index)};
 }
 
 // The picture, and over it what there is to see of the hand, whose words go beside it.
@@ -227,11 +241,10 @@ void SeatViews::put(const Sight& sight, const ViewTarget& place, const SeatPictu
   const ViewTarget view = fitted(place, sight.picture->width(), sight.picture->height());
   copy_(*sight.picture, view);
   if (!sight.faces || !what.hand || !what.trusted) return;
-  const bool from_beside = has_beside_ && sight.picture == &beside_->picture();
-  (from_beside ? overlay_beside_ : overlay_).draw(what.hand->lines, sight.T_world_eye, *sight.faces, view);
-  const Lens& lens = from_beside ? beside_->lens() : setup_.left;
+  overlay_.set_lens(*sight.lens);
+  overlay_.draw(what.hand->lines, sight.T_world_eye, *sight.faces, view);
   for (const WorldLabel& label : what.hand->labels)
-    if (const auto at = seen_at(label.at, lens, sight.T_world_eye, view, whole.height))
+    if (const auto at = seen_at(label.at, *sight.lens, sight.T_world_eye, view, whole.height))
       labels.push_back({at->x(), at->y(), label.words, label.urgency});
 }
 
@@ -308,7 +321,7 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
       put_inset(place);
       break;
     case ViewMode::observer:
-      put({&beside_->picture(), &beside_->faces(), eye_->T_world_eye()}, place, what, labels, whole);
+      put({&beside_->picture(), &beside_->faces(), &beside_->lens(), eye_->T_world_eye()}, place, what, labels, whole);
       break;
   }
   for (Part& part : parts)

@@ -33,6 +33,9 @@ struct SeatViewsSetup {
   double eyes_apart = 0.063;       ///< m, of most people
   double most_drawing_ms = 20;     ///< ViewSize
   ViewMode mode = ViewMode::predicted;
+  /// Of a head display that takes two eyes side by side, left and right: what is predicted is drawn such that its
+  /// optics show it straight. Nothing: it has none, or does that itself.
+  std::optional<std::array<Lens, 2>> panels = {};
 };
 
 /// What there is to be shown of a picture.
@@ -92,6 +95,7 @@ class SeatViews {
   struct Sight {
     const gl::Texture* picture = nullptr;   // null: there is none yet
     const gl::FaceImages* faces = nullptr;  // of the drawing; null: an image
+    const Lens* lens = nullptr;             // of the drawing
     Pose T_world_eye = Pose::Identity();
   };
   struct Canvas {
@@ -99,8 +103,11 @@ class SeatViews {
     std::optional<TextureTarget> target;
   };
   bool is_one_eyes() const { return mode_ != ViewMode::newest && mode_ <= ViewMode::split; }
+  bool shows_panels() const { return mode_ == ViewMode::two_eyes && setup_.panels; }
   /// As views paint themselves.
   ViewPaint paint_of_views() const { return paint_ == ViewPaint::doubt ? ViewPaint::colours : paint_; }
+  std::array<Lens, 2> eye_lenses(const ViewTarget& whole) const;
+  void draw_eyes(ViewSession& session, const ViewPlace& place, const ViewTarget& whole);
   void draw_again(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
   void draw_observer(ViewSession& session, const ViewPlace& place, const ViewTarget& whole);
   std::vector<CameraPanel> panels();
@@ -127,12 +134,12 @@ class SeatViews {
   PictureCopy copy_;
   PictureMix mix_;
   std::optional<DoubtPaint> doubt_;
-  SceneOverlay overlay_, overlay_beside_;
+  SceneOverlay overlay_;
   std::array<Canvas, 2> canvas_;
   std::optional<PredictedView> again_, beside_;
   bool shows_again_ = false, has_eyes_ = false, has_beside_ = false,
-       has_stereogram_ = false;  // drawn for the last place
-  std::optional<EyePair> eyes_;
+       has_stereogram_ = false;           // drawn for the last place
+  std::optional<EyePair> eyes_, panels_;  // through the camera's lens; through those of panels
   StereogramLook stereogram_look_;
   std::optional<LiveStereogram> stereogram_;
   std::optional<ObserverPass> observer_;

@@ -14,6 +14,7 @@
 #include "input/open_tracker.hpp"
 #include "link/line/line_spec.hpp"
 #include "seat/hand_driver.hpp"
+#include "seat/panel_lens.hpp"
 #include "seat/seat_options.hpp"
 #include "seat/view_setup.hpp"
 
@@ -147,6 +148,9 @@ class LiveSeat {
     out.views.right = setup_.right;
     out.views.most_drawing_ms = kDrawingShare * 1e3 / options_.rate_hz;
     if (options_.head_display == HeadDisplayKind::side_by_side) out.views.mode = ViewMode::two_eyes;
+    if (!options_.display_lenses.empty())
+      out.views.panels = {read_panel_lens(options_.display_lenses.front()),
+                          read_panel_lens(options_.display_lenses.back())};
     out.hand = [this] { return hand_.draw(driver_.sight(), seat_.under_way(kUnderWay)); };
     return out;
   }

@@ -15,6 +15,7 @@
 #include "common/numbers_file.hpp"
 #include "common/stop_signal.hpp"
 #include "rig/rig.hpp"
+#include "seat/panel_lens.hpp"
 #include "seat/tool_script.hpp"
 #include "sim/pan_tilt_head.hpp"
 
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string rig, name = "operator", scene, device, head_display = "none";
+  std::vector<std::string> display_lenses;
   bool mock = false, physics = false, served = false;
   unsigned layout = 0;
   double rate_hz = 30, font_scale = 1, fidelity_db = TrustSwitchOptions{}.lowest_db;
@@ -208,6 +210,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.device = arguments.device;
   if (arguments.head_display == "openxr") options.head_display = HeadDisplayKind::openxr;
   if (arguments.head_display == "side-by-side") options.head_display = HeadDisplayKind::side_by_side;
+  options.display_lenses.assign(arguments.display_lenses.begin(), arguments.display_lenses.end());
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
   options.shadows = arguments.shadows;
@@ -237,6 +240,10 @@ void check(const Rig& rig, const Arguments& arguments) {
     throw InputError("--physics", "is of a robot's side that runs with --mock", "add --mock, without --scripted");
   if (arguments.head_display != "none" && !arguments.script.empty())
     throw InputError("--head-display", "is of a seat with a window", "leave out --scripted");
+  if (!arguments.display_lenses.empty() && arguments.head_display != "side-by-side")
+    throw InputError("--display-lens", "is of a head display that takes two eyes side by side",
+                     "add --head-display side-by-side; a headset of OpenXR corrects its lenses itself");
+  for (const std::string& file : arguments.display_lenses) read_panel_lens(file);  // known before anything is opened
   if (arguments.seed == 0) throw InputError("--seed", "is 0", "give one from 1 on");
 }
 
@@ -267,6 +274,12 @@ void add_operator_command(Command& app, std::function<int()>& action) {
       ->add_option("--head-display", arguments->head_display,
                    "Beside the window: openxr (a headset, docs/head-display.md), side-by-side, none (default)")
       ->check(one_of({"openxr", "side-by-side", "none"}));
+  command
+      ->add_option("--display-lens", arguments->display_lenses,
+                   "With --head-display side-by-side: results of `calibrate display`, one for both eyes or the\n"
+                   "left one's and the right one's: what is predicted is drawn such that these lenses show it straight")
+      ->reads()
+      ->expected(1, 2);
   command->add_option("--rate-hz", arguments->rate_hz, "Pictures a second, at most (default 30)")
       ->check(from_to(1.0, 240.0));
   command->add_option("--font-scale", arguments->font_scale, "Of all words in the window (default 1)")

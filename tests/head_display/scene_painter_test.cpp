@@ -325,7 +325,8 @@ TEST_F(SceneInAHead, APictureOfAnotherContextIsShownWhole) {
 }
 
 TEST_F(SceneInAHead, SideBySideEyesAreApart) {
-  EyePair none(*session_, small_lens("pinhole"), 0), eyes(*session_, small_lens("pinhole"), 0.065);
+  const std::array lenses{small_lens("pinhole"), small_lens("pinhole")};
+  EyePair none(*session_, lenses, 0), eyes(*session_, lenses, 0.065);
   ASSERT_TRUE(none.draw(usual_view(), state_of(*scene_)));
   ASSERT_TRUE(eyes.draw(usual_view(), state_of(*scene_)));
   const auto read = [](const gl::Texture& picture) { return gl::read_texture(picture); };

@@ -215,6 +215,36 @@ TEST_F(SeatViewsPictures, EachEyeSeesItsOwn) {
   }
 }
 
+// A panel's picture is bent such that its lens straightens it: each of its pixels is what a straight view has in the
+// direction in which that pixel is seen.
+TEST_F(SeatViewsPictures, EyesAreDrawnForTheirPanels) {
+  const Lens left = small_lens("rational");
+  Lens::Parameters p = left.parameters();
+  p.cx += 9;
+  const Lens right(p);
+  views_.emplace(SeatViewsSetup{.left = lens_, .eyes_apart = 0.1, .panels = std::array{left, right}});
+  shown(ViewMode::two_eyes);
+  const cv::Mat panels = shown(ViewMode::two_eyes);
+  EXPECT_EQ(parts_.at(0).labels.size(), 1u);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const ViewTarget half = column(target_->whole(), static_cast<int>(eye), 2, 0);
+    const Lens panel = fitted_lens(eye == 0 ? left : right, half.width, half.height);
+    PredictedView expected = session_->make_view(panel);
+    const double aside = eye == 0 ? -0.05 : 0.05;
+    ASSERT_TRUE(session_->draw(expected, place_.T_world_camera * Eigen::Translation3d(aside, 0, 0), place_.scene));
+    cv::Mat picture;
+    cv::cvtColor(expected.read(), picture, cv::COLOR_BGRA2BGR);
+    const ViewTarget part = fitted(half, panel.width(), panel.height());
+    const cv::Mat seen = panels(cv::Rect(part.x, kHeight - part.y - part.height, part.width, part.height));
+    ASSERT_EQ(seen.size(), picture.size());
+    cv::Mat off;
+    cv::absdiff(seen, picture, off);
+    // The hand's line, the image in its corner and its words are over it.
+    EXPECT_LT(cv::countNonZero(off.reshape(1) > 3), 0.2 * static_cast<double>(off.total() * 3)) << eye;
+  }
+  EXPECT_GT(line(panels), 0.001);
+}
+
 TEST_F(SeatViewsPictures, WhatIsNotTrustedGivesWayInAFrame) {
   for (int i = 0; i <= static_cast<int>(ViewMode::observer); ++i) {
     const auto mode = static_cast<ViewMode>(i);
