@@ -26,4 +26,9 @@ void FramePacer::swapped() {
   if (gate_) gate_->frame_ends(pacing_.wake());
 }
 
+void FramePacer::held_up() {
+  pacing_.held_up(clock_.now());
+  if (gate_) gate_->frame_ends(pacing_.wake());
+}
+
 }  // namespace foresight

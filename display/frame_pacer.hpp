@@ -19,6 +19,7 @@ class FramePacer {
   bool wait(Duration most);
   void drawn();  ///< all of it is ordered: waits for the GPU, so that the swap alone is left
   void swapped();
+  void held_up();  ///< since the last swap, by what is no frame
 
   PacingFigures figures() const { return pacing_.figures(); }
 

@@ -53,6 +53,9 @@ class FramePacing {
   /// `work_waits`: there is other work for the time between frames.
   void swapped(RobotTime now, bool work_waits);
 
+  /// Something else than a frame has kept the display's thread until `now`: that is no drawing's cost.
+  void held_up(RobotTime now) { plan(now, false); }
+
   /// Another screen, or another mode of it: what was learnt of refreshes is forgotten.
   void display_changed();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace foresight {
 namespace {
@@ -13,6 +14,19 @@ constexpr double kBesideRad = 0.7;   // to his right
 constexpr double kAboveRad = 0.5;
 constexpr double kObserverDistance = 1.9;  // m
 constexpr double kObserverPixels = 1.3;    // of the camera's, at most: who looks on needs no more
+
+/// What programs differ by.
+struct Look {
+  ViewMode mode;
+  ViewPaint paint;
+};
+constexpr Look kLooks[] = {
+    {ViewMode::split, ViewPaint::colours},    {ViewMode::predicted, ViewPaint::wireframe},
+    {ViewMode::predicted, ViewPaint::age},    {ViewMode::predicted, ViewPaint::confidence},
+    {ViewMode::two_eyes, ViewPaint::colours}, {ViewMode::interlaced, ViewPaint::colours},
+    {ViewMode::anaglyph, ViewPaint::colours}, {ViewMode::anaglyph_colours, ViewPaint::colours},
+    {ViewMode::observer, ViewPaint::colours}, {ViewMode::stereogram, ViewPaint::colours},
+};
 
 ViewTarget corner_of(const ViewTarget& place, int width, int height) {
   ViewTarget out = place;
@@ -147,6 +161,22 @@ void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTar
   } else {
     draw_again(session, place, whole, drawing_ms);
   }
+}
+
+bool SeatViews::warm_up(ViewSession& session, const ViewTarget& whole) {
+  if (!drawn_ || warm_ == std::size(kLooks)) return false;
+  const Look look = kLooks[warm_++];
+  const ViewMode mode = std::exchange(mode_, look.mode);
+  const ViewPaint paint = std::exchange(paint_, look.paint);
+  const std::optional<Eye> eye = eye_;
+  draw(session, ViewPlace(*drawn_), whole, 0);
+  show(session, whole, {});
+  glFinish();
+  mode_ = mode;
+  paint_ = paint;
+  eye_ = eye;
+  shows_again_ = false;  // it may be painted now
+  return true;
 }
 
 // Panels have more pixels than there are in a window's half, and than can be drawn in time.

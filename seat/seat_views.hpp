@@ -82,6 +82,10 @@ class SeatViews {
   /// takes.
   void draw(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
   bool drawn() const { return drawn_.has_value(); }
+  /// Once something is drawn: draws, where the next picture will cover it, one of the looks that were never chosen, so
+  /// that its first choice does not wait for programs to be compiled; on a software renderer some tenths of a second.
+  /// False: none is left.
+  bool warm_up(ViewSession& session, const ViewTarget& whole);
 
   /// Where pictures were put: each such part has words of its own.
   struct Part {
@@ -145,6 +149,7 @@ class SeatViews {
   std::optional<ObserverPass> observer_;
   std::optional<Eye> eye_;
   std::optional<ViewPlace> drawn_;  // the operator's
+  std::size_t warm_ = 0;            // looks that were drawn to have their programs
   std::array<UploadedPicture, 2> newest_, on_panel_;
 };
 

@@ -93,6 +93,8 @@ class LiveSeat {
     for (SourceState state = SourceState::ready; state != SourceState::ended; state = loop.step()) {
       while (!pacer_.wait(kLongestWait) && shown_.wants_more() && !stop_requested()) shown_.take_input();
       shown_.take_input();
+      // A window that stands lets go of a switch: before one is held.
+      if (!seat_.status().held && shown_.warm_up(session_)) pacer_.held_up();
     }
     // Whatever was held is let go of: the robot comes to rest by itself as set-points end, this only says it sooner.
     driver_.let_go();

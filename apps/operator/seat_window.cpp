@@ -5,7 +5,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/view_outputs.hpp"
-#include "display/view_window.hpp"
 
 namespace foresight {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "display/frame_pacer.hpp"
 #include "display/view_loop.hpp"
+#include "display/view_window.hpp"
 #include "gl/glfw_window.hpp"
 #include "seat/hand_overlay.hpp"
 #include "seat/hud.hpp"
@@ -49,6 +50,8 @@ class SeatWindow final : public ViewObserver {
   /// What the operator has done by now, before a picture is drawn.
   void take_input();
   SeatViews& views() { return views_; }
+  /// SeatViews::warm_up(), where a picture has been drawn; between pictures.
+  bool warm_up(ViewSession& session) { return views_.warm_up(session, window_target(window_)); }
   void toggle_help() { help_ = !help_; }
   void next_marks();
   /// The next picture goes into this file, too.

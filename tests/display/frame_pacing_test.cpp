@@ -56,6 +56,7 @@ class Simulation {
     }
     return out;
   }
+  void hold_up(double lasts) { pacing_.held_up(at(now_ += lasts)); }
   FramePacing& pacing() { return pacing_; }
 
  private:
@@ -233,6 +234,21 @@ TEST(FramePacing, AnyScheduleIsBorne) {
     }
     EXPECT_LT(quantile(intervals(simulation.run({}, 100)), 0.9), 90);
   }
+}
+
+// What compiles programs, or writes a file, between two frames is no reason to begin the next ones earlier.
+TEST(FramePacing, WhatHoldsTheThreadUpIsNoDrawingsCost) {
+  Simulation simulation({.rate_hz = 25});
+  const World world{.draw = 6};
+  simulation.run(world, 100);
+  const Duration cost = simulation.pacing().figures().cost;
+  for (int i = 0; i < 12; ++i) {
+    simulation.hold_up(400);
+    simulation.run(world, 1);
+  }
+  EXPECT_EQ(simulation.pacing().figures().cost, cost);
+  const auto after = simulation.run(world, 20);
+  for (std::size_t i = 1; i < after.size(); ++i) EXPECT_NEAR(after[i].swapped - after[i - 1].swapped, 40, 4);
 }
 
 }  // namespace

@@ -245,6 +245,28 @@ TEST_F(SeatViewsPictures, EyesAreDrawnForTheirPanels) {
   EXPECT_GT(line(panels), 0.001);
 }
 
+TEST_F(SeatViewsPictures, WarmingUpChangesNothing) {
+  EXPECT_FALSE(views_->warm_up(*session_, target_->whole())) << "nothing is drawn yet";
+  for (const ViewMode mode : {ViewMode::predicted, ViewMode::observer, ViewMode::two_eyes}) {
+    views_.emplace(SeatViewsSetup{.left = lens_, .eyes_apart = 0.1});
+    const cv::Mat before = shown(mode);
+    const std::string words = views_->words(true);
+    int looks = 0;
+    while (views_->warm_up(*session_, target_->whole())) {
+      ASSERT_LT(++looks, 100);
+      EXPECT_EQ(views_->mode(), mode);
+      EXPECT_EQ(views_->words(true), words);
+    }
+    EXPECT_GE(looks, 8);
+    EXPECT_EQ(cv::norm(before, shown(mode), cv::NORM_L1), 0) << "mode " << static_cast<int>(mode);
+    if (mode == ViewMode::predicted) {
+      views_->toggle_observer();
+      EXPECT_TRUE(views_->looks_from(place_.T_world_camera).isApprox(place_.T_world_camera))
+          << "who looks on stands nowhere yet";
+    }
+  }
+}
+
 TEST_F(SeatViewsPictures, WhatIsNotTrustedGivesWayInAFrame) {
   for (int i = 0; i <= static_cast<int>(ViewMode::observer); ++i) {
     const auto mode = static_cast<ViewMode>(i);
