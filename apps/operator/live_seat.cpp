@@ -7,6 +7,7 @@
 
 #include "apps/operator/seat_begin.hpp"
 #include "apps/operator/seat_head.hpp"
+#include "apps/operator/seat_sounds.hpp"
 #include "apps/operator/seat_window.hpp"
 #include "common/error.hpp"
 #include "common/stop_signal.hpp"
@@ -73,6 +74,7 @@ class LiveSeat {
         trust_(session_, setup_, clock_, options.trust),
         hand_(rig, driver_.options()),
         pacer_(clock_, {.rate_hz = options.rate_hz}, gate_),
+        sounds_(options.sounds),
         shown_(*window_, seat_, source_, window_options()) {
     for (const std::string& remark : session_.level_remarks()) std::fprintf(stderr, "%s\n", remark.c_str());
     if (options.head_display == HeadDisplayKind::openxr)
@@ -93,8 +95,10 @@ class LiveSeat {
     for (SourceState state = SourceState::ready; state != SourceState::ended; state = loop.step()) {
       while (!pacer_.wait(kLongestWait) && shown_.wants_more() && !stop_requested()) shown_.take_input();
       shown_.take_input();
+      const SeatStatus status = seat_.status();
+      sounds_.hear(status, driver_.sight(), shown_.trusted(), 1e-9 * static_cast<double>(clock_.now().ns));
       // A window that stands lets go of a switch: before one is held.
-      if (!seat_.status().held && shown_.warm_up(session_)) pacer_.held_up();
+      if (!status.held && shown_.warm_up(session_)) pacer_.held_up();
     }
     // Whatever was held is let go of: the robot comes to rest by itself as set-points end, this only says it sooner.
     driver_.let_go();
@@ -135,6 +139,7 @@ class LiveSeat {
                                        {"F4", "wireframe, age, confidence, error"},
                                        {"B", "what is not exact, and was wrong"},
                                        {"F1", "these keys"},
+                                       {"M", "sounds off, and on again"},
                                        {"P", "screenshot"},
                                        {"Q, Esc", "end"}});
     out.input = [this](const gl::WindowInput& input) { take(input); };
@@ -144,6 +149,7 @@ class LiveSeat {
       for (std::string& words : things_.lines()) lines.push_back({"things", std::move(words), "", Urgency::fine});
       if (head_)
         for (SeatLine& line : head_->lines()) lines.push_back(std::move(line));
+      for (SeatLine& line : sounds_.lines()) lines.push_back(std::move(line));
       return lines;
     };
     out.views.left = setup_.left;
@@ -210,6 +216,7 @@ class LiveSeat {
       case 't': return driver_.hand_over();
       case 'n': return head_ ? head_->centre() : void();
       case 'b': return shown_.next_marks();
+      case 'm': return sounds_.toggle();
       case 'p': return shown_.save_next(options_.screenshot.value_or("foresight.png"));
       default: return;
     }
@@ -234,6 +241,7 @@ class LiveSeat {
   ViewTrust trust_;
   HandOverlay hand_;
   FramePacer pacer_;
+  SeatSounds sounds_;
   SeatWindow shown_;
   std::optional<SeatHead> head_;
   bool head_shown_ = false;

@@ -28,6 +28,7 @@ struct LiveSeatOptions {
   std::vector<std::filesystem::path> display_lenses;  ///< of side_by_side: for both eyes, or left and right; or none
   double rate_hz = 30;
   double font_scale = 1;
+  bool sounds = true;                   ///< of what happens
   bool shadows = true;                  ///< TextureOptions::shadows
   std::optional<LevelSettings> levels;  ///< ViewSetup::levels
   ViewTrustOptions trust;

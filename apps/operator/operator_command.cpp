@@ -36,7 +36,7 @@ struct Arguments {
   unsigned seed = 1;
   double seconds = 30;
   double pictures_hz = 5;
-  bool still_head = false, zero_delay = true, shadows = true;
+  bool still_head = false, zero_delay = true, shadows = true, sounds = true;
   LevelArguments detail;
   ViewOutputs outputs;
 };
@@ -215,6 +215,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.font_scale = arguments.font_scale;
   options.shadows = arguments.shadows;
   options.levels = level_settings(arguments.detail);
+  options.sounds = arguments.sounds;
   options.trust.fall_back.lowest_db = arguments.fidelity_db;
   return run_live_seat(rig, options);
 }
@@ -284,6 +285,7 @@ void add_operator_command(Command& app, std::function<int()>& action) {
       ->check(from_to(1.0, 240.0));
   command->add_option("--font-scale", arguments->font_scale, "Of all words in the window (default 1)")
       ->check(from_to(0.5, 4.0));
+  command->add_flag("!--no-sounds", arguments->sounds, "Nothing is heard of what happens (key M does it, too)");
   command
       ->add_option("--fidelity-db", arguments->fidelity_db,
                    "The newest image is shown instead where the view was less like the images that came (default 20)")

@@ -1,0 +1,33 @@
+#include "apps/operator/seat_sounds.hpp"
+
+namespace foresight {
+
+SeatSounds::SeatSounds(bool on) {
+  if (on) speaker_.emplace();
+}
+
+void SeatSounds::hear(const SeatStatus& status, const HandSight& hand, bool trusted, double now_s) {
+  if (!speaker_) return;
+  Hearing hearing;
+  hearing.held = status.held;
+  hearing.engaged = status.engaged;
+  hearing.stopped = status.robot && status.robot->phase.label == "stopped";
+  hearing.trusted = trusted;
+  if (hand.touch.ghost.reason == GhostReason::contact) hearing.touching = hand.touch.ghost.words;
+  hearing.carried = hand.touch.carried;
+  hearing.asking = status.robot_control.asking_name;
+  for (const Cue cue : cues_.at(hearing, now_s)) speaker_->play(cue);
+}
+
+void SeatSounds::toggle() {
+  if (speaker_) speaker_->mute(!speaker_->muted());
+}
+
+std::vector<SeatLine> SeatSounds::lines() const {
+  if (!speaker_) return {};
+  if (!speaker_->silent_because().empty()) return {{"sounds", speaker_->silent_because(), "", Urgency::fine}};
+  if (speaker_->muted()) return {{"sounds", "off", "on again (M)", Urgency::fine}};
+  return {};
+}
+
+}  // namespace foresight
