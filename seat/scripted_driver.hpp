@@ -24,6 +24,10 @@ class ScriptedMotion {
   virtual void begin_at(const JointValues& begin) = 0;
   /// Where it shall be `dt` seconds after the step before; `shown`: where it is shown. Nothing: the motion has ended.
   virtual std::optional<JointValues> step(double dt, const PredictedRobot& shown) = 0;
+  /// Where the display shows a node of the scene at the moment, in the world; nothing: it does not. Called in the
+  /// thread of step().
+  using Sees = std::function<std::optional<Pose>(const std::string& node)>;
+  virtual void look_by(Sees /*sees*/) {}
 };
 
 struct ScriptedDriverOptions {

@@ -71,16 +71,32 @@ void ToolScript::begin_at(const JointValues& begin) {
   begin_step();
 }
 
+/// By what the node has gone along its ground and turned about the vertical; heights and tilts of what is seen are
+/// noise.
+Pose ToolScript::aim_of(const ToolStep& step) const {
+  const auto seen = sees_ && !step.about.empty() ? sees_(step.about) : std::nullopt;
+  if (!seen) return T_world_base_.inverse() * step.T_world_tool;
+  const auto yaw = [](const Pose& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); };
+  Eigen::Vector3d to = seen->translation();
+  to.z() = step.T_world_about.translation().z();
+  const Pose T_world_aim = Eigen::Translation3d(to) *
+                           Eigen::AngleAxisd(yaw(*seen) - yaw(step.T_world_about), Eigen::Vector3d::UnitZ()) *
+                           Eigen::Translation3d(-step.T_world_about.translation()) * step.T_world_tool;
+  const Pose T_base_aim = T_world_base_.inverse() * T_world_aim;
+  const bool reached = kinematics_.solve(T_base_aim, arm()).status == IkStatus::solved;
+  return reached ? T_base_aim : T_world_base_.inverse() * step.T_world_tool;
+}
+
 void ToolScript::begin_step() {
   in_step_ = 0;
   follower_.reset();
   if (at_ >= steps_.size()) return;
   const ToolStep& step = steps_[at_];
   lasts_ = step.seconds;
-  const Pose T_base_tool = T_world_base_.inverse() * step.T_world_tool;
+  T_base_aim_ = aim_of(step);
   if (step.what == ToolStep::What::there) {
     from_ = arm();
-    to_ = kinematics_.solve(T_base_tool, from_).q;
+    to_ = kinematics_.solve(T_base_aim_, from_).q;
     for (std::size_t i = 0; i < arm_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const double speed = kShareOfSpeed * rig_.joints[arm_[i]].drive.max_velocity;
@@ -98,7 +114,7 @@ bool ToolScript::advance(const ToolStep& step, double dt) {
   switch (step.what) {
     case ToolStep::What::there: set_arm(from_ + share * (to_ - from_)); break;
     case ToolStep::What::line: {
-      const Pose to = T_world_base_.inverse() * step.T_world_tool;
+      const Pose& to = T_base_aim_;
       const FollowStep made = follower_->step(pose_between(line_from_, to, share), dt);
       set_arm(made.q);
       const bool there = (made.T_base_tip.translation() - to.translation()).norm() < kThere && share == 1;
@@ -171,14 +187,19 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
       return out;
     };
     using enum ToolStep::What;
+    const auto about = [](ToolStep step, const std::string& node, const Pose& T_world_node) {
+      step.about = node;
+      step.T_world_about = T_world_node;
+      return step;
+    };
     std::vector<ToolStep> steps{{gripper, Pose::Identity(), kOpen, 0.2},
-                                {there, at(from, kAbove), 0, 2},
-                                {line, at(from, 0), 0, 2.5},
+                                about({there, at(from, kAbove), 0, 2}, thing, from),
+                                about({line, at(from, 0), 0, 2.5}, thing, from),
                                 {gripper, Pose::Identity(), kClosed, 1},
                                 {wait, Pose::Identity(), 0, 0.5},
                                 {line, at(from, kAbove), 0, 2},
-                                {line, at(to, kAbove), 0, 3},
-                                {line, at(to, kIntoTray), 0, 2},
+                                about({line, at(to, kAbove), 0, 3}, tray, to),
+                                about({line, at(to, kIntoTray), 0, 2}, tray, to),
                                 {gripper, Pose::Identity(), kOpen, 1},
                                 {wait, Pose::Identity(), 0, 0.3},
                                 {line, at(to, kAbove), 0, 2}};

@@ -24,6 +24,10 @@ struct ToolStep {
   Pose T_world_tool = Pose::Identity();
   double opening = 0;  ///< m or rad, the gripper's joint
   double seconds = 1;  ///< at least; longer where the joints take longer
+  /// T_world_tool is meant with this node at `T_world_about`: where the node is seen elsewhere on its ground as the
+  /// step begins, the tool goes elsewhere as far. "": wherever anything is seen.
+  std::string about = {};
+  Pose T_world_about = Pose::Identity();
 };
 
 /// The rig's pan-tilt head turns to and fro meanwhile, by so much (rad); 0: it stands still.
@@ -42,11 +46,13 @@ class ToolScript final : public ScriptedMotion {
 
   void begin_at(const JointValues& begin) override;
   std::optional<JointValues> step(double dt, const PredictedRobot& shown) override;
+  void look_by(Sees sees) override { sees_ = std::move(sees); }
 
  private:
   ToolScript(const Rig& rig, const HandOptions& hand, std::vector<ToolStep> steps, const HeadSway& sway);
   bool advance(const ToolStep& step, double dt);
   void begin_step();
+  Pose aim_of(const ToolStep& step) const;
   void go_there(const ToolStep& step, double dt);
   void sway(double dt);
   JointVector arm() const;
@@ -60,6 +66,8 @@ class ToolScript final : public ScriptedMotion {
   std::vector<ToolStep> steps_;
   HeadSway sway_;
   Pose T_world_base_;
+  Sees sees_;
+  Pose T_base_aim_ = Pose::Identity();  // of the step under way
   JointValues position_{}, head_begin_{};
   std::size_t at_ = 0;
   double in_step_ = 0, swayed_ = 0, lasts_ = 0;
@@ -73,8 +81,8 @@ class ToolScript final : public ScriptedMotion {
 Pose place_at_rest(const LiveScene& scene, const std::string& node);
 
 /// With two jaws that slide along y of the rig's tool, which points along its z: from above at a thing of the mock
-/// lab's own size of bricks (sim/lab_task.hpp), and into a tray. Poses are those of the scene's model, at rest. Throws
-/// InputError: the scene lacks one of the two, or the arm does not reach them.
+/// lab's own size of bricks (sim/lab_task.hpp), and into a tray. Planned for where the scene's model has them at rest;
+/// gone to where they are seen. Throws InputError: the scene lacks one of the two, or the arm does not reach them.
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray);
 

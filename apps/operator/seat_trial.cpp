@@ -13,6 +13,7 @@
 #include "seat/predicted_source.hpp"
 #include "seat/seat.hpp"
 #include "seat/seat_options.hpp"
+#include "seat/seen_nodes.hpp"
 #include "seat/task_watch.hpp"
 #include "seat/tool_script.hpp"
 #include "seat/view_setup.hpp"
@@ -86,6 +87,8 @@ class Trial {
         here_(robot_.participant(), "operator " + rig.name),
         scene_(std::move(scene)),
         end_(here_, end_options(rig, robot_.identity(), *scene_), clock_),
+        motion_(motion),
+        seen_(scene_->model()),
         driver_(motion, options.asked),
         seat_(rig, end_, driver_, clock_),
         setup_(live_view_setup(*scene_, rig.name, options.shadows, options.levels)),
@@ -105,6 +108,7 @@ class Trial {
       source_.show_things(&*things_);
     }
     driver_.script().listen_to(robot_says(end_));
+    motion_.look_by([this](const std::string& node) { return seen_.at(node); });
     source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
       const RobotTime captured = frame.image[0].captured;
       trust_.heard(captured, frame.image[0].bgr, posed);
@@ -116,7 +120,10 @@ class Trial {
     });
   }
 
-  ~Trial() { view_.session(); }  // its context is that of what is given back first
+  ~Trial() {
+    motion_.look_by({});
+    view_.session();  // its context is that of what is given back first
+  }
 
   SeatTrialFigures run(const std::function<bool()>& stopped, const std::function<void(const std::string&)>& say) {
     const RobotTime begin = clock_.now();
@@ -175,6 +182,7 @@ class Trial {
     }
     const ViewPlace place = source_.place();
     if (!session.draw(place.T_world_camera, place.scene)) return;
+    seen_.show(place.scene);
     trust_.drew(source_, place, TrustMarks::hatch);
     trust_.judge(source_.why_invalid());
     if (!counts) return;
@@ -228,6 +236,8 @@ class Trial {
   link::Participant here_;
   std::shared_ptr<const LiveScene> scene_;
   link::OperatorEnd end_;
+  ScriptedMotion& motion_;
+  SeenNodes seen_;
   ToldDriver driver_;
   Seat seat_;
   ViewSetup setup_;

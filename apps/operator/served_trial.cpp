@@ -8,6 +8,7 @@
 #include "display/view_loop.hpp"
 #include "seat/predicted_source.hpp"
 #include "seat/seat_options.hpp"
+#include "seat/seen_nodes.hpp"
 #include "seat/tool_script.hpp"
 #include "seat/view_setup.hpp"
 #include "seat/view_trust.hpp"
@@ -58,6 +59,8 @@ class ServedTrial final : ViewObserver {
         scene_(std::move(scene)),
         setup_(live_view_setup(*scene_, rig.name, options.shadows, options.levels)),
         end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
+        motion_(motion),
+        seen_(scene_->model()),
         driver_(motion, driver_options(options.found_within_s), end_),
         seat_(rig, end_, driver_, clock_),
         context_(gl::create_headless_context()),
@@ -70,6 +73,7 @@ class ServedTrial final : ViewObserver {
       trust_.heard(frame.image[0].captured, frame.image[0].bgr, posed);
       measures_.saw(frame.image[0].captured, frame.image[0].bgr);
     });
+    motion_.look_by([this](const std::string& node) { return seen_.at(node); });
     if (!options.things) return;
     things_.emplace(rig, scene_, things_about(options.rig_file, *scene_, true), true);
     source_.show_things(&*things_);
@@ -89,6 +93,11 @@ class ServedTrial final : ViewObserver {
     return finish(status);
   }
 
+  ~ServedTrial() override {
+    seat_.stop();
+    motion_.look_by({});
+  }
+
  private:
   PredictedSourceOptions source_options(const Rig& rig) const {
     PredictedSourceOptions out;
@@ -106,7 +115,9 @@ class ServedTrial final : ViewObserver {
   void arrived(const PosedFrame& frame) override { trust_.saw(frame); }
   void stepped(const ViewStep& step, FrameSource& /*source*/, ViewSession& session) override {
     if (!step.drawn) return;
-    trust_.drew(source_, source_.place(), TrustMarks::hatch);
+    const ViewPlace place = source_.place();
+    seen_.show(place.scene);
+    trust_.drew(source_, place, TrustMarks::hatch);
     trust_.judge(source_.why_invalid());
     if (!task_.under_way()) return;
     const link::LineFrame& newest = *source_.newest();
@@ -168,6 +179,8 @@ class ServedTrial final : ViewObserver {
   std::shared_ptr<const LiveScene> scene_;
   ViewSetup setup_;
   link::OperatorEnd end_;
+  ScriptedMotion& motion_;
+  SeenNodes seen_;
   WatchedDriver driver_;
   Seat seat_;
   std::unique_ptr<gl::Context> context_;

@@ -57,6 +57,52 @@ TEST(ToolScript, GoesOnFromWhereALossLeftIt) {
   for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(next[i], elsewhere[i], 0.03) << i;
 }
 
+/// Where the tool is when the jaws close, if the brick is seen by `seen` from where the model has it.
+Pose closes_at(const Pose& T_there_seen, const std::string& node) {
+  const Rig rig = minerva();
+  const LiveScene scene = live_scene_of(rig, true, std::nullopt, true, 0);
+  const std::vector<ToolStep> steps = pick_and_place(rig, scene, "brick_red", "tray");
+  ToolScript script(rig, steps, {});
+  script.look_by([&](const std::string& name) -> std::optional<Pose> {
+    if (name != node) return std::nullopt;
+    return place_at_rest(scene, name) * T_there_seen;
+  });
+  const HandOptions hand = hand_options(rig);
+  const std::size_t jaw = 7;
+  JointValues at{}, last{};
+  script.begin_at(at);
+  bool opened = false;
+  while (const auto next = script.step(0.02, {})) {
+    last = std::exchange(at, *next);
+    opened = opened || at[jaw] > 0.03;
+    if (opened && at[jaw] < last[jaw]) break;
+  }
+  JointVector q(static_cast<Eigen::Index>(hand.arm_joints.size()));
+  for (std::size_t i = 0; i < hand.arm_joints.size(); ++i) q[static_cast<Eigen::Index>(i)] = at[hand.arm_joints[i]];
+  return rig.T_world_robot * hand.arm->tip_pose(q);
+}
+
+TEST(ToolScript, TakesAThingWhereItIsSeen) {
+  Pose moved = Pose::Identity();
+  moved.translation() = Eigen::Vector3d(0.03, -0.02, 0.01);
+  moved.rotate(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
+  const Pose planned = closes_at(Pose::Identity(), "brick_red"), taken = closes_at(moved, "brick_red");
+  const LiveScene scene = live_scene_of(minerva(), true, std::nullopt, true, 0);
+  const Eigen::Vector3d shift = place_at_rest(scene, "brick_red").linear() * moved.translation();
+  EXPECT_NEAR((taken.translation() - planned.translation() - Eigen::Vector3d(shift.x(), shift.y(), 0)).norm(), 0, 2e-3)
+      << "along the ground";
+  const Eigen::AngleAxisd turned(taken.linear() * planned.linear().transpose());
+  EXPECT_NEAR(turned.angle() * turned.axis().z(), 0.3, 2e-2);
+  // What is not about it does not follow it.
+  EXPECT_TRUE(closes_at(moved, "brick_blue").isApprox(planned, 1e-6));
+}
+
+TEST(ToolScript, WhatIsSeenOutOfReachIsLookedForWhereItWasPlanned) {
+  Pose far = Pose::Identity();
+  far.translation().x() = 5;
+  EXPECT_TRUE(closes_at(far, "brick_red").isApprox(closes_at(Pose::Identity(), "brick_red"), 1e-6));
+}
+
 TEST(ToolScript, AnUnreachablePoseIsRefused) {
   const Rig rig = minerva();
   ToolStep far{ToolStep::What::line};
