@@ -11,6 +11,11 @@
 #include "sim/physics/lab_things.hpp"
 
 namespace foresight {
+namespace {
+
+constexpr double kSameOutline = 1.5;  // px by which an outline that is found may be off
+
+}  // namespace
 
 std::vector<LooseThing> things_about(const std::filesystem::path& rig_file, const LiveScene& scene, bool physics) {
   std::vector<LooseThing> out = loose_things(rig_file);
@@ -30,6 +35,9 @@ ThingsOutlook::ThingsOutlook(const Rig& rig, std::shared_ptr<const LiveScene> sc
     const auto node = scene_->model()->find(thing.node);
     if (!node) continue;
     nodes_.push_back(static_cast<std::size_t>(*node));
+    Eigen::AlignedBox3d box;
+    for (const auto& p : scene_->model()->nodes()[nodes_.back()].mesh.vertices) box.extend(p.cast<double>());
+    boxes_.push_back(box);
     options_.things.push_back({thing.node, thing.mass, thing.surface});
     sought.push_back({nodes_.back(), thing.tag});
   }
@@ -71,10 +79,11 @@ void ThingsOutlook::saw(const PosedFrame& frame, const JointPositions& joints) {
   ++counts_.looked;
   const JointPositions named = [&rig = rig_, joints](std::string_view name) { return joints(shaft_name(rig, name)); };
   if (!in_background_) {
-    learn(finder_->look(frame, expected), named, frame.left.time);
+    learn(finder_->look(frame, expected), named, frame.left.time, frame.left.T_world_camera);
     return;
   }
-  look_.emplace(named, frame.left.time, std::async(std::launch::async, [finder = finder_.get(), frame, expected] {
+  look_.emplace(named, frame.left.time, frame.left.T_world_camera,
+                std::async(std::launch::async, [finder = finder_.get(), frame, expected] {
                   make_background();
                   return finder->look(frame, expected);
                 }));
@@ -83,12 +92,30 @@ void ThingsOutlook::saw(const PosedFrame& frame, const JointPositions& joints) {
 void ThingsOutlook::take_looked() {
   if (!look_ || look_->found.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   const FoundThings found = look_->found.get();
-  learn(found, look_->joints, look_->captured);
+  learn(found, look_->joints, look_->captured, look_->T_world_camera);
   look_.reset();
 }
 
-void ThingsOutlook::learn(const FoundThings& found, const JointPositions& joints, RobotTime captured) {
-  for (const ThingSighting& sighting : found.sightings) {
+/// No corner of the box around it is seen further away than an outline may be off.
+bool ThingsOutlook::look_alike(std::size_t thing, const Pose& one, const Pose& other,
+                               const Pose& T_world_camera) const {
+  const Pose T_camera_world = T_world_camera.inverse();
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d corner = boxes_[thing].corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    const auto a = scene_->lenses()->left.project(T_camera_world * one * corner),
+               b = scene_->lenses()->left.project(T_camera_world * other * corner);
+    if (!a || !b || (*a - *b).norm() > kSameOutline) return false;
+  }
+  return true;
+}
+
+void ThingsOutlook::learn(const FoundThings& found, const JointPositions& joints, RobotTime captured,
+                          const Pose& T_world_camera) {
+  for (ThingSighting sighting : found.sightings) {
+    const auto then = future_->at(sighting.thing, captured);
+    if (then && !future_->thing(sighting.thing).held &&
+        look_alike(sighting.thing, *then, sighting.T_world_thing, T_world_camera))
+      sighting.T_world_thing = *then;
     const SightingResult result = future_->correct(sighting, &joints);
     counts_.taken += result == SightingResult::taken ? 1 : 0;
     counts_.moved += result == SightingResult::moved ? 1 : 0;

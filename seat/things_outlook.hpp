@@ -1,6 +1,9 @@
 // Things on the table as they will be: the hand that is shown takes them along (prediction/grasp), and images set right
 // where they are (prediction/sighting).
 //
+// What rests stays where it is shown while images cannot tell that from where they found it: a print on it would wander
+// to and fro with each image.
+//
 //   predicted robot --advance--> ThingFuture --place--> pictures: of now as shown, of the past as it is known by now
 //   images ---saw---> ThingFinder --sightings--> ThingFuture
 #pragma once
@@ -52,15 +55,18 @@ class ThingsOutlook {
   struct Look {
     JointPositions joints;
     RobotTime captured;
+    Pose T_world_camera;
     std::future<FoundThings> found;
   };
-  void learn(const FoundThings& found, const JointPositions& joints, RobotTime captured);
+  void learn(const FoundThings& found, const JointPositions& joints, RobotTime captured, const Pose& T_world_camera);
+  bool look_alike(std::size_t thing, const Pose& one, const Pose& other, const Pose& T_world_camera) const;
   void take_looked();
 
   const Rig& rig_;
   std::shared_ptr<const LiveScene> scene_;
   ThingFutureOptions options_;
-  std::vector<std::size_t> nodes_;  // of the model, per thing
+  std::vector<std::size_t> nodes_;          // of the model, per thing
+  std::vector<Eigen::AlignedBox3d> boxes_;  // around each, in its frame
   std::unique_ptr<ThingFuture> future_;
   std::unique_ptr<ThingFinder> finder_;  // null: no lenses, no things
   bool in_background_;
