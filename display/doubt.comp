@@ -7,13 +7,14 @@ layout(binding = 0, rgba8) uniform writeonly image2D picture;
 
 const float kSmall = 10.5, kLarge = 30.5;  // grey levels
 const int kUnconfirmed = 255;
-const float kOwnPx = 0.7, kReachOfSigma = 0.5;  // as what is assumed before anything is learnt (seat/shown_fidelity.cpp)
+// As what is assumed before anything is learnt (seat/shown_fidelity.cpp).
+const float kOwnPx[] = float[](0.7, 0.35, 0.7, 1.5, 1.0), kReachPx[] = float[](0.25, 1.0, 4.0), kReachOfSigma = 0.5;
+const int kSuspect = 4 * 48;  // and beyond
 
 // Grey levels by which a pixel of this kind may be off (doubt_kinds.hpp).
 float levels_of(int kind) {
-  int reach = kind % 96 / 16;
   float contrast = 3.0 * (exp2((float(kind % 16) + 0.5) / 4.0) - 1.0);
-  return contrast * length(vec2(kOwnPx, kReachOfSigma * (reach == 0 ? 0.25 : exp2(float(reach) - 1.5))));
+  return contrast * length(vec2(kOwnPx[min(kind / 48, 4)], kReachOfSigma * kReachPx[kind / 16 % 3]));
 }
 
 void main() {
@@ -22,7 +23,7 @@ void main() {
   vec4 colour = texelFetch(shown, pixel, 0);
   int kind = int(round(255.0 * texelFetch(doubt, pixel, 0).r));
   float off = levels_of(kind);
-  int level = kind == kUnconfirmed ? 3 : kind >= 96 || off >= kLarge ? 2 : off >= kSmall ? 1 : 0;
+  int level = kind == kUnconfirmed ? 3 : kind >= kSuspect || off >= kLarge ? 2 : off >= kSmall ? 1 : 0;
   float grey = dot(colour.rgb, vec3(0.299, 0.587, 0.114));
   imageStore(picture, pixel, colour.a > 0.0 ? vec4(class_colour(pixel, level, grey), colour.a) : colour);
 }

@@ -1,36 +1,50 @@
 // What is known of a pixel that a camera has confirmed, in steps that one byte holds: how often pixels of one kind are
 // wrong is learnt of pictures whose image has come (seat/shown_fidelity.hpp).
 //
-//   doubt 0 .. 191   contrast + 16 * (reach + 6 * suspect)
+//   doubt 0 .. 239   contrast + 16 * (reach + 3 * compared)
 //   255              nothing is known of it
 #pragma once
 
 #include <bitset>
 #include <cmath>
+#include <cstdint>
 
 namespace foresight {
 
 inline constexpr int kUnconfirmed = 255;  ///< doubt of what no camera has confirmed
 
+/// How the same place of the surface was shown when last an image could be compared.
+enum class Compared : std::uint8_t {
+  never,    ///< it was not shown then
+  alike,    ///< by kAlikeLevels grey levels off, about the pixel
+  near,     ///< by kNearLevels
+  off,      ///< by more
+  suspect,  ///< in a patch that was wrong: something goes on there; or its light has changed since it was seen
+};
+inline constexpr double kAlikeLevels = 2.5, kNearLevels = 6;  ///< grey levels
+
 /// Steps of trust.comp.
 struct DoubtKind {
-  static constexpr int kContrasts = 16, kReaches = 6, kCount = 2 * kContrasts * kReaches;
+  static constexpr int kContrasts = 16, kReaches = 3, kComparisons = 5, kCount = kContrasts * kReaches * kComparisons;
   int contrast = 0;  ///< by how many grey levels the pixels around differ: 4 steps each time that these + 3 double
-  int reach = 0;     ///< by how many pixels the surface may be elsewhere: below 0.5, 1, 2, 4, 8, more
-  bool suspect =
-      false;  ///< what was shown there was wrong when last an image could be compared, or its light has changed
+  int reach = 0;     ///< by how many pixels the surface may be elsewhere: below 0.5, below 2, more
+  Compared compared = Compared::never;
 
   double levels() const { return 3 * (std::exp2((contrast + 0.5) / 4) - 1); }
-  double px() const { return reach == 0 ? 0.25 : std::exp2(reach - 1.5); }
+  double px() const { return reach == 0 ? 0.25 : reach == 1 ? 1 : 4; }
 };
 /// `doubt`: below DoubtKind::kCount.
 constexpr DoubtKind kind_of(int doubt) {
   constexpr int kOfOne = DoubtKind::kContrasts * DoubtKind::kReaches;
-  return {doubt % DoubtKind::kContrasts, doubt % kOfOne / DoubtKind::kContrasts, doubt >= kOfOne};
+  return {doubt % DoubtKind::kContrasts, doubt % kOfOne / DoubtKind::kContrasts, static_cast<Compared>(doubt / kOfOne)};
 }
 constexpr int doubt_of(const DoubtKind& kind) {
-  return kind.contrast + DoubtKind::kContrasts * (kind.reach + DoubtKind::kReaches * (kind.suspect ? 1 : 0));
+  return kind.contrast + DoubtKind::kContrasts * (kind.reach + DoubtKind::kReaches * static_cast<int>(kind.compared));
 }
+
+/// What a comparison says of a pixel, in a byte: grey levels that it and those around were off, at most
+/// kMostLevelsOff, or one of these.
+inline constexpr int kMostLevelsOff = 253, kInPatch = 254, kNotShown = 255;
 
 /// By doubt: such pixels count as exact. Never kUnconfirmed.
 using ExactKinds = std::bitset<256>;

@@ -17,7 +17,7 @@ layout(binding = 5) uniform samplerBuffer node_px;  // by how many pixels each n
 // how much the node has turned since. The last set belongs to the image that was compared.
 layout(binding = 6) uniform samplerBuffer ways;
 layout(binding = 7) uniform sampler2DArray seen_depth;  // faces of image 0, of image 1, ...
-layout(binding = 8) uniform sampler2D disagreed;        // pixels of the compared image that were shown otherwise
+layout(binding = 8) uniform sampler2D comparison;       // of the compared image with what was shown (doubt_kinds.hpp)
 layout(binding = 0, r8) uniform writeonly image2D doubt;
 layout(binding = 1, rgba8) uniform writeonly image2D marked;
 uniform int layer_of[FRAMES];  // each image's first
@@ -91,18 +91,25 @@ float uncertain_px(ivec3 place, int node) {
   return px;
 }
 
-bool was_wrong(int node, vec3 p) {
-  vec2 pixel;
-  if (!has_compared || !project_lens(camera, where(FRAMES, node, p), pixel)) return false;
-  return textureLod(disagreed, (pixel + 0.5) / camera.size.xy, 0.0).r > 0.5;
+// Steps as DoubtKind has them (doubt_kinds.hpp).
+const int kNever = 0, kAlike = 1, kNearlyAlike = 2, kOff = 3, kSuspect = 4;
+
+int compared_at(int node, vec3 p) {
+  vec2 at;
+  if (!has_compared || !project_lens(camera, where(FRAMES, node, p), at)) return kNever;
+  ivec2 pixel = ivec2(floor(at + 0.5));
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return kNever;
+  float levels = 255.0 * texelFetch(comparison, pixel, 0).r;
+  if (levels > 254.5) return kNever;
+  if (levels > 253.5) return kSuspect;
+  return levels <= 2.5 ? kAlike : levels <= 6.0 ? kNearlyAlike : kOff;
 }
 
-// Steps as DoubtKind has them (doubt_kinds.hpp).
 int step_of_contrast(float levels) {
   return clamp(int(4.0 * log2(1.0 + levels / 3.0)), 0, 15);
 }
 int step_of_reach(float px) {
-  return clamp(int(floor(log2(max(px, 0.01)))) + 2, 0, 5);
+  return px < 0.5 ? 0 : px < 2.0 ? 1 : 2;
 }
 
 float kind_at(ivec2 pixel, vec3 colour) {
@@ -124,8 +131,8 @@ float kind_at(ivec2 pixel, vec3 colour) {
   // What covered it in the newest image may have left its shadow there, or have pushed it.
   if (found < 0 || newest == kHidden) return kUnconfirmed;
   float here = grey(colour), turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
-  bool suspect = was_wrong(node, p) || kTurned * turned * here > kWrong;
-  int kind = step_of_contrast(contrast_at(pixel, here)) + 16 * step_of_reach(uncertain_px(at, node)) + (suspect ? 96 : 0);
+  int compared = kTurned * turned * here > kWrong ? kSuspect : compared_at(node, p);
+  int kind = step_of_contrast(contrast_at(pixel, here)) + 16 * (step_of_reach(uncertain_px(at, node)) + 3 * compared);
   return float(kind) / 255.0;
 }
 

@@ -30,7 +30,7 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
       node_px_(GL_R32F, 16, "node px"),
       ways_(GL_RGBA32F, 16, "ways since images"),
       rays_(gl::make_lens_rays(lens)),
-      wrong_(GL_R8, lens.width(), lens.height(), 0, 1, "what was wrong"),
+      comparison_(GL_R8, lens.width(), lens.height(), 0, 1, "as it was shown"),
       doubt_(GL_R8, lens.width(), lens.height(), 0, 1, "doubt"),
       marked_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "marked view") {
   const gl::CameraBlock block = gl::make_camera_block(lens_, scratch_.faces);
@@ -66,9 +66,10 @@ void TrustPass::saw(const PosedImage& image) {
   seen_.insert(seen_.begin(), Seen{image.time, image.T_world_camera, image.scene, layer});
 }
 
-void TrustPass::compared(const PosedImage& image, const cv::Mat& wrong) {
+void TrustPass::compared(const PosedImage& image, const cv::Mat& comparison) {
   compared_ = Seen{image.time, image.T_world_camera, image.scene};
-  glTextureSubImage2D(wrong_.name(), 0, 0, 0, wrong.cols, wrong.rows, GL_RED, GL_UNSIGNED_BYTE, wrong.data);
+  glTextureSubImage2D(comparison_.name(), 0, 0, 0, comparison.cols, comparison.rows, GL_RED, GL_UNSIGNED_BYTE,
+                      comparison.data);
 }
 
 std::vector<RobotTime> TrustPass::remembered() const {
@@ -121,7 +122,7 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
   const GLuint units[] = {
       view.picture().name(), view.faces().surface.name(), view.faces().depth.name(), surface_->triangles(),
       rays_.name(),          node_px_.texture(),          ways_.texture(),           depths_.name(),
-      wrong_.name()};
+      comparison_.name()};
   for (GLuint unit = 0; unit < std::size(units); ++unit) glBindTextureUnit(unit, units[unit]);
   glBindImageTexture(0, doubt_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
   glBindImageTexture(1, marked_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);

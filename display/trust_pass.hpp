@@ -2,7 +2,7 @@
 //
 // Nothing is known of a pixel whose surface point no image of late saw, or that something covered in the newest one:
 // what moves on may leave a shadow, or have pushed it. Of others, a byte tells contrast, how far the surface may be
-// from where it is drawn, and whether something is suspect about it (doubt_kinds.hpp).
+// from where it is drawn, and how it was shown when last an image could be compared (doubt_kinds.hpp).
 #pragma once
 
 #include <memory>
@@ -25,8 +25,8 @@ class TrustPass {
 
   /// An image came, later than the one before: where its camera and all nodes were.
   void saw(const PosedImage& image);
-  /// What was shown for this image's instant was wrong where this is not 0 (CV_8UC1 of the lens's size).
-  void compared(const PosedImage& image, const cv::Mat& wrong);
+  /// How what was shown for this image's instant agreed with it: CV_8UC1 of the lens's size, as doubt_kinds.hpp says.
+  void compared(const PosedImage& image, const cv::Mat& comparison);
 
   /// Fills doubt() and marked() for the view that was drawn last. `node_px`: by how many pixels each node of `state`
   /// may be elsewhere (one standard deviation). `exact`: what is not hatched. Does not wait for the GPU.
@@ -59,7 +59,7 @@ class TrustPass {
   gl::Program program_;
   gl::Buffer camera_;
   gl::BufferTexture node_px_, ways_;
-  gl::Texture rays_, wrong_, doubt_, marked_;
+  gl::Texture rays_, comparison_, doubt_, marked_;
   std::vector<Seen> seen_;  // newest first
   std::optional<Seen> compared_;
   std::vector<Eigen::Vector4f> rows_;

@@ -11,12 +11,14 @@
 namespace foresight {
 namespace {
 
-constexpr double kMemory = 0.9;         // weight of what was compared before against what is compared now
-constexpr double kAssumed = 1.0 / 256;  // of a picture's pixels: as many of each kind are taken to have been as assumed
-constexpr double kOwnPx = 0.7;          // how exactly images, lenses and model agree where nothing is predicted
-constexpr double kReachOfSigma = 0.5;   // joints are off by less than they may be
-constexpr double kSuspectWrong = 0.1;   // at least, of what is suspect
-constexpr double kPatch = 0.6;          // share of a neighbourhood that is wrong where more than an outline is
+constexpr double kMemory = 0.9;  // weight of what was compared before against what is compared now
+constexpr double kAssumed =
+    1.0 / 1024;  // of a picture's pixels: as many of each kind are taken to have been as assumed
+// How exactly images, lenses and model agree where nothing is predicted, px, by how it was when last compared.
+constexpr double kOwnPx[] = {0.7, 0.35, 0.7, 1.5, 1.0};
+constexpr double kReachOfSigma = 0.5;    // joints are off by less than they may be
+constexpr double kSuspectWrong = 0.1;    // at least, of what is suspect
+constexpr double kPatch = 0.6;           // share of a neighbourhood that is wrong where more than an outline is
 constexpr int kPatchPx[] = {5, 11, 21};  // sides of neighbourhoods
 
 /// What is wrong as a patch, not as the outline of what is shown a pixel aside, and room around it: over the next delay
@@ -32,6 +34,16 @@ cv::Mat patches_of(const cv::Mat& wrong) {
   return out;
 }
 
+/// What is said of each pixel when it is shown again. `off`: grey levels, 0 where the picture was not seen.
+cv::Mat comparison_of(const cv::Mat& off, const cv::Mat& wrong, const cv::Mat& seen) {
+  cv::Mat out;
+  cv::blur(off, out, {3, 3});
+  out = cv::min(out, kMostLevelsOff);
+  out.setTo(kInPatch, patches_of(wrong));
+  out.setTo(kNotShown, ~seen);
+  return out;
+}
+
 double share_of(const cv::Mat& part, const cv::Mat& whole) {
   return cv::countNonZero(part & whole) / std::max(1.0, static_cast<double>(cv::countNonZero(whole)));
 }
@@ -39,9 +51,10 @@ double share_of(const cv::Mat& part, const cv::Mat& whole) {
 /// Before anything is known: a surface that is off by normally distributed pixels changes grey by so many times the
 /// contrast around.
 double assumed_risk(const DoubtKind& kind, double wrong_levels) {
-  const double sigma = kind.levels() * std::hypot(kOwnPx, kReachOfSigma * kind.px());
+  const double own = kOwnPx[static_cast<std::size_t>(kind.compared)];
+  const double sigma = kind.levels() * std::hypot(own, kReachOfSigma * kind.px());
   const double out = std::erfc(wrong_levels / (std::numbers::sqrt2 * sigma));
-  return kind.suspect ? std::max(out, kSuspectWrong) : out;
+  return kind.compared == Compared::suspect ? std::max(out, kSuspectWrong) : out;
 }
 
 cv::Mat grey_of(const cv::Mat& picture) {
@@ -109,7 +122,8 @@ std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat&
   if (picture.picture.size() != image.size() || image.type() != CV_8UC3) return std::nullopt;
 
   const cv::Mat seen = seen_mask(picture.picture), exact = exact_mask(picture.picture, picture.doubt, exact_);
-  const cv::Mat wrong = (grey_difference(picture.picture, image) > options_.wrong_levels) & seen;
+  const cv::Mat off = grey_difference(picture.picture, image) & seen;
+  const cv::Mat wrong = off > options_.wrong_levels;
   const ImageComparison comparison(image, seen);
   Fidelity out{picture.instant, comparison.psnr_db(picture.picture), comparison.ssim(picture.picture), {}};
   for (std::size_t i = 0; i < out.wrong.size(); ++i) {
@@ -119,7 +133,7 @@ std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat&
   out.worst = static_cast<std::size_t>(std::ranges::max_element(out.wrong) - out.wrong.begin());
   out.exact_share = share_of(exact, seen);
   out.exact_wrong = share_of(wrong, exact);
-  out.patches = patches_of(wrong);
+  out.comparison = comparison_of(off, wrong, seen);
   learn(count(seen, picture.doubt, wrong), kAssumed * static_cast<double>(seen.total()));
   return out;
 }

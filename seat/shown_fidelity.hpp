@@ -21,7 +21,7 @@ struct FidelityOptions {
   Duration same_instant = std::chrono::milliseconds(20);  ///< by which picture and image may be apart, > 0
   std::size_t kept = 48;                                  ///< pictures that wait for their image, > 0
   double wrong_levels = 10;                               ///< grey levels beyond which a pixel is wrong
-  double wrong_share = 0.016;                             ///< of the pixels that count as exact, that may be wrong
+  double wrong_share = 0.018;                             ///< of the pixels that count as exact, that may be wrong
 };
 
 /// How alike what was shown for an instant and the image of it are, over pixels that images have coloured.
@@ -33,8 +33,9 @@ struct Fidelity {
   std::size_t worst = 0;                       ///< tile
   double exact_share = 0;                      ///< of the coloured pixels
   double exact_wrong = 0;                      ///< of the exact ones
-  /// CV_8UC1, 255 in and around patches that were shown wrong: something moves there that is not foretold.
-  cv::Mat patches = {};
+  /// CV_8UC1, as doubt_kinds.hpp says. In and around patches that were shown wrong something moves that is not
+  /// foretold.
+  cv::Mat comparison = {};
 };
 /// "top left", "middle", ...
 std::string place_of(std::size_t tile);

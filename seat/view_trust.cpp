@@ -61,7 +61,7 @@ void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, Trus
   const std::optional<ViewPlace> before = std::exchange(drawn_at_, place);
   if (!is_due && marks == TrustMarks::none) return;
   const auto px = node_doubt_px(source.places(), source.robot(), lens_, middles_, before);
-  if (compared_) pass_.compared(*compared_, fidelity_->patches);
+  if (compared_) pass_.compared(*compared_, fidelity_->comparison);
   compared_.reset();
   pass_(session_.view(), place.T_world_camera, place.scene, px, shown_.exact());
   if (is_due && readback_.start(session_.picture(), pass_.doubt(), instant)) remembered_ = instant;

@@ -110,11 +110,11 @@ TEST_P(TrustPassTest, DoubtTellsHowFarOffAPartMayBe) {
   };
   const DoubtKind still = on_block(0);
   EXPECT_EQ(still.reach, 0);
-  EXPECT_FALSE(still.suspect);
-  for (const double px : {0.6, 1.1, 2.2, 6.0, 30.0}) {
+  EXPECT_EQ(still.compared, Compared::never);
+  for (const auto& [px, reach] : {std::pair{0.4, 0}, {0.6, 1}, {1.9, 1}, {2.2, 2}, {30.0, 2}}) {
     const DoubtKind kind = on_block(px);
     EXPECT_EQ(kind.contrast, still.contrast);
-    EXPECT_NEAR(std::log2(kind.px() / std::min(px, 12.0)), 0, 0.51) << px;
+    EXPECT_EQ(kind.reach, reach) << px;
   }
 }
 
@@ -140,15 +140,27 @@ TEST_P(TrustPassTest, DoubtTellsContrast) {
   EXPECT_GT(compared, 1000);
 }
 
-TEST_P(TrustPassTest, WhatWasShownWrongIsSuspect) {
-  see(0, 100ms);
-  cv::Mat wrong = cv::Mat::zeros(lens_.height(), lens_.width(), CV_8UC1);
-  const cv::Point on_table = pixel_of(kOnTable), on_block = pixel_of(kOnBlock);
-  cv::circle(wrong, on_table, 3, 255, -1);
-  trust_->compared(image(0, 100ms), wrong);
-  const cv::Mat doubt = draw(0).doubt;
-  EXPECT_TRUE(kind_of(at(doubt, on_table)).suspect);
-  EXPECT_FALSE(kind_of(at(doubt, on_block)).suspect);
+// What a comparison said goes with the surface: the block has moved since, and what was said of it with it.
+TEST_P(TrustPassTest, WhatWasComparedIsRememberedOfTheSurface) {
+  see(kMove, 100ms);
+  see(0, 200ms);
+  cv::Mat comparison(lens_.height(), lens_.width(), CV_8UC1, cv::Scalar(kNotShown));
+  const cv::Point on_table = pixel_of(kOnTable), on_block = pixel_of(kOnBlock),
+                  moved = pixel_of(kOnBlock + Eigen::Vector3d(kMove, 0, 0));
+  const auto said_of_block = [&](int said) {
+    cv::circle(comparison, on_block, 3, said, -1);
+    trust_->compared(image(0, 200ms), comparison);
+    return kind_of(at(draw(kMove).doubt, moved)).compared;
+  };
+  cv::circle(comparison, on_table, 3, kInPatch, -1);
+  EXPECT_EQ(said_of_block(2), Compared::alike);
+  EXPECT_EQ(said_of_block(4), Compared::near);
+  EXPECT_EQ(said_of_block(40), Compared::off);
+  EXPECT_EQ(said_of_block(kInPatch), Compared::suspect);
+  EXPECT_EQ(said_of_block(kNotShown), Compared::never);
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, on_table)).compared, Compared::suspect);
+  EXPECT_EQ(kAlikeLevels, 2.5) << "as trust.comp has it";
+  EXPECT_EQ(kNearLevels, 6) << "as trust.comp has it";
 }
 
 TEST_P(TrustPassTest, WhatIsNotExactIsHatched) {

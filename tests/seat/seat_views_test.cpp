@@ -314,8 +314,8 @@ TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
   doubt_ = gl::Texture(GL_R8, lens_.width(), lens_.height(), 0, 1, "doubt");
   while (views_->paint() != ViewPaint::doubt) views_->next_paint();
   std::vector<cv::Mat> seen;
-  const int doubts[] = {doubt_of({3, 0, false}), doubt_of({12, 0, false}), doubt_of({15, 4, false}), kUnconfirmed,
-                        doubt_of({3, 0, true})};
+  const int doubts[] = {doubt_of({3, 0, Compared::never}), doubt_of({12, 0, Compared::never}),
+                        doubt_of({15, 2, Compared::never}), kUnconfirmed, doubt_of({3, 0, Compared::suspect})};
   for (const int doubt : doubts) {
     const auto value = static_cast<std::uint8_t>(doubt);
     glClearTexImage(doubt_.name(), 0, GL_RED, GL_UNSIGNED_BYTE, &value);

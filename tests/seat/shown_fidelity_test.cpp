@@ -49,8 +49,8 @@ TEST(ShownFidelity, SaysWhereItWasWrong) {
   const auto out = fidelity.arrived(at(100ms), truth);
   ASSERT_TRUE(out);
   EXPECT_EQ(place_of(out->worst), "bottom right");
-  EXPECT_EQ(out->patches.at<uchar>(kHeight - 9, kWidth - 9), 255);
-  EXPECT_EQ(out->patches.at<uchar>(10, 10), 0);
+  EXPECT_EQ(out->comparison.at<uchar>(kHeight - 9, kWidth - 9), kInPatch);
+  EXPECT_EQ(out->comparison.at<uchar>(10, 10), 0);
   EXPECT_NEAR(out->exact_wrong, 100.0 / (kWidth * kHeight), 1e-9);
   EXPECT_EQ(place_of(0), "top left");
   EXPECT_EQ(place_of(Fidelity::kColumns * 2 + 3), "middle");
@@ -62,10 +62,13 @@ TEST(ShownFidelity, ALineIsNoPatch) {
   fidelity.shown(view(100ms));
   cv::Mat truth = image();
   cv::line(truth, {0, 20}, {kWidth, 20}, cv::Scalar(220, 220, 220), 1);
-  EXPECT_EQ(cv::countNonZero(fidelity.arrived(at(100ms), truth)->patches), 0);
+  const cv::Mat comparison = fidelity.arrived(at(100ms), truth)->comparison;
+  EXPECT_EQ(cv::countNonZero(comparison == kInPatch), 0);
+  EXPECT_NEAR(comparison.at<uchar>(20, 40), 100 / 3.0, 1) << "about each pixel";
+  EXPECT_EQ(comparison.at<uchar>(22, 40), 0);
 }
 
-/// Pixels of all contrasts, of which 30 % are wrong beyond one; those that are suspect beyond another.
+/// Pixels of all contrasts, of which half are wrong beyond one; those that are suspect beyond another.
 class LearntKinds {
  public:
   Fidelity round(int wrong_beyond, int suspects_wrong_beyond) {
@@ -73,10 +76,10 @@ class LearntKinds {
     cv::Mat truth = image();
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
-        const DoubtKind kind{contrast_(random_), 0, percent_(random_) < 50};
+        const DoubtKind kind{contrast_(random_), 0, percent_(random_) < 50 ? Compared::suspect : Compared::alike};
         shown.doubt.at<uchar>(y, x) = static_cast<uchar>(doubt_of(kind));
-        const bool risky = kind.contrast > (kind.suspect ? suspects_wrong_beyond : wrong_beyond);
-        if (risky && percent_(random_) < 30) truth.at<cv::Vec3b>(y, x) = {180, 180, 180};
+        const bool risky = kind.contrast > (kind.compared == Compared::suspect ? suspects_wrong_beyond : wrong_beyond);
+        if (risky && percent_(random_) < 50) truth.at<cv::Vec3b>(y, x) = {180, 180, 180};
       }
     fidelity_.shown(std::move(shown));
     return fidelity_.arrived(at(rounds_++ * 100ms), truth).value();
@@ -84,8 +87,10 @@ class LearntKinds {
   /// How many contrasts count as exact.
   std::vector<int> exact() const {
     std::vector<int> out(2);
-    for (int i = 0; i < DoubtKind::kCount; ++i)
-      if (kind_of(i).reach == 0) out[kind_of(i).suspect] += fidelity_.exact()[static_cast<std::size_t>(i)] ? 1 : 0;
+    for (int i = 0; i < DoubtKind::kContrasts; ++i) {
+      out[0] += fidelity_.exact()[static_cast<std::size_t>(doubt_of({i, 0, Compared::alike}))] ? 1 : 0;
+      out[1] += fidelity_.exact()[static_cast<std::size_t>(doubt_of({i, 0, Compared::suspect}))] ? 1 : 0;
+    }
     return out;
   }
 
@@ -103,14 +108,15 @@ TEST(ShownFidelity, KindsOfDoubtFitAByte) {
 
 TEST(ShownFidelity, BeforeAnythingWasComparedLittleContrastIsExact) {
   const ShownFidelity fidelity;
-  EXPECT_TRUE(fidelity.exact()[doubt_of({0, 0, false})]);
-  EXPECT_FALSE(fidelity.exact()[doubt_of({15, 0, false})]);
-  EXPECT_FALSE(fidelity.exact()[doubt_of({0, 0, true})]);
+  EXPECT_TRUE(fidelity.exact()[doubt_of({0, 0, Compared::never})]);
+  EXPECT_FALSE(fidelity.exact()[doubt_of({15, 0, Compared::never})]);
+  EXPECT_FALSE(fidelity.exact()[doubt_of({0, 0, Compared::suspect})]);
   EXPECT_FALSE(fidelity.exact()[kUnconfirmed]);
   int before = DoubtKind::kContrasts;
   for (int reach = 0; reach < DoubtKind::kReaches; ++reach) {
     int contrasts = 0;
-    for (int i = 0; i < DoubtKind::kContrasts; ++i) contrasts += fidelity.exact()[doubt_of({i, reach, false})] ? 1 : 0;
+    for (int i = 0; i < DoubtKind::kContrasts; ++i)
+      contrasts += fidelity.exact()[doubt_of({i, reach, Compared::never})] ? 1 : 0;
     EXPECT_LE(contrasts, before) << "the farther off a surface may be";
     before = contrasts;
   }
