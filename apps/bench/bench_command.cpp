@@ -15,6 +15,7 @@
 #include "apps/bench/prediction_bench.hpp"
 #include "apps/bench/registration_bench.hpp"
 #include "apps/bench/robot_bench.hpp"
+#include "apps/bench/seat_bench.hpp"
 #include "apps/bench/shadow_bench.hpp"
 #include "apps/bench/view_bench.hpp"
 #include "apps/run_options.hpp"
@@ -230,6 +231,30 @@ void add_line(Command& bench, std::function<int()>& action) {
   command->callback([options, &action] { action = [options] { return bench_line(*options); }; });
 }
 
+void add_seat(Command& bench, std::function<int()>& action) {
+  auto* command = bench.add_subcommand("seat", "A seat over a bad line for long, with faults on both sides");
+  auto options = std::make_shared<SeatBenchOptions>();
+  command->add_option("RIG", options->rig, "Rig file; its drives and cameras are made up")->reads()->required();
+  command->add_option("--line", options->line, "File of a line, or a recorded trace")->reads();
+  command->add_option("--seconds", options->seconds, "Of motion")->check(from_to(1, 86400))->capture_default_str();
+  command->add_option("--delay-ms", options->delay_ms, "Each way, besides")
+      ->check(from_to(0, 1e4))
+      ->capture_default_str();
+  command->add_option("--image-hz", options->image_hz, "Pairs of images a second")
+      ->check(from_to(0.5, 60))
+      ->capture_default_str();
+  command->add_option("--pictures-hz", options->pictures_hz, "Pictures that are drawn a second")
+      ->check(from_to(0.5, 60))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of faults, motion and losses")->capture_default_str();
+  command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
+  command->footer(
+      "Both sides run in this program, in stepped time.\n"
+      "Example: foresight bench seat configs/minerva.yaml --line TMobile-LTE-short.up --seconds 1800\n"
+      "Exit code: 1 where a set-point was unsafe, the display stood still, a fault was not named, or memory grew.");
+  command->callback([options, &action] { action = [options] { return bench_seat(*options); }; });
+}
+
 void add_shadow(Command& bench, std::function<int()>& action) {
   auto* command = bench.add_subcommand("shadow", "Errors in shadows of what moves, with these foretold and without");
   auto options = std::make_shared<ShadowBenchOptions>();
@@ -277,6 +302,7 @@ void add_bench_command(Command& app, std::function<int()>& action) {
   add_robot(*bench, action);
   add_link(*bench, action);
   add_registration(*bench, action);
+  add_seat(*bench, action);
   add_shadow(*bench, action);
   add_view(*bench, action);
 }

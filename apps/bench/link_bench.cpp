@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "common/error.hpp"
 #include "common/latest_value.hpp"
 #include "common/numbers_file.hpp"
+#include "common/resident_memory.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
 #include "common/unique_fd.hpp"
@@ -45,13 +45,6 @@ struct Arrival {
   double memory_mb;
 };
 
-double memory_mb() {
-  std::ifstream file("/proc/self/statm");
-  double all = 0, resident = 0;
-  file >> all >> resident;
-  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) * 1e-6;
-}
-
 double ms(std::int64_t ns) {
   return 1e-6 * static_cast<double>(ns);
 }
@@ -72,7 +65,7 @@ void decode(LatestValue<link::StereoFrame>& newest, const Clock& clock, int to, 
       return decode_jpeg(image.data, {static_cast<int>(image.width), static_cast<int>(image.height)}, true);
     };
     const bool whole = decoded(frame->left) && decoded(frame->right);
-    write_all(to, {frame->number, Arrival::decoded, whole ? ms(clock.now().ns - begin) : -1, 0, 0, 0, memory_mb()});
+    write_all(to, {frame->number, Arrival::decoded, whole ? ms(clock.now().ns - begin) : -1, 0, 0, 0, resident_mb()});
   }
 }
 
@@ -91,8 +84,9 @@ void decode(LatestValue<link::StereoFrame>& newest, const Clock& clock, int to, 
       if (!frame) return;
       const std::int64_t captured = frame->image[0].captured.ns, coded = captured + frame->ages.coded->count();
       write_all(to, {frame->number, Arrival::came, ms(frame->arrived.ns - coded), ms(frame->arrived.ns - captured),
-                     ms((*frame->ages.coded - *frame->ages.taken).count()), std::exchange(bytes, 0), memory_mb()});
-      write_all(to, {frame->number, Arrival::decoded, ms(frame->decoded.ns - frame->arrived.ns), 0, 0, 0, memory_mb()});
+                     ms((*frame->ages.coded - *frame->ages.taken).count()), std::exchange(bytes, 0), resident_mb()});
+      write_all(to,
+                {frame->number, Arrival::decoded, ms(frame->decoded.ns - frame->arrived.ns), 0, 0, 0, resident_mb()});
     });
     if (const auto report = intake.report()) reports.write(*report);
   }
@@ -113,7 +107,7 @@ void decode(LatestValue<link::StereoFrame>& newest, const Clock& clock, int to, 
       reader.take<link::StereoFrame>({}, [&](link::StereoFrame&& frame, const link::Sample& sample) {
         const std::int64_t here = clock.now().ns;
         write_all(to, {frame.number, Arrival::came, ms(here - frame.stamps.coded_ns), ms(here - frame.left.capture_ns),
-                       ms(frame.stamps.coded_ns - frame.stamps.taken_ns), sample.cdr.size(), memory_mb()});
+                       ms(frame.stamps.coded_ns - frame.stamps.taken_ns), sample.cdr.size(), resident_mb()});
         newest.put(std::move(frame));
       });
     }
@@ -197,12 +191,12 @@ Sent send(const LinkConfig& config, const LinkBenchOptions& options, cv::Size si
     frame->pair.right.bgr = all[(i + kPictures / 2) % kPictures];
     queue->put(frame);
     take_arrivals(from, arrivals);
-    if (i == count / 10 + 1) out.memory_mb_first = memory_mb();
+    if (i == count / 10 + 1) out.memory_mb_first = resident_mb();
   }
   clock.sleep_until(clock.now() + 500ms);
   take_arrivals(from, arrivals);
   out.pairs = sender.counts().sent;
-  out.memory_mb_last = memory_mb();
+  out.memory_mb_last = resident_mb();
   return out;
 }
 

@@ -27,7 +27,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr Duration kLongest = 1200s;
+constexpr double kLongest = 1200;          // s, and as long as the motion may last
 constexpr std::size_t kFramesKept = 1000;  // that come between two pictures: none is to be missed
 
 Identity named(Identity identity) {
@@ -44,8 +44,8 @@ link::OperatorEndOptions end_options(const Rig& rig, const Identity& identity, c
 /// A script, whose wishes others are told of.
 class ToldDriver final : public SeatDriver {
  public:
-  ToldDriver(ScriptedMotion& motion, const std::function<void(OperatorTime, const SeatWish&)>& told)
-      : script_(motion), told_(told) {}
+  ToldDriver(ScriptedMotion& motion, const SeatTrialOptions& options)
+      : script_(motion, {.most_losses = options.most_losses}), told_(options.asked) {}
   SeatWish tick(const SeatView& view) override {
     const SeatWish wish = script_.tick(view);
     if (told_) told_(view.now, wish);
@@ -89,7 +89,7 @@ class Trial {
         end_(here_, end_options(rig, robot_.identity(), *scene_), clock_),
         motion_(motion),
         seen_(scene_->model()),
-        driver_(motion, options.asked),
+        driver_(motion, options),
         seat_(rig, end_, driver_, clock_),
         setup_(live_view_setup(*scene_, rig.name, options.shadows, options.levels)),
         view_(setup_),
@@ -115,6 +115,7 @@ class Trial {
       if (const cv::Mat seen = measures_.image_at(captured); !seen.empty()) video_.add(captured, seen, frame.bytes);
     });
     clock_.every(5ms, [this](RobotTime) {
+      if (options_.stands_still && options_.stands_still()) return;
       end_.step();
       seat_.step();
     });
@@ -128,13 +129,14 @@ class Trial {
   SeatTrialFigures run(const std::function<bool()>& stopped, const std::function<void(const std::string&)>& say) {
     const RobotTime begin = clock_.now();
     RobotTime told = begin;
-    while (!stopped() && clock_.now() - begin < kLongest) {
+    while (!stopped() && clock_.now() - begin < seconds(kLongest + options_.most_s)) {
       robot_.cycle();
       const RobotTime now = clock_.now();
       task_.see(now, driver_.script().state());
       if (task_.failed()) break;
       look(task_.under_way());
       learn_truth();
+      if (options_.each) options_.each({now, robot_, end_, seat_, source_, pictures_});
       if (task_.ended() && !measures_.waits()) break;
       if (now - told < 10s) continue;
       told = now;
@@ -183,6 +185,7 @@ class Trial {
     const ViewPlace place = source_.place();
     if (!session.draw(place.T_world_camera, place.scene)) return;
     seen_.show(place.scene);
+    ++pictures_;
     trust_.drew(source_, place, TrustMarks::hatch);
     trust_.judge(source_.why_invalid());
     if (!counts) return;
@@ -254,6 +257,7 @@ class Trial {
 
   cv::Mat delayed_, as_video_;
   RobotTime newest_, fed_;
+  std::uint64_t pictures_ = 0;
   std::map<RobotTime, LiveFramePtr> truths_;  // where views without a line are wanted
   SeatTrialFigures figures_;
 };

@@ -20,6 +20,20 @@
 
 namespace foresight {
 
+class PredictedSource;
+class Seat;
+class SteppedRobotSide;
+
+/// What goes on in a trial, for who looks on, or makes faults.
+struct SeatMoment {
+  RobotTime now;
+  SteppedRobotSide& robot;
+  link::OperatorEnd& end;
+  const Seat& seat;
+  const PredictedSource& source;
+  std::uint64_t pictures = 0;  ///< that were drawn so far
+};
+
 struct SeatTrialOptions {
   std::filesystem::path rig_file;
   LineSpec line;
@@ -39,6 +53,11 @@ struct SeatTrialOptions {
   std::function<cv::Mat(const cv::Mat&)> truth;
   /// Is told all that the operator asks for.
   std::function<void(OperatorTime, const SeatWish&)> asked;
+  /// After each cycle of the robot, in the trial's thread.
+  std::function<void(const SeatMoment&)> each;
+  /// Asked every 5 ms: the operator's program stands still.
+  std::function<bool()> stands_still;
+  int most_losses = ScriptedDriverOptions{}.most_losses;  ///< of the robot, that the program goes on after
 };
 
 struct SeatTrialFigures {

@@ -58,13 +58,15 @@ SteppedRobotSide::SteppedRobotSide(const Rig& rig, const std::filesystem::path& 
       period_(seconds(1 / rig.rate_hz)),
       next_(clock.now()) {
   devices_.bring_up([](const std::string&) {});
-  clock.every(kTick, [this](RobotTime) { cameras_->step(); });
+  clock.every(kTick, [this](RobotTime) {
+    if (!cameras_held_ && !program_held_) cameras_->step();
+  });
   clock.every(kTick, [this](RobotTime now) {
     Commander* const commander = &server_->commander();
-    serve(std::span(&commander, 1), *robot_, now);
+    if (!program_held_) serve(std::span(&commander, 1), *robot_, now);
   });
   clock.every(std::chrono::milliseconds(2), [this](RobotTime now) {
-    server_->step(now);
+    if (!program_held_) server_->step(now);
     line_->step();
   });
   next_ = clock.now();

@@ -33,6 +33,9 @@ class SteppedRobotSide {
   RobotDevices& devices() { return devices_; }
   RobotCameras& cameras() { return *cameras_; }
   const Identity& identity() const { return identity_; }
+  /// To try faults: no images are taken; the program does nothing but its control loop.
+  void hold_cameras(bool held) { cameras_held_ = held; }
+  void hold_program(bool held) { program_held_ = held; }
 
  private:
   const Rig& rig_;
@@ -47,6 +50,7 @@ class SteppedRobotSide {
   std::unique_ptr<link::RobotServer> server_;
   Duration period_;
   RobotTime next_;
+  bool cameras_held_ = false, program_held_ = false;
 };
 
 }  // namespace foresight

@@ -1,0 +1,215 @@
+#include "apps/bench/seat_bench.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "apps/bench/seat_faults.hpp"
+#include "apps/operator/stepped_sides.hpp"
+#include "common/numbers_file.hpp"
+#include "common/resident_memory.hpp"
+#include "common/stop_signal.hpp"
+#include "seat/predicted_source.hpp"
+#include "seat/seat.hpp"
+#include "seat/tool_script.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr double kTellEvery = 60, kSettled = 300;  // s
+constexpr double kMostGrowth = 10;                 // MB
+constexpr double kOver = 1.001;                    // of a limit, for rounding
+constexpr double kRampOver = 1.05;                 // of accelerations, which are differences of differences
+constexpr double kStandsFor = 1.0;                 // s without a picture beyond what was asked for
+constexpr double kMoves = 1e-7;                    // rad or m a cycle
+constexpr int kStops = 4000;
+
+/// What the robot's side sends to its drives, against what it may.
+class SetPointWatch {
+ public:
+  explicit SetPointWatch(const Rig& rig) : rig_(rig) {}
+
+  /// `alone_s`: for so long nobody has held the switch, nor has a joint looked for home. From `rests_after_s` on
+  /// nothing may move.
+  void see(const RobotCycle& cycle, double alone_s, double rests_after_s) {
+    for (std::size_t i = 0; i < cycle.joints; ++i) {
+      const DriveConfig& drive = rig_.joints[i].drive;
+      const JointMotion& now = cycle.joint[i].set_point;
+      const double moved = std::abs(now.position - last_.joint[i].set_point.position);
+      if (last_.number + 1 == cycle.number && alone_s > rests_after_s && moved > kMoves)
+        say(cycle, drive,
+            fmt::format("moves by {:.1e}, {}, with nobody at the switch for {:.2f} s", moved, to_string(cycle.phase),
+                        alone_s));
+      if (!std::isfinite(now.position) || !std::isfinite(now.velocity)) say(cycle, drive, "is sent no number");
+      if (std::abs(now.velocity) > drive.max_velocity * kOver) say(cycle, drive, "is too fast");
+      if (std::abs(now.acceleration) > drive.max_acceleration * kRampOver) say(cycle, drive, "is too rough");
+      if (cycle.joint[i].homed &&
+          (now.position < drive.min_position - 1e-6 || now.position > drive.max_position + 1e-6))
+        say(cycle, drive, "leaves its range");
+    }
+    last_ = cycle;
+    ++cycles_;
+  }
+  std::uint64_t cycles() const { return cycles_; }
+  std::uint64_t unsafe() const { return unsafe_; }
+  const std::string& first() const { return first_; }
+
+ private:
+  void say(const RobotCycle& cycle, const DriveConfig& drive, const std::string& what) {
+    if (unsafe_++ == 0)
+      first_ = fmt::format("{:.2f} s: {} {}", 1e-9 * static_cast<double>(cycle.time.ns), drive.name, what);
+  }
+  const Rig& rig_;
+  RobotCycle last_;
+  std::uint64_t cycles_ = 0, unsafe_ = 0;
+  std::string first_;
+};
+
+/// All that is looked at while the seat is in use.
+class Endurance {
+ public:
+  Endurance(const Rig& rig, const SeatBenchOptions& options, double round_trip_s)
+      : rig_(rig),
+        options_(options),
+        names_(rig.joint_names()),
+        random_(options.seed),
+        watch_(rig),
+        rests_after_(round_trip_s + 2),
+        faults_(seat_faults(arm_drives(rig), random_, stands_), random_, round_trip_s + 3) {}
+
+  bool stands_still() const { return stands_; }
+
+  void see(const SeatMoment& moment) {
+    if (!cycles_) cycles_.emplace(moment.robot.robot().cycles()), begin_ = moment.now;
+    const double now_s = to_seconds(moment.now - begin_);
+    look_at_switch(moment, now_s);
+    look_at_picture(moment, now_s);
+    if (began_)
+      faults_.step(moment, now_s, [&] { return seat_lines(moment.seat.status(), names_, moment.source.fault()); });
+    if (now_s < told_ + kTellEvery) return;
+    told_ = now_s;
+    memory_.emplace_back(now_s, resident_mb());
+    std::fprintf(stderr, "bench: seat: %.0f min, %.1f MB, %zu faults, %llu pictures\n", now_s / 60,
+                 memory_.back().second, faults_.records().size(), static_cast<unsigned long long>(moment.pictures));
+  }
+
+  nlohmann::ordered_json report(const SeatTrialFigures& figures) const;
+  bool met() const {
+    return watch_.unsafe() == 0 && longest_gap_ <= 1 / options_.pictures_hz + kStandsFor && unnamed() == 0 &&
+           growth() <= kMostGrowth;
+  }
+  void print() const;
+
+ private:
+  static std::size_t arm_drives(const Rig& rig) {
+    return static_cast<std::size_t>(std::ranges::count(rig.joints, rig.joints.front().bus, &RigJoint::bus));
+  }
+  void look_at_switch(const SeatMoment& moment, double now_s) {
+    const bool held = moment.seat.status().engaged;
+    began_ = began_ || held;
+    if (held) held_s_ = now_s;
+    while (const auto cycle = cycles_->take()) {
+      const bool homes = cycle->phase == RobotPhase::homing || cycle->phase == RobotPhase::enabling;
+      if (homes) held_s_ = now_s;
+      watch_.see(*cycle, now_s - held_s_, rests_after_);
+    }
+  }
+  void look_at_picture(const SeatMoment& moment, double now_s) {
+    if (moment.pictures != pictures_) pictures_ = moment.pictures, drew_s_ = now_s;
+    if (pictures_ > 0) longest_gap_ = std::max(longest_gap_, now_s - drew_s_);
+  }
+  std::size_t unnamed() const {
+    return static_cast<std::size_t>(std::ranges::count(faults_.records(), "", &FaultRecord::named));
+  }
+  /// After the fifth minute; 0 before.
+  double growth() const {
+    double first = 0, most = 0;
+    for (const auto& [at, mb] : memory_) {
+      if (at < kSettled) continue;
+      if (first == 0) first = mb;
+      most = std::max(most, mb - first);
+    }
+    return most;
+  }
+
+  const Rig& rig_;
+  const SeatBenchOptions& options_;
+  std::vector<std::string> names_;
+  std::mt19937 random_;
+  bool stands_ = false;
+  SetPointWatch watch_;
+  double rests_after_;
+  FaultMaker faults_;
+  std::optional<BroadcastRing<RobotCycle>::Reader> cycles_;
+  RobotTime begin_;
+  bool began_ = false;
+  double held_s_ = 0, drew_s_ = 0, longest_gap_ = 0, told_ = 0;
+  std::uint64_t pictures_ = 0;
+  std::vector<std::pair<double, double>> memory_;  // s, MB
+};
+
+nlohmann::ordered_json Endurance::report(const SeatTrialFigures& figures) const {
+  nlohmann::ordered_json out;
+  out["line"] = options_.line.string();
+  out["seed"] = options_.seed;
+  out["task_s"] = figures.task.seconds;
+  out["losses"] = figures.losses;
+  out["cycles"] = watch_.cycles();
+  out["unsafe_set_points"] = watch_.unsafe();
+  out["pictures"] = pictures_;
+  out["longest_without_picture_s"] = longest_gap_;
+  out["memory_growth_mb"] = growth();
+  for (const auto& [at, mb] : memory_) out["memory_mb"].push_back({at, mb});
+  for (const FaultRecord& fault : faults_.records())
+    out["faults"].push_back(
+        {{"what", fault.name}, {"at_s", fault.at_s}, {"named", fault.named}, {"after_s", fault.after_s}});
+  return out;
+}
+
+void Endurance::print() const {
+  for (const FaultRecord& fault : faults_.records())
+    fmt::print("{:7.1f} s  {:38} {}\n", fault.at_s, fault.name,
+               fault.named.empty() ? "NOT NAMED" : fmt::format("{:.2f} s later: {}", fault.after_s, fault.named));
+  fmt::print("{} faults, {} not named\n", faults_.records().size(), unnamed());
+  fmt::print("{} set-points, {} unsafe{}\n", watch_.cycles(), watch_.unsafe(),
+             watch_.unsafe() ? ", first " + watch_.first() : "");
+  fmt::print("{} pictures, at most {:.2f} s without one\n", pictures_, longest_gap_);
+  if (!memory_.empty())
+    fmt::print("memory {:.1f} MB at the end, grown by {:.1f} MB after the fifth minute\n", memory_.back().second,
+               growth());
+}
+
+}  // namespace
+
+int bench_seat(const SeatBenchOptions& options) {
+  Rig rig = read_rig(options.rig);
+  for (CameraConfig& camera : rig.cameras->cameras) camera.settings.rate = options.image_hz;
+  SeatTrialOptions trial;
+  trial.rig_file = options.rig;
+  if (!options.line.empty()) trial.line = read_line_spec(options.line);
+  trial.line.up.delay += seconds(1e-3 * options.delay_ms);
+  trial.line.down.delay += seconds(1e-3 * options.delay_ms);
+  trial.line.seed = options.seed;
+  trial.delay_s = 1e-3 * options.delay_ms;
+  trial.seed = options.seed;
+  trial.most_s = options.seconds;
+  trial.pictures_hz = options.pictures_hz;
+  trial.zero_delay = false;
+  trial.most_losses = std::numeric_limits<int>::max();
+  if (!options.line.empty()) rig.link.coding = LinkCoding::h264;
+  rig.link.round_trip = std::max(rig.link.round_trip, trial.line.up.delay + trial.line.down.delay + seconds(0.5));
+  Endurance endurance(rig, options, to_seconds(rig.link.round_trip));
+  trial.each = [&](const SeatMoment& moment) { endurance.see(moment); };
+  trial.stands_still = [&] { return endurance.stands_still(); };
+  const auto scene = std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt, false, 0));
+  ToolScript script(rig, tour(rig, options.seed, kStops), {});
+  const SeatTrialFigures figures = try_seat(
+      rig, scene, trial, script, [] { return stop_requested(); }, [](const std::string&) {});
+  endurance.print();
+  write_numbers(options.json, endurance.report(figures).dump(2));
+  return endurance.met() ? 0 : 1;
+}
+
+}  // namespace foresight
