@@ -38,7 +38,7 @@ class SetPointWatch {
       const DriveConfig& drive = rig_.joints[i].drive;
       const JointMotion& now = cycle.joint[i].set_point;
       const double moved = std::abs(now.position - last_.joint[i].set_point.position);
-      if (last_.number + 1 == cycle.number && alone_s > rests_after_s && moved > kMoves)
+      if (last_.number + 1 == cycle.number && alone_s > rests_after_s && moved > kMoves && !begins_anew(cycle.joint[i]))
         say(cycle, drive,
             fmt::format("moves by {:.1e}, {}, with nobody at the switch for {:.2f} s", moved, to_string(cycle.phase),
                         alone_s));
@@ -57,6 +57,11 @@ class SetPointWatch {
   const std::string& first() const { return first_; }
 
  private:
+  /// A reset puts the set-point to where the joint is measured, which moves nothing.
+  static bool begins_anew(const JointCycle& joint) {
+    const JointMotion& now = joint.set_point;
+    return now.velocity == 0 && now.acceleration == 0 && std::abs(now.position - joint.position) <= kMoves;
+  }
   void say(const RobotCycle& cycle, const DriveConfig& drive, const std::string& what) {
     if (unsafe_++ == 0)
       first_ = fmt::format("{:.2f} s: {} {}", 1e-9 * static_cast<double>(cycle.time.ns), drive.name, what);
