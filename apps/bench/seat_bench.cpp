@@ -8,6 +8,7 @@
 
 #include "apps/bench/seat_faults.hpp"
 #include "apps/operator/stepped_sides.hpp"
+#include "common/error.hpp"
 #include "common/numbers_file.hpp"
 #include "common/resident_memory.hpp"
 #include "common/stop_signal.hpp"
@@ -190,6 +191,8 @@ void Endurance::print() const {
 
 int bench_seat(const SeatBenchOptions& options) {
   Rig rig = read_rig(options.rig);
+  if (!rig.cameras)
+    throw InputError(options.rig, "the rig has no cameras, of which a view could be made", "give it a 'cameras:' section");
   for (CameraConfig& camera : rig.cameras->cameras) camera.settings.rate = options.image_hz;
   SeatTrialOptions trial;
   trial.rig_file = options.rig;

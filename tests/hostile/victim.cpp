@@ -47,6 +47,7 @@ const std::map<std::string, CommandWords>& table() {
         {"--openxr-frames", {"0"}},
         {"--width", {"64"}},
         {"--height", {"48"}}}},
+      {"bench seat", {{"RIG", {"@rig.yaml"}}, {"--seconds", {"1"}}, {"--delay-ms", {"20"}}}},
       {"bench display", {{"--size", {"32x24"}}, {"--seconds", {"0.2"}}, {"--rate", {"25"}}}},
       {"bench prediction ik",
        {{"--urdf", {"@arm.urdf"}}, {"--tip", {"arm_7"}}, {"--poses", {"20"}}, {"--paths", {"1"}}}},
