@@ -21,8 +21,8 @@ inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
   return out;
 }
 
-/// All numbers are finite, and the rotation is one: no element of R R^T is farther than `tolerance` from the identity's,
-/// and nothing is mirrored.
+/// All numbers are finite, and the rotation is one: no element of R R^T is farther than `tolerance` from the
+/// identity's, and nothing is mirrored.
 bool is_rigid(const Eigen::Isometry3d& T, double tolerance = 1e-6);
 
 }  // namespace foresight

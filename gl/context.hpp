@@ -34,8 +34,8 @@ class Context {
 /// Throws RuntimeFailure that lists what was tried and found where OpenGL 4.5 is missing.
 std::unique_ptr<Context> create_headless_context();
 
-/// Throws RuntimeFailure where a limit on this process's memory (ulimit -v) leaves less than any driver needs: some end the
-/// process without a word then. Both kinds of contexts ask it.
+/// Throws RuntimeFailure where a limit on this process's memory (ulimit -v) leaves less than any driver needs: some end
+/// the process without a word then. Both kinds of contexts ask it.
 void require_address_space();
 
 /// Asks the current context; throws RuntimeFailure where it is older than OpenGL 4.5.

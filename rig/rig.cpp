@@ -278,7 +278,8 @@ std::unique_ptr<RobotShape> Rig::shape() const {
 
 Rig read_rig(const std::filesystem::path& file) {
   const YamlMap map = YamlMap::load(file);
-  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "scene", "cameras", "calibration", "link", "things"});
+  map.require_known({"name", "robot", "control", "surroundings", "buses", "joints", "scene", "cameras", "calibration",
+                     "link", "things"});
   Rig rig;
   rig.name = map.text("name");
   if (map.has("robot")) read_robot(map.map("robot"), rig);

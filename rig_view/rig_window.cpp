@@ -50,7 +50,8 @@ struct RigWindow::Work {
     state.positions = options.positions;
     state.about_cameras = body.about_cameras();
     state.selected = body.rig().joints.empty() || options.live ? -1 : 0;
-    state.help = {"mouse: left turns, right shifts, wheel zooms", "views: f front, s side, t top, i iso; p perspective"};
+    state.help = {"mouse: left turns, right shifts, wheel zooms",
+                  "views: f front, s side, t top, i iso; p perspective"};
     if (!options.live) state.help.emplace_back("sliders, or arrows: joint, position; r: all at rest");
     state.help.emplace_back("1-8 or a click on the legend: show, hide");
     state.help.emplace_back("q ends");

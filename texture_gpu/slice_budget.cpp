@@ -9,7 +9,7 @@ namespace foresight {
 namespace {
 
 constexpr std::size_t kCosts = 16;
-constexpr double kQuantile = 0.8;  // one preempted slice does not count
+constexpr double kQuantile = 0.8;     // one preempted slice does not count
 constexpr double kMostOwedNs = 50e6;  // a slice that takes longer comes to its turn with it, and pays afterwards
 constexpr double kMostDebtNs = 200e6;
 constexpr double kUrgentNs = 20e6;  // owed: slices run even while a frame is drawn

@@ -6,8 +6,8 @@
 //
 // The overload rule (thesis, chapter 6.3.2): frames that leave nothing must not stop the work. While it waits, time is
 // put down for it; once that is a slice's worth, the slice runs after a frame whatever follows, and once it is 20 ms,
-// even while a frame is drawn. A slice of more than 50 ms pays for the rest afterwards: what was expected of it may be wrong,
-// as that of the first one, which compiles programs.
+// even while a frame is drawn. A slice of more than 50 ms pays for the rest afterwards: what was expected of it may be
+// wrong, as that of the first one, which compiles programs.
 //
 // Pure: instants come in; nothing waits here.
 #pragma once

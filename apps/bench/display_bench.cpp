@@ -53,8 +53,8 @@ struct BenchLab {
   int polygons = 0;
 };
 
-// The lab's own pictures are of the same parts as this one, which is only the shape: its paint may be coarse. `size`: of
-// its images.
+// The lab's own pictures are of the same parts as this one, which is only the shape: its paint may be coarse. `size`:
+// of its images.
 BenchLab make_bench_lab(cv::Size size) {
   const sim::Lab lab = sim::make_lab(0.05, 1);
   BenchLab out;

@@ -192,7 +192,8 @@ void Endurance::print() const {
 int bench_seat(const SeatBenchOptions& options) {
   Rig rig = read_rig(options.rig);
   if (!rig.cameras)
-    throw InputError(options.rig, "the rig has no cameras, of which a view could be made", "give it a 'cameras:' section");
+    throw InputError(options.rig, "the rig has no cameras, of which a view could be made",
+                     "give it a 'cameras:' section");
   for (CameraConfig& camera : rig.cameras->cameras) camera.settings.rate = options.image_hz;
   SeatTrialOptions trial;
   trial.rig_file = options.rig;

@@ -40,12 +40,9 @@ nlohmann::ordered_json numbers_of(const PanTiltSummary& s, const PanTiltSummary&
   out["noise_mm"] = s.sigma_mm, out["noise_mrad"] = s.sigma_mrad;
   out["poses_are"] = s.inverted ? "camera-world" : "world-camera";
   const PanTiltModel& m = s.model;
-  out["model"] = {{"T_world_pan", json_of(m.T_world_pan)},
-                  {"length_m", m.length_m},
-                  {"twist_rad", m.twist_rad},
-                  {"T_tilt_camera", json_of(m.T_tilt_camera)},
-                  {"gain", m.gain},
-                  {"backlash_rad", m.backlash_rad}};
+  out["model"] = {
+      {"T_world_pan", json_of(m.T_world_pan)},     {"length_m", m.length_m}, {"twist_rad", m.twist_rad},
+      {"T_tilt_camera", json_of(m.T_tilt_camera)}, {"gain", m.gain},         {"backlash_rad", m.backlash_rad}};
   out["sigmas"] = sigmas_of(s);
   out["notes"] = s.notes;
   return out;

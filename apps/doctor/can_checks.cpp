@@ -85,10 +85,9 @@ Findings check_drives(const Rig& rig) {
       const std::string subject = "drive " + drive->config().name;
       try {
         drive->identify();
-        out.push_back({Verdict::good, subject,
-                       "answers as node " + std::to_string(drive->config().node) + " (" + to_text(drive->identity()) +
-                           ")",
-                       ""});
+        out.push_back(
+            {Verdict::good, subject,
+             "answers as node " + std::to_string(drive->config().node) + " (" + to_text(drive->identity()) + ")", ""});
       } catch (const std::exception& error) {
         out.push_back({Verdict::bad, subject, error.what(), ""});
       }

@@ -9,8 +9,8 @@
 
 namespace foresight {
 
-/// Several lines: what the robot does and why, what holds it back, what to do next, a line per joint, a line per bus, punctuality of the loop. `selected`: the joint
-/// that the keys move, or -1.
+/// Several lines: what the robot does and why, what holds it back, what to do next, a line per joint, a line per bus,
+/// punctuality of the loop. `selected`: the joint that the keys move, or -1.
 std::string status_text(const Rig& rig, const RobotStatus& status, const std::vector<BusLine>& buses, int selected);
 
 }  // namespace foresight

@@ -30,8 +30,8 @@ class Cia402Drive final : public Drive {
   Cia402Drive(Cia402Config config, const NetworkConfig& network, CanBus& bus, Clock& clock, SdoAccess::Pump pump);
 
   const DriveConfig& config() const noexcept override { return config_.drive; }
-  /// Reads 1000h (profile 402) and 1018h, whose product and serial number need not exist. Takes at most 2 sdo_timeout an
-  /// object.
+  /// Reads 1000h (profile 402) and 1018h, whose product and serial number need not exist. Takes at most 2 sdo_timeout
+  /// an object.
   void identify() override;
   DriveIdentity identity() const override { return identity_; }
   /// Leaves the node operational, switched off. Moves nothing; a drive found enabled is stopped first.

@@ -101,7 +101,7 @@ struct GateStatus {
   std::uint64_t operator_id = 0;            ///< who is in charge, or 0
   std::uint64_t accepted = 0, dropped = 0;  ///< commands
   GateReason last_dropped = GateReason::none;
-  double speed = 0;  ///< 0 .. 1: where the ramp is
+  double speed = 0;    ///< 0 .. 1: where the ramp is
   GateHold hold = {};  ///< only while following
 };
 

@@ -21,9 +21,9 @@ struct RunExport {
   std::string remarks;  ///< what could not be used and why, one a line; "" where all could
 };
 
-/// Decodes every recorded pair, of either coding, and writes it with its poses, and where everything that moves was by the joints of that
-/// instant. Throws InputError (no recording; no rig in it; what the rig lacks; no pair that can be used),
-/// RuntimeFailure (the disk).
+/// Decodes every recorded pair, of either coding, and writes it with its poses, and where everything that moves was by
+/// the joints of that instant. Throws InputError (no recording; no rig in it; what the rig lacks; no pair that can be
+/// used), RuntimeFailure (the disk).
 RunExport export_run(const RunExportOptions& options);
 
 }  // namespace foresight::link

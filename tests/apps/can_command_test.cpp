@@ -122,10 +122,10 @@ TEST(Can, ExplainTakesNoStartForAnError) {
       "(5.5) arm 000#8101 T\n(5.6) arm 701#00 R\n";
   EXPECT_THAT(ExplainedLog(start).as("cia402").out, HasSubstr("\n# 0 errors, 0 frames unknown\n"));
   // It had booted, had been asked, and then says nothing; later it boots by itself.
-  const Outcome silent =
-      ExplainedLog(std::string(start) + "(5.7) arm 601#4000100000000000 T\n(6.0) arm 601#8000100000000405 T\n"
-                                        "(6.1) arm 701#05 R\n(6.2) arm 701#00 R\n")
-          .as("cia402", {"--errors"});
+  const Outcome silent = ExplainedLog(std::string(start) +
+                                      "(5.7) arm 601#4000100000000000 T\n(6.0) arm 601#8000100000000405 T\n"
+                                      "(6.1) arm 701#05 R\n(6.2) arm 701#00 R\n")
+                             .as("cia402", {"--errors"});
   EXPECT_THAT(silent.out, HasSubstr("\n# 2 errors, 0 frames unknown\n"));
   EXPECT_THAT(silent.out, HasSubstr("(1.000000) arm 601#80"));
   EXPECT_THAT(silent.out, HasSubstr("(1.200000) arm 701#00"));

@@ -23,7 +23,7 @@ struct Outcome {
 
 struct ProgramOptions {
   std::map<std::string, std::string> environment = {};  ///< added to this process's; an empty value unsets
-  std::string shell = {};  ///< run by sh before the program takes its place: "ulimit -f 8", "exec >&-"
+  std::string shell = {};             ///< run by sh before the program takes its place: "ulimit -f 8", "exec >&-"
   std::filesystem::path folder = {};  ///< where it runs; empty: here
 };
 

@@ -109,7 +109,8 @@ TEST_P(ViewOfLenses, BandsAreOnePicture) {
   FrameGate gate(clock);
   banded.use(&gate);
   whole.draw(usual_view(), state_of(*scene_), *lease);
-  banded.draw(usual_view(), state_of(*scene_), *lease);  // what bands cost is not known yet: they are as large as it goes
+  banded.draw(usual_view(), state_of(*scene_),
+              *lease);  // what bands cost is not known yet: they are as large as it goes
   EXPECT_TRUE(gate.take_work_waits());
   banded.draw(usual_view(), state_of(*scene_), *lease);
   EXPECT_EQ(cv::norm(whole.read(), banded.read(), cv::NORM_INF), 0);

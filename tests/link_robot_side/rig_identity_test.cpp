@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "common/read_file.hpp"
-#include "tests/support/folders.hpp"
 #include "tests/scene/test_run.hpp"
+#include "tests/support/folders.hpp"
 
 namespace foresight::link::rig_identity_test {
 namespace {

@@ -192,8 +192,7 @@ TEST_F(Urdf, WhatIsAroundAShapeIsRead) {
   const auto base = [&](const std::string& inside) { return error("<link name='base'>" + inside + "</link>"); };
   EXPECT_THAT(base("<visual/>"), says("r.urdf:1", "link 'base' <visual>", "has no <geometry>"));
   EXPECT_THAT(base("<collision><geometry/></collision>"), says("<collision>", "empty <geometry>", "give it one of"));
-  EXPECT_THAT(base("<visual>" + box + box + "</visual>"),
-              says("<visual>", "has 2 <geometry>", "one visual for each"));
+  EXPECT_THAT(base("<visual>" + box + box + "</visual>"), says("<visual>", "has 2 <geometry>", "one visual for each"));
   EXPECT_THAT(base("<colision>" + box + "</colision>"), says("link 'base'", "<colision>", "write <collision>"));
   EXPECT_THAT(base("<Visual>" + box + "</Visual>"), says("link 'base'", "<Visual>", "write <visual>"));
   EXPECT_THAT(base("<visual><origin xyz='0 0'/>" + box + "</visual>"), says("<origin>", "xyz=\"0 0\" has 2", "metres"));
@@ -291,7 +290,8 @@ TEST_F(Urdf, NamesWhatIsWrong) {
   EXPECT_THAT(error(deep), says("r.urdf", "nest too deep", "plain URDF"));
   const auto xacro = folder_.write(
       "x.urdf", "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'><xacro:include filename='y'/></robot>");
-  EXPECT_THAT(input_error([&] { read_urdf(xacro, folder_.path()); }), says("x.urdf", "is a xacro file", "`xacro x.urdf"));
+  EXPECT_THAT(input_error([&] { read_urdf(xacro, folder_.path()); }),
+              says("x.urdf", "is a xacro file", "`xacro x.urdf"));
 }
 
 }  // namespace

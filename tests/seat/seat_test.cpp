@@ -52,7 +52,7 @@ class SeatAtARig : public PrivateNetworkTest {
     here_.emplace(*there_, "operator");
     const Identity identity = link::rig_identity(robot_.rig(), source_folder() / "configs" / "minerva.yaml", "test");
     server_.emplace(*there_, robot_.rig(), robot_.robot(), nullptr, identity, robot_.clock(),
-                     link::RobotServer::Start{});
+                    link::RobotServer::Start{});
     link::OperatorEndOptions options;
     options.seat.identity = identity;
     options.seat.draw = machine_nonces();

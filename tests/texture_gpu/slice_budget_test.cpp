@@ -87,8 +87,8 @@ TEST(SliceBudget, ALongSliceComesToItsTurnBetweenShortFrames) {
   EXPECT_TRUE(ran);
 }
 
-// On a slow machine the first slices of each kind take seconds, as all programs are compiled in them. Those after it do not
-// wait for as long again each.
+// On a slow machine the first slices of each kind take seconds, as all programs are compiled in them. Those after it do
+// not wait for as long again each.
 TEST(SliceBudget, WhatWasCompiledOnceIsNotWaitedForAgain) {
   SliceBudget budget;
   RobotTime now{};

@@ -18,7 +18,8 @@ class TextureThreadTest : public HeadlessTest {
                                        std::shared_ptr<FrameGate> gate = nullptr) {
     return std::make_unique<TextureThread>(
         context_->create_shared(),
-        TextureThread::Setup{scene_, surface_, lens_, std::nullopt, {.memory_bytes = memory_bytes}, false, std::move(gate)});
+        TextureThread::Setup{
+            scene_, surface_, lens_, std::nullopt, {.memory_bytes = memory_bytes}, false, std::move(gate)});
   }
   PosedFrame frame(std::int64_t ns) const {
     PosedFrame out = picture_;
