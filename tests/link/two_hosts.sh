@@ -15,15 +15,16 @@ two_hosts() {
   at_robot ip link set lo up
   at_robot ip address add 10.77.0.1/24 dev robot
   at_robot ip link set robot up
-  rig_at robot 10.77.0.2
-  rig_at operator 10.77.0.1
+  rig_at robot robot 10.77.0.2
+  rig_at operator operator 10.77.0.1
+  rig_at watcher robot 10.77.0.1
 }
 at_robot() { nsenter -t "$host" -n "$@"; }
-# rig_at HOST PEER: the rig as that host has it.
+# rig_at NAME INTERFACE PEER: the rig as that host, or a program of its own there, has it.
 rig_at() {
   mkdir "$out/$1"
   cp "$root/configs/minerva.yaml" "$root/configs/arm.urdf" "$out/$1"
-  printf 'link:\n  domain: 7\n  interface: %s\n  peers: [%s]\n' "$1" "$2" >>"$out/$1/minerva.yaml"
+  printf 'link:\n  domain: 7\n  interface: %s\n  peers: [%s]\n' "$2" "$3" >>"$out/$1/minerva.yaml"
 }
 
 serve() {
@@ -38,8 +39,9 @@ take_hand() {
   hand=$!
   others+=("$hand")
 }
+# watch_joints: beside the robot, so that whatever the cable does, all motion is seen.
 watch_joints() {
-  "$programs/line_hand" "$out/operator/minerva.yaml" watch >"$out/watch.csv" 2>"$out/watch.err" &
+  nsenter -t "$host" -n "$programs/line_hand" "$out/watcher/minerva.yaml" watch >"$out/watch.csv" 2>"$out/watch.err" &
   others+=("$!")
 }
 
