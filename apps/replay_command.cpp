@@ -26,6 +26,9 @@ void add_replay_command(Command& app, std::function<int()>& action) {
   command->add_flag("--real-time", options->real_time, "Play by the clock and drop what comes too late");
   command->add_flag("!--no-projection", options->projection,
                     "Show textures alone: the newest image only when it has become textures");
+  command->add_flag("!--full-extraction", options->textures.only_what_is_needed,
+                    "Write all of every image to the textures; else, as views look the newest one up, what has no "
+                    "colours yet and what the next image does not show as well");
   add_level_options(*command, options->detail);
   command->add_flag(
       "--refine", options->refine,

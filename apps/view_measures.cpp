@@ -50,6 +50,7 @@ void add_texture_options(RunRecord& record, const TextureOptions& textures) {
   record.options.push_back({"texture_memory_mb", static_cast<std::int64_t>(textures.memory_bytes >> 20)});
   record.options.push_back({"model_accuracy_m", textures.depth_tolerance});
   record.options.push_back({"shadows", textures.shadows});
+  record.options.push_back({"full_extraction", !textures.only_what_is_needed});
 }
 
 ViewMeasures::ViewMeasures(RunRecord record, ViewOutputs outputs, const TextureOptions& textures)
@@ -94,6 +95,7 @@ void ViewMeasures::take(const ExtractionReport& report, FrameRecord& record) {
   }
   for (const StageCost& cost : report.stages)
     record.stages.push_back({cost.name, cost.cpu_ms, cost.gpu_ms, StagePart::texture});
+  record.texels_written = record.texels_written.value_or(0) + static_cast<double>(report.texels_written);
   record.texture_bytes_used = bytes_used_ = report.bytes_in_use;
   record.gain = gain_ = std::exp(2.2 * report.log_gain);  // from 8-bit values to linear light
   record_.texels = std::max(record_.texels, report.texels_resident);
@@ -168,6 +170,8 @@ void print_summary(const RunRecord& record) {
   if (std::isfinite(s.arrival_to_visible_ms.median))
     std::printf("an image is seen %.0f ms after it arrived, %.0f CPU-ms\n", s.arrival_to_visible_ms.median,
                 s.arrival_to_visible_cpu_ms.median);
+  if (std::isfinite(s.texels_written.mean))
+    std::printf("%.0f thousand texels of the textures written per image\n", 1e-3 * s.texels_written.mean);
   for (const std::string& note : record.notes) std::printf("%s\n", note.c_str());
 }
 

@@ -12,17 +12,17 @@ layout(binding = 0, rgba8) uniform image2D picture;
 uniform int paint;  // as ViewPaint
 
 // 0 .. 3
-int age_class(SurfaceAt at) {
-  if (seen_colour(at.chart, at.texel, 0).a < kSeen) return 3;  // of a page that was seen in part
+int age_class(SurfaceAt at, bool from_image) {
+  if (!from_image && seen_colour(at.chart, at.texel, 0).a < kSeen) return 3;  // of a page that was seen in part
   ivec2 page = ivec2(floor(at.texel)) >> 4;
   page = clamp(page, ivec2(0), at.chart.pages - 1);
   float age = texelFetch(page_ages, at.chart.first_page + page.y * at.chart.pages.x + page.x).r;
   return age < 0.0 ? 3 : age < 1.0 ? 0 : age < 5.0 ? 1 : 2;
 }
 
-int confidence_class(SurfaceAt at) {
+int confidence_class(SurfaceAt at, bool from_image) {
   vec4 seen = seen_colour(at.chart, at.texel, 0);
-  if (seen.a < kSeen) return 3;
+  if (seen.a < kSeen) return from_image ? 0 : 3;  // the newest image shows it about as finely as the view
   float image_px_per_texel = exp2((seen.a * 255.0 - 2.0) / 253.0 * 8.0 - 8.0);
   float share = image_px_per_texel / max(at.pixels_per_texel, 1e-6);  // image pixels for a pixel of the view
   return share > 0.7 ? 0 : share > 0.25 ? 1 : 2;
@@ -46,6 +46,7 @@ void main() {
   }
   if (surface == 0u) return;
   SurfaceAt at = surface_at(ray, place, surface);
-  int level = at.chart.density.x <= 0.0 ? 3 : paint == 2 ? age_class(at) : confidence_class(at);
+  bool from_image = shown.a > 0.99;
+  int level = at.chart.density.x <= 0.0 ? 3 : paint == 2 ? age_class(at, from_image) : confidence_class(at, from_image);
   imageStore(picture, pixel, vec4(class_colour(pixel, level, grey), shown.a));
 }

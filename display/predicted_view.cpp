@@ -16,12 +16,12 @@ constexpr int kBand = 64;        // rows: fewer cost as much as these, as each b
 constexpr GLuint kListUnit = 5, kLightUnit = 6, kPlanesUnit = 7, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
 
-enum class Cases { newest_image, usual, every };
+enum class Cases { image, usual, every };
 
 struct Pixels {
   bool levels = false;   // of a scene that is drawn with levels
   bool listed = false;   // not all of them
-  bool blended = false;  // with the newest image, which the picture holds
+  bool blended = false;  // with newer images, which the picture holds
 };
 
 gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
@@ -46,10 +46,12 @@ void set_tone(const gl::Program& program, float gain, const PublishedTextures& t
 }  // namespace
 
 PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool levels)
-    : newest(view_program(std::array{view, lens}, Cases::newest_image, {.levels = levels})),
+    : newest(view_program(std::array{view, lens}, Cases::image, {.levels = levels})),
+      before(view_program(std::array{view, lens}, Cases::image, {.levels = levels, .listed = true, .blended = true})),
       usual(view_program({&view, 1}, Cases::usual, {.levels = levels, .listed = true, .blended = true})),
       rest(view_program({&view, 1}, Cases::every, {.levels = levels, .listed = true, .blended = true})),
-      unseen("pixels that the newest image does not see", kGroup) {}
+      unseen("pixels that the newest image does not see", kGroup),
+      unseen_by_both("pixels that the image before does not see either", kGroup) {}
 
 PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
                              std::shared_ptr<const SurfaceRecords> surface, const Lens& lens, ViewPrograms programs,
@@ -137,37 +139,59 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
 }
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
-                         const PublishedImage& newest) {
-  if (!projection_) projection_ = std::make_unique<Projection>(lens_, newest.camera->lens(), raster_.has_levels());
-  Projection& p = *projection_;
-  start(T_world_camera, state, textures, newest.light);
-  const CameraInput* camera = newest.camera.get();
-  const PosedImage* image = &newest.image;
-  p.image.update({&camera, 1}, {&image, 1}, {&newest.tone, 1});
-  if (draws_part_ && !p.newest_of_part)
-    p.newest_of_part = view_program(std::array{lens_, newest.camera->lens()}, Cases::newest_image,
-                                    {.levels = raster_.has_levels(), .listed = true});
-  const gl::Program& newest_pixels = draws_part_ ? p.newest_of_part : p.newest;
-  p.image.bind(newest_pixels, newest.depth_tolerance, kSeenBlock, kSeenUnit);
-  for (const gl::Program* program : {&p.usual, &p.rest}) set_tone(*program, newest.gain, textures);
+                         const NewestImages& images) {
+  start(T_world_camera, state, textures, images.newest->light);
+  look_up(images);
+  const Projection& p = *projection_;
+  for (const gl::Program* program : {&p.usual, &p.rest}) set_tone(*program, images.newest->gain, textures);
   start_part();
   draw_rows([&](Rows rows) {
-    if (draws_part_) list_covered(rows);
-    start(p.unseen);
-    if (draws_part_) {
-      newest_pixels.use();
-      part_->pixels.dispatch();
-    } else {
-      dispatch_all(newest_pixels, rows);
-    }
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    p.unseen.finish(kListUnit);
+    draw_images(images, rows);
     start(rest_);
     p.usual.use();
-    p.unseen.dispatch();
+    (images.before ? p.unseen_by_both : p.unseen).dispatch();
     dispatch(rest_, p.rest);
   });
   finish(textures);
+}
+
+/// Hands the images to the shaders.
+void PredictedView::look_up(const NewestImages& images) {
+  const Lens& lens = images.newest->camera->lens();
+  if (!projection_) projection_ = std::make_unique<Projection>(lens_, lens, raster_.has_levels());
+  if (draws_part_ && !projection_->newest_of_part)
+    projection_->newest_of_part =
+        view_program(std::array{lens_, lens}, Cases::image, {.levels = raster_.has_levels(), .listed = true});
+  const auto update = [&](SeenInputs& inputs, const PublishedImage& of) {
+    const CameraInput* camera = of.camera.get();
+    const PosedImage* image = &of.image;
+    Eigen::Vector3f tone = of.tone;
+    tone.x() *= images.newest->gain / of.gain;
+    inputs.update({&camera, 1}, {&image, 1}, {&tone, 1});
+  };
+  update(projection_->newest_inputs, *images.newest);
+  if (images.before) update(projection_->inputs_before, *images.before);
+}
+
+/// The newest image, then the one before, and lists what neither shows.
+void PredictedView::draw_images(const NewestImages& images, Rows rows) const {
+  Projection& p = *projection_;
+  if (draws_part_) list_covered(rows);
+  start(p.unseen);
+  const gl::Program& newest = draws_part_ ? p.newest_of_part : p.newest;
+  p.newest_inputs.bind(newest, images.newest->depth_tolerance, kSeenBlock, kSeenUnit);
+  if (draws_part_)
+    part_->pixels.dispatch();
+  else
+    dispatch_all(newest, rows);
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  p.unseen.finish(kListUnit);
+  if (!images.before) return;
+  start(p.unseen_by_both);
+  p.inputs_before.bind(p.before, images.before->depth_tolerance, kSeenBlock, kSeenUnit);
+  p.unseen.dispatch();
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  p.unseen_by_both.finish(kListUnit);
 }
 
 void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,

@@ -53,15 +53,16 @@ class PredictedView {
 
   /// Draws into picture(). `textures` must stay leased until the GPU has finished.
   void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
-  /// The same, but where `newest` saw a surface point, and about as sharply as the view shows it, the colour comes from
-  /// there; towards its rim it gives way to the textures. Both must stay leased.
+  /// The same, but where one of `images` saw a surface point, and about as sharply as the view shows it, the colour
+  /// comes from there, from the newest before the one before; towards its rim each gives way to what comes after it.
+  /// All must stay leased.
   void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
-            const PublishedImage& newest);
-  /// The one or the other: with the newest image where it leases one.
+            const NewestImages& images);
+  /// The one or the other: with images where they are leased.
   void draw(const Pose& T_world_camera, const SceneState& state, const TextureLease& textures,
-            const ImageLease& newest) {
-    if (newest)
-      draw(T_world_camera, state, *textures, *newest);
+            const ImagesLease& images) {
+    if (images)
+      draw(T_world_camera, state, *textures, *images);
     else
       draw(T_world_camera, state, *textures);
   }
@@ -79,13 +80,13 @@ class PredictedView {
   const LevelDirector* levels() const { return raster_.director(); }
 
  private:
-  /// What the newest image needs besides.
+  /// What the newest images need besides.
   struct Projection {
     Projection(const Lens& view, const Lens& image, bool levels);
-    gl::Program newest, usual, rest;
-    gl::Program newest_of_part;  // once it is needed
-    WorkList unseen;             // by the newest image
-    SeenInputs image;
+    gl::Program newest, before, usual, rest;
+    gl::Program newest_of_part;       // once it is needed
+    WorkList unseen, unseen_by_both;  // by the newest image; nor by the one before
+    SeenInputs newest_inputs, inputs_before;
   };
   /// What shadows need besides.
   struct Shadows {
@@ -103,6 +104,8 @@ class PredictedView {
   struct Rows {
     int first = 0, last = 0;  // beyond the last
   };
+  void look_up(const NewestImages& images);
+  void draw_images(const NewestImages& images, Rows rows) const;
   void start_part() const;
   void list_covered(Rows rows) const;
   template <typename DrawRows>

@@ -1,19 +1,19 @@
-// The predicted view: per pixel, lens ray -> triangle -> surface point -> chart -> texels, or -> newest image.
+// The predicted view: per pixel, lens ray -> triangle -> surface point -> chart -> texels, or -> one of the newest images.
 //
 // Software renderers run both sides of every branch. So most pixels are drawn by a program that knows only the usual
 // case, texels about as large as pixels, and lists the others; a second program draws what is listed. Where the newest
-// image is looked up directly, that comes before them, and they go through what it did not see.
+// images are looked up directly, these come before them, one after the other, each for what newer ones did not see.
 //
-// Defines: CASES 0: the newest image, what it does not see is listed; 1: the usual case, others are listed; 2: every case.
-//          LEVELS: seen_plane.glsl. LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds the newest image already.
-#define NEWEST_IMAGE 0
+// Defines: CASES 0: an image, what it does not see is listed; 1: the usual case, others are listed; 2: every case.
+//          LEVELS: seen_plane.glsl. LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds newer images already.
+#define IMAGE 0
 #define USUAL 1
 #define EVERY 2
 #if LISTED
 #define ITEMS_PER_GROUP 64
 #endif
 #include "camera.glsl"
-#if CASES == NEWEST_IMAGE
+#if CASES == IMAGE
 #define SEEN_BLOCK 1
 #define SEEN_UNIT 16
 #include "seen.glsl"
@@ -100,15 +100,18 @@ bool find_point(ivec2 pixel, out Point found) {
   return true;
 }
 
-#if CASES == NEWEST_IMAGE
-// Less than this share of the view's resolution is clearly worse than what older images may have seen, and more than
-// that would flicker: coarser levels of the textures hold means.
+#if CASES == IMAGE
+// Less than this share of the view's resolution is clearly worse than what older images may have seen. Where even the
+// less crowded axis has more pixels than that for one of the view, they would flicker: coarser levels of the textures
+// hold means.
 const float kCoarsest = 0.3, kFinest = 1.5;
 const float kSharp = 0.6;  // as in lookup.glsl
 const float kRim = 6.0;  // px of the image within which it gives way to older ones
+const float kAll = 0.999;  // a weight that leaves nothing
 
-// The newest image's colour at the point, and its weight beside what older images saw; 0 where it does not see it.
-vec4 newest_colour(Point point) {
+// The image's colour at the point, at the exposure of the newest one, and its weight beside what older images saw; 0
+// where it does not see it.
+vec4 image_colour(Point point) {
   vec3 q = node_to_camera(node_poses, point.node, point.p);
   vec2 pixel;
   if (!is_seen(0, q, pixel)) return vec4(0.0);
@@ -119,12 +122,18 @@ vec4 newest_colour(Point point) {
   float image_pixels = f.x * f.y * abs(dot(normal, q)) / (to_image * to_image * to_image);
   float view_pixels = g.x * g.y * abs(dot(point.normal, point.sight)) * abs(point.t) / (to_view * to_view * to_view);
   float share = sqrt(image_pixels / max(view_pixels, 1e-12));
-  if (share < kCoarsest || share > kFinest) return vec4(0.0);
+  if (share < kCoarsest || f.x * to_view > kFinest * g.x * to_image) return vec4(0.0);
   vec2 size = cameras[0].size.xy;
   vec2 inside = min(pixel, size - 1.0 - pixel);
   float weight = clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0);
   vec3 colour = unscaled(sample_sharply(image0, pixel, size, kSharp)) * without_vignetting(cameras[0].tone, pixel, size);
-  return vec4(min(colour * pixel_light, vec3(1.0)), weight);
+  return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), weight);
+}
+
+// Both with weights; what `front` leaves is for `back`.
+vec4 over(vec4 front, vec4 back) {
+  float share = (1.0 - front.a) * back.a, weight = front.a + share;
+  return vec4((front.a * front.rgb + share * back.rgb) / max(weight, 1e-6), weight);
 }
 #else
 // What a pixel shows of a chart.
@@ -200,7 +209,7 @@ void leave_to_next(ivec2 pixel) {
 #endif
 
 void draw(ivec2 pixel, vec4 colour) {
-#if BLENDED
+#if BLENDED && CASES != IMAGE
   vec4 newest = imageLoad(picture, pixel);  // its weight in alpha
   if (newest.a > 0.0) colour = vec4(mix(newest.rgb, colour.rgb, colour.a == kFromImage ? 1.0 - newest.a : 0.0), 1.0);
 #endif
@@ -220,9 +229,12 @@ void main() {
   bool on_model = find_point(pixel, point);
   pixel_light = texelFetch(light, min(pixel, textureSize(light, 0) - 1), 0).rgb;
   vec4 colour = vec4(0.0);
-#if CASES == NEWEST_IMAGE
-  if (on_model) colour = newest_colour(point);
-  if (on_model && colour.a < 1.0) leave_to_next(pixel);
+#if CASES == IMAGE
+  if (on_model) colour = image_colour(point);
+#if BLENDED
+  colour = over(imageLoad(picture, pixel), colour);
+#endif
+  if (on_model && colour.a < kAll) leave_to_next(pixel);
   draw(pixel, colour);
 #elif CASES == USUAL
   if (on_model) {

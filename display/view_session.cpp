@@ -93,11 +93,11 @@ bool ViewSession::draw(const Pose& T_world_camera, const SceneState& state) {
 bool ViewSession::draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state) {
   give_back();
   if (drawings_.size() >= kMostDrawings) finish_drawings();
+  ImagesLease newest = images();  // before the textures
   TextureLease textures = thread_->textures().acquire();
   if (!textures) return false;
-  ImageLease image = thread_->image().acquire();
-  view.draw(T_world_camera, state, textures, image);
-  drawings_.push_back({std::move(textures), std::move(image), gl::Fence::insert()});
+  view.draw(T_world_camera, state, textures, newest);
+  drawings_.push_back({std::move(textures), std::move(newest), gl::Fence::insert()});
   gl::check_errors("the predicted view");
   return true;
 }

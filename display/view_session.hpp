@@ -61,8 +61,8 @@ class ViewSession {
 
   /// The newest textures, or an empty lease before the first. Not with `thesis`.
   TextureLease textures() const { return thread_->textures().acquire(); }
-  /// The newest image that views look up, or an empty lease. Not with `thesis`.
-  ImageLease image() const { return thread_->image().acquire(); }
+  /// The newest images that views look up, or an empty lease; to be acquired before textures(). Not with `thesis`.
+  ImagesLease images() const { return thread_->images().acquire(); }
 
   /// Draws the view from `T_world_camera` into picture(), with the newest textures. Does not wait for the GPU. False:
   /// the core has not published anything yet.
@@ -100,7 +100,7 @@ class ViewSession {
  private:
   struct Drawing {
     TextureLease textures;
-    ImageLease image;
+    ImagesLease images;
     gl::Fence end;
   };
   void finish_drawings();

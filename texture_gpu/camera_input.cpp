@@ -12,28 +12,23 @@ namespace {
 
 constexpr double kUploadTimeout = 5;  // seconds
 
+gl::Faces faces_with_margin(const Lens& lens, double margin_px) {
+  return gl::faces_for(lens, static_cast<int>(std::ceil(margin_px)) + 2);
+}
+
 int level_count(const Lens& lens) {
   return std::bit_width(static_cast<unsigned>(std::max(lens.width(), lens.height())));
 }
 
 }  // namespace
 
-CameraInput::CameraInput(const Lens& lens, double largest_margin_px)
-    : lens_(lens),
-      faces_(gl::faces_for(lens, static_cast<int>(std::ceil(largest_margin_px)) + 2), false),
-      image_(GL_RGBA8, lens.width(), lens.height(), 0, level_count(lens), "camera image"),
-      blocks_(GL_RG32F, (faces_.faces.width + 3) / 4, (faces_.faces.height + 3) / 4, faces_.faces.count, 1,
-              "depth blocks"),
-      uncertain_(GL_R8, faces_.faces.width, faces_.faces.height, faces_.faces.count, 1, "uncertain edges"),
-      rays_(gl::make_lens_rays(lens)),
-      block_(sizeof(gl::CameraBlock), "camera") {
-  const gl::CameraBlock block = gl::make_camera_block(lens, faces_.faces);
-  block_.write(std::span(&block, 1));
-  glTextureParameteri(image_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTextureParameteri(image_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+CameraInput::Camera::Camera(const Lens& seen_through, const gl::Faces& faces)
+    : lens(seen_through), rays(gl::make_lens_rays(lens)), block(sizeof(gl::CameraBlock), "camera") {
+  const gl::CameraBlock content = gl::make_camera_block(lens, faces);
+  block.write(std::span(&content, 1));
   const auto bytes = static_cast<GLsizeiptr>(4) * lens.width() * lens.height();
   constexpr GLbitfield kFlags = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  for (Staging& staging : ring_) {
+  for (Staging& staging : ring) {
     GLuint name = 0;
     glCreateBuffers(1, &name);
     staging.buffer = gl::Handle<gl::delete_buffer>(name);
@@ -42,14 +37,32 @@ CameraInput::CameraInput(const Lens& lens, double largest_margin_px)
   }
 }
 
-CameraInput::~CameraInput() {
-  for (Staging& staging : ring_) glUnmapNamedBuffer(staging.buffer.name());
+CameraInput::Camera::~Camera() {
+  for (Staging& staging : ring) glUnmapNamedBuffer(staging.buffer.name());
+}
+
+CameraInput::CameraInput(const Lens& lens, double largest_margin_px)
+    : CameraInput(std::make_shared<Camera>(lens, faces_with_margin(lens, largest_margin_px)),
+                  faces_with_margin(lens, largest_margin_px)) {}
+
+CameraInput::CameraInput(std::shared_ptr<Camera> camera, const gl::Faces& faces)
+    : camera_(std::move(camera)),
+      faces_(faces, false),
+      image_(GL_RGBA8, lens().width(), lens().height(), 0, level_count(lens()), "camera image"),
+      blocks_(GL_RG32F, (faces.width + 3) / 4, (faces.height + 3) / 4, faces.count, 1, "depth blocks"),
+      uncertain_(GL_R8, faces.width, faces.height, faces.count, 1, "uncertain edges") {
+  glTextureParameteri(image_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(image_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+}
+
+std::shared_ptr<CameraInput> CameraInput::another() const {
+  return std::shared_ptr<CameraInput>(new CameraInput(camera_, faces_.faces));
 }
 
 void CameraInput::upload(const cv::Mat& pixels) {
-  CV_Assert(pixels.cols == lens_.width() && pixels.rows == lens_.height());
-  Staging& staging = ring_[next_];
-  next_ = (next_ + 1) % ring_.size();
+  CV_Assert(pixels.cols == lens().width() && pixels.rows == lens().height());
+  Staging& staging = camera_->ring[camera_->next];
+  camera_->next = (camera_->next + 1) % camera_->ring.size();
   staging.read.wait(kUploadTimeout);
   cv::Mat target(pixels.rows, pixels.cols, CV_8UC4, staging.memory);
   cv::cvtColor(pixels, target, pixels.channels() == 1 ? cv::COLOR_GRAY2RGBA : cv::COLOR_BGR2RGBA);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "gl/camera_block.hpp"
 #include "gl/raster_pass.hpp"
@@ -13,10 +14,12 @@ namespace foresight {
 /// written while the last is still being read.
 class CameraInput {
  public:
-  explicit CameraInput(const Lens& lens, double largest_margin_px);
-  ~CameraInput();
+  CameraInput(const Lens& lens, double largest_margin_px);
   CameraInput(const CameraInput&) = delete;
   CameraInput& operator=(const CameraInput&) = delete;
+
+  /// A place for another image of the same camera. What does not depend on the image is shared: both are of one thread.
+  std::shared_ptr<CameraInput> another() const;
 
   /// Starts the upload of `pixels`.
   void upload(const cv::Mat& pixels);
@@ -24,11 +27,11 @@ class CameraInput {
   /// Builds the coarser levels that textures of low resolution are sampled from.
   void build_levels() const;
 
-  const Lens& lens() const { return lens_; }
+  const Lens& lens() const { return camera_->lens; }
   const gl::FaceImages& faces() const { return faces_; }
   const gl::Texture& image() const { return image_; }
-  const gl::Texture& rays() const { return rays_; }            ///< gl::make_lens_rays
-  const gl::Buffer& block() const { return block_; }           ///< gl::CameraBlock
+  const gl::Texture& rays() const { return camera_->rays; }    ///< gl::make_lens_rays
+  const gl::Buffer& block() const { return camera_->block; }   ///< gl::CameraBlock
   const gl::Texture& blocks() const { return blocks_; }        ///< RG32F: 1/z of each 4x4 block (blocks.comp)
   const gl::Texture& uncertain() const { return uncertain_; }  ///< R8: 1 on the far side of an edge (uncertain.comp)
 
@@ -38,12 +41,21 @@ class CameraInput {
     void* memory = nullptr;
     gl::Fence read;  // passed when the GPU has fetched it
   };
-  Lens lens_;
+  /// What all images of a camera have in common.
+  struct Camera {
+    explicit Camera(const Lens& lens, const gl::Faces& faces);
+    ~Camera();
+    Lens lens;
+    gl::Texture rays;
+    gl::Buffer block;
+    std::array<Staging, 3> ring;
+    std::size_t next = 0;
+  };
+  CameraInput(std::shared_ptr<Camera> camera, const gl::Faces& faces);
+
+  std::shared_ptr<Camera> camera_;
   gl::FaceImages faces_;
-  gl::Texture image_, blocks_, uncertain_, rays_;
-  gl::Buffer block_;
-  std::array<Staging, 3> ring_;
-  std::size_t next_ = 0;
+  gl::Texture image_, blocks_, uncertain_;
 };
 
 }  // namespace foresight

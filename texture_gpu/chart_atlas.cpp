@@ -94,6 +94,7 @@ void ChartAtlas::drop_page(AtlasPage& page) {
   heights_.give_back(page.height);
   retired_.push_back(page.colour);
   page.height = page.colour = atlas::kNoSlot;
+  page.held = page.fresh = 0;
 }
 
 /// What `old` pages, laid out as `before`, knew of their brightness, for the pages that now lie there. Without it the
@@ -110,6 +111,8 @@ void ChartAtlas::hand_on(const std::vector<AtlasPage>& old, const ChartRaster& b
       const AtlasPage& from = old[static_cast<std::size_t>(place.y() * pages.x() + place.x())];
       AtlasPage& page = chart.page[static_cast<std::size_t>(y * chart.pages.x() + x)];
       page.last_seen = from.last_seen;
+      page.seen_since = from.seen_since;
+      page.written = from.written;
       page.exposure = from.exposure;
       // Of another area of the surface: to be renewed with the first image that shows the page.
       page.exposure.rough = true;
@@ -202,6 +205,7 @@ std::span<const PageRecord> ChartAtlas::plan(std::span<const AtlasView> views, s
   }
   lay_out();
   collect_records(views);
+  pages_in_view_ = 0;
   return records_;
 }
 
@@ -282,11 +286,11 @@ ChartAtlas::Allocation ChartAtlas::allocate(std::span<const std::uint32_t> masks
   for (std::size_t i = 0; i < records_.size(); ++i) {
     relevel[i] = needs_relevel(charts_[records_[i].chart], page_index(records_[i]));
     AtlasPage& page = page_of(records_[i]);
-    if (masks[i]) page.last_seen = image;
+    if (masks[i]) page.last_seen = std::max(page.last_seen, image);
     if (masks[i]) ++visible;
     if (masks[i] && page.height == atlas::kNoSlot) ++visible_new;
   }
-  pages_in_view_ = visible;
+  pages_in_view_ = std::max(pages_in_view_, visible);
   Allocation out;
   if (!make_room(visible_new, image) || colours_.free() < visible) {
     if (!lower_resolution())
@@ -313,7 +317,8 @@ ChartAtlas::Allocation ChartAtlas::allocate(std::span<const std::uint32_t> masks
     }
     const std::uint32_t table_index = static_cast<std::uint32_t>(chart.first_page + page_index(r));
     const std::uint32_t fresh = colours_.take();
-    PageJob job{r.chart, r.xy, page.colour, fresh, page.height, table_index, page.covered};
+    PageJob job{r.chart, r.xy, page.colour, fresh, page.height, table_index, page.covered, worse_for(page)};
+    note_written(page, masks[i], image, relevel[i]);
     if (relevel[i]) {
       out.relevel.push_back(job);
       job.old_slot = fresh;  // filled by the re-levelling, not yet published: written in place

@@ -26,7 +26,8 @@ struct PageRecord {
 /// A page to be written, as jobs.glsl reads it.
 struct PageJob {
   std::uint32_t chart, xy, old_slot, new_slot;
-  std::uint32_t height_slot, table_index, covered, unused = 0;
+  std::uint32_t height_slot, table_index, covered;
+  float worse = 0;  ///< TextureOptions::worse for it; 0: whatever was seen before, the new image takes its place
 };
 
 /// What a page's brightness in new images is compared with (exposure.hpp).
@@ -44,7 +45,12 @@ struct AtlasPage {
   std::uint32_t height = atlas::kNoSlot;
   std::array<TilePlane, 4> tiles{};
   std::uint16_t covered = 0;    ///< texels on the surface
+  std::uint8_t held = 0;        ///< a bit for each tile: it has colours
   std::int64_t last_seen = -1;  ///< image number
+  /// Seen by each image from this one to `last_seen`; of use where images are extracted later than they are seen.
+  std::int64_t seen_since = -1;
+  std::int64_t written = -1;  ///< the last image whose colours it has
+  std::uint8_t fresh = 0;     ///< of `held`: from that image
   PageExposure exposure;
 };
 
@@ -114,7 +120,16 @@ class ChartAtlas {
     bool fits = true;                                        ///< false: resolutions were lowered, plan() again
   };
 
-  /// `masks`: one per record of the last plan(), zero for unseen. Throws RuntimeFailure where even
+  /// Image number `image` sees these pages of the last plan(), whether or not they are written now.
+  void note_seen(std::span<const std::uint32_t> masks, std::int64_t image);
+  /// Of these masks of the last plan(), what has no colours yet.
+  std::vector<std::uint32_t> not_held(std::span<const std::uint32_t> masks) const;
+  /// Of these masks, what does not have its colours from image number `image`.
+  std::vector<std::uint32_t> not_from(std::span<const std::uint32_t> masks, std::int64_t image) const;
+  /// From image number `image` on, a page of the last plan() is seen far more coarsely than before.
+  void note_coarser(std::size_t record, std::int64_t image);
+
+  /// `masks`: one per record of the last plan(), zero for what is not to be written. Throws RuntimeFailure where even
   /// the smallest pages do not fit. `fits` false leaves nothing allocated.
   /// Needs one free colour slot for each page with a mask and each page to be re-levelled: at most
   /// slots_needed() of them.
@@ -139,6 +154,10 @@ class ChartAtlas {
   void write_job_geometry(std::span<const PageJob> jobs, std::span<const AtlasView> views,
                           std::vector<Eigen::Vector4f>& out) const;
 
+  /// The same for each page of the last plan() that has a mask (missed.comp).
+  void write_page_geometry(std::span<const std::uint32_t> masks, std::span<const AtlasView> views,
+                           std::vector<Eigen::Vector4f>& out) const;
+
   /// For the GPU: the page table, and five vec4 per chart (chart_record.glsl).
   void write_table(std::vector<std::uint32_t>& out) const;
   void write_charts(std::vector<Eigen::Vector4f>& out) const;
@@ -157,12 +176,15 @@ class ChartAtlas {
   void lay_out();
   void collect_records(std::span<const AtlasView> views);
   bool needs_relevel(const AtlasChart& chart, int page) const;
+  float worse_for(const AtlasPage& page) const;
+  static void note_written(AtlasPage& page, std::uint32_t mask, std::int64_t image, bool carried_over);
   bool make_room(std::size_t heights_needed, std::int64_t image);
   bool lower_resolution();
   void drop_page(AtlasPage& page);
   static void hand_on(const std::vector<AtlasPage>& old, const ChartRaster& before, const Eigen::Vector2i& pages,
                       AtlasChart& chart);
   int page_index(const PageRecord& r) const;
+  void append_geometry(const PageJob& job, std::span<const AtlasView> views, std::vector<Eigen::Vector4f>& out) const;
 
   std::shared_ptr<const SurfacePatches> surface_;
   TextureOptions options_;

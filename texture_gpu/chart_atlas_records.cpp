@@ -3,27 +3,40 @@
 
 namespace foresight {
 
+void ChartAtlas::append_geometry(const PageJob& job, std::span<const AtlasView> views,
+                                 std::vector<Eigen::Vector4f>& out) const {
+  const auto slot = [](std::uint32_t s) { return s == atlas::kNoSlot ? -1.0 : static_cast<double>(s); };
+  const ChartRaster& r = charts_[job.chart].raster;
+  const Patch& patch = surface_->patches[static_cast<std::size_t>(surface_->charts[job.chart].patch)];
+  const Eigen::Vector2d uv =
+      r.uv0 + atlas::kPage * Eigen::Vector2d(job.xy & 0xffff, job.xy >> 16).cwiseQuotient(r.density);
+  const Eigen::Vector3d corner = patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + r.height0 * patch.n;
+  for (const AtlasView& view : views) {
+    const Pose& T = view.T_camera_node[static_cast<std::size_t>(patch.node)];
+    const auto row = [&](const Eigen::Vector3d& v, double w) {
+      out.push_back(Eigen::Vector4d(v.x(), v.y(), v.z(), w).cast<float>());
+    };
+    row(T * corner, slot(job.height_slot));
+    row(T.linear() * patch.eu / r.density.x(), slot(job.old_slot));
+    row(T.linear() * patch.ev / r.density.y(), slot(job.new_slot));
+    row(T.linear() * patch.n * r.height_step, job.worse);
+  }
+}
+
 void ChartAtlas::write_job_geometry(std::span<const PageJob> jobs, std::span<const AtlasView> views,
                                     std::vector<Eigen::Vector4f>& out) const {
   out.clear();
   out.reserve(4 * jobs.size() * views.size());
-  const auto slot = [](std::uint32_t s) { return s == atlas::kNoSlot ? -1.0 : static_cast<double>(s); };
-  for (const PageJob& job : jobs) {
-    const ChartRaster& r = charts_[job.chart].raster;
-    const Patch& patch = surface_->patches[static_cast<std::size_t>(surface_->charts[job.chart].patch)];
-    const Eigen::Vector2d uv =
-        r.uv0 + atlas::kPage * Eigen::Vector2d(job.xy & 0xffff, job.xy >> 16).cwiseQuotient(r.density);
-    const Eigen::Vector3d corner = patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + r.height0 * patch.n;
-    for (const AtlasView& view : views) {
-      const Pose& T = view.T_camera_node[static_cast<std::size_t>(patch.node)];
-      const auto row = [&](const Eigen::Vector3d& v, double w) {
-        out.push_back(Eigen::Vector4d(v.x(), v.y(), v.z(), w).cast<float>());
-      };
-      row(T * corner, slot(job.height_slot));
-      row(T.linear() * patch.eu / r.density.x(), slot(job.old_slot));
-      row(T.linear() * patch.ev / r.density.y(), slot(job.new_slot));
-      row(T.linear() * patch.n * r.height_step, 0);
-    }
+  for (const PageJob& job : jobs) append_geometry(job, views, out);
+}
+
+void ChartAtlas::write_page_geometry(std::span<const std::uint32_t> masks, std::span<const AtlasView> views,
+                                     std::vector<Eigen::Vector4f>& out) const {
+  out.clear();
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const PageRecord& r = records_[i];
+    const AtlasPage& page = charts_[r.chart].page[static_cast<std::size_t>(page_index(r))];
+    if (masks[i]) append_geometry({r.chart, r.xy, page.colour, page.colour, page.height, 0, page.covered}, views, out);
   }
 }
 

@@ -18,7 +18,6 @@ layout(binding = 0, rgba16f) uniform writeonly image2DArray colours;
 #include "holes.glsl"
 uniform int first_group, tile_count;
 const float kBeyondWhite = 0.35;
-uniform float worse;  // new colours below this share of the old resolution do not replace them
 
 // Factor from the image's values to the reference exposure (exposure.hpp).
 float tone(int c, vec2 pixel) {
@@ -82,6 +81,7 @@ struct View {
 struct Column {
   uint tile;
   bool has_old;
+  float worse;  // new colours below this share of the old resolution do not replace them
   ivec3 heights_at, old_at, new_at;
   View views[CAMERAS];
 };
@@ -110,7 +110,7 @@ void extract_texel(Column column, int row) {
   }
   // The newest wins. What is clearly worse waits; the old colour's claim ages by one step
   // (1/32 of a doubling) for each image that would have replaced it.
-  bool take = colour.a < kSeen || code >= colour.a + log2(worse) / 8.0 * 253.0 / 255.0;
+  bool take = colour.a < kSeen || code >= colour.a + log2(max(column.worse, 1e-6)) / 8.0 * 253.0 / 255.0;
   vec4 best = vec4(fused(colour.a < kSeen ? vec3(-1.0) : colour.rgb, sampled, best_tone), code);
   if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
   if (raw == 0u) colour = vec4(0.0);
@@ -139,6 +139,7 @@ void main() {
     float quality = (column.tile & (1u << c)) != 0u ? sqrt(abs(determinant(axes))) : 0.0;
     column.views[c] = View(foot, ev.xyz, eh.xyz, axes, quality);
     column.has_old = eu.w >= 0.0;
+    column.worse = eh.w;
     column.old_at = slot_origin(uint(max(eu.w, 0.0)), 0) + ivec3(first, 0);
     column.new_at = slot_origin(uint(ev.w), 0) + ivec3(first, 0);
   }

@@ -126,8 +126,7 @@ void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
   for (const auto& tiles : seen_tiles_) tile_count_ += tiles.size();
 }
 
-void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse,
-                      FrameGate* gate) {
+void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, FrameGate* gate) {
   const auto& tiles = seen_tiles_[size];
   if (tiles.empty()) return;
   const gl::Program& program = extract_[kSizes * static_cast<std::size_t>(inputs.camera_count() - 1) + size];
@@ -139,7 +138,6 @@ void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_t
   };
   filter(GL_LINEAR_MIPMAP_LINEAR);
   inputs.bind(program, depth_tolerance);
-  program.set("worse", static_cast<float>(worse));
   program.set("tile_count", static_cast<int>(tiles.size()));
   tiles_[size].assign(std::span<const std::uint32_t>(tiles));
   glBindTextureUnit(7, geometry_.texture());
@@ -150,7 +148,7 @@ void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_t
 }
 
 void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
-                          double worse, FrameGate* gate) {
+                          FrameGate* gate) {
   sort_tiles(work, inputs);
   if (work.jobs.empty()) return;
   jobs_.assign(work.jobs);
@@ -161,7 +159,7 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   glBindTextureUnit(11, store.colours->name());
   glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
-  for (std::size_t size = 0; size < kSizes; ++size) run(size, inputs, depth_tolerance, worse, gate);
+  for (std::size_t size = 0; size < kSizes; ++size) run(size, inputs, depth_tolerance, gate);
   next_slice(gate, "copied tiles");
 
   copy_.use();

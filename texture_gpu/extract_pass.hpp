@@ -38,19 +38,20 @@ class ExtractPass {
   /// carried over (copy.comp).
   /// `gate`: in slices; may be null.
   void extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
-               double worse, FrameGate* gate = nullptr);
+               FrameGate* gate = nullptr);
 
   /// Of the last extract(): its jobs, and for each whether it has texels that no camera saw.
   const gl::BufferTexture& jobs() const { return jobs_; }
   const gl::BufferTexture& holes() const { return holes_; }
-  std::size_t tiles() const { return tile_count_; }  ///< tiles of the last extract() that a camera may see
+  std::size_t tiles() const { return tile_count_; }            ///< of the last extract() that a camera may see
+  std::size_t copied() const { return unseen_tiles_.size(); }  ///< the other tiles of its pages
 
  private:
   gl::Program heights_, relevel_, copy_;
   static constexpr std::size_t kSizes = 4;       // of texels in pixels, as TEXELS in extract.comp
   std::array<gl::Program, 2 * kSizes> extract_;  // kSizes * (cameras - 1) + size
   void sort_tiles(const Work& work, const SeenInputs& inputs);
-  void run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, double worse, FrameGate* gate);
+  void run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, FrameGate* gate);
 
   gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_[kSizes], copy_tiles_, holes_, staged_, slots_;
   std::array<std::vector<std::uint32_t>, kSizes> seen_tiles_;  // by size; job << 4 | tile << 2 | cameras

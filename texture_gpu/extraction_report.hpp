@@ -21,7 +21,8 @@ struct ExtractionReport {
   double log_gain = 0;               ///< of the left image (exposure.hpp)
   LampAnswer lamp;                   ///< what is known of the main lamp
   std::size_t pages = 0;             ///< pages written; the thesis' pipeline: polygons
-  std::size_t tiles = 0;             ///< tiles of 64 texels written
+  std::size_t tiles = 0;             ///< tiles of 64 texels for which an image was asked
+  std::size_t texels_written = 0;    ///< of these tiles, those copied beside them, and those of changed resolutions
   std::uint64_t bytes_in_use = 0;    ///< of all textures; the atlas counts both generations
   std::uint64_t bytes_reserved = 0;  ///< held for it, at most TextureOptions::memory_bytes
   std::uint64_t texels_resident = 0;

@@ -15,7 +15,9 @@ template <typename T>
 class Lease {
  public:
   Lease() = default;
-  explicit Lease(std::shared_ptr<const T> lent) : lent_(std::move(lent)) {}
+  explicit Lease(std::shared_ptr<const T> lent) : lent_(std::move(lent)) {
+    if (lent_) lent_->leases.fetch_add(1, std::memory_order_relaxed);
+  }
   Lease(Lease&& other) noexcept : lent_(std::move(other.lent_)) {}
   Lease& operator=(Lease&& other) noexcept {
     if (this != &other) {
@@ -45,7 +47,6 @@ class Latest {
   /// The newest one, or an empty lease before the first.
   Lease<T> acquire() const {
     const std::scoped_lock lock(mutex_);
-    if (latest_) latest_->leases.fetch_add(1, std::memory_order_relaxed);
     return Lease<T>(latest_);
   }
   void publish(std::shared_ptr<const T> next) {

@@ -28,6 +28,9 @@ struct TextureOptions {
   double worse = 0.3;
   /// Estimate each image's gain and the lens's vignetting and even them out.
   bool even_exposure = true;
+  /// Where views look the newest image up directly, textures need not hold what it shows: of each image is extracted
+  /// what has no colours yet, and what the next one shows no more, or less well. False: all of each image.
+  bool only_what_is_needed = true;
   /// Find the main lamp by the shadows of what moves; then take these out of images, and let the display draw them
   /// where they fall at the instant that it shows.
   bool shadows = true;

@@ -1,4 +1,4 @@
-// What the texture thread hands to the display before the textures: the newest image, ready to be looked up.
+// What the texture thread hands to the display before the textures: the newest images, ready to be looked up.
 #pragma once
 
 #include "scene/posed_frame.hpp"
@@ -21,7 +21,16 @@ struct PublishedImage {
   mutable std::atomic<int> leases{0};
 };
 
-using ImageLease = Lease<PublishedImage>;
-using LatestImage = Latest<PublishedImage>;
+/// What views look up before they turn to textures.
+struct NewestImages {
+  Lease<PublishedImage> newest;
+  /// Empty where textures hold all that it shows and `newest` does not.
+  Lease<PublishedImage> before;
+
+  mutable std::atomic<int> leases{0};
+};
+
+using ImagesLease = Lease<NewestImages>;
+using LatestImages = Latest<NewestImages>;
 
 }  // namespace foresight

@@ -3,11 +3,24 @@
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
+namespace {
 
-SurveyPass::SurveyPass()
-    : cull_(gl::Program::compute(gl::texture_gpu_shaders(), "cull.comp")),
-      exposure_(gl::Program::compute(gl::texture_gpu_shaders(), "exposure.comp")),
-      pages_(GL_RGBA32UI, 4096, "pages to survey") {}
+gl::Program program(const char* file, std::span<const Lens> lenses, const std::vector<std::string>& more = {}) {
+  auto defines = gl::camera_defines(lenses);
+  defines.insert(defines.end(), more.begin(), more.end());
+  return gl::Program::compute(gl::texture_gpu_shaders(), file, defines);
+}
+
+}  // namespace
+
+SurveyPass::SurveyPass(std::span<const Lens> lenses)
+    : cull_(program("cull.comp", lenses)),
+      exposure_(program("exposure.comp", lenses)),
+      perhaps_missed_(program("missed.comp", lenses, {"STEP 0"})),
+      missed_(program("missed.comp", lenses, {"STEP 1"})),
+      pages_(GL_RGBA32UI, 4096, "pages to survey"),
+      tiles_(GL_R32UI, 4096, "tiles to survey"),
+      geometry_(GL_RGBA32F, 4096, "geometry of pages to survey") {}
 
 void SurveyPass::set_pages(std::span<const PageRecord> pages) {
   page_count_ = static_cast<int>(pages.size());
@@ -38,6 +51,58 @@ std::vector<std::uint32_t> SurveyPass::cull(const SeenInputs& inputs, const gl::
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   masks_.read(std::span(masks));
   return masks;
+}
+
+/// Of `tiles`, what `program` says of each.
+std::vector<std::uint32_t> SurveyPass::ask(const gl::Program& program, std::span<const std::uint32_t> tiles) {
+  std::vector<std::uint32_t> answers(tiles.size());
+  if (tiles.empty()) return answers;
+  program.use();
+  program.set("tile_count", static_cast<int>(tiles.size()));
+  tiles_.assign(tiles);
+  if (answers_.bytes() < tiles.size_bytes()) answers_ = gl::Buffer(tiles.size_bytes() * 3 / 2, "missed tiles");
+  glBindTextureUnit(10, tiles_.texture());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, answers_.name());
+  glDispatchCompute(gl::groups(static_cast<int>(tiles.size()), 64), 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  answers_.read(std::span(answers));
+  return answers;
+}
+
+SurveyPass::Missed SurveyPass::missed(const SeenInputs& inputs, std::span<const Eigen::Vector4f> geometry,
+                                      const AtlasStore& store, std::span<const std::uint32_t> seen,
+                                      double depth_tolerance, double worse) {
+  std::vector<std::size_t> pages;  // of which geometry tells
+  std::vector<std::uint32_t> tiles, answers;
+  for (std::size_t page = 0; page < seen.size(); ++page) {
+    if (!seen[page]) continue;
+    for (std::uint32_t tile = 0; tile < 4; ++tile)
+      if (seen[page] >> (2 * tile) & 3u) tiles.push_back(static_cast<std::uint32_t>(pages.size()) << 2 | tile);
+    pages.push_back(page);
+  }
+  geometry_.assign(geometry);
+  for (const gl::Program* program : {&perhaps_missed_, &missed_}) {
+    inputs.bind(*program, depth_tolerance);
+    program->set("worse", static_cast<float>(worse));
+    glBindTextureUnit(7, geometry_.texture());
+    glBindTextureUnit(9, store.heights.name());
+    glBindTextureUnit(11, inputs.camera(0).blocks().name());
+    answers = ask(*program, tiles);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      if (!answers[i]) continue;
+      tiles[kept] = tiles[i];
+      answers[kept++] = answers[i];
+    }
+    tiles.resize(kept);
+  }
+  Missed out{std::vector<std::uint32_t>(seen.size()), {}};
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const std::size_t page = pages[tiles[i] >> 2];
+    out.masks[page] |= seen[page] & 3u << (2 * (tiles[i] & 3u));
+    if (answers[i] & 2u && (out.coarser.empty() || out.coarser.back() != page)) out.coarser.push_back(page);
+  }
+  return out;
 }
 
 std::vector<ExposureSample> SurveyPass::brightness(const SeenInputs& inputs, const gl::BufferTexture& charts,

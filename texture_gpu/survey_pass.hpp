@@ -13,13 +13,24 @@ namespace foresight {
 /// The only passes whose answers come back to the CPU: pages are allocated there. One context.
 class SurveyPass {
  public:
-  SurveyPass();
+  /// `lenses`: of all cameras.
+  explicit SurveyPass(std::span<const Lens> lenses);
 
   /// Uploads the pages to be asked about.
   void set_pages(std::span<const PageRecord> pages);
 
   /// One mask per page: bit 2 * tile + camera (cull.comp). Waits for the GPU.
   std::vector<std::uint32_t> cull(const SeenInputs& inputs, const gl::BufferTexture& charts, double depth_tolerance);
+
+  /// Which tiles hold points that camera 1 of `inputs` saw and camera 0 does not show, or less well (missed.comp).
+  struct Missed {
+    std::vector<std::uint32_t> masks;  ///< one a page: of `seen`, the bits of such tiles
+    std::vector<std::size_t> coarser;  ///< pages that camera 0 shows, but below `worse` of camera 1's resolution
+  };
+  /// Of the tiles in `seen`, which has a mask for each page as cull() gives them; their heights are there. `geometry`:
+  /// ChartAtlas::write_page_geometry() for them and both cameras. Waits for the GPU.
+  Missed missed(const SeenInputs& inputs, std::span<const Eigen::Vector4f> geometry, const AtlasStore& store,
+                std::span<const std::uint32_t> seen, double depth_tolerance, double worse);
 
   /// Samples of the pages first, first + stride, ... as `camera` sees them now (exposure.comp).
   /// Waits for the GPU.
@@ -28,9 +39,11 @@ class SurveyPass {
                                          int stride);
 
  private:
-  gl::Program cull_, exposure_;
-  gl::BufferTexture pages_;
-  gl::Buffer masks_, samples_;
+  std::vector<std::uint32_t> ask(const gl::Program& program, std::span<const std::uint32_t> tiles);
+
+  gl::Program cull_, exposure_, perhaps_missed_, missed_;
+  gl::BufferTexture pages_, tiles_, geometry_;
+  gl::Buffer masks_, samples_, answers_;
   int page_count_ = 0;
 };
 

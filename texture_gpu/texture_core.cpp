@@ -1,9 +1,7 @@
 #include "texture_gpu/texture_core.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <thread>
 #include <utility>
 
 #include "gl/context.hpp"
@@ -13,8 +11,8 @@ namespace foresight {
 namespace {
 
 constexpr int kExposurePages = 600;
-constexpr double kGpuTimeout = 20;                          // seconds for one frame, software renderers included
-constexpr std::chrono::milliseconds kDisplayTimeout{5000};  // for the display to move on to newer textures
+constexpr std::uint64_t kImagesToRefresh = 32;  // images within which a page that stays in view is written anyway
+constexpr double kGpuTimeout = 20;              // seconds for one frame, software renderers included
 
 std::vector<Lens> all_lenses(const Lens& left, const std::optional<Lens>& right) {
   return right ? std::vector{left, *right} : std::vector{left};
@@ -29,18 +27,18 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
       options_(options),
       atlas_(surface, options),
       store_(atlas_),
+      places_(left, right, options.margin_px),
       exposures_(right ? 2 : 1),
       buffers_(std::make_shared<gl::SceneBuffers>(*scene_)),
       raster_(buffers_, false),
+      survey_(all_lenses(left, right)),
       extract_(all_lenses(left, right)),
       fill_(*surface),
       lamp_finder_(scene_),
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
-  cameras_.push_back(std::make_shared<CameraInput>(left, options.margin_px));
-  if (right) cameras_.push_back(std::make_shared<CameraInput>(*right, options.margin_px));
   // The first image is fused with an empty generation.
-  current_ = next_generation();
+  current_ = generations_.take(store_);
   atlas_.write_table(table_);
   atlas_.write_charts(chart_rows_);
   current_->table.assign(std::span<const std::uint32_t>(table_));
@@ -59,180 +57,228 @@ void TextureCore::mark(const char* stage) {
 ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& latest) {
   clock_.start();
   look(frame);
-  return extract(frame, latest);
+  looked_up_ = false;
+  return extract(latest);
 }
 
-bool TextureCore::look(const PosedFrame& frame, LatestImage& latest) {
+bool TextureCore::look(const PosedFrame& frame, LatestImages& latest) {
   clock_.start();
-  choose_cameras();
   look(frame);
-  if (number_ == 0) return false;
+  looked_up_ = number_ > 0;
+  if (!looked_up_) return false;
   // The pages of the image before tell the exposure as well as its own, which are not planned yet.
   estimate_exposure();
-  publish(frame.left, latest);
+  publish(latest);
   return true;
 }
 
-ExtractionReport TextureCore::extract(const PosedFrame& frame, LatestTextures& latest) {
-  ExtractionReport report;
+ExtractionReport TextureCore::extract(LatestTextures& latest) {
   clock_.resume();
   if (gate_) gate_->begin("pages");
+  if (owed_) save_what_leaves(latest);
   ChartAtlas::Allocation allocation;
-  if (!allocate(allocation)) return report;
+  if (!allocate(allocation)) return {};
+  list_ages(newest_.time());
+  write(newest_, std::move(allocation), latest);
+  atlas_.commit();
+  if (gate_) gate_->end();
+  ++image_;
+  return report();
+}
+
+/// From the image's pages to a published generation.
+void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocation, LatestTextures& latest) {
   extract_.upload_heights(atlas_, allocation.new_heights, store_);
   if (!allocation.new_heights.empty()) survey_.set_pages(records_ = atlas_.placed_records());
   mark("prepare");
-  if (!exposure_known_) estimate_exposure();
+  if (!frame.exposure_known) estimate_exposure();
 
-  Generation next = next_generation();
+  GenerationPool::Generation next = generations_.take(store_);
   atlas_.write_table(table_);
   next->table.assign(std::span<const std::uint32_t>(table_));
   next->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
-  write_ages(frame.left.time, *next);
+  next->ages.assign(std::span<const float>(ages_));
   next->places.clear();
   for (const AtlasChart& chart : atlas_.charts()) next->places.push_back({chart.raster.density, chart.first_page});
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
   mark("prepare");
-  atlas_.write_job_geometry(allocation.jobs, views_, geometry_);
-  extract_.extract({allocation.jobs, allocation.masks, geometry_}, inputs_, store_, options_.depth_tolerance,
-                   options_.worse, gate_);
+  atlas_.write_job_geometry(allocation.jobs, frame.views, geometry_);
+  extract_.extract({allocation.jobs, allocation.masks, geometry_}, frame.inputs, store_, options_.depth_tolerance,
+                   gate_);
   mark("extract");
   fill_and_finish(allocation, *next);
+  count(allocation);
 
   next->number = ++number_;
-  next->newest_image = frame.left.time;
-  next->light = light_;
-  next->light_age = light_ ? static_cast<float>(to_seconds(frame.left.time - light_since_)) : -1;
-  next->display_gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
-  atlas_.commit();
-  retired_.push_back({current_, std::move(allocation.retired)});
+  next->newest_image = frame.time();
+  next->light = frame.light;
+  next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - light_since_)) : -1;
+  next->display_gain = static_cast<float>(std::exp(frame.log_gain));
+  generations_.retire(current_, std::move(allocation.retired));
   current_ = next;
   latest.publish(next);
   clock_.mark("publish");
-  if (gate_) gate_->end();
-  ++image_;
-
-  report.published = true;
-  report.newest_image = frame.left.time;
-  report.published_at = std::chrono::steady_clock::now();
-  report.number = number_;
-  report.stages = clock_.read();
-  report.log_gain = exposures_[0].log_gain();
-  report.lamp = lamp_finder_.answer();
-  report.pages = allocation.jobs.size();
-  report.tiles = extract_.tiles();
-  report.bytes_in_use = atlas_.bytes_in_use();
-  report.bytes_reserved = store_.held().bytes();
-  report.texels_resident = std::uint64_t{atlas_.resident_pages()} * atlas::kPage * atlas::kPage;
-  report.policy = atlas_.policy();
-  return report;
 }
 
-/// A published image stays as it is while it is shown: the next one goes to another place.
-void TextureCore::choose_cameras() {
-  const auto free = std::ranges::find_if(images_lent_, [&](const auto& image) {
-    return image != newest_image_ && image->leases.load(std::memory_order_acquire) == 0;
-  });
-  if (free != images_lent_.end()) {
-    newest_image_ = *free;
-  } else {
-    newest_image_ = images_lent_.emplace_back(std::make_shared<PublishedImage>());
-    newest_image_->camera = std::make_shared<CameraInput>(cameras_[0]->lens(), options_.margin_px);
-  }
-  cameras_[0] = newest_image_->camera;
+void TextureCore::count(const ChartAtlas::Allocation& allocation) {
+  done_.pages += allocation.jobs.size();
+  done_.tiles += extract_.tiles();
+  done_.texels_written += (extract_.tiles() + extract_.copied()) * atlas::kTile * atlas::kTile +
+                          allocation.relevel.size() * atlas::kPage * atlas::kPage;
 }
 
-void TextureCore::publish(const PosedImage& image, LatestImage& latest) {
-  PublishedImage& out = *newest_image_;
-  out.image = {{}, image.time, image.T_world_camera, image.scene, image.margin_px};
+ExtractionReport TextureCore::report() {
+  ExtractionReport out = std::exchange(done_, {});
+  out.published = true;
+  out.newest_image = newest_.time();
+  out.published_at = std::chrono::steady_clock::now();
+  out.number = number_;
+  out.stages = clock_.read();
+  out.log_gain = exposures_[0].log_gain();
+  out.lamp = lamp_finder_.answer();
+  out.bytes_in_use = atlas_.bytes_in_use();
+  out.bytes_reserved = store_.held().bytes();
+  out.texels_resident = std::uint64_t{atlas_.resident_pages()} * atlas::kPage * atlas::kPage;
+  out.policy = atlas_.policy();
+  return out;
+}
+
+void TextureCore::publish(LatestImages& latest) {
+  PublishedImage& out = *newest_.published;
+  out.image = newest_.images[0];
+  if (!out.image.margin_px) out.image.margin_px = options_.margin_px;
   out.tone = {1, static_cast<float>(exposures_[0].vignetting().x()),
               static_cast<float>(exposures_[0].vignetting().y())};
-  out.gain = static_cast<float>(std::exp(exposures_[0].log_gain()));
-  out.light = light_;
+  out.gain = static_cast<float>(std::exp(newest_.log_gain));
+  out.light = newest_.light;
   out.depth_tolerance = options_.depth_tolerance;
   gl::Fence::insert().wait(kGpuTimeout);
-  latest.publish(newest_image_);
+  auto images = std::make_shared<NewestImages>();
+  images->newest = Lease<PublishedImage>(newest_.published);
+  const bool same_light = (newest_.light == nullptr) == (before_.light == nullptr);
+  if (owed_ && same_light) images->before = Lease<PublishedImage>(before_.published);
+  latest.publish(std::move(images));
   clock_.mark("publish");
 }
 
 /// Image upload, depth and uncertain edges of every camera of the frame.
 void TextureCore::look(const PosedFrame& frame) {
-  exposure_known_ = false;
   if (gate_) gate_->begin("image");
-  images_ = {&frame.left};
-  if (frame.right && cameras_.size() > 1) images_.push_back(&*frame.right);
-  active_.clear();
-  views_.clear();
-  for (std::size_t i = 0; i < images_.size(); ++i) {
-    cameras_[i]->upload(images_[i]->pixels);
-    active_.push_back(cameras_[i].get());
-  }
+  std::swap(newest_, before_);
+  places_.place(frame, before_, newest_);
+  const std::size_t count = newest_.images.size();
+  for (std::size_t i = 0; i < count; ++i) newest_.cameras[i]->upload((i == 0 ? frame.left : *frame.right).pixels);
   mark("upload");
-  for (std::size_t i = 0; i < images_.size(); ++i)
-    raster_(images_[i]->T_world_camera, images_[i]->scene, cameras_[i]->faces());
+  for (std::size_t i = 0; i < count; ++i)
+    raster_(newest_.images[i].T_world_camera, newest_.images[i].scene, newest_.cameras[i]->faces());
   mark("depth");
-  for (std::size_t i = 0; i < images_.size(); ++i) {
-    edges_(*cameras_[i], images_[i]->margin_px.value_or(options_.margin_px), options_.depth_tolerance);
-    AtlasView view{&cameras_[i]->lens(), &cameras_[i]->faces().faces, {}};
-    const Pose T_camera_world = images_[i]->T_world_camera.inverse();
-    for (const Pose& T_world_node : images_[i]->scene.T_world_node)
-      view.T_camera_node.push_back(T_camera_world * T_world_node);
-    views_.push_back(std::move(view));
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    edges_(*newest_.cameras[i], newest_.images[i].margin_px.value_or(options_.margin_px), options_.depth_tolerance);
   mark("edges");
-  inputs_.update(active_, images_, std::vector<Eigen::Vector3f>(images_.size(), {1, 0, 0}));
-  if (!options_.shadows) return;
-  find_lamp();
-  take_out_shadows();
+  newest_.update_inputs(std::vector<Eigen::Vector3f>(count, {1, 0, 0}));
+  newest_.log_gain = exposures_[0].log_gain();
+  if (options_.shadows) {
+    find_lamp();
+    take_out_shadows();
+  }
+  newest_.light = light_;
 }
 
 /// Before its shadows are taken out of the image.
 void TextureCore::find_lamp() {
-  const PosedImage& image = *images_[0];
+  const PosedImage& image = newest_.images[0];
   if (!lamp_finder_.look(image.scene)) return;
   if (witnesses_ != lamp_finder_.number()) witness_pass_.set_witnesses(lamp_finder_.witnesses());
   witnesses_ = lamp_finder_.number();
   lamp_finder_.add(image.scene, image.T_world_camera.translation(),
-                   witness_pass_.brightness(inputs_, image.T_world_camera, options_.depth_tolerance));
+                   witness_pass_.brightness(newest_.inputs, image.T_world_camera, options_.depth_tolerance));
   mark("lamp");
 }
 
 void TextureCore::take_out_shadows() {
   const auto& lamp = lamp_finder_.lamp();
   if (!lamp) return light_.reset();
-  if (!light_) light_since_ = images_[0]->time;
+  if (!light_) light_since_ = newest_.time();
   if (!light_ || light_->lamp != *lamp || light_->moving != lamp_finder_.moving())
     light_ = std::make_shared<const SceneLight>(SceneLight{*lamp, lamp_finder_.moving()});
   if (!shadow_map_) shadow_map_ = std::make_unique<ShadowMap>(buffers_);
   bool shaded = false;
-  for (std::size_t i = 0; i < images_.size(); ++i) {
-    if (i == 0 || images_[i]->time != images_[0]->time) shaded = shadow_map_->update(*light_, images_[i]->scene);
+  for (std::size_t i = 0; i < newest_.images.size(); ++i) {
+    const PosedImage& image = newest_.images[i];
+    const CameraInput& camera = *newest_.cameras[i];
+    if (i == 0 || image.time != newest_.time()) shaded = shadow_map_->update(*light_, image.scene);
     if (!shaded) continue;
-    if (i >= shadows_.size()) shadows_.emplace_back(cameras_[i]->lens());
-    const CameraInput& camera = *cameras_[i];
-    shadows_[i]({camera.lens(), camera.block(), camera.faces(), camera.rays(), images_[i]->T_world_camera},
-                *shadow_map_);
+    if (i >= shadows_.size()) shadows_.emplace_back(camera.lens());
+    shadows_[i]({camera.lens(), camera.block(), camera.faces(), camera.rays(), image.T_world_camera}, *shadow_map_);
     shadows_[i].take_out_of(camera.image());
   }
   mark("shadows");
 }
 
-/// Plans resolutions, asks the GPU which pages are seen, and gives them places; again with lower
-/// resolutions until they fit.
+/// Of the image before, what the newest one shows no more, or less well: views are going to look for it in the
+/// textures.
+void TextureCore::save_what_leaves(LatestTextures& latest) {
+  const std::array<const CameraInput*, 2> cameras{newest_.cameras[0].get(), before_.cameras[0].get()};
+  const std::array<const PosedImage*, 2> images{newest_.images.data(), before_.images.data()};
+  both_.update(cameras, images, std::array<Eigen::Vector3f, 2>{{{1, 0, 0}, {1, 0, 0}}});
+  const SurveyPass::Missed missed =
+      not_shown(both_, {newest_.views[0], before_.views[0]}, atlas_.not_from(seen_, image_ - 1));
+  for (std::size_t page : missed.coarser) atlas_.note_coarser(page, image_);
+  mark("leaving");
+  ChartAtlas::Allocation allocation;
+  if (std::ranges::all_of(missed.masks, [](std::uint32_t mask) { return mask == 0; })) return;
+  if (place(missed.masks, image_ - 1, allocation) && allocation.fits) write(before_, std::move(allocation), latest);
+}
+
+/// What camera 1 of `inputs` saw of these tiles, and camera 0 does not show as well.
+SurveyPass::Missed TextureCore::not_shown(const SeenInputs& inputs, const std::vector<AtlasView>& views,
+                                          const Masks& tiles) {
+  atlas_.write_page_geometry(tiles, views, geometry_);
+  return survey_.missed(inputs, geometry_, store_, tiles, options_.depth_tolerance, options_.worse);
+}
+
+/// Plans resolutions, asks the GPU which pages are seen, and gives places to those that are to be written; again with
+/// lower resolutions until they fit.
 bool TextureCore::allocate(ChartAtlas::Allocation& out) {
-  reclaim();
+  generations_.reclaim(atlas_);
   for (;;) {
-    records_ = atlas_.plan(views_, image_);
+    records_ = atlas_.plan(newest_.views, image_);
     atlas_.write_charts(chart_rows_);
     charts_.assign(std::span<const Eigen::Vector4f>(chart_rows_));
     survey_.set_pages(records_);
-    const auto masks = survey_.cull(inputs_, charts_, options_.depth_tolerance);
-    if (!wait_for_slots(atlas_.slots_needed(masks))) return false;
-    if (!store_.hold(atlas_.reach(masks))) atlas_.limit(store_.held());
-    out = atlas_.allocate(masks, image_);
+    seen_ = survey_.cull(newest_.inputs, charts_, options_.depth_tolerance);
+    if (!place(needed(), image_, out)) return false;
     if (out.fits) break;
   }
   mark("plan");
+  return true;
+}
+
+/// Of what the newest image shows, what the textures have to have at once.
+TextureCore::Masks TextureCore::needed() {
+  // What older textures hold of shadows would be beyond telling.
+  const bool light_changes = (light_ == nullptr) != (current_->light == nullptr);
+  owed_ = options_.only_what_is_needed && looked_up_ && !light_changes;
+  if (!options_.only_what_is_needed || !looked_up_) return seen_;
+  atlas_.note_seen(seen_, image_);
+  if (!owed_) return seen_;
+  Masks out = atlas_.not_held(seen_);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const PageRecord& page = records_[i];
+    if ((page.chart + page.xy + (page.xy >> 16) + static_cast<std::uint64_t>(image_)) % kImagesToRefresh == 0)
+      out[i] = seen_[i];
+  }
+  if (newest_.images.size() < 2) return out;
+  // Views look the left image up only.
+  const Masks missed = not_shown(newest_.inputs, newest_.views, seen_).masks;
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] |= missed[i];
+  return out;
+}
+
+bool TextureCore::place(const Masks& wanted, std::int64_t image, ChartAtlas::Allocation& out) {
+  if (!generations_.wait_for_slots(atlas_, atlas_.slots_needed(wanted))) return false;
+  if (!store_.hold(atlas_.reach(wanted))) atlas_.limit(store_.held());
+  out = atlas_.allocate(wanted, image);
   return true;
 }
 
@@ -245,19 +291,20 @@ void TextureCore::estimate_exposure() {
   for (std::size_t i = static_cast<std::size_t>(first); i < records_.size(); i += static_cast<std::size_t>(stride))
     pages.push_back(&atlas_.page_of(records_[i]));
   std::vector<Eigen::Vector3f> tones;
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    exposures_[i].update(
-        survey_.brightness(inputs_, charts_, store_, static_cast<int>(i), options_.depth_tolerance, first, stride),
-        pages, image_);
+  for (std::size_t i = 0; i < newest_.images.size(); ++i) {
+    exposures_[i].update(survey_.brightness(newest_.inputs, charts_, store_, static_cast<int>(i),
+                                            options_.depth_tolerance, first, stride),
+                         pages, image_);
     tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
                        exposures_[i].vignetting().y());
   }
-  inputs_.update(active_, images_, tones);
-  exposure_known_ = true;
+  newest_.update_inputs(tones);
+  newest_.log_gain = exposures_[0].log_gain();
+  newest_.exposure_known = true;
   mark("exposure");
 }
 
-void TextureCore::write_ages(RobotTime now, PublishedTextures& next) {
+void TextureCore::list_ages(RobotTime now) {
   constexpr std::size_t kRemembered = 4096;  // images; what was seen before them is taken as seen with the oldest
   image_times_.push_back(now);
   if (image_times_.size() > kRemembered) image_times_.pop_front();
@@ -270,7 +317,6 @@ void TextureCore::write_ages(RobotTime now, PublishedTextures& next) {
               ? -1.0f
               : static_cast<float>(to_seconds(
                     now - image_times_[static_cast<std::size_t>(std::max(page.last_seen - oldest, std::int64_t{0}))])));
-  next.ages.assign(std::span<const float>(ages_));
 }
 
 /// Coarse colours of charts that did not change move with their place in the page table.
@@ -307,43 +353,6 @@ void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, Publ
   gl::Fence::insert().wait(kGpuTimeout);
   gl::check_errors("texture extraction");
   clock_.mark("fill");
-}
-
-/// Takes back what retired generations held, oldest first, as far as the display let go of them.
-void TextureCore::reclaim() {
-  while (!retired_.empty() && retired_.front().generation->leases.load(std::memory_order_acquire) == 0) {
-    atlas_.give_back_colours(retired_.front().slots);
-    pool_.push_back(std::move(retired_.front().generation));
-    pool_.back()->colours.reset();  // an atlas that was outgrown goes with the last that shows it
-    retired_.pop_front();
-  }
-}
-
-bool TextureCore::wait_for_slots(std::size_t needed) {
-  const auto deadline = std::chrono::steady_clock::now() + kDisplayTimeout;
-  while (atlas_.free_colour_slots() < needed && !retired_.empty()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    reclaim();
-  }
-  return true;  // with all of them back, the atlas decides by its policy
-}
-
-TextureCore::Generation TextureCore::next_generation() {
-  if (!pool_.empty()) {
-    Generation reused = std::move(pool_.back());
-    pool_.pop_back();
-    reused->colours = store_.colours;
-    return reused;
-  }
-  auto fresh = std::make_shared<PublishedTextures>();
-  fresh->table = gl::BufferTexture(GL_R32UI, 16, "page table");
-  fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
-  fresh->coarse = gl::BufferTexture(atlas::kColourFormat, 16, "page means");
-  fresh->means = gl::BufferTexture(atlas::kColourFormat, 16, "chart means");
-  fresh->ages = gl::BufferTexture(GL_R32F, 16, "page ages");
-  fresh->colours = store_.colours;
-  return fresh;
 }
 
 }  // namespace foresight

@@ -9,8 +9,9 @@
 #include "texture_gpu/extract_pass.hpp"
 #include "texture_gpu/extraction_report.hpp"
 #include "texture_gpu/fill_pass.hpp"
+#include "texture_gpu/generation_pool.hpp"
+#include "texture_gpu/image_places.hpp"
 #include "texture_gpu/lamp/lamp_finder.hpp"
-#include "texture_gpu/published_image.hpp"
 #include "texture_gpu/shadow_pass.hpp"
 #include "texture_gpu/survey_pass.hpp"
 #include "texture_gpu/witness_pass.hpp"
@@ -34,35 +35,40 @@ class TextureCore {
   /// From now on it works in slices, when a display leaves time for them. `gate` outlives this; null: at once.
   void use(FrameGate* gate) { gate_ = gate; }
 
-  /// The same in two steps. The first makes the image ready to be looked up, and publishes that to `latest`; the
-  /// textures follow. False where there are no textures yet, beside which it could be shown: nothing is published then.
-  bool look(const PosedFrame& frame, LatestImage& latest);
-  /// Of the frame that look() was given, which must still be there.
-  ExtractionReport extract(const PosedFrame& frame, LatestTextures& latest);
+  /// The same in two steps. The first makes the image ready to be looked up, and publishes that; the textures follow.
+  /// False where there are no textures yet, beside which it could be shown: nothing is published then.
+  bool look(const PosedFrame& frame, LatestImages& latest);
+  /// Of the frame that look() was given. Where views look the newest images up, only what is needed is extracted
+  /// (TextureOptions): what no image showed before, and what the image before shows, which is published with this one,
+  /// and this one does not.
+  ExtractionReport extract(LatestTextures& latest);
 
  private:
-  using Generation = std::shared_ptr<PublishedTextures>;
+  using Masks = std::vector<std::uint32_t>;  // of tiles, for each page of the last plan (SurveyPass::cull)
 
   void mark(const char* stage);
   void look(const PosedFrame& frame);
-  void choose_cameras();
   void find_lamp();
   void take_out_shadows();
-  void publish(const PosedImage& image, LatestImage& latest);
+  void publish(LatestImages& latest);
   void estimate_exposure();
+  void save_what_leaves(LatestTextures& latest);
+  SurveyPass::Missed not_shown(const SeenInputs& inputs, const std::vector<AtlasView>& views, const Masks& tiles);
   bool allocate(ChartAtlas::Allocation& out);
-  bool wait_for_slots(std::size_t needed);
-  void reclaim();
-  Generation next_generation();
-  void write_ages(RobotTime now, PublishedTextures& next);
+  bool place(const Masks& wanted, std::int64_t image, ChartAtlas::Allocation& out);
+  Masks needed();
+  void write(const FrameOnGpu& frame, ChartAtlas::Allocation allocation, LatestTextures& latest);
+  void list_ages(RobotTime now);
   void list_fill_work(const ChartAtlas::Allocation& allocation);
   void fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next);
+  void count(const ChartAtlas::Allocation& allocation);
+  ExtractionReport report();
 
   std::shared_ptr<const SceneModel> scene_;
   TextureOptions options_;
   ChartAtlas atlas_;
   AtlasStore store_;
-  std::vector<std::shared_ptr<CameraInput>> cameras_;
+  ImagePlaces places_;
   std::vector<ExposureEstimator> exposures_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;
   gl::RasterPass raster_;
@@ -70,7 +76,6 @@ class TextureCore {
   SurveyPass survey_;
   ExtractPass extract_;
   FillPass fill_;
-  SeenInputs inputs_;
   LampFinder lamp_finder_;
   WitnessPass witness_pass_;
   int witnesses_ = 0;                        // LampFinder::number() of those that the pass has
@@ -81,12 +86,13 @@ class TextureCore {
   StageClock clock_;
   FrameGate* gate_ = nullptr;
 
-  // Of the frame in work.
-  std::vector<const CameraInput*> active_;
-  std::vector<const PosedImage*> images_;
-  std::vector<AtlasView> views_;
+  FrameOnGpu newest_, before_;
+  SeenInputs both_;         // the left images of the two
+  bool looked_up_ = false;  // views know the newest image itself
+  bool owed_ = false;       // not all of the newest image is in the textures
   std::span<const PageRecord> records_;
-  bool exposure_known_ = false;
+  Masks seen_;                // what the newest image shows of them
+  ExtractionReport done_;     // for the frame in work, so far
   gl::BufferTexture charts_;  // planned resolutions, before they are part of a generation
   std::vector<Eigen::Vector4f> chart_rows_, geometry_;
   std::vector<std::uint32_t> table_, dirty_, chart_of_page_;
@@ -95,15 +101,8 @@ class TextureCore {
   std::deque<RobotTime> image_times_;   // of the last images
   std::vector<float> ages_;
 
-  struct Retired {
-    Generation generation;  // still shows the slots
-    std::vector<std::uint32_t> slots;
-  };
-  Generation current_;
-  std::vector<Generation> pool_;
-  std::deque<Retired> retired_;
-  std::vector<std::shared_ptr<PublishedImage>> images_lent_;
-  std::shared_ptr<PublishedImage> newest_image_;
+  GenerationPool generations_;
+  GenerationPool::Generation current_;
   std::int64_t image_ = 0;
   std::uint64_t number_ = 0;
 };

@@ -33,14 +33,14 @@ void TextureThread::run(const std::stop_token& stop, const Setup& setup) {
       changed_.notify_all();
       core.use(setup.gate.get());
       work(stop, core, setup.images);
-      latest_image_.publish(nullptr);
+      latest_images_.publish(nullptr);
       latest_.publish(nullptr);  // its textures go with the core
     }
   } catch (...) {
     const std::scoped_lock lock(mutex_);
     error_ = std::current_exception();
   }
-  latest_image_.publish(nullptr);
+  latest_images_.publish(nullptr);
   latest_.publish(nullptr);
   changed_.notify_all();
   context_->release();
@@ -57,7 +57,7 @@ void TextureThread::work(const std::stop_token& stop, TextureCore& core, bool im
     lock.unlock();
     ExtractionReport report;
     if (images) {
-      if (core.look(frame, latest_image_)) {
+      if (core.look(frame, latest_images_)) {
         lock.lock();
         looked_at_ = number;
         changed_.notify_all();
@@ -66,7 +66,7 @@ void TextureThread::work(const std::stop_token& stop, TextureCore& core, bool im
         lock.unlock();
         if (stop.stop_requested()) return;
       }
-      report = core.extract(frame, latest_);
+      report = core.extract(latest_);
     } else {
       report = core.process(frame, latest_);
     }

@@ -34,8 +34,9 @@ class TextureThread {
   TextureThread& operator=(const TextureThread&) = delete;
 
   const LatestTextures& textures() const { return latest_; }
-  /// The newest image, published before its textures; none where Setup::images is false.
-  const LatestImage& image() const { return latest_image_; }
+  /// The newest image, published before its textures, and what it does not show of the one before; none where
+  /// Setup::images is false. To be acquired before textures(): those of the images before these are then there.
+  const LatestImages& images() const { return latest_images_; }
 
   /// Hands over a frame and returns at once. A frame that still waits is replaced and counted.
   /// Rethrows an error of the thread.
@@ -67,7 +68,7 @@ class TextureThread {
 
   std::unique_ptr<gl::Context> context_;
   LatestTextures latest_;
-  LatestImage latest_image_;
+  LatestImages latest_images_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<PosedFrame> waiting_;

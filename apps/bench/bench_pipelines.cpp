@@ -18,9 +18,9 @@ ExtractionReport BenchCore::process(const PosedFrame& frame) {
   return report;
 }
 
-ExtractionReport BenchCore::process(const PosedFrame& frame, LatestImage& newest) {
+ExtractionReport BenchCore::process(const PosedFrame& frame, LatestImages& newest) {
   core_.look(frame, newest);
-  ExtractionReport report = core_.extract(frame, latest_);
+  ExtractionReport report = core_.extract(latest_);
   if (!report.published) throw RuntimeFailure("the core dropped a frame", "give it more memory");
   return report;
 }

@@ -25,7 +25,7 @@ class BenchCore {
   /// Throws RuntimeFailure where the frame could not be published.
   ExtractionReport process(const PosedFrame& frame);
   /// The same; the image itself goes to `newest` before.
-  ExtractionReport process(const PosedFrame& frame, LatestImage& newest);
+  ExtractionReport process(const PosedFrame& frame, LatestImages& newest);
 
   const LatestTextures& textures() const { return latest_; }
   const std::shared_ptr<const SurfacePatches>& surface() const { return surface_; }

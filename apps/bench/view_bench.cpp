@@ -28,7 +28,7 @@ struct Way {
   std::vector<double> cpu_ms, psnr_db, sharpness;
 
   /// `newest`: looked up directly, if there.
-  void draw(const ViewPlace& place, const PublishedTextures& textures, const PublishedImage* newest) {
+  void draw(const ViewPlace& place, const PublishedTextures& textures, const NewestImages* newest) {
     cpu_ms.push_back(cpu_ms_of([&] {
       if (newest)
         view.draw(place.T_world_camera, place.scene, textures, *newest);
@@ -66,7 +66,7 @@ int bench_view(const ViewBenchOptions& options) {
                 {"two", {buffers, records, run.lens_left()}, {}, {}, {}},
                 {"newest", {buffers, records, run.lens_left()}, {}, {}, {}}};
 
-  LatestImage newest;
+  LatestImages newest;
   ProgressBar bar("view", "images", images - 1, SteadyClock::now(), ProgressBar::for_stderr());
   for (std::size_t i = 0; i + 1 < images; ++i) {
     PosedFrame frame = load_posed_frame(run, i);
@@ -76,7 +76,7 @@ int bench_view(const ViewBenchOptions& options) {
     if (i + 1 < images / 2) continue;
     const PosedImage next = load_posed_frame(run, i + 1).left;
     const TextureLease lease = core.textures().acquire();
-    const ImageLease image = newest.acquire();
+    const ImagesLease image = newest.acquire();
     for (int round = 0; round < options.rounds; ++round)
       for (Way& way : ways)
         way.draw({next.T_world_camera, next.scene}, *lease, &way == &ways[2] && image ? &*image : nullptr);

@@ -108,6 +108,7 @@ Json json_of(const FrameRecord& f) {
   json["arrival_to_publish_ms"] = number(f.arrival_to_publish_ms);
   json["arrival_to_visible_ms"] = number(f.arrival_to_visible_ms);
   json["arrival_to_visible_cpu_ms"] = number(f.arrival_to_visible_cpu_ms);
+  json["texels_written"] = number(f.texels_written);
   json["texture_bytes_used"] = f.texture_bytes_used;
   json["texture_bytes_budget"] = f.texture_bytes_budget;
   json["gain"] = number(f.gain);
@@ -130,6 +131,7 @@ Json json_of(const RunRecord& run, const Summary& s) {
           {"arrival_to_publish_ms", json_of(s.arrival_to_publish_ms)},
           {"arrival_to_visible_ms", json_of(s.arrival_to_visible_ms)},
           {"arrival_to_visible_cpu_ms", json_of(s.arrival_to_visible_cpu_ms)},
+          {"texels_written", json_of(s.texels_written)},
           {"texture_bytes_max", s.texture_bytes_max},
           {"texture_bytes_budget", s.texture_bytes_budget},
           {"bytes_per_texel", number(s.bytes_per_texel)}};
@@ -176,6 +178,7 @@ Summary summarise(const RunRecord& run) {
   s.arrival_to_publish_ms = over_frames(run, [](const FrameRecord& f) { return f.arrival_to_publish_ms; });
   s.arrival_to_visible_ms = over_frames(run, [](const FrameRecord& f) { return f.arrival_to_visible_ms; });
   s.arrival_to_visible_cpu_ms = over_frames(run, [](const FrameRecord& f) { return f.arrival_to_visible_cpu_ms; });
+  s.texels_written = over_frames(run, [](const FrameRecord& f) { return f.texels_written; });
   summarise_stages(run, s);
   s.bytes_per_texel = run.texels ? static_cast<double>(s.texture_bytes_max) / static_cast<double>(run.texels) : kNaN;
   return s;

@@ -47,6 +47,8 @@ struct FrameRecord {
   /// From the arrival of the newest image to the end of the first drawing that shows it, and CPU time of all threads
   /// in between; empty if none arrived, and in real time.
   std::optional<double> arrival_to_visible_ms, arrival_to_visible_cpu_ms;
+  /// To the textures, of images that were finished since the image time before; empty if none was.
+  std::optional<double> texels_written;
   std::uint64_t texture_bytes_used = 0;
   std::uint64_t texture_bytes_budget = 0;
   double gain = 1;       ///< exposure gain that was applied to the newest image, linear light
@@ -120,6 +122,7 @@ struct Summary {
   double texture_gpu_ms = 0;          ///< likewise; NaN without a timed GPU
   double images_per_core_second = 0;  ///< 1000 / texture_cpu_ms; NaN where nothing was timed
   Statistic arrival_to_publish_ms, arrival_to_visible_ms, arrival_to_visible_cpu_ms;
+  Statistic texels_written;
   std::uint64_t texture_bytes_max = 0;
   std::uint64_t texture_bytes_budget = 0;
   double bytes_per_texel = 0;  ///< texture_bytes_max / texels; NaN without texels

@@ -50,13 +50,13 @@ bool SceneDrawer::draw() {
     if (!aim_) return false;
     aim = *std::exchange(aim_, std::nullopt);
   }
+  const ImagesLease images = session_.images();  // before the textures
   const TextureLease textures = session_.textures();
   if (!textures || aim.state.T_world_node.empty()) return false;
-  const ImageLease image = session_.image();
   if (!capture_) capture_.emplace(parts_);
   auto& slot = slots_.begin();
   if (!slot) slot.emplace();
-  const Drawing drawing{aim, textures, image};
+  const Drawing drawing{aim, textures, images};
   const std::size_t eyes = aim.second_eye ? 2 : 1;
   if (eyes == 1) slot->eyes[1].reset();
   const RobotTime begin = clock_.now();
@@ -99,7 +99,7 @@ void SceneDrawer::draw_behind(std::size_t eye, const Drawing& drawing, DrawnEyes
 void SceneDrawer::draw_layers(std::size_t eye, const Drawing& drawing, WarpLayers& into) {
   PredictedView& view = *views_[eye];
   const Pose& from = drawing.aim.eyes[eye].T_world_eye;
-  view.draw(from, drawing.aim.state, drawing.textures, drawing.image);
+  view.draw(from, drawing.aim.state, drawing.textures, drawing.images);
   slice("layers of a view", [&] { (*capture_)(view.picture(), view.faces(), from, drawing.aim.state, into); });
 }
 

@@ -66,7 +66,7 @@ class SceneDrawer final : public DrawnViews {
   struct Drawing {
     const HeadAim& aim;
     const TextureLease& textures;
-    const ImageLease& image;
+    const ImagesLease& images;
   };
   void draw_front(std::size_t eye, const Drawing& drawing, DrawnEyes& into);
   void draw_behind(std::size_t eye, const Drawing& drawing, DrawnEyes& into);

@@ -73,6 +73,7 @@ TEST_F(Replay, WritesPicturesAndReports) {
     EXPECT_GT(frame["arrival_to_publish_ms"], 0);
     EXPECT_GT(frame["arrival_to_visible_ms"], 0);
     EXPECT_GT(frame["arrival_to_visible_cpu_ms"], 0);
+    EXPECT_GE(frame["texels_written"], 0);
     EXPECT_GT(frame["texture_bytes_used"], 0);
     EXPECT_LE(frame["texture_bytes_used"], frame["texture_bytes_budget"]);
     EXPECT_GE(frame["stages"].size(), 5u);
@@ -167,6 +168,18 @@ TEST_F(Replay, OptionsOfTheTexturesAreFollowed) {
   const json texels = all["run"]["texels"];
   replay(run.path(), {"--texels-per-metre", "600"});
   EXPECT_GT(report()["run"]["texels"], texels);
+}
+
+TEST_F(Replay, FullExtractionWritesMore) {
+  const SmallRun run;
+  run.keep("rgb.txt", 5);
+  replay(run.path(), {});
+  const json needed = report();
+  replay(run.path(), {"--full-extraction"});
+  const json full = report();
+  EXPECT_EQ(needed["options"]["full_extraction"], false);
+  EXPECT_EQ(full["options"]["full_extraction"], true);
+  EXPECT_LT(needed["summary"]["texels_written"]["mean"], full["summary"]["texels_written"]["mean"]);
 }
 
 TEST_F(Replay, TwoCamerasSeeMoreThanOne) {

@@ -29,11 +29,11 @@ class MovingShadow : public HeadlessTest {
   double error_of(TextureOptions options, double t, bool& known) const {
     TextureCore core(scene_, surface_, lens_, std::nullopt, options, driver_.is_software);
     LatestTextures textures;
-    LatestImage image;
+    LatestImages image;
     for (int i = 0; i < 30; ++i) {
       const PosedFrame f = frame(0.4 * i);
       core.look(f, image);
-      known = core.extract(f, textures).lamp.lamp.has_value();
+      known = core.extract(textures).lamp.lamp.has_value();
     }
     PredictedView view(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens_);
     const SceneState state = state_at(t);

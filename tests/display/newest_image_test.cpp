@@ -44,7 +44,7 @@ class NewestImage : public HeadlessTest, public testing::WithParamInterface<Kind
   std::shared_ptr<const SurfacePatches> surface_ = std::make_shared<SurfacePatches>(find_surface_patches(*scene_, {}));
   std::unique_ptr<TextureCore> core_;
   LatestTextures textures_;
-  LatestImage image_;
+  LatestImages images_;
 };
 
 /// A point that a view's pixel shows.
@@ -150,8 +150,8 @@ TEST_P(NewestImage, IsShownWhereItSawAPoint) {
   core_->process(seen_from(usual_view(), before), textures_);
   PosedFrame newest = seen_from(usual_view(), then);
   cv::cvtColor(newest.left.pixels, newest.left.pixels, cv::COLOR_BGR2RGB);
-  ASSERT_TRUE(core_->look(newest, image_));
-  const ImageLease image = image_.acquire();
+  ASSERT_TRUE(core_->look(newest, images_));
+  const ImagesLease image = images_.acquire();
   const TextureLease textures = textures_.acquire();
   ASSERT_TRUE(image);
 
@@ -176,6 +176,45 @@ TEST_P(NewestImage, IsShownWhereItSawAPoint) {
   EXPECT_EQ(count.changed, 0);
 }
 
+// Before and after it has become textures.
+TEST_P(NewestImage, WhatItDoesNotSeeTheImageBeforeShows) {
+  const SceneState state = state_of(*scene_);
+  const Pose from_before = usual_view(), from_newest = look_at({-0.4, -0.4, 0.4}, {0.1, 0, 0.1});
+  core_->process(seen_from(from_before, state), textures_);
+  PosedFrame before = seen_from(from_before, state);
+  cv::cvtColor(before.left.pixels, before.left.pixels, cv::COLOR_BGR2RGB);
+  ASSERT_TRUE(core_->look(before, images_));
+  core_->extract(textures_);
+  ASSERT_TRUE(core_->look(seen_from(from_newest, state), images_));
+
+  const Lens lens = small_lens(GetParam().view), image_lens = small_lens(GetParam().image);
+  const Witness witness_before(*scene_, state, image_lens, from_before),
+      witness_newest(*scene_, state, image_lens, from_newest);
+  const reference::RayCaster caster(*scene_, state);
+  PredictedView drawn = view();
+  const auto expect_image_before = [&](const char* when) {
+    drawn.draw(from_before, state, *textures_.acquire(), *images_.acquire());
+    const cv::Mat picture = drawn.read();
+    int shown = 0, wrong = 0;
+    for (int y = 2; y < picture.rows - 2; y += 2)
+      for (int x = 2; x < picture.cols - 2; x += 2) {
+        const auto point = shown_at(caster, state, lens, from_before, {x, y});
+        if (!point || witness_newest.sees(point->p_node, point->node) != Witness::Answer::hidden ||
+            witness_before.sees(point->p_node, point->node) != Witness::Answer::seen)
+          continue;
+        const cv::Vec4b& pixel = picture.at<cv::Vec4b>(y, x);
+        ++shown;
+        wrong += cv::norm(cv::Vec3d(pixel[0], pixel[1], pixel[2]) - other_hue(paint(point->node, point->p_node)),
+                          cv::NORM_INF) > 8;
+      }
+    EXPECT_GT(shown, 100) << when;
+    EXPECT_LE(wrong, shown / 100) << when;
+  };
+  expect_image_before("before its textures");
+  core_->extract(textures_);
+  expect_image_before("with its textures");
+}
+
 INSTANTIATE_TEST_SUITE_P(Lenses, NewestImage,
                          testing::Values(Kinds{"pinhole", "pinhole"}, Kinds{"plumb_bob", "plumb_bob"},
                                          Kinds{"fisheye", "pinhole"}),
@@ -184,26 +223,26 @@ INSTANTIATE_TEST_SUITE_P(Lenses, NewestImage,
 // Whoever draws with an image keeps it, however many come after.
 TEST_P(NewestImage, StaysAsItIsWhileItIsLeased) {
   core_->process(seen_from(usual_view(), state_of(*scene_)), textures_);
-  core_->look(seen_from(usual_view(), state_of(*scene_)), image_);
-  const ImageLease kept = image_.acquire();
+  core_->look(seen_from(usual_view(), state_of(*scene_)), images_);
+  const ImagesLease kept = images_.acquire();
   const auto pixels = [](const PublishedImage& image) {
     const gl::Texture& texture = image.camera->image();
     cv::Mat out(texture.height(), texture.width(), CV_8UC4);
     glGetTextureImage(texture.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
     return out;
   };
-  const cv::Mat before = pixels(*kept);
+  const cv::Mat before = pixels(*kept->newest);
   std::map<const PublishedImage*, int> places;
   for (int i = 1; i <= 6; ++i) {
     const PosedFrame frame = seen_from(look_at({-0.9, -0.9 + 0.1 * i, 0.7}, {0, 0, 0.1}), state_of(*scene_, 0.02 * i));
-    ASSERT_TRUE(core_->look(frame, image_));
-    core_->extract(frame, textures_);
-    const ImageLease newest = image_.acquire();
-    ++places[&*newest];
-    EXPECT_GT(cv::norm(pixels(*newest), before, cv::NORM_INF), 0);
+    ASSERT_TRUE(core_->look(frame, images_));
+    core_->extract(textures_);
+    const ImagesLease newest = images_.acquire();
+    ++places[&*newest->newest];
+    EXPECT_GT(cv::norm(pixels(*newest->newest), before, cv::NORM_INF), 0);
   }
-  EXPECT_EQ(cv::norm(pixels(*kept), before, cv::NORM_INF), 0);
-  EXPECT_EQ(places.size(), 2u) << "two places take turns";
+  EXPECT_EQ(cv::norm(pixels(*kept->newest), before, cv::NORM_INF), 0);
+  EXPECT_EQ(places.size(), 3u) << "three places take turns: the one before is shown, too";
 }
 
 }  // namespace

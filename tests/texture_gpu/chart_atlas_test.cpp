@@ -427,5 +427,49 @@ TEST(ChartAtlas, ACopiedResolutionComesFromThePublishedOne) {
   }
 }
 
+// Images that are seen at once, and extracted only when the next one does not show the same.
+TEST(ChartAtlas, WhatIsSeenNeedNotBeWritten) {
+  Atlas atlas;
+  const auto plan = [&](std::int64_t image) { return atlas->plan(atlas.view(usual_view()), image).size(); };
+  const auto write = [&](std::span<const std::uint32_t> masks, std::int64_t image) {
+    auto out = atlas->allocate(masks, image);
+    atlas->commit();
+    atlas->give_back_colours(out.retired);
+    return out;
+  };
+  std::vector<std::uint32_t> all(plan(0), 0x55);
+  EXPECT_EQ(atlas->not_held(all), all);
+  std::vector<std::uint32_t> some = all;
+  some[0] = 0x01;
+  some[1] = 0;
+  EXPECT_EQ(write(some, 0).jobs.size(), all.size() - 1);
+
+  ASSERT_EQ(plan(1), all.size());
+  atlas->note_seen(all, 1);
+  std::vector<std::uint32_t> missing(all.size(), 0);
+  missing[0] = 0x54;
+  missing[1] = 0x55;
+  EXPECT_EQ(atlas->not_held(all), missing);
+  for (const PageRecord& record : atlas->placed_records()) EXPECT_EQ(atlas->page_of(record).last_seen, 1);
+
+  // Seen by every image since it was written: had all been extracted, each would have taken the place of the one
+  // before.
+  ASSERT_EQ(plan(2), all.size());
+  atlas->note_seen(all, 2);
+  EXPECT_EQ(write(missing, 2).jobs[0].worse, 0);
+  // After an image that did not see them, or from much further off, what is known is not given up for something far
+  // coarser, but sooner with each image.
+  ASSERT_EQ(plan(4), all.size());
+  atlas->note_seen(all, 4);
+  for (const PageJob& job : write(missing, 4).jobs) EXPECT_FLOAT_EQ(job.worse, 0.3F);
+  atlas->note_seen(all, 5);
+  atlas->note_coarser(0, 6);
+  atlas->note_seen(all, 6);
+  for (int image = 7; image <= 38; ++image) atlas->note_seen(all, image);
+  const auto out = write(missing, 38);
+  EXPECT_FLOAT_EQ(out.jobs[0].worse, 0.15F);
+  EXPECT_EQ(out.jobs[1].worse, 0);
+}
+
 }  // namespace
 }  // namespace foresight::chart_atlas_test

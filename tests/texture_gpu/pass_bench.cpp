@@ -12,6 +12,7 @@ PassBench::PassBench(std::shared_ptr<const SceneModel> model, const std::vector<
       atlas(surface, options),
       store(atlas),
       raster(std::make_shared<gl::SceneBuffers>(*scene), false),
+      survey(lenses),
       extraction(lenses),
       filling(*surface),
       first_page_before_(surface->charts.size(), 0) {
@@ -84,7 +85,7 @@ void PassBench::extract(double minify_above) {
   std::vector<Eigen::Vector4f> geometry;
   atlas.write_job_geometry(allocation.jobs, views, geometry);
   extraction.extract({allocation.jobs, allocation.masks, geometry, minify_above}, inputs, store,
-                     options.depth_tolerance, options.worse);
+                     options.depth_tolerance);
 }
 
 void PassBench::fill() {

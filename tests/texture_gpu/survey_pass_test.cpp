@@ -124,6 +124,65 @@ TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {
   for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].brightness, samples[1 + 3 * i].brightness);
 }
 
+// Camera 1 looks as the image before did, camera 0 as the newest one.
+TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
+  const Lens lens = small_lens(GetParam());
+  PassBench b(small_scene(), {lens, lens}, TextureOptions{.memory_bytes = 12 << 20});
+  const auto image = [&](const Pose& T, double block_x) {
+    return posed_photograph(*b.scene, state_of(*b.scene, block_x), lens, T);
+  };
+  const std::vector<PosedImage> images{image(look_at({-0.55, -0.95, 0.7}, {0.15, 0, 0.1}), 0.1),
+                                       image(usual_view(), 0)};
+  b.run(images);
+  b.look(images);
+  const auto masks = b.cull();
+  std::vector<Eigen::Vector4f> geometry;
+  b.atlas.write_page_geometry(masks, b.views, geometry);
+  const auto missed = b.survey.missed(b.inputs, geometry, b.store, masks, b.options.depth_tolerance, b.options.worse);
+  const reference::Camera newest = b.camera(0), before = b.camera(1);
+  ASSERT_EQ(missed.masks.size(), masks.size());
+  int listed = 0, texels_missed = 0, texels_overlooked = 0;
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    const PageRecord& record = b.records[i];
+    const AtlasChart& chart = b.atlas.charts()[record.chart];
+    const Patch& patch = b.patch_of(record.chart);
+    const auto node = static_cast<std::size_t>(patch.node);
+    for (int tile = 0; tile < 4; ++tile) {
+      const bool answer = (missed.masks[i] >> (2 * tile) & 3) != 0;
+      EXPECT_EQ(missed.masks[i] & ~masks[i], 0u) << "what no camera may see is not asked for";
+      int lost = 0, worse = 0;
+      for (int k = 0; k < 64; ++k) {
+        const int x = 16 * static_cast<int>(record.xy & 0xffff) + 8 * (tile & 1) + k % 8;
+        const int y = 16 * static_cast<int>(record.xy >> 16) + 8 * (tile >> 1) + k / 8;
+        if (!PassBench::raw_height(chart, x, y)) continue;
+        const Eigen::Vector3d p = b.texel_point(chart, patch, x, y);
+        Eigen::Vector2d then, now;
+        const Answer seen_then =
+            reference::is_seen(before, before.T_camera_node[node] * p, b.options.depth_tolerance, then);
+        const Answer seen_now =
+            reference::is_seen(newest, newest.T_camera_node[node] * p, b.options.depth_tolerance, now);
+        lost += seen_then == Answer::yes && seen_now == Answer::no;
+        const auto rim = [](const Eigen::Vector2d& at) {
+          return std::min({at.x(), at.y(), 159 - at.x(), 119 - at.y(), 6.0});
+        };
+        worse += seen_then != Answer::no && (seen_now != Answer::yes || rim(now) < rim(then));
+      }
+      if (!(masks[i] >> (2 * tile) & 3)) continue;
+      listed += answer;
+      texels_missed += lost;
+      if (!answer) texels_overlooked += lost;
+      if (answer && std::ranges::find(missed.coarser, i) == missed.coarser.end()) {
+        EXPECT_GT(worse, 0) << "chart " << record.chart << ", tile " << tile;
+      }
+    }
+  }
+  EXPECT_GT(listed, 20);
+  EXPECT_GT(texels_missed, 500);
+  // Slivers between the points, and of fewer than two of them: silhouettes are long in pictures of 160 x 120 px.
+  const bool coarse = std::string(GetParam()) == "wide_fisheye";  // 1.3 degrees a pixel
+  EXPECT_LT(texels_overlooked, texels_missed / (coarse ? 3 : 12)) << "of " << texels_missed;
+}
+
 INSTANTIATE_TEST_SUITE_P(Lenses, SurveyOfLenses, testing::ValuesIn(kLensKinds),
                          [](const auto& i) { return std::string(i.param); });
 

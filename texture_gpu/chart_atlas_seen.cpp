@@ -1,0 +1,83 @@
+// What images saw of the pages, and which of them the pages have their colours from.
+#include <algorithm>
+#include <cmath>
+
+#include "texture_gpu/chart_atlas.hpp"
+
+namespace foresight {
+namespace {
+
+/// A bit for each tile of which a mask has any.
+std::uint32_t tiles_of(std::uint32_t mask) {
+  std::uint32_t tiles = 0;
+  for (unsigned tile = 0; tile < 4; ++tile)
+    if (mask >> (2 * tile) & 3u) tiles |= 1u << tile;
+  return tiles;
+}
+
+/// The mask of these tiles, for all cameras.
+std::uint32_t of_tiles(std::uint32_t tiles) {
+  std::uint32_t mask = 0;
+  for (unsigned tile = 0; tile < 4; ++tile)
+    if (tiles >> tile & 1u) mask |= 3u << (2 * tile);
+  return mask;
+}
+
+}  // namespace
+
+void ChartAtlas::note_seen(std::span<const std::uint32_t> masks, std::int64_t image) {
+  pages_in_view_ = 0;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    if (!masks[i]) continue;
+    ++pages_in_view_;
+    AtlasPage& page = page_of(records_[i]);
+    if (page.last_seen < image - 1)
+      page.seen_since = image;
+    else if (page.seen_since < 0)
+      page.seen_since = std::max(page.last_seen, std::int64_t{0});
+    page.last_seen = image;
+  }
+}
+
+std::vector<std::uint32_t> ChartAtlas::not_held(std::span<const std::uint32_t> masks) const {
+  std::vector<std::uint32_t> out(masks.begin(), masks.end());
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const AtlasChart& chart = charts_[records_[i].chart];
+    const int page = page_index(records_[i]);
+    const bool carried_over = needs_relevel(chart, page);
+    out[i] &= ~of_tiles(carried_over ? 0xfu : chart.page[static_cast<std::size_t>(page)].held);
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> ChartAtlas::not_from(std::span<const std::uint32_t> masks, std::int64_t image) const {
+  std::vector<std::uint32_t> out(masks.begin(), masks.end());
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const AtlasPage& page = charts_[records_[i].chart].page[static_cast<std::size_t>(page_index(records_[i]))];
+    if (page.written == image) out[i] &= ~of_tiles(page.fresh);
+  }
+  return out;
+}
+
+void ChartAtlas::note_coarser(std::size_t record, std::int64_t image) {
+  page_of(records_[record]).seen_since = image;
+}
+
+/// Where every image is extracted, the old colour's claim ages with each that would have replaced it (extract.comp).
+/// Here those are counted that saw the page and were not extracted; and what the same run of images saw, each of them
+/// would have replaced.
+float ChartAtlas::worse_for(const AtlasPage& page) const {
+  if (page.seen_since < 0) return static_cast<float>(options_.worse);
+  if (page.written >= page.seen_since) return 0;
+  return static_cast<float>(options_.worse * std::exp2(static_cast<double>(page.seen_since - page.last_seen) / 32));
+}
+
+void ChartAtlas::note_written(AtlasPage& page, std::uint32_t mask, std::int64_t image, bool carried_over) {
+  const std::uint32_t tiles = tiles_of(mask);
+  page.held = static_cast<std::uint8_t>(carried_over ? 0xfu : page.held | tiles);
+  if (!mask) return;
+  page.fresh = static_cast<std::uint8_t>(tiles | (page.written == image ? page.fresh : 0u));
+  page.written = image;
+}
+
+}  // namespace foresight

@@ -1,0 +1,101 @@
+// Which tiles hold points that camera 1 saw and camera 0 does not show as well: hidden there, out of its image, closer to
+// its rim, or clearly coarser. One invocation a tile. Two steps, as most tiles are shown well:
+//
+//   STEP 0: camera 0 alone, four points a tile. What stands before one of them, up to a few pixels beside it, the nearest
+//           surfaces of the blocks around tell. Says more often than not that a tile may be missed.
+//   STEP 1: of those tiles, 4x4 points, and both cameras.
+#include "camera.glsl"
+#include "seen.glsl"
+#include "atlas.glsl"
+layout(local_size_x = 64) in;
+layout(binding = 7) uniform samplerBuffer geometry;  // per page and camera four texels (ChartAtlas::write_page_geometry)
+layout(binding = 9) uniform usampler2DArray heights;
+layout(binding = 10) uniform usamplerBuffer tiles;  // page << 2 | tile
+layout(binding = 11) uniform sampler2DArray blocks0;  // of camera 0 (blocks.comp)
+layout(binding = 0, std430) writeonly buffer Answers { uint answers[]; };  // 1 missed, 3 clearly coarser
+uniform int tile_count;
+uniform float worse;  // a share of the other camera's resolution below which this one's is clearly coarser
+
+const float kRim = 6.0;  // px, as in view.comp: towards its rim the image gives way to what the textures hold
+const float kLessSeen = 0.1;
+const float kStandsBefore = 0.25;  // share of the tolerance
+
+// A tile in a camera's frame.
+struct Tile {
+  vec3 first, right, down, height;  // texel (0, 0) at raw height 1, and its steps
+};
+
+Tile tile_of(int page, int c, vec2 first) {
+  int at = 4 * (2 * page + c);
+  vec3 corner = texelFetch(geometry, at).xyz, right = texelFetch(geometry, at + 1).xyz,
+       down = texelFetch(geometry, at + 2).xyz;
+  return Tile(corner + first.x * right + first.y * down, right, down, texelFetch(geometry, at + 3).xyz);
+}
+
+// As in extract.comp: raw heights of texels on the surface begin at 1, or above with the bit that marks the chart's own.
+vec3 point(Tile t, vec2 at, uint raw) {
+  return t.first + at.x * t.right + at.y * t.down + (float(raw & 0x7fffu) - 1.0) * t.height;
+}
+
+// 0 at the image's rim, 1 well inside.
+float within(int c, vec2 pixel) {
+  vec2 inside = min(pixel, cameras[c].size.xy - 1.0 - pixel);
+  return clamp(min(inside.x, inside.y) / kRim, 0.0, 1.0);
+}
+
+// How far the view relies on what camera `c` shows of `p`.
+float shown(int c, vec3 p) {
+  vec2 pixel;
+  return is_seen(c, p, pixel) ? within(c, pixel) : 0.0;
+}
+
+// Nothing may stand before `p` in camera 0, nor within some pixels of it.
+bool is_clear(vec3 p) {
+  vec3 place;
+  vec2 pixel;
+  float inverse_z;
+  if (!project_face(cameras[0], p, place, inverse_z) || !project_lens(cameras[0], p, pixel)) return false;
+  vec2 blocks = floor((cameras[0].size.zw + 3.0) / 4.0);
+  vec3 at = vec3((place.xy + 0.5) / (4.0 * blocks), place.z);
+  vec4 far = textureGather(blocks0, at, 0), near = textureGather(blocks0, at, 1);
+  bool known = all(greaterThan(far, vec4(0.0))) && all(lessThan(far, vec4(1e29)));
+  float nearest = max(max(near.x, near.y), max(near.z, near.w));
+  return known && within(0, pixel) >= 1.0 && (1.0 / inverse_z - kStandsBefore * depth_tolerance) * nearest <= 1.0;
+}
+
+float pixels_per_texel(int c, Tile t, vec3 p) {
+  return sqrt(abs(determinant(footprint(c, p, t.right, t.down))));
+}
+
+void main() {
+  int index = int(gl_GlobalInvocationID.x);
+  if (index >= tile_count) return;
+  uint item = texelFetch(tiles, index).r;
+  ivec2 in_page = 8 * ivec2(item & 1u, (item >> 1) & 1u);
+  int page = int(item >> 2);
+  Tile now = tile_of(page, 0, vec2(in_page)), before = tile_of(page, 1, vec2(in_page));
+  ivec3 origin = slot_origin(uint(max(texelFetch(geometry, 8 * page).w, 0.0)), 0) + ivec3(in_page, 0);
+  uint middle = texelFetch(heights, origin + ivec3(4, 4, 0), 0).r;
+  vec3 p_now = point(now, vec2(4.0), middle), p_before = point(before, vec2(4.0), middle);
+  bool coarser = pixels_per_texel(0, now, p_now) < worse * pixels_per_texel(1, before, p_before);
+#if STEP == 0
+  bool clear = true;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 at = 1 + 5 * ivec2(i & 1, i >> 1);
+    uint raw = texelFetch(heights, origin + ivec3(at, 0), 0).r;
+    clear = clear && is_clear(point(now, vec2(at), raw == 0u ? middle : raw));
+  }
+  answers[index] = clear && !coarser ? 0u : 1u;
+#else
+  bool seen = false;
+  int missed = 0;
+  for (int i = 0; i < 16; ++i) {
+    ivec2 at = (7 * ivec2(i & 3, i >> 2) + 1) / 3;
+    uint raw = texelFetch(heights, origin + ivec3(at, 0), 0).r;
+    float shown_before = raw == 0u ? 0.0 : shown(1, point(before, vec2(at), raw));
+    seen = seen || shown_before > 0.0;
+    if (shown_before > shown(0, point(now, vec2(at), raw)) + kLessSeen) ++missed;
+  }
+  answers[index] = seen && coarser ? 3u : missed > 0 ? 1u : 0u;
+#endif
+}
