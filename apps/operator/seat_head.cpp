@@ -5,7 +5,7 @@
 namespace foresight {
 namespace {
 
-constexpr int kWordsWidth = 1024, kWordsHeight = 512;  // px
+constexpr int kWordsWidth = 800, kWordsHeight = 480;  // px: 16 of them are 0.8 degrees high
 constexpr Duration kWordsEvery = std::chrono::milliseconds(100);
 
 }  // namespace

@@ -33,7 +33,7 @@ class HeadPainter {
  public:
   virtual ~HeadPainter() = default;
   virtual void look(const HeadFrame& frame) = 0;
-  /// At most 8; those beyond are not shown. Valid until the next look().
+  /// At most 8, each over those before it; those beyond are not shown. Valid until the next look().
   virtual std::span<const Panel> panels() = 0;
   /// All of `target`. `view.fov` stays the same over many frames.
   virtual void draw_eye(std::size_t eye, const EyeView& view, const ViewTarget& target) = 0;

@@ -3,7 +3,7 @@
 namespace foresight::head {
 namespace {
 
-constexpr double kWordsWidth = 0.9, kWordsAway = 1.4, kWordsDown = 0.45;  // m
+constexpr double kWordsWidth = 0.9, kWordsAway = 1.2, kWordsDown = 0.55;  // m: below what is worked at
 constexpr double kImageWidth = 0.6, kImageAway = 1.5, kImageRight = 0.75, kImageUp = 0.3;
 constexpr double kLargeImage = 1.6;
 
@@ -21,7 +21,7 @@ Pose facing(const Eigen::Vector3d& at) {
 
 ScenePainter::ScenePainter(SceneDrawer& drawer, const HeldControllers& hands, Clock& clock, SharedPicture* words,
                            SharedPicture* image)
-    : drawer_(drawer), hands_(hands), clock_(clock), pictures_{words, image} {}
+    : drawer_(drawer), hands_(hands), clock_(clock), pictures_{image, words} {}
 
 void ScenePainter::show(HeadScene scene) {
   const std::lock_guard lock(mutex_);
@@ -76,12 +76,12 @@ void ScenePainter::place_panels() {
     panel.width = width;
     panel.T_frame_panel = pose;
   };
-  put(0, kWordsWidth, facing({kWordsAway, 0, -kWordsDown}));
-  panels_[0].head_fixed = true;
   if (shown_.trusted)
-    put(1, kImageWidth, T_space_centre_ * facing({kImageAway, -kImageRight, kImageUp}));
+    put(0, kImageWidth, T_space_centre_ * facing({kImageAway, -kImageRight, kImageUp}));
   else
-    put(1, kLargeImage, T_space_centre_ * facing({kImageAway, 0, 0}));
+    put(0, kLargeImage, T_space_centre_ * facing({kImageAway, 0, 0}));
+  put(1, kWordsWidth, facing({kWordsAway, 0, -kWordsDown}));
+  panels_[1].head_fixed = true;
 }
 
 void ScenePainter::draw_eye(std::size_t eye, const EyeView& view, const ViewTarget& target) {

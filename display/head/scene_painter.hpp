@@ -54,7 +54,7 @@ class ScenePainter final : public HeadPainter {
   SceneDrawer& drawer_;
   const HeldControllers& hands_;
   Clock& clock_;
-  std::array<SharedPicture*, 2> pictures_;  // words, image
+  std::array<SharedPicture*, 2> pictures_;  // image, words: what comes later is over what came before
   std::atomic<bool> centre_{false};
   mutable std::mutex mutex_;  // the next three
   HeadScene scene_;

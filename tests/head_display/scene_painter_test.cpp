@@ -287,6 +287,23 @@ TEST_F(SceneInAHead, WhatCannotBeTrustedIsNotShown) {
   EXPECT_EQ(complaints(), "");
 }
 
+// They say why the image stands there.
+TEST_F(SceneInAHead, WordsAreOverTheImageThatStandsInForTheScene) {
+  head::SharedPicture words(16, 8, "words");
+  head::ScenePainter painter(*drawer_, *held_, real_, &words, &*image_);
+  painter.show({{usual_view(), state_of(*scene_)}, false});
+  head::HeadFrame frame;
+  frame.T_space_head = Pose::Identity();
+  painter.look(frame);
+  const auto panels = painter.panels();
+  ASSERT_EQ(panels.size(), 2u);
+  EXPECT_TRUE(panels[1].shown && panels[1].head_fixed) << "what comes last is over what came before";
+  EXPECT_TRUE(panels[0].shown && !panels[0].head_fixed);
+  EXPECT_LT(panels[1].T_frame_panel.translation().norm(), panels[0].T_frame_panel.translation().norm())
+      << "and is no farther away";
+  painter.release();
+}
+
 TEST_F(SceneInAHead, BeforeTheFirstStateNothingIsDrawnOfIt) {
   turn(20);
   EXPECT_TRUE(display_->status().focused);
