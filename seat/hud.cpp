@@ -13,6 +13,7 @@ namespace foresight {
 namespace {
 
 constexpr float kFontPx = 16;
+constexpr float kBesideEachOther = 1100;  // px of width that keys and what is next need
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -77,7 +78,7 @@ struct Hud::Work {
     ImGui::SetNextWindowBgAlpha(0.62f);
     ImGui::Begin(name, nullptr, kPanel);
   }
-  void draw(const HudContent& content, float width, float height) const;
+  void draw(const HudContent& content, const HudArea& area) const;
   void draw(const std::vector<HudLabel>& labels, float width, float height) const;
 };
 
@@ -110,33 +111,39 @@ void Hud::Work::draw(const std::vector<HudLabel>& labels, float width, float hei
   }
 }
 
-void Hud::Work::draw(const HudContent& content, float width, float height) const {
+void Hud::Work::draw(const HudContent& content, const HudArea& area) const {
   const float gap = 8 * scale, words_at = 115 * scale;
-  draw(content.labels, width, height);
-  panel("lines", {gap, gap}, {0, 0});
+  const auto width = static_cast<float>(area.width);
+  const float left = static_cast<float>(area.left) + gap, top = static_cast<float>(area.top) + gap;
+  const float right = left + width - 2 * gap, bottom = top + static_cast<float>(area.height) - 2 * gap;
+  panel("lines", {left, top}, {0, 0});
   write(content.title);
   ImGui::Separator();
   const float wrap = std::clamp(0.5f * width, 260 * scale, 700 * scale);
   for (const SeatLine& line : content.lines) write(line, words_at, wrap);
   ImGui::End();
 
-  if (!content.keys.empty()) {
-    panel("keys", {gap, height - gap}, {0, 1});
-    for (const auto& [key, does] : content.keys) {
-      write(key);
-      ImGui::SameLine(1.2f * words_at);
-      write(does);
-    }
+  float keys_bottom = bottom;
+  if (!content.next.words.empty()) {
+    panel("next", {right, bottom}, {1, 1});
+    ImGui::PushFont(large);
+    ImGui::PushTextWrapPos(std::max(1.0f, width - 4 * gap));
+    ImGui::PushStyleColor(ImGuiCol_Text, colour(content.next.urgency));
+    write(mark(content.next.urgency) + content.next.words);
+    if (!content.next.cure.empty()) write("   " + content.next.cure);
+    ImGui::PopStyleColor();
+    ImGui::PopTextWrapPos();
+    ImGui::PopFont();
+    if (width < kBesideEachOther * scale) keys_bottom -= ImGui::GetWindowHeight() + gap;
     ImGui::End();
   }
-  if (content.next.words.empty()) return;
-  panel("next", {width - gap, height - gap}, {1, 1});
-  ImGui::PushFont(large);
-  ImGui::PushStyleColor(ImGuiCol_Text, colour(content.next.urgency));
-  write(mark(content.next.urgency) + content.next.words);
-  if (!content.next.cure.empty()) write("   " + content.next.cure);
-  ImGui::PopStyleColor();
-  ImGui::PopFont();
+  if (content.keys.empty()) return;
+  panel("keys", {left, keys_bottom}, {0, 1});
+  for (const auto& [key, does] : content.keys) {
+    write(key);
+    ImGui::SameLine(1.2f * words_at);
+    write(does);
+  }
   ImGui::End();
 }
 
@@ -154,7 +161,8 @@ void Hud::draw(const HudContent& content, const ViewTarget& target) {
   ImGui_ImplOpenGL3_NewFrame();
   for (const bool is_seen : {false, true}) {  // panels are not shown before their size is known: one frame goes ahead
     ImGui::NewFrame();
-    work_->draw(content, io.DisplaySize.x, io.DisplaySize.y);
+    work_->draw(content.labels, io.DisplaySize.x, io.DisplaySize.y);
+    work_->draw(content, content.area.value_or(HudArea{0, 0, io.DisplaySize.x, io.DisplaySize.y}));
     is_seen ? ImGui::Render() : ImGui::EndFrame();
   }
   // It draws into what begins in the framebuffer's first row and column: the target lies in that, to the right and

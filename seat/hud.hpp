@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,12 +19,18 @@ struct HudLabel {
   Urgency urgency = Urgency::fine;
 };
 
+/// px of a target from its top left.
+struct HudArea {
+  double left = 0, top = 0, width = 0, height = 0;
+};
+
 struct HudContent {
   std::string title;  ///< of the robot, and of the view that is shown
   SeatLine next;      ///< what is to be done first: large, below
   std::vector<SeatLine> lines;
   std::vector<std::pair<std::string, std::string>> keys;  ///< each, and what it does
   std::vector<HudLabel> labels;                           ///< the first matter most: others make way for them
+  std::optional<HudArea> area;                            ///< where all but labels stands; nothing: the whole target
 };
 
 /// Belongs to one context. Nothing is told by colour alone: what is urgent has a mark before it.

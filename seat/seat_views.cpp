@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "seat/words_areas.hpp"
 
 namespace foresight {
 namespace {
@@ -14,6 +17,7 @@ constexpr double kBesideRad = 0.7;   // to his right
 constexpr double kAboveRad = 0.5;
 constexpr double kObserverDistance = 1.9;  // m
 constexpr double kObserverPixels = 1.3;    // of the camera's, at most: who looks on needs no more
+constexpr double kReadable = 0.5;          // tangent: farther aside, words behind a lens are hard to read
 
 /// What programs differ by.
 struct Look {
@@ -34,6 +38,16 @@ ViewTarget corner_of(const ViewTarget& place, int width, int height) {
   out.height = std::max(1, out.width * height / std::max(1, width));
   out.x = place.x + place.width - out.width - kBetweenPictures;
   out.y = place.y + place.height - out.height - kBetweenPictures;  // windows begin at the bottom
+  return out;
+}
+
+/// An area of a part of a window as a target of its own.
+ViewTarget target_of(const HudArea& area, const ViewTarget& part) {
+  ViewTarget out = part;
+  out.width = std::max(1, static_cast<int>(area.width));
+  out.height = std::max(1, static_cast<int>(area.height));
+  out.x = part.x + static_cast<int>(area.left);
+  out.y = part.y + part.height - static_cast<int>(area.top) - out.height;
   return out;
 }
 
@@ -64,7 +78,11 @@ SeatViews::SeatViews(const SeatViewsSetup& setup)
       size_(setup.left, setup.most_drawing_ms),
       overlay_(setup.left),
       newest_{UploadedPicture("newest left image"), UploadedPicture("newest right image")},
-      on_panel_{UploadedPicture("left panel"), UploadedPicture("right panel")} {}
+      on_panel_{UploadedPicture("left panel"), UploadedPicture("right panel")} {
+  if (!setup_.panels) return;  // else what stands in for a prediction is not to wait for programs
+  bent_[0][0].emplace(setup_.left);
+  bent_[1][setup_.right ? 1 : 0].emplace(setup_.right.value_or(setup_.left));
+}
 
 void SeatViews::next_main() {
   const int mode = static_cast<int>(mode_);
@@ -258,8 +276,16 @@ SeatViews::Sight SeatViews::newest(std::size_t eye) const {
   return picture.empty() ? Sight{} : Sight{&picture.texture()};
 }
 
-SeatViews::Sight SeatViews::eye(std::size_t index, bool trusted) const {
-  if (!trusted || !has_eyes_) return newest(index);
+SeatViews::Sight SeatViews::newest_on_panel(std::size_t eye, const Lens& panel) {
+  const std::size_t camera = eye == 1 && !newest_[1].empty() ? 1 : 0;
+  if (newest_[camera].empty()) return {};
+  std::optional<BentImage>& bent = bent_[eye][camera];
+  if (!bent) bent.emplace(camera == 1 ? setup_.right.value_or(setup_.left) : setup_.left);
+  return {&(*bent)(newest_[camera].texture(), panel)};
+}
+
+SeatViews::Sight SeatViews::eye(std::size_t index, bool trusted, const ViewTarget& whole) {
+  if (!trusted || !has_eyes_) return shows_panels() ? newest_on_panel(index, eye_lenses(whole)[index]) : newest(index);
   const EyePair& pair = shows_panels() ? *panels_ : *eyes_;
   return {&pair.picture(index), &pair.faces(index), &pair.lens(index), drawn_->T_world_camera * pair.T_view_eye(index)};
 }
@@ -312,6 +338,23 @@ void SeatViews::put_inset(const ViewTarget& place) const {
   copy_(picture, corner_of(place, picture.width(), picture.height()));
 }
 
+// Words and the newest image's corner stand at one place before both eyes.
+void SeatViews::show_two_eyes(const ViewTarget& whole, const ViewTarget& place, const SeatPicture& what,
+                              std::vector<Part>& parts) {
+  parts = {{column(place, 0, 2, 0)}, {column(place, 1, 2, 0)}};
+  std::array<Lens, 2> lenses = eye_lenses(whole);
+  if (eyes_swapped_) std::swap(lenses[0], lenses[1]);
+  const auto areas =
+      words_areas(lenses, {parts[0].place, parts[1].place}, eyes_swapped_ ? -setup_.eyes_apart : setup_.eyes_apart,
+                  shows_panels() ? kReadable : std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Part& part = parts[i];
+    put(eye(eyes_swapped_ ? 1 - i : i, what.trusted, whole), part.place, what, part.labels, whole);
+    part.words_area = areas[i];
+    if (what.trusted) put_inset(target_of(areas[i], part.place));
+  }
+}
+
 std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const ViewTarget& whole,
                                              const SeatPicture& what) {
   const ViewMode mode = mode_now(what.trusted);
@@ -320,7 +363,7 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
   std::vector<Part> parts{{whole}};
   std::vector<HudLabel>& labels = parts.front().labels;
   const auto mixed_eyes = [&](PictureMix::Way way) {
-    put_mixed(eye(0, what.trusted), eye(1, what.trusted), place, whole, way, what, labels);
+    put_mixed(eye(0, what.trusted, whole), eye(1, what.trusted, whole), place, whole, way, what, labels);
     if (what.trusted) put_inset(place);
   };
   switch (mode) {
@@ -336,13 +379,7 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
     case ViewMode::split:
       put_mixed(newest(0), predicted(session, what), place, whole, PictureMix::Way::split, what, labels);
       break;
-    case ViewMode::two_eyes:
-      parts = {{column(place, 0, 2, 0)}, {column(place, 1, 2, 0)}};
-      for (std::size_t i = 0; i < parts.size(); ++i) {
-        put(eye(eyes_swapped_ ? 1 - i : i, what.trusted), parts[i].place, what, parts[i].labels, whole);
-        if (what.trusted) put_inset(parts[i].place);
-      }
-      break;
+    case ViewMode::two_eyes: show_two_eyes(whole, place, what, parts); break;
     case ViewMode::interlaced: mixed_eyes(PictureMix::Way::rows); break;
     case ViewMode::anaglyph: mixed_eyes(PictureMix::Way::anaglyph); break;
     case ViewMode::anaglyph_colours: mixed_eyes(PictureMix::Way::anaglyph_colours); break;

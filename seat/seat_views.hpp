@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "display/bent_image.hpp"
 #include "display/doubt_paint.hpp"
 #include "display/eye_pair.hpp"
 #include "display/frame_source.hpp"
@@ -90,7 +91,8 @@ class SeatViews {
   /// Where pictures were put: each such part has words of its own.
   struct Part {
     ViewTarget place;
-    std::vector<HudLabel> labels = {};  ///< px from its top left
+    std::vector<HudLabel> labels = {};       ///< px from its top left
+    std::optional<HudArea> words_area = {};  ///< all but labels, at one place in space for both eyes; nothing: anywhere
   };
   std::vector<Part> show(const ViewSession& session, const ViewTarget& whole, const SeatPicture& what);
 
@@ -118,7 +120,10 @@ class SeatViews {
   ViewMode mode_now(bool trusted) const;
   Sight predicted(const ViewSession& session, const SeatPicture& what);
   Sight newest(std::size_t eye) const;
-  Sight eye(std::size_t index, bool trusted) const;
+  Sight newest_on_panel(std::size_t eye, const Lens& panel);
+  Sight eye(std::size_t index, bool trusted, const ViewTarget& whole);
+  void show_two_eyes(const ViewTarget& whole, const ViewTarget& place, const SeatPicture& what,
+                     std::vector<Part>& parts);
   void put(const Sight& sight, const ViewTarget& place, const SeatPicture& what, std::vector<HudLabel>& labels,
            const ViewTarget& whole);
   void put_mixed(const Sight& first, const Sight& second, const ViewTarget& place, const ViewTarget& whole,
@@ -151,6 +156,7 @@ class SeatViews {
   std::optional<ViewPlace> drawn_;  // the operator's
   std::size_t warm_ = 0;            // looks that were drawn to have their programs
   std::array<UploadedPicture, 2> newest_, on_panel_;
+  std::array<std::array<std::optional<BentImage>, 2>, 2> bent_;  // for a panel, of a camera
 };
 
 }  // namespace foresight

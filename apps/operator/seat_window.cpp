@@ -26,7 +26,8 @@ SeatWindow::SeatWindow(gl::Window& window, Seat& seat, PredictedSource& source, 
       source_(source),
       options_(std::move(options)),
       views_(options_.views),
-      hud_(options_.font_scale) {}
+      hud_(options_.font_scale),
+      help_(options_.views.mode != ViewMode::two_eyes) {}  // who wears a head display sees no keyboard
 
 void SeatWindow::take_input() {
   window_.wait_events(0);
@@ -128,6 +129,7 @@ void SeatWindow::present(const ViewSession& session) {
   picture.hand = &hand;
   for (SeatViews::Part& part : views_.show(session, whole, picture)) {
     content.labels = std::move(part.labels);
+    content.area = part.words_area;
     hud_.draw(content, part.place);
   }
   save(whole);

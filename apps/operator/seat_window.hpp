@@ -78,7 +78,7 @@ class SeatWindow final : public ViewObserver {
   Hud hud_;
   SeatLog log_;
   link::LineFramePtr uploaded_;
-  bool help_ = true;
+  bool help_;
   TrustMarks marks_ = TrustMarks::none;
   std::optional<std::filesystem::path> save_;
 };

@@ -54,6 +54,27 @@ TEST(Hud, StaysWithinItsPartOfAWindow) {
   EXPECT_GT(changed(out.rowRange(400, 480)), 0.005) << "the title, at its upper end";
 }
 
+// As before an eye of a head display, where there is little room.
+TEST(Hud, LongWordsStayWithinTheirArea) {
+  const auto context = gl::create_headless_context();
+  HudContent content;
+  content.title = "a robot";
+  content.next = {"next", "joints look for home, one after the other, slowly, waiting for shoulder_pitch",
+                  "wait; space stops them", Urgency::note};
+  content.area = HudArea{60, 20, 300, 360};
+  const cv::Mat picture = drawn(content, 480, 400);
+  EXPECT_EQ(changed(picture.colRange(0, 60)), 0);
+  EXPECT_EQ(changed(picture.colRange(360, 480)), 0);
+  EXPECT_EQ(changed(picture.rowRange(0, 20)), 0);
+  EXPECT_EQ(changed(picture.rowRange(380, 400)), 0);
+  EXPECT_GT(changed(picture(cv::Rect(60, 20, 300, 80))), 0.3) << "in more than one row";
+  const cv::Mat without_keys = picture(cv::Rect(60, 20, 300, 90)).clone();
+  content.keys = {{"space", "stop"}};
+  const cv::Mat with_keys = drawn(content, 480, 400);
+  EXPECT_EQ(cv::norm(without_keys, with_keys(cv::Rect(60, 20, 300, 90)), cv::NORM_L1), 0)
+      << "keys make way for what is next";
+}
+
 TEST(Hud, BearsAnyWindow) {
   const auto context = gl::create_headless_context();
   HudContent content;

@@ -245,6 +245,31 @@ TEST_F(SeatViewsPictures, EyesAreDrawnForTheirPanels) {
   EXPECT_GT(line(panels), 0.001);
 }
 
+// What stands in for the prediction is bent, too: each panel has what its camera saw in the directions of its pixels.
+TEST_F(SeatViewsPictures, NewestImagesAreBentForTheirPanels) {
+  const Lens left = small_lens("rational");
+  Lens::Parameters p = left.parameters();
+  p.cx += 9;
+  const std::array panels{left, Lens(p)};
+  views_.emplace(SeatViewsSetup{.left = lens_, .eyes_apart = 0.1, .panels = panels});
+  cv::Mat image(lens_.height(), lens_.width(), CV_8UC3, cv::Scalar(0, 0, 0));
+  const Eigen::Vector2d spot(120, 40);  // px of both cameras: infinitely far away
+  cv::circle(image, cv::Point(120, 40), 3, cv::Scalar(0, 255, 0), cv::FILLED);
+  views_->upload_newest(image, image);
+  const cv::Mat picture = shown(ViewMode::two_eyes, false);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const ViewTarget half =
+        column(column(target_->whole(), 0, 1, 4), static_cast<int>(eye), 2, 0);  // within the frame of what is late
+    const ViewTarget part = fitted(half, panels[eye].width(), panels[eye].height());
+    const Eigen::Vector2d seen = *panels[eye].project(*lens_.unproject(spot));
+    const double scale = part.width / static_cast<double>(panels[eye].width());
+    const cv::Point at(part.x + static_cast<int>(scale * (seen.x() + 0.5)),
+                       kHeight - part.y - part.height + static_cast<int>(scale * (seen.y() + 0.5)));
+    EXPECT_GT(picture.at<cv::Vec3b>(at)[1], 100) << eye;
+    EXPECT_LT(picture.at<cv::Vec3b>(at + cv::Point(7, 0))[1], 50) << eye;
+  }
+}
+
 TEST_F(SeatViewsPictures, WarmingUpChangesNothing) {
   EXPECT_FALSE(views_->warm_up(*session_, target_->whole())) << "nothing is drawn yet";
   for (const ViewMode mode : {ViewMode::predicted, ViewMode::observer, ViewMode::two_eyes}) {
