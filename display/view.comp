@@ -103,8 +103,8 @@ bool find_point(ivec2 pixel, out Point found) {
 #if CASES == IMAGE
 // Less than this share of the view's resolution is clearly worse than what older images may have seen. Where even the
 // less crowded axis has more pixels than that for one of the view, they would flicker: coarser levels of the textures
-// hold means.
-const float kCoarsest = 0.3, kFinest = 1.5;
+// hold means of more of them than are sampled here.
+const float kCoarsest = 0.3, kFinest = 3.0;
 const float kSharp = 0.6;  // as in lookup.glsl
 const float kRim = 6.0;  // px of the image within which it gives way to older ones
 const float kAll = 0.999;  // a weight that leaves nothing
@@ -122,11 +122,12 @@ vec4 image_colour(Point point) {
   float image_pixels = f.x * f.y * abs(dot(normal, q)) / (to_image * to_image * to_image);
   float view_pixels = g.x * g.y * abs(dot(point.normal, point.sight)) * abs(point.t) / (to_view * to_view * to_view);
   float share = sqrt(image_pixels / max(view_pixels, 1e-12));
-  if (share < kCoarsest || f.x * to_view > kFinest * g.x * to_image) return vec4(0.0);
+  float finer = f.x * to_view / (g.x * to_image);
+  if (share < kCoarsest || finer > kFinest) return vec4(0.0);
   vec2 size = cameras[0].size.xy;
   vec2 inside = min(pixel, size - 1.0 - pixel);
   float weight = clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0);
-  vec3 colour = unscaled(sample_sharply(image0, pixel, size, kSharp)) * without_vignetting(cameras[0].tone, pixel, size);
+  vec3 colour = unscaled(sample_square(image0, pixel, size, kSharp, finer)) * without_vignetting(cameras[0].tone, pixel, size);
   return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), weight);
 }
 

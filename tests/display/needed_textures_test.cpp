@@ -45,10 +45,11 @@ class NeededTextures : public HeadlessTest {
     }
     return out;
   }
-  cv::Mat drawn(PredictedView& view, const Extraction& from, int i) const {
-    view.draw(camera(i), state(*scene_, i), *from.textures.acquire(), *from.images.acquire());
+  cv::Mat drawn(PredictedView& view, const Extraction& of, const Pose& T_world_camera, int i) const {
+    view.draw(T_world_camera, state(*scene_, i), *of.textures.acquire(), *of.images.acquire());
     return view.read();
   }
+  cv::Mat drawn(PredictedView& view, const Extraction& of, int i) const { return drawn(view, of, camera(i), i); }
 
   /// Pixels of another kind, or another image's colour, as shares of those that show the model.
   struct Difference {
@@ -103,6 +104,23 @@ TEST_F(NeededTextures, ViewsAreWhatTheyWouldBe) {
   EXPECT_FALSE(all.images.acquire()->before);
   EXPECT_EQ(first, first_of_all);
   EXPECT_LT(3 * (needed.written - first), 2 * (all.written - first_of_all)) << "of pictures that are all edges";
+}
+
+// Images are looked up from there, too, though a pixel of the view holds several of theirs.
+TEST_F(NeededTextures, AViewFromFartherAwayIsAsNew) {
+  Extraction needed(*this, true), all(*this, false);
+  PredictedView view(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens_);
+  for (int i = 0; i < 8; ++i) {
+    needed.take(frame(i));
+    all.take(frame(i));
+  }
+  for (const double share : {0.7, 1.1}) {
+    Pose from = camera(7);
+    from.translate(Eigen::Vector3d(0, 0, -share));
+    const Difference d = difference(drawn(view, needed, from, 7), drawn(view, all, from, 7));
+    EXPECT_LT(d.areas, 0.02) << share;
+    EXPECT_LT(d.all, 0.1) << share;
+  }
 }
 
 // Views look the left image up: what the right one sees beside is extracted at once.
