@@ -58,8 +58,8 @@ const std::vector<ShapeRule>& joint_parts() {
       {"limit",
        {{"lower", 1, Sign::any, false, "write it in radians, or metres where the joint slides"},
         {"upper", 1, Sign::any, false, "write it in radians, or metres where the joint slides"},
-        {"velocity", 1, Sign::not_negative, false, "write it per second, in radians or metres"},
-        {"effort", 1, Sign::any, false, "write a number"}}},
+        {"velocity", 1, Sign::not_negative, true, "write it per second, in radians or metres"},
+        {"effort", 1, Sign::any, true, "write a number"}}},
       {"mimic",
        {{"multiplier", 1, Sign::any, false, "write a number"}, {"offset", 1, Sign::any, false, "write a number"}}}};
   return rules;

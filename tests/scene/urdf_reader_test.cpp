@@ -210,6 +210,10 @@ TEST_F(Urdf, WhatIsAroundAShapeIsRead) {
                     "<joint name='j' type='revolute'><parent link='base'/><child link='a'/>"
                     "<limit lower='-1' upper='1' effort='1' velocity='-1'/></joint>"),
               says("joint 'j' <limit>", "velocity=\"-1\" is negative", "per second"));
+  EXPECT_THAT(error(link("base") + link("a") +
+                    "<joint name='j' type='revolute'><parent link='base'/><child link='a'/>"
+                    "<limit lower='-1' upper='1' effort='1'/></joint>"),
+              says("joint 'j' <limit>", "has no velocity", "per second"));
 }
 
 TEST_F(Urdf, TheBodyIsTheCollisionShapeWhereThereIsOne) {
