@@ -54,6 +54,16 @@ OptionCheck finite() {
           ""};
 }
 
+template <typename T>
+OptionCheck whole() {
+  return {[](std::string given) {
+            const std::string kind =
+                std::is_unsigned_v<T> ? " is not a whole number from 0 on" : " is not a whole number";
+            return CLI::TypeValidator<T>()(given).empty() ? std::string() : in_quotes(given) + kind + "; give one";
+          },
+          ""};
+}
+
 }  // namespace
 
 OptionCheck from_to(double low, double high) {
@@ -162,7 +172,8 @@ Option* Command::add_option(const std::string& names, T& target, const std::stri
   using Type = typename Plain<T>::type;
   Option* const option = keep(app_.add_option(names, target, help));
   option->is_path_ = std::is_same_v<Type, std::filesystem::path>;
-  if (std::is_same_v<Type, double>) option->check(finite());
+  if constexpr (std::is_same_v<Type, double>) option->check(finite());
+  if constexpr (std::is_integral_v<Type>) option->check(whole<Type>());
   return option;
 }
 template Option* Command::add_option(const std::string&, int&, const std::string&);

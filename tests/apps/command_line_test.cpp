@@ -37,6 +37,8 @@ TEST(CommandLine, WrongWordsEndWithCode2AndTheWayToTheHelp) {
       {{"export", "x"}, "--out is required"},
       {{"synth"}, "OUT is required"},
       {{"synth", "x", "--frobnicate"}, "--frobnicate"},
+      {{"bench", "prediction", "grasp", "--seed", "-1"}, "--seed: '-1' is not a whole number from 0 on; give one"},
+      {{"bench", "prediction", "grasp", "--runs", "1.5"}, "--runs: '1.5' is not a whole number; give one"},
       {{"replay", "x", "y"}, "y"},
   };
   for (const auto& [arguments, what] : all) {
