@@ -113,6 +113,9 @@ StepResponseFit fit(const Window& window, double sparse) {
   };
   for_each_equation([&](const Weights& x, double y) { fit.regression.add(x, y); });
   model.realised = fit.regression.weights();
+  window.for_each_change([&](const TimedPosition& now, const TimedPosition& then) {
+    fit.moved += (now.position - then.position) * (now.position - then.position);
+  });
   double products = 0, last = 0;
   for_each_equation([&](const Weights& x, double y) {
     const double off = y - x.dot(model.realised);
@@ -183,6 +186,7 @@ ResponseFigures StepResponseFit::figures() const noexcept {
   const double steep = std::max(figures.lag, 0.001);  // dT = (d square - 2 mean d mean) / 2 T
   figures.dead_time_sigma = std::hypot(kResolution, sigma(once - (twice - 2 * mean * once) / (2 * steep)));
   figures.unexplained = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
+  figures.explained = moved > 0 ? std::max(0.0, 1 - squares / moved) : 0;
   figures.samples = count;
   return figures;
 }

@@ -48,6 +48,7 @@ struct ResponseFigures {
   double dead_time = 0, dead_time_sigma = 0;  ///< s: of the dead time and lag with the same mean and spread
   double lag = 0;                             ///< s: time constant of that lag
   double unexplained = 0;                     ///< rad, rms: change over 0.3 s beside that of the model
+  double explained = 0;                       ///< share of the squares of such changes; little: other commands moved it
   std::size_t samples = 0;                    ///< that these come from; 0: nothing was found yet
 };
 
@@ -56,6 +57,7 @@ struct StepResponseFit {
   OnlineRegression regression;
   double first = 0;       ///< s: the first instant that was learnt from
   double squares = 0;     ///< sum of what is left unexplained
+  double moved = 0;       ///< sum of the squares of all changes
   double variance = 0;    ///< of one independent error
   std::size_t count = 0;  ///< of changes that this comes from
 

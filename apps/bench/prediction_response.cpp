@@ -20,6 +20,7 @@ namespace {
 constexpr std::array kAhead{0.1, 0.3, 1.0};  // s
 constexpr std::array kAheadKeys{"100ms", "300ms", "1000ms"};
 constexpr double kLearning = 0.4;         // of the time
+constexpr double kExplained = 0.5;        // of the motion: commands that explain less belong to another one
 constexpr double kFarthestCommand = 1.1;  // s: commands are known so far ahead
 constexpr double kVelocityOver = 0.02;    // s
 constexpr double kLongestGap = 0.15;      // s between states that judge what lies between
@@ -156,10 +157,18 @@ void describe(const Joint& joint, const JointResponse& response, Scores& scores)
                            {"dead_time_s", f.dead_time},
                            {"dead_time_sigma_s", f.dead_time_sigma},
                            {"lag_s", f.lag},
-                           {"unexplained_rad", f.unexplained}});
+                           {"unexplained_rad", f.unexplained},
+                           {"explained", f.explained}});
   if (f.samples == 0) {
     std::printf("%-12s not identified: its commands do not move it in the first 40 %% of the time\n",
                 joint.name.c_str());
+    return;
+  }
+  if (f.explained < kExplained) {
+    std::printf(
+        "%-12s its commands explain %.0f %% of its motion in the first 40 %% of the time: record both with one "
+        "clock, in one unit, of one joint\n",
+        joint.name.c_str(), 100 * f.explained);
     return;
   }
   std::printf("%-12s delay %6.1f +- %.1f ms: dead time %6.1f +- %.1f ms, lag %6.1f ms; unexplained %.3f mrad rms\n",

@@ -88,6 +88,27 @@ TEST(PredictionResponse, CommandsAreTakenAsPositionsOrVelocities) {
   EXPECT_EQ(by_position["joints"][0]["name"], "elbow");
 }
 
+// Another clock cannot be told from its numbers, but from a motion that its commands have nothing to do with.
+TEST(PredictionResponse, CommandsThatExplainLittleOfTheMotionAreNamed) {
+  const TempFolder out;
+  std::string commands = "time_s,near,late\n", states = commands;
+  for (int i = 0; i < 3000; ++i) {
+    const double t = i * 0.005;
+    commands += number(t) + "," + number(wish(t)) + "," + number(wish(t)) + "\n";
+    states += number(t) + "," + number(wish(t - 0.04)) + "," + number(wish(t - 2.9)) + "\n";
+  }
+  const std::string json = out / "response.json";
+  const Outcome outcome =
+      run_program({"bench", "prediction", "response", "--commands", out.write("c.csv", commands).string(), "--states",
+                   out.write("s.csv", states).string(), "--json", json});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("late +its commands explain [0-9]+ % of its motion"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("near +delay"));
+  const nlohmann::json joints = read_json(json)["joints"];
+  EXPECT_GT(joints[0]["explained"], 0.99);
+  EXPECT_LT(joints[1]["explained"], 0.5);
+}
+
 TEST(PredictionResponse, WrongInputIsRefused) {
   const TempFolder out;
   std::string good = "time_s,q1\n", late = good, other = "time_s,q2\n";
