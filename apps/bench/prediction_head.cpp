@@ -119,7 +119,10 @@ int bench_prediction_head(const PredictionHeadOptions& options) {
   }
   if (methods[0].way.size() < kFewestHeadPoses)
     throw InputError(options.csv.string(),
-                     "has only " + std::to_string(methods[0].way.size()) + " poses whose future it shows",
+                     "has only " + std::to_string(methods[0].way.size()) + " poses whose future it shows" +
+                         (counts.lost > 0 ? "; " + std::to_string(counts.lost) + " of its " +
+                                                std::to_string(counts.rows) + " rows hold no rigid pose"
+                                          : ""),
                      "name a recording of some seconds, with a pose at least every 200 ms");
   print_and_write(options, methods, counts, table.repeated);
   return 0;

@@ -137,6 +137,8 @@ int bench_prediction_ik(const PredictionIkOptions& options) {
   std::printf("%s to %s: %s\n", options.urdf.c_str(), options.tip.c_str(), kinematics.description().c_str());
   say_what_is_assumed(chain);
 
+  const auto paths = options.path ? recorded_paths(kinematics, *options.path)
+                                  : random_paths(kinematics, static_cast<std::size_t>(options.paths));
   UniformJoints joints(chain, 1);
   std::vector<Pose> targets, at_limit;
   for (int i = 0; i < options.poses; ++i) {
@@ -179,8 +181,6 @@ int bench_prediction_ik(const PredictionIkOptions& options) {
     std::printf("KDL: not built in\n");
   }
 
-  const auto paths = options.path ? recorded_paths(kinematics, *options.path)
-                                  : random_paths(kinematics, static_cast<std::size_t>(options.paths));
   const FollowFigures figures = follow(kinematics, paths);
   for (const PosePath& path : paths)
     if (path.scale < 1) std::printf("%s: scaled by %.3f\n", path.name.c_str(), path.scale);

@@ -93,7 +93,7 @@ TEST(PredictionHead, WrongInputIsRefused) {
       {out.write("word.csv", kHeader + row + "0.2,0,here,0,0,0,0,1\n"), "word.csv:3:7"},
       {out.write("time.csv", kHeader + "nan,0,0,0,0,0,0,1\n"), "time.csv:2:1"},
       {out.write("back.csv", kHeader + row + "0.05,0,0,0,0,0,0,1\n"), "back.csv:3"},
-      {out.write("lost.csv", kHeader + row + "0.2,nan,0,0,0,0,0,1\n"), "has only 0 poses"},
+      {out.write("lost.csv", kHeader + row + "0.2,nan,0,0,0,0,0,1\n"), "1 of its 2 rows hold no rigid pose"},
   };
   for (const auto& [csv, problem] : cases) {
     const Outcome outcome = run_program({"bench", "prediction", "head", csv});
