@@ -262,7 +262,7 @@ class GraspTrial {
     still_ = still ? still_ + 1 : 0;
     if (still_ < kStillPictures) rests_since_.reset();
     if (still_ == kStillPictures) rests_since_ = picture.instant;
-    if (!run_->path || picture.instant < acts(above, 0.4)) return;
+    if (!run_->path || picture.instant < run_->path_begin) return;
     const double error = (picture.T_world_brick.translation() - truth.translation()).norm();
     if (error > kVisible && !run_->visible) run_->visible = picture.instant;
     if (!run_->failed && picture.instant >= acts(carried)) run_->failed = !gripped;

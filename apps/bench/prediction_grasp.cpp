@@ -35,7 +35,8 @@ Noticed count(const std::vector<GraspRun>& runs) {
                         {"failed", run.failed},
                         {"visible_ms", milliseconds(run.visible)},
                         {"noticed_ms", milliseconds(run.lateness)},
-                        {"put_elsewhere", run.put_elsewhere}});
+                        {"put_elsewhere", run.put_elsewhere},
+                        {"before_visible", run.before_visible}});
     if (!run.failed) continue;
     ++out.failed;
     out.never_off += !run.visible;

@@ -18,7 +18,8 @@ constexpr double kGateTurned = 0.5;   // rad that nothing contradicts below
 constexpr double kSamePlace = 0.006;  // m: two sightings that mean the same place
 constexpr double kNewDoubt = 0.02;    // s between doubts that count
 constexpr double kFarOff = 2;         // gates: no noise, whatever the place
-constexpr double kFalling = 2;        // m/s: things move no faster that fell off the table or were taken away
+constexpr double kTaken = 2;          // m/s: nobody takes things away faster
+constexpr double kFallen = 4;         // m/s: nor do they fall faster, having fallen for 0.8 m
 constexpr std::size_t kDoubtsInMotion = 3, kAbsences = 3;
 constexpr double kAbsenceTime = 1;                 // s
 constexpr double kLongestGap = 1;                  // s
@@ -31,6 +32,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 bool is_pose(const Pose& T) {
   return T.matrix().allFinite() && (T.linear() * T.linear().transpose()).isIdentity(1e-3) &&
          T.linear().determinant() > 0;
+}
+
+/// Whether a thing can have gone `way` in so many seconds, with places known to `same`.
+bool may_go(const Eigen::Vector3d& way, double same, double seconds) {
+  const double fallen = std::clamp(-way.z(), 0.0, kFallen * seconds);
+  return way.norm() < same + std::max(kTaken * seconds, fallen);
 }
 
 Pose inverse(const Pose& T) {
@@ -243,21 +250,37 @@ SightingResult ThingFuture::correct(const ThingSighting& sighting, const JointPo
     take_back(thing, sighting);
     return SightingResult::taken_back;
   }
+  const Pose expected = expected_pose(*spell, then, T_world_grip);
+  const double off = gates_off(*spell, expected, sighting);
+  if (off > 1) return contradict(thing, *spell, sighting, T_world_grip, off);
   if (spell->kind == Kind::moving) {
     thing.doubts.clear();
     return SightingResult::in_motion;
   }
-  const Pose expected = spell->kind == Kind::carried ? T_world_grip * spell->T : spell->T;
-  const double off = gates_off(*spell, expected, sighting);
-  if (off > 1) return contradict(thing, *spell, sighting, T_world_grip, off);
   agree(thing, *spell, expected, sighting, T_world_grip);
   return SightingResult::taken;
 }
 
-/// By how much it is elsewhere, in place or in rotation: more than 1 contradicts.
+/// Where it should have been: by all that has been learnt of its place since, or, in motion, as the model had it.
+Pose ThingFuture::expected_pose(const Spell& spell, const Moment& then, const Pose& T_world_grip) {
+  switch (spell.kind) {
+    case Kind::rest: return spell.T;
+    case Kind::carried: return T_world_grip * spell.T;
+    case Kind::moving: break;
+  }
+  return then.T_world_thing;
+}
+
+/// By how much it is elsewhere, in place or in rotation: more than 1 contradicts. What moves may not have begun to, or
+/// have gone twice as far, and how it turns nobody knows.
 double ThingFuture::gates_off(const Spell& spell, const Pose& expected, const ThingSighting& sighting) const {
   const Vector6 off = pose_difference(expected, sighting.T_world_thing);
   const double sigma = std::sqrt(spell.variance + sighting.sigma * sighting.sigma);
+  if (spell.kind == Kind::moving) {
+    const double moved = (expected.translation() - spell.T.translation()).norm();
+    const double gate = std::max(options_.least_gate, kGate * std::hypot(sigma, std::min(moved, options_.fall)));
+    return off.head<3>().norm() / (gate + moved);
+  }
   const double sigma_rad = std::sqrt(spell.variance_rad + sighting.sigma_rad * sighting.sigma_rad);
   return std::max(off.head<3>().norm() / std::max(options_.least_gate, kGate * sigma),
                   off.tail<3>().norm() / std::max(kGateTurned, kGate * sigma_rad));
@@ -300,11 +323,12 @@ SightingResult ThingFuture::contradict(Thing& thing, const Spell& spell, const T
       {sighting.captured, sighting.T_world_thing, inverse(T_world_grip) * sighting.T_world_thing, gates_off});
   if (thing.doubts.size() < 2) return SightingResult::doubted;
   const Doubt &doubt = thing.doubts.back(), &before = thing.doubts[thing.doubts.size() - 2];
-  const double way = (doubt.T_world_thing.translation() - before.T_world_thing.translation()).norm();
+  const Eigen::Vector3d way = doubt.T_world_thing.translation() - before.T_world_thing.translation();
   const double same = std::max(kSamePlace, kGate * sighting.sigma);
   const bool moves = std::min(doubt.gates_off, before.gates_off) > kFarOff &&
-                     way < same + kFalling * to_seconds(doubt.captured - before.captured);
-  const bool decided = way < same || moves || spell.kind == Kind::carried || thing.doubts.size() >= kDoubtsInMotion;
+                     may_go(way, same, to_seconds(doubt.captured - before.captured));
+  const bool decided =
+      way.norm() < same || moves || spell.kind == Kind::carried || thing.doubts.size() >= kDoubtsInMotion;
   if (!decided) return SightingResult::doubted;
   if (spell.kind == Kind::carried || thing.spells.back().kind == Kind::carried) ++failed_;
   put_where_seen(thing, sighting, spell.number);

@@ -65,7 +65,7 @@ enum class SightingResult : std::uint8_t {
   not_a_thing,  ///< no thing of that number
   not_a_pose,   ///< numbers that are not finite, no rotation, or a sigma that is not positive
   not_known,    ///< of an instant before all that is remembered, or not yet shown
-  in_motion,    ///< the thing was in motion then: nothing to compare
+  in_motion,    ///< the thing was in motion then, and may well have been there: nothing to learn
 };
 
 struct ThingFutureOptions {
@@ -154,6 +154,7 @@ class ThingFuture {
   void take_along(Thing& thing, std::size_t jaw, const JointPositions& joints);
   void let_go(Thing& thing, Kind kind, const Pose& T_world_thing);
   void begin_spell(Thing& thing, Kind kind, const Pose& T, double variance, double variance_rad);
+  static Pose expected_pose(const Spell& spell, const Moment& then, const Pose& T_world_grip);
   double gates_off(const Spell& spell, const Pose& expected, const ThingSighting& sighting) const;
   void agree(Thing& thing, Spell& spell, const Pose& expected, const ThingSighting& sighting, const Pose& T_world_grip);
   SightingResult contradict(Thing& thing, const Spell& spell, const ThingSighting& sighting, const Pose& T_world_grip,

@@ -296,6 +296,36 @@ TEST(ThingFuture, WhatIsTakenAwayIsShownThereAtTheSecondLook) {
   EXPECT_NEAR(bench.place().x(), 0.1, 1e-3);
 }
 
+TEST(ThingFuture, WhatFellOffTheTableIsShownBelowItAtTheSecondLook) {
+  Bench bench;
+  bench.wait(0.5);
+  const auto look = [&](double z) {
+    bench.wait(0.1);
+    return bench.future->correct({0, bench.now, lifted(0, 0, z), 0.0015, 0.02});
+  };
+  EXPECT_EQ(look(-0.28), SightingResult::doubted);
+  EXPECT_EQ(look(-0.56), SightingResult::moved) << "at 2.8 m/s, which falling things reach in 0.4 m";
+}
+
+TEST(ThingFuture, WhatMovesIsComparedWithWhereItsMotionCanHaveBroughtIt) {
+  Bench bench;
+  bench.grasp_and_lift();
+  const Pose let_go = bench.block().T_world_thing;
+  std::vector<SightingResult> results;
+  bool fell = false;
+  int picture = 0;
+  bench.move(bench.grip, 0.04, 0.6, [&] {
+    fell = fell || bench.block().status == ThingStatus::falling;
+    if (!fell || picture++ % 2 != 0 || results.size() == 3) return;
+    const Pose seen = results.empty() ? let_go : lifted(0.3, 0, kSide / 2);
+    results.push_back(bench.future->correct({0, bench.now, seen, 0.0015, 0.02}));
+  });
+  EXPECT_EQ(results, (std::vector{SightingResult::in_motion, SightingResult::doubted, SightingResult::moved}))
+      << "it may not have begun to fall; but it is not elsewhere";
+  bench.wait(0.4);
+  EXPECT_NEAR(bench.place().x(), 0.3, 2e-3);
+}
+
 TEST(ThingFuture, TwoPlacesThatNoThingGoesBetweenAreMistakes) {
   Bench bench;
   bench.wait(0.5);
