@@ -179,8 +179,16 @@ void ThingFuture::follow(Thing& thing, const JointPositions& joints) {
   if (spell.kind == Kind::rest && !still)
     begin_spell(thing, Kind::moving, motion.T_world_body, spell.variance, spell.variance_rad);
   else if (spell.kind == Kind::moving && thing.still_steps * dt >= kStillTime)
-    begin_spell(thing, Kind::rest, motion.T_world_body, options_.fall * options_.fall,
-                options_.fall_rad * options_.fall_rad);
+    come_to_rest(thing, motion.T_world_body);
+}
+
+/// As unsure as it has moved: what a correction or the jaws nudge has not fallen.
+void ThingFuture::come_to_rest(Thing& thing, const Pose& T_world_thing) {
+  const Spell& spell = thing.spells.back();
+  const Vector6 moved = pose_difference(spell.T, T_world_thing);
+  const double fall = std::min(options_.fall, moved.head<3>().norm());
+  const double fall_rad = std::min(options_.fall_rad, moved.tail<3>().norm());
+  begin_spell(thing, Kind::rest, T_world_thing, spell.variance + fall * fall, spell.variance_rad + fall_rad * fall_rad);
 }
 
 void ThingFuture::begin_spell(Thing& thing, Kind kind, const Pose& T, double variance, double variance_rad) {

@@ -76,7 +76,7 @@ struct ThingFutureOptions {
   BodyWorldOptions bodies = {.step = 0.004, .iterations = 30};
   double model = 0.01, model_rad = 0.1;    ///< one sigma of places by the model, until they are seen
   double grasp = 0.002, grasp_rad = 0.02;  ///< that closing jaws add
-  double fall = 0.015, fall_rad = 0.2;     ///< of a thing that came to rest by itself
+  double fall = 0.015, fall_rad = 0.2;     ///< that motion adds at most: as much as the thing moved, where that is less
   double slip = 0.001;                     ///< that a thing may wander in the hand, per square root of a second
   double least_gate = 0.006;               ///< nearer than this, nothing contradicts
 };
@@ -150,6 +150,7 @@ class ThingFuture {
 
   void step(const JointPositions& joints);
   void follow(Thing& thing, const JointPositions& joints);
+  void come_to_rest(Thing& thing, const Pose& T_world_thing);
   void remember(Thing& thing, RobotTime time) const;
   void take_along(Thing& thing, std::size_t jaw, const JointPositions& joints);
   void let_go(Thing& thing, Kind kind, const Pose& T_world_thing);
