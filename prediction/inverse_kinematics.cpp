@@ -1,6 +1,7 @@
 #include "prediction/inverse_kinematics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numbers>
 
@@ -9,8 +10,10 @@
 namespace foresight {
 namespace {
 
-constexpr int kStarts = 60;           // most targets within reach are found by the third
-constexpr int kStartsOutOfReach = 6;  // then the nearest pose is what is wanted, and one valley leads there as a rule
+constexpr int kStarts = 60;             // most targets within reach are found by the third
+constexpr double kPastElbow = 1e-3;     // rad that an elbow may stand beyond its limit while a swivel angle is sought
+constexpr double kFinestSwivel = 1e-5;  // rad
+constexpr int kStartsOutOfReach = 6;    // then the nearest pose is what is wanted, and one valley leads there as a rule
 
 // Places spread evenly over the limits, the same ones for every target: Kronecker's sequence with the powers of the
 // generalised golden ratio of so many dimensions.
@@ -76,6 +79,47 @@ IkAnswer InverseKinematics::refined(const JointVector& q, const Pose& target) co
   return answer(IkStatus::solved, descend(chain_, goal(target), limits, within).q, target);
 }
 
+// The elbow of an arm that is only nearly spherical is moved by the swivel, by about as little as its axes miss each
+// other. On its limit, only some swivel angles bring it within, and steps of Newton's, to which it is then fixed,
+// hardly tell which. So: without that limit, how far beyond it does the elbow come to stand, and where does it not?
+IkAnswer InverseKinematics::turned_off_elbow_limit(const Pose& target) const noexcept {
+  constexpr Eigen::Index kElbow = 3;
+  DescentLimits limits{chain_.lower(), chain_.upper(), 20, 1e-12, false};
+  limits.lower[kElbow] -= kPastElbow;
+  limits.upper[kElbow] += kPastElbow;
+  IkAnswer found;
+  const auto beyond = [&](std::size_t branch, double psi) {
+    const auto start = spherical_->solve_on(target, branch, psi);
+    if (!start) return std::numeric_limits<double>::infinity();
+    const JointVector within = start->q.cwiseMax(limits.lower).cwiseMin(limits.upper);
+    const JointVector q = descend(chain_, goal(target), limits, within).q;
+    found = answer(IkStatus::solved, q.cwiseMax(chain_.lower()).cwiseMin(chain_.upper()), target);
+    return std::max(chain_.lower()[kElbow] - q[kElbow], q[kElbow] - chain_.upper()[kElbow]);
+  };
+  for (std::size_t branch = 0; branch < SphericalArm::kBranches; ++branch) {
+    const SwivelSamples samples = spherical_->swivels(target, branch);
+    std::array<double, SwivelSamples::kMost> past;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      past[i] = beyond(branch, samples[i].psi);
+      if (found.status == IkStatus::solved) return found;
+    }
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const bool before = samples[i].joined, after = i + 1 < samples.size() && samples[i + 1].joined;
+      if (!std::isfinite(past[i]) || (before && past[i - 1] < past[i]) || (after && past[i + 1] < past[i])) continue;
+      double low = samples[before ? i - 1 : i].psi, high = samples[after ? i + 1 : i].psi;
+      while (high - low > kFinestSwivel) {  // thirds, of a function that falls and rises once
+        const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+        const double past_a = beyond(branch, a);
+        if (found.status == IkStatus::solved) return found;
+        const double past_b = beyond(branch, b);
+        if (found.status == IkStatus::solved) return found;
+        (past_a < past_b ? high : low) = past_a < past_b ? b : a;
+      }
+    }
+  }
+  return found;
+}
+
 IkAnswer InverseKinematics::search(const Pose& target, const JointVector* last) const noexcept {
   const DescentGoal wanted = goal(target);
   DescentLimits limits{chain_.lower(), chain_.upper(), 40, 1e-11, true};
@@ -104,7 +148,8 @@ IkAnswer InverseKinematics::solve(const Pose& target) const noexcept {
   if (!is_rigid(target)) return answer(IkStatus::bad_target, chain_.middle(), Pose::Identity());
   if (!spherical_) return search(target, nullptr);
   if (const auto direct = spherical_->solve(target)) {
-    const IkAnswer a = refined(direct->q, target);
+    IkAnswer a = refined(direct->q, target);
+    if (a.status != IkStatus::solved) a = turned_off_elbow_limit(target);
     if (a.status == IkStatus::solved) return a;
   }
   IkAnswer found = search(target, nullptr);

@@ -8,7 +8,8 @@ namespace foresight {
 namespace {
 
 constexpr double kMissesBy = 1e-4;        // m, and rad from a right angle
-constexpr double kLimitRounding = 1e-10;  // rad: what counts as on the limit, and is put there
+constexpr double kLimitRounding = 1e-10;  // rad and m
+constexpr double kNearlySpherical = 4;    // angles are off by so many times what axes miss each other by
 
 // Where two lines come nearest, and how near; nothing where they are almost parallel.
 struct Meeting {
@@ -25,14 +26,18 @@ std::optional<Meeting> meeting(const ArmJoint& a, const ArmJoint& b) {
   return Meeting{0.5 * (on_a + on_b), (on_a - on_b).norm()};
 }
 
-// Where three axes meet, each perpendicular to the next.
-std::optional<Eigen::Vector3d> ball_centre(std::span<const ArmJoint> j) {
-  if (std::abs(j[0].axis.dot(j[1].axis)) > kMissesBy || std::abs(j[1].axis.dot(j[2].axis)) > kMissesBy)
-    return std::nullopt;
+// Where three axes meet, each perpendicular to the next; and by how much (m, rad) they do not.
+struct BallCentre {
+  Eigen::Vector3d point;
+  double misses_by;
+};
+std::optional<BallCentre> ball_centre(std::span<const ArmJoint> j) {
   const auto one = meeting(j[0], j[1]), two = meeting(j[1], j[2]);
-  if (!one || !two || one->gap > kMissesBy || two->gap > kMissesBy) return std::nullopt;
-  if ((one->point - two->point).norm() > kMissesBy) return std::nullopt;
-  return 0.5 * (one->point + two->point);
+  if (!one || !two) return std::nullopt;
+  const double misses_by = std::max({std::abs(j[0].axis.dot(j[1].axis)), std::abs(j[1].axis.dot(j[2].axis)), one->gap,
+                                     two->gap, (one->point - two->point).norm()});
+  if (misses_by > kMissesBy) return std::nullopt;
+  return BallCentre{0.5 * (one->point + two->point), misses_by};
 }
 
 BallJoint ball(std::span<const ArmJoint> j) {
@@ -73,13 +78,13 @@ std::optional<SphericalArm> SphericalArm::recognise(const ArmChain& chain) {
   SphericalArm arm;
   arm.shoulder_ = ball(j.first(3));
   arm.wrist_ = ball(j.last(3));
-  arm.S_ = *S;
-  arm.W_at_zero_ = *W;
-  arm.W_in_tip_ = chain.tip_at_zero().inverse() * *W;
+  arm.S_ = S->point;
+  arm.W_at_zero_ = W->point;
+  arm.W_in_tip_ = chain.tip_at_zero().inverse() * W->point;
   arm.R_tip_at_zero_ = chain.tip_at_zero().linear();
   arm.a4_ = j[3].axis;
-  arm.upper_ = j[3].point - *S;
-  arm.lower_ = *W - j[3].point;
+  arm.upper_ = j[3].point - S->point;
+  arm.lower_ = W->point - j[3].point;
   arm.lower_limit_ = chain.lower();
   arm.upper_limit_ = chain.upper();
   // |upper + rot(a4, q4) lower|^2
@@ -90,6 +95,8 @@ std::optional<SphericalArm> SphericalArm::recognise(const ArmChain& chain) {
   arm.constant_ = arm.upper_.squaredNorm() + arm.lower_.squaredNorm() + 2 * along;
   arm.q4_longest_ = std::atan2(sine, cosine);
   if (arm.swing_ < 1e-4) return std::nullopt;
+  // Of an arm that is only nearly spherical, joints on their limits seem to lie beyond them by about as much.
+  arm.rounding_ = kLimitRounding + kNearlySpherical * std::max(S->misses_by, W->misses_by);
   return arm;
 }
 
@@ -113,9 +120,8 @@ std::optional<SphericalArm::Elbow> SphericalArm::elbow(const Pose& T, double sig
   e.q4 = nearest_turn(q4_longest_ + sign * std::acos(std::clamp(cosine, -1.0, 1.0)), middle);
   // Straight, the arm hardly feels its elbow: rounding of the target's distance moves it by far more than 1e-10 rad.
   const double clamped = std::clamp(e.q4, lower_limit_[3], upper_limit_[3]);
-  if (clamped != e.q4 && std::abs(distance_at(clamped) - distance) > kLimitRounding) return std::nullopt;
+  if (std::abs(distance_at(clamped) - distance) > rounding_) return std::nullopt;
   e.q4 = clamped;
-  if (std::abs(distance_at(e.q4) - distance) > kLimitRounding) return std::nullopt;
   e.margin = std::min(std::min(e.q4 - lower_limit_[3], upper_limit_[3] - e.q4), std::abs(std::sin(e.q4 - q4_longest_)));
   e.R4 = rotation(a4_, e.q4);
   const Eigen::Vector3d w = upper_ + e.R4 * lower_;
@@ -234,7 +240,7 @@ SphericalArm::Scored SphericalArm::best_swivel(const Elbow& e) const noexcept {
       consider(2 * std::numbers::pi * static_cast<double>(i) / kSamples, std::numbers::pi);
   if (best.score < 0)  // an interval of one angle alone, where limits touch
     for (std::size_t i = 0; i < angles.size(); ++i) consider(angles[i], 0);
-  if (best.score < -kLimitRounding || width == 0) return best;
+  if (best.score < -rounding_ || width == 0) return best;
   return climb([&](double psi) { return score(e, psi, -infinity); }, best, best.psi - width, best.psi + width);
 }
 
@@ -248,13 +254,37 @@ std::optional<SphericalArm::Answer> SphericalArm::solve(const Pose& T) const noe
     const auto total = [&](double score) { return std::min(score, e->margin) + 0.25 * score; };
     if (!e || total(1.0) <= best_total) continue;  // no score exceeds 1
     const Scored here = best_swivel(*e);
-    if (here.score < -kLimitRounding || total(here.score) <= best_total) continue;
+    if (here.score < -rounding_ || total(here.score) <= best_total) continue;
     best = here;
     best_total = total(here.score);
     chosen = e;
   }
   if (!chosen) return std::nullopt;
   return Answer{joints(*chosen, best.psi, best.shoulder, best.wrist), std::min(best.score, chosen->margin)};
+}
+
+std::optional<SphericalArm::Answer> SphericalArm::solve_on(const Pose& T, std::size_t branch,
+                                                           double psi) const noexcept {
+  const auto e = elbow(T, branch & 4 ? -1 : 1);
+  if (!e) return std::nullopt;
+  const Scored there = score_on(*e, psi, static_cast<BallSide>(branch & 1), static_cast<BallSide>(branch >> 1 & 1));
+  if (there.score < -rounding_) return std::nullopt;
+  return Answer{joints(*e, psi, there.shoulder, there.wrist), std::min(there.score, e->margin)};
+}
+
+SwivelSamples SphericalArm::swivels(const Pose& T, std::size_t branch) const noexcept {
+  SwivelSamples samples;
+  const auto e = elbow(T, branch & 4 ? -1 : 1);
+  if (!e) return samples;
+  visit_between(limit_angles(*e), [&](double from, double to) {
+    const double middle = 0.5 * (from + to);
+    if (score_on(*e, middle, static_cast<BallSide>(branch & 1), static_cast<BallSide>(branch >> 1 & 1)).score <
+        -rounding_)
+      return;
+    const int steps = std::max(2, static_cast<int>(std::ceil((to - from) * kSamples / (2 * std::numbers::pi))));
+    for (int k = 0; k <= steps; ++k) samples.add({from + (to - from) * k / steps, k > 0});
+  });
+  return samples;
 }
 
 // The swivel angle that turns R0 nearest to the last shoulder: the largest trace(R_last' rot(n, psi) R0).
@@ -280,7 +310,7 @@ std::optional<SphericalArm::Answer> SphericalArm::solve_near(const Pose& T, cons
       const auto i = static_cast<BallSide>(branch % 2), k = static_cast<BallSide>(branch / 2);
       const auto consider = [&](double psi, double from, double to) {
         const Scored at = score_on(*e, psi, i, k);
-        if (at.score < -kLimitRounding) return false;
+        if (at.score < -rounding_) return false;
         const double far = (turned_towards(last, joints(*e, psi, i, k)) - last).cwiseAbs().maxCoeff();
         if (far >= nearest) return true;
         nearest = far;

@@ -21,6 +21,26 @@
 
 namespace foresight {
 
+/// Swivel angles, ascending in each interval. No allocation.
+class SwivelSamples {
+ public:
+  static constexpr std::size_t kMost = 128;
+  struct Sample {
+    double psi = 0;
+    bool joined = false;  ///< to the one before, by angles that are within the limits too
+  };
+
+  void add(Sample sample) noexcept {
+    if (size_ < kMost) samples_[size_++] = sample;
+  }
+  std::size_t size() const noexcept { return size_; }
+  const Sample& operator[](std::size_t i) const noexcept { return samples_[i]; }
+
+ private:
+  std::array<Sample, kMost> samples_;
+  std::size_t size_ = 0;
+};
+
 /// Immutable; any thread. No method allocates or throws.
 class SphericalArm {
  public:
@@ -30,13 +50,21 @@ class SphericalArm {
   static std::optional<SphericalArm> recognise(const ArmChain& chain);
 
   struct Answer {
-    JointVector q;      ///< within the limits to 1e-10, the pose as exact as the axes are spherical
+    JointVector q;      ///< within the limits to 1e-10 and the pose exact, both as far as the axes are spherical
     double margin = 0;  ///< rad to the nearest limit or singularity
   };
 
   /// The joints for a pose of the tip that are farthest from limits and singularities, over all branches and swivel
   /// angles. Nothing where there are none within the limits.
   std::optional<Answer> solve(const Pose& T_base_tip) const noexcept;
+
+  /// The joints of one of the eight branches, 0 .. 7, with the swivel at `psi`, wherever that starts. Nothing where
+  /// they are not within the limits.
+  std::optional<Answer> solve_on(const Pose& T_base_tip, std::size_t branch, double psi) const noexcept;
+  static constexpr std::size_t kBranches = 8;
+  /// Swivel angles of such a branch from end to end of each interval that is within the limits, at most 30 degrees
+  /// apart.
+  SwivelSamples swivels(const Pose& T_base_tip, std::size_t branch) const noexcept;
 
   /// The joints nearest to `last` (of seven), then away from limits and singularities by turning the swivel up to
   /// `swivel` rad further on the same branch.
@@ -72,6 +100,7 @@ class SphericalArm {
   JointVector lower_limit_, upper_limit_;
   double q4_longest_ = 0;            ///< where |SW| is longest
   double constant_ = 0, swing_ = 0;  ///< |SW|^2 = constant + swing cos(q4 - q4_longest)
+  double rounding_ = 0;              ///< rad and m: what counts as on the limit, and is put there
 };
 
 }  // namespace foresight

@@ -116,8 +116,13 @@ TEST(SphericalArm, RightAnglesOfFewDigitsAreMadeUpFor) {
     const InverseKinematics kinematics(arm);
     ASSERT_TRUE(kinematics.closed_form());
     for (int i = 0; i < 50; ++i) {
-      const Pose target = arm.tip_pose(any_joints(arm, random));
-      EXPECT_TRUE(is_exact(arm, kinematics.solve(target), target)) << "arm " << a << ", pose " << i;
+      JointVector q = any_joints(arm, random);
+      const Pose anywhere = arm.tip_pose(q);
+      EXPECT_TRUE(is_exact(arm, kinematics.solve(anywhere), anywhere)) << "arm " << a << ", pose " << i;
+      const int j = i % 7;
+      if (std::isfinite(arm.upper()[j])) q[j] = i % 2 ? arm.lower()[j] : arm.upper()[j];
+      const Pose at_limit = arm.tip_pose(q);
+      EXPECT_TRUE(is_exact(arm, kinematics.solve(at_limit), at_limit)) << "arm " << a << ", joint " << j << " of " << i;
     }
   }
 }
