@@ -85,6 +85,7 @@ FrameRecord ViewMeasures::new_record(const ShownInstant& instant) const {
   record.texture_bytes_used = bytes_used_;
   record.texture_bytes_budget = textures_.memory_bytes;
   record.gain = gain_;
+  record.misplacement_px = misplacement_px_;
   return record;
 }
 
@@ -98,6 +99,7 @@ void ViewMeasures::take(const ExtractionReport& report, FrameRecord& record) {
   record.texels_written = record.texels_written.value_or(0) + static_cast<double>(report.texels_written);
   record.texture_bytes_used = bytes_used_ = report.bytes_in_use;
   record.gain = gain_ = std::exp(2.2 * report.log_gain);  // from 8-bit values to linear light
+  record.misplacement_px = misplacement_px_ = report.misplacement_px;
   record_.texels = std::max(record_.texels, report.texels_resident);
   policy_ = report.policy;
   lamp_ = report.lamp;

@@ -46,6 +46,7 @@ class ViewMeasures final : public ViewObserver {
   RobotTime delayed_time_;
   std::uint64_t bytes_used_ = 0;
   double gain_ = 1;
+  std::optional<double> misplacement_px_;
   ChartAtlas::Policy policy_;
   LampAnswer lamp_;
   std::optional<RobotTime> lamp_known_from_;

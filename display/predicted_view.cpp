@@ -37,9 +37,10 @@ bool same_place(const Pose& a, const Pose& b) {
   return a.matrix() == b.matrix();
 }
 
-void set_tone(const gl::Program& program, float gain, const PublishedTextures& textures) {
+void set_tone(const gl::Program& program, float gain, float sharp, const PublishedTextures& textures) {
   if (!program) return;
   program.set("gain", gain);
+  program.set("sharp", sharp);
   program.set("light_age", textures.light_age);
 }
 
@@ -122,7 +123,8 @@ void PredictedView::draw_rows(DrawRows draw) const {
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
   start(T_world_camera, state, textures, textures.light);
-  for (const gl::Program* program : {&all_, &listed_}) set_tone(*program, textures.display_gain, textures);
+  for (const gl::Program* program : {&all_, &listed_})
+    set_tone(*program, textures.display_gain, textures.sharp, textures);
   start_part();
   draw_rows([&](Rows rows) {
     if (programs_ == ViewPrograms::single) return dispatch_all(all_, rows);
@@ -143,7 +145,8 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   start(T_world_camera, state, textures, images.newest->light);
   look_up(images);
   const Projection& p = *projection_;
-  for (const gl::Program* program : {&p.usual, &p.rest}) set_tone(*program, images.newest->gain, textures);
+  for (const gl::Program* program : {&p.usual, &p.rest})
+    set_tone(*program, images.newest->gain, images.newest->sharp, textures);
   start_part();
   draw_rows([&](Rows rows) {
     draw_images(images, rows);
@@ -180,6 +183,7 @@ void PredictedView::draw_images(const NewestImages& images, Rows rows) const {
   start(p.unseen);
   const gl::Program& newest = draws_part_ ? p.newest_of_part : p.newest;
   p.newest_inputs.bind(newest, images.newest->depth_tolerance, kSeenBlock, kSeenUnit);
+  newest.set("sharp", images.newest->sharp);
   if (draws_part_)
     part_->pixels.dispatch();
   else
@@ -189,6 +193,7 @@ void PredictedView::draw_images(const NewestImages& images, Rows rows) const {
   if (!images.before) return;
   start(p.unseen_by_both);
   p.inputs_before.bind(p.before, images.before->depth_tolerance, kSeenBlock, kSeenUnit);
+  p.before.set("sharp", images.newest->sharp);
   p.unseen.dispatch();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   p.unseen_by_both.finish(kListUnit);

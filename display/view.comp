@@ -12,6 +12,7 @@
 #if LISTED
 #define ITEMS_PER_GROUP 64
 #endif
+uniform float sharp;  // share of the cubic filter (sharpness.hpp)
 #include "camera.glsl"
 #if CASES == IMAGE
 #define SEEN_BLOCK 1
@@ -25,6 +26,7 @@ uniform float gain;
 layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
 uniform float light_age;  // s; of colours that are older it is not known which shadows are in them
 #define BRIGHTEST (1.0 / gain)
+#define SHARP sharp
 #include "lookup.glsl"
 #endif
 #if CASES != EVERY
@@ -105,7 +107,6 @@ bool find_point(ivec2 pixel, out Point found) {
 // less crowded axis has more pixels than that for one of the view, they would flicker: coarser levels of the textures
 // hold means of more of them than are sampled here.
 const float kCoarsest = 0.3, kFinest = 3.0;
-const float kSharp = 0.6;  // as in lookup.glsl
 const float kRim = 6.0;  // px of the image within which it gives way to older ones
 const float kAll = 0.999;  // a weight that leaves nothing
 
@@ -127,7 +128,7 @@ vec4 image_colour(Point point) {
   vec2 size = cameras[0].size.xy;
   vec2 inside = min(pixel, size - 1.0 - pixel);
   float weight = clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0);
-  vec3 colour = unscaled(sample_square(image0, pixel, size, kSharp, finer)) * without_vignetting(cameras[0].tone, pixel, size);
+  vec3 colour = unscaled(sample_square(image0, pixel, size, sharp, finer)) * without_vignetting(cameras[0].tone, pixel, size);
   return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), weight);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,11 @@ struct ExtractionReport {
   RobotTime newest_image;    ///< capture instant of the frame
   std::chrono::steady_clock::time_point published_at;
   std::vector<StageCost> stages;
-  double log_gain = 0;               ///< of the left image (exposure.hpp)
-  LampAnswer lamp;                   ///< what is known of the main lamp
-  std::size_t pages = 0;             ///< pages written; the thesis' pipeline: polygons
-  std::size_t tiles = 0;             ///< tiles of 64 texels for which an image was asked
+  double log_gain = 0;                    ///< of the left image (exposure.hpp)
+  std::optional<double> misplacement_px;  ///< of images beside textures, along each axis (sharpness.hpp)
+  LampAnswer lamp;                        ///< what is known of the main lamp
+  std::size_t pages = 0;                  ///< pages written; the thesis' pipeline: polygons
+  std::size_t tiles = 0;                  ///< tiles of 64 texels for which an image was asked
   std::size_t texels_written = 0;    ///< of these tiles, those copied beside them, and those of changed resolutions
   std::uint64_t bytes_in_use = 0;    ///< of all textures; the atlas counts both generations
   std::uint64_t bytes_reserved = 0;  ///< held for it, at most TextureOptions::memory_bytes

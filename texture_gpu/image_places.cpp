@@ -48,7 +48,7 @@ std::shared_ptr<CameraInput> ImagePlaces::free_right(const FrameOnGpu& kept) {
 }
 
 void ImagePlaces::place(const PosedFrame& frame, const FrameOnGpu& kept, FrameOnGpu& out) {
-  out.exposure_known = false;
+  out.compared = false;
   out.published = free_left(kept);
   out.cameras = {out.published->camera};
   out.images = {without_pixels(frame.left)};

@@ -16,7 +16,7 @@ struct FrameOnGpu {
   std::shared_ptr<PublishedImage> published;          ///< the left one, as it is lent to the display
   std::vector<AtlasView> views;                       ///< of each image
   SeenInputs inputs;
-  bool exposure_known = false;
+  bool compared = false;
   double log_gain = 0;                      ///< of the left image (exposure.hpp)
   std::shared_ptr<const SceneLight> light;  ///< whose shadows were taken out of it; null: none were
 

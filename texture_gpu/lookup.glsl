@@ -40,9 +40,7 @@ Taps gather_taps(ChartRecord chart, vec2 texel, int level) {
   return taps;
 }
 
-// Share of the cubic filter; the rest is linear. More shows errors of the registration more sharply too.
-const float kSharp = 0.6;
-
+#ifdef SHARP  // share of the cubic filter (sharpness.hpp); the rest is linear
 // Catmull-Rom weights of the texels at -1, 0, 1 and 2.
 vec4 cubic_weights(float f) {
   return vec4(f * (-0.5 + f * (1.0 - 0.5 * f)), 1.0 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2.0 - 1.5 * f)),
@@ -108,9 +106,10 @@ Taps gather_sharp_taps(ChartRecord chart, vec2 texel) {
   add_tap(sum, pages, ivec2(nearest.x, first.y), wy.x * inner_x, 0.0);
   add_tap(sum, pages, ivec2(nearest.x, first.y + 3), wy.w * inner_x, 0.0);
   if (sum.all_seen > 0.5)
-    sum.linear.seen = vec4(clamp(mix(sum.linear.seen.rgb, sum.cubic.rgb / sum.cubic.a, kSharp), 0.0, BRIGHTEST), 1.0);
+    sum.linear.seen = vec4(clamp(mix(sum.linear.seen.rgb, sum.cubic.rgb / sum.cubic.a, SHARP), 0.0, BRIGHTEST), 1.0);
   return sum.linear;
 }
+#endif
 
 // Colour and resolution code (alpha) from seen texels only; alpha 0 where there is none.
 vec4 seen_colour(ChartRecord chart, vec2 texel, int level) {

@@ -28,6 +28,7 @@ struct PublishedTextures {
   std::uint64_t number = 0;                    ///< counts up with each publish
   RobotTime newest_image;                      ///< capture instant of the newest image in it
   float display_gain = 1;                      ///< factor on colours that shows the newest image's exposure
+  float sharp = 0.6f;                          ///< share of the cubic filter that suits them (sharpness.hpp)
   gl::BufferTexture table;                     ///< R32UI: colour slot of each page
   gl::BufferTexture charts;                    ///< RGBA32F: five texels a chart (chart_record.glsl)
   gl::BufferTexture coarse;                    ///< RGBA16F: filled mean of each page

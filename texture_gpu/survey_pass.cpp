@@ -16,6 +16,7 @@ gl::Program program(const char* file, std::span<const Lens> lenses, const std::v
 SurveyPass::SurveyPass(std::span<const Lens> lenses)
     : cull_(program("cull.comp", lenses)),
       exposure_(program("exposure.comp", lenses)),
+      agreement_(program("agreement.comp", lenses)),
       perhaps_missed_(program("missed.comp", lenses, {"STEP 0"})),
       missed_(program("missed.comp", lenses, {"STEP 1"})),
       pages_(GL_RGBA32UI, 4096, "pages to survey"),
@@ -105,25 +106,52 @@ SurveyPass::Missed SurveyPass::missed(const SeenInputs& inputs, std::span<const 
   return out;
 }
 
+/// One answer for each page; the program and what it needs are bound.
+template <typename Sample>
+void SurveyPass::ask_pages(std::vector<Sample>& samples) const {
+  static_assert(sizeof(Sample) == sizeof(ExposureSample), "samples_ has room for these");
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, samples_.name());
+  glDispatchCompute(gl::groups(static_cast<int>(samples.size()), 64), 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  samples_.read(std::span(samples));
+}
+
 std::vector<ExposureSample> SurveyPass::brightness(const SeenInputs& inputs, const gl::BufferTexture& charts,
                                                    const AtlasStore& store, int camera, double depth_tolerance,
                                                    int first, int stride) {
-  const int count = first < page_count_ ? (page_count_ - first + stride - 1) / stride : 0;
-  std::vector<ExposureSample> samples(static_cast<std::size_t>(count));
+  std::vector<ExposureSample> samples(static_cast<std::size_t>(sample_count(first, stride)));
   if (samples.empty()) return samples;
   inputs.bind(exposure_, depth_tolerance);
-  exposure_.set("page_count", page_count_);
   exposure_.set("camera", camera);
-  exposure_.set("first_page", first);
-  exposure_.set("stride", stride);
+  bind_pages(exposure_, charts, store, first, stride);
+  ask_pages(samples);
+  return samples;
+}
+
+std::vector<AgreementSample> SurveyPass::agreement(const SeenInputs& inputs, const gl::BufferTexture& charts,
+                                                   const AtlasStore& store, const PublishedTextures& textures,
+                                                   double depth_tolerance, int first, int stride) {
+  std::vector<AgreementSample> samples(static_cast<std::size_t>(sample_count(first, stride)));
+  if (samples.empty()) return samples;
+  inputs.bind(agreement_, depth_tolerance);
+  bind_pages(agreement_, charts, store, first, stride);
+  textures.bind();
+  ask_pages(samples);
+  return samples;
+}
+
+int SurveyPass::sample_count(int first, int stride) const {
+  return first < page_count_ ? (page_count_ - first + stride - 1) / stride : 0;
+}
+
+void SurveyPass::bind_pages(const gl::Program& program, const gl::BufferTexture& charts, const AtlasStore& store,
+                            int first, int stride) const {
+  program.set("page_count", page_count_);
+  program.set("first_page", first);
+  program.set("stride", stride);
   glBindTextureUnit(7, pages_.texture());
   glBindTextureUnit(8, charts.texture());
   glBindTextureUnit(9, store.heights.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, samples_.name());
-  glDispatchCompute(gl::groups(count, 64), 1, 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  samples_.read(std::span(samples));
-  return samples;
 }
 
 }  // namespace foresight

@@ -1,4 +1,5 @@
-// Asks the GPU, for every page that might be in view: who may see it, and how bright is it there?
+// Asks the GPU, for every page that might be in view: who may see it, how bright is it there, and how well does it
+// agree?
 #pragma once
 
 #include <span>
@@ -6,7 +7,9 @@
 
 #include "texture_gpu/atlas_store.hpp"
 #include "texture_gpu/exposure.hpp"
+#include "texture_gpu/published_textures.hpp"
 #include "texture_gpu/seen_inputs.hpp"
+#include "texture_gpu/sharpness.hpp"
 
 namespace foresight {
 
@@ -38,10 +41,21 @@ class SurveyPass {
                                          const AtlasStore& store, int camera, double depth_tolerance, int first,
                                          int stride);
 
+  /// How well the first camera's image agrees with `textures` on those pages (agreement.comp). Waits for the GPU.
+  std::vector<AgreementSample> agreement(const SeenInputs& inputs, const gl::BufferTexture& charts,
+                                         const AtlasStore& store, const PublishedTextures& textures,
+                                         double depth_tolerance, int first, int stride);
+
  private:
   std::vector<std::uint32_t> ask(const gl::Program& program, std::span<const std::uint32_t> tiles);
 
-  gl::Program cull_, exposure_, perhaps_missed_, missed_;
+  int sample_count(int first, int stride) const;
+  void bind_pages(const gl::Program& program, const gl::BufferTexture& charts, const AtlasStore& store, int first,
+                  int stride) const;
+  template <typename Sample>
+  void ask_pages(std::vector<Sample>& samples) const;
+
+  gl::Program cull_, exposure_, agreement_, perhaps_missed_, missed_;
   gl::BufferTexture pages_, tiles_, geometry_;
   gl::Buffer masks_, samples_, answers_;
   int page_count_ = 0;

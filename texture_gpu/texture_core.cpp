@@ -10,7 +10,7 @@
 namespace foresight {
 namespace {
 
-constexpr int kExposurePages = 600;
+constexpr int kComparedPages = 600;
 constexpr std::uint64_t kImagesToRefresh = 32;  // images within which a page that stays in view is written anyway
 constexpr double kGpuTimeout = 20;              // seconds for one frame, software renderers included
 
@@ -66,8 +66,8 @@ bool TextureCore::look(const PosedFrame& frame, LatestImages& latest) {
   look(frame);
   looked_up_ = number_ > 0;
   if (!looked_up_) return false;
-  // The pages of the image before tell the exposure as well as its own, which are not planned yet.
-  estimate_exposure();
+  // The pages of the image before tell as much as its own, which are not planned yet.
+  compare_with_textures();
   publish(latest);
   return true;
 }
@@ -91,7 +91,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   extract_.upload_heights(atlas_, allocation.new_heights, store_);
   if (!allocation.new_heights.empty()) survey_.set_pages(records_ = atlas_.placed_records());
   mark("prepare");
-  if (!frame.exposure_known) estimate_exposure();
+  if (!frame.compared) compare_with_textures();
 
   GenerationPool::Generation next = generations_.take(store_);
   atlas_.write_table(table_);
@@ -111,6 +111,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
 
   next->number = ++number_;
   next->newest_image = frame.time();
+  next->sharp = static_cast<float>(sharpness_.cubic_share());
   next->light = frame.light;
   next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - light_since_)) : -1;
   next->display_gain = static_cast<float>(std::exp(frame.log_gain));
@@ -135,6 +136,7 @@ ExtractionReport TextureCore::report() {
   out.number = number_;
   out.stages = clock_.read();
   out.log_gain = exposures_[0].log_gain();
+  if (const auto square = sharpness_.misplacement2()) out.misplacement_px = std::sqrt(*square);
   out.lamp = lamp_finder_.answer();
   out.bytes_in_use = atlas_.bytes_in_use();
   out.bytes_reserved = store_.held().bytes();
@@ -150,6 +152,7 @@ void TextureCore::publish(LatestImages& latest) {
   out.tone = {1, static_cast<float>(exposures_[0].vignetting().x()),
               static_cast<float>(exposures_[0].vignetting().y())};
   out.gain = static_cast<float>(std::exp(newest_.log_gain));
+  out.sharp = static_cast<float>(sharpness_.cubic_share());
   out.light = newest_.light;
   out.depth_tolerance = options_.depth_tolerance;
   gl::Fence::insert().wait(kGpuTimeout);
@@ -282,11 +285,19 @@ bool TextureCore::place(const Masks& wanted, std::int64_t image, ChartAtlas::All
   return true;
 }
 
-void TextureCore::estimate_exposure() {
-  if (!options_.even_exposure) return;
+/// How bright the new image is beside those before, and how well it lies on them.
+void TextureCore::compare_with_textures() {
   // Enough pages for a median; each image asks others, so that all get references.
-  const int stride = std::max(1, static_cast<int>(records_.size()) / kExposurePages);
+  const int stride = std::max(1, static_cast<int>(records_.size()) / kComparedPages);
   const int first = static_cast<int>(image_ % stride);
+  if (options_.even_exposure) estimate_exposure(first, stride);
+  sharpness_.update(
+      survey_.agreement(newest_.inputs, charts_, store_, *current_, options_.depth_tolerance, first, stride));
+  newest_.compared = true;
+  mark("exposure");
+}
+
+void TextureCore::estimate_exposure(int first, int stride) {
   std::vector<AtlasPage*> pages;
   for (std::size_t i = static_cast<std::size_t>(first); i < records_.size(); i += static_cast<std::size_t>(stride))
     pages.push_back(&atlas_.page_of(records_[i]));
@@ -300,8 +311,6 @@ void TextureCore::estimate_exposure() {
   }
   newest_.update_inputs(tones);
   newest_.log_gain = exposures_[0].log_gain();
-  newest_.exposure_known = true;
-  mark("exposure");
 }
 
 void TextureCore::list_ages(RobotTime now) {

@@ -51,7 +51,8 @@ class TextureCore {
   void find_lamp();
   void take_out_shadows();
   void publish(LatestImages& latest);
-  void estimate_exposure();
+  void compare_with_textures();
+  void estimate_exposure(int first, int stride);
   void save_what_leaves(LatestTextures& latest);
   SurveyPass::Missed not_shown(const SeenInputs& inputs, const std::vector<AtlasView>& views, const Masks& tiles);
   bool allocate(ChartAtlas::Allocation& out);
@@ -70,6 +71,7 @@ class TextureCore {
   AtlasStore store_;
   ImagePlaces places_;
   std::vector<ExposureEstimator> exposures_;
+  SharpnessEstimator sharpness_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;
   gl::RasterPass raster_;
   EdgePass edges_;

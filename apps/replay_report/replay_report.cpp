@@ -112,6 +112,7 @@ Json json_of(const FrameRecord& f) {
   json["texture_bytes_used"] = f.texture_bytes_used;
   json["texture_bytes_budget"] = f.texture_bytes_budget;
   json["gain"] = number(f.gain);
+  json["misplacement_px"] = number(f.misplacement_px);
   json["stages"] = json_of_stages(f.stages);
   return json;
 }

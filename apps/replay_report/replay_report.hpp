@@ -51,7 +51,9 @@ struct FrameRecord {
   std::optional<double> texels_written;
   std::uint64_t texture_bytes_used = 0;
   std::uint64_t texture_bytes_budget = 0;
-  double gain = 1;       ///< exposure gain that was applied to the newest image, linear light
+  double gain = 1;  ///< exposure gain that was applied to the newest image, linear light
+  /// How far images lie beside what was there before, along each axis; empty as long as it is not known.
+  std::optional<double> misplacement_px;
   bool dropped = false;  ///< the image was not shown in time (--real-time); no quality, no coverage
 };
 

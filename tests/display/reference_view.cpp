@@ -119,7 +119,7 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
       if (code > 0.5) filled += weight * (1 - share) * opaque;
     });
     if (const auto sharp = level == 0 ? cubic(at, fetch) : std::nullopt) {
-      seen.head<3>() = (0.4 * seen.head<3>() + 0.6 * *sharp).cwiseMax(0).cwiseMin(1);
+      seen.head<3>() = ((1 - generation_.sharp) * seen.head<3>() + generation_.sharp * *sharp).cwiseMax(0).cwiseMin(1);
       const Eigen::Array2d middle = at.array() + 0.5;
       out.borderline |= (middle - middle.round()).abs().minCoeff() < 1e-3;  // between two rows or columns
     }

@@ -1,5 +1,7 @@
-// cull.comp and exposure.comp against one point at a time.
+// cull.comp and exposure.comp against one point at a time; agreement.comp with images that lie beside their place.
 #include "texture_gpu/survey_pass.hpp"
+
+#include <opencv2/imgproc.hpp>
 
 #include "tests/support/headless_test.hpp"
 #include "tests/texture_gpu/pass_bench.hpp"
@@ -181,6 +183,46 @@ TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
   // Slivers between the points, and of fewer than two of them: silhouettes are long in pictures of 160 x 120 px.
   const bool coarse = std::string(GetParam()) == "wide_fisheye";  // 1.3 degrees a pixel
   EXPECT_LT(texels_overlooked, texels_missed / (coarse ? 3 : 12)) << "of " << texels_missed;
+}
+
+// What an image that lies `off_px` beside its place differs from the textures, per gradient.
+TEST_P(SurveyOfLenses, AgreementTellsHowFarAnImageLiesBesideItsPlace) {
+  look(look_at({-0.45, -0.3, 0.4}, {0.02, 0, 0.1}));
+  // As soft as a camera's lens leaves it: the photograph itself has grain between its pixels.
+  const PosedImage photograph = bench_->images[0];
+  const auto moved = [&](double off_px, double gain) {
+    cv::Mat soft, out;
+    cv::GaussianBlur(photograph.pixels, soft, {}, 1);
+    cv::warpAffine(gain * soft, out, cv::Matx23d(1, 0, off_px, 0, 1, 0), soft.size(), cv::INTER_CUBIC,
+                   cv::BORDER_REPLICATE);
+    PosedImage image = photograph;
+    image.pixels = out;
+    return std::vector{image};
+  };
+  bench_->run(moved(0, 1));
+  const auto differs = [&](double off_px, double gain) {
+    bench_->look(moved(off_px, gain));
+    bench_->cull();
+    const auto samples = bench_->survey.agreement(bench_->inputs, bench_->next->charts, bench_->store, *bench_->current,
+                                                  bench_->options.depth_tolerance, 0, 1);
+    double difference2 = 0, gradient2 = 0;
+    int told = 0;
+    for (const AgreementSample& sample : samples) {
+      if (sample.difference2 < 0) continue;
+      ++told;
+      difference2 += sample.difference2;
+      gradient2 += sample.gradient2;
+    }
+    EXPECT_GT(told, 10);
+    return difference2 / gradient2;
+  };
+  EXPECT_LT(differs(0, 1), 0.02);
+  EXPECT_LT(differs(0, 0.7), 0.03) << "exposure is no misplacement";
+  const double half = differs(0.5, 1), one = differs(1, 1);
+  // Along one of two axes: 0.125, and up to twice that where the picture is as fine as its pixels.
+  EXPECT_GT(half, 0.09);
+  EXPECT_LT(half, 0.27);
+  EXPECT_NEAR(one / half, 3.5, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Lenses, SurveyOfLenses, testing::ValuesIn(kLensKinds),

@@ -42,7 +42,8 @@ std::size_t AtlasPixels::place(std::uint32_t slot, int level, int x, int y) {
          static_cast<std::size_t>(x);
 }
 
-Generation::Generation(const PublishedTextures& published, std::size_t count) : display_gain(published.display_gain) {
+Generation::Generation(const PublishedTextures& published, std::size_t count)
+    : display_gain(published.display_gain), sharp(published.sharp) {
   std::vector<Eigen::Vector4f> rows(5 * count);
   published.charts.buffer().read(std::span<Eigen::Vector4f>(rows));
   int pages = 0;

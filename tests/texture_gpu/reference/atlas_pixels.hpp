@@ -41,7 +41,7 @@ struct Generation {
   std::vector<ChartCopy> charts;
   std::vector<std::uint32_t> table;
   std::vector<Eigen::Vector4d> coarse, means;
-  float display_gain = 1;
+  float display_gain = 1, sharp = 0;
 };
 
 Eigen::Vector4d to_vector(const Texel& texel);
