@@ -46,8 +46,8 @@ class EachInterval {
 };
 
 template <typename Pacer>
-std::vector<Shown> show(PredictedView& view, const SceneState& state, const DisplayRound& round,
-                        const LatestTextures& textures, Clock& clock, Pacer pacer) {
+std::vector<Shown> show(PredictedView& view, const DisplayRound& round, const BusyTextures& textures, Clock& clock,
+                        Pacer pacer) {
   std::vector<Shown> out;
   TakenCores taken(kRenderer);
   const RobotTime end = clock.now() + seconds(round.seconds);
@@ -56,8 +56,9 @@ std::vector<Shown> show(PredictedView& view, const SceneState& state, const Disp
     }
     Shown frame;
     frame.look = clock.now();
-    const TextureLease lease = textures.acquire();
-    view.draw(round.T_world_eye, state, *lease);
+    const TextureLease lease = textures.textures().acquire();
+    const ImagesLease images = textures.images().acquire();
+    view.draw(round.place.T_world_camera, round.place.scene, lease, images);
     pacer.drawn();
     frame.swapped = clock.now();
     pacer.swapped();
@@ -99,9 +100,8 @@ DisplayFigures figures_of(const std::vector<Shown>& shown, double rate_hz) {
 }  // namespace
 
 BusyTextures::BusyTextures(gl::Context& context, const DisplayScene& scene, std::shared_ptr<FrameGate> gate)
-    : scene_(scene),
-      thread_(context.create_shared(),
-              {scene.model, scene.surface, scene.camera, std::nullopt, {}, false, std::move(gate)}) {
+    : thread_(context.create_shared(),
+              {scene.model, scene.surface, scene.camera, std::nullopt, {}, true, std::move(gate)}) {
   context.make_current();
   feeder_ = std::jthread([this](const std::stop_token& stop) {
     try {
@@ -132,7 +132,13 @@ void BusyTextures::check() const {
 BusyTextures::~BusyTextures() = default;
 
 PosedFrame BusyTextures::next() {
-  return scene_.images[next_++ % scene_.images.size()];
+  return (*images_)[next_++ % images_->size()];
+}
+
+void BusyTextures::take(const std::vector<PosedFrame>& images) {
+  images_ = &images;
+  next_ = 0;
+  finish(images.size());
 }
 
 void BusyTextures::finish(std::size_t images) {
@@ -144,16 +150,15 @@ void BusyTextures::finish(std::size_t images) {
   check();
 }
 
-DisplayFigures show_frames(PredictedView& view, const SceneState& state, const DisplayRound& round,
-                           BusyTextures& textures, const std::shared_ptr<FrameGate>& gate) {
+DisplayFigures show_frames(PredictedView& view, const DisplayRound& round, BusyTextures& textures,
+                           const std::shared_ptr<FrameGate>& gate) {
   MonotonicClock clock;
   const std::uint64_t before = textures.finished();
   const RobotTime start = clock.now();
   FramePacingOptions pacing;
   pacing.rate_hz = round.rate_hz;
-  const auto shown = round.paced
-                         ? show(view, state, round, textures.textures(), clock, FramePacer(clock, pacing, gate))
-                         : show(view, state, round, textures.textures(), clock, EachInterval(clock, round.rate_hz));
+  const auto shown = round.paced ? show(view, round, textures, clock, FramePacer(clock, pacing, gate))
+                                 : show(view, round, textures, clock, EachInterval(clock, round.rate_hz));
   textures.check();
   DisplayFigures out = figures_of(shown, round.rate_hz);
   out.images_per_s = static_cast<double>(textures.finished() - before) / to_seconds(clock.now() - start);

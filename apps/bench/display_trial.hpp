@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "display/frame_source.hpp"
 #include "display/predicted_view.hpp"
 #include "gl/context.hpp"
 #include "scene/posed_frame.hpp"
@@ -17,28 +18,32 @@ namespace foresight {
 struct DisplayScene {
   std::shared_ptr<const SceneModel> model;
   std::shared_ptr<const SurfacePatches> surface;
-  Lens camera;                     ///< of `images`
-  std::vector<PosedFrame> images;  ///< what the extraction gets, in turn; not empty
+  Lens camera;  ///< of images
 };
 
-/// Extracts the scene's images one after the other, as quickly as it is let, in threads of its own.
+/// Extracts images one after the other, as quickly as it is let, in threads of its own. As at the seat, each is
+/// published before its textures.
 class BusyTextures {
  public:
   /// `context`: of the display, current. `gate` as TextureThread::Setup::gate. Rests at first.
   BusyTextures(gl::Context& context, const DisplayScene& scene, std::shared_ptr<FrameGate> gate);
   ~BusyTextures();
 
+  /// While it rests: from now on it gets these in turn, and has got all of them when this returns. Not empty; they must
+  /// outlive that.
+  void take(const std::vector<PosedFrame>& images);
   void run(bool works) { works_ = works; }
   std::uint64_t finished() const { return finished_; }  ///< images
   void finish(std::size_t images);                      ///< waits for so many more, then rests
   void check() const;                                   ///< throws what ended the extraction
   const LatestTextures& textures() const { return thread_.textures(); }
+  const LatestImages& images() const { return thread_.images(); }
 
  private:
   PosedFrame next();
   void feed(const std::stop_token& stop);
-  const DisplayScene& scene_;
   TextureThread thread_;
+  const std::vector<PosedFrame>* images_ = nullptr;
   std::atomic<bool> works_ = false, busy_ = false, failed_ = false;
   std::exception_ptr error_;  // once it failed
   std::atomic<std::uint64_t> finished_ = 0;
@@ -50,7 +55,7 @@ struct DisplayRound {
   double rate_hz = 25;  ///< asked for
   double seconds = 5;
   bool paced = true;  ///< else as without pacing: a frame each interval, whatever else goes on
-  Pose T_world_eye;
+  ViewPlace place;
 };
 
 /// Times in ms.
@@ -65,9 +70,9 @@ struct DisplayFigures {
   double images_per_s = 0;                    ///< extracted meanwhile
 };
 
-/// Draws `view` with `textures` for a while; each frame ends when the GPU has finished it. `gate`: of `textures`, where
-/// the round is paced.
-DisplayFigures show_frames(PredictedView& view, const SceneState& state, const DisplayRound& round,
-                           BusyTextures& textures, const std::shared_ptr<FrameGate>& gate);
+/// Draws `view` with the newest image and `textures` for a while; each frame ends when the GPU has finished it. `gate`:
+/// of `textures`, where the round is paced.
+DisplayFigures show_frames(PredictedView& view, const DisplayRound& round, BusyTextures& textures,
+                           const std::shared_ptr<FrameGate>& gate);
 
 }  // namespace foresight

@@ -15,13 +15,13 @@
 namespace foresight {
 namespace {
 
-constexpr Duration kLook = std::chrono::milliseconds(1);
+constexpr Duration kBetweenLooks = std::chrono::milliseconds(1);
 constexpr int kNice = 10;  // frames go before views where both share processors
 
 /// Until the other side ends it.
 void draw_for(head::ViewShare& share, const RunFolder& run) {
   MonotonicClock clock;
-  const auto wait = [&] { clock.sleep_until(clock.now() + kLook); };
+  const auto wait = [&] { clock.sleep_until(clock.now() + kBetweenLooks); };
   std::optional<head::HeadAim> aim;
   while (!share.ended() && !(aim = share.take_aim())) wait();
   if (share.ended()) return;

@@ -17,27 +17,29 @@ constexpr double kNoise = 2;
 
 }  // namespace
 
-LabPictures::LabPictures(cv::Size size, std::size_t count,
+LabPictures::LabPictures(const LabPictureOptions& options,
                          const std::function<void(std::size_t, std::size_t)>& progress)
-    : pairs_(count) {
-  const sim::SynthOptions options{.width = size.width, .height = size.height, .stereo = true};
+    : pairs_(options.count) {
+  const cv::Size size = options.size;
+  const sim::SynthOptions synth{.width = size.width, .height = size.height, .stereo = true};
   const double relative = 640.0 / std::max(size.width, size.height);
-  const sim::Lab lab = sim::make_lab(0.0005 * std::clamp(relative, 0.6, 8.0), options.seed);
+  const sim::Lab lab = sim::make_lab(0.0005 * std::clamp(relative, 0.6, 8.0), synth.seed);
   const sim::LightMap light(lab, std::clamp(relative, 0.6, 16.0));
   const sim::Renderer renderer(lab, light);
-  const sim::RayTable left(sim::synth_lens(options, false)), right(sim::synth_lens(options, true));
+  const sim::RayTable left(sim::synth_lens(synth, false)), right(sim::synth_lens(synth, true));
   const sim::Sensor sensor{.noise = kNoise};
   std::mutex mutex;
   std::size_t done = 0;
-  parallel_for(count, [&](std::size_t i) {
-    const double t = static_cast<double>(i) / kPairsPerSecond;
+  parallel_for(options.count, [&](std::size_t i) {
+    const double t = options.first_s + static_cast<double>(i) / kPairsPerSecond;
     const sim::LabState state = sim::lab_state_at(lab, t);
     const sim::LightMap::Irradiance lit = light.lit(state);
     const Pose T_world_left = sim::T_world_camera_at(t), T_world_right = T_world_left * sim::T_left_right();
     pairs_[i].left = sensor.develop(renderer.render(left, T_world_left, state, lit).light, t, 2 * i);
-    pairs_[i].right = sensor.develop(renderer.render(right, T_world_right, state, lit).light, t, 2 * i + 1);
+    if (options.right)
+      pairs_[i].right = sensor.develop(renderer.render(right, T_world_right, state, lit).light, t, 2 * i + 1);
     const std::scoped_lock lock(mutex);
-    progress(++done, count);
+    progress(++done, options.count);
   });
 }
 

@@ -77,7 +77,7 @@ double worst_minute(const LineTrialResult& result) {
 
 LabPictures render(cv::Size size, std::size_t count) {
   ProgressBar bar("render", "pairs", count, ProgressBar::Instant::clock::now(), ProgressBar::for_stderr());
-  const LabPictures pictures(size, count, [&](std::size_t done, std::size_t) {
+  const LabPictures pictures({.size = size, .count = count}, [&](std::size_t done, std::size_t) {
     std::fputs(bar.update(done, ProgressBar::Instant::clock::now()).c_str(), stderr);
   });
   std::fputs(bar.finish(count, ProgressBar::Instant::clock::now()).c_str(), stderr);
