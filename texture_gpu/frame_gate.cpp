@@ -29,13 +29,15 @@ void FrameGate::frame_ends(RobotTime next) {
 std::size_t FrameGate::begin(const char* kind, std::size_t units) {
   std::unique_lock lock(mutex_);
   kind_ = kind;
-  units_ = std::max<std::size_t>(
-      1, static_cast<std::size_t>(budget_.units_within(kSlice, kind, static_cast<double>(units))));
   work_waits_ = true;
-  while (const auto until = budget_.wait(clock_.now(), kind, static_cast<double>(units_)))
-    frame_ended_.wait_for(lock, std::clamp(*until - clock_.now(), Duration{1}, kLongestSleep));
-  began_ = clock_.now();
-  return units_;
+  for (;;) {
+    began_ = clock_.now();
+    const double now = budget_.units_now(began_, kSlice, kind, static_cast<double>(units));
+    units_ = std::max<std::size_t>(1, static_cast<std::size_t>(now));
+    const auto until = budget_.wait(began_, kind, static_cast<double>(units_));
+    if (!until) return units_;
+    frame_ended_.wait_for(lock, std::clamp(*until - began_, Duration{1}, kLongestSleep));
+  }
 }
 
 void FrameGate::end() {

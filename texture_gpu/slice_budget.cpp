@@ -12,7 +12,8 @@ constexpr std::size_t kCosts = 16;
 constexpr double kQuantile = 0.8;     // one preempted slice does not count
 constexpr double kMostOwedNs = 50e6;  // a slice that takes longer comes to its turn with it, and pays afterwards
 constexpr double kMostDebtNs = 200e6;
-constexpr double kUrgentNs = 20e6;  // owed: slices run even while a frame is drawn
+constexpr double kUrgentNs = 20e6;       // owed: slices run even while a frame is drawn
+constexpr std::int64_t kLeastParts = 3;  // of a slice: less than one of them is not begun before a frame
 
 }  // namespace
 
@@ -62,6 +63,11 @@ void SliceBudget::ran(RobotTime begin, RobotTime end, const std::string& kind, d
     costs.ns[costs.next] = unit;
   costs.next = (costs.next + 1) % kCosts;
   costs.longest_ns = quantile(costs.ns, kQuantile);
+}
+
+double SliceBudget::units_now(RobotTime now, Duration slice, const std::string& kind, double units) const {
+  const Duration left = due_ && !drawing_since_ ? *due_ - now : slice;
+  return units_within(left >= slice / kLeastParts ? std::min(left, slice) : slice, kind, units);
 }
 
 double SliceBudget::units_within(Duration time, const std::string& kind, double units) const {

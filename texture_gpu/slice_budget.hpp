@@ -41,6 +41,9 @@ class SliceBudget {
   std::optional<RobotTime> wait(RobotTime now, const std::string& kind, double units = 1);
   /// A slice of so many units ran. What it cost counts when the next one is planned.
   void ran(RobotTime begin, RobotTime end, const std::string& kind, double units = 1);
+  /// How many of `units` a slice of about `slice` is to do that begins now: fewer where the next frame is due before
+  /// its end, but not so few that what each slice costs besides would count. At least 1.
+  double units_now(RobotTime now, Duration slice, const std::string& kind, double units) const;
   /// So many units take about this long; at least 1. `units` where nothing is known yet.
   double units_within(Duration time, const std::string& kind, double units) const;
   /// By what was measured of this kind; 0: nothing yet.

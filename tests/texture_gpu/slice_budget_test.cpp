@@ -133,6 +133,34 @@ TEST(SliceBudget, LearnsWhatAUnitCosts) {
   EXPECT_EQ(budget.expected("other", 150), 0ms);
 }
 
+// Tiles of 0.1 ms, frames that leave 14 ms: four whole slices and what is left, none of which delays the next frame.
+TEST(SliceBudget, ALastSliceIsAsLongAsTheFrameLeaves) {
+  SliceBudget budget;
+  const auto run = [&](RobotTime now, double tiles) {
+    const RobotTime end = now + Duration{std::llround(1e5 * tiles)};
+    budget.ran(now, end, "tiles", tiles);
+    return end;
+  };
+  run(RobotTime{}, 10);
+  RobotTime begin = RobotTime{} + 1s;
+  for (int frame = 0; frame < 20; ++frame, begin = begin + 40ms) {
+    budget.frame_begins(begin);
+    RobotTime now = begin + 26ms;
+    const RobotTime due = begin + 40ms;
+    budget.frame_ends(now, due);
+    std::vector<double> slices;
+    for (;;) {
+      const double tiles = budget.units_now(now, 3ms, "tiles", 500);
+      if (budget.wait(now, "tiles", tiles)) break;
+      slices.push_back(tiles);
+      now = run(now, tiles);
+      ASSERT_LE(now.ns, due.ns);
+    }
+    EXPECT_EQ(slices, (std::vector<double>{30, 30, 30, 30, 20}));
+    EXPECT_GE(budget.units_now(due - 500us, 3ms, "tiles", 500), 30) << "not so few: that would cost more than it does";
+  }
+}
+
 // By a clock that runs: whoever works waits while a frame is drawn, and goes on when it ends.
 TEST(FrameGate, HoldsTheWorkWhileAFrameIsDrawn) {
   MonotonicClock clock;
