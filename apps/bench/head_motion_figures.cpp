@@ -76,9 +76,9 @@ nlohmann::json cube_row(HeadLab& lab, const PoseTrack& head, const Lens& eye, co
   std::printf(
       "a cube of views, %-44s %5.1f %% of %.0f frames need no new face (%s drawn); a frame %5.1f CPU-ms, with its "
       "share "
-      "of faces %5.1f; drawn %.1f; %.1f dB\n",
+      "of faces %5.1f; drawn %.1f; %.1f dB, worst %.1f\n",
       trial.words, 100 * served / frames, frames, drawn.c_str(), median(frame_ms), mean_ms, median(drawn_ms),
-      median(db));
+      median(db), *std::ranges::min_element(db));
   return {{"frames", db.size()},
           {"without_new_face", served / frames},
           {"faces_drawn", faces},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "gl/faces.hpp"
@@ -10,8 +11,7 @@
 namespace foresight {
 namespace {
 
-constexpr double kNear = 0.4;  // m: as near as surfaces usually are; from farther ones one may go on farther
-constexpr int kRays = 25;      // along each side of a view, to tell what it sees: closer than a guard is wide
+constexpr int kRays = 25;  // along each side of a view, to tell what it sees: closer than a guard is wide
 
 Lens lens_of_faces(const Lens& target) {
   const double f = target.parameters().fx, half = std::tan(EIGEN_PI / 4 + CubeViews::kGuard);
@@ -20,6 +20,18 @@ Lens lens_of_faces(const Lens& target) {
   p.fx = p.fy = f;
   p.cx = p.cy = (p.width - 1) / 2.0;
   return Lens(p);
+}
+
+/// m; of what no model shows: endless.
+double nearest_of(const WarpLayers& layers) {
+  std::vector<Eigen::Vector4f> blocks(static_cast<std::size_t>(layers.blocks.width()) *
+                                      static_cast<std::size_t>(layers.blocks.height()));
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureImage(layers.blocks.name(), 0, GL_RGBA, GL_FLOAT,
+                    static_cast<GLsizei>(blocks.size() * sizeof(Eigen::Vector4f)), blocks.data());
+  float most = 0;  // 1/m
+  for (const Eigen::Vector4f& block : blocks) most = std::max(most, block.x());
+  return most > 0 ? 1.0 / static_cast<double>(most) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -69,17 +81,22 @@ gl::ViewPart CubeViews::part(std::size_t shell) const {
   return out;
 }
 
-std::optional<CubeViews::Face> CubeViews::missing(const Pose& T_world_camera) const {
+// A viewer who goes past something that is near, or through it, sees what no pixel of the face shows.
+bool CubeViews::serves(Kept& face, std::size_t shell, const Pose& T_world_camera) const {
+  if (!face.is_new) return false;
+  if (!face.nearest) face.nearest = nearest_of(*face.layers);
+  const double gone = (face.layers->T_world_camera.translation() - T_world_camera.translation()).norm();
+  return gone < (*face.nearest < kNear ? std::min(kShare * *face.nearest, may_move(shell)) : may_move(shell));
+}
+
+std::optional<CubeViews::Face> CubeViews::missing(const Pose& T_world_camera) {
   const std::array<int, kFaces> rays = seen_by(T_world_camera);
   for (std::size_t shell = 0; shell < shells_.size(); ++shell) {
     int most = 0;
     Face out{0, shell};
     for (int side = 0; side < kFaces; ++side) {
       const auto i = static_cast<std::size_t>(side);
-      const auto& [layers, is_new] = shells_[shell][i];
-      const bool there =
-          is_new && (layers->T_world_camera.translation() - T_world_camera.translation()).norm() < may_move(shell);
-      if (there || rays[i] <= most) continue;
+      if (rays[i] <= most || serves(shells_[shell][i], shell, T_world_camera)) continue;
       most = rays[i];
       out.side = side;
     }
@@ -89,10 +106,11 @@ std::optional<CubeViews::Face> CubeViews::missing(const Pose& T_world_camera) co
 }
 
 WarpLayers& CubeViews::layers(const Face& face) {
-  auto& [layers, is_new] = shells_[face.shell][static_cast<std::size_t>(face.side)];
-  if (!layers) layers.emplace(face_lens_, face.shell + 1 < shells_.size());
-  is_new = true;
-  return *layers;
+  Kept& kept = shells_[face.shell][static_cast<std::size_t>(face.side)];
+  if (!kept.layers) kept.layers.emplace(face_lens_, face.shell + 1 < shells_.size());
+  kept.is_new = true;
+  kept.nearest.reset();
+  return *kept.layers;
 }
 
 void CubeViews::changed() {

@@ -28,6 +28,8 @@ class CubeViews {
   static constexpr int kFaces = 6;
   static constexpr double kGuard = 3 * EIGEN_PI / 180;  ///< rad on each side
   static constexpr double kFarthest = 0.05;             ///< m that a viewer may be from where the nearest was drawn
+  static constexpr double kShare = 0.125;               ///< of the distance of what a face shows nearest, likewise
+  static constexpr double kNear = kFarthest / kShare;   ///< m: as near as surfaces usually are
   static constexpr double kNearestBorder = 0.3;         ///< m
 
   /// A shell's picture in one direction.
@@ -46,12 +48,13 @@ class CubeViews {
   static Pose T_world_face(int side, const Pose& T_world_camera);
   /// What is drawn of a shell: its own distances, and as much nearer as the shells' middles may be apart.
   gl::ViewPart part(std::size_t shell) const;
-  /// m that a viewer may be from where a face of the shell was drawn.
+  /// m that a viewer may be from where a face of the shell was drawn, unless that shows something nearer than kNear.
   double may_move(std::size_t shell) const;
 
   /// The face that is missing most: of the nearest shell that misses one, that of which the camera sees most; nothing
-  /// where all are there.
-  std::optional<Face> missing(const Pose& T_world_camera) const;
+  /// where all are there. Waits for faces that were drawn since: how near what they show is decides how long they
+  /// serve.
+  std::optional<Face> missing(const Pose& T_world_camera);
   /// To be captured into, the shell's part of the view drawn through face_lens() from T_world_face().
   WarpLayers& layers(const Face& face);
   /// What all faces show has changed, as with a new image: those of the nearest shell are missing again, those of the
@@ -72,8 +75,10 @@ class CubeViews {
   DepthWarp warp_;
   struct Kept {
     std::optional<WarpLayers> layers;
-    bool is_new = false;  // shows what is
+    bool is_new = false;            // shows what is
+    std::optional<double> nearest;  // m, that it shows; nothing: not known yet
   };
+  bool serves(Kept& face, std::size_t shell, const Pose& T_world_camera) const;
   std::vector<std::array<Kept, kFaces>> shells_;
   unsigned changes_ = 0;
 };

@@ -257,8 +257,15 @@ TEST_F(DepthWarpTest, FacesAroundTheViewerServeAHeadThatTurns) {
   EXPECT_LE(all, 6);
   EXPECT_EQ(draw_missing(usual_view()), 0);
   EXPECT_GE(draw_missing(moved(usual_view(), {0.2, 0, 0}, 0, Eigen::Vector3d::UnitY())), 1) << "too far from there";
+  // Near things move more: closely over the table, a step serves no more that does elsewhere.
+  const Pose low = look_at({0.25, -0.1, 0.04}, {0, 0, 0.03});
+  const auto step = [](const Pose& from) { return moved(from, {0.02, 0, 0}, 0, Eigen::Vector3d::UnitY()); };
+  EXPECT_GE(draw_missing(low), 1);
+  EXPECT_EQ(draw_missing(low), 0) << "drawn once";
+  EXPECT_GE(draw_missing(step(low)), 1);
   cube.forget();
   EXPECT_EQ(draw_missing(usual_view()), first);
+  EXPECT_EQ(draw_missing(step(usual_view())), 0);
 }
 
 // Near things are drawn again when the viewer moves or the picture changes, far ones more rarely; at each pixel the
