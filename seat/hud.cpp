@@ -13,6 +13,7 @@ namespace foresight {
 namespace {
 
 constexpr float kFontPx = 16;
+constexpr float kWordsAt = 115;           // px from a panel's left: what a line says
 constexpr float kBesideEachOther = 1100;  // px of width that keys and what is next need
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
@@ -79,6 +80,8 @@ struct Hud::Work {
     ImGui::Begin(name, nullptr, kPanel);
   }
   void draw(const HudContent& content, const HudArea& area) const;
+  float draw_next(const SeatLine& next, ImVec2 corner, float width) const;  // px that it is high
+  void draw_keys(const HudContent& content, ImVec2 corner) const;
   void draw(const std::vector<HudLabel>& labels, float width, float height) const;
 };
 
@@ -111,39 +114,48 @@ void Hud::Work::draw(const std::vector<HudLabel>& labels, float width, float hei
   }
 }
 
+float Hud::Work::draw_next(const SeatLine& next, ImVec2 corner, float width) const {
+  if (next.words.empty()) return 0;
+  panel("next", corner, {1, 1});
+  ImGui::PushFont(large);
+  ImGui::PushTextWrapPos(std::max(1.0f, width));
+  ImGui::PushStyleColor(ImGuiCol_Text, colour(next.urgency));
+  write(mark(next.urgency) + next.words);
+  if (!next.cure.empty()) write("   " + next.cure);
+  ImGui::PopStyleColor();
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+  const float height = ImGui::GetWindowHeight();
+  ImGui::End();
+  return height;
+}
+
+void Hud::Work::draw_keys(const HudContent& content, ImVec2 corner) const {
+  if (content.keys.empty()) return;
+  panel("keys", corner, {0, 1});
+  for (const auto& [key, does] : content.keys) {
+    write(key);
+    ImGui::SameLine(1.2f * kWordsAt * scale);
+    write(does);
+  }
+  ImGui::End();
+}
+
+// What matters more comes first: where there is little room, later panels are behind earlier ones.
 void Hud::Work::draw(const HudContent& content, const HudArea& area) const {
-  const float gap = 8 * scale, words_at = 115 * scale;
+  const float gap = 8 * scale;
   const auto width = static_cast<float>(area.width);
   const float left = static_cast<float>(area.left) + gap, top = static_cast<float>(area.top) + gap;
   const float right = left + width - 2 * gap, bottom = top + static_cast<float>(area.height) - 2 * gap;
+  const float taken = draw_next(content.next, {right, bottom}, width - 4 * gap);
+  draw_keys(content, {left, width < kBesideEachOther * scale ? bottom - taken - gap : bottom});
   panel("lines", {left, top}, {0, 0});
+  const float wrap = std::clamp(0.5f * width, std::min(380 * scale, std::max(1.0f, 0.7f * width)), 700 * scale);
+  ImGui::PushTextWrapPos(std::max(wrap, width - 4 * gap));
   write(content.title);
+  ImGui::PopTextWrapPos();
   ImGui::Separator();
-  const float wrap = std::clamp(0.5f * width, 260 * scale, 700 * scale);
-  for (const SeatLine& line : content.lines) write(line, words_at, wrap);
-  ImGui::End();
-
-  float keys_bottom = bottom;
-  if (!content.next.words.empty()) {
-    panel("next", {right, bottom}, {1, 1});
-    ImGui::PushFont(large);
-    ImGui::PushTextWrapPos(std::max(1.0f, width - 4 * gap));
-    ImGui::PushStyleColor(ImGuiCol_Text, colour(content.next.urgency));
-    write(mark(content.next.urgency) + content.next.words);
-    if (!content.next.cure.empty()) write("   " + content.next.cure);
-    ImGui::PopStyleColor();
-    ImGui::PopTextWrapPos();
-    ImGui::PopFont();
-    if (width < kBesideEachOther * scale) keys_bottom -= ImGui::GetWindowHeight() + gap;
-    ImGui::End();
-  }
-  if (content.keys.empty()) return;
-  panel("keys", {left, keys_bottom}, {0, 1});
-  for (const auto& [key, does] : content.keys) {
-    write(key);
-    ImGui::SameLine(1.2f * words_at);
-    write(does);
-  }
+  for (const SeatLine& line : content.lines) write(line, kWordsAt * scale, wrap);
   ImGui::End();
 }
 

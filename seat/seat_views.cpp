@@ -17,7 +17,7 @@ constexpr double kBesideRad = 0.7;   // to his right
 constexpr double kAboveRad = 0.5;
 constexpr double kObserverDistance = 1.9;  // m
 constexpr double kObserverPixels = 1.3;    // of the camera's, at most: who looks on needs no more
-constexpr double kReadable = 0.5;          // tangent: farther aside, words behind a lens are hard to read
+constexpr double kReadable = 0.7;          // tangent: farther aside, words behind a lens are hard to read
 
 /// What programs differ by.
 struct Look {

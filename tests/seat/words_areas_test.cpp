@@ -66,7 +66,8 @@ TEST(WordsAreas, TheLeftEyeSeesThemFartherRight) {
 }
 
 TEST(WordsAreas, BearTheSmallestWindow) {
-  const std::array<ViewTarget, 2> tiny{ViewTarget{.width = 1, .height = 1}, ViewTarget{.x = 1, .width = 1, .height = 1}};
+  const std::array<ViewTarget, 2> tiny{ViewTarget{.width = 1, .height = 1},
+                                       ViewTarget{.x = 1, .width = 1, .height = 1}};
   for (const HudArea& area : words_areas({panel(0), panel(0)}, tiny, kApart, 0.5)) {
     EXPECT_GE(area.width, 0);
     EXPECT_GE(area.height, 0);
