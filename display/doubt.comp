@@ -8,13 +8,13 @@ layout(binding = 0, rgba8) uniform writeonly image2D picture;
 const float kSmall = 10.5, kLarge = 30.5;  // grey levels
 const int kUnconfirmed = 255;
 // As what is assumed before anything is learnt (seat/shown_fidelity.cpp).
-const float kOwnPx[] = float[](0.7, 0.35, 0.7, 1.5, 1.0), kReachPx[] = float[](0.25, 1.0, 4.0), kReachOfSigma = 0.5;
-const int kSuspect = 4 * 48;  // and beyond
+const float kOwnPx[] = float[](0.7, 0.25, 0.35, 0.5, 0.7, 1.5, 1.0), kReachPx[] = float[](1.0, 4.0), kReachOfSigma = 0.5;
+const int kOfOne = 32, kSuspect = 6 * kOfOne;  // and beyond
 
 // Grey levels by which a pixel of this kind may be off (doubt_kinds.hpp).
 float levels_of(int kind) {
   float contrast = 3.0 * (exp2((float(kind % 16) + 0.5) / 4.0) - 1.0);
-  return contrast * length(vec2(kOwnPx[min(kind / 48, 4)], kReachOfSigma * kReachPx[kind / 16 % 3]));
+  return contrast * length(vec2(kOwnPx[min(kind / kOfOne, 6)], kReachOfSigma * kReachPx[kind / 16 % 2]));
 }
 
 void main() {

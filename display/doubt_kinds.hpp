@@ -1,7 +1,7 @@
 // What is known of a pixel that a camera has confirmed, in steps that one byte holds: how often pixels of one kind are
 // wrong is learnt of pictures whose image has come (seat/shown_fidelity.hpp).
 //
-//   doubt 0 .. 239   contrast + 16 * (reach + 3 * compared)
+//   doubt 0 .. 223   contrast + 16 * (reach + 2 * compared)
 //   255              nothing is known of it
 #pragma once
 
@@ -13,25 +13,29 @@ namespace foresight {
 
 inline constexpr int kUnconfirmed = 255;  ///< doubt of what no camera has confirmed
 
-/// How the same place of the surface was shown when last an image could be compared.
+/// How the same place of the surface was shown when images could be compared of late: the mean of up to
+/// kComparisonsKept times that it was shown. Once tells little of an edge, which may be right by chance.
 enum class Compared : std::uint8_t {
   never,    ///< it was not shown then
-  alike,    ///< by kAlikeLevels grey levels off, about the pixel
-  near,     ///< by kNearLevels
+  same,     ///< by kLevelsOff[0] grey levels off, about the pixel
+  alike,    ///< by kLevelsOff[1]
+  close,    ///< by kLevelsOff[2]
+  near,     ///< by kLevelsOff[3]
   off,      ///< by more
-  suspect,  ///< in a patch that was wrong: something goes on there; or its light has changed since it was seen
+  suspect,  ///< in a patch that was wrong the last time: something goes on there; or its light has changed since
 };
-inline constexpr double kAlikeLevels = 2.5, kNearLevels = 6;  ///< grey levels
+inline constexpr double kLevelsOff[] = {1.5, 2.5, 4.5, 6.5};  ///< grey levels
+inline constexpr std::size_t kComparisonsKept = 4;
 
 /// Steps of trust.comp.
 struct DoubtKind {
-  static constexpr int kContrasts = 16, kReaches = 3, kComparisons = 5, kCount = kContrasts * kReaches * kComparisons;
+  static constexpr int kContrasts = 16, kReaches = 2, kComparisons = 7, kCount = kContrasts * kReaches * kComparisons;
   int contrast = 0;  ///< by how many grey levels the pixels around differ: 4 steps each time that these + 3 double
-  int reach = 0;     ///< by how many pixels the surface may be elsewhere: below 0.5, below 2, more
+  int reach = 0;     ///< by how many pixels the surface may be elsewhere: below 2, more
   Compared compared = Compared::never;
 
   double levels() const { return 3 * (std::exp2((contrast + 0.5) / 4) - 1); }
-  double px() const { return reach == 0 ? 0.25 : reach == 1 ? 1 : 4; }
+  double px() const { return reach == 0 ? 1 : 4; }
 };
 /// `doubt`: below DoubtKind::kCount.
 constexpr DoubtKind kind_of(int doubt) {

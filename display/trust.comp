@@ -3,7 +3,7 @@
 //
 //   view --depth--> point --moves with its node--> image 0, 1, 2 ... newest first: outside, hidden or seen
 //
-// Defines: FRAMES, how many of them are remembered.
+// Defines: FRAMES, how many of them are remembered; COMPARISONS, how many of those that were compared.
 #include "camera.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
@@ -17,13 +17,14 @@ layout(binding = 5) uniform samplerBuffer node_px;  // by how many pixels each n
 // how much the node has turned since. The last set belongs to the image that was compared.
 layout(binding = 6) uniform samplerBuffer ways;
 layout(binding = 7) uniform sampler2DArray seen_depth;  // faces of image 0, of image 1, ...
-layout(binding = 8) uniform sampler2D comparison;       // of the compared image with what was shown (doubt_kinds.hpp)
+layout(binding = 8) uniform sampler2DArray comparisons;  // of compared images with what was shown (doubt_kinds.hpp)
 layout(binding = 0, r8) uniform writeonly image2D doubt;
 layout(binding = 1, rgba8) uniform writeonly image2D marked;
 uniform int layer_of[FRAMES];  // each image's first
 uniform int frame_count, node_count;
 uniform uint exact[8];  // a bit for each kind of pixel (doubt_kinds.hpp): it counts as exact
-uniform bool has_compared;
+uniform int layer_of_comparison[COMPARISONS];  // newest first
+uniform int comparison_count;
 
 const float kUnconfirmed = 1.0;
 const float kSameSurface = 0.02;  // share of the distance within which a surface is the one that was seen
@@ -92,24 +93,37 @@ float uncertain_px(ivec3 place, int node) {
 }
 
 // Steps as DoubtKind has them (doubt_kinds.hpp).
-const int kNever = 0, kAlike = 1, kNearlyAlike = 2, kOff = 3, kSuspect = 4;
+const int kNever = 0, kSame = 1, kAlike = 2, kClose = 3, kNearlyAlike = 4, kOff = 5, kSuspect = 6;
+const float kInPatch = 253.5, kNotShown = 254.5;  // levels beyond these
+
+// What a comparison said of the place, kNotShown and beyond where it was not shown.
+float said(int comparison, int node, vec3 p) {
+  vec2 at;
+  if (!project_lens(camera, where(FRAMES + comparison, node, p), at)) return 255.0;
+  ivec2 pixel = ivec2(floor(at + 0.5));
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return 255.0;
+  return 255.0 * texelFetch(comparisons, ivec3(pixel, layer_of_comparison[comparison]), 0).r;
+}
 
 int compared_at(int node, vec3 p) {
-  vec2 at;
-  if (!has_compared || !project_lens(camera, where(FRAMES, node, p), at)) return kNever;
-  ivec2 pixel = ivec2(floor(at + 0.5));
-  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return kNever;
-  float levels = 255.0 * texelFetch(comparison, pixel, 0).r;
-  if (levels > 254.5) return kNever;
-  if (levels > 253.5) return kSuspect;
-  return levels <= 2.5 ? kAlike : levels <= 6.0 ? kNearlyAlike : kOff;
+  float sum = 0.0, count = 0.0;
+  for (int i = 0; i < comparison_count; ++i) {
+    float levels = said(i, node, p);
+    if (levels > kNotShown) continue;
+    if (levels > kInPatch && i == 0) return kSuspect;
+    sum += min(levels, 30.0);
+    count += 1.0;
+  }
+  if (count == 0.0) return kNever;
+  float levels = sum / count;
+  return levels <= 1.5 ? kSame : levels <= 2.5 ? kAlike : levels <= 4.5 ? kClose : levels <= 6.5 ? kNearlyAlike : kOff;
 }
 
 int step_of_contrast(float levels) {
   return clamp(int(4.0 * log2(1.0 + levels / 3.0)), 0, 15);
 }
 int step_of_reach(float px) {
-  return px < 0.5 ? 0 : px < 2.0 ? 1 : 2;
+  return px < 2.0 ? 0 : 1;
 }
 
 float kind_at(ivec2 pixel, vec3 colour) {
@@ -132,7 +146,7 @@ float kind_at(ivec2 pixel, vec3 colour) {
   if (found < 0 || newest == kHidden) return kUnconfirmed;
   float here = grey(colour), turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
   int compared = kTurned * turned * here > kWrong ? kSuspect : compared_at(node, p);
-  int kind = step_of_contrast(contrast_at(pixel, here)) + 16 * (step_of_reach(uncertain_px(at, node)) + 3 * compared);
+  int kind = step_of_contrast(contrast_at(pixel, here)) + 16 * (step_of_reach(uncertain_px(at, node)) + 2 * compared);
   return float(kind) / 255.0;
 }
 

@@ -25,12 +25,14 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
       scratch_(view.faces().faces, false),
       depths_(GL_DEPTH_COMPONENT32F, scratch_.faces.width, scratch_.faces.height,
               scratch_.faces.count * static_cast<int>(kFrames), 1, "depth of images"),
-      program_(gl::Program::compute(gl::display_shaders(), "trust.comp", {"FRAMES " + std::to_string(kFrames)})),
+      program_(gl::Program::compute(
+          gl::display_shaders(), "trust.comp",
+          {"FRAMES " + std::to_string(kFrames), "COMPARISONS " + std::to_string(kComparisonsKept)})),
       camera_(sizeof(gl::CameraBlock), "trusted camera"),
       node_px_(GL_R32F, 16, "node px"),
       ways_(GL_RGBA32F, 16, "ways since images"),
       rays_(gl::make_lens_rays(lens)),
-      comparison_(GL_R8, lens.width(), lens.height(), 0, 1, "as it was shown"),
+      comparisons_(GL_R8, lens.width(), lens.height(), static_cast<int>(kComparisonsKept), 1, "as it was shown"),
       doubt_(GL_R8, lens.width(), lens.height(), 0, 1, "doubt"),
       marked_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "marked view") {
   const gl::CameraBlock block = gl::make_camera_block(lens_, scratch_.faces);
@@ -67,9 +69,15 @@ void TrustPass::saw(const PosedImage& image) {
 }
 
 void TrustPass::compared(const PosedImage& image, const cv::Mat& comparison) {
-  compared_ = Seen{image.time, image.T_world_camera, image.scene};
-  glTextureSubImage2D(comparison_.name(), 0, 0, 0, comparison.cols, comparison.rows, GL_RED, GL_UNSIGNED_BYTE,
-                      comparison.data);
+  if (!compared_.empty() && image.time <= compared_.front().time) compared_.clear();  // another clock
+  int layer = static_cast<int>(compared_.size());
+  if (compared_.size() == kComparisonsKept) {
+    layer = compared_.back().layer;
+    compared_.pop_back();
+  }
+  compared_.insert(compared_.begin(), Seen{image.time, image.T_world_camera, image.scene, layer});
+  glTextureSubImage3D(comparisons_.name(), 0, 0, 0, layer, comparison.cols, comparison.rows, 1, GL_RED,
+                      GL_UNSIGNED_BYTE, comparison.data);
 }
 
 std::vector<RobotTime> TrustPass::remembered() const {
@@ -80,7 +88,7 @@ std::vector<RobotTime> TrustPass::remembered() const {
 
 void TrustPass::list_ways(const Pose& T_world_camera, const SceneState& state) {
   const std::size_t nodes = state.T_world_node.size();
-  rows_.assign(4 * nodes * (kFrames + 1), Eigen::Vector4f::Zero());
+  rows_.assign(4 * nodes * (kFrames + kComparisonsKept), Eigen::Vector4f::Zero());
   const auto list = [&](std::size_t set, const Seen& seen) {
     const Pose T_camera_world = seen.T_world_camera.inverse();
     for (std::size_t n = 0; n < std::min(nodes, seen.scene.T_world_node.size()); ++n) {
@@ -94,7 +102,7 @@ void TrustPass::list_ways(const Pose& T_world_camera, const SceneState& state) {
     }
   };
   for (std::size_t i = 0; i < seen_.size(); ++i) list(i, seen_[i]);
-  if (compared_) list(kFrames, *compared_);
+  for (std::size_t i = 0; i < compared_.size(); ++i) list(kFrames + i, compared_[i]);
 }
 
 void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera, const SceneState& state,
@@ -117,12 +125,16 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
     if (exact[kind]) bits[kind / 32] |= GLuint{1} << (kind % 32);
   glProgramUniform1uiv(program_.name(), glGetUniformLocation(program_.name(), "exact"),
                        static_cast<GLsizei>(bits.size()), bits.data());
-  program_.set("has_compared", compared_ ? 1 : 0);
+  std::array<int, kComparisonsKept> comparisons{};
+  for (std::size_t i = 0; i < compared_.size(); ++i) comparisons[i] = compared_[i].layer;
+  glProgramUniform1iv(program_.name(), glGetUniformLocation(program_.name(), "layer_of_comparison"),
+                      static_cast<GLsizei>(comparisons.size()), comparisons.data());
+  program_.set("comparison_count", static_cast<int>(compared_.size()));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   const GLuint units[] = {
       view.picture().name(), view.faces().surface.name(), view.faces().depth.name(), surface_->triangles(),
       rays_.name(),          node_px_.texture(),          ways_.texture(),           depths_.name(),
-      comparison_.name()};
+      comparisons_.name()};
   for (GLuint unit = 0; unit < std::size(units); ++unit) glBindTextureUnit(unit, units[unit]);
   glBindImageTexture(0, doubt_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
   glBindImageTexture(1, marked_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);

@@ -2,7 +2,7 @@
 //
 // Nothing is known of a pixel whose surface point no image of late saw, or that something covered in the newest one:
 // what moves on may leave a shadow, or have pushed it. Of others, a byte tells contrast, how far the surface may be
-// from where it is drawn, and how it was shown when last an image could be compared (doubt_kinds.hpp).
+// from where it is drawn, and how it was shown when images could be compared of late (doubt_kinds.hpp).
 #pragma once
 
 #include <memory>
@@ -26,6 +26,7 @@ class TrustPass {
   /// An image came, later than the one before: where its camera and all nodes were.
   void saw(const PosedImage& image);
   /// How what was shown for this image's instant agreed with it: CV_8UC1 of the lens's size, as doubt_kinds.hpp says.
+  /// Later than the one before, else those are forgotten.
   void compared(const PosedImage& image, const cv::Mat& comparison);
 
   /// Fills doubt() and marked() for the view that was drawn last. `node_px`: by how many pixels each node of `state`
@@ -59,9 +60,9 @@ class TrustPass {
   gl::Program program_;
   gl::Buffer camera_;
   gl::BufferTexture node_px_, ways_;
-  gl::Texture rays_, comparison_, doubt_, marked_;
-  std::vector<Seen> seen_;  // newest first
-  std::optional<Seen> compared_;
+  gl::Texture rays_, comparisons_, doubt_, marked_;
+  std::vector<Seen> seen_;      // newest first
+  std::vector<Seen> compared_;  // newest first, at most kComparisonsKept
   std::vector<Eigen::Vector4f> rows_;
 };
 

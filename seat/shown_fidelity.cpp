@@ -15,7 +15,7 @@ constexpr double kMemory = 0.9;  // weight of what was compared before against w
 constexpr double kAssumed =
     1.0 / 1024;  // of a picture's pixels: as many of each kind are taken to have been as assumed
 // How exactly images, lenses and model agree where nothing is predicted, px, by how it was when last compared.
-constexpr double kOwnPx[] = {0.7, 0.35, 0.7, 1.5, 1.0};
+constexpr double kOwnPx[] = {0.7, 0.25, 0.35, 0.5, 0.7, 1.5, 1.0};
 constexpr double kReachOfSigma = 0.5;    // joints are off by less than they may be
 constexpr double kSuspectWrong = 0.1;    // at least, of what is suspect
 constexpr double kPatch = 0.6;           // share of a neighbourhood that is wrong where more than an outline is

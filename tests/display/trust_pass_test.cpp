@@ -111,7 +111,7 @@ TEST_P(TrustPassTest, DoubtTellsHowFarOffAPartMayBe) {
   const DoubtKind still = on_block(0);
   EXPECT_EQ(still.reach, 0);
   EXPECT_EQ(still.compared, Compared::never);
-  for (const auto& [px, reach] : {std::pair{0.4, 0}, {0.6, 1}, {1.9, 1}, {2.2, 2}, {30.0, 2}}) {
+  for (const auto& [px, reach] : {std::pair{0.4, 0}, {1.9, 0}, {2.2, 1}, {30.0, 1}}) {
     const DoubtKind kind = on_block(px);
     EXPECT_EQ(kind.contrast, still.contrast);
     EXPECT_EQ(kind.reach, reach) << px;
@@ -140,27 +140,40 @@ TEST_P(TrustPassTest, DoubtTellsContrast) {
   EXPECT_GT(compared, 1000);
 }
 
-// What a comparison said goes with the surface: the block has moved since, and what was said of it with it.
+// What comparisons said goes with the surface: the block has moved since, and what was said of it with it.
 TEST_P(TrustPassTest, WhatWasComparedIsRememberedOfTheSurface) {
   see(kMove, 100ms);
   see(0, 200ms);
   cv::Mat comparison(lens_.height(), lens_.width(), CV_8UC1, cv::Scalar(kNotShown));
   const cv::Point on_table = pixel_of(kOnTable), on_block = pixel_of(kOnBlock),
                   moved = pixel_of(kOnBlock + Eigen::Vector3d(kMove, 0, 0));
-  const auto said_of_block = [&](int said) {
+  Duration when = 200ms;
+  const auto compare = [&](int said) {
     cv::circle(comparison, on_block, 3, said, -1);
-    trust_->compared(image(0, 200ms), comparison);
+    trust_->compared(image(0, when += 10ms), comparison);
+  };
+  const auto said_of_block = [&](int said) {
+    for (std::size_t i = 0; i < kComparisonsKept; ++i) compare(said);
     return kind_of(at(draw(kMove).doubt, moved)).compared;
   };
   cv::circle(comparison, on_table, 3, kInPatch, -1);
+  EXPECT_EQ(said_of_block(1), Compared::same);
   EXPECT_EQ(said_of_block(2), Compared::alike);
-  EXPECT_EQ(said_of_block(4), Compared::near);
+  EXPECT_EQ(said_of_block(4), Compared::close);
+  EXPECT_EQ(said_of_block(6), Compared::near);
   EXPECT_EQ(said_of_block(40), Compared::off);
   EXPECT_EQ(said_of_block(kInPatch), Compared::suspect);
   EXPECT_EQ(said_of_block(kNotShown), Compared::never);
   EXPECT_EQ(kind_of(at(draw(kMove).doubt, on_table)).compared, Compared::suspect);
-  EXPECT_EQ(kAlikeLevels, 2.5) << "as trust.comp has it";
-  EXPECT_EQ(kNearLevels, 6) << "as trust.comp has it";
+  compare(5);
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, moved)).compared, Compared::near) << "once is enough where it is all";
+  compare(1);
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, moved)).compared, Compared::close) << "the mean of both";
+  for (std::size_t i = 1; i < kComparisonsKept; ++i) compare(1);
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, moved)).compared, Compared::same) << "the older one is forgotten";
+  trust_->compared(image(0, 50ms), comparison);
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, moved)).compared, Compared::same) << "by another clock";
+  EXPECT_TRUE(std::ranges::equal(kLevelsOff, std::array{1.5, 2.5, 4.5, 6.5})) << "as trust.comp has them";
 }
 
 TEST_P(TrustPassTest, WhatIsNotExactIsHatched) {

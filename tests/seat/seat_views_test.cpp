@@ -340,7 +340,7 @@ TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
   while (views_->paint() != ViewPaint::doubt) views_->next_paint();
   std::vector<cv::Mat> seen;
   const int doubts[] = {doubt_of({3, 0, Compared::never}), doubt_of({12, 0, Compared::never}),
-                        doubt_of({15, 2, Compared::never}), kUnconfirmed, doubt_of({3, 0, Compared::suspect})};
+                        doubt_of({15, 1, Compared::never}), kUnconfirmed, doubt_of({3, 0, Compared::suspect})};
   for (const int doubt : doubts) {
     const auto value = static_cast<std::uint8_t>(doubt);
     glClearTexImage(doubt_.name(), 0, GL_RED, GL_UNSIGNED_BYTE, &value);
