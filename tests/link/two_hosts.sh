@@ -72,6 +72,12 @@ motion_after() {
   awk -F, -v t="$1" '{ if (NR > 1 && ($2 - last > 2e-4 || last - $2 > 2e-4) && $1 > t) moved = $1; last = $2 }
     END { printf "%.0f\n", (moved > t ? (moved - t) / 1e6 : 0) }' "$out/watch.csv"
 }
+# motion_seen_after INSTANT: the same of a robot whose program has stood still, and how long until it was heard again, in
+# ms. What it did until then is not seen; where it had come to meanwhile is no motion at the instant at which that is heard.
+motion_seen_after() {
+  awk -F, -v t="$1" '$1 > t { if (heard && ($2 - last > 2e-4 || last - $2 > 2e-4)) moved = $1; if (!heard) heard = $1; last = $2 }
+    END { printf "%.0f %.0f\n", (moved ? (moved - t) / 1e6 : 0), (heard ? (heard - t) / 1e6 : -1) }' "$out/watch.csv"
+}
 # at_rest: until nothing has moved for half a second; a minute at most.
 at_rest() {
   sleep 1  # joint states come late on a busy machine
