@@ -11,6 +11,16 @@ gl::Program program(const char* file, std::span<const Lens> lenses, const std::v
   return gl::Program::compute(gl::texture_gpu_shaders(), file, defines);
 }
 
+/// One answer for each invocation of a program of groups of 64, which is in use with all that it needs: `buffer` gets
+/// them.
+template <typename Answer>
+void ask(const gl::Buffer& buffer, std::vector<Answer>& answers) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.name());
+  glDispatchCompute(gl::groups(static_cast<int>(answers.size()), 64), 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  buffer.read(std::span(answers));
+}
+
 }  // namespace
 
 SurveyPass::SurveyPass(std::span<const Lens> lenses)
@@ -28,6 +38,7 @@ void SurveyPass::set_pages(std::span<const PageRecord> pages) {
   pages_.assign(pages);
   const std::size_t mask_bytes = pages.size() * sizeof(std::uint32_t),
                     sample_bytes = pages.size() * sizeof(ExposureSample);
+  static_assert(sizeof(AgreementSample) == sizeof(ExposureSample), "samples_ has room for either");
   if (masks_.bytes() < mask_bytes) masks_ = gl::Buffer(mask_bytes * 3 / 2, "page masks");
   if (samples_.bytes() < sample_bytes) samples_ = gl::Buffer(sample_bytes * 3 / 2, "page brightness");
 }
@@ -47,15 +58,12 @@ std::vector<std::uint32_t> SurveyPass::cull(const SeenInputs& inputs, const gl::
   glBindTextureUnit(2, inputs.camera(inputs.camera_count() - 1).blocks().name());
   glBindTextureUnit(3, pages_.texture());
   glBindTextureUnit(4, charts.texture());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, masks_.name());
-  glDispatchCompute(gl::groups(page_count_, 64), 1, 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  masks_.read(std::span(masks));
+  ask(masks_, masks);
   return masks;
 }
 
 /// Of `tiles`, what `program` says of each.
-std::vector<std::uint32_t> SurveyPass::ask(const gl::Program& program, std::span<const std::uint32_t> tiles) {
+std::vector<std::uint32_t> SurveyPass::ask_tiles(const gl::Program& program, std::span<const std::uint32_t> tiles) {
   std::vector<std::uint32_t> answers(tiles.size());
   if (tiles.empty()) return answers;
   program.use();
@@ -63,10 +71,7 @@ std::vector<std::uint32_t> SurveyPass::ask(const gl::Program& program, std::span
   tiles_.assign(tiles);
   if (answers_.bytes() < tiles.size_bytes()) answers_ = gl::Buffer(tiles.size_bytes() * 3 / 2, "missed tiles");
   glBindTextureUnit(10, tiles_.texture());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, answers_.name());
-  glDispatchCompute(gl::groups(static_cast<int>(tiles.size()), 64), 1, 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  answers_.read(std::span(answers));
+  ask(answers_, answers);
   return answers;
 }
 
@@ -88,7 +93,7 @@ SurveyPass::Missed SurveyPass::missed(const SeenInputs& inputs, std::span<const 
     glBindTextureUnit(7, geometry_.texture());
     glBindTextureUnit(9, store.heights.name());
     glBindTextureUnit(11, inputs.camera(0).blocks().name());
-    answers = ask(*program, tiles);
+    answers = ask_tiles(*program, tiles);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < tiles.size(); ++i) {
       if (!answers[i]) continue;
@@ -106,16 +111,6 @@ SurveyPass::Missed SurveyPass::missed(const SeenInputs& inputs, std::span<const 
   return out;
 }
 
-/// One answer for each page; the program and what it needs are bound.
-template <typename Sample>
-void SurveyPass::ask_pages(std::vector<Sample>& samples) const {
-  static_assert(sizeof(Sample) == sizeof(ExposureSample), "samples_ has room for these");
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, samples_.name());
-  glDispatchCompute(gl::groups(static_cast<int>(samples.size()), 64), 1, 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  samples_.read(std::span(samples));
-}
-
 std::vector<ExposureSample> SurveyPass::brightness(const SeenInputs& inputs, const gl::BufferTexture& charts,
                                                    const AtlasStore& store, int camera, double depth_tolerance,
                                                    int first, int stride) {
@@ -124,7 +119,7 @@ std::vector<ExposureSample> SurveyPass::brightness(const SeenInputs& inputs, con
   inputs.bind(exposure_, depth_tolerance);
   exposure_.set("camera", camera);
   bind_pages(exposure_, charts, store, first, stride);
-  ask_pages(samples);
+  ask(samples_, samples);
   return samples;
 }
 
@@ -136,7 +131,7 @@ std::vector<AgreementSample> SurveyPass::agreement(const SeenInputs& inputs, con
   inputs.bind(agreement_, depth_tolerance);
   bind_pages(agreement_, charts, store, first, stride);
   textures.bind();
-  ask_pages(samples);
+  ask(samples_, samples);
   return samples;
 }
 

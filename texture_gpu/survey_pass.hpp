@@ -47,13 +47,11 @@ class SurveyPass {
                                          double depth_tolerance, int first, int stride);
 
  private:
-  std::vector<std::uint32_t> ask(const gl::Program& program, std::span<const std::uint32_t> tiles);
+  std::vector<std::uint32_t> ask_tiles(const gl::Program& program, std::span<const std::uint32_t> tiles);
 
   int sample_count(int first, int stride) const;
   void bind_pages(const gl::Program& program, const gl::BufferTexture& charts, const AtlasStore& store, int first,
                   int stride) const;
-  template <typename Sample>
-  void ask_pages(std::vector<Sample>& samples) const;
 
   gl::Program cull_, exposure_, agreement_, perhaps_missed_, missed_;
   gl::BufferTexture pages_, tiles_, geometry_;
