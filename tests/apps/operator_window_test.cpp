@@ -113,13 +113,14 @@ class OperatorWindow : public testing::Test {
   }
   /// Holds the switch until it counts: a window that is slow to look for keys lets go of it by itself.
   testing::AssertionResult drives() {
+    constexpr unsigned kRetry = 2000;  // looks
     for (int tries = 0; tries < 10; ++tries) {
       if (last("next").find("driving") != std::string::npos) return testing::AssertionSuccess();
       hold("shift", false);
       if (!gets_ready()) break;
       hold("shift", true);
-      comes_true([&] { return last("next").find("next:   ready") == std::string::npos; });
-      comes_true([&] { return last("next").find("waiting for the robot") == std::string::npos; });
+      comes_true([&] { return last("next").find("next:   ready") == std::string::npos; }, kRetry);
+      comes_true([&] { return last("next").find("waiting for the robot") == std::string::npos; }, kRetry);
     }
     return testing::AssertionFailure() << "never drove:\n" << seat_->said();
   }
@@ -205,7 +206,8 @@ TEST_F(OperatorWindow, ConnectsDrivesLosesTheRobotAndRecovers) {
   ASSERT_TRUE(comes_true([&] { return look().cols == 500; }));
 
   ASSERT_TRUE(press("q"));
-  EXPECT_EQ(seat_->wait().exit_code, 0);
+  const Outcome end = seat_->wait();
+  EXPECT_EQ(end.exit_code, 0) << end.err;
 }
 
 }  // namespace

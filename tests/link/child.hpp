@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <functional>
 
+#include "tests/support/patience.hpp"
+
 namespace foresight {
 
 /// A process that runs `body` until it returns or this ends. To be made while this process has one thread.
@@ -37,10 +39,10 @@ class Child {
   pid_t pid_ = 0;
 };
 
-/// Is it so, sooner or later? Nothing is judged by how long it took: a busy machine gets as long as it wants.
-inline bool comes_true(const std::function<bool()>& so) {
-  constexpr int kPatience = 2000;  // looks, 10 ms each at least
-  for (int i = 0; i < kPatience; ++i) {
+/// Is it so, sooner or later? Nothing is judged by how long it took. Gives up after so many looks, 10 ms each at least:
+/// where nothing else is said, a fifth of the time from which on a test hangs.
+inline bool comes_true(const std::function<bool()>& so, unsigned looks = 20 * hangs_after_s()) {
+  for (unsigned i = 0; i < looks; ++i) {
     if (so()) return true;
     ::usleep(10'000);
   }

@@ -25,7 +25,11 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/patience.hpp"
+
 namespace {
+
+using foresight::hangs_after_s;
 
 /// What the children have begun, in memory that they share with the parent.
 struct Progress {
@@ -34,12 +38,6 @@ struct Progress {
   bool running;  ///< the last of them has not ended
   bool at_end;   ///< all that were to run have ended
 };
-
-/// A test that runs longer hangs. Not a judgement of how quick it is: typical ones take 0.1 s.
-unsigned hangs_after_s() {
-  const char* const given = std::getenv("FORESIGHT_TEST_HANGS_AFTER_S");
-  return given ? static_cast<unsigned>(std::atoi(given)) : 600;
-}
 
 class Reporter final : public testing::EmptyTestEventListener {
  public:
