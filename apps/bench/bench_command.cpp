@@ -277,6 +277,9 @@ void add_view(Command& bench, std::function<int()>& action) {
   command->add_option("--images", options->images, "Take only the first so many images; the later half is drawn")
       ->check(from_to(2, 1000000))
       ->capture_default_str();
+  command->add_option("--ahead", options->ahead, "Draw what is seen so many images after the newest")
+      ->check(from_to(1, 1000000))
+      ->capture_default_str();
   command->add_option("--rounds", options->rounds, "Drawings of each view, of which the median counts")
       ->check(from_to(1, 1000))
       ->capture_default_str();

@@ -53,7 +53,10 @@ struct Way {
 int bench_view(const ViewBenchOptions& options) {
   const RunFolder run = RunFolder::open(options.run, {});
   const std::size_t images = std::min(run.frames().size(), static_cast<std::size_t>(options.images));
-  if (images < 2) throw InputError(options.run.string(), "has a single image", "take a run of at least two");
+  const auto ahead = static_cast<std::size_t>(options.ahead);
+  if (images < 1 + ahead)
+    throw InputError(options.run.string(), "has " + std::to_string(images) + " images",
+                     "take a run of more than --ahead " + std::to_string(ahead));
   const auto context = gl::create_headless_context();
   const gl::DriverInfo driver = gl::query_driver();
   gl::set_up_context();
@@ -67,14 +70,14 @@ int bench_view(const ViewBenchOptions& options) {
                 {"newest", {buffers, records, run.lens_left()}, {}, {}, {}}};
 
   LatestImages newest;
-  ProgressBar bar("view", "images", images - 1, SteadyClock::now(), ProgressBar::for_stderr());
-  for (std::size_t i = 0; i + 1 < images; ++i) {
+  ProgressBar bar("view", "images", images - ahead, SteadyClock::now(), ProgressBar::for_stderr());
+  for (std::size_t i = 0; i + ahead < images; ++i) {
     PosedFrame frame = load_posed_frame(run, i);
     frame.right.reset();
     core.process(frame, newest);
     std::cerr << bar.update(i + 1, SteadyClock::now()) << std::flush;
-    if (i + 1 < images / 2) continue;
-    const PosedImage next = load_posed_frame(run, i + 1).left;
+    if (i + ahead < images / 2) continue;
+    const PosedImage next = load_posed_frame(run, i + ahead).left;
     const TextureLease lease = core.textures().acquire();
     const ImagesLease image = newest.acquire();
     for (int round = 0; round < options.rounds; ++round)
@@ -82,7 +85,7 @@ int bench_view(const ViewBenchOptions& options) {
         way.draw({next.T_world_camera, next.scene}, *lease, &way == &ways[2] && image ? &*image : nullptr);
     for (Way& way : ways) way.judge(next.pixels);
   }
-  std::cerr << bar.finish(images - 1, SteadyClock::now());
+  std::cerr << bar.finish(images - ahead, SteadyClock::now());
 
   const Lens& lens = run.lens_left();
   std::printf("a view of %d x %d, %zu triangles; %s\n", lens.width(), lens.height(), run.scene()->triangle_count(),
