@@ -10,11 +10,12 @@
 namespace foresight {
 namespace {
 
-// As in view.comp.
+// As in view.glsl and view.comp.
 constexpr unsigned kGroup = 64;  // invocations of a group over a list
 constexpr int kBand = 64;        // rows: fewer cost as much as these, as each band is waited for
 constexpr GLuint kListUnit = 5, kLightUnit = 6, kPlanesUnit = 7, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
+constexpr unsigned kBeforeBlock = 2;
 
 enum class Cases { image, usual, every };
 
@@ -22,15 +23,27 @@ struct Pixels {
   bool levels = false;   // of a scene that is drawn with levels
   bool listed = false;   // not all of them
   bool blended = false;  // with newer images, which the picture holds
+  bool before = false;   // what the image before shows is left to it
 };
 
-gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
+std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases, Pixels pixels, bool fragment) {
   auto defines = gl::camera_defines(lenses);
   defines.push_back("CASES " + std::to_string(static_cast<int>(cases)));
   defines.push_back("LEVELS " + std::to_string(pixels.levels));
   defines.push_back("LISTED " + std::to_string(pixels.listed));
   defines.push_back("BLENDED " + std::to_string(pixels.blended));
-  return gl::Program::compute(display_and_lookup_shaders(), "view.comp", defines);
+  defines.push_back("BEFORE " + std::to_string(pixels.before));
+  defines.push_back("FRAGMENT " + std::to_string(fragment));
+  return defines;
+}
+
+gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
+  return gl::Program::compute(display_and_lookup_shaders(), "view.comp", view_defines(lenses, cases, pixels, false));
+}
+
+gl::Program whole_view_program(std::span<const Lens> lenses, Cases cases, bool levels) {
+  return gl::Program::graphics(display_and_lookup_shaders(), "rectangle.vert", "view.frag",
+                               view_defines(lenses, cases, {.levels = levels}, true));
 }
 
 bool same_place(const Pose& a, const Pose& b) {
@@ -47,12 +60,15 @@ void set_tone(const gl::Program& program, float gain, float sharp, const Publish
 }  // namespace
 
 PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool levels)
-    : newest(view_program(std::array{view, lens}, Cases::image, {.levels = levels})),
+    : newest(whole_view_program(std::array{view, lens}, Cases::image, levels)),
       before(view_program(std::array{view, lens}, Cases::image, {.levels = levels, .listed = true, .blended = true})),
-      usual(view_program({&view, 1}, Cases::usual, {.levels = levels, .listed = true, .blended = true})),
+      usual(view_program(std::array{view, lens}, Cases::usual,
+                         {.levels = levels, .listed = true, .blended = true, .before = true})),
       rest(view_program({&view, 1}, Cases::every, {.levels = levels, .listed = true, .blended = true})),
       unseen("pixels that the newest image does not see", kGroup),
-      unseen_by_both("pixels that the image before does not see either", kGroup) {}
+      of_before("pixels that the image before shows", kGroup),
+      framebuffer(gl::create_framebuffer("newest image")),
+      rectangle(gl::create_vertex_array("newest image")) {}
 
 PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
                              std::shared_ptr<const SurfaceRecords> surface, const Lens& lens, ViewPrograms programs,
@@ -145,14 +161,15 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   start(T_world_camera, state, textures, images.newest->light);
   look_up(images);
   const Projection& p = *projection_;
-  for (const gl::Program* program : {&p.usual, &p.rest})
+  for (const gl::Program* program : {&p.usual, &p.usual_alone, &p.rest})
     set_tone(*program, images.newest->gain, images.newest->sharp, textures);
   start_part();
   draw_rows([&](Rows rows) {
-    draw_images(images, rows);
-    start(rest_);
-    p.usual.use();
-    (images.before ? p.unseen_by_both : p.unseen).dispatch();
+    draw_newest(images, rows);
+    if (images.before)
+      draw_usual_and_before(images);
+    else
+      draw_usual();
     dispatch(rest_, p.rest);
   });
   finish(textures);
@@ -162,9 +179,13 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
 void PredictedView::look_up(const NewestImages& images) {
   const Lens& lens = images.newest->camera->lens();
   if (!projection_) projection_ = std::make_unique<Projection>(lens_, lens, raster_.has_levels());
+  const bool levels = raster_.has_levels();
   if (draws_part_ && !projection_->newest_of_part)
     projection_->newest_of_part =
-        view_program(std::array{lens_, lens}, Cases::image, {.levels = raster_.has_levels(), .listed = true});
+        view_program(std::array{lens_, lens}, Cases::image, {.levels = levels, .listed = true});
+  if (!images.before && !projection_->usual_alone)
+    projection_->usual_alone =
+        view_program({&lens_, 1}, Cases::usual, {.levels = levels, .listed = true, .blended = true});
   const auto update = [&](SeenInputs& inputs, const PublishedImage& of) {
     const CameraInput* camera = of.camera.get();
     const PosedImage* image = &of.image;
@@ -176,8 +197,8 @@ void PredictedView::look_up(const NewestImages& images) {
   if (images.before) update(projection_->inputs_before, *images.before);
 }
 
-/// The newest image, then the one before, and lists what neither shows.
-void PredictedView::draw_images(const NewestImages& images, Rows rows) const {
+/// The newest image; lists what it does not show.
+void PredictedView::draw_newest(const NewestImages& images, Rows rows) const {
   Projection& p = *projection_;
   if (draws_part_) list_covered(rows);
   start(p.unseen);
@@ -187,16 +208,45 @@ void PredictedView::draw_images(const NewestImages& images, Rows rows) const {
   if (draws_part_)
     part_->pixels.dispatch();
   else
-    dispatch_all(newest, rows);
+    draw_rectangle(rows);
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   p.unseen.finish(kListUnit);
-  if (!images.before) return;
-  start(p.unseen_by_both);
-  p.inputs_before.bind(p.before, images.before->depth_tolerance, kSeenBlock, kSeenUnit);
-  p.before.set("sharp", images.newest->sharp);
+}
+
+/// Runs the current program for all pixels of some rows.
+void PredictedView::draw_rectangle(Rows rows) const {
+  const Projection& p = *projection_;
+  glNamedFramebufferTexture(p.framebuffer.name(), GL_COLOR_ATTACHMENT0, picture_.name(), 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, p.framebuffer.name());
+  glBindVertexArray(p.rectangle.name());
+  glViewport(0, rows.first, lens_.width(), rows.last - rows.first);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glBindVertexArray(0);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+/// What the newest image does not show; lists what is left.
+void PredictedView::draw_usual() {
+  start(rest_);
+  projection_->usual_alone.use();
+  projection_->unseen.dispatch();
+}
+
+/// The same, where the image before shows it from there. Both programs list what is left.
+void PredictedView::draw_usual_and_before(const NewestImages& images) {
+  Projection& p = *projection_;
+  start(p.of_before);
+  p.of_before.bind(kBeforeBlock);
+  start(rest_);
+  p.inputs_before.bind(p.usual, images.before->depth_tolerance, kSeenBlock, kSeenUnit);
   p.unseen.dispatch();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  p.unseen_by_both.finish(kListUnit);
+  p.of_before.finish(kListUnit);
+  rest_.bind();
+  p.inputs_before.bind(p.before, images.before->depth_tolerance, kSeenBlock, kSeenUnit);
+  p.before.set("sharp", images.newest->sharp);
+  p.of_before.dispatch();
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,

@@ -84,9 +84,11 @@ class PredictedView {
   struct Projection {
     Projection(const Lens& view, const Lens& image, bool levels);
     gl::Program newest, before, usual, rest;
-    gl::Program newest_of_part;       // once it is needed
-    WorkList unseen, unseen_by_both;  // by the newest image; nor by the one before
+    gl::Program newest_of_part, usual_alone;  // once they are needed: the latter without an image before
+    WorkList unseen, of_before;               // by the newest image; of these, what the one before shows
     SeenInputs newest_inputs, inputs_before;
+    gl::Framebuffer framebuffer;  // the newest image is drawn into
+    gl::VertexArray rectangle;
   };
   /// What shadows need besides.
   struct Shadows {
@@ -105,7 +107,10 @@ class PredictedView {
     int first = 0, last = 0;  // beyond the last
   };
   void look_up(const NewestImages& images);
-  void draw_images(const NewestImages& images, Rows rows) const;
+  void draw_newest(const NewestImages& images, Rows rows) const;
+  void draw_rectangle(Rows rows) const;
+  void draw_usual();
+  void draw_usual_and_before(const NewestImages& images);
   void start_part() const;
   void list_covered(Rows rows) const;
   template <typename DrawRows>
@@ -120,7 +125,7 @@ class PredictedView {
   SceneRaster raster_;
   gl::FaceImages faces_;
   ViewPrograms programs_;
-  gl::Program all_, listed_;  // view.comp: the first for every pixel, the other for those that it listed
+  gl::Program all_, listed_;  // view.glsl: the first for every pixel, the other for those that it listed
   WorkList rest_;
   struct Part {
     gl::Program covered;

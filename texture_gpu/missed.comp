@@ -16,7 +16,7 @@ layout(binding = 0, std430) writeonly buffer Answers { uint answers[]; };  // 1 
 uniform int tile_count;
 uniform float worse;  // a share of the other camera's resolution below which this one's is clearly coarser
 
-const float kRim = 6.0;  // px, as in view.comp: towards its rim the image gives way to what the textures hold
+const float kRim = 6.0;  // px, as in view.glsl: towards its rim the image gives way to what the textures hold
 const float kLessSeen = 0.1;
 const float kStandsBefore = 0.25;  // share of the tolerance
 

@@ -44,7 +44,7 @@ void keep_own_cell(ChartTexels& texels) {
   const int own = texels.chart - patch.first_chart;
   for (int y = 0; y < texels.height(); ++y)
     for (int x = 0; x < texels.width(); ++x) {
-      // The rule by which view.comp finds the chart of a surface point.
+      // The rule by which view.glsl finds the chart of a surface point.
       const Eigen::Array2i cell =
           (texels.uv(x, y).array() / cell_size).floor().cast<int>().max(0).min(patch.cells.array() - 1);
       if (cell.y() * patch.cells.x() + cell.x() != own) texels.triangle[texels.index(x, y)] = -1;

@@ -20,11 +20,16 @@ void WorkList::start(std::size_t most) {
   buffer_.reserve(kHeader + most * sizeof(GLuint));
   const std::array<GLuint, 4> header{1, 0, 0, 0};
   buffer_.buffer().write(std::span<const GLuint>(header));
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffer_.buffer().name());
+  bind();
+}
+
+void WorkList::bind(unsigned block) const {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, block, buffer_.buffer().name());
 }
 
 void WorkList::finish(unsigned unit) const {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  bind();
   args_.use();
   args_.set("items_per_group", items_per_group_);
   glDispatchCompute(1, 1, 1);

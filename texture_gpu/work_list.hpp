@@ -14,9 +14,11 @@ class WorkList {
 
   /// Empties the list, makes room for `most` items, and binds it for append_work().
   void start(std::size_t most);
+  /// Binds it for append_work() once more, or as another storage block, for a program that fills two lists.
+  void bind(unsigned block = 1) const;
 
   /// After the filling dispatch: binds the list for next_work() (`unit`: WORK_UNIT there) and as indirect arguments.
-  /// Runs a program of its own.
+  /// Runs a program of its own; append_work() fills this list afterwards.
   void finish(unsigned unit = 15) const;
 
   /// Dispatches the current program over the list.

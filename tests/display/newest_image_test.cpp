@@ -177,6 +177,26 @@ TEST_P(NewestImage, IsShownWhereItSawAPoint) {
 }
 
 // Before and after it has become textures.
+// Of both images and of textures, in bands, each when a gate lets it, it is the same picture.
+TEST_P(NewestImage, BandsAreOnePicture) {
+  const SceneState state = state_of(*scene_);
+  for (const Pose& T_world_camera : {usual_view(), look_at({-0.5, -1.1, 0.9}, {0.1, 0, 0.1})}) {
+    core_->look(seen_from(T_world_camera, state), images_);
+    core_->extract(textures_);
+  }
+  ASSERT_TRUE(core_->look(seen_from(look_at({-0.4, -0.4, 0.4}, {0.1, 0, 0.1}), state), images_));
+  const ImagesLease images = images_.acquire();
+  ASSERT_TRUE(images && images->before);
+  PredictedView whole = view(), banded = view();
+  MonotonicClock clock;
+  FrameGate gate(clock);
+  banded.use(&gate);
+  whole.draw(usual_view(), state, *textures_.acquire(), *images);
+  for (int i = 0; i < 2; ++i)  // what bands cost is not known at first: they are as large as it goes
+    banded.draw(usual_view(), state, *textures_.acquire(), *images);
+  EXPECT_EQ(cv::norm(whole.read(), banded.read(), cv::NORM_INF), 0);
+}
+
 TEST_P(NewestImage, WhatItDoesNotSeeTheImageBeforeShows) {
   const SceneState state = state_of(*scene_);
   const Pose from_before = usual_view(), from_newest = look_at({-0.4, -0.4, 0.4}, {0.1, 0, 0.1});

@@ -1,0 +1,296 @@
+// The predicted view: per pixel, lens ray -> triangle -> surface point -> chart -> texels, or -> one of the newest images.
+//
+// Software renderers run both sides of every branch. So most pixels are drawn by a program that knows only the usual
+// case, texels about as large as pixels, and lists the others; a second program draws what is listed. Where the newest
+// images are looked up directly, four programs follow each other:
+//
+//   newest image, all pixels     what it does not show is listed
+//   textures, of these           what the image before shows is listed for it, texels of other sizes for the last
+//   image before, of these       what it shows in part only is listed for the last
+//   every case, of these
+//
+// view.frag and view.comp choose the pixels. Defines: CASES 0: an image; 1: the usual case; 2: every case.
+//          LEVELS: seen_plane.glsl. LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds newer
+//          images already. BEFORE: 1 where what the image before shows is left to it. FRAGMENT: 1 in view.frag.
+#define IMAGE 0
+#define USUAL 1
+#define EVERY 2
+uniform float sharp;  // share of the cubic filter (sharpness.hpp)
+#include "camera.glsl"
+#if CASES == IMAGE || BEFORE
+#define SEEN_BLOCK 1
+#define SEEN_UNIT 16
+#include "seen.glsl"
+#endif
+#if CASES == IMAGE
+#include "image_taps.glsl"
+#else
+#include "chart_record.glsl"
+#include "atlas.glsl"
+uniform float gain;
+layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
+uniform float light_age;  // s; of colours that are older it is not known which shadows are in them
+#define BRIGHTEST (1.0 / gain)
+#define SHARP sharp
+#include "lookup.glsl"
+#endif
+#if CASES != EVERY
+#include "work_list.glsl"
+#endif
+layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
+layout(binding = 0) uniform samplerBuffer view_nodes;    // T_node_camera
+layout(binding = 1) uniform usampler2DArray surfaces;    // triangle + 1
+layout(binding = 2) uniform samplerBuffer triangles;
+layout(binding = 3) uniform samplerBuffer patches;
+#include "seen_plane.glsl"
+layout(binding = 4) uniform sampler2D rays;
+layout(binding = 6) uniform sampler2D light;  // ShadowPass::light(), or one white texel
+#if FRAGMENT
+layout(location = 0) out vec4 picture;
+#elif BLENDED
+layout(binding = 0, rgba8) uniform image2D picture;
+#else
+layout(binding = 0, rgba8) uniform writeonly image2D picture;
+#endif
+
+// A pixel counts as seen when at least this share of its filter weight lies on seen texels.
+const float kSeenShare = 0.25;
+
+vec3 pixel_light;  // what shadows of moving parts leave of the pixel's value
+
+bool ray_through(ivec2 pixel, out vec3 ray) {
+  if (lens_model(camera) == 0) {
+    ray = vec3((vec2(pixel) - camera.focal.zw) / camera.focal.xy, 1.0);
+    return true;
+  }
+  vec4 r = texelFetch(rays, pixel, 0);
+  ray = r.xyz;
+  return r.w > 0.5;
+}
+
+// The surface point that a pixel shows.
+struct Point {
+  int patch_index, node;
+  vec3 normal;  // in the node's frame, as all of it
+  vec3 sight;   // the pixel's ray, not of unit length
+  float t;      // the point lies so many of `sight` from the camera
+  vec3 p;
+};
+
+// False where no model is.
+bool find_point(ivec2 pixel, out Point found) {
+  pixel_light = texelFetch(light, min(pixel, textureSize(light, 0) - 1), 0).rgb;
+  vec3 ray;
+  if (!ray_through(pixel, ray)) return false;
+  vec3 place;
+  float inverse_z;
+  if (!project_face(camera, ray, place, inverse_z)) return false;
+  ivec3 at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
+  uint surface = texelFetch(surfaces, at, 0).r;
+  if (surface == 0u) return false;
+  vec4 plane = seen_plane(at, surface);
+  vec4 ids = texelFetch(triangles, 2 * int(surface - 1u) + 1);
+  int node = int(ids.y);
+
+  // The ray in the node's frame meets the triangle's plane.
+  vec4 x = texelFetch(view_nodes, 3 * node), y = texelFetch(view_nodes, 3 * node + 1), z = texelFetch(view_nodes, 3 * node + 2);
+  vec3 d = vec3(dot(x.xyz, ray), dot(y.xyz, ray), dot(z.xyz, ray));
+  vec3 o = vec3(x.w, y.w, z.w);
+  float facing = dot(plane.xyz, d);
+  float t = (plane.w - dot(plane.xyz, o)) / (abs(facing) > 1e-9 ? facing : 1e-9);
+  found = Point(int(ids.x), node, plane.xyz, d, t, o + t * d);
+  return true;
+}
+
+#if CASES == IMAGE || BEFORE
+// Less than this share of the view's resolution is clearly worse than what older images may have seen. Where even the
+// less crowded axis has more pixels than that for one of the view, they would flicker: coarser levels of the textures
+// hold means of more of them than are sampled here.
+const float kCoarsest = 0.3, kFinest = 3.0;
+const float kRim = 6.0;  // px of the image within which it gives way to older ones
+const float kAll = 0.999;  // a weight that leaves nothing
+
+// How an image shows a point.
+struct Sighting {
+  float weight;  // beside what older images saw; 0: not at all
+  vec2 pixel;    // of the image
+  float finer;   // pixels of the image for one of the view, on the less crowded axis
+};
+
+Sighting sighting_of(Point point) {
+  const Sighting none = Sighting(0.0, vec2(0.0), 1.0);
+  vec3 q = node_to_camera(node_poses, point.node, point.p);
+  vec2 pixel;
+  if (!is_seen(0, q, pixel)) return none;
+  // Pixels per area of the surface, of the image and of the view.
+  vec3 normal = rotate_to_camera(node_poses, point.node, point.normal);
+  float to_image = length(q), to_view = abs(point.t) * length(point.sight);
+  vec2 f = cameras[0].focal.xy, g = camera.focal.xy;
+  float image_pixels = f.x * f.y * abs(dot(normal, q)) / (to_image * to_image * to_image);
+  float view_pixels = g.x * g.y * abs(dot(point.normal, point.sight)) * abs(point.t) / (to_view * to_view * to_view);
+  float share = sqrt(image_pixels / max(view_pixels, 1e-12));
+  float finer = f.x * to_view / (g.x * to_image);
+  if (share < kCoarsest || finer > kFinest) return none;
+  vec2 inside = min(pixel, cameras[0].size.xy - 1.0 - pixel);
+  return Sighting(clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0), pixel, finer);
+}
+#endif
+
+#if CASES == IMAGE
+// The image's colour at the point, at the exposure of the newest one, and its weight beside what older images saw; 0
+// where it does not see it.
+vec4 image_colour(Point point) {
+  Sighting seen = sighting_of(point);
+  if (seen.weight == 0.0) return vec4(0.0);
+  vec2 size = cameras[0].size.xy;
+  vec3 colour = unscaled(sample_square(image0, seen.pixel, size, sharp, seen.finer)) * without_vignetting(cameras[0].tone, seen.pixel, size);
+  return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), seen.weight);
+}
+
+// Both with weights; what `front` leaves is for `back`.
+vec4 over(vec4 front, vec4 back) {
+  float share = (1.0 - front.a) * back.a, weight = front.a + share;
+  return vec4((front.a * front.rgb + share * back.rgb) / max(weight, 1e-6), weight);
+}
+#else
+// What a pixel shows of a chart.
+struct Place {
+  int chart_index;
+  ChartRecord chart;
+  vec2 texel;  // of level 0
+  int level;   // whose texels are about as large as the pixel
+};
+
+Place place_of(Point point) {
+  Place place;
+  int first = 4 * point.patch_index;
+  vec4 a = texelFetch(patches, first), b = texelFetch(patches, first + 1), c = texelFetch(patches, first + 2),
+       e = texelFetch(patches, first + 3);
+  vec2 uv = vec2(dot(point.p - a.xyz, b.xyz), dot(point.p - a.xyz, c.xyz));
+  ivec2 cells = ivec2(int(a.w), int(b.w));
+  ivec2 cell = clamp(ivec2(floor(uv / e.xy)), ivec2(0), cells - 1);
+  place.chart_index = int(c.w) + cell.y * cells.x + cell.x;
+  place.chart = read_chart(published_charts, place.chart_index);
+  place.texel = (uv - place.chart.uv0) * place.chart.density;
+  // Where even the less crowded axis has more texels than pixels, coarser levels hold the means.
+  vec3 sight = normalize(point.sight);
+  vec3 du = place.chart.eu - sight * dot(sight, place.chart.eu), dv = place.chart.ev - sight * dot(sight, place.chart.ev);
+  float pixels_per_texel = max(camera.focal.x, camera.focal.y) * max(length(du), length(dv)) / (abs(point.t) * length(point.sight));
+  float lod = -log2(max(pixels_per_texel, 1e-6));
+  place.level = clamp(int(floor(lod + 0.15)), 0, 4);
+  return place;
+}
+
+// Shadows are drawn where the texture is without.
+void choose_light(Place place) {
+  ivec2 page = clamp(ivec2(place.texel) >> 4, ivec2(0), place.chart.pages - 1);
+  float age = texelFetch(page_ages, place.chart.first_page + page.y * place.chart.pages.x + page.x).r;
+  if (age > light_age) pixel_light = vec3(1.0);
+}
+
+const float kFromImage = 1.0, kFromFill = 128.0 / 255.0, kBare = 64.0 / 255.0;
+
+vec4 shown(vec4 sum, float alpha) {
+  return vec4(min(sum.rgb / sum.a * gain * pixel_light, vec3(1.0)), alpha);
+}
+
+// Of texels around the place; a 0 where none of them has a colour.
+vec4 shown(Taps taps) {
+  if (taps.seen.a >= kSeenShare) return shown(taps.seen, kFromImage);
+  vec4 all = taps.seen + taps.filled;
+  return all.a > 0.0 ? shown(all, kFromFill) : vec4(0.0);
+}
+
+// Where no texel around the place has a colour.
+vec4 filled(Place place) {
+  vec4 mean = place.chart.density.x > 0.0 ? coarse_colour(place.chart, place.chart_index, place.texel)
+                                          : texelFetch(published_means, place.chart_index);
+  return mean.a > 0.0 ? shown(vec4(mean.rgb, 1.0), kFromFill) : vec4(vec3(0.0), kBare);
+}
+
+vec4 shade(Place place) {
+  if (place.chart.density.x > 0.0) {
+    Taps taps;
+    if (place.level == 0)
+      taps = gather_sharp_taps(place.chart, place.texel);
+    else
+      taps = gather_taps(place.chart, place.texel, place.level);
+    vec4 colour = shown(taps);
+    if (colour.a > 0.0) return colour;
+  }
+  return filled(place);
+}
+#endif
+
+#if CASES != EVERY
+void leave_to_next(ivec2 pixel) {
+  append_work(uint(pixel.x) | uint(pixel.y) << 16);
+}
+#endif
+#if BEFORE
+layout(binding = 2, std430) buffer ListBefore { uint before_args[4]; uint before_items[]; };
+void leave_to_before(ivec2 pixel) {
+  before_items[atomicAdd(before_args[3], 1u)] = uint(pixel.x) | uint(pixel.y) << 16;
+}
+#endif
+
+void draw(ivec2 pixel, vec4 colour) {
+#if FRAGMENT
+  picture = colour;
+#else
+#if BLENDED && CASES != IMAGE
+  vec4 newest = imageLoad(picture, pixel);  // its weight in alpha
+  if (newest.a > 0.0) colour = vec4(mix(newest.rgb, colour.rgb, colour.a == kFromImage ? 1.0 - newest.a : 0.0), 1.0);
+#endif
+  imageStore(picture, pixel, colour);
+#endif
+}
+
+#if CASES == IMAGE
+void draw_pixel(ivec2 pixel) {
+  Point point;
+  bool on_model = find_point(pixel, point);
+  vec4 colour = vec4(0.0);
+  if (on_model) colour = image_colour(point);
+#if BLENDED
+  colour = over(imageLoad(picture, pixel), colour);
+#endif
+  if (on_model && colour.a < kAll) leave_to_next(pixel);
+  draw(pixel, colour);
+}
+#elif CASES == USUAL
+void draw_pixel(ivec2 pixel) {
+  Point point;
+  if (!find_point(pixel, point)) {
+    draw(pixel, vec4(0.0));
+    return;
+  }
+#if BEFORE
+  if (sighting_of(point).weight > 0.0) {
+    leave_to_before(pixel);
+    return;
+  }
+#endif
+  Place place = place_of(point);
+  choose_light(place);
+  vec4 colour = place.level == 0 ? shown(gather_sharp_taps(place.chart, place.texel)) : vec4(0.0);
+#if LISTED  // much of what no image shows was never seen
+  if (place.level == 0 && colour.a == 0.0) colour = filled(place);
+#endif
+  if (colour.a == 0.0)
+    leave_to_next(pixel);
+  else
+    draw(pixel, colour);
+}
+#else
+void draw_pixel(ivec2 pixel) {
+  Point point;
+  vec4 colour = vec4(0.0);
+  if (find_point(pixel, point)) {
+    Place place = place_of(point);
+    choose_light(place);
+    colour = shade(place);
+  }
+  draw(pixel, colour);
+}
+#endif
