@@ -35,7 +35,8 @@ std::size_t FrameGate::begin(const char* kind, std::size_t units) {
     const double now = budget_.units_now(began_, kSlice, kind, static_cast<double>(units));
     units_ = std::max<std::size_t>(1, static_cast<std::size_t>(now));
     const auto until = budget_.wait(began_, kind, static_cast<double>(units_));
-    if (!until) return units_;
+    in_work_ = !until;
+    if (in_work_) return units_;
     frame_ended_.wait_for(lock, std::clamp(*until - began_, Duration{1}, kLongestSleep));
   }
 }
@@ -43,6 +44,12 @@ std::size_t FrameGate::begin(const char* kind, std::size_t units) {
 void FrameGate::end() {
   const std::scoped_lock lock(mutex_);
   budget_.ran(began_, clock_.now(), kind_, static_cast<double>(units_));
+  in_work_ = false;
+}
+
+bool FrameGate::in_work() const {
+  const std::scoped_lock lock(mutex_);
+  return in_work_;
 }
 
 void next_slice(FrameGate* gate, const char* kind) {

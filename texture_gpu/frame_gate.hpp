@@ -28,19 +28,38 @@ class FrameGate {
   /// one kind cost alike per unit. end() once the GPU has finished it.
   std::size_t begin(const char* kind, std::size_t units = 1);
   void end();
+  /// A slice has begun and not ended.
+  bool in_work() const;
 
  private:
   Clock& clock_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable frame_ended_;
   SliceBudget budget_;
   std::atomic<bool> work_waits_ = false;
   RobotTime began_;
   const char* kind_ = "";
   std::size_t units_ = 0;
+  bool in_work_ = false;
 };
 
 /// The slice in work ends here, GPU included, and one of `kind` begins when it may. Null: nothing waits.
 void next_slice(FrameGate* gate, const char* kind);
+
+/// Work in slices, one after the other by next_slice(). The last one ends with this, however its scope is left. Null:
+/// nothing waits.
+class SlicedWork {
+ public:
+  SlicedWork(FrameGate* gate, const char* first) : gate_(gate) {
+    if (gate_) gate_->begin(first);
+  }
+  ~SlicedWork() {
+    if (gate_) gate_->end();
+  }
+  SlicedWork(const SlicedWork&) = delete;
+
+ private:
+  FrameGate* gate_;
+};
 
 }  // namespace foresight

@@ -56,13 +56,17 @@ void TextureCore::mark(const char* stage) {
 
 ExtractionReport TextureCore::process(const PosedFrame& frame, LatestTextures& latest) {
   clock_.start();
-  look(frame);
+  {
+    const SlicedWork slices(gate_, "image");
+    look(frame);
+  }
   looked_up_ = false;
   return extract(latest);
 }
 
 bool TextureCore::look(const PosedFrame& frame, LatestImages& latest) {
   clock_.start();
+  const SlicedWork slices(gate_, "image");
   look(frame);
   looked_up_ = number_ > 0;
   if (!looked_up_) return false;
@@ -74,14 +78,13 @@ bool TextureCore::look(const PosedFrame& frame, LatestImages& latest) {
 
 ExtractionReport TextureCore::extract(LatestTextures& latest) {
   clock_.resume();
-  if (gate_) gate_->begin("pages");
+  const SlicedWork slices(gate_, "pages");
   if (owed_) save_what_leaves(latest);
   ChartAtlas::Allocation allocation;
   if (!allocate(allocation)) return {};
   list_ages(newest_.time());
   write(newest_, std::move(allocation), latest);
   atlas_.commit();
-  if (gate_) gate_->end();
   ++image_;
   return report();
 }
@@ -166,7 +169,6 @@ void TextureCore::publish(LatestImages& latest) {
 
 /// Image upload, depth and uncertain edges of every camera of the frame.
 void TextureCore::look(const PosedFrame& frame) {
-  if (gate_) gate_->begin("image");
   std::swap(newest_, before_);
   places_.place(frame, before_, newest_);
   const std::size_t count = newest_.images.size();

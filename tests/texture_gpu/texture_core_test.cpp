@@ -10,6 +10,7 @@
 #include "tests/support/small_scene.hpp"
 #include "tests/texture_gpu/reference/atlas_pixels.hpp"
 #include "texture_gpu/chart_raster.hpp"
+#include "texture_gpu/frame_gate.hpp"
 
 namespace foresight::texture_core_test {
 namespace {
@@ -125,6 +126,23 @@ TEST_F(TextureCoreTest, TheTextureOfAMovedNodeMovesWithIt) {
   const auto [mean, worst] = paint_error(kBlock, count);
   EXPECT_LT(mean, 3) << count << " texels of the moved block";
   EXPECT_GT(count, 200);
+}
+
+// Between its steps it is no business of a display's: what runs then is no slice of it.
+TEST_F(TextureCoreTest, NoStepLeavesASliceBegun) {
+  make();
+  MonotonicClock clock;
+  FrameGate gate(clock);
+  core_->use(&gate);
+  LatestImages images;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(core_->look(frame(orbit(i)), images), i > 0) << "the first image is shown by its textures";
+    EXPECT_FALSE(gate.in_work()) << "after a look at image " << i;
+    EXPECT_TRUE(core_->extract(*latest_).published);
+    EXPECT_FALSE(gate.in_work()) << "after extracting image " << i;
+  }
+  process(frame(orbit(3)));
+  EXPECT_FALSE(gate.in_work());
 }
 
 // Leases hold their generation bit by bit, while newer ones come and go.
