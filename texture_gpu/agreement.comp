@@ -5,18 +5,13 @@
 #include "image_taps.glsl"
 #include "chart_record.glsl"
 #include "atlas.glsl"
+#include "asked_page.glsl"
 layout(local_size_x = 64) in;
-layout(binding = 7) uniform usamplerBuffer pages;  // as in cull.comp
-layout(binding = 8) uniform samplerBuffer charts;  // as planned
-layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 11) uniform usamplerBuffer published_table;  // as in lookup.glsl
 layout(binding = 12) uniform samplerBuffer published_charts;
 layout(binding = 13) uniform sampler2DArray published_colours;
 layout(binding = 0, std430) writeonly buffer Samples { vec2 samples[]; };  // AgreementSample (sharpness.hpp)
 const float kWhitest = 0.97;
-uniform int page_count;
-uniform int first_page;  // the pages first_page, first_page + stride, ... are asked about
-uniform int stride;
 
 float luma(vec3 rgb) {
   return dot(rgb, vec3(0.299, 0.587, 0.114));
@@ -35,10 +30,10 @@ float image_gradient2(vec2 pixel) {
 }
 
 // False where the published textures have the page at another resolution, or not at all.
-bool find_colours(ChartRecord planned, int chart_index, ivec2 page, out ivec3 origin) {
-  ChartRecord chart = read_chart(published_charts, chart_index);
-  if (chart.density != planned.density || any(greaterThanEqual(page, chart.pages))) return false;
-  uint slot = texelFetch(published_table, chart.first_page + page.y * chart.pages.x + page.x).r;
+bool find_colours(AskedPage page, out ivec3 origin) {
+  ChartRecord chart = read_chart(published_charts, page.chart_index);
+  if (chart.density != page.chart.density || any(greaterThanEqual(page.at, chart.pages))) return false;
+  uint slot = texelFetch(published_table, chart.first_page + page.at.y * chart.pages.x + page.at.x).r;
   if (slot == kNoSlot) return false;
   origin = slot_origin(slot, 0);
   return true;
@@ -54,24 +49,19 @@ float difference2(float sum_x, float sum_y, float xx, float yy, float xy, float 
 
 void main() {
   int sample_index = int(gl_GlobalInvocationID.x);
-  int index = first_page + sample_index * stride;
-  if (index >= page_count) return;
+  if (!is_asked(sample_index)) return;
   samples[sample_index] = vec2(-1.0, 0.0);
-  uvec4 page = texelFetch(pages, 3 * index);
-  if (page.z == kNoSlot) return;
-  ChartRecord chart = read_chart(charts, int(page.x));
-  ivec2 at_page = ivec2(page.y & 0xffffu, page.y >> 16);
-  ivec3 height_origin = slot_origin(page.z, 0), colour_origin;
-  if (!find_colours(chart, int(page.x), at_page, colour_origin)) return;
+  AskedPage page;
+  if (!read_page(sample_index, page)) return;
+  ivec3 colours_at;
+  if (!find_colours(page, colours_at)) return;
   float x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0, gradient2 = 0.0, count = 0.0;
   for (int i = 0; i < 16; ++i) {
-    ivec3 at = ivec3(ivec2(i & 3, i >> 2) * 4 + 2, 0);
-    uint raw = texelFetch(heights, height_origin + at, 0).r;
-    vec4 known = texelFetch(published_colours, colour_origin + at, 0);
-    if (raw == 0u || known.a < kSeen) continue;
-    vec2 t = vec2(16 * at_page + at.xy);
-    vec3 p_node = chart.origin + t.x * chart.eu + t.y * chart.ev + (float(raw & 0x7fffu) - 1.0) * chart.eh;
-    vec3 p = node_to_camera(node_poses, chart.node, p_node);
+    ivec2 texel = texel_of_point(i);
+    vec4 known = texelFetch(published_colours, colours_at + ivec3(texel, 0), 0);
+    vec3 p_node;
+    if (!find_point(page, texel, p_node) || known.a < kSeen) continue;
+    vec3 p = node_to_camera(node_poses, page.chart.node, p_node);
     vec2 pixel;
     if (!is_seen(0, p, pixel)) continue;
     vec2 size = cameras[0].size.xy;

@@ -5,36 +5,24 @@
 #include "image_taps.glsl"
 #include "chart_record.glsl"
 #include "atlas.glsl"
+#include "asked_page.glsl"
 layout(local_size_x = 64) in;
-layout(binding = 7) uniform usamplerBuffer pages;  // as in cull.comp
-layout(binding = 8) uniform samplerBuffer charts;
-layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 0, std430) writeonly buffer Samples { vec2 samples[]; };  // ExposureSample (exposure.hpp)
 const float kWhitest = 0.97, kSaturated = 2.0;
-uniform int page_count;
 uniform int camera;
-uniform int first_page;  // the pages first_page, first_page + stride, ... are asked about
-uniform int stride;
 
 void main() {
   int sample_index = int(gl_GlobalInvocationID.x);
-  int index = first_page + sample_index * stride;
-  if (index >= page_count) return;
+  if (!is_asked(sample_index)) return;
   samples[sample_index] = vec2(-1.0, 0.0);
-  uvec4 page = texelFetch(pages, 3 * index);
-  if (page.z == kNoSlot) return;
-  ChartRecord chart = read_chart(charts, int(page.x));
-  ivec3 origin = slot_origin(page.z, 0);
-  ivec2 corner = 16 * ivec2(page.y & 0xffffu, page.y >> 16);
+  AskedPage page;
+  if (!read_page(sample_index, page)) return;
   float sum = 0.0, highest = 0.0, count = 0.0;
   vec2 center = vec2(0.0);
   for (int i = 0; i < 16; ++i) {
-    ivec2 at = ivec2(i & 3, i >> 2) * 4 + 2;
-    uint raw = texelFetch(heights, origin + ivec3(at, 0), 0).r;
-    if (raw == 0u) continue;
-    vec2 t = vec2(corner + at);
-    vec3 p_node = chart.origin + t.x * chart.eu + t.y * chart.ev + (float(raw & 0x7fffu) - 1.0) * chart.eh;
-    vec3 p = node_to_camera(node_poses, camera * node_count + chart.node, p_node);
+    vec3 p_node;
+    if (!find_point(page, texel_of_point(i), p_node)) continue;
+    vec3 p = node_to_camera(node_poses, camera * node_count + page.chart.node, p_node);
     vec2 pixel;
     if (!is_seen(camera, p, pixel)) continue;
     vec2 uv = (pixel + 0.5) / cameras[camera].size.xy;
