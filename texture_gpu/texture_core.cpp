@@ -11,8 +11,9 @@ namespace foresight {
 namespace {
 
 constexpr int kComparedPages = 600;
-constexpr std::uint64_t kImagesToRefresh = 32;  // images within which a page that stays in view is written anyway
-constexpr double kGpuTimeout = 20;              // seconds for one frame, software renderers included
+// Images within which a page that stays in view is written anyway; the same after the lamp became known or was lost.
+constexpr std::uint64_t kImagesToRefresh = 32, kImagesToRelight = 8;
+constexpr double kGpuTimeout = 20;  // seconds for one frame, software renderers included
 
 std::vector<Lens> all_lenses(const Lens& left, const std::optional<Lens>& right) {
   return right ? std::vector{left, *right} : std::vector{left};
@@ -261,17 +262,19 @@ bool TextureCore::allocate(ChartAtlas::Allocation& out) {
 
 /// Of what the newest image shows, what the textures have to have at once.
 TextureCore::Masks TextureCore::needed() {
-  // What older textures hold of shadows would be beyond telling.
-  const bool light_changes = (light_ == nullptr) != (current_->light == nullptr);
-  owed_ = options_.only_what_is_needed && looked_up_ && !light_changes;
-  if (!options_.only_what_is_needed || !looked_up_) return seen_;
-  atlas_.note_seen(seen_, image_);
+  const bool lit = light_ != nullptr;
+  if (lit != lit_) light_changed_ = image_;
+  lit_ = lit;
+  owed_ = options_.only_what_is_needed && looked_up_;
   if (!owed_) return seen_;
+  atlas_.note_seen(seen_, image_);
   Masks out = atlas_.not_held(seen_);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const PageRecord& page = records_[i];
-    if ((page.chart + page.xy + (page.xy >> 16) + static_cast<std::uint64_t>(image_)) % kImagesToRefresh == 0)
-      out[i] = seen_[i];
+    const std::uint64_t turn = page.chart + page.xy + (page.xy >> 16) + static_cast<std::uint64_t>(image_);
+    // A part of them with each image: all at once would take twice the room.
+    const bool in_old_light = atlas_.page_of(page).written < light_changed_;
+    if (turn % (in_old_light ? kImagesToRelight : kImagesToRefresh) == 0) out[i] = seen_[i];
   }
   if (newest_.images.size() < 2) return out;
   // Views look the left image up only.
@@ -320,14 +323,18 @@ void TextureCore::list_ages(RobotTime now) {
   image_times_.push_back(now);
   if (image_times_.size() > kRemembered) image_times_.pop_front();
   const std::int64_t oldest = image_ + 1 - static_cast<std::int64_t>(image_times_.size());
+  const auto age_of = [&](std::int64_t image) {
+    return static_cast<float>(
+        to_seconds(now - image_times_[static_cast<std::size_t>(std::max(image - oldest, std::int64_t{0}))]));
+  };
   ages_.clear();
   for (const AtlasChart& chart : atlas_.charts())
-    for (const AtlasPage& page : chart.page)
-      ages_.push_back(
-          page.last_seen < 0
-              ? -1.0f
-              : static_cast<float>(to_seconds(
-                    now - image_times_[static_cast<std::size_t>(std::max(page.last_seen - oldest, std::int64_t{0}))])));
+    for (const AtlasPage& page : chart.page) {
+      // Colours in another light are as old as they are, however often the page was seen since.
+      const bool in_old_light = page.written >= 0 && page.written < light_changed_;
+      const std::int64_t image = in_old_light ? page.written : page.last_seen;
+      ages_.push_back(image < 0 ? -1.0f : age_of(image));
+    }
 }
 
 /// Coarse colours of charts that did not change move with their place in the page table.

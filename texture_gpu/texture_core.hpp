@@ -83,6 +83,8 @@ class TextureCore {
   int witnesses_ = 0;                        // LampFinder::number() of those that the pass has
   std::shared_ptr<const SceneLight> light_;  // null as long as it is not known
   RobotTime light_since_;
+  bool lit_ = false;                       // with the image in work
+  std::int64_t light_changed_ = -1;        // the image from which on it is, or is no more
   std::unique_ptr<ShadowMap> shadow_map_;  // from then on
   std::vector<ShadowPass> shadows_;        // one for each camera
   StageClock clock_;
