@@ -43,7 +43,7 @@ double refresh_of(const std::vector<double>& apart, double parts) {
 
 FramePacing::FramePacing(const FramePacingOptions& options, RobotTime now)
     : options_(options), interval_(rounded(1e9 / options.rate_hz)), wake_(now), target_(now), drawn_(now) {
-  plan(now, false);
+  plan(now, Duration{0});
 }
 
 Duration FramePacing::expected_cost() const {
@@ -66,7 +66,15 @@ void FramePacing::swapped(RobotTime now, bool work_waits) {
   const Duration tolerance = phase_ == PacingPhase::locked ? rounded(0.5 * refresh_ns_) : interval_ / 2;
   if (now > target_ + tolerance) ++figures_.late;
   learn({drawn_, now});
-  plan(now, work_waits);
+  const Duration due = rest_due();
+  plan(now, work_waits ? std::max(due - spare_, Duration{0}) : Duration{0});
+  spare_ = std::clamp(spare_ + (wake_ - now) - due, Duration{0}, interval_);
+}
+
+/// For other work, in proportion to what this drawing took; but a stall's is none.
+Duration FramePacing::rest_due() const {
+  const Duration drawing = std::min(last_cost_, expected_cost()) + options_.reserve;
+  return rounded(ns(drawing) * options_.rest_share / (1 - options_.rest_share));
 }
 
 Duration FramePacing::off_grid(RobotTime at) const {
@@ -75,12 +83,8 @@ Duration FramePacing::off_grid(RobotTime at) const {
 }
 
 // The first instant that lies an interval after the last target and leaves time for the drawing, and for what waits.
-void FramePacing::plan(RobotTime now, bool work_waits) {
+void FramePacing::plan(RobotTime now, Duration rest) {
   const Duration cost = expected_cost() + options_.reserve;
-  // In proportion to what this drawing took, but a stall's is none.
-  const Duration drawing = std::min(last_cost_ + options_.reserve, cost);
-  const Duration rest =
-      work_waits ? rounded(ns(drawing) * options_.rest_share / (1 - options_.rest_share)) : Duration{0};
   if (phase_ == PacingPhase::locked) {
     const double steps = std::max(1.0, std::round(ns(interval_) / refresh_ns_));
     const RobotTime wanted = target_ + rounded(steps * refresh_ns_);

@@ -20,6 +20,7 @@ struct FramePacingOptions {
   double quantile = 0.9;                               ///< of the drawings' costs that is counted on
   /// While other work waits, it gets this share of the time, even where a frame is later for it: below 1. A third of
   /// the time keeps it at a third of its pace at the least (thesis, chapter 6.3.2, has 10 ms after each frame instead).
+  /// What frames have left it beyond that counts, up to an interval: one slow drawing makes no further frame late.
   double rest_share = 1.0 / 3;
 };
 
@@ -54,7 +55,7 @@ class FramePacing {
   void swapped(RobotTime now, bool work_waits);
 
   /// Something else than a frame has kept the display's thread until `now`: that is no drawing's cost.
-  void held_up(RobotTime now) { plan(now, false); }
+  void held_up(RobotTime now) { plan(now, Duration{0}); }
 
   /// Another screen, or another mode of it: what was learnt of refreshes is forgotten.
   void display_changed();
@@ -66,7 +67,8 @@ class FramePacing {
     RobotTime begin, end;
   };
   Duration expected_cost() const;
-  void plan(RobotTime now, bool work_waits);
+  Duration rest_due() const;
+  void plan(RobotTime now, Duration rest);
   void learn(const Swap& swap);
   void look_for_display();
   bool lock_to(const std::vector<Swap>& swaps);
@@ -78,6 +80,7 @@ class FramePacing {
   std::vector<double> costs_;  // ns, the last ones, in a ring
   std::size_t next_cost_ = 0;
   Duration last_cost_{0};
+  Duration spare_{0};  // that other work has had lately beyond its share
   RobotTime wake_, target_, drawn_;
   std::vector<Swap> swaps_;  // of this phase
   PacingPhase phase_ = PacingPhase::own_clock;
