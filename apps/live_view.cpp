@@ -37,32 +37,6 @@ std::unique_ptr<gl::Window> open_live_window(const Lens& lens) {
   }
 }
 
-/// Says on stderr when images stop and when they come again.
-class StallLog final : public ViewObserver {
- public:
-  void stepped(const ViewStep& /*step*/, FrameSource& /*source*/, ViewSession& /*session*/) override {
-    if (!fault_.empty()) std::fprintf(stderr, "robot: view: images again; it was: %s\n", fault_.c_str());
-    fault_.clear();
-    began_ = true;
-  }
-  void waiting(FrameSource& source, ViewSession& /*session*/) override {
-    const std::string fault = source.fault();
-    if (fault.empty()) return;
-    if (fault_.empty()) {
-      stalls_ += began_ ? 1 : 0;
-      std::fprintf(stderr, "robot: view: %s\n", fault.c_str());
-    }
-    fault_ = fault;
-  }
-  /// Since the first image: before, joints that are not homed tell no poses.
-  int stalls() const { return stalls_; }
-
- private:
-  std::string fault_;
-  bool began_ = false;
-  int stalls_ = 0;
-};
-
 RunRecord described(const ViewSession& session, const ViewSetup& setup, const LiveViewOptions& options) {
   RunRecord record = describe(session, setup);
   record.run = options.rig;
@@ -82,6 +56,32 @@ void remove_old_pictures(const fs::path& out) {
 }  // namespace
 
 struct LiveView::Work {
+  /// Says on stderr when images stop and when they come again.
+  class StallLog final : public ViewObserver {
+   public:
+    void stepped(const ViewStep& /*step*/, FrameSource& /*source*/, ViewSession& /*session*/) override {
+      if (!fault_.empty()) std::fprintf(stderr, "robot: view: images again; it was: %s\n", fault_.c_str());
+      fault_.clear();
+      began_ = true;
+    }
+    void waiting(FrameSource& source, ViewSession& /*session*/) override {
+      const std::string fault = source.fault();
+      if (fault.empty()) return;
+      if (fault_.empty()) {
+        stalls_ += began_ ? 1 : 0;
+        std::fprintf(stderr, "robot: view: %s\n", fault.c_str());
+      }
+      fault_ = fault;
+    }
+    /// Since the first image: before, joints that are not homed tell no poses.
+    int stalls() const { return stalls_; }
+
+   private:
+    std::string fault_;
+    bool began_ = false;
+    int stalls_ = 0;
+  };
+
   LiveViewOptions options;
   std::shared_ptr<FrameQueue> frames;
   ViewSetup setup;

@@ -43,11 +43,10 @@ void require(const char* field, double value, double least, double most) {
                      fmt::format("{:.9g} is outside {:.9g} .. {:.9g}", value, least, most), "choose a value inside");
 }
 
-enum class Kind { still, driven, loose };
-
 }  // namespace
 
 struct BodyWorld::Impl {
+  enum class Kind { still, driven, loose };
   struct Body {
     Kind kind = Kind::still;
     Pose T_body_centre = Pose::Identity();  // of mass
@@ -246,13 +245,13 @@ BodyWorld::BodyWorld(const BodyWorldOptions& options) {
 BodyWorld::~BodyWorld() = default;
 
 std::size_t BodyWorld::add_still(const Mesh& mesh, const Pose& T_world_body, const Surface& surface) {
-  return impl_->add(Kind::still, mesh, T_world_body, 0, surface);
+  return impl_->add(Impl::Kind::still, mesh, T_world_body, 0, surface);
 }
 std::size_t BodyWorld::add_driven(const Mesh& mesh, const Pose& T_world_body, const Surface& surface) {
-  return impl_->add(Kind::driven, mesh, T_world_body, 0, surface);
+  return impl_->add(Impl::Kind::driven, mesh, T_world_body, 0, surface);
 }
 std::size_t BodyWorld::add_loose(const Mesh& mesh, const Pose& T_world_body, double mass, const Surface& surface) {
-  return impl_->add(Kind::loose, mesh, T_world_body, mass, surface);
+  return impl_->add(Impl::Kind::loose, mesh, T_world_body, mass, surface);
 }
 
 std::size_t BodyWorld::add_floor(double z, const Surface& surface) {
@@ -284,13 +283,13 @@ void BodyWorld::put(std::size_t at, const Motion& motion) {
   b.setInterpolationAngularVelocity(b.getAngularVelocity());
   b.clearForces();
   if (body.present) impl_->world.updateSingleAabb(&b);
-  if (body.kind != Kind::still) b.activate(true);
+  if (body.kind != Impl::Kind::still) b.activate(true);
 }
 
 void BodyWorld::rest(std::size_t loose, const Pose& T_world_body) {
   put(loose, {T_world_body, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
   Impl::Body& body = *impl_->bodies.at(loose);
-  if (body.kind == Kind::loose && !body.held) body.body->forceActivationState(ISLAND_SLEEPING);
+  if (body.kind == Impl::Kind::loose && !body.held) body.body->forceActivationState(ISLAND_SLEEPING);
 }
 
 void BodyWorld::set_present(std::size_t at, bool present) {
@@ -305,7 +304,7 @@ void BodyWorld::set_present(std::size_t at, bool present) {
 
 void BodyWorld::hold(std::size_t loose, bool held) {
   Impl::Body& body = *impl_->bodies.at(loose);
-  if (body.kind != Kind::loose || body.held == held) return;
+  if (body.kind != Impl::Kind::loose || body.held == held) return;
   body.held = held;
   const bool present = body.present;
   set_present(loose, false);
@@ -324,7 +323,7 @@ void BodyWorld::ignore(std::size_t a, std::size_t b, bool ignored) {
 void BodyWorld::step() {
   impl_->world.stepSimulation(impl_->options.step, 0);
   for (const auto& body : impl_->bodies)
-    if (body->kind == Kind::loose && !body->held) impl_->mend(*body);
+    if (body->kind == Impl::Kind::loose && !body->held) impl_->mend(*body);
   impl_->collect_touches();
 }
 

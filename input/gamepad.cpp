@@ -9,28 +9,23 @@
 namespace foresight {
 namespace {
 
-// SDL as long as somebody uses it. It counts its users by itself.
-class SdlPads {
- public:
-  SdlPads() {
-    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
-    SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // it has no window of its own
-    if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0)
-      throw RuntimeFailure(std::string("SDL finds no gamepads: ") + SDL_GetError(),
-                           "see that /dev/input may be read, or use another device");
-    // States are asked for; events would only pile up.
-    SDL_JoystickEventState(SDL_IGNORE);
-    SDL_GameControllerEventState(SDL_IGNORE);
-  }
-  ~SdlPads() { SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER); }
-  SdlPads(const SdlPads&) = delete;
-  SdlPads& operator=(const SdlPads&) = delete;
+// SDL as long as somebody holds it. It counts its users by itself.
+std::shared_ptr<void> start_pads() {
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+  SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // it has no window of its own
+  if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0)
+    throw RuntimeFailure(std::string("SDL finds no gamepads: ") + SDL_GetError(),
+                         "see that /dev/input may be read, or use another device");
+  // States are asked for; events would only pile up.
+  SDL_JoystickEventState(SDL_IGNORE);
+  SDL_GameControllerEventState(SDL_IGNORE);
+  return {nullptr, [](void*) { SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER); }};
+}
 
-  static void update() {
-    SDL_GameControllerUpdate();
-    SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);
-  }
-};
+void update_pads() {
+  SDL_GameControllerUpdate();
+  SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);
+}
 
 std::string name_at(int index) {
   const char* const name = SDL_JoystickNameForIndex(index);
@@ -44,8 +39,8 @@ double share(Sint16 value) {
 }  // namespace
 
 std::vector<GamepadFound> find_gamepads() {
-  const SdlPads sdl;
-  SdlPads::update();
+  const auto sdl = start_pads();
+  update_pads();
   std::vector<GamepadFound> out;
   for (int i = 0, pads = 0; i < SDL_NumJoysticks(); ++i) {
     const bool known = SDL_IsGameController(i) == SDL_TRUE;
@@ -55,7 +50,7 @@ std::vector<GamepadFound> find_gamepads() {
 }
 
 struct Gamepad::Device {
-  SdlPads sdl;
+  std::shared_ptr<void> sdl = start_pads();
   std::size_t index = 0;
   SDL_GameController* pad = nullptr;
 
@@ -76,7 +71,7 @@ struct Gamepad::Device {
 Gamepad::Gamepad(std::size_t index, const GamepadOptions& options)
     : device_(std::make_unique<Device>()), options_(options), hand_(options.hand) {
   device_->index = index;
-  SdlPads::update();
+  update_pads();
   device_->open();
 }
 
@@ -99,7 +94,7 @@ bool Gamepad::sticks_are_stale(OperatorTime now) noexcept {
 }
 
 TrackerState Gamepad::read(OperatorTime now) noexcept {
-  SdlPads::update();
+  update_pads();
   if (device_->pad && SDL_GameControllerGetAttached(device_->pad) != SDL_TRUE) device_->close();
   if (!device_->pad) device_->open();
   TrackerState out;

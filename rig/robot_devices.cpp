@@ -199,7 +199,7 @@ struct RobotDevices::Bus {
   std::unique_ptr<CanBus> logged;
   std::function<std::string()> log_fault;
   std::unique_ptr<MeteredBus> metered;
-  std::unique_ptr<PatientBus> patient;
+  std::unique_ptr<CanBus> patient;
   RobotTime served;
   std::unique_ptr<DriveNetwork> network;
   std::jthread rack_thread;  // the last: joined before all else goes
