@@ -122,8 +122,7 @@ void add_show(Command& input, std::function<int()>& action) {
       ->writes([](const std::filesystem::path& file) -> std::vector<Output> {
         return {new_output(file, Output::Kind::file)};
       });
-  command->add_choice("--side", arguments->trace.side,
-                      std::map<std::string, TrackerSide>{{"left", TrackerSide::left}, {"right", TrackerSide::right}},
+  command->add_choice("--side", arguments->trace.side, {{"left", TrackerSide::left}, {"right", TrackerSide::right}},
                       "Of a recording of both hands (default right)");
   command->add_flag("--hold-switch", arguments->trace.hold_switch,
                     "Of a recording: as if the switch were held wherever the hand is tracked");

@@ -5,29 +5,27 @@
 namespace foresight {
 namespace {
 
-const std::map<std::string, LevelRule>& level_rules() {
-  static const std::map<std::string, LevelRule> rules{{"full", LevelRule::full},
-                                                      {"size", LevelRule::by_size},
-                                                      {"acuity", LevelRule::by_acuity},
-                                                      {"reactive", LevelRule::reactive},
-                                                      {"predictive", LevelRule::predictive}};
+const Choices<LevelRule>& level_rules() {
+  static const Choices<LevelRule> rules{{"full", LevelRule::full},
+                                        {"size", LevelRule::by_size},
+                                        {"acuity", LevelRule::by_acuity},
+                                        {"reactive", LevelRule::reactive},
+                                        {"predictive", LevelRule::predictive}};
   return rules;
 }
 
 }  // namespace
 
 void add_level_options(Command& command, LevelArguments& arguments) {
+  command.add_choice("--detail", arguments.rule, level_rules(),
+                     "How finely the model is drawn (default full): as its size in the view needs (size), or\n"
+                     "as an eye sees that looks ahead (acuity); or so that drawing it takes no longer than\n"
+                     "--detail-budget-ms, by the last frames' time (reactive) or by what each part will cost\n"
+                     "and give (predictive)");
   command
-      .add_choice(
-          "--detail", arguments.rule, level_rules(),
-          "How finely the model is drawn: full; as fine as its size in the view needs (size), or as an eye sees that "
-          "looks ahead (acuity); or so that drawing it takes no longer than --detail-budget-ms, by the last frames' "
-          "time (reactive) or by what each part will cost and give (predictive)")
-      ->default_str("full");
-  command
-      .add_option(
-          "--detail-budget-ms", arguments.budget_ms,
-          "With --detail reactive or predictive: milliseconds for the model in each frame, pixels' colours aside")
+      .add_option("--detail-budget-ms", arguments.budget_ms,
+                  "With --detail reactive or predictive: milliseconds for the model in each frame,\n"
+                  "pixels' colours aside")
       ->check(from_to(0.5, 1e4));
 }
 

@@ -84,7 +84,11 @@ class Progress final : public ViewObserver {
 
 std::unique_ptr<gl::Window> open_replay_window(const Lens& lens) {
   const int height = kReplayWindowWidth * lens.height() / (3 * lens.width());
-  return std::make_unique<gl::Window>(kReplayWindowWidth, std::max(height, 120), "Foresight replay");
+  try {
+    return std::make_unique<gl::Window>(kReplayWindowWidth, std::max(height, 120), "Foresight replay");
+  } catch (const gl::NoWindow& error) {
+    throw RuntimeFailure(error.what(), "or leave out --window");
+  }
 }
 
 std::string window_title(const RunRecord& record) {

@@ -15,12 +15,9 @@ void add_replay_command(Command& app, std::function<int()>& action) {
       ->check(from_to(0, 1000000));
   command->add_option("--delay-ms", options->delay_ms, "Delay in milliseconds; not with --delay-frames")
       ->check(from_to(0.0, 1e7));
-  const std::map<std::string, ReplayPipeline> pipelines{{"core", ReplayPipeline::core},
-                                                        {"thesis", ReplayPipeline::thesis}};
-  command
-      ->add_choice("--pipeline", options->pipeline, pipelines,
-                   "Who extracts the textures: core, or thesis (the baseline)")
-      ->default_str("core");
+  const Choices<ReplayPipeline> pipelines{{"core", ReplayPipeline::core}, {"thesis", ReplayPipeline::thesis}};
+  command->add_choice("--pipeline", options->pipeline, pipelines,
+                      "Who extracts the textures: core (default), or thesis (the baseline)");
   add_view_outputs(*command, options->outputs);
   command->add_flag("--window", options->window, "Show delayed, predicted and actual side by side");
   command->add_flag("--real-time", options->real_time, "Play by the clock and drop what comes too late");

@@ -15,8 +15,7 @@ namespace {
 [[noreturn]] void fail(const std::string& what) {
   const char* text = nullptr;
   glfwGetError(&text);
-  throw NoWindow(what + ": " + (text ? text : "unknown reason"),
-                 "check DISPLAY and the graphics driver, or leave out --window");
+  throw NoWindow(what + ": " + (text ? text : "unknown reason"), "check DISPLAY and the graphics driver");
 }
 
 std::shared_ptr<void> start_library() {

@@ -109,7 +109,7 @@ CaptureEnd capture(const CaptureArguments& a, CaptureSource& source, CaptureSess
   if (wants_window(a)) try {
       return capture_with_window(source, session, clock, options);
     } catch (const gl::NoWindow& failure) {
-      if (a.window) throw;
+      if (a.window) throw RuntimeFailure(failure.what(), "or leave out --window");
       std::fprintf(stderr, "capture: %s\n", failure.what());
     }
   if (options.pictures.empty()) options.pictures = a.out + "-seen";

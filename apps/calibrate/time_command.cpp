@@ -135,11 +135,11 @@ void add_time(Command& calibrate, std::function<int()>& action) {
   time->add_option("--urdf", options->urdf, "The robot of --joints")->reads();
   time->add_option("--base-link", options->base, "Link that stands still (default: the root)");
   time->add_option("--flange-link", options->flange, "Link that carries the camera (default: the last)");
-  const std::map<std::string, TimeUnit> units{{"auto", TimeUnit::automatic},
-                                              {"s", TimeUnit::second},
-                                              {"ms", TimeUnit::millisecond},
-                                              {"us", TimeUnit::microsecond},
-                                              {"ns", TimeUnit::nanosecond}};
+  const Choices<TimeUnit> units{{"auto", TimeUnit::automatic},
+                                {"s", TimeUnit::second},
+                                {"ms", TimeUnit::millisecond},
+                                {"us", TimeUnit::microsecond},
+                                {"ns", TimeUnit::nanosecond}};
   time->add_choice("--time-unit", options->encoder_unit, units, "Of the encoder stream's times: auto, s, ms, us, ns");
   time->add_choice("--camera-time-unit", options->camera_unit, units, "Of the camera stream's times");
   time->add_option("--around", options->solver.around_s, "Rough offset where the search starts, s")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
@@ -12,6 +13,15 @@
 
 namespace foresight {
 namespace {
+
+/// What CLI11 says, but for an option without its value: "--size: 1 required TEXT:one of a, b missing".
+std::string fault_of(const CLI::ParseError& error) {
+  const std::string said = error.what();
+  static const std::regex missing("([^ ]+): 1 required [A-Z]+:?(.*) missing");
+  std::smatch parts;
+  if (!std::regex_match(said, parts, missing)) return said;
+  return parts[1].str() + ": its value is missing" + (parts[2].length() > 0 ? "; give " + parts[2].str() : "");
+}
 
 // What is wrong with the command line, and what to do about it.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
@@ -22,7 +32,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   if (chosen.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
     return "there is no subcommand " + in_quotes(unknown.front()) + "; did you mean '" +
            nearest_word(unknown.front(), jobs) + "'? See `foresight --help`";
-  return error.what() + ("; see `foresight " + (chosen.empty() ? "" : chosen.front()->get_name() + " ")) + "--help`";
+  return fault_of(error) + "; see `foresight " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") + "--help`";
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -195,6 +205,10 @@ template Option* Command::add_option(const std::string&, std::vector<std::string
 template Option* Command::add_option(const std::string&, std::vector<std::filesystem::path>&, const std::string&);
 
 Option* Command::add_flag(const std::string& names, bool& target, const std::string& help) {
+  // CLI11 would write {false} behind its name.
+  if (names.starts_with('!'))
+    return keep(app_.add_flag_callback(
+        names.substr(1), [&target] { target = false; }, help));
   return keep(app_.add_flag(names, target, help));
 }
 Option* Command::add_number(const std::string& names, std::function<void(std::uint64_t)> take,

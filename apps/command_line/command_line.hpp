@@ -11,10 +11,10 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/command_line/path_roles.hpp"
@@ -37,6 +37,10 @@ OptionCheck from_to(double low, double high);
 /// One of these words.
 OptionCheck one_of(std::vector<std::string> words);
 OptionCheck existing_file();
+
+/// Words and what they mean, in the order in which a help text lists them.
+template <typename E>
+using Choices = std::vector<std::pair<std::string, E>>;
 
 /// One option. Each method returns the option.
 class Option {
@@ -79,17 +83,20 @@ class Command {
   /// has the list); others do not link.
   template <typename T>
   Option* add_option(const std::string& names, T& target, const std::string& help);
+  /// Sets `target`; "!--no-such-thing" clears it.
   Option* add_flag(const std::string& names, bool& target, const std::string& help);
   /// A number that goes through a function.
   Option* add_number(const std::string& names, std::function<void(std::uint64_t)> take, const std::string& help);
   /// One of the words of `choices`.
   template <typename E>
-  Option* add_choice(const std::string& names, E& target, const std::map<std::string, E>& choices,
-                     const std::string& help) {
+  Option* add_choice(const std::string& names, E& target, const Choices<E>& choices, const std::string& help) {
     std::vector<std::string> words;
     for (const auto& [word, value] : choices) words.push_back(word);
-    return add_word(
-        names, words, [&target, choices](const std::string& word) { target = choices.at(word); }, help);
+    const auto take = [&target, choices](const std::string& given) {
+      for (const auto& [word, value] : choices)
+        if (word == given) target = value;
+    };
+    return add_word(names, std::move(words), take, help);
   }
 
   void footer(const std::string& text);

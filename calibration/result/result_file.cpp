@@ -32,6 +32,8 @@ ViewPrints read_views(const YamlMap& top) {
 }
 
 ResultHeader read_header(const YamlMap& top) {
+  if (!top.has("kind"))
+    throw InputError(top.where("kind"), "this is no result of a calibration", "give a file of `foresight calibrate`");
   top.require_known({"kind", "date", "devices", "score", "sigma", "verdict", "views", "result"});
   ResultHeader header;
   header.kind = top.text("kind");

@@ -91,6 +91,15 @@ TEST(Operator, TheSeatOutlivesItsHeadset) {
   sit("/nowhere/runtime.json", "", {"no OpenXR runtime"});
 }
 
+TEST(Operator, WithoutADesktopItSaysWhatGoesWithoutOne) {
+  const Outcome result = run_program({"operator", rig_file(), "--mock", "--head-display", "side-by-side"},
+                                     {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_THAT(result.err, testing::HasSubstr("check DISPLAY"));
+  EXPECT_THAT(result.err, testing::HasSubstr("`--scripted` operates without a window"));
+  EXPECT_THAT(result.err, testing::Not(testing::HasSubstr("--window"))) << "it has no such option";
+}
+
 TEST(Operator, StartedWrongItSaysWhatToDo) {
   const auto said = [](std::vector<std::string> words) {
     words.insert(words.begin(), {"operator", rig_file()});
@@ -102,6 +111,11 @@ TEST(Operator, StartedWrongItSaysWhatToDo) {
   EXPECT_THAT(said({"--line", "/no/such/line.yaml"}), testing::HasSubstr("line.yaml"));
   EXPECT_THAT(said({"--scripted", "dance"}), testing::HasSubstr("tour"));
   EXPECT_THAT(said({"--head-display", "goggles"}), testing::HasSubstr("side-by-side"));
+  EXPECT_THAT(said({"--head-display"}), testing::HasSubstr("its value is missing; give one of openxr, side-by-side"));
+  EXPECT_THAT(said({"--head-display", "openxr", "--display-lens", rig_file()}),
+              testing::HasSubstr("add --head-display side-by-side"));
+  EXPECT_THAT(said({"--head-display", "side-by-side", "--display-lens", rig_file()}),
+              testing::HasSubstr("no result of a calibration; give a file of `foresight calibrate`"));
   EXPECT_THAT(said({"--scripted", "tour", "--coding", "mpeg"}), testing::HasSubstr("h264"));
   EXPECT_THAT(said({"--scripted", "tour", "--served", "--coding", "h264"}), testing::HasSubstr("--coding"));
   EXPECT_THAT(said({"--scripted", "tour", "--head-display", "openxr"}), testing::HasSubstr("--head-display"));
