@@ -1,10 +1,14 @@
 // Whether a stereogram tells the depth that it was made from, to a decoder that knows nothing of how it was made.
 #include "display/stereogram/stereogram.hpp"
 
+#include <array>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "display/stereogram/decode.hpp"
+#include "display/stereogram/live_stereogram.hpp"
 #include "gl/raster_pass.hpp"
+#include "gl/read_texture.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -71,6 +75,22 @@ class StereogramTest : public HeadlessTest {
     cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 256);
     cv::GaussianBlur(noise, out, {}, 1.2);
     return out;
+  }
+
+  static Lens lens() {
+    Lens::Parameters p;
+    p.width = 480;
+    p.height = 320;
+    p.fx = p.fy = 420;
+    p.cx = 239.5;
+    p.cy = 159.5;
+    return Lens(p);
+  }
+  /// Of that scene through that lens; 0 where nothing is.
+  static cv::Mat inverse_of(const SceneModel& scene) {
+    const gl::FaceImages faces(gl::faces_for(lens(), 0), false);
+    gl::RasterPass(std::make_shared<gl::SceneBuffers>(scene), false)(usual_view(), state_of(scene), faces);
+    return gl::read_texture(faces.depth) / gl::kNearPlane;
   }
 
   const DepthRange range_{1, 2};
@@ -166,22 +186,55 @@ TEST_F(StereogramTest, AFloaterIsSeenAtItsDepth) {
 }
 
 TEST_F(StereogramTest, ASceneThatIsDrawnComesBack) {
-  Lens::Parameters p;
-  p.width = 480;
-  p.height = 320;
-  p.fx = p.fy = 420;
-  p.cx = 239.5;
-  p.cy = 159.5;
   const auto scene = small_scene();
-  const gl::FaceImages faces(gl::faces_for(Lens(p), 0), false);
-  gl::RasterPass(std::make_shared<gl::SceneBuffers>(*scene), false)(usual_view(), state_of(*scene), faces);
-  cv::Mat inverse(320, 480, CV_32F);
-  glGetTextureImage(faces.depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(4 * inverse.total()),
-                    inverse.data);
-  inverse /= gl::kNearPlane;
+  const cv::Mat inverse = inverse_of(*scene);
   StereogramOptions options;
   options.depth.eye_distance = 200;
   EXPECT_GE(share(inverse, depth_range(inverse), options), 0.8);
+}
+
+// As the window shows it: whatever the keys choose, near is nearer, the other way round for eyes that cross.
+TEST_F(StereogramTest, EveryKeysChoiceTellsTheScenesDepth) {
+  const auto scene = small_scene();
+  const cv::Mat inverse = inverse_of(*scene), seen = inverse > 0;
+  LiveStereogram live(gl::RasterPass(std::make_shared<gl::SceneBuffers>(*scene), false));
+  cv::Mat before;
+  const auto spread_of = [&](const StereogramLook& look) {  // px from far to near; negative: near is far
+    live.draw(look, usual_view(), state_of(*scene), lens(), inverse.cols, inverse.rows);
+    const cv::Mat drawn = gl::read_texture(live.picture());
+    if (!before.empty()) {
+      EXPECT_GT(cv::norm(before, drawn, cv::NORM_L1) / static_cast<double>(drawn.total()), 10) << "other dots";
+    }
+    before = drawn;
+    cv::Mat picture;
+    cv::cvtColor(drawn, picture, cv::COLOR_BGRA2BGR);
+    const cv::Mat decoded = decode_stereogram(picture, 8, inverse.cols / 8.0), known = seen & (decoded > 0);
+    cv::Scalar mean_z, spread_z, mean_s, spread_s;
+    cv::meanStdDev(inverse, mean_z, spread_z, known);
+    cv::meanStdDev(decoded, mean_s, spread_s, known);
+    const double together = cv::mean(inverse.mul(decoded), known)[0] - mean_z[0] * mean_s[0];
+    const double least = look.pattern == 2 ? 0.7 : 0.8;  // clouds are soft: some of their places are taken for others
+    EXPECT_GT(std::abs(together) / (spread_z[0] * spread_s[0]), least) << look.words();
+    return -std::copysign(spread_s[0], together);
+  };
+  StereogramLook look;
+  std::array<double, 3> spread{};
+  for (int i = 0; i < 3; ++i, look.next_depth()) spread[static_cast<std::size_t>(look.depth)] = spread_of(look);
+  EXPECT_GT(spread[0], 0.3);
+  EXPECT_GT(spread[1], 1.5 * spread[0]);
+  EXPECT_GT(spread[2], 1.3 * spread[1]);
+  for (look.next_pattern(); look.pattern != 0; look.next_pattern())
+    EXPECT_NEAR(spread_of(look), spread[1], 0.2 * spread[1]) << look.words();
+  for (look.next_variant(); look.variant != 0; look.next_variant())
+    EXPECT_NEAR(spread_of(look), look.variant < 2 ? spread[1] : -spread[1], 0.2 * spread[1]) << look.words();
+  std::set<std::string> words;
+  for (int i = 0; i < 36; ++i) {
+    words.insert(look.words());
+    look.next_depth();
+    if (i % 3 == 2) look.next_pattern();
+    if (i % 9 == 8) look.next_variant();
+  }
+  EXPECT_EQ(words.size(), 36u) << "each says what it is";
 }
 
 TEST_F(StereogramTest, WhatItCannotDrawIsRefused) {
