@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "seat/view_through.hpp"
 #include "seat/words_areas.hpp"
 
 namespace foresight {
@@ -12,12 +13,7 @@ namespace {
 
 constexpr int kBetweenPictures = 4;  // px around pictures
 constexpr int kInset = 4;            // share of the width that the newest image takes in its corner
-constexpr double kObservedAt = 0.8;  // m before the operator's camera: what an observer looks at first
-constexpr double kBesideRad = 0.7;   // to his right
-constexpr double kAboveRad = 0.5;
-constexpr double kObserverDistance = 1.9;  // m
-constexpr double kObserverPixels = 1.3;    // of the camera's, at most: who looks on needs no more
-constexpr double kReadable = 0.7;          // tangent: farther aside, words behind a lens are hard to read
+constexpr double kReadable = 0.7;    // tangent: farther aside, words behind a lens are hard to read
 
 /// What programs differ by.
 struct Look {
@@ -51,25 +47,6 @@ ViewTarget target_of(const HudArea& area, const ViewTarget& part) {
   return out;
 }
 
-Eye eye_beside(const Pose& T_world_operator) {
-  const Eigen::Vector3d forward = T_world_operator.linear().col(2);
-  Eye out;
-  out.target = T_world_operator * Eigen::Vector3d(0, 0, kObservedAt);
-  out.azimuth = std::atan2(-forward.y(), -forward.x()) + kBesideRad;
-  out.elevation = kAboveRad;
-  out.distance = kObserverDistance;
-  return out;
-}
-
-/// `view`, made if there is none, through `lens`.
-PredictedView& view_through(std::optional<PredictedView>& view, const ViewSession& session, const Lens& lens) {
-  if (!view)
-    view.emplace(session.make_view(lens));
-  else if (view->lens().width() != lens.width() || view->lens().height() != lens.height())
-    view->set_lens(lens);
-  return *view;
-}
-
 }  // namespace
 
 SeatViews::SeatViews(const SeatViewsSetup& setup)
@@ -77,8 +54,8 @@ SeatViews::SeatViews(const SeatViewsSetup& setup)
       mode_(setup.mode),
       size_(setup.left, setup.most_drawing_ms),
       overlay_(setup.left),
-      newest_{UploadedPicture("newest left image"), UploadedPicture("newest right image")},
-      on_panel_{UploadedPicture("left panel"), UploadedPicture("right panel")} {
+      beside_(setup.left, setup.right),
+      newest_{UploadedPicture("newest left image"), UploadedPicture("newest right image")} {
   if (!setup_.panels) return;  // else what stands in for a prediction is not to wait for programs
   bent_[0][0].emplace(setup_.left);
   bent_[1][setup_.right ? 1 : 0].emplace(setup_.right.value_or(setup_.left));
@@ -140,10 +117,8 @@ std::string SeatViews::words(bool trusted) const {
 
 void SeatViews::take_mouse(gl::WindowInput& input, const ViewTarget& whole) {
   bool ours = mode_ == ViewMode::observer;
-  if (ours && eye_) {
-    if (input.left) eye_->orbit(input.moved_x, input.moved_y);
-    if (input.other) eye_->shift(input.moved_x, input.moved_y, std::max(1, whole.height));
-    if (input.scrolled != 0) eye_->zoom(input.scrolled);
+  if (ours) {
+    beside_.take_mouse(input, whole.height);
   } else if (mode_ == ViewMode::split) {
     const ViewTarget place = fitted(whole, setup_.left.width(), setup_.left.height());
     ours = border_.drag(input.x - place.x, place.width, input.pressed, input.left);
@@ -155,7 +130,7 @@ void SeatViews::take_mouse(gl::WindowInput& input, const ViewTarget& whole) {
 }
 
 Pose SeatViews::looks_from(const Pose& T_world_operator) const {
-  return mode_ == ViewMode::observer && eye_ ? eye_->T_world_eye() : T_world_operator;
+  return mode_ == ViewMode::observer && beside_.eye() ? beside_.eye()->T_world_eye() : T_world_operator;
 }
 
 void SeatViews::upload_newest(const cv::Mat& left, const cv::Mat& right) {
@@ -175,7 +150,7 @@ void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTar
     stereogram_->draw(stereogram_look_, place.T_world_camera, place.scene, setup_.left, part.width, part.height);
     has_stereogram_ = true;
   } else if (mode_ == ViewMode::observer) {
-    draw_observer(session, place, whole);
+    has_beside_ = beside_.draw(session, place, whole, paint_of_views());
   } else {
     draw_again(session, place, whole, drawing_ms);
   }
@@ -186,13 +161,13 @@ bool SeatViews::warm_up(ViewSession& session, const ViewTarget& whole) {
   const Look look = kLooks[warm_++];
   const ViewMode mode = std::exchange(mode_, look.mode);
   const ViewPaint paint = std::exchange(paint_, look.paint);
-  const std::optional<Eye> eye = eye_;
+  const std::optional<Eye> eye = beside_.eye();
   draw(session, ViewPlace(*drawn_), whole, 0);
   show(session, whole, {});
   glFinish();
   mode_ = mode;
   paint_ = paint;
-  eye_ = eye;
+  beside_.stand(eye);
   shows_again_ = false;  // it may be painted now
   return true;
 }
@@ -223,37 +198,6 @@ void SeatViews::draw_again(ViewSession& session, const ViewPlace& place, const V
   PredictedView& view = view_through(again_, session, size_.lens().value_or(setup_.left));
   view.set_paint(paint_of_views());
   shows_again_ = session.draw(view, place.T_world_camera, place.scene);
-}
-
-std::vector<CameraPanel> SeatViews::panels() {
-  std::vector<CameraPanel> out;
-  if (!frame_) return out;
-  if (on_panel_[0].empty() || frame_->left.time != on_panels_) {
-    on_panel_[0].upload(frame_->left.pixels);
-    if (frame_->right) on_panel_[1].upload(frame_->right->pixels);
-    on_panels_ = frame_->left.time;
-  }
-  out.push_back({setup_.left, frame_->left.T_world_camera, &on_panel_[0].texture()});
-  if (frame_->right)
-    out.push_back({setup_.right.value_or(setup_.left), frame_->right->T_world_camera, &on_panel_[1].texture()});
-  return out;
-}
-
-void SeatViews::draw_observer(ViewSession& session, const ViewPlace& place, const ViewTarget& whole) {
-  if (!eye_) eye_ = eye_beside(place.T_world_camera);
-  const double pixels = static_cast<double>(whole.width) * whole.height,
-               most = kObserverPixels * setup_.left.width() * setup_.left.height();
-  const double scale = std::min(1.0, std::sqrt(most / std::max(1.0, pixels)));
-  const int width = std::max(1, static_cast<int>(scale * whole.width)),
-            height = std::max(1, static_cast<int>(scale * whole.height));
-  const Lens lens = observer_lens(width, height, eye_->distance / (eye_->metres_per_pixel(height) * height));
-  PredictedView& view = view_through(beside_, session, lens);
-  view.set_paint(paint_of_views());
-  if (!session.draw(view, eye_->T_world_eye(), place.scene)) return;
-  if (!observer_) observer_.emplace();
-  const std::vector<CameraPanel> all = panels();
-  (*observer_)(view, eye_->T_world_eye(), session.view(), place.T_world_camera, all);
-  has_beside_ = true;
 }
 
 SeatViews::Sight SeatViews::predicted(const ViewSession& session, const SeatPicture& what) {
@@ -388,7 +332,8 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
       put_inset(place);
       break;
     case ViewMode::observer:
-      put({&beside_->picture(), &beside_->faces(), &beside_->lens(), eye_->T_world_eye()}, place, what, labels, whole);
+      put({&beside_.view().picture(), &beside_.view().faces(), &beside_.view().lens(), beside_.eye()->T_world_eye()},
+          place, what, labels, whole);
       break;
   }
   for (Part& part : parts)

@@ -15,16 +15,15 @@
 #include "display/doubt_paint.hpp"
 #include "display/eye_pair.hpp"
 #include "display/frame_source.hpp"
-#include "display/observer_pass.hpp"
 #include "display/picture_mix.hpp"
 #include "display/scene_overlay.hpp"
 #include "display/stereogram/live_stereogram.hpp"
 #include "display/uploaded_picture.hpp"
 #include "display/view_modes.hpp"
 #include "gl/glfw_window.hpp"
-#include "rig_view/eye.hpp"
 #include "seat/hand_overlay.hpp"
 #include "seat/hud.hpp"
+#include "seat/observer_view.hpp"
 
 namespace foresight {
 
@@ -76,7 +75,7 @@ class SeatViews {
   Pose looks_from(const Pose& T_world_operator) const;
 
   /// A frame has come: its poses and images, for panels in the scene.
-  void arrived(const PosedFrame& frame) { frame_ = frame; }
+  void arrived(const PosedFrame& frame) { beside_.arrived(frame); }
   /// The newest images that have come, CV_8UC3; the second may be empty.
   void upload_newest(const cv::Mat& left, const cv::Mat& right);
   /// The session has drawn the view of `place`: draws what the mode needs besides. `drawing_ms`: what all drawing
@@ -115,8 +114,6 @@ class SeatViews {
   std::array<Lens, 2> eye_lenses(const ViewTarget& whole) const;
   void draw_eyes(ViewSession& session, const ViewPlace& place, const ViewTarget& whole);
   void draw_again(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
-  void draw_observer(ViewSession& session, const ViewPlace& place, const ViewTarget& whole);
-  std::vector<CameraPanel> panels();
   ViewMode mode_now(bool trusted) const;
   Sight predicted(const ViewSession& session, const SeatPicture& what);
   Sight newest(std::size_t eye) const;
@@ -138,24 +135,21 @@ class SeatViews {
   ViewSize size_;
   SplitBorder border_;
   bool keeps_mouse_ = false;
-  std::optional<PosedFrame> frame_;
-  RobotTime on_panels_{};
   PictureCopy copy_;
   PictureMix mix_;
   std::optional<DoubtPaint> doubt_;
   SceneOverlay overlay_;
   std::array<Canvas, 2> canvas_;
-  std::optional<PredictedView> again_, beside_;
+  std::optional<PredictedView> again_;
+  ObserverView beside_;
   bool shows_again_ = false, has_eyes_ = false, has_beside_ = false,
        has_stereogram_ = false;           // drawn for the last place
   std::optional<EyePair> eyes_, panels_;  // through the camera's lens; through those of panels
   StereogramLook stereogram_look_;
   std::optional<LiveStereogram> stereogram_;
-  std::optional<ObserverPass> observer_;
-  std::optional<Eye> eye_;
   std::optional<ViewPlace> drawn_;  // the operator's
   std::size_t warm_ = 0;            // looks that were drawn to have their programs
-  std::array<UploadedPicture, 2> newest_, on_panel_;
+  std::array<UploadedPicture, 2> newest_;
   std::array<std::array<std::optional<BentImage>, 2>, 2> bent_;  // for a panel, of a camera
 };
 
