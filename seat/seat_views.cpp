@@ -259,16 +259,22 @@ const ViewTarget& SeatViews::canvas(std::size_t index, const ViewTarget& place) 
   return canvas.target->whole();
 }
 
-// Mixed at the place's own size: its rows are the screen's. Words stand where the second picture has them: in a split,
-// it is the one that is predicted; else they are seen by both eyes, at the depth of the screen.
+// Mixed at the place's own size: its rows are the screen's. Words of the hand stand where the second picture has them:
+// in a split, it is the one that is predicted. For two eyes, what is kWordsAway from them lies in the screen, as all
+// words do; else the screen would be infinitely far, and they behind all that they cover.
 void SeatViews::put_mixed(const Sight& first, const Sight& second, const ViewTarget& place, const ViewTarget& whole,
                           PictureMix::Way way, const SeatPicture& what, std::vector<HudLabel>& labels) {
   if (!first.picture || !second.picture) return;
   const ViewTarget part = fitted(place, setup_.left.width(), setup_.left.height());
   std::vector<HudLabel> of_first;
-  const bool swaps = eyes_swapped_ && way != PictureMix::Way::split;
-  put(swaps ? second : first, canvas(0, part), what, of_first, whole);
-  put(swaps ? first : second, canvas(1, part), what, labels, whole);
+  const bool for_eyes = way != PictureMix::Way::split, swaps = eyes_swapped_ && for_eyes;
+  const Lens::Parameters& p = setup_.left.parameters();
+  const double apart = for_eyes ? setup_.eyes_apart * p.fx * part.width / (p.width * kWordsAway) : 0;  // px
+  ViewTarget of_left = canvas(swaps ? 1 : 0, part), of_right = canvas(swaps ? 0 : 1, part);
+  of_left.x -= static_cast<int>(std::lround(0.5 * apart));
+  of_right.x += static_cast<int>(std::lround(0.5 * apart));
+  put(first, of_left, what, swaps ? labels : of_first, whole);
+  put(second, of_right, what, swaps ? of_first : labels, whole);
   const double top = whole.height - part.y - part.height;
   for (HudLabel& label : labels) label.x += part.x, label.y += top;
   if (way == PictureMix::Way::split)

@@ -215,6 +215,44 @@ TEST_F(SeatViewsPictures, EachEyeSeesItsOwn) {
   }
 }
 
+// Words lie in the screen: what is as far away as they are shown to be is there, too, whoever sees which picture.
+TEST_F(SeatViewsPictures, WhatIsOneMetreAwayIsInTheScreen) {
+  hand_.labels.clear();
+  hand_.lines = {};
+  const auto dot_at = [&](double away) {
+    const Eigen::Vector3d p = place_.T_world_camera * Eigen::Vector3d(0, 0.1 * away, away);
+    HandPicture out;
+    out.lines.line(p, p + Eigen::Vector3d(0, 0, 0.02 * away), {.colour = {1, 1, 1}, .width_px = 5});
+    return out;
+  };
+  const auto columns = [&](double away) {  // of the dot, as the left and the right eye see it
+    hand_ = {};
+    const cv::Mat without = shown(ViewMode::anaglyph);
+    hand_ = dot_at(away);
+    const cv::Mat with = shown(ViewMode::anaglyph);
+    std::array<double, 2> out{};
+    for (int eye = 0; eye < 2; ++eye) {
+      cv::Mat a, b, off;
+      cv::extractChannel(without, a, eye == 0 ? 2 : 1);
+      cv::extractChannel(with, b, eye == 0 ? 2 : 1);
+      cv::absdiff(a, b, off);
+      const cv::Moments m = cv::moments(off);
+      EXPECT_GT(m.m00, 500) << away;
+      out[static_cast<std::size_t>(eye)] = m.m10 / m.m00;
+    }
+    return out;
+  };
+  const double focal = lens_.parameters().fx * kWidth / lens_.width(), apart = 0.1;
+  for (const double away : {0.5, 1.0}) {
+    const auto at = columns(away);
+    EXPECT_NEAR(at[0] - at[1], focal * apart * (1 / away - 1), 1.5) << away << " m";
+    views_->swap_eyes();
+    const auto swapped = columns(away);
+    views_->swap_eyes();
+    EXPECT_NEAR(swapped[1] - swapped[0], at[0] - at[1], 0.1);
+  }
+}
+
 // A panel's picture is bent such that its lens straightens it: each of its pixels is what a straight view has in the
 // direction in which that pixel is seen.
 TEST_F(SeatViewsPictures, EyesAreDrawnForTheirPanels) {
