@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "display/head/eye_geometry.hpp"
+#include "display/head/xr_poses.hpp"
 #include "input/rate_hand.hpp"
 
 namespace foresight::head {
@@ -153,6 +153,14 @@ void Controllers::update(const Now& now, HeldControllers& out) {
   for (std::size_t i = 0; i < hands_.size(); ++i) out.hands[i].say(state_of(hands_[i], now));
 }
 
+std::optional<Pose> Controllers::seen_at(const Hand& hand, const Now& now) const {
+  XrSpaceLocation place{};
+  place.type = XR_TYPE_SPACE_LOCATION;
+  check(xrLocateSpace(hand.space, now.space, now.display_time, &place), "xrLocateSpace");
+  if ((place.locationFlags & kSeen) != kSeen || !now.poses_count) return std::nullopt;
+  return pose_of(place.pose);
+}
+
 TrackerState Controllers::state_of(Hand& hand, const Now& now) {
   TrackerState out;
   out.time = now.time;
@@ -165,15 +173,11 @@ TrackerState Controllers::state_of(Hand& hand, const Now& now) {
     out.cure = now.focused ? "switch it on" : "put it on, and close its menu";
     return out;
   }
-  XrSpaceLocation place{};
-  place.type = XR_TYPE_SPACE_LOCATION;
-  check(xrLocateSpace(hand.space, now.space, now.display_time, &place), "xrLocateSpace");
-  const auto& [q, p] = place.pose;
-  const auto pose = checked_pose(Eigen::Vector3f(p.x, p.y, p.z).cast<double>(),
-                                 Eigen::Quaternionf(q.w, q.x, q.y, q.z).cast<double>());
-  out.tracked = (place.locationFlags & kSeen) == kSeen && pose && now.poses_count;
-  if (out.tracked) out.T_space_hand = *pose;
-  if (!out.tracked) {
+  const auto T_space_hand = seen_at(hand, now);
+  out.tracked = T_space_hand.has_value();
+  if (T_space_hand) {
+    out.T_space_hand = *T_space_hand;
+  } else {
     out.trouble = "the headset does not see the hand";
     out.cure = "hold it where the headset sees it";
   }
@@ -184,15 +188,19 @@ TrackerState Controllers::state_of(Hand& hand, const Now& now) {
   out.buttons.set(TrackerButton::home_view, pressed(home_, hand));
   if (const auto trigger = value(trigger_, hand); trigger && std::isfinite(*trigger))
     out.grip = std::clamp(*trigger, 0.0, 1.0);
-  XrActionStateGetInfo info{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, stick_, hand.path};
-  XrActionStateVector2f stick{};
-  stick.type = XR_TYPE_ACTION_STATE_VECTOR2F;
-  check(xrGetActionStateVector2f(session_, &info, &stick), "xrGetActionStateVector2f");
-  if (stick.isActive) {
-    out.pan_rate = -without_dead_zone(stick.currentState.x, kStickDead);
-    out.tilt_rate = out.joint_rate = without_dead_zone(stick.currentState.y, kStickDead);
-  }
+  const Eigen::Vector2d stick = stick_of(hand);
+  out.pan_rate = -without_dead_zone(stick.x(), kStickDead);
+  out.tilt_rate = out.joint_rate = without_dead_zone(stick.y(), kStickDead);
   return out;
+}
+
+Eigen::Vector2d Controllers::stick_of(const Hand& hand) const {
+  XrActionStateGetInfo info{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, stick_, hand.path};
+  XrActionStateVector2f state{};
+  state.type = XR_TYPE_ACTION_STATE_VECTOR2F;
+  check(xrGetActionStateVector2f(session_, &info, &state), "xrGetActionStateVector2f");
+  if (!state.isActive) return {0, 0};
+  return {state.currentState.x, state.currentState.y};
 }
 
 bool Controllers::pressed(XrAction action, const Hand& hand) const {

@@ -38,6 +38,9 @@ class Controllers {
   XrAction make(XrActionType type, const char* name, const char* shown);
   void suggest() const;
   TrackerState state_of(Hand& hand, const Now& now);
+  /// Nothing: the headset does not see it.
+  std::optional<Pose> seen_at(const Hand& hand, const Now& now) const;
+  Eigen::Vector2d stick_of(const Hand& hand) const;
   bool pressed(XrAction action, const Hand& hand) const;
   std::optional<double> value(XrAction action, const Hand& hand) const;
 

@@ -50,33 +50,37 @@ const gl::Texture* EyeWarper::warp(std::size_t eye, const Lens& lens, const EyeA
   return &own.picture();
 }
 
+// Of the first eye's frame where that fits and has not torn lately, else of a view of its own.
 const gl::Texture* EyeWarper::make_second(const EyeAim& aim) {
   const Lens& lens = lenses_[1](aim, lens_of);
-  const Pose T_first_second = aim_.eyes[0].T_world_eye.inverse() * aim.T_world_eye;
-  const auto& first = warps_[0];
-  const bool fits = first && newest_ && newest_->eyes[0] && SecondEye::fits(first->lens(), lens, T_first_second);
-  if (fits && own_frames_ == 0) {
-    if (!second_ || !alike(second_->lens(), lens)) second_ = std::make_unique<SecondEye>(first->lens(), lens);
-    (*second_)(first->picture(), first->depth(), T_first_second.translation().x());
-    ++counts_.of_first;
-    double unseen = second_->unseen();
-    if (newest_->behind[0]) {
-      DepthWarp& mender = warp_through(1, lens, true);
-      mender.mend(*newest_->behind[0], aim.T_world_eye, aim_.state.T_world_node, second_->picture(), second_->holes());
-      unseen -= mender.mended();
-    }
-    if (unseen > kMostTorn) {
-      own_frames_ = kOwnFrames;
-      ++counts_.torn;
-    }
-    return &second_->picture();
-  }
-  if (!fits && own_frames_ == 0 && newest_) {
-    own_frames_ = kOwnFrames;
-    ++counts_.torn;
+  if (own_frames_ == 0 && newest_) {
+    const Pose T_first_second = aim_.eyes[0].T_world_eye.inverse() * aim.T_world_eye;
+    if (newest_->eyes[0] && SecondEye::fits(warps_[0]->lens(), lens, T_first_second))
+      return make_of_first(lens, aim, T_first_second.translation().x());
+    tear();
   }
   own_frames_ = std::max(own_frames_ - 1, 0);
   return warp(1, lens, aim);
+}
+
+const gl::Texture* EyeWarper::make_of_first(const Lens& lens, const EyeAim& aim, double apart) {
+  const DepthWarp& first = *warps_[0];
+  if (!second_ || !alike(second_->lens(), lens)) second_ = std::make_unique<SecondEye>(first.lens(), lens);
+  (*second_)(first.picture(), first.depth(), apart);
+  ++counts_.of_first;
+  double unseen = second_->unseen();
+  if (newest_->behind[0]) {
+    DepthWarp& mender = warp_through(1, lens, true);
+    mender.mend(*newest_->behind[0], aim.T_world_eye, aim_.state.T_world_node, second_->picture(), second_->holes());
+    unseen -= mender.mended();
+  }
+  if (unseen > kMostTorn) tear();
+  return &second_->picture();
+}
+
+void EyeWarper::tear() {
+  own_frames_ = kOwnFrames;
+  ++counts_.torn;
 }
 
 const gl::Texture* EyeWarper::operator()(std::size_t eye, const EyeAim& aim) {

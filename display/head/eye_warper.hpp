@@ -46,6 +46,8 @@ class EyeWarper {
   DepthWarp& warp_through(std::size_t eye, const Lens& lens, bool tells);
   const gl::Texture* warp(std::size_t eye, const Lens& lens, const EyeAim& aim);
   const gl::Texture* make_second(const EyeAim& aim);
+  const gl::Texture* make_of_first(const Lens& lens, const EyeAim& aim, double apart);
+  void tear();
 
   DrawnViews& views_;
   Clock& clock_;

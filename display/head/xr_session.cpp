@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "input/room_axes.hpp"
+#include "display/head/xr_poses.hpp"
 
 namespace foresight::head {
 namespace {
@@ -15,24 +15,6 @@ constexpr XrSpaceLocationFlags kPlace = XR_SPACE_LOCATION_POSITION_VALID_BIT | X
 constexpr XrViewStateFlags kViews = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
 
 constexpr XrPosef kIdentity{{0, 0, 0, 1}, {0, 0, 0}};
-
-std::optional<Pose> pose_of(const XrPosef& pose) {
-  const auto& [q, p] = pose;
-  return checked_pose(Eigen::Vector3f(p.x, p.y, p.z).cast<double>(),
-                      Eigen::Quaternionf(q.w, q.x, q.y, q.z).cast<double>());
-}
-
-XrPosef xr_pose(const Pose& T) {
-  const Pose T_room = to_room_axes(T);
-  const Eigen::Quaternionf q = Eigen::Quaterniond(T_room.linear()).normalized().cast<float>();
-  const Eigen::Vector3f p = T_room.translation().cast<float>();
-  return {{q.x(), q.y(), q.z(), q.w()}, {p.x(), p.y(), p.z()}};
-}
-
-XrFovf xr_fov(const EyeFov& fov) {
-  const auto f = [](double angle) { return static_cast<float>(angle); };
-  return {f(fov.left), f(fov.right), f(fov.up), f(fov.down)};
-}
 
 XrSpace make_space(XrSession session, XrReferenceSpaceType type) {
   XrReferenceSpaceCreateInfo info{};
@@ -207,8 +189,7 @@ bool Session::locate_eyes(XrTime time, HeadFrame& frame) {
   if (count != 2 || (state.viewStateFlags & kViews) != kViews) return false;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto pose = pose_of(views_[i].pose);
-    const XrFovf& sides = views_[i].fov;
-    const auto fov = checked_fov({sides.angleLeft, sides.angleRight, sides.angleUp, sides.angleDown});
+    const auto fov = fov_of(views_[i].fov);
     if (!pose || !fov) return false;
     if (!fovs_[i] || !alike(*fovs_[i], *fov, kSameFov)) fovs_[i] = fov;
     frame.eyes[i] = {*pose, *fovs_[i]};
