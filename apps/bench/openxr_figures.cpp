@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "apps/bench/image_feed.hpp"
 #include "display/head/head_thread.hpp"
 #include "display/head/runtime_offer.hpp"
 #include "display/head/scene_painter.hpp"
@@ -27,7 +28,8 @@ class HeadSession {
         drawer_(lab.session(), clock_),
         painter_(drawer_, *held_, clock_, nullptr, nullptr),
         drawing_(context.create_shared(), drawer_, clock_),
-        thread_(context.create_shared(), {}, clock_, held_, painter_, [this] { painter_.release(); }) {
+        thread_(context.create_shared(), {}, clock_, held_, painter_, [this] { painter_.release(); }),
+        images_(lab) {
     context.make_current();
     painter_.show({{lab.T_world_camera(), lab.state()}, true});
   }
@@ -35,9 +37,12 @@ class HeadSession {
   double seconds() const { return to_seconds(clock_.now() - began_); }
   head::HeadStatus status() const { return thread_.status(); }
   std::uint64_t views() const { return drawer_.drawn(); }
+  std::uint64_t extracted() const { return images_.extracted(); }
+  /// Images come meanwhile.
   template <typename What>
   bool wait(const What& what, double until) {
-    while (!what() && seconds() < until && !status().ended) clock_.sleep_until(clock_.now() + kGlance);
+    for (; !what() && seconds() < until && !status().ended; clock_.sleep_until(clock_.now() + kGlance))
+      images_.feed(clock_.now());
     return what();
   }
   bool stop() { return thread_.stop(); }
@@ -50,6 +55,7 @@ class HeadSession {
   head::ScenePainter painter_;
   head::SceneThread drawing_;
   head::HeadThread thread_;
+  ImageFeed images_;
 };
 
 }  // namespace
@@ -72,14 +78,16 @@ nlohmann::json openxr_figures(HeadLab& lab, gl::Context& context, int frames) {
                first + 3 * frames / kSlowestHz);
   const double seconds = session.seconds();
   const head::HeadStatus status = session.status();
-  const std::uint64_t views = session.views();
+  const std::uint64_t views = session.views(), images = session.extracted();
   session.stop();
   std::printf(
       "OpenXR session in %s (%s): first frame after %.2f s, the scene in it after %.2f s; %llu frames in %.1f s (the "
-      "headset has %.0f Hz), %llu of them without a pose, %llu jumps of time, lost %d times; views %.1f/s\n",
+      "headset has %.0f Hz), %llu of them without a pose, %llu jumps of time, lost %d times; views %.1f/s, images "
+      "%.1f/s\n",
       status.runtime.c_str(), status.headset.c_str(), first, scene, static_cast<unsigned long long>(status.frames),
       seconds, status.rate_hz, static_cast<unsigned long long>(status.without_pose),
-      static_cast<unsigned long long>(status.time_jumps), status.losses, static_cast<double>(views) / seconds);
+      static_cast<unsigned long long>(status.time_jumps), status.losses, static_cast<double>(views) / seconds,
+      static_cast<double>(images) / seconds);
   return {{"runtime", status.runtime},
           {"headset", status.headset},
           {"headset_hz", status.rate_hz},
@@ -91,6 +99,7 @@ nlohmann::json openxr_figures(HeadLab& lab, gl::Context& context, int frames) {
           {"time_jumps", status.time_jumps},
           {"losses", status.losses},
           {"scene_hz", static_cast<double>(views) / seconds},
+          {"images_hz", static_cast<double>(images) / seconds},
           {"seconds", seconds}};
 }
 

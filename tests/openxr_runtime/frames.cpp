@@ -14,15 +14,26 @@ XrTime period() {
   return static_cast<XrTime>(1e9 / here().settings.rate_hz);
 }
 
+// A display's pictures, one each period, from the first that was waited for on: how many have passed since the last
+// call; waits for the next one. Who asks late has left some out.
+XrTime next_picture(XrTime period_ns) {
+  using Wall = std::chrono::steady_clock;
+  static const Wall::time_point first = Wall::now();
+  static XrTime last = 0;
+  const XrTime next = (Wall::now() - first) / std::chrono::nanoseconds(period_ns) + 1;
+  std::this_thread::sleep_until(first + next * std::chrono::nanoseconds(period_ns));
+  return next - std::exchange(last, next);
+}
+
 void let_time_pass() {
   auto& s = here();
   const double stall = std::exchange(s.stall, 0);
   const bool sleeps = s.settings.real_time;
-  s.now += period();
   s.mutex.unlock();  // others may ask meanwhile
   if (stall > 0) std::this_thread::sleep_for(std::chrono::duration<double>(stall));
-  if (sleeps) std::this_thread::sleep_for(std::chrono::nanoseconds(period()));
+  const XrTime pictures = sleeps ? next_picture(period()) : 1;
   s.mutex.lock();
+  s.now += pictures * period();
   if (s.settings.tick) s.settings.tick(s.now);
 }
 
