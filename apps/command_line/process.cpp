@@ -1,6 +1,7 @@
 #include "apps/command_line/process.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -70,6 +71,15 @@ void hold_standard_streams() {
     }
 }
 
+/// Memory of pictures and of what compiles shaders goes back to the system when it is free: the C library's own rule
+/// grows with each large block, and each of its arenas, eight a processor, keeps what its threads have once needed.
+void return_free_memory() {
+  constexpr int kLarge = 256 << 10;
+  ::mallopt(M_MMAP_THRESHOLD, kLarge);
+  ::mallopt(M_TRIM_THRESHOLD, kLarge);
+  ::mallopt(M_ARENA_MAX, 2);
+}
+
 /// 0 or errno.
 int flush_stdout() noexcept {
   errno = 0;
@@ -86,6 +96,7 @@ int flush_stdout() noexcept {
 
 void settle_process() {
   hold_standard_streams();
+  return_free_memory();
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   end_on_stop_signals();
   std::set_terminate(end_of_thread);
