@@ -150,11 +150,32 @@ void ThingFuture::step(const JointPositions& joints) {
     if (spell.kind == Kind::carried)
       world_->place(thing.node, world_->grip_frame(spell.jaw, world_->with_jaws(joints)) * spell.T);
   }
+  std::vector<Pose> before;
+  for (const Thing& thing : things_) before.push_back(model_pose(thing));
   world_->step(joints);
+  for (std::size_t i = 0; i < things_.size(); ++i) {
+    const Thing& thing = things_[i];
+    const bool still = model_pose(thing).matrix() == before[i].matrix();
+    if (!still && rests(thing) && !is_touched_by_what_moves(thing)) world_->rest(thing.node, before[i]);
+  }
   for (Thing& thing : things_) {
     follow(thing, joints);
     remember(thing, postures_.back().time);
   }
+}
+
+/// By the robot, by what it holds, or by what it has set moving: nothing else moves what rests. Where things are seen
+/// to stand they overlap in the model, by noise or as not all of them have been seen; that pushes none of them.
+bool ThingFuture::is_touched_by_what_moves(const Thing& thing) const {
+  const auto moves = [this](std::size_t part) {
+    if (part < world_->size() && world_->role(part) == PartRole::driven) return true;
+    const auto other = std::ranges::find(things_, part, &Thing::node);
+    return other != things_.end() && !rests(*other);
+  };
+  return std::ranges::any_of(world_->touches(), [&](const Touch& touch) {
+    return touch.force > 0 &&
+           ((touch.body == thing.node && moves(touch.other)) || (touch.other == thing.node && moves(touch.body)));
+  });
 }
 
 /// From spell to spell.

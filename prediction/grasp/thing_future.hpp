@@ -149,6 +149,8 @@ class ThingFuture {
   };
 
   void step(const JointPositions& joints);
+  static bool rests(const Thing& thing) { return !thing.gone && thing.spells.back().kind == Kind::rest; }
+  bool is_touched_by_what_moves(const Thing& thing) const;
   void follow(Thing& thing, const JointPositions& joints);
   void come_to_rest(Thing& thing, const Pose& T_world_thing);
   void remember(Thing& thing, RobotTime time) const;

@@ -266,6 +266,24 @@ TEST(ThingFuture, WhatTheHandPushesIsNotTakenIntoIt) {
   });
 }
 
+TEST(ThingFuture, WhatStandsOnAThingFallsWhenTheHandPushesThatAway) {
+  Bench bench;
+  bench.wait(0.2);
+  for (int i = 0; i < 2; ++i) {
+    bench.wait(0.1);
+    bench.future->correct({1, bench.now, lifted(0, 0, 1.5 * kSide), 0.0015, 0.02});
+  }
+  bench.move(bench.along, -0.15, 0.5);
+  bench.grip = 0.008;
+  bench.wait(0.5);
+  EXPECT_NEAR(bench.place(1).z(), 1.5 * kSide, 1e-3);
+  bench.height = 0.02;
+  bench.move(bench.along, 0.15, 0.3);
+  bench.wait(1);
+  EXPECT_GT(bench.place(0).x(), 0.1);
+  EXPECT_NEAR(bench.place(1).z(), kSide / 2, 3e-3);
+}
+
 TEST(ThingFuture, OneWrongSightingMovesNothing) {
   Bench bench;
   Camera camera(bench);
