@@ -71,7 +71,7 @@ class SeatAtARig : public PrivateNetworkTest {
     Commander* const commander = &server_->commander();
     serve(std::span(&commander, 1), robot_.robot(), now);
     server_->step(now);
-    line_->step();
+    if (!line_is_dead_) line_->step();
     if (frozen) return;
     end_->step();
     seat_->step();
@@ -94,6 +94,7 @@ class SeatAtARig : public PrivateNetworkTest {
   std::optional<ScriptedDriver> operator_;
   std::optional<ToldDriver> driver_;
   std::shared_ptr<link::PretendedLine> line_;
+  bool line_is_dead_ = false;  ///< what is on it waits
   std::optional<link::Participant> there_, here_;
   std::optional<link::RobotServer> server_;
   std::optional<link::OperatorEnd> end_;
@@ -143,6 +144,32 @@ TEST_F(SeatAtARig, AfterALossNothingMovesBeforeTheSwitchIsPressedAnew) {
   driver_->wish.deadman = true;
   EXPECT_TRUE(until([this] { return follows(); }, 2s)) << driver_->seen.control.words;
   EXPECT_TRUE(seat_->status().engaged);
+}
+
+// Then all that was under way comes at once, ten seconds old.
+TEST_F(SeatAtARig, TenSecondsWithoutAnyStateAreInvalidAndMoveNothing) {
+  ASSERT_TRUE(until([this] { return follows(); }, 400s)) << seat_->status().control.words;
+  run(2s);
+  ASSERT_EQ(seat_->status().shown.status, StateStatus::predicted);
+  driver_->scripted = false;  // the switch stays held, as it was
+  line_is_dead_ = true;
+  run(10s);
+  robot_.expect_at_rest("without a line");
+  SeatStatus status = seat_->status();
+  EXPECT_EQ(status.shown.status, StateStatus::invalid);
+  EXPECT_EQ(status.shown.reason, FutureReason::stale);
+  EXPECT_FALSE(status.engaged);
+  EXPECT_TRUE(status.held);
+  EXPECT_FALSE(status.control.words.empty());
+
+  line_is_dead_ = false;
+  const double before = robot_.shaft(1).position;
+  run(3s);
+  status = seat_->status();
+  EXPECT_NE(status.shown.status, StateStatus::invalid) << "it is known again";
+  EXPECT_FALSE(status.engaged) << "the switch of before does not count";
+  robot_.expect_at_rest("while the switch of before is still held");
+  EXPECT_NEAR(robot_.shaft(1).position, before, 1e-6);
 }
 
 }  // namespace
