@@ -10,8 +10,8 @@
 
 namespace foresight {
 
-/// The display's thread says when it draws; the thread that works asks before each slice, and waits until it may. Where
-/// a software renderer draws, both need the same cores; on a GPU, the same queue. The clock runs by itself.
+/// The displays' threads say when they draw; the thread that works asks before each slice, and waits until it may.
+/// Where a software renderer draws, all need the same cores; on a GPU, the same queue. The clock runs by itself.
 class FrameGate {
  public:
   /// `clock` must outlive this.
@@ -19,8 +19,11 @@ class FrameGate {
   FrameGate(const FrameGate&) = delete;
 
   /// The display's thread.
-  void frame_begins();
-  void frame_ends(RobotTime next);
+  void frame_begins(FramesOf display = FramesOf::window);
+  void frame_ends(RobotTime next, FramesOf display = FramesOf::window);
+  /// Between its frames: a slice that has come to its turn runs first (SliceBudget::has_turn), alone, so that no frame
+  /// takes longer for it. There are fewer frames where they leave the work less than its share. Waits 50 ms at most.
+  void make_way();
   /// Work has run or waited since the last call.
   bool take_work_waits() { return work_waits_.exchange(false); }
 
@@ -34,13 +37,13 @@ class FrameGate {
  private:
   Clock& clock_;
   mutable std::mutex mutex_;
-  std::condition_variable frame_ended_;
+  std::condition_variable frame_ended_, slice_ended_;
   SliceBudget budget_;
   std::atomic<bool> work_waits_ = false;
   RobotTime began_;
   const char* kind_ = "";
   std::size_t units_ = 0;
-  bool in_work_ = false;
+  bool asked_ = false, in_work_ = false;  // a slice was asked for, and has begun
 };
 
 /// The slice in work ends here, GPU included, and one of `kind` begins when it may. Null: nothing waits.

@@ -15,15 +15,41 @@ constexpr double kMostDebtNs = 200e6;
 constexpr double kUrgentNs = 20e6;       // owed: slices run even while a frame is drawn
 constexpr std::int64_t kLeastParts = 3;  // of a slice: less than one of them is not begun before a frame
 
-}  // namespace
-
-void SliceBudget::frame_begins(RobotTime now) {
-  drawing_since_ = now;
+/// Owed, ns, at which a slice that costs so much comes to its turn.
+double turn_of(Duration cost) {
+  return std::min(static_cast<double>(cost.count()), kMostOwedNs);
 }
 
-void SliceBudget::frame_ends(RobotTime /*now*/, RobotTime next) {
-  drawing_since_.reset();
-  due_ = next;
+}  // namespace
+
+void SliceBudget::frame_begins(RobotTime now, FramesOf display) {
+  frames_[static_cast<std::size_t>(display)].drawing_since = now;
+}
+
+void SliceBudget::frame_ends(RobotTime /*now*/, RobotTime next, FramesOf display) {
+  frames_[static_cast<std::size_t>(display)] = {std::nullopt, next};
+}
+
+SliceBudget::Ahead SliceBudget::ahead(RobotTime now) const {
+  Ahead out;
+  for (const Frames& frames : frames_) {
+    if (frames.drawing_since) {
+      const RobotTime limit = *frames.drawing_since + options_.longest_frame;
+      if (now < limit) out.drawn_until = std::max(out.drawn_until.value_or(limit), limit);
+    } else if (frames.due && now <= *frames.due + options_.longest_frame) {
+      out.due = std::min(out.due.value_or(*frames.due), *frames.due);
+    }
+  }
+  return out;
+}
+
+double SliceBudget::owed_ns(RobotTime now) const {
+  const double since = waiting_since_ ? options_.least_share * static_cast<double>((now - *waiting_since_).count()) : 0;
+  return std::min(owed_ns_ + since, kMostOwedNs);
+}
+
+bool SliceBudget::has_turn(RobotTime now) const {
+  return waiting_since_ ? owed_ns(now) >= turn_ns_ : in_turn_;
 }
 
 Duration SliceBudget::expected(const std::string& kind, double units) const {
@@ -33,23 +59,25 @@ Duration SliceBudget::expected(const std::string& kind, double units) const {
 
 std::optional<RobotTime> SliceBudget::wait(RobotTime now, const std::string& kind, double units) {
   const Duration cost = expected(kind, units);
-  if (waiting_since_) owed_ns_ += options_.least_share * static_cast<double>((now - *waiting_since_).count());
-  owed_ns_ = std::min(owed_ns_, kMostOwedNs);
+  owed_ns_ = owed_ns(now);
   waiting_since_ = now;
-  const auto may_run = [&]() -> std::optional<RobotTime> {
+  turn_ns_ = turn_of(cost);
+  const auto may_run = [&](bool in_turn) -> std::optional<RobotTime> {
     waiting_since_.reset();
+    in_turn_ = in_turn;
     return std::nullopt;
   };
-  if (drawing_since_) {
-    const RobotTime limit = *drawing_since_ + options_.longest_frame;
-    if (now >= limit || owed_ns_ >= kUrgentNs) return may_run();
-    return std::min(limit, now + Duration{1 + std::llround((kUrgentNs - owed_ns_) / options_.least_share)});
+  const auto once_owed = [&](double owed) {
+    return now + Duration{1 + std::max<std::int64_t>(0, std::llround((owed - owed_ns_) / options_.least_share))};
+  };
+  const Ahead frames = ahead(now);
+  if (frames.drawn_until) {
+    if (owed_ns_ >= kUrgentNs) return may_run(true);
+    return std::min(*frames.drawn_until, once_owed(kUrgentNs));
   }
-  if (!due_ || now > *due_ + options_.longest_frame) return may_run();
-  if (now + cost <= *due_) return may_run();
-  const double missing = std::min(static_cast<double>(cost.count()), kMostOwedNs) - owed_ns_;
-  if (missing <= 0) return may_run();
-  return now + Duration{std::max<std::int64_t>(1, std::llround(missing / options_.least_share))};
+  if (!frames.due || now + cost <= *frames.due) return may_run(false);
+  if (owed_ns_ >= turn_ns_) return may_run(true);
+  return once_owed(turn_ns_);
 }
 
 void SliceBudget::ran(RobotTime begin, RobotTime end, const std::string& kind, double units) {
@@ -63,10 +91,12 @@ void SliceBudget::ran(RobotTime begin, RobotTime end, const std::string& kind, d
     costs.ns[costs.next] = unit;
   costs.next = (costs.next + 1) % kCosts;
   costs.longest_ns = quantile(costs.ns, kQuantile);
+  in_turn_ = owed_ns_ >= turn_of(expected(kind, units));  // so will be the next one, if there is one
 }
 
 double SliceBudget::units_now(RobotTime now, Duration slice, const std::string& kind, double units) const {
-  const Duration left = due_ && !drawing_since_ ? *due_ - now : slice;
+  const Ahead frames = ahead(now);
+  const Duration left = frames.due && !frames.drawn_until ? *frames.due - now : slice;
   return units_within(left >= slice / kLeastParts ? std::min(left, slice) : slice, kind, units);
 }
 

@@ -29,7 +29,7 @@ class HeadLab {
   HeadLab(const RunFolder& run, gl::Context& context, Clock& clock);
 
   /// Extraction goes on between frames.
-  FrameGate& gate() { return *setup_.gate; }
+  const std::shared_ptr<FrameGate>& gate() const { return setup_.gate; }
 
   ViewSession& session() { return session_; }
   const Lens& camera() const { return setup_.left; }

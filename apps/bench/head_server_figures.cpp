@@ -59,6 +59,7 @@ class FrameLoop {
     RobotTime last{};
     const RobotTime begin = clock_.now();
     for (RobotTime next = begin;; next = next + interval) {
+      warper_.make_way();
       clock_.sleep_until(next);
       const RobotTime now = clock_.now();
       if (!counted_from && to_seconds(now - begin) > kLongestStart)
@@ -72,10 +73,8 @@ class FrameLoop {
       if (t > trial_.seconds) break;
       const bool line_dead = t > (trial_.seconds - dead) / 2 && t < (trial_.seconds + dead) / 2;
       if (!line_dead) drawing_.feed_images(now);
-      lab_.gate().frame_begins();
       frame(lab_.T_world_camera() * swayed(to_seconds(now - begin)));
       last = clock_.now();
-      lab_.gate().frame_ends(next + interval);
       if (counted_from) {
         out.took_ms.push_back(1e3 * to_seconds(last - now));
         out.late += last - next > interval;
@@ -125,7 +124,7 @@ Frames run_trial(HeadLab& lab, gl::Context& context, const HeadServerTrial& tria
     return out;
   }
   const bool in_thread = trial.drawn_by == DrawnBy::thread;
-  head::SceneDrawer drawer(lab.session(), clock, {.in_bands = in_thread});
+  head::SceneDrawer drawer(lab.session(), clock, {.in_bands = in_thread, .others = lab.gate()});
   const auto drawn = [&] { return drawer.drawn(); };
   const auto draw = [&] {
     if (!in_thread) drawer.draw();

@@ -25,7 +25,7 @@ class HeadSession {
   HeadSession(HeadLab& lab, gl::Context& context)
       : began_(clock_.now()),
         held_(std::make_shared<head::HeldControllers>()),
-        drawer_(lab.session(), clock_),
+        drawer_(lab.session(), clock_, {.others = lab.gate()}),
         painter_(drawer_, *held_, clock_, nullptr, nullptr),
         drawing_(context.create_shared(), drawer_, clock_),
         thread_(context.create_shared(), {}, clock_, held_, painter_, [this] { painter_.release(); }),

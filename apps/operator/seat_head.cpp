@@ -10,7 +10,7 @@ constexpr Duration kWordsEvery = std::chrono::milliseconds(100);
 
 }  // namespace
 
-SeatHead::SeatHead(gl::Context& context, ViewSession& session, const Lens& lens, PredictedSource& source,
+SeatHead::SeatHead(gl::Context& context, ViewSession& session, const ViewSetup& setup, PredictedSource& source,
                    SeatWindow& window, std::shared_ptr<head::HeldControllers> controllers, Clock& clock)
     : clock_(clock),
       source_(source),
@@ -18,9 +18,9 @@ SeatHead::SeatHead(gl::Context& context, ViewSession& session, const Lens& lens,
       hud_texture_(GL_RGBA8, kWordsWidth, kWordsHeight, 0, 1, "words"),
       hud_target_(hud_texture_.name(), kWordsWidth, kWordsHeight, -1, false),
       words_(kWordsWidth, kWordsHeight, "words in the head display"),
-      image_(lens.width(), lens.height(), "newest image in the head display"),
+      image_(setup.left.width(), setup.left.height(), "newest image in the head display"),
       newest_("newest image"),
-      drawer_(session, clock),
+      drawer_(session, clock, {.others = setup.gate}),
       painter_(drawer_, *controllers, clock, &words_, &image_),
       drawing_(context.create_shared(), drawer_, clock),
       thread_(std::make_unique<head::HeadThread>(context.create_shared(), head::HeadDisplayOptions{}, clock,

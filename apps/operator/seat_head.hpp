@@ -15,9 +15,9 @@ namespace foresight {
 /// the display, the window goes on.
 class SeatHead final : public ViewObserver {
  public:
-  /// All must outlive this. `controllers`: what they say goes there.
-  SeatHead(gl::Context& context, ViewSession& session, const Lens& lens, PredictedSource& source, SeatWindow& window,
-           std::shared_ptr<head::HeldControllers> controllers, Clock& clock);
+  /// All must outlive this. `controllers`: what they say goes there. `setup`: of the session.
+  SeatHead(gl::Context& context, ViewSession& session, const ViewSetup& setup, PredictedSource& source,
+           SeatWindow& window, std::shared_ptr<head::HeldControllers> controllers, Clock& clock);
   ~SeatHead() override;
 
   void stepped(const ViewStep& step, FrameSource& source, ViewSession& session) override;

@@ -48,6 +48,8 @@ class DrawnViews {
   /// Drawing goes on between frames; the next one is due at `next`.
   virtual void frame_begins() = 0;
   virtual void frame_ends(RobotTime next) = 0;
+  /// Before a frame is asked for: work that frames have put off for long enough goes first (FrameGate::make_way).
+  virtual void make_way() = 0;
 
   /// What is drawn next; the newest counts.
   virtual void aim(HeadAim aim) = 0;

@@ -39,6 +39,8 @@ class EyeWarper {
   /// All commands that read the pictures are given: waits until the GPU has finished them, and lets the drawing go on
   /// until the next frame, which is taken to come as long after the last one as this one did.
   void end();
+  /// Before the next frame is asked for: DrawnViews::make_way().
+  void make_way() { views_.make_way(); }
 
   const WarpCounts& counts() const { return counts_; }
 

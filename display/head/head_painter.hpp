@@ -32,6 +32,8 @@ struct Panel {
 class HeadPainter {
  public:
   virtual ~HeadPainter() = default;
+  /// Before the runtime is asked for a frame: time for what frames have held up.
+  virtual void make_way() {}
   virtual void look(const HeadFrame& frame) = 0;
   /// At most 8, each over those before it; those beyond are not shown. Valid until the next look().
   virtual std::span<const Panel> panels() = 0;

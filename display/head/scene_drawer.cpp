@@ -38,6 +38,21 @@ SceneDrawer::SceneDrawer(const ViewSession& session, Clock& clock, const DrawerO
       gate_(clock),
       parts_(std::make_shared<const WarpScene>(session.scene())) {}
 
+void SceneDrawer::frame_begins() {
+  gate_.frame_begins(FramesOf::headset);
+  if (options_.others) options_.others->frame_begins(FramesOf::headset);
+}
+
+void SceneDrawer::frame_ends(RobotTime next) {
+  gate_.frame_ends(next, FramesOf::headset);
+  if (options_.others) options_.others->frame_ends(next, FramesOf::headset);
+}
+
+void SceneDrawer::make_way() {
+  gate_.make_way();
+  if (options_.others) options_.others->make_way();
+}
+
 void SceneDrawer::aim(HeadAim aim) {
   const std::lock_guard lock(mutex_);
   aim_ = std::move(aim);

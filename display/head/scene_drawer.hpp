@@ -37,6 +37,7 @@ struct DrawerOptions {
   /// eyes took no longer than this: else they would come too rarely.
   Duration behind_edges_within = std::chrono::milliseconds(100);
   bool in_bands = true;  ///< between frames; else at once, for who draws in the showing thread or another process
+  std::shared_ptr<FrameGate> others = nullptr;  ///< other work that goes on between frames (ViewSetup::gate)
 };
 
 /// Draws with a guard band, so that a head that turns on finds something to see. One drawing and one showing thread.
@@ -49,8 +50,9 @@ class SceneDrawer final : public DrawnViews {
 
   // Showing thread.
   const std::shared_ptr<const WarpScene>& parts() const override { return parts_; }
-  void frame_begins() override { gate_.frame_begins(); }
-  void frame_ends(RobotTime next) override { gate_.frame_ends(next); }
+  void frame_begins() override;
+  void frame_ends(RobotTime next) override;
+  void make_way() override;
   void aim(HeadAim aim) override;
   const DrawnEyes* newest() override { return slots_.newest(); }
   void shown() override { slots_.shown(); }

@@ -46,13 +46,18 @@ bool ScenePainter::centre_pressed() {
   return pressed;
 }
 
+void ScenePainter::make_way() {
+  if (warper_) warper_->make_way();
+}
+
 void ScenePainter::look(const HeadFrame& frame) {
   if (!copy_) copy_.emplace();
   if (centre_pressed() || frame.space_moved) centre_ = true;
   place_space(frame);
   place_panels();
   if (!warper_) warper_.emplace(drawer_, clock_);
-  warper_->begin(shown_.place.scene);
+  shows_scene_ = frame.T_space_head && T_world_space_ && shown_.trusted && !shown_.place.scene.T_world_node.empty();
+  if (shows_scene_) warper_->begin(shown_.place.scene);
 }
 
 void ScenePainter::place_space(const HeadFrame& frame) {
@@ -92,7 +97,7 @@ void ScenePainter::draw_eye(std::size_t eye, const EyeView& view, const ViewTarg
 }
 
 bool ScenePainter::draw_scene(std::size_t eye, const EyeView& view, const ViewTarget& target) {
-  if (!T_world_space_ || shown_.place.scene.T_world_node.empty()) return false;
+  if (!shows_scene_) return false;
   const Pose T_world_eye = *T_world_space_ * view.T_space_eye * T_body_camera();
   const gl::Texture* const picture = (*warper_)(eye, {T_world_eye, view.fov, target.width, target.height});
   if (picture) (*copy_)(*picture, target, target.width);

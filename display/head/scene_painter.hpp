@@ -38,6 +38,7 @@ class ScenePainter final : public HeadPainter {
   /// Where the operator's space lies; nothing before the first frame.
   std::optional<Pose> T_world_space() const;
 
+  void make_way() override;
   void look(const HeadFrame& frame) override;
   std::span<const Panel> panels() override { return panels_; }
   void draw_eye(std::size_t eye, const EyeView& view, const ViewTarget& target) override;
@@ -61,6 +62,7 @@ class ScenePainter final : public HeadPainter {
   bool any_scene_ = false;
   std::optional<Pose> T_world_space_;
   HeadScene shown_;  // of the frame in work
+  bool shows_scene_ = false;
   Pose T_space_centre_ = Pose::Identity();
   bool pressed_ = false;
   std::array<Panel, 2> panels_;

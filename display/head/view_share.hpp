@@ -73,6 +73,7 @@ class SharedViews final : public DrawnViews {
   const std::shared_ptr<const WarpScene>& parts() const override { return parts_; }
   void frame_begins() override {}
   void frame_ends(RobotTime) override {}
+  void make_way() override {}
   void aim(HeadAim aim) override { share_.aim(aim); }
   /// The GPU has finished all that reads the last ones (EyeWarper::end()).
   const DrawnEyes* newest() override;

@@ -198,6 +198,7 @@ bool Session::locate_eyes(XrTime time, HeadFrame& frame) {
 }
 
 void Session::frame(const Clock& clock, HeadPainter& painter, HeldControllers& hands) {
+  painter.make_way();
   const Waited waited = wait();
   const OperatorTime now{clock.now().ns};
   HeadFrame frame;

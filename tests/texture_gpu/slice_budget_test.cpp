@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <random>
 #include <thread>
@@ -20,8 +21,9 @@ struct Outcome {
   int slices = 0, beside_frames = 0;
 };
 
-/// One processor: a frame of `draw` ms each `interval` ms, slices of `slice` ms in between.
-Outcome simulate(double interval, double draw, double slice, double seconds) {
+/// One processor: a frame of `draw` ms each `interval` ms, slices of `slice` ms in between. `makes_way`: a frame does
+/// not begin while a slice has its turn.
+Outcome simulate(double interval, double draw, double slice, double seconds, bool makes_way = false) {
   SliceBudget budget;
   const auto at = [](double ms) { return RobotTime{std::llround(1e6 * ms)}; };
   Outcome out;
@@ -29,6 +31,14 @@ Outcome simulate(double interval, double draw, double slice, double seconds) {
   budget.frame_ends(at(0), at(due));
   while (now < 1e3 * seconds) {
     if (now >= due) {  // the frame has the processor
+      while (makes_way && budget.has_turn(at(now))) {
+        EXPECT_FALSE(budget.wait(at(now), "slice")) << "whose turn it is may run";
+        EXPECT_TRUE(budget.has_turn(at(now + 0.5 * slice))) << "while it runs, too";
+        budget.ran(at(now), at(now + slice), "slice");
+        now += slice;
+        worked += slice;
+        ++out.slices;
+      }
       if (now > due) out.worst_delay = std::max(out.worst_delay, now - due);
       budget.frame_begins(at(now));
       while (!budget.wait(at(now), "slice")) {  // it is so late that it does not wait for the frame's end
@@ -72,6 +82,41 @@ TEST(SliceBudget, NeverStarves) {
     EXPECT_LT(outcome.share, 0.45) << draw << " " << slice;
     EXPECT_LE(outcome.worst_delay, slice + 20) << draw << " " << slice;
   }
+}
+
+// A headset's frames take all that there is, at 90 Hz: they make way for a third of the time, and none shares the
+// processor with a slice, so that each takes as long as without them.
+TEST(SliceBudget, FramesThatMakeWayAreFewerAndNoneIsLonger) {
+  for (const auto& [draw, slice] : {std::pair{11.0, 3.0}, {13.0, 6.0}, {10.0, 12.0}, {30.0, 3.0}}) {
+    const Outcome outcome = simulate(11.1, draw, slice, 30, true);
+    EXPECT_EQ(outcome.beside_frames, 0) << draw << " " << slice;
+    EXPECT_GT(outcome.share, 0.3) << draw << " " << slice;
+    EXPECT_LT(outcome.share, 0.4) << draw << " " << slice;
+    EXPECT_LE(outcome.worst_delay, 2 * std::max(slice, draw)) << draw << " " << slice;
+  }
+  const Outcome idle = simulate(11.1, 5, 3, 30, true);
+  EXPECT_LE(idle.worst_delay, 3) << "nobody waits where there is time for all";
+}
+
+// A window at 25 Hz and a headset at 50: slices run where neither draws nor is about to.
+TEST(SliceBudget, SlicesRunInWhatTwoDisplaysLeave) {
+  SliceBudget budget;
+  const auto at = [](int ms) { return RobotTime{} + Duration{1'000'000LL * ms}; };
+  budget.ran(at(0), at(3), "slice");
+  int ran = 0, beside = 0;
+  for (int ms = 40; ms < 4000; ++ms) {
+    const int of_window = ms % 40, of_headset = (ms + 10) % 20;  // drawn for 12 and 5 ms
+    if (of_window == 0) budget.frame_begins(at(ms), FramesOf::window);
+    if (of_window == 12) budget.frame_ends(at(ms), at(ms + 28), FramesOf::window);
+    if (of_headset == 0) budget.frame_begins(at(ms), FramesOf::headset);
+    if (of_headset == 5) budget.frame_ends(at(ms), at(ms + 15), FramesOf::headset);
+    if (ms < 80 || budget.wait(at(ms), "slice")) continue;
+    budget.ran(at(ms), at(ms + 3), "slice");
+    ++ran;
+    beside += of_window < 12 || of_window > 37 || of_headset < 5 || of_headset > 17;
+  }
+  EXPECT_GT(ran, 200);
+  EXPECT_EQ(beside, 0);
 }
 
 // The first one has compiled shaders on a busy machine: longer than frames are apart, and than is ever put down.
@@ -179,6 +224,41 @@ TEST(FrameGate, HoldsTheWorkWhileAFrameIsDrawn) {
   worker.join();
   EXPECT_FALSE(early);
   EXPECT_TRUE(passed);
+}
+
+/// It stands, and goes on as it is told, while others look at it.
+class SetClock final : public Clock {
+ public:
+  RobotTime now() const noexcept override { return {ns_}; }
+  void sleep_until(RobotTime time) noexcept override { ns_ = time.ns; }
+
+ private:
+  std::atomic<std::int64_t> ns_ = 0;
+};
+
+// Who shows frames lets a slice that has come to its turn end first, and waits for no other.
+TEST(FrameGate, WhoShowsFramesLetsASliceHaveItsTurn) {
+  SetClock clock;
+  FrameGate gate(clock);
+  gate.begin("slice");
+  gate.make_way();  // returns: nobody shows anything yet, it goes on by itself
+  clock.sleep_until(clock.now() + 6ms);
+  gate.end();  // it is known to take so long
+  gate.frame_ends(clock.now() + 1ms, FramesOf::headset);
+  std::atomic<bool> ran = false;
+  gate.take_work_waits();
+  std::jthread worker([&] {
+    gate.begin("slice");
+    ran = true;
+    clock.sleep_until(clock.now() + 6ms);
+    gate.end();
+  });
+  while (!gate.take_work_waits()) std::this_thread::yield();
+  gate.make_way();  // returns: frames may put it off for three times as long
+  EXPECT_FALSE(ran);
+  clock.sleep_until(clock.now() + 19ms);
+  gate.make_way();
+  EXPECT_TRUE(ran) << "the frame waits for it, however long that is";
 }
 
 }  // namespace
