@@ -78,7 +78,9 @@ class LiveSeat {
         shown_(*window_, seat_, source_, window_options()) {
     for (const std::string& remark : session_.level_remarks()) std::fprintf(stderr, "%s\n", remark.c_str());
     if (options.head_display == HeadDisplayKind::openxr)
-      head_.emplace(*window_, session_, setup_, source_, shown_, controllers_, clock_);
+      head_.emplace(*window_, session_, setup_, source_, shown_, controllers_,
+                    options.second_eye_of_first ? head::SecondEyeFrom::first_eye : head::SecondEyeFrom::own_view,
+                    clock_);
     source_.show_things(&things_);
     driver_.may_push(things_.names());
     source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {

@@ -25,6 +25,7 @@ struct LiveSeatOptions {
   unsigned layout = 0;
   std::string device;  ///< beside keyboard and mouse: as open_tracker() takes it; "" none
   HeadDisplayKind head_display = HeadDisplayKind::none;
+  bool second_eye_of_first = false;                   ///< of openxr: head::SecondEyeFrom
   std::vector<std::filesystem::path> display_lenses;  ///< of side_by_side: for both eyes, or left and right; or none
   double rate_hz = 30;
   double font_scale = 1;

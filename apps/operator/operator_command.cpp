@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string rig, name = "operator", scene, device, head_display = "none";
+  std::string rig, name = "operator", scene, device, head_display = "none", second_eye = "own";
   std::vector<std::string> display_lenses;
   bool mock = false, physics = false, served = false;
   unsigned layout = 0;
@@ -210,6 +210,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.device = arguments.device;
   if (arguments.head_display == "openxr") options.head_display = HeadDisplayKind::openxr;
   if (arguments.head_display == "side-by-side") options.head_display = HeadDisplayKind::side_by_side;
+  options.second_eye_of_first = arguments.second_eye == "first";
   options.display_lenses.assign(arguments.display_lenses.begin(), arguments.display_lenses.end());
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
@@ -241,6 +242,8 @@ void check(const Rig& rig, const Arguments& arguments) {
     throw InputError("--physics", "is of a robot's side that runs with --mock", "add --mock, without --scripted");
   if (arguments.head_display != "none" && !arguments.script.empty())
     throw InputError("--head-display", "is of a seat with a window", "leave out --scripted");
+  if (arguments.second_eye != "own" && arguments.head_display != "openxr")
+    throw InputError("--second-eye", "is of a headset", "add --head-display openxr");
   if (!arguments.display_lenses.empty() && arguments.head_display != "side-by-side")
     throw InputError("--display-lens", "is of a head display that takes two eyes side by side",
                      "add --head-display side-by-side; a headset of OpenXR corrects its lenses itself");
@@ -275,6 +278,12 @@ void add_operator_command(Command& app, std::function<int()>& action) {
       ->add_option("--head-display", arguments->head_display,
                    "Beside the window: openxr (a headset, docs/head-display.md), side-by-side, none (default)")
       ->check(one_of({"openxr", "side-by-side", "none"}));
+  command
+      ->add_option(
+          "--second-eye", arguments->second_eye,
+          "With --head-display openxr: the right eye's frames are made of a view of its own (own, default), or\n"
+          "of the left eye's, row by row (first): cheaper where little is near; its own where that tears")
+      ->check(one_of({"own", "first"}));
   command
       ->add_option("--display-lens", arguments->display_lenses,
                    "With --head-display side-by-side: results of `calibrate display`, one for both eyes or the\n"

@@ -11,7 +11,8 @@ constexpr Duration kWordsEvery = std::chrono::milliseconds(100);
 }  // namespace
 
 SeatHead::SeatHead(gl::Context& context, ViewSession& session, const ViewSetup& setup, PredictedSource& source,
-                   SeatWindow& window, std::shared_ptr<head::HeldControllers> controllers, Clock& clock)
+                   SeatWindow& window, std::shared_ptr<head::HeldControllers> controllers, head::SecondEyeFrom second,
+                   Clock& clock)
     : clock_(clock),
       source_(source),
       window_(window),
@@ -21,7 +22,7 @@ SeatHead::SeatHead(gl::Context& context, ViewSession& session, const ViewSetup& 
       image_(setup.left.width(), setup.left.height(), "newest image in the head display"),
       newest_("newest image"),
       drawer_(session, clock, {.others = setup.gate}),
-      painter_(drawer_, *controllers, clock, &words_, &image_),
+      painter_(drawer_, *controllers, clock, &words_, &image_, second),
       drawing_(context.create_shared(), drawer_, clock),
       thread_(std::make_unique<head::HeadThread>(context.create_shared(), head::HeadDisplayOptions{}, clock,
                                                  controllers, painter_, [this] { painter_.release(); })) {}

@@ -17,7 +17,8 @@ class SeatHead final : public ViewObserver {
  public:
   /// All must outlive this. `controllers`: what they say goes there. `setup`: of the session.
   SeatHead(gl::Context& context, ViewSession& session, const ViewSetup& setup, PredictedSource& source,
-           SeatWindow& window, std::shared_ptr<head::HeldControllers> controllers, Clock& clock);
+           SeatWindow& window, std::shared_ptr<head::HeldControllers> controllers, head::SecondEyeFrom second,
+           Clock& clock);
   ~SeatHead() override;
 
   void stepped(const ViewStep& step, FrameSource& source, ViewSession& session) override;

@@ -20,8 +20,8 @@ Pose facing(const Eigen::Vector3d& at) {
 }  // namespace
 
 ScenePainter::ScenePainter(SceneDrawer& drawer, const HeldControllers& hands, Clock& clock, SharedPicture* words,
-                           SharedPicture* image)
-    : drawer_(drawer), hands_(hands), clock_(clock), pictures_{image, words} {}
+                           SharedPicture* image, SecondEyeFrom second)
+    : drawer_(drawer), hands_(hands), clock_(clock), second_(second), pictures_{image, words} {}
 
 void ScenePainter::show(HeadScene scene) {
   const std::lock_guard lock(mutex_);
@@ -55,7 +55,7 @@ void ScenePainter::look(const HeadFrame& frame) {
   if (centre_pressed() || frame.space_moved) centre_ = true;
   place_space(frame);
   place_panels();
-  if (!warper_) warper_.emplace(drawer_, clock_);
+  if (!warper_) warper_.emplace(drawer_, clock_, second_);
   shows_scene_ = frame.T_space_head && T_world_space_ && shown_.trusted && !shown_.place.scene.T_world_node.empty();
   if (shows_scene_) warper_->begin(shown_.place.scene);
 }

@@ -30,7 +30,7 @@ class ScenePainter final : public HeadPainter {
   /// All must outlive this. `drawer`: somebody else draws with it (SceneThread), and each frame is warped from there.
   /// `words` and `image`: panels; null: none. A press of `recentre` or `home_view` on `hands` centres.
   ScenePainter(SceneDrawer& drawer, const HeldControllers& hands, Clock& clock, SharedPicture* words,
-               SharedPicture* image);
+               SharedPicture* image, SecondEyeFrom second = SecondEyeFrom::own_view);
 
   void show(HeadScene scene);
   /// The head is where the camera is now, from the next frame on.
@@ -55,6 +55,7 @@ class ScenePainter final : public HeadPainter {
   SceneDrawer& drawer_;
   const HeldControllers& hands_;
   Clock& clock_;
+  SecondEyeFrom second_;
   std::array<SharedPicture*, 2> pictures_;  // image, words: what comes later is over what came before
   std::atomic<bool> centre_{false};
   mutable std::mutex mutex_;  // the next three

@@ -65,8 +65,9 @@ TEST(Operator, ABrickIsPickedUpAndPutIntoTheTray) {
 // Whatever becomes of the headset, the seat goes on, and says how it is.
 TEST(Operator, TheSeatOutlivesItsHeadset) {
   if (!std::getenv("DISPLAY")) GTEST_SKIP() << "no DISPLAY; scripts/test gives one";
-  const auto sit = [](const std::string& runtime, const std::string& script, const std::vector<std::string>& words) {
-    Program seat({"operator", rig_file(), "--mock", "--head-display", "openxr"},
+  const auto sit = [](const std::string& runtime, const std::string& script, const std::vector<std::string>& words,
+                      const std::string& second_eye = "own") {
+    Program seat({"operator", rig_file(), "--mock", "--head-display", "openxr", "--second-eye", second_eye},
                  {.environment = {{"XR_RUNTIME_JSON", runtime}, {"FORESIGHT_TEST_XR", script}}});
     const auto said_all = [&] {  // in that order
       const std::string said = seat.said();
@@ -86,7 +87,7 @@ TEST(Operator, TheSeatOutlivesItsHeadset) {
   };
   sit(FORESIGHT_TEST_RUNTIME, "real-time lose-session@60",
       {"simulated headset", "the headset was lost", "simulated headset"});
-  sit(FORESIGHT_TEST_RUNTIME, "real-time no-egl", {"simulated headset, 90 Hz"});
+  sit(FORESIGHT_TEST_RUNTIME, "real-time no-egl", {"simulated headset, 90 Hz"}, "first");
   sit(FORESIGHT_TEST_RUNTIME, "no-opengl", {"does not know OpenGL"});
   sit("/nowhere/runtime.json", "", {"no OpenXR runtime"});
 }
@@ -111,6 +112,7 @@ TEST(Operator, StartedWrongItSaysWhatToDo) {
   EXPECT_THAT(said({"--line", "/no/such/line.yaml"}), testing::HasSubstr("line.yaml"));
   EXPECT_THAT(said({"--scripted", "dance"}), testing::HasSubstr("tour"));
   EXPECT_THAT(said({"--head-display", "goggles"}), testing::HasSubstr("side-by-side"));
+  EXPECT_THAT(said({"--second-eye", "first"}), testing::HasSubstr("add --head-display openxr"));
   EXPECT_THAT(said({"--head-display"}), testing::HasSubstr("its value is missing; give one of openxr, side-by-side"));
   EXPECT_THAT(said({"--head-display", "openxr", "--display-lens", rig_file()}),
               testing::HasSubstr("add --head-display side-by-side"));
