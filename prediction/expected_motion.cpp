@@ -10,8 +10,22 @@ namespace {
 constexpr double kSetPointsPerSecond = 200;
 constexpr double kOvertakingOver = 4, kMostOvertaken = 0.1;  // s
 constexpr double kMostAtOnce = 0.03;                         // s: a gap is no jitter
+constexpr double kLateOver = 0.2, kMostLate = 0.05;          // s
+constexpr double kMoves = 0.02;                              // rad/s or m/s, of all joints: slower tells no time
 constexpr double kBlind = 0.3;                               // s without agreement: what went on meanwhile is not known
 constexpr double kNewStart = 0.05;  // rad or m: set-points that jump so far began anew where the robot stands
+
+/// By how much later than expected the robot's set-points came to where it tells they were, s; 0 where they hardly
+/// move.
+double lateness(const RobotReport& report, const GateModel::State& expected) {
+  double ways = 0, squares = 0;
+  for (std::size_t i = 0; i < report.joints; ++i) {
+    const auto& told = report.joint[i].set_point;
+    ways += told.velocity * (expected.motion[i].position - told.position);
+    squares += told.velocity * told.velocity;
+  }
+  return squares > kMoves * kMoves ? std::clamp(ways / squares, -kMostAtOnce, kMostAtOnce) : 0;
+}
 
 }  // namespace
 
@@ -63,11 +77,21 @@ const SentSetPoint* ExpectedMotion::newest_at(RobotTime time) const noexcept {
 // Where set-points overtake each other and get lost, the newest one that came is not as old as one that takes the usual
 // delay: it depends on line and rate alike, and is learnt as it is. On a line without jitter it is 0.
 void ExpectedMotion::learn_overtaking(const RobotReport& report) noexcept {
-  const SentSetPoint *newest = find(report.newest_set_point), *expected = newest_at(report.time);
+  const SentSetPoint *newest = find(report.newest_set_point), *expected = newest_at(report.time + seconds(late_));
   if (newest == nullptr || expected == nullptr || reported_.ns == 0) return;
   const double share = 1 - std::exp(-to_seconds(report.time - reported_) / kOvertakingOver);
   overtaken_ += share * std::clamp(to_seconds(expected->sent - newest->sent), -kMostAtOnce, kMostAtOnce);
   overtaken_ = std::clamp(overtaken_, -kMostOvertaken, kMostOvertaken);
+}
+
+// What came waits until the robot's program looks for it, and for the gate's next cycle. Cycles that were just made
+// anew show little of it, so it is summed up until nothing is left.
+void ExpectedMotion::learn_lateness(const RobotReport& report) noexcept {
+  const GateModel::State* expected = cycle_at(report.time);
+  if (expected == nullptr || reported_.ns == 0) return;
+  if (report.doing != GateDoing::following || expected->doing != GateDoing::following) return;
+  const double share = 1 - std::exp(-to_seconds(report.time - reported_) / kLateOver);
+  late_ = std::clamp(late_ + share * lateness(report, *expected), 0.0, kMostLate);
 }
 
 void ExpectedMotion::learn_delay(const RobotReport& report, RobotTime now) noexcept {
@@ -78,8 +102,9 @@ void ExpectedMotion::learn_delay(const RobotReport& report, RobotTime now) noexc
     if (line_.add(came, to_seconds(report.newest_came - newest->sent))) line_delay_ = line_.at(came);
   }
   learn_overtaking(report);
+  learn_lateness(report);
   delay_ = line_delay_;
-  delay_.seconds = std::max(0.0, delay_.seconds + overtaken_);
+  delay_.seconds = std::max(0.0, delay_.seconds + overtaken_ + late_);
   // Until the robot tells: as long as the way back.
   if (!delay_.valid) delay_ = {std::max(0.0, to_seconds(now - report.time)), 0.02, newest_told_ != 0};
 }

@@ -48,7 +48,7 @@ class ExpectedMotion {
   const Cycles& cycles() const noexcept { return cycles_; }
   /// The one at that instant, or half a period beside it; null: none.
   const GateModel::State* cycle_at(RobotTime time) const noexcept;
-  /// When a set-point that is sent now will be there, after now; and how sure that is.
+  /// When a set-point that is sent now will act, after now; and how sure that is.
   PredictedDelay delay() const noexcept { return delay_; }
   /// No cycle later than this is expected yet.
   RobotTime known_until() const noexcept { return known_until_; }
@@ -59,6 +59,7 @@ class ExpectedMotion {
   const SentSetPoint* find(std::uint64_t number) const noexcept;
   void learn_delay(const RobotReport& report, RobotTime now) noexcept;
   void learn_overtaking(const RobotReport& report) noexcept;
+  void learn_lateness(const RobotReport& report) noexcept;
   const SentSetPoint* newest_at(RobotTime time) const noexcept;
   double deviation(const RobotReport& report, const GateModel::State& expected) const noexcept;
   GateModel::State state_of(const RobotReport& report, const GateModel::State* expected) const noexcept;
@@ -75,6 +76,7 @@ class ExpectedMotion {
   LineDelay line_;
   PredictedDelay line_delay_, delay_;
   Duration acts_after_{};  // the delay by which the cycles were made
+  double late_ = 0;        // s that a set-point which has come waits until the gate takes it
   double overtaken_ = 0;   // s by which the gate's newest set-point is older than one that takes the line's delay
   std::uint64_t newest_told_ = 0;
   RobotTime confirmed_, reported_, known_until_, made_anew_, epoch_;

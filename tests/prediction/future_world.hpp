@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <random>
 
 #include "prediction/robot_future.hpp"
@@ -18,6 +19,7 @@ struct WorldOptions {
   double lag = 0.015;     // s, of the drives
   double quantum = 1e-5;  // rad, of the encoders
   bool jaws = false;      // the first joint is that of a gripper
+  int looks_every = 1;    // cycles in which the robot's program looks for set-points that came
   unsigned seed = 1;
 };
 
@@ -91,8 +93,10 @@ class FutureWorld {
       if (down_.begin()->second.number > newest_) {
         newest_ = down_.begin()->second.number;
         came_ = down_.begin()->first;
-        gate_.take(down_.begin()->second, now_);
+        waits_ = down_.begin()->second;
       }
+    if (waits_ && ticks_ % static_cast<std::uint64_t>(options_.looks_every) == 0)
+      gate_.take(*std::exchange(waits_, std::nullopt), now_);
     gate_.cycle(now_);
     for (std::size_t i = 0; i < 2; ++i) {
       const double share = 1 - std::exp(-to_seconds(kTick) / options_.lag);
@@ -143,6 +147,7 @@ class FutureWorld {
   JointValues motor_{}, shaft_{};
   std::map<RobotTime, JointValues> shafts_;
   std::multimap<RobotTime, SentSetPoint> down_;
+  std::optional<SentSetPoint> waits_;
   std::multimap<RobotTime, RobotReport> up_;
   std::vector<PredictedRobot> pictures_;
 };

@@ -77,6 +77,25 @@ TEST(RobotFuture, DrivesAreLearntOnceTheyMoveHoweverLateThatIs) {
   EXPECT_LT(judge(world, learnt).p95, 0.003);
 }
 
+// Set-points that came wait until the robot's program looks for them, which reports do not tell.
+TEST(RobotFuture, SetPointsThatWaitForTheGateActLater) {
+  using namespace std::chrono_literals;
+  FutureWorld world({.looks_every = 5});
+  world.run(20);
+  const std::size_t learnt = world.pictures().size();
+  world.run(20);
+  double ways = 0, squares = 0;
+  for (std::size_t k = learnt; k < world.pictures().size() && world.pictures()[k].time <= world.now(); ++k) {
+    const RobotTime time = world.pictures()[k].time;
+    const double truth = world.truth_at(time)[0];
+    const double speed = (world.truth_at(time + 20ms)[0] - world.truth_at(time - 20ms)[0]) / 0.04;
+    ways += speed * (world.pictures()[k].position[0] - truth);
+    squares += speed * speed;
+  }
+  EXPECT_NEAR(ways / squares, 0, 0.0015) << "s by which it is shown ahead; a set-point waits for 8 ms on average";
+  EXPECT_GT(world.future().delay().seconds, 0.303);
+}
+
 TEST(RobotFuture, JitterAndLossWidenItsUncertainty) {
   FutureWorld world({.jitter = 0.03, .loss = 0.03});
   world.run(10);
