@@ -11,7 +11,7 @@
 namespace foresight {
 namespace {
 
-constexpr double kMemory = 0.9;  // weight of what was compared before against what is compared now
+constexpr double kMemory = 0.97;  // weight of what was compared before against what is compared now
 constexpr double kAssumed =
     1.0 / 1024;  // of a picture's pixels: as many of each kind are taken to have been as assumed
 // How exactly images, lenses and model agree where nothing is predicted, px, by how it was when last compared.
@@ -105,7 +105,9 @@ ShownFidelity::ShownFidelity(FidelityOptions options) : options_(options) {
 void ShownFidelity::shown(RememberedView picture) {
   if (!kept_.empty() && picture.instant <= kept_.back().instant) kept_.clear();  // another clock
   const cv::Mat seen = seen_mask(picture.picture);
-  choose(count(seen, picture.doubt, cv::Mat::zeros(seen.size(), CV_8UC1)));
+  ByKind pixels = count(seen, picture.doubt, cv::Mat::zeros(seen.size(), CV_8UC1));
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].all += (1 - kMemory) * of_late_[i].all;
+  choose(pixels);
   kept_.push_back(std::move(picture));
   if (kept_.size() > options_.kept) kept_.pop_front();
 }
@@ -159,15 +161,15 @@ void ShownFidelity::learn(const ByKind& counts, double assumed) {
   }
 }
 
-void ShownFidelity::choose(const ByKind& shown) {
+void ShownFidelity::choose(const ByKind& pixels) {
   std::array<std::size_t, DoubtKind::kCount> order;
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [this](std::size_t i) { return risk_[i]; });
   exact_.reset();
   double all = 0, wrong = 0;
   for (const std::size_t i : order) {
-    all += shown[i].all;
-    wrong += shown[i].all * risk_[i];
+    all += pixels[i].all;
+    wrong += pixels[i].all * risk_[i];
     if (all > 0 ? wrong > options_.wrong_share * all : risk_[i] > options_.wrong_share) return;
     exact_.set(i);
   }

@@ -21,7 +21,7 @@ struct FidelityOptions {
   Duration same_instant = std::chrono::milliseconds(20);  ///< by which picture and image may be apart, > 0
   std::size_t kept = 48;                                  ///< pictures that wait for their image, > 0
   double wrong_levels = 10;                               ///< grey levels beyond which a pixel is wrong
-  double wrong_share = 0.018;                             ///< of the pixels that count as exact, that may be wrong
+  double wrong_share = 0.019;                             ///< of the pixels that count as exact, that may be wrong
 };
 
 /// How alike what was shown for an instant and the image of it are, over pixels that images have coloured.
@@ -58,7 +58,8 @@ class ShownFidelity {
   /// another size. `image`: CV_8UC3.
   std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image);
   /// Which kinds of pixels count as exact: those that were wrong most rarely, as many as it takes until
-  /// FidelityOptions::wrong_share of all such pixels in what was shown last have to be expected to be wrong.
+  /// FidelityOptions::wrong_share of all such pixels have to be expected to be wrong, in what was shown last and in a
+  /// usual picture of late together: good pictures make up for bad ones.
   const ExactKinds& exact() const { return exact_; }
 
  private:
@@ -68,7 +69,7 @@ class ShownFidelity {
   using ByKind = std::array<Counts, DoubtKind::kCount>;
   static ByKind count(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong);
   void learn(const ByKind& counts, double assumed);
-  void choose(const ByKind& shown);
+  void choose(const ByKind& pixels);
 
   FidelityOptions options_;
   std::deque<RememberedView> kept_;

@@ -129,8 +129,28 @@ TEST(ShownFidelity, LearnsOfWhatKindPixelsAreRight) {
   EXPECT_LT(learnt.round(9, 3).exact_wrong, 0.02);
   for (int i = 0; i < 60; ++i) learnt.round(5, -1);
   EXPECT_EQ(learnt.exact(), (std::vector{6, 0})) << "it has become worse";
-  for (int i = 0; i < 80; ++i) learnt.round(15, 15);
+  for (int i = 0; i < 200; ++i) learnt.round(15, 15);
   EXPECT_EQ(learnt.exact(), (std::vector{16, 16})) << "all is well";
+}
+
+TEST(ShownFidelity, PicturesMakeUpForEachOther) {
+  ShownFidelity fidelity;
+  const DoubtKind sure{2, 0, Compared::same}, risky{8, 0, Compared::close};
+  int rounds = 0;
+  const auto round = [&](int risky_columns) {
+    RememberedView shown = view(++rounds * 100ms);
+    cv::Mat truth = image();
+    shown.doubt = doubt_of(sure);
+    shown.doubt.colRange(0, risky_columns) = doubt_of(risky);
+    // One column in 48 of the risky ones.
+    for (int x = rounds % 48; x < risky_columns; x += 48) truth.col(x) = cv::Scalar(180, 180, 180);
+    fidelity.shown(std::move(shown));
+    return fidelity.arrived(at(rounds * 100ms), truth).value();
+  };
+  for (int i = 0; i < 40; ++i) round(kWidth / 2);
+  EXPECT_GT(round(kWidth).exact_share, 0.99) << "alone it has more wrong pixels than may be";
+  for (int i = 0; i < 200; ++i) round(kWidth);
+  EXPECT_EQ(round(kWidth).exact_share, 0) << "now there is nothing to make up for it";
 }
 
 TEST(ShownFidelity, WhatNoImageColouredIsLeftOut) {
