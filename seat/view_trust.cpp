@@ -35,7 +35,7 @@ ViewTrust::ViewTrust(const ViewSession& session, const ViewSetup& setup, const C
 void ViewTrust::collect() {
   while (auto picture = readback_.take(options_.wait)) {
     if (options_.wait) doubt_ = picture->doubt;
-    shown_.shown(std::move(*picture));
+    if (predicted_) shown_.shown(std::move(*picture));
   }
 }
 
@@ -56,8 +56,10 @@ void ViewTrust::saw(const PosedFrame& frame) {
 
 void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, TrustMarks marks) {
   collect();
+  predicted_ = source.why_invalid().empty();
   const RobotTime instant = source.instant().time;
-  const bool is_due = !remembered_ || instant < *remembered_ || instant - *remembered_ >= options_.remember_every;
+  const bool is_due = (predicted_ || options_.wait) &&
+                      (!remembered_ || instant < *remembered_ || instant - *remembered_ >= options_.remember_every);
   const std::optional<ViewPlace> before = std::exchange(drawn_at_, place);
   if (!is_due && marks == TrustMarks::none) return;
   const auto px = node_doubt_px(source.places(), source.robot(), lens_, middles_, before);

@@ -81,6 +81,7 @@ class ViewTrust {
   std::optional<PosedImage> compared_;  // without pixels: the pass was not told of its patches yet
   std::optional<RobotTime> remembered_;
   std::optional<ViewPlace> drawn_at_;
+  bool predicted_ = false;  // what was drawn last: else nobody was shown it, and no image of its instant may ever come
   cv::Mat doubt_;
 };
 
