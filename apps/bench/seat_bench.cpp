@@ -96,9 +96,10 @@ class Endurance {
       faults_.step(moment, now_s, [&] { return seat_lines(moment.seat.status(), names_, moment.source.fault()); });
     if (now_s < told_ + kTellEvery) return;
     told_ = now_s;
-    memory_.emplace_back(now_s, resident_mb());
-    std::fprintf(stderr, "bench: seat: %.0f min, %.1f MB, %zu faults, %llu pictures\n", now_s / 60,
-                 memory_.back().second, faults_.records().size(), static_cast<unsigned long long>(moment.pictures));
+    memory_.push_back({now_s, resident_mb(), 1e-6 * static_cast<double>(moment.texture_bytes)});
+    std::fprintf(stderr, "bench: seat: %.0f min, %.1f MB (textures %.1f), %zu faults, %llu pictures\n", now_s / 60,
+                 memory_.back().resident_mb, memory_.back().textures_mb, faults_.records().size(),
+                 static_cast<unsigned long long>(moment.pictures));
   }
 
   nlohmann::ordered_json report(const SeatTrialFigures& figures) const;
@@ -129,13 +130,16 @@ class Endurance {
   std::size_t unnamed() const {
     return static_cast<std::size_t>(std::ranges::count(faults_.records(), "", &FaultRecord::named));
   }
+  struct Memory {
+    double at_s = 0, resident_mb = 0, textures_mb = 0;  // textures_mb: of resident_mb on a software renderer
+  };
   /// After the fifth minute; 0 before.
-  double growth() const {
+  double growth(double Memory::*of = &Memory::resident_mb) const {
     double first = 0, most = 0;
-    for (const auto& [at, mb] : memory_) {
-      if (at < kSettled) continue;
-      if (first == 0) first = mb;
-      most = std::max(most, mb - first);
+    for (const Memory& memory : memory_) {
+      if (memory.at_s < kSettled) continue;
+      if (first == 0) first = memory.*of;
+      most = std::max(most, memory.*of - first);
     }
     return most;
   }
@@ -153,7 +157,7 @@ class Endurance {
   bool began_ = false;
   double held_s_ = 0, drew_s_ = 0, longest_gap_ = 0, told_ = 0;
   std::uint64_t pictures_ = 0;
-  std::vector<std::pair<double, double>> memory_;  // s, MB
+  std::vector<Memory> memory_;
 };
 
 nlohmann::ordered_json Endurance::report(const SeatTrialFigures& figures) const {
@@ -167,7 +171,11 @@ nlohmann::ordered_json Endurance::report(const SeatTrialFigures& figures) const 
   out["pictures"] = pictures_;
   out["longest_without_picture_s"] = longest_gap_;
   out["memory_growth_mb"] = growth();
-  for (const auto& [at, mb] : memory_) out["memory_mb"].push_back({at, mb});
+  out["texture_growth_mb"] = growth(&Memory::textures_mb);
+  for (const Memory& memory : memory_) {
+    out["memory_mb"].push_back({memory.at_s, memory.resident_mb});
+    out["texture_mb"].push_back({memory.at_s, memory.textures_mb});
+  }
   for (const FaultRecord& fault : faults_.records())
     out["faults"].push_back(
         {{"what", fault.name}, {"at_s", fault.at_s}, {"named", fault.named}, {"after_s", fault.after_s}});
@@ -183,8 +191,8 @@ void Endurance::print() const {
              watch_.unsafe() ? ", first " + watch_.first() : "");
   fmt::print("{} pictures, at most {:.2f} s without one\n", pictures_, longest_gap_);
   if (!memory_.empty())
-    fmt::print("memory {:.1f} MB at the end, grown by {:.1f} MB after the fifth minute\n", memory_.back().second,
-               growth());
+    fmt::print("memory {:.1f} MB at the end, grown by {:.1f} MB after the fifth minute, textures by {:.1f} MB\n",
+               memory_.back().resident_mb, growth(), growth(&Memory::textures_mb));
 }
 
 }  // namespace

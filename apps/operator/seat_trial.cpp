@@ -136,7 +136,7 @@ class Trial {
       if (task_.failed()) break;
       look(task_.under_way());
       learn_truth();
-      if (options_.each) options_.each({now, robot_, end_, seat_, source_, pictures_});
+      if (options_.each) options_.each({now, robot_, end_, seat_, source_, pictures_, texture_bytes_});
       if (task_.ended() && !measures_.waits()) break;
       if (now - told < 10s) continue;
       told = now;
@@ -180,7 +180,7 @@ class Trial {
       trust_.saw(*frame);
       frame->left.pixels.copyTo(delayed_);
       video_.newest().copyTo(as_video_);  // of the same instant
-      session.process(std::move(*frame));
+      texture_bytes_ = session.process(std::move(*frame)).bytes_reserved;
     }
     const ViewPlace place = source_.place();
     if (!session.draw(place.T_world_camera, place.scene)) return;
@@ -257,7 +257,7 @@ class Trial {
 
   cv::Mat delayed_, as_video_;
   RobotTime newest_, fed_;
-  std::uint64_t pictures_ = 0;
+  std::uint64_t pictures_ = 0, texture_bytes_ = 0;
   std::map<RobotTime, LiveFramePtr> truths_;  // where views without a line are wanted
   SeatTrialFigures figures_;
 };

@@ -31,7 +31,8 @@ struct SeatMoment {
   link::OperatorEnd& end;
   const Seat& seat;
   const PredictedSource& source;
-  std::uint64_t pictures = 0;  ///< that were drawn so far
+  std::uint64_t pictures = 0;       ///< that were drawn so far
+  std::uint64_t texture_bytes = 0;  ///< ExtractionReport::bytes_reserved, of the newest image
 };
 
 struct SeatTrialOptions {
