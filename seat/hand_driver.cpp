@@ -40,6 +40,8 @@ void HandDriver::take(const gl::WindowInput& input, OperatorTime now) {
   keyboard_.mouse_moved(input.moved_x, input.moved_y);
   keyboard_.wheel(input.scrolled);
   keyboard_.looked(now);
+  const bool any = !input.key_events.empty() || input.moved_x != 0 || input.moved_y != 0 || input.scrolled != 0;
+  if (any && !event_) event_ = now;
 }
 
 void HandDriver::look_from(const Pose& T_world_camera) {
@@ -122,6 +124,12 @@ void HandDriver::cycle(const SeatView& view) {
   const HandCycle& cycle = hand_.cycle(input);
   wish_.deadman = cycle.deadman;
   wish_.position = cycle.positions;
+  if (const auto event = std::exchange(event_, std::nullopt)) input_took_ = view.now - *event;
+}
+
+std::optional<Duration> HandDriver::input_took() const {
+  const std::lock_guard lock(mutex_);
+  return input_took_;
 }
 
 HandSight HandDriver::sight() const {

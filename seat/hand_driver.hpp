@@ -48,6 +48,8 @@ class HandDriver final : public SeatDriver {
   std::vector<SeatLine> lines() const;
   /// What there is to see of the hand.
   HandSight sight() const;
+  /// From the last event of keyboard or mouse until it was in a set-point; nothing before the first.
+  std::optional<Duration> input_took() const;
   const HandOptions& options() const { return options_; }
   /// Of devices, and what they do.
   static std::vector<std::pair<std::string, std::string>> keys();
@@ -70,7 +72,8 @@ class HandDriver final : public SeatDriver {
   std::optional<TrackerState> interruption_;  // of the next cycle
   std::vector<LineRequest> requests_;
   SeatWish wish_;
-  std::optional<OperatorTime> cycled_;
+  std::optional<OperatorTime> cycled_, event_;  // event_: of the oldest event that no cycle has taken yet
+  std::optional<Duration> input_took_;
   bool control_ = true, hand_over_ = false, ended_ = false;
 };
 

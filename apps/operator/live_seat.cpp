@@ -161,6 +161,7 @@ class LiveSeat {
     if (!options_.display_lenses.empty())
       out.views.panels = {read_panel_lens(options_.display_lenses.front()),
                           read_panel_lens(options_.display_lenses.back())};
+    out.input_took = [this] { return driver_.input_took(); };
     out.hand = [this] { return hand_.draw(driver_.sight(), seat_.under_way(kUnderWay)); };
     return out;
   }

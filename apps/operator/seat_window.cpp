@@ -40,6 +40,7 @@ void SeatWindow::swap() {
   if (options_.pacer) options_.pacer->drawn();
   window_.present();
   if (options_.pacer) options_.pacer->swapped();
+  image_way_.swapped(clock_.now());
 }
 
 void SeatWindow::next_marks() {
@@ -55,6 +56,7 @@ bool SeatWindow::trusted() const {
 
 void SeatWindow::arrived(const PosedFrame& frame) {
   views_.arrived(frame);
+  image_way_.came(frame.left.time, clock_.now());
   if (options_.trust) options_.trust->saw(frame);
 }
 
@@ -64,7 +66,10 @@ TrustMarks SeatWindow::marks_to_draw() const {
 }
 
 void SeatWindow::stepped(const ViewStep& step, FrameSource& source, ViewSession& session) {
+  if (step.arrival_to_publish_ms) to_textures_ = seconds(1e-3 * *step.arrival_to_publish_ms);
+  if (!step.reports.empty()) image_costs_ = step.reports.back().stages;
   if (step.drawn) {
+    if (const ImagesLease images = session.images()) image_way_.drawn(images->newest->image.time);
     const ViewPlace place = source.place();
     if (options_.trust) options_.trust->drew(source_, place, marks_to_draw());
     const double drawing_ms = options_.pacer ? 1e3 * to_seconds(options_.pacer->figures().cost) : 0;
@@ -77,6 +82,17 @@ void SeatWindow::waiting(FrameSource& /*source*/, ViewSession& session) {
   present(session);
 }
 
+StageTimes SeatWindow::stage_times(const SeatStatus& status) const {
+  StageTimes out;
+  if (!status.line.ages.empty()) out.on_line = status.line.ages.back().delay;
+  out.to_view = image_way_.to_view();
+  out.to_textures = to_textures_;
+  if (options_.pacer) out.drawing = options_.pacer->figures().cost;
+  if (options_.input_took) out.to_set_point = options_.input_took();
+  out.costs = image_costs_;
+  return out;
+}
+
 HudContent SeatWindow::words(bool is_trusted) const {
   const SeatStatus status = seat_.status();
   HudContent out;
@@ -86,6 +102,7 @@ HudContent SeatWindow::words(bool is_trusted) const {
   out.next = next_step(status);
   out.lines = seat_lines(status, options_.joints, source_.fault());
   if (options_.trust) out.lines.push_back(fidelity_line(*options_.trust));
+  for (SeatLine& line : stage_lines(stage_times(status))) out.lines.push_back(std::move(line));
   if (options_.more_lines)
     for (SeatLine& line : options_.more_lines()) out.lines.push_back(std::move(line));
   if (help_) out.keys = options_.keys;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/clock.hpp"
 #include "display/frame_pacer.hpp"
 #include "display/view_loop.hpp"
 #include "display/view_window.hpp"
@@ -15,6 +16,7 @@
 #include "seat/predicted_source.hpp"
 #include "seat/seat_log.hpp"
 #include "seat/seat_views.hpp"
+#include "seat/stage_times.hpp"
 #include "seat/view_trust.hpp"
 
 namespace foresight {
@@ -30,9 +32,10 @@ struct SeatWindowOptions {
   FramePacer* pacer = nullptr;
   /// Keys, mouse and focus since the last picture. The window's thread.
   std::function<void(const gl::WindowInput&)> input = {};
-  std::function<std::vector<SeatLine>()> more_lines = {};  ///< of devices
-  std::function<void(const std::string&)> log = {};        ///< of what changes
-  std::function<HandPicture()> hand = {};                  ///< drawn over the robot as it will be
+  std::function<std::vector<SeatLine>()> more_lines = {};    ///< of devices
+  std::function<void(const std::string&)> log = {};          ///< of what changes
+  std::function<HandPicture()> hand = {};                    ///< drawn over the robot as it will be
+  std::function<std::optional<Duration>()> input_took = {};  ///< StageTimes::to_set_point
 };
 
 /// Shows the robot as it will be; where that cannot be trusted, the newest image that came, and says so. Belongs to the
@@ -69,6 +72,7 @@ class SeatWindow final : public ViewObserver {
   HudContent words(bool is_trusted) const;
   void log(const HudContent& content);
   void save(const ViewTarget& whole);
+  StageTimes stage_times(const SeatStatus& status) const;
 
   gl::Window& window_;
   Seat& seat_;
@@ -77,6 +81,10 @@ class SeatWindow final : public ViewObserver {
   SeatViews views_;
   Hud hud_;
   SeatLog log_;
+  MonotonicClock clock_;
+  ImageWay image_way_;
+  std::optional<Duration> to_textures_;
+  std::vector<StageCost> image_costs_;
   link::LineFramePtr uploaded_;
   bool help_;
   TrustMarks marks_ = TrustMarks::none;

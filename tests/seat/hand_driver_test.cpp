@@ -92,6 +92,21 @@ TEST_F(HandAtTheSeat, ThroughAHeadDisplayTheToolGoesAsTheHandIsSeenToGo) {
   }
 }
 
+TEST_F(HandAtTheSeat, TellsHowLongAKeyTookUntilItIsInASetPoint) {
+  EXPECT_FALSE(driver_->input_took());
+  driver_->take({}, view_.now + 3ms);
+  cycles(1);
+  EXPECT_FALSE(driver_->input_took()) << "nothing was pressed";
+  gl::WindowInput input;
+  input.key_events = {{87, true}};
+  driver_->take(input, view_.now + 4ms);
+  driver_->take({}, view_.now + 12ms);
+  cycles(1);
+  EXPECT_EQ(driver_->input_took(), 16ms);
+  cycles(3);
+  EXPECT_EQ(driver_->input_took(), 16ms);
+}
+
 TEST_F(HandAtTheSeat, AnInterruptedHandHasToPressAnew) {
   hold(true);
   cycles(10, {0.0005, 0, 0});

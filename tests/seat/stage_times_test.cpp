@@ -1,0 +1,59 @@
+// Images are followed until they are seen, and all stages are told in words.
+#include "seat/stage_times.hpp"
+
+#include <gtest/gtest.h>
+
+namespace foresight::stage_times_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+RobotTime at(Duration time) {
+  return RobotTime{} + time;
+}
+
+TEST(StageTimes, WhatIsNotKnownIsNotTold) {
+  EXPECT_TRUE(stage_lines({}).empty());
+}
+
+TEST(StageTimes, EachStageHasItsWords) {
+  StageTimes times;
+  times.on_line = 254ms;
+  times.to_view = 41ms;
+  times.drawing = 24ms;
+  times.to_set_point = 11ms;
+  times.costs = {{"upload", 2, {}}, {"depth", 9, {}}, {"extract", 21, {}}, {"lamp", 12, {}}};
+  const auto lines = stage_lines(times);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].words, "image on the line 254 ms, until seen 41 ms, drawing 24 ms, hand until sent 11 ms");
+  EXPECT_EQ(lines[1].words, "an image 44 ms of CPU: extract 21, lamp 12, depth 9");
+}
+
+TEST(StageTimes, WhereThereIsAGpuItsTimeCounts) {
+  StageTimes times;
+  times.costs = {{"depth", 9, 0.4}, {"extract", 1, 3.2}};
+  EXPECT_EQ(stage_lines(times).at(0).words, "an image 4 ms of GPU: extract 3, depth 0");
+}
+
+TEST(ImageWay, EndsWithTheSwapOfThePictureThatShowsIt) {
+  ImageWay way;
+  way.swapped(at(5ms));
+  EXPECT_FALSE(way.to_view());
+  way.came(at(1000ms), at(10ms));
+  way.drawn(at(900ms));
+  way.swapped(at(20ms));
+  EXPECT_FALSE(way.to_view()) << "an older image was seen";
+  way.came(at(1100ms), at(25ms));
+  way.drawn(at(1000ms));
+  way.swapped(at(43ms));
+  EXPECT_EQ(way.to_view(), 33ms);
+  way.swapped(at(60ms));
+  EXPECT_EQ(way.to_view(), 33ms) << "nothing new";
+  way.came(at(1200ms), at(70ms));
+  way.drawn(at(1300ms));
+  way.swapped(at(90ms));
+  EXPECT_EQ(way.to_view(), 20ms) << "a newer one overtook it";
+}
+
+}  // namespace
+}  // namespace foresight::stage_times_test
