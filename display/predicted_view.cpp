@@ -162,7 +162,7 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   look_up(images);
   const Projection& p = *projection_;
   for (const gl::Program* program : {&p.usual, &p.usual_alone, &p.rest})
-    set_tone(*program, images.newest->gain, images.newest->sharp, textures);
+    set_tone(*program, images.newest->gain, textures.sharp, textures);
   start_part();
   draw_rows([&](Rows rows) {
     draw_newest(images, rows);

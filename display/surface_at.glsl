@@ -6,17 +6,7 @@ layout(binding = 1) uniform usampler2DArray surfaces;  // triangle + 1
 layout(binding = 2) uniform samplerBuffer triangles;
 layout(binding = 3) uniform samplerBuffer patches;
 #include "seen_plane.glsl"
-layout(binding = 4) uniform sampler2D rays;
-
-bool ray_through(ivec2 pixel, out vec3 ray) {
-  if (lens_model(camera) == 0) {
-    ray = vec3((vec2(pixel) - camera.focal.zw) / camera.focal.xy, 1.0);
-    return true;
-  }
-  vec4 r = texelFetch(rays, pixel, 0);
-  ray = r.xyz;
-  return r.w > 0.5;
-}
+#include "view_ray.glsl"
 
 // Triangle + 1; 0: no model there. `at`: where on the faces.
 uint surface_of(vec3 ray, out ivec3 at) {

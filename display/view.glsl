@@ -15,7 +15,7 @@
 #define IMAGE 0
 #define USUAL 1
 #define EVERY 2
-uniform float sharp;  // share of the cubic filter (sharpness.hpp)
+uniform float sharp;  // share of the cubic filter, of images or of textures (sharpness.hpp)
 #include "camera.glsl"
 #if CASES == IMAGE || BEFORE
 #define SEEN_BLOCK 1
@@ -43,7 +43,7 @@ layout(binding = 1) uniform usampler2DArray surfaces;    // triangle + 1
 layout(binding = 2) uniform samplerBuffer triangles;
 layout(binding = 3) uniform samplerBuffer patches;
 #include "seen_plane.glsl"
-layout(binding = 4) uniform sampler2D rays;
+#include "view_ray.glsl"
 layout(binding = 6) uniform sampler2D light;  // ShadowPass::light(), or one white texel
 #if FRAGMENT
 layout(location = 0) out vec4 picture;
@@ -57,16 +57,6 @@ layout(binding = 0, rgba8) uniform writeonly image2D picture;
 const float kSeenShare = 0.25;
 
 vec3 pixel_light;  // what shadows of moving parts leave of the pixel's value
-
-bool ray_through(ivec2 pixel, out vec3 ray) {
-  if (lens_model(camera) == 0) {
-    ray = vec3((vec2(pixel) - camera.focal.zw) / camera.focal.xy, 1.0);
-    return true;
-  }
-  vec4 r = texelFetch(rays, pixel, 0);
-  ray = r.xyz;
-  return r.w > 0.5;
-}
 
 // The surface point that a pixel shows.
 struct Point {
@@ -110,6 +100,15 @@ const float kCoarsest = 0.3, kFinest = 3.0;
 const float kRim = 6.0;  // px of the image within which it gives way to older ones
 const float kAll = 0.999;  // a weight that leaves nothing
 
+// The image as the view's own camera would have it: lens and sensor spread a point over a deviation of some 0.6 px, of each
+// camera's own pixels. Where the view shows things smaller than the image, that is more of the image's pixels, and the filter is the
+// softer; where it shows them larger, it takes some of the image's spread away. `finer`: pixels of the image for one of the view. A
+// share of 1 - 6 v of the cubic filter spreads by a variance of v (sharpness.hpp).
+const float kSpread = 0.6, kSharpest = 1.5, kSoftest = -1.0;
+float sharp_for(float finer) {
+  return clamp(sharp - 6.0 * kSpread * kSpread * (finer * finer - 1.0), kSoftest, kSharpest);
+}
+
 // How an image shows a point.
 struct Sighting {
   float weight;  // beside what older images saw; 0: not at all
@@ -143,7 +142,7 @@ vec4 image_colour(Point point) {
   Sighting seen = sighting_of(point);
   if (seen.weight == 0.0) return vec4(0.0);
   vec2 size = cameras[0].size.xy;
-  vec3 colour = unscaled(sample_square(image0, seen.pixel, size, sharp, seen.finer)) * without_vignetting(cameras[0].tone, seen.pixel, size);
+  vec3 colour = unscaled(sample_square(image0, seen.pixel, size, sharp_for(seen.finer), seen.finer)) * without_vignetting(cameras[0].tone, seen.pixel, size);
   return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), seen.weight);
 }
 

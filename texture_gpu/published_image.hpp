@@ -15,7 +15,7 @@ struct PublishedImage {
   PosedImage image;                         ///< where camera and nodes stood; without the pixels
   Eigen::Vector3f tone{1, 0, 0};            ///< 1, vignetting a and b (exposure.hpp)
   float gain = 1;                           ///< factor on textures that shows this image's exposure
-  float sharp = 0.6f;                       ///< SharpnessEstimator::cubic_share()
+  float sharp = 1;                          ///< SharpnessEstimator::cubic_share()
   std::shared_ptr<const SceneLight> light;  ///< as PublishedTextures::light
   double depth_tolerance = 0;               ///< TextureOptions::depth_tolerance
 

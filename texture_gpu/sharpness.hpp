@@ -12,7 +12,8 @@ struct AgreementSample {
   float gradient2 = 0;     ///< mean squared gradient of the image there, (0..1)^2 / px^2
 };
 
-/// The share of the cubic filter with which views take colours from images and textures; the rest is linear.
+/// The share of the cubic filter with which views take colours from images and textures; the rest is linear. Images
+/// that are seen larger or smaller than they were taken have a share on top of that (view.comp).
 ///
 /// A picture whose place is uncertain by sigma px along each axis keeps exp(-sigma^2 w^2 / 2) of a frequency w (rad/px)
 /// on average: the estimate of least squared error (Wiener's filter, where the signal is far above the noise) is as
@@ -28,15 +29,17 @@ class SharpnessEstimator {
   /// Changes nothing where too few pages tell something, or all of them are alike.
   void update(std::span<const AgreementSample> samples);
 
-  /// kLeast .. kMost; below 0, softer than linear.
+  /// kLeast .. kMost.
   double cubic_share() const;
   /// sigma^2, px^2 along each axis; nothing as long as it is not known.
   std::optional<double> misplacement2() const { return misplacement2_; }
 
-  /// Where everything lies exactly: a full cubic filter rings at edges.
-  static constexpr double kMost = 0.6;
-  /// Softer still would err less, and look blurred.
-  static constexpr double kLeast = -1;
+  /// Where everything lies exactly.
+  static constexpr double kMost = 1;
+  /// What textures hold has passed through a cubic filter before: a full one more rings at edges.
+  static constexpr double kMostOfTextures = 0.6;
+  /// Softer than linear would err less, and look blurred.
+  static constexpr double kLeast = 0;
 
  private:
   std::optional<double> misplacement2_;

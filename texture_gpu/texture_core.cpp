@@ -115,7 +115,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
 
   next->number = ++number_;
   next->newest_image = frame.time();
-  next->sharp = static_cast<float>(sharpness_.cubic_share());
+  next->sharp = static_cast<float>(std::min(sharpness_.cubic_share(), SharpnessEstimator::kMostOfTextures));
   next->light = frame.light;
   next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - light_since_)) : -1;
   next->display_gain = static_cast<float>(std::exp(frame.log_gain));

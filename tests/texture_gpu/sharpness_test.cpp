@@ -31,16 +31,16 @@ double share(double off, double noise) {
 
 TEST(Sharpness, IsLessTheFurtherImagesLieBesideTheirPlace) {
   EXPECT_EQ(share(0, 0), SharpnessEstimator::kMost);
-  EXPECT_EQ(share(0.2, 0), SharpnessEstimator::kMost);
+  EXPECT_NEAR(share(0.2, 0), 1 - 6 * 0.04, 0.08);
   EXPECT_NEAR(share(0.3, 0), 1 - 6 * 0.09, 0.08);
   EXPECT_NEAR(share(0.37, 0), 1 - 6 * 0.137, 0.08);
-  EXPECT_NEAR(share(0.5, 0), 1 - 6 * 0.25, 0.15) << "softer than linear";
+  EXPECT_EQ(share(0.5, 0), SharpnessEstimator::kLeast) << "no softer than linear";
   EXPECT_EQ(share(0.7, 0), SharpnessEstimator::kLeast);
   EXPECT_EQ(share(3, 0), SharpnessEstimator::kLeast);
 }
 
 TEST(Sharpness, NoiseIsNoMisplacement) {
-  EXPECT_EQ(share(0, 0.03), SharpnessEstimator::kMost);
+  EXPECT_NEAR(share(0, 0.03), SharpnessEstimator::kMost, 0.08);
   EXPECT_NEAR(share(0.33, 0.03), 1 - 6 * 0.109, 0.1);
 }
 
@@ -60,11 +60,11 @@ TEST(Sharpness, FollowsWithinSomeImages) {
   SharpnessEstimator estimator;
   for (int image = 0; image < 20; ++image) estimator.update(pages(0, 0));
   estimator.update(pages(0.6, 0));
-  EXPECT_EQ(estimator.cubic_share(), SharpnessEstimator::kMost) << "one image is not believed";
+  EXPECT_GT(estimator.cubic_share(), 0.7) << "one image is hardly believed";
   for (int image = 0; image < 40; ++image) estimator.update(pages(0.6, 0));
   EXPECT_EQ(estimator.cubic_share(), SharpnessEstimator::kLeast);
   for (int image = 0; image < 60; ++image) estimator.update(pages(0, 0));
-  EXPECT_EQ(estimator.cubic_share(), SharpnessEstimator::kMost);
+  EXPECT_NEAR(estimator.cubic_share(), SharpnessEstimator::kMost, 0.01);
 }
 
 }  // namespace
