@@ -86,6 +86,7 @@ PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
       node_poses_(GL_RGBA32F, 16, "view node poses"),
       rays_(gl::make_lens_rays(lens)),
       unshaded_(GL_RGBA8, 1, 1, 0, 1, "no shadows"),
+      silhouettes_(lens),
       picture_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view") {
   glClearTexImage(unshaded_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, std::array<GLubyte, 4>{255, 255, 255, 255}.data());
   if (programs_ == ViewPrograms::two)
@@ -322,7 +323,16 @@ void PredictedView::dispatch(const WorkList& list, const gl::Program& program) {
   list.dispatch();
 }
 
-void PredictedView::finish(const PublishedTextures& textures) const {
+void PredictedView::finish(const PublishedTextures& textures) {
+  if (mixes_ && !draws_part_) {
+    if (gate_) gate_->begin("silhouettes of a view");
+    silhouettes_({lens_, camera_, faces_, rays_, picture_});
+    glBindTextureUnit(0, node_poses_.texture());  // passes over the view find it there
+    if (gate_) {
+      glFinish();
+      gate_->end();
+    }
+  }
   if (paint_ != ViewPaint::colours) (*painter_)(paint_, picture_, textures);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }

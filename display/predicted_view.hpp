@@ -7,6 +7,7 @@
 
 #include "display/paint_pass.hpp"
 #include "display/scene_raster.hpp"
+#include "display/silhouette_pass.hpp"
 #include "display/surface_records.hpp"
 #include "gl/camera_block.hpp"
 #include "gl/program.hpp"
@@ -42,6 +43,9 @@ class PredictedView {
   const Lens& lens() const { return lens_; }
   /// From now on it is painted so.
   void set_paint(ViewPaint paint);
+  /// Whether pixels at edges of surfaces are mixed with those around them (SilhouettePass), as they are from the start,
+  /// or stay what was looked up.
+  void mix_silhouettes(bool mixed) { mixes_ = mixed; }
 
   /// From now on only this part of what is seen is drawn, and costs what it covers; nothing: all of it. The textures
   /// must outlive that. Throws std::invalid_argument: a lens with distortion, or ViewPrograms::single.
@@ -102,7 +106,7 @@ class PredictedView {
   void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
              const std::shared_ptr<const SceneLight>& light);
   void shade(const Pose& T_world_camera, const SceneState& state, const std::shared_ptr<const SceneLight>& light);
-  void finish(const PublishedTextures& textures) const;
+  void finish(const PublishedTextures& textures);
   struct Rows {
     int first = 0, last = 0;  // beyond the last
   };
@@ -139,8 +143,10 @@ class PredictedView {
   gl::Texture rays_;                  // RGB32F directions, only for lenses with distortion
   std::unique_ptr<Shadows> shadows_;  // from the first known light on
   gl::Texture unshaded_;              // one white texel
+  SilhouettePass silhouettes_;
   gl::Texture picture_;
   FrameGate* gate_ = nullptr;
+  bool mixes_ = true;
   ViewPaint paint_ = ViewPaint::colours;
   std::unique_ptr<PaintPass> painter_;  // once it is needed
 };

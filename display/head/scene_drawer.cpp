@@ -100,7 +100,10 @@ void SceneDrawer::draw_front(std::size_t eye, const Drawing& drawing, DrawnEyes&
   const Lens& lens = lenses_[eye](drawing.aim.eyes[eye], wide_lens);
   auto& view = views_[eye];
   if (!view || !alike(view->lens(), lens)) view.reset();
-  if (!view) view.emplace(session_.make_view(lens)).use(options_.in_bands ? &gate_ : nullptr);
+  if (!view) {
+    view.emplace(session_.make_view(lens)).use(options_.in_bands ? &gate_ : nullptr);
+    view->mix_silhouettes(false);  // they come apart when the view is warped
+  }
   view->draw_part(std::nullopt);
   draw_layers(eye, drawing, fitting(into.eyes[eye], view->lens(), false));
 }

@@ -21,8 +21,11 @@ class PredictedViewTest : public HeadlessTest {
       core_->process({posed_photograph(*scene_, state_of(*scene_), small_lens(lens), view, gain), std::nullopt},
                      latest_);
   }
+  /// Its pixels are what is looked up.
   PredictedView view_through(const Lens& lens) const {
-    return {std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens};
+    PredictedView view(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens);
+    view.mix_silhouettes(false);
+    return view;
   }
 
   std::shared_ptr<const SceneModel> scene_ = small_scene();
@@ -86,6 +89,7 @@ TEST_P(ViewOfLenses, TwoProgramsDrawWhatOneDraws) {
   PredictedView view = view_through(small_lens(GetParam()));
   PredictedView single(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_),
                        small_lens(GetParam()), ViewPrograms::single);
+  single.mix_silhouettes(false);
   const TextureLease lease = latest_.acquire();
   int off = 0;
   for (const Pose& T_world_camera :

@@ -60,6 +60,7 @@ class DepthWarpTest : public HeadlessTest {
       session_->process({posed_photograph(*scene_, state_, small_lens("pinhole"), from), std::nullopt});
     source_.emplace(session_->make_view(with_guard(eye(), kGuard)));
     truth_.emplace(session_->make_view(eye()));
+    for (auto* view : {&source_, &truth_}) (*view)->mix_silhouettes(false);  // as those that a head display warps
     parts_ = std::make_shared<WarpScene>(*scene_);
     capture_.emplace(parts_);
     layers_.emplace(with_guard(eye(), kGuard));

@@ -1,0 +1,31 @@
+// Edges of a view's surfaces, mixed as a camera mixes them.
+#pragma once
+
+#include "gl/raster_pass.hpp"
+#include "texture_gpu/work_list.hpp"
+
+namespace foresight {
+
+/// Pixels at which one surface ends before another take a weighted mean of the colours around them (silhouettes.comp).
+/// What a pixel counts as (PredictedView::picture()) stays. Belongs to the context it was built in.
+class SilhouettePass {
+ public:
+  explicit SilhouettePass(const Lens& lens);
+
+  /// What was drawn. `camera`: a gl::CameraBlock of `lens` and the faces; `rays`: of make_lens_rays().
+  struct View {
+    const Lens& lens;  ///< of the kind that the pass was built for
+    const gl::Buffer& camera;
+    const gl::FaceImages& faces;
+    const gl::Texture& rays;
+    const gl::Texture& picture;  ///< RGBA8
+  };
+  void operator()(const View& view);
+
+ private:
+  gl::Program find_, mix_, put_;
+  WorkList pixels_;
+  gl::BufferTexture means_;
+};
+
+}  // namespace foresight

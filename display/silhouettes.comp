@@ -1,0 +1,117 @@
+// Pixels of a view at which a surface ends before another one: a camera's pixel holds a share of both, by its area and by
+// the spread of lens and sensor. Colours that were looked up on either side hold none: images are not trusted beside such edges.
+// So each of these pixels becomes a mean of its neighbours.
+//
+// STEP 0: lists pixels that are not on one plane with those around them. STEP 1: of those, the means; where no surface ends,
+// none. STEP 2: puts them into the picture.
+#include "camera.glsl"
+#include "depth_slope.glsl"
+#if STEP == 0
+#include "work_list.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+uniform ivec2 rows;  // first, and beyond the last
+#else
+#define WORK_UNIT 5
+#define ITEMS_PER_GROUP 64
+#include "work_item.glsl"
+layout(local_size_x = 64) in;
+layout(binding = 2, std430) buffer Means { uint means[]; };  // RGBA8 of each listed pixel; 0: it stays as it is
+layout(binding = 0, rgba8) uniform image2D picture;
+#endif
+layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
+#include "view_ray.glsl"
+
+// Where on the faces the pixel looks.
+bool find_place(ivec2 pixel, out vec3 place) {
+  vec3 ray;
+  float inverse_z;
+  return ray_through(pixel, ray) && project_face(camera, ray, place, inverse_z);
+}
+
+#if STEP == 0
+// Depths of the 2x2 pixels around a corner, as 1/z: below left, below right, above right, above left.
+vec4 around(vec2 corner, float layer) {
+  return textureGather(depth, vec3(corner / vec2(face_size), layer)) / kNear;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, rows.x);
+  vec3 place;
+  if (pixel.x >= int(camera.size.x) || pixel.y >= rows.y || !find_place(pixel, place)) return;
+  vec2 at = floor(place.xy + 0.5);
+  vec4 a = around(at, place.z), b = around(at + 1.0, place.z);
+  float center = a.y;
+  // 1/z is linear in the picture of a plane: what is on either side of a pixel tells its own, but for a step.
+  vec4 beside = vec4(a.x, b.z, a.z, b.x);  // left, right, above, below
+  beside = mix(beside, vec4(center), equal(beside, vec4(0.0)));
+  vec2 bent = abs(beside.xz + beside.yw - 2.0 * center);
+  float most = max(bent.x, bent.y);
+  if (lens_model(camera) != 0) {  // as in may_hold_both()
+    vec4 c = around(at - 1.0, place.z), d = around(at + 2.0, place.z);
+    c = mix(c, vec4(center), equal(c, vec4(0.0)));
+    d = mix(d, vec4(center), equal(d, vec4(0.0)));
+    vec2 bent_farther = abs(c.xz + d.zx - 2.0 * center);
+    most = max(most, max(bent_farther.x, bent_farther.y));
+  }
+  if (most > 0.5 * depth_tolerance * center * center) append_work(uint(pixel.x) | uint(pixel.y) << 16);
+}
+#elif STEP == 1
+// The four pixels beside one, in turn.
+ivec2 beside(int i) {
+  return (i < 2 ? 1 : -1) * ivec2(i & 1, 1 - (i & 1));
+}
+
+// On either side of an edge: the one pixel is in front of the other, and of where its surface would go on.
+bool is_beside_edge(ivec3 at) {
+  float center = inverse_z(at.xy, at.z);
+  bool found = false;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 to = beside(i);
+    float there = inverse_z(at.xy + to, at.z);
+    found = found || (steps_back(center, there) && ends(at.xy, center, to, at.z)) ||
+            (steps_back(there, center) && ends(at.xy + to, there, -to, at.z));
+  }
+  return found && center > 0.0;
+}
+
+// Where a lens bends the picture, its pixels are up to two of the face apart.
+bool may_hold_both(ivec3 at) {
+  if (lens_model(camera) == 0) return is_beside_edge(at);
+  bool found = is_beside_edge(at);
+  for (int i = 0; i < 4; ++i) found = found || is_beside_edge(at + ivec3(beside(i), 0));
+  return found;
+}
+
+// exp(-1 / (2 * 0.6^2)): a deviation of 0.6 px, of which the pixel's own area is 0.3 along each axis.
+const float kBeside = 0.25;
+const float kColoured = 0.5;  // alpha of less: no colour at all
+
+void main() {
+  uint item;
+  if (!next_work(item)) return;
+  uint index = (gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u) * 64u + gl_LocalInvocationIndex;
+  ivec2 pixel = ivec2(item & 0xffffu, item >> 16);
+  vec3 place;
+  means[index] = 0u;
+  vec4 own = imageLoad(picture, pixel);
+  if (own.a < kColoured || !find_place(pixel, place)) return;
+  if (!may_hold_both(ivec3(ivec2(floor(place.xy + 0.5)), int(place.z)))) return;
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 9; ++i) {
+    ivec2 o = ivec2(i % 3, i / 3) - 1;
+    ivec2 to = pixel + o;
+    if (any(lessThan(to, ivec2(0))) || any(greaterThanEqual(to, ivec2(camera.size.xy)))) continue;
+    vec4 colour = imageLoad(picture, to);
+    float weight = (o.x == 0 ? 1.0 : kBeside) * (o.y == 0 ? 1.0 : kBeside);
+    if (colour.a >= kColoured) sum += weight * vec4(colour.rgb, 1.0);
+  }
+  means[index] = packUnorm4x8(vec4(sum.rgb / sum.a, own.a));
+}
+#else
+void main() {
+  uint item;
+  if (!next_work(item)) return;
+  uint index = (gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u) * 64u + gl_LocalInvocationIndex;
+  if (means[index] != 0u) imageStore(picture, ivec2(item & 0xffffu, item >> 16), unpackUnorm4x8(means[index]));
+}
+#endif
