@@ -37,6 +37,9 @@ void add_run_options(Command& command, RunOptions& options) {
       "!--no-shadows", options.textures.shadows,
       "Leave shadows of what moves in the textures, where they were; else they are drawn where they fall, once "
       "it is known where the lamp is");
+  command.add_flag("!--no-exposure", options.textures.even_exposure,
+                   "Take images as bright as they are: their exposures and what the lens takes away towards the rim "
+                   "are not evened out");
   command
       .add_option("--model-accuracy-m", options.model_accuracy,
                   "Largest usual error of the model (default: accuracy_m of scene.yaml, else 0.02)")

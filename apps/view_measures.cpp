@@ -49,6 +49,7 @@ void add_texture_options(RunRecord& record, const TextureOptions& textures) {
   record.options.push_back({"max_texture", std::int64_t{textures.max_texture}});
   record.options.push_back({"texture_memory_mb", static_cast<std::int64_t>(textures.memory_bytes >> 20)});
   record.options.push_back({"model_accuracy_m", textures.depth_tolerance});
+  record.options.push_back({"exposure", textures.even_exposure});
   record.options.push_back({"shadows", textures.shadows});
   record.options.push_back({"full_extraction", !textures.only_what_is_needed});
 }
