@@ -90,11 +90,12 @@ Eigen::Vector3d ExportedModel::colour(const Eigen::Vector2d& uv) const {
   return sum;
 }
 
-cv::Mat ExportedModel::picture(const Lens& lens, const Pose& T_world_camera) const {
-  cv::Mat out(lens.height(), lens.width(), CV_8UC3, cv::Scalar::all(0));
+ExportedModel::Picture ExportedModel::picture(const Lens& lens, const Pose& T_world_camera) const {
+  Picture out{cv::Mat(lens.height(), lens.width(), CV_8UC3, cv::Scalar::all(0)),
+              cv::Mat(lens.height(), lens.width(), CV_64F, cv::Scalar(0))};
   const Eigen::Vector3d eye = T_world_camera.translation();
-  for (int y = 0; y < out.rows; ++y)
-    for (int x = 0; x < out.cols; ++x) {
+  for (int y = 0; y < lens.height(); ++y)
+    for (int x = 0; x < lens.width(); ++x) {
       const auto ray = lens.unproject({x, y});
       if (!ray) continue;
       const Eigen::Vector3d d = T_world_camera.linear() * *ray;
@@ -107,8 +108,9 @@ cv::Mat ExportedModel::picture(const Lens& lens, const Pose& T_world_camera) con
         const double b = s.dot(p) / determinant, c = d.dot(q) / determinant, distance = ac.dot(q) / determinant;
         if (b < 0 || c < 0 || b + c > 1 || distance < 0.01 || distance >= nearest) continue;
         nearest = distance;
+        out.inverse_z.at<double>(y, x) = 1 / (distance * ray->z());
         const Eigen::Vector3d bgr = colour((1 - b - c) * t[0].uv + b * t[1].uv + c * t[2].uv);
-        for (int i = 0; i < 3; ++i) out.at<cv::Vec3b>(y, x)[i] = cv::saturate_cast<uchar>(bgr[i]);
+        for (int i = 0; i < 3; ++i) out.bgr.at<cv::Vec3b>(y, x)[i] = cv::saturate_cast<uchar>(bgr[i]);
       }
     }
   return out;

@@ -33,8 +33,12 @@ class ExportedModel {
   /// Bilinear, clamped to the edge, as OpenGL does it.
   Eigen::Vector3d colour(const Eigen::Vector2d& uv) const;
 
-  /// What a camera sees, ray by ray; black where there is no model. CV_8UC3.
-  cv::Mat picture(const Lens& lens, const Pose& T_world_camera) const;
+  struct Picture {
+    cv::Mat bgr;        ///< CV_8UC3; black where there is no model
+    cv::Mat inverse_z;  ///< CV_64F, 1/m; 0 where there is no model
+  };
+  /// What a camera sees, ray by ray.
+  Picture picture(const Lens& lens, const Pose& T_world_camera) const;
 };
 
 }  // namespace foresight
