@@ -6,13 +6,13 @@
 namespace foresight {
 namespace {
 
-constexpr double kOtherClock = 60;         // s from now: no line is that slow
-constexpr double kClockError = 0.1;        // s that an instant may seem to lie ahead
-constexpr double kExact = 0.001;           // s (docs/conventions.md, time)
-constexpr double kLongestLineGap = 0.2;    // s, likewise
-constexpr double kBeyond = 0.05;           // s later than what is known for certain, while a line becomes faster
-constexpr double kOften = 9, kSeldom = 5;  // s since a drive was identified first: often for so long, then as seldom
-constexpr double kUnknownDelay = 0.02;     // s that a drive's response may be off before it was identified
+constexpr double kOtherClock = 60;          // s from now: no line is that slow
+constexpr double kClockError = 0.1;         // s that an instant may seem to lie ahead
+constexpr double kExact = 0.001;            // s (docs/conventions.md, time)
+constexpr double kLongestLineGap = 0.2;     // s, likewise
+constexpr double kBeyond = 0.05;            // s later than what is known for certain, while a line becomes faster
+constexpr double kOften = 10, kSeldom = 5;  // s at the start in which drives are identified often; then as seldom
+constexpr double kUnknownDelay = 0.02;      // s that a drive's response may be off before it was identified
 constexpr double kAssumedPast = 0.4, kAssumedEvery = 0.02;  // s before the first set-point that is known
 constexpr std::size_t kShown = 1024;
 
@@ -154,17 +154,15 @@ void RobotFuture::observe(const RobotReport& report) noexcept {
   }
 }
 
-// One drive after the other, as each takes some milliseconds: the one that has waited longest. Nothing can be learnt of
-// a drive before it has followed commands, however long it has been there.
+// One drive after the other, as each takes some milliseconds.
 void RobotFuture::identify() noexcept {
-  const double now = since_epoch(came_), pause = options_.identify_every / static_cast<double>(joints_.size());
-  if (doing_ == GateDoing::away || now - identified_at_ < pause) return;
-  Joint& joint = *std::ranges::min_element(joints_, {}, &Joint::identify_at);
-  if (now < joint.identify_at) return;
+  const double now = since_epoch(came_);
+  const double every = now < kOften ? options_.identify_every : std::max(kSeldom, options_.identify_every);
+  if (doing_ == GateDoing::away || now - identified_at_ < every / static_cast<double>(joints_.size())) return;
   identified_at_ = now;
-  if (!joint.held.doubted && joint.response.identify() && !joint.identified_first) joint.identified_first = now;
-  const bool is_new = !joint.identified_first || now - *joint.identified_first < kOften;
-  joint.identify_at = now + (is_new ? options_.identify_every : std::max(kSeldom, options_.identify_every));
+  identify_joint_ = (identify_joint_ + 1) % joints_.size();
+  Joint& joint = joints_[identify_joint_];
+  if (!joint.held.doubted) joint.response.identify();
 }
 
 std::optional<double> RobotFuture::measured_until() const noexcept {

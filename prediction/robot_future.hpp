@@ -67,7 +67,7 @@ struct RobotFutureOptions {
   double astray_after = 0.2;    ///< s that it lasts before it counts, and that it is gone before it does not
   double missed_after = 0.5;    ///< likewise, of what was shown, beyond the line's delay there and back
   double unsure_share = 0.5;    ///< of a joint's largest following error, that its sigma must not exceed
-  double identify_every = 1;    ///< s, for each joint until 9 s after it was identified first; then 5 s at least
+  double identify_every = 1;    ///< s, for each joint
   ExpectedMotionOptions motion;
 };
 
@@ -115,8 +115,6 @@ class RobotFuture {
     double precise = 0;  // what is farther off is no more a matter of precision
     double least_sure = 0;
     double fastest = 0;
-    double identify_at = 0;  // s: not before that
-    std::optional<double> identified_first;
     Doubt held, missed;  // it is not where its commands put it; it was not where it was predicted
   };
   struct Shown {
@@ -152,6 +150,7 @@ class RobotFuture {
   std::optional<RobotTime> instant_;
   RobotTime instant_asked_;
   double identified_at_ = 0, scored_at_ = 0;
+  std::size_t identify_joint_ = 0;
   LastOf<Shown> shown_ones_;
   LastOf<ScoredRobot> scored_;
 };

@@ -60,23 +60,6 @@ TEST(RobotFuture, ShowsWhereTheRobotWillBe) {
   EXPECT_NEAR(world.future().figures(0).lag, 0.015, 0.006);
 }
 
-// While joints look for home, or the operator for his glasses, nothing can be learnt of drives.
-TEST(RobotFuture, DrivesAreLearntOnceTheyMoveHoweverLateThatIs) {
-  FutureWorld world({.lag = 0.06});
-  const auto moves = world.wish;
-  world.wish = [&](double t) {
-    return t < 20 ? JointValues{} : JointValues{0.7 * (moves(t - 20)[0] + 0.3), moves(t - 20)[1]};
-  };
-  world.run(20);
-  EXPECT_EQ(world.future().figures(0).samples, 0u) << "it did not move";
-  world.run(2.3);  // of which 0.6 s are the line's
-  const std::size_t learnt = world.pictures().size();
-  world.run(3);
-  EXPECT_GT(world.future().figures(0).samples, 0u);
-  EXPECT_GT(world.future().figures(1).samples, 0u);
-  EXPECT_LT(judge(world, learnt).p95, 0.003);
-}
-
 // Set-points that came wait until the robot's program looks for them, which reports do not tell.
 TEST(RobotFuture, SetPointsThatWaitForTheGateActLater) {
   using namespace std::chrono_literals;
