@@ -11,7 +11,7 @@ namespace foresight {
 namespace {
 
 constexpr int kStarts = 60;             // most targets within reach are found by the third
-constexpr double kPastElbow = 1e-3;     // rad that an elbow may stand beyond its limit while a swivel angle is sought
+constexpr double kPastLimit = 5e-3;     // rad that joints may stand beyond limits while a swivel angle is sought
 constexpr double kFinestSwivel = 1e-5;  // rad
 constexpr int kStartsOutOfReach = 6;    // then the nearest pose is what is wanted, and one valley leads there as a rule
 
@@ -81,12 +81,12 @@ IkAnswer InverseKinematics::refined(const JointVector& q, const Pose& target) co
 
 // The elbow of an arm that is only nearly spherical is moved by the swivel, by about as little as its axes miss each
 // other. On its limit, only some swivel angles bring it within, and steps of Newton's, to which it is then fixed,
-// hardly tell which. So: without that limit, how far beyond it does the elbow come to stand, and where does it not?
-IkAnswer InverseKinematics::turned_off_elbow_limit(const Pose& target) const noexcept {
-  constexpr Eigen::Index kElbow = 3;
+// hardly tell which. Other joints' limits leave swivel angles that the closed form knows as little better. So: with all
+// limits a little wider, how far beyond them do joints come to stand, and where do they not?
+IkAnswer InverseKinematics::turned_off_limits(const Pose& target) const noexcept {
   DescentLimits limits{chain_.lower(), chain_.upper(), 20, 1e-12, false};
-  limits.lower[kElbow] -= kPastElbow;
-  limits.upper[kElbow] += kPastElbow;
+  limits.lower.array() -= kPastLimit;
+  limits.upper.array() += kPastLimit;
   IkAnswer found;
   const auto beyond = [&](std::size_t branch, double psi) {
     const auto start = spherical_->solve_on(target, branch, psi);
@@ -94,7 +94,7 @@ IkAnswer InverseKinematics::turned_off_elbow_limit(const Pose& target) const noe
     const JointVector within = start->q.cwiseMax(limits.lower).cwiseMin(limits.upper);
     const JointVector q = descend(chain_, goal(target), limits, within).q;
     found = answer(IkStatus::solved, q.cwiseMax(chain_.lower()).cwiseMin(chain_.upper()), target);
-    return std::max(chain_.lower()[kElbow] - q[kElbow], q[kElbow] - chain_.upper()[kElbow]);
+    return std::max((chain_.lower() - q).maxCoeff(), (q - chain_.upper()).maxCoeff());
   };
   for (std::size_t branch = 0; branch < SphericalArm::kBranches; ++branch) {
     const SwivelSamples samples = spherical_->swivels(target, branch);
@@ -149,7 +149,7 @@ IkAnswer InverseKinematics::solve(const Pose& target) const noexcept {
   if (!spherical_) return search(target, nullptr);
   if (const auto direct = spherical_->solve(target)) {
     IkAnswer a = refined(direct->q, target);
-    if (a.status != IkStatus::solved) a = turned_off_elbow_limit(target);
+    if (a.status != IkStatus::solved) a = turned_off_limits(target);
     if (a.status == IkStatus::solved) return a;
   }
   IkAnswer found = search(target, nullptr);

@@ -57,7 +57,7 @@ class InverseKinematics {
  private:
   IkAnswer answer(IkStatus status, const JointVector& q, const Pose& target) const noexcept;
   IkAnswer refined(const JointVector& q, const Pose& target) const noexcept;
-  IkAnswer turned_off_elbow_limit(const Pose& target) const noexcept;
+  IkAnswer turned_off_limits(const Pose& target) const noexcept;
   IkAnswer search(const Pose& target, const JointVector* last) const noexcept;
   DescentGoal goal(const Pose& target) const noexcept;
 

@@ -7,7 +7,7 @@
 namespace foresight {
 namespace {
 
-constexpr double kMissesBy = 1e-4;        // m, and rad from a right angle
+constexpr double kMissesBy = 9e-4;        // m, and rad from a right angle: "1.57" is one
 constexpr double kLimitRounding = 1e-10;  // rad and m
 constexpr double kNearlySpherical = 4;    // angles are off by so many times what axes miss each other by
 
@@ -112,7 +112,7 @@ std::optional<SphericalArm::Elbow> SphericalArm::elbow(const Pose& T, double sig
   const Eigen::Vector3d to_wrist = T * W_in_tip_ - S_;
   const double distance = to_wrist.norm();
   const double cosine = (distance * distance - constant_) / swing_;
-  if (!(std::abs(cosine) < 1 + 1e-6)) return std::nullopt;
+  if (!(std::abs(cosine) < 1 + 1e-6 + 2 * distance * rounding_ / swing_)) return std::nullopt;
   Elbow e;
   const double middle = std::isfinite(lower_limit_[3]) && std::isfinite(upper_limit_[3])
                             ? 0.5 * (lower_limit_[3] + upper_limit_[3])
@@ -155,8 +155,8 @@ struct SphericalArm::Scored {
 
 SwivelAngles SphericalArm::limit_angles(const Elbow& e) const noexcept {
   SwivelAngles angles;
-  shoulder_.add_limits(e.shoulder, angles);
-  wrist_.add_limits(e.wrist, angles);
+  shoulder_.add_limits(e.shoulder, rounding_, angles);
+  wrist_.add_limits(e.wrist, rounding_, angles);
   angles.sort();
   return angles;
 }

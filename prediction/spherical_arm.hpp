@@ -45,8 +45,8 @@ class SwivelSamples {
 class SphericalArm {
  public:
   /// Nothing where the chain is no such arm: other than seven turning joints; axes 1 2 3 or 5 6 7 that miss each other
-  /// by over 0.1 mm, or whose neighbours are not perpendicular to 1e-4; a fourth joint that leaves |SW| as it is. Found
-  /// from where the axes lie, whatever joints and links are called.
+  /// by over 0.9 mm, or whose neighbours are not perpendicular to 9e-4 ("1.57"); a fourth joint that leaves |SW| as it
+  /// is. Found from where the axes lie, whatever joints and links are called.
   static std::optional<SphericalArm> recognise(const ArmChain& chain);
 
   struct Answer {

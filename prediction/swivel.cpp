@@ -43,10 +43,10 @@ Harmonic turned_product(const Eigen::Vector3d& x, const Eigen::Vector3d& n, cons
   return {along, x.dot(y) - along, x.dot(n.cross(y))};
 }
 
-void SwivelAngles::add_roots(const Harmonic& f) noexcept {
+void SwivelAngles::add_roots(const Harmonic& f, double miss) noexcept {
   const double size = std::sqrt(f.kc * f.kc + f.ks * f.ks);
   // Where curve and limit only touch, rounding must not part them.
-  if (!(size > 1e-14) || std::abs(f.k0) > size * (1 + 1e-12) + 1e-15) return;
+  if (!(size > 1e-14) || std::abs(f.k0) > size * (1 + 1e-12) + 1e-15 + miss) return;
   if (size_ + 2 > angles_.size()) return;
   const double middle = std::atan2(f.ks, f.kc), half = std::acos(std::clamp(-f.k0 / size, -1.0, 1.0));
   for (const double angle : {middle - half, middle + half})
@@ -79,18 +79,18 @@ BallJoint::BallJoint(const std::array<Eigen::Vector3d, 3>& axes, const Angles& l
   }
 }
 
-void BallJoint::add_limits(const BallTurn& turn, SwivelAngles& angles) const noexcept {
+void BallJoint::add_limits(const BallTurn& turn, double miss, SwivelAngles& angles) const noexcept {
   const auto mixed = [](double s, const Harmonic& a, double c, const Harmonic& b) {
     return Harmonic{s * a.k0 - c * b.k0, s * a.kc - c * b.kc, s * a.ks - c * b.ks};
   };
   for (std::size_t end = 0; end < 2; ++end) {
     if (half_[0] < std::numbers::pi)
-      angles.add_roots(mixed(sin_limit_[0][end], turn.cos_first, cos_limit_[0][end], turn.sin_first));
+      angles.add_roots(mixed(sin_limit_[0][end], turn.cos_first, cos_limit_[0][end], turn.sin_first), miss);
     if (half_[2] < std::numbers::pi)
-      angles.add_roots(mixed(sin_limit_[2][end], turn.cos_last, cos_limit_[2][end], turn.sin_last));
+      angles.add_roots(mixed(sin_limit_[2][end], turn.cos_last, cos_limit_[2][end], turn.sin_last), miss);
     if (half_[1] < std::numbers::pi) {
       const Harmonic& f = turn.cos_middle;
-      angles.add_roots({f.k0 - cos_limit_[1][end], f.kc, f.ks});
+      angles.add_roots({f.k0 - cos_limit_[1][end], f.kc, f.ks}, miss);
     }
   }
 }

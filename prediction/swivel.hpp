@@ -40,8 +40,8 @@ Harmonic turned_product(const Eigen::Vector3d& x, const Eigen::Vector3d& n, cons
 /// Swivel angles at which something changes, of a few balls. No allocation.
 class SwivelAngles {
  public:
-  /// The roots of `f`, in -pi .. pi: none, or two (equal where they touch).
-  void add_roots(const Harmonic& f) noexcept;
+  /// The roots of `f`, in -pi .. pi: none, or two (equal where they touch, and where `f` stays `miss` or less off 0).
+  void add_roots(const Harmonic& f, double miss) noexcept;
   void sort() noexcept;
   std::size_t size() const noexcept { return size_; }
   double operator[](std::size_t i) const noexcept { return angles_[i]; }
@@ -79,8 +79,8 @@ class BallJoint {
             product(a_[0], a_[1])};
   }
 
-  /// Adds the swivel angles at which a joint stands at a limit, on either side.
-  void add_limits(const BallTurn& turn, SwivelAngles& angles) const noexcept;
+  /// Adds the swivel angles at which a joint stands at a limit, on either side, or comes as near to it as `miss`.
+  void add_limits(const BallTurn& turn, double miss, SwivelAngles& angles) const noexcept;
 
   /// For both sides: how far the joints are from their nearest limit and from the angle at which the first and the last
   /// axis fall together, whichever is less, in rad; negative: beyond a limit by so much. Exact where it is near 0, to
