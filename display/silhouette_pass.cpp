@@ -43,7 +43,6 @@ void SilhouettePass::operator()(const View& view) {
   glBindImageTexture(0, view.picture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
   pixels_.start(most);
   start(find_);
-  find_.set("rows", Eigen::Vector2i(0, height));
   glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);
   pixels_.finish(kListUnit);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMeans, means_.buffer().name());

@@ -9,7 +9,6 @@
 #if STEP == 0
 #include "work_list.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-uniform ivec2 rows;  // first, and beyond the last
 #else
 #define WORK_UNIT 5
 #define ITEMS_PER_GROUP 64
@@ -35,9 +34,9 @@ vec4 around(vec2 corner, float layer) {
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, rows.x);
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   vec3 place;
-  if (pixel.x >= int(camera.size.x) || pixel.y >= rows.y || !find_place(pixel, place)) return;
+  if (any(greaterThanEqual(pixel, ivec2(camera.size.xy))) || !find_place(pixel, place)) return;
   vec2 at = floor(place.xy + 0.5);
   vec4 a = around(at, place.z), b = around(at + 1.0, place.z);
   float center = a.y;
