@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "link/control/control_words.hpp"
+
 namespace foresight {
 namespace {
 
@@ -96,6 +98,19 @@ SeatLine commander_words(const SeatStatus& status) {
   return out;
 }
 
+/// Of the newest request, until another one is made: a key that does nothing must not do so silently.
+SeatLine request_words(const SeatStatus& status) {
+  SeatLine out{"asked", "", ""};
+  if (status.fates.empty() || status.fates.back().outcome == RequestOutcome::taken) return out;
+  const RequestFate& fate = status.fates.back();
+  const ControlWords words = fate.outcome ? words_for(*fate.outcome)
+                                          : ControlWords{"no answer came", "look at the robot's state, and ask again"};
+  out.words = fmt::format("{}: {}", to_string(fate.what), words.name);
+  out.cure = words.cure;
+  out.urgency = Urgency::note;
+  return out;
+}
+
 SeatLine prediction_words(const SeatStatus& status, std::span<const std::string> names) {
   const PredictedRobot& shown = status.shown;
   if (shown.status == StateStatus::invalid)
@@ -125,9 +140,9 @@ const char* mark(Urgency urgency) {
 
 std::vector<SeatLine> seat_lines(const SeatStatus& status, std::span<const std::string> names,
                                  const std::string& fault) {
-  std::vector<SeatLine> out{
-      commander_words(status),         robot_words(status), line_words(status), images_words(status, fault),
-      prediction_words(status, names), drives_words(status)};
+  std::vector<SeatLine> out{commander_words(status), robot_words(status),         request_words(status),
+                            line_words(status),      images_words(status, fault), prediction_words(status, names),
+                            drives_words(status)};
   for (const Difference& difference : status.control.differences)
     out.push_back({difference.refuses ? "refused" : "differs", difference.words, difference.cure,
                    difference.refuses ? Urgency::trouble : Urgency::note});

@@ -64,5 +64,21 @@ TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
   EXPECT_EQ(find(lines, "robot")->urgency, Urgency::trouble);
 }
 
+TEST(SeatWords, ARequestThatIsNotFollowedSaysWhy) {
+  SeatStatus status = driving();
+  EXPECT_FALSE(find(seat_lines(status, {}, ""), "asked"));
+  status.fates.push_back({1, LineRequest::set_up, RequestOutcome::before_stop});
+  const auto lines = seat_lines(status, {}, "");
+  ASSERT_TRUE(find(lines, "asked"));
+  EXPECT_NE(find(lines, "asked")->words.find("set up: "), std::string::npos);
+  EXPECT_NE(find(lines, "asked")->cure, "");
+  status.fates.push_back({2, LineRequest::set_up, std::nullopt});
+  const auto unanswered = seat_lines(status, {}, "");
+  ASSERT_TRUE(find(unanswered, "asked"));
+  EXPECT_NE(find(unanswered, "asked")->words.find("no answer"), std::string::npos);
+  status.fates.push_back({3, LineRequest::set_up, RequestOutcome::taken});
+  EXPECT_FALSE(find(seat_lines(status, {}, ""), "asked"));
+}
+
 }  // namespace
 }  // namespace foresight::seat_words_test
