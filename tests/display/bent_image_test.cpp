@@ -48,7 +48,9 @@ TEST_F(BentImageTest, EachPixelShowsWhatTheCameraSawInItsDirection) {
           }
         }
       EXPECT_GT(compared, 1000) << of_camera << " " << of_eye;
-      if (std::string(of_camera) == of_eye) EXPECT_EQ(black, 0);
+      if (std::string(of_camera) == of_eye) {
+        EXPECT_EQ(black, 0);
+      }
     }
 }
 
