@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <ranges>
 
 #include "common/error.hpp"
 
@@ -80,8 +81,9 @@ struct Hud::Work {
     ImGui::Begin(name, nullptr, kPanel);
   }
   void draw(const HudContent& content, const HudArea& area) const;
-  float draw_next(const SeatLine& next, ImVec2 corner, float width) const;  // px that it is high
-  void draw_keys(const HudContent& content, ImVec2 corner) const;
+  float draw_next(const SeatLine& next, ImVec2 corner, float width) const;        // px that it is high
+  float draw_lines(const HudContent& content, ImVec2 corner, float width) const;  // likewise
+  void draw_keys(const HudContent& content, ImVec2 corner, float room) const;
   void draw(const std::vector<HudLabel>& labels, float width, float height) const;
 };
 
@@ -130,14 +132,33 @@ float Hud::Work::draw_next(const SeatLine& next, ImVec2 corner, float width) con
   return height;
 }
 
-void Hud::Work::draw_keys(const HudContent& content, ImVec2 corner) const {
-  if (content.keys.empty()) return;
+float Hud::Work::draw_lines(const HudContent& content, ImVec2 corner, float width) const {
+  const float gap = 8 * scale;
+  panel("lines", corner, {0, 0});
+  const float wrap = std::clamp(0.5f * width, std::min(380 * scale, std::max(1.0f, 0.7f * width)), 700 * scale);
+  ImGui::PushTextWrapPos(std::max(wrap, width - 4 * gap));
+  write(content.title);
+  ImGui::PopTextWrapPos();
+  ImGui::Separator();
+  for (const SeatLine& line : content.lines) write(line, kWordsAt * scale, wrap);
+  const float height = ImGui::GetWindowHeight();
+  ImGui::End();
+  return height;
+}
+
+// As many as there is room for.
+void Hud::Work::draw_keys(const HudContent& content, ImVec2 corner, float room) const {
+  const float rows = (room - 2 * ImGui::GetStyle().WindowPadding.y) / ImGui::GetTextLineHeightWithSpacing();
+  if (content.keys.empty() || rows < 1) return;
   panel("keys", corner, {0, 1});
-  for (const auto& [key, does] : content.keys) {
+  const bool all_fit = static_cast<float>(content.keys.size()) <= rows;
+  const auto fit = all_fit ? std::ssize(content.keys) : static_cast<std::ptrdiff_t>(rows) - 1;
+  for (const auto& [key, does] : content.keys | std::views::take(fit)) {
     write(key);
     ImGui::SameLine(1.2f * kWordsAt * scale);
     write(does);
   }
+  if (!all_fit) write("more keys in a larger window");
   ImGui::End();
 }
 
@@ -147,16 +168,10 @@ void Hud::Work::draw(const HudContent& content, const HudArea& area) const {
   const auto width = static_cast<float>(area.width);
   const float left = static_cast<float>(area.left) + gap, top = static_cast<float>(area.top) + gap;
   const float right = left + width - 2 * gap, bottom = top + static_cast<float>(area.height) - 2 * gap;
-  const float taken = draw_next(content.next, {right, bottom}, width - 4 * gap);
-  draw_keys(content, {left, width < kBesideEachOther * scale ? bottom - taken - gap : bottom});
-  panel("lines", {left, top}, {0, 0});
-  const float wrap = std::clamp(0.5f * width, std::min(380 * scale, std::max(1.0f, 0.7f * width)), 700 * scale);
-  ImGui::PushTextWrapPos(std::max(wrap, width - 4 * gap));
-  write(content.title);
-  ImGui::PopTextWrapPos();
-  ImGui::Separator();
-  for (const SeatLine& line : content.lines) write(line, kWordsAt * scale, wrap);
-  ImGui::End();
+  const float next = draw_next(content.next, {right, bottom}, width - 4 * gap);
+  const float lines = draw_lines(content, {left, top}, width);
+  const float keys_end = width < kBesideEachOther * scale ? bottom - next - gap : bottom;
+  draw_keys(content, {left, keys_end}, keys_end - (top + lines + gap));
 }
 
 Hud::Hud(double scale) : work_(std::make_unique<Work>(scale)) {}
@@ -171,7 +186,8 @@ void Hud::draw(const HudContent& content, const ViewTarget& target) {
   io.DeltaTime = 1.0f / 60;
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   ImGui_ImplOpenGL3_NewFrame();
-  for (const bool is_seen : {false, true}) {  // panels are not shown before their size is known: one frame goes ahead
+  // Panels are not shown before their size is known, nor keys before that of the lines: two frames go ahead.
+  for (const bool is_seen : {false, false, true}) {
     ImGui::NewFrame();
     work_->draw(content.labels, io.DisplaySize.x, io.DisplaySize.y);
     work_->draw(content, content.area.value_or(HudArea{0, 0, io.DisplaySize.x, io.DisplaySize.y}));

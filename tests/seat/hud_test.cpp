@@ -75,6 +75,20 @@ TEST(Hud, LongWordsStayWithinTheirArea) {
       << "keys make way for what is next";
 }
 
+TEST(Hud, InASmallWindowKeysMakeWayForWhatIsSaid) {
+  const auto context = gl::create_headless_context();
+  HudContent content;
+  content.title = "a robot";
+  content.lines.assign(8, {"robot", "follows", "", Urgency::fine});
+  const cv::Mat without = drawn(content, 700, 420);
+  content.keys.assign(20, {"key", "does something"});
+  const cv::Mat with = drawn(content, 700, 420);
+  const cv::Rect lines(0, 200, 700, 220);  // the first row is the lowest
+  EXPECT_EQ(cv::norm(without(lines), with(lines), cv::NORM_L1), 0);
+  EXPECT_EQ(changed(without.rowRange(0, 160)), 0);
+  EXPECT_GT(changed(with.rowRange(0, 160)), 0.02) << "as many of them as fit";
+}
+
 TEST(Hud, BearsAnyWindow) {
   const auto context = gl::create_headless_context();
   HudContent content;
