@@ -29,6 +29,25 @@ constexpr int kWindowWidth = 1280, kWindowHeight = 800;
 constexpr double kDrawingShare = 0.6;  // of the time between pictures
 constexpr std::size_t kUnderWay = 16;  // instants of what the robot will do as it was sent already
 
+// A small window shows only the first ones: what stops and drives the robot.
+std::vector<std::pair<std::string, std::string>> keys_of_seat() {
+  std::vector<std::pair<std::string, std::string>> out = HandDriver::keys();
+  out.insert(out.begin(), {{"space", "stop at once"}, {"E, H, X, Z", "enable, home, reset, configure drives anew"}});
+  out.insert(out.end(), {{"G", "give control back, take it again"},
+                         {"T", "hand control over to who asks"},
+                         {"Tab", "prediction, newest image, both, split (drag its border)"},
+                         {"F2, F5", "for two eyes: which way; swap the eyes"},
+                         {"F6; F7 F8 F9", "a stereogram; its depth, pattern, variant"},
+                         {"F3", "from beside: the mouse looks around"},
+                         {"F4", "wireframe, age, confidence, error"},
+                         {"B", "what is not exact, and was wrong"},
+                         {"F1", "these keys"},
+                         {"M", "sounds off, and on again"},
+                         {"P", "screenshot"},
+                         {"Q, Esc", "end"}});
+  return out;
+}
+
 // A head display's runtime that takes contexts of GLX only gets one.
 gl::Window::ContextApi context_api(const LiveSeatOptions& options) {
   if (options.head_display != HeadDisplayKind::openxr) return gl::Window::ContextApi::egl;
@@ -129,21 +148,7 @@ class LiveSeat {
     out.font_scale = options_.font_scale;
     out.pacer = &pacer_;
     out.trust = &trust_;
-    out.keys = HandDriver::keys();
-    out.keys.insert(out.keys.begin(), {{"space", "stop at once"},
-                                       {"E, H, X, Z", "enable, home, reset, configure drives anew"},
-                                       {"G", "give control back, take it again"},
-                                       {"T", "hand control over to who asks"},
-                                       {"Tab", "prediction, newest image, both, split (drag its border)"},
-                                       {"F2, F5", "for two eyes: which way; swap the eyes"},
-                                       {"F6; F7 F8 F9", "a stereogram; its depth, pattern, variant"},
-                                       {"F3", "from beside: the mouse looks around"},
-                                       {"F4", "wireframe, age, confidence, error"},
-                                       {"B", "what is not exact, and was wrong"},
-                                       {"F1", "these keys"},
-                                       {"M", "sounds off, and on again"},
-                                       {"P", "screenshot"},
-                                       {"Q, Esc", "end"}});
+    out.keys = keys_of_seat();
     out.input = [this](const gl::WindowInput& input) { take(input); };
     out.log = [](const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); };
     out.more_lines = [this] {
