@@ -43,8 +43,8 @@ void expect_scene(const ExportedModel& model, const RunFolder& run, std::size_t 
   }
 }
 
-/// Whether a surface ends within a pixel of it: what lies there and around it is on no plane, by more than 2 cm. Views mix
-/// these pixels (SilhouettePass), the picture does not.
+/// Whether a surface ends within a pixel of it: what lies there and around it is on no plane, by more than 2 cm. Views
+/// mix these pixels (SilhouettePass), the picture does not.
 bool is_at_silhouette(const cv::Mat& inverse_z, int x, int y) {
   const double here = inverse_z.at<double>(y, x);
   const cv::Rect all(0, 0, inverse_z.cols, inverse_z.rows);
@@ -59,7 +59,7 @@ bool is_at_silhouette(const cv::Mat& inverse_z, int x, int y) {
 /// Over the pixels where `view` shows any colour.
 struct Similarity {
   double psnr_db = 0;
-  double alike = 0;      ///< share of those that are at no silhouette which differ by at most 10 of 255
+  double alike = 0;  ///< share of those that are at no silhouette which differ by at most 10 of 255
   int pixels = 0;
   int compared = 0;  ///< at no silhouette
 };
