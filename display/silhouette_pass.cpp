@@ -6,10 +6,15 @@
 namespace foresight {
 namespace {
 
-constexpr unsigned kGroup = 64;
-constexpr GLuint kListUnit = 5, kMeans = 2;  // as in silhouettes.comp
+constexpr int kTile = 4;  // px a side, as in the shaders
+constexpr unsigned kGroup = 64, kTilesInGroup = kGroup / (kTile * kTile);
+constexpr GLuint kListUnit = 5, kStepsUnit = 8, kMeans = 2;  // as in silhouettes.comp
 /// Metres: surfaces that lie closer together count as one in images too (TextureOptions::depth_tolerance).
 constexpr float kStep = 0.02f;
+
+int tiles_of(int px) {
+  return (px + kTile - 1) / kTile;
+}
 
 gl::Program silhouette_program(const Lens& lens, int step) {
   auto defines = gl::camera_defines({&lens, 1});
@@ -20,33 +25,57 @@ gl::Program silhouette_program(const Lens& lens, int step) {
 }  // namespace
 
 SilhouettePass::SilhouettePass(const Lens& lens)
-    : find_(silhouette_program(lens, 0)),
-      mix_(silhouette_program(lens, 1)),
-      put_(silhouette_program(lens, 2)),
+    : steps_of_faces_(gl::Program::compute(display_and_lookup_shaders(), "face_steps.comp")),
+      find_tiles_(silhouette_program(lens, 0)),
+      find_pixels_(silhouette_program(lens, 1)),
+      mix_(silhouette_program(lens, 2)),
+      put_(silhouette_program(lens, 3)),
+      tiles_("tiles that may hold silhouettes", kTilesInGroup),
       pixels_("pixels of silhouettes", kGroup),
       means_(GL_R32UI, 4096, "means at silhouettes") {}
 
-void SilhouettePass::operator()(const View& view) {
-  const int width = view.lens.width(), height = view.lens.height();
-  const auto most = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  means_.reserve(most * sizeof(GLuint));
+void SilhouettePass::start(const gl::Program& program, const View& view) {
+  program.use();
+  program.set("face_size", Eigen::Vector2i(view.faces.faces.width, view.faces.faces.height));
+  program.set("depth_tolerance", kStep);
+}
+
+void SilhouettePass::find_steps(const View& view) {
   const gl::Faces& faces = view.faces.faces;
-  const auto start = [&](const gl::Program& program) {
-    program.use();
-    program.set("face_size", Eigen::Vector2i(faces.width, faces.height));
-    program.set("depth_tolerance", kStep);
-  };
+  const int across = tiles_of(faces.width), down = tiles_of(faces.height);
+  if (steps_.width() != across || steps_.height() != down || steps_.layers() != faces.count)
+    steps_ = gl::Texture(GL_R8, across, down, faces.count, 1, "steps of faces");
+  start(steps_of_faces_, view);
+  glBindImageTexture(1, steps_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R8);
+  glDispatchCompute(gl::groups(across, 8), gl::groups(down, 8), static_cast<GLuint>(faces.count));
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  glBindTextureUnit(kStepsUnit, steps_.name());
+}
+
+void SilhouettePass::find_pixels(const View& view) {
+  const int across = tiles_of(view.lens.width()), down = tiles_of(view.lens.height());
+  const auto tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
+  tiles_.start(tiles);
+  start(find_tiles_, view);
+  glDispatchCompute(gl::groups(across, 8), gl::groups(down, 8), 1);
+  tiles_.finish(kListUnit);
+  pixels_.start(tiles * kTile * kTile);
+  start(find_pixels_, view);
+  tiles_.dispatch();
+  pixels_.finish(kListUnit);
+  means_.reserve(tiles * kTile * kTile * sizeof(GLuint));
+}
+
+void SilhouettePass::operator()(const View& view) {
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, view.camera.name());
   glBindTextureUnit(0, view.faces.depth.name());
   glBindTextureUnit(4, view.rays.name());
+  find_steps(view);
+  find_pixels(view);
   glBindImageTexture(0, view.picture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
-  pixels_.start(most);
-  start(find_);
-  glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);
-  pixels_.finish(kListUnit);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMeans, means_.buffer().name());
-  start(mix_);
+  start(mix_, view);
   pixels_.dispatch();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   put_.use();

@@ -23,8 +23,13 @@ class SilhouettePass {
   void operator()(const View& view);
 
  private:
-  gl::Program find_, mix_, put_;
-  WorkList pixels_;
+  static void start(const gl::Program& program, const View& view);
+  void find_steps(const View& view);
+  void find_pixels(const View& view);
+
+  gl::Program steps_of_faces_, find_tiles_, find_pixels_, mix_, put_;
+  WorkList tiles_, pixels_;
+  gl::Texture steps_;  // R8, of each 4x4 tile of the faces
   gl::BufferTexture means_;
 };
 

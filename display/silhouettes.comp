@@ -2,18 +2,27 @@
 // the spread of lens and sensor. Colours that were looked up on either side hold none: images are not trusted beside such edges.
 // So each of these pixels becomes a mean of its neighbours.
 //
-// STEP 0: lists pixels that are not on one plane with those around them. STEP 1: of those, the means; where no surface ends,
-// none. STEP 2: puts them into the picture.
+// STEP 0: lists tiles of 4x4 pixels that may hold some. STEP 1: of these, pixels that are not on one plane with those around
+// them. STEP 2: of those, the means; where no surface ends, none. STEP 3: puts them into the picture.
 #include "camera.glsl"
 #include "depth_slope.glsl"
-#if STEP == 0
-#include "work_list.glsl"
-layout(local_size_x = 8, local_size_y = 8) in;
-#else
+#if STEP > 0
 #define WORK_UNIT 5
+#if STEP == 1
+#define ITEMS_PER_GROUP 4
+#define INVOCATIONS_PER_ITEM 16
+#else
 #define ITEMS_PER_GROUP 64
+#endif
 #include "work_item.glsl"
 layout(local_size_x = 64) in;
+#else
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 8) uniform sampler2DArray steps;  // of each 4x4 tile of the faces: face_steps.comp
+#endif
+#if STEP < 2
+#include "work_list.glsl"
+#else
 layout(binding = 2, std430) buffer Means { uint means[]; };  // RGBA8 of each listed pixel; 0: it stays as it is
 layout(binding = 0, rgba8) uniform image2D picture;
 #endif
@@ -28,13 +37,49 @@ bool find_place(ivec2 pixel, out vec3 place) {
 }
 
 #if STEP == 0
+bool has_step(ivec2 tile, float layer) {
+  return texelFetch(steps, ivec3(tile, layer), 0).r > 0.5;
+}
+
+// Whether a tile of the faces is marked that is near what the tile shows: may_hold_both() looks two pixels far.
+bool may_have_step(ivec2 tile) {
+#if defined(FACE_IS_IMAGE) && FACE_IS_IMAGE
+  return has_step(tile, 0.0);
+#else
+  vec3 least = vec3(1e9), most = vec3(-1e9);
+  bool all_found = true;
+  for (int i = 0; i < 4; ++i) {
+    vec3 place;
+    bool found = find_place(min(4 * tile + 3 * ivec2(i & 1, i >> 1), ivec2(camera.size.xy) - 1), place);
+    least = found ? min(least, place) : least;
+    most = found ? max(most, place) : most;
+    all_found = all_found && found;
+  }
+  bool any_found = most.z >= 0.0;
+  if (!any_found) return false;
+  bool marked = !all_found || least.z != most.z;  // at the rim of what is seen, or across an edge of the cube
+  ivec2 first = max(ivec2(floor(least.xy + 0.5)) - 2, ivec2(0)) / 4, last = min(ivec2(floor(most.xy + 0.5)) + 2, face_size - 1) / 4;
+  for (int y = first.y; y <= last.y && !marked; ++y)
+    for (int x = first.x; x <= last.x && !marked; ++x) marked = has_step(ivec2(x, y), least.z);
+  return marked;
+#endif
+}
+
+void main() {
+  ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(4 * tile, ivec2(camera.size.xy))) || !may_have_step(tile)) return;
+  append_work(uint(4 * tile.x) | uint(4 * tile.y) << 16);
+}
+#elif STEP == 1
 // Depths of the 2x2 pixels around a corner, as 1/z: below left, below right, above right, above left.
 vec4 around(vec2 corner, float layer) {
   return textureGather(depth, vec3(corner / vec2(face_size), layer)) / kNear;
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  uint tile;
+  if (!next_work(tile)) return;
+  ivec2 pixel = ivec2(tile & 0xffffu, tile >> 16) + ivec2(gl_LocalInvocationIndex & 3u, (gl_LocalInvocationIndex >> 2) & 3u);
   vec3 place;
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy))) || !find_place(pixel, place)) return;
   vec2 at = floor(place.xy + 0.5);
@@ -54,7 +99,7 @@ void main() {
   }
   if (most > 0.5 * depth_tolerance * center * center) append_work(uint(pixel.x) | uint(pixel.y) << 16);
 }
-#elif STEP == 1
+#elif STEP == 2
 // The four pixels beside one, in turn.
 ivec2 beside(int i) {
   return (i < 2 ? 1 : -1) * ivec2(i & 1, 1 - (i & 1));

@@ -1,5 +1,5 @@
-// Reads what append_work() (work_list.glsl) stored: the item of this work group, or of this
-// invocation where ITEMS_PER_GROUP is the group's size, as in the WorkList.
+// Reads what append_work() (work_list.glsl) stored: the item of this work group, or, where ITEMS_PER_GROUP is more than 1, as
+// in the WorkList, of this invocation and its neighbours: INVOCATIONS_PER_ITEM of them, 1 unless defined.
 #ifndef WORK_UNIT
 #define WORK_UNIT 15
 #endif
@@ -8,11 +8,14 @@ layout(binding = WORK_UNIT) uniform usamplerBuffer work;
 #ifndef ITEMS_PER_GROUP
 #define ITEMS_PER_GROUP 1
 #endif
+#ifndef INVOCATIONS_PER_ITEM
+#define INVOCATIONS_PER_ITEM 1
+#endif
 
 bool next_work(out uint item) {
   uint index = (gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u) * ITEMS_PER_GROUP;
 #if ITEMS_PER_GROUP > 1
-  index += gl_LocalInvocationIndex;
+  index += gl_LocalInvocationIndex / INVOCATIONS_PER_ITEM;
 #endif
   item = texelFetch(work, 4 + int(index)).r;
   return index < texelFetch(work, 3).r;
