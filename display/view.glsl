@@ -142,7 +142,7 @@ vec4 image_colour(Point point) {
   Sighting seen = sighting_of(point);
   if (seen.weight == 0.0) return vec4(0.0);
   vec2 size = cameras[0].size.xy;
-  vec3 colour = unscaled(sample_square(image0, seen.pixel, size, sharp_for(seen.finer), seen.finer)) * without_vignetting(cameras[0].tone, seen.pixel, size);
+  vec3 colour = unscaled(sample_for_view(image0, seen.pixel, size, sharp_for(seen.finer), seen.finer)) * without_vignetting(cameras[0].tone, seen.pixel, size);
   return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), seen.weight);
 }
 

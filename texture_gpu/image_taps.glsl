@@ -1,9 +1,7 @@
 // A camera's image between its pixels. Where a shadow was taken out of it (unshade.comp), colours are scaled by alpha.
 
-// Five bilinear taps: Catmull-Rom for a share of `sharp`, linear for the rest; the mean of a square of `side` pixels where
-// that is more than kMagnified. `pixel`: centres at integers.
-const float kMagnified = 1.5;
-vec4 sample_square(sampler2D image, vec2 pixel, vec2 size, float sharp, float side) {
+// Five bilinear taps: Catmull-Rom for a share of `sharp`, linear for the rest. `pixel`: centres at integers.
+vec4 sample_sharply(sampler2D image, vec2 pixel, vec2 size, float sharp) {
   vec2 center = floor(pixel);
   vec2 f = pixel - center;
   vec2 w0 = sharp * f * (-0.5 + f * (1.0 - 0.5 * f)), w1 = mix(1.0 - f, 1.0 + f * f * (-2.5 + 1.5 * f), sharp),
@@ -11,26 +9,38 @@ vec4 sample_square(sampler2D image, vec2 pixel, vec2 size, float sharp, float si
   vec2 w12 = w1 + w2, at12 = center + w2 / w12;
   vec4 wc = vec4(w12.x * w0.y, w0.x * w12.y, w3.x * w12.y, w12.x * w3.y);
   float wm = w12.x * w12.y;
-  vec2 above = vec2(at12.x, center.y - 1.0), left = vec2(center.x - 1.0, at12.y), right = vec2(center.x + 2.0, at12.y),
-       below = vec2(at12.x, center.y + 2.0);
-  // Not branches: software renderers would sample twice.
-  bool is_mean = side > kMagnified;
-  float reach = 0.3 * side;
-  above = is_mean ? pixel + reach * vec2(-1.0, -1.0) : above;
-  left = is_mean ? pixel + reach * vec2(-1.0, 1.0) : left;
-  right = is_mean ? pixel + reach * vec2(1.0, -1.0) : right;
-  below = is_mean ? pixel + reach * vec2(1.0, 1.0) : below;
-  vec2 middle = is_mean ? pixel : at12;
-  wm = is_mean ? 1.0 : wm;
-  wc = is_mean ? vec4(1.0) : wc;
-  vec4 sum = wm * textureLod(image, (middle + 0.5) / size, 0.0) + wc.x * textureLod(image, (above + 0.5) / size, 0.0) +
-             wc.y * textureLod(image, (left + 0.5) / size, 0.0) + wc.z * textureLod(image, (right + 0.5) / size, 0.0) +
-             wc.w * textureLod(image, (below + 0.5) / size, 0.0);
+  vec4 sum = wm * textureLod(image, (at12 + 0.5) / size, 0.0) +
+             wc.x * textureLod(image, (vec2(at12.x, center.y - 1.0) + 0.5) / size, 0.0) +
+             wc.y * textureLod(image, (vec2(center.x - 1.0, at12.y) + 0.5) / size, 0.0) +
+             wc.z * textureLod(image, (vec2(center.x + 2.0, at12.y) + 0.5) / size, 0.0) +
+             wc.w * textureLod(image, (vec2(at12.x, center.y + 2.0) + 0.5) / size, 0.0);
   return clamp(sum / (wm + wc.x + wc.y + wc.z + wc.w), 0.0, 1.0);
 }
 
-vec4 sample_sharply(sampler2D image, vec2 pixel, vec2 size, float sharp) {
-  return sample_square(image, pixel, size, sharp, 1.0);
+// The same for views, which take as many as they have pixels: the inner four pixels by one bilinear tap, and outside of them those
+// of the nearest row and column for all on that side, as gather_sharp_taps() (lookup.glsl) does. Where the view shows `side`
+// pixels of the image for one of its own, more than kMagnified, what is added to linear weights is a share of a tent of four
+// pixels: as wide as the mean of a square of `side`, whatever the place.
+const float kMagnified = 1.5;
+vec4 sample_for_view(sampler2D image, vec2 pixel, vec2 size, float sharp, float side) {
+  vec2 center = floor(pixel);
+  vec2 f = pixel - center;
+  // Not branches: software renderers would sample twice.
+  bool is_mean = side > kMagnified;
+  float share = is_mean ? min(0.144 * side * side, 1.0) : sharp;  // a tent's variance is a half more than that of linear weights
+  vec2 w0 = is_mean ? 0.25 - 0.25 * f : f * (-0.5 + f * (1.0 - 0.5 * f));
+  vec2 w1 = is_mean ? 0.75 * f - 0.5 : f * (1.0 + f * (-2.5 + 1.5 * f));
+  vec2 w3 = is_mean ? 0.25 * f : f * f * (-0.5 + 0.5 * f);
+  vec2 w2 = f - share * (w0 + w1 + w3);
+  w0 *= share, w1 = 1.0 - f + share * w1, w3 *= share;
+  vec2 w12 = w1 + w2, at12 = center + w2 / w12, last = size - 1.0;
+  vec2 nearest = min(center + step(0.5, f), last), before = max(center - 1.0, 0.0), after = min(center + 2.0, last);
+  vec4 wc = vec4(w12.x * w0.y, w0.x * w12.y, w3.x * w12.y, w12.x * w3.y);
+  float wm = w12.x * w12.y;
+  vec4 sum = wm * textureLod(image, (at12 + 0.5) / size, 0.0) + wc.x * texelFetch(image, ivec2(nearest.x, before.y), 0) +
+             wc.y * texelFetch(image, ivec2(before.x, nearest.y), 0) + wc.z * texelFetch(image, ivec2(after.x, nearest.y), 0) +
+             wc.w * texelFetch(image, ivec2(nearest.x, after.y), 0);
+  return clamp(sum / (wm + wc.x + wc.y + wc.z + wc.w), 0.0, 1.0);
 }
 
 vec3 unscaled(vec4 colour) {
@@ -41,7 +51,7 @@ vec3 unscaled(vec4 colour) {
 // CameraBlock::tone.
 float without_vignetting(vec4 tone, vec2 pixel, vec2 size) {
   vec2 half_size = 0.5 * (size - 1.0);
-  vec2 offset = (pixel - half_size) / length(half_size);
-  float r2 = dot(offset, offset);
+  vec2 offset = pixel - half_size;
+  float r2 = dot(offset, offset) / dot(half_size, half_size);
   return exp(-r2 * (tone.y + r2 * tone.z));
 }
