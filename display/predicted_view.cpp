@@ -13,7 +13,7 @@ namespace {
 // As in view.glsl and view.comp.
 constexpr unsigned kGroup = 64;  // invocations of a group over a list
 constexpr int kBand = 64;        // rows: fewer cost as much as these, as each band is waited for
-constexpr GLuint kListUnit = 5, kLightUnit = 6, kPlanesUnit = 7, kAgesUnit = 10;
+constexpr GLuint kListUnit = 5, kLightUnit = 6, kPlanesUnit = 7, kHomographiesUnit = 8, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
 constexpr unsigned kBeforeBlock = 2;
 
@@ -24,6 +24,7 @@ struct Pixels {
   bool listed = false;   // not all of them
   bool blended = false;  // with newer images, which the picture holds
   bool before = false;   // what the image before shows is left to it
+  bool homographies = false;
 };
 
 std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases, Pixels pixels, bool fragment) {
@@ -33,6 +34,7 @@ std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases,
   defines.push_back("LISTED " + std::to_string(pixels.listed));
   defines.push_back("BLENDED " + std::to_string(pixels.blended));
   defines.push_back("BEFORE " + std::to_string(pixels.before));
+  defines.push_back("HOMOGRAPHIES " + std::to_string(pixels.homographies));
   defines.push_back("FRAGMENT " + std::to_string(fragment));
   return defines;
 }
@@ -41,9 +43,9 @@ gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixel
   return gl::Program::compute(display_and_lookup_shaders(), "view.comp", view_defines(lenses, cases, pixels, false));
 }
 
-gl::Program whole_view_program(std::span<const Lens> lenses, Cases cases, bool levels) {
+gl::Program whole_view_program(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
   return gl::Program::graphics(display_and_lookup_shaders(), "rectangle.vert", "view.frag",
-                               view_defines(lenses, cases, {.levels = levels}, true));
+                               view_defines(lenses, cases, pixels, true));
 }
 
 bool same_place(const Pose& a, const Pose& b) {
@@ -59,8 +61,9 @@ void set_tone(const gl::Program& program, float gain, float sharp, const Publish
 
 }  // namespace
 
-PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool levels)
-    : newest(whole_view_program(std::array{view, lens}, Cases::image, levels)),
+PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool levels, bool with_homographies)
+    : newest(whole_view_program(std::array{view, lens}, Cases::image,
+                                {.levels = levels, .homographies = with_homographies})),
       before(view_program(std::array{view, lens}, Cases::image, {.levels = levels, .listed = true, .blended = true})),
       usual(view_program(std::array{view, lens}, Cases::usual,
                          {.levels = levels, .listed = true, .blended = true, .before = true})),
@@ -68,7 +71,9 @@ PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool l
       unseen("pixels that the newest image does not see", kGroup),
       of_before("pixels that the image before shows", kGroup),
       framebuffer(gl::create_framebuffer("newest image")),
-      rectangle(gl::create_vertex_array("newest image")) {}
+      rectangle(gl::create_vertex_array("newest image")) {
+  if (with_homographies) homographies.emplace();
+}
 
 PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
                              std::shared_ptr<const SurfaceRecords> surface, const Lens& lens, ViewPrograms programs,
@@ -179,8 +184,11 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
 /// Hands the images to the shaders.
 void PredictedView::look_up(const NewestImages& images) {
   const Lens& lens = images.newest->camera->lens();
-  if (!projection_) projection_ = std::make_unique<Projection>(lens_, lens, raster_.has_levels());
-  const bool levels = raster_.has_levels();
+  const bool levels = raster_.has_levels();  // planes are those of the levels shown, then
+  const auto pixels = static_cast<std::size_t>(lens_.width()) * static_cast<std::size_t>(lens_.height());
+  if (!projection_)
+    projection_ = std::make_unique<Projection>(lens_, lens, levels,
+                                               !levels && PlaneHomographies::pay(surface_->triangle_count(), pixels));
   if (draws_part_ && !projection_->newest_of_part)
     projection_->newest_of_part =
         view_program(std::array{lens_, lens}, Cases::image, {.levels = levels, .listed = true});
@@ -195,6 +203,10 @@ void PredictedView::look_up(const NewestImages& images) {
     inputs.update({&camera, 1}, {&image, 1}, {&tone, 1});
   };
   update(projection_->newest_inputs, *images.newest);
+  if (projection_->homographies) {
+    glBindTextureUnit(kSeenUnit, projection_->newest_inputs.node_poses());
+    projection_->homographies->update(surface_->triangle_count(), kHomographiesUnit);
+  }
   if (images.before) update(projection_->inputs_before, *images.before);
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "display/paint_pass.hpp"
+#include "display/plane_homographies.hpp"
 #include "display/scene_raster.hpp"
 #include "display/silhouette_pass.hpp"
 #include "display/surface_records.hpp"
@@ -86,13 +87,14 @@ class PredictedView {
  private:
   /// What the newest images need besides.
   struct Projection {
-    Projection(const Lens& view, const Lens& image, bool levels);
+    Projection(const Lens& view, const Lens& image, bool levels, bool homographies);
     gl::Program newest, before, usual, rest;
     gl::Program newest_of_part, usual_alone;  // once they are needed: the latter without an image before
     WorkList unseen, of_before;               // by the newest image; of these, what the one before shows
     SeenInputs newest_inputs, inputs_before;
     gl::Framebuffer framebuffer;  // the newest image is drawn into
     gl::VertexArray rectangle;
+    std::optional<PlaneHomographies> homographies;  // to the newest image
   };
   /// What shadows need besides.
   struct Shadows {

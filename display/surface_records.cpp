@@ -5,7 +5,9 @@
 namespace foresight {
 
 SurfaceRecords::SurfaceRecords(const SurfacePatches& surface)
-    : triangles_(GL_RGBA32F, 16, "surface triangles"), patches_(GL_RGBA32F, 16, "surface patches") {
+    : triangle_count_(surface.corners.size()),
+      triangles_(GL_RGBA32F, 16, "surface triangles"),
+      patches_(GL_RGBA32F, 16, "surface patches") {
   std::vector<Eigen::Vector4f> triangles, patches;
   triangles.reserve(2 * surface.corners.size());
   for (std::size_t t = 0; t < surface.corners.size(); ++t) {

@@ -11,10 +11,12 @@ namespace foresight {
 class SurfaceRecords {
  public:
   explicit SurfaceRecords(const SurfacePatches& surface);
+  std::size_t triangle_count() const { return triangle_count_; }
   GLuint triangles() const { return triangles_.texture(); }
   GLuint patches() const { return patches_.texture(); }
 
  private:
+  std::size_t triangle_count_;
   gl::BufferTexture triangles_, patches_;
 };
 

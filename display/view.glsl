@@ -12,6 +12,7 @@
 // view.frag and view.comp choose the pixels. Defines: CASES 0: an image; 1: the usual case; 2: every case.
 //          LEVELS: seen_plane.glsl. LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds newer
 //          images already. BEFORE: 1 where what the image before shows is left to it. FRAGMENT: 1 in view.frag.
+//          HOMOGRAPHIES: 1 where those of the triangles' planes to the image are there (homographies.comp).
 #define IMAGE 0
 #define USUAL 1
 #define EVERY 2
@@ -58,6 +59,29 @@ const float kSeenShare = 0.25;
 
 vec3 pixel_light;  // what shadows of moving parts leave of the pixel's value
 
+// What a pixel shows.
+struct Surface {
+  vec3 ray;      // of the view's camera
+  ivec3 at;      // of the faces
+  uint number;   // triangle + 1
+};
+
+// False where no model is.
+bool find_surface(ivec2 pixel, out Surface found) {
+  pixel_light = texelFetch(light, min(pixel, textureSize(light, 0) - 1), 0).rgb;
+  if (!ray_through(pixel, found.ray)) return false;
+#if defined(FACE_IS_IMAGE) && FACE_IS_IMAGE
+  found.at = ivec3(pixel, 0);
+#else
+  vec3 place;
+  float inverse_z;
+  if (!project_face(camera, found.ray, place, inverse_z)) return false;
+  found.at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
+#endif
+  found.number = texelFetch(surfaces, found.at, 0).r;
+  return found.number != 0u;
+}
+
 // The surface point that a pixel shows.
 struct Point {
   int patch_index, node;
@@ -69,22 +93,15 @@ struct Point {
 
 // False where no model is.
 bool find_point(ivec2 pixel, out Point found) {
-  pixel_light = texelFetch(light, min(pixel, textureSize(light, 0) - 1), 0).rgb;
-  vec3 ray;
-  if (!ray_through(pixel, ray)) return false;
-  vec3 place;
-  float inverse_z;
-  if (!project_face(camera, ray, place, inverse_z)) return false;
-  ivec3 at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
-  uint surface = texelFetch(surfaces, at, 0).r;
-  if (surface == 0u) return false;
-  vec4 plane = seen_plane(at, surface);
-  vec4 ids = texelFetch(triangles, 2 * int(surface - 1u) + 1);
+  Surface shown;
+  if (!find_surface(pixel, shown)) return false;
+  vec4 plane = seen_plane(shown.at, shown.number);
+  vec4 ids = texelFetch(triangles, 2 * int(shown.number - 1u) + 1);
   int node = int(ids.y);
 
   // The ray in the node's frame meets the triangle's plane.
   vec4 x = texelFetch(view_nodes, 3 * node), y = texelFetch(view_nodes, 3 * node + 1), z = texelFetch(view_nodes, 3 * node + 2);
-  vec3 d = vec3(dot(x.xyz, ray), dot(y.xyz, ray), dot(z.xyz, ray));
+  vec3 d = vec3(dot(x.xyz, shown.ray), dot(y.xyz, shown.ray), dot(z.xyz, shown.ray));
   vec3 o = vec3(x.w, y.w, z.w);
   float facing = dot(plane.xyz, d);
   float t = (plane.w - dot(plane.xyz, o)) / (abs(facing) > 1e-9 ? facing : 1e-9);
@@ -93,58 +110,20 @@ bool find_point(ivec2 pixel, out Point found) {
 }
 
 #if CASES == IMAGE || BEFORE
-// Less than this share of the view's resolution is clearly worse than what older images may have seen. Where even the
-// less crowded axis has more pixels than that for one of the view, they would flicker: coarser levels of the textures
-// hold means of more of them than are sampled here.
-const float kCoarsest = 0.3, kFinest = 3.0;
-const float kRim = 6.0;  // px of the image within which it gives way to older ones
-const float kAll = 0.999;  // a weight that leaves nothing
-
-// The image as the view's own camera would have it: lens and sensor spread a point over a deviation of some 0.6 px, of each
-// camera's own pixels. Where the view shows things smaller than the image, that is more of the image's pixels, and the filter is the
-// softer; where it shows them larger, it takes some of the image's spread away. `finer`: pixels of the image for one of the view. A
-// share of 1 - 6 v of the cubic filter spreads by a variance of v (sharpness.hpp).
-const float kSpread = 0.6, kSharpest = 1.5, kSoftest = -1.0;
-float sharp_for(float finer) {
-  return clamp(sharp - 6.0 * kSpread * kSpread * (finer * finer - 1.0), kSoftest, kSharpest);
-}
-
-// How an image shows a point.
-struct Sighting {
-  float weight;  // beside what older images saw; 0: not at all
-  vec2 pixel;    // of the image
-  float finer;   // pixels of the image for one of the view, on the less crowded axis
-};
-
-Sighting sighting_of(Point point) {
-  const Sighting none = Sighting(0.0, vec2(0.0), 1.0);
-  vec3 q = node_to_camera(node_poses, point.node, point.p);
-  vec2 pixel;
-  if (!is_seen(0, q, pixel)) return none;
-  // Pixels per area of the surface, of the image and of the view.
-  vec3 normal = rotate_to_camera(node_poses, point.node, point.normal);
-  float to_image = length(q), to_view = abs(point.t) * length(point.sight);
-  vec2 f = cameras[0].focal.xy, g = camera.focal.xy;
-  float image_pixels = f.x * f.y * abs(dot(normal, q)) / (to_image * to_image * to_image);
-  float view_pixels = g.x * g.y * abs(dot(point.normal, point.sight)) * abs(point.t) / (to_view * to_view * to_view);
-  float share = sqrt(image_pixels / max(view_pixels, 1e-12));
-  float finer = f.x * to_view / (g.x * to_image);
-  if (share < kCoarsest || finer > kFinest) return none;
-  vec2 inside = min(pixel, cameras[0].size.xy - 1.0 - pixel);
-  return Sighting(clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0), pixel, finer);
-}
+#include "sightings.glsl"
 #endif
 
 #if CASES == IMAGE
 // The image's colour at the point, at the exposure of the newest one, and its weight beside what older images saw; 0
 // where it does not see it.
-vec4 image_colour(Point point) {
-  Sighting seen = sighting_of(point);
+vec4 image_colour(Sighting seen) {
   if (seen.weight == 0.0) return vec4(0.0);
   vec2 size = cameras[0].size.xy;
   vec3 colour = unscaled(sample_for_view(image0, seen.pixel, size, sharp_for(seen.finer), seen.finer)) * without_vignetting(cameras[0].tone, seen.pixel, size);
   return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), seen.weight);
 }
+
+const float kAll = 0.999;  // a weight that leaves nothing
 
 // Both with weights; what `front` leaves is for `back`.
 vec4 over(vec4 front, vec4 back) {
@@ -247,10 +226,15 @@ void draw(ivec2 pixel, vec4 colour) {
 
 #if CASES == IMAGE
 void draw_pixel(ivec2 pixel) {
-  Point point;
-  bool on_model = find_point(pixel, point);
+#if HOMOGRAPHIES
+  Surface shown;
+  bool on_model = find_surface(pixel, shown);
+#else
+  Point shown;
+  bool on_model = find_point(pixel, shown);
+#endif
   vec4 colour = vec4(0.0);
-  if (on_model) colour = image_colour(point);
+  if (on_model) colour = image_colour(sighting_of(shown));
 #if BLENDED
   colour = over(imageLoad(picture, pixel), colour);
 #endif

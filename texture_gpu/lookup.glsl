@@ -50,7 +50,7 @@ vec4 cubic_weights(float f) {
 struct SharpTaps {
   Taps linear;
   vec4 cubic;
-  float all_seen;
+  float least;  // alpha
 };
 
 // Slots of 2x2 pages.
@@ -68,13 +68,14 @@ uint slot_of_page(ChartRecord chart, ivec2 page) {
 void add_tap(inout SharpTaps sum, FourPages pages, ivec2 place, float cubic, float linear) {
   uint slot = place.y < 16 ? (place.x < 16 ? pages.first : pages.right) : (place.x < 16 ? pages.below : pages.opposite);
   vec4 c = texelFetch(published_colours, slot_origin(slot & 0xffffffu, 0) + ivec3(place & 15, 0), 0);
-  c = slot == kNoSlot ? vec4(0.0) : vec4(min(c.rgb, vec3(BRIGHTEST)), c.a);
-  float seen = step(kSeen, c.a);
-  sum.all_seen *= seen;
-  sum.cubic += cubic * vec4(c.rgb, 1.0);
-  sum.linear.seen += linear * seen * vec4(c.rgb, 1.0);
-  sum.linear.quality += linear * seen * c.a;
-  sum.linear.filled += linear * (1.0 - seen) * step(0.5 / 255.0, c.a) * vec4(c.rgb, 1.0);
+  float alpha = slot == kNoSlot ? 0.0 : c.a;
+  vec4 colour = vec4(min(c.rgb, vec3(BRIGHTEST)), 1.0);
+  float seen = step(kSeen, alpha);
+  sum.least = min(sum.least, alpha);
+  sum.cubic += cubic * colour;
+  sum.linear.seen += linear * seen * colour;
+  sum.linear.quality += linear * seen * alpha;
+  sum.linear.filled += linear * (1.0 - seen) * step(0.5 / 255.0, alpha) * colour;
 }
 
 // As gather_taps() at level 0, but cubic where all texels that it takes were seen: two linear filters one after the
@@ -105,7 +106,7 @@ Taps gather_sharp_taps(ChartRecord chart, vec2 texel) {
   add_tap(sum, pages, ivec2(first.x + 3, nearest.y), wx.w * inner_y, 0.0);
   add_tap(sum, pages, ivec2(nearest.x, first.y), wy.x * inner_x, 0.0);
   add_tap(sum, pages, ivec2(nearest.x, first.y + 3), wy.w * inner_x, 0.0);
-  if (sum.all_seen > 0.5)
+  if (sum.least >= kSeen)
     sum.linear.seen = vec4(clamp(mix(sum.linear.seen.rgb, sum.cubic.rgb / sum.cubic.a, SHARP), 0.0, BRIGHTEST), 1.0);
   return sum.linear;
 }

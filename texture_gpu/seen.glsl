@@ -31,11 +31,10 @@ bool is_seen(int c, vec3 p, out vec2 pixel) {
   vec4 known = mix(near_over_z, vec4(1e30), equal(near_over_z, vec4(0.0)));
   float far = min(min(known.x, known.y), min(known.z, known.w)) / kNear;
   float near = max(max(near_over_z.x, near_over_z.y), max(near_over_z.z, near_over_z.w)) / kNear;
-  float z = 1.0 / inverse_z;
   // z beyond the farthest by more than a part of the tolerance: hidden. What stands on a surface must
   // not paint the part of it that it covers. Before the nearest: a guard texel
   // that floats beside the surface.
-  if ((z - kBehind * depth_tolerance) * far > 1.0 || (z + depth_tolerance) * near < 1.0) return false;
+  if ((1.0 - kBehind * depth_tolerance * inverse_z) * far > inverse_z || (1.0 + depth_tolerance * inverse_z) * near < inverse_z) return false;
   // All four must be certain: beside a silhouette the nearest pixel may show what stands in front.
   vec4 uncertain = c == 0 ? textureGather(uncertain0, at) : textureGather(uncertain1, at);
   if (any(greaterThan(uncertain, vec4(0.5)))) return false;

@@ -1,0 +1,56 @@
+// How an image shows what a pixel of a view shows. Needs camera.glsl, seen.glsl, `sharp`, and view.glsl's Point and Surface. Defines:
+// HOMOGRAPHIES, as there.
+// Less than this share of the view's resolution is clearly worse than what older images may have seen. Where even the
+// less crowded axis has more pixels than that for one of the view, they would flicker: coarser levels of the textures
+// hold means of more of them than are sampled here.
+const float kCoarsest = 0.3, kFinest = 3.0;
+const float kRim = 6.0;  // px of the image within which it gives way to older ones
+
+// The image as the view's own camera would have it: lens and sensor spread a point over a deviation of some 0.6 px, of each
+// camera's own pixels. Where the view shows things smaller than the image, that is more of the image's pixels, and the filter is the
+// softer; where it shows them larger, it takes some of the image's spread away. `finer`: pixels of the image for one of the view. A
+// share of 1 - 6 v of the cubic filter spreads by a variance of v (sharpness.hpp).
+const float kSpread = 0.6, kSharpest = 1.5, kSoftest = -1.0;
+float sharp_for(float finer) {
+  return clamp(sharp - 6.0 * kSpread * kSpread * (finer * finer - 1.0), kSoftest, kSharpest);
+}
+
+// How an image shows a point.
+struct Sighting {
+  float weight;  // beside what older images saw; 0: not at all
+  vec2 pixel;    // of the image
+  float finer;   // pixels of the image for one of the view, on the less crowded axis
+};
+
+// Of a point at `q` of the image's camera. `distance2`: square of its distance from the view's camera. `areas`: distance of its
+// surface's plane from the image's camera, of that from the view's. Few divisions and roots: they are what costs here.
+Sighting sighting_at(vec3 q, float distance2, float areas) {
+  const Sighting none = Sighting(0.0, vec2(0.0), 1.0);
+  vec2 pixel;
+  if (!is_seen(0, q, pixel)) return none;
+  float nearer2 = distance2 / dot(q, q), nearer = sqrt(nearer2);
+  vec2 finer = nearer * cameras[0].focal.xy / camera.focal.xy;
+  float share2 = finer.x * finer.y * nearer * areas;  // pixels of the image for one of the view, by area
+  if (share2 < kCoarsest * kCoarsest || finer.x > kFinest) return none;
+  vec2 inside = min(pixel, cameras[0].size.xy - 1.0 - pixel);
+  return Sighting(clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0), pixel, finer.x);
+}
+
+Sighting sighting_of(Point point) {
+  vec3 q = node_to_camera(node_poses, point.node, point.p);
+  vec3 normal = rotate_to_camera(node_poses, point.node, point.normal), way = point.t * point.sight;
+  return sighting_at(q, dot(way, way), abs(dot(normal, q)) / max(abs(dot(point.normal, way)), 1e-12));
+}
+
+#if HOMOGRAPHIES
+layout(binding = 8) uniform samplerBuffer homographies;
+
+// The same, without the point. The determinant of H is how far the plane is from the one camera, of that from the other.
+Sighting sighting_of(Surface shown) {
+  int first = 3 * int(shown.number - 1u);
+  vec4 x = texelFetch(homographies, first), y = texelFetch(homographies, first + 1), z = texelFetch(homographies, first + 2);
+  float t = 1.0 / (x.w * shown.ray.x + y.w * shown.ray.y + z.w * shown.ray.z);
+  vec3 q = t * vec3(dot(x.xyz, shown.ray), dot(y.xyz, shown.ray), dot(z.xyz, shown.ray));
+  return sighting_at(q, t * t * dot(shown.ray, shown.ray), abs(dot(x.xyz, cross(y.xyz, z.xyz))));
+}
+#endif
