@@ -16,6 +16,7 @@ constexpr int kBand = 64;        // rows: fewer cost as much as these, as each b
 constexpr GLuint kListUnit = 5, kLightUnit = 6, kPlanesUnit = 7, kHomographiesUnit = 8, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
 constexpr unsigned kBeforeBlock = 2;
+constexpr std::size_t kWordsOfBefore = 5;  // of its list: the pixel, and how it is seen
 
 enum class Cases { image, usual, every };
 
@@ -24,6 +25,7 @@ struct Pixels {
   bool listed = false;   // not all of them
   bool blended = false;  // with newer images, which the picture holds
   bool before = false;   // what the image before shows is left to it
+  bool found = false;    // the list says how the image shows them
   bool homographies = false;
 };
 
@@ -34,6 +36,7 @@ std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases,
   defines.push_back("LISTED " + std::to_string(pixels.listed));
   defines.push_back("BLENDED " + std::to_string(pixels.blended));
   defines.push_back("BEFORE " + std::to_string(pixels.before));
+  defines.push_back("FOUND " + std::to_string(pixels.found));
   defines.push_back("HOMOGRAPHIES " + std::to_string(pixels.homographies));
   defines.push_back("FRAGMENT " + std::to_string(fragment));
   return defines;
@@ -64,12 +67,13 @@ void set_tone(const gl::Program& program, float gain, float sharp, const Publish
 PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool levels, bool with_homographies)
     : newest(whole_view_program(std::array{view, lens}, Cases::image,
                                 {.levels = levels, .homographies = with_homographies})),
-      before(view_program(std::array{view, lens}, Cases::image, {.levels = levels, .listed = true, .blended = true})),
+      before(view_program(std::array{view, lens}, Cases::image,
+                          {.levels = levels, .listed = true, .blended = true, .found = true})),
       usual(view_program(std::array{view, lens}, Cases::usual,
                          {.levels = levels, .listed = true, .blended = true, .before = true})),
       rest(view_program({&view, 1}, Cases::every, {.levels = levels, .listed = true, .blended = true})),
       unseen("pixels that the newest image does not see", kGroup),
-      of_before("pixels that the image before shows", kGroup),
+      of_before("pixels that the image before shows", kGroup, kWordsOfBefore),
       framebuffer(gl::create_framebuffer("newest image")),
       rectangle(gl::create_vertex_array("newest image")) {
   if (with_homographies) homographies.emplace();

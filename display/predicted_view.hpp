@@ -90,7 +90,8 @@ class PredictedView {
     Projection(const Lens& view, const Lens& image, bool levels, bool homographies);
     gl::Program newest, before, usual, rest;
     gl::Program newest_of_part, usual_alone;  // once they are needed: the latter without an image before
-    WorkList unseen, of_before;               // by the newest image; of these, what the one before shows
+    WorkList unseen;                          // by the newest image
+    WorkList of_before;                       // of these, what the one before shows, and how
     SeenInputs newest_inputs, inputs_before;
     gl::Framebuffer framebuffer;  // the newest image is drawn into
     gl::VertexArray rectangle;

@@ -1,14 +1,15 @@
 // view.glsl for the pixels of some rows, or for those of a list. Defines: there.
-#include "view.glsl"
 #if LISTED
 #define WORK_UNIT 5
 #define ITEMS_PER_GROUP 64
+#define WORDS_PER_ITEM (FOUND == 1 ? 5 : 1)
 #include "work_item.glsl"
 layout(local_size_x = 64) in;
 #else
 layout(local_size_x = 8, local_size_y = 8) in;
 uniform ivec2 rows;  // first, and beyond the last
 #endif
+#include "view.glsl"
 
 void main() {
 #if LISTED

@@ -11,7 +11,8 @@
 //
 // view.frag and view.comp choose the pixels. Defines: CASES 0: an image; 1: the usual case; 2: every case.
 //          LEVELS: seen_plane.glsl. LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds newer
-//          images already. BEFORE: 1 where what the image before shows is left to it. FRAGMENT: 1 in view.frag.
+//          images already. BEFORE: 1 where what the image before shows is left to it. FRAGMENT: 1 in view.frag. FOUND: 1 where the
+//          list says how the image shows a pixel.
 //          HOMOGRAPHIES: 1 where those of the triangles' planes to the image are there (homographies.comp).
 #define IMAGE 0
 #define USUAL 1
@@ -59,6 +60,10 @@ const float kSeenShare = 0.25;
 
 vec3 pixel_light;  // what shadows of moving parts leave of the pixel's value
 
+void find_light(ivec2 pixel) {
+  pixel_light = texelFetch(light, min(pixel, textureSize(light, 0) - 1), 0).rgb;
+}
+
 // What a pixel shows.
 struct Surface {
   vec3 ray;      // of the view's camera
@@ -68,7 +73,7 @@ struct Surface {
 
 // False where no model is.
 bool find_surface(ivec2 pixel, out Surface found) {
-  pixel_light = texelFetch(light, min(pixel, textureSize(light, 0) - 1), 0).rgb;
+  find_light(pixel);
   if (!ray_through(pixel, found.ray)) return false;
 #if defined(FACE_IS_IMAGE) && FACE_IS_IMAGE
   found.at = ivec3(pixel, 0);
@@ -207,11 +212,15 @@ void leave_to_next(ivec2 pixel) {
 #endif
 #if BEFORE
 layout(binding = 2, std430) buffer ListBefore { uint before_args[4]; uint before_items[]; };
-void leave_to_before(ivec2 pixel) {
-  before_items[atomicAdd(before_args[3], 1u)] = uint(pixel.x) | uint(pixel.y) << 16;
+void leave_to_before(ivec2 pixel, Sighting seen) {
+  uint i = 5u * atomicAdd(before_args[3], 1u);
+  before_items[i] = uint(pixel.x) | uint(pixel.y) << 16;
+  before_items[i + 1u] = floatBitsToUint(seen.weight);
+  before_items[i + 2u] = floatBitsToUint(seen.pixel.x);
+  before_items[i + 3u] = floatBitsToUint(seen.pixel.y);
+  before_items[i + 4u] = floatBitsToUint(seen.finer);
 }
 #endif
-
 void draw(ivec2 pixel, vec4 colour) {
 #if FRAGMENT
   picture = colour;
@@ -225,7 +234,13 @@ void draw(ivec2 pixel, vec4 colour) {
 }
 
 #if CASES == IMAGE
-void draw_pixel(ivec2 pixel) {
+// How the image shows a pixel; false where no model is.
+bool find_sighting(ivec2 pixel, out Sighting seen) {
+#if FOUND
+  find_light(pixel);
+  seen = Sighting(number_of_work(1), vec2(number_of_work(2), number_of_work(3)), number_of_work(4));
+  return true;
+#else
 #if HOMOGRAPHIES
   Surface shown;
   bool on_model = find_surface(pixel, shown);
@@ -233,8 +248,16 @@ void draw_pixel(ivec2 pixel) {
   Point shown;
   bool on_model = find_point(pixel, shown);
 #endif
-  vec4 colour = vec4(0.0);
-  if (on_model) colour = image_colour(sighting_of(shown));
+  seen = Sighting(0.0, vec2(0.0), 1.0);
+  if (on_model) seen = sighting_of(shown);
+  return on_model;
+#endif
+}
+
+void draw_pixel(ivec2 pixel) {
+  Sighting seen;
+  bool on_model = find_sighting(pixel, seen);
+  vec4 colour = image_colour(seen);
 #if BLENDED
   colour = over(imageLoad(picture, pixel), colour);
 #endif
@@ -249,8 +272,9 @@ void draw_pixel(ivec2 pixel) {
     return;
   }
 #if BEFORE
-  if (sighting_of(point).weight > 0.0) {
-    leave_to_before(pixel);
+  Sighting seen = sighting_of(point);
+  if (seen.weight > 0.0) {
+    leave_to_before(pixel, seen);
     return;
   }
 #endif

@@ -11,13 +11,14 @@ constexpr std::size_t kHeader = 4 * sizeof(GLuint);
 
 }  // namespace
 
-WorkList::WorkList(const char* label, unsigned items_per_group)
+WorkList::WorkList(const char* label, unsigned items_per_group, std::size_t words_per_item)
     : items_per_group_(items_per_group),
+      bytes_per_item_(words_per_item * sizeof(GLuint)),
       args_(gl::Program::compute(gl::texture_gpu_shaders(), "work_args.comp")),
       buffer_(GL_R32UI, 4096, label) {}
 
 void WorkList::start(std::size_t most) {
-  buffer_.reserve(kHeader + most * sizeof(GLuint));
+  buffer_.reserve(kHeader + most * bytes_per_item_);
   const std::array<GLuint, 4> header{1, 0, 0, 0};
   buffer_.buffer().write(std::span<const GLuint>(header));
   bind();

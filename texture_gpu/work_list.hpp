@@ -10,7 +10,9 @@ namespace foresight {
 class WorkList {
  public:
   /// `items_per_group`: items that one work group of the program takes that works the list off.
-  explicit WorkList(const char* label, unsigned items_per_group = 1);
+  /// `words_per_item`: 32 bits each; more than one where the filling program says more of an item, and appends it
+  /// itself.
+  explicit WorkList(const char* label, unsigned items_per_group = 1, std::size_t words_per_item = 1);
 
   /// Empties the list, makes room for `most` items, and binds it for append_work().
   void start(std::size_t most);
@@ -26,6 +28,7 @@ class WorkList {
 
  private:
   unsigned items_per_group_;
+  std::size_t bytes_per_item_;
   gl::Program args_;
   gl::BufferTexture buffer_;
 };
