@@ -2,7 +2,7 @@
 # Makes docs/images/tour-*.jpg: the operator's window in each of its views, as keys choose them, over a slow line.
 #
 # A robot of the mock lab and a seat are two programs on this host; the window is on a screen of its own. Needs Xvfb,
-# xdotool (scripts/setup) and ImageMagick. About two minutes.
+# xdotool and ffmpeg (scripts/setup). About two minutes.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 foresight=$PWD/build/release/bin/foresight
@@ -17,6 +17,7 @@ trap end EXIT
 
 sed -e "s|urdf: arm.urdf|urdf: $PWD/configs/arm.urdf|" -e "s|rate_hz: 10|rate_hz: 5|" configs/minerva.yaml >"$folder/rig.yaml"
 echo "link: {interface: lo, domain: $((1 + $$ % 99)), round_trip_s: 2}" >>"$folder/rig.yaml"
+echo "{up: {delay_ms: 300}, down: {delay_ms: 300}}" >"$folder/line.yaml"
 
 mkfifo "$folder/display"
 Xvfb -displayfd 3 -screen 0 1000x700x24 -nolisten tcp 3>"$folder/display" 2>/dev/null &
@@ -24,7 +25,7 @@ children+=($!)
 read -r number <"$folder/display"
 export DISPLAY=:$number
 
-"$foresight" robot "$folder/rig.yaml" --mock --serve >/dev/null 2>&1 &
+"$foresight" robot "$folder/rig.yaml" --mock --serve --line "$folder/line.yaml" >/dev/null 2>&1 &
 children+=($!)
 (cd "$folder" && exec "$foresight" operator "$folder/rig.yaml" --mock --rate-hz 6 --font-scale 0.8) 2>"$folder/said" &
 children+=($!)
@@ -61,15 +62,26 @@ picture() { # NAME
     sleep 0.2
   done
   sleep 0.5
-  convert "$folder/foresight.png" -resize 640x -quality 80 "docs/images/tour-$1.jpg"
+  ffmpeg -v error -y -i "$folder/foresight.png" -vf scale=640:-1:flags=area -q:v 5 "docs/images/tour-$1.jpg"
 }
-drive() { # SECONDS KEY...: with the switch held
-  local seconds=$1
-  shift
-  xdotool keydown shift keydown "$1"
-  sleep "$seconds"
-  xdotool keyup "$1" keyup shift
-  sleep 1
+follows() { # holds the switch, anew where the robot does not follow the first press
+  for _ in $(seq 5); do
+    xdotool keydown shift
+    for _ in $(seq 20); do
+      case $(grep "operator: in command:" "$folder/said" | tail -1) in *"the robot follows"*) return ;; esac
+      sleep 0.2
+    done
+    xdotool keyup shift
+    sleep 1
+  done
+  fail "the robot never followed"
+}
+drive() { # SECONDS KEY
+  follows
+  xdotool keydown "$2"
+  sleep "$1"
+  xdotool keyup "$2" keyup shift
+  sleep 2
 }
 
 says "in command:   you"
@@ -78,10 +90,11 @@ press e
 sleep 3
 press h
 says "next:   ready"
-drive 2.1 Down
+drive 1.2 Down
 press F1
 sleep 1
-xdotool keydown shift keydown w
+follows
+xdotool keydown w
 sleep 3
 picture predicted
 xdotool keyup w keyup shift
