@@ -116,6 +116,21 @@ TEST_P(FinderTest, WhatShouldBeInTheHandIsSeenOnTheTable) {
   EXPECT_LT(off(*red), 0.004);
 }
 
+// There it has other light than on the mat, and the tray's boards hide its lower part.
+TEST_F(CoarseFinder, AThingInTheTrayIsSeenThereAndOnlyThere) {
+  look();
+  const Pose in_tray = moved(truth_[static_cast<std::size_t>(*room_.model()->find("tray"))], 0.005, 0.01, 0.006, 0.3);
+  thought(0) = moved(in_tray, 0.003, -0.002, 0, 0.04);
+  for (const ThingSighting& seen : look().sightings) EXPECT_NE(seen.thing, 0u) << "it still stands on the mat";
+  truth(0) = in_tray;
+  const FoundThings found = look();
+  print(found);
+  const auto red = std::ranges::find(found.sightings, std::size_t{0}, &ThingSighting::thing);
+  ASSERT_NE(red, found.sightings.end());
+  EXPECT_LT(off(*red), 0.006);
+  EXPECT_LT(off(*red), 4 * red->sigma);
+}
+
 TEST_F(CoarseFinder, AnotherThingOfTheSameShapeIsNotTaken) {
   look();
   thought(0) = moved(truth(1), 0.004, 0.004, 0, 0);
