@@ -13,15 +13,28 @@ double TaskWatch::seconds(RobotTime now) const {
   return pressed_ ? to_seconds(ended_.value_or(now) - *pressed_) : 0;
 }
 
-TaskOutcome TaskWatch::outcome(RobotTime now, const std::string& words, const std::function<bool()>& in_place) const {
+namespace {
+
+const char* what_is_wrong(ThingLies lies) noexcept {
+  switch (lies) {
+    case ThingLies::in_place: return "";
+    case ThingLies::unseen: return "the model says it lies in the tray, but no image has confirmed it";
+    case ThingLies::elsewhere: break;
+  }
+  return "the thing is not in the tray";
+}
+
+}  // namespace
+
+TaskOutcome TaskWatch::outcome(RobotTime now, const std::string& words, const std::function<ThingLies()>& where) const {
   TaskOutcome out{false, failure_, seconds(now)};
   if (failed()) return out;
   if (!pressed_)
     out.failure = "it never drove: " + words;
   else if (!ended_)
     out.failure = "stopped before its end";
-  else if (!in_place())
-    out.failure = "the thing is not in the tray";
+  else
+    out.failure = what_is_wrong(where());
   out.succeeded = out.failure.empty();
   return out;
 }

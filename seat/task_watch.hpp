@@ -4,6 +4,7 @@
 //     '------ failed -----'------------------------------> failed
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,6 +13,13 @@
 #include "seat/scripted_driver.hpp"
 
 namespace foresight {
+
+/// Where the thing of a task lies once the task is over, as far as who is asked can know.
+enum class ThingLies : std::uint8_t {
+  in_place,   ///< where it was to be brought; seen there, or nothing was to be brought anywhere
+  unseen,     ///< the model has it there, and no image has shown it there
+  elsewhere,
+};
 
 struct TaskOutcome {
   bool succeeded = false;
@@ -37,9 +45,9 @@ class TaskWatch {
   /// Since the first press; 0 before.
   double seconds(RobotTime now) const;
 
-  /// To be asked once all is over. `words`: what the seat says, for a robot that never followed; `in_place`: whether
-  /// things are where the task was to bring them, asked only where it ended.
-  TaskOutcome outcome(RobotTime now, const std::string& words, const std::function<bool()>& in_place) const;
+  /// To be asked once all is over. `words`: what the seat says, for a robot that never followed; `where`: is asked
+  /// only where it ended. What no image has shown did not succeed: the model takes things along on its own.
+  TaskOutcome outcome(RobotTime now, const std::string& words, const std::function<ThingLies()>& where) const;
 
  private:
   double most_s_;

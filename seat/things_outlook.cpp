@@ -141,6 +141,12 @@ std::vector<std::string> ThingsOutlook::names() const {
   return out;
 }
 
+bool ThingsOutlook::seen_at_rest(const std::string& node) const {
+  const auto known = std::ranges::find(options_.things, node, &KnownThing::node);
+  if (!future_ || known == options_.things.end()) return false;
+  return future_->thing(static_cast<std::size_t>(known - options_.things.begin())).status == ThingStatus::seen;
+}
+
 std::vector<std::string> ThingsOutlook::lines() const {
   std::vector<std::string> out;
   for (std::size_t i = 0; future_ && i < future_->size(); ++i) {

@@ -46,6 +46,9 @@ class ThingsOutlook {
   const ThingFuture* future() const { return future_.get(); }
   /// Names of the nodes that are loose.
   std::vector<std::string> names() const;
+  /// Whether that node rests where it is shown by an image's word: one that was taken since it came to rest there shows
+  /// it there, and none since contradicts. False for what is not loose.
+  bool seen_at_rest(const std::string& node) const;
   const ThingCounts& counts() const { return counts_; }
   /// What is to be known of them now, in a few words each: in the hand and how surely where (95 % of cases),
   /// contradicted by the images, gone.

@@ -78,6 +78,7 @@ nlohmann::ordered_json report_of(const SeatTrialFigures& figures, const Argument
   out["moving_share"] = number(seen.moving_share);
   out["succeeded"] = figures.task.succeeded;
   out["failure"] = figures.task.failure;
+  out["seen_in_tray"] = figures.seen_in_tray ? nlohmann::json(*figures.seen_in_tray) : nlohmann::json();
   out["task_s"] = figures.task.seconds;
   out["delay_ms"] = arguments.delay_ms;
   if (!arguments.line.empty()) out["line"] = arguments.line;

@@ -7,6 +7,7 @@
 #include "apps/operator/line_video.hpp"
 #include "apps/operator/seat_begin.hpp"
 #include "apps/operator/stepped_sides.hpp"
+#include "apps/operator/thing_lies.hpp"
 #include "apps/view_outputs.hpp"
 #include "common/error.hpp"
 #include "display/view_session.hpp"
@@ -28,6 +29,7 @@ using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
 constexpr double kLongest = 1200;          // s, and as long as the motion may last
+constexpr Duration kThingSeenWithin = 10s;  // after the end
 constexpr std::size_t kFramesKept = 1000;  // that come between two pictures: none is to be missed
 
 Identity named(Identity identity) {
@@ -137,7 +139,7 @@ class Trial {
       look(task_.under_way());
       learn_truth();
       if (options_.each) options_.each({now, robot_, end_, seat_, source_, pictures_, texture_bytes_});
-      if (task_.ended() && !measures_.waits()) break;
+      if (task_.ended() && !measures_.waits() && !waits_for_the_thing(now - *task_.ended())) break;
       if (now - told < 10s) continue;
       told = now;
       say(fmt::format("{:.0f} s: {}", to_seconds(now - begin),
@@ -151,6 +153,10 @@ class Trial {
   bool in_tray() {
     return sim::lies_in_tray(robot_.cameras().physics()->thing_at(options_.thing, clock_.now()),
                              place_at_rest(*scene_, options_.tray));
+  }
+  // By what images show at the operator's side.
+  bool waits_for_the_thing(Duration since_end) const {
+    return things_ && !things_->seen_at_rest(options_.thing) && since_end < kThingSeenWithin;
   }
   PredictedSourceOptions source_options() const {
     PredictedSourceOptions out;
@@ -222,7 +228,12 @@ class Trial {
   }
 
   SeatTrialFigures finish() {
-    figures_.task = task_.outcome(clock_.now(), words(), [this] { return !options_.physics || in_tray(); });
+    figures_.task = task_.outcome(clock_.now(), words(), [this] {
+      return !options_.physics || in_tray() ? ThingLies::in_place : ThingLies::elsewhere;
+    });
+    if (things_)
+      figures_.seen_in_tray = where_it_lies(*things_, *scene_, source_.robot().time, options_.thing, options_.tray) ==
+                              ThingLies::in_place;
     figures_.fidelity = measures_.finish();
     const SeatStatus status = seat_.status();
     figures_.delay_s = status.delay.seconds;

@@ -63,6 +63,9 @@ struct SeatTrialOptions {
 
 struct SeatTrialFigures {
   TaskOutcome task;
+  /// Whether images have shown the operator's side that the thing lies in the tray, where it cannot know the truth;
+  /// nothing without things.
+  std::optional<bool> seen_in_tray;
   double delay_s = 0;     ///< measured: of what is commanded
   double joints_p95 = 0;  ///< of what was shown, rad or m
   int losses = 0;

@@ -5,21 +5,20 @@
 #include <mutex>
 
 #include "apps/operator/seat_begin.hpp"
+#include "apps/operator/thing_lies.hpp"
 #include "display/view_loop.hpp"
 #include "seat/predicted_source.hpp"
 #include "seat/seat_options.hpp"
 #include "seat/seen_nodes.hpp"
-#include "seat/tool_script.hpp"
 #include "seat/view_setup.hpp"
 #include "seat/view_trust.hpp"
-#include "sim/lab_task.hpp"
 
 namespace foresight {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kTruthComesWithin = 10s;  // after the end, for what was shown last
+constexpr Duration kTruthComesWithin = 10s;  // after the end, for what was shown last, and for the thing
 
 /// What becomes of the script, for another thread than the seat's.
 class WatchedDriver final : public SeatDriver {
@@ -139,7 +138,8 @@ class ServedTrial final : ViewObserver {
     task_.see(now, driver_.state());
     if (task_.failed()) return false;
     tell(now);
-    return !task_.ended() || (measures_.waits() && now - *task_.ended() < kTruthComesWithin);
+    const bool waits = measures_.waits() || (things_ && !things_->seen_at_rest(options_.thing));
+    return !task_.ended() || (waits && now - *task_.ended() < kTruthComesWithin);
   }
 
   void tell(RobotTime now) {
@@ -151,19 +151,15 @@ class ServedTrial final : ViewObserver {
                        : status.control.words + (status.robot ? "; " + status.robot->doing.name : ""));
   }
 
-  bool in_tray() const {
-    const JointPositions rest = [](std::string_view) { return std::nullopt; };
-    SceneState state = scene_->state_at(source_.robot().time, rest, StateStatus::predicted);
-    things_->place(state);
-    const auto& nodes = scene_->model()->nodes();
-    const auto thing = std::ranges::find(nodes, options_.thing, &Node::name);
-    return sim::lies_in_tray(state.T_world_node[static_cast<std::size_t>(thing - nodes.begin())],
-                             place_at_rest(*scene_, options_.tray));
+  ThingLies where_the_thing_lies() const {
+    return things_ ? where_it_lies(*things_, *scene_, source_.robot().time, options_.thing, options_.tray)
+                   : ThingLies::in_place;
   }
 
   SeatTrialFigures finish(const SeatStatus& status) {
     SeatTrialFigures out;
-    out.task = task_.outcome(clock_.now(), status.control.words, [this] { return !things_ || in_tray(); });
+    out.task = task_.outcome(clock_.now(), status.control.words, [this] { return where_the_thing_lies(); });
+    if (things_) out.seen_in_tray = where_the_thing_lies() == ThingLies::in_place;
     out.delay_s = status.delay.seconds;
     out.joints_p95 = status.outlook.error.value_or(0);
     out.line = status.line;

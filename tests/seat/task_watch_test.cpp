@@ -12,11 +12,8 @@ const ScriptState kWaits{}, kDrives{.driving = true}, kDone{.done = true};
 RobotTime at(double t) {
   return RobotTime{} + seconds(t);
 }
-bool yes() {
-  return true;
-}
-bool no() {
-  return false;
+ThingLies in_place() {
+  return ThingLies::in_place;
 }
 
 TEST(TaskWatch, LastsFromTheFirstPressToTheEndOfTheScript) {
@@ -33,7 +30,7 @@ TEST(TaskWatch, LastsFromTheFirstPressToTheEndOfTheScript) {
   ASSERT_TRUE(task.ended());
   EXPECT_EQ(*task.ended(), at(9));
   task.see(at(12), kDone);
-  const TaskOutcome out = task.outcome(at(12), "", yes);
+  const TaskOutcome out = task.outcome(at(12), "", in_place);
   EXPECT_TRUE(out.succeeded);
   EXPECT_EQ(out.failure, "");
   EXPECT_DOUBLE_EQ(out.seconds, 7);
@@ -46,14 +43,25 @@ TEST(TaskWatch, EndsWhereTheScriptTakesTooLong) {
   EXPECT_TRUE(task.under_way());
   task.see(at(10.1), kDrives);
   EXPECT_TRUE(task.ended());
-  EXPECT_FALSE(task.outcome(at(11), "", no).succeeded);
-  EXPECT_THAT(task.outcome(at(11), "", no).failure, testing::HasSubstr("tray"));
+  EXPECT_TRUE(task.outcome(at(11), "", in_place).succeeded);
+}
+
+TEST(TaskWatch, DidNotSucceedWhereNoImageHasShownThatItDid) {
+  TaskWatch task(10);
+  task.see(at(0), kDrives);
+  task.see(at(9), kDone);
+  const auto outcome = [&](ThingLies lies) { return task.outcome(at(11), "", [lies] { return lies; }); };
+  EXPECT_FALSE(outcome(ThingLies::elsewhere).succeeded);
+  EXPECT_EQ(outcome(ThingLies::elsewhere).failure, "the thing is not in the tray");
+  EXPECT_FALSE(outcome(ThingLies::unseen).succeeded);
+  EXPECT_EQ(outcome(ThingLies::unseen).failure,
+            "the model says it lies in the tray, but no image has confirmed it");
 }
 
 TEST(TaskWatch, SaysWhyItDidNotSucceedAndAsksForNothingElse) {
   const auto never = [] {
     ADD_FAILURE() << "asked where things are, of a task that did not end";
-    return true;
+    return ThingLies::in_place;
   };
   TaskWatch idle(10);
   idle.see(at(0), kWaits);

@@ -41,20 +41,32 @@ class ThingsSeen : public testing::Test {
       outlook_.advance(robot_);
     }
   }
-  /// The hand that is shown takes the brick, and lifts it by 0.12 m.
-  void grasp_and_lift() {
-    const HandOptions hand = hand_options(rig_);
-    const InverseKinematics kinematics(*hand.arm);
+  /// Of the tool in the arm's base, `aside` (m) along y of where the jaws close on the brick, and so far above it.
+  Pose at_brick(double aside, double above) const {
     const std::vector<ToolStep> steps = pick_and_place(rig_, *scene_, "brick_red", "tray");
     const auto close = std::ranges::find_if(steps.begin() + 1, steps.end(),
                                             [](const ToolStep& s) { return s.what == ToolStep::What::gripper; });
-    const Pose at_brick = rig_.T_world_robot.inverse() * (close - 1)->T_world_tool;
-    Pose above = at_brick;
-    above.translation().z() += 0.12;
-    const HandStop stops[] = {{"above", above, 0.038, 3, true},
-                              {"down", at_brick, 0.038, 1.5},
-                              {"close", at_brick, 0.016, 1},
-                              {"lift", above, 0.016, 1.5}};
+    Pose out = rig_.T_world_robot.inverse() * (close - 1)->T_world_tool;
+    out.translation() += Eigen::Vector3d(0, aside, above);
+    return out;
+  }
+  /// The hand that is shown takes the brick, and lifts it by 0.12 m.
+  void grasp_and_lift() {
+    go({{"above", at_brick(0, 0.12), kOpen, 3, true},
+        {"down", at_brick(0, 0), kOpen, 1.5},
+        {"close", at_brick(0, 0), kClosed, 1},
+        {"lift", at_brick(0, 0.12), kClosed, 1.5}});
+  }
+  /// It sets the brick down `aside` of where it took it, and goes up.
+  void set_down(double aside) {
+    go({{"across", at_brick(aside, 0.12), kClosed, 2},
+        {"down", at_brick(aside, 0.002), kClosed, 1.5},
+        {"open", at_brick(aside, 0.002), kOpen, 1},
+        {"up", at_brick(aside, 0.12), kOpen, 1}});
+  }
+  void go(const std::vector<HandStop>& stops) {
+    const HandOptions hand = hand_options(rig_);
+    const InverseKinematics kinematics(*hand.arm);
     JointVector from(static_cast<Eigen::Index>(hand.arm_joints.size()));
     for (std::size_t i = 0; i < hand.arm_joints.size(); ++i)
       from[static_cast<Eigen::Index>(i)] = robot_.position[hand.arm_joints[i]];
@@ -81,6 +93,7 @@ class ThingsSeen : public testing::Test {
     ASSERT_EQ(outlook_.counts().looked, before + 1);
   }
 
+  static constexpr double kOpen = 0.038, kClosed = 0.016;  // m, of the jaws' joint
   const Rig rig_ = read_rig(source_folder() / "configs" / "minerva.yaml");
   const std::shared_ptr<const LiveScene> scene_ = std::make_shared<const LiveScene>(room().live(), room().lenses);
   ThingsOutlook outlook_{
@@ -148,6 +161,43 @@ TEST_F(ThingsSeen, WhatSlippedOutOfTheHandIsPutBackWhereImagesShowIt) {
   EXPECT_EQ(outlook_.counts().moved, 1u);
   EXPECT_EQ(outlook_.future()->failed_grasps(), 1u);
   EXPECT_TRUE(outlook_.lines().empty());
+}
+
+// The model takes it along and puts it down by itself: only an image of afterwards tells whether it truly lies there.
+TEST_F(ThingsSeen, WhatWasPutDownIsNotSeenThereUntilAnImageShowsIt) {
+  EXPECT_FALSE(outlook_.seen_at_rest("brick_red"));
+  wait(700ms);
+  see(room().rest());
+  EXPECT_TRUE(outlook_.seen_at_rest("brick_red"));
+  EXPECT_FALSE(outlook_.seen_at_rest("no such thing"));
+  grasp_and_lift();
+  EXPECT_FALSE(outlook_.seen_at_rest("brick_red")) << "it is in the hand";
+  set_down(0.03);
+  ASSERT_EQ(outlook_.future()->thing(0).status, ThingStatus::predicted);
+  sim::LabState truth = room().rest();
+  truth[room().nodes[0]].translation() = shown();
+  wait(700ms);
+  EXPECT_FALSE(outlook_.seen_at_rest("brick_red")) << "nothing has been seen of it since";
+  see(truth);
+  EXPECT_TRUE(outlook_.seen_at_rest("brick_red"));
+  EXPECT_LT((shown() - truth[room().nodes[0]].translation()).norm(), 0.005);
+}
+
+TEST_F(ThingsSeen, WhatWasNeverMovedIsSeenWhereItStandsNotWhereTheModelPutIt) {
+  wait(700ms);
+  const sim::LabState truth = room().rest();
+  see(truth);
+  grasp_and_lift();
+  set_down(0.03);
+  const Eigen::Vector3d before = truth[room().nodes[0]].translation(), put = shown();
+  ASSERT_GT((put - before).norm(), 0.025);
+  for (int i = 0; i < 6 && !outlook_.seen_at_rest("brick_red"); ++i) {
+    wait(100ms);
+    see(truth);
+  }
+  EXPECT_TRUE(outlook_.seen_at_rest("brick_red"));
+  wait(700ms);
+  EXPECT_LT((shown() - before).norm(), 0.01) << "at first sight within some pixels, and nowhere near where it was put";
 }
 
 TEST_F(ThingsSeen, WhatIsGoneIsToldInWords) {
