@@ -1,5 +1,6 @@
 #include "display/surface_records.hpp"
 
+#include "tests/display/read_texels.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -8,21 +9,11 @@ namespace {
 
 using SurfaceRecordsTest = HeadlessTest;
 
-std::vector<Eigen::Vector4d> read(GLuint texture, std::size_t count) {
-  GLint buffer = 0;
-  glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_BUFFER_DATA_STORE_BINDING, &buffer);
-  std::vector<Eigen::Vector4f> rows(count);
-  glGetNamedBufferSubData(static_cast<GLuint>(buffer), 0, static_cast<GLsizeiptr>(count * 16), rows.data());
-  std::vector<Eigen::Vector4d> out;
-  for (const auto& row : rows) out.push_back(row.cast<double>());
-  return out;
-}
-
 TEST_F(SurfaceRecordsTest, HoldPlanesAndPatches) {
   const SurfacePatches surface = find_surface_patches(*small_scene(), {});
   const SurfaceRecords records(surface);
-  const auto triangles = read(records.triangles(), 2 * surface.corners.size());
-  const auto patches = read(records.patches(), 4 * surface.patches.size());
+  const auto triangles = read_texels(records.triangles(), 2 * surface.corners.size());
+  const auto patches = read_texels(records.patches(), 4 * surface.patches.size());
   for (std::size_t t = 0; t < surface.corners.size(); ++t) {
     const auto patch = static_cast<std::size_t>(triangles[2 * t + 1].x());
     EXPECT_EQ(static_cast<int>(patch), surface.patch_of_triangle[t]);
