@@ -38,6 +38,7 @@ RunRecord describe(const ViewSession& session, const ViewSetup& setup) {
   record.version = FORESIGHT_VERSION;
   record.options.push_back({"pipeline", std::string(setup.thesis ? "thesis" : "core")});
   record.options.push_back({"projection", setup.newest_image && !setup.thesis});
+  record.options.push_back({"images", std::int64_t{setup.newest_image && !setup.thesis ? setup.textures.images : 0}});
   record.options.push_back({"detail", to_string(setup.levels ? setup.levels->rule : LevelRule::full)});
   for (const std::string& remark : session.level_remarks()) record.notes.push_back(remark + ".");
   return record;
@@ -102,6 +103,7 @@ void ViewMeasures::take(const ExtractionReport& report, FrameRecord& record) {
   record.gain = gain_ = std::exp(2.2 * report.log_gain);  // from 8-bit values to linear light
   record.misplacement_px = misplacement_px_ = report.misplacement_px;
   record_.texels = std::max(record_.texels, report.texels_resident);
+  record_.images_kept = std::max<std::uint64_t>(record_.images_kept, report.images_kept);
   policy_ = report.policy;
   lamp_ = report.lamp;
   if (lamp_.lamp && !lamp_known_from_) lamp_known_from_ = report.newest_image;

@@ -39,6 +39,7 @@ std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases,
   defines.push_back("FOUND " + std::to_string(pixels.found));
   defines.push_back("HOMOGRAPHIES " + std::to_string(pixels.homographies));
   defines.push_back("FRAGMENT " + std::to_string(fragment));
+  defines.emplace_back("KEPT 0");
   return defines;
 }
 
@@ -170,12 +171,21 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
                          const NewestImages& images) {
   start(T_world_camera, state, textures, images.newest->light);
   look_up(images);
+  const bool any_kept = !images.others.empty() && !draws_part_;
+  if (any_kept) {
+    if (!kept_) kept_ = std::make_unique<KeptPass>(raster_.has_levels());
+    kept_->choose(images, lens_, T_world_camera);
+  }
   const Projection& p = *projection_;
   for (const gl::Program* program : {&p.usual, &p.usual_alone, &p.rest})
     set_tone(*program, images.newest->gain, textures.sharp, textures);
   start_part();
   draw_rows([&](Rows rows) {
     draw_newest(images, rows);
+    if (any_kept) {
+      (*kept_)([&] { draw_rectangle(rows); });
+      glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    }
     if (images.before)
       draw_usual_and_before(images);
     else

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "display/kept_pass.hpp"
 #include "display/paint_pass.hpp"
 #include "display/plane_homographies.hpp"
 #include "display/scene_raster.hpp"
@@ -60,7 +61,8 @@ class PredictedView {
   void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures);
   /// The same, but where one of `images` saw a surface point, and about as sharply as the view shows it, the colour
   /// comes from there, from the newest before the one before; towards its rim each gives way to what comes after it.
-  /// All must stay leased.
+  /// All must stay leased. Where others are kept, they are blended over the newest one (KeptPass); not in a part of a
+  /// view.
   void draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
             const NewestImages& images);
   /// The one or the other: with images where they are leased.
@@ -141,6 +143,7 @@ class PredictedView {
   std::unique_ptr<Part> part_;  // from the first draw_part() on
   bool draws_part_ = false;
   std::unique_ptr<Projection> projection_;  // from the first such draw() on
+  std::unique_ptr<KeptPass> kept_;          // from the first one with images beside the newest on
   gl::Buffer camera_;
   gl::BufferTexture node_poses_;      // T_node_camera: three rows a node
   gl::Texture rays_;                  // RGB32F directions, only for lenses with distortion

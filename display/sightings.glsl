@@ -22,24 +22,29 @@ struct Sighting {
   float finer;   // pixels of the image for one of the view, on the less crowded axis
 };
 
-// Of a point at `q` of the image's camera. `distance2`: square of its distance from the view's camera. `areas`: distance of its
+// Of a point at `q` of camera `c`, the image's. `distance2`: square of its distance from the view's camera. `areas`: distance of its
 // surface's plane from the image's camera, of that from the view's. Few divisions and roots: they are what costs here.
-Sighting sighting_at(vec3 q, float distance2, float areas) {
+Sighting sighting_at(int c, vec3 q, float distance2, float areas) {
   const Sighting none = Sighting(0.0, vec2(0.0), 1.0);
   vec2 pixel;
-  if (!is_seen(0, q, pixel)) return none;
+  if (!is_seen(c, q, pixel)) return none;
   float nearer2 = distance2 / dot(q, q), nearer = sqrt(nearer2);
-  vec2 finer = nearer * cameras[0].focal.xy / camera.focal.xy;
+  vec2 finer = nearer * cameras[c].focal.xy / camera.focal.xy;
   float share2 = finer.x * finer.y * nearer * areas;  // pixels of the image for one of the view, by area
   if (share2 < kCoarsest * kCoarsest || finer.x > kFinest) return none;
-  vec2 inside = min(pixel, cameras[0].size.xy - 1.0 - pixel);
+  vec2 inside = min(pixel, cameras[c].size.xy - 1.0 - pixel);
   return Sighting(clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0), pixel, finer.x);
 }
 
+Sighting sighting_of(int c, Point point) {
+  int node = point.node + c * node_count;
+  vec3 q = node_to_camera(node_poses, node, point.p);
+  vec3 normal = rotate_to_camera(node_poses, node, point.normal), way = point.t * point.sight;
+  return sighting_at(c, q, dot(way, way), abs(dot(normal, q)) / max(abs(dot(point.normal, way)), 1e-12));
+}
+
 Sighting sighting_of(Point point) {
-  vec3 q = node_to_camera(node_poses, point.node, point.p);
-  vec3 normal = rotate_to_camera(node_poses, point.node, point.normal), way = point.t * point.sight;
-  return sighting_at(q, dot(way, way), abs(dot(normal, q)) / max(abs(dot(point.normal, way)), 1e-12));
+  return sighting_of(0, point);
 }
 
 #if HOMOGRAPHIES
@@ -51,6 +56,6 @@ Sighting sighting_of(Surface shown) {
   vec4 x = texelFetch(homographies, first), y = texelFetch(homographies, first + 1), z = texelFetch(homographies, first + 2);
   float t = 1.0 / (x.w * shown.ray.x + y.w * shown.ray.y + z.w * shown.ray.z);
   vec3 q = t * vec3(dot(x.xyz, shown.ray), dot(y.xyz, shown.ray), dot(z.xyz, shown.ray));
-  return sighting_at(q, t * t * dot(shown.ray, shown.ray), abs(dot(x.xyz, cross(y.xyz, z.xyz))));
+  return sighting_at(0, q, t * t * dot(shown.ray, shown.ray), abs(dot(x.xyz, cross(y.xyz, z.xyz))));
 }
 #endif

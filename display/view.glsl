@@ -14,6 +14,7 @@
 //          images already. BEFORE: 1 where what the image before shows is left to it. FRAGMENT: 1 in view.frag. FOUND: 1 where the
 //          list says how the image shows a pixel.
 //          HOMOGRAPHIES: 1 where those of the triangles' planes to the image are there (homographies.comp).
+//          KEPT: 1 for an image that is blended over the newest one where it saw from the eye's side (kept.glsl).
 #define IMAGE 0
 #define USUAL 1
 #define EVERY 2
@@ -118,7 +119,9 @@ bool find_point(ivec2 pixel, out Point found) {
 #include "sightings.glsl"
 #endif
 
-#if CASES == IMAGE
+#if KEPT
+#include "kept.glsl"
+#elif CASES == IMAGE
 // The image's colour at the point, at the exposure of the newest one, and its weight beside what older images saw; 0
 // where it does not see it.
 vec4 image_colour(Sighting seen) {
@@ -233,7 +236,12 @@ void draw(ivec2 pixel, vec4 colour) {
 #endif
 }
 
-#if CASES == IMAGE
+#if KEPT
+void draw_pixel(ivec2 pixel) {
+  Point point;
+  draw(pixel, find_point(pixel, point) ? kept_colour(point) : vec4(0.0));
+}
+#elif CASES == IMAGE
 // How the image shows a pixel; false where no model is.
 bool find_sighting(ivec2 pixel, out Sighting seen) {
 #if FOUND

@@ -23,7 +23,7 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
       lens_(setup.left),
       scene_(setup.scene),
       surface_(setup.surface),
-      newest_image_(setup.newest_image && !setup.thesis) {
+      newest_image_(setup.newest_image && setup.textures.images > 0 && !setup.thesis) {
   gl::set_up_context();
   if (setup.thesis) {
     thesis_ =

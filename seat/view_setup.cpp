@@ -15,7 +15,7 @@ std::vector<ExpectedView> expected_views(const LiveScene& scene) {
 
 }  // namespace
 
-ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, bool shadows,
+ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, const TextureOptions& textures,
                           const std::optional<LevelSettings>& levels) {
   if (!scene.lenses())
     throw InputError(where, "the cameras have no calibration", "give it as `lens` in the rig (docs/rig-files.md)");
@@ -23,7 +23,7 @@ ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, bool
     throw InputError(where, "there is no model of what the cameras see",
                      "give one as `scene:` in the rig, or with --scene");
   ViewSetup setup;
-  setup.textures.shadows = shadows;
+  setup.textures = textures;
   setup.levels = levels;
   setup.scene = scene.model();
   setup.left = scene.lenses()->left;

@@ -7,8 +7,9 @@
 namespace foresight {
 
 /// With charts of a size that suits the cameras' own views. Throws InputError where lenses or model are not known,
-/// naming `where`. `shadows`: TextureOptions::shadows; `levels`: ViewSetup::levels.
-ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, bool shadows = true,
+/// naming `where`. `textures`: their depth_tolerance is the model's, where that states one; `levels`:
+/// ViewSetup::levels.
+ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, const TextureOptions& textures = {},
                           const std::optional<LevelSettings>& levels = std::nullopt);
 
 }  // namespace foresight

@@ -72,6 +72,17 @@ void CameraInput::upload(const cv::Mat& pixels) {
   staging.read = gl::Fence::insert();
 }
 
+std::uint64_t CameraInput::bytes() const {
+  const auto pixels = [](int width, int height) {
+    return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  };
+  constexpr std::uint64_t kDepth = 4, kUncertain = 1, kColour = 4;  // of a pixel
+  const gl::Faces& faces = faces_.faces;
+  const std::uint64_t of_faces = pixels(faces.width, faces.height) * (kDepth + kUncertain) +
+                                 pixels(blocks_.width(), blocks_.height()) * 2 * sizeof(float);
+  return of_faces * static_cast<std::uint64_t>(faces.count) + pixels(lens().width(), lens().height()) * kColour * 4 / 3;
+}
+
 void CameraInput::build_levels() const {
   glGenerateTextureMipmap(image_.name());
 }

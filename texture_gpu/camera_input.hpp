@@ -27,6 +27,9 @@ class CameraInput {
   /// Builds the coarser levels that textures of low resolution are sampled from.
   void build_levels() const;
 
+  /// Of this image, what it shares with others left out.
+  std::uint64_t bytes() const;
+
   const Lens& lens() const { return camera_->lens; }
   const gl::FaceImages& faces() const { return faces_; }
   const gl::Texture& image() const { return image_; }

@@ -22,6 +22,7 @@ struct ExtractionReport {
   double log_gain = 0;                    ///< of the left image (exposure.hpp)
   std::optional<double> misplacement_px;  ///< of images beside textures, along each axis (sharpness.hpp)
   LampAnswer lamp;                        ///< what is known of the main lamp
+  std::size_t images_kept = 0;            ///< that views look up, the newest included; 0 where only that is
   std::size_t pages = 0;                  ///< pages written; the thesis' pipeline: polygons
   std::size_t tiles = 0;                  ///< tiles of 64 texels for which an image was asked
   std::size_t texels_written = 0;    ///< of these tiles, those copied beside them, and those of changed resolutions

@@ -29,32 +29,31 @@ void FrameOnGpu::update_inputs(std::span<const Eigen::Vector3f> tones) {
 }
 
 ImagePlaces::ImagePlaces(const Lens& left, const std::optional<Lens>& right, double largest_margin_px)
-    : left_(left), right_(right), largest_margin_px_(largest_margin_px) {}
+    : lenses_(right ? std::vector{left, *right} : std::vector{left}),
+      largest_margin_px_(largest_margin_px),
+      places_(lenses_.size()) {}
 
-std::shared_ptr<PublishedImage> ImagePlaces::free_left(const FrameOnGpu& kept) {
-  for (const auto& place : lefts_)
-    if (place != kept.published && place->leases.load(std::memory_order_acquire) == 0) return place;
+std::shared_ptr<PublishedImage> ImagePlaces::free_place(std::size_t camera, const FrameOnGpu& kept) {
+  auto& places = places_[camera];
+  for (const auto& place : places)
+    if (std::ranges::find(kept.published, place) == kept.published.end() &&
+        place->leases.load(std::memory_order_acquire) == 0)
+      return place;
   auto fresh = std::make_shared<PublishedImage>();
-  fresh->camera =
-      lefts_.empty() ? std::make_shared<CameraInput>(left_, largest_margin_px_) : lefts_.front()->camera->another();
-  return lefts_.emplace_back(std::move(fresh));
-}
-
-std::shared_ptr<CameraInput> ImagePlaces::free_right(const FrameOnGpu& kept) {
-  for (const auto& place : rights_)
-    if (std::ranges::find(kept.cameras, place) == kept.cameras.end()) return place;
-  return rights_.emplace_back(rights_.empty() ? std::make_shared<CameraInput>(*right_, largest_margin_px_)
-                                              : rights_.front()->another());
+  fresh->camera = places.empty() ? std::make_shared<CameraInput>(lenses_[camera], largest_margin_px_)
+                                 : places.front()->camera->another();
+  return places.emplace_back(std::move(fresh));
 }
 
 void ImagePlaces::place(const PosedFrame& frame, const FrameOnGpu& kept, FrameOnGpu& out) {
   out.compared = false;
-  out.published = free_left(kept);
-  out.cameras = {out.published->camera};
   out.images = {without_pixels(frame.left)};
-  if (frame.right && right_) {
-    out.cameras.push_back(free_right(kept));
-    out.images.push_back(without_pixels(*frame.right));
+  if (frame.right && lenses_.size() > 1) out.images.push_back(without_pixels(*frame.right));
+  out.published.clear();
+  out.cameras.clear();
+  for (std::size_t i = 0; i < out.images.size(); ++i) {
+    out.published.push_back(free_place(i, kept));
+    out.cameras.push_back(out.published.back()->camera);
   }
   out.views.clear();
   for (std::size_t i = 0; i < out.images.size(); ++i) out.views.push_back(view_of(out.images[i], *out.cameras[i]));

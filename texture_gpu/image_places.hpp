@@ -11,10 +11,10 @@ namespace foresight {
 
 /// One frame on the GPU: what the passes ask of it.
 struct FrameOnGpu {
-  std::vector<PosedImage> images;                     ///< left, right where there is one; without their pixels
-  std::vector<std::shared_ptr<CameraInput>> cameras;  ///< of each image
-  std::shared_ptr<PublishedImage> published;          ///< the left one, as it is lent to the display
-  std::vector<AtlasView> views;                       ///< of each image
+  std::vector<PosedImage> images;                          ///< left, right where there is one; without their pixels
+  std::vector<std::shared_ptr<CameraInput>> cameras;       ///< of each image
+  std::vector<std::shared_ptr<PublishedImage>> published;  ///< each image, as it is lent to the display
+  std::vector<AtlasView> views;                            ///< of each image
   SeenInputs inputs;
   bool compared = false;
   double log_gain = 0;                      ///< of the left image (exposure.hpp)
@@ -34,14 +34,11 @@ class ImagePlaces {
   void place(const PosedFrame& frame, const FrameOnGpu& kept, FrameOnGpu& out);
 
  private:
-  std::shared_ptr<PublishedImage> free_left(const FrameOnGpu& kept);
-  std::shared_ptr<CameraInput> free_right(const FrameOnGpu& kept);
+  std::shared_ptr<PublishedImage> free_place(std::size_t camera, const FrameOnGpu& kept);
 
-  Lens left_;
-  std::optional<Lens> right_;
+  std::vector<Lens> lenses_;
   double largest_margin_px_;
-  std::vector<std::shared_ptr<PublishedImage>> lefts_;
-  std::vector<std::shared_ptr<CameraInput>> rights_;
+  std::vector<std::vector<std::shared_ptr<PublishedImage>>> places_;  // of each camera
 };
 
 }  // namespace foresight

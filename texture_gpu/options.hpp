@@ -17,6 +17,11 @@ struct TextureOptions {
   /// time; while a generation made before is still shown, what was reserved then is held beside it. Where the GPU has
   /// no more, the atlas makes do with what it has.
   std::uint64_t memory_bytes = std::uint64_t{1024} << 20;
+  /// Images that views look up beside the textures: 0: none; 1: the newest one (and the one before, as far as
+  /// textures lack it); more: up to so many in all, of which the older ones are chosen for how differently they see,
+  /// and the newest one of the right camera. Fewer where they would take more than a quarter of memory_bytes, which
+  /// they take besides. Range 0 .. 16.
+  int images = 1;
   /// Pixels on the far side of a depth discontinuity that are not trusted, besides the outermost one
   /// on its near side; follows the registration's uncertainty. 0: all are trusted. Range 0 .. 32.
   double margin_px = 1.5;

@@ -1,6 +1,8 @@
 // What the texture thread hands to the display before the textures: the newest images, ready to be looked up.
 #pragma once
 
+#include <vector>
+
 #include "scene/posed_frame.hpp"
 #include "texture_gpu/camera_input.hpp"
 #include "texture_gpu/lease.hpp"
@@ -8,7 +10,7 @@
 
 namespace foresight {
 
-/// An image of the left camera with all that tells which surface points it shows. Written by the texture thread before
+/// An image with all that tells which surface points it shows. Written by the texture thread before
 /// it is published, then left alone until no lease is out.
 struct PublishedImage {
   std::shared_ptr<CameraInput> camera;      ///< pixels, depth and uncertain edges
@@ -18,6 +20,10 @@ struct PublishedImage {
   float sharp = 1;                          ///< SharpnessEstimator::cubic_share()
   std::shared_ptr<const SceneLight> light;  ///< as PublishedTextures::light
   double depth_tolerance = 0;               ///< TextureOptions::depth_tolerance
+  double range = 1;                         ///< typical distance of what is seen, m; where images are kept, as the next
+  /// R32F, a texel for 2x2 pixels: for how many seconds before this image the surface has looked as it does now, but
+  /// for gloss (StillPass).
+  gl::Texture still;
 
   mutable std::atomic<int> leases{0};
 };
@@ -27,6 +33,8 @@ struct NewestImages {
   Lease<PublishedImage> newest;
   /// Empty where textures hold all that it shows and `newest` does not.
   Lease<PublishedImage> before;
+  /// The right camera's newest one and older ones, where TextureOptions::images asks for them.
+  std::vector<Lease<PublishedImage>> others;
 
   mutable std::atomic<int> leases{0};
 };

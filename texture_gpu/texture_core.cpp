@@ -13,7 +13,8 @@ namespace {
 constexpr int kComparedPages = 600;
 // Images within which a page that stays in view is written anyway; the same after the lamp became known or was lost.
 constexpr std::uint64_t kImagesToRefresh = 32, kImagesToRelight = 8;
-constexpr double kGpuTimeout = 20;  // seconds for one frame, software renderers included
+constexpr std::uint64_t kShareOfImages = 4;  // images that are kept get so much less memory than textures
+constexpr double kGpuTimeout = 20;           // seconds for one frame, software renderers included
 
 std::vector<Lens> all_lenses(const Lens& left, const std::optional<Lens>& right) {
   return right ? std::vector{left, *right} : std::vector{left};
@@ -25,10 +26,12 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
                          const Lens& left, const std::optional<Lens>& right, const TextureOptions& options,
                          bool software_renderer)
     : scene_(std::move(scene)),
+      surface_(surface),
       options_(options),
       atlas_(surface, options),
       store_(atlas_),
       places_(left, right, options.margin_px),
+      kept_images_(options.images, options.memory_bytes / kShareOfImages),
       exposures_(right ? 2 : 1),
       buffers_(std::make_shared<gl::SceneBuffers>(*scene_)),
       raster_(buffers_, false),
@@ -38,6 +41,7 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
       lamp_finder_(scene_),
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
+  if (options.images > 1) still_pass_ = std::make_unique<StillPass>(left);
   // The first image is fused with an empty generation.
   current_ = generations_.take(store_);
   atlas_.write_table(table_);
@@ -142,6 +146,7 @@ ExtractionReport TextureCore::report() {
   out.log_gain = exposures_[0].log_gain();
   if (const auto square = sharpness_.misplacement2()) out.misplacement_px = std::sqrt(*square);
   out.lamp = lamp_finder_.answer();
+  out.images_kept = kept_images_.images().size();
   out.bytes_in_use = atlas_.bytes_in_use();
   out.bytes_reserved = store_.held().bytes();
   out.texels_resident = std::uint64_t{atlas_.resident_pages()} * atlas::kPage * atlas::kPage;
@@ -150,22 +155,37 @@ ExtractionReport TextureCore::report() {
 }
 
 void TextureCore::publish(LatestImages& latest) {
-  PublishedImage& out = *newest_.published;
-  out.image = newest_.images[0];
-  if (!out.image.margin_px) out.image.margin_px = options_.margin_px;
-  out.tone = {1, static_cast<float>(exposures_[0].vignetting().x()),
-              static_cast<float>(exposures_[0].vignetting().y())};
-  out.gain = static_cast<float>(std::exp(newest_.log_gain));
-  out.sharp = static_cast<float>(sharpness_.cubic_share());
-  out.light = newest_.light;
-  out.depth_tolerance = options_.depth_tolerance;
-  gl::Fence::insert().wait(kGpuTimeout);
+  for (std::size_t i = 0; i < newest_.images.size(); ++i) {
+    PublishedImage& out = *newest_.published[i];
+    const ExposureEstimator& exposure = exposures_[i];
+    out.image = newest_.images[i];
+    if (!out.image.margin_px) out.image.margin_px = options_.margin_px;
+    out.tone = {1, static_cast<float>(exposure.vignetting().x()), static_cast<float>(exposure.vignetting().y())};
+    out.gain = static_cast<float>(std::exp(exposure.log_gain()));
+    out.sharp = static_cast<float>(sharpness_.cubic_share());
+    out.light = newest_.light;
+    out.depth_tolerance = options_.depth_tolerance;
+  }
   auto images = std::make_shared<NewestImages>();
-  images->newest = Lease<PublishedImage>(newest_.published);
+  if (still_pass_) keep_newest(*images);
+  gl::Fence::insert().wait(kGpuTimeout);
+  images->newest = Lease<PublishedImage>(newest_.published[0]);
   const bool same_light = (newest_.light == nullptr) == (before_.light == nullptr);
-  if (owed_ && same_light) images->before = Lease<PublishedImage>(before_.published);
+  if (owed_ && same_light) images->before = Lease<PublishedImage>(before_.published[0]);
   latest.publish(std::move(images));
   clock_.mark("publish");
+}
+
+/// Lends what is kept beside the newest image, which will be kept, too.
+void TextureCore::keep_newest(NewestImages& images) {
+  const std::shared_ptr<PublishedImage>& newest = newest_.published[0];
+  newest->range = typical_range(*surface_, newest->camera->lens(), newest->image);
+  (*still_pass_)(*newest, before_.published.empty() ? nullptr : before_.published[0].get());
+  if (right_is_alike_) images.others.emplace_back(newest_.published[1]);
+  kept_images_.keep(newest);
+  for (const auto& image : kept_images_.images())
+    if (image != newest) images.others.emplace_back(image);
+  mark("kept images");
 }
 
 /// Image upload, depth and uncertain edges of every camera of the frame.
@@ -188,6 +208,7 @@ void TextureCore::look(const PosedFrame& frame) {
     take_out_shadows();
   }
   newest_.light = light_;
+  right_is_alike_ = still_pass_ && count > 1 && are_alike_in_hue(frame.left.pixels, frame.right->pixels);
 }
 
 /// Before its shadows are taken out of the image.

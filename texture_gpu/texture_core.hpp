@@ -11,8 +11,10 @@
 #include "texture_gpu/fill_pass.hpp"
 #include "texture_gpu/generation_pool.hpp"
 #include "texture_gpu/image_places.hpp"
+#include "texture_gpu/kept_images.hpp"
 #include "texture_gpu/lamp/lamp_finder.hpp"
 #include "texture_gpu/shadow_pass.hpp"
+#include "texture_gpu/still_pass.hpp"
 #include "texture_gpu/survey_pass.hpp"
 #include "texture_gpu/witness_pass.hpp"
 
@@ -51,6 +53,7 @@ class TextureCore {
   void find_lamp();
   void take_out_shadows();
   void publish(LatestImages& latest);
+  void keep_newest(NewestImages& images);
   void compare_with_textures();
   void estimate_exposure(int first, int stride);
   void save_what_leaves(LatestTextures& latest);
@@ -66,10 +69,13 @@ class TextureCore {
   ExtractionReport report();
 
   std::shared_ptr<const SceneModel> scene_;
+  std::shared_ptr<const SurfacePatches> surface_;
   TextureOptions options_;
   ChartAtlas atlas_;
   AtlasStore store_;
   ImagePlaces places_;
+  KeptImages kept_images_;
+  std::unique_ptr<StillPass> still_pass_;  // where images are kept
   std::vector<ExposureEstimator> exposures_;
   SharpnessEstimator sharpness_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;
@@ -91,9 +97,10 @@ class TextureCore {
   FrameGate* gate_ = nullptr;
 
   FrameOnGpu newest_, before_;
-  SeenInputs both_;         // the left images of the two
-  bool looked_up_ = false;  // views know the newest image itself
-  bool owed_ = false;       // not all of the newest image is in the textures
+  SeenInputs both_;              // the left images of the two
+  bool looked_up_ = false;       // views know the newest image itself
+  bool right_is_alike_ = false;  // the newest frame's right image can be shown beside the left one
+  bool owed_ = false;            // not all of the newest image is in the textures
   std::span<const PageRecord> records_;
   Masks seen_;                // what the newest image shows of them
   ExtractionReport done_;     // for the frame in work, so far

@@ -132,7 +132,7 @@ class LiveSeat {
 
  private:
   ViewSetup view_setup(const Rig& rig, const LiveSeatOptions& options) const {
-    ViewSetup out = live_view_setup(*scene_, rig.name, options.shadows, options.levels);
+    ViewSetup out = live_view_setup(*scene_, rig.name, options.textures, options.levels);
     out.gate = gate_;
     return out;
   }

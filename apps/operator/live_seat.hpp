@@ -9,6 +9,7 @@
 #include "rig/rig.hpp"
 #include "scene/lod/level_director.hpp"
 #include "seat/view_trust.hpp"
+#include "texture_gpu/options.hpp"
 
 namespace foresight {
 
@@ -29,8 +30,8 @@ struct LiveSeatOptions {
   std::vector<std::filesystem::path> display_lenses;  ///< of side_by_side: for both eyes, or left and right; or none
   double rate_hz = 30;
   double font_scale = 1;
-  bool sounds = true;                   ///< of what happens
-  bool shadows = true;                  ///< TextureOptions::shadows
+  bool sounds = true;  ///< of what happens
+  TextureOptions textures;
   std::optional<LevelSettings> levels;  ///< ViewSetup::levels
   ViewTrustOptions trust;
   std::optional<std::filesystem::path> screenshot;  ///< key P writes it

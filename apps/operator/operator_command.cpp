@@ -10,6 +10,7 @@
 #include "apps/operator/live_seat.hpp"
 #include "apps/operator/seat_trial.hpp"
 #include "apps/operator/served_trial.hpp"
+#include "apps/run_options.hpp"
 #include "apps/view_outputs.hpp"
 #include "common/error.hpp"
 #include "common/numbers_file.hpp"
@@ -36,7 +37,8 @@ struct Arguments {
   unsigned seed = 1;
   double seconds = 30;
   double pictures_hz = 5;
-  bool still_head = false, zero_delay = true, shadows = true, sounds = true;
+  bool still_head = false, zero_delay = true, sounds = true;
+  TextureOptions textures;
   LevelArguments detail;
   ViewOutputs outputs;
 };
@@ -144,7 +146,7 @@ SeatTrialFigures run_stepped(const Rig& rig, const Arguments& arguments, const T
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
   options.zero_delay = arguments.zero_delay;
-  options.shadows = arguments.shadows;
+  options.textures = arguments.textures;
   options.levels = level_settings(arguments.detail);
   options.fall_back.lowest_db = arguments.fidelity_db;
   options.out = arguments.outputs.out;
@@ -164,7 +166,7 @@ SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Ta
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
   options.fall_back.lowest_db = arguments.fidelity_db;
-  options.shadows = arguments.shadows;
+  options.textures = arguments.textures;
   options.levels = level_settings(arguments.detail);
   options.out = arguments.outputs.out;
   return try_served_seat(
@@ -215,7 +217,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.display_lenses.assign(arguments.display_lenses.begin(), arguments.display_lenses.end());
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
-  options.shadows = arguments.shadows;
+  options.textures = arguments.textures;
   options.levels = level_settings(arguments.detail);
   options.sounds = arguments.sounds;
   options.trust.fall_back.lowest_db = arguments.fidelity_db;
@@ -324,9 +326,10 @@ void add_operator_command(Command& app, std::function<int()>& action) {
   command->add_flag("--still-head", arguments->still_head, "With --scripted: the head does not move");
   command->add_flag("!--no-zero-delay", arguments->zero_delay,
                     "With --scripted: does not also draw each view as it would be without a line");
-  command->add_flag("!--no-shadows", arguments->shadows,
+  command->add_flag("!--no-shadows", arguments->textures.shadows,
                     "Shadows of what moves are shown where they were; else where they fall, once it is known where the "
                     "lamp is");
+  add_images_option(*command, arguments->textures.images);
   add_level_options(*command, arguments->detail);
   add_view_outputs(*command, arguments->outputs, {"shown", "delayed", "true"});
   command->footer(

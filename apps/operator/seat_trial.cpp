@@ -93,7 +93,7 @@ class Trial {
         seen_(scene_->model()),
         driver_(motion, options),
         seat_(rig, end_, driver_, clock_),
-        setup_(live_view_setup(*scene_, rig.name, options.shadows, options.levels)),
+        setup_(live_view_setup(*scene_, rig.name, options.textures, options.levels)),
         view_(setup_),
         period_(seconds(1 / mock_options(as_mock(*rig.cameras)).rate)),
         source_(rig, scene_, end_, seat_, clock_, source_options()),

@@ -17,6 +17,7 @@
 #include "seat/task_watch.hpp"
 #include "seat/trust_switch.hpp"
 #include "session/live_scene.hpp"
+#include "texture_gpu/options.hpp"
 
 namespace foresight {
 
@@ -46,8 +47,8 @@ struct SeatTrialOptions {
   double most_s = 120;     ///< of motion
   double pictures_hz = 5;  ///< that are measured, at most
   TrustSwitchOptions fall_back;
-  bool zero_delay = true;                    ///< also draws each view as it would be without a line
-  bool shadows = true;                       ///< TextureOptions::shadows
+  bool zero_delay = true;  ///< also draws each view as it would be without a line
+  TextureOptions textures;
   std::optional<LevelSettings> levels;       ///< ViewSetup::levels
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
   /// What the camera saw, as it is to be scored; none: as it was. The operator does not know it.

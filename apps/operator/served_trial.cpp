@@ -56,7 +56,7 @@ class ServedTrial final : ViewObserver {
         say_(say),
         participant_(rig.link, options.name, link::Role::operating, begin_line(options.line, clock_)),
         scene_(std::move(scene)),
-        setup_(live_view_setup(*scene_, rig.name, options.shadows, options.levels)),
+        setup_(live_view_setup(*scene_, rig.name, options.textures, options.levels)),
         end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         motion_(motion),
         seen_(scene_->model()),

@@ -11,14 +11,14 @@ namespace foresight {
 struct ServedTrialOptions {
   std::filesystem::path rig_file;
   std::string name = "the operator's program";
-  std::optional<LineSpec> line;              ///< that everything passes besides the network
-  bool things = false;                       ///< the robot's side is the mock lab with physics
-  std::string thing, tray;                   ///< with things: the thing shall end in the tray
-  double most_s = 120;                       ///< of motion
-  double found_within_s = 60;                ///< the robot has to be driven within that time
-  double pictures_hz = 5;                    ///< at most
-  TrustSwitchOptions fall_back;              ///< of the view that would be shown
-  bool shadows = true;                       ///< TextureOptions::shadows
+  std::optional<LineSpec> line;  ///< that everything passes besides the network
+  bool things = false;           ///< the robot's side is the mock lab with physics
+  std::string thing, tray;       ///< with things: the thing shall end in the tray
+  double most_s = 120;           ///< of motion
+  double found_within_s = 60;    ///< the robot has to be driven within that time
+  double pictures_hz = 5;        ///< at most
+  TrustSwitchOptions fall_back;  ///< of the view that would be shown
+  TextureOptions textures;
   std::optional<LevelSettings> levels;       ///< ViewSetup::levels
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
 };

@@ -199,6 +199,7 @@ Json to_json(const RunRecord& run) {
                  {"degenerate_triangles", run.degenerate_triangles},
                  {"charts", run.charts},
                  {"texels", run.texels},
+                 {"images_kept", run.images_kept},
                  {"renderer", run.renderer}};
   json["options"] = json_of_options(run.options);
   json["summary"] = json_of(run, summarise(run));

@@ -79,7 +79,8 @@ struct RunRecord {
   std::uint64_t scene_triangles = 0;
   std::uint64_t degenerate_triangles = 0;  ///< dropped when the model was read
   std::uint64_t charts = 0;
-  std::uint64_t texels = 0;  ///< of all charts together
+  std::uint64_t texels = 0;       ///< of all charts together
+  std::uint64_t images_kept = 0;  ///< at once, beside the textures (TextureOptions::images), at most
   std::vector<OptionRecord> options;
   std::string renderer;  ///< GL_RENDERER
   std::string version;   ///< of this program
