@@ -104,6 +104,7 @@ int play(const RunFolder& run, const ReplayOptions& options, std::vector<std::si
   gl::Context& context = window ? static_cast<gl::Context&>(*window) : *headless;
   ViewSetup setup = view_setup(run, options.textures, thesis_options(options));
   setup.newest_image = options.projection;
+  setup.silhouettes = options.silhouettes;
   setup.levels = level_settings(options.detail);
   ViewSession session(context, setup);
 

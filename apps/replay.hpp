@@ -21,9 +21,10 @@ struct ReplayOptions : RunOptions {
   ViewOutputs outputs;
   bool window = false;
   bool real_time = false;
-  bool projection = true;  ///< ViewSetup::newest_image; not with thesis
-  LevelArguments detail;   ///< not with thesis
-  bool refine = false;     ///< poses, from images that have arrived (replay_refinement.hpp); not with thesis
+  bool projection = true;   ///< ViewSetup::newest_image; not with thesis
+  bool silhouettes = true;  ///< ViewSetup::silhouettes; not with thesis
+  LevelArguments detail;    ///< not with thesis
+  bool refine = false;      ///< poses, from images that have arrived (replay_refinement.hpp); not with thesis
 };
 
 /// Checks all input before anything is written, then replays. Returns the exit code: 0, or 130

@@ -27,6 +27,9 @@ void add_replay_command(Command& app, std::function<int()>& action) {
   command->add_flag("!--full-extraction", options->textures.only_what_is_needed,
                     "Write all of every image to the textures; else, as views look the newest one up, what has no "
                     "colours yet and what the next image does not show as well");
+  command->add_flag(
+      "!--no-silhouettes", options->silhouettes,
+      "Leave edges of surfaces as hard as views find them; else they are mixed as a camera's pixels mix them");
   add_level_options(*command, options->detail);
   command->add_flag(
       "--refine", options->refine,

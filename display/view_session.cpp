@@ -42,6 +42,7 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
     levels_ = {std::make_shared<const gl::LevelBuffers>(*setup.scene, std::move(levels)), *setup.levels};
   }
   view_ = std::make_unique<PredictedView>(make_view(setup.left));
+  view_->mix_silhouettes(setup.silhouettes);
 }
 
 std::vector<std::string> ViewSession::level_remarks() const {

@@ -24,6 +24,7 @@ struct ViewSetup {
   TextureOptions textures;
   std::optional<thesis::Options> thesis;      ///< that pipeline replaces the texture core
   bool newest_image = true;                   ///< views look the newest image up directly; not with `thesis`
+  bool silhouettes = true;                    ///< of the view are mixed (SilhouettePass); not with `thesis`
   std::shared_ptr<FrameGate> gate = nullptr;  ///< TextureThread::Setup::gate; not with `thesis`
   std::optional<LevelSettings> levels{};      ///< of detail, of all views; nothing: in full. Not with `thesis`
 };
