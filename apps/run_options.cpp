@@ -46,13 +46,11 @@ void add_run_options(Command& command, RunOptions& options) {
       ->check(from_to(1e-4, 1.0));
 }
 
-void add_images_option(Command& command, int& images, const std::string& when) {
+void add_images_option(Command& command, int& images) {
   command
-      .add_option(
-          "--images", images,
-          when +
-              "Images that views look up directly: 1: the newest; more: also older ones, and the right camera's, where "
-              "they were taken from a side that is more like the eye's; 0: textures alone")
+      .add_option("--images", images,
+                  "Images that views look up directly: 1: the newest; more: also older ones, and the right camera's, "
+                  "where they were taken from a side that is more like the eye's; 0: textures alone")
       ->check(from_to(0, 16))
       ->capture_default_str();
 }

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "apps/command_line/command_line.hpp"
 #include "scene/run_folder.hpp"
@@ -22,7 +21,7 @@ struct RunOptions {
 void add_run_options(Command& command, RunOptions& options);
 
 /// Adds --images, of views (TextureOptions::images). `images` must live as long as `command`.
-void add_images_option(Command& command, int& images, const std::string& when = "");
+void add_images_option(Command& command, int& images);
 
 /// Reads and checks all of the run but its pixels, and sets options.textures.depth_tolerance by the
 /// model. Throws InputError.

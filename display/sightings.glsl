@@ -1,5 +1,6 @@
 // How an image shows what a pixel of a view shows. Needs camera.glsl, seen.glsl, `sharp`, and view.glsl's Point and Surface. Defines:
 // HOMOGRAPHIES, as there.
+
 // Less than this share of the view's resolution is clearly worse than what older images may have seen. Where even the
 // less crowded axis has more pixels than that for one of the view, they would flicker: coarser levels of the textures
 // hold means of more of them than are sampled here.

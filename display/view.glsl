@@ -224,6 +224,7 @@ void leave_to_before(ivec2 pixel, Sighting seen) {
   before_items[i + 4u] = floatBitsToUint(seen.finer);
 }
 #endif
+
 void draw(ivec2 pixel, vec4 colour) {
 #if FRAGMENT
   picture = colour;
