@@ -14,6 +14,10 @@ target_include_directories(foresight_options INTERFACE ${PROJECT_SOURCE_DIR})
 if(FORESIGHT_SANITIZE)
   target_compile_options(foresight_options INTERFACE -fsanitize=${FORESIGHT_SANITIZE} -fno-omit-frame-pointer
                                                      -fno-sanitize-recover=all)
+  if(FORESIGHT_SANITIZE MATCHES address)
+    # Eigen would have an allocator of its own there, and free with it what libraries without sanitizers have allocated.
+    target_compile_definitions(foresight_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
+  endif()
   target_link_options(foresight_options INTERFACE -fsanitize=${FORESIGHT_SANITIZE})
   add_library(foresight_keep_libraries OBJECT ${PROJECT_SOURCE_DIR}/tests/suppressions/keep_libraries.cpp)
   target_link_libraries(foresight_options INTERFACE

@@ -1,15 +1,9 @@
 #include "apps/bench/drawing_process.hpp"
 
-#include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <cstdio>
-
+#include "apps/bench/child_process.hpp"
 #include "apps/bench/image_feed.hpp"
-#include "common/error.hpp"
 #include "display/head/scene_drawer.hpp"
 
 namespace foresight {
@@ -44,25 +38,14 @@ void draw_for(head::ViewShare& share, const RunFolder& run) {
 }  // namespace
 
 DrawingProcess::DrawingProcess(const RunFolder& run, std::size_t most_pixels)
-    : share_({most_pixels, run.scene()->nodes().size()}) {
-  std::fflush(nullptr);
-  pid_ = ::fork();
-  if (pid_ < 0) throw RuntimeFailure("no process can be made", "end other programs");
-  if (pid_ > 0) return;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  ::setpriority(PRIO_PROCESS, 0, kNice);
-  try {
-    draw_for(share_, run);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench: the drawing process has ended: %s\n", error.what());
-  }
-  std::fflush(nullptr);
-  ::_exit(0);
-}
+    : share_({most_pixels, run.scene()->nodes().size()}), pid_(start_child([&] {
+        ::setpriority(PRIO_PROCESS, 0, kNice);
+        draw_for(share_, run);
+      })) {}
 
 DrawingProcess::~DrawingProcess() {
   share_.end();
-  ::waitpid(pid_, nullptr, 0);
+  wait_for_child(pid_);
 }
 
 }  // namespace foresight

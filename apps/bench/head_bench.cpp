@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "apps/bench/child_process.hpp"
 #include "apps/bench/head_lab.hpp"
 #include "apps/bench/head_motion_figures.hpp"
 #include "apps/bench/head_server_figures.hpp"
@@ -15,6 +16,7 @@
 #include "apps/bench/stereogram_figures.hpp"
 #include "apps/bench/temporary_folder.hpp"
 #include "apps/bench/warp_figures.hpp"
+#include "common/error.hpp"
 #include "common/numbers_file.hpp"
 #include "sim/synth_run.hpp"
 
@@ -37,7 +39,9 @@ class BenchRun {
     sim::SynthOptions options;
     options.frames = 12;
     options.truth = false;
-    sim::write_synth_run(out, options);
+    // Who draws is forked next, which must not have seen a context.
+    if (!wait_for_child(start_child([&] { sim::write_synth_run(out, options); })))
+      throw RuntimeFailure("the lab for the bench could not be rendered", "read what is said above");
     return out;
   }
   std::optional<TemporaryFolder> folder_;

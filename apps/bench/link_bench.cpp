@@ -1,7 +1,6 @@
 #include "apps/bench/link_bench.hpp"
 
 #include <fcntl.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "apps/bench/child_process.hpp"
 #include "apps/bench/temporary_folder.hpp"
 #include "apps/command_line/picture_size.hpp"
 #include "common/error.hpp"
@@ -94,27 +94,21 @@ void decode(LatestValue<link::StereoFrame>& newest, const Clock& clock, int to, 
 
 /// The operator's end, until it is killed.
 [[noreturn]] void receive(const LinkConfig& config, bool coded, int to) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  try {
-    MonotonicClock clock;
-    LatestValue<link::StereoFrame> newest;
-    const std::jthread decoder([&](const std::stop_token& stop) { decode(newest, clock, to, stop); });
-    link::Participant program(config, "bench receiver", link::Role::operating);
-    if (coded) receive_pieces(program, clock, to);
-    link::Reader reader(program, link::topics::frames());
-    for (;;) {
-      reader.wait(kReaderWait);
-      reader.take<link::StereoFrame>({}, [&](link::StereoFrame&& frame, const link::Sample& sample) {
-        const std::int64_t here = clock.now().ns;
-        write_all(to, {frame.number, Arrival::came, ms(here - frame.stamps.coded_ns), ms(here - frame.left.capture_ns),
-                       ms(frame.stamps.coded_ns - frame.stamps.taken_ns), sample.cdr.size(), resident_mb()});
-        newest.put(std::move(frame));
-      });
-    }
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench: receiver: %s\n", error.what());
+  MonotonicClock clock;
+  LatestValue<link::StereoFrame> newest;
+  const std::jthread decoder([&](const std::stop_token& stop) { decode(newest, clock, to, stop); });
+  link::Participant program(config, "bench receiver", link::Role::operating);
+  if (coded) receive_pieces(program, clock, to);
+  link::Reader reader(program, link::topics::frames());
+  for (;;) {
+    reader.wait(kReaderWait);
+    reader.take<link::StereoFrame>({}, [&](link::StereoFrame&& frame, const link::Sample& sample) {
+      const std::int64_t here = clock.now().ns;
+      write_all(to, {frame.number, Arrival::came, ms(here - frame.stamps.coded_ns), ms(here - frame.left.capture_ns),
+                     ms(frame.stamps.coded_ns - frame.stamps.taken_ns), sample.cdr.size(), resident_mb()});
+      newest.put(std::move(frame));
+    });
   }
-  ::_exit(1);
 }
 
 /// Noise on a smooth ground, as cameras deliver it; another picture each time, and as hard to code.
@@ -223,10 +217,8 @@ int bench_link(const LinkBenchOptions& options) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) throw RuntimeFailure("no pipe can be made", "end other programs");
   const UniqueFd from(ends[0]), to(ends[1]);
-  std::fflush(nullptr);
-  const pid_t receiver = ::fork();  // before any of our threads
-  if (receiver < 0) throw RuntimeFailure("no second process can be started", "end other programs");
-  if (receiver == 0) receive(config, options.coding == "h264", to.get());
+  const pid_t receiver =  // before any of our threads
+      start_child([&] { receive(config, options.coding == "h264", to.get()); });
   Arrivals all_arrivals;
   Sent sent;
   const auto end_receiver = [&] {

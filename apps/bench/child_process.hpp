@@ -1,0 +1,18 @@
+// Work in processes that are forked.
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+
+namespace foresight {
+
+/// The child does `job`, says what it throws, and ends, at the latest with this process. To be called before anything here
+/// has made an OpenGL context: what the driver of a GPU has begun before a fork does not work behind it.
+/// Throws RuntimeFailure: no process.
+pid_t start_child(const std::function<void()>& job);
+
+/// Until it has ended. False: it threw, or was killed.
+bool wait_for_child(pid_t child);
+
+}  // namespace foresight
