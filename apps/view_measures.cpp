@@ -122,7 +122,7 @@ void ViewMeasures::measure(FrameRecord& record, double draw_cpu_ms, FrameSource&
   if (outputs_.out) write_png(*outputs_.out / "predicted" / (record.stem + ".png"), predicted);
   record.stages.push_back({"view", draw_cpu_ms + drawn - before, std::nullopt, StagePart::view});
   record.stages.push_back({"measure", process_cpu_ms() - drawn, std::nullopt, StagePart::measure});
-  keeper_.offer(record, delayed_, predicted, actual);
+  if (outputs_.pictures()) keeper_.offer(record, delayed_, predicted, actual);
 }
 
 void ViewMeasures::note_lamp() {

@@ -18,6 +18,7 @@ struct ViewOutputs {
   std::optional<std::filesystem::path> report;  ///< JSON file
   std::optional<std::filesystem::path> html;    ///< HTML file
   bool any() const { return out || report || html; }
+  bool pictures() const { return out || html; }  ///< of a few instants: contact sheet, HTML report
 };
 
 /// Adds --out, --report and --html. `outputs` must live as long as `command`; `folders`: of pictures, within --out.
