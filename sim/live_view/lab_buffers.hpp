@@ -9,15 +9,15 @@
 
 namespace foresight::sim {
 
-/// Triangles between the light's samples, with the irradiance there; the materials' pictures with mipmaps. The light
-/// is that of one state of the lab, until it is lit anew: parts that move carry it along, and their shadows stay where
-/// they were. Usable from every context of the share group.
+/// The lab's facets, each with a grid of light samples that its pixels look up; the materials' pictures with mipmaps.
+/// The light is that of one state of the lab, until it is lit anew: parts that move carry it along, and their shadows
+/// stay where they were. Usable from every context of the share group.
 class LabBuffers {
  public:
   struct Draw {
     int part = 0, material = 0;
-    GLsizei index_count = 0;
-    std::size_t first_index = 0;
+    GLint first = 0;  ///< vertex; three make a facet
+    GLsizei count = 0;
   };
   struct Picture {
     gl::Texture texture;              ///< square roots of linear light, mirrored outside
@@ -34,19 +34,21 @@ class LabBuffers {
   const std::vector<Draw>& draws() const { return draws_; }  ///< ordered by gloss, then by part
   const Picture& picture(int material) const { return pictures_[static_cast<std::size_t>(material)]; }
   const std::vector<PrintPicture>& prints() const { return prints_; }
-  std::size_t triangle_count() const { return triangles_; }
+  /// A samplerBuffer: the irradiance on each facet's grid, row by row, as sim/light_map.hpp draws it.
+  GLuint light() const { return light_.texture(); }
 
-  /// Of the current context: attributes 0 place, 1 normal, 2 place on the picture (metres), 3 irradiance.
+  /// Of the current context: attributes 0 place, 1 normal, 2 place on the picture (metres), 3 where in light() the
+  /// facet's grid begins, and how many steps it has (integers).
   gl::VertexArray create_vertex_array() const;
 
  private:
   std::vector<Picture> pictures_;
   std::vector<PrintPicture> prints_;
   std::vector<Draw> draws_;
-  gl::Buffer vertices_, light_, indices_;
-  std::vector<Eigen::Vector3f> irradiance_;  // of each vertex
+  gl::Buffer vertices_;
+  gl::BufferTexture light_;
+  std::vector<Eigen::Vector3f> irradiance_;  // as light_
   int facets_ = 0;
-  std::size_t triangles_ = 0;
 };
 
 }  // namespace foresight::sim

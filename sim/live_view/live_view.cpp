@@ -29,6 +29,14 @@ Eigen::Vector2f noise_of(const Sensor& sensor) {
   return {kReadShare * sigma * sigma, (1 - kReadShare) * sigma * sigma / mid};
 }
 
+gl::Handle<gl::delete_texture> create_samples(GLenum format, const gl::Faces& faces, const char* label) {
+  GLuint name = 0;
+  glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &name);
+  glTextureStorage2DMultisample(name, LiveView::kSamples, format, faces.width, faces.height, GL_TRUE);
+  glObjectLabel(GL_TEXTURE, name, -1, label);
+  return gl::Handle<gl::delete_texture>(name);
+}
+
 }  // namespace
 
 LiveView::LiveView(std::shared_ptr<const LabBuffers> lab, const Lens& lens, const Sensor& sensor)
@@ -40,19 +48,24 @@ LiveView::LiveView(std::shared_ptr<const LabBuffers> lab, const Lens& lens, cons
       nothing_(gl::create_vertex_array("no vertices")),
       matt_(gl::Program::graphics(gl::live_view_shaders(), "live.vert", "live.frag")),
       glossy_(gl::Program::graphics(gl::live_view_shaders(), "live.vert", "live.frag", {"GLOSS 1"})),
+      resolve_(gl::Program::graphics(gl::live_view_shaders(), "whole.vert", "resolve.frag",
+                                     {"SAMPLES " + std::to_string(kSamples)})),
       sensor_program_(
           gl::Program::graphics(gl::live_view_shaders(), "whole.vert", "sensor.frag",
                                 sensor.noise > 0 ? std::vector<std::string>{"NOISE 1"} : std::vector<std::string>{})),
+      samples_(create_samples(GL_RGBA8, faces_, "live face, in samples")),
+      depth_(create_samples(GL_DEPTH_COMPONENT32F, faces_, "live depth")),
       colour_(GL_RGBA8, faces_.width, faces_.height, faces_.count, 1, "live faces"),
-      depth_(GL_DEPTH_COMPONENT32F, faces_.width, faces_.height, 0, 1, "live depth"),
       places_(GL_RGBA32F, lens.width(), lens.height(), 0, 1, "lens places"),
       yuyv_(GL_RGBA8, lens.width() / 2, lens.height(), 0, 1, "live image"),
-      face_target_(gl::create_framebuffer("live face")),
+      face_target_(gl::create_framebuffer("live face, in samples")),
+      colour_target_(gl::create_framebuffer("live face")),
       sensor_target_(gl::create_framebuffer("live sensor")) {
   if (lens.width() % 2) throw std::invalid_argument("a YUYV image needs an even width");
   if (!lab_->prints().empty()) prints_.emplace();
   for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glTextureParameteri(colour_.name(), filter, GL_LINEAR);
+  glNamedFramebufferTexture(face_target_.name(), GL_COLOR_ATTACHMENT0, samples_.name(), 0);
   glNamedFramebufferTexture(face_target_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0);
   glNamedFramebufferTexture(sensor_target_.name(), GL_COLOR_ATTACHMENT0, yuyv_.name(), 0);
   set_places();
@@ -105,48 +118,55 @@ void LiveView::draw_parts(const gl::Program& program, bool glossy, const Pose& T
     if (glossy) program.set("eye", vec4(T_face_world.inverse().translation().cast<float>(), picture.gloss));
     program.set("uv_scale", picture.per_metre);
     glBindTextureUnit(0, picture.texture.name());
-    glDrawElements(GL_TRIANGLES, draw.index_count, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(draw.first_index * sizeof(std::uint32_t)));
+    glDrawArrays(GL_TRIANGLES, draw.first, draw.count);
   }
+}
+
+void LiveView::draw_face(const Pose& T_face_world, const LabState& T_world_part,
+                         std::span<const Pose> T_world_print) const {
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glEnable(GL_CULL_FACE);
+  glFrontFace(GL_CW);  // rows grow downwards: what is counter-clockwise to the eye is clockwise here
+  glBindFramebuffer(GL_FRAMEBUFFER, face_target_.name());
+  const float nothing[4] = {};
+  glClearNamedFramebufferfv(face_target_.name(), GL_COLOR, 0, nothing);
+  glClearNamedFramebufferfv(face_target_.name(), GL_DEPTH, 0, nothing);
+  glBindTextureUnit(1, lab_->light());
+  glBindVertexArray(array_.name());
+  for (const bool glossy : {false, true}) {
+    const gl::Program& program = glossy ? glossy_ : matt_;
+    program.use();
+    program.set("face", Eigen::Vector4d(faces_.fx, faces_.fy, faces_.cx, faces_.cy).cast<float>().eval());
+    program.set("face_size", Eigen::Vector2i(faces_.width, faces_.height).cast<float>().eval());
+    if (glossy) {
+      program.set("lamp_centre", vec4(lamp::centre(), lamp::size()));
+      program.set("lamp_normal", vec4(lamp::axes().normal));
+      program.set("lamp_right", vec4(lamp::axes().right));
+      program.set("lamp_up", vec4(lamp::axes().up));
+    }
+    draw_parts(program, glossy, T_face_world, T_world_part);
+  }
+  glBindVertexArray(nothing_.name());
+  if (prints_) (*prints_)(faces_, T_face_world, lab_->prints(), T_world_print);
+  glDisable(GL_CULL_FACE);
+  glFrontFace(GL_CCW);
+  glDisable(GL_DEPTH_TEST);
 }
 
 void LiveView::draw_faces(const Pose& T_world_camera, const LabState& T_world_part,
                           std::span<const Pose> T_world_print) const {
   glViewport(0, 0, faces_.width, faces_.height);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
-  glEnable(GL_CULL_FACE);
-  glFrontFace(GL_CW);  // rows grow downwards: what is counter-clockwise to the eye is clockwise here
   for (int i = 0; i < faces_.count; ++i) {
-    glNamedFramebufferTextureLayer(face_target_.name(), GL_COLOR_ATTACHMENT0, colour_.name(), 0, i);
-    glBindFramebuffer(GL_FRAMEBUFFER, face_target_.name());
-    const float nothing[4] = {};
-    glClearNamedFramebufferfv(face_target_.name(), GL_COLOR, 0, nothing);
-    glClearNamedFramebufferfv(face_target_.name(), GL_DEPTH, 0, nothing);
     Pose T_face_camera = Pose::Identity();
     T_face_camera.linear() = gl::Faces::rotation(i);
-    const Pose T_face_world = T_face_camera * T_world_camera.inverse();
-    glBindVertexArray(array_.name());
-    for (const bool glossy : {false, true}) {
-      const gl::Program& program = glossy ? glossy_ : matt_;
-      program.use();
-      program.set("face", Eigen::Vector4d(faces_.fx, faces_.fy, faces_.cx, faces_.cy).cast<float>().eval());
-      program.set("face_size", Eigen::Vector2i(faces_.width, faces_.height).cast<float>().eval());
-      if (glossy) {
-        program.set("lamp_centre", vec4(lamp::centre(), lamp::size()));
-        program.set("lamp_normal", vec4(lamp::axes().normal));
-        program.set("lamp_right", vec4(lamp::axes().right));
-        program.set("lamp_up", vec4(lamp::axes().up));
-      }
-      draw_parts(program, glossy, T_face_world, T_world_part);
-    }
-    if (!prints_) continue;
-    glBindVertexArray(nothing_.name());
-    (*prints_)(faces_, T_face_world, lab_->prints(), T_world_print);
+    draw_face(T_face_camera * T_world_camera.inverse(), T_world_part, T_world_print);
+    glNamedFramebufferTextureLayer(colour_target_.name(), GL_COLOR_ATTACHMENT0, colour_.name(), 0, i);
+    glBindFramebuffer(GL_FRAMEBUFFER, colour_target_.name());
+    resolve_.use();
+    glBindTextureUnit(0, samples_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
   }
-  glDisable(GL_CULL_FACE);
-  glFrontFace(GL_CCW);
-  glDisable(GL_DEPTH_TEST);
 }
 
 bool LiveView::draw(const Pose& T_world_camera, const LabState& T_world_part, double gain, std::uint64_t number,

@@ -16,12 +16,13 @@
 
 namespace foresight::sim {
 
-/// Against sim::Renderer it lacks motion blur and rolling shutter, filters pictures by mipmaps, has one sample per
-/// pixel of a face, halves the colours' resolution (YUYV), and only takes sensors' blur of about 0.6 px. Belongs to one
-/// context.
+/// Against sim::Renderer it lacks motion blur and rolling shutter, filters pictures by mipmaps, looks at edges in
+/// kSamples places of a pixel, halves the colours' resolution (YUYV), and only takes sensors' blur of about 0.6 px.
+/// Belongs to one context.
 class LiveView {
  public:
   static constexpr std::size_t kImages = 3;  ///< under way, at most
+  static constexpr int kSamples = 4;         ///< of a pixel of a face
 
   /// `lens` must have an even width. Throws std::invalid_argument.
   LiveView(std::shared_ptr<const LabBuffers> lab, const Lens& lens, const Sensor& sensor);
@@ -46,6 +47,7 @@ class LiveView {
     const std::uint8_t* bytes = nullptr;  // mapped for ever
     gl::Fence done;
   };
+  void draw_face(const Pose& T_face_world, const LabState& T_world_part, std::span<const Pose> T_world_print) const;
   void draw_faces(const Pose& T_world_camera, const LabState& T_world_part, std::span<const Pose> T_world_print) const;
   void draw_parts(const gl::Program& program, bool glossy, const Pose& T_face_world,
                   const LabState& T_world_part) const;
@@ -56,10 +58,11 @@ class LiveView {
   Sensor sensor_;
   gl::Faces faces_;
   gl::VertexArray array_, nothing_;
-  gl::Program matt_, glossy_, sensor_program_;
+  gl::Program matt_, glossy_, resolve_, sensor_program_;
   std::optional<PrintPass> prints_;  // where there are any
-  gl::Texture colour_, depth_, places_, yuyv_;
-  gl::Framebuffer face_target_, sensor_target_;
+  gl::Handle<gl::delete_texture> samples_, depth_;  // of one face
+  gl::Texture colour_, places_, yuyv_;
+  gl::Framebuffer face_target_, colour_target_, sensor_target_;
   std::array<Slot, kImages> slots_;
   std::deque<std::size_t> waiting_;  // slots under way, oldest first
   std::size_t next_ = 0;
