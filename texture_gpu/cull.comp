@@ -10,7 +10,7 @@ layout(binding = 2) uniform sampler2DArray blocks1;
 layout(binding = 3) uniform usamplerBuffer pages;  // three texels a page: PageRecord in chart_atlas.hpp
 layout(binding = 4) uniform samplerBuffer charts;
 layout(binding = 0, std430) writeonly buffer Masks { uint masks[]; };
-uniform int page_count;
+uniform int first_group, page_count;
 uniform int camera_count;
 uniform int node_count;
 uniform float depth_tolerance;
@@ -82,7 +82,7 @@ bool may_see(int c, vec3 p, vec3 a, vec3 b, float slack) {
 }
 
 void main() {
-  int index = int(gl_GlobalInvocationID.x);
+  int index = 64 * first_group + int(gl_GlobalInvocationID.x);
   if (index >= page_count) return;
   uvec4 page = texelFetch(pages, 3 * index), planes01 = texelFetch(pages, 3 * index + 1),
         planes23 = texelFetch(pages, 3 * index + 2);

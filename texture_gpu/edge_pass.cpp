@@ -1,5 +1,6 @@
 #include "texture_gpu/edge_pass.hpp"
 
+#include "texture_gpu/frame_gate.hpp"
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
@@ -11,7 +12,7 @@ EdgePass::EdgePass()
       tiles_("edge tiles"),
       pixels_("pixels at edges", 64) {}
 
-void EdgePass::operator()(const CameraInput& camera, double margin_px, double depth_tolerance) {
+void EdgePass::operator()(const CameraInput& camera, double margin_px, double depth_tolerance, FrameGate* gate) {
   const gl::Faces& faces = camera.faces().faces;
   const Eigen::Vector2i size(faces.width, faces.height);
   const auto layers = static_cast<GLuint>(faces.count);
@@ -26,6 +27,7 @@ void EdgePass::operator()(const CameraInput& camera, double margin_px, double de
 
   glClearTexImage(camera.uncertain().name(), 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
   if (margin_px <= 0) return;
+  next_slice(gate, "near edges");
   const auto tolerance = static_cast<float>(depth_tolerance);
   const int tiles_x = (faces.width + 7) / 8, tiles_y = (faces.height + 7) / 8;
   edge_tiles_.use();
@@ -42,6 +44,7 @@ void EdgePass::operator()(const CameraInput& camera, double margin_px, double de
   pixels_.start(static_cast<std::size_t>(faces.width) * static_cast<std::size_t>(faces.height) * layers);
   tiles_.dispatch();
   pixels_.finish();
+  next_slice(gate, "uncertain pixels");
 
   uncertain_.use();
   uncertain_.set("face_size", size);

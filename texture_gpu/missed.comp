@@ -13,7 +13,7 @@ layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 10) uniform usamplerBuffer tiles;  // page << 2 | tile
 layout(binding = 11) uniform sampler2DArray blocks0;  // of camera 0 (blocks.comp)
 layout(binding = 0, std430) writeonly buffer Answers { uint answers[]; };  // 1 missed, 3 clearly coarser
-uniform int tile_count;
+uniform int first_group, tile_count;
 uniform float worse;  // a share of the other camera's resolution below which this one's is clearly coarser
 
 const float kRim = 6.0;  // px, as in view.glsl: towards its rim the image gives way to what the textures hold
@@ -68,7 +68,7 @@ float pixels_per_texel(int c, Tile t, vec3 p) {
 }
 
 void main() {
-  int index = int(gl_GlobalInvocationID.x);
+  int index = 64 * first_group + int(gl_GlobalInvocationID.x);
   if (index >= tile_count) return;
   uint item = texelFetch(tiles, index).r;
   ivec2 in_page = 8 * ivec2(item & 1u, (item >> 1) & 1u);

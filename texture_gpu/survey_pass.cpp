@@ -1,5 +1,6 @@
 #include "texture_gpu/survey_pass.hpp"
 
+#include "texture_gpu/extract_pass.hpp"
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
@@ -12,13 +13,17 @@ gl::Program program(const char* file, std::span<const Lens> lenses, const std::v
 }
 
 /// One answer for each invocation of a program of groups of 64, which is in use with all that it needs: `buffer` gets
-/// them.
-template <typename Answer>
-void ask(const gl::Buffer& buffer, std::vector<Answer>& answers) {
+/// them. `dispatch`: runs so many groups.
+template <typename Answer, typename Dispatch>
+void ask(const gl::Buffer& buffer, std::vector<Answer>& answers, Dispatch&& dispatch) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.name());
-  glDispatchCompute(gl::groups(static_cast<int>(answers.size()), 64), 1, 1);
+  dispatch(gl::groups(static_cast<int>(answers.size()), 64));
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   buffer.read(std::span(answers));
+}
+
+void at_once(GLuint groups) {
+  glDispatchCompute(groups, 1, 1);
 }
 
 }  // namespace
@@ -44,7 +49,7 @@ void SurveyPass::set_pages(std::span<const PageRecord> pages) {
 }
 
 std::vector<std::uint32_t> SurveyPass::cull(const SeenInputs& inputs, const gl::BufferTexture& charts,
-                                            double depth_tolerance) {
+                                            double depth_tolerance, FrameGate* gate) {
   std::vector<std::uint32_t> masks(static_cast<std::size_t>(page_count_));
   if (masks.empty()) return masks;
   cull_.use();
@@ -58,12 +63,13 @@ std::vector<std::uint32_t> SurveyPass::cull(const SeenInputs& inputs, const gl::
   glBindTextureUnit(2, inputs.camera(inputs.camera_count() - 1).blocks().name());
   glBindTextureUnit(3, pages_.texture());
   glBindTextureUnit(4, charts.texture());
-  ask(masks_, masks);
+  ask(masks_, masks, [&](GLuint groups) { dispatch_slices(cull_, groups, gate, "pages in view"); });
   return masks;
 }
 
-/// Of `tiles`, what `program` says of each.
-std::vector<std::uint32_t> SurveyPass::ask_tiles(const gl::Program& program, std::span<const std::uint32_t> tiles) {
+/// Of `tiles`, what `program` says of each, in slices of `kind`.
+std::vector<std::uint32_t> SurveyPass::ask_tiles(const gl::Program& program, std::span<const std::uint32_t> tiles,
+                                                 FrameGate* gate, const char* kind) {
   std::vector<std::uint32_t> answers(tiles.size());
   if (tiles.empty()) return answers;
   program.use();
@@ -71,13 +77,13 @@ std::vector<std::uint32_t> SurveyPass::ask_tiles(const gl::Program& program, std
   tiles_.assign(tiles);
   if (answers_.bytes() < tiles.size_bytes()) answers_ = gl::Buffer(tiles.size_bytes() * 3 / 2, "missed tiles");
   glBindTextureUnit(10, tiles_.texture());
-  ask(answers_, answers);
+  ask(answers_, answers, [&](GLuint groups) { dispatch_slices(program, groups, gate, kind); });
   return answers;
 }
 
 SurveyPass::Missed SurveyPass::missed(const SeenInputs& inputs, std::span<const Eigen::Vector4f> geometry,
                                       const AtlasStore& store, std::span<const std::uint32_t> seen,
-                                      double depth_tolerance, double worse) {
+                                      double depth_tolerance, double worse, FrameGate* gate) {
   std::vector<std::size_t> pages;  // of which geometry tells
   std::vector<std::uint32_t> tiles, answers;
   for (std::size_t page = 0; page < seen.size(); ++page) {
@@ -93,7 +99,7 @@ SurveyPass::Missed SurveyPass::missed(const SeenInputs& inputs, std::span<const 
     glBindTextureUnit(7, geometry_.texture());
     glBindTextureUnit(9, store.heights.name());
     glBindTextureUnit(11, inputs.camera(0).blocks().name());
-    answers = ask_tiles(*program, tiles);
+    answers = ask_tiles(*program, tiles, gate, program == &missed_ ? "missed tiles" : "tiles perhaps missed");
     std::size_t kept = 0;
     for (std::size_t i = 0; i < tiles.size(); ++i) {
       if (!answers[i]) continue;
@@ -119,7 +125,7 @@ std::vector<ExposureSample> SurveyPass::brightness(const SeenInputs& inputs, con
   inputs.bind(exposure_, depth_tolerance);
   exposure_.set("camera", camera);
   bind_pages(exposure_, charts, store, first, stride);
-  ask(samples_, samples);
+  ask(samples_, samples, at_once);
   return samples;
 }
 
@@ -131,7 +137,7 @@ std::vector<AgreementSample> SurveyPass::agreement(const SeenInputs& inputs, con
   inputs.bind(agreement_, depth_tolerance);
   bind_pages(agreement_, charts, store, first, stride);
   textures.bind();
-  ask(samples_, samples);
+  ask(samples_, samples, at_once);
   return samples;
 }
 

@@ -13,6 +13,8 @@
 
 namespace foresight {
 
+class FrameGate;
+
 /// The only passes whose answers come back to the CPU: pages are allocated there. One context.
 class SurveyPass {
  public:
@@ -22,8 +24,9 @@ class SurveyPass {
   /// Uploads the pages to be asked about.
   void set_pages(std::span<const PageRecord> pages);
 
-  /// One mask per page: bit 2 * tile + camera (cull.comp). Waits for the GPU.
-  std::vector<std::uint32_t> cull(const SeenInputs& inputs, const gl::BufferTexture& charts, double depth_tolerance);
+  /// One mask per page: bit 2 * tile + camera (cull.comp). Waits for the GPU. `gate`: in slices; may be null.
+  std::vector<std::uint32_t> cull(const SeenInputs& inputs, const gl::BufferTexture& charts, double depth_tolerance,
+                                  FrameGate* gate = nullptr);
 
   /// Which tiles hold points that camera 1 of `inputs` saw and camera 0 does not show, or less well (missed.comp).
   struct Missed {
@@ -31,9 +34,9 @@ class SurveyPass {
     std::vector<std::size_t> coarser;  ///< pages that camera 0 shows, but below `worse` of camera 1's resolution
   };
   /// Of the tiles in `seen`, which has a mask for each page as cull() gives them; their heights are there. `geometry`:
-  /// ChartAtlas::write_page_geometry() for them and both cameras. Waits for the GPU.
+  /// ChartAtlas::write_page_geometry() for them and both cameras. Waits for the GPU. `gate`: as above.
   Missed missed(const SeenInputs& inputs, std::span<const Eigen::Vector4f> geometry, const AtlasStore& store,
-                std::span<const std::uint32_t> seen, double depth_tolerance, double worse);
+                std::span<const std::uint32_t> seen, double depth_tolerance, double worse, FrameGate* gate = nullptr);
 
   /// Samples of the pages first, first + stride, ... as `camera` sees them now (exposure.comp).
   /// Waits for the GPU.
@@ -47,7 +50,8 @@ class SurveyPass {
                                          double depth_tolerance, int first, int stride);
 
  private:
-  std::vector<std::uint32_t> ask_tiles(const gl::Program& program, std::span<const std::uint32_t> tiles);
+  std::vector<std::uint32_t> ask_tiles(const gl::Program& program, std::span<const std::uint32_t> tiles,
+                                       FrameGate* gate, const char* kind);
 
   int sample_count(int first, int stride) const;
   void bind_pages(const gl::Program& program, const gl::BufferTexture& charts, const AtlasStore& store, int first,

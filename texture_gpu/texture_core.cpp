@@ -83,7 +83,7 @@ bool TextureCore::look(const PosedFrame& frame, LatestImages& latest) {
 
 ExtractionReport TextureCore::extract(LatestTextures& latest) {
   clock_.resume();
-  const SlicedWork slices(gate_, "pages");
+  const SlicedWork slices(gate_, "textures");
   if (owed_) save_what_leaves(latest);
   ChartAtlas::Allocation allocation;
   if (!allocate(allocation)) return {};
@@ -199,7 +199,8 @@ void TextureCore::look(const PosedFrame& frame) {
     raster_(newest_.images[i].T_world_camera, newest_.images[i].scene, newest_.cameras[i]->faces());
   mark("depth");
   for (std::size_t i = 0; i < count; ++i)
-    edges_(*newest_.cameras[i], newest_.images[i].margin_px.value_or(options_.margin_px), options_.depth_tolerance);
+    edges_(*newest_.cameras[i], newest_.images[i].margin_px.value_or(options_.margin_px), options_.depth_tolerance,
+           gate_);
   mark("edges");
   newest_.update_inputs(std::vector<Eigen::Vector3f>(count, {1, 0, 0}));
   newest_.log_gain = exposures_[0].log_gain();
@@ -261,7 +262,7 @@ void TextureCore::save_what_leaves(LatestTextures& latest) {
 SurveyPass::Missed TextureCore::not_shown(const SeenInputs& inputs, const std::vector<AtlasView>& views,
                                           const Masks& tiles) {
   atlas_.write_page_geometry(tiles, views, geometry_);
-  return survey_.missed(inputs, geometry_, store_, tiles, options_.depth_tolerance, options_.worse);
+  return survey_.missed(inputs, geometry_, store_, tiles, options_.depth_tolerance, options_.worse, gate_);
 }
 
 /// Plans resolutions, asks the GPU which pages are seen, and gives places to those that are to be written; again with
@@ -269,11 +270,13 @@ SurveyPass::Missed TextureCore::not_shown(const SeenInputs& inputs, const std::v
 bool TextureCore::allocate(ChartAtlas::Allocation& out) {
   generations_.reclaim(atlas_);
   for (;;) {
+    next_slice(gate_, "pages");
     records_ = atlas_.plan(newest_.views, image_);
     atlas_.write_charts(chart_rows_);
     charts_.assign(std::span<const Eigen::Vector4f>(chart_rows_));
     survey_.set_pages(records_);
-    seen_ = survey_.cull(newest_.inputs, charts_, options_.depth_tolerance);
+    seen_ = survey_.cull(newest_.inputs, charts_, options_.depth_tolerance, gate_);
+    next_slice(gate_, "places");
     if (!place(needed(), image_, out)) return false;
     if (out.fits) break;
   }

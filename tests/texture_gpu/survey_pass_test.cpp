@@ -5,6 +5,7 @@
 
 #include "tests/support/headless_test.hpp"
 #include "tests/texture_gpu/pass_bench.hpp"
+#include "texture_gpu/frame_gate.hpp"
 
 namespace foresight::survey_pass_test {
 namespace {
@@ -126,6 +127,16 @@ TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {
   for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].brightness, samples[1 + 3 * i].brightness);
 }
 
+/// Each look at it takes long: whatever is measured by it is to be divided.
+class SlowClock final : public Clock {
+ public:
+  RobotTime now() const noexcept override { return {ns_ += 20'000'000}; }
+  void sleep_until(RobotTime) noexcept override {}
+
+ private:
+  mutable std::int64_t ns_ = 0;
+};
+
 // Camera 1 looks as the image before did, camera 0 as the newest one.
 TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
   const Lens lens = small_lens(GetParam());
@@ -141,6 +152,16 @@ TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
   std::vector<Eigen::Vector4f> geometry;
   b.atlas.write_page_geometry(masks, b.views, geometry);
   const auto missed = b.survey.missed(b.inputs, geometry, b.store, masks, b.options.depth_tolerance, b.options.worse);
+  SlowClock clock;
+  FrameGate gate(clock);
+  const SlicedWork work(&gate, "survey");
+  for (int i = 0; i < 3; ++i) {  // what it costs is known from the first time
+    EXPECT_EQ(b.survey.cull(b.inputs, b.next->charts, b.options.depth_tolerance, &gate), masks);
+    const auto in_slices =
+        b.survey.missed(b.inputs, geometry, b.store, masks, b.options.depth_tolerance, b.options.worse, &gate);
+    EXPECT_EQ(in_slices.masks, missed.masks);
+    EXPECT_EQ(in_slices.coarser, missed.coarser);
+  }
   const reference::Camera newest = b.camera(0), before = b.camera(1);
   ASSERT_EQ(missed.masks.size(), masks.size());
   int listed = 0, texels_missed = 0, texels_overlooked = 0;
