@@ -22,7 +22,7 @@ void FramePacer::drawn() {
 }
 
 void FramePacer::swapped() {
-  pacing_.swapped(clock_.now(), gate_ && gate_->take_work_waits());
+  pacing_.swapped(clock_.now(), gate_ ? gate_->rest_due() : Duration{0});
   if (gate_) gate_->frame_ends(pacing_.wake());
 }
 

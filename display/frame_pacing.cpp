@@ -53,7 +53,6 @@ Duration FramePacing::expected_cost() const {
 void FramePacing::drawn(RobotTime now) {
   drawn_ = now;
   const double cost = std::max(0.0, ns(now - wake_));
-  last_cost_ = rounded(cost);
   if (costs_.size() < kCosts)
     costs_.push_back(cost);
   else
@@ -61,20 +60,12 @@ void FramePacing::drawn(RobotTime now) {
   next_cost_ = (next_cost_ + 1) % kCosts;
 }
 
-void FramePacing::swapped(RobotTime now, bool work_waits) {
+void FramePacing::swapped(RobotTime now, Duration rest) {
   ++figures_.frames;
   const Duration tolerance = phase_ == PacingPhase::locked ? rounded(0.5 * refresh_ns_) : interval_ / 2;
   if (now > target_ + tolerance) ++figures_.late;
   learn({drawn_, now});
-  const Duration due = rest_due();
-  plan(now, work_waits ? std::max(due - spare_, Duration{0}) : Duration{0});
-  spare_ = std::clamp(spare_ + (wake_ - now) - due, Duration{0}, interval_);
-}
-
-/// For other work, in proportion to what this drawing took; but a stall's is none.
-Duration FramePacing::rest_due() const {
-  const Duration drawing = std::min(last_cost_, expected_cost()) + options_.reserve;
-  return rounded(ns(drawing) * options_.rest_share / (1 - options_.rest_share));
+  plan(now, std::min(rest, std::max(interval_, expected_cost())));
 }
 
 Duration FramePacing::off_grid(RobotTime at) const {

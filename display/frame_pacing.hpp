@@ -18,10 +18,6 @@ struct FramePacingOptions {
   double rate_hz = 30;  ///< of frames; on a display the nearest rate that its refreshes allow; > 0
   Duration reserve = std::chrono::microseconds(1500);  ///< that a drawing is to be finished before the target
   double quantile = 0.9;                               ///< of the drawings' costs that is counted on
-  /// While other work waits, it gets this share of the time, even where a frame is later for it: below 1. A third of
-  /// the time keeps it at a third of its pace at the least (thesis, chapter 6.3.2, has 10 ms after each frame instead).
-  /// What frames have left it beyond that counts, up to an interval: one slow drawing makes no further frame late.
-  double rest_share = 1.0 / 3;
 };
 
 enum class PacingPhase : std::uint8_t {
@@ -51,8 +47,9 @@ class FramePacing {
   RobotTime target() const { return target_; }
 
   void drawn(RobotTime now);  ///< the GPU has finished, the swap begins
-  /// `work_waits`: there is other work for the time between frames.
-  void swapped(RobotTime now, bool work_waits);
+  /// `rest`: that other work is to have before the next frame, which is later for it where need be
+  /// (SliceBudget::rest_due); of that, no more than an interval or a drawing lasts.
+  void swapped(RobotTime now, Duration rest = Duration{0});
 
   /// Something else than a frame has kept the display's thread until `now`: that is no drawing's cost.
   void held_up(RobotTime now) { plan(now, Duration{0}); }
@@ -67,7 +64,6 @@ class FramePacing {
     RobotTime begin, end;
   };
   Duration expected_cost() const;
-  Duration rest_due() const;
   void plan(RobotTime now, Duration rest);
   void learn(const Swap& swap);
   void look_for_display();
@@ -79,8 +75,6 @@ class FramePacing {
   Duration interval_;
   std::vector<double> costs_;  // ns, the last ones, in a ring
   std::size_t next_cost_ = 0;
-  Duration last_cost_{0};
-  Duration spare_{0};  // that other work has had lately beyond its share
   RobotTime wake_, target_, drawn_;
   std::vector<Swap> swaps_;  // of this phase
   PacingPhase phase_ = PacingPhase::own_clock;

@@ -41,7 +41,8 @@ void FrameGate::make_way() {
 std::size_t FrameGate::begin(const char* kind, std::size_t units) {
   std::unique_lock lock(mutex_);
   kind_ = kind;
-  asked_ = work_waits_ = true;
+  asked_ = true;
+  ++slices_;
   for (;;) {
     began_ = clock_.now();
     const double now = budget_.units_now(began_, kSlice, kind, static_cast<double>(units));
@@ -60,6 +61,11 @@ void FrameGate::end() {
     in_work_ = asked_ = false;
   }
   slice_ended_.notify_all();
+}
+
+Duration FrameGate::rest_due() const {
+  const std::scoped_lock lock(mutex_);
+  return asked_ ? budget_.rest_due(clock_.now()) : Duration{0};
 }
 
 bool FrameGate::in_work() const {

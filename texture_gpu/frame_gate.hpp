@@ -24,8 +24,9 @@ class FrameGate {
   /// Between its frames: a slice that has come to its turn runs first (SliceBudget::has_turn), alone, so that no frame
   /// takes longer for it. There are fewer frames where they leave the work less than its share. Waits 50 ms at most.
   void make_way();
-  /// Work has run or waited since the last call.
-  bool take_work_waits() { return work_waits_.exchange(false); }
+  /// When a frame has ended: for how long work is to have the processors before the next one (SliceBudget::rest_due).
+  /// 0 where there is none.
+  Duration rest_due() const;
 
   /// The working thread: waits until a slice may run, and says how many of `units` it is to do, at least 1. Slices of
   /// one kind cost alike per unit. end() once the GPU has finished it.
@@ -33,13 +34,14 @@ class FrameGate {
   void end();
   /// A slice has begun and not ended.
   bool in_work() const;
+  std::size_t slices() const { return slices_; }  ///< that have been asked for so far
 
  private:
   Clock& clock_;
   mutable std::mutex mutex_;
   std::condition_variable frame_ended_, slice_ended_;
   SliceBudget budget_;
-  std::atomic<bool> work_waits_ = false;
+  std::atomic<std::size_t> slices_ = 0;
   RobotTime began_;
   const char* kind_ = "";
   std::size_t units_ = 0;

@@ -12,6 +12,7 @@ constexpr std::size_t kCosts = 16;
 constexpr double kQuantile = 0.8;     // one preempted slice does not count
 constexpr double kMostOwedNs = 50e6;  // a slice that takes longer comes to its turn with it, and pays afterwards
 constexpr double kMostDebtNs = 200e6;
+constexpr double kMostSpareNs = 25e6;    // owed less: what it has had beyond its share
 constexpr double kUrgentNs = 20e6;       // owed: slices run even while a frame is drawn
 constexpr std::int64_t kLeastParts = 3;  // of a slice: less than one of them is not begun before a frame
 
@@ -48,6 +49,10 @@ double SliceBudget::owed_ns(RobotTime now) const {
   return std::min(owed_ns_ + since, kMostOwedNs);
 }
 
+Duration SliceBudget::rest_due(RobotTime now) const {
+  return Duration{std::llround(std::max(owed_ns(now), 0.0) / (1 - options_.least_share))};
+}
+
 bool SliceBudget::has_turn(RobotTime now) const {
   return waiting_since_ ? owed_ns(now) >= turn_ns_ : in_turn_;
 }
@@ -82,7 +87,7 @@ std::optional<RobotTime> SliceBudget::wait(RobotTime now, const std::string& kin
 
 void SliceBudget::ran(RobotTime begin, RobotTime end, const std::string& kind, double units) {
   const double took = static_cast<double>((end - begin).count());
-  owed_ns_ = std::max(owed_ns_ - (1 - options_.least_share) * took, took > kMostOwedNs ? -kMostDebtNs : 0.0);
+  owed_ns_ = std::max(owed_ns_ - (1 - options_.least_share) * took, took > kMostOwedNs ? -kMostDebtNs : -kMostSpareNs);
   Costs& costs = costs_[kind];
   const double unit = std::max(0.0, took) / std::max(units, 1.0);
   if (costs.ns.size() < kCosts)

@@ -4,10 +4,12 @@
 //   slices             [--][----][--]            [---][-----]
 //                                   ^ the next one would not be done by the next frame: it waits
 //
-// The overload rule (thesis, chapter 6.3.2): frames that leave nothing must not stop the work. While it waits, time is
-// put down for it; once that is a slice's worth, the slice runs after a frame whatever follows, and once it is 20 ms,
-// even while a frame is drawn. A slice of more than 50 ms pays for the rest afterwards: what was expected of it may be
-// wrong, as that of the first one, which compiles programs.
+// The overload rule (thesis, chapter 6.3.2, which has 10 ms after each frame instead): frames that leave nothing must not
+// stop the work. While it waits, a share of the time is put down for it. A display leaves that much before its next frame
+// (rest_due()). Where it does not, a slice runs after a frame whatever follows once it is the slice's worth, and once it
+// is 20 ms, even while a frame is drawn. What frames have left beyond the share counts, too: one slow drawing makes no
+// further frame late. A slice of more than 50 ms pays for the rest afterwards: what was expected of it may be wrong, as
+// that of the first one, which compiles programs.
 //
 // Where two displays show frames (a window, a headset), slices run in what both leave. A display whose frames must not
 // share a processor with a slice that has come to its turn lets it go first, and shows fewer frames: has_turn().
@@ -46,6 +48,8 @@ class SliceBudget {
 
   /// Nothing: a slice of this kind may begin. Else it asks again then, or when a frame has ended.
   std::optional<RobotTime> wait(RobotTime now, const std::string& kind, double units = 1);
+  /// How long work that waits would have to run from now on to have had its share of the time so far.
+  Duration rest_due(RobotTime now) const;
   /// Frames have put a slice off for as long as they may: it runs now, or is to run before the next frame.
   bool has_turn(RobotTime now) const;
   /// A slice of so many units ran. What it cost counts when the next one is planned.

@@ -84,6 +84,23 @@ TEST(SliceBudget, NeverStarves) {
   }
 }
 
+// What a display is to leave after its frame: work had a third of the time by then.
+TEST(SliceBudget, TellsTheRestThatIsDue) {
+  SliceBudget budget;
+  const auto at = [](int ms) { return RobotTime{} + Duration{1'000'000LL * ms}; };
+  budget.frame_begins(at(0));
+  EXPECT_TRUE(budget.wait(at(0), "slice"));
+  EXPECT_NEAR(static_cast<double>(budget.rest_due(at(36)).count()), 18e6, 1) << "of 54 ms";
+  budget.frame_ends(at(36), at(54));
+  EXPECT_FALSE(budget.wait(at(36), "slice"));
+  budget.ran(at(36), at(54), "slice");
+  EXPECT_NEAR(static_cast<double>(budget.rest_due(at(54)).count()), 0, 1);
+  budget.ran(at(54), at(69), "slice");  // 15 ms that were not due are 30 ms of which none is
+  EXPECT_TRUE((budget.frame_begins(at(69)), budget.wait(at(69), "slice")));
+  EXPECT_EQ(budget.rest_due(at(98)), 0ms);
+  EXPECT_GT(budget.rest_due(at(101)), 0ms);
+}
+
 // A headset's frames take all that there is, at 90 Hz: they make way for a third of the time, and none shares the
 // processor with a slice, so that each takes as long as without them.
 TEST(SliceBudget, FramesThatMakeWayAreFewerAndNoneIsLonger) {
@@ -210,7 +227,7 @@ TEST(SliceBudget, ALastSliceIsAsLongAsTheFrameLeaves) {
 TEST(FrameGate, HoldsTheWorkWhileAFrameIsDrawn) {
   MonotonicClock clock;
   FrameGate gate(clock);
-  EXPECT_FALSE(gate.take_work_waits());
+  EXPECT_EQ(gate.rest_due(), 0s) << "there is no work";
   gate.frame_begins();
   std::atomic<bool> passed = false;
   std::jthread worker([&] {
@@ -218,7 +235,7 @@ TEST(FrameGate, HoldsTheWorkWhileAFrameIsDrawn) {
     passed = true;
     gate.end();
   });
-  while (!gate.take_work_waits()) std::this_thread::yield();
+  while (gate.slices() == 0) std::this_thread::yield();
   const bool early = passed || gate.in_work();
   gate.frame_ends(clock.now() + 1s);
   worker.join();
@@ -246,15 +263,15 @@ TEST(FrameGate, WhoShowsFramesLetsASliceHaveItsTurn) {
   gate.end();  // it is known to take so long
   gate.frame_ends(clock.now() + 1ms, FramesOf::headset);
   std::atomic<bool> ran = false;
-  gate.take_work_waits();
   std::jthread worker([&] {
     gate.begin("slice");
     ran = true;
     clock.sleep_until(clock.now() + 6ms);
     gate.end();
   });
-  while (!gate.take_work_waits()) std::this_thread::yield();
-  gate.make_way();  // returns: frames may put it off for three times as long
+  while (gate.slices() < 2) std::this_thread::yield();
+  clock.sleep_until(clock.now() + 12ms);
+  gate.make_way();  // returns: frames may put it off for three times as long, and the first slice was beyond its share
   EXPECT_FALSE(ran);
   clock.sleep_until(clock.now() + 19ms);
   gate.make_way();

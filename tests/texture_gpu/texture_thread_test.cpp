@@ -98,7 +98,7 @@ TEST_F(TextureThreadTest, SlicesBesideADisplayChangeNothing) {
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t k = 0; k < a.size(); ++k) ASSERT_TRUE(a[k] == b[k]) << "image " << i << ", texel " << k;
   }
-  EXPECT_TRUE(gate->take_work_waits());
+  EXPECT_GT(gate->slices(), 3u);
 }
 
 TEST_F(TextureThreadTest, AnErrorReachesTheCallerAndStays) {
