@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "texture_gpu/kept_images.hpp"
+
 namespace foresight {
 namespace {
 
@@ -10,12 +12,6 @@ constexpr double kPerSecond = 0.03;     // rad: what an image is worse for each 
 constexpr double kAlike = 0.02;         // rad: images that differ by less share pixels
 constexpr double kRest = 1e-3;          // m, rad
 constexpr std::size_t kMostChosen = 2;  // each is drawn over the whole view
-
-/// Angle between the lines of sight of two places to what lies `range` before `T_world_eye`.
-double sight_angle(const Pose& T_world_eye, const Eigen::Vector3d& p_world, double range) {
-  const Eigen::Vector3d way = T_world_eye.inverse() * p_world;
-  return std::atan2(way.head<2>().norm(), std::max(range - way.z(), 1e-6));
-}
 
 bool in_the_same_light(const PublishedImage& a, const PublishedImage& b) {
   if (a.light || b.light) return a.light && b.light;

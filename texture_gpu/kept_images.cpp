@@ -36,12 +36,14 @@ double typical_range(const SurfacePatches& surface, const Lens& lens, const Pose
   return ranges.empty() ? 1 : median(std::move(ranges));
 }
 
+double sight_angle(const Pose& T_world_eye, const Eigen::Vector3d& p_world, double range) {
+  const Eigen::Vector3d way = T_world_eye.inverse() * p_world;
+  return std::atan2(way.head<2>().norm(), std::max(range - way.z(), 1e-6));
+}
+
 double view_distance(const Pose& T_world_a, const Pose& T_world_b, double range) {
-  const Pose T_a_b = T_world_a.inverse() * T_world_b;
-  // A way along the line of sight does not change its direction.
-  const Eigen::Vector3d way = T_a_b.translation();
-  const double sight = std::atan2(way.head<2>().norm(), std::max(range - way.z(), 1e-6));
-  return std::hypot(sight, Eigen::AngleAxisd(Eigen::Matrix3d(T_a_b.linear())).angle());
+  const Eigen::Matrix3d R_a_b = T_world_a.linear().transpose() * T_world_b.linear();
+  return std::hypot(sight_angle(T_world_a, T_world_b.translation(), range), Eigen::AngleAxisd(R_a_b).angle());
 }
 
 bool are_alike_in_hue(const cv::Mat& left, const cv::Mat& right) {

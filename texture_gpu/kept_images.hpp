@@ -13,8 +13,12 @@ namespace foresight {
 /// Median distance of what the image's camera may have in view, whether hidden or not, metres; 1 where that is nothing.
 double typical_range(const SurfacePatches& surface, const Lens& lens, const PosedImage& image);
 
-/// How differently two cameras see what is `range` metres away: the angle between their lines of sight to it, and how
-/// far their axes are turned against each other. Radians.
+/// The angle between the lines of sight of an eye and of another place to what lies `range` metres before the eye.
+/// Radians. A way along the line of sight does not change its direction.
+double sight_angle(const Pose& T_world_eye, const Eigen::Vector3d& p_world, double range);
+
+/// How differently two cameras see what is `range` metres away: their sight_angle(), and how far their axes are
+/// turned against each other. Radians.
 double view_distance(const Pose& T_world_a, const Pose& T_world_b, double range);
 
 /// Whether two cameras that see about the same show it in the same hue: red, green and blue are as bright beside each
