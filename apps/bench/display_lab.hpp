@@ -26,7 +26,7 @@ struct DisplayLab {
 /// drawn.
 DisplayLab make_display_lab(cv::Size image_size, cv::Size view_size);
 
-/// The lab's camera, without distortion.
+/// The lab's left camera, which the view is drawn through, too, as at the seat.
 Lens display_lens(cv::Size size);
 
 }  // namespace foresight
