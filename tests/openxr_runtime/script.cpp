@@ -4,6 +4,7 @@
 //   real-time                      xrWaitFrame sleeps           take-off@90   with the 90th frame
 //   put-on@N open-menu@N lose-session@N lose-instance@N close@N squeeze@N let-go@N    likewise
 //
+// Each happens once, also where an instance follows that counts its frames anew.
 // The head looks to and fro, and the right hand goes round.
 #include <cmath>
 #include <cstdlib>
@@ -75,6 +76,7 @@ void follow_script(std::uint64_t frame) {
     if (what == "squeeze") script().squeezes = true;
     if (what == "let-go") script().squeezes = false;
   }
+  script().events.erase(first, last);
 }
 
 }  // namespace foresight::openxr_runtime
