@@ -2,8 +2,8 @@
 // the spread of lens and sensor. Colours that were looked up on either side hold none: images are not trusted beside such edges.
 // So each of these pixels becomes a mean of its neighbours.
 //
-// STEP 0: lists tiles of 4x4 pixels that may hold some. STEP 1: of these, pixels that are not on one plane with those around
-// them. STEP 2: of those, the means; where no surface ends, none. STEP 3: puts them into the picture.
+// STEP 0: lists tiles of 4x4 pixels that may hold some. STEP 1: of these, the pixels. STEP 2: their means. STEP 3: puts them
+// into the picture.
 #include "camera.glsl"
 #include "depth_slope.glsl"
 #if STEP > 0
@@ -23,7 +23,7 @@ layout(binding = 8) uniform sampler2DArray steps;  // of each 4x4 tile of the fa
 #if STEP < 2
 #include "work_list.glsl"
 #else
-layout(binding = 2, std430) buffer Means { uint means[]; };  // RGBA8 of each listed pixel; 0: it stays as it is
+layout(binding = 2, std430) buffer Means { uint means[]; };  // RGBA8 of each listed pixel; 0: it has no colour
 layout(binding = 0, rgba8) uniform image2D picture;
 #endif
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
@@ -41,7 +41,7 @@ bool has_step(ivec2 tile, float layer) {
   return texelFetch(steps, ivec3(tile, layer), 0).r > 0.5;
 }
 
-// Whether a tile of the faces is marked that is near what the tile shows: may_hold_both() looks two pixels far.
+// Whether a tile of the faces is marked that is near what the tile shows: edges that count lie up to two pixels from it.
 bool may_have_step(ivec2 tile) {
 #if defined(FACE_IS_IMAGE) && FACE_IS_IMAGE
   return has_step(tile, 0.0);
@@ -71,9 +71,28 @@ void main() {
   append_work(uint(4 * tile.x) | uint(4 * tile.y) << 16);
 }
 #elif STEP == 1
-// Depths of the 2x2 pixels around a corner, as 1/z: below left, below right, above right, above left.
-vec4 around(vec2 corner, float layer) {
-  return textureGather(depth, vec3(corner / vec2(face_size), layer)) / kNear;
+// Of a row of four pixels, does a surface end between the inner two: is one of them in front of the other, and of where its
+// surface would go on?
+bool parts(float a, float b, float c, float d) {
+  return (steps_back(b, c) && ends_between(a, b, c, d)) || (steps_back(c, b) && ends_between(d, c, b, a));
+}
+
+// Whether a surface ends beside `at`, along its row or column. `way`: to the side of it to which the view's pixel looks.
+bool parts_along(ivec3 at, ivec2 way, float center) {
+  float before2 = inverse_z(at.xy - 2 * way, at.z), before = inverse_z(at.xy - way, at.z), after = inverse_z(at.xy + way, at.z),
+        after2 = inverse_z(at.xy + 2 * way, at.z);
+  bool found = parts(before2, before, center, after) || parts(before, center, after, after2);
+  // Where a lens bends the picture, its pixels are up to two of the face apart.
+  if (lens_model(camera) != 0) found = found || parts(center, after, after2, inverse_z(at.xy + 3 * way, at.z));
+  return found;
+}
+
+bool holds_both(vec3 place) {
+  vec2 at = floor(place.xy + 0.5);
+  ivec3 pixel = ivec3(at, place.z);
+  float center = inverse_z(pixel.xy, pixel.z);
+  ivec2 way = ivec2(place.x < at.x ? -1 : 1, place.y < at.y ? -1 : 1);
+  return center > 0.0 && (parts_along(pixel, ivec2(way.x, 0), center) || parts_along(pixel, ivec2(0, way.y), center));
 }
 
 void main() {
@@ -82,50 +101,9 @@ void main() {
   ivec2 pixel = ivec2(tile & 0xffffu, tile >> 16) + ivec2(gl_LocalInvocationIndex & 3u, (gl_LocalInvocationIndex >> 2) & 3u);
   vec3 place;
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy))) || !find_place(pixel, place)) return;
-  vec2 at = floor(place.xy + 0.5);
-  vec4 a = around(at, place.z), b = around(at + 1.0, place.z);
-  float center = a.y;
-  // 1/z is linear in the picture of a plane: what is on either side of a pixel tells its own, but for a step.
-  vec4 beside = vec4(a.x, b.z, a.z, b.x);  // left, right, above, below
-  beside = mix(beside, vec4(center), equal(beside, vec4(0.0)));
-  vec2 bent = abs(beside.xz + beside.yw - 2.0 * center);
-  float most = max(bent.x, bent.y);
-  if (lens_model(camera) != 0) {  // as in may_hold_both()
-    vec4 c = around(at - 1.0, place.z), d = around(at + 2.0, place.z);
-    c = mix(c, vec4(center), equal(c, vec4(0.0)));
-    d = mix(d, vec4(center), equal(d, vec4(0.0)));
-    vec2 bent_farther = abs(c.xz + d.zx - 2.0 * center);
-    most = max(most, max(bent_farther.x, bent_farther.y));
-  }
-  if (most > 0.5 * depth_tolerance * center * center) append_work(uint(pixel.x) | uint(pixel.y) << 16);
+  if (holds_both(place)) append_work(uint(pixel.x) | uint(pixel.y) << 16);
 }
 #elif STEP == 2
-// The four pixels beside one, in turn.
-ivec2 beside(int i) {
-  return (i < 2 ? 1 : -1) * ivec2(i & 1, 1 - (i & 1));
-}
-
-// On either side of an edge: the one pixel is in front of the other, and of where its surface would go on.
-bool is_beside_edge(ivec3 at) {
-  float center = inverse_z(at.xy, at.z);
-  bool found = false;
-  for (int i = 0; i < 4; ++i) {
-    ivec2 to = beside(i);
-    float there = inverse_z(at.xy + to, at.z);
-    found = found || (steps_back(center, there) && ends(at.xy, center, to, at.z)) ||
-            (steps_back(there, center) && ends(at.xy + to, there, -to, at.z));
-  }
-  return found && center > 0.0;
-}
-
-// Where a lens bends the picture, its pixels are up to two of the face apart.
-bool may_hold_both(ivec3 at) {
-  if (lens_model(camera) == 0) return is_beside_edge(at);
-  bool found = is_beside_edge(at);
-  for (int i = 0; i < 4; ++i) found = found || is_beside_edge(at + ivec3(beside(i), 0));
-  return found;
-}
-
 // exp(-1 / (2 * 0.6^2)): a deviation of 0.6 px, of which the pixel's own area is 0.3 along each axis.
 const float kBeside = 0.25;
 const float kColoured = 0.5;  // alpha of less: no colour at all
@@ -135,11 +113,9 @@ void main() {
   if (!next_work(item)) return;
   uint index = (gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u) * 64u + gl_LocalInvocationIndex;
   ivec2 pixel = ivec2(item & 0xffffu, item >> 16);
-  vec3 place;
   means[index] = 0u;
   vec4 own = imageLoad(picture, pixel);
-  if (own.a < kColoured || !find_place(pixel, place)) return;
-  if (!may_hold_both(ivec3(ivec2(floor(place.xy + 0.5)), int(place.z)))) return;
+  if (own.a < kColoured) return;
   vec4 sum = vec4(0.0);
   for (int i = 0; i < 9; ++i) {
     ivec2 o = ivec2(i % 3, i / 3) - 1;

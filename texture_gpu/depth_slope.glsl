@@ -26,7 +26,7 @@ float slope(ivec2 p, ivec2 step, int layer, float center) {
   return bend_a < bend_b ? center - a1 : b1 - center;
 }
 
-// Is `q` in front of what lies beyond it along `step`?
+// Is a pixel q in front of what lies beyond it? 1/z of a row: of the pixel before q, q itself, and r, r2 beyond.
 //
 //   q ____            r, r2: the surface beyond; its plane, extended to q, is behind q by more than
 //         |           the tolerance
@@ -35,18 +35,16 @@ float slope(ivec2 p, ivec2 step, int layer, float center) {
 //
 // Off the plane, not just nearer: 1/z is linear in the picture of a plane, so that a plane seen at
 // a grazing angle has no discontinuity, and a crease has none.
+bool ends_between(float before, float center, float r, float r2) {
+  // Where nothing tells the slope beyond, the near surface's own goes on.
+  float near = r2 > 0.0 || before <= 0.0 ? center : 2.0 * center - before;
+  float far = r2 > 0.0 ? max(2.0 * r - r2, 0.0) : r;  // a plane beyond its horizon is behind all
+  return r > 0.0 && r < center && steps_back(near, far);
+}
+
+// The same of a place, along `step`.
 bool ends(ivec2 q, float center, ivec2 step, int layer) {
-  float r = inverse_z(q + step, layer), r2 = inverse_z(q + 2 * step, layer);
-  if (r <= 0.0 || r >= center) return false;
-  float near = center, far = 2.0 * r - r2;
-  if (r2 <= 0.0) {
-    // Nothing tells the slope beyond: the near surface's own goes on.
-    float before = inverse_z(q - step, layer);
-    near = before > 0.0 ? 2.0 * center - before : center;
-    far = r;
-  }
-  far = max(far, 0.0);  // a plane beyond its horizon is behind all
-  return steps_back(near, far);
+  return ends_between(inverse_z(q - step, layer), center, inverse_z(q + step, layer), inverse_z(q + 2 * step, layer));
 }
 
 // Towards +x, +y, -x, -y.
