@@ -21,9 +21,10 @@ class CalibratedSigma {
   static constexpr double kScaleOfOne = 1, kScaleOfThree = 0.807;
 
   /// `rms` of the errors' lengths before anything was seen, > 0. `least`: no sigma is below it. `memory`: seconds that
-  /// count, > 0. `scale`: what rms times that is sigma at first.
-  CalibratedSigma(double rms, double least, double memory, double scale)
-      : mean_square_(rms * rms), least_(least), memory_(memory), scale_(scale) {}
+  /// count, > 0. `scale`: what rms times that is sigma at first. `assumed`, 0 .. 1: how much of the rms was made wider
+  /// than what was seen. As long as that counts, truths inside tell little of the scale.
+  CalibratedSigma(double rms, double least, double memory, double scale, double assumed = 0)
+      : mean_square_(rms * rms), least_(least), memory_(memory), scale_(scale), assumed_(assumed) {}
 
   /// What of an error is scored where a few far larger ones must not decide what is told for seconds: an event that no
   /// uncertainty covers, of which others tell.
@@ -36,16 +37,17 @@ class CalibratedSigma {
     if (!std::isfinite(error) || !(predicted > 0)) return;
     const double kept = std::exp(-std::max(seconds, 0.0) / memory_);
     mean_square_ = kept * mean_square_ + (1 - kept) * error * error;
+    assumed_ *= kept;
     // Neighbouring errors are alike: the rate goes with time, not with their number.
     const double rate = kRate * std::min(seconds, memory_);
-    scale_ *= std::exp(rate * (error > 2 * predicted ? kInside : kInside - 1));
+    scale_ *= std::exp(rate * (error > 2 * predicted ? kInside : (1 - assumed_) * (kInside - 1)));
     scale_ = std::clamp(scale_, 0.2, 5.0);
   }
 
  private:
   static constexpr double kRate = 1;  ///< of log(scale) per second
 
-  double mean_square_, least_, memory_, scale_;
+  double mean_square_, least_, memory_, scale_, assumed_;
 };
 
 }  // namespace foresight

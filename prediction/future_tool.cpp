@@ -55,7 +55,7 @@ std::optional<ToolError> FutureTool::score(const ScoredRobot& scored) noexcept {
   out.sigma = told.scale * told.prior;
   const double passed = std::clamp(to_seconds(scored.shown.time - scored_), 0.0, 1.0);
   scored_ = scored.shown.time;
-  if (told.prior > 0)
+  if (told.prior > 0 && !scored.shown.settling)
     scale_.score(CalibratedSigma::usual_part(out.position / told.prior, told.scale), told.scale, passed);
   return out;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prediction/few_samples.hpp"
 #include "prediction/rate_limit.hpp"
 
 namespace foresight {
@@ -11,7 +12,7 @@ namespace {
 constexpr double kLongestAge = 0.32;                      // s beyond the delay, until something was identified
 constexpr std::size_t kCommands = 32768, kStates = 8192;  // half a minute at 1 kHz and at 250 Hz
 constexpr double kLongestGap = 0.15;                      // s between states that what lies between is known for
-constexpr std::size_t kFewest = 40;                       // changes to learn from
+constexpr std::size_t kFewest = 30;                       // changes to learn from
 constexpr double kLeastVariance = 1e-14;
 constexpr double kLeastSigma = 1e-7;                  // rad
 constexpr double kSigmaOver = 5;                      // s
@@ -58,7 +59,7 @@ JointResponse::JointResponse(const JointResponseOptions& options)
     const auto guesses = static_cast<std::size_t>(std::ceil(horizon / kGuessEvery)) + 2;
     rests_.push_back({Weights::Constant(kRestTerms, 0.3),
                       CalibratedSigma(options.first_sigma, kLeastSigma, kSigmaOver, CalibratedSigma::kScaleOfOne),
-                      LastOf<PredictedAt>(guesses)});
+                      LastOf<PredictedAt>(guesses), false});
   }
 }
 
@@ -137,6 +138,12 @@ void JointResponse::find_speed(StepResponseFit& best) noexcept {
   if (speed_ != before) limit_commands(commands_, speed_);
 }
 
+void JointResponse::forget_states_after(double time) noexcept {
+  const bool any = !states_.empty() && states_.values().newest().time > time;
+  states_.forget_after(time);
+  if (any && identified_) identify();
+}
+
 bool JointResponse::identify() noexcept {
   auto found = fit_step_response(asked_, states_);
   if (!found) return false;
@@ -186,7 +193,10 @@ void JointResponse::learn_rest(std::size_t first, std::size_t horizon) noexcept 
     ++count;
   });
   if (count < kFewest) {  // too short a recording so far: the nearer horizon knows most
-    if (!identified_ && horizon > 0) rest.sigma = rests_[horizon - 1].sigma;
+    if (rest.is_own || horizon == 0) return;
+    const double wider = std::sqrt(kHorizon[horizon] / kHorizon[horizon - 1]);  // as of a random walk
+    rest.sigma = CalibratedSigma(wider * rests_[horizon - 1].sigma.sigma(), kLeastSigma, kSigmaOver,
+                                 CalibratedSigma::kScaleOfOne, 1);
     return;
   }
   constexpr double kFirmly = 10;  // samples
@@ -194,20 +204,22 @@ void JointResponse::learn_rest(std::size_t first, std::size_t horizon) noexcept 
   OnlineRegression fit(Weights::Constant(kRestTerms, 0.3), Weights::Constant(kRestTerms, kFirmly * variance), 1);
   for_each_pair([&](const Weights& x, double y) { fit.add(x, y); });
   rest.weights = fit.weights();
-  if (identified_) return;
-  rest.guesses.clear();  // they tell of the prior
-  double squares = 0;
-  std::size_t judged = 0;
+  if (rest.is_own) return;
+  rest.is_own = true;
+  rest.guesses.clear();  // they tell of the prior, or of the nearer horizon's sigma
+  AlikeErrors errors;
   for_each_pair([&](const Weights& x, double y) {
     const double off = y - fit.predict(x);
-    squares += off * off;
-    learnt_off_[judged++] = std::abs(off);
+    learnt_off_[errors.count()] = std::abs(off);
+    errors.add(off);
   });
-  const double rms = std::sqrt(squares / static_cast<double>(judged));
+  const std::size_t judged = errors.count();
+  const double rms = std::sqrt(errors.squares() / static_cast<double>(judged));
   const auto worst = learnt_off_.begin() + static_cast<std::ptrdiff_t>(judged * 19 / 20);
   std::nth_element(learnt_off_.begin(), worst, learnt_off_.begin() + static_cast<std::ptrdiff_t>(judged));
   const double scale = rms > 0 ? std::clamp(0.5 * *worst / rms, 0.5, 2.0) : CalibratedSigma::kScaleOfOne;
-  rest.sigma = CalibratedSigma(rms, kLeastSigma, kSigmaOver, scale);
+  const double degrees = errors.independent() - kRestTerms;  // the weights fit these very errors
+  rest.sigma = CalibratedSigma(rms * widening_of_few(degrees), kLeastSigma, kSigmaOver, scale, 1);
 }
 
 double JointResponse::rest(double ahead) const noexcept {
@@ -229,6 +241,11 @@ PredictedPosition JointResponse::at(double time) const noexcept {
   const Weights then = model.inputs(commands_, time, time);
   answer.position = model.base(commands_, time, time) + then.dot(model.realised) + rest(ahead);
   answer.sigma = std::hypot(sigma(ahead), fit_.sigma(then - inputs_now_));
+  if (!identified_) {  // it may be as far off as it goes meanwhile
+    const double meanwhile = commands_.at(time, time) - commands_.at(time - options_.delay_sigma, time);
+    answer.sigma = std::hypot(answer.sigma, meanwhile);
+    answer.assumed = meanwhile != 0;
+  }
   answer.valid = std::isfinite(answer.position);
   return answer;
 }

@@ -21,10 +21,12 @@ struct PredictedPosition {
   double position = 0;
   double sigma = 0;  ///< the truth lies within twice of it in 95 % of cases
   bool valid = false;
+  bool assumed = false;  ///< it moves, and nothing was learnt of its drive yet
 };
 
 struct JointResponseOptions {
   double expected_delay = 0.02;  ///< s: until something was identified
+  double delay_sigma = 0.02;     ///< s: of that
   double least_step = 0.004;     ///< s: states that come faster are not kept for identification
   double stale = 0.5;            ///< s without a state: what is unexplained is learnt anew
   double farthest = 3;           ///< s ahead of the newest state
@@ -50,6 +52,9 @@ class JointResponse {
     commands_.clear();
     observed_ = false;
   }
+  /// What was measured after `time` was not the drive's doing: nothing is learnt from it, and what was is learnt anew
+  /// without it, as far as what is left allows.
+  void forget_states_after(double time) noexcept;
   /// The position that was measured at `time`; the commands up to then are known. Not `typical`: something else than
   /// the drive moved or held the joint, and nothing is learnt of the drive from it. False likewise.
   bool observe(double time, double position, bool typical = true) noexcept;
@@ -78,6 +83,7 @@ class JointResponse {
     Weights weights;
     CalibratedSigma sigma;
     LastOf<PredictedAt> guesses;  // to be judged when their time has come
+    bool is_own = false;          // the sigma was learnt of this horizon's errors
   };
   void limit_commands(PositionHistory& limited, double speed) const noexcept;
   void find_speed(StepResponseFit& best) noexcept;

@@ -11,8 +11,11 @@ constexpr double kClockError = 0.1;         // s that an instant may seem to lie
 constexpr double kExact = 0.001;            // s (docs/conventions.md, time)
 constexpr double kLongestLineGap = 0.2;     // s, likewise
 constexpr double kBeyond = 0.05;            // s later than what is known for certain, while a line becomes faster
-constexpr double kOften = 10, kSeldom = 5;  // s at the start in which drives are identified often; then as seldom
+constexpr double kOften = 9, kSeldom = 5;   // s since a drive was identified first: often for so long, then as seldom
 constexpr double kUnknownDelay = 0.02;      // s that a drive's response may be off before it was identified
+constexpr double kAtEase = 0.1;             // of what is no more a matter of precision: surely nothing holds the joint
+constexpr double kSettling = 5;             // s until the sigma of a drive just learnt is that of what was seen since
+constexpr double kHeldUnseen = 2;           // s that something may hold a joint before that is noticed, at most
 constexpr double kAssumedPast = 0.4, kAssumedEvery = 0.02;  // s before the first set-point that is known
 constexpr std::size_t kShown = 1024;
 
@@ -149,20 +152,35 @@ void RobotFuture::observe(const RobotReport& report) noexcept {
     const bool typical = !joint.held.doubted && std::abs(joint.response.astray()) <= joint.precise;
     joint.response.observe(time, told.position, typical || !joint.response.identified());
     const double off = std::abs(joint.response.astray());
+    if (off <= kAtEase * joint.precise) joint.at_ease = time;
+    const bool was_doubted = joint.held.doubted;
     joint.held.see(time, joint.response.identified() && off > (joint.held.doubted ? 0.5 : 1) * joint.precise,
                    options_.astray_after);
+    if (joint.held.doubted && !was_doubted) forget_hold(joint, time);
   }
 }
 
-// One drive after the other, as each takes some milliseconds.
+// What began to hold the joint was not noticed at once.
+void RobotFuture::forget_hold(Joint& joint, double noticed) noexcept {
+  joint.response.forget_states_after(std::max(joint.at_ease, noticed - kHeldUnseen));
+  joint.identified_first.reset();
+  joint.identify_at = 0;
+}
+
+// One drive after the other, as each takes some milliseconds: the one that has waited longest. Nothing can be learnt of
+// a drive before it has followed commands, however long it has been there.
 void RobotFuture::identify() noexcept {
-  const double now = since_epoch(came_);
-  const double every = now < kOften ? options_.identify_every : std::max(kSeldom, options_.identify_every);
-  if (doing_ == GateDoing::away || now - identified_at_ < every / static_cast<double>(joints_.size())) return;
+  const double now = since_epoch(came_), pause = options_.identify_every / static_cast<double>(joints_.size());
+  if (doing_ == GateDoing::away || now - identified_at_ < pause) return;
+  Joint& joint = *std::ranges::min_element(joints_, {}, &Joint::identify_at);
+  if (now < joint.identify_at) return;
   identified_at_ = now;
-  identify_joint_ = (identify_joint_ + 1) % joints_.size();
-  Joint& joint = joints_[identify_joint_];
-  if (!joint.held.doubted) joint.response.identify();
+  const bool was_identified = joint.response.identified();
+  if (!joint.held.doubted && joint.response.identify() && !joint.identified_first) joint.identified_first = now;
+  if (!was_identified && joint.response.identified()) joint.judged_from = shown_ + seconds(kSettling);
+  const bool is_new = !joint.identified_first || now - *joint.identified_first < kOften;
+  const double wait = is_new ? options_.identify_every : std::max(kSeldom, options_.identify_every);
+  joint.identify_at = joint.response.identified() ? now + wait : now;
 }
 
 std::optional<double> RobotFuture::measured_until() const noexcept {
@@ -241,6 +259,22 @@ void RobotFuture::fall_back_jaws(Shown& shown) const noexcept {
   }
 }
 
+bool RobotFuture::predict(std::size_t joint, Shown& out) const noexcept {
+  const RobotTime time = out.robot.time;
+  const Joint& of = joints_[joint];
+  const PredictedPosition there = of.response.at(since_epoch(time));
+  if (!there.valid) return false;
+  const double beyond = std::max(0.0, to_seconds(time - motion_.known_until()));
+  out.predicted[joint] = out.robot.position[joint] = there.position;
+  out.prior[joint] = std::hypot(there.sigma, beyond * motion_.cycles().newest().motion[joint].velocity);
+  out.scale[joint] = of.scale.sigma();
+  out.robot.sigma[joint] = out.scale[joint] * out.prior[joint];
+  const bool is_new = of.response.identified() && time <= of.judged_from;
+  out.settling[joint] = !of.response.identified() || is_new;
+  out.robot.settling = out.robot.settling || there.assumed || is_new;
+  return true;
+}
+
 RobotFuture::Shown RobotFuture::predict(RobotTime time) const noexcept {
   Shown out;
   PredictedRobot& robot = out.robot;
@@ -257,23 +291,17 @@ RobotFuture::Shown RobotFuture::predict(RobotTime time) const noexcept {
     reason = obstacle(time, joint);
   if (reason != FutureReason::none) fall_back(robot, reason, joint);
   if (reason != FutureReason::none || since_epoch(time) <= *until) return out;
-  const double beyond = std::max(0.0, to_seconds(time - motion_.known_until()));
-  const GateModel::State& last = motion_.cycles().newest();
   robot.status = StateStatus::predicted;
+  // While all rests, all is right.
+  robot.settling = std::ranges::none_of(joints_, [](const Joint& one) { return one.response.identified(); });
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const PredictedPosition there = joints_[i].response.at(since_epoch(time));
-    if (!there.valid) {
-      fall_back(robot, FutureReason::too_far, static_cast<int>(i));
-      return out;
-    }
-    out.predicted[i] = robot.position[i] = there.position;
-    out.prior[i] = std::hypot(there.sigma, beyond * last.motion[i].velocity);
-    out.scale[i] = joints_[i].scale.sigma();
-    robot.sigma[i] = out.scale[i] * out.prior[i];
+    if (predict(i, out)) continue;
+    fall_back(robot, FutureReason::too_far, static_cast<int>(i));
+    return out;
   }
   out.judged = true;
   const GateModel::State* cycle = motion_.cycle_at(time);
-  robot.blocked = (cycle != nullptr ? *cycle : last).blocked;
+  robot.blocked = (cycle != nullptr ? *cycle : motion_.cycles().newest()).blocked;
   if (const FutureReason doubtful = doubt(out, joint); doubtful != FutureReason::none)
     fall_back(robot, doubtful, joint);
   else
@@ -338,7 +366,8 @@ void RobotFuture::score(const Shown& shown) noexcept {
     Joint& joint = joints_[i];
     const bool as_shown = trusted && std::isfinite(shown.robot.sigma[i]);
     const double off = std::abs((as_shown ? shown.robot.position[i] : shown.predicted[i]) - truth.position[i]);
-    joint.scale.score(CalibratedSigma::usual_part(off / shown.prior[i], shown.scale[i]), shown.scale[i], passed);
+    if (!shown.settling[i])
+      joint.scale.score(CalibratedSigma::usual_part(off / shown.prior[i], shown.scale[i]), shown.scale[i], passed);
     const double usual = std::max(joint.precise, 3 * shown.scale[i] * shown.prior[i]);
     // What a line loses is shown wrongly until the report of it has come: a way there and back.
     const double blind = joint.missed.doubted ? 0 : 2 * motion_.delay().seconds;

@@ -49,6 +49,9 @@ struct PredictedRobot {
   /// The truth lies within twice of it in 95 % of cases; 0 where exact; infinite where invalid, and for jaws
   /// (GateJoint::keeps_grip) that cannot be predicted, as they hold something: these alone are as last measured then.
   JointValues sigma{};
+  /// Some sigma is wider than it will be: it rests on what is assumed of a drive that moves, or was learnt but now; or
+  /// nothing was learnt of any drive yet.
+  bool settling = false;
   bool blocked = false;  ///< the gate will keep the robot from where it is asked to be: parts would come too close
 };
 /// In words, and what to do; "" where it is not invalid. `names`: of the joints.
@@ -67,7 +70,7 @@ struct RobotFutureOptions {
   double astray_after = 0.2;    ///< s that it lasts before it counts, and that it is gone before it does not
   double missed_after = 0.5;    ///< likewise, of what was shown, beyond the line's delay there and back
   double unsure_share = 0.5;    ///< of a joint's largest following error, that its sigma must not exceed
-  double identify_every = 1;    ///< s, for each joint
+  double identify_every = 1;    ///< s, for each joint until 9 s after it was identified first; then 5 s at least
   ExpectedMotionOptions motion;
 };
 
@@ -110,11 +113,17 @@ class RobotFuture {
   struct Joint {
     JointResponse response;
     PositionHistory measured{2048};
-    CalibratedSigma scale{1, kLeastScale, 5, CalibratedSigma::kScaleOfOne};  // of the response's sigma
+    // Of the response's sigma. How right what was assumed of a drive, or learnt of its first motion, was tells nothing
+    // of later sigmas: what was shown for later instants than judged_from, if any, does.
+    CalibratedSigma scale{1, kLeastScale, 5, CalibratedSigma::kScaleOfOne};
+    RobotTime judged_from;
     CorrectionBlend correction;
     double precise = 0;  // what is farther off is no more a matter of precision
     double least_sure = 0;
     double fastest = 0;
+    double identify_at = 0;  // s: not before that
+    std::optional<double> identified_first;
+    double at_ease = 0;  // s: when it was surely where its commands put it
     Doubt held, missed;  // it is not where its commands put it; it was not where it was predicted
   };
   struct Shown {
@@ -122,18 +131,22 @@ class RobotFuture {
     bool judged = false;           // there is a prediction, whether it can be trusted or not
     JointValues predicted{};       // that one
     JointValues prior{}, scale{};  // sigma = scale * prior
+    std::array<bool, std::tuple_size_v<JointValues>> settling{};
   };
   HistoryFault check(const RobotReport& report, RobotTime now) const noexcept;
   double since_epoch(RobotTime time) const noexcept { return to_seconds(time - epoch_); }
   void begin_anew(RobotTime after) noexcept;
   void feed(RobotTime after) noexcept;
   void observe(const RobotReport& report) noexcept;
+  static void forget_hold(Joint& joint, double noticed) noexcept;
   void identify() noexcept;
   void score() noexcept;
   void score(const Shown& shown) noexcept;
   std::optional<double> measured_until() const noexcept;
   bool measured(double time, PredictedRobot& out) const noexcept;
   Shown predict(RobotTime time) const noexcept;
+  /// One joint of it; false: too far ahead.
+  bool predict(std::size_t joint, Shown& out) const noexcept;
   FutureReason obstacle(RobotTime time, int& joint) const noexcept;
   FutureReason doubt(const Shown& shown, int& joint) const noexcept;
   FutureReason doubt(const Shown& shown, std::size_t joint) const noexcept;
@@ -150,7 +163,6 @@ class RobotFuture {
   std::optional<RobotTime> instant_;
   RobotTime instant_asked_;
   double identified_at_ = 0, scored_at_ = 0;
-  std::size_t identify_joint_ = 0;
   LastOf<Shown> shown_ones_;
   LastOf<ScoredRobot> scored_;
 };

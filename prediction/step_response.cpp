@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prediction/few_samples.hpp"
+
 namespace foresight {
 namespace {
 
@@ -38,6 +40,13 @@ struct Window {
   }
 };
 
+// Rest before the first motion teaches nothing, and how right all is then is no measure of what it will be.
+double motion_begins(const LastOf<TimedPosition>& commands) {
+  std::size_t i = 0;
+  while (i + 1 < commands.size() && std::abs(commands[i].position - commands[0].position) < kMoved) ++i;
+  return commands[i].time;
+}
+
 std::optional<Window> learning_window(const PositionHistory& commands, const PositionHistory& states) {
   if (states.empty() || commands.empty()) return {};
   const double begin = std::max(commands.values()[0].time, states.values()[0].time);
@@ -45,7 +54,7 @@ std::optional<Window> learning_window(const PositionHistory& commands, const Pos
   Window window{commands, states};
   window.change = std::min(0.3, 0.25 * seconds);
   window.reach = std::min(0.5, 0.25 * seconds);
-  const double from = begin + window.change + window.reach;
+  const double from = std::max(begin + window.change + window.reach, motion_begins(commands.values()));
   while (window.first < states.values().size() && states.values()[window.first].time < from) ++window.first;
   window.stride = (states.values().size() - window.first) / kEnough + 1;
   double moved = 0;
@@ -116,16 +125,10 @@ StepResponseFit fit(const Window& window, double sparse) {
   window.for_each_change([&](const TimedPosition& now, const TimedPosition& then) {
     fit.moved += (now.position - then.position) * (now.position - then.position);
   });
-  double products = 0, last = 0;
-  for_each_equation([&](const Weights& x, double y) {
-    const double off = y - x.dot(model.realised);
-    fit.squares += off * off;
-    products += off * last;
-    last = off;
-  });
-  // Neighbouring errors are alike, and count as one: (1 + r) / (1 - r) of them (Bartlett 1946).
-  const double alike = std::clamp(fit.squares > 0 ? products / fit.squares : 0.0, 0.0, 0.999);
-  fit.variance = std::max(kLeastVariance, fit.squares / count) * (1 + alike) / (1 - alike);
+  AlikeErrors errors;
+  for_each_equation([&](const Weights& x, double y) { errors.add(y - x.dot(model.realised)); });
+  fit.squares = errors.squares();
+  fit.variance = std::max(kLeastVariance, fit.squares / count) * count / errors.independent();
   return fit;
 }
 

@@ -58,6 +58,24 @@ TEST(FutureTool, ItsUncertaintyIsThatOfItsJoints) {
   }
 }
 
+// What is told too wide on purpose is always right, and that must not make it too narrow once it is not.
+TEST(FutureTool, NothingIsLearntWhileItsJointsUncertaintySettles) {
+  const ArmChain arm = lab_arm();
+  FutureTool tool(arm, names_of(arm), "test");
+  const JointVector q = arm.middle();
+  double first = 0;
+  for (int i = 0; i < 500; ++i) {
+    ScoredRobot scored{robot_at(arm, q, 1e-3, RobotTime{1'000'000'000 + 20'000'000LL * i}), {}};
+    scored.shown.settling = i < 400;
+    scored.truth = scored.shown.position;
+    const double sigma = tool.show(scored.shown).sigma;
+    tool.score(scored);
+    if (i == 0) first = sigma;
+    if (i == 400) EXPECT_EQ(sigma, first);
+    if (i == 499) EXPECT_LT(sigma, first) << "now it is learnt that all was exact";
+  }
+}
+
 TEST(FutureTool, OnlyWhatWasShownIsScored) {
   const ArmChain arm = lab_arm();
   FutureTool tool(arm, names_of(arm), "test");

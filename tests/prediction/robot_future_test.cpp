@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -79,6 +80,26 @@ TEST(RobotFuture, SetPointsThatWaitForTheGateActLater) {
   EXPECT_GT(world.future().delay().seconds, 0.303);
 }
 
+// While joints look for home, or the operator for his glasses, nothing can be learnt of drives.
+TEST(RobotFuture, DrivesAreLearntOnceTheyMoveHoweverLateThatIs) {
+  FutureWorld world({.lag = 0.06});
+  const auto moves = world.wish;
+  world.wish = [&](double t) {
+    return t < 20 ? JointValues{} : JointValues{0.7 * (moves(t - 20)[0] + 0.3), moves(t - 20)[1]};
+  };
+  world.run(20);
+  EXPECT_EQ(world.future().figures(0).samples, 0u) << "it did not move";
+  double learnt_after = 0;
+  const auto samples = [&] { return std::min(world.future().figures(0).samples, world.future().figures(1).samples); };
+  for (; samples() == 0 && learnt_after < 5; learnt_after += 0.1) world.run(0.1);
+  EXPECT_LT(learnt_after, 3) << "of which 0.6 s are the line's";
+  const std::size_t learnt = world.pictures().size();
+  world.run(5);
+  const Judged judged = judge(world, learnt);
+  EXPECT_LT(judged.p95, 0.003);
+  EXPECT_GE(judged.inside, 0.90) << "little was seen of the drives yet, and that is told";
+}
+
 TEST(RobotFuture, JitterAndLossWidenItsUncertainty) {
   FutureWorld world({.jitter = 0.03, .loss = 0.03});
   world.run(10);
@@ -151,6 +172,26 @@ TEST(RobotFuture, WhatHoldsAJointIsNoticed) {
   world.jammed = false;
   world.run(6);
   EXPECT_EQ(world.pictures().back().status, StateStatus::predicted) << to_words(world.pictures().back(), kNames);
+}
+
+// Drives are identified one after the other, so that it depends on when a joint is held what was learnt of that.
+TEST(RobotFuture, NothingIsLearntOfWhatHoldsAJoint) {
+  for (const double later : {0.0, 0.25, 0.5, 0.75}) {
+    SCOPED_TRACE(later);
+    FutureWorld world;
+    world.run(7 + later);
+    const double free = world.future().figures(0).unexplained;
+    world.jammed = true;
+    world.run(0.3 + 0.35);
+    ASSERT_EQ(world.pictures().back().reason, FutureReason::astray);
+    EXPECT_LT(world.future().figures(0).unexplained, 1.5 * free);
+    world.jammed = false;
+    world.run(5);  // the means of 2 s know of it
+    const std::size_t again = world.pictures().size();
+    world.run(3);
+    EXPECT_LT(world.future().figures(0).unexplained, 1.5 * free);
+    EXPECT_LT(judge(world, again).p95, 0.001);
+  }
 }
 
 TEST(RobotFuture, JawsThatHoldSomethingAreMeasuredAndTheArmIsPredicted) {
