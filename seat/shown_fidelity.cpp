@@ -170,6 +170,7 @@ void ShownFidelity::choose(const ByKind& pixels) {
   for (const std::size_t i : order) {
     all += pixels[i].all;
     wrong += pixels[i].all * risk_[i];
+    if (risk_[i] > options_.wrong_of_kind) return;
     if (all > 0 ? wrong > options_.wrong_share * all : risk_[i] > options_.wrong_share) return;
     exact_.set(i);
   }

@@ -22,6 +22,7 @@ struct FidelityOptions {
   std::size_t kept = 48;                                  ///< pictures that wait for their image, > 0
   double wrong_levels = 10;                               ///< grey levels beyond which a pixel is wrong
   double wrong_share = 0.019;                             ///< of the pixels that count as exact, that may be wrong
+  double wrong_of_kind = 0.15;                            ///< of the pixels of each kind, likewise
 };
 
 /// How alike what was shown for an instant and the image of it are, over pixels that images have coloured.
@@ -59,7 +60,8 @@ class ShownFidelity {
   std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image);
   /// Which kinds of pixels count as exact: those that were wrong most rarely, as many as it takes until
   /// FidelityOptions::wrong_share of all such pixels have to be expected to be wrong, in what was shown last and in a
-  /// usual picture of late together: good pictures make up for bad ones.
+  /// usual picture of late together: good pictures make up for bad ones. Never a kind of which more than wrong_of_kind
+  /// have to be: however good all else is, it says nothing of a ball that rolls through it.
   const ExactKinds& exact() const { return exact_; }
 
  private:

@@ -153,6 +153,26 @@ TEST(ShownFidelity, PicturesMakeUpForEachOther) {
   EXPECT_EQ(round(kWidth).exact_share, 0) << "now there is nothing to make up for it";
 }
 
+// As a ball that rolls through a picture in which nothing else goes on.
+TEST(ShownFidelity, AllElseDoesNotMakeUpForAKindThatIsOftenWrong) {
+  ShownFidelity fidelity;
+  const DoubtKind sure{2, 0, Compared::same}, ball{8, 0, Compared::suspect};
+  constexpr int kBall = 8;  // px: its sides
+  for (int i = 0; i < 40; ++i) {
+    RememberedView shown = view(i * 100ms);
+    cv::Mat truth = image();
+    shown.doubt = doubt_of(sure);
+    const cv::Rect at_ball(10 + i, 10, kBall, kBall);
+    shown.doubt(at_ball) = doubt_of(ball);
+    truth(cv::Rect(at_ball.x, at_ball.y, kBall / 4, kBall)) = cv::Scalar(180, 180, 180);  // what it came to cover
+    fidelity.shown(std::move(shown));
+    const auto out = fidelity.arrived(at(i * 100ms), truth);
+    ASSERT_TRUE(out);
+    EXPECT_NEAR(out->exact_share, 1 - 1.0 * kBall * kBall / (kWidth * kHeight), 1e-9) << i;
+    EXPECT_EQ(out->exact_wrong, 0) << i;
+  }
+}
+
 TEST(ShownFidelity, WhatNoImageColouredIsLeftOut) {
   ShownFidelity fidelity;
   RememberedView shown = view(100ms);
