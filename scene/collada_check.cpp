@@ -42,6 +42,7 @@ class ColladaCheck final : public pugi::xml_tree_walker {
     const std::string_view name = node.name();
     if (name == "float_array") add_array(node);
     if (name == "accessor") add_accessor(node);
+    if (name == "input") number(node, "offset", 0);  // assimp makes room for as many indices a vertex
     if (name == "triangles" || name == "polylist" || name == "polygons") check_primitives(node);
     if (name == "p" || name == "vcount") count_indices(node);
     return true;
@@ -59,7 +60,7 @@ class ColladaCheck final : public pugi::xml_tree_walker {
     const auto value = attribute ? parse_integer(attribute.value()) : otherwise;
     // No array of a readable file is longer than the file; this also keeps the products small.
     if (!value || *value < 0 || *value > static_cast<long long>(text_.size()))
-      fail(node, fmt::format("an array or accessor has no valid {}", name));
+      fail(node, fmt::format("an array, accessor or input has no valid {}", name));
     return *value;
   }
 
