@@ -44,7 +44,7 @@ class OnlineRegression {
 
   Weights prior_, strength_, b_, weights_;
   Matrix A_;
-  Eigen::LLT<Matrix> factor_;
+  Eigen::LLT<Matrix> factor_{Matrix()};
   double memory_ = 1;
   bool solved_ = false;
 };
