@@ -8,7 +8,7 @@
 namespace foresight {
 
 /// The child does `job`, says what it throws, and ends, at the latest with this process. To be called before anything here
-/// has made an OpenGL context: what the driver of a GPU has begun before a fork does not work behind it.
+/// has made an OpenGL context or a thread: neither is sure to work behind a fork.
 /// Throws RuntimeFailure: no process.
 pid_t start_child(const std::function<void()>& job);
 
