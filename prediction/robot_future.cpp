@@ -6,16 +6,16 @@
 namespace foresight {
 namespace {
 
-constexpr double kOtherClock = 60;          // s from now: no line is that slow
-constexpr double kClockError = 0.1;         // s that an instant may seem to lie ahead
-constexpr double kExact = 0.001;            // s (docs/conventions.md, time)
-constexpr double kLongestLineGap = 0.2;     // s, likewise
-constexpr double kBeyond = 0.05;            // s later than what is known for certain, while a line becomes faster
-constexpr double kOften = 9, kSeldom = 5;   // s since a drive was identified first: often for so long, then as seldom
-constexpr double kUnknownDelay = 0.02;      // s that a drive's response may be off before it was identified
-constexpr double kAtEase = 0.1;             // of what is no more a matter of precision: surely nothing holds the joint
-constexpr double kSettling = 5;             // s until the sigma of a drive just learnt is that of what was seen since
-constexpr double kHeldUnseen = 2;           // s that something may hold a joint before that is noticed, at most
+constexpr double kOtherClock = 60;         // s from now: no line is that slow
+constexpr double kClockError = 0.1;        // s that an instant may seem to lie ahead
+constexpr double kExact = 0.001;           // s (docs/conventions.md, time)
+constexpr double kLongestLineGap = 0.2;    // s, likewise
+constexpr double kBeyond = 0.05;           // s later than what is known for certain, while a line becomes faster
+constexpr double kOften = 9, kSeldom = 5;  // s since a drive was identified first: often for so long, then as seldom
+constexpr double kUnknownDelay = 0.02;     // s that a drive's response may be off before it was identified
+constexpr double kAtEase = 0.1;            // of what is no more a matter of precision: surely nothing holds the joint
+constexpr double kSettling = 5;            // s until the sigma of a drive just learnt is that of what was seen since
+constexpr double kHeldUnseen = 2;          // s that something may hold a joint before that is noticed, at most
 constexpr double kAssumedPast = 0.4, kAssumedEvery = 0.02;  // s before the first set-point that is known
 constexpr std::size_t kShown = 1024;
 

@@ -16,8 +16,8 @@ namespace foresight {
 
 /// Where the thing of a task lies once the task is over, as far as who is asked can know.
 enum class ThingLies : std::uint8_t {
-  in_place,   ///< where it was to be brought; seen there, or nothing was to be brought anywhere
-  unseen,     ///< the model has it there, and no image has shown it there
+  in_place,  ///< where it was to be brought; seen there, or nothing was to be brought anywhere
+  unseen,    ///< the model has it there, and no image has shown it there
   elsewhere,
 };
 

@@ -4,12 +4,12 @@
 //   slices             [--][----][--]            [---][-----]
 //                                   ^ the next one would not be done by the next frame: it waits
 //
-// The overload rule (thesis, chapter 6.3.2, which has 10 ms after each frame instead): frames that leave nothing must not
-// stop the work. While it waits, a share of the time is put down for it. A display leaves that much before its next frame
-// (rest_due()). Where it does not, a slice runs after a frame whatever follows once it is the slice's worth, and once it
-// is 20 ms, even while a frame is drawn. What frames have left beyond the share counts, too: one slow drawing makes no
-// further frame late. A slice of more than 50 ms pays for the rest afterwards: what was expected of it may be wrong, as
-// that of the first one, which compiles programs.
+// The overload rule (thesis, chapter 6.3.2, which has 10 ms after each frame instead): frames that leave nothing must
+// not stop the work. While it waits, a share of the time is put down for it. A display leaves that much before its next
+// frame (rest_due()). Where it does not, a slice runs after a frame whatever follows once it is the slice's worth, and
+// once it is 20 ms, even while a frame is drawn. What frames have left beyond the share counts, too: one slow drawing
+// makes no further frame late. A slice of more than 50 ms pays for the rest afterwards: what was expected of it may be
+// wrong, as that of the first one, which compiles programs.
 //
 // Where two displays show frames (a window, a headset), slices run in what both leave. A display whose frames must not
 // share a processor with a slice that has come to its turn lets it go first, and shows fewer frames: has_turn().

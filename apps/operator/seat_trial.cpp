@@ -28,9 +28,9 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr double kLongest = 1200;          // s, and as long as the motion may last
+constexpr double kLongest = 1200;           // s, and as long as the motion may last
 constexpr Duration kThingSeenWithin = 10s;  // after the end
-constexpr std::size_t kFramesKept = 1000;  // that come between two pictures: none is to be missed
+constexpr std::size_t kFramesKept = 1000;   // that come between two pictures: none is to be missed
 
 Identity named(Identity identity) {
   identity.name = "the operator's program";
@@ -232,8 +232,8 @@ class Trial {
       return !options_.physics || in_tray() ? ThingLies::in_place : ThingLies::elsewhere;
     });
     if (things_)
-      figures_.seen_in_tray = where_it_lies(*things_, *scene_, source_.robot().time, options_.thing, options_.tray) ==
-                              ThingLies::in_place;
+      figures_.seen_in_tray =
+          where_it_lies(*things_, *scene_, source_.robot().time, options_.thing, options_.tray) == ThingLies::in_place;
     figures_.fidelity = measures_.finish();
     const SeatStatus status = seat_.status();
     figures_.delay_s = status.delay.seconds;

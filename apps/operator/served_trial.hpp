@@ -1,7 +1,8 @@
 // The operator who is a program, at a line to a robot's program of its own, in real time.
 //
 // It has the line and nothing else: what the camera saw at a shown instant is known when that image has come, as the
-// line's coding left it, and the thing is where the seat believes it to be; it is in the tray once images show it there.
+// line's coding left it, and the thing is where the seat believes it to be; it is in the tray once images show it
+// there.
 #pragma once
 
 #include "apps/operator/seat_trial.hpp"

@@ -109,8 +109,7 @@ std::optional<ThingFinder::Fit> ThingFinder::agreeing(const Thing& thing, const 
   if (thing.colours.known()) {
     const auto fit = thing.colours.fit(thing.shape, thing.node, looked.cameras, start, sigma);
     if (!fit) return std::nullopt;
-    const bool in_place =
-        !held && (fit->T_world_thing.translation() - start.translation()).norm() < options_.in_place;
+    const bool in_place = !held && (fit->T_world_thing.translation() - start.translation()).norm() < options_.in_place;
     if (fit->difference > (in_place ? options_.most_difference_in_place : options_.most_difference))
       return std::nullopt;
     out = {fit->T_world_thing, fit->covariance, -fit->difference};

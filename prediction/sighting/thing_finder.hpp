@@ -38,9 +38,9 @@ struct ExpectedThing {
 };
 
 struct ThingFinderOptions {
-  double least_agreement = 0.6;               ///< EdgeFit::agreement
-  double most_sigma = 0.006;                  ///< m
-  double most_difference = 8;                 ///< grey levels: ColourFit::difference, where it should be
+  double least_agreement = 0.6;  ///< EdgeFit::agreement
+  double most_sigma = 0.006;     ///< m
+  double most_difference = 8;    ///< grey levels: ColourFit::difference, where it should be
   /// Of one that rests, and fits to within so much (m) of where it should be: that is no chance, but other light on it,
   /// as in a tray.
   double in_place = 0.005, most_difference_in_place = 12;

@@ -58,8 +58,8 @@ LabBuffers::LabBuffers(const Lab& lab, const LightMap& light, const LightMap::Ir
     }
   std::vector<Vertex> vertices;
   for (const auto& [key, some] : sorted) {
-    draws_.push_back({std::get<1>(key), std::get<2>(key), static_cast<GLint>(vertices.size()),
-                      static_cast<GLsizei>(some.size())});
+    draws_.push_back(
+        {std::get<1>(key), std::get<2>(key), static_cast<GLint>(vertices.size()), static_cast<GLsizei>(some.size())});
     vertices.insert(vertices.end(), some.begin(), some.end());
   }
   vertices_ = gl::Buffer(vertices.size() * sizeof(Vertex), "lab vertices");

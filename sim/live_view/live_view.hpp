@@ -59,7 +59,7 @@ class LiveView {
   gl::Faces faces_;
   gl::VertexArray array_, nothing_;
   gl::Program matt_, glossy_, resolve_, sensor_program_;
-  std::optional<PrintPass> prints_;  // where there are any
+  std::optional<PrintPass> prints_;                 // where there are any
   gl::Handle<gl::delete_texture> samples_, depth_;  // of one face
   gl::Texture colour_, places_, yuyv_;
   gl::Framebuffer face_target_, colour_target_, sensor_target_;

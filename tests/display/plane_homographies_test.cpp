@@ -50,8 +50,8 @@ class PlaneHomographiesTest : public HeadlessTest {
 TEST_F(PlaneHomographiesTest, LeadFromTheViewToTheImage) {
   const auto rows = homographies();
   for (std::size_t t = 0; t < surface_.corners.size(); ++t) {
-    const auto node = static_cast<std::size_t>(
-        surface_.patches[static_cast<std::size_t>(surface_.patch_of_triangle[t])].node);
+    const auto node =
+        static_cast<std::size_t>(surface_.patches[static_cast<std::size_t>(surface_.patch_of_triangle[t])].node);
     const Pose T_view_node = T_world_view_.inverse() * seen_.T_world_node[node];
     const Pose T_image_node = T_world_image_.inverse() * taken_.T_world_node[node];
     for (const Eigen::Vector3d& corner : surface_.corners[t]) {
@@ -73,8 +73,8 @@ TEST_F(PlaneHomographiesTest, TellHowFarThePlaneIsFromBoth) {
   const auto rows = homographies();
   for (std::size_t t = 0; t < surface_.corners.size(); ++t) {
     const auto& c = surface_.corners[t];
-    const auto node = static_cast<std::size_t>(
-        surface_.patches[static_cast<std::size_t>(surface_.patch_of_triangle[t])].node);
+    const auto node =
+        static_cast<std::size_t>(surface_.patches[static_cast<std::size_t>(surface_.patch_of_triangle[t])].node);
     const auto distance = [&](const Pose& T_camera_node) {
       const Eigen::Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
       return std::abs((T_camera_node.linear() * n).dot(T_camera_node * c[0]));

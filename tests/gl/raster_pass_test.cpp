@@ -59,8 +59,8 @@ TEST_P(RasterAgainstRays, Agree) {
   }
   EXPECT_GT(with_model, 2500u);
   EXPECT_LE(static_cast<double>(other_surface), kEdgeShare * static_cast<double>(at));
-  // As vertices are moved by up to 1/512 px, depth is by that share of what it changes from pixel to pixel: some hundredths
-  // on these small pictures of slanted surfaces. 2e-4 of the depth is 0.2 mm at one metre.
+  // As vertices are moved by up to 1/512 px, depth is by that share of what it changes from pixel to pixel: some
+  // hundredths on these small pictures of slanted surfaces. 2e-4 of the depth is 0.2 mm at one metre.
   EXPECT_LT(worst, 2e-4);
 }
 

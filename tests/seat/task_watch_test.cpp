@@ -54,8 +54,7 @@ TEST(TaskWatch, DidNotSucceedWhereNoImageHasShownThatItDid) {
   EXPECT_FALSE(outcome(ThingLies::elsewhere).succeeded);
   EXPECT_EQ(outcome(ThingLies::elsewhere).failure, "the thing is not in the tray");
   EXPECT_FALSE(outcome(ThingLies::unseen).succeeded);
-  EXPECT_EQ(outcome(ThingLies::unseen).failure,
-            "the model says it lies in the tray, but no image has confirmed it");
+  EXPECT_EQ(outcome(ThingLies::unseen).failure, "the model says it lies in the tray, but no image has confirmed it");
 }
 
 TEST(TaskWatch, SaysWhyItDidNotSucceedAndAsksForNothingElse) {
