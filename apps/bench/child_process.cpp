@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 
 #include "common/error.hpp"
 
@@ -31,6 +32,13 @@ pid_t start_child(const std::function<void()>& job) {
 bool wait_for_child(pid_t child) {
   int status = 0;
   return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+std::optional<std::string> end_of_child(pid_t child) {
+  int status = 0;
+  if (::waitpid(child, &status, WNOHANG) == 0) return std::nullopt;
+  if (WIFSIGNALED(status)) return std::string("was ended by a signal: ") + ::strsignal(WTERMSIG(status));
+  return "has ended with status " + std::to_string(WEXITSTATUS(status));
 }
 
 }  // namespace foresight

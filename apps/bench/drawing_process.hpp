@@ -3,6 +3,9 @@
 
 #include <sys/types.h>
 
+#include <optional>
+#include <string>
+
 #include "display/head/view_share.hpp"
 #include "scene/run_folder.hpp"
 
@@ -19,10 +22,15 @@ class DrawingProcess {
   DrawingProcess& operator=(const DrawingProcess&) = delete;
 
   head::ViewShare& share() { return share_; }
+  /// "" while it runs; else how it ended. What it threw it has said itself.
+  std::string failure();
+  /// What it does now, or did last, in words.
+  std::string doing() const;
 
  private:
   head::ViewShare share_;
   pid_t pid_;
+  std::optional<std::string> end_;
 };
 
 }  // namespace foresight

@@ -28,6 +28,18 @@ struct Drawing {
   std::function<std::uint64_t()> drawn;
   std::function<void(RobotTime)> feed_images;
   std::function<void()> between_frames;
+  DrawingProcess* process = nullptr;  // where that draws
+
+  /// Throws RuntimeFailure: nothing will come any more, or nothing came for too long.
+  void require_views(double waited_s) const {
+    const std::string failure = process != nullptr ? process->failure() : "";
+    if (failure.empty() && waited_s <= kLongestStart) return;
+    const std::string why = !failure.empty()     ? failure
+                            : process != nullptr ? process->doing()
+                                                 : "other programs may need all processors";
+    throw RuntimeFailure("no views are drawn for the head display: " + why,
+                         failure.empty() ? "let fewer programs run beside this one" : "look at what it said above");
+  }
 };
 
 struct Frames {
@@ -62,8 +74,7 @@ class FrameLoop {
       warper_.make_way();
       clock_.sleep_until(next);
       const RobotTime now = clock_.now();
-      if (!counted_from && to_seconds(now - begin) > kLongestStart)
-        throw RuntimeFailure("no views are drawn for the head display", "let fewer programs run beside this one");
+      drawing_.require_views(counted_from ? 0 : to_seconds(now - begin));
       if (!counted_from && drawing_.drawn() >= kSettled) {
         counted_from = now;
         cpu_before = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
@@ -118,7 +129,7 @@ Frames run_trial(HeadLab& lab, gl::Context& context, const HeadServerTrial& tria
   if (trial.drawn_by == DrawnBy::process) {
     head::ViewShare& share = trial.process->share();
     head::SharedViews views(share, lab.session().scene());
-    FrameLoop loop(lab, trial, {views, [&] { return share.drawn(); }, [](RobotTime) {}, [] {}});
+    FrameLoop loop(lab, trial, {views, [&] { return share.drawn(); }, [](RobotTime) {}, [] {}, trial.process});
     Frames out = loop.run();
     out.frame_ms = gpu_cpu_ms([&] { loop.frame(lab.T_world_camera()); });  // of this process
     return out;

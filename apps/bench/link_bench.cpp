@@ -223,7 +223,7 @@ int bench_link(const LinkBenchOptions& options) {
   Sent sent;
   const auto end_receiver = [&] {
     ::kill(receiver, SIGKILL);
-    ::waitpid(receiver, nullptr, 0);
+    wait_for_child(receiver);
   };
   try {
     sent = send(config, options, size, from.get(), all_arrivals);

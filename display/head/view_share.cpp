@@ -91,6 +91,7 @@ struct ViewShare::Head {
   TripleIndex aims, views;
   std::atomic<std::uint64_t> drawn{0};
   std::atomic<bool> ended{false};
+  std::atomic<const char*> doing{"begins"};
 };
 
 ViewShare::ViewShare(const ViewShareSize& size) : size_(size) {
@@ -199,6 +200,14 @@ bool ViewShare::take(DrawnEyes& out) {
     }
   }
   return true;
+}
+
+void ViewShare::tell(const char* doing) {
+  head_->doing = doing;
+}
+
+const char* ViewShare::doing() const {
+  return head_->doing;
 }
 
 std::uint64_t ViewShare::drawn() const {

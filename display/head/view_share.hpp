@@ -35,6 +35,8 @@ class ViewShare {
   std::optional<HeadAim> take_aim();
   /// Waits for the GPU. False: larger than what was asked for; it is not told.
   bool put(const DrawnEyes& eyes);
+  /// What it does now, for messages of the other side. A string literal: both sides are the same program.
+  void tell(const char* doing);
 
   // Showing process.
 
@@ -42,6 +44,8 @@ class ViewShare {
   void aim(const HeadAim& aim);
   /// What was put since the last call, copied into `out`: layers there are used again where they fit. False: nothing.
   bool take(DrawnEyes& out);
+
+  const char* doing() const;
 
   // Either.
 
