@@ -16,6 +16,11 @@ const char* to_string(HistoryFault fault) {
   return "";
 }
 
+std::string to_rig_key(const ResponseFigures& figures) {
+  return fmt::format("response: {{dead_time_s: {:.4f}, lag_s: {:.4f}, sigma_s: {:.4f}}}", figures.dead_time,
+                     figures.lag, figures.delay_sigma);
+}
+
 std::string to_words(const PredictedRobot& robot, std::span<const std::string> names) {
   const auto index = static_cast<std::size_t>(robot.joint);
   const std::string joint = robot.joint >= 0 && index < names.size() ? "joint '" + names[index] + "'" : "the robot";

@@ -20,6 +20,8 @@ constexpr std::array kHorizon{0.03, 0.1, 0.3, 1.0};   // s
 constexpr std::array kMeanOver{0.0, 0.02, 0.2, 2.0};  // s
 constexpr double kGuessEvery = 0.01;                  // s
 constexpr double kFarMore = 0.5;                      // of the squares that are left unexplained
+constexpr double kAsSure = 1.2;                       // times the sigma of what is known
+constexpr double kContradicts = 3;                    // sigmas off from what is known
 constexpr std::array kSpeeds{1.0, 0.98, 0.95, 1.03};  // of the largest speed seen
 constexpr std::size_t kRestTerms = kMeanOver.size() - 1;
 
@@ -32,6 +34,11 @@ Weights rest_inputs(const std::array<double, kMeanOver.size()>& means) {
 void carry_on(std::array<double, kMeanOver.size()>& means, double seconds, double unexplained) {
   for (std::size_t k = 0; k < means.size(); ++k)
     means[k] += (1 - (kMeanOver[k] > 0 ? std::exp(-seconds / kMeanOver[k]) : 0)) * (unexplained - means[k]);
+}
+
+bool outdoes(const ResponseFigures& found, const KnownResponse& known) {
+  const double off = std::abs(found.delay - known.dead_time - known.lag);
+  return found.delay_sigma <= kAsSure * known.sigma || off > kContradicts * std::hypot(found.delay_sigma, known.sigma);
 }
 
 // Where `ahead` lies between the horizons: the earlier one's index, and the share of the next.
@@ -50,7 +57,9 @@ JointResponse::JointResponse(const JointResponseOptions& options)
       commands_(kCommands),
       states_(kStates),
       tried_(kCommands),
-      fit_{StepResponse::pure_delay(options.expected_delay, kLongestAge), {}},
+      assumed_(options.known.value_or(KnownResponse{})),
+      identified_(options.known.has_value()),
+      fit_{StepResponse::lagging(assumed_.dead_time, assumed_.lag, kLongestAge), {}},
       learnt_means_(kStates),
       learnt_unexplained_(kStates),
       learnt_off_(kStates) {
@@ -59,7 +68,7 @@ JointResponse::JointResponse(const JointResponseOptions& options)
     const auto guesses = static_cast<std::size_t>(std::ceil(horizon / kGuessEvery)) + 2;
     rests_.push_back({Weights::Constant(kRestTerms, 0.3),
                       CalibratedSigma(options.first_sigma, kLeastSigma, kSigmaOver, CalibratedSigma::kScaleOfOne),
-                      LastOf<PredictedAt>(guesses), false});
+                      LastOf<PredictedAt>(guesses), identified_});
   }
 }
 
@@ -141,19 +150,20 @@ void JointResponse::find_speed(StepResponseFit& best) noexcept {
 void JointResponse::forget_states_after(double time) noexcept {
   const bool any = !states_.empty() && states_.values().newest().time > time;
   states_.forget_after(time);
-  if (any && identified_) identify();
+  if (any && learnt_) identify();
 }
 
 bool JointResponse::identify() noexcept {
   auto found = fit_step_response(asked_, states_);
   if (!found) return false;
+  if (!learnt_ && options_.known && !outdoes(found->figures(), *options_.known)) return false;
   find_speed(*found);
   fit_ = *found;
   figures_ = fit_.figures();
   std::size_t first = 0;
   while (states_.values()[first].time < fit_.first) ++first;
   learn_rest(first);
-  identified_ = true;
+  learnt_ = identified_ = true;
   inputs_now_ = fit_.model.inputs(commands_, newest_.time, newest_.time);
   return true;
 }
@@ -241,10 +251,10 @@ PredictedPosition JointResponse::at(double time) const noexcept {
   const Weights then = model.inputs(commands_, time, time);
   answer.position = model.base(commands_, time, time) + then.dot(model.realised) + rest(ahead);
   answer.sigma = std::hypot(sigma(ahead), fit_.sigma(then - inputs_now_));
-  if (!identified_) {  // it may be as far off as it goes meanwhile
-    const double meanwhile = commands_.at(time, time) - commands_.at(time - options_.delay_sigma, time);
+  if (!learnt_) {  // it may be as far off as it goes meanwhile
+    const double meanwhile = commands_.at(time, time) - commands_.at(time - assumed_.sigma, time);
     answer.sigma = std::hypot(answer.sigma, meanwhile);
-    answer.assumed = meanwhile != 0;
+    answer.assumed = !identified_ && meanwhile != 0;
   }
   answer.valid = std::isfinite(answer.position);
   return answer;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "prediction/calibrated_sigma.hpp"
@@ -24,13 +25,19 @@ struct PredictedPosition {
   bool assumed = false;  ///< it moves, and nothing was learnt of its drive yet
 };
 
+/// A drive's response as an earlier identification found it (ResponseFigures).
+struct KnownResponse {
+  double dead_time = 0.02, lag = 0;  ///< s; >= 0
+  double sigma = 0.02;               ///< s: standard deviation of their sum; > 0
+};
+
 struct JointResponseOptions {
-  double expected_delay = 0.02;  ///< s: until something was identified
-  double delay_sigma = 0.02;     ///< s: of that
-  double least_step = 0.004;     ///< s: states that come faster are not kept for identification
-  double stale = 0.5;            ///< s without a state: what is unexplained is learnt anew
-  double farthest = 3;           ///< s ahead of the newest state
-  double first_sigma = 0.02;     ///< rad or m: until the first errors were seen; > 0
+  /// Holds from the start, until what was learnt is about as sure of the delay, or contradicts it.
+  std::optional<KnownResponse> known = {};
+  double least_step = 0.004;  ///< s: states that come faster are not kept for identification
+  double stale = 0.5;         ///< s without a state: what is unexplained is learnt anew
+  double farthest = 3;        ///< s ahead of the newest state
+  double first_sigma = 0.02;  ///< rad or m: until the first errors were seen; > 0
 };
 
 /// One thread. Only the constructor allocates; no method throws.
@@ -60,12 +67,15 @@ class JointResponse {
   bool observe(double time, double position, bool typical = true) noexcept;
 
   /// Learns from the last half minute, some ms of CPU time: every second or so. False, and all stays as it was: too few
-  /// states, or none of them moved.
+  /// states, none of them moved, or what was known before is surer.
   bool identify() noexcept;
   const ResponseFigures& figures() const noexcept { return figures_; }
   /// The speed that the drive does not exceed, though its commands ask for more; infinite where none was seen.
   double largest_speed() const noexcept { return speed_; }
+  /// Its response was learnt, or known before.
   bool identified() const noexcept { return identified_; }
+  /// It was learnt of what was observed here.
+  bool learnt() const noexcept { return learnt_; }
   /// How far the newest state is from where the commands so far and the usual difference of the last seconds put it:
   /// little, unless something else than the drive moves or holds the joint. 0 before any state.
   double astray() const noexcept { return means_.front() - means_.back(); }
@@ -99,7 +109,8 @@ class JointResponse {
   PositionHistory tried_;                      // room for find_speed
   double speed_ = std::numeric_limits<double>::infinity();
   TimedPosition newest_;
-  bool observed_ = false, identified_ = false;
+  KnownResponse assumed_;  // until something was learnt: what is known, or thought of drives of which nothing is
+  bool observed_ = false, learnt_ = false, identified_ = false;
   StepResponseFit fit_;
   Weights inputs_now_;  // of the model, at the newest state
   Means means_{};

@@ -48,9 +48,12 @@ RobotFuture::RobotFuture(RobotFutureOptions options, RobotShape* shape)
       motion_(options_.gate, shape, options_.motion),
       shown_ones_(kShown),
       scored_(kShown) {
-  for (const GateJoint& joint : options_.gate.joints) {
+  options_.responses.resize(options_.gate.joints.size());
+  for (std::size_t i = 0; i < options_.gate.joints.size(); ++i) {
+    const GateJoint& joint = options_.gate.joints[i];
     JointResponseOptions response;
-    response.first_sigma = kUnknownDelay * joint.limits.velocity;
+    response.known = options_.responses[i];
+    response.first_sigma = (response.known ? response.known->sigma : kUnknownDelay) * joint.limits.velocity;
     Joint& added = joints_.emplace_back();
     added.response = JointResponse(response);
     added.precise = options_.astray_share * joint.following_error;
@@ -150,11 +153,11 @@ void RobotFuture::observe(const RobotReport& report) noexcept {
     if (!std::isfinite(told.position) || !joint.measured.add(time, told.position)) continue;
     if (doing_ == GateDoing::away) continue;
     const bool typical = !joint.held.doubted && std::abs(joint.response.astray()) <= joint.precise;
-    joint.response.observe(time, told.position, typical || !joint.response.identified());
+    joint.response.observe(time, told.position, typical || !joint.response.learnt());
     const double off = std::abs(joint.response.astray());
     if (off <= kAtEase * joint.precise) joint.at_ease = time;
     const bool was_doubted = joint.held.doubted;
-    joint.held.see(time, joint.response.identified() && off > (joint.held.doubted ? 0.5 : 1) * joint.precise,
+    joint.held.see(time, joint.response.learnt() && off > (joint.held.doubted ? 0.5 : 1) * joint.precise,
                    options_.astray_after);
     if (joint.held.doubted && !was_doubted) forget_hold(joint, time);
   }

@@ -65,7 +65,8 @@ struct ScoredRobot {
 
 struct RobotFutureOptions {
   GateOptions gate;
-  double stale = 1;             ///< s without a report beyond the line's delay
+  std::vector<std::optional<KnownResponse>> responses = {};  ///< of the joints' drives; none: of none
+  double stale = 1;                                          ///< s without a report beyond the line's delay
   double astray_share = 0.125;  ///< of a joint's largest following error, that is no more a matter of precision
   double astray_after = 0.2;    ///< s that it lasts before it counts, and that it is gone before it does not
   double missed_after = 0.5;    ///< likewise, of what was shown, beyond the line's delay there and back

@@ -148,6 +148,19 @@ StepResponse StepResponse::pure_delay(double delay, double reach, double sparse)
   return model;
 }
 
+// A step in a bin may be of any age between the bin's: the mean of 1 - exp(-(age - dead time) / lag) over them.
+StepResponse StepResponse::lagging(double dead_time, double lag, double reach) noexcept {
+  StepResponse model = pure_delay(dead_time + lag, reach);
+  if (!(lag > 0)) return model;
+  const auto remaining = [&](double age) { return std::exp(-std::max(age - dead_time, 0.0) / lag); };
+  for (std::size_t k = 0; k < model.bins; ++k) {
+    const double from = model.ages[k], to = model.ages[k + 1];
+    const double acting = std::max(to, dead_time) - std::max(from, dead_time);
+    model.realised[static_cast<Eigen::Index>(k)] = (acting - lag * (remaining(from) - remaining(to))) / (to - from);
+  }
+  return model;
+}
+
 double StepResponse::base(const PositionHistory& commands, double time, double until) const noexcept {
   return commands.at(time - ages[bins], until, sparse);
 }

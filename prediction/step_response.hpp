@@ -16,6 +16,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 #include "prediction/online_regression.hpp"
 #include "prediction/position_history.hpp"
@@ -33,6 +34,8 @@ struct StepResponse {
 
   /// That delays by `delay` and does nothing else; no age is more than `reach` beyond it.
   static StepResponse pure_delay(double delay, double reach, double sparse = PositionHistory::kSparse) noexcept;
+  /// That of a dead time and a lag of the first order, both >= 0; no age is more than `reach` beyond their sum.
+  static StepResponse lagging(double dead_time, double lag, double reach) noexcept;
   /// What `realised` are shares of at `time`, of the commands up to `until`.
   Weights inputs(const PositionHistory& commands, double time, double until) const noexcept;
   /// Where all steps that are older than the ages have led.
@@ -51,6 +54,9 @@ struct ResponseFigures {
   double explained = 0;                       ///< share of the squares of such changes; little: other commands moved it
   std::size_t samples = 0;                    ///< that these come from; 0: nothing was found yet
 };
+
+/// As a joint's key of a rig file (docs/rig-files.md).
+std::string to_rig_key(const ResponseFigures& figures);
 
 struct StepResponseFit {
   StepResponse model;

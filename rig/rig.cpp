@@ -99,12 +99,43 @@ void read_reference(const YamlMap& map, bool powercube, RigJoint& joint) {
                      "home to a switch, or use an absolute encoder");
 }
 
+// Slower drives than that are none that an arm follows a hand with.
+constexpr double kLongestResponse = 0.5;  // s
+
+RigJoint::Response read_response(const YamlMap& map) {
+  map.require_known({"dead_time_s", "lag_s", "sigma_s"});
+  const RigJoint::Response out{number(map, "dead_time_s", 0), number(map, "lag_s", 0), map.positive("sigma_s")};
+  for (const auto& [key, value] :
+       {std::pair{"dead_time_s", out.dead_time_s}, {"lag_s", out.lag_s}, {"sigma_s", out.sigma_s}})
+    if (!(value >= 0 && value <= kLongestResponse))
+      throw InputError(map.where(key), fmt::format("{:g} s is no time within which a drive follows", value),
+                       fmt::format("give 0 to {:g}, in seconds", kLongestResponse));
+  return out;
+}
+
 RigJoint read_joint(const YamlMap& map, const Rig& rig) {
   const std::vector<RigBus>& buses = rig.buses;
-  map.require_known(
-      {"name",    "group",  "bus",      "node",         "unit", "counts_per_unit", "direction",       "offset",
-       "min",     "max",    "velocity", "acceleration", "jerk", "following_error", "homing_velocity", "homing_method",
-       "encoder", "vendor", "product",  "serial"});
+  map.require_known({"name",
+                     "group",
+                     "bus",
+                     "node",
+                     "unit",
+                     "counts_per_unit",
+                     "direction",
+                     "offset",
+                     "min",
+                     "max",
+                     "velocity",
+                     "acceleration",
+                     "jerk",
+                     "following_error",
+                     "homing_velocity",
+                     "homing_method",
+                     "encoder",
+                     "vendor",
+                     "product",
+                     "serial",
+                     "response"});
   RigJoint joint;
   joint.drive.name = map.text("name");
   joint.group = map.choice<JointGroup>(
@@ -131,6 +162,7 @@ RigJoint read_joint(const YamlMap& map, const Rig& rig) {
   read_limits(map, in_urdf(rig, joint.drive.name), rig.rate_hz, joint);
   if (!powercube) check_counts(map, joint);
   read_reference(map, powercube, joint);
+  if (map.has("response")) joint.response = read_response(map.map("response"));
   joint.drive.vendor = identity(map, "vendor");
   joint.drive.product = identity(map, "product");
   joint.drive.serial = identity(map, "serial");

@@ -35,8 +35,14 @@ struct RigJoint {
   DriveConfig drive;
   double jerk = 0;             ///< unit/s^3; > 0
   double following_error = 0;  ///< unit; > 0
-  int homing_method = 0;       ///< CiA 402, object 6098h; 0: none
-  bool absolute = false;       ///< CiA 402: its encoder knows the position from power-on, it needs no homing
+  /// How its drive follows set-points, where that was measured: `foresight bench prediction robot` tells it.
+  struct Response {
+    double dead_time_s = 0, lag_s = 0;  ///< s; >= 0
+    double sigma_s = 0;                 ///< s: standard deviation of their sum; > 0
+  };
+  std::optional<Response> response = {};
+  int homing_method = 0;  ///< CiA 402, object 6098h; 0: none
+  bool absolute = false;  ///< CiA 402: its encoder knows the position from power-on, it needs no homing
 };
 
 /// Results of `foresight calibrate`; whoever uses them reads them.

@@ -17,6 +17,10 @@ constexpr std::size_t kErrorsKept = 300;
 RobotFutureOptions future_options(const Rig& rig) {
   RobotFutureOptions out;
   out.gate = rig.gate_options();
+  for (const RigJoint& joint : rig.joints) {
+    auto& known = out.responses.emplace_back();
+    if (joint.response) known = {joint.response->dead_time_s, joint.response->lag_s, joint.response->sigma_s};
+  }
   return out;
 }
 
@@ -86,6 +90,14 @@ void RobotOutlook::advance(RobotTime now) {
   now_ = std::max(now_, now);
   future_->advance(now_);
   score();
+}
+
+std::vector<std::string> RobotOutlook::learnt_responses() const {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < rig_.joints.size(); ++i)
+    if (const ResponseFigures& figures = future_->figures(i); figures.samples > 0)
+      out.push_back(rig_.joints[i].drive.name + ": " + to_rig_key(figures));
+  return out;
 }
 
 void RobotOutlook::score() {

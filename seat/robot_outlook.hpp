@@ -49,6 +49,8 @@ class RobotOutlook {
   RobotTime instant_to_show(RobotTime now) { return future_->instant_to_show(now); }
   PredictedDelay delay() const { return future_->delay(); }
   const OutlookFigures& figures() const { return figures_; }
+  /// A line for each joint whose drive's response was learnt: its name, and that as a key of the rig file.
+  std::vector<std::string> learnt_responses() const;
   /// The newest report; nothing before the first.
   const std::optional<RobotReport>& newest() const { return newest_; }
 

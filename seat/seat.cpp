@@ -149,4 +149,9 @@ SeatStatus Seat::status() const {
   return out;
 }
 
+std::vector<std::string> Seat::learnt_responses() const {
+  const std::lock_guard lock(mutex_);
+  return outlook_.learnt_responses();
+}
+
 }  // namespace foresight

@@ -52,6 +52,8 @@ class Seat {
   /// Where it would be shown now; nothing is remembered of that.
   PredictedRobot look_ahead();
   SeatStatus status() const;
+  /// As RobotOutlook::learnt_responses().
+  std::vector<std::string> learnt_responses() const;
   /// Where the robot will be between what is known of it and what was shown last: what it does because it was sent
   /// already. At most `count` (>= 2) instants, evenly, oldest first; those that cannot be told are left out.
   std::vector<PredictedRobot> under_way(std::size_t count) const;

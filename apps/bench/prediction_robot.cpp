@@ -26,7 +26,20 @@ double share_of(std::size_t part, std::size_t all) {
   return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0;
 }
 
-nlohmann::json report(const RobotTrialFigures& f, const PredictionRobotOptions& options) {
+// Of those of which something was learnt.
+nlohmann::json drives(const RobotTrialFigures& figures, const Rig& rig) {
+  nlohmann::json out = nlohmann::json::array();
+  for (std::size_t i = 0; i < rig.joints.size(); ++i)
+    if (const ResponseFigures& drive = figures.drives[i]; drive.samples > 0)
+      out.push_back({{"joint", rig.joints[i].drive.name},
+                     {"dead_time_s", drive.dead_time},
+                     {"lag_s", drive.lag},
+                     {"sigma_s", drive.delay_sigma},
+                     {"explained", drive.explained}});
+  return out;
+}
+
+nlohmann::json report(const RobotTrialFigures& f, const Rig& rig, const PredictionRobotOptions& options) {
   const auto p95_mm = [](const std::vector<double>& metres) { return 1e3 * quantile(metres, 0.95); };
   const std::vector<double>& tool = f.predicted.tool;
   return {{"delay_ms", options.delay_ms},
@@ -56,7 +69,8 @@ nlohmann::json report(const RobotTrialFigures& f, const PredictionRobotOptions& 
           {"delay_ms_sigma", 1e3 * f.delay_sigma_s},
           {"cpu_share", f.cpu_s / f.time_s},
           {"moved_rad", f.moved_rad},
-          {"fastest_share", f.fastest_share}};
+          {"fastest_share", f.fastest_share},
+          {"drives", drives(f, rig)}};
 }
 
 void print_robot(const nlohmann::json& all) {
@@ -79,6 +93,13 @@ void print_robot(const nlohmann::json& all) {
                 number("held_tool_p95_mm"));
 }
 
+void print_drives(const RobotTrialFigures& figures, const Rig& rig) {
+  std::printf("how the drives follow, for the joints' lines of the rig file:\n");
+  for (std::size_t i = 0; i < rig.joints.size(); ++i)
+    if (figures.drives[i].samples > 0)
+      std::printf("  %-16s %s\n", rig.joints[i].drive.name.c_str(), to_rig_key(figures.drives[i]).c_str());
+}
+
 }  // namespace
 
 int bench_prediction_robot(const PredictionRobotOptions& options) {
@@ -93,8 +114,9 @@ int bench_prediction_robot(const PredictionRobotOptions& options) {
     std::fprintf(stderr, "nothing could be judged: %s\n", figures.invalid_words.c_str());
     return 1;
   }
-  const nlohmann::json all = report(figures, options);
+  const nlohmann::json all = report(figures, rig, options);
   print_robot(all);
+  print_drives(figures, rig);
   write_numbers(options.json, all.dump(2));
   return 0;
 }

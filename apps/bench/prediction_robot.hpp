@@ -27,6 +27,7 @@ struct PredictionRobotOptions {
 ///   for held_tool_p95_mm, held         while the gate held the robot back; how many pictures that were pictures,
 ///   judged, invalid, invalid_words   shown, judged in free motion; share that was said to be unknown, and why
 ///   largest_step_over_limit        of a joint from picture to picture, over its velocity times that time
+///   drives    of each joint that was learnt: joint, dead_time_s, lag_s, sigma_s (of their sum), explained
 ///   delay_ms_told, cpu_share, moved_rad, fastest_share
 /// Returns 1 where nothing could be judged, else 0. Throws InputError as read_rig and try_robot.
 int bench_prediction_robot(const PredictionRobotOptions& options);

@@ -174,6 +174,7 @@ class OperatorSide {
   void finish() {
     figures_.delay_s = future_.delay().seconds;
     figures_.delay_sigma_s = future_.delay().sigma;
+    for (std::size_t i = 0; i < rig_.joints.size(); ++i) figures_.drives.push_back(future_.figures(i));
   }
   const RobotFuture& future() const { return future_; }
 

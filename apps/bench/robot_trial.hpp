@@ -45,6 +45,7 @@ struct RobotTrialFigures {
   double delay_s = 0, delay_sigma_s = 0;    ///< of a set-point, as told at the end
   double cpu_s = 0;                         ///< of the predicting side, all of the time
   double moved_rad = 0, fastest_share = 0;  ///< that the joints went in sum; their largest velocity, of what they may
+  std::vector<ResponseFigures> drives;      ///< as learnt at the end, of each joint
   double time_s = 0;                        ///< that was simulated, with the learning
 };
 

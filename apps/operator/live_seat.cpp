@@ -126,11 +126,20 @@ class LiveSeat {
     clock_.sleep_until(clock_.now() + std::chrono::milliseconds(60));
     seat_.stop();
     end_.stop();
+    tell_responses();
     if (head_ && !head_->stop()) end_with_runtime_hanging();
     return stop_requested() ? kStopped : 0;
   }
 
  private:
+  // Whoever has them in the rig file need not wait for them to be learnt.
+  void tell_responses() const {
+    const std::vector<std::string> learnt = seat_.learnt_responses();
+    if (learnt.empty()) return;
+    std::fprintf(stderr, "operator: how the drives followed, for the joints' lines of the rig file:\n");
+    for (const std::string& line : learnt) std::fprintf(stderr, "  %s\n", line.c_str());
+  }
+
   ViewSetup view_setup(const Rig& rig, const LiveSeatOptions& options) const {
     ViewSetup out = live_view_setup(*scene_, rig.name, options.textures, options.levels);
     out.gate = gate_;

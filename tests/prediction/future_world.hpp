@@ -13,13 +13,14 @@
 namespace foresight {
 
 struct WorldOptions {
-  double delay = 0.3;     // s, each way
-  double jitter = 0;      // s, more, evenly
-  double loss = 0;        // share of set-points and reports
-  double lag = 0.015;     // s, of the drives
-  double quantum = 1e-5;  // rad, of the encoders
-  bool jaws = false;      // the first joint is that of a gripper
-  int looks_every = 1;    // cycles in which the robot's program looks for set-points that came
+  double delay = 0.3;                       // s, each way
+  double jitter = 0;                        // s, more, evenly
+  double loss = 0;                          // share of set-points and reports
+  double lag = 0.015;                       // s, of the drives
+  double quantum = 1e-5;                    // rad, of the encoders
+  bool jaws = false;                        // the first joint is that of a gripper
+  std::optional<KnownResponse> known = {};  // what was found of the drives before
+  int looks_every = 1;                      // cycles in which the robot's program looks for set-points that came
   unsigned seed = 1;
 };
 
@@ -30,7 +31,7 @@ class FutureWorld {
         robot_shape_(rod_.shape()),
         model_shape_(rod_.shape()),
         gate_(gate_options(), robot_shape_.get()),
-        future_(with(gate_options()), model_shape_.get()),
+        future_(future_options(), model_shape_.get()),
         random_(options.seed) {
     GateModel::State state;
     state.time = now_;
@@ -79,9 +80,10 @@ class FutureWorld {
     out.joints[0].keeps_grip = options_.jaws;
     return out;
   }
-  static RobotFutureOptions with(const GateOptions& gate) {
+  RobotFutureOptions future_options() const {
     RobotFutureOptions out;
-    out.gate = gate;
+    out.gate = gate_options();
+    out.responses.assign(2, options_.known);
     return out;
   }
   static constexpr Duration kTick = std::chrono::milliseconds(4);

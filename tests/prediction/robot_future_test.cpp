@@ -100,6 +100,36 @@ TEST(RobotFuture, DrivesAreLearntOnceTheyMoveHoweverLateThatIs) {
   EXPECT_GE(judged.inside, 0.90) << "little was seen of the drives yet, and that is told";
 }
 
+double median_sigma(const FutureWorld& world) {
+  std::vector<double> sigmas;
+  for (const PredictedRobot& shown : world.pictures())
+    if (shown.status == StateStatus::predicted) sigmas.push_back(shown.sigma[0]);
+  return median(sigmas);
+}
+
+TEST(RobotFuture, DrivesThatAreKnownArePredictedFromTheirFirstMotionOn) {
+  FutureWorld unknown({.lag = 0.06});
+  FutureWorld known({.lag = 0.06, .known = KnownResponse{.dead_time = 0, .lag = 0.06, .sigma = 0.002}});
+  unknown.run(3);
+  known.run(3);
+  EXPECT_LT(judge(known, 0).p95, 0.003);
+  EXPECT_GT(judge(unknown, 0).p95, 5 * judge(known, 0).p95);
+  EXPECT_GE(judge(known, 0).inside, 0.90);
+  EXPECT_LT(5 * median_sigma(known), median_sigma(unknown));
+}
+
+// Another drive was put in, or another load.
+TEST(RobotFuture, WhatWasKnownOfDrivesGivesWayToWhatIsSeen) {
+  FutureWorld world({.known = KnownResponse{.dead_time = 0.05, .lag = 0.02, .sigma = 0.002}});
+  world.run(10);
+  const std::size_t learnt = world.pictures().size();
+  world.run(10);
+  const Judged judged = judge(world, learnt);
+  EXPECT_LT(judged.p95, 0.001);
+  EXPECT_GE(judged.inside, 0.90);
+  EXPECT_EQ(judged.invalid, 0u);
+}
+
 TEST(RobotFuture, JitterAndLossWidenItsUncertainty) {
   FutureWorld world({.jitter = 0.03, .loss = 0.03});
   world.run(10);

@@ -33,6 +33,15 @@ TEST(Rig, TheRigsThatComeWithTheProgramAreValid) {
   }
 }
 
+TEST(Rig, SaysHowDrivesFollow) {
+  const Rig rig = read_rig(config("minerva.yaml"));
+  for (const RigJoint& joint : rig.joints) {
+    ASSERT_TRUE(joint.response) << joint.drive.name;
+    EXPECT_GT(joint.response->dead_time_s + joint.response->lag_s, 0) << joint.drive.name;
+    EXPECT_GT(joint.response->sigma_s, 0) << joint.drive.name;
+  }
+}
+
 TEST(BusPlan, KnowsWhatARigWillSend) {
   Rig rig = read_rig(config("minerva.yaml"));
   // Eight modules, each a set-point and an answer of 8 bytes (111 bits and at most 24 stuffed) 250 times a second.
@@ -92,6 +101,9 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("protocol: cia402", "protocol: cia403", {"cia403", "cia402"});
   expect("jerk: 20", "jerk: -1", {"jerk", "above 0"});
   expect("following_error: 0.1", "following_error: 0.001", {"following error"});
+  expect("node: 2", "node: 2, response: {lag_s: 0.01}", {"response.sigma_s", "missing"});
+  expect("node: 2", "node: 2, response: {lag_s: 12, sigma_s: 0.001}", {"response.lag_s", "12 s", "seconds"});
+  expect("node: 2", "node: 2, response: {delay_s: 0.1, sigma_s: 0.001}", {"response.delay_s", "dead_time_s"});
   expect("velocity: 1, acc", "velocity: .nan, acc", {"velocity"});
   expect("encoder: absolute, ", "", {"encoder", "no way to know"});
   expect("encoder: absolute", "homing_method: 35", {"wherever it stands"});
