@@ -14,7 +14,7 @@ constexpr std::size_t kWitnesses = 6000, kRecords = 48;
 constexpr double kMoved = 5e-3, kTurned = 0.01;        // metres, radians: less is an error of a pose
 constexpr double kNewMoved = 0.02, kNewTurned = 0.06;  // since the last record: less has much the same shadows
 constexpr int kFirstSearch = 8, kAnswerTakes = 2;      // images
-constexpr double kNextSearch = 1.5;                    // when there are so many times as many
+constexpr double kNextSearch = 1.25;                   // when there are so many times as many
 constexpr float kDarkest = 0.02f;                      // of an image's values: below, noise and black level rule
 const Vector3f kNotKnown = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 
