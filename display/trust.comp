@@ -24,7 +24,7 @@ uniform int layer_of[FRAMES];  // each image's first
 uniform int frame_count, node_count;
 uniform uint exact[8];  // a bit for each kind of pixel (doubt_kinds.hpp): it counts as exact
 uniform int layer_of_comparison[COMPARISONS];  // newest first
-uniform int comparison_count;
+uniform int comparison_count, comparisons_with_patches;  // the newest ones
 
 const float kUnconfirmed = 1.0;
 const float kSameSurface = 0.02;  // share of the distance within which a surface is the one that was seen
@@ -110,6 +110,7 @@ int compared_at(int node, vec3 p) {
   for (int i = 0; i < comparison_count; ++i) {
     float levels = said(i, node, p);
     if (levels > kNotShown) continue;
+    if (levels > kInPatch && i >= comparisons_with_patches) continue;
     if (levels > kInPatch && i == 0) return kSuspect;
     sum += min(levels, 30.0);
     count += 1.0;

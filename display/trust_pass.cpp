@@ -76,6 +76,7 @@ void TrustPass::compared(const PosedImage& image, const cv::Mat& comparison) {
     compared_.pop_back();
   }
   compared_.insert(compared_.begin(), Seen{image.time, image.T_world_camera, image.scene, layer});
+  with_patches_ = std::min(with_patches_ + 1, compared_.size());
   glTextureSubImage3D(comparisons_.name(), 0, 0, 0, layer, comparison.cols, comparison.rows, 1, GL_RED,
                       GL_UNSIGNED_BYTE, comparison.data);
 }
@@ -130,6 +131,7 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
   glProgramUniform1iv(program_.name(), glGetUniformLocation(program_.name(), "layer_of_comparison"),
                       static_cast<GLsizei>(comparisons.size()), comparisons.data());
   program_.set("comparison_count", static_cast<int>(compared_.size()));
+  program_.set("comparisons_with_patches", static_cast<int>(with_patches_));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   const GLuint units[] = {
       view.picture().name(), view.faces().surface.name(), view.faces().depth.name(), surface_->triangles(),

@@ -28,6 +28,8 @@ class TrustPass {
   /// How what was shown for this image's instant agreed with it: CV_8UC1 of the lens's size, as doubt_kinds.hpp says.
   /// Later than the one before, else those are forgotten.
   void compared(const PosedImage& image, const cv::Mat& comparison);
+  /// What was wrong in patches so far has a reason that is no more.
+  void forget_patches() { with_patches_ = 0; }
 
   /// Fills doubt() and marked() for the view that was drawn last. `node_px`: by how many pixels each node of `state`
   /// may be elsewhere (one standard deviation). `exact`: what is not hatched. Does not wait for the GPU.
@@ -61,8 +63,9 @@ class TrustPass {
   gl::Buffer camera_;
   gl::BufferTexture node_px_, ways_;
   gl::Texture rays_, comparisons_, doubt_, marked_;
-  std::vector<Seen> seen_;      // newest first
-  std::vector<Seen> compared_;  // newest first, at most kComparisonsKept
+  std::vector<Seen> seen_;        // newest first
+  std::vector<Seen> compared_;    // newest first, at most kComparisonsKept
+  std::size_t with_patches_ = 0;  // of compared_, that many of the newest
   std::vector<Eigen::Vector4f> rows_;
 };
 

@@ -35,11 +35,11 @@ cv::Mat patches_of(const cv::Mat& wrong) {
 }
 
 /// What is said of each pixel when it is shown again. `off`: grey levels, 0 where the picture was not seen.
-cv::Mat comparison_of(const cv::Mat& off, const cv::Mat& wrong, const cv::Mat& seen) {
+cv::Mat comparison_of(const cv::Mat& off, const cv::Mat& patches, const cv::Mat& seen) {
   cv::Mat out;
   cv::blur(off, out, {3, 3});
   out = cv::min(out, kMostLevelsOff);
-  out.setTo(kInPatch, patches_of(wrong));
+  out.setTo(kInPatch, patches);
   out.setTo(kNotShown, ~seen);
   return out;
 }
@@ -98,12 +98,21 @@ cv::Mat grey_difference(const cv::Mat& one, const cv::Mat& other) {
 }
 
 ShownFidelity::ShownFidelity(FidelityOptions options) : options_(options) {
-  learn({}, 1);
+  begin_anew({});
+}
+
+void ShownFidelity::begin_anew(RobotTime from) {
+  begin_ = from;
+  of_late_ = beside_patches_;
+  learn();
   choose({});
 }
 
 void ShownFidelity::shown(RememberedView picture) {
-  if (!kept_.empty() && picture.instant <= kept_.back().instant) kept_.clear();  // another clock
+  if (!kept_.empty() && picture.instant <= kept_.back().instant) {  // another clock
+    kept_.clear();
+    begin_ = {};
+  }
   const cv::Mat seen = seen_mask(picture.picture);
   ByKind pixels = count(seen, picture.doubt, cv::Mat::zeros(seen.size(), CV_8UC1));
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].all += (1 - kMemory) * of_late_[i].all;
@@ -135,8 +144,13 @@ std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat&
   out.worst = static_cast<std::size_t>(std::ranges::max_element(out.wrong) - out.wrong.begin());
   out.exact_share = share_of(exact, seen);
   out.exact_wrong = share_of(wrong, exact);
-  out.comparison = comparison_of(off, wrong, seen);
-  learn(count(seen, picture.doubt, wrong), kAssumed * static_cast<double>(seen.total()));
+  if (picture.instant < begin_) return out;
+  const cv::Mat patches = patches_of(wrong);
+  out.comparison = comparison_of(off, patches, seen);
+  assumed_ = kAssumed * static_cast<double>(seen.total());
+  add(count(seen, picture.doubt, wrong), of_late_);
+  add(count(seen & ~patches, picture.doubt, wrong), beside_patches_);
+  learn();
   return out;
 }
 
@@ -152,12 +166,17 @@ ShownFidelity::ByKind ShownFidelity::count(const cv::Mat& seen, const cv::Mat& d
   return out;
 }
 
-void ShownFidelity::learn(const ByKind& counts, double assumed) {
+void ShownFidelity::add(const ByKind& counts, ByKind& to) {
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    of_late_[i].all = kMemory * of_late_[i].all + counts[i].all;
-    of_late_[i].wrong = kMemory * of_late_[i].wrong + counts[i].wrong;
+    to[i].all = kMemory * to[i].all + counts[i].all;
+    to[i].wrong = kMemory * to[i].wrong + counts[i].wrong;
+  }
+}
+
+void ShownFidelity::learn() {
+  for (std::size_t i = 0; i < of_late_.size(); ++i) {
     const double risk = assumed_risk(kind_of(static_cast<int>(i)), options_.wrong_levels);
-    risk_[i] = (of_late_[i].wrong + assumed * risk) / (of_late_[i].all + assumed);
+    risk_[i] = (of_late_[i].wrong + assumed_ * risk) / (of_late_[i].all + assumed_);
   }
 }
 

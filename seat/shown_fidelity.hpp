@@ -21,7 +21,7 @@ struct FidelityOptions {
   Duration same_instant = std::chrono::milliseconds(20);  ///< by which picture and image may be apart, > 0
   std::size_t kept = 48;                                  ///< pictures that wait for their image, > 0
   double wrong_levels = 10;                               ///< grey levels beyond which a pixel is wrong
-  double wrong_share = 0.019;                             ///< of the pixels that count as exact, that may be wrong
+  double wrong_share = 0.0165;                            ///< of the pixels that count as exact, that may be wrong
   double wrong_of_kind = 0.15;                            ///< of the pixels of each kind, likewise
 };
 
@@ -36,7 +36,7 @@ struct Fidelity {
   double exact_wrong = 0;                      ///< of the exact ones
   /// CV_8UC1, as doubt_kinds.hpp says. In and around patches that were shown wrong something moves that is not
   /// foretold.
-  cv::Mat comparison = {};
+  cv::Mat comparison = {};  ///< empty where it tells nothing of what is shown now (begin_anew)
 };
 /// "top left", "middle", ...
 std::string place_of(std::size_t tile);
@@ -55,6 +55,9 @@ class ShownFidelity {
 
   /// Was shown; later than what was shown before, else all that is kept goes.
   void shown(RememberedView picture);
+  /// What is shown from this instant on is drawn another way: what was wrong in patches before had a reason that is no
+  /// more, and tells nothing of other pixels of the same kinds.
+  void begin_anew(RobotTime from);
   /// The image of an instant came, in the order of their instants: nothing where no picture was shown for it, or one of
   /// another size. `image`: CV_8UC3.
   std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image);
@@ -70,12 +73,15 @@ class ShownFidelity {
   };
   using ByKind = std::array<Counts, DoubtKind::kCount>;
   static ByKind count(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong);
-  void learn(const ByKind& counts, double assumed);
+  static void add(const ByKind& counts, ByKind& to);
+  void learn();
   void choose(const ByKind& pixels);
 
   FidelityOptions options_;
   std::deque<RememberedView> kept_;
-  ByKind of_late_{};
+  RobotTime begin_;                               // what was shown before tells nothing
+  ByKind of_late_{}, beside_patches_{};           // all of late, and what lay in no patch that was wrong
+  double assumed_ = 1;                            // pixels of each kind that are taken to have been as assumed
   std::array<double, DoubtKind::kCount> risk_{};  // of a pixel of each kind to be wrong
   ExactKinds exact_;
 };

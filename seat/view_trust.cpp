@@ -45,13 +45,24 @@ void ViewTrust::heard(RobotTime captured, const cv::Mat& image, const PosedFrame
   if (!fidelity) return;
   if (fidelity->psnr_db) switch_.compared(now(), *fidelity->psnr_db);
   fidelity_ = std::move(fidelity);
-  if (!posed) return;
+  if (!posed || fidelity_->comparison.empty()) return;
   compared_ = posed->left;
   compared_->pixels.release();
 }
 
 void ViewTrust::saw(const PosedFrame& frame) {
   pass_.saw(frame.left);
+}
+
+// While shadows lie where they were seen, all that they pass over is wrong, of whatever kind it is; once they lie where
+// they fall, that tells nothing any more.
+void ViewTrust::heed_light(RobotTime instant) {
+  const TextureLease textures = session_.textures();
+  const bool lit = textures && textures->light;
+  if (std::exchange(lit_, lit) == lit) return;
+  shown_.begin_anew(instant);
+  compared_.reset();
+  pass_.forget_patches();
 }
 
 void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, TrustMarks marks) {
@@ -62,6 +73,7 @@ void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, Trus
                       (!remembered_ || instant < *remembered_ || instant - *remembered_ >= options_.remember_every);
   const std::optional<ViewPlace> before = std::exchange(drawn_at_, place);
   if (!is_due && marks == TrustMarks::none) return;
+  heed_light(instant);
   const auto px = node_doubt_px(source.places(), source.robot(), lens_, middles_, before);
   if (compared_) pass_.compared(*compared_, fidelity_->comparison);
   compared_.reset();

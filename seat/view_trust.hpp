@@ -65,6 +65,7 @@ class ViewTrust {
  private:
   OperatorTime now() const { return {clock_.now().ns}; }
   void collect();
+  void heed_light(RobotTime instant);
   void frame_tiles() const;
 
   const ViewSession& session_;
@@ -81,6 +82,7 @@ class ViewTrust {
   std::optional<PosedImage> compared_;  // without pixels: the pass was not told of its patches yet
   std::optional<RobotTime> remembered_;
   std::optional<ViewPlace> drawn_at_;
+  bool lit_ = false;        // what was drawn last has the shadows of what moves where they are to fall
   bool predicted_ = false;  // what was drawn last: else nobody was shown it, and no image of its instant may ever come
   cv::Mat doubt_;
 };

@@ -171,6 +171,11 @@ TEST_P(TrustPassTest, WhatWasComparedIsRememberedOfTheSurface) {
   EXPECT_EQ(kind_of(at(draw(kMove).doubt, moved)).compared, Compared::close) << "the mean of both";
   for (std::size_t i = 1; i < kComparisonsKept; ++i) compare(1);
   EXPECT_EQ(kind_of(at(draw(kMove).doubt, moved)).compared, Compared::same) << "the older one is forgotten";
+  trust_->forget_patches();
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, on_table)).compared, Compared::never) << "their reason is no more";
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, moved)).compared, Compared::same) << "it lies in none";
+  compare(1);
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, on_table)).compared, Compared::suspect) << "a new one";
   trust_->compared(image(0, 50ms), comparison);
   EXPECT_EQ(kind_of(at(draw(kMove).doubt, moved)).compared, Compared::same) << "by another clock";
   EXPECT_TRUE(std::ranges::equal(kLevelsOff, std::array{1.5, 2.5, 4.5, 6.5})) << "as trust.comp has them";

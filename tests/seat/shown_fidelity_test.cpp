@@ -142,8 +142,8 @@ TEST(ShownFidelity, PicturesMakeUpForEachOther) {
     cv::Mat truth = image();
     shown.doubt = doubt_of(sure);
     shown.doubt.colRange(0, risky_columns) = doubt_of(risky);
-    // One column in 48 of the risky ones.
-    for (int x = rounds % 48; x < risky_columns; x += 48) truth.col(x) = cv::Scalar(180, 180, 180);
+    // One column in 56 of the risky ones.
+    for (int x = 5 * rounds % 56; x < risky_columns; x += 56) truth.col(x) = cv::Scalar(180, 180, 180);
     fidelity.shown(std::move(shown));
     return fidelity.arrived(at(rounds * 100ms), truth).value();
   };
@@ -171,6 +171,34 @@ TEST(ShownFidelity, AllElseDoesNotMakeUpForAKindThatIsOftenWrong) {
     EXPECT_NEAR(out->exact_share, 1 - 1.0 * kBall * kBall / (kWidth * kHeight), 1e-9) << i;
     EXPECT_EQ(out->exact_wrong, 0) << i;
   }
+}
+
+// As a shadow that lay where it had been seen, until it is known where it falls.
+TEST(ShownFidelity, WhatHadAReasonThatIsNoMoreTellsNothing) {
+  ShownFidelity fidelity;
+  const DoubtKind kind{8, 0, Compared::alike};
+  int rounds = 0;
+  const auto round = [&](int shadow) {
+    RememberedView shown = view(++rounds * 100ms);
+    cv::Mat truth = image();
+    shown.doubt = doubt_of(kind);
+    truth.col(rounds % kWidth) = cv::Scalar(180, 180, 180);  // lines are no patches
+    truth(cv::Rect(0, 0, shadow, kHeight)) = cv::Scalar(60, 60, 60);
+    fidelity.shown(std::move(shown));
+    return fidelity.arrived(at(rounds * 100ms), truth).value();
+  };
+  for (int i = 0; i < 20; ++i) round(0);
+  EXPECT_EQ(round(0).exact_share, 1);
+  for (int i = 0; i < 20; ++i) round(kWidth / 3);
+  EXPECT_EQ(round(kWidth / 3).exact_share, 0) << "of this kind many are wrong";
+  fidelity.begin_anew(at((rounds + 2) * 100ms));
+  EXPECT_TRUE(fidelity.exact()[doubt_of(kind)]) << "few were beside the patches";
+  const Fidelity before = round(kWidth / 3);
+  EXPECT_TRUE(before.psnr_db);
+  EXPECT_TRUE(before.comparison.empty()) << "it was shown before";
+  const Fidelity after = round(0);
+  EXPECT_FALSE(after.comparison.empty());
+  EXPECT_EQ(after.exact_share, 1);
 }
 
 TEST(ShownFidelity, WhatNoImageColouredIsLeftOut) {
