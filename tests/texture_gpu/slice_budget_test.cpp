@@ -270,6 +270,7 @@ TEST(FrameGate, WhoShowsFramesLetsASliceHaveItsTurn) {
     gate.end();
   });
   while (gate.slices() < 2) std::this_thread::yield();
+  EXPECT_FALSE(gate.in_work());  // answered once the worker has looked at the clock, and waits
   clock.sleep_until(clock.now() + 12ms);
   gate.make_way();  // returns: frames may put it off for three times as long, and the first slice was beyond its share
   EXPECT_FALSE(ran);
