@@ -58,7 +58,6 @@ JointResponse::JointResponse(const JointResponseOptions& options)
       states_(kStates),
       tried_(kCommands),
       assumed_(options.known.value_or(KnownResponse{})),
-      identified_(options.known.has_value()),
       fit_{StepResponse::lagging(assumed_.dead_time, assumed_.lag, kLongestAge), {}},
       learnt_means_(kStates),
       learnt_unexplained_(kStates),
@@ -68,7 +67,7 @@ JointResponse::JointResponse(const JointResponseOptions& options)
     const auto guesses = static_cast<std::size_t>(std::ceil(horizon / kGuessEvery)) + 2;
     rests_.push_back({Weights::Constant(kRestTerms, 0.3),
                       CalibratedSigma(options.first_sigma, kLeastSigma, kSigmaOver, CalibratedSigma::kScaleOfOne),
-                      LastOf<PredictedAt>(guesses), identified_});
+                      LastOf<PredictedAt>(guesses), identified()});
   }
 }
 
@@ -163,7 +162,7 @@ bool JointResponse::identify() noexcept {
   std::size_t first = 0;
   while (states_.values()[first].time < fit_.first) ++first;
   learn_rest(first);
-  learnt_ = identified_ = true;
+  learnt_ = true;
   inputs_now_ = fit_.model.inputs(commands_, newest_.time, newest_.time);
   return true;
 }
@@ -254,7 +253,7 @@ PredictedPosition JointResponse::at(double time) const noexcept {
   if (!learnt_) {  // it may be as far off as it goes meanwhile
     const double meanwhile = commands_.at(time, time) - commands_.at(time - assumed_.sigma, time);
     answer.sigma = std::hypot(answer.sigma, meanwhile);
-    answer.assumed = !identified_ && meanwhile != 0;
+    answer.assumed = !identified() && meanwhile != 0;
   }
   answer.valid = std::isfinite(answer.position);
   return answer;

@@ -73,7 +73,7 @@ class JointResponse {
   /// The speed that the drive does not exceed, though its commands ask for more; infinite where none was seen.
   double largest_speed() const noexcept { return speed_; }
   /// Its response was learnt, or known before.
-  bool identified() const noexcept { return identified_; }
+  bool identified() const noexcept { return learnt_ || options_.known; }
   /// It was learnt of what was observed here.
   bool learnt() const noexcept { return learnt_; }
   /// How far the newest state is from where the commands so far and the usual difference of the last seconds put it:
@@ -110,7 +110,7 @@ class JointResponse {
   double speed_ = std::numeric_limits<double>::infinity();
   TimedPosition newest_;
   KnownResponse assumed_;  // until something was learnt: what is known, or thought of drives of which nothing is
-  bool observed_ = false, learnt_ = false, identified_ = false;
+  bool observed_ = false, learnt_ = false;
   StepResponseFit fit_;
   Weights inputs_now_;  // of the model, at the newest state
   Means means_{};
