@@ -33,12 +33,13 @@ void draw_for(head::ViewShare& share, const RunFolder& run) {
     images.feed(clock.now());
     share.tell("draws");
     if (aim) drawer.aim(*std::exchange(aim, std::nullopt));
-    if (!drawer.draw()) {
-      share.tell("has nothing to draw: nobody says where the eyes are, or there are no textures");
+    const bool drew = drawer.draw();
+    share.tell(drew ? "hands over what it drew"
+                    : "has nothing to draw: nobody says where the eyes are, or there are no textures");
+    if (!drew)
       wait();
-    } else if (!share.put(*drawer.newest())) {
+    else if (!share.put(*drawer.newest()))
       throw RuntimeFailure("a view is larger than what both processes share", "ask for smaller ones");
-    }
   }
   drawer.release();
 }
@@ -58,7 +59,7 @@ DrawingProcess::~DrawingProcess() {
 
 std::string DrawingProcess::failure() {
   if (!end_) end_ = end_of_child(pid_);
-  return end_ ? "the process that draws " + *end_ : "";
+  return end_ ? "the process that draws " + *end_ + " (last, it " + share_.doing() + ")" : "";
 }
 
 std::string DrawingProcess::doing() const {

@@ -34,10 +34,8 @@ struct Drawing {
   void require_views(double waited_s) const {
     const std::string failure = process != nullptr ? process->failure() : "";
     if (failure.empty() && waited_s <= kLongestStart) return;
-    const std::string why = !failure.empty()     ? failure
-                            : process != nullptr ? process->doing()
-                                                 : "other programs may need all processors";
-    throw RuntimeFailure("no views are drawn for the head display: " + why,
+    const std::string why = process != nullptr ? process->doing() : "other programs may need all processors";
+    throw RuntimeFailure("no views are drawn for the head display: " + (failure.empty() ? why : failure),
                          failure.empty() ? "let fewer programs run beside this one" : "look at what it said above");
   }
 };

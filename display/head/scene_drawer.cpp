@@ -83,6 +83,7 @@ bool SceneDrawer::draw() {
     else
       slot->behind[eye].reset();
   slots_.end();
+  glFinish();  // who draws and shows in one thread finds it at once
   ++drawn_;
   return true;
 }

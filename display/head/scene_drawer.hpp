@@ -57,8 +57,8 @@ class SceneDrawer final : public DrawnViews {
   const DrawnEyes* newest() override { return slots_.newest(); }
   void shown() override { slots_.shown(); }
 
-  /// Drawing thread, its context current: draws once, and waits for the GPU. False: nobody has aimed since the
-  /// last time, or there are no textures.
+  /// Drawing thread, its context current: draws once, and waits for the GPU: newest() is that from then on. False:
+  /// nobody has aimed since the last time, or there are no textures.
   bool draw();
   std::uint64_t drawn() const { return drawn_; }
   /// Drawing thread: lets go of all that belongs to its context, which is current for the last time.
