@@ -7,8 +7,8 @@ namespace foresight {
 namespace {
 
 constexpr int kTile = 4;  // px a side, as in the shaders
-constexpr unsigned kGroup = 64, kTilesInGroup = kGroup / (kTile * kTile);
-constexpr GLuint kListUnit = 5, kStepsUnit = 8, kMeans = 2;  // as in silhouettes.comp
+constexpr unsigned kListGroup = 64, kTilesInGroup = kListGroup / (kTile * kTile);
+constexpr GLuint kPlacesUnit = 5, kStepsUnit = 8, kMeans = 2;  // as in silhouettes.comp
 /// Metres: surfaces that lie closer together count as one in images too (TextureOptions::depth_tolerance).
 constexpr float kStep = 0.02f;
 
@@ -31,7 +31,7 @@ SilhouettePass::SilhouettePass(const Lens& lens)
       mix_(silhouette_program(lens, 2)),
       put_(silhouette_program(lens, 3)),
       tiles_("tiles that may hold silhouettes", kTilesInGroup),
-      pixels_("pixels of silhouettes", kGroup),
+      pixels_("pixels of silhouettes", kListGroup),
       means_(GL_R32UI, 4096, "means at silhouettes") {}
 
 void SilhouettePass::start(const gl::Program& program, const View& view) {
@@ -58,11 +58,11 @@ void SilhouettePass::find_pixels(const View& view) {
   tiles_.start(tiles);
   start(find_tiles_, view);
   glDispatchCompute(gl::groups(across, 8), gl::groups(down, 8), 1);
-  tiles_.finish(kListUnit);
+  tiles_.finish(kPlacesUnit);
   pixels_.start(tiles * kTile * kTile);
   start(find_pixels_, view);
   tiles_.dispatch();
-  pixels_.finish(kListUnit);
+  pixels_.finish(kPlacesUnit);
   means_.reserve(tiles * kTile * kTile * sizeof(GLuint));
 }
 

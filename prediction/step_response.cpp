@@ -9,17 +9,17 @@ namespace foresight {
 namespace {
 
 constexpr std::array kAgesAboutDelay{-0.1, -0.04, -0.02, -0.01, 0.0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};  // s
-constexpr double kFriction = 0.01;       // rad: what friction's share is a share of
-constexpr double kFrictionSpeed = 0.02;  // rad/s: where friction is nearly all there
-constexpr double kSpeedOver = 0.01;      // s to both sides
-constexpr double kLongestGap = 0.15;     // s between states that what lies between is known for
-constexpr double kDense = 0.006;         // s: commands so near on average are alike held or joined
+constexpr double kFriction = 0.01;              // rad: what friction's share is a share of
+constexpr double kFrictionSpeed = 0.02;         // rad/s: where friction is nearly all there
+constexpr double kSpeedOver = 0.01;             // s to both sides
+constexpr double kLongestBetweenStates = 0.15;  // s between states that what lies between is known for
+constexpr double kDense = 0.006;                // s: commands so near on average are alike held or joined
 constexpr double kAllSteps = 0, kAllLines = 0.5;
-constexpr std::size_t kFewest = 40;    // changes to learn from
-constexpr std::size_t kEnough = 2000;  // more are left out, evenly
-constexpr double kMoved = 1e-4;        // rad rms: commands that change less teach nothing
-constexpr double kFirm = 4;            // inverse variance of a step's share about the pure delay's
-constexpr double kLeastVariance = 1e-14;
+constexpr std::size_t kFewestChanges = 40;  // changes to learn from
+constexpr std::size_t kEnough = 2000;       // more are left out, evenly
+constexpr double kMoved = 1e-4;             // rad rms: commands that change less teach nothing
+constexpr double kPriorsWeight = 4;         // inverse variance of a step's share about the pure delay's
+constexpr double kLeastStepVariance = 1e-14;
 constexpr double kResolution = 0.001;  // s that the steps of the ages leave open
 
 // States of which both `change` seconds and `reach` of commands lie before.
@@ -35,7 +35,7 @@ struct Window {
     for (std::size_t i = first; i < states.values().size(); i += stride) {
       const TimedPosition now = states.values()[i];
       const double then = now.time - change;
-      if (states.covers(then, kLongestGap)) visit(now, TimedPosition{then, states.at(then)});
+      if (states.covers(then, kLongestBetweenStates)) visit(now, TimedPosition{then, states.at(then)});
     }
   }
 };
@@ -65,7 +65,7 @@ std::optional<Window> learning_window(const PositionHistory& commands, const Pos
     ++count;
   });
   window.count = count;
-  if (count < kFewest || moved < kMoved * kMoved * static_cast<double>(count)) return {};
+  if (count < kFewestChanges || moved < kMoved * kMoved * static_cast<double>(count)) return {};
   return window;
 }
 
@@ -110,8 +110,8 @@ StepResponseFit fit(const Window& window, double sparse) {
   fit.first = window.states.values()[window.first].time;
   StepResponse& model = fit.model;
   model = StepResponse::pure_delay(best_delay(window, sparse), window.reach, sparse);
-  const double before = std::max(kLeastVariance, misfit(window, model.delay, sparse) / count);
-  fit.regression = {model.realised, Weights::Constant(model.realised.size(), kFirm * before), 1};
+  const double before = std::max(kLeastStepVariance, misfit(window, model.delay, sparse) / count);
+  fit.regression = {model.realised, Weights::Constant(model.realised.size(), kPriorsWeight * before), 1};
   const auto for_each_equation = [&](const auto& visit) {
     window.for_each_change([&](const TimedPosition& now, const TimedPosition& then) {
       const double base =
@@ -128,7 +128,7 @@ StepResponseFit fit(const Window& window, double sparse) {
   AlikeErrors errors;
   for_each_equation([&](const Weights& x, double y) { errors.add(y - x.dot(model.realised)); });
   fit.squares = errors.squares();
-  fit.variance = std::max(kLeastVariance, fit.squares / count) * count / errors.independent();
+  fit.variance = std::max(kLeastStepVariance, fit.squares / count) * count / errors.independent();
   return fit;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "texture_gpu/chart_resolution.hpp"
 #include "texture_gpu/published_image.hpp"
 #include "texture_gpu/seen_inputs.hpp"
 

@@ -13,7 +13,7 @@ namespace foresight {
 namespace {
 
 constexpr Duration kAge = std::chrono::milliseconds(50), kEvery = std::chrono::milliseconds(500);
-constexpr int kMostViews = 100, kStep = 8;              // px between the pixels that are looked at
+constexpr int kMostInstants = 100, kStep = 8;           // px between the pixels that are looked at
 constexpr double kSway = 0.04, kTurn = 0.12;            // m and rad of a head's sway
 constexpr double kSwayRate = 0.4, kTurnRate = 0.3;      // Hz
 constexpr double kSwaySeconds = 20, kSwaySamples = 60;  // a second
@@ -123,7 +123,7 @@ nlohmann::json head_motion_figures(HeadLab& lab, const PoseTrack& head, int widt
   const Pose& to = lab.T_world_camera();
   const RobotTime begin = head.samples().front().time + kAge, end = head.samples().back().time;
   int views = 0;
-  for (RobotTime now = begin; now < end && views < kMostViews; now = now + kEvery, ++views) {
+  for (RobotTime now = begin; now < end && views < kMostInstants; now = now + kEvery, ++views) {
     const auto before = head.at(now - kAge), then = head.at(now);
     if (before.status == StateStatus::invalid || then.status == StateStatus::invalid) continue;
     const Pose T_before_now = in_camera_axes(before.pose.inverse() * then.pose);

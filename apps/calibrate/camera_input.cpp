@@ -17,7 +17,7 @@ std::array<int, 2> parse_size(const std::string& text) {
   return size;
 }
 
-RigViews read_file(const std::filesystem::path& path, const CornerInput& input, bool pair) {
+RigViews read_corner_file(const std::filesystem::path& path, const CornerInput& input, bool pair) {
   const std::optional<Board> board =
       input.board.empty() ? std::nullopt : std::optional<Board>(parse_board(input.board));
   RigViews views = pair ? rig_views(read_stereo_corners(path, board)) : rig_views(read_corners(path, board));
@@ -81,9 +81,9 @@ void add_camera_input(Command& command, CornerInput& input, bool pair) {
 CameraViewsInput read_camera_input(const CornerInput& input, bool pair) {
   require_one_source(input, pair);
   CameraViewsInput read;
-  read.train = input.corners ? read_file(*input.corners, input, pair) : find_in_images(input, read);
+  read.train = input.corners ? read_corner_file(*input.corners, input, pair) : find_in_images(input, read);
   if (input.test_corners) {
-    read.test = read_file(*input.test_corners, input, pair);
+    read.test = read_corner_file(*input.test_corners, input, pair);
     const bool same = read.test.p_board.size() == read.train.p_board.size() &&
                       std::equal(read.test.p_board.begin(), read.test.p_board.end(), read.train.p_board.begin(),
                                  [](const auto& a, const auto& b) { return (a - b).norm() < 1e-9; });

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kFewestSamples = 50;
 constexpr double kLeastCorrelation = 0.4;
 constexpr double kCauchy = 3;               // of Cauchy's loss, standard deviations of a six-vector
-constexpr double kLeastSweep = 0.1;         // rad, of swept joints
+constexpr double kSmallestTurn = 0.1;       // rad, of swept joints
 constexpr double kShortestStretch = 1;      // s: shorter ones are not independent
 constexpr double kLargestSigma = 1.0 / 60;  // s
 constexpr double kLargestStep = 0.15;       // s, from the correlation's offset to the refined one
@@ -190,7 +190,7 @@ void require_motion(const std::vector<AlignedPose>& poses, const TimeOffsetOptio
   for (const AlignedPose& pose : poses) encoder.push_back(pose.encoder);
   const MotionSpread spread = motion_spread(encoder);
   if (!options.rotation_only) return require_two_axes(spread, "--poses", "hand");
-  if (spread.largest_turn_rad < kLeastSweep)
+  if (spread.largest_turn_rad < kSmallestTurn)
     throw InputError("--joints",
                      "the joints moved by " + readable(spread.largest_turn_rad * 57.29578, 1) + " degrees at most",
                      "sweep a joint to and fro by 30 degrees and more");
