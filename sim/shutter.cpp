@@ -8,7 +8,7 @@ constexpr int kSubInstants = 5;  // of an exposure; odd, so that one is in its m
 // Light between two instants.
 class ChangingLight {
  public:
-  ChangingLight(const LightMap& light, const Motion& motion, double begin, double end)
+  ChangingLight(const LightMap& light, const LabMotion& motion, double begin, double end)
       : begin_(begin), end_(end), first_(light.lit(motion.T_world_part(begin))) {
     if (end > begin) last_ = light.lit(motion.T_world_part(end));
   }
@@ -28,7 +28,8 @@ class ChangingLight {
 
 }  // namespace
 
-Picture expose(const Renderer& renderer, const RayTable& rays, const Motion& motion, const Shutter& shutter, double t) {
+Picture expose(const Renderer& renderer, const RayTable& rays, const LabMotion& motion, const Shutter& shutter,
+               double t) {
   const int rows = rays.height(), instants = shutter.exposure_s > 0 ? kSubInstants : 1;
   const int band = shutter.readout_s > 0 ? 1 : rows;
   ChangingLight light(renderer.light(), motion, shutter.row_time(t, 0, rows) - shutter.exposure_s / 2,

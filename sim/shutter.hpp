@@ -8,7 +8,7 @@
 namespace foresight::sim {
 
 /// Motion of the camera and of the lab; `t` in seconds. Safe to call from any thread.
-struct Motion {
+struct LabMotion {
   std::function<Pose(double t)> T_world_camera;
   std::function<LabState(double t)> T_world_part;
 };
@@ -26,6 +26,7 @@ struct Shutter {
 /// The image at `t`: rows at their own times, each averaged over the exposure. Depth and facets
 /// are those at each row's mid-exposure. The light is computed at the first and the last instant
 /// and in between interpolated. One thread.
-Picture expose(const Renderer& renderer, const RayTable& rays, const Motion& motion, const Shutter& shutter, double t);
+Picture expose(const Renderer& renderer, const RayTable& rays, const LabMotion& motion, const Shutter& shutter,
+               double t);
 
 }  // namespace foresight::sim

@@ -205,8 +205,8 @@ class SynthRun {
   int write_image(const RunWriter& run, const Renderer& renderer, const RayTable& rays, const Polygons& polygons,
                   int frame, bool right) {
     const double t = time(frame);
-    const Motion motion{[&](double at) { return T_world_eye(at, right); },
-                        [&](double at) { return lab_state(renderer.lab(), at); }};
+    const LabMotion motion{[&](double at) { return T_world_eye(at, right); },
+                           [&](double at) { return lab_state(renderer.lab(), at); }};
     const Picture picture = expose(renderer, rays, motion, options_.shutter, t);
     run.write_image(image_name(right, frame),
                     options_.sensor.develop(picture.light, t, 2 * static_cast<std::uint64_t>(frame) + right,

@@ -83,7 +83,7 @@ std::string date_text(const ASN1_TIME* time) {
 
 }  // namespace
 
-Identity make_identity(const std::string& name, const Validity& validity, const Identity* authority) {
+Credentials make_credentials(const std::string& name, const Validity& validity, const Credentials* authority) {
   const Key key(EVP_EC_gen("P-256"));
   require(key != nullptr, "a key cannot be made");
   const Key signing = authority ? key_of(authority->key_pem) : nullptr;
@@ -109,7 +109,7 @@ Identity make_identity(const std::string& name, const Validity& validity, const 
   return {content(key_pem.get()), content(certificate_pem.get())};
 }
 
-std::string sign(const Identity& authority, const std::string& text) {
+std::string sign(const Credentials& authority, const std::string& text) {
   const Certificate certificate = certificate_of(authority.certificate_pem);
   const Key key = key_of(authority.key_pem);
   const Bio in = reading(text), out(BIO_new(BIO_s_mem()));

@@ -11,16 +11,16 @@ struct Validity {
 };
 
 /// A key of the curve P-256 and its certificate, both as PEM.
-struct Identity {
+struct Credentials {
   std::string key_pem, certificate_pem;
 };
 
 /// A new key for "CN=name", certified by `authority`, or by itself, as an authority, where that is null. Throws
 /// RuntimeFailure with libcrypto's words.
-Identity make_identity(const std::string& name, const Validity& validity, const Identity* authority);
+Credentials make_credentials(const std::string& name, const Validity& validity, const Credentials* authority);
 
 /// `text` with a signature beside it, S/MIME. Throws RuntimeFailure.
-std::string sign(const Identity& authority, const std::string& text);
+std::string sign(const Credentials& authority, const std::string& text);
 
 /// What is wrong with a certificate at `now`: no certificate at all, expired, does not count yet; "" where nothing is.
 std::string objection_to(const std::string& certificate_pem, std::time_t now);

@@ -146,7 +146,7 @@ void make_keys(const fs::path& folder, int days) {
     throw InputError(folder.string(), "has something in it", "name a new folder: keys replace nothing");
   const std::time_t now = std::time(nullptr);
   const Validity validity{now - 3600, now + std::time_t{days} * 24 * 3600};  // clocks differ
-  const Identity authority = make_identity("foresight authority", validity, nullptr);
+  const Credentials authority = make_credentials("foresight authority", validity, nullptr);
   make_private_folder(folder);
   make_private_folder(folder / kAuthority);
   write_file_atomically(folder / kAuthority / "key.pem", authority.key_pem);
@@ -154,11 +154,11 @@ void make_keys(const fs::path& folder, int days) {
   const std::string signed_rules = sign(authority, rules());
   for (const Role role : kRoles) {
     make_private_folder(folder / to_string(role));
-    const Identity identity = make_identity(subject_of(role), validity, &authority);
+    const Credentials made = make_credentials(subject_of(role), validity, &authority);
     const KeyFiles files = key_files(folder, role);
     write_file_atomically(files.authority, authority.certificate_pem);
-    write_file_atomically(files.certificate, identity.certificate_pem);
-    write_file_atomically(files.key, identity.key_pem);
+    write_file_atomically(files.certificate, made.certificate_pem);
+    write_file_atomically(files.key, made.key_pem);
     write_file_atomically(files.rules, signed_rules);
     write_file_atomically(files.permissions, sign(authority, permissions(role, validity)));
   }

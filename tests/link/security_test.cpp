@@ -96,7 +96,7 @@ TEST_F(Keys, WhatAnOlderVersionMadeIsNamedWithWhatItLacks) {
   const std::size_t at = text.find(topic);
   ASSERT_NE(at, text.npos);
   text.erase(at, topic.size());
-  const Identity authority{read_file(file("authority", "key.pem")), read_file(file("authority", "certificate.pem"))};
+  const Credentials authority{read_file(file("authority", "key.pem")), read_file(file("authority", "certificate.pem"))};
   std::ofstream(file("robot", "permissions.p7s")) << sign(authority, text);
   EXPECT_THAT(refusal(), AllOf(HasSubstr("permissions.p7s is of an older version: it does not permit to write "
                                          "rt/foresight/gate_motion"),

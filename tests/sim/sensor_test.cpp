@@ -70,8 +70,8 @@ class ShutterTest : public testing::Test {
   const Renderer renderer_;
   const RayTable rays_;
   // Quick, so that a few ms matter.
-  const Motion motion_{[](double t) { return T_world_camera_at(20 * t); },
-                       [this](double t) { return lab_state_at(lab_, 20 * t); }};
+  const LabMotion motion_{[](double t) { return T_world_camera_at(20 * t); },
+                          [this](double t) { return lab_state_at(lab_, 20 * t); }};
 
   Picture at(double t, const Shutter& shutter = {}) const { return expose(renderer_, rays_, motion_, shutter, t); }
 };
