@@ -1,6 +1,6 @@
 // The factor that shadows of moving parts put on each pixel of a camera. First blocks of 4x4 pixels are listed that some
-// might reach, then those of them where some do, then the pixels of these are computed: where nothing is listed, nothing
-// is paid.
+// might reach, then those of them where some do, and how near to the lamp what throws it is, then the pixels of these are
+// computed: where nothing is listed, nothing is paid.
 //
 // Defines: STEP 0, 1, 2.
 #include "camera.glsl"
@@ -11,17 +11,20 @@ layout(binding = 1) uniform sampler2DArray depth;
 layout(binding = 2) uniform sampler2D rays;
 uniform mat4 T_lamp_camera;
 #if STEP == 2
+#define ITEMS_PER_GROUP 4
+#define INVOCATIONS_PER_ITEM 16
+#define WORDS_PER_ITEM 2
+#include "work_item.glsl"
 layout(local_size_x = 64) in;  // four blocks
-layout(binding = 15) uniform usamplerBuffer work;
 layout(binding = 0, rgba8) uniform writeonly image2D light;
 #elif STEP == 1
 #define ITEMS_PER_GROUP 64
-layout(local_size_x = 64) in;  // a block each
 #include "work_item.glsl"
 #include "work_list.glsl"
+layout(local_size_x = 64) in;  // a block each
 #else
-layout(local_size_x = 8, local_size_y = 8) in;
 #include "work_list.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
 #endif
 
 bool ray_through(ivec2 pixel, out vec3 ray) {
@@ -44,7 +47,7 @@ float depth_at(ivec3 at) {
   return texelFetch(depth, at, 0).r;
 }
 
-vec3 factor(ivec2 pixel) {
+vec3 factor(ivec2 pixel, float blocker) {
   vec3 ray, place;
   float inverse_z;
   if (!ray_through(pixel, ray) || !project_face(camera, ray, place, inverse_z)) return vec3(1.0);
@@ -60,17 +63,14 @@ vec3 factor(ivec2 pixel) {
   if (has_cube_faces(camera)) normal = from_cube_face(normal, at.z);
   vec3 p = ray * inverse_z * kNear / value;
   vec3 q = (T_lamp_camera * vec4(p, 1.0)).xyz;
-  float nearest = may_shade(q);
-  if (nearest == 0.0) return vec3(1.0);
-  return shadow_factor(q, -normalize(mat3(T_lamp_camera) * normal), nearest);
+  return may_shade(q) == 0.0 ? vec3(1.0) : shadow_factor(q, -normalize(mat3(T_lamp_camera) * normal), blocker);
 }
 
 void main() {
-  uint index = 4u * (gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u) + (gl_LocalInvocationIndex >> 4);
-  uint item = texelFetch(work, 4 + int(index)).r;
-  if (index >= texelFetch(work, 3).r) return;
+  uint item;
+  if (!next_work(item)) return;
   ivec2 pixel = ivec2(item & 0xffffu, item >> 16) + ivec2(gl_LocalInvocationIndex & 3u, (gl_LocalInvocationIndex >> 2) & 3u);
-  if (all(lessThan(pixel, ivec2(camera.size.xy)))) imageStore(light, pixel, vec4(factor(pixel), 1.0));
+  if (all(lessThan(pixel, ivec2(camera.size.xy)))) imageStore(light, pixel, vec4(factor(pixel, number_of_work(1)), 1.0));
 }
 #else
 // What is seen at the pixel, in the lamp's frame; behind the lamp where that is nothing.
@@ -82,29 +82,34 @@ vec3 seen_at(ivec2 pixel) {
   return here == 0.0 ? vec3(-1.0) : (T_lamp_camera * vec4(ray * inverse_z * kNear / here, 1.0)).xyz;
 }
 
-bool may_be_shaded(ivec2 pixel) {
+#if STEP == 1
+// The mean depth value of what may shade the pixel, or one beside it; 0: nothing.
+float blocker_at(ivec2 pixel) {
+  const float kBlock = 3.0;  // px of the map that a block may cover
   vec3 q = seen_at(pixel);
   float nearest = may_shade(q);
-#if STEP == 1
-  const float kBlock = 3.0;  // px of the map that a block may cover
-  return nearest > 0.0 && blocker_value(q, nearest, kBlock) > 0.0;
-#else
-  return nearest > 0.0;
-#endif
+  return nearest > 0.0 ? blocker_value(q, nearest, kBlock) : 0.0;
 }
 
 void main() {
-#if STEP == 1
   uint item;
   if (!next_work(item)) return;
-  ivec2 first = ivec2(item & 0xffffu, item >> 16);
-#else
-  ivec2 first = 4 * ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(first, ivec2(camera.size.xy)))) return;
-#endif
-  ivec2 last = min(first + 3, ivec2(camera.size.xy) - 1);
-  if (may_be_shaded(first) || may_be_shaded(last) ||
-      STEP == 0 && (may_be_shaded(ivec2(last.x, first.y)) || may_be_shaded(ivec2(first.x, last.y))))
-    append_work(uint(first.x) | uint(first.y) << 16);
+  ivec2 first = ivec2(item & 0xffffu, item >> 16), last = min(first + 3, ivec2(camera.size.xy) - 1);
+  float a = blocker_at(first), b = blocker_at(last);
+  if (max(a, b) == 0.0) return;
+  uint i = 2u * atomicAdd(work_args[3], 1u);
+  work_items[i] = item;
+  work_items[i + 1u] = floatBitsToUint(min(a, b) > 0.0 ? 0.5 * (a + b) : max(a, b));
 }
+#else
+bool may_be_shaded(ivec2 pixel) {
+  return may_shade(seen_at(pixel)) > 0.0;
+}
+
+void main() {
+  ivec2 first = 4 * ivec2(gl_GlobalInvocationID.xy), last = min(first + 3, ivec2(camera.size.xy) - 1);
+  if (any(greaterThanEqual(first, ivec2(camera.size.xy)))) return;
+  if (may_be_shaded(first) || may_be_shaded(last)) append_work(uint(first.x) | uint(first.y) << 16);
+}
+#endif
 #endif

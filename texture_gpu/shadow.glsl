@@ -31,7 +31,7 @@ vec2 on_disc(int i, int count) {  // Vogel's spiral
 // What is at depth z hides the lamp's rim, `radius` to the side, at a place of the map that lies radius (1/z - 1/z_q)
 // aside. The mean depth value of what may hide some of the lamp; 0: nothing. `more`: px of the map to look beyond.
 float blocker_value(vec3 q, float nearest, float more) {
-  const int kSearch = 12;
+  const int kSearch = 8;
   vec2 place = lamp_face.xy * q.xy / q.z + lamp_face.zw;
   float bound = kNear / (q.z - kOffSurface), reach = lamp_face.x * lamp_radius / kNear * (nearest - kNear / q.z) + more;
   float sum = 0.0, count = 0.0;
@@ -43,14 +43,13 @@ float blocker_value(vec3 q, float nearest, float more) {
   return sum / max(count, 1.0);
 }
 
-// Share of the lamp that moving parts hide: percentage-closer soft shadows (Fernando 2005).
-float hidden_share(vec3 q, float nearest) {
-  const int kFilter = 16;
+// Share of the lamp that moving parts hide, about as near to it as `blocker` (blocker_value): percentage-closer soft shadows
+// (Fernando 2005).
+float hidden_share(vec3 q, float blocker) {
+  const int kFilter = 12;
   vec2 place = lamp_face.xy * q.xy / q.z + lamp_face.zw, size = vec2(textureSize(moving_depth, 0).xy);
   float value = kNear / q.z, bound = kNear / (q.z - kOffSurface);
-  float blocker = blocker_value(q, nearest, 0.0);
-  if (blocker == 0.0) return 0.0;
-  float spread = lamp_face.x * lamp_radius / kNear * (blocker - value);
+  float spread = lamp_face.x * lamp_radius / kNear * max(blocker - value, 0.0);
   float hidden = 0.0;
   for (int i = 0; i < kFilter; ++i) {
     vec2 at = place + spread * on_disc(i, kFilter);
@@ -70,10 +69,10 @@ bool in_still_shadow(vec3 q) {
 }
 
 // Factor on pixel values; `normal` towards the camera, in the lamp's frame too.
-vec3 shadow_factor(vec3 q, vec3 normal, float nearest) {
+vec3 shadow_factor(vec3 q, vec3 normal, float blocker) {
   float d = length(q);
   float facing = max(-dot(normal, q) / d, 0.0) / (d * d);
   if (facing <= 0.0 || in_still_shadow(q)) return vec3(1.0);
   vec3 share = lamp_strength.rgb * facing;
-  return pow((1.0 + share * (1.0 - hidden_share(q, nearest))) / (1.0 + share), vec3(1.0 / kResponse));
+  return pow((1.0 + share * (1.0 - hidden_share(q, blocker))) / (1.0 + share), vec3(1.0 / kResponse));
 }

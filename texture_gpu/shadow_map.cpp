@@ -13,6 +13,8 @@ constexpr int kMapSide = 256, kCell = 8, kCells = kMapSide / kCell;
 constexpr double kClosest = 0.1;   // metres between lamp and what it lights
 constexpr double kWidest = 2.5;    // tangent of half the angle that a map can hold
 constexpr double kMostCells = 10;  // by which shadows are looked for beyond their middle
+// A map is a little wider than what it has to hold, and stays until that has no room in it, or too much.
+constexpr double kSpare = 1.08, kLeastUsed = 0.75;
 
 gl::Faces square_face() {
   gl::Faces faces;
@@ -35,56 +37,84 @@ ShadowMap::ShadowMap(std::shared_ptr<const gl::SceneBuffers> scene)
   raster_.leave_out(gl::RasterPass::LeavesOut::out_of_view);
 }
 
-/// Turns the lamp to what moves, and chooses a map that holds it all.
-bool ShadowMap::aim(const SceneLight& light, const SceneState& state) {
+ShadowMap::Reach ShadowMap::reach_of(const SceneLight& light, const SceneState& state) const {
   const auto& boxes = scene_->boxes().box;
-  Eigen::AlignedBox3d world;
-  std::vector<Eigen::Vector3d> corners;
-  double farthest = 0;
+  Reach out;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (boxes[i].isEmpty()) continue;
     for (int k = 0; k < 8; ++k) {
       const Eigen::Vector3d corner =
           state.T_world_node[i] * boxes[i].corner(static_cast<Eigen::AlignedBox3d::CornerType>(k));
-      farthest = std::max(farthest, (corner - light.lamp.position).norm());
-      if (!light.moving[i]) continue;
-      world.extend(corner);
-      corners.push_back(corner);
+      out.farthest = std::max(out.farthest, (corner - light.lamp.position).norm());
+      if (light.moving[i]) out.moving.push_back(corner);
     }
   }
-  if (corners.empty()) return false;
-  lamp_ = light.lamp;
-  const Eigen::Vector3d ahead = world.center() - lamp_.position;
-  if (!(ahead.norm() > kClosest)) return false;
-  T_world_lamp_ = Pose::Identity();
-  T_world_lamp_.linear().col(2) = ahead.normalized();
-  T_world_lamp_.linear().col(0) = ahead.unitOrthogonal();
-  T_world_lamp_.linear().col(1) = T_world_lamp_.linear().col(2).cross(T_world_lamp_.linear().col(0));
-  T_world_lamp_.translation() = lamp_.position;
-  double widest = 0, nearest = farthest;
-  for (const Eigen::Vector3d& corner : corners) {
+  return out;
+}
+
+/// How the map, as it is turned, has to be; nothing where the lamp stands among what moves.
+std::optional<ShadowMap::Extent> ShadowMap::extent_of(const Reach& reach) const {
+  double widest = 0, nearest = reach.farthest;
+  for (const Eigen::Vector3d& corner : reach.moving) {
     const Eigen::Vector3d p = T_world_lamp_.inverse() * corner;
-    if (p.z() < kClosest) return false;
+    if (p.z() < kClosest) return std::nullopt;
     widest = std::max(widest, p.head<2>().cwiseAbs().maxCoeff() / p.z());
     nearest = std::min(nearest, p.z());
   }
-  const double rim = lamp_.radius * (1 / nearest - 1 / farthest);
-  widest += rim;  // shadows are looked for that far beside what throws them
-  if (widest > kWidest) return false;
-  moving_.faces.fx = moving_.faces.fy = kMapSide / 2.0 / widest;
-  still_.faces = moving_.faces;
-  reach_ = rim * moving_.faces.fx;
+  const double rim = lamp_.radius * (1 / nearest - 1 / reach.farthest);
+  return Extent{widest + rim, rim};  // shadows are looked for that far beside what throws them
+}
+
+/// Turns the lamp to what moves, and chooses a map that holds it all; the one before, where that does.
+bool ShadowMap::aim(const SceneLight& light, const SceneState& state) {
+  const Reach reach = reach_of(light, state);
+  if (reach.moving.empty()) return false;
+  const bool is_aimed = held_ > 0 && lamp_ == light.lamp;
+  lamp_ = light.lamp;
+  std::optional<Extent> extent = is_aimed ? extent_of(reach) : std::nullopt;
+  if (!extent || extent->widest > held_ || extent->widest < kLeastUsed * held_) {
+    held_ = 0;
+    still_of_.reset();
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& corner : reach.moving) box.extend(corner);
+    const Eigen::Vector3d ahead = box.center() - lamp_.position;
+    if (!(ahead.norm() > kClosest)) return false;
+    T_world_lamp_ = Pose::Identity();
+    T_world_lamp_.linear().col(2) = ahead.normalized();
+    T_world_lamp_.linear().col(0) = ahead.unitOrthogonal();
+    T_world_lamp_.linear().col(1) = T_world_lamp_.linear().col(2).cross(T_world_lamp_.linear().col(0));
+    T_world_lamp_.translation() = lamp_.position;
+    extent = extent_of(reach);
+    if (!extent || extent->widest > kWidest) return false;
+    held_ = std::min(kSpare * extent->widest, kWidest);
+    moving_.faces.fx = moving_.faces.fy = kMapSide / 2.0 / held_;
+    still_.faces = moving_.faces;
+  }
+  reach_ = extent->rim * moving_.faces.fx;
   return true;
+}
+
+/// What stands still, where it does not stand in the map as it is.
+void ShadowMap::draw_still(const SceneLight& light, const SceneState& state) {
+  std::vector<std::optional<Pose>> still_of(light.moving.size());
+  for (std::size_t i = 0; i < still_of.size(); ++i)
+    if (!light.moving[i]) still_of[i] = state.T_world_node[i];
+  const auto is_same = [](const std::optional<Pose>& a, const std::optional<Pose>& b) {
+    return a && b ? a->matrix() == b->matrix() : !a && !b;
+  };
+  if (still_of_ && std::ranges::equal(still_of, *still_of_, is_same)) return;
+  std::vector<bool> still = light.moving;
+  still.flip();
+  raster_.draw_only(std::move(still));
+  raster_(T_world_lamp_, state, still_);
+  still_of_ = std::move(still_of);
 }
 
 bool ShadowMap::update(const SceneLight& light, const SceneState& state) {
   if (!aim(light, state)) return false;
   raster_.draw_only(light.moving);
   raster_(T_world_lamp_, state, moving_);
-  std::vector<bool> still = light.moving;
-  still.flip();
-  raster_.draw_only(std::move(still));
-  raster_(T_world_lamp_, state, still_);
+  draw_still(light, state);
 
   cells_program_.use();
   glBindTextureUnit(0, moving_.depth.name());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "gl/raster_pass.hpp"
 #include "texture_gpu/lamp/lamp.hpp"
@@ -29,7 +31,19 @@ class ShadowMap {
   void bind(const gl::Program& program, GLuint unit) const;
 
  private:
+  /// What a map has to hold.
+  struct Reach {
+    std::vector<Eigen::Vector3d> moving;  // corners of boxes
+    double farthest = 0;                  // m from the lamp, of all
+  };
+  struct Extent {
+    double widest = 0;  // tangent of half the angle
+    double rim = 0;     // by which the lamp's rim sees other places than its middle, at most: a part of it
+  };
+  Reach reach_of(const SceneLight& light, const SceneState& state) const;
+  std::optional<Extent> extent_of(const Reach& reach) const;
   bool aim(const SceneLight& light, const SceneState& state);
+  void draw_still(const SceneLight& light, const SceneState& state);
 
   std::shared_ptr<const gl::SceneBuffers> scene_;
   gl::RasterPass raster_;
@@ -38,6 +52,9 @@ class ShadowMap {
   gl::Texture cells_, spread_;  // R32F: largest depth value of each cell, and within reach of it
   Lamp lamp_;
   Pose T_world_lamp_;
+  double held_ = 0;  // Extent::widest of the map as it is turned; 0: it is not
+  std::optional<std::vector<std::optional<Pose>>>
+      still_of_;      // where each node was that stood still when that was drawn
   double reach_ = 0;  // px of the map by which the lamp's rim sees other places than its middle, at most
 };
 

@@ -7,7 +7,9 @@
 namespace foresight {
 namespace {
 
-constexpr unsigned kBlocksInGroup = 4;  // as in the shaders
+// As in the shaders.
+constexpr unsigned kBlocksInGroup = 4;
+constexpr std::size_t kWordsOfBlock = 2;  // where it is, and its blocker
 constexpr GLuint kShadowUnit = 3, kWorkUnit = 15;
 
 gl::Program shadow_program(const Lens& lens, int step) {
@@ -24,7 +26,7 @@ ShadowPass::ShadowPass(const Lens& lens)
       shade_(shadow_program(lens, 2)),
       unshade_(gl::Program::compute(gl::texture_gpu_shaders(), "unshade.comp")),
       near_("blocks that a shadow may reach", 64),
-      blocks_("blocks that may be in a shadow", kBlocksInGroup) {}
+      blocks_("blocks that may be in a shadow", kBlocksInGroup, kWordsOfBlock) {}
 
 void ShadowPass::operator()(const Camera& camera, const ShadowMap& map) {
   const int width = camera.lens.width(), height = camera.lens.height();
