@@ -46,7 +46,7 @@ float blocker_value(vec3 q, float nearest, float more) {
 // Share of the lamp that moving parts hide, about as near to it as `blocker` (blocker_value): percentage-closer soft shadows
 // (Fernando 2005).
 float hidden_share(vec3 q, float blocker) {
-  const int kFilter = 12;
+  const int kFilter = 16;
   vec2 place = lamp_face.xy * q.xy / q.z + lamp_face.zw, size = vec2(textureSize(moving_depth, 0).xy);
   float value = kNear / q.z, bound = kNear / (q.z - kOffSurface);
   float spread = lamp_face.x * lamp_radius / kNear * max(blocker - value, 0.0);
