@@ -61,7 +61,7 @@ TEST_F(Bench, ShadowSaysWhereItCannotTellTheLamp) {
 
 TEST_F(Bench, MarginCountsByTruth) {
   const std::string json = out_ / "margin.json", plot = out_ / "margin.svg";
-  const Outcome outcome = run_program({"bench", "margin", run(), "--images", "2", "--json", json, "--plot", plot});
+  const Outcome outcome = run_program({"bench", "margin", run(), "--images", "1", "--json", json, "--plot", plot});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json rows = read_json(json)["errors"];
   ASSERT_EQ(rows.size(), 5u);

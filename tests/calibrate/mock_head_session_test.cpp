@@ -136,7 +136,7 @@ TEST_F(MockLabHead, IsCalibratedByTheLabsOwnPictures) {
   EXPECT_LT(worst_ratio(read_inverse_response(response())), 0.04);
   for (const char* side : {"left", "right"}) EXPECT_LT(json_of(folder_, "p.json")[side]["held_out_levels"], 6) << side;
   const std::string head_file = folder_ / "head.yaml";
-  write("sweep", look(1, 32));
+  write("sweep", look(1, 24));
   ASSERT_EQ(run_calibrate({"pan-tilt", "--run", folder_ / "sweep", "--photometric", response(), "--json",
                            folder_ / "head.json", "--out", head_file}),
             "0");
