@@ -139,6 +139,7 @@ void ChartAtlas::set_level(int index, const Eigen::Vector2i& level) {
                  (chart.raster.height + atlas::kPage - 1) / atlas::kPage};
   chart.page.assign(static_cast<std::size_t>(chart.pages.prod()), {});
   describe_pages(*surface_, index, chart);
+  chart.heights = PackedHeights(std::exchange(chart.raster.raw, {}), chart.raster.width);
   hand_on(page_before, raster_before, pages_before, chart);
 }
 

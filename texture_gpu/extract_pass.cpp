@@ -62,15 +62,17 @@ void ExtractPass::upload_heights(const ChartAtlas& atlas, std::span<const std::p
     const auto batch = pages.subspan(first, std::min(kBatch, pages.size() - first));
     std::vector<std::uint16_t> raw(batch.size() * 256, 0);
     std::vector<std::uint32_t> slots;
+    std::vector<std::uint16_t> heights;  // of the last page's chart
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const AtlasChart& chart = atlas.charts()[batch[i].first];
+      if (i == 0 || batch[i].first != batch[i - 1].first) heights = chart.heights.unpacked();
       slots.push_back(chart.page[static_cast<std::size_t>(batch[i].second)].height);
       const int x0 = atlas::kPage * (batch[i].second % chart.pages.x()),
                 y0 = atlas::kPage * (batch[i].second / chart.pages.x());
       const int columns = std::min(atlas::kPage, chart.raster.width - x0),
                 rows = std::min(atlas::kPage, chart.raster.height - y0);
       for (int y = 0; y < rows; ++y)
-        std::copy_n(chart.raster.raw.begin() + (y0 + y) * chart.raster.width + x0, columns,
+        std::copy_n(heights.begin() + (y0 + y) * chart.raster.width + x0, columns,
                     raw.begin() + static_cast<std::ptrdiff_t>(i * 256) + y * atlas::kPage);
     }
     staged_.assign(std::span<const std::uint16_t>(raw));

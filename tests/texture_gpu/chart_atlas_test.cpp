@@ -236,7 +236,8 @@ TEST(ChartAtlas, RecordsHoldTheTilesThatACameraMaySeeFromTheFront) {
   const auto views = atlas.view(usual_view());
   int kept = 0, dropped = 0;
   for (const PageRecord& record : atlas->plan(views, 0)) {
-    const ChartRaster& r = atlas->charts()[record.chart].raster;
+    ChartRaster r = atlas->charts()[record.chart].raster;
+    r.raw = atlas->charts()[record.chart].heights.unpacked();
     const Chart& shape = atlas->surface().charts[record.chart];
     const Patch& patch = atlas->surface().patches[static_cast<std::size_t>(shape.patch)];
     const Eigen::Vector3d s =

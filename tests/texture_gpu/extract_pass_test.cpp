@@ -58,7 +58,7 @@ class ExtractTest : public HeadlessTest {
         const reference::Texel got = after.at(job.new_slot, 0, px, py);
         const reference::Texel old =
             job.old_slot == atlas::kNoSlot ? reference::Texel{} : before.at(job.old_slot, 0, px, py);
-        if (!PassBench::raw_height(chart, x, y)) {
+        if (!b.raw_height(chart, x, y)) {
           out.wrong += got[3] > 1;  // at most filled
           continue;
         }
@@ -362,7 +362,7 @@ TEST_F(ExtractTest, GuardTexelsTakeNoColourFromTheBackground) {
     if (patch.node != kBox) continue;
     const AtlasChart& chart = bench_->atlas.charts()[job.chart];
     for (int k = 0; k < 256; ++k) {
-      const std::uint16_t raw = PassBench::raw_height(chart, 16 * static_cast<int>(job.xy & 0xffff) + k % 16,
+      const std::uint16_t raw = bench_->raw_height(chart, 16 * static_cast<int>(job.xy & 0xffff) + k % 16,
                                                       16 * static_cast<int>(job.xy >> 16) + k / 16);
       const reference::Texel got = pixels.at(job.new_slot, 0, k % 16, k / 16);
       if (!raw || got[3] < 2) {

@@ -41,7 +41,7 @@ class FillTest : public HeadlessTest {
           if (!copy.resident[page]) continue;
           const reference::Texel t = pixels.at(chart.page[page].colour, 0, x % 16, y % 16);
           copy.texels[static_cast<std::size_t>(y * width + x)] = t;
-          if ((PassBench::raw_height(chart, x, y) & ChartRaster::kCore) && t[3] < 2)
+          if ((bench_->raw_height(chart, x, y) & ChartRaster::kCore) && t[3] < 2)
             copy.holes[page][static_cast<std::size_t>(y % 16 / 8 * 2 + x % 16 / 8)] = true;
         }
       out.push_back(std::move(copy));

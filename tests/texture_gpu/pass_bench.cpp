@@ -165,10 +165,11 @@ Eigen::Vector3d PassBench::texel_point(const AtlasChart& chart, const Patch& pat
   return patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + height * patch.n;
 }
 
-std::uint16_t PassBench::raw_height(const AtlasChart& chart, int x, int y) {
+std::uint16_t PassBench::raw_height(const AtlasChart& chart, int x, int y) const {
   const ChartRaster& r = chart.raster;
+  if (heights_.of != &chart || heights_.density != r.density) heights_ = {&chart, r.density, chart.heights.unpacked()};
   return x < r.width && y < r.height
-             ? r.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)]
+             ? heights_.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)]
              : std::uint16_t{0};
 }
 

@@ -50,7 +50,7 @@ class PassBench {
   const Patch& patch_of(std::uint32_t chart) const {
     return surface->patches[static_cast<std::size_t>(surface->charts[chart].patch)];
   }
-  static std::uint16_t raw_height(const AtlasChart& chart, int x, int y);
+  std::uint16_t raw_height(const AtlasChart& chart, int x, int y) const;
 
   std::shared_ptr<const SceneModel> scene;
   std::shared_ptr<const SurfacePatches> surface;
@@ -75,6 +75,12 @@ class PassBench {
  private:
   std::shared_ptr<PublishedTextures> fresh_generation() const;
   std::vector<int> first_page_before_;
+  struct Heights {
+    const AtlasChart* of = nullptr;
+    Eigen::Vector2d density{0, 0};
+    std::vector<std::uint16_t> raw;
+  };
+  mutable Heights heights_;  ///< of the chart that was asked last
 };
 
 }  // namespace foresight

@@ -41,7 +41,7 @@ TEST_P(SurveyOfLenses, NoTileWithASeenTexelIsCulled) {
         for (int k = 0; k < 64 && !seen && !turned_away; ++k) {
           const int x = 16 * static_cast<int>(record.xy & 0xffff) + 8 * (tile & 1) + k % 8;
           const int y = 16 * static_cast<int>(record.xy >> 16) + 8 * (tile >> 1) + k / 8;
-          if (!PassBench::raw_height(chart, x, y)) continue;
+          if (!bench_->raw_height(chart, x, y)) continue;
           Eigen::Vector2d pixel;
           seen = reference::is_seen(camera, T * bench_->texel_point(chart, patch, x, y),
                                     bench_->options.depth_tolerance, pixel) == Answer::yes;
@@ -90,7 +90,7 @@ TEST_P(SurveyOfLenses, BrightnessIsTheMeanOfThePagesGrid) {
     for (int k = 0; k < 16 && record.height_slot != atlas::kNoSlot; ++k) {
       const int x = 16 * static_cast<int>(record.xy & 0xffff) + 4 * (k & 3) + 2,
                 y = 16 * static_cast<int>(record.xy >> 16) + 4 * (k >> 2) + 2;
-      if (!PassBench::raw_height(chart, x, y)) continue;
+      if (!bench_->raw_height(chart, x, y)) continue;
       Eigen::Vector2d pixel;
       const Answer seen = reference::is_seen(
           camera, camera.T_camera_node[static_cast<std::size_t>(patch.node)] * bench_->texel_point(chart, patch, x, y),
@@ -177,7 +177,7 @@ TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
       for (int k = 0; k < 64; ++k) {
         const int x = 16 * static_cast<int>(record.xy & 0xffff) + 8 * (tile & 1) + k % 8;
         const int y = 16 * static_cast<int>(record.xy >> 16) + 8 * (tile >> 1) + k / 8;
-        if (!PassBench::raw_height(chart, x, y)) continue;
+        if (!b.raw_height(chart, x, y)) continue;
         const Eigen::Vector3d p = b.texel_point(chart, patch, x, y);
         Eigen::Vector2d then, now;
         const Answer seen_then =
