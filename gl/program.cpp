@@ -66,6 +66,7 @@ GLuint link(const std::vector<GLuint>& shaders, const std::string& label) {
   }
   GLint ok = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &ok);
+  glReleaseShaderCompiler();  // Mesa's holds 5 MB of built-in functions, and is there again when it is needed
   glObjectLabel(GL_PROGRAM, program, -1, label.c_str());
   if (ok) return program;
   const std::string log = info_log(program, glGetProgramInfoLog);
