@@ -189,6 +189,9 @@ void add_display(Command& bench, std::function<int()>& action) {
   auto options = std::make_shared<DisplayBenchOptions>();
   command->add_option("--size", options->size, "WIDTHxHEIGHT of the view, px")->capture_default_str();
   command->add_option("--seconds", options->seconds, "Of each round")->check(from_to(0.2, 3600))->capture_default_str();
+  command
+      ->add_option("--long-seconds", options->long_seconds, "Of the round beside the extraction at 25 frames a second")
+      ->check(from_to(0.2, 3600));
   command->add_option("--rate", options->rate_hz, "Frames a second: this alone, in place of 25, 33, 50 and 100")
       ->check(from_to(1, 240));
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());

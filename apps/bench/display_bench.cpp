@@ -129,7 +129,10 @@ struct Bench {
       rows.push_back({{"view", from.name}, {"rate_hz", rate}, {"what", what}, {"figures", to_json(f)}});
       return f;
     };
-    const DisplayFigures alone = show("frames alone", paced, false), both = show("beside the extraction", paced, true);
+    const DisplayFigures alone = show("frames alone", paced, false);
+    if (rate == kJudgedRate && options.long_seconds > 0) how.seconds = options.long_seconds;
+    const DisplayFigures both = show("beside the extraction", paced, true);
+    how.seconds = options.seconds;
     how.paced = false;
     show("the same, not paced", unpaced, true);
     if (rate == kJudgedRate) judge(from.name, alone, both, rate, extraction);

@@ -11,6 +11,7 @@ namespace foresight {
 struct DisplayBenchOptions {
   std::string size = "800x600";  ///< of the view
   double seconds = 5;            ///< of each round
+  double long_seconds = 0;       ///< of that beside the extraction at 25 Hz; 0: as the others
   double rate_hz = 0;            ///< this one alone; 0: those of table 7.5
   std::optional<std::filesystem::path> json;
 };
