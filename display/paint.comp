@@ -23,7 +23,7 @@ int age_class(SurfaceAt at, bool from_image) {
 int confidence_class(SurfaceAt at, bool from_image) {
   vec4 seen = seen_colour(at.chart, at.texel, 0);
   if (seen.a < kSeen) return from_image ? 0 : 3;  // the newest image shows it about as finely as the view
-  float image_px_per_texel = exp2((seen.a * 255.0 - 2.0) / 253.0 * 8.0 - 8.0);
+  float image_px_per_texel = exp2((seen.a - kLeastSeen) / (kStepsPerDoubling * kStep) - 8.0);
   float share = image_px_per_texel / max(at.pixels_per_texel, 1e-6);  // image pixels for a pixel of the view
   return share > 0.7 ? 0 : share > 0.25 ? 1 : 2;
 }

@@ -58,7 +58,7 @@ void main() {
   float x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0, gradient2 = 0.0, count = 0.0;
   for (int i = 0; i < 16; ++i) {
     ivec2 texel = texel_of_point(i);
-    vec4 known = texelFetch(published_colours, colours_at + ivec3(texel, 0), 0);
+    vec4 known = unpack_texel(texelFetch(published_colours, colours_at + ivec3(texel, 0), 0));
     vec3 p_node;
     if (!find_point(page, texel, p_node) || known.a < kSeen) continue;
     vec3 p = node_to_camera(node_poses, page.chart.node, p_node);

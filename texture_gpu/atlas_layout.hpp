@@ -16,8 +16,7 @@ inline constexpr int kSlotsPerLayer = kSlotsPerRow * kRowsPerLayer;
 inline constexpr int kLevels = 5;  ///< 16, 8, 4, 2, 1 texels a side: the hole filling's pyramid
 inline constexpr std::uint32_t kNoSlot = 0xffffffffu;
 
-/// Of a colour: four halves (atlas_store.hpp).
-inline constexpr std::uint64_t kTexelBytes = 8;
+inline constexpr std::uint64_t kTexelBytes = 4;  ///< of a colour (texel.hpp)
 /// Bytes of one page's colours with its pyramid: 4/3 of level 0.
 inline constexpr std::uint64_t kColourBytes = kTexelBytes * (256 + 64 + 16 + 4 + 1);
 /// Bytes of one page's heights.

@@ -9,9 +9,12 @@
 namespace foresight {
 
 namespace atlas {
-/// Colours are halves: a texel may be brighter than white at the reference exposure, and one of a
-/// dark image keeps its 256 steps (docs/decisions/0015).
-inline constexpr GLenum kColourFormat = GL_RGBA16F;
+/// Of texels (texel.hpp). They are fetched as four bytes, the fastest way on software renderers, and stored as one
+/// number through an image of the same size.
+inline constexpr GLenum kColourFormat = GL_RGBA8, kStoredColourFormat = GL_R32UI;
+/// Means of pages and charts, with the alpha of coarse.comp.
+inline constexpr GLenum kMeanFormat = GL_RGBA16F;
+inline constexpr std::uint64_t kMeanBytes = 8;
 }  // namespace atlas
 
 /// Colour slots with their pyramid, and height slots (atlas_layout.hpp). The thread of the texture core.
@@ -26,7 +29,7 @@ class AtlasStore {
   bool hold(const ChartAtlas::Slots& slots);
   ChartAtlas::Slots held() const { return held_; }
 
-  /// RGBA16F array, atlas::kLevels levels; published generations own it too.
+  /// R32UI array, atlas::kLevels levels; published generations own it too.
   std::shared_ptr<const gl::Texture> colours;
   gl::Texture heights;  ///< R16UI array
 

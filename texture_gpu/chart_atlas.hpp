@@ -12,8 +12,8 @@
 #include "texture_gpu/chart_raster.hpp"
 #include "texture_gpu/chart_resolution.hpp"
 #include "texture_gpu/options.hpp"
-#include "texture_gpu/page_pool.hpp"
 #include "texture_gpu/packed_heights.hpp"
+#include "texture_gpu/page_pool.hpp"
 #include "texture_gpu/tile_planes.hpp"
 
 namespace foresight {
@@ -59,8 +59,8 @@ struct AtlasPage {
 struct AtlasChart {
   Eigen::Vector2i level{kNoLevel, kNoLevel};  ///< density is 2^(level / 4); kNoLevel: no texels yet
   Eigen::Vector2d wanted{0, 0};               ///< texels per metre along u and v of the closest view so far
-  ChartRaster raster;     ///< without its heights
-  PackedHeights heights;  ///< of the raster
+  ChartRaster raster;                         ///< without its heights
+  PackedHeights heights;                      ///< of the raster
   Eigen::Vector2i pages{0, 0};
   int first_page = 0;  ///< in the page table
   std::vector<AtlasPage> page;

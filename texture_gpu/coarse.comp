@@ -25,7 +25,7 @@ void main() {
   vec4 sum = vec4(0.0);
   for (int i = lane; i < count; i += 16) {
     uint slot = texelFetch(table, chart.first_page + i).r;
-    vec4 c = slot == kNoSlot ? vec4(0.0) : texelFetch(colours, slot_origin(slot & 0xffffffu, 4), 4);
+    vec4 c = slot == kNoSlot ? vec4(0.0) : unpack_texel(texelFetch(colours, slot_origin(slot & 0xffffffu, 4), 4));
     sum += vec4(c.rgb * c.a, c.a);
     if (c.a < kFirm) append_work(uint(chart.first_page + i));
     imageStore(coarse, chart.first_page + i, c.a > 0.0 ? vec4(c.rgb, 1.0) : vec4(0.0));

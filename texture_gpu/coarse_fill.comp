@@ -29,7 +29,7 @@ void main() {
       bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, chart.pages));
       at = clamp(at, ivec2(0), chart.pages - 1);
       uint slot = texelFetch(table, chart.first_page + at.y * chart.pages.x + at.x).r;
-      vec4 c = texelFetch(colours, slot_origin(slot & 0xffffffu, 4), 4);
+      vec4 c = unpack_texel(texelFetch(colours, slot_origin(slot & 0xffffffu, 4), 4));
       float d2 = float(x * x + y * y);
       float weight = inside && slot != kNoSlot ? c.a / (d2 * d2 + 1.0) : 0.0;
       sum += weight * vec4(c.rgb, 1.0);

@@ -14,9 +14,11 @@ layout(binding = 7) uniform samplerBuffer geometry;  // per job and camera four 
 layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 10) uniform usamplerBuffer tiles;  // job << 4 | tile << 2 | cameras that may see it
 layout(binding = 11) uniform sampler2DArray old_colours;
-layout(binding = 0, rgba16f) uniform writeonly image2DArray colours;
+layout(binding = 0, r32ui) uniform writeonly uimage2DArray colours;
 #include "holes.glsl"
 uniform int first_group, tile_count;
+uniform int turn;  // of the image
+const int kImagesToAge = 8;  // a power of two: remainders are slow
 const float kBeyondWhite = 0.35;
 
 // Factor from the image's values to the reference exposure (exposure.hpp).
@@ -87,11 +89,17 @@ struct Column {
 };
 const int kRows = 4;
 
+// `at`: of the heights, where a page stays.
+float aged(float code, ivec3 at) {
+  bool its_turn = ((at.x + 3 * at.y + turn) & (kImagesToAge - 1)) == 0;
+  return its_turn ? max(code - kStep, kLeastSeen) : code;
+}
+
 void extract_texel(Column column, int row) {
   ivec3 below = ivec3(0, row, 0);
   uint raw = texelFetch(heights, column.heights_at + below, 0).r;
   float height = float(raw & 0x7fffu) - 1.0;
-  vec4 colour = column.has_old ? texelFetch(old_colours, column.old_at + below, 0) : vec4(0.0);
+  vec4 colour = unpack_texel(column.has_old ? texelFetch(old_colours, column.old_at + below, 0) : vec4(0.0));
   float before = colour.a;
   float best_quality = 0.0;
   float code = 0.0;
@@ -108,14 +116,14 @@ void extract_texel(Column column, int row) {
       best_tone = tone(c, pixel);
     }
   }
-  // The newest wins. What is clearly worse waits; the old colour's claim ages by one step
-  // (1/32 of a doubling) for each image that would have replaced it.
-  bool take = colour.a < kSeen || code >= colour.a + log2(max(column.worse, 1e-6)) / 8.0 * 253.0 / 255.0;
+  // The newest wins. What is clearly worse waits; the old colour's claim ages by one step (1/3.6 of a doubling) with every
+  // eighth image that would have replaced it. Texels take turns, so that a surface changes little by little.
+  bool take = colour.a < kSeen || code >= colour.a + log2(max(column.worse, 1e-6)) * kStepsPerDoubling * kStep;
   vec4 best = vec4(fused(colour.a < kSeen ? vec3(-1.0) : colour.rgb, sampled, best_tone), code);
-  if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, max(colour.a - 1.0 / 255.0, 2.0 / 255.0));
+  if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, aged(colour.a, column.heights_at + below));
   if (raw == 0u) colour = vec4(0.0);
   note_hole(int(column.tile >> 2), raw, before, colour.a);
-  imageStore(colours, column.new_at + below, colour);
+  imageStore(colours, column.new_at + below, uvec4(pack_texel(colour)));
 }
 
 void main() {

@@ -9,6 +9,8 @@ namespace foresight {
 
 namespace {
 
+constexpr int kImagesToAge = 8;  // as in extract.comp
+
 gl::Program extract_program(std::span<const Lens> lenses, std::size_t variant) {
   auto defines = gl::camera_defines(lenses);
   defines.push_back("CAMERAS " + std::to_string(1 + variant / 4));
@@ -94,7 +96,7 @@ void ExtractPass::relevel(std::span<const PageJob> jobs, const gl::BufferTexture
   glBindTextureUnit(7, relevel_jobs_.texture());
   glBindTextureUnit(8, charts.texture());
   published.bind();
-  glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
+  glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, atlas::kStoredColourFormat);
   dispatch_groups(relevel_, 4 * jobs.size());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
@@ -128,7 +130,8 @@ void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
   for (const auto& tiles : seen_tiles_) tile_count_ += tiles.size();
 }
 
-void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, FrameGate* gate) {
+void ExtractPass::run(std::size_t size, std::int64_t image, const SeenInputs& inputs, double depth_tolerance,
+                      FrameGate* gate) {
   const auto& tiles = seen_tiles_[size];
   if (tiles.empty()) return;
   const gl::Program& program = extract_[kSizes * static_cast<std::size_t>(inputs.camera_count() - 1) + size];
@@ -141,6 +144,7 @@ void ExtractPass::run(std::size_t size, const SeenInputs& inputs, double depth_t
   filter(GL_LINEAR_MIPMAP_LINEAR);
   inputs.bind(program, depth_tolerance);
   program.set("tile_count", static_cast<int>(tiles.size()));
+  program.set("turn", static_cast<int>(image % kImagesToAge));
   tiles_[size].assign(std::span<const std::uint32_t>(tiles));
   glBindTextureUnit(7, geometry_.texture());
   glBindTextureUnit(10, tiles_[size].texture());
@@ -159,9 +163,9 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   holes_.buffer().clear_to_zero();
   glBindTextureUnit(9, store.heights.name());
   glBindTextureUnit(11, store.colours->name());
-  glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
+  glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, atlas::kStoredColourFormat);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
-  for (std::size_t size = 0; size < kSizes; ++size) run(size, inputs, depth_tolerance, gate);
+  for (std::size_t size = 0; size < kSizes; ++size) run(size, work.image, inputs, depth_tolerance, gate);
   next_slice(gate, "copied tiles");
 
   copy_.use();

@@ -33,6 +33,7 @@ class ExtractPass {
     /// Texels of more pixels than this along a side take the mean of what they cover: up to four
     /// times as many from the image, beyond from its coarser levels.
     double minify_above = 1.5;
+    std::int64_t image = 0;  ///< its number: old colours age with every eighth, in turns
   };
   /// Extracts the images of `inputs` into all jobs (extract.comp); tiles that no camera sees are
   /// carried over (copy.comp).
@@ -51,7 +52,7 @@ class ExtractPass {
   static constexpr std::size_t kSizes = 4;       // of texels in pixels, as TEXELS in extract.comp
   std::array<gl::Program, 2 * kSizes> extract_;  // kSizes * (cameras - 1) + size
   void sort_tiles(const Work& work, const SeenInputs& inputs);
-  void run(std::size_t size, const SeenInputs& inputs, double depth_tolerance, FrameGate* gate);
+  void run(std::size_t size, std::int64_t image, const SeenInputs& inputs, double depth_tolerance, FrameGate* gate);
 
   gl::BufferTexture jobs_, geometry_, relevel_jobs_, tiles_[kSizes], copy_tiles_, holes_, staged_, slots_;
   std::array<std::vector<std::uint32_t>, kSizes> seen_tiles_;  // by size; job << 4 | tile << 2 | cameras

@@ -24,7 +24,8 @@ gl::Program hole_program(int tiles) {
 }
 
 void bind_level(GLuint unit, const gl::Texture& colours, int level, GLenum access) {
-  glBindImageTexture(unit, colours.name(), level, GL_TRUE, 0, access, atlas::kColourFormat);
+  const GLenum format = access == GL_READ_ONLY ? atlas::kColourFormat : atlas::kStoredColourFormat;
+  glBindImageTexture(unit, colours.name(), level, GL_TRUE, 0, access, format);
 }
 
 }  // namespace
@@ -42,7 +43,7 @@ FillPass::FillPass(const SurfacePatches& surface)
       neighbours_(GL_R32UI, 16, "neighbours"),
       dirty_(GL_R32UI, 16, "dirty charts"),
       chart_of_page_(GL_R32UI, 16, "charts of pages"),
-      spare_means_(atlas::kColourFormat, surface.charts.size() * atlas::kTexelBytes, "spare chart means"),
+      spare_means_(atlas::kMeanFormat, surface.charts.size() * atlas::kMeanBytes, "spare chart means"),
       with_holes_("pages or tiles with holes"),
       empty_pages_("pages without colour", 64),
       chart_count_(static_cast<int>(surface.charts.size())) {
@@ -86,7 +87,7 @@ void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
 
 void FillPass::means(const Work& work, const AtlasStore& store, const PublishedTextures& previous,
                      PublishedTextures& next) {
-  constexpr auto kEntry = static_cast<GLintptr>(atlas::kTexelBytes);
+  constexpr auto kEntry = static_cast<GLintptr>(atlas::kMeanBytes);
   glCopyNamedBufferSubData(previous.means.buffer().name(), next.means.buffer().name(), 0, 0, chart_count_ * kEntry);
   for (const auto& [before, now, count] : work.kept)
     glCopyNamedBufferSubData(previous.coarse.buffer().name(), next.coarse.buffer().name(), before * kEntry,
@@ -99,8 +100,8 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
   glBindTextureUnit(11, store.colours->name());
-  glBindImageTexture(0, next.coarse.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
-  glBindImageTexture(1, next.means.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
+  glBindImageTexture(0, next.coarse.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kMeanFormat);
+  glBindImageTexture(1, next.means.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kMeanFormat);
   empty_pages_.start(work.chart_of_page.size());
   dispatch_groups(coarse_, work.dirty.size());
   empty_pages_.finish();
@@ -124,7 +125,7 @@ void FillPass::spread(const PublishedTextures& next) const {
   const gl::BufferTexture* to = &spare_means_;
   for (int round = 0; round < kSpreadRounds; ++round, std::swap(from, to)) {  // even: ends in next.means
     glBindTextureUnit(9, from->texture());
-    glBindImageTexture(0, to->texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kColourFormat);
+    glBindImageTexture(0, to->texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kMeanFormat);
     glDispatchCompute(gl::groups(chart_count_, 64), 1, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   }

@@ -19,8 +19,8 @@ GenerationPool::Generation GenerationPool::take(const AtlasStore& store) {
     out = std::make_shared<PublishedTextures>();
     out->table = gl::BufferTexture(GL_R32UI, 16, "page table");
     out->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
-    out->coarse = gl::BufferTexture(atlas::kColourFormat, 16, "page means");
-    out->means = gl::BufferTexture(atlas::kColourFormat, 16, "chart means");
+    out->coarse = gl::BufferTexture(atlas::kMeanFormat, 16, "page means");
+    out->means = gl::BufferTexture(atlas::kMeanFormat, 16, "chart means");
     out->ages = gl::BufferTexture(GL_R32F, 16, "page ages");
   }
   out->colours = store.colours;

@@ -24,7 +24,7 @@ void main() {
   uint hole = 0u;
   for (int tile = 0; tile < 4; ++tile) hole |= texelFetch(holes, 4 * job_index + tile).r;
   Job job = read_job(jobs, job_index);
-  bool has_colour = texelFetch(colours, slot_origin(job.new_slot, 4), 4).a > 0.0;
+  bool has_colour = unpack_texel(texelFetch(colours, slot_origin(job.new_slot, 4), 4)).a > 0.0;
   bool changed = (hole & 6u) != 0u || (job.table_index + turn) % refresh == 0;
 #if TILES
   hole = texelFetch(holes, index).r;

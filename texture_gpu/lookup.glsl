@@ -28,14 +28,14 @@ Taps gather_taps(ChartRecord chart, vec2 texel, int level) {
     if (any(lessThan(t, ivec2(0))) || any(greaterThanEqual(page, chart.pages))) continue;
     uint slot = texelFetch(published_table, chart.first_page + page.y * chart.pages.x + page.x).r;
     if (slot == kNoSlot) continue;
-    vec4 c = texelFetch(published_colours, slot_origin(slot, level) + ivec3(t & in_page, 0), level);
+    vec4 c = unpack_texel(texelFetch(published_colours, slot_origin(slot, level) + ivec3(t & in_page, 0), level));
     c.rgb = min(c.rgb, vec3(BRIGHTEST));
     float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
     // Level 0 tells seen from filled by the code; above, alpha is the share of seen texels.
-    float seen = level == 0 ? step(kSeen, c.a) : step(1.5 / 255.0, c.a) * c.a;
+    float seen = level == 0 ? step(kSeen, c.a) : step(kSeen, c.a) * c.a;
     taps.seen += w * seen * vec4(c.rgb, 1.0);
     taps.quality += w * seen * (level == 0 ? c.a : 1.0);
-    taps.filled += w * (1.0 - seen) * step(0.5 / 255.0, c.a) * vec4(c.rgb, 1.0);
+    taps.filled += w * (1.0 - seen) * step(kColoured, c.a) * vec4(c.rgb, 1.0);
   }
   return taps;
 }
@@ -67,7 +67,7 @@ uint slot_of_page(ChartRecord chart, ivec2 page) {
 // Adds the texel at `place`, counted from the first page's corner, with its weights in both filters.
 void add_tap(inout SharpTaps sum, FourPages pages, ivec2 place, float cubic, float linear) {
   uint slot = place.y < 16 ? (place.x < 16 ? pages.first : pages.right) : (place.x < 16 ? pages.below : pages.opposite);
-  vec4 c = texelFetch(published_colours, slot_origin(slot & 0xffffffu, 0) + ivec3(place & 15, 0), 0);
+  vec4 c = unpack_texel(texelFetch(published_colours, slot_origin(slot & 0xffffffu, 0) + ivec3(place & 15, 0), 0));
   float alpha = slot == kNoSlot ? 0.0 : c.a;
   vec4 colour = vec4(min(c.rgb, vec3(BRIGHTEST)), 1.0);
   float seen = step(kSeen, alpha);
@@ -75,7 +75,7 @@ void add_tap(inout SharpTaps sum, FourPages pages, ivec2 place, float cubic, flo
   sum.cubic += cubic * colour;
   sum.linear.seen += linear * seen * colour;
   sum.linear.quality += linear * seen * alpha;
-  sum.linear.filled += linear * (1.0 - seen) * step(0.5 / 255.0, alpha) * colour;
+  sum.linear.filled += linear * (1.0 - seen) * step(kColoured, alpha) * colour;
 }
 
 // As gather_taps() at level 0, but cubic where all texels that it takes were seen: two linear filters one after the

@@ -14,8 +14,8 @@ layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 8) uniform samplerBuffer charts;
 layout(binding = 9) uniform usamplerBuffer table;
 layout(binding = 14) uniform samplerBuffer coarse;
-layout(binding = 0, rgba16f) uniform image2DArray colours;
-layout(binding = 1, rgba16f) uniform readonly image2DArray above;
+layout(binding = 0, r32ui) uniform uimage2DArray colours;
+layout(binding = 1, rgba8) uniform readonly image2DArray above;
 
 const int kSide = 16 >> LEVEL;  // texels of a page at this level
 
@@ -27,7 +27,7 @@ vec4 parent(ChartRecord chart, ivec2 at) {
   vec4 c = vec4(0.0);
 #if LEVEL < 3
   uint slot = texelFetch(table, index).r;
-  if (slot != kNoSlot) c = imageLoad(above, slot_origin(slot, LEVEL + 1) + ivec3(at & ((1 << shift) - 1), 0));
+  if (slot != kNoSlot) c = unpack_texel(imageLoad(above, slot_origin(slot, LEVEL + 1) + ivec3(at & ((1 << shift) - 1), 0)));
 #endif
   return c.a > 0.0 ? c : texelFetch(coarse, index);
 }
@@ -43,7 +43,7 @@ void main() {
   Job job = read_job(jobs, int(item));
 #endif
   ivec3 place = slot_origin(job.new_slot, LEVEL) + ivec3(in_page, 0);
-  vec4 own = imageLoad(colours, place);
+  vec4 own = unpack_texel(unpackUnorm4x8(imageLoad(colours, place).r));
 #if LEVEL == 0
   if (own.a >= kSeen) return;
 #else
@@ -63,9 +63,10 @@ void main() {
   if (sum.a == 0.0) return;
   vec3 from_above = sum.rgb / sum.a;
 #if LEVEL == 0
-  imageStore(colours, place, vec4(from_above, kFilled));
+  imageStore(colours, place, uvec4(pack_texel(vec4(from_above, kFilled))));
 #else
   // Keeps its share of seen texels, but never less than the least that marks a colour.
-  imageStore(colours, place, vec4(mix(from_above, own.rgb, 2.0 * own.a), max(own.a, kFilled)));
+  float share = own.a < kSeen ? 0.0 : 2.0 * own.a;
+  imageStore(colours, place, uvec4(pack_texel(vec4(mix(from_above, own.rgb, share), max(own.a, kFilled)))));
 #endif
 }

@@ -4,16 +4,15 @@
 layout(local_size_x = 64) in;
 layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 11) uniform sampler2DArray colours;
-layout(binding = 0, rgba16f) uniform writeonly image2DArray level2;
-layout(binding = 1, rgba16f) uniform writeonly image2DArray level3;
-layout(binding = 2, rgba16f) uniform writeonly image2DArray level4;
+layout(binding = 0, r32ui) uniform writeonly uimage2DArray level2;
+layout(binding = 1, r32ui) uniform writeonly uimage2DArray level3;
+layout(binding = 2, r32ui) uniform writeonly uimage2DArray level4;
 uniform int job_count;
 
-// Mean of `seen` texels weighted by their share, which stays visible in eight bits; where there are
-// none, of the `filled` ones.
-vec4 store_form(vec4 seen, vec4 filled, float count) {
-  if (seen.a > 0.0) return vec4(seen.rgb / seen.a, max(seen.a / count, 2.0 / 255.0));
-  return filled.a > 0.0 ? vec4(filled.rgb / filled.a, kFilled) : vec4(0.0);
+// Mean of `seen` texels weighted by their share; where there are none, of the `filled` ones.
+uvec4 store_form(vec4 seen, vec4 filled, float count) {
+  if (seen.a > 0.0) return uvec4(pack_texel(vec4(seen.rgb / seen.a, encode_share(seen.a / count))));
+  return uvec4(filled.a > 0.0 ? pack_texel(vec4(filled.rgb / filled.a, kFilled)) : 0u);
 }
 
 void main() {
@@ -28,9 +27,9 @@ void main() {
       ivec2 at2 = 2 * ivec2(q & 1, q >> 1) + ivec2(r & 1, r >> 1);
       vec4 seen2 = vec4(0.0), filled2 = vec4(0.0);
       for (int s = 0; s < 4; ++s) {
-        vec4 c = texelFetch(colours, from + ivec3(2 * at2 + ivec2(s & 1, s >> 1), 0), 1);
+        vec4 c = unpack_texel(texelFetch(colours, from + ivec3(2 * at2 + ivec2(s & 1, s >> 1), 0), 1));
         seen2 += step(kSeen, c.a) * vec4(c.rgb, 1.0) * c.a;
-        filled2 += step(0.5 / 255.0, c.a) * vec4(c.rgb, 1.0);
+        filled2 += step(kColoured, c.a) * vec4(c.rgb, 1.0);
       }
       imageStore(level2, slot_origin(job.new_slot, 2) + ivec3(at2, 0), store_form(seen2, filled2, 4.0));
       seen3 += seen2;

@@ -3,12 +3,12 @@
 #include "chart_record.glsl"
 #include "atlas.glsl"
 #include "jobs.glsl"
-#define BRIGHTEST 65504.0  // all that a texel can hold
+#define BRIGHTEST kBrightest
 #include "lookup.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform usamplerBuffer jobs;
 layout(binding = 8) uniform samplerBuffer charts;      // at the new resolution
-layout(binding = 0, rgba16f) uniform writeonly image2DArray colours;
+layout(binding = 0, r32ui) uniform writeonly uimage2DArray colours;
 uniform int first_group;
 
 void main() {
@@ -22,7 +22,7 @@ void main() {
   float lod = max(log2(min(ratio.x, ratio.y)), 0.0);
   vec4 seen = seen_colour(old, (uv - old.uv0) * old.density, int(lod + 0.5));
   // Twice as many texels for the same pixels: each holds half as many pixels along a side.
-  float shift = 0.5 * log2(ratio.x * ratio.y) / 8.0 * 253.0 / 255.0;
-  vec4 colour = seen.a > 0.0 ? vec4(seen.rgb, clamp(seen.a + shift, 2.0 / 255.0, 1.0)) : vec4(0.0);
-  imageStore(colours, slot_origin(job.new_slot, 0) + ivec3(in_page, 0), colour);
+  float shift = 0.5 * log2(ratio.x * ratio.y) * kStepsPerDoubling * kStep;
+  vec4 colour = seen.a > 0.0 ? vec4(seen.rgb, clamp(seen.a + shift, kLeastSeen, 1.0)) : vec4(0.0);
+  imageStore(colours, slot_origin(job.new_slot, 0) + ivec3(in_page, 0), uvec4(pack_texel(colour)));
 }

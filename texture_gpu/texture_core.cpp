@@ -48,7 +48,7 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
   atlas_.write_charts(chart_rows_);
   current_->table.assign(std::span<const std::uint32_t>(table_));
   current_->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
-  current_->means.reserve(surface->charts.size() * atlas::kTexelBytes);
+  current_->means.reserve(surface->charts.size() * atlas::kMeanBytes);
   current_->means.buffer().clear_to_zero();
   current_->coarse.buffer().clear_to_zero();
 }
@@ -111,8 +111,8 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
   mark("prepare");
   atlas_.write_job_geometry(allocation.jobs, frame.views, geometry_);
-  extract_.extract({allocation.jobs, allocation.masks, geometry_}, frame.inputs, store_, options_.depth_tolerance,
-                   gate_);
+  extract_.extract({.jobs = allocation.jobs, .masks = allocation.masks, .geometry = geometry_, .image = image_},
+                   frame.inputs, store_, options_.depth_tolerance, gate_);
   mark("extract");
   fill_and_finish(allocation, *next);
   count(allocation);
@@ -388,8 +388,8 @@ void TextureCore::list_fill_work(const ChartAtlas::Allocation& allocation) {
 
 void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next) {
   list_fill_work(allocation);
-  next.coarse.reserve(static_cast<std::size_t>(atlas_.page_count()) * atlas::kTexelBytes);
-  next.means.reserve(atlas_.charts().size() * atlas::kTexelBytes);
+  next.coarse.reserve(static_cast<std::size_t>(atlas_.page_count()) * atlas::kMeanBytes);
+  next.means.reserve(atlas_.charts().size() * atlas::kMeanBytes);
   fill_(extract_, {allocation.jobs.size(), dirty_, chart_of_page_, kept_}, store_, *current_, next, gate_);
   // The flip must not show what the GPU has not finished.
   gl::Fence::insert().wait(kGpuTimeout);

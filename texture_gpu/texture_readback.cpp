@@ -5,35 +5,40 @@
 
 #include "gl/context.hpp"
 #include "texture_gpu/atlas_layout.hpp"
+#include "texture_gpu/texel.hpp"
 
 namespace foresight {
 namespace {
 
 constexpr std::uint8_t kSeen = 255, kFilled = 128, kBare = 64;
-constexpr std::uint8_t kFirstSeenCode = 2;  // alpha codes: atlas.glsl
+constexpr int kFirstSeenCode = 2;
 
 Eigen::Vector2i page_grid(const Eigen::Vector2i& texels) {
   return (texels.array() + atlas::kPage - 1) / atlas::kPage;
 }
 
-/// Pixels of three colours and alpha to 8 bits as a display shows them.
-cv::Mat shown(const cv::Mat& texels, float gain) {
-  cv::Mat_<cv::Vec4f> values;
-  texels.convertTo(values, CV_32F);
-  for (cv::Vec4f& value : values) value = {gain * value[0], gain * value[1], gain * value[2], value[3]};
-  cv::Mat out;
-  values.convertTo(out, CV_8U, 255);
-  return out;
+/// Eight bits, as a display shows it.
+std::uint8_t shown(float value, float gain) {
+  return cv::saturate_cast<std::uint8_t>(255 * gain * value);
+}
+
+/// BGRA; all 0 where it has no colour.
+cv::Vec4b shown(atlas::Texel texel, float gain) {
+  if (texel.code() == 0) return {0, 0, 0, 0};
+  const Eigen::Array3f c = texel.colour();
+  return {shown(c[2], gain), shown(c[1], gain), shown(c[0], gain), texel.code() >= kFirstSeenCode ? kSeen : kFilled};
 }
 
 /// Means of pages or charts.
 std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t count, float gain) {
-  cv::Mat halves(1, static_cast<int>(count), CV_16FC4);
+  cv::Mat halves(1, static_cast<int>(count), CV_16FC4), values;
   if (count == 0) return {};
   buffer.buffer().read(std::span(halves.ptr<std::uint64_t>(), count));
+  halves.convertTo(values, CV_32F);
   std::vector<cv::Vec4b> out;
-  for (const cv::Vec4b& c : cv::Mat_<cv::Vec4b>(shown(halves, gain)))
-    out.push_back(c[3] == 0 ? cv::Vec4b(0, 0, 0, kBare) : cv::Vec4b(c[2], c[1], c[0], kFilled));
+  for (const cv::Vec4f& c : cv::Mat_<cv::Vec4f>(values))
+    out.push_back(c[3] == 0 ? cv::Vec4b(0, 0, 0, kBare)
+                            : cv::Vec4b(shown(c[2], gain), shown(c[1], gain), shown(c[0], gain), kFilled));
   return out;
 }
 
@@ -80,12 +85,15 @@ TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_
   for (const Page& page : pages_) {
     if (page.slot == atlas::kNoSlot) continue;
     const auto layer = static_cast<int>(page.slot / atlas::kSlotsPerLayer);
-    cv::Mat& pixels = layers_[static_cast<std::size_t>(layer)];
+    cv::Mat_<cv::Vec4b>& pixels = layers_[static_cast<std::size_t>(layer)];
     if (!pixels.empty()) continue;
-    cv::Mat texels(colours.height(), colours.width(), CV_16FC4);
-    glGetTextureSubImage(colours.name(), 0, 0, 0, layer, texels.cols, texels.rows, 1, GL_BGRA, GL_HALF_FLOAT,
-                         static_cast<GLsizei>(texels.total() * texels.elemSize()), texels.data);
-    pixels = shown(texels, textures.display_gain);
+    std::vector<atlas::Texel> texels(static_cast<std::size_t>(colours.width() * colours.height()));
+    glGetTextureSubImage(colours.name(), 0, 0, 0, layer, colours.width(), colours.height(), 1, GL_RGBA,
+                         GL_UNSIGNED_INT_8_8_8_8_REV, static_cast<GLsizei>(texels.size() * sizeof(atlas::Texel)),
+                         texels.data());
+    pixels.create(colours.height(), colours.width());
+    std::ranges::transform(texels, pixels.begin(),
+                           [&](atlas::Texel texel) { return shown(texel, textures.display_gain); });
   }
   gl::check_errors("reading textures back");
 }
@@ -127,15 +135,11 @@ std::optional<ChartTexels> TextureReadback::chart(int index) const {
   return out;
 }
 
-/// A texel of the atlas; all 0 where it has no colour.
+/// A texel of the atlas.
 cv::Vec4b TextureReadback::stored(std::uint32_t slot, int x, int y) const {
   const auto column = static_cast<int>(slot % atlas::kSlotsPerRow);
   const auto row = static_cast<int>(slot / atlas::kSlotsPerRow % atlas::kRowsPerLayer);
-  cv::Vec4b colour =
-      layers_[slot / atlas::kSlotsPerLayer].at<cv::Vec4b>(row * atlas::kPage + y, column * atlas::kPage + x);
-  if (colour[3] == 0) return {0, 0, 0, 0};
-  colour[3] = colour[3] >= kFirstSeenCode ? kSeen : kFilled;
-  return colour;
+  return layers_[slot / atlas::kSlotsPerLayer](row * atlas::kPage + y, column * atlas::kPage + x);
 }
 
 /// coarse_colour() of lookup.glsl: what a view shows where a chart has no texel of its own.

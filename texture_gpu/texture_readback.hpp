@@ -84,7 +84,7 @@ class TextureReadback {
   std::vector<ChartPlace> places_;
   std::vector<Page> pages_;
   std::vector<cv::Vec4b> means_;
-  std::vector<cv::Mat> layers_;  // BGRA; empty where no page of the generation lies in it
+  std::vector<cv::Mat_<cv::Vec4b>> layers_;  // BGRA; empty where no page of the generation lies in it
 };
 
 }  // namespace foresight

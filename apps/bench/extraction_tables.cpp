@@ -5,6 +5,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "texture_gpu/atlas_layout.hpp"
+
 namespace foresight {
 namespace {
 
@@ -183,7 +185,7 @@ json bench_bandwidth(const BenchSetup& setup, double core_cpu_ms, double texels)
   for (int i = 0; i < 5; ++i) best = std::min(best, cpu_ms_of([&] { std::memcpy(to.data(), from.data(), kBytes); }));
   const double copy = 2 * static_cast<double>(kBytes) / (best * 1e-3) * 1e-9;  // read and written
   // Height, old and new colour, image; then the pyramid reads the colour and writes a third of it.
-  constexpr double kBytesPerTexel = 2 + 8 + 8 + 4 + 8 + 8.0 / 3;
+  constexpr double kColour = atlas::kTexelBytes, kBytesPerTexel = 2 + kColour + kColour + 4 + kColour + kColour / 3;
   const Lens& lens = setup.run.lens_left();
   const double pixels = static_cast<double>(lens.width()) * lens.height();
   // Per pixel: colour converted and uploaded, depth written and read for blocks.

@@ -61,7 +61,7 @@ std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at, Fetch&& fetch) {
       if (outer_x && outer_y) continue;
       const Eigen::Vector2i t = base + Eigen::Vector2i(x, y);
       const Eigen::Vector4d c = fetch(Eigen::Vector2i(outer_y ? nearest.x() : t.x(), outer_x ? nearest.y() : t.y()));
-      if (255 * c.w() < 1.5) return std::nullopt;
+      if (31 * c.w() < 1.5) return std::nullopt;
       const double w = kernel(at.x() - t.x()) * kernel(at.y() - t.y());
       sum += w * c.head<3>();
       weights += w;
@@ -113,7 +113,7 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
     };
     bilinear(at, [&](const Eigen::Vector2i& t, double weight) {
       const Eigen::Vector4d c = fetch(t);
-      const double code = 255 * c.w(), share = code < 1.5 ? 0 : level == 0 ? 1 : c.w();
+      const double code = 31 * c.w(), share = code < 1.5 ? 0 : level == 0 ? 1 : c.w();
       const Eigen::Vector4d opaque(c.x(), c.y(), c.z(), 1);
       seen += weight * share * opaque;
       if (code > 0.5) filled += weight * (1 - share) * opaque;

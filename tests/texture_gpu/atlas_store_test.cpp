@@ -9,22 +9,33 @@ namespace foresight::atlas_store_test {
 namespace {
 
 using AtlasStoreTest = HeadlessTest;
-using Texels = std::vector<std::uint16_t>;
+using Texels = std::vector<std::uint32_t>;
 
-Texels read(const gl::Texture& texture, int level, GLenum format, int channels) {
+std::size_t texels_of(const gl::Texture& texture, int level) {
   const int width = texture.width() >> level, height = texture.height() >> level;
-  Texels out(static_cast<std::size_t>(width) * static_cast<std::size_t>(height * texture.layers() * channels));
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glGetTextureImage(texture.name(), level, format, channels == 4 ? GL_HALF_FLOAT : GL_UNSIGNED_SHORT,
-                    static_cast<GLsizei>(out.size() * sizeof(std::uint16_t)), out.data());
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height * texture.layers());
+}
+
+/// How GL calls what is in a number.
+struct Kind {
+  GLenum format, type;
+};
+constexpr Kind kColours{GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV}, kHeights{GL_RED_INTEGER, GL_UNSIGNED_INT};
+
+Texels read(const gl::Texture& texture, int level, Kind kind) {
+  Texels out(texels_of(texture, level));
+  glGetTextureImage(texture.name(), level, kind.format, kind.type, static_cast<GLsizei>(out.size() * sizeof(out[0])),
+                    out.data());
   return out;
 }
 
-/// Numbers that name level and place: small normal halves, so that they come back bit for bit.
-Texels pattern(std::size_t count, int level) {
-  Texels out(count);
-  for (std::size_t i = 0; i < count; ++i)
-    out[i] = static_cast<std::uint16_t>(0x0400 + (i * 7 + static_cast<std::size_t>(level) * 1013) % 0x3800);
+/// Writes numbers that name level and place into a level; the same are returned.
+Texels fill(const gl::Texture& texture, int level, Kind kind) {
+  Texels out(texels_of(texture, level));
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<std::uint32_t>((i * 7 + static_cast<std::size_t>(level) * 1013) % 0x10000);
+  glTextureSubImage3D(texture.name(), level, 0, 0, 0, texture.width() >> level, texture.height() >> level,
+                      texture.layers(), kind.format, kind.type, out.data());
   return out;
 }
 
@@ -37,17 +48,8 @@ TEST_F(AtlasStoreTest, GrowsByHalfAtLeastAndKeepsWhatItHeld) {
   EXPECT_LT(first.bytes(), 8u << 20) << "little before anything is seen";
 
   std::vector<Texels> colours;
-  for (int level = 0; level < atlas::kLevels; ++level) {
-    const gl::Texture& texture = *store.colours;
-    const int width = texture.width() >> level, height = texture.height() >> level;
-    const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height * texture.layers()) * 4;
-    colours.push_back(pattern(count, level));
-    glTextureSubImage3D(texture.name(), level, 0, 0, 0, width, height, texture.layers(), GL_RGBA, GL_HALF_FLOAT,
-                        colours.back().data());
-  }
-  const Texels heights = pattern(static_cast<std::size_t>(store.heights.width() * store.heights.height()), 9);
-  glTextureSubImage3D(store.heights.name(), 0, 0, 0, 0, store.heights.width(), store.heights.height(), 1,
-                      GL_RED_INTEGER, GL_UNSIGNED_SHORT, heights.data());
+  for (int level = 0; level < atlas::kLevels; ++level) colours.push_back(fill(*store.colours, level, kColours));
+  const Texels heights = fill(store.heights, 0, kHeights);
 
   const auto shown = store.colours;  // as a published generation does
   ASSERT_TRUE(store.hold(first));
@@ -63,12 +65,12 @@ TEST_F(AtlasStoreTest, GrowsByHalfAtLeastAndKeepsWhatItHeld) {
   EXPECT_EQ(store.colours->layers(), 3);
   EXPECT_EQ(store.heights.layers(), 2);
   for (int level = 0; level < atlas::kLevels; ++level) {
-    const Texels now = read(*store.colours, level, GL_RGBA, 4);
+    const Texels now = read(*store.colours, level, kColours);
     const Texels& then = colours[static_cast<std::size_t>(level)];
     EXPECT_TRUE(std::equal(then.begin(), then.end(), now.begin())) << "level " << level;
-    EXPECT_EQ(read(*shown, level, GL_RGBA, 4), then) << "what is shown stays, level " << level;
+    EXPECT_EQ(read(*shown, level, kColours), then) << "what is shown stays, level " << level;
   }
-  const Texels now = read(store.heights, 0, GL_RED_INTEGER, 1);
+  const Texels now = read(store.heights, 0, kHeights);
   EXPECT_TRUE(std::equal(heights.begin(), heights.end(), now.begin()));
 }
 

@@ -29,8 +29,8 @@ std::shared_ptr<PublishedTextures> PassBench::fresh_generation() const {
   auto fresh = std::make_shared<PublishedTextures>();
   fresh->table = gl::BufferTexture(GL_R32UI, 16, "page table");
   fresh->charts = gl::BufferTexture(GL_RGBA32F, 16, "charts");
-  fresh->coarse = gl::BufferTexture(atlas::kColourFormat, 16, "page means");
-  fresh->means = gl::BufferTexture(atlas::kColourFormat, surface->charts.size() * atlas::kTexelBytes, "chart means");
+  fresh->coarse = gl::BufferTexture(atlas::kMeanFormat, 16, "page means");
+  fresh->means = gl::BufferTexture(atlas::kMeanFormat, surface->charts.size() * atlas::kMeanBytes, "chart means");
   fresh->colours = store.colours;
   return fresh;
 }
@@ -84,7 +84,7 @@ void PassBench::relevel() {
 void PassBench::extract(double minify_above) {
   std::vector<Eigen::Vector4f> geometry;
   atlas.write_job_geometry(allocation.jobs, views, geometry);
-  extraction.extract({allocation.jobs, allocation.masks, geometry, minify_above}, inputs, store,
+  extraction.extract({allocation.jobs, allocation.masks, geometry, minify_above, image}, inputs, store,
                      options.depth_tolerance);
 }
 
@@ -96,7 +96,7 @@ void PassBench::fill() {
     if (count) dirty.push_back(static_cast<std::uint32_t>(i));
     chart_of_page.insert(chart_of_page.end(), count, static_cast<std::uint32_t>(i));
   }
-  next->coarse.reserve(chart_of_page.size() * atlas::kTexelBytes);
+  next->coarse.reserve(chart_of_page.size() * atlas::kMeanBytes);
   filling(extraction, {allocation.jobs.size(), dirty, chart_of_page, {}}, store, *current, *next);
   glFinish();
   atlas.commit();
@@ -169,7 +169,8 @@ std::uint16_t PassBench::raw_height(const AtlasChart& chart, int x, int y) const
   const ChartRaster& r = chart.raster;
   if (heights_.of != &chart || heights_.density != r.density) heights_ = {&chart, r.density, chart.heights.unpacked()};
   return x < r.width && y < r.height
-             ? heights_.raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)]
+             ? heights_
+                   .raw[static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width) + static_cast<std::size_t>(x)]
              : std::uint16_t{0};
 }
 

@@ -1,5 +1,7 @@
 #include "tests/texture_gpu/reference/atlas_pixels.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/core.hpp>
 
 namespace foresight::reference {
@@ -21,6 +23,16 @@ std::vector<Eigen::Vector4d> read_means(const gl::BufferTexture& buffer, std::si
   return out;
 }
 
+Texel unpacked(std::uint32_t bits) {
+  Texel out;
+  for (unsigned c = 0; c < 3; ++c) {
+    const double value = std::ldexp(bits >> (8 * c) & 0xff, static_cast<int>(bits >> 24 & 7) - 11);
+    out[c] = static_cast<std::uint8_t>(std::lround(255 * std::min(value, 1.0)));
+  }
+  out[3] = static_cast<std::uint8_t>(bits >> 27);
+  return out;
+}
+
 }  // namespace
 
 AtlasPixels::AtlasPixels(const gl::Texture& colours) {
@@ -28,8 +40,10 @@ AtlasPixels::AtlasPixels(const gl::Texture& colours) {
     auto& pixels = levels[static_cast<std::size_t>(level)];
     pixels.resize(
         static_cast<std::size_t>((colours.width() >> level) * (colours.height() >> level) * colours.layers()));
-    glGetTextureImage(colours.name(), level, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size() * 4),
-                      pixels.data());
+    std::vector<std::uint32_t> bits(pixels.size());
+    glGetTextureImage(colours.name(), level, GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV,
+                      static_cast<GLsizei>(bits.size() * 4), bits.data());
+    std::ranges::transform(bits, pixels.begin(), unpacked);
   }
 }
 
@@ -68,7 +82,7 @@ Generation::Generation(const PublishedTextures& published, std::size_t count)
 }
 
 Eigen::Vector4d to_vector(const Texel& t) {
-  return Eigen::Vector4d(t[0], t[1], t[2], t[3]) / 255;
+  return {t[0] / 255., t[1] / 255., t[2] / 255., t[3] / 31.};
 }
 
 }  // namespace foresight::reference

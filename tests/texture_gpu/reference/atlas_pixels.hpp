@@ -11,7 +11,7 @@
 
 namespace foresight::reference {
 
-using Texel = std::array<std::uint8_t, 4>;  ///< R, G, B, and the code of atlas.glsl
+using Texel = std::array<std::uint8_t, 4>;  ///< R, G, B in steps of 255, and the code of atlas.glsl
 
 /// All levels of the atlas's colours, in steps of 255; what is brighter than 255 counts as 255. Slots lie
 /// 8 to a row, 512 rows to a layer.
@@ -44,6 +44,7 @@ struct Generation {
   float display_gain = 1, sharp = 0;
 };
 
+/// Alpha: the code's share of 31.
 Eigen::Vector4d to_vector(const Texel& texel);
 
 }  // namespace foresight::reference

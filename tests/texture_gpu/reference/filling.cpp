@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector4d;
 
-constexpr double kFilled = 1.0 / 255;
+constexpr double kFilled = 1.0 / 31, kSeen = 1.5 / 31;
 constexpr double kFirm = 0.25;  // share of seen texels from which a page's mean stands for itself
 constexpr int kSpreadRounds = 4, kReach = 3;
 
@@ -59,10 +59,10 @@ void push(const FillChart& chart, FilledChart& out) {
         for (int j = 0; j < side; ++j)
           for (int i = 0; i < side; ++i) {
             const Vector4d& c = out.levels[0][static_cast<std::size_t>((y * side + j) * width + x * side + i)];
-            if (c.w() > 1.5 / 255) mean.add(c, 1);
+            if (c.w() > kSeen) mean.add(c, 1);
           }
         Vector4d c = mean.empty() ? kept_fill(out, level, x, y, width) : mean.over(side * side);
-        if (!mean.empty() && level > 1) c.w() = std::max(c.w(), 2.0 / 255);
+        if (!mean.empty() && level > 1) c.w() = std::max(c.w(), 2.0 / 31);
         out.levels[static_cast<std::size_t>(level)].push_back(c);
       }
   }
@@ -126,7 +126,7 @@ void pull(const FillChart& chart, FilledChart& out) {
         const auto tile = static_cast<std::size_t>(y % side / 8 * 2 + x % side / 8);  // at level 0
         const bool has_hole = level == 0 ? holes[tile] : std::find(holes.begin(), holes.end(), true) != holes.end();
         if (!chart.resident[page] || !chart.changed[page] || !has_hole || !has_colour) continue;
-        if (own.w() >= (level == 0 ? 1.5 / 255 : 0.5)) continue;
+        if (own.w() >= (level == 0 ? kSeen : 0.5)) continue;
         const double u = (x + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
         const int x0 = static_cast<int>(std::floor(u)), y0 = static_cast<int>(std::floor(v));
         Mean mean;
@@ -137,7 +137,8 @@ void pull(const FillChart& chart, FilledChart& out) {
         if (mean.empty()) continue;
         const Vector4d above = mean.over(1);
         // What is seen in part keeps its part of the colour: all of it from a half on.
-        const double share = level == 0 ? 0 : 2 * own.w(), alpha = level == 0 ? kFilled : std::max(own.w(), kFilled);
+        const double share = level == 0 || own.w() < kSeen ? 0 : 2 * own.w(),
+                     alpha = level == 0 ? kFilled : std::max(own.w(), kFilled);
         own = (1 - share) * above + share * own;
         own.w() = alpha;
       }

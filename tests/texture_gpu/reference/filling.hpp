@@ -19,7 +19,7 @@ struct FillChart {
   std::vector<Texel> texels;               ///< level 0, row by row over the whole chart (16 pages.x() wide)
 };
 
-/// A chart after filling. Colours 0 .. 1 with alpha: level 0 as the code / 255, above the share of
+/// A chart after filling. Colours 0 .. 1 with alpha: level 0 as the code / 31, above the share of
 /// seen texels.
 struct FilledChart {
   std::array<std::vector<Eigen::Vector4d>, atlas::kLevels> levels;

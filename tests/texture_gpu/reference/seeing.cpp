@@ -115,13 +115,13 @@ Eigen::Matrix2d footprint(const Camera& camera, const Eigen::Vector3d& p, const 
 }
 
 double quality_code(double pixels_per_texel) {
-  return 2 + std::floor(std::clamp((std::log2(pixels_per_texel) + 8) / 8, 0.0, 1.0) * 253 + 0.5);
+  return 2 + std::round(std::clamp((std::log2(pixels_per_texel) + 8) / 8, 0.0, 1.0) * 29);
 }
 
-Fused fuse(double old_code, double fresh_code, double worse) {
+Fused fuse(double old_code, double fresh_code, double worse, bool its_turn) {
   if (fresh_code == 0) return {false, old_code};
-  if (old_code < 2 || fresh_code >= old_code + std::log2(worse) * 253 / 8) return {true, fresh_code};
-  return {false, std::max(old_code - 1, 2.0)};
+  if (old_code < 2 || fresh_code >= old_code + std::log2(worse) * 29 / 8) return {true, fresh_code};
+  return {false, its_turn ? std::max(old_code - 1, 2.0) : old_code};
 }
 
 }  // namespace foresight::reference

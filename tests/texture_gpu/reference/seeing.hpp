@@ -37,15 +37,15 @@ Eigen::Vector3d mean_over(const cv::Mat& bgr, const Eigen::Vector2d& pixel, cons
 Eigen::Matrix2d footprint(const Camera& camera, const Eigen::Vector3d& p, const Eigen::Vector3d& eu,
                           const Eigen::Vector3d& ev);
 
-/// 2 .. 255: log2 of the pixels per texel from -8 to 0.
+/// 2 .. 31: log2 of the pixels per texel from -8 to 0.
 double quality_code(double pixels_per_texel);
 
 /// The newest wins unless it has less than `worse` of the old resolution; then the old colour ages
-/// by one step. Codes of 0 .. 255; `fresh` code 0: not seen now.
+/// by one step where it is its turn. Codes of 0 .. 31; `fresh` code 0: not seen now.
 struct Fused {
   bool takes_fresh = false;
   double code = 0;
 };
-Fused fuse(double old_code, double fresh_code, double worse);
+Fused fuse(double old_code, double fresh_code, double worse, bool its_turn);
 
 }  // namespace foresight::reference
