@@ -22,7 +22,8 @@ vec4 unpack_texel(vec4 bytes) {
   return vec4(255.0 * unit * bytes.rgb, kStep * float(last >> 3));
 }
 
-uint pack_texel(vec4 texel) {
+// As imageStore() takes it.
+uvec4 pack_texel(vec4 texel) {
   vec3 colour = clamp(texel.rgb, 0.0, kBrightest);
   // 256 / 255.4: so that no mantissa rounds to 256.
   float largest = max(max(colour.r, colour.g), colour.b) * (256.0 / 255.4);
@@ -30,14 +31,9 @@ uint pack_texel(vec4 texel) {
   // Signed numbers: CPUs convert floats to unsigned ones far more slowly.
   ivec3 mantissas = ivec3(intBitsToFloat((138 - exponent) << 23) * colour + 0.5);
   int code = int(31.0 * texel.a + 0.5);
-  return uint(mantissas.r | mantissas.g << 8 | mantissas.b << 16 | exponent << 24 | code << 27);
+  return uvec4(mantissas.r | mantissas.g << 8 | mantissas.b << 16 | exponent << 24 | code << 27);
 }
 
 float encode_quality(float px_per_texel) {
   return kLeastSeen + kStep * floor(clamp(log2(max(px_per_texel, 1e-6)) + 8.0, 0.0, 8.0) * kStepsPerDoubling + 0.5);
-}
-
-// A share of seen texels, so that it stays one.
-float encode_share(float share) {
-  return max(share, kLeastSeen);
 }

@@ -17,7 +17,7 @@ layout(binding = 11) uniform sampler2DArray old_colours;
 layout(binding = 0, r32ui) uniform writeonly uimage2DArray colours;
 #include "holes.glsl"
 uniform int first_group, tile_count;
-uniform int turn;  // of the image
+uniform int image_number;
 const int kImagesToAge = 8;  // a power of two: remainders are slow
 const float kBeyondWhite = 0.35;
 
@@ -91,7 +91,7 @@ const int kRows = 4;
 
 // `at`: of the heights, where a page stays.
 float aged(float code, ivec3 at) {
-  bool its_turn = ((at.x + 3 * at.y + turn) & (kImagesToAge - 1)) == 0;
+  bool its_turn = ((at.x + 3 * at.y + image_number) & (kImagesToAge - 1)) == 0;
   return its_turn ? max(code - kStep, kLeastSeen) : code;
 }
 
@@ -123,7 +123,7 @@ void extract_texel(Column column, int row) {
   if (best_quality > 0.0) colour = take ? best : vec4(colour.rgb, aged(colour.a, column.heights_at + below));
   if (raw == 0u) colour = vec4(0.0);
   note_hole(int(column.tile >> 2), raw, before, colour.a);
-  imageStore(colours, column.new_at + below, uvec4(pack_texel(colour)));
+  imageStore(colours, column.new_at + below, pack_texel(colour));
 }
 
 void main() {

@@ -9,8 +9,6 @@ namespace foresight {
 
 namespace {
 
-constexpr int kImagesToAge = 8;  // as in extract.comp
-
 gl::Program extract_program(std::span<const Lens> lenses, std::size_t variant) {
   auto defines = gl::camera_defines(lenses);
   defines.push_back("CAMERAS " + std::to_string(1 + variant / 4));
@@ -144,7 +142,7 @@ void ExtractPass::run(std::size_t size, std::int64_t image, const SeenInputs& in
   filter(GL_LINEAR_MIPMAP_LINEAR);
   inputs.bind(program, depth_tolerance);
   program.set("tile_count", static_cast<int>(tiles.size()));
-  program.set("turn", static_cast<int>(image % kImagesToAge));
+  program.set("image_number", static_cast<int>(image));
   tiles_[size].assign(std::span<const std::uint32_t>(tiles));
   glBindTextureUnit(7, geometry_.texture());
   glBindTextureUnit(10, tiles_[size].texture());

@@ -63,10 +63,10 @@ void main() {
   if (sum.a == 0.0) return;
   vec3 from_above = sum.rgb / sum.a;
 #if LEVEL == 0
-  imageStore(colours, place, uvec4(pack_texel(vec4(from_above, kFilled))));
+  imageStore(colours, place, pack_texel(vec4(from_above, kFilled)));
 #else
   // Keeps its share of seen texels, but never less than the least that marks a colour.
   float share = own.a < kSeen ? 0.0 : 2.0 * own.a;
-  imageStore(colours, place, uvec4(pack_texel(vec4(mix(from_above, own.rgb, share), max(own.a, kFilled)))));
+  imageStore(colours, place, pack_texel(vec4(mix(from_above, own.rgb, share), max(own.a, kFilled))));
 #endif
 }

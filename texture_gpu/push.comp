@@ -22,5 +22,5 @@ void main() {
   vec4 mean = seen.a > 0.0  ? vec4(seen.rgb / seen.a, seen.a / 4.0)
               : all.a > 0.0 ? vec4(all.rgb / all.a, kFilled)
                             : vec4(0.0);
-  imageStore(level1, slot_origin(job.new_slot, 1) + ivec3(at, 0), uvec4(pack_texel(mean)));
+  imageStore(level1, slot_origin(job.new_slot, 1) + ivec3(at, 0), pack_texel(mean));
 }

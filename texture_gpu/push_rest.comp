@@ -11,8 +11,8 @@ uniform int job_count;
 
 // Mean of `seen` texels weighted by their share; where there are none, of the `filled` ones.
 uvec4 store_form(vec4 seen, vec4 filled, float count) {
-  if (seen.a > 0.0) return uvec4(pack_texel(vec4(seen.rgb / seen.a, encode_share(seen.a / count))));
-  return uvec4(filled.a > 0.0 ? pack_texel(vec4(filled.rgb / filled.a, kFilled)) : 0u);
+  if (seen.a > 0.0) return pack_texel(vec4(seen.rgb / seen.a, max(seen.a / count, kLeastSeen)));
+  return filled.a > 0.0 ? pack_texel(vec4(filled.rgb / filled.a, kFilled)) : uvec4(0u);
 }
 
 void main() {

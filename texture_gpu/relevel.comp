@@ -24,5 +24,5 @@ void main() {
   // Twice as many texels for the same pixels: each holds half as many pixels along a side.
   float shift = 0.5 * log2(ratio.x * ratio.y) * kStepsPerDoubling * kStep;
   vec4 colour = seen.a > 0.0 ? vec4(seen.rgb, clamp(seen.a + shift, kLeastSeen, 1.0)) : vec4(0.0);
-  imageStore(colours, slot_origin(job.new_slot, 0) + ivec3(in_page, 0), uvec4(pack_texel(colour)));
+  imageStore(colours, slot_origin(job.new_slot, 0) + ivec3(in_page, 0), pack_texel(colour));
 }

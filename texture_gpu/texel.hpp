@@ -6,13 +6,12 @@
 
 namespace foresight::atlas {
 
-inline constexpr int kLargestCode = 31;  ///< 0: no colour, 1: filled, from 2 on seen (atlas.glsl)
-
 /// From the lowest bits on: mantissas of red, green and blue, 8 bits each, the exponent that they share, 3 bits, the
 /// code, 5. Values of 1 are white at the reference exposure.
 struct Texel {
   std::uint32_t bits = 0;
 
+  /// 0: no colour, 1: filled, from 2 on seen (atlas.glsl).
   int code() const { return static_cast<int>(bits >> 27); }
 
   /// Red, green, blue: 0 up to 16, in steps of 2^-11 at least and 1/128 of the largest of them at most.

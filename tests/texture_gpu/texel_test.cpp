@@ -17,7 +17,7 @@ layout(binding = 1, std430) buffer Texels { uint texels[]; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= uint(colours.length())) return;
-  texels[i] = pack_texel(colours[i]);
+  texels[i] = pack_texel(colours[i]).r;
   colours[i] = unpack_texel(unpackUnorm4x8(texels[i]));
 }
 )";
