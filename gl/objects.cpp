@@ -36,6 +36,13 @@ GLuint create_texture_name(GLenum target) {
   return name;
 }
 
+constexpr std::size_t kTexel = 16;  // bytes, of the largest format
+
+/// At least one, whatever their format.
+std::size_t whole_texels(std::size_t bytes) {
+  return (std::max<std::size_t>(bytes, 1) + kTexel - 1) / kTexel * kTexel;
+}
+
 }  // namespace
 
 Framebuffer create_framebuffer(const char* label) {
@@ -53,7 +60,7 @@ VertexArray create_vertex_array(const char* label) {
 }
 
 Buffer::Buffer(std::size_t bytes, const char* label)
-    : Handle<delete_buffer>(create_buffer_name()), bytes_((std::max<std::size_t>(bytes, 1) + 15) / 16 * 16) {
+    : Handle<delete_buffer>(create_buffer_name()), bytes_(whole_texels(bytes)) {
   glNamedBufferStorage(name(), static_cast<GLsizeiptr>(bytes_), nullptr, GL_DYNAMIC_STORAGE_BIT);
   glObjectLabel(GL_BUFFER, name(), -1, label);
 }
@@ -93,7 +100,7 @@ BufferTexture::BufferTexture(GLenum format, std::size_t bytes, const char* label
 void BufferTexture::reserve(std::size_t bytes) {
   if (buffer_ && bytes <= buffer_.bytes()) return;
   // Grown in steps of a half, so that a slowly growing list is not reallocated for every image.
-  buffer_ = Buffer(std::max(bytes, buffer_.bytes() * 3 / 2), label_);
+  buffer_ = Buffer(no_power_of_two(whole_texels(std::max(bytes, buffer_.bytes() * 3 / 2)), kTexel), label_);
   texture_ = Handle<delete_texture>(create_texture_name(GL_TEXTURE_BUFFER));
   glTextureBuffer(texture_.name(), format_, buffer_.name());
 }

@@ -6,8 +6,10 @@
 
 #include <epoxy/gl.h>
 
+#include <bit>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 namespace foresight::gl {
@@ -92,6 +94,13 @@ class Texture : public Handle<delete_texture> {
  private:
   int width_ = 0, height_ = 0, layers_ = 0;
 };
+
+/// `size`, or `step` more where it is a power of two. Mesa's software renderer compiles programs anew where the size of
+/// a texture becomes one, or is one no more: in the middle of operation, for what grows.
+template <typename T>
+constexpr T no_power_of_two(T size, T step) {
+  return std::has_single_bit(static_cast<std::make_unsigned_t<T>>(size)) ? size + step : size;
+}
 
 /// A buffer seen by shaders as samplerBuffer: on software renderers a far cheaper gather than an SSBO.
 class BufferTexture {

@@ -27,7 +27,8 @@ Extent extent_of(std::uint32_t slots) {
 
 gl::Texture reserve(GLenum format, std::uint32_t slots, int levels, const char* label) {
   const Extent extent = extent_of(slots);
-  return gl::Texture(format, atlas::kLayerWidth, extent.height, extent.layers, levels, label);
+  const int height = gl::no_power_of_two(extent.height, atlas::kPage);
+  return gl::Texture(format, atlas::kLayerWidth, height, extent.layers, levels, label);
 }
 
 gl::Texture reserve_colours(std::uint32_t slots) {

@@ -44,8 +44,8 @@ TEST_F(ObjectsTest, BufferTexturesGrowByHalvesAndKeepTheirPlaceOtherwise) {
   const GLuint name = list.texture();
   list.reserve(64);
   EXPECT_EQ(list.texture(), name);
-  list.reserve(65);
-  EXPECT_EQ(list.buffer().bytes(), 96u);
+  list.reserve(81);
+  EXPECT_EQ(list.buffer().bytes(), 144u);
   list.assign(std::span<const int>());
   std::vector<int> numbers(100);
   std::iota(numbers.begin(), numbers.end(), 0);
@@ -53,6 +53,16 @@ TEST_F(ObjectsTest, BufferTexturesGrowByHalvesAndKeepTheirPlaceOtherwise) {
   std::vector<int> back(100);
   list.buffer().read(std::span<int>(back));
   EXPECT_EQ(back, numbers);
+}
+
+TEST_F(ObjectsTest, BufferTexturesAreNeverAsLargeAsAPowerOfTwo) {
+  for (const std::size_t bytes : {64, 4096, 4097, 65536, 100000}) {
+    BufferTexture list(GL_R32UI, bytes, "list");
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_FALSE(std::has_single_bit(list.buffer().bytes())) << list.buffer().bytes();
+      list.reserve(list.buffer().bytes() + 1);
+    }
+  }
 }
 
 TEST_F(ObjectsTest, FencesPassOnceTheCommandsAreDone) {

@@ -64,6 +64,8 @@ TEST_F(AtlasStoreTest, GrowsByHalfAtLeastAndKeepsWhatItHeld) {
   ASSERT_TRUE(store.hold({2 * atlas::kSlotsPerLayer + 5, atlas::kSlotsPerLayer + 5}));
   EXPECT_EQ(store.colours->layers(), 3);
   EXPECT_EQ(store.heights.layers(), 2);
+  for (const int height : {shown->height(), store.colours->height(), store.heights.height()})
+    EXPECT_FALSE(std::has_single_bit(static_cast<unsigned>(height))) << height;  // gl::no_power_of_two
   for (int level = 0; level < atlas::kLevels; ++level) {
     const Texels now = read(*store.colours, level, kColours);
     const Texels& then = colours[static_cast<std::size_t>(level)];
