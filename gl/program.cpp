@@ -1,5 +1,6 @@
 #include "gl/program.hpp"
 
+#include <cstddef>
 #include <sstream>
 
 #include "common/error.hpp"
@@ -56,8 +57,26 @@ GLuint compile(const ShaderSources& sources, GLenum stage, const std::string& fi
   throw RuntimeFailure("shader " + file + " does not compile: " + log, "please report this with the driver's name");
 }
 
+/// Made anew from its binary, where the driver has one. What Mesa's compiler leaves with a program is a sixth of a
+/// megabyte, which a software renderer takes from the process; the binary holds none of it.
+GLuint without_leftovers(GLuint program) {
+  GLint length = 0;
+  glGetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &length);
+  if (length <= 0) return program;
+  std::vector<std::byte> binary(static_cast<std::size_t>(length));
+  GLenum format = 0;
+  glGetProgramBinary(program, length, &length, &format, binary.data());
+  const GLuint anew = glCreateProgram();
+  glProgramBinary(anew, format, binary.data(), length);
+  GLint ok = 0;
+  glGetProgramiv(anew, GL_LINK_STATUS, &ok);
+  glDeleteProgram(ok ? program : anew);
+  return ok ? anew : program;
+}
+
 GLuint link(const std::vector<GLuint>& shaders, const std::string& label) {
-  const GLuint program = glCreateProgram();
+  GLuint program = glCreateProgram();
+  glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
   for (GLuint shader : shaders) glAttachShader(program, shader);
   glLinkProgram(program);
   for (GLuint shader : shaders) {
@@ -66,6 +85,7 @@ GLuint link(const std::vector<GLuint>& shaders, const std::string& label) {
   }
   GLint ok = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &ok);
+  if (ok) program = without_leftovers(program);
   glReleaseShaderCompiler();  // Mesa's holds 5 MB of built-in functions, and is there again when it is needed
   glObjectLabel(GL_PROGRAM, program, -1, label.c_str());
   if (ok) return program;
