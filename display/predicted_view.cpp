@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <stdexcept>
+#include <utility>
 
 #include "display/shaders.hpp"
 #include "gl/lens_rays.hpp"
@@ -52,6 +54,15 @@ gl::Program whole_view_program(std::span<const Lens> lenses, Cases cases, Pixels
                                view_defines(lenses, cases, pixels, true));
 }
 
+/// No programs are compiled anew where the one takes the other's place (gl::no_power_of_two).
+gl::Texture white_as(const Lens& lens) {
+  const auto side = [](int of) { return std::has_single_bit(static_cast<unsigned>(of)) ? 1 : 3; };
+  gl::Texture out(GL_RGBA8, side(lens.width()), side(lens.height()), 0, 1, "no shadows");
+  const std::array<GLubyte, 4> white{255, 255, 255, 255};
+  glClearTexImage(out.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, white.data());
+  return out;
+}
+
 bool same_place(const Pose& a, const Pose& b) {
   return a.matrix() == b.matrix();
 }
@@ -95,10 +106,9 @@ PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
       camera_(sizeof(gl::CameraBlock), "view camera"),
       node_poses_(GL_RGBA32F, 16, "view node poses"),
       rays_(gl::make_lens_rays(lens)),
-      unshaded_(GL_RGBA8, 1, 1, 0, 1, "no shadows"),
+      unshaded_(white_as(lens)),
       silhouettes_(lens),
       picture_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view") {
-  glClearTexImage(unshaded_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, std::array<GLubyte, 4>{255, 255, 255, 255}.data());
   if (programs_ == ViewPrograms::two)
     listed_ = view_program({&lens, 1}, Cases::every, {.levels = raster_.has_levels(), .listed = true});
 }
@@ -107,6 +117,7 @@ void PredictedView::set_lens(const Lens& lens) {
   lens_ = lens;
   faces_ = raster_.make_faces(gl::faces_for(lens, 2));
   rays_ = gl::make_lens_rays(lens);
+  unshaded_ = white_as(lens);
   picture_ = gl::Texture(GL_RGBA8, lens.width(), lens.height(), 0, 1, "predicted view");
 }
 
@@ -312,8 +323,20 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
 void PredictedView::shade(const Pose& T_world_camera, const SceneState& state,
                           const std::shared_ptr<const SceneLight>& light) {
   glBindTextureUnit(kLightUnit, unshaded_.name());
-  if (!light) return;
+  const bool prepares = std::exchange(prepares_shadows_, false) && !light && !shadows_;
+  if (!light && !prepares) return;
   if (gate_) gate_->begin("shadows of a view");
+  find_shadows(T_world_camera, state,
+               light ? light : std::make_shared<const SceneLight>(light_from_above(*scene_, state)));
+  if (light && shadows_->is_there) glBindTextureUnit(kLightUnit, shadows_->pass.light().name());
+  if (gate_) {
+    glFinish();
+    gate_->end();
+  }
+}
+
+void PredictedView::find_shadows(const Pose& T_world_camera, const SceneState& state,
+                                 const std::shared_ptr<const SceneLight>& light) {
   if (!shadows_) shadows_.reset(new Shadows{ShadowMap(scene_), ShadowPass(lens_), {}, {}, false});
   // The map is that of the scene, wherever it is seen from.
   const bool is_same =
@@ -323,14 +346,7 @@ void PredictedView::shade(const Pose& T_world_camera, const SceneState& state,
     shadows_->of = light;
     shadows_->T_world_node = state.T_world_node;
   }
-  if (shadows_->is_there) {
-    shadows_->pass({lens_, camera_, faces_, rays_, T_world_camera}, shadows_->map);
-    glBindTextureUnit(kLightUnit, shadows_->pass.light().name());
-  }
-  if (gate_) {
-    glFinish();
-    gate_->end();
-  }
+  if (shadows_->is_there) shadows_->pass({lens_, camera_, faces_, rays_, T_world_camera}, shadows_->map);
 }
 
 void PredictedView::start(WorkList& list) const {

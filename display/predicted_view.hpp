@@ -49,6 +49,9 @@ class PredictedView {
   /// or stay what was looked up.
   void mix_silhouettes(bool mixed) { mixes_ = mixed; }
 
+  /// The next draw() compiles what is needed from the moment on at which the textures' light is known.
+  void prepare_shadows() { prepares_shadows_ = true; }
+
   /// From now on only this part of what is seen is drawn, and costs what it covers; nothing: all of it. The textures
   /// must outlive that. Throws std::invalid_argument: a lens with distortion, or ViewPrograms::single.
   void draw_part(const std::optional<gl::ViewPart>& part);
@@ -111,6 +114,8 @@ class PredictedView {
   void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
              const std::shared_ptr<const SceneLight>& light);
   void shade(const Pose& T_world_camera, const SceneState& state, const std::shared_ptr<const SceneLight>& light);
+  void find_shadows(const Pose& T_world_camera, const SceneState& state,
+                    const std::shared_ptr<const SceneLight>& light);
   void finish(const PublishedTextures& textures);
   struct Rows {
     int first = 0, last = 0;  // beyond the last
@@ -147,8 +152,9 @@ class PredictedView {
   gl::Buffer camera_;
   gl::BufferTexture node_poses_;      // T_node_camera: three rows a node
   gl::Texture rays_;                  // RGB32F directions, only for lenses with distortion
-  std::unique_ptr<Shadows> shadows_;  // from the first known light on
-  gl::Texture unshaded_;              // one white texel
+  std::unique_ptr<Shadows> shadows_;  // from the first known light on, or since they were prepared
+  gl::Texture unshaded_;              // white: where there is no light
+  bool prepares_shadows_ = false;     // with the next draw()
   SilhouettePass silhouettes_;
   gl::Texture picture_;
   FrameGate* gate_ = nullptr;

@@ -47,7 +47,7 @@ layout(binding = 2) uniform samplerBuffer triangles;
 layout(binding = 3) uniform samplerBuffer patches;
 #include "seen_plane.glsl"
 #include "view_ray.glsl"
-layout(binding = 6) uniform sampler2D light;  // ShadowPass::light(), or one white texel
+layout(binding = 6) uniform sampler2D light;  // ShadowPass::light(), or white, and smaller
 #if FRAGMENT
 layout(location = 0) out vec4 picture;
 #elif BLENDED

@@ -25,6 +25,16 @@ gl::Faces square_face() {
 
 }  // namespace
 
+SceneLight light_from_above(const gl::SceneBuffers& scene, const SceneState& state) {
+  constexpr double kFar = 3;  // diagonals of the scene: a map holds all of it, then
+  Eigen::AlignedBox3d all;
+  for (std::size_t i = 0; i < scene.boxes().box.size(); ++i)
+    if (const auto& box = scene.boxes().box[i]; !box.isEmpty()) all.extend(box.transformed(state.T_world_node[i]));
+  SceneLight out{{}, std::vector<bool>(scene.boxes().box.size(), true)};
+  if (!all.isEmpty()) out.lamp.position = all.center() + kFar * all.diagonal().norm() * Eigen::Vector3d::UnitZ();
+  return out;
+}
+
 ShadowMap::ShadowMap(std::shared_ptr<const gl::SceneBuffers> scene)
     : scene_(scene),
       raster_(std::move(scene), false),

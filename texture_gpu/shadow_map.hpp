@@ -16,6 +16,10 @@ struct SceneLight {
   std::vector<bool> moving;  ///< one for each node
 };
 
+/// One that stands far above the whole scene, in which everything throws a shadow: to run programs with before a lamp
+/// is known.
+SceneLight light_from_above(const gl::SceneBuffers& scene, const SceneState& state);
+
 /// Depth of what moves and of what stands still, from the middle of the lamp (Williams 1978). One context.
 class ShadowMap {
  public:

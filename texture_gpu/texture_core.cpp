@@ -193,6 +193,7 @@ void TextureCore::look(const PosedFrame& frame) {
   std::swap(newest_, before_);
   places_.place(frame, before_, newest_);
   const std::size_t count = newest_.images.size();
+  if (std::exchange(prepares_shadows_, false)) rehearse_shadows();
   for (std::size_t i = 0; i < count; ++i) newest_.cameras[i]->upload((i == 0 ? frame.left : *frame.right).pixels);
   mark("upload");
   for (std::size_t i = 0; i < count; ++i)
@@ -223,24 +224,34 @@ void TextureCore::find_lamp() {
   mark("lamp");
 }
 
+/// Before images are uploaded, as it changes them.
+void TextureCore::rehearse_shadows() {
+  take_out_shadows(light_from_above(*buffers_, newest_.images[0].scene));
+  mark("shadows");
+}
+
 void TextureCore::take_out_shadows() {
   const auto& lamp = lamp_finder_.lamp();
   if (!lamp) return light_.reset();
   if (!light_) light_since_ = newest_.time();
   if (!light_ || light_->lamp != *lamp || light_->moving != lamp_finder_.moving())
     light_ = std::make_shared<const SceneLight>(SceneLight{*lamp, lamp_finder_.moving()});
+  take_out_shadows(*light_);
+  mark("shadows");
+}
+
+void TextureCore::take_out_shadows(const SceneLight& light) {
   if (!shadow_map_) shadow_map_ = std::make_unique<ShadowMap>(buffers_);
   bool shaded = false;
   for (std::size_t i = 0; i < newest_.images.size(); ++i) {
     const PosedImage& image = newest_.images[i];
     const CameraInput& camera = *newest_.cameras[i];
-    if (i == 0 || image.time != newest_.time()) shaded = shadow_map_->update(*light_, image.scene);
+    if (i == 0 || image.time != newest_.time()) shaded = shadow_map_->update(light, image.scene);
     if (!shaded) continue;
     if (i >= shadows_.size()) shadows_.emplace_back(camera.lens());
     shadows_[i]({camera.lens(), camera.block(), camera.faces(), camera.rays(), image.T_world_camera}, *shadow_map_);
     shadows_[i].take_out_of(camera.image());
   }
-  mark("shadows");
 }
 
 /// Of the image before, what the newest one shows no more, or less well: views are going to look for it in the

@@ -37,6 +37,10 @@ class TextureCore {
   /// From now on it works in slices, when a display leaves time for them. `gate` outlives this; null: at once.
   void use(FrameGate* gate) { gate_ = gate; }
 
+  /// With the next frame it compiles what is needed from the moment on at which the lamp is known, which may be in the
+  /// middle of operation: images would wait for it then. Nothing without TextureOptions::shadows.
+  void prepare_shadows() { prepares_shadows_ = options_.shadows; }
+
   /// The same in two steps. The first makes the image ready to be looked up, and publishes that; the textures follow.
   /// False where there are no textures yet, beside which it could be shown: nothing is published then.
   bool look(const PosedFrame& frame, LatestImages& latest);
@@ -51,7 +55,9 @@ class TextureCore {
   void mark(const char* stage);
   void look(const PosedFrame& frame);
   void find_lamp();
+  void rehearse_shadows();
   void take_out_shadows();
+  void take_out_shadows(const SceneLight& light);
   void publish(LatestImages& latest);
   void keep_newest(NewestImages& images);
   void compare_with_textures();
@@ -91,7 +97,8 @@ class TextureCore {
   RobotTime light_since_;
   bool lit_ = false;                       // with the image in work
   std::int64_t light_changed_ = -1;        // the image from which on it is, or is no more
-  std::unique_ptr<ShadowMap> shadow_map_;  // from then on
+  bool prepares_shadows_ = false;          // with the next frame
+  std::unique_ptr<ShadowMap> shadow_map_;  // from then on, or since they were prepared
   std::vector<ShadowPass> shadows_;        // one for each camera
   StageClock clock_;
   FrameGate* gate_ = nullptr;

@@ -83,5 +83,26 @@ TEST_F(MovingShadow, IsShownWhereItWillBe) {
     EXPECT_LT(images[i].texels, images[0].texels / 2) << "image " << i << " of lamp known " << images[i].lamp_known;
 }
 
+TEST_F(MovingShadow, PreparingForItChangesNoPicture) {
+  const SceneState state = state_at(0.5);
+  std::vector<cv::Mat> shown;
+  for (const bool prepares : {false, true}) {
+    TextureCore core(scene_, surface_, lens_, std::nullopt, {.memory_bytes = 12 << 20}, driver_.is_software);
+    PredictedView view(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens_);
+    if (prepares) core.prepare_shadows(), view.prepare_shadows();
+    LatestTextures textures;
+    LatestImages image;
+    for (const double t : {0.0, 0.4}) {
+      core.look(frame(t), image);
+      core.extract(textures);
+      view.draw(camera_, state, *textures.acquire());
+      shown.push_back(view.read());
+    }
+    view.draw(camera_, state, *textures.acquire(), *image.acquire());
+    shown.push_back(view.read());
+  }
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(cv::norm(shown[i], shown[i + 3], cv::NORM_INF), 0) << "picture " << i;
+}
+
 }  // namespace
 }  // namespace foresight::moving_shadow_test
