@@ -81,10 +81,10 @@ bool TextureCore::look(const PosedFrame& frame, LatestImages& latest) {
   return true;
 }
 
-ExtractionReport TextureCore::extract(LatestTextures& latest) {
+ExtractionReport TextureCore::extract(LatestTextures& latest, LatestImages* images) {
   clock_.resume();
   const SlicedWork slices(gate_, "textures");
-  if (owed_) save_what_leaves(latest);
+  if (owed_ && save_what_leaves(latest) && looked_up_ && images) images->publish(lend(false));
   ChartAtlas::Allocation allocation;
   if (!allocate(allocation)) return {};
   list_ages(newest_.time());
@@ -166,25 +166,30 @@ void TextureCore::publish(LatestImages& latest) {
     out.light = newest_.light;
     out.depth_tolerance = options_.depth_tolerance;
   }
-  auto images = std::make_shared<NewestImages>();
-  if (still_pass_) keep_newest(*images);
+  if (still_pass_) keep_newest();
   gl::Fence::insert().wait(kGpuTimeout);
-  images->newest = Lease<PublishedImage>(newest_.published[0]);
   const bool same_light = (newest_.light == nullptr) == (before_.light == nullptr);
-  if (owed_ && same_light) images->before = Lease<PublishedImage>(before_.published[0]);
-  latest.publish(std::move(images));
+  latest.publish(lend(owed_ && same_light));
   clock_.mark("publish");
 }
 
-/// Lends what is kept beside the newest image, which will be kept, too.
-void TextureCore::keep_newest(NewestImages& images) {
+std::shared_ptr<const NewestImages> TextureCore::lend(bool with_before) const {
+  const std::shared_ptr<PublishedImage>& newest = newest_.published[0];
+  auto images = std::make_shared<NewestImages>();
+  images->newest = Lease<PublishedImage>(newest);
+  if (with_before) images->before = Lease<PublishedImage>(before_.published[0]);
+  if (!still_pass_) return images;
+  if (right_is_alike_) images->others.emplace_back(newest_.published[1]);
+  for (const auto& image : kept_images_.images())
+    if (image != newest) images->others.emplace_back(image);
+  return images;
+}
+
+void TextureCore::keep_newest() {
   const std::shared_ptr<PublishedImage>& newest = newest_.published[0];
   newest->range = typical_range(*surface_, newest->camera->lens(), newest->image);
   (*still_pass_)(*newest, before_.published.empty() ? nullptr : before_.published[0].get());
-  if (right_is_alike_) images.others.emplace_back(newest_.published[1]);
   kept_images_.keep(newest);
-  for (const auto& image : kept_images_.images())
-    if (image != newest) images.others.emplace_back(image);
   mark("kept images");
 }
 
@@ -255,8 +260,8 @@ void TextureCore::take_out_shadows(const SceneLight& light) {
 }
 
 /// Of the image before, what the newest one shows no more, or less well: views are going to look for it in the
-/// textures.
-void TextureCore::save_what_leaves(LatestTextures& latest) {
+/// textures. False: there was no room for all of it.
+bool TextureCore::save_what_leaves(LatestTextures& latest) {
   const std::array<const CameraInput*, 2> cameras{newest_.cameras[0].get(), before_.cameras[0].get()};
   const std::array<const PosedImage*, 2> images{newest_.images.data(), before_.images.data()};
   both_.update(cameras, images, std::array<Eigen::Vector3f, 2>{{{1, 0, 0}, {1, 0, 0}}});
@@ -265,8 +270,10 @@ void TextureCore::save_what_leaves(LatestTextures& latest) {
   for (std::size_t page : missed.coarser) atlas_.note_coarser(page, image_);
   mark("leaving");
   ChartAtlas::Allocation allocation;
-  if (std::ranges::all_of(missed.masks, [](std::uint32_t mask) { return mask == 0; })) return;
-  if (place(missed.masks, image_ - 1, allocation) && allocation.fits) write(before_, std::move(allocation), latest);
+  if (std::ranges::all_of(missed.masks, [](std::uint32_t mask) { return mask == 0; })) return true;
+  if (!place(missed.masks, image_ - 1, allocation) || !allocation.fits) return false;
+  write(before_, std::move(allocation), latest);
+  return true;
 }
 
 /// What camera 1 of `inputs` saw of these tiles, and camera 0 does not show as well.

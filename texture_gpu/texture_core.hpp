@@ -46,8 +46,9 @@ class TextureCore {
   bool look(const PosedFrame& frame, LatestImages& latest);
   /// Of the frame that look() was given. Where views look the newest images up, only what is needed is extracted
   /// (TextureOptions): what no image showed before, and what the image before shows, which is published with this one,
-  /// and this one does not.
-  ExtractionReport extract(LatestTextures& latest);
+  /// and this one does not. `images`, as look() was given it: the image before is lent no more once the latter is
+  /// there.
+  ExtractionReport extract(LatestTextures& latest, LatestImages* images = nullptr);
 
  private:
   using Masks = std::vector<std::uint32_t>;  // of tiles, for each page of the last plan (SurveyPass::cull)
@@ -59,10 +60,11 @@ class TextureCore {
   void take_out_shadows();
   void take_out_shadows(const SceneLight& light);
   void publish(LatestImages& latest);
-  void keep_newest(NewestImages& images);
+  void keep_newest();
+  std::shared_ptr<const NewestImages> lend(bool with_before) const;
   void compare_with_textures();
   void estimate_exposure(int first, int stride);
-  void save_what_leaves(LatestTextures& latest);
+  bool save_what_leaves(LatestTextures& latest);
   SurveyPass::Missed not_shown(const SeenInputs& inputs, const std::vector<AtlasView>& views, const Masks& tiles);
   bool allocate(ChartAtlas::Allocation& out);
   bool place(const Masks& wanted, std::int64_t image, ChartAtlas::Allocation& out);

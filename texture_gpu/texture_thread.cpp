@@ -67,7 +67,7 @@ void TextureThread::work(const std::stop_token& stop, TextureCore& core, bool im
         lock.unlock();
         if (stop.stop_requested()) return;
       }
-      report = core.extract(latest_);
+      report = core.extract(latest_, &latest_images_);
     } else {
       report = core.process(frame, latest_);
     }

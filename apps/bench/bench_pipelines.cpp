@@ -20,7 +20,7 @@ ExtractionReport BenchCore::process(const PosedFrame& frame) {
 
 ExtractionReport BenchCore::process(const PosedFrame& frame, LatestImages& newest) {
   core_.look(frame, newest);
-  ExtractionReport report = core_.extract(latest_);
+  ExtractionReport report = core_.extract(latest_, &newest);
   if (!report.published) throw RuntimeFailure("the core dropped a frame", "give it more memory");
   return report;
 }

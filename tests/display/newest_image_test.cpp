@@ -231,7 +231,9 @@ TEST_P(NewestImage, WhatItDoesNotSeeTheImageBeforeShows) {
     EXPECT_LE(wrong, shown / 100) << when;
   };
   expect_image_before("before its textures");
-  core_->extract(textures_);
+  ASSERT_TRUE(images_.acquire()->before);
+  core_->extract(textures_, &images_);
+  EXPECT_FALSE(images_.acquire()->before) << "textures hold it";
   expect_image_before("with its textures");
 }
 
