@@ -198,7 +198,8 @@ void TextureCore::look(const PosedFrame& frame) {
   std::swap(newest_, before_);
   places_.place(frame, before_, newest_);
   const std::size_t count = newest_.images.size();
-  if (std::exchange(prepares_shadows_, false)) rehearse_shadows();
+  if (std::exchange(prepares_shadows_, false))  // before images are uploaded, as it changes them
+    take_out_shadows(light_from_above(*buffers_, newest_.images[0].scene));
   for (std::size_t i = 0; i < count; ++i) newest_.cameras[i]->upload((i == 0 ? frame.left : *frame.right).pixels);
   mark("upload");
   for (std::size_t i = 0; i < count; ++i)
@@ -229,12 +230,6 @@ void TextureCore::find_lamp() {
   mark("lamp");
 }
 
-/// Before images are uploaded, as it changes them.
-void TextureCore::rehearse_shadows() {
-  take_out_shadows(light_from_above(*buffers_, newest_.images[0].scene));
-  mark("shadows");
-}
-
 void TextureCore::take_out_shadows() {
   const auto& lamp = lamp_finder_.lamp();
   if (!lamp) return light_.reset();
@@ -242,7 +237,6 @@ void TextureCore::take_out_shadows() {
   if (!light_ || light_->lamp != *lamp || light_->moving != lamp_finder_.moving())
     light_ = std::make_shared<const SceneLight>(SceneLight{*lamp, lamp_finder_.moving()});
   take_out_shadows(*light_);
-  mark("shadows");
 }
 
 void TextureCore::take_out_shadows(const SceneLight& light) {
@@ -257,6 +251,7 @@ void TextureCore::take_out_shadows(const SceneLight& light) {
     shadows_[i]({camera.lens(), camera.block(), camera.faces(), camera.rays(), image.T_world_camera}, *shadow_map_);
     shadows_[i].take_out_of(camera.image());
   }
+  mark("shadows");
 }
 
 /// Of the image before, what the newest one shows no more, or less well: views are going to look for it in the

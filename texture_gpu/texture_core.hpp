@@ -56,7 +56,6 @@ class TextureCore {
   void mark(const char* stage);
   void look(const PosedFrame& frame);
   void find_lamp();
-  void rehearse_shadows();
   void take_out_shadows();
   void take_out_shadows(const SceneLight& light);
   void publish(LatestImages& latest);
