@@ -1,7 +1,7 @@
 // Which tiles hold points that camera 1 saw and camera 0 does not show as well: hidden there, out of its image, closer to
 // its rim, or clearly coarser. One invocation a tile. Two steps, as most tiles are shown well:
 //
-//   STEP 0: camera 0 alone, four points a tile. What stands before one of them, up to a few pixels beside it, the nearest
+//   STEP 0: camera 0 alone, four points a tile. What stands before its plane there, up to a few pixels beside, the nearest
 //           surfaces of the blocks around tell. Says more often than not that a tile may be missed.
 //   STEP 1: of those tiles, 4x4 points, and both cameras.
 #include "camera.glsl"
@@ -49,18 +49,27 @@ float shown(int c, vec3 p) {
   return is_seen(c, p, pixel) ? within(c, pixel) : 0.0;
 }
 
-// Nothing may stand before `p` in camera 0, nor within some pixels of it.
-bool is_clear(vec3 p) {
+// Nothing may stand before `p` in camera 0, nor within some pixels of it: what the four blocks around show is no nearer
+// than the plane through `p` across `normal` (of any length), whose 1/z is linear in the picture.
+bool is_clear(vec3 p, vec3 normal) {
   vec3 place;
   vec2 pixel;
   float inverse_z;
   if (!project_face(cameras[0], p, place, inverse_z) || !project_lens(cameras[0], p, pixel)) return false;
+  vec3 right = from_cube_face(vec3(1.0, 0.0, 0.0), int(place.z)),
+       down = from_cube_face(vec3(0.0, 1.0, 0.0), int(place.z));
+  vec2 slope = vec2(dot(normal, right), dot(normal, down)) / (cameras[0].face.xy * dot(normal, p));  // per pixel
   vec2 blocks = floor((cameras[0].size.zw + 3.0) / 4.0);
-  vec3 at = vec3((place.xy + 0.5) / (4.0 * blocks), place.z);
+  vec2 corner = floor((place.xy + 0.5) / 4.0 + 0.5);  // between the four
+  vec3 at = vec3(corner / blocks, place.z);
+  // Of each block: below left, below right, above right, above left.
   vec4 far = textureGather(blocks0, at, 0), near = textureGather(blocks0, at, 1);
   bool known = all(greaterThan(far, vec4(0.0))) && all(lessThan(far, vec4(1e29)));
-  float nearest = max(max(near.x, near.y), max(near.z, near.w));
-  return known && within(0, pixel) >= 1.0 && (1.0 / inverse_z - kStandsBefore * depth_tolerance) * nearest <= 1.0;
+  vec2 middle = 4.0 * corner - 0.5 - place.xy;
+  vec4 x = middle.x + vec4(-2.0, 2.0, 2.0, -2.0), y = middle.y + vec4(2.0, 2.0, -2.0, -2.0);
+  vec4 plane = inverse_z + slope.x * x + slope.y * y + 1.5 * (abs(slope.x) + abs(slope.y));  // at its nearest pixel
+  bool is_free = all(lessThanEqual(near * (1.0 - kStandsBefore * depth_tolerance * plane), plane));
+  return known && within(0, pixel) >= 1.0 && is_free;
 }
 
 float pixels_per_texel(int c, Tile t, vec3 p) {
@@ -79,12 +88,15 @@ void main() {
   vec3 p_now = point(now, vec2(4.0), middle), p_before = point(before, vec2(4.0), middle);
   bool coarser = pixels_per_texel(0, now, p_now) < worse * pixels_per_texel(1, before, p_before);
 #if STEP == 0
-  bool clear = true;
+  vec3 points[4];
   for (int i = 0; i < 4; ++i) {
     ivec2 at = 1 + 5 * ivec2(i & 1, i >> 1);
     uint raw = texelFetch(heights, origin + ivec3(at, 0), 0).r;
-    clear = clear && is_clear(point(now, vec2(at), raw == 0u ? middle : raw));
+    points[i] = point(now, vec2(at), raw == 0u ? middle : raw);
   }
+  vec3 normal = cross(points[1] - points[0], points[2] - points[0]);
+  bool clear = true;
+  for (int i = 0; i < 4; ++i) clear = clear && is_clear(points[i], normal);
   answers[index] = clear && !coarser ? 0u : 1u;
 #else
   bool seen = false;
