@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "gl/lens_rays.hpp"
 
@@ -70,6 +71,7 @@ void CameraInput::upload(const cv::Mat& pixels) {
   glTextureSubImage2D(image_.name(), 0, 0, 0, pixels.cols, pixels.rows, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   staging.read = gl::Fence::insert();
+  has_levels_ = false;
 }
 
 std::uint64_t CameraInput::bytes() const {
@@ -84,7 +86,7 @@ std::uint64_t CameraInput::bytes() const {
 }
 
 void CameraInput::build_levels() const {
-  glGenerateTextureMipmap(image_.name());
+  if (!std::exchange(has_levels_, true)) glGenerateTextureMipmap(image_.name());
 }
 
 }  // namespace foresight

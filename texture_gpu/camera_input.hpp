@@ -59,6 +59,7 @@ class CameraInput {
   std::shared_ptr<Camera> camera_;
   gl::FaceImages faces_;
   gl::Texture image_, blocks_, uncertain_;
+  mutable bool has_levels_ = false;  // of the image that is there
 };
 
 }  // namespace foresight

@@ -94,7 +94,8 @@ void ChartAtlas::drop_page(AtlasPage& page) {
   heights_.give_back(page.height);
   retired_.push_back(page.colour);
   page.height = page.colour = atlas::kNoSlot;
-  page.held = page.fresh = 0;
+  page.held = 0;
+  page.tile_from.fill(-1);
 }
 
 /// What `old` pages, laid out as `before`, knew of their brightness, for the pages that now lie there. Without it the

@@ -7,6 +7,9 @@
 namespace foresight {
 namespace {
 
+// Images for which a tile is not written again with what it showed before.
+constexpr std::int64_t kImagesToRewrite = 8;
+
 /// A bit for each tile of which a mask has any.
 std::uint32_t tiles_of(std::uint32_t mask) {
   std::uint32_t tiles = 0;
@@ -50,13 +53,30 @@ std::vector<std::uint32_t> ChartAtlas::not_held(std::span<const std::uint32_t> m
   return out;
 }
 
-std::vector<std::uint32_t> ChartAtlas::not_from(std::span<const std::uint32_t> masks, std::int64_t image) const {
+std::vector<std::uint32_t> ChartAtlas::stale(std::span<const std::uint32_t> masks, std::int64_t image,
+                                             std::int64_t since) const {
+  const std::int64_t oldest = std::max(image - kImagesToRewrite + 1, since);
   std::vector<std::uint32_t> out(masks.begin(), masks.end());
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const AtlasPage& page = charts_[records_[i].chart].page[static_cast<std::size_t>(page_index(records_[i]))];
-    if (page.written == image) out[i] &= ~of_tiles(page.fresh);
+    for (unsigned tile = 0; tile < 4; ++tile) {
+      const bool settled = page.settled >> tile & 1u;
+      if (page.tile_from[tile] >= (settled ? oldest : image)) out[i] &= ~of_tiles(1u << tile);
+    }
   }
   return out;
+}
+
+void ChartAtlas::note_holes(const Allocation& done, std::span<const std::uint32_t> holes) {
+  for (std::size_t i = 0; i < done.jobs.size(); ++i) {
+    AtlasChart& chart = charts_[done.jobs[i].chart];
+    AtlasPage& page = chart.page[done.jobs[i].table_index - static_cast<std::uint32_t>(chart.first_page)];
+    const std::uint32_t tiles = tiles_of(done.masks[i]);
+    std::uint32_t with_news = 0;
+    for (unsigned tile = 0; tile < 4; ++tile)
+      if (holes[4 * i + tile] & 4u) with_news |= 1u << tile;
+    page.settled = static_cast<std::uint8_t>((page.settled & ~tiles) | (tiles & ~with_news));
+  }
 }
 
 void ChartAtlas::note_coarser(std::size_t record, std::int64_t image) {
@@ -76,8 +96,9 @@ void ChartAtlas::note_written(AtlasPage& page, std::uint32_t mask, std::int64_t 
   const std::uint32_t tiles = tiles_of(mask);
   page.held = static_cast<std::uint8_t>(carried_over ? 0xfu : page.held | tiles);
   if (!mask) return;
-  page.fresh = static_cast<std::uint8_t>(tiles | (page.written == image ? page.fresh : 0u));
   page.written = image;
+  for (unsigned tile = 0; tile < 4; ++tile)
+    if (tiles >> tile & 1u) page.tile_from[tile] = image;
 }
 
 }  // namespace foresight

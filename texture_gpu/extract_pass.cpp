@@ -174,4 +174,10 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+std::vector<std::uint32_t> ExtractPass::read_holes(std::size_t jobs) const {
+  std::vector<std::uint32_t> out(4 * jobs);
+  if (!out.empty()) holes_.buffer().read(std::span(out));
+  return out;
+}
+
 }  // namespace foresight

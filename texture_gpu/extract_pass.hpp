@@ -41,9 +41,10 @@ class ExtractPass {
   void extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
                FrameGate* gate = nullptr);
 
-  /// Of the last extract(): its jobs, and for each whether it has texels that no camera saw.
+  /// Of the last extract(): its jobs, and for each tile of each what holes.glsl notes.
   const gl::BufferTexture& jobs() const { return jobs_; }
   const gl::BufferTexture& holes() const { return holes_; }
+  std::vector<std::uint32_t> read_holes(std::size_t jobs) const;  ///< waits for the GPU
   std::size_t tiles() const { return tile_count_; }            ///< of the last extract() that a camera may see
   std::size_t copied() const { return unseen_tiles_.size(); }  ///< the other tiles of its pages
 

@@ -115,6 +115,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
                    frame.inputs, store_, options_.depth_tolerance, gate_);
   mark("extract");
   fill_and_finish(allocation, *next);
+  atlas_.note_holes(allocation, extract_.read_holes(allocation.jobs.size()));
   count(allocation);
 
   next->number = ++number_;
@@ -261,7 +262,7 @@ bool TextureCore::save_what_leaves(LatestTextures& latest) {
   const std::array<const PosedImage*, 2> images{newest_.images.data(), before_.images.data()};
   both_.update(cameras, images, std::array<Eigen::Vector3f, 2>{{{1, 0, 0}, {1, 0, 0}}});
   const SurveyPass::Missed missed =
-      not_shown(both_, {newest_.views[0], before_.views[0]}, atlas_.not_from(seen_, image_ - 1));
+      not_shown(both_, {newest_.views[0], before_.views[0]}, atlas_.stale(seen_, image_ - 1, light_changed_));
   for (std::size_t page : missed.coarser) atlas_.note_coarser(page, image_);
   mark("leaving");
   ChartAtlas::Allocation allocation;
@@ -315,7 +316,8 @@ TextureCore::Masks TextureCore::needed() {
   }
   if (newest_.images.size() < 2) return out;
   // Views look the left image up only.
-  const Masks missed = not_shown(newest_.inputs, newest_.views, seen_).masks;
+  const Masks missed =
+      not_shown(newest_.inputs, newest_.views, atlas_.stale(seen_, image_, light_changed_)).masks;
   for (std::size_t i = 0; i < out.size(); ++i) out[i] |= missed[i];
   return out;
 }
