@@ -3,8 +3,8 @@
 // texel finds its surface point, asks the cameras whether they saw it, takes the sharper one's colour
 // and keeps the old colour only where the new one is clearly worse.
 //
-// Defines: CAMERAS 1 or 2; TEXELS 0 to 3: as large as pixels, up to twice, up to four times as
-// large, larger (ExtractPass::Work::minify_above).
+// Defines: CAMERAS 1 or 2; TEXELS 0 to 4: as large as pixels, up to two, four, eight times as large, larger
+// (ExtractPass::Work::minify_above).
 #include "camera.glsl"
 #include "seen.glsl"
 #include "image_taps.glsl"
@@ -34,15 +34,15 @@ vec4 fetch_image(int c, vec2 pixel, float lod) {
 // Colour over the texel's footprint. Up to about one pixel a single bilinear sample is it; above,
 // taps along both axes of the footprint, from a level whose pixels are as large as their spacing.
 vec4 sample_image(int c, vec2 pixel, mat2 axes) {
-#if TEXELS == 1 || TEXELS == 2
-  // Bilinear taps in the middles of the footprint's 2x2 or 4x4 parts. Where texels are so large
+#if TEXELS >= 1 && TEXELS <= 3
+  // Bilinear taps in the middles of the footprint's 2x2, 4x4 or 8x8 parts. Where texels are so large
   // there are few of them: cheaper than coarser levels of the image.
-  const int kSide = 2 * TEXELS;
+  const int kSide = 1 << TEXELS;
   vec4 sum = vec4(0.0);
   for (int i = 0; i < kSide * kSide; ++i)
     sum += fetch_image(c, pixel + axes * ((vec2(i % kSide, i / kSide) + 0.5) / float(kSide) - 0.5), 0.0);
   return sum / float(kSide * kSide);
-#elif TEXELS == 3
+#elif TEXELS == 4
   vec2 lengths = vec2(length(axes[0]), length(axes[1]));
   ivec2 taps = ivec2(clamp(ceil(lengths - 0.5), vec2(1.0), vec2(4.0)));
   float spacing = max(lengths.x / float(taps.x), lengths.y / float(taps.y));

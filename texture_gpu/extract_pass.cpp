@@ -9,10 +9,10 @@ namespace foresight {
 
 namespace {
 
-gl::Program extract_program(std::span<const Lens> lenses, std::size_t variant) {
+gl::Program extract_program(std::span<const Lens> lenses, std::size_t cameras, std::size_t size) {
   auto defines = gl::camera_defines(lenses);
-  defines.push_back("CAMERAS " + std::to_string(1 + variant / 4));
-  defines.push_back("TEXELS " + std::to_string(variant % 4));
+  defines.push_back("CAMERAS " + std::to_string(cameras));
+  defines.push_back("TEXELS " + std::to_string(size));
   return gl::Program::compute(gl::texture_gpu_shaders(), "extract.comp", defines);
 }
 
@@ -25,14 +25,13 @@ ExtractPass::ExtractPass(std::span<const Lens> lenses)
       jobs_(GL_RGBA32UI, 4096, "extraction jobs"),
       geometry_(GL_RGBA32F, 4096, "job geometry"),
       relevel_jobs_(GL_RGBA32UI, 4096, "relevel jobs"),
-      tiles_{gl::BufferTexture(GL_R32UI, 4096, "tiles"), gl::BufferTexture(GL_R32UI, 4096, "tiles of large texels"),
-             gl::BufferTexture(GL_R32UI, 4096, "tiles of larger texels"),
-             gl::BufferTexture(GL_R32UI, 4096, "tiles of the largest texels")},
       copy_tiles_(GL_R32UI, 4096, "tiles to copy"),
       holes_(GL_R32UI, 4096, "holes"),
       staged_(GL_R16UI, 4096, "staged heights"),
       slots_(GL_R32UI, 4096, "height slots") {
-  for (std::size_t v = 0; v < kSizes * lenses.size(); ++v) extract_[v] = extract_program(lenses, v);
+  for (auto& tiles : tiles_) tiles = gl::BufferTexture(GL_R32UI, 4096, "tiles of a size");
+  for (std::size_t v = 0; v < kSizes * lenses.size(); ++v)
+    extract_[v] = extract_program(lenses, 1 + v / kSizes, v % kSizes);
 }
 
 void dispatch_groups(const gl::Program& program, std::size_t count) {
@@ -146,7 +145,8 @@ void ExtractPass::run(std::size_t size, std::int64_t image, const SeenInputs& in
   tiles_[size].assign(std::span<const std::uint32_t>(tiles));
   glBindTextureUnit(7, geometry_.texture());
   glBindTextureUnit(10, tiles_[size].texture());
-  static constexpr const char* kKinds[kSizes] = {"tiles", "tiles of 2x2 taps", "tiles of 4x4 taps", "tiles of levels"};
+  static constexpr const char* kKinds[kSizes] = {"tiles", "tiles of 2x2 taps", "tiles of 4x4 taps", "tiles of 8x8 taps",
+                                             "tiles of levels"};
   dispatch_slices(program, (tiles.size() + 3) / 4, gate, kKinds[size]);
   filter(GL_LINEAR);
 }

@@ -30,7 +30,7 @@ class ExtractPass {
     std::span<const PageJob> jobs;
     std::span<const std::uint8_t> masks;        ///< of each job (ChartAtlas::Allocation)
     std::span<const Eigen::Vector4f> geometry;  ///< ChartAtlas::write_job_geometry()
-    /// Texels of more pixels than this along a side take the mean of what they cover: up to four
+    /// Texels of more pixels than this along a side take the mean of what they cover: up to eight
     /// times as many from the image, beyond from its coarser levels.
     double minify_above = 1.5;
     std::int64_t image = 0;  ///< its number: old colours age with every eighth, in turns
@@ -50,7 +50,7 @@ class ExtractPass {
 
  private:
   gl::Program heights_, relevel_, copy_;
-  static constexpr std::size_t kSizes = 4;       // of texels in pixels, as TEXELS in extract.comp
+  static constexpr std::size_t kSizes = 5;       // of texels in pixels, as TEXELS in extract.comp
   std::array<gl::Program, 2 * kSizes> extract_;  // kSizes * (cameras - 1) + size
   void sort_tiles(const Work& work, const SeenInputs& inputs);
   void run(std::size_t size, std::int64_t image, const SeenInputs& inputs, double depth_tolerance, FrameGate* gate);
