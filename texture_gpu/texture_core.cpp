@@ -10,7 +10,8 @@
 namespace foresight {
 namespace {
 
-constexpr int kComparedPages = 600;
+// Enough for a median of an image; of an average over ten images half as many.
+constexpr int kComparedPages = 600, kPagesPerAligned = 2;
 // Images within which a page that stays in view is written anyway; the same after the lamp became known or was lost.
 constexpr std::uint64_t kImagesToRefresh = 32, kImagesToRelight = 8;
 constexpr std::uint64_t kShareOfImages = 4;  // images that are kept get so much less memory than textures
@@ -331,12 +332,12 @@ bool TextureCore::place(const Masks& wanted, std::int64_t image, ChartAtlas::All
 
 /// How bright the new image is beside those before, and how well it lies on them.
 void TextureCore::compare_with_textures() {
-  // Enough pages for a median; each image asks others, so that all get references.
+  // Each image asks other pages, so that all get references.
   const int stride = std::max(1, static_cast<int>(records_.size()) / kComparedPages);
-  const int first = static_cast<int>(image_ % stride);
-  if (options_.even_exposure) estimate_exposure(first, stride);
-  sharpness_.update(
-      survey_.agreement(newest_.inputs, charts_, store_, *current_, options_.depth_tolerance, first, stride));
+  if (options_.even_exposure) estimate_exposure(static_cast<int>(image_ % stride), stride);
+  const int wide = kPagesPerAligned * stride;
+  sharpness_.update(survey_.agreement(newest_.inputs, charts_, store_, *current_, options_.depth_tolerance,
+                                      static_cast<int>(image_ % wide), wide));
   newest_.compared = true;
   mark("exposure");
 }
