@@ -50,9 +50,9 @@ struct AtlasPage {
   std::int64_t last_seen = -1;  ///< image number
   /// Seen by each image from this one to `last_seen`; of use where images are extracted later than they are seen.
   std::int64_t seen_since = -1;
-  std::int64_t written = -1;                             ///< the last image whose colours it has
+  std::int64_t written = -1;                              ///< the last image whose colours it has
   std::array<std::int64_t, 4> tile_from{-1, -1, -1, -1};  ///< the same of each tile, at its present resolution
-  std::uint8_t settled = 0;                              ///< a bit for each tile: that image showed nothing new of it
+  std::uint8_t settled = 0;                               ///< a bit for each tile: that image showed nothing new of it
   PageExposure exposure;
 };
 
@@ -127,8 +127,8 @@ class ChartAtlas {
   void note_seen(std::span<const std::uint32_t> masks, std::int64_t image);
   /// Of these masks of the last plan(), what has no colours yet.
   std::vector<std::uint32_t> not_held(std::span<const std::uint32_t> masks) const;
-  /// Of these masks, what image number `image` may tell something about: not what has its colours from it, or from one of the
-  /// few before it that showed nothing new, but for those before image `since`.
+  /// Of these masks, what image number `image` may tell something about: not what has its colours from it, or from one
+  /// of the few before it that showed nothing new, but for those before image `since`.
   std::vector<std::uint32_t> stale(std::span<const std::uint32_t> masks, std::int64_t image, std::int64_t since) const;
   /// What an image showed of these jobs (of an Allocation): of each tile, as holes.glsl notes it.
   void note_holes(const Allocation& done, std::span<const std::uint32_t> holes);

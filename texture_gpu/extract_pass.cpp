@@ -146,7 +146,7 @@ void ExtractPass::run(std::size_t size, std::int64_t image, const SeenInputs& in
   glBindTextureUnit(7, geometry_.texture());
   glBindTextureUnit(10, tiles_[size].texture());
   static constexpr const char* kKinds[kSizes] = {"tiles", "tiles of 2x2 taps", "tiles of 4x4 taps", "tiles of 8x8 taps",
-                                             "tiles of levels"};
+                                                 "tiles of levels"};
   dispatch_slices(program, (tiles.size() + 3) / 4, gate, kKinds[size]);
   filter(GL_LINEAR);
 }

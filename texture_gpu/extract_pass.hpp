@@ -45,8 +45,8 @@ class ExtractPass {
   const gl::BufferTexture& jobs() const { return jobs_; }
   const gl::BufferTexture& holes() const { return holes_; }
   std::vector<std::uint32_t> read_holes(std::size_t jobs) const;  ///< waits for the GPU
-  std::size_t tiles() const { return tile_count_; }            ///< of the last extract() that a camera may see
-  std::size_t copied() const { return unseen_tiles_.size(); }  ///< the other tiles of its pages
+  std::size_t tiles() const { return tile_count_; }               ///< of the last extract() that a camera may see
+  std::size_t copied() const { return unseen_tiles_.size(); }     ///< the other tiles of its pages
 
  private:
   gl::Program heights_, relevel_, copy_;

@@ -317,8 +317,7 @@ TextureCore::Masks TextureCore::needed() {
   }
   if (newest_.images.size() < 2) return out;
   // Views look the left image up only.
-  const Masks missed =
-      not_shown(newest_.inputs, newest_.views, atlas_.stale(seen_, image_, light_changed_)).masks;
+  const Masks missed = not_shown(newest_.inputs, newest_.views, atlas_.stale(seen_, image_, light_changed_)).masks;
   for (std::size_t i = 0; i < out.size(); ++i) out[i] |= missed[i];
   return out;
 }

@@ -23,7 +23,7 @@ constexpr int kDirections = 300;
 constexpr double kDistances[] = {1.5, 3, 10};                         // extents of what moves
 constexpr double kRadii[] = {0, 0.02, 0.04, 0.07, 0.11, 0.16, 0.22};  // of the distance
 constexpr double kApart = 0.35;                                       // radians: another direction
-constexpr int kSoftRays = 8, kFitRays = 24;
+constexpr std::size_t kSoftRays = ShadowRays::kPacket, kFitRays = 3 * ShadowRays::kPacket;
 constexpr double kFewestExplained = 0.4, kClearly = 1.5;  // to be believed: so much, and so many times what others do
 constexpr double kGoneShare = 0.25;                       // of its strength that is left of a lamp that is off
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
@@ -82,6 +82,21 @@ std::vector<Observation> observations(const LampQuestion& question) {
   return out;
 }
 
+/// Points of the unit disc that stand for all of it; none: a lamp without extent.
+using Disc = std::vector<Eigen::Vector2d>;
+const Disc kPoint;
+
+/// Vogel's spiral.
+Disc spiral(std::size_t points) {
+  Disc out;
+  for (std::size_t k = 0; k < points; ++k) {
+    const double r = std::sqrt((static_cast<double>(k) + 0.5) / static_cast<double>(points)),
+                 a = static_cast<double>(k) * 2.39996;
+    out.emplace_back(r * std::cos(a), r * std::sin(a));
+  }
+  return out;
+}
+
 /// What each position of a lamp explains of some observations.
 class LampSearch {
  public:
@@ -98,9 +113,9 @@ class LampSearch {
     Vector3d strength = Vector3d::Zero();
     std::size_t shadows = 0;  // observations that it is drawn from
   };
-  double hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius, int rays) const;
-  double explained(const Candidate& c, int rays, std::size_t most) const;
-  void refine(Candidate& best, int rounds, int tries, double spread, int rays);
+  double hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius, const Disc& disc) const;
+  double explained(const Candidate& c, const Disc& disc, std::size_t most) const;
+  void refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc);
   std::vector<Candidate> coarse();
   Strength strength(const Vector3d& lamp, double radius) const;
   Vector3d place(const Candidate& c) const { return centre_ + c.distance * c.direction; }
@@ -112,6 +127,7 @@ class LampSearch {
   ShadowRays::Posed still_;
   Vector3d centre_;
   double extent_ = 1;
+  const Disc soft_ = spiral(kSoftRays), fit_ = spiral(kFitRays);
   std::mt19937 generator_{1};
 };
 
@@ -153,44 +169,47 @@ LampSearch::LampSearch(const ShadowRays& rays, const LampQuestion& question)
 }
 
 double LampSearch::hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius,
-                          int rays) const {
+                          const Disc& disc) const {
   const Witness& w = question_.witnesses[witness];
   const Vector3d p = w.point.cast<double>(), to_lamp = lamp - p;
   if (w.normal.cast<double>().dot(to_lamp) <= 0) return 0;
   const ShadowRays::Posed& moving = moving_[record];
   const Vector3d right = to_lamp.unitOrthogonal(), up = to_lamp.normalized().cross(right);
   int hits = 0;
-  for (int k = 0; k < rays; ++k) {  // Vogel's spiral over the disc
-    const double r = radius * std::sqrt((k + 0.5) / rays), a = k * 2.39996;
-    hits += moving.blocked(p, rays == 1 ? lamp : Vector3d(lamp + r * (std::cos(a) * right + std::sin(a) * up)));
+  std::array<Vector3d, ShadowRays::kPacket> to;
+  for (std::size_t first = 0; first < disc.size(); first += to.size()) {
+    for (std::size_t k = 0; k < to.size(); ++k)
+      to[k] = lamp + radius * (disc[first + k].x() * right + disc[first + k].y() * up);
+    hits += moving.count_blocked(p, to);
   }
+  if (disc.empty()) hits = moving.blocked(p, lamp);
   if (hits == 0 || still_.blocked(p, lamp, 5e-3)) return 0;
-  return static_cast<double>(hits) / rays;
+  return static_cast<double>(hits) / static_cast<double>(std::max<std::size_t>(1, disc.size()));
 }
 
 /// Share of the squared deviations that shadows of this lamp take away, at the darkness that suits them best.
-double LampSearch::explained(const Candidate& c, int rays, std::size_t most) const {
+double LampSearch::explained(const Candidate& c, const Disc& disc, std::size_t most) const {
   const Vector3d lamp = place(c);
   double sxy = 0, sxx = 0, syy = 0;
   for (const Observation& o : std::span(chosen_).first(std::min(most, chosen_.size()))) {
     const double radius = c.radius * c.distance, y = o.luma;
-    const double x = hidden(o.witness, o.record, lamp, radius, rays) - hidden(o.witness, o.lit, lamp, radius, rays);
+    const double x = hidden(o.witness, o.record, lamp, radius, disc) - hidden(o.witness, o.lit, lamp, radius, disc);
     sxy += x * y, sxx += x * x, syy += y * y;
   }
   return sxy < 0 && syy > 0 ? sxy * sxy / (sxx * syy) : 0;
 }
 
-void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, int rays) {
+void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc) {
   std::normal_distribution<double> normal;
-  best.explained = explained(best, rays, chosen_.size());
+  best.explained = explained(best, disc, chosen_.size());
   for (int round = 0; round < rounds; ++round, spread /= 2)
     for (int i = 0; i < tries; ++i) {
       Candidate c = best;
       c.direction =
           (c.direction + spread * Vector3d(normal(generator_), normal(generator_), normal(generator_))).normalized();
       c.distance *= std::exp(2 * spread * normal(generator_));
-      if (rays > 1) c.radius = std::clamp(c.radius * std::exp(2 * spread * normal(generator_)), 0.005, 0.4);
-      c.explained = explained(c, rays, chosen_.size());
+      if (!disc.empty()) c.radius = std::clamp(c.radius * std::exp(2 * spread * normal(generator_)), 0.005, 0.4);
+      c.explained = explained(c, disc, chosen_.size());
       if (c.explained > best.explained) best = c;
     }
 }
@@ -200,7 +219,7 @@ std::vector<LampSearch::Candidate> LampSearch::coarse() {
   std::vector<Candidate> out;
   const auto add = [&](const Vector3d& direction, double distance) {
     Candidate c{direction, distance};
-    c.explained = explained(c, 1, kMostCoarse);
+    c.explained = explained(c, kPoint, kMostCoarse);
     out.push_back(c);
   };
   for (int i = 0; i < kDirections; ++i) {  // evenly over the sphere
@@ -234,7 +253,7 @@ LampAnswer LampSearch::answer() {
     if (best.size() == 6) break;
     if (std::ranges::all_of(best, [&](const Candidate& b) { return other(b, c, kApart / 2); })) best.push_back(c);
   }
-  for (Candidate& c : best) refine(c, 3, 16, 0.12, 1);
+  for (Candidate& c : best) refine(c, 3, 16, 0.12, kPoint);
   std::ranges::sort(best, std::greater(), &Candidate::explained);
   best.resize(std::min<std::size_t>(best.size(), 3));
   for (Candidate& c : best) {
@@ -243,10 +262,10 @@ LampAnswer LampSearch::answer() {
     for (const double radius : kRadii) {
       Candidate soft = hard;
       soft.radius = radius;
-      soft.explained = explained(soft, kSoftRays, chosen_.size());
+      soft.explained = explained(soft, soft_, chosen_.size());
       if (soft.explained > c.explained) c = soft;
     }
-    refine(c, 4, 12, 0.06, kSoftRays);
+    refine(c, 4, 12, 0.06, soft_);
   }
   std::ranges::sort(best, std::greater(), &Candidate::explained);
   out.explained = best[0].explained;
@@ -269,8 +288,8 @@ LampSearch::Strength LampSearch::strength(const Vector3d& lamp, double radius) c
   std::vector<Shadowed> shadowed;
   const std::size_t step = std::max<std::size_t>(1, all_.size() / (10 * kMostInFit));
   for (std::size_t i = 0; i < all_.size() && shadowed.size() < kMostInFit; i += step) {
-    const double x = hidden(all_[i].witness, all_[i].record, lamp, radius, kFitRays);
-    const double usually = hidden(all_[i].witness, all_[i].lit, lamp, radius, kFitRays);
+    const double x = hidden(all_[i].witness, all_[i].record, lamp, radius, fit_);
+    const double usually = hidden(all_[i].witness, all_[i].lit, lamp, radius, fit_);
     if (std::abs(x - usually) < 0.05) continue;
     const Witness& w = question_.witnesses[all_[i].witness];
     const Vector3d l = lamp - w.point.cast<double>();

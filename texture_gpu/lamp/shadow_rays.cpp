@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -96,6 +97,29 @@ bool ShadowRays::Posed::blocked(const Eigen::Vector3d& from, const Eigen::Vector
   ray.mask = ~0u;
   rtcOccluded1(static_cast<RTCScene>(scene_), &context, &ray);
   return ray.tfar < 0;
+}
+
+int ShadowRays::Posed::count_blocked(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d, kPacket> to,
+                                     double gap) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRay8 rays{};
+  alignas(32) std::array<int, kPacket> valid{};
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    const Eigen::Vector3d way = to[i] - from;
+    const double length = way.norm();
+    if (!(length > 2 * gap)) continue;
+    valid[i] = -1;
+    const Eigen::Vector3f origin = from.cast<float>(), direction = (way / length).cast<float>();
+    rays.org_x[i] = origin.x(), rays.org_y[i] = origin.y(), rays.org_z[i] = origin.z();
+    rays.dir_x[i] = direction.x(), rays.dir_y[i] = direction.y(), rays.dir_z[i] = direction.z();
+    rays.tnear[i] = static_cast<float>(gap);
+    rays.tfar[i] = static_cast<float>(length - gap);
+    rays.mask[i] = ~0u;
+  }
+  rtcOccluded8(valid.data(), static_cast<RTCScene>(scene_), &context, &rays);
+  return static_cast<int>(std::ranges::count_if(rays.tfar, [](float far) { return far < 0; }));
 }
 
 }  // namespace foresight

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "scene/scene_model.hpp"
@@ -17,6 +18,9 @@ class ShadowRays {
   ShadowRays(const ShadowRays&) = delete;
   ShadowRays& operator=(const ShadowRays&) = delete;
 
+  static constexpr std::size_t kPacket = 8;
+  static constexpr double kGap = 2e-3;
+
   /// Some of the nodes, where they stand at one instant. Must not outlive the ShadowRays.
   class Posed {
    public:
@@ -25,7 +29,10 @@ class ShadowRays {
     Posed& operator=(Posed&& other) noexcept;
 
     /// True where a triangle lies on the way, ends left out by `gap` metres. World.
-    bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap = 2e-3) const;
+    bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap = kGap) const;
+    /// How many of these ways are blocked: cheaper together.
+    int count_blocked(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d, kPacket> to,
+                      double gap = kGap) const;
 
    private:
     friend class ShadowRays;
