@@ -7,9 +7,6 @@
 namespace foresight {
 namespace {
 
-// Images for which a tile is not written again with what it showed before.
-constexpr std::int64_t kImagesToRewrite = 8;
-
 /// A bit for each tile of which a mask has any.
 std::uint32_t tiles_of(std::uint32_t mask) {
   std::uint32_t tiles = 0;
@@ -55,7 +52,7 @@ std::vector<std::uint32_t> ChartAtlas::not_held(std::span<const std::uint32_t> m
 
 std::vector<std::uint32_t> ChartAtlas::stale(std::span<const std::uint32_t> masks, std::int64_t image,
                                              std::int64_t since) const {
-  const std::int64_t oldest = std::max(image - kImagesToRewrite + 1, since);
+  const std::int64_t oldest = std::max(image - options_.images_to_rewrite + 1, since);
   std::vector<std::uint32_t> out(masks.begin(), masks.end());
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const AtlasPage& page = charts_[records_[i].chart].page[static_cast<std::size_t>(page_index(records_[i]))];

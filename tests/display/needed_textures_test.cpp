@@ -13,11 +13,12 @@ namespace {
 class NeededTextures : public HeadlessTest {
  protected:
   struct Extraction {
-    Extraction(const NeededTextures& test, bool only_what_is_needed)
+    Extraction(const NeededTextures& test, bool only_what_is_needed, int images_to_rewrite = 1)
         : core(test.scene_, test.surface_, test.lens_, test.right_,
                TextureOptions{.memory_bytes = 12 << 20,
                               .even_exposure = false,
                               .only_what_is_needed = only_what_is_needed,
+                              .images_to_rewrite = images_to_rewrite,
                               .shadows = false},
                test.driver_.is_software) {}
     void extract() { written += core.extract(textures, &images).texels_written; }
@@ -35,8 +36,9 @@ class NeededTextures : public HeadlessTest {
   /// from.
   static Pose camera(int i) { return look_at({-0.9 + 0.04 * i, -0.8 + 0.01 * i, 0.75}, {0.03 * i - 0.2, 0.05, 0.1}); }
   static SceneState state(const SceneModel& scene, int i) { return state_of(scene, 0.03 * i); }
+  static double gain_of(int i) { return 1 - 0.04 * i; }
   PosedFrame frame(int i) const {
-    const double gain = 1 - 0.04 * i;
+    const double gain = gain_of(i);
     PosedFrame out{posed_photograph(*scene_, state(*scene_, i), lens_, camera(i), gain), std::nullopt};
     if (right_) {
       Pose T_left_right = Pose::Identity();
@@ -56,7 +58,8 @@ class NeededTextures : public HeadlessTest {
     double all = 0;
     double areas = 0;  ///< of at least 3x3 pixels; the others are fringes of silhouettes
   };
-  static Difference difference(const cv::Mat& a, const cv::Mat& b) {
+  /// `brighter`: a's colour may be so many times b's, or anything between.
+  static Difference difference(const cv::Mat& a, const cv::Mat& b, double brighter = 1) {
     cv::Mat differ(a.size(), CV_8U, cv::Scalar::all(0)), areas;
     double model = 0;
     for (int y = 0; y < a.rows; ++y)
@@ -65,7 +68,9 @@ class NeededTextures : public HeadlessTest {
         const cv::Vec4b& q = b.at<cv::Vec4b>(y, x);
         if (q[3] == 0) continue;
         ++model;
-        differ.at<uchar>(y, x) = p[3] != q[3] || (q[3] == 255 && cv::norm(p, q, cv::NORM_INF) > 4);
+        bool other = p[3] != q[3];
+        for (int c = 0; c < 3 && q[3] == 255; ++c) other = other || p[c] < q[c] - 4 || p[c] > brighter * q[c] + 4;
+        differ.at<uchar>(y, x) = other;
       }
     cv::morphologyEx(differ, areas, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
     return {cv::countNonZero(differ) / std::max(model, 1.0), cv::countNonZero(areas) / std::max(model, 1.0)};
@@ -107,6 +112,25 @@ TEST_F(NeededTextures, ViewsAreWhatTheyWouldBe) {
   EXPECT_FALSE(all.images.acquire()->before);
   EXPECT_EQ(first, first_of_all);
   EXPECT_LT(3 * (needed.written - first), 2 * (all.written - first_of_all)) << "of pictures that are all edges";
+}
+
+TEST_F(NeededTextures, ColoursStayForSomeImages) {
+  constexpr int kStay = 2;
+  Extraction each(*this, true), some(*this, true, kStay);
+  PredictedView view(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens_);
+  view.mix_silhouettes(false);  // what is looked up is compared
+  for (int i = 0; i < 12; ++i) {
+    each.take(frame(i));
+    some.take(frame(i));
+    if (i < kStay) continue;
+    for (const int of : {i - 2, i + 1, i + 4}) {
+      const cv::Mat stayed = drawn(view, some, of), renewed = drawn(view, each, of);
+      const Difference d = difference(stayed, renewed, gain_of(i - kStay) / gain_of(i));
+      EXPECT_LT(d.areas, 0.002) << "older: image " << i << " from where image " << of << " is taken";
+      EXPECT_LT(d.all, 0.006) << "older: image " << i << " from where image " << of << " is taken";
+    }
+  }
+  EXPECT_LT(20 * some.written, 19 * each.written);
 }
 
 // Images are looked up from there, too, though a pixel of the view holds several of theirs.
