@@ -19,10 +19,7 @@ RasterPass::RasterPass(std::shared_ptr<const SceneBuffers> scene, bool with_surf
       framebuffer_(create_framebuffer("faces")),
       with_surface_(with_surface),
       leaves_out_(scene_->triangles() > kMany ? LeavesOut::hidden : LeavesOut::behind_walls) {
-  if (!with_surface) {
-    glNamedFramebufferDrawBuffer(framebuffer_.name(), GL_NONE);
-    glNamedFramebufferReadBuffer(framebuffer_.name(), GL_NONE);
-  }
+  if (!with_surface) glNamedFramebufferReadBuffer(framebuffer_.name(), GL_NONE);
 }
 
 void use_part(const Program& program, const ViewPart& part) {
@@ -104,7 +101,8 @@ std::size_t RasterPass::triangles() const {
   return out;
 }
 
-void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target) const {
+void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target,
+                            const Texture* depth_copy) const {
   const Faces& faces = target.faces;
   const Program& program = choose_program();
   program.use();
@@ -117,15 +115,19 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
   const Pose T_camera_world = T_world_camera.inverse();
   triangles_ = 0;
   culled_faces_ = 0;
+  const Texture* colour = with_surface_ ? &target.surface : depth_copy;
+  glNamedFramebufferDrawBuffer(framebuffer_.name(), colour ? GL_COLOR_ATTACHMENT0 : GL_NONE);
   for (int i = 0; i < faces.count; ++i) {
     glNamedFramebufferTextureLayer(framebuffer_.name(), GL_DEPTH_ATTACHMENT, target.depth.name(), 0, i);
-    if (with_surface_)
-      glNamedFramebufferTextureLayer(framebuffer_.name(), GL_COLOR_ATTACHMENT0, target.surface.name(), 0, i);
+    if (colour) glNamedFramebufferTextureLayer(framebuffer_.name(), GL_COLOR_ATTACHMENT0, colour->name(), 0, i);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-    const float no_depth = 0;
+    const float no_depth[4] = {};
     const GLuint no_surface[4] = {};
-    glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &no_depth);
-    if (with_surface_) glClearNamedFramebufferuiv(framebuffer_.name(), GL_COLOR, 0, no_surface);
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, no_depth);
+    if (with_surface_)
+      glClearNamedFramebufferuiv(framebuffer_.name(), GL_COLOR, 0, no_surface);
+    else if (depth_copy)
+      glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, no_depth);
 
     Pose R_face_camera = Pose::Identity();
     R_face_camera.linear() = Faces::rotation(i);

@@ -61,8 +61,10 @@ class RasterPass {
   /// From now on only these nodes are drawn, one entry for each of the model.
   void draw_only(std::vector<bool> nodes) { only_ = std::move(nodes); }
 
-  /// Fills `target` as seen from T_world_camera. Leaves framebuffer 0 bound and depth test off.
-  void operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target) const;
+  /// Fills `target` as seen from T_world_camera. `depth_copy`: R32F array that gets the depth, too; only without
+  /// surfaces. Leaves framebuffer 0 bound and depth test off.
+  void operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target,
+                  const Texture* depth_copy = nullptr) const;
   /// That the last call gave to the GPU, on all faces. Waits for it where the GPU decided.
   std::size_t triangles() const;
 

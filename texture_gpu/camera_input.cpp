@@ -23,9 +23,12 @@ int level_count(const Lens& lens) {
 
 }  // namespace
 
-CameraInput::Camera::Camera(const Lens& seen_through, const gl::Faces& faces)
-    : lens(seen_through), rays(gl::make_lens_rays(lens)), block(sizeof(gl::CameraBlock), "camera") {
-  const gl::CameraBlock content = gl::make_camera_block(lens, faces);
+CameraInput::Camera::Camera(const Lens& seen_through, const gl::Faces& of_faces)
+    : lens(seen_through),
+      faces(of_faces, false),
+      rays(gl::make_lens_rays(lens)),
+      block(sizeof(gl::CameraBlock), "camera") {
+  const gl::CameraBlock content = gl::make_camera_block(lens, of_faces);
   block.write(std::span(&content, 1));
   const auto bytes = static_cast<GLsizeiptr>(4) * lens.width() * lens.height();
   constexpr GLbitfield kFlags = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
@@ -43,21 +46,20 @@ CameraInput::Camera::~Camera() {
 }
 
 CameraInput::CameraInput(const Lens& lens, double largest_margin_px)
-    : CameraInput(std::make_shared<Camera>(lens, faces_with_margin(lens, largest_margin_px)),
-                  faces_with_margin(lens, largest_margin_px)) {}
+    : CameraInput(std::make_shared<Camera>(lens, faces_with_margin(lens, largest_margin_px))) {}
 
-CameraInput::CameraInput(std::shared_ptr<Camera> camera, const gl::Faces& faces)
+CameraInput::CameraInput(std::shared_ptr<Camera> camera)
     : camera_(std::move(camera)),
-      faces_(faces, false),
       image_(GL_RGBA8, lens().width(), lens().height(), 0, level_count(lens()), "camera image"),
-      blocks_(GL_RG32F, (faces.width + 3) / 4, (faces.height + 3) / 4, faces.count, 1, "depth blocks"),
-      uncertain_(GL_R8, faces.width, faces.height, faces.count, 1, "uncertain edges") {
+      blocks_(GL_RG32F, (faces().faces.width + 3) / 4, (faces().faces.height + 3) / 4, faces().faces.count, 1,
+              "depth blocks"),
+      marked_depth_(GL_R32F, faces().faces.width, faces().faces.height, faces().faces.count, 1, "marked depth") {
   glTextureParameteri(image_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTextureParameteri(image_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
 }
 
 std::shared_ptr<CameraInput> CameraInput::another() const {
-  return std::shared_ptr<CameraInput>(new CameraInput(camera_, faces_.faces));
+  return std::shared_ptr<CameraInput>(new CameraInput(camera_));
 }
 
 void CameraInput::upload(const cv::Mat& pixels) {
@@ -78,11 +80,11 @@ std::uint64_t CameraInput::bytes() const {
   const auto pixels = [](int width, int height) {
     return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   };
-  constexpr std::uint64_t kDepth = 4, kUncertain = 1, kColour = 4;  // of a pixel
-  const gl::Faces& faces = faces_.faces;
-  const std::uint64_t of_faces = pixels(faces.width, faces.height) * (kDepth + kUncertain) +
-                                 pixels(blocks_.width(), blocks_.height()) * 2 * sizeof(float);
-  return of_faces * static_cast<std::uint64_t>(faces.count) + pixels(lens().width(), lens().height()) * kColour * 4 / 3;
+  constexpr std::uint64_t kDepth = 4, kColour = 4;  // of a pixel
+  const std::uint64_t of_a_face = pixels(marked_depth_.width(), marked_depth_.height()) * kDepth +
+                                  pixels(blocks_.width(), blocks_.height()) * 2 * sizeof(float);
+  return of_a_face * static_cast<std::uint64_t>(faces().faces.count) +
+         pixels(lens().width(), lens().height()) * kColour * 4 / 3;
 }
 
 void CameraInput::build_levels() const {

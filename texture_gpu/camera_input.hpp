@@ -31,12 +31,14 @@ class CameraInput {
   std::uint64_t bytes() const;
 
   const Lens& lens() const { return camera_->lens; }
-  const gl::FaceImages& faces() const { return faces_; }
+  /// Its depth: of the image that was looked at last.
+  const gl::FaceImages& faces() const { return camera_->faces; }
   const gl::Texture& image() const { return image_; }
-  const gl::Texture& rays() const { return camera_->rays; }    ///< gl::make_lens_rays
-  const gl::Buffer& block() const { return camera_->block; }   ///< gl::CameraBlock
-  const gl::Texture& blocks() const { return blocks_; }        ///< RG32F: 1/z of each 4x4 block (blocks.comp)
-  const gl::Texture& uncertain() const { return uncertain_; }  ///< R8: 1 on the far side of an edge (uncertain.comp)
+  const gl::Texture& rays() const { return camera_->rays; }   ///< gl::make_lens_rays
+  const gl::Buffer& block() const { return camera_->block; }  ///< gl::CameraBlock
+  const gl::Texture& blocks() const { return blocks_; }       ///< RG32F: 1/z of each 4x4 block (blocks.comp)
+  /// R32F: as the faces' depth, but negative on the far side of an edge (uncertain.comp).
+  const gl::Texture& marked_depth() const { return marked_depth_; }
 
  private:
   struct Staging {
@@ -49,16 +51,16 @@ class CameraInput {
     explicit Camera(const Lens& lens, const gl::Faces& faces);
     ~Camera();
     Lens lens;
+    gl::FaceImages faces;
     gl::Texture rays;
     gl::Buffer block;
     std::array<Staging, 3> ring;
     std::size_t next = 0;
   };
-  CameraInput(std::shared_ptr<Camera> camera, const gl::Faces& faces);
+  explicit CameraInput(std::shared_ptr<Camera> camera);
 
   std::shared_ptr<Camera> camera_;
-  gl::FaceImages faces_;
-  gl::Texture image_, blocks_, uncertain_;
+  gl::Texture image_, blocks_, marked_depth_;
   mutable bool has_levels_ = false;  // of the image that is there
 };
 

@@ -25,7 +25,6 @@ void EdgePass::operator()(const CameraInput& camera, double margin_px, double de
   glDispatchCompute(gl::groups(faces.width, 32), gl::groups(faces.height, 32), layers);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 
-  glClearTexImage(camera.uncertain().name(), 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
   if (margin_px <= 0) return;
   next_slice(gate, "near edges");
   const auto tolerance = static_cast<float>(depth_tolerance);
@@ -50,7 +49,7 @@ void EdgePass::operator()(const CameraInput& camera, double margin_px, double de
   uncertain_.set("face_size", size);
   uncertain_.set("margin", static_cast<float>(margin_px));
   uncertain_.set("depth_tolerance", tolerance);
-  glBindImageTexture(0, camera.uncertain().name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R8);
+  glBindImageTexture(0, camera.marked_depth().name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R32F);
   pixels_.dispatch();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }

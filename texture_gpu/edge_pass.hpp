@@ -10,12 +10,13 @@ namespace foresight {
 class FrameGate;
 
 /// From a camera's depth: its blocks, the tiles that may hold edges, in these the near side of each
-/// edge, and within the margin of that the uncertain pixels (blocks.comp, edge_tiles.comp,
-/// near_edges.comp, uncertain.comp). One context.
+/// edge, and within the margin of that the uncertain pixels, which are marked (blocks.comp,
+/// edge_tiles.comp, near_edges.comp, uncertain.comp). One context.
 class EdgePass {
  public:
   EdgePass();
-  /// `margin_px` >= 0 in pixels of the faces, `depth_tolerance` in metres. `gate`: in slices; may be null.
+  /// CameraInput::marked_depth() is still as the faces' depth. `margin_px` >= 0 in pixels of the faces,
+  /// `depth_tolerance` in metres. `gate`: in slices; may be null.
   void operator()(const CameraInput& camera, double margin_px, double depth_tolerance, FrameGate* gate = nullptr);
 
  private:

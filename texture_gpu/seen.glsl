@@ -6,12 +6,10 @@
 #endif
 layout(std140, binding = SEEN_BLOCK) uniform Cameras { CameraBlock cameras[2]; };
 layout(binding = SEEN_UNIT) uniform samplerBuffer node_poses;  // camera 0's nodes, then camera 1's
-layout(binding = SEEN_UNIT + 1) uniform sampler2DArray depth0;
+layout(binding = SEEN_UNIT + 1) uniform sampler2DArray depth0;  // near / z; negative beside edges (uncertain.comp)
 layout(binding = SEEN_UNIT + 2) uniform sampler2DArray depth1;
-layout(binding = SEEN_UNIT + 3) uniform sampler2DArray uncertain0;
-layout(binding = SEEN_UNIT + 4) uniform sampler2DArray uncertain1;
-layout(binding = SEEN_UNIT + 5) uniform sampler2D image0;
-layout(binding = SEEN_UNIT + 6) uniform sampler2D image1;
+layout(binding = SEEN_UNIT + 3) uniform sampler2D image0;
+layout(binding = SEEN_UNIT + 4) uniform sampler2D image1;
 uniform int node_count;
 const float kBehind = 0.05;  // share of the tolerance for what lies behind the drawn surface
 uniform float depth_tolerance;  // metres: surfaces nearer to each other than this count as one
@@ -26,6 +24,8 @@ bool is_seen(int c, vec3 p, out vec2 pixel) {
   vec2 size = cameras[c].size.zw;
   vec3 at = vec3((place.xy + 0.5) / size, place.z);
   vec4 near_over_z = c == 0 ? textureGather(depth0, at) : textureGather(depth1, at);
+  // All four must be certain: beside a silhouette the nearest pixel may show what stands in front.
+  if (any(lessThan(near_over_z, vec4(0.0)))) return false;
   // The four depths around the place bracket a surface that is seen at a grazing angle. Pixels
   // without model are left out: between an occluder and nothing lies all that it hides.
   vec4 known = mix(near_over_z, vec4(1e30), equal(near_over_z, vec4(0.0)));
@@ -35,9 +35,6 @@ bool is_seen(int c, vec3 p, out vec2 pixel) {
   // not paint the part of it that it covers. Before the nearest: a guard texel
   // that floats beside the surface.
   if ((1.0 - kBehind * depth_tolerance * inverse_z) * far > inverse_z || (1.0 + depth_tolerance * inverse_z) * near < inverse_z) return false;
-  // All four must be certain: beside a silhouette the nearest pixel may show what stands in front.
-  vec4 uncertain = c == 0 ? textureGather(uncertain0, at) : textureGather(uncertain1, at);
-  if (any(greaterThan(uncertain, vec4(0.5)))) return false;
 #if defined(FACE_IS_IMAGE) && FACE_IS_IMAGE
   pixel = place.xy;
 #else

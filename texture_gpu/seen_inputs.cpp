@@ -30,9 +30,8 @@ void SeenInputs::bind(const gl::Program& program, double depth_tolerance, GLuint
     // A single camera is bound twice: every sampler must have a complete texture.
     const CameraInput& input = camera(std::min(i, camera_count() - 1));
     const GLuint first = unit + static_cast<GLuint>(i);
-    glBindTextureUnit(first + 1, input.faces().depth.name());
-    glBindTextureUnit(first + 3, input.uncertain().name());
-    glBindTextureUnit(first + 5, input.image().name());
+    glBindTextureUnit(first + 1, input.marked_depth().name());
+    glBindTextureUnit(first + 3, input.image().name());
   }
 }
 

@@ -34,7 +34,7 @@ float near_over_z_at(vec3 place) {
   vec2 f = place.xy - vec2(base);
   vec4 near = vec4(0.0);
   for (int i = 0; i < 4; ++i)
-    near[i] = texelFetch(depth0, ivec3(clamp(base + ivec2(i & 1, i >> 1), ivec2(0), last), int(place.z)), 0).r;
+    near[i] = abs(texelFetch(depth0, ivec3(clamp(base + ivec2(i & 1, i >> 1), ivec2(0), last), int(place.z)), 0).r);
   float between = mix(mix(near.x, near.y, f.x), mix(near.z, near.w, f.x), f.y);
   return all(greaterThan(near, vec4(0.0))) ? between : 0.0;
 }
@@ -54,7 +54,7 @@ bool find_point(ivec2 pixel, out vec3 p) {
   ivec3 at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
   float near_over_z = near_over_z_at(place);
   p = ray * (kNear / max(near_over_z, 1e-9) * inverse_z);
-  return near_over_z > 0.0 && texelFetch(uncertain0, at, 0).r < 0.5;
+  return near_over_z > 0.0 && texelFetch(depth0, at, 0).r > 0.0;
 }
 
 // Whether some amount of white light, up to `gloss` more or less, makes the newest pixels look like one of those around the

@@ -205,7 +205,8 @@ void TextureCore::look(const PosedFrame& frame) {
   for (std::size_t i = 0; i < count; ++i) newest_.cameras[i]->upload((i == 0 ? frame.left : *frame.right).pixels);
   mark("upload");
   for (std::size_t i = 0; i < count; ++i)
-    raster_(newest_.images[i].T_world_camera, newest_.images[i].scene, newest_.cameras[i]->faces());
+    raster_(newest_.images[i].T_world_camera, newest_.images[i].scene, newest_.cameras[i]->faces(),
+            &newest_.cameras[i]->marked_depth());
   mark("depth");
   for (std::size_t i = 0; i < count; ++i)
     edges_(*newest_.cameras[i], newest_.images[i].margin_px.value_or(options_.margin_px), options_.depth_tolerance,

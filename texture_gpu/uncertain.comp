@@ -12,7 +12,7 @@
 #include "depth_slope.glsl"
 #include "work_item.glsl"
 layout(local_size_x = 64) in;
-layout(binding = 0, r8) uniform writeonly image2DArray uncertain;
+layout(binding = 0, r32f) uniform writeonly image2DArray marked_depth;  // what is marked becomes negative
 uniform float margin;  // px
 
 // 1/z along a line through q, which is in its middle: all that is asked of it.
@@ -71,11 +71,11 @@ void main() {
       // Never closer than at its edge: what comes closer beyond it is not seen there.
       float near = min(center, center + dot(ahead, max(offset, 0.0)) + dot(back, max(-offset, 0.0)));
       if (far <= 0.0 || !steps_back(near, far)) continue;
-      imageStore(uncertain, ivec3(q + ivec2(x, y), layer), vec4(1.0));
+      imageStore(marked_depth, ivec3(q + ivec2(x, y), layer), vec4(-kNear * far));
       hides = true;
     }
   }
   bool thin = (ended.x && is_thin(across, 1)) || (ended.y && is_thin(down, 1)) || (ended.z && is_thin(across, -1)) ||
               (ended.w && is_thin(down, -1));
-  if (hides && !thin) imageStore(uncertain, ivec3(q, layer), vec4(1.0));
+  if (hides && !thin) imageStore(marked_depth, ivec3(q, layer), vec4(-kNear * center));
 }

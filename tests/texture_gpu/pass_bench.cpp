@@ -42,7 +42,7 @@ void PassBench::look(const std::vector<PosedImage>& taken, const std::vector<Eig
   std::vector<const PosedImage*> pointers;
   for (std::size_t i = 0; i < images.size(); ++i) {
     cameras[i]->upload(images[i].pixels);
-    raster(images[i].T_world_camera, images[i].scene, cameras[i]->faces());
+    raster(images[i].T_world_camera, images[i].scene, cameras[i]->faces(), &cameras[i]->marked_depth());
     edges(*cameras[i], options.margin_px, options.depth_tolerance);
     AtlasView view{&cameras[i]->lens(), &cameras[i]->faces().faces, {}};
     for (const Pose& T : images[i].scene.T_world_node)
@@ -120,11 +120,13 @@ reference::Camera PassBench::camera(std::size_t i) const {
   const gl::Faces& faces = input.faces().faces;
   const auto face_pixels = static_cast<std::size_t>(faces.width * faces.height);
   std::vector<float> depth(face_pixels * static_cast<std::size_t>(faces.count));
-  std::vector<std::uint8_t> uncertain(depth.size());
+  std::vector<float> marked(depth.size());
   glGetTextureImage(input.faces().depth.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(depth.size() * 4),
                     depth.data());
-  glGetTextureImage(input.uncertain().name(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(uncertain.size()),
-                    uncertain.data());
+  glGetTextureImage(input.marked_depth().name(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(marked.size() * 4),
+                    marked.data());
+  std::vector<std::uint8_t> uncertain;
+  for (const float near_over_z : marked) uncertain.push_back(near_over_z < 0);
   reference::Camera out{input.lens(), faces, views[i].T_camera_node, {}, {}, images[i].pixels};
   for (std::size_t face = 0; face < static_cast<std::size_t>(faces.count); ++face) {
     const std::size_t from = face * face_pixels;
