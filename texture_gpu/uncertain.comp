@@ -59,7 +59,8 @@ void main() {
   int reach = int(ceil(margin));
   float limit = (margin + 0.5) * (margin + 0.5);
   for (int y = -reach; y <= reach; ++y) {
-    int in_row = int(sqrt(max(limit - float(y * y), 0.0)));
+    float left = limit - float(y * y);
+    int in_row = left < 0.0 ? -1 : int(sqrt(left));
     for (int x = -in_row; x <= in_row; ++x) {
       // Only to the sides on which the surface ends: of all its pixels, the one nearest to a pixel
       // beyond has no other one of them before it.

@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, EdgesOfLenses, testing::ValuesIn(kLensKinds),
                          [](const auto& i) { return std::string(i.param); });
 
 TEST_F(EdgePassTest, MarginsOfAllSizesAgreeWithTheExactTest) {
-  for (double margin : {0.0, 0.5, 1.0, 2.0, 4.5, 9.0}) {
+  for (double margin : {0.0, 0.5, 1.0, 1.2, 2.0, 4.5, 9.0}) {
     const reference::Camera camera =
         look(small_scene(), small_lens("pinhole"), usual_view(), {.memory_bytes = kMemory, .margin_px = margin});
     const auto expected = reference::uncertain_edges(camera.depth[0], margin, 0.02);
