@@ -56,18 +56,17 @@ void main() {
   bvec4 ended = bvec4(ends_at(across, kMiddle, 1), ends_at(down, kMiddle, 1), ends_at(across, kMiddle, -1),
                       ends_at(down, kMiddle, -1));
   bool hides = false;
-  int reach = int(ceil(margin));
-  float limit = (margin + 0.5) * (margin + 0.5);
+  float radius = margin + 0.5;
+  int reach = int(radius);
   for (int y = -reach; y <= reach; ++y) {
-    float left = limit - float(y * y);
-    int in_row = left < 0.0 ? -1 : int(sqrt(left));
+    int in_row = int(sqrt(radius * radius - float(y * y)));
     for (int x = -in_row; x <= in_row; ++x) {
       // Only to the sides on which the surface ends: of all its pixels, the one nearest to a pixel
       // beyond has no other one of them before it.
       bool beyond = (abs(x) >= abs(y) && (x > 0 ? ended.x : x < 0 && ended.z)) ||
                     (abs(y) >= abs(x) && (y > 0 ? ended.y : y < 0 && ended.w));
-      vec2 offset = vec2(x, y);
       if (!beyond) continue;
+      vec2 offset = vec2(x, y);
       float far = inverse_z(q + ivec2(x, y), layer);
       // Never closer than at its edge: what comes closer beyond it is not seen there.
       float near = min(center, center + dot(ahead, max(offset, 0.0)) + dot(back, max(-offset, 0.0)));
