@@ -37,7 +37,7 @@ struct TextureOptions {
   /// what has no colours yet, and what the next one shows no more, or less well. False: all of each image.
   bool only_what_is_needed = true;
   /// Then, from 1: a tile that was just written with nothing that had not been seen of it before is not written again
-  /// for fewer images than that. Beside silhouettes, which move along with the camera, it else is with nearly every
+  /// for fewer images than that. Beside silhouettes, which move along with the camera, it would be with nearly every
   /// one.
   int images_to_rewrite = 8;
   /// Find the main lamp by the shadows of what moves; then take these out of images, and let the display draw them

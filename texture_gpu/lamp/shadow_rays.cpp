@@ -4,12 +4,30 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "common/error.hpp"
 
 namespace foresight {
+namespace {
+
+struct Way {
+  Eigen::Vector3f origin, direction;
+  float near, far;  // metres along it
+};
+
+/// Nothing where less than the ends is there.
+std::optional<Way> way_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap) {
+  const Eigen::Vector3d way = to - from;
+  const double length = way.norm();
+  if (!(length > 2 * gap)) return std::nullopt;
+  return Way{from.cast<float>(), (way / length).cast<float>(), static_cast<float>(gap),
+             static_cast<float>(length - gap)};
+}
+
+}  // namespace
 
 struct ShadowRays::Device {
   RTCDevice device = nullptr;
@@ -83,17 +101,15 @@ ShadowRays::Posed& ShadowRays::Posed::operator=(Posed&& other) noexcept {
 }
 
 bool ShadowRays::Posed::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap) const {
-  const Eigen::Vector3d way = to - from;
-  const double length = way.norm();
-  if (!(length > 2 * gap)) return false;
-  const Eigen::Vector3f origin = from.cast<float>(), direction = (way / length).cast<float>();
+  const std::optional<Way> way = way_between(from, to, gap);
+  if (!way) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay ray{};
-  ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
-  ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
-  ray.tnear = static_cast<float>(gap);
-  ray.tfar = static_cast<float>(length - gap);
+  ray.org_x = way->origin.x(), ray.org_y = way->origin.y(), ray.org_z = way->origin.z();
+  ray.dir_x = way->direction.x(), ray.dir_y = way->direction.y(), ray.dir_z = way->direction.z();
+  ray.tnear = way->near;
+  ray.tfar = way->far;
   ray.mask = ~0u;
   rtcOccluded1(static_cast<RTCScene>(scene_), &context, &ray);
   return ray.tfar < 0;
@@ -107,15 +123,13 @@ int ShadowRays::Posed::count_blocked(const Eigen::Vector3d& from, std::span<cons
   RTCRay8 rays{};
   alignas(32) std::array<int, kPacket> valid{};
   for (std::size_t i = 0; i < kPacket; ++i) {
-    const Eigen::Vector3d way = to[i] - from;
-    const double length = way.norm();
-    if (!(length > 2 * gap)) continue;
+    const std::optional<Way> way = way_between(from, to[i], gap);
+    if (!way) continue;
     valid[i] = -1;
-    const Eigen::Vector3f origin = from.cast<float>(), direction = (way / length).cast<float>();
-    rays.org_x[i] = origin.x(), rays.org_y[i] = origin.y(), rays.org_z[i] = origin.z();
-    rays.dir_x[i] = direction.x(), rays.dir_y[i] = direction.y(), rays.dir_z[i] = direction.z();
-    rays.tnear[i] = static_cast<float>(gap);
-    rays.tfar[i] = static_cast<float>(length - gap);
+    rays.org_x[i] = way->origin.x(), rays.org_y[i] = way->origin.y(), rays.org_z[i] = way->origin.z();
+    rays.dir_x[i] = way->direction.x(), rays.dir_y[i] = way->direction.y(), rays.dir_z[i] = way->direction.z();
+    rays.tnear[i] = way->near;
+    rays.tfar[i] = way->far;
     rays.mask[i] = ~0u;
   }
   rtcOccluded8(valid.data(), static_cast<RTCScene>(scene_), &context, &rays);
