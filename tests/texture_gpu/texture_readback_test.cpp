@@ -91,8 +91,10 @@ TEST_F(TextureReadbackTest, ColoursTellTheTexelsPoint) {
   });
   EXPECT_GT(seen, 8000);
   EXPECT_LE(off, seen / 200);
-  // Half a texel would be half a step.
-  EXPECT_LT((bias / seen).cwiseAbs().maxCoeff(), 0.05) << (bias / seen).transpose();
+  // Half a texel would be 0.8. Rounding steps of 255/256 to whole ones is off by up to half of one, upwards below the
+  // middle of the range and downwards above it; which of them there are more of is left. Renderers that interpolate in
+  // 8 bits give whole values back, others 0.1.
+  EXPECT_LT((bias / seen).cwiseAbs().maxCoeff(), 0.25) << (bias / seen).transpose();
 }
 
 // The points of the published records, which the shaders walk along, and those read back are the same.
