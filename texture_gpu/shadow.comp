@@ -1,8 +1,8 @@
 // The factor that shadows of moving parts put on each pixel of a camera. First blocks of 4x4 pixels are listed that some
-// might reach, then those of them where some do, and how near to the lamp what throws it is, then the pixels of these are
-// computed: where nothing is listed, nothing is paid.
+// might reach, then those of them where some do, and how near to the lamp what throws it is: where nothing is listed, nothing
+// is paid. In most of these the shadow changes so little that five pixels tell the others; of the rest each is computed.
 //
-// Defines: STEP 0, 1, 2.
+// Defines: STEP 0, 1, 2; the last one twice, for five pixels and for each.
 #include "camera.glsl"
 #define SHADOW_UNIT 3
 #include "shadow.glsl"
@@ -11,11 +11,11 @@ layout(binding = 1) uniform sampler2DArray depth;
 layout(binding = 2) uniform sampler2D rays;
 uniform mat4 T_lamp_camera;
 #if STEP == 2
-#define ITEMS_PER_GROUP 4
-#define INVOCATIONS_PER_ITEM 16
+#define ITEMS_PER_GROUP 64
 #define WORDS_PER_ITEM 2
 #include "work_item.glsl"
-layout(local_size_x = 64) in;  // four blocks
+#include "work_list.glsl"
+layout(local_size_x = 64) in;  // a block each
 layout(binding = 0, rgba8) uniform writeonly image2D light;
 #elif STEP == 1
 #define ITEMS_PER_GROUP 64
@@ -66,11 +66,54 @@ vec3 factor(ivec2 pixel, float blocker) {
   return may_shade(q) == 0.0 ? vec3(1.0) : shadow_factor(q, -normalize(mat3(T_lamp_camera) * normal), blocker);
 }
 
+uniform bool each;   // of the pixels of the blocks, which are those that were listed for it
+uniform int points;  // 16, or 5: a loop of unknown length is not unrolled, which would take a second to compile
+const float kBent = 0.003;               // share of its depth by which a block may differ from a plane
+const float kEven = 0.15, kLinear = 0.01;  // of factors: between corners, and of the middle from their mean
+
+// One surface, over which depth values are linear. `first`: the pixel of the block's first corner.
+bool is_even(ivec2 first) {
+  vec3 ray, place;
+  float inverse_z;
+  if (!ray_through(first, ray) || !project_face(camera, ray, place, inverse_z)) return false;
+  ivec3 at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
+  float a = depth_at(at), b = depth_at(at + ivec3(3, 0, 0)), c = depth_at(at + ivec3(0, 3, 0));
+  vec2 step_of = vec2(b - a, c - a) / 3.0;
+  float off = 0.0;
+  for (int i = 0; i < 16; ++i) {
+    ivec2 to = ivec2(i & 3, i >> 2);
+    off = max(off, abs(depth_at(at + ivec3(to, 0)) - a - dot(step_of, vec2(to))));
+  }
+  return off <= kBent * min(a, min(b, c));
+}
+
 void main() {
   uint item;
   if (!next_work(item)) return;
-  ivec2 pixel = ivec2(item & 0xffffu, item >> 16) + ivec2(gl_LocalInvocationIndex & 3u, (gl_LocalInvocationIndex >> 2) & 3u);
-  if (all(lessThan(pixel, ivec2(camera.size.xy)))) imageStore(light, pixel, vec4(factor(pixel, number_of_work(1)), 1.0));
+  float blocker = number_of_work(1);
+  ivec2 first = ivec2(item & 0xffffu, item >> 16);
+  vec3 at[5];
+  for (int i = 0; i < points; ++i) {
+    ivec2 pixel = first + (each ? ivec2(i & 3, i >> 2) : i == 4 ? ivec2(1) : 3 * ivec2(i & 1, i >> 1));
+    vec3 here = factor(pixel, blocker);
+    if (!each) at[i] = here;
+    if (each && all(lessThan(pixel, ivec2(camera.size.xy)))) imageStore(light, pixel, vec4(here, 1.0));
+  }
+  if (each) return;
+  vec3 low = min(min(at[0], at[1]), min(at[2], at[3])), high = max(max(at[0], at[1]), max(at[2], at[3]));
+  vec3 bent = abs(at[4] - mix(mix(at[0], at[1], 1.0 / 3.0), mix(at[2], at[3], 1.0 / 3.0), 1.0 / 3.0));
+  bool is_whole = all(lessThan(first + 3, ivec2(camera.size.xy)));
+  if (is_whole && all(lessThan(high - low, vec3(kEven))) && all(lessThan(bent, vec3(kLinear))) && is_even(first)) {
+    for (int i = 0; i < 16; ++i) {
+      ivec2 to = ivec2(i & 3, i >> 2);
+      vec2 f = vec2(to) / 3.0;
+      imageStore(light, first + to, vec4(mix(mix(at[0], at[1], f.x), mix(at[2], at[3], f.x), f.y), 1.0));
+    }
+    return;
+  }
+  uint i = 2u * atomicAdd(work_args[3], 1u);
+  work_items[i] = item;
+  work_items[i + 1u] = floatBitsToUint(blocker);
 }
 #else
 // What is seen at the pixel, in the lamp's frame; behind the lamp where that is nothing.

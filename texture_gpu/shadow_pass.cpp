@@ -8,7 +8,7 @@ namespace foresight {
 namespace {
 
 // As in the shaders.
-constexpr unsigned kBlocksInGroup = 4;
+constexpr unsigned kBlocksInGroup = 64, kBlocksByPixels = 4;
 constexpr std::size_t kWordsOfBlock = 2;  // where it is, and its blocker
 constexpr GLuint kShadowUnit = 3, kWorkUnit = 15;
 
@@ -25,8 +25,9 @@ ShadowPass::ShadowPass(const Lens& lens)
       shaded_(shadow_program(lens, 1)),
       shade_(shadow_program(lens, 2)),
       unshade_(gl::Program::compute(gl::texture_gpu_shaders(), "unshade.comp")),
-      near_("blocks that a shadow may reach", 64),
-      blocks_("blocks that may be in a shadow", kBlocksInGroup, kWordsOfBlock) {}
+      near_("blocks that a shadow may reach", kBlocksInGroup),
+      blocks_("blocks that may be in a shadow", kBlocksInGroup, kWordsOfBlock),
+      uneven_("blocks that a shadow ends in", kBlocksInGroup, kWordsOfBlock) {}
 
 void ShadowPass::operator()(const Camera& camera, const ShadowMap& map) {
   const int width = camera.lens.width(), height = camera.lens.height();
@@ -54,14 +55,22 @@ void ShadowPass::operator()(const Camera& camera, const ShadowMap& map) {
   start(shaded_);
   near_.dispatch();
   blocks_.finish(kWorkUnit);
+  uneven_.start(most);
   start(shade_);
+  shade_.set("each", false);
+  shade_.set("points", 5);
   glBindImageTexture(0, light_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   blocks_.dispatch();
+  uneven_.finish(kWorkUnit);
+  start(shade_);
+  shade_.set("each", true);
+  shade_.set("points", 16);
+  uneven_.dispatch();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void ShadowPass::take_out_of(const gl::Texture& image) const {
-  blocks_.finish(kWorkUnit);
+  blocks_.finish(kWorkUnit, kBlocksByPixels);
   unshade_.use();
   glBindTextureUnit(0, light_.name());
   glBindImageTexture(0, image.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);

@@ -31,7 +31,7 @@ class ShadowPass {
 
  private:
   gl::Program reached_, shaded_, shade_, unshade_;
-  WorkList near_, blocks_;
+  WorkList near_, blocks_, uneven_;
   gl::Texture light_;
 };
 

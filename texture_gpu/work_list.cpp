@@ -28,11 +28,11 @@ void WorkList::bind(unsigned block) const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, block, buffer_.buffer().name());
 }
 
-void WorkList::finish(unsigned unit) const {
+void WorkList::finish(unsigned unit, std::optional<unsigned> items_per_group) const {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   bind();
   args_.use();
-  args_.set("items_per_group", items_per_group_);
+  args_.set("items_per_group", items_per_group.value_or(items_per_group_));
   glDispatchCompute(1, 1, 1);
   // The last bit is for the next start(), which writes the header again.
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

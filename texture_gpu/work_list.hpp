@@ -1,6 +1,8 @@
 // Lists on the GPU: one dispatch decides what needs work, the next does just that.
 #pragma once
 
+#include <optional>
+
 #include "gl/program.hpp"
 
 namespace foresight {
@@ -20,8 +22,9 @@ class WorkList {
   void bind(unsigned block = 1) const;
 
   /// After the filling dispatch: binds the list for next_work() (`unit`: WORK_UNIT there) and as indirect arguments.
-  /// Runs a program of its own; append_work() fills this list afterwards.
-  void finish(unsigned unit = 15) const;
+  /// Runs a program of its own; append_work() fills this list afterwards. `items_per_group`: of a program that takes
+  /// others than it was made with.
+  void finish(unsigned unit = 15, std::optional<unsigned> items_per_group = std::nullopt) const;
 
   /// Dispatches the current program over the list.
   void dispatch() const;
