@@ -160,7 +160,33 @@ void PredictedView::draw_rows(DrawRows draw) const {
 }
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
-  start(T_world_camera, state, textures, textures.light);
+  for (const std::shared_ptr<const SceneLight>& light : lights_to_prepare(state, textures.light))
+    draw_lit(T_world_camera, state, textures, light);
+  draw_lit(T_world_camera, state, textures, textures.light);
+}
+
+void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+                         const NewestImages& images) {
+  const std::shared_ptr<const SceneLight>& light = images.newest->light;
+  const PublishedImage* before = images.before ? &*images.before : nullptr;
+  for (const std::shared_ptr<const SceneLight>& other_light : lights_to_prepare(state, light))
+    for (const PublishedImage* way : {before, before ? nullptr : &*images.newest})
+      draw_lit(T_world_camera, state, textures, images, other_light, way);
+  draw_lit(T_world_camera, state, textures, images, light, before);
+}
+
+/// Known and not known, each twice: renderers may compile a program anew by what others have left bound. None if all is
+/// prepared.
+std::vector<std::shared_ptr<const SceneLight>> PredictedView::lights_to_prepare(
+    const SceneState& state, const std::shared_ptr<const SceneLight>& light) {
+  if (!std::exchange(prepares_, false)) return {};
+  const auto known = light ? light : std::make_shared<const SceneLight>(light_from_above(*scene_, state));
+  return {nullptr, known, nullptr, known};
+}
+
+void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+                             const std::shared_ptr<const SceneLight>& light) {
+  start(T_world_camera, state, textures, light);
   for (const gl::Program* program : {&all_, &listed_})
     set_tone(*program, textures.display_gain, textures.sharp, textures);
   start_part();
@@ -178,10 +204,12 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   finish(textures);
 }
 
-void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
-                         const NewestImages& images) {
-  start(T_world_camera, state, textures, images.newest->light);
-  look_up(images);
+/// `before`: the image before the newest one; null: none is looked up.
+void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+                             const NewestImages& images, const std::shared_ptr<const SceneLight>& light,
+                             const PublishedImage* before) {
+  start(T_world_camera, state, textures, light);
+  look_up(images, before);
   const bool any_kept = !images.others.empty() && !draws_part_;
   if (any_kept) {
     if (!kept_) kept_ = std::make_unique<KeptPass>(raster_.has_levels());
@@ -197,8 +225,8 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
       (*kept_)([&] { draw_rectangle(rows); });
       glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     }
-    if (images.before)
-      draw_usual_and_before(images);
+    if (before)
+      draw_usual_and_before(*before, images.newest->sharp);
     else
       draw_usual();
     dispatch(rest_, p.rest);
@@ -207,7 +235,7 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
 }
 
 /// Hands the images to the shaders.
-void PredictedView::look_up(const NewestImages& images) {
+void PredictedView::look_up(const NewestImages& images, const PublishedImage* before) {
   const Lens& lens = images.newest->camera->lens();
   const bool levels = raster_.has_levels();  // planes are those of the levels shown, then
   const auto pixels = static_cast<std::size_t>(lens_.width()) * static_cast<std::size_t>(lens_.height());
@@ -217,7 +245,7 @@ void PredictedView::look_up(const NewestImages& images) {
   if (draws_part_ && !projection_->newest_of_part)
     projection_->newest_of_part =
         view_program(std::array{lens_, lens}, Cases::image, {.levels = levels, .listed = true});
-  if (!images.before && !projection_->usual_alone)
+  if (!before && !projection_->usual_alone)
     projection_->usual_alone =
         view_program({&lens_, 1}, Cases::usual, {.levels = levels, .listed = true, .blended = true});
   const auto update = [&](SeenInputs& inputs, const PublishedImage& of) {
@@ -232,7 +260,7 @@ void PredictedView::look_up(const NewestImages& images) {
     glBindTextureUnit(kSeenUnit, projection_->newest_inputs.node_poses());
     projection_->homographies->update(surface_->triangle_count(), kHomographiesUnit);
   }
-  if (images.before) update(projection_->inputs_before, *images.before);
+  if (before) update(projection_->inputs_before, *before);
 }
 
 /// The newest image; lists what it does not show.
@@ -271,18 +299,18 @@ void PredictedView::draw_usual() {
 }
 
 /// The same, where the image before shows it from there. Both programs list what is left.
-void PredictedView::draw_usual_and_before(const NewestImages& images) {
+void PredictedView::draw_usual_and_before(const PublishedImage& before, float sharp) {
   Projection& p = *projection_;
   start(p.of_before);
   p.of_before.bind(kBeforeBlock);
   start(rest_);
-  p.inputs_before.bind(p.usual, images.before->depth_tolerance, kSeenBlock, kSeenUnit);
+  p.inputs_before.bind(p.usual, before.depth_tolerance, kSeenBlock, kSeenUnit);
   p.unseen.dispatch();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   p.of_before.finish(kListUnit);
   rest_.bind();
-  p.inputs_before.bind(p.before, images.before->depth_tolerance, kSeenBlock, kSeenUnit);
-  p.before.set("sharp", images.newest->sharp);
+  p.inputs_before.bind(p.before, before.depth_tolerance, kSeenBlock, kSeenUnit);
+  p.before.set("sharp", sharp);
   p.of_before.dispatch();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
@@ -323,12 +351,10 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
 void PredictedView::shade(const Pose& T_world_camera, const SceneState& state,
                           const std::shared_ptr<const SceneLight>& light) {
   glBindTextureUnit(kLightUnit, unshaded_.name());
-  const bool prepares = std::exchange(prepares_shadows_, false) && !light && !shadows_;
-  if (!light && !prepares) return;
+  if (!light) return;
   if (gate_) gate_->begin("shadows of a view");
-  find_shadows(T_world_camera, state,
-               light ? light : std::make_shared<const SceneLight>(light_from_above(*scene_, state)));
-  if (light && shadows_->is_there) glBindTextureUnit(kLightUnit, shadows_->pass.light().name());
+  find_shadows(T_world_camera, state, light);
+  if (shadows_->is_there) glBindTextureUnit(kLightUnit, shadows_->pass.light().name());
   if (gate_) {
     glFinish();
     gate_->end();

@@ -4,6 +4,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 #include "display/kept_pass.hpp"
 #include "display/paint_pass.hpp"
@@ -49,8 +50,9 @@ class PredictedView {
   /// or stay what was looked up.
   void mix_silhouettes(bool mixed) { mixes_ = mixed; }
 
-  /// The next draw() compiles what is needed from the moment on at which the textures' light is known.
-  void prepare_shadows() { prepares_shadows_ = true; }
+  /// The next draw() compiles what later ones need: with the textures' light known or not, and with an image before the
+  /// newest one or without. It takes some drawings longer.
+  void prepare() { prepares_ = true; }
 
   /// From now on only this part of what is seen is drawn, and costs what it covers; nothing: all of it. The textures
   /// must outlive that. Throws std::invalid_argument: a lens with distortion, or ViewPrograms::single.
@@ -120,11 +122,18 @@ class PredictedView {
   struct Rows {
     int first = 0, last = 0;  // beyond the last
   };
-  void look_up(const NewestImages& images);
+  std::vector<std::shared_ptr<const SceneLight>> lights_to_prepare(const SceneState& state,
+                                                                   const std::shared_ptr<const SceneLight>& light);
+  void draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+                const std::shared_ptr<const SceneLight>& light);
+  void draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
+                const NewestImages& images, const std::shared_ptr<const SceneLight>& light,
+                const PublishedImage* before);
+  void look_up(const NewestImages& images, const PublishedImage* before);
   void draw_newest(const NewestImages& images, Rows rows) const;
   void draw_rectangle(Rows rows) const;
   void draw_usual();
-  void draw_usual_and_before(const NewestImages& images);
+  void draw_usual_and_before(const PublishedImage& before, float sharp);
   void start_part() const;
   void list_covered(Rows rows) const;
   template <typename DrawRows>
@@ -154,7 +163,7 @@ class PredictedView {
   gl::Texture rays_;                  // RGB32F directions, only for lenses with distortion
   std::unique_ptr<Shadows> shadows_;  // from the first known light on, or since they were prepared
   gl::Texture unshaded_;              // white: where there is no light
-  bool prepares_shadows_ = false;     // with the next draw()
+  bool prepares_ = false;             // with the next draw()
   SilhouettePass silhouettes_;
   gl::Texture picture_;
   FrameGate* gate_ = nullptr;

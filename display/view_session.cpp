@@ -33,7 +33,7 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
   }
   thread_ = std::make_unique<TextureThread>(
       context.create_shared(), TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures,
-                                                    newest_image_, setup.gate, setup.prepares_shadows});
+                                                    newest_image_, setup.gate, setup.prepares});
   context.make_current();
   buffers_ = std::make_shared<const gl::SceneBuffers>(*setup.scene);
   records_ = std::make_shared<const SurfaceRecords>(*setup.surface);
@@ -43,7 +43,7 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
   }
   view_ = std::make_unique<PredictedView>(make_view(setup.left));
   view_->mix_silhouettes(setup.silhouettes);
-  if (setup.prepares_shadows && setup.textures.shadows) view_->prepare_shadows();
+  if (setup.prepares) view_->prepare();
 }
 
 std::vector<std::string> ViewSession::level_remarks() const {

@@ -27,9 +27,9 @@ struct ViewSetup {
   bool silhouettes = true;                    ///< of the view are mixed (SilhouettePass); not with `thesis`
   std::shared_ptr<FrameGate> gate = nullptr;  ///< TextureThread::Setup::gate; not with `thesis`
   std::optional<LevelSettings> levels{};      ///< of detail, of all views; nothing: in full. Not with `thesis`
-  /// What is needed once the lamp is known is compiled for the first image, TextureCore::prepare_shadows(), and the
-  /// first view: for real time. Not with `thesis`.
-  bool prepares_shadows = false;
+  /// What later images and views need is compiled for the first ones (TextureCore::prepare(),
+  /// PredictedView::prepare()): for real time. Not with `thesis`.
+  bool prepares = false;
 };
 
 /// The model's surface, cut into charts of a size that suits such views.

@@ -21,6 +21,9 @@ void delete_vertex_array(GLuint name) {
 void delete_query(GLuint name) {
   glDeleteQueries(1, &name);
 }
+void delete_sampler(GLuint name) {
+  glDeleteSamplers(1, &name);
+}
 
 namespace {
 
@@ -57,6 +60,16 @@ VertexArray create_vertex_array(const char* label) {
   glCreateVertexArrays(1, &name);
   glObjectLabel(GL_VERTEX_ARRAY, name, -1, label);
   return VertexArray(name);
+}
+
+Sampler create_level_sampler(const char* label) {
+  GLuint name = 0;
+  glCreateSamplers(1, &name);
+  glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glSamplerParameteri(name, wrap, GL_CLAMP_TO_EDGE);
+  glObjectLabel(GL_SAMPLER, name, -1, label);
+  return Sampler(name);
 }
 
 Buffer::Buffer(std::size_t bytes, const char* label)

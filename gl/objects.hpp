@@ -43,13 +43,17 @@ void delete_texture(GLuint name);
 void delete_framebuffer(GLuint name);
 void delete_vertex_array(GLuint name);
 void delete_query(GLuint name);
+void delete_sampler(GLuint name);
 
 using Framebuffer = Handle<delete_framebuffer>;
 using VertexArray = Handle<delete_vertex_array>;
 using Query = Handle<delete_query>;
+using Sampler = Handle<delete_sampler>;
 
 Framebuffer create_framebuffer(const char* label);
 VertexArray create_vertex_array(const char* label);
+/// Linear within a level and between them, clamped to edges.
+Sampler create_level_sampler(const char* label);
 
 /// A buffer of fixed size that may be written from the CPU at any time.
 class Buffer : public Handle<delete_buffer> {

@@ -25,7 +25,7 @@ ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, cons
   ViewSetup setup;
   setup.textures = textures;
   setup.levels = levels;
-  setup.prepares_shadows = true;
+  setup.prepares = true;
   setup.scene = scene.model();
   setup.left = scene.lenses()->left;
   setup.right = scene.lenses()->right;

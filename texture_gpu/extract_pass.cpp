@@ -28,7 +28,8 @@ ExtractPass::ExtractPass(std::span<const Lens> lenses)
       copy_tiles_(GL_R32UI, 4096, "tiles to copy"),
       holes_(GL_R32UI, 4096, "holes"),
       staged_(GL_R16UI, 4096, "staged heights"),
-      slots_(GL_R32UI, 4096, "height slots") {
+      slots_(GL_R32UI, 4096, "height slots"),
+      by_levels_(gl::create_level_sampler("levels of images")) {
   for (auto& tiles : tiles_) tiles = gl::BufferTexture(GL_R32UI, 4096, "tiles of a size");
   for (std::size_t v = 0; v < kSizes * lenses.size(); ++v)
     extract_[v] = extract_program(lenses, 1 + v / kSizes, v % kSizes);
@@ -130,15 +131,12 @@ void ExtractPass::sort_tiles(const Work& work, const SeenInputs& inputs) {
 void ExtractPass::run(std::size_t size, std::int64_t image, const SeenInputs& inputs, double depth_tolerance,
                       FrameGate* gate) {
   const auto& tiles = seen_tiles_[size];
-  if (tiles.empty()) return;
+  if (tiles.empty() && !prepares_) return;
   const gl::Program& program = extract_[kSizes * static_cast<std::size_t>(inputs.camera_count() - 1) + size];
   const bool levels = size + 1 == kSizes;
   for (int c = 0; levels && c < inputs.camera_count(); ++c) inputs.camera(c).build_levels();
-  const auto filter = [&](GLint mode) {
-    for (int c = 0; levels && c < inputs.camera_count(); ++c)
-      glTextureParameteri(inputs.camera(c).image().name(), GL_TEXTURE_MIN_FILTER, mode);
-  };
-  filter(GL_LINEAR_MIPMAP_LINEAR);
+  // Not by the texture's own filter: views look it up in the meantime.
+  if (levels) SeenInputs::sample_images_by(by_levels_.name());
   inputs.bind(program, depth_tolerance);
   program.set("tile_count", static_cast<int>(tiles.size()));
   program.set("image_number", static_cast<int>(image));
@@ -147,8 +145,8 @@ void ExtractPass::run(std::size_t size, std::int64_t image, const SeenInputs& in
   glBindTextureUnit(10, tiles_[size].texture());
   static constexpr const char* kKinds[kSizes] = {"tiles", "tiles of 2x2 taps", "tiles of 4x4 taps", "tiles of 8x8 taps",
                                                  "tiles of levels"};
-  dispatch_slices(program, (tiles.size() + 3) / 4, gate, kKinds[size]);
-  filter(GL_LINEAR);
+  dispatch_slices(program, std::max<std::size_t>((tiles.size() + 3) / 4, 1), gate, kKinds[size]);
+  if (levels) SeenInputs::sample_images_by(0);
 }
 
 void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const AtlasStore& store, double depth_tolerance,
@@ -164,6 +162,7 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   glBindImageTexture(0, store.colours->name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, atlas::kStoredColourFormat);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, holes_.buffer().name());
   for (std::size_t size = 0; size < kSizes; ++size) run(size, work.image, inputs, depth_tolerance, gate);
+  prepares_ = false;
   next_slice(gate, "copied tiles");
 
   copy_.use();

@@ -35,6 +35,9 @@ class ExtractPass {
     double minify_above = 1.5;
     std::int64_t image = 0;  ///< its number: old colours age with every eighth, in turns
   };
+  /// The next extract() compiles what later ones need.
+  void prepare() { prepares_ = true; }
+
   /// Extracts the images of `inputs` into all jobs (extract.comp); tiles that no camera sees are
   /// carried over (copy.comp).
   /// `gate`: in slices; may be null.
@@ -59,6 +62,8 @@ class ExtractPass {
   std::array<std::vector<std::uint32_t>, kSizes> seen_tiles_;  // by size; job << 4 | tile << 2 | cameras
   std::vector<std::uint32_t> unseen_tiles_;
   std::size_t tile_count_ = 0;
+  gl::Sampler by_levels_;  // of images
+  bool prepares_ = false;  // with the next extract()
 };
 
 /// Runs a one-dimensional dispatch of any length: the API allows 65,535 groups at once. The

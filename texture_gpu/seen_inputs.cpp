@@ -1,6 +1,11 @@
 #include "texture_gpu/seen_inputs.hpp"
 
 namespace foresight {
+namespace {
+
+constexpr GLuint kImages = 3;  // after the poses and two depths
+
+}  // namespace
 
 SeenInputs::SeenInputs()
     : uniform_(2 * sizeof(gl::CameraBlock), "cameras"), node_poses_(GL_RGBA32F, 2 * 3 * 16, "node poses") {}
@@ -31,8 +36,12 @@ void SeenInputs::bind(const gl::Program& program, double depth_tolerance, GLuint
     const CameraInput& input = camera(std::min(i, camera_count() - 1));
     const GLuint first = unit + static_cast<GLuint>(i);
     glBindTextureUnit(first + 1, input.marked_depth().name());
-    glBindTextureUnit(first + 3, input.image().name());
+    glBindTextureUnit(first + kImages, input.image().name());
   }
+}
+
+void SeenInputs::sample_images_by(GLuint sampler) {
+  for (GLuint i = 0; i < 2; ++i) glBindSampler(kImages + i, sampler);
 }
 
 }  // namespace foresight

@@ -20,6 +20,8 @@ class SeenInputs {
 
   /// Binds uniform block `block` and seven texture units from `unit` on, and sets the shared uniforms of `program`.
   void bind(const gl::Program& program, double depth_tolerance, GLuint block = 0, GLuint unit = 0) const;
+  /// How images are sampled that are bound so from unit 0 on; 0: as their textures say.
+  static void sample_images_by(GLuint sampler);
 
   int camera_count() const { return static_cast<int>(cameras_.size()); }
   const CameraInput& camera(int i) const { return *cameras_[static_cast<std::size_t>(i)]; }

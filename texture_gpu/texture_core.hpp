@@ -37,9 +37,12 @@ class TextureCore {
   /// From now on it works in slices, when a display leaves time for them. `gate` outlives this; null: at once.
   void use(FrameGate* gate) { gate_ = gate; }
 
-  /// With the next frame it compiles what is needed from the moment on at which the lamp is known, which may be in the
-  /// middle of operation: images would wait for it then. Nothing without TextureOptions::shadows.
-  void prepare_shadows() { prepares_shadows_ = options_.shadows; }
+  /// With the next frame it compiles what may be needed in the middle of operation, where images would wait for it: for
+  /// texels of any size, and, with TextureOptions::shadows, for the moment from which on the lamp is known.
+  void prepare() {
+    prepares_shadows_ = options_.shadows;
+    extract_.prepare();
+  }
 
   /// The same in two steps. The first makes the image ready to be looked up, and publishes that; the textures follow.
   /// False where there are no textures yet, beside which it could be shown: nothing is published then.

@@ -32,7 +32,7 @@ void TextureThread::run(const std::stop_token& stop, const Setup& setup) {
       }
       changed_.notify_all();
       core.use(setup.gate.get());
-      if (setup.prepares_shadows) core.prepare_shadows();
+      if (setup.prepares) core.prepare();
       work(stop, core, setup.images);
       latest_images_.publish(nullptr);
       latest_.publish(nullptr);  // its textures go with the core

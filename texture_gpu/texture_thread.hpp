@@ -24,7 +24,7 @@ class TextureThread {
     bool images = false;  ///< publish each image before its textures
     /// The display's: extraction goes on when its frames leave time. Null: whenever there is an image.
     std::shared_ptr<FrameGate> gate = nullptr;
-    bool prepares_shadows = false;  ///< TextureCore::prepare_shadows()
+    bool prepares = false;  ///< TextureCore::prepare()
   };
 
   /// `context`: shares objects with the display's context; used by this thread only from now on.
