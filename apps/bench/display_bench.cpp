@@ -12,6 +12,8 @@
 #include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
 #include "common/text.hpp"
+#include "display/view_modes.hpp"
+#include "display/view_target.hpp"
 #include "texture_gpu/frame_gate.hpp"
 
 namespace foresight {
@@ -24,7 +26,8 @@ constexpr double kJudgedRate = 25;
 constexpr double kMostRatio = 1.5, kMostIntervalMs = 60, kLeastExtraction = 1.0 / 3, kMostBeyondMs = 2;
 constexpr double kMostLate = 1e-3, kMostViewMs = 40;
 constexpr int kViewsTimed = 40;
-constexpr double kWarmUp = 0.6;  // s
+constexpr double kWarmUp = 0.6;             // s
+constexpr double kSeatsDrawingShare = 0.6;  // of an interval, as live seats have it
 const cv::Size kTimedSize{640, 480};
 
 cv::Size read_size(const std::string& text) {
@@ -68,6 +71,35 @@ json to_json(const DisplayFigures& f) {
           {"late_share_own", f.late_share_own},
           {"images_per_s", f.images_per_s}};
 }
+
+/// As the seat fills its window: the camera's own view, scaled, or a second one with the window's pixels where both can
+/// be drawn in time (SeatViews).
+class WindowDrawing {
+ public:
+  WindowDrawing(PredictedView& camera, PredictedView& larger, cv::Size window)
+      : camera_(camera),
+        larger_(larger),
+        size_(camera.lens(), kSeatsDrawingShare * 1e3 / kJudgedRate),
+        window_(window),
+        canvas_(GL_RGBA8, window.width, window.height, 0, 1, "window of the bench"),
+        target_(canvas_.name(), window.width, window.height) {}
+
+  void operator()(const ViewPlace& place, const TextureLease& textures, const ImagesLease& images, double drawing_ms) {
+    camera_.draw(place.T_world_camera, place.scene, textures, images);
+    size_.choose(window_.width, window_.height, drawing_ms);
+    if (size_.lens() && size_.lens()->width() != larger_.lens().width()) larger_.set_lens(*size_.lens());
+    if (size_.lens()) larger_.draw(place.T_world_camera, place.scene, textures, images);
+    copy_((size_.lens() ? larger_ : camera_).picture(), target_.whole());
+  }
+
+ private:
+  PredictedView &camera_, &larger_;
+  ViewSize size_;
+  cv::Size window_;
+  gl::Texture canvas_;
+  TextureTarget target_;
+  PictureCopy copy_;
+};
 
 void print_row(const char* view, double rate, const char* what, const DisplayFigures& f) {
   std::printf("%-5s %4.0f  %-22s %6.1f %7.1f %9.1f %7.1f %9.1f %9.2f %8.1f\n", view, rate, what, f.interval_p50,
@@ -117,39 +149,54 @@ struct Bench {
     bars.push_back({where + ": share of frames later than 3 intervals", both.late_share_own, kMostLate, false});
   }
 
-  void round(PredictedView& view, const DisplayView& from, double rate, BusyTextures& paced, BusyTextures& unpaced,
+  DisplayFigures show(const DrawFrame& draw, const DisplayView& from, const DisplayRound& how, BusyTextures& textures,
+                      bool extracting, const char* what) {
+    textures.run(extracting);
+    const DisplayFigures f = show_frames(draw, how, textures, how.paced ? gate : nullptr);
+    textures.run(false);
+    textures.finish(1);
+    print_row(from.name, how.rate_hz, what, f);
+    rows.push_back({{"view", from.name}, {"rate_hz", how.rate_hz}, {"what", what}, {"figures", to_json(f)}});
+    return f;
+  }
+
+  double seconds_beside(double rate) const {
+    return rate == kJudgedRate && options.long_seconds > 0 ? options.long_seconds : options.seconds;
+  }
+
+  void round(const DrawFrame& draw, const DisplayView& from, double rate, BusyTextures& paced, BusyTextures& unpaced,
              double extraction) {
     DisplayRound how{rate, options.seconds, true, from.place};
-    const auto show = [&](const char* what, BusyTextures& textures, bool extracting) {
-      textures.run(extracting);
-      const DisplayFigures f = show_frames(view, how, textures, how.paced ? gate : nullptr);
-      textures.run(false);
-      textures.finish(1);
-      print_row(from.name, rate, what, f);
-      rows.push_back({{"view", from.name}, {"rate_hz", rate}, {"what", what}, {"figures", to_json(f)}});
-      return f;
-    };
-    const DisplayFigures alone = show("frames alone", paced, false);
-    if (rate == kJudgedRate && options.long_seconds > 0) how.seconds = options.long_seconds;
-    const DisplayFigures both = show("beside the extraction", paced, true);
+    const DisplayFigures alone = show(draw, from, how, paced, false, "frames alone");
+    how.seconds = seconds_beside(rate);
+    const DisplayFigures both = show(draw, from, how, paced, true, "beside the extraction");
     how.seconds = options.seconds;
     how.paced = false;
-    show("the same, not paced", unpaced, true);
+    show(draw, from, how, unpaced, true, "the same, not paced");
     if (rate == kJudgedRate) judge(from.name, alone, both, rate, extraction);
   }
 
+  void round_in_window(const DrawFrame& draw, const DisplayView& from, BusyTextures& textures, double extraction) {
+    DisplayRound how{kJudgedRate, options.seconds, true, from.place};
+    const DisplayFigures alone = show(draw, from, how, textures, false, "in a seat's window");
+    how.seconds = seconds_beside(kJudgedRate);
+    const DisplayFigures both = show(draw, from, how, textures, true, "  and the extraction");
+    judge(from.name + std::string(", in a seat's window"), alone, both, kJudgedRate, extraction);
+  }
+
   /// Programs are compiled when a frame first needs them.
-  void warm_up(PredictedView& view, const DisplayView& from, BusyTextures& textures) {
+  void warm_up(const DrawFrame& draw, const DisplayView& from, BusyTextures& textures) {
     textures.run(true);
-    show_frames(view, {kJudgedRate, kWarmUp, true, from.place}, textures, gate);
+    show_frames(draw, {kJudgedRate, kWarmUp, true, from.place}, textures, gate);
     textures.run(false);
     textures.finish(1);
   }
 
-  void rounds(PredictedView& view, const DisplayView& from, BusyTextures& paced, BusyTextures& unpaced) {
+  void rounds(const DrawFrame& draw, const DrawFrame& in_window, const DisplayView& from, BusyTextures& paced,
+              BusyTextures& unpaced) {
     paced.take(from.images);
     unpaced.take(from.images);
-    warm_up(view, from, paced);
+    warm_up(draw, from, paced);
     const double extraction = extraction_alone(unpaced);
     undisturbed[from.name] = extraction;
     std::printf("\nextraction alone: %.1f images of %d x %d px per second\n", extraction, image_size.width,
@@ -158,7 +205,10 @@ struct Bench {
         "view  rate  what                   interval p50, p99   drawing p50, p99   input p99  late/1000 images/s\n");
     const std::vector<double> rates =
         options.rate_hz > 0 ? std::vector{options.rate_hz} : std::vector<double>(std::begin(kRates), std::end(kRates));
-    for (const double rate : rates) round(view, from, rate, paced, unpaced, extraction);
+    for (const double rate : rates) round(draw, from, rate, paced, unpaced, extraction);
+    if (options.rate_hz > 0 && options.rate_hz != kJudgedRate) return;
+    warm_up(in_window, from, paced);
+    round_in_window(in_window, from, paced, extraction);
   }
 };
 
@@ -187,14 +237,20 @@ int bench_display(const DisplayBenchOptions& options) {
   const auto buffers = std::make_shared<const gl::SceneBuffers>(*lab.scene.model);
   const auto records = std::make_shared<const SurfaceRecords>(*lab.scene.surface);
   BusyTextures paced(*bench.context, lab.scene, bench.gate), unpaced(*bench.context, lab.scene, nullptr);
-  PredictedView view(buffers, records, display_lens(size)), timed(buffers, records, display_lens(kTimedSize));
+  PredictedView view(buffers, records, display_lens(size)), camera(buffers, records, lab.scene.camera),
+      timed(buffers, records, display_lens(kTimedSize));
+  for (PredictedView* drawn : {&view, &camera}) drawn->prepare();
+  const DrawFrame draw = [&](const ViewPlace& place, const TextureLease& textures, const ImagesLease& images, double) {
+    view.draw(place.T_world_camera, place.scene, textures, images);
+  };
+  WindowDrawing in_window(camera, view, size);
   paced.take(lab.many.images);
   const ViewCost cost = cost_of_view(timed, lab.many.place, paced);
   std::printf("%d polygons, in view few %zu, many %zu; views of %d x %d px; %s\n", lab.polygons, lab.few.polygons,
               lab.many.polygons, size.width, size.height, bench.driver.renderer.c_str());
   std::printf("a view of 640 x 480 px: %.1f CPU-ms, from textures alone %.1f CPU-ms\n", cost.with_newest,
               cost.textures_alone);
-  for (const DisplayView* from : {&lab.few, &lab.many}) bench.rounds(view, *from, paced, unpaced);
+  for (const DisplayView* from : {&lab.few, &lab.many}) bench.rounds(draw, std::ref(in_window), *from, paced, unpaced);
   bench.bars.push_back({"a view of 640 x 480 px, CPU-ms", cost.with_newest, kMostViewMs, false});
   std::printf("\n");
   for (const Bar& bar : bench.bars)

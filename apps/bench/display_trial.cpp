@@ -38,6 +38,7 @@ class EachInterval {
   }
   void drawn() { glFinish(); }
   void swapped() {}
+  PacingFigures figures() const { return {}; }
 
  private:
   Clock& clock_;
@@ -46,7 +47,7 @@ class EachInterval {
 };
 
 template <typename Pacer>
-std::vector<Shown> show(PredictedView& view, const DisplayRound& round, const BusyTextures& textures, Clock& clock,
+std::vector<Shown> show(const DrawFrame& draw, const DisplayRound& round, const BusyTextures& textures, Clock& clock,
                         Pacer pacer) {
   std::vector<Shown> out;
   TakenCores taken(kRenderer);
@@ -58,7 +59,7 @@ std::vector<Shown> show(PredictedView& view, const DisplayRound& round, const Bu
     frame.look = clock.now();
     const TextureLease lease = textures.textures().acquire();
     const ImagesLease images = textures.images().acquire();
-    view.draw(round.place.T_world_camera, round.place.scene, lease, images);
+    draw(round.place, lease, images, ms(pacer.figures().cost));
     pacer.drawn();
     frame.swapped = clock.now();
     pacer.swapped();
@@ -101,7 +102,7 @@ DisplayFigures figures_of(const std::vector<Shown>& shown, double rate_hz) {
 
 BusyTextures::BusyTextures(gl::Context& context, const DisplayScene& scene, std::shared_ptr<FrameGate> gate)
     : thread_(context.create_shared(),
-              {scene.model, scene.surface, scene.camera, std::nullopt, {}, true, std::move(gate)}) {
+              {scene.model, scene.surface, scene.camera, std::nullopt, {}, true, std::move(gate), true}) {
   context.make_current();
   feeder_ = std::jthread([this](const std::stop_token& stop) {
     try {
@@ -150,15 +151,15 @@ void BusyTextures::finish(std::size_t images) {
   check();
 }
 
-DisplayFigures show_frames(PredictedView& view, const DisplayRound& round, BusyTextures& textures,
+DisplayFigures show_frames(const DrawFrame& draw, const DisplayRound& round, BusyTextures& textures,
                            const std::shared_ptr<FrameGate>& gate) {
   MonotonicClock clock;
   const std::uint64_t before = textures.finished();
   const RobotTime start = clock.now();
   FramePacingOptions pacing;
   pacing.rate_hz = round.rate_hz;
-  const auto shown = round.paced ? show(view, round, textures, clock, FramePacer(clock, pacing, gate))
-                                 : show(view, round, textures, clock, EachInterval(clock, round.rate_hz));
+  const auto shown = round.paced ? show(draw, round, textures, clock, FramePacer(clock, pacing, gate))
+                                 : show(draw, round, textures, clock, EachInterval(clock, round.rate_hz));
   textures.check();
   DisplayFigures out = figures_of(shown, round.rate_hz);
   out.images_per_s = static_cast<double>(textures.finished() - before) / to_seconds(clock.now() - start);

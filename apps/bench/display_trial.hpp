@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -70,9 +71,13 @@ struct DisplayFigures {
   double images_per_s = 0;                    ///< extracted meanwhile
 };
 
-/// Draws `view` with the newest image and `textures` for a while; each frame ends when the GPU has finished it. `gate`:
-/// of `textures`, where the round is paced.
-DisplayFigures show_frames(PredictedView& view, const DisplayRound& round, BusyTextures& textures,
+/// Draws a place with textures and newest images, leased; `drawing_ms`: what drawing takes, as it is counted on; 0: not
+/// known.
+using DrawFrame = std::function<void(const ViewPlace&, const TextureLease&, const ImagesLease&, double drawing_ms)>;
+
+/// Draws with the newest image and `textures` for a while; each frame ends when the GPU has finished it. `gate`: of
+/// `textures`, where the round is paced.
+DisplayFigures show_frames(const DrawFrame& draw, const DisplayRound& round, BusyTextures& textures,
                            const std::shared_ptr<FrameGate>& gate);
 
 }  // namespace foresight
