@@ -160,7 +160,7 @@ void PredictedView::draw_rows(DrawRows draw) const {
 }
 
 void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures) {
-  for (const std::shared_ptr<const SceneLight>& light : lights_to_prepare(state, textures.light))
+  for (const std::shared_ptr<const SceneLight>& light : lights_to_prepare(prepares_, state, textures.light))
     draw_lit(T_world_camera, state, textures, light);
   draw_lit(T_world_camera, state, textures, textures.light);
 }
@@ -169,17 +169,17 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
                          const NewestImages& images) {
   const std::shared_ptr<const SceneLight>& light = images.newest->light;
   const PublishedImage* before = images.before ? &*images.before : nullptr;
-  for (const std::shared_ptr<const SceneLight>& other_light : lights_to_prepare(state, light))
+  for (const std::shared_ptr<const SceneLight>& other_light : lights_to_prepare(prepares_images_, state, light))
     for (const PublishedImage* way : {before, before ? nullptr : &*images.newest})
       draw_lit(T_world_camera, state, textures, images, other_light, way);
   draw_lit(T_world_camera, state, textures, images, light, before);
 }
 
-/// Known and not known, each twice: renderers may compile a program anew by what others have left bound. None if all is
-/// prepared.
+/// Known and not known, each twice: renderers may compile a program anew by what others have left bound. None where
+/// nothing is to be prepared; nor is it from now on.
 std::vector<std::shared_ptr<const SceneLight>> PredictedView::lights_to_prepare(
-    const SceneState& state, const std::shared_ptr<const SceneLight>& light) {
-  if (!std::exchange(prepares_, false)) return {};
+    bool& prepares, const SceneState& state, const std::shared_ptr<const SceneLight>& light) const {
+  if (!std::exchange(prepares, false)) return {};
   const auto known = light ? light : std::make_shared<const SceneLight>(light_from_above(*scene_, state));
   return {nullptr, known, nullptr, known};
 }

@@ -50,9 +50,9 @@ class PredictedView {
   /// or stay what was looked up.
   void mix_silhouettes(bool mixed) { mixes_ = mixed; }
 
-  /// The next draw() compiles what later ones need: with the textures' light known or not, and with an image before the
-  /// newest one or without. It takes some drawings longer.
-  void prepare() { prepares_ = true; }
+  /// The next draw(), and the next one with images, compile what later ones need: with the textures' light known or
+  /// not, with an image before the newest one or without. They take some drawings longer.
+  void prepare() { prepares_ = prepares_images_ = true; }
 
   /// From now on only this part of what is seen is drawn, and costs what it covers; nothing: all of it. The textures
   /// must outlive that. Throws std::invalid_argument: a lens with distortion, or ViewPrograms::single.
@@ -122,8 +122,8 @@ class PredictedView {
   struct Rows {
     int first = 0, last = 0;  // beyond the last
   };
-  std::vector<std::shared_ptr<const SceneLight>> lights_to_prepare(const SceneState& state,
-                                                                   const std::shared_ptr<const SceneLight>& light);
+  std::vector<std::shared_ptr<const SceneLight>> lights_to_prepare(
+      bool& prepares, const SceneState& state, const std::shared_ptr<const SceneLight>& light) const;
   void draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
                 const std::shared_ptr<const SceneLight>& light);
   void draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
@@ -159,11 +159,11 @@ class PredictedView {
   std::unique_ptr<Projection> projection_;  // from the first such draw() on
   std::unique_ptr<KeptPass> kept_;          // from the first one with images beside the newest on
   gl::Buffer camera_;
-  gl::BufferTexture node_poses_;      // T_node_camera: three rows a node
-  gl::Texture rays_;                  // RGB32F directions, only for lenses with distortion
-  std::unique_ptr<Shadows> shadows_;  // from the first known light on, or since they were prepared
-  gl::Texture unshaded_;              // white: where there is no light
-  bool prepares_ = false;             // with the next draw()
+  gl::BufferTexture node_poses_;                     // T_node_camera: three rows a node
+  gl::Texture rays_;                                 // RGB32F directions, only for lenses with distortion
+  std::unique_ptr<Shadows> shadows_;                 // from the first known light on, or since they were prepared
+  gl::Texture unshaded_;                             // white: where there is no light
+  bool prepares_ = false, prepares_images_ = false;  // with the next draw(); with the next one with images
   SilhouettePass silhouettes_;
   gl::Texture picture_;
   FrameGate* gate_ = nullptr;
