@@ -180,7 +180,7 @@ struct Bench {
     DisplayRound how{kJudgedRate, options.seconds, true, from.place};
     const DisplayFigures alone = show(draw, from, how, textures, false, "in a seat's window");
     how.seconds = seconds_beside(kJudgedRate);
-    const DisplayFigures both = show(draw, from, how, textures, true, "  and the extraction");
+    const DisplayFigures both = show(draw, from, how, textures, true, "window and extraction");
     judge(from.name + std::string(", in a seat's window"), alone, both, kJudgedRate, extraction);
   }
 
