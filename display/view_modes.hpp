@@ -43,6 +43,9 @@ const char* to_string(ViewPaint paint);
 /// proportions. Both at least 1.
 Lens fitted_lens(const Lens& camera, int width, int height);
 
+/// Of the time between pictures, what live seats let their drawings take: ViewSize.
+inline constexpr double kDrawingShare = 0.6;
+
 /// Is the operator's view worth drawing a second time, with more pixels than the camera has? Those of its place in the
 /// window, as far as all can be drawn in time: the camera's own view, which images are compared with, is drawn anyhow.
 class ViewSize {

@@ -27,6 +27,14 @@ layout(local_size_x = 64) in;  // a block each
 layout(local_size_x = 8, local_size_y = 8) in;
 #endif
 
+#if STEP > 0
+void append_block(uint item, float blocker) {
+  uint i = 2u * atomicAdd(work_args[3], 1u);
+  work_items[i] = item;
+  work_items[i + 1u] = floatBitsToUint(blocker);
+}
+#endif
+
 bool ray_through(ivec2 pixel, out vec3 ray) {
   ray = vec3((vec2(pixel) - camera.focal.zw) / camera.focal.xy, 1.0);
   if (lens_model(camera) == 0) return true;
@@ -66,8 +74,7 @@ vec3 factor(ivec2 pixel, float blocker) {
   return may_shade(q) == 0.0 ? vec3(1.0) : shadow_factor(q, -normalize(mat3(T_lamp_camera) * normal), blocker);
 }
 
-uniform bool each;   // of the pixels of the blocks, which are those that were listed for it
-uniform int points;  // 16, or 5: a loop of unknown length is not unrolled, which would take a second to compile
+uniform bool each;  // of the pixels of the blocks, which are those that were listed for it
 const float kBent = 0.003;               // share of its depth by which a block may differ from a plane
 const float kEven = 0.15, kLinear = 0.01;  // of factors: between corners, and of the middle from their mean
 
@@ -92,6 +99,7 @@ void main() {
   if (!next_work(item)) return;
   float blocker = number_of_work(1);
   ivec2 first = ivec2(item & 0xffffu, item >> 16);
+  int points = each ? 16 : 5;  // a loop of unknown length is not unrolled, which would take a second to compile
   vec3 at[5];
   for (int i = 0; i < points; ++i) {
     ivec2 pixel = first + (each ? ivec2(i & 3, i >> 2) : i == 4 ? ivec2(1) : 3 * ivec2(i & 1, i >> 1));
@@ -111,9 +119,7 @@ void main() {
     }
     return;
   }
-  uint i = 2u * atomicAdd(work_args[3], 1u);
-  work_items[i] = item;
-  work_items[i + 1u] = floatBitsToUint(blocker);
+  append_block(item, blocker);
 }
 #else
 // What is seen at the pixel, in the lamp's frame; behind the lamp where that is nothing.
@@ -140,9 +146,7 @@ void main() {
   ivec2 first = ivec2(item & 0xffffu, item >> 16), last = min(first + 3, ivec2(camera.size.xy) - 1);
   float a = blocker_at(first), b = blocker_at(last);
   if (max(a, b) == 0.0) return;
-  uint i = 2u * atomicAdd(work_args[3], 1u);
-  work_items[i] = item;
-  work_items[i + 1u] = floatBitsToUint(min(a, b) > 0.0 ? 0.5 * (a + b) : max(a, b));
+  append_block(item, min(a, b) > 0.0 ? 0.5 * (a + b) : max(a, b));
 }
 #else
 bool may_be_shaded(ivec2 pixel) {

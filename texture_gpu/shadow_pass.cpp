@@ -58,13 +58,11 @@ void ShadowPass::operator()(const Camera& camera, const ShadowMap& map) {
   uneven_.start(most);
   start(shade_);
   shade_.set("each", false);
-  shade_.set("points", 5);
   glBindImageTexture(0, light_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   blocks_.dispatch();
   uneven_.finish(kWorkUnit);
-  start(shade_);
+  shade_.use();
   shade_.set("each", true);
-  shade_.set("points", 16);
   uneven_.dispatch();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }

@@ -26,8 +26,7 @@ constexpr double kJudgedRate = 25;
 constexpr double kMostRatio = 1.5, kMostIntervalMs = 60, kLeastExtraction = 1.0 / 3, kMostBeyondMs = 2;
 constexpr double kMostLate = 1e-3, kMostViewMs = 40;
 constexpr int kViewsTimed = 40;
-constexpr double kWarmUp = 0.6;             // s
-constexpr double kSeatsDrawingShare = 0.6;  // of an interval, as live seats have it
+constexpr double kWarmUp = 0.6;  // s
 const cv::Size kTimedSize{640, 480};
 
 cv::Size read_size(const std::string& text) {
@@ -79,7 +78,7 @@ class WindowDrawing {
   WindowDrawing(PredictedView& camera, PredictedView& larger, cv::Size window)
       : camera_(camera),
         larger_(larger),
-        size_(camera.lens(), kSeatsDrawingShare * 1e3 / kJudgedRate),
+        size_(camera.lens(), kDrawingShare * 1e3 / kJudgedRate),
         window_(window),
         canvas_(GL_RGBA8, window.width, window.height, 0, 1, "window of the bench"),
         target_(canvas_.name(), window.width, window.height) {}

@@ -17,8 +17,9 @@ struct DisplayBenchOptions {
 };
 
 /// The lab, seen from where most and from where fewest of its polygons are, at the rates of the thesis' table 7.5:
-/// frames alone, with the extraction beside them, and the same without pacing. Returns 1 where a bar of
-/// docs/performance.md is missed. Throws RuntimeFailure (no OpenGL), InputError (a size).
+/// frames alone, with the extraction beside them, and the same without pacing; at 25 Hz also as the seat fills a window
+/// of that size, alone and beside the extraction. Returns 1 where a bar of docs/performance.md is missed. Throws
+/// RuntimeFailure (no OpenGL), InputError (a size).
 int bench_display(const DisplayBenchOptions& options);
 
 }  // namespace foresight

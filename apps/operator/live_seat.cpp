@@ -26,7 +26,6 @@ namespace {
 constexpr Duration kLongestWait = std::chrono::milliseconds(20);
 constexpr double kUnpaced = 1000;  // Hz, of the source: FramePacer decides
 constexpr int kWindowWidth = 1280, kWindowHeight = 800;
-constexpr double kDrawingShare = 0.6;  // of the time between pictures
 constexpr std::size_t kUnderWay = 16;  // instants of what the robot will do as it was sent already
 
 // A small window shows only the first ones: what stops and drives the robot.
