@@ -18,7 +18,6 @@ constexpr int kBand = 64;        // rows: fewer cost as much as these, as each b
 constexpr GLuint kListUnit = 5, kLightUnit = 6, kPlanesUnit = 7, kHomographiesUnit = 8, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
 constexpr unsigned kBeforeBlock = 2;
-constexpr std::size_t kWordsOfBefore = 5;  // of its list: the pixel, and how it is seen
 
 enum class Cases { image, usual, every };
 
@@ -27,7 +26,6 @@ struct Pixels {
   bool listed = false;   // not all of them
   bool blended = false;  // with newer images, which the picture holds
   bool before = false;   // what the image before shows is left to it
-  bool found = false;    // the list says how the image shows them
   bool homographies = false;
 };
 
@@ -38,7 +36,6 @@ std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases,
   defines.push_back("LISTED " + std::to_string(pixels.listed));
   defines.push_back("BLENDED " + std::to_string(pixels.blended));
   defines.push_back("BEFORE " + std::to_string(pixels.before));
-  defines.push_back("FOUND " + std::to_string(pixels.found));
   defines.push_back("HOMOGRAPHIES " + std::to_string(pixels.homographies));
   defines.push_back("FRAGMENT " + std::to_string(fragment));
   defines.emplace_back("KEPT 0");
@@ -80,12 +77,12 @@ PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool l
     : newest(whole_view_program(std::array{view, lens}, Cases::image,
                                 {.levels = levels, .homographies = with_homographies})),
       before(view_program(std::array{view, lens}, Cases::image,
-                          {.levels = levels, .listed = true, .blended = true, .found = true})),
+                          {.levels = levels, .listed = true, .blended = true})),
       usual(view_program(std::array{view, lens}, Cases::usual,
                          {.levels = levels, .listed = true, .blended = true, .before = true})),
       rest(view_program({&view, 1}, Cases::every, {.levels = levels, .listed = true, .blended = true})),
       unseen("pixels that the newest image does not see", kGroup),
-      of_before("pixels that the image before shows", kGroup, kWordsOfBefore),
+      of_before("pixels that the image before shows", kGroup),
       framebuffer(gl::create_framebuffer("newest image")),
       rectangle(gl::create_vertex_array("newest image")) {
   if (with_homographies) homographies.emplace();

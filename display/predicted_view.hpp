@@ -98,7 +98,7 @@ class PredictedView {
     gl::Program newest, before, usual, rest;
     gl::Program newest_of_part, usual_alone;  // once they are needed: the latter without an image before
     WorkList unseen;                          // by the newest image
-    WorkList of_before;                       // of these, what the one before shows, and how
+    WorkList of_before;                       // of these, what the one before shows
     SeenInputs newest_inputs, inputs_before;
     gl::Framebuffer framebuffer;  // the newest image is drawn into
     gl::VertexArray rectangle;

@@ -2,7 +2,6 @@
 #if LISTED
 #define WORK_UNIT 5
 #define ITEMS_PER_GROUP 64
-#define WORDS_PER_ITEM (FOUND == 1 ? 5 : 1)
 #include "work_item.glsl"
 layout(local_size_x = 64) in;
 #else

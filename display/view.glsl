@@ -11,8 +11,7 @@
 //
 // view.frag and view.comp choose the pixels. Defines: CASES 0: an image; 1: the usual case; 2: every case.
 //          LEVELS: seen_plane.glsl. LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds newer
-//          images already. BEFORE: 1 where what the image before shows is left to it. FRAGMENT: 1 in view.frag. FOUND: 1 where the
-//          list says how the image shows a pixel.
+//          images already. BEFORE: 1 where what the image before shows is left to it. FRAGMENT: 1 in view.frag.
 //          HOMOGRAPHIES: 1 where those of the triangles' planes to the image are there (homographies.comp).
 //          KEPT: 1 for an image that is blended over the newest one where it saw from the eye's side (kept.glsl).
 #define IMAGE 0
@@ -215,13 +214,8 @@ void leave_to_next(ivec2 pixel) {
 #endif
 #if BEFORE
 layout(binding = 2, std430) buffer ListBefore { uint before_args[4]; uint before_items[]; };
-void leave_to_before(ivec2 pixel, Sighting seen) {
-  uint i = 5u * atomicAdd(before_args[3], 1u);
-  before_items[i] = uint(pixel.x) | uint(pixel.y) << 16;
-  before_items[i + 1u] = floatBitsToUint(seen.weight);
-  before_items[i + 2u] = floatBitsToUint(seen.pixel.x);
-  before_items[i + 3u] = floatBitsToUint(seen.pixel.y);
-  before_items[i + 4u] = floatBitsToUint(seen.finer);
+void leave_to_before(ivec2 pixel) {
+  before_items[atomicAdd(before_args[3], 1u)] = uint(pixel.x) | uint(pixel.y) << 16;
 }
 #endif
 
@@ -245,11 +239,6 @@ void draw_pixel(ivec2 pixel) {
 #elif CASES == IMAGE
 // How the image shows a pixel; false where no model is.
 bool find_sighting(ivec2 pixel, out Sighting seen) {
-#if FOUND
-  find_light(pixel);
-  seen = Sighting(number_of_work(1), vec2(number_of_work(2), number_of_work(3)), number_of_work(4));
-  return true;
-#else
 #if HOMOGRAPHIES
   Surface shown;
   bool on_model = find_surface(pixel, shown);
@@ -260,7 +249,6 @@ bool find_sighting(ivec2 pixel, out Sighting seen) {
   seen = Sighting(0.0, vec2(0.0), 1.0);
   if (on_model) seen = sighting_of(shown);
   return on_model;
-#endif
 }
 
 void draw_pixel(ivec2 pixel) {
@@ -281,9 +269,8 @@ void draw_pixel(ivec2 pixel) {
     return;
   }
 #if BEFORE
-  Sighting seen = sighting_of(point);
-  if (seen.weight > 0.0) {
-    leave_to_before(pixel, seen);
+  if (sighting_of(point).weight > 0.0) {
+    leave_to_before(pixel);
     return;
   }
 #endif

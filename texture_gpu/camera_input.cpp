@@ -12,6 +12,7 @@ namespace foresight {
 namespace {
 
 constexpr double kUploadTimeout = 5;  // seconds
+constexpr std::size_t kMostStaging = 3;
 
 gl::Faces faces_with_margin(const Lens& lens, double margin_px) {
   return gl::faces_for(lens, static_cast<int>(std::ceil(margin_px)) + 2);
@@ -30,19 +31,28 @@ CameraInput::Camera::Camera(const Lens& seen_through, const gl::Faces& of_faces)
       block(sizeof(gl::CameraBlock), "camera") {
   const gl::CameraBlock content = gl::make_camera_block(lens, of_faces);
   block.write(std::span(&content, 1));
-  const auto bytes = static_cast<GLsizeiptr>(4) * lens.width() * lens.height();
-  constexpr GLbitfield kFlags = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  for (Staging& staging : ring) {
-    GLuint name = 0;
-    glCreateBuffers(1, &name);
-    staging.buffer = gl::Handle<gl::delete_buffer>(name);
-    glNamedBufferStorage(name, bytes, nullptr, kFlags);
-    staging.memory = glMapNamedBufferRange(name, 0, bytes, kFlags);
-  }
 }
 
 CameraInput::Camera::~Camera() {
-  for (Staging& staging : ring) glUnmapNamedBuffer(staging.buffer.name());
+  for (const Staging& one : staging) glUnmapNamedBuffer(one.buffer.name());
+}
+
+CameraInput::Staging::Staging(GLsizeiptr bytes) {
+  constexpr GLbitfield kFlags = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  buffer = gl::Handle<gl::delete_buffer>(name);
+  glNamedBufferStorage(name, bytes, nullptr, kFlags);
+  memory = glMapNamedBufferRange(name, 0, bytes, kFlags);
+}
+
+CameraInput::Staging& CameraInput::Camera::free_staging() {
+  const bool is_busy = staging.empty() || !staging.front().read.signalled();
+  if (is_busy && staging.size() < kMostStaging)
+    staging.emplace(staging.begin(), static_cast<GLsizeiptr>(4) * lens.width() * lens.height());
+  staging.front().read.wait(kUploadTimeout);
+  std::ranges::rotate(staging, staging.begin() + 1);
+  return staging.back();
 }
 
 CameraInput::CameraInput(const Lens& lens, double largest_margin_px)
@@ -64,9 +74,7 @@ std::shared_ptr<CameraInput> CameraInput::another() const {
 
 void CameraInput::upload(const cv::Mat& pixels) {
   CV_Assert(pixels.cols == lens().width() && pixels.rows == lens().height());
-  Staging& staging = camera_->ring[camera_->next];
-  camera_->next = (camera_->next + 1) % camera_->ring.size();
-  staging.read.wait(kUploadTimeout);
+  Staging& staging = camera_->free_staging();
   cv::Mat target(pixels.rows, pixels.cols, CV_8UC4, staging.memory);
   cv::cvtColor(pixels, target, pixels.channels() == 1 ? cv::COLOR_GRAY2RGBA : cv::COLOR_BGR2RGBA);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, staging.buffer.name());

@@ -1,8 +1,8 @@
 // Everything the extraction keeps for one camera on the GPU: its image and its view of the model.
 #pragma once
 
-#include <array>
 #include <memory>
+#include <vector>
 
 #include "gl/camera_block.hpp"
 #include "gl/raster_pass.hpp"
@@ -10,8 +10,8 @@
 
 namespace foresight {
 
-/// One context. A ring of mapped buffers carries images to the GPU, so that the next one can be
-/// written while the last is still being read.
+/// One context. Mapped buffers carry images to the GPU, in turn, so that the next one can be written while the last is
+/// still being read; there are as many of them as that takes.
 class CameraInput {
  public:
   CameraInput(const Lens& lens, double largest_margin_px);
@@ -42,6 +42,7 @@ class CameraInput {
 
  private:
   struct Staging {
+    explicit Staging(GLsizeiptr bytes);
     gl::Handle<gl::delete_buffer> buffer;
     void* memory = nullptr;
     gl::Fence read;  // passed when the GPU has fetched it
@@ -54,8 +55,9 @@ class CameraInput {
     gl::FaceImages faces;
     gl::Texture rays;
     gl::Buffer block;
-    std::array<Staging, 3> ring;
-    std::size_t next = 0;
+    /// One that the GPU does not read any more.
+    Staging& free_staging();
+    std::vector<Staging> staging;  // the one that was used longest ago first
   };
   explicit CameraInput(std::shared_ptr<Camera> camera);
 
