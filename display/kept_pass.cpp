@@ -30,8 +30,7 @@ void KeptPass::compile(const NewestImages& images, const Lens& view) {
   std::vector<Lens> lenses{view, images.newest->camera->lens()};
   for (const auto& other : images.others) lenses.push_back(other->camera->lens());
   auto defines = gl::camera_defines(lenses);
-  for (const char* define :
-       {"CASES 0", "LISTED 0", "BLENDED 0", "BEFORE 0", "HOMOGRAPHIES 0", "FRAGMENT 1", "KEPT 1"})
+  for (const char* define : {"CASES 0", "LISTED 0", "BLENDED 0", "BEFORE 0", "HOMOGRAPHIES 0", "FRAGMENT 1", "KEPT 1"})
     defines.emplace_back(define);
   defines.push_back("LEVELS " + std::to_string(levels_));
   if (program_ && defines == defines_) return;

@@ -76,8 +76,7 @@ void set_tone(const gl::Program& program, float gain, float sharp, const Publish
 PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool levels, bool with_homographies)
     : newest(whole_view_program(std::array{view, lens}, Cases::image,
                                 {.levels = levels, .homographies = with_homographies})),
-      before(view_program(std::array{view, lens}, Cases::image,
-                          {.levels = levels, .listed = true, .blended = true})),
+      before(view_program(std::array{view, lens}, Cases::image, {.levels = levels, .listed = true, .blended = true})),
       usual(view_program(std::array{view, lens}, Cases::usual,
                          {.levels = levels, .listed = true, .blended = true, .before = true})),
       rest(view_program({&view, 1}, Cases::every, {.levels = levels, .listed = true, .blended = true})),
@@ -172,13 +171,12 @@ void PredictedView::draw(const Pose& T_world_camera, const SceneState& state, co
   draw_lit(T_world_camera, state, textures, images, light, before);
 }
 
-/// Known and not known, each twice: renderers may compile a program anew by what others have left bound. None where
-/// nothing is to be prepared; nor is it from now on.
+/// Known and not known. None where nothing is to be prepared; nor is it from now on.
 std::vector<std::shared_ptr<const SceneLight>> PredictedView::lights_to_prepare(
     bool& prepares, const SceneState& state, const std::shared_ptr<const SceneLight>& light) const {
   if (!std::exchange(prepares, false)) return {};
   const auto known = light ? light : std::make_shared<const SceneLight>(light_from_above(*scene_, state));
-  return {nullptr, known, nullptr, known};
+  return {nullptr, known};
 }
 
 void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
@@ -268,10 +266,12 @@ void PredictedView::draw_newest(const NewestImages& images, Rows rows) const {
   const gl::Program& newest = draws_part_ ? p.newest_of_part : p.newest;
   p.newest_inputs.bind(newest, images.newest->depth_tolerance, kSeenBlock, kSeenUnit);
   newest.set("sharp", images.newest->sharp);
-  if (draws_part_)
+  if (draws_part_) {
     part_->pixels.dispatch();
-  else
+    reset_samplers_();
+  } else {
     draw_rectangle(rows);
+  }
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   p.unseen.finish(kListUnit);
 }
@@ -309,6 +309,7 @@ void PredictedView::draw_usual_and_before(const PublishedImage& before, float sh
   p.inputs_before.bind(p.before, before.depth_tolerance, kSeenBlock, kSeenUnit);
   p.before.set("sharp", sharp);
   p.of_before.dispatch();
+  reset_samplers_();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

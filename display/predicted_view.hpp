@@ -14,6 +14,7 @@
 #include "display/surface_records.hpp"
 #include "gl/camera_block.hpp"
 #include "gl/program.hpp"
+#include "gl/sampler_reset.hpp"
 #include "texture_gpu/frame_gate.hpp"
 #include "texture_gpu/published_image.hpp"
 #include "texture_gpu/published_textures.hpp"
@@ -166,6 +167,7 @@ class PredictedView {
   bool prepares_ = false, prepares_images_ = false;  // with the next draw(); with the next one with images
   SilhouettePass silhouettes_;
   gl::Texture picture_;
+  gl::SamplerReset reset_samplers_;
   FrameGate* gate_ = nullptr;
   bool mixes_ = true;
   ViewPaint paint_ = ViewPaint::colours;

@@ -114,6 +114,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   atlas_.write_job_geometry(allocation.jobs, frame.views, geometry_);
   extract_.extract({.jobs = allocation.jobs, .masks = allocation.masks, .geometry = geometry_, .image = image_},
                    frame.inputs, store_, options_.depth_tolerance, gate_);
+  reset_samplers_();
   mark("extract");
   fill_and_finish(allocation, *next);
   atlas_.note_holes(allocation, extract_.read_holes(allocation.jobs.size()));
@@ -230,6 +231,7 @@ void TextureCore::find_lamp() {
   witnesses_ = lamp_finder_.number();
   lamp_finder_.add(image.scene, image.T_world_camera.translation(),
                    witness_pass_.brightness(newest_.inputs, image.T_world_camera, options_.depth_tolerance));
+  reset_samplers_();
   mark("lamp");
 }
 
@@ -339,6 +341,7 @@ void TextureCore::compare_with_textures() {
   sharpness_.update(survey_.agreement(newest_.inputs, charts_, store_, *current_, options_.depth_tolerance,
                                       static_cast<int>(image_ % wide), wide));
   newest_.compared = true;
+  reset_samplers_();
   mark("exposure");
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "gl/sampler_reset.hpp"
 #include "texture_gpu/edge_pass.hpp"
 #include "texture_gpu/extract_pass.hpp"
 #include "texture_gpu/extraction_report.hpp"
@@ -105,6 +106,7 @@ class TextureCore {
   std::unique_ptr<ShadowMap> shadow_map_;  // from then on, or since they were prepared
   std::vector<ShadowPass> shadows_;        // one for each camera
   StageClock clock_;
+  gl::SamplerReset reset_samplers_;
   FrameGate* gate_ = nullptr;
 
   FrameOnGpu newest_, before_;
