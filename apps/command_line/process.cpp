@@ -73,11 +73,12 @@ void hold_standard_streams() {
 
 /// Memory of pictures and of what compiles shaders goes back to the system when it is free: the C library's own rule
 /// grows with each large block, and each of its arenas, eight a processor, keeps what its threads have once needed.
+/// With two of them it was chance whether what compiles shaders left its gaps in one or in both, 10 MB.
 void return_free_memory() {
   constexpr int kLarge = 256 << 10;
   ::mallopt(M_MMAP_THRESHOLD, kLarge);
   ::mallopt(M_TRIM_THRESHOLD, kLarge);
-  ::mallopt(M_ARENA_MAX, 2);
+  ::mallopt(M_ARENA_MAX, 1);
 }
 
 /// 0 or errno.
