@@ -99,6 +99,7 @@ Texture::Texture(GLenum format, int width, int height, int layers, int levels, c
     glTextureStorage3D(name(), levels, format, width, height, layers);
   else
     glTextureStorage2D(name(), levels, format, width, height);
+  // Of one level, too: one sampler state for all of them (sampler_reset.hpp).
   glTextureParameteri(name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
   glTextureParameteri(name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   glTextureParameteri(name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);

@@ -32,9 +32,7 @@ gl::Texture reserve(GLenum format, std::uint32_t slots, int levels, const char* 
 }
 
 gl::Texture reserve_colours(std::uint32_t slots) {
-  gl::Texture out = reserve(atlas::kColourFormat, slots, atlas::kLevels, "atlas colours");
-  glTextureParameteri(out.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
-  return out;
+  return reserve(atlas::kColourFormat, slots, atlas::kLevels, "atlas colours");
 }
 
 gl::Texture reserve_heights(std::uint32_t slots) {
