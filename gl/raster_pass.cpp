@@ -4,6 +4,11 @@
 #include <stdexcept>
 
 namespace foresight::gl {
+namespace {
+
+constexpr double kOutside = 2 * kNearPlane;  // m from a body: nothing of it that is in view is cut by the near plane
+
+}  // namespace
 
 FaceImages::FaceImages(const Faces& f, bool with_surface, bool with_planes)
     : faces(f), depth(GL_DEPTH_COMPONENT32F, f.width, f.height, f.count, 1, "face depth") {
@@ -61,6 +66,10 @@ void RasterPass::set_node(const Program& program, const Pose& T_face_world, cons
   const Pose T_face_node = T_face_world * state.T_world_node[static_cast<std::size_t>(range.node)];
   program.set("T_face_node", T_face_node.matrix().cast<float>().eval());
   program.set("first_triangle", range.first_triangle);
+  // Of a part of a view, backs may be seen where what is before them is left out.
+  const auto& box = scene_->boxes().box[static_cast<std::size_t>(range.node)];
+  const bool is_outside = box.exteriorDistance(T_face_node.inverse().translation()) > kOutside;
+  (range.is_solid && is_outside && !part_ ? glEnable : glDisable)(GL_CULL_FACE);
 }
 
 void RasterPass::draw(const Program& program, const Pose& T_face_world, const SceneState& state,
@@ -112,6 +121,7 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
   glViewport(0, 0, faces.width, faces.height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
+  glCullFace(GL_FRONT);  // rows run downwards: what faces the camera turns the other way round
   const Pose T_camera_world = T_world_camera.inverse();
   triangles_ = 0;
   culled_faces_ = 0;
@@ -139,6 +149,8 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
     else
       draw(program, T_face_world, state, seen);
   }
+  glDisable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);

@@ -46,7 +46,8 @@ std::vector<bool> seen_nodes(const Pose& T_world_face, const Faces& faces, const
                              const CellGraph* cells, const SceneState& state, LeavesOut leaves_out);
 
 /// Draws the nodes of the scene at the poses of one state, but for those that are out of view, or hidden by the walls
-/// of cells, or, of large scenes, by whatever is before them. Belongs to the context it was built in.
+/// of cells, or, of large scenes, by whatever is before them. Of solid bodies only what faces the camera is drawn.
+/// Belongs to the context it was built in.
 class RasterPass {
  public:
   /// `with_surface` as in the FaceImages that it will draw into.
@@ -62,7 +63,7 @@ class RasterPass {
   void draw_only(std::vector<bool> nodes) { only_ = std::move(nodes); }
 
   /// Fills `target` as seen from T_world_camera. `depth_copy`: R32F array that gets the depth, too; only without
-  /// surfaces. Leaves framebuffer 0 bound and depth test off.
+  /// surfaces. Leaves framebuffer 0 bound, depth test and culling of faces off.
   void operator()(const Pose& T_world_camera, const SceneState& state, const FaceImages& target,
                   const Texture* depth_copy = nullptr) const;
   /// That the last call gave to the GPU, on all faces. Waits for it where the GPU decided.

@@ -1,5 +1,7 @@
 #include "gl/scene_buffers.hpp"
 
+#include "scene/solid.hpp"
+
 namespace foresight::gl {
 
 SceneBuffers::SceneBuffers(const SceneModel& scene) : boxes_(scene) {
@@ -11,7 +13,7 @@ SceneBuffers::SceneBuffers(const SceneModel& scene) : boxes_(scene) {
     const Mesh& mesh = scene.nodes()[n].mesh;
     if (mesh.triangles.empty()) continue;
     ranges_.push_back({static_cast<int>(n), static_cast<GLsizei>(3 * mesh.triangles.size()), indices.size(),
-                       static_cast<GLint>(vertices.size()), triangles});
+                       static_cast<GLint>(vertices.size()), triangles, foresight::is_solid(mesh)});
     vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
     for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
     triangles += static_cast<unsigned>(mesh.triangles.size());

@@ -19,6 +19,7 @@ class SceneBuffers {
     std::size_t first_index = 0;
     GLint base_vertex = 0;
     unsigned first_triangle = 0;  ///< in the numbering of the whole scene, node after node
+    bool is_solid = false;        ///< from outside, what turns its back is hidden
   };
 
   explicit SceneBuffers(const SceneModel& scene);

@@ -1,6 +1,5 @@
 #include "texture_gpu/mesh_topology.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <unordered_map>
@@ -31,21 +30,6 @@ void link_neighbours(const Mesh& mesh, int first, std::vector<Face>& faces) {
       it->second.first = -1;  // a third triangle on one edge stays apart
     }
   }
-}
-
-bool is_closed(const Mesh& mesh) {
-  std::unordered_map<std::uint64_t, int> directed;
-  directed.reserve(3 * mesh.triangles.size());
-  double volume = 0;
-  for (const auto& t : mesh.triangles) {
-    for (std::size_t i = 0; i < 3; ++i)
-      if (++directed[std::uint64_t{t[i]} << 32 | t[(i + 1) % 3]] > 1) return false;
-    const auto at = [&](std::size_t i) { return mesh.vertices[t[i]].cast<double>(); };
-    volume += at(0).dot(at(1).cross(at(2)));
-  }
-  for (const auto& [edge, count] : directed)
-    if (!directed.contains(edge << 32 | edge >> 32)) return false;
-  return volume > 0;
 }
 
 }  // namespace foresight

@@ -19,8 +19,4 @@ struct Face {
 /// Fills the neighbours of the mesh's triangles, which are numbered from `first` in `faces`.
 void link_neighbours(const Mesh& mesh, int first, std::vector<Face>& faces);
 
-/// True where every edge is run through once in each direction and the volume within is positive:
-/// a solid with its normals outwards.
-bool is_closed(const Mesh& mesh);
-
 }  // namespace foresight

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "scene/solid.hpp"
 #include "texture_gpu/mesh_topology.hpp"
 #include "texture_gpu/overlap_grid.hpp"
 #include "texture_gpu/polygons.hpp"
@@ -120,7 +121,7 @@ class Builder {
       out_.corners.push_back(c);
     }
     link_neighbours(mesh, first, faces_);
-    closed_.push_back(is_closed(mesh));
+    closed_.push_back(is_solid(mesh));
   }
 
   void add_patch(std::vector<int> members) {

@@ -1,5 +1,6 @@
 #include "gl/raster_pass.hpp"
 
+#include "scene/primitives.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
@@ -110,6 +111,56 @@ TEST_F(RasterPassTest, PaintsOnlyItsTarget) {
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &framebuffer);
   EXPECT_EQ(framebuffer, 0);
   EXPECT_FALSE(glIsEnabled(GL_DEPTH_TEST));
+}
+
+/// Of a box of 1 m around the origin, its far side first, the fragments that a camera there sees or overdraws, and the
+/// pixels at which it is.
+std::pair<GLuint, std::ptrdiff_t> drawn_of_box(const Mesh& mesh, const Pose& T_world_camera) {
+  const SceneModel scene({Node{"box", mesh, -1, Pose::Identity()}});
+  const FaceImages images(faces_for(small_lens("pinhole"), 4), true);
+  const RasterPass raster(std::make_shared<SceneBuffers>(scene), true);
+  GLuint query = 0, fragments = 0;
+  glGenQueries(1, &query);
+  glBeginQuery(GL_SAMPLES_PASSED, query);
+  raster(T_world_camera, {{}, StateStatus::exact, scene.rest_poses()}, images);
+  glEndQuery(GL_SAMPLES_PASSED);
+  glGetQueryObjectuiv(query, GL_QUERY_RESULT, &fragments);
+  glDeleteQueries(1, &query);
+  const Drawn drawn = read(images);
+  return {fragments, std::ranges::count_if(drawn.surface, [](GLuint surface) { return surface != 0; })};
+}
+
+Mesh box_from_its_far_side(const Pose& T_world_camera) {
+  Mesh mesh = make_box({1, 1, 1});
+  const auto distance = [&](const auto& t) {
+    const Eigen::Vector3d middle =
+        (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]).template cast<double>() / 3;
+    return (T_world_camera.inverse() * middle).z();
+  };
+  std::ranges::sort(mesh.triangles, std::ranges::greater(), distance);
+  return mesh;
+}
+
+TEST_F(RasterPassTest, OfSolidBodiesOnlyWhatFacesTheCameraIsDrawn) {
+  const Pose from = look_at({2, 1.5, 1}, {0, 0, 0});
+  const auto [fragments, pixels] = drawn_of_box(box_from_its_far_side(from), from);
+  EXPECT_GT(pixels, 1000);
+  EXPECT_EQ(fragments, pixels);
+  Mesh inside_out = box_from_its_far_side(from);  // no solid: both sides of a triangle are surface
+  for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
+  const auto [of_both, same_pixels] = drawn_of_box(inside_out, from);
+  EXPECT_GT(of_both, 1.5 * pixels);
+  EXPECT_EQ(same_pixels, pixels);
+}
+
+TEST_F(RasterPassTest, FromInsideOrTooNearABodyIsDrawnAsAWhole) {
+  const Mesh box = make_box({1, 1, 1});
+  const Pose inside = look_at({0.1, 0, 0}, {0.2, 1, 0});
+  EXPECT_EQ(drawn_of_box(box, inside).second, drawn_of_box(box, inside).first);
+  EXPECT_EQ(drawn_of_box(box, inside).second, 160 * 120);
+  // Its front is cut away by the near plane: the back is seen through the gap.
+  const Pose at_it = look_at({0.505, 0, 0}, {-1, 0.01, 0});
+  EXPECT_EQ(drawn_of_box(box, at_it).second, 160 * 120);
 }
 
 // A second draw starts from a clean image: nothing of the first is left where there is no model now.
