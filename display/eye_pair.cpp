@@ -8,10 +8,7 @@ EyePair::EyePair(ViewSession& session, const std::array<Lens, 2>& lenses, double
 }
 
 void EyePair::set_lenses(const std::array<Lens, 2>& lenses) {
-  for (std::size_t eye = 0; eye < eyes_.size(); ++eye) {
-    const Lens &now = eyes_[eye].lens(), &wanted = lenses[eye];
-    if (now.width() != wanted.width() || now.height() != wanted.height()) eyes_[eye].set_lens(wanted);
-  }
+  for (std::size_t eye = 0; eye < eyes_.size(); ++eye) eyes_[eye].set_lens(lenses[eye]);
 }
 
 bool EyePair::draw(const Pose& T_world_camera, const SceneState& state) {

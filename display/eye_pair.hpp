@@ -15,7 +15,7 @@ class EyePair {
   /// outlive this.
   EyePair(ViewSession& session, const std::array<Lens, 2>& lenses, double separation);
 
-  /// From now on through these, of the same models as before.
+  /// PredictedView::set_lens, of both.
   void set_lenses(const std::array<Lens, 2>& lenses);
   const Lens& lens(std::size_t eye) const { return eyes_[eye].lens(); }
 

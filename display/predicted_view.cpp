@@ -110,6 +110,7 @@ PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
 }
 
 void PredictedView::set_lens(const Lens& lens) {
+  if (lens.width() == lens_.width() && lens.height() == lens_.height()) return;
   lens_ = lens;
   faces_ = raster_.make_faces(gl::faces_for(lens, 2));
   rays_ = gl::make_lens_rays(lens);

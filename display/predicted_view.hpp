@@ -42,7 +42,7 @@ class PredictedView {
                 const Lens& lens, ViewPrograms programs = ViewPrograms::two,
                 const std::optional<ViewLevels>& levels = std::nullopt);
 
-  /// From now on the view is as large as this lens says, and seen through it; of the same kind as the one before.
+  /// From now on the view is as large as this lens says, which differs from the one before in that alone.
   void set_lens(const Lens& lens);
   const Lens& lens() const { return lens_; }
   /// From now on it is painted so.
@@ -89,6 +89,8 @@ class PredictedView {
 
   /// The triangle seen at each pixel of the last draw()'s faces (gl::FaceImages::surface).
   const gl::FaceImages& faces() const { return faces_; }
+  /// gl::make_lens_rays, of lens().
+  const gl::Texture& rays() const { return rays_; }
   /// What chooses levels of detail; null where all is drawn in full.
   const LevelDirector* levels() const { return raster_.director(); }
 

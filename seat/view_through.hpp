@@ -11,7 +11,7 @@ namespace foresight {
 inline PredictedView& view_through(std::optional<PredictedView>& view, const ViewSession& session, const Lens& lens) {
   if (!view)
     view.emplace(session.make_view(lens));
-  else if (view->lens().width() != lens.width() || view->lens().height() != lens.height())
+  else
     view->set_lens(lens);
   return *view;
 }
