@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/real_time.hpp"
+
 namespace foresight {
 namespace {
 
@@ -77,6 +79,7 @@ void LampFinder::ask() {
   ask_at_ = std::min(static_cast<int>(std::ceil(kNextSearch * recorded_)), recorded_ + static_cast<int>(kRecords));
   answer_at_ = recorded_ + kAnswerTakes;
   search_ = std::async(std::launch::async, [this, question = LampQuestion{witnesses_, records_, moving_, lamp()}] {
+    make_background();  // frames and images go first
     return find_lamp(rays_, question);
   });
 }
