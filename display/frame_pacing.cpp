@@ -52,7 +52,8 @@ Duration FramePacing::expected_cost() const {
 
 void FramePacing::drawn(RobotTime now) {
   drawn_ = now;
-  const double cost = std::max(0.0, ns(now - wake_));
+  figures_.last = std::max(Duration{0}, now - wake_);
+  const double cost = ns(figures_.last);
   if (costs_.size() < kCosts)
     costs_.push_back(cost);
   else

@@ -30,6 +30,7 @@ struct PacingFigures {
   std::uint64_t frames = 0;
   std::uint64_t late = 0;  ///< swapped more than half an interval (locked: half a refresh) after their target
   Duration cost{0};        ///< of a drawing, as it is counted on
+  Duration last{0};        ///< of the last drawing
   Duration refresh{0};     ///< of the display; 0: not known
   PacingPhase phase = PacingPhase::own_clock;
 };

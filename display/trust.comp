@@ -6,7 +6,8 @@
 // Defines: FRAMES, how many of them are remembered; COMPARISONS, how many of those that were compared.
 #include "camera.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
+layout(std140, binding = 0) uniform Camera { CameraBlock camera; };  // of the images
+layout(std140, binding = 1) uniform View { CameraBlock view; };      // the same lens, perhaps of another size
 layout(binding = 0) uniform sampler2D shown;
 layout(binding = 1) uniform usampler2DArray surfaces;  // triangle + 1
 layout(binding = 2) uniform sampler2DArray depth;
@@ -32,8 +33,8 @@ const float kTurned = 0.5;         // share of a part's brightness that its turn
 const float kWrong = 10.0 / 255.0;  // levels by which light on a part may change until it has to be seen anew
 
 bool ray_through(ivec2 pixel, out vec3 ray) {
-  if (lens_model(camera) == 0) {
-    ray = vec3((vec2(pixel) - camera.focal.zw) / camera.focal.xy, 1.0);
+  if (lens_model(view) == 0) {
+    ray = vec3((vec2(pixel) - view.focal.zw) / view.focal.xy, 1.0);
     return true;
   }
   vec4 r = texelFetch(rays, pixel, 0);
@@ -69,7 +70,7 @@ float contrast_at(ivec2 pixel, float here) {
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
-      vec3 c = texelFetch(shown, clamp(pixel + ivec2(x, y), ivec2(0), ivec2(camera.size.xy) - 1), 0).rgb;
+      vec3 c = texelFetch(shown, clamp(pixel + ivec2(x, y), ivec2(0), ivec2(view.size.xy) - 1), 0).rgb;
       float difference = grey(c) - here;
       sum += difference * difference;
     }
@@ -86,7 +87,7 @@ float uncertain_px(ivec3 place, int node) {
   float px = texelFetch(node_px, node).r;
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0);
-    int beside = node_at(ivec3(clamp(place.xy + step, ivec2(0), ivec2(camera.size.zw) - 1), place.z));
+    int beside = node_at(ivec3(clamp(place.xy + step, ivec2(0), ivec2(view.size.zw) - 1), place.z));
     if (beside >= 0 && beside != node) px = max(px, texelFetch(node_px, beside).r);
   }
   return px;
@@ -130,7 +131,7 @@ int step_of_reach(float px) {
 float kind_at(ivec2 pixel, vec3 colour) {
   vec3 ray, place;
   float inverse_z;
-  if (!ray_through(pixel, ray) || !project_face(camera, ray, place, inverse_z)) return kUnconfirmed;
+  if (!ray_through(pixel, ray) || !project_face(view, ray, place, inverse_z)) return kUnconfirmed;
   ivec3 at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
   int node = node_at(at);
   float near_over_z = texelFetch(depth, at, 0).r;
@@ -153,7 +154,7 @@ float kind_at(ivec2 pixel, vec3 colour) {
 
 // Stripes that differ from the picture's own brightness; those of filled holes lean to the other side.
 vec4 hatched(ivec2 pixel, vec4 colour) {
-  int along = colour.a > 0.99 ? pixel.x + pixel.y : pixel.x - pixel.y + 6 * int(camera.size.y);
+  int along = colour.a > 0.99 ? pixel.x + pixel.y : pixel.x - pixel.y + 6 * int(view.size.y);
   if (along % 6 >= 2) return colour;
   bool bright = grey(colour.rgb) > 0.5;
   return vec4(mix(colour.rgb, vec3(bright ? 0.0 : 1.0), 0.45), colour.a);
@@ -161,7 +162,7 @@ vec4 hatched(ivec2 pixel, vec4 colour) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(view.size.xy)))) return;
   vec4 colour = texelFetch(shown, pixel, 0);
   bool seen = colour.a > 0.99;
   float value = seen ? kind_at(pixel, colour.rgb) : kUnconfirmed;

@@ -4,8 +4,6 @@
 #include <array>
 #include <string>
 
-#include "gl/lens_rays.hpp"
-
 namespace foresight::gl {
 const ShaderSources& display_shaders();
 }  // namespace foresight::gl
@@ -13,6 +11,7 @@ const ShaderSources& display_shaders();
 namespace foresight {
 namespace {
 
+constexpr int kBorderPx = 2;     // as views have it
 constexpr double kLongest = 30;  // s that an image is remembered for
 
 }  // namespace
@@ -22,21 +21,29 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
     : lens_(lens),
       surface_(std::move(surface)),
       raster_(std::move(scene), false),
-      scratch_(view.faces().faces, false),
+      scratch_(gl::faces_for(lens, kBorderPx), false),
       depths_(GL_DEPTH_COMPONENT32F, scratch_.faces.width, scratch_.faces.height,
               scratch_.faces.count * static_cast<int>(kFrames), 1, "depth of images"),
       program_(gl::Program::compute(
           gl::display_shaders(), "trust.comp",
           {"FRAMES " + std::to_string(kFrames), "COMPARISONS " + std::to_string(kComparisonsKept)})),
       camera_(sizeof(gl::CameraBlock), "trusted camera"),
+      view_(sizeof(gl::CameraBlock), "trusted view"),
       node_px_(GL_R32F, 16, "node px"),
       ways_(GL_RGBA32F, 16, "ways since images"),
-      rays_(gl::make_lens_rays(lens)),
-      comparisons_(GL_R8, lens.width(), lens.height(), static_cast<int>(kComparisonsKept), 1, "as it was shown"),
-      doubt_(GL_R8, lens.width(), lens.height(), 0, 1, "doubt"),
-      marked_(GL_RGBA8, lens.width(), lens.height(), 0, 1, "marked view") {
+      comparisons_(GL_R8, lens.width(), lens.height(), static_cast<int>(kComparisonsKept), 1, "as it was shown") {
   const gl::CameraBlock block = gl::make_camera_block(lens_, scratch_.faces);
   camera_.write(std::span(&block, 1));
+  fit(view);
+}
+
+void TrustPass::fit(const PredictedView& view) {
+  const int width = view.lens().width(), height = view.lens().height();
+  if (doubt_ && doubt_.width() == width && doubt_.height() == height) return;
+  const gl::CameraBlock block = gl::make_camera_block(view.lens(), view.faces().faces);
+  view_.write(std::span(&block, 1));
+  doubt_ = gl::Texture(GL_R8, width, height, 0, 1, "doubt");
+  marked_ = gl::Texture(GL_RGBA8, width, height, 0, 1, "marked view");
 }
 
 // Of those that are too many, the one between the two that are closest together for their age: what remains reaches far
@@ -108,6 +115,7 @@ void TrustPass::list_ways(const Pose& T_world_camera, const SceneState& state) {
 
 void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera, const SceneState& state,
                            std::span<const double> node_px, const ExactKinds& exact) {
+  fit(view);
   list_ways(T_world_camera, state);
   ways_.assign(std::span<const Eigen::Vector4f>(rows_));
   std::vector<float> px(node_px.begin(), node_px.end());
@@ -133,14 +141,15 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
   program_.set("comparison_count", static_cast<int>(compared_.size()));
   program_.set("comparisons_with_patches", static_cast<int>(with_patches_));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, view_.name());
   const GLuint units[] = {
       view.picture().name(), view.faces().surface.name(), view.faces().depth.name(), surface_->triangles(),
-      rays_.name(),          node_px_.texture(),          ways_.texture(),           depths_.name(),
+      view.rays().name(),    node_px_.texture(),          ways_.texture(),           depths_.name(),
       comparisons_.name()};
   for (GLuint unit = 0; unit < std::size(units); ++unit) glBindTextureUnit(unit, units[unit]);
   glBindImageTexture(0, doubt_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
   glBindImageTexture(1, marked_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-  glDispatchCompute(gl::groups(lens_.width(), 8), gl::groups(lens_.height(), 8), 1);
+  glDispatchCompute(gl::groups(doubt_.width(), 8), gl::groups(doubt_.height(), 8), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                   GL_PIXEL_BUFFER_BARRIER_BIT);
 }

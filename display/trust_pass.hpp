@@ -19,7 +19,7 @@ namespace foresight {
 /// Belongs to one context: that of the view.
 class TrustPass {
  public:
-  /// `view`: of `lens`, through which the images are taken too.
+  /// `lens`: of the images, and of views, which may have another number of pixels. `view`: as large as it is.
   TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_ptr<const SurfaceRecords> surface,
             const Lens& lens, const PredictedView& view);
 
@@ -36,7 +36,7 @@ class TrustPass {
   void operator()(const PredictedView& view, const Pose& T_world_camera, const SceneState& state,
                   std::span<const double> node_px, const ExactKinds& exact);
 
-  /// R8 (DoubtKind, or kUnconfirmed), row 0 at the top.
+  /// R8 (DoubtKind, or kUnconfirmed), as large as the view, row 0 at the top.
   const gl::Texture& doubt() const { return doubt_; }
   /// The view, RGBA8, with what is not exact hatched.
   const gl::Texture& marked() const { return marked_; }
@@ -51,6 +51,7 @@ class TrustPass {
     SceneState scene;
     int layer = 0;  // of depths_: the first
   };
+  void fit(const PredictedView& view);
   void forget_one();
   void list_ways(const Pose& T_world_camera, const SceneState& state);
 
@@ -60,9 +61,9 @@ class TrustPass {
   gl::FaceImages scratch_;
   gl::Texture depths_;  // the faces of each image that is remembered
   gl::Program program_;
-  gl::Buffer camera_;
+  gl::Buffer camera_, view_;  // of images, of the view
   gl::BufferTexture node_px_, ways_;
-  gl::Texture rays_, comparisons_, doubt_, marked_;
+  gl::Texture comparisons_, doubt_, marked_;
   std::vector<Seen> seen_;        // newest first
   std::vector<Seen> compared_;    // newest first, at most kComparisonsKept
   std::size_t with_patches_ = 0;  // of compared_, that many of the newest

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "common/lens.hpp"
 #include "display/view_target.hpp"
@@ -46,26 +47,44 @@ Lens fitted_lens(const Lens& camera, int width, int height);
 /// Of the time between pictures, what live seats let their drawings take: ViewSize.
 inline constexpr double kDrawingShare = 0.6;
 
-/// Is the operator's view worth drawing a second time, with more pixels than the camera has? Those of its place in the
-/// window, as far as all can be drawn in time: the camera's own view, which images are compared with, is drawn anyhow.
+/// With how many pixels the operator's views are drawn, so that they come in time: as many as their place in the window
+/// has, and where not even the camera's can be drawn, fewer, down to half of them along each side. The camera's own
+/// view, which images are compared with, is drawn anyhow; a second one has more pixels than that, or there are two
+/// eyes.
 class ViewSize {
  public:
   /// Drawings may take `most_ms` in all.
-  ViewSize(const Lens& camera, double most_ms) : camera_(camera), most_ms_(most_ms) {}
+  ViewSize(const Lens& camera, double most_ms) : camera_(camera), own_(camera), most_ms_(most_ms) {}
 
-  /// The place has width x height px, and a picture takes `drawing_ms` as it is drawn now; 0: not known. Changes its
-  /// mind only after a place has stayed the same for some calls, and where it is worth it.
+  /// The place has width x height px, and the last picture took `drawing_ms`; 0: not known. For each picture; changes
+  /// its mind only after a place has stayed the same for some, and where it is worth it.
   void choose(int width, int height, double drawing_ms);
-  /// Nothing: the camera's own view is as good, or all that can be drawn.
+  /// The same where it is not this view that fills the place, but others: with `pixels` beside the camera's where
+  /// nothing is left out.
+  void choose_for(double pixels, int width, int height, double drawing_ms);
+
+  /// Of the camera's own view.
+  const Lens& own() const { return own_; }
+  /// Of the second one. Nothing: the camera's own view is as good, or all that can be drawn.
   const std::optional<Lens>& lens() const { return lens_; }
+  /// Of what is drawn, along each side: 1, or less where drawing takes too long.
+  double scale() const { return scale_; }
 
  private:
-  Lens camera_;
+  bool settles(int width, int height, double drawing_ms);
+  double share_in_time() const;
+  void shrink(double possible, double whole);
+
+  Lens camera_, own_;
   double most_ms_;
+  double scale_ = 1;
   std::optional<Lens> lens_;
-  int width_ = 0, height_ = 0, calls_ = 0;  // of the place
-  double cost_ms_ = 0;                      // of a picture, without its noise
+  int width_ = 0, height_ = 0, calls_ = 0;  // of the place, since it or the size changed
+  std::vector<double> costs_ms_;            // of pictures since then
 };
+
+/// The same lens with so many times its pixels along each side.
+Lens scaled_lens(const Lens& lens, double scale);
 
 /// Where the border of a split picture lies, as a share of the width; the mouse takes it where it is pressed near it.
 class SplitBorder {

@@ -88,6 +88,9 @@ class ViewSession {
   /// What says how far pixels of the view that was drawn last can be trusted, and that view. Not with `thesis`.
   TrustPass make_trust_pass() const { return {buffers_, records_, lens_, *view_}; }
   const PredictedView& view() const { return *view_; }
+  /// From the next draw() on, its own view is as large as this lens says (PredictedView::set_lens); what is compared
+  /// with images stays so until then. Not with `thesis`.
+  void set_lens(const Lens& lens) { next_lens_ = lens; }
 
   /// Waits until all that was drawn is there.
   void finish();
@@ -118,6 +121,7 @@ class ViewSession {
   std::optional<ViewLevels> levels_;
   std::unique_ptr<TextureThread> thread_;
   std::unique_ptr<PredictedView> view_;
+  std::optional<Lens> next_lens_;  // of that view
   std::optional<ViewRange> range_;
   std::deque<Drawing> drawings_;  // that the GPU may not have finished
   std::unique_ptr<thesis::Pipeline> thesis_;

@@ -143,7 +143,7 @@ void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTar
   shows_again_ = has_eyes_ = has_beside_ = has_stereogram_ = false;
   if (whole.width < 1 || whole.height < 1) return;  // minimised
   if (has_two_eyes(mode_)) {
-    draw_eyes(session, place, whole);
+    draw_eyes(session, place, whole, drawing_ms);
   } else if (mode_ == ViewMode::stereogram) {
     const ViewTarget part = fitted(whole, setup_.left.width(), setup_.left.height());
     if (!stereogram_) stereogram_.emplace(session.make_depth_pass());
@@ -154,6 +154,7 @@ void SeatViews::draw(ViewSession& session, const ViewPlace& place, const ViewTar
   } else {
     draw_again(session, place, whole, drawing_ms);
   }
+  session.set_lens(size_.own());  // from the next picture on
 }
 
 bool SeatViews::warm_up(ViewSession& session, const ViewTarget& whole) {
@@ -180,8 +181,12 @@ std::array<Lens, 2> SeatViews::eye_lenses(const ViewTarget& whole) const {
   return {fits((*setup_.panels)[0]), fits((*setup_.panels)[1])};
 }
 
-void SeatViews::draw_eyes(ViewSession& session, const ViewPlace& place, const ViewTarget& whole) {
-  const std::array<Lens, 2> lenses = eye_lenses(whole);
+void SeatViews::draw_eyes(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms) {
+  std::array<Lens, 2> lenses = eye_lenses(whole);
+  double pixels = 0;
+  for (const Lens& lens : lenses) pixels += static_cast<double>(lens.width()) * lens.height();
+  size_.choose_for(pixels, whole.width, whole.height, drawing_ms);
+  for (Lens& lens : lenses) lens = scaled_lens(lens, size_.scale());
   std::optional<EyePair>& pair = shows_panels() ? panels_ : eyes_;
   if (!pair) pair.emplace(session, lenses, setup_.eyes_apart);
   pair->set_lenses(lenses);
@@ -195,15 +200,15 @@ void SeatViews::draw_again(ViewSession& session, const ViewPlace& place, const V
   const ViewTarget part = mode_ == ViewMode::both ? column(whole, 1, 2, kBetweenPictures) : whole;
   size_.choose(part.width, part.height, drawing_ms);
   if (!size_.lens() && paint_of_views() == ViewPaint::colours) return;
-  PredictedView& view = view_through(again_, session, size_.lens().value_or(setup_.left));
+  PredictedView& view = view_through(again_, session, size_.lens().value_or(size_.own()));
   view.set_paint(paint_of_views());
   shows_again_ = session.draw(view, place.T_world_camera, place.scene);
 }
 
 SeatViews::Sight SeatViews::predicted(const ViewSession& session, const SeatPicture& what) {
   if (!drawn_) return {};
-  // Whatever its size, it is seen through the same lens: lines lie by the camera's own depths.
-  Sight out{&session.picture(), &session.faces(), &setup_.left, drawn_->T_world_camera};
+  // Whatever its size, it is seen through the same lens: lines lie by the session's own depths.
+  Sight out{&session.picture(), &session.faces(), &session.view().lens(), drawn_->T_world_camera};
   if (what.doubt && shows_doubt()) {
     if (!doubt_) doubt_.emplace();
     out.picture = &(*doubt_)(session.picture(), *what.doubt);

@@ -64,6 +64,8 @@ class SeatViews {
   void swap_eyes() { eyes_swapped_ = !eyes_swapped_; }
   /// What is shown, and what colours mean. `trusted`: the prediction.
   std::string words(bool trusted) const;
+  /// ViewSize::scale() of what is drawn.
+  double scale() const { return size_.scale(); }
   /// SeatPicture::doubt would be seen.
   bool shows_doubt() const { return is_one_eyes() && paint_ == ViewPaint::doubt; }
   /// SeatPicture::marked would be seen.
@@ -79,7 +81,7 @@ class SeatViews {
   /// The newest images that have come, CV_8UC3; the second may be empty.
   void upload_newest(const cv::Mat& left, const cv::Mat& right);
   /// The session has drawn the view of `place`: draws what the mode needs besides. `drawing_ms`: what all drawing
-  /// takes.
+  /// took for the last picture; 0: not known.
   void draw(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
   bool drawn() const { return drawn_.has_value(); }
   /// Once something is drawn: draws, where the next picture will cover it, one of the looks that were never chosen, so
@@ -112,7 +114,7 @@ class SeatViews {
   /// As views paint themselves.
   ViewPaint paint_of_views() const { return paint_ == ViewPaint::doubt ? ViewPaint::colours : paint_; }
   std::array<Lens, 2> eye_lenses(const ViewTarget& whole) const;
-  void draw_eyes(ViewSession& session, const ViewPlace& place, const ViewTarget& whole);
+  void draw_eyes(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
   void draw_again(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
   ViewMode mode_now(bool trusted) const;
   Sight predicted(const ViewSession& session, const SeatPicture& what);

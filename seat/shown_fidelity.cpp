@@ -63,6 +63,25 @@ cv::Mat grey_of(const cv::Mat& picture) {
   return out;
 }
 
+/// As large as the image, as it looks there; alpha and doubt as they are at the nearest pixel. False: they do not show
+/// the same.
+bool enlarge(RememberedView& view, cv::Size size) {
+  cv::Mat& picture = view.picture;
+  if (picture.size() == size) return true;
+  const double wide = static_cast<double>(size.width) / picture.cols,
+               high = static_cast<double>(size.height) / picture.rows;
+  if (std::abs(size.height - picture.rows * wide) > wide + high) return false;  // other proportions
+  cv::Mat alpha, large;
+  cv::extractChannel(picture, alpha, 3);
+  cv::resize(picture, large, size, 0, 0, cv::INTER_LINEAR);
+  cv::resize(alpha, alpha, size, 0, 0, cv::INTER_NEAREST);
+  cv::insertChannel(alpha, large, 3);
+  picture = large;
+  cv::resize(view.doubt, large, size, 0, 0, cv::INTER_NEAREST);
+  view.doubt = large;
+  return true;
+}
+
 }  // namespace
 
 cv::Rect tile_of(std::size_t tile, cv::Size size) {
@@ -128,9 +147,9 @@ std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat&
   const auto apart = [&](const RememberedView& p) { return std::max(p.instant - instant, instant - p.instant); };
   while (std::next(nearest) != kept_.end() && apart(*std::next(nearest)) < apart(*nearest)) ++nearest;
   if (apart(*nearest) > options_.same_instant) return std::nullopt;
-  const RememberedView picture = std::move(*nearest);
+  RememberedView picture = std::move(*nearest);
   kept_.erase(kept_.begin(), std::next(nearest));
-  if (picture.picture.size() != image.size() || image.type() != CV_8UC3) return std::nullopt;
+  if (image.type() != CV_8UC3 || !enlarge(picture, image.size())) return std::nullopt;
 
   const cv::Mat seen = seen_mask(picture.picture), exact = exact_mask(picture.picture, picture.doubt, exact_);
   const cv::Mat off = grey_difference(picture.picture, image) & seen;

@@ -59,7 +59,7 @@ class ShownFidelity {
   /// more, and tells nothing of other pixels of the same kinds.
   void begin_anew(RobotTime from);
   /// The image of an instant came, in the order of their instants: nothing where no picture was shown for it, or one of
-  /// another size. `image`: CV_8UC3.
+  /// other proportions. One of another size is compared as it looks at the image's. `image`: CV_8UC3.
   std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image);
   /// Which kinds of pixels count as exact: those that were wrong most rarely, as many as it takes until
   /// FidelityOptions::wrong_share of all such pixels have to be expected to be wrong, in what was shown last and in a

@@ -25,10 +25,8 @@ ViewTrust::ViewTrust(const ViewSession& session, const ViewSetup& setup, const C
     : session_(session),
       clock_(clock),
       options_(options),
-      lens_(setup.left),
       middles_(node_middles(*setup.scene)),
       pass_(session.make_trust_pass()),
-      marked_(pass_.marked().name(), pass_.marked().width(), pass_.marked().height()),
       shown_(options.fidelity),
       switch_(options.fall_back) {}
 
@@ -74,7 +72,7 @@ void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, Trus
   const std::optional<ViewPlace> before = std::exchange(drawn_at_, place);
   if (!is_due && marks == TrustMarks::none) return;
   heed_light(instant);
-  const auto px = node_doubt_px(source.places(), source.robot(), lens_, middles_, before);
+  const auto px = node_doubt_px(source.places(), source.robot(), session_.view().lens(), middles_, before);
   if (compared_) pass_.compared(*compared_, fidelity_->comparison);
   compared_.reset();
   pass_(session_.view(), place.T_world_camera, place.scene, px, shown_.exact());
@@ -83,13 +81,16 @@ void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, Trus
   if (marks == TrustMarks::tiles) frame_tiles();
 }
 
-void ViewTrust::frame_tiles() const {
+void ViewTrust::frame_tiles() {
   if (!fidelity_) return;
+  const gl::Texture& picture = pass_.marked();
+  if (!marked_ || marked_->whole().width != picture.width() || marked_->whole().height != picture.height())
+    marked_.emplace(picture.name(), picture.width(), picture.height());
   for (std::size_t i = 0; i < fidelity_->wrong.size(); ++i) {
     if (fidelity_->wrong[i] <= kWorthNaming) continue;
-    const cv::Rect tile = tile_of(i, {lens_.width(), lens_.height()});
+    const cv::Rect tile = tile_of(i, {picture.width(), picture.height()});
     const auto bar = [&](int x, int y, int width, int height) {
-      ViewTarget side = marked_.whole();
+      ViewTarget side = marked_->whole();
       side.x = tile.x + x;
       side.y = tile.y + y;
       side.width = width;

@@ -66,15 +66,14 @@ class ViewTrust {
   OperatorTime now() const { return {clock_.now().ns}; }
   void collect();
   void heed_light(RobotTime instant);
-  void frame_tiles() const;
+  void frame_tiles();
 
   const ViewSession& session_;
   const Clock& clock_;
   ViewTrustOptions options_;
-  Lens lens_;
   std::vector<Eigen::Vector3d> middles_;
   TrustPass pass_;
-  TextureTarget marked_;
+  std::optional<TextureTarget> marked_;  // of the pass, as it is now
   PictureReadback readback_;
   ShownFidelity shown_;
   TrustSwitch switch_;

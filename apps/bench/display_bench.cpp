@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "apps/bench/bench_pipelines.hpp"
 #include "apps/bench/display_lab.hpp"
 #include "apps/command_line/picture_size.hpp"
+#include "apps/replay_report/image_metrics.hpp"
 #include "common/clock.hpp"
 #include "common/error.hpp"
 #include "common/numbers_file.hpp"
@@ -26,7 +28,9 @@ constexpr double kJudgedRate = 25;
 constexpr double kMostRatio = 1.5, kMostIntervalMs = 60, kLeastExtraction = 1.0 / 3, kMostBeyondMs = 2;
 constexpr double kMostLate = 1e-3, kMostViewMs = 40;
 constexpr int kViewsTimed = 40;
-constexpr double kWarmUp = 0.6;  // s
+constexpr double kWarmUp = 0.6;    // s
+constexpr double kToSettle = 1.5;  // s, for a change of what is drawn (ViewSize)
+constexpr int kMostSettling = 8;   // changes
 const cv::Size kTimedSize{640, 480};
 
 cv::Size read_size(const std::string& text) {
@@ -71,28 +75,49 @@ json to_json(const DisplayFigures& f) {
           {"images_per_s", f.images_per_s}};
 }
 
-/// As the seat fills its window: the camera's own view, scaled, or a second one with the window's pixels where both can
-/// be drawn in time (SeatViews).
+/// As the seat fills its window: the camera's own view, scaled, a second one with the window's pixels where both can be
+/// drawn in time, or the camera's with fewer where not even that can (SeatViews).
 class WindowDrawing {
  public:
   WindowDrawing(PredictedView& camera, PredictedView& larger, cv::Size window)
       : camera_(camera),
         larger_(larger),
+        whole_(camera.lens()),
         size_(camera.lens(), kDrawingShare * 1e3 / kJudgedRate),
         window_(window),
         canvas_(GL_RGBA8, window.width, window.height, 0, 1, "window of the bench"),
         target_(canvas_.name(), window.width, window.height) {}
 
+  /// Views are as large as can be drawn in time.
   void operator()(const ViewPlace& place, const TextureLease& textures, const ImagesLease& images, double drawing_ms) {
-    camera_.draw(place.T_world_camera, place.scene, textures, images);
     size_.choose(window_.width, window_.height, drawing_ms);
-    if (size_.lens() && size_.lens()->width() != larger_.lens().width()) larger_.set_lens(*size_.lens());
+    camera_.set_lens(size_.own());
+    camera_.draw(place.T_world_camera, place.scene, textures, images);
+    if (size_.lens()) larger_.set_lens(*size_.lens());
     if (size_.lens()) larger_.draw(place.T_world_camera, place.scene, textures, images);
     copy_((size_.lens() ? larger_ : camera_).picture(), target_.whole());
   }
 
+  cv::Size drawn() const { return {camera_.lens().width(), camera_.lens().height()}; }
+  /// What is drawn with `drawn()` px, enlarged, beside the camera's own view in full.
+  ImageQuality quality(const ViewPlace& place, const BusyTextures& textures) {
+    const ImagesLease images = textures.images().acquire();
+    const TextureLease lease = textures.textures().acquire();
+    const Lens now = camera_.lens();
+    const auto picture = [&](const Lens& lens) {
+      camera_.set_lens(lens);
+      camera_.draw(place.T_world_camera, place.scene, lease, images);
+      return camera_.read();
+    };
+    const cv::Mat whole = picture(whole_);
+    cv::Mat small = picture(now);
+    cv::resize(small, small, whole.size(), 0, 0, cv::INTER_LINEAR);
+    return ImageComparison(whole, seen_mask(whole)).measure(small);
+  }
+
  private:
   PredictedView &camera_, &larger_;
+  Lens whole_;  // of the camera
   ViewSize size_;
   cv::Size window_;
   gl::Texture canvas_;
@@ -175,27 +200,48 @@ struct Bench {
     if (rate == kJudgedRate) judge(from.name, alone, both, rate, extraction);
   }
 
-  void round_in_window(const DrawFrame& draw, const DisplayView& from, BusyTextures& textures, double extraction) {
+  DisplayFigures show_in_window(WindowDrawing& window, const DisplayRound& how, const DisplayView& from,
+                                BusyTextures& textures, bool extracting, const char* what) {
+    const double seconds = std::min(kToSettle, options.seconds);
+    cv::Size before;
+    for (int i = 0; i < kMostSettling && window.drawn() != before; ++i) {
+      before = window.drawn();
+      warm_up(std::ref(window), from, textures, extracting, seconds);
+    }
+    const DisplayFigures out = show(std::ref(window), from, how, textures, extracting, what);
+    const cv::Size drawn = window.drawn();
+    const ImageQuality quality = window.quality(from.place, textures);
+    json& row = rows.back();
+    row["drawn_px"] = {drawn.width, drawn.height};
+    row["drawn_psnr_db"] = quality.psnr_db.value_or(0);
+    row["drawn_sharpness"] = quality.sharpness.value_or(0);
+    std::printf("%12s at last of %d x %d px: %.1f dB beside the camera's view in full, sharpness %.2f of its\n", "",
+                drawn.width, drawn.height, quality.psnr_db.value_or(0), quality.sharpness.value_or(0));
+    return out;
+  }
+
+  void round_in_window(WindowDrawing& window, const DisplayView& from, BusyTextures& textures, double extraction) {
     DisplayRound how{kJudgedRate, options.seconds, true, from.place};
-    const DisplayFigures alone = show(draw, from, how, textures, false, "in a seat's window");
+    const DisplayFigures alone = show_in_window(window, how, from, textures, false, "in a seat's window");
     how.seconds = seconds_beside(kJudgedRate);
-    const DisplayFigures both = show(draw, from, how, textures, true, "window and extraction");
+    const DisplayFigures both = show_in_window(window, how, from, textures, true, "window and extraction");
     judge(from.name + std::string(", in a seat's window"), alone, both, kJudgedRate, extraction);
   }
 
-  /// Programs are compiled when a frame first needs them.
-  void warm_up(const DrawFrame& draw, const DisplayView& from, BusyTextures& textures) {
-    textures.run(true);
-    show_frames(draw, {kJudgedRate, kWarmUp, true, from.place}, textures, gate);
+  /// Programs are compiled when a frame first needs them, and a window's views find their size.
+  void warm_up(const DrawFrame& draw, const DisplayView& from, BusyTextures& textures, bool extracting,
+               double seconds) {
+    textures.run(extracting);
+    show_frames(draw, {kJudgedRate, seconds, true, from.place}, textures, gate);
     textures.run(false);
     textures.finish(1);
   }
 
-  void rounds(const DrawFrame& draw, const DrawFrame& in_window, const DisplayView& from, BusyTextures& paced,
+  void rounds(const DrawFrame& draw, WindowDrawing& in_window, const DisplayView& from, BusyTextures& paced,
               BusyTextures& unpaced) {
     paced.take(from.images);
     unpaced.take(from.images);
-    warm_up(draw, from, paced);
+    warm_up(draw, from, paced, true, kWarmUp);
     const double extraction = extraction_alone(unpaced);
     undisturbed[from.name] = extraction;
     std::printf("\nextraction alone: %.1f images of %d x %d px per second\n", extraction, image_size.width,
@@ -206,7 +252,7 @@ struct Bench {
         options.rate_hz > 0 ? std::vector{options.rate_hz} : std::vector<double>(std::begin(kRates), std::end(kRates));
     for (const double rate : rates) round(draw, from, rate, paced, unpaced, extraction);
     if (options.rate_hz > 0 && options.rate_hz != kJudgedRate) return;
-    warm_up(in_window, from, paced);
+    warm_up(std::ref(in_window), from, paced, true, kWarmUp);
     round_in_window(in_window, from, paced, extraction);
   }
 };
@@ -249,7 +295,7 @@ int bench_display(const DisplayBenchOptions& options) {
               lab.many.polygons, size.width, size.height, bench.driver.renderer.c_str());
   std::printf("a view of 640 x 480 px: %.1f CPU-ms, from textures alone %.1f CPU-ms\n", cost.with_newest,
               cost.textures_alone);
-  for (const DisplayView* from : {&lab.few, &lab.many}) bench.rounds(draw, std::ref(in_window), *from, paced, unpaced);
+  for (const DisplayView* from : {&lab.few, &lab.many}) bench.rounds(draw, in_window, *from, paced, unpaced);
   bench.bars.push_back({"a view of 640 x 480 px, CPU-ms", cost.with_newest, kMostViewMs, false});
   std::printf("\n");
   for (const Bar& bar : bench.bars)

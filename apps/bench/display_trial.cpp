@@ -59,7 +59,7 @@ std::vector<Shown> show(const DrawFrame& draw, const DisplayRound& round, const 
     frame.look = clock.now();
     const TextureLease lease = textures.textures().acquire();
     const ImagesLease images = textures.images().acquire();
-    draw(round.place, lease, images, ms(pacer.figures().cost));
+    draw(round.place, lease, images, ms(pacer.figures().last));
     pacer.drawn();
     frame.swapped = clock.now();
     pacer.swapped();

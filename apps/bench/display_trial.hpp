@@ -71,8 +71,7 @@ struct DisplayFigures {
   double images_per_s = 0;                    ///< extracted meanwhile
 };
 
-/// Draws a place with textures and newest images, leased; `drawing_ms`: what drawing takes, as it is counted on; 0: not
-/// known.
+/// Draws a place with textures and newest images, leased; `drawing_ms`: what the last drawing took; 0: not known.
 using DrawFrame = std::function<void(const ViewPlace&, const TextureLease&, const ImagesLease&, double drawing_ms)>;
 
 /// Draws with the newest image and `textures` for a while; each frame ends when the GPU has finished it. `gate`: of

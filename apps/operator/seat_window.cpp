@@ -72,7 +72,7 @@ void SeatWindow::stepped(const ViewStep& step, FrameSource& source, ViewSession&
     if (const ImagesLease images = session.images()) image_way_.drawn(images->newest->image.time);
     const ViewPlace place = source.place();
     if (options_.trust) options_.trust->drew(source_, place, marks_to_draw());
-    const double drawing_ms = options_.pacer ? 1e3 * to_seconds(options_.pacer->figures().cost) : 0;
+    const double drawing_ms = options_.pacer ? 1e3 * to_seconds(options_.pacer->figures().last) : 0;
     views_.draw(session, place, window_target(window_), drawing_ms);
   }
   present(session);
@@ -99,6 +99,8 @@ HudContent SeatWindow::words(bool is_trusted) const {
   out.title = fmt::format("{}: {}", options_.title, views_.words(is_trusted));
   if (marks_ != TrustMarks::none && is_trusted)
     out.title += fmt::format(" ({})", views_.shows_marks() ? to_string(marks_) : "no stripes in this view");
+  if (views_.scale() < 1)
+    out.title += fmt::format(" (at {:.0f} % of its size, to be drawn in time)", 1e2 * views_.scale());
   out.next = next_step(status);
   out.lines = seat_lines(status, options_.joints, source_.fault());
   if (options_.trust) out.lines.push_back(fidelity_line(*options_.trust));

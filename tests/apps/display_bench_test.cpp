@@ -22,6 +22,11 @@ TEST(DisplayBench, FramesAndExtractionAreCounted) {
     EXPECT_LE(f["drawing_ms_p50"], f["drawing_ms_p99"]) << round;
     EXPECT_GE(f["input_to_swap_ms_p99"], f["input_to_swap_beyond_drawing_ms_p99"]) << round;
     EXPECT_LE(f["late_share_own"], f["late_share"]) << round;
+    if (round.contains("drawn_px")) {
+      EXPECT_GE(round["drawn_px"][0], 48) << "at least half of the camera's along each side";
+      EXPECT_LE(round["drawn_px"][0], 96);
+      EXPECT_EQ(round["drawn_psnr_db"] == 100, round["drawn_px"][0] == 96) << round;
+    }
     if (round["what"] == "frames alone" || round["what"] == "in a seat's window") {
       EXPECT_EQ(f["images_per_s"], 0) << round;
     }

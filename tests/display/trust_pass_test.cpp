@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "display/picture_readback.hpp"
+#include "display/view_modes.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 #include "texture_gpu/texture_core.hpp"
@@ -57,6 +58,11 @@ class TrustPassTest : public HeadlessTest, public testing::WithParamInterface<co
     const Eigen::Vector2d pixel = lens_.project(usual_view().inverse() * p_world).value();
     return {static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))};
   }
+  /// In the view as large as it is now.
+  cv::Point small_pixel_of(const Eigen::Vector3d& p_world) const {
+    const Eigen::Vector2d pixel = view_->lens().project(usual_view().inverse() * p_world).value();
+    return {static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))};
+  }
   static int at(const cv::Mat& doubt, cv::Point pixel) { return doubt.at<uchar>(pixel); }
   cv::Mat marked() const {
     cv::Mat out(lens_.height(), lens_.width(), CV_8UC4);
@@ -86,6 +92,27 @@ TEST_P(TrustPassTest, OnlyWhatWasSeenIsConfirmed) {
   EXPECT_GT(cv::countNonZero(seen), 1500);
   EXPECT_GT(cv::countNonZero((after.doubt < kUnconfirmed) & seen), 0.95 * cv::countNonZero(seen));
   EXPECT_EQ(cv::countNonZero((after.doubt < kUnconfirmed) & ~seen), 0) << "what is filled is not exact";
+}
+
+// A view with fewer pixels than the images says of each place what the large one says.
+TEST_P(TrustPassTest, ViewsMayHaveAnotherNumberOfPixels) {
+  see(kMove, 100ms);
+  see(0, 200ms);
+  const RememberedView whole = draw(kMove);
+  view_->set_lens(scaled_lens(lens_, 0.6));
+  RememberedView small = draw(kMove);
+  ASSERT_EQ(small.doubt.cols, view_->lens().width());
+  ASSERT_EQ(small.doubt.rows, view_->lens().height());
+  cv::resize(small.doubt, small.doubt, whole.doubt.size(), 0, 0, cv::INTER_NEAREST);
+  const cv::Mat confirmed = whole.doubt < kUnconfirmed;
+  EXPECT_LT(cv::countNonZero(confirmed != (small.doubt < kUnconfirmed)), 0.05 * static_cast<double>(confirmed.total()))
+      << "edges alone differ";
+  EXPECT_EQ(at(small.doubt, pixel_of(kUnderBlock)), kUnconfirmed);
+  EXPECT_LT(at(small.doubt, pixel_of(kOnTable)), kUnconfirmed);
+  // What was compared with an image is found again, too.
+  const PosedImage compared = image(kMove, 300ms);
+  trust_->compared(compared, cv::Mat(lens_.height(), lens_.width(), CV_8UC1, cv::Scalar(2)));
+  EXPECT_EQ(kind_of(at(draw(kMove).doubt, small_pixel_of(kOnTable))).compared, Compared::alike);
 }
 
 TEST_P(TrustPassTest, WhatAPartLeavesBehindIsNotConfirmedUntilItIsSeenAgain) {

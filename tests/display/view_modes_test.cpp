@@ -1,6 +1,8 @@
 // How large views are, where borders lie, and what two pictures in one look like.
 #include "display/view_modes.hpp"
 
+#include <bit>
+
 #include "display/picture_mix.hpp"
 #include "display/uploaded_picture.hpp"
 #include "tests/support/headless_test.hpp"
@@ -27,12 +29,12 @@ TEST(ViewModes, AFittedLensSeesTheSame) {
 }
 
 /// The pixels that are drawn besides the camera's in the end, where a pixel costs so many ns.
-int settled(ViewSize& size, const Lens& camera, int width, int height, double ns_per_pixel, int* changes = nullptr) {
+int settled(ViewSize& size, int width, int height, double ns_per_pixel, int* changes = nullptr) {
   const auto beside = [&] { return size.lens() ? size.lens()->width() * size.lens()->height() : 0; };
   for (int i = 0; i < 4000; ++i) {
     const int before = beside();
     const double noise = 1 + 0.08 * ((i * 7) % 5 - 2);
-    size.choose(width, height, 1e-6 * ns_per_pixel * (camera.width() * camera.height() + before) * noise);
+    size.choose(width, height, 1e-6 * ns_per_pixel * (size.own().width() * size.own().height() + before) * noise);
     if (changes && beside() != before) ++*changes;
   }
   return beside();
@@ -42,23 +44,78 @@ TEST(ViewModes, ViewsAreAsLargeAsTheirPlaceWhereTheRendererCan) {
   const Lens camera = small_lens("pinhole");  // 160 x 120
   ViewSize quick(camera, 20);
   EXPECT_FALSE(quick.lens()) << "nothing is known yet";
-  EXPECT_EQ(settled(quick, camera, 1280, 800, 1), 1066 * 800);
-  EXPECT_EQ(settled(quick, camera, 1000, 800, 1), 1000 * 750) << "another place";
-  EXPECT_EQ(settled(quick, camera, 80, 300, 1), 0) << "the camera's own is larger";
+  EXPECT_EQ(settled(quick, 1280, 800, 1), 1066 * 800);
+  EXPECT_EQ(settled(quick, 1000, 800, 1), 1000 * 750) << "another place";
+  EXPECT_EQ(settled(quick, 80, 300, 1), 0) << "the camera's own is larger";
   ViewSize slow(camera, 20);
   int changes = 0;
-  const int pixels = settled(slow, camera, 1280, 800, 200, &changes);  // 20 ms for 100,000 px in all
+  const int pixels = settled(slow, 1280, 800, 200, &changes);  // 20 ms for 100,000 px in all
   EXPECT_GT(pixels, 55'000);
   EXPECT_LT(pixels, 110'000);
   EXPECT_LT(changes, 8) << "it does not swing";
   for (const double ns_per_pixel : {350.0, 450.0, 600.0, 1e5}) {  // little or nothing is left beside the camera's
     ViewSize slowest(camera, 20);
     changes = 0;
-    settled(slowest, camera, 1280, 800, ns_per_pixel, &changes);
+    settled(slowest, 1280, 800, ns_per_pixel, &changes);
     EXPECT_LT(changes, 8) << ns_per_pixel;
   }
   ViewSize slowest(camera, 20);
-  EXPECT_EQ(settled(slowest, camera, 1280, 800, 1e5), 0);
+  EXPECT_EQ(settled(slowest, 1280, 800, 1e5), 0);
+}
+
+TEST(ViewModes, WhereDrawingTakesTooLongViewsAreSmaller) {
+  const Lens camera = small_lens("plumb_bob");  // 160 x 120
+  for (const double ns_per_pixel : {500.0, 900.0, 1300.0, 2000.0, 1e5}) {
+    ViewSize size(camera, 10);  // 20,000 px at 500 ns
+    EXPECT_EQ(size.scale(), 1);
+    int changes = 0;
+    settled(size, 1280, 800, ns_per_pixel, &changes);
+    const double pixels = size.own().width() * size.own().height(), possible = 1e7 / ns_per_pixel;
+    EXPECT_FALSE(size.lens());
+    EXPECT_LE(changes, 1) << ns_per_pixel;
+    EXPECT_LE(pixels, std::max(1.2 * possible, 0.26 * 160 * 120)) << ns_per_pixel;
+    EXPECT_GE(pixels, std::max(0.65 * std::min(possible, 160.0 * 120), 0.24 * 160 * 120)) << ns_per_pixel;
+    EXPECT_NEAR(size.own().width() / 160.0, size.scale(), 0.01);
+    EXPECT_NEAR(size.own().height() / 120.0, size.scale(), 0.01);
+    EXPECT_EQ(size.own().parameters().d, camera.parameters().d);
+    EXPECT_NEAR(size.own().max_angle(), camera.max_angle(), 1e-3) << "it sees as much as before";
+  }
+  ViewSize size(camera, 10);
+  settled(size, 1280, 800, 1500);
+  EXPECT_LT(size.scale(), 0.75);
+  settled(size, 1280, 800, 100);
+  EXPECT_EQ(size.scale(), 1) << "there is time again";
+  EXPECT_TRUE(size.lens());
+  EXPECT_EQ(size.own().width(), 160);
+}
+
+TEST(ViewModes, TwoEyesShareTheTime) {
+  const Lens camera = small_lens("pinhole");
+  const double eyes = 2 * 160 * 120;
+  ViewSize size(camera, 10);
+  int changes = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double before = size.scale();
+    size.choose_for(eyes, 800, 600, 1e-6 * 400 * 3 * 160 * 120 * before * before);  // 25,000 px in time, of 57,600
+    changes += size.scale() != before;
+    EXPECT_FALSE(size.lens());
+  }
+  EXPECT_EQ(changes, 1);
+  EXPECT_NEAR(size.scale() * size.scale(), 25'000 / 57'600.0, 0.01);
+  for (int i = 0; i < 400; ++i) size.choose_for(eyes, 800, 600, 0);
+  EXPECT_EQ(size.scale(), 1) << "nothing is known any more";
+}
+
+// Mesa's software renderer would compile programs anew.
+TEST(ViewModes, NoSideOfASmallerViewIsAPowerOfTwo) {
+  const Lens camera = small_lens("pinhole");
+  for (double scale = 0.3; scale < 1; scale += 0.01) {
+    const Lens lens = scaled_lens(camera, scale);
+    EXPECT_FALSE(std::has_single_bit(static_cast<unsigned>(lens.width()))) << scale;
+    EXPECT_FALSE(std::has_single_bit(static_cast<unsigned>(lens.height()))) << scale;
+    EXPECT_NEAR(lens.width(), 160 * scale, 2);
+  }
+  EXPECT_EQ(scaled_lens(camera, 1).width(), 160);
 }
 
 TEST(ViewModes, TheBorderIsTakenWhereItLiesAndKeptInside) {

@@ -181,6 +181,27 @@ TEST_F(SeatViewsPictures, OneEyeSeesPredictionAndImageWhereTheModeSaysSo) {
   EXPECT_GT(line(picture(kRight)), 0.003);
 }
 
+// Where drawing takes too long: the same picture, of fewer pixels, for one eye and for two.
+TEST_F(SeatViewsPictures, SlowRenderersDrawFewerPixels) {
+  for (const ViewMode mode : {ViewMode::predicted, ViewMode::two_eyes}) {
+    views_.emplace(SeatViewsSetup{.left = lens_, .eyes_apart = 0.1});
+    session_->set_lens(lens_);
+    const cv::Mat whole = shown(mode);
+    EXPECT_EQ(session_->view().lens().width(), lens_.width());
+    EXPECT_EQ(views_->scale(), 1);
+    cv::Mat small;
+    for (int i = 0; i < 30; ++i) {
+      small = shown(mode, true, 40);  // twice of what is allowed
+      EXPECT_GT(line(small), 0.003) << "at each picture: none is empty because the next one is smaller";
+    }
+    EXPECT_NEAR(views_->scale(), std::sqrt(0.5), 0.01);
+    EXPECT_NEAR(session_->view().lens().width(), 160 * views_->scale(), 1);
+    EXPECT_LT(cv::norm(whole, small, cv::NORM_L1) / (3.0 * static_cast<double>(whole.total())), 6);
+    EXPECT_GT(cv::norm(whole, small, cv::NORM_L1), 0);
+    ASSERT_EQ(parts_.at(0).labels.size(), 1u);
+  }
+}
+
 TEST_F(SeatViewsPictures, TheBorderGoesWhereItIsDragged) {
   shown(ViewMode::split);
   gl::WindowInput press = mouse(160, true, true), drag = mouse(80, true);

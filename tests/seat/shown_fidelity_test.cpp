@@ -213,6 +213,30 @@ TEST(ShownFidelity, WhatNoImageColouredIsLeftOut) {
   EXPECT_NEAR(out->exact_share, (kWidth / 2.0 - 10) / (kWidth / 2.0), 1e-9);
 }
 
+// What was drawn with fewer pixels is compared as it looks: blurred at edges, and that counts.
+TEST(ShownFidelity, SmallerPicturesAreComparedAsTheyLook) {
+  cv::Mat half = image();
+  half.colRange(0, kWidth / 2) = cv::Scalar::all(200);
+  half.colRange(kWidth / 2, kWidth) = cv::Scalar::all(40);
+  RememberedView small = view(100ms);
+  cv::Mat bgr;
+  cv::resize(half, bgr, {kWidth / 2, kHeight / 2}, 0, 0, cv::INTER_AREA);
+  cv::cvtColor(bgr, small.picture, cv::COLOR_BGR2BGRA);
+  small.picture.rowRange(0, kHeight / 4).setTo(cv::Scalar(7, 7, 7, 128));  // filled
+  small.doubt = cv::Mat(kHeight / 2, kWidth / 2, CV_8UC1, cv::Scalar(small.doubt.at<uchar>(0, 0)));
+  ShownFidelity fidelity;
+  fidelity.shown(std::move(small));
+  const auto out = fidelity.arrived(at(100ms), half);
+  ASSERT_TRUE(out);
+  EXPECT_EQ(out->comparison.size(), half.size());
+  EXPECT_GT(*out->psnr_db, 20);
+  EXPECT_LT(*out->psnr_db, 60) << "the edge is blurred";
+  const int row = 3 * kHeight / 4;
+  EXPECT_EQ(out->comparison.at<uchar>(row, 3), 0);
+  EXPECT_GT(out->comparison.at<uchar>(row, kWidth / 2), 10);
+  EXPECT_EQ(out->comparison.at<uchar>(kHeight / 4, 3), kNotShown) << "no image coloured it";
+}
+
 TEST(ShownFidelity, BearsWhatDoesNotFit) {
   ShownFidelity fidelity({.kept = 3});
   fidelity.shown(view(100ms));
