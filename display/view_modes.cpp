@@ -102,7 +102,8 @@ double ViewSize::share_in_time() const {
 
 /// Of all that is drawn at full size, `whole`, so many pixels can be drawn in time.
 void ViewSize::shrink(double possible, double whole) {
-  const double now = scale_ * scale_, share = std::clamp(possible / whole, kLeastShare, 1.0);
+  const double least = std::clamp(few_pixels_ / pixels_of(camera_), kLeastShare, 1.0);
+  const double now = scale_ * scale_, share = std::clamp(possible / whole, least, 1.0);
   if (share > now ? share < kWorthIt * now && share < 1 : share * kTooSlow > now) return;
   scale_ = std::sqrt(share);
   own_ = scaled_lens(camera_, scale_);

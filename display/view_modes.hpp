@@ -53,8 +53,12 @@ inline constexpr double kDrawingShare = 0.6;
 /// eyes.
 class ViewSize {
  public:
-  /// Drawings may take `most_ms` in all.
-  ViewSize(const Lens& camera, double most_ms) : camera_(camera), own_(camera), most_ms_(most_ms) {}
+  /// With fewer pixels, most of the time goes into what does not depend on their number.
+  static constexpr double kFewPixels = 320 * 240;
+
+  /// Drawings may take `most_ms` in all. The camera's own view never becomes smaller than `few_pixels`.
+  ViewSize(const Lens& camera, double most_ms, double few_pixels = kFewPixels)
+      : camera_(camera), own_(camera), most_ms_(most_ms), few_pixels_(few_pixels) {}
 
   /// The place has width x height px, and the last picture took `drawing_ms`; 0: not known. For each picture; changes
   /// its mind only after a place has stayed the same for some, and where it is worth it.
@@ -76,7 +80,7 @@ class ViewSize {
   void shrink(double possible, double whole);
 
   Lens camera_, own_;
-  double most_ms_;
+  double most_ms_, few_pixels_;
   double scale_ = 1;
   std::optional<Lens> lens_;
   int width_ = 0, height_ = 0, calls_ = 0;  // of the place, since it or the size changed

@@ -52,7 +52,7 @@ ViewTarget target_of(const HudArea& area, const ViewTarget& part) {
 SeatViews::SeatViews(const SeatViewsSetup& setup)
     : setup_(setup),
       mode_(setup.mode),
-      size_(setup.left, setup.most_drawing_ms),
+      size_(setup.left, setup.most_drawing_ms, setup.few_pixels),
       overlay_(setup.left),
       beside_(setup.left, setup.right),
       newest_{UploadedPicture("newest left image"), UploadedPicture("newest right image")} {

@@ -32,6 +32,7 @@ struct SeatViewsSetup {
   std::optional<Lens> right = {};  ///< nothing: as the left one
   double eyes_apart = 0.063;       ///< m, of most people
   double most_drawing_ms = 20;     ///< ViewSize
+  double few_pixels = ViewSize::kFewPixels;
   ViewMode mode = ViewMode::predicted;
   /// Of a head display that takes two eyes side by side, left and right: what is predicted is drawn such that its
   /// optics show it straight. Nothing: it has none, or does that itself.

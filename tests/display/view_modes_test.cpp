@@ -66,7 +66,7 @@ TEST(ViewModes, ViewsAreAsLargeAsTheirPlaceWhereTheRendererCan) {
 TEST(ViewModes, WhereDrawingTakesTooLongViewsAreSmaller) {
   const Lens camera = small_lens("plumb_bob");  // 160 x 120
   for (const double ns_per_pixel : {500.0, 900.0, 1300.0, 2000.0, 1e5}) {
-    ViewSize size(camera, 10);  // 20,000 px at 500 ns
+    ViewSize size(camera, 10, 0);  // 20,000 px at 500 ns
     EXPECT_EQ(size.scale(), 1);
     int changes = 0;
     settled(size, 1280, 800, ns_per_pixel, &changes);
@@ -80,7 +80,7 @@ TEST(ViewModes, WhereDrawingTakesTooLongViewsAreSmaller) {
     EXPECT_EQ(size.own().parameters().d, camera.parameters().d);
     EXPECT_NEAR(size.own().max_angle(), camera.max_angle(), 1e-3) << "it sees as much as before";
   }
-  ViewSize size(camera, 10);
+  ViewSize size(camera, 10, 0);
   settled(size, 1280, 800, 1500);
   EXPECT_LT(size.scale(), 0.75);
   settled(size, 1280, 800, 100);
@@ -92,7 +92,7 @@ TEST(ViewModes, WhereDrawingTakesTooLongViewsAreSmaller) {
 TEST(ViewModes, TwoEyesShareTheTime) {
   const Lens camera = small_lens("pinhole");
   const double eyes = 2 * 160 * 120;
-  ViewSize size(camera, 10);
+  ViewSize size(camera, 10, 0);
   int changes = 0;
   for (int i = 0; i < 400; ++i) {
     const double before = size.scale();
@@ -104,6 +104,15 @@ TEST(ViewModes, TwoEyesShareTheTime) {
   EXPECT_NEAR(size.scale() * size.scale(), 25'000 / 57'600.0, 0.01);
   for (int i = 0; i < 400; ++i) size.choose_for(eyes, 800, 600, 0);
   EXPECT_EQ(size.scale(), 1) << "nothing is known any more";
+}
+
+// There, drawing hardly becomes cheaper.
+TEST(ViewModes, FewPixelsBecomeNoFewer) {
+  for (const auto& [width, least] : {std::pair{160, 160}, {320, 320}, {480, 320}, {640, 320}, {1280, 640}}) {
+    ViewSize size(fitted_lens(small_lens("pinhole"), width, width), 10);
+    settled(size, 1280, 800, 1e5);
+    EXPECT_NEAR(size.own().width(), least, 1) << width;
+  }
 }
 
 // Mesa's software renderer would compile programs anew.

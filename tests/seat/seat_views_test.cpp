@@ -184,7 +184,7 @@ TEST_F(SeatViewsPictures, OneEyeSeesPredictionAndImageWhereTheModeSaysSo) {
 // Where drawing takes too long: the same picture, of fewer pixels, for one eye and for two.
 TEST_F(SeatViewsPictures, SlowRenderersDrawFewerPixels) {
   for (const ViewMode mode : {ViewMode::predicted, ViewMode::two_eyes}) {
-    views_.emplace(SeatViewsSetup{.left = lens_, .eyes_apart = 0.1});
+    views_.emplace(SeatViewsSetup{.left = lens_, .eyes_apart = 0.1, .few_pixels = 0});
     session_->set_lens(lens_);
     const cv::Mat whole = shown(mode);
     EXPECT_EQ(session_->view().lens().width(), lens_.width());
