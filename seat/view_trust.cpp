@@ -81,16 +81,15 @@ void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, Trus
   if (marks == TrustMarks::tiles) frame_tiles();
 }
 
-void ViewTrust::frame_tiles() {
+void ViewTrust::frame_tiles() const {
   if (!fidelity_) return;
-  const gl::Texture& picture = pass_.marked();
-  if (!marked_ || marked_->whole().width != picture.width() || marked_->whole().height != picture.height())
-    marked_.emplace(picture.name(), picture.width(), picture.height());
+  const gl::Texture& picture = pass_.marked();  // another one whenever the view's size has changed
+  const TextureTarget target(picture.name(), picture.width(), picture.height());
   for (std::size_t i = 0; i < fidelity_->wrong.size(); ++i) {
     if (fidelity_->wrong[i] <= kWorthNaming) continue;
     const cv::Rect tile = tile_of(i, {picture.width(), picture.height()});
     const auto bar = [&](int x, int y, int width, int height) {
-      ViewTarget side = marked_->whole();
+      ViewTarget side = target.whole();
       side.x = tile.x + x;
       side.y = tile.y + y;
       side.width = width;

@@ -66,14 +66,13 @@ class ViewTrust {
   OperatorTime now() const { return {clock_.now().ns}; }
   void collect();
   void heed_light(RobotTime instant);
-  void frame_tiles();
+  void frame_tiles() const;
 
   const ViewSession& session_;
   const Clock& clock_;
   ViewTrustOptions options_;
   std::vector<Eigen::Vector3d> middles_;
   TrustPass pass_;
-  std::optional<TextureTarget> marked_;  // of the pass, as it is now
   PictureReadback readback_;
   ShownFidelity shown_;
   TrustSwitch switch_;
