@@ -11,7 +11,6 @@ const ShaderSources& display_shaders();
 namespace foresight {
 namespace {
 
-constexpr int kBorderPx = 2;     // as views have it
 constexpr double kLongest = 30;  // s that an image is remembered for
 
 }  // namespace
@@ -21,7 +20,7 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
     : lens_(lens),
       surface_(std::move(surface)),
       raster_(std::move(scene), false),
-      scratch_(gl::faces_for(lens, kBorderPx), false),
+      scratch_(view.faces().faces, false),
       depths_(GL_DEPTH_COMPONENT32F, scratch_.faces.width, scratch_.faces.height,
               scratch_.faces.count * static_cast<int>(kFrames), 1, "depth of images"),
       program_(gl::Program::compute(

@@ -109,10 +109,11 @@ void ViewSize::shrink(double possible, double whole) {
   own_ = scaled_lens(camera_, scale_);
 }
 
-void ViewSize::choose_for(double pixels, int width, int height, double drawing_ms) {
+void ViewSize::choose_for(std::span<const Lens> others, int width, int height, double drawing_ms) {
   lens_.reset();
   if (!settles(width, height, drawing_ms)) return;
-  const double whole = pixels_of(camera_) + pixels;
+  double whole = pixels_of(camera_);
+  for (const Lens& lens : others) whole += pixels_of(lens);
   shrink(costs_ms_.empty() ? whole : scale_ * scale_ * whole * share_in_time(), whole);
 }
 

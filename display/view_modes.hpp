@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/lens.hpp"
@@ -63,9 +64,9 @@ class ViewSize {
   /// The place has width x height px, and the last picture took `drawing_ms`; 0: not known. For each picture; changes
   /// its mind only after a place has stayed the same for some, and where it is worth it.
   void choose(int width, int height, double drawing_ms);
-  /// The same where it is not this view that fills the place, but others: with `pixels` beside the camera's where
-  /// nothing is left out.
-  void choose_for(double pixels, int width, int height, double drawing_ms);
+  /// The same where it is not this view that fills the place, but others beside it: through these lenses where nothing
+  /// is left out.
+  void choose_for(std::span<const Lens> others, int width, int height, double drawing_ms);
 
   /// Of the camera's own view.
   const Lens& own() const { return own_; }

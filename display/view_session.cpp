@@ -87,10 +87,12 @@ std::optional<ExtractionReport> ViewSession::take_report() {
 }
 
 bool ViewSession::draw(const Pose& T_world_camera, const SceneState& state) {
-  if (next_lens_ && view_) view_->set_lens(*std::exchange(next_lens_, std::nullopt));
-  if (!thesis_) return draw(*view_, T_world_camera, state);
-  thesis_view_->draw(T_world_camera, state);
-  return true;
+  if (thesis_) {
+    thesis_view_->draw(T_world_camera, state);
+    return true;
+  }
+  if (next_lens_) view_->set_lens(*std::exchange(next_lens_, std::nullopt));
+  return draw(*view_, T_world_camera, state);
 }
 
 bool ViewSession::draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state) {

@@ -183,9 +183,7 @@ std::array<Lens, 2> SeatViews::eye_lenses(const ViewTarget& whole) const {
 
 void SeatViews::draw_eyes(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms) {
   std::array<Lens, 2> lenses = eye_lenses(whole);
-  double pixels = 0;
-  for (const Lens& lens : lenses) pixels += static_cast<double>(lens.width()) * lens.height();
-  size_.choose_for(pixels, whole.width, whole.height, drawing_ms);
+  size_.choose_for(lenses, whole.width, whole.height, drawing_ms);
   for (Lens& lens : lenses) lens = scaled_lens(lens, size_.scale());
   std::optional<EyePair>& pair = shows_panels() ? panels_ : eyes_;
   if (!pair) pair.emplace(session, lenses, setup_.eyes_apart);

@@ -252,7 +252,6 @@ struct Bench {
         options.rate_hz > 0 ? std::vector{options.rate_hz} : std::vector<double>(std::begin(kRates), std::end(kRates));
     for (const double rate : rates) round(draw, from, rate, paced, unpaced, extraction);
     if (options.rate_hz > 0 && options.rate_hz != kJudgedRate) return;
-    warm_up(std::ref(in_window), from, paced, true, kWarmUp);
     round_in_window(in_window, from, paced, extraction);
   }
 };

@@ -91,7 +91,7 @@ TEST(ViewModes, WhereDrawingTakesTooLongViewsAreSmaller) {
 
 TEST(ViewModes, TwoEyesShareTheTime) {
   const Lens camera = small_lens("pinhole");
-  const double eyes = 2 * 160 * 120;
+  const std::array eyes{camera, camera};
   ViewSize size(camera, 10, 0);
   int changes = 0;
   for (int i = 0; i < 400; ++i) {
