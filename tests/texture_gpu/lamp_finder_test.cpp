@@ -70,6 +70,21 @@ TEST(LampFinder, FindsTheLampByTheShadowsOfWhatMoves) {
   EXPECT_NEAR(found.radius / to.norm(), kLamp.radius / truly.norm(), 0.04);
 }
 
+TEST(LampFinder, FindsTheLampInTheFirstImagesByShadowsThatHardlyMove) {
+  Room room;
+  room.show(0, 4, {kLamp});
+  ASSERT_TRUE(room.finder.lamp()) << room.finder.answer().still << " " << room.finder.answer().still_elsewhere;
+  EXPECT_FALSE(room.finder.answer().told_by_what_moves);
+  const Eigen::Vector3d middle(0, 0, 0.1), to = room.finder.lamp()->position - middle, truly = kLamp.position - middle;
+  EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
+}
+
+TEST(LampFinder, SaysNothingOfSingleImagesThatShowPrintAlone) {
+  Room room;
+  room.show(0, 4, {}, 0.15);
+  EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().still << " " << room.finder.answer().still_elsewhere;
+}
+
 TEST(LampFinder, SaysNothingWhereNoShadowTellsOfALamp) {
   Room room;
   room.show(0, 30, {}, 0.04);
