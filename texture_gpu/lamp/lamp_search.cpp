@@ -330,10 +330,12 @@ LampAnswer LampSearch::answer() {
       if (other(c, best[0], kApart)) out.still_elsewhere = std::max(out.still_elsewhere, c.still);
   const Lamp lamp{place(best[0]), best[0].radius * best[0].distance, {}};
   const Strength found = strength(lamp.position, lamp.radius);
-  out.told_by_what_moves = out.explained >= kFewestExplained && out.explained >= kClearly * out.elsewhere;
-  const bool told_by_single_images = likelier(points_, out.still) >= kStillLikelier &&
+  const bool explains = moves && out.explained >= kFewestExplained;
+  out.told_by_what_moves = explains && out.explained >= kClearly * out.elsewhere;
+  const bool told_by_single_images = !explains && likelier(points_, out.still) >= kStillLikelier &&
                                      out.still >= kStillClearly * out.still_elsewhere && !is_gone(found, found.still);
-  if (!out.told_by_what_moves && !told_by_single_images) return question_.told_by_what_moves ? out : keep(out);
+  if (!out.told_by_what_moves && !told_by_single_images)
+    return question_.told_by_what_moves || explains ? out : keep(out);
   out.lamp = lamp;
   out.lamp->strength = found.shadows >= kFewestDark ? found.moving : found.still;
   if (!(out.lamp->strength.minCoeff() > 0)) out.lamp.reset();
