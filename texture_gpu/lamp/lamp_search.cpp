@@ -334,8 +334,7 @@ LampAnswer LampSearch::answer() {
   out.told_by_what_moves = explains && out.explained >= kClearly * out.elsewhere;
   const bool told_by_single_images = !explains && likelier(points_, out.still) >= kStillLikelier &&
                                      out.still >= kStillClearly * out.still_elsewhere && !is_gone(found, found.still);
-  if (!out.told_by_what_moves && !told_by_single_images)
-    return question_.told_by_what_moves || explains ? out : keep(out);
+  if (!out.told_by_what_moves && !told_by_single_images) return question_.told_by_what_moves ? out : keep(out);
   out.lamp = lamp;
   out.lamp->strength = found.shadows >= kFewestDark ? found.moving : found.still;
   if (!(out.lamp->strength.minCoeff() > 0)) out.lamp.reset();
