@@ -128,11 +128,14 @@ void ViewMeasures::measure(FrameRecord& record, double draw_cpu_ms, FrameSource&
 void ViewMeasures::note_lamp() {
   if (lamp_.lamp) {
     const Eigen::Vector3d& p = lamp_.lamp->position;
-    record_.notes.push_back(
-        fmt::format("The main lamp is at ({:.2f}, {:.2f}, {:.2f}) m, found by shadows of what moves: these are shown "
-                    "where they fall, "
-                    "with images from {:.3f} s on. They explain {:.0f} % of what was darker or brighter than usual.",
-                    p.x(), p.y(), p.z(), static_cast<double>(lamp_known_from_->ns) * 1e-9, 100 * lamp_.explained));
+    std::string note = fmt::format(
+        "The main lamp is at ({:.2f}, {:.2f}, {:.2f}) m, found by shadows {}: those of what moves are shown where they "
+        "fall, with images from {:.3f} s on.",
+        p.x(), p.y(), p.z(), lamp_.told_by_what_moves ? "of what moves" : "in single images",
+        static_cast<double>(lamp_known_from_->ns) * 1e-9);
+    if (lamp_.told_by_what_moves)
+      note += fmt::format(" They explain {:.0f} % of what was darker or brighter than usual.", 100 * lamp_.explained);
+    record_.notes.push_back(std::move(note));
   } else if (lamp_.dark > 0) {
     record_.notes.push_back(fmt::format(
         "It could not be told where the main lamp is: shadows of what moves are shown where they were. Of what was "

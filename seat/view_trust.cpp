@@ -56,7 +56,7 @@ void ViewTrust::saw(const PosedFrame& frame) {
 // they fall, that tells nothing any more.
 void ViewTrust::heed_light(RobotTime instant) {
   const TextureLease textures = session_.textures();
-  const bool lit = textures && textures->light;
+  const bool lit = textures && textures->light && textures->light->told_by_what_moves;
   if (std::exchange(lit_, lit) == lit) return;
   shown_.begin_anew(instant);
   compared_.reset();

@@ -14,6 +14,8 @@ namespace foresight {
 struct SceneLight {
   Lamp lamp;
   std::vector<bool> moving;  ///< one for each node
+  /// Shadows that move have told where it is; else single images have, and they may be some centimetres off.
+  bool told_by_what_moves = true;
 };
 
 /// One that stands far above the whole scene, in which everything throws a shadow: to run programs with before a lamp

@@ -240,7 +240,8 @@ void TextureCore::take_out_shadows() {
   if (!lamp) return light_.reset();
   if (!light_) light_since_ = newest_.time();
   if (!light_ || light_->lamp != *lamp || light_->moving != lamp_finder_.moving())
-    light_ = std::make_shared<const SceneLight>(SceneLight{*lamp, lamp_finder_.moving()});
+    light_ = std::make_shared<const SceneLight>(
+        SceneLight{*lamp, lamp_finder_.moving(), lamp_finder_.answer().told_by_what_moves});
   take_out_shadows(*light_);
 }
 

@@ -70,6 +70,21 @@ TEST(LampFinder, FindsTheLampByTheShadowsOfWhatMoves) {
   EXPECT_NEAR(found.radius / to.norm(), kLamp.radius / truly.norm(), 0.04);
 }
 
+TEST(LampFinder, FindsTheLampInTheFirstImagesByShadowsThatHardlyMove) {
+  Room room;
+  room.show(0, 4, {kLamp});
+  ASSERT_TRUE(room.finder.lamp()) << room.finder.answer().still << " " << room.finder.answer().still_elsewhere;
+  EXPECT_FALSE(room.finder.answer().told_by_what_moves);
+  const Eigen::Vector3d middle(0, 0, 0.1), to = room.finder.lamp()->position - middle, truly = kLamp.position - middle;
+  EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
+}
+
+TEST(LampFinder, SaysNothingOfSingleImagesThatShowPrintAlone) {
+  Room room;
+  room.show(0, 4, {}, 0.15);
+  EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().still << " " << room.finder.answer().still_elsewhere;
+}
+
 TEST(LampFinder, SaysNothingWhereNoShadowTellsOfALamp) {
   Room room;
   room.show(0, 30, {}, 0.04);
@@ -80,7 +95,9 @@ TEST(LampFinder, SaysNothingWhereSeveralLampsAreAsBright) {
   std::vector<Lamp> lamps;
   for (int i = 0; i < 4; ++i) lamps.push_back({{std::cos(1.6 * i), std::sin(1.6 * i), 1.2}, 0.05, {1, 1, 1}});
   Room room;
-  room.show(0, 30, lamps, 0.01, 4);
+  room.show(0, 4, lamps, 0.01, 4);
+  EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().still << " " << room.finder.answer().still_elsewhere;
+  room.show(4, 30, lamps, 0.01, 4);
   EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
 }
 

@@ -12,13 +12,13 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t kWitnesses = 6000, kRecords = 48;
+constexpr std::size_t kWitnesses = 12000, kRecords = 48;
 constexpr double kMoved = 5e-3, kTurned = 0.01;        // metres, radians: less is an error of a pose
 constexpr double kNewMoved = 0.02, kNewTurned = 0.06;  // since the last record: less has much the same shadows
-constexpr int kFirstSearch = 8, kAnswerTakes = 2;      // images
+constexpr int kAnswerTakes = 2;                        // images
 constexpr double kNextSearch = 1.25;                   // when there are so many times as many
 constexpr float kDarkest = 0.02f;                      // of an image's values: below, noise and black level rule
-const Vector3f kNotKnown = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+const LampRecord::Value kNotKnown = LampRecord::Value::Constant(Eigen::half(std::numeric_limits<float>::quiet_NaN()));
 
 }  // namespace
 
@@ -66,22 +66,24 @@ void LampFinder::add(const SceneState& state, const Vector3d& camera, std::span<
       turned_[i] = true;
       if (w.normal.dot(camera.cast<float>() - w.point) < 0) w.normal = -w.normal;
     }
-    record.log_brightness.push_back(known ? Vector3f(value.array().log()) : kNotKnown);
+    record.log_brightness.push_back(known ? LampRecord::Value(value.array().log().cast<Eigen::half>()) : kNotKnown);
   }
   records_.push_back(std::move(record));
   if (records_.size() > kRecords) records_.pop_front();
   ++recorded_;
   if (search_.valid() && recorded_ >= answer_at_) answer_ = search_.get();
-  if (!search_.valid() && recorded_ >= std::max(ask_at_, kFirstSearch)) ask();
+  if (!search_.valid() && recorded_ >= ask_at_) ask();
 }
 
 void LampFinder::ask() {
   ask_at_ = std::min(static_cast<int>(std::ceil(kNextSearch * recorded_)), recorded_ + static_cast<int>(kRecords));
   answer_at_ = recorded_ + kAnswerTakes;
-  search_ = std::async(std::launch::async, [this, question = LampQuestion{witnesses_, records_, moving_, lamp()}] {
-    make_background();  // frames and images go first
-    return find_lamp(rays_, question);
-  });
+  search_ =
+      std::async(std::launch::async,
+                 [this, question = LampQuestion{witnesses_, records_, moving_, lamp(), answer_.told_by_what_moves}] {
+                   make_background();  // frames and images go first
+                   return find_lamp(rays_, question);
+                 });
 }
 
 }  // namespace foresight

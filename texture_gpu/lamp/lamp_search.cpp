@@ -7,6 +7,7 @@
 #include <random>
 
 #include "common/statistics.hpp"
+#include "texture_gpu/lamp/still_shadows.hpp"
 
 namespace foresight {
 namespace {
@@ -26,11 +27,12 @@ constexpr double kApart = 0.35;                                       // radians
 constexpr std::size_t kSoftRays = ShadowRays::kPacket, kFitRays = 3 * ShadowRays::kPacket;
 constexpr double kFewestExplained = 0.4, kClearly = 1.5;  // to be believed: so much, and so many times what others do
 constexpr double kGoneShare = 0.25;                       // of its strength that is left of a lamp that is off
+// Of single images: points in all, and to look all around with; new ones that another image has to show. To be
+// believed: so much likelier than no lamp (logarithm), and so many times what others explain.
+constexpr std::size_t kMostStill = 2000, kCoarseStill = 600, kFewestNew = 200;
+constexpr double kStillLikelier = 25, kStillClearly = 1.6;
+constexpr std::size_t kOthers = 12;  // places in other directions that are looked at with all points
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-float luma_of(const Vector3f& rgb) {
-  return rgb.dot(Vector3f(0.299f, 0.587f, 0.114f));
-}
 
 struct Observation {
   std::size_t record = 0, witness = 0;
@@ -51,13 +53,13 @@ std::vector<Observation> observations(const LampQuestion& question) {
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<std::pair<float, std::size_t>> values;
       for (std::size_t k = 0; k < records.size(); ++k)
-        if (const Vector3f value = records[k].log_brightness[i] - offset[k]; !value.hasNaN())
+        if (const Vector3f value = records[k].value(i) - offset[k]; !value.hasNaN())
           values.emplace_back(luma_of(value), k);
       if (values.size() < kFewestValues) continue;
       const auto at = static_cast<std::ptrdiff_t>(kLit * static_cast<double>(values.size() - 1));
       std::ranges::nth_element(values, values.begin() + at);
       const std::size_t k = values[static_cast<std::size_t>(at)].second;
-      lit[i] = records[k].log_brightness[i] - offset[k];
+      lit[i] = records[k].value(i) - offset[k];
       lit_record[i] = k;
     }
     out.clear();
@@ -65,7 +67,7 @@ std::vector<Observation> observations(const LampQuestion& question) {
       std::array<std::vector<float>, 3> channel;
       const std::size_t first = out.size();
       for (std::size_t i = 0; i < count; ++i) {
-        const Vector3f deviation = records[k].log_brightness[i] - offset[k] - lit[i];
+        const Vector3f deviation = records[k].value(i) - offset[k] - lit[i];
         if (deviation.hasNaN()) continue;
         out.push_back({k, i, lit_record[i], deviation, luma_of(deviation)});
         for (int c = 0; c < 3; ++c) channel[static_cast<std::size_t>(c)].push_back(deviation[c]);
@@ -82,19 +84,18 @@ std::vector<Observation> observations(const LampQuestion& question) {
   return out;
 }
 
-/// Points of the unit disc that stand for all of it; none: a lamp without extent.
-using Disc = std::vector<Eigen::Vector2d>;
-const Disc kPoint;
+const Disc kPoint;  // a lamp without extent
 
-/// Vogel's spiral.
-Disc spiral(std::size_t points) {
-  Disc out;
-  for (std::size_t k = 0; k < points; ++k) {
-    const double r = std::sqrt((static_cast<double>(k) + 0.5) / static_cast<double>(points)),
-                 a = static_cast<double>(k) * 2.39996;
-    out.emplace_back(r * std::cos(a), r * std::sin(a));
-  }
-  return out;
+/// Of a lamp at some place.
+struct Strength {
+  Vector3d moving = Vector3d::Zero(), still = Vector3d::Zero();  // by the shadows of what moves; of single images
+  std::size_t shadows = 0;                                       // observations that the first is drawn from
+};
+
+/// How much likelier values are with such a share of their squared deviations explained, logarithm: as if they were
+/// normally distributed, and none told anything of another.
+double likelier(std::size_t count, double explained) {
+  return -0.5 * static_cast<double>(count) * std::log(1 - std::min(explained, 0.999));
 }
 
 /// What each position of a lamp explains of some observations.
@@ -107,16 +108,17 @@ class LampSearch {
   struct Candidate {
     Vector3d direction;
     double distance = 1, radius = 0;  // metres; share of the distance
-    double explained = 0;
+    double explained = 0, still = 0;  // shares of squared deviations: over time, and from what is around
+    double score = 0;                 // how much likelier both are with this lamp than with none, logarithm
   };
-  struct Strength {
-    Vector3d strength = Vector3d::Zero();
-    std::size_t shadows = 0;  // observations that it is drawn from
-  };
+  void look_at_single_images(const ShadowRays& rays);
   double hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius, const Disc& disc) const;
   double explained(const Candidate& c, const Disc& disc, std::size_t most) const;
+  double still_explained(const Candidate& c, const Disc& disc, std::span<const StillShadows> images) const;
+  void judge(Candidate& c, const Disc& disc, bool coarsely = false) const;
   void refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc);
   std::vector<Candidate> coarse();
+  LampAnswer keep(LampAnswer out) const;
   Strength strength(const Vector3d& lamp, double radius) const;
   Vector3d place(const Candidate& c) const { return centre_ + c.distance * c.direction; }
 
@@ -125,6 +127,8 @@ class LampSearch {
   std::size_t dark_ = 0;
   std::vector<ShadowRays::Posed> moving_;  // of each record
   ShadowRays::Posed still_;
+  std::vector<StillShadows> single_, coarse_;  // images; the first of them, with fewer points
+  std::size_t points_ = 0;                     // of the first
   Vector3d centre_;
   double extent_ = 1;
   const Disc soft_ = spiral(kSoftRays), fit_ = spiral(kFitRays);
@@ -140,6 +144,7 @@ LampSearch::LampSearch(const ShadowRays& rays, const LampQuestion& question)
     : question_(question),
       all_(observations(question)),
       still_(rays.pose(question.records.back().T_world_node, flipped(question.moving))) {
+  look_at_single_images(rays);
   for (const LampRecord& record : question.records) moving_.push_back(rays.pose(record.T_world_node, question.moving));
   std::vector<double> sizes;
   for (const Observation& o : all_)
@@ -168,23 +173,32 @@ LampSearch::LampSearch(const ShadowRays& rays, const LampQuestion& question)
   extent_ = std::max(0.2, box.diagonal().norm());
 }
 
+/// Of images that show many points each which those before do not.
+void LampSearch::look_at_single_images(const ShadowRays& rays) {
+  std::vector<bool> shown(question_.witnesses.size());
+  while (points_ + kFewestNew <= kMostStill) {
+    const LampRecord* best = nullptr;
+    std::size_t most = kFewestNew;
+    for (const LampRecord& record : question_.records) {
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < shown.size(); ++i) count += !shown[i] && record.knows(i);
+      if (count >= most) best = &record, most = count;
+    }
+    if (!best) return;
+    for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = shown[i] || best->knows(i);
+    if (single_.empty()) coarse_.emplace_back(rays, question_.witnesses, *best, kCoarseStill);
+    single_.emplace_back(rays, question_.witnesses, *best, kMostStill - points_);
+    points_ += single_.back().size();
+  }
+}
+
 double LampSearch::hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius,
                           const Disc& disc) const {
   const Witness& w = question_.witnesses[witness];
-  const Vector3d p = w.point.cast<double>(), to_lamp = lamp - p;
-  if (w.normal.cast<double>().dot(to_lamp) <= 0) return 0;
-  const ShadowRays::Posed& moving = moving_[record];
-  const Vector3d right = to_lamp.unitOrthogonal(), up = to_lamp.normalized().cross(right);
-  int hits = 0;
-  std::array<Vector3d, ShadowRays::kPacket> to;
-  for (std::size_t first = 0; first < disc.size(); first += to.size()) {
-    for (std::size_t k = 0; k < to.size(); ++k)
-      to[k] = lamp + radius * (disc[first + k].x() * right + disc[first + k].y() * up);
-    hits += moving.count_blocked(p, to);
-  }
-  if (disc.empty()) hits = moving.blocked(p, lamp);
-  if (hits == 0 || still_.blocked(p, lamp, 5e-3)) return 0;
-  return static_cast<double>(hits) / static_cast<double>(std::max<std::size_t>(1, disc.size()));
+  const Vector3d p = w.point.cast<double>();
+  if (w.normal.cast<double>().dot(lamp - p) <= 0) return 0;
+  const double share = hidden_share(moving_[record], p, lamp, radius, disc);
+  return share > 0 && !still_.blocked(p, lamp, 5e-3) ? share : 0;
 }
 
 /// Share of the squared deviations that shadows of this lamp take away, at the darkness that suits them best.
@@ -199,9 +213,29 @@ double LampSearch::explained(const Candidate& c, const Disc& disc, std::size_t m
   return sxy < 0 && syy > 0 ? sxy * sxy / (sxx * syy) : 0;
 }
 
+/// Likewise of what single images show.
+double LampSearch::still_explained(const Candidate& c, const Disc& disc, std::span<const StillShadows> images) const {
+  StillShadows::Sums all;
+  for (const StillShadows& image : images) {
+    const StillShadows::Sums sums = image.compare(place(c), c.radius * c.distance, disc);
+    all.xy += sums.xy, all.xx += sums.xx, all.yy += sums.yy;
+  }
+  return all.xy < 0 && all.yy > 0 ? all.xy * all.xy / (all.xx * all.yy) : 0;
+}
+
+void LampSearch::judge(Candidate& c, const Disc& disc, bool coarsely) const {
+  const std::size_t chosen = coarsely ? std::min(kMostCoarse, chosen_.size()) : chosen_.size();
+  const std::vector<StillShadows>& images = coarsely ? coarse_ : single_;
+  std::size_t points = 0;
+  for (const StillShadows& image : images) points += image.size();
+  c.explained = dark_ < kFewestDark ? 0 : explained(c, disc, chosen);
+  c.still = still_explained(c, disc, images);
+  c.score = likelier(chosen, c.explained) + likelier(points, c.still);
+}
+
 void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc) {
   std::normal_distribution<double> normal;
-  best.explained = explained(best, disc, chosen_.size());
+  judge(best, disc);
   for (int round = 0; round < rounds; ++round, spread /= 2)
     for (int i = 0; i < tries; ++i) {
       Candidate c = best;
@@ -209,8 +243,8 @@ void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, c
           (c.direction + spread * Vector3d(normal(generator_), normal(generator_), normal(generator_))).normalized();
       c.distance *= std::exp(2 * spread * normal(generator_));
       if (!disc.empty()) c.radius = std::clamp(c.radius * std::exp(2 * spread * normal(generator_)), 0.005, 0.4);
-      c.explained = explained(c, disc, chosen_.size());
-      if (c.explained > best.explained) best = c;
+      judge(c, disc);
+      if (c.score > best.score) best = c;
     }
 }
 
@@ -219,7 +253,7 @@ std::vector<LampSearch::Candidate> LampSearch::coarse() {
   std::vector<Candidate> out;
   const auto add = [&](const Vector3d& direction, double distance) {
     Candidate c{direction, distance};
-    c.explained = explained(c, kPoint, kMostCoarse);
+    judge(c, kPoint, true);
     out.push_back(c);
   };
   for (int i = 0; i < kDirections; ++i) {  // evenly over the sphere
@@ -230,20 +264,28 @@ std::vector<LampSearch::Candidate> LampSearch::coarse() {
     const Vector3d d = question_.known->position - centre_;
     add(d.normalized(), d.norm());
   }
-  std::ranges::sort(out, std::greater(), &Candidate::explained);
+  std::ranges::sort(out, std::greater(), &Candidate::score);
+  return out;
+}
+
+/// Where it should have thrown shadows, and has not.
+bool is_gone(const Strength& now, const Vector3d& usual) {
+  return now.shadows >= kFewestDark && now.moving.sum() < kGoneShare * usual.sum();
+}
+
+/// What was known, unless something speaks against it.
+LampAnswer LampSearch::keep(LampAnswer out) const {
+  out.lamp = question_.known;
+  out.told_by_what_moves = question_.told_by_what_moves;
+  if (out.lamp && is_gone(strength(out.lamp->position, out.lamp->radius), out.lamp->strength)) out.lamp.reset();
   return out;
 }
 
 LampAnswer LampSearch::answer() {
   LampAnswer out;
   out.dark = static_cast<int>(dark_);
-  if (dark_ < kFewestDark) {  // nothing new; but where the lamp that is known should have thrown shadows it must have
-    out.lamp = question_.known;
-    if (!out.lamp) return out;
-    const Strength now = strength(out.lamp->position, out.lamp->radius);
-    if (now.shadows >= kFewestDark && now.strength.sum() < kGoneShare * out.lamp->strength.sum()) out.lamp.reset();
-    return out;
-  }
+  const bool moves = dark_ >= kFewestDark;
+  if (!moves && (question_.told_by_what_moves || single_.empty())) return keep(out);
   const auto other = [](const Candidate& a, const Candidate& b, double apart) {
     return a.direction.dot(b.direction) < std::cos(apart);
   };
@@ -254,33 +296,53 @@ LampAnswer LampSearch::answer() {
     if (std::ranges::all_of(best, [&](const Candidate& b) { return other(b, c, kApart / 2); })) best.push_back(c);
   }
   for (Candidate& c : best) refine(c, 3, 16, 0.12, kPoint);
-  std::ranges::sort(best, std::greater(), &Candidate::explained);
+  std::ranges::sort(best, std::greater(), &Candidate::score);
+  const std::vector<Candidate> hard_ones = best;
   best.resize(std::min<std::size_t>(best.size(), 3));
   for (Candidate& c : best) {
     const Candidate hard = c;
-    c.explained = -1;
+    c.score = -1;
     for (const double radius : kRadii) {
       Candidate soft = hard;
       soft.radius = radius;
-      soft.explained = explained(soft, soft_, chosen_.size());
-      if (soft.explained > c.explained) c = soft;
+      judge(soft, soft_);
+      if (soft.score > c.score) c = soft;
     }
     refine(c, 4, 12, 0.06, soft_);
   }
-  std::ranges::sort(best, std::greater(), &Candidate::explained);
+  if (question_.known) {
+    const Vector3d d = question_.known->position - centre_;
+    Candidate& known = best.emplace_back(Candidate{d.normalized(), d.norm(), question_.known->radius / d.norm()});
+    refine(known, 4, 12, 0.06, soft_);
+  }
+  std::ranges::sort(best, std::greater(), &Candidate::score);
   out.explained = best[0].explained;
-  for (const auto& list : {all, best})
+  out.still = best[0].still;
+  for (const auto& list : {all, hard_ones, best})
     for (const Candidate& c : list)
       if (other(c, best[0], kApart)) out.elsewhere = std::max(out.elsewhere, c.explained);
-  if (out.explained < kFewestExplained || out.explained < kClearly * out.elsewhere) return out;
-  const Lamp lamp{place(best[0]), best[0].radius * best[0].distance,
-                  strength(place(best[0]), best[0].radius * best[0].distance).strength};
-  if (lamp.strength.minCoeff() > 0) out.lamp = lamp;
+  std::vector<Candidate> others;
+  for (const Candidate& c : all)
+    if (others.size() < kOthers && other(c, best[0], kApart)) others.push_back(c);
+  for (Candidate& c : others) judge(c, kPoint);  // of all points
+  for (const auto& list : {others, hard_ones, best})
+    for (const Candidate& c : list)
+      if (other(c, best[0], kApart)) out.still_elsewhere = std::max(out.still_elsewhere, c.still);
+  const Lamp lamp{place(best[0]), best[0].radius * best[0].distance, {}};
+  const Strength found = strength(lamp.position, lamp.radius);
+  const bool explains = moves && out.explained >= kFewestExplained;
+  out.told_by_what_moves = explains && out.explained >= kClearly * out.elsewhere;
+  const bool told_by_single_images = !explains && likelier(points_, out.still) >= kStillLikelier &&
+                                     out.still >= kStillClearly * out.still_elsewhere && !is_gone(found, found.still);
+  if (!out.told_by_what_moves && !told_by_single_images) return question_.told_by_what_moves ? out : keep(out);
+  out.lamp = lamp;
+  out.lamp->strength = found.shadows >= kFewestDark ? found.moving : found.still;
+  if (!(out.lamp->strength.minCoeff() > 0)) out.lamp.reset();
   return out;
 }
 
-/// For each channel the one with the least absolute error.
-LampSearch::Strength LampSearch::strength(const Vector3d& lamp, double radius) const {
+/// For each channel those with the least absolute error.
+Strength LampSearch::strength(const Vector3d& lamp, double radius) const {
   struct Shadowed {
     Vector3f deviation;
     double facing, hidden, usually;  // (n . l) / d^2; shares of the lamp
@@ -295,18 +357,27 @@ LampSearch::Strength LampSearch::strength(const Vector3d& lamp, double radius) c
     const Vector3d l = lamp - w.point.cast<double>();
     shadowed.push_back({all_[i].deviation, w.normal.cast<double>().dot(l) / std::pow(l.norm(), 3), x, usually});
   }
+  std::vector<StillShadows::Cast> cast;
+  for (const StillShadows& image : single_) cast.push_back(image.cast(lamp, radius, soft_));
   Strength out{.shadows = shadowed.size()};
-  double mean = 0;
-  for (const Shadowed& s : shadowed) mean += s.facing / static_cast<double>(shadowed.size());
+  double mean = 0, count = 0;
+  for (const Shadowed& s : shadowed) mean += s.facing, count += 1;
+  for (const StillShadows::Cast& image : cast)
+    for (const double facing : image.facing) mean += facing, count += 1;
+  mean /= std::max(1.0, count);
   if (!(mean > 0)) return out;
-  for (int c = 0; c < 3; ++c) {
-    double least = std::numeric_limits<double>::infinity();
-    for (double share = 0.02; share < 50; share *= 1.05) {
-      double error = 0;
-      for (const Shadowed& s : shadowed)
-        error += std::abs(s.deviation[c] - std::log(shadow_factor(share * s.facing / mean, s.hidden) /
-                                                    shadow_factor(share * s.facing / mean, s.usually)));
-      if (error < least) least = error, out.strength[c] = share / mean;
+  Eigen::Array3d least_moving = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()),
+                 least_still = least_moving;
+  for (double share = 0.02; share < 50; share *= 1.05) {
+    Eigen::Array3d of_moving = Eigen::Array3d::Zero(), of_still = of_moving;
+    for (const Shadowed& s : shadowed)
+      of_moving += (s.deviation.cast<double>().array() - std::log(shadow_factor(share / mean * s.facing, s.hidden) /
+                                                                  shadow_factor(share / mean * s.facing, s.usually)))
+                       .abs();
+    for (std::size_t i = 0; i < single_.size(); ++i) of_still += single_[i].errors(cast[i], share / mean);
+    for (int c = 0; c < 3; ++c) {
+      if (of_moving[c] < least_moving[c]) least_moving[c] = of_moving[c], out.moving[c] = share / mean;
+      if (of_still[c] < least_still[c]) least_still[c] = of_still[c], out.still[c] = share / mean;
     }
   }
   return out;

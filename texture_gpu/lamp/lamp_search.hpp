@@ -5,31 +5,27 @@
 #include <optional>
 
 #include "texture_gpu/lamp/lamp.hpp"
+#include "texture_gpu/lamp/lamp_record.hpp"
 #include "texture_gpu/lamp/shadow_rays.hpp"
-#include "texture_gpu/lamp/witnesses.hpp"
 
 namespace foresight {
-
-/// What one image has shown of the witnesses.
-struct LampRecord {
-  std::vector<Pose> T_world_node;
-  /// Red, green and blue of each witness, logarithms of 0 .. 1; NaN: not known. A factor on all of an image's values
-  /// does not matter.
-  std::vector<Eigen::Vector3f> log_brightness;
-};
 
 struct LampQuestion {
   std::vector<Witness> witnesses;  ///< normals towards the cameras
   std::deque<LampRecord> records;
-  std::vector<bool> moving;   ///< nodes whose shadows are looked for; where the others stand does not change
-  std::optional<Lamp> known;  ///< what was thought to be it
+  std::vector<bool> moving;         ///< nodes whose shadows are looked for; where the others stand does not change
+  std::optional<Lamp> known;        ///< what was thought to be it
+  bool told_by_what_moves = false;  ///< that one
 };
 
 struct LampAnswer {
-  std::optional<Lamp> lamp;  ///< nothing where it cannot be told
-  int dark = 0;              ///< observations that were darker than the same point usually is
-  double explained = 0;      ///< share of the squared deviations of what was looked at that the best lamp explains
-  double elsewhere = 0;      ///< that the best lamp in another direction explains
+  std::optional<Lamp> lamp;         ///< nothing where it cannot be told
+  bool told_by_what_moves = false;  ///< else single images have told it
+  int dark = 0;                     ///< observations that were darker than the same point usually is
+  double explained = 0;  ///< share of the squared deviations of what was looked at that the best lamp explains
+  double elsewhere = 0;  ///< that the best lamp in another direction explains
+  /// Likewise of how bright points are in one image beside those around them.
+  double still = 0, still_elsewhere = 0;
 };
 
 /// The same question has the same answer. Takes some tenths of a second; `rays` is of the scene, and used by nobody

@@ -1,0 +1,140 @@
+#include "texture_gpu/lamp/still_shadows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "texture_gpu/lamp/lamp.hpp"
+
+namespace foresight {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr std::size_t kAround = 80, kFewestAround = 8;
+constexpr double kNear = 0.15;         // share of the extent of what is seen: further away is another place
+constexpr float kAlike = 0.95f;        // cosine of normals
+constexpr double kGap = 5e-3;          // metres: what touches a surface does not throw shadows on its own points
+constexpr float kMostBrighter = 0.4f;  // logarithm: print, of whatever lamp
+constexpr double kBorder = 0.05;       // of the lamp
+constexpr std::size_t kWays = 4 * ShadowRays::kPacket;  // over which a point sees its surroundings
+
+}  // namespace
+
+StillShadows::StillShadows(const ShadowRays& rays, std::span<const Witness> witnesses, const LampRecord& record,
+                           std::size_t most)
+    : all_(rays.pose(record.T_world_node, std::vector<bool>(record.T_world_node.size(), true))) {
+  std::vector<Vector3f> values;
+  Eigen::AlignedBox3f box;
+  for (std::size_t i = 0; i < witnesses.size() && points_.size() < most; ++i) {
+    if (!record.knows(i)) continue;
+    points_.push_back(witnesses[i]);
+    values.push_back(record.value(i));
+    box.extend(witnesses[i].point);
+  }
+  if (points_.empty()) return;
+  const auto near = static_cast<float>(kNear * box.diagonal().norm());
+  look_around(near);
+  std::vector<std::pair<float, std::size_t>> others;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Witness& here = points_[i];
+    others.clear();
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const float away = (points_[k].point - here.point).norm();
+      if (points_[k].node == here.node && away < near && points_[k].normal.dot(here.normal) > kAlike)
+        others.emplace_back(away, k);
+    }
+    const std::size_t count = std::min(others.size(), kAround);
+    if (count < kFewestAround) continue;
+    std::ranges::nth_element(others, others.begin() + static_cast<std::ptrdiff_t>(count - 1));
+    lists_.push_back({i, around_.size(), count});
+    Vector3f mean = Vector3f::Zero();
+    for (std::size_t k = 0; k < count; ++k) {
+      around_.push_back(others[k].second);
+      mean += values[others[k].second] / static_cast<float>(count);
+    }
+    brighter_.push_back((values[i] - mean).cwiseMax(-kMostBrighter).cwiseMin(kMostBrighter));
+  }
+  std::vector<double> log_open;
+  for (const double open : open_) log_open.push_back(std::log(open));
+  const auto count = static_cast<Eigen::Index>(lists_.size());
+  more_open_.resize(count);
+  luma_.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const List& list = lists_[static_cast<std::size_t>(i)];
+    more_open_[i] = log_open[list.point] - around(list, log_open);
+    luma_[i] = luma_of(brighter_[static_cast<std::size_t>(i)]);
+  }
+  more_open_.normalize();  // zeros stay zeros
+  luma_ -= more_open_.dot(luma_) * more_open_;
+}
+
+/// Over ways that are spread as light from all around counts: by their cosines.
+void StillShadows::look_around(double reach) {
+  static const Disc disc = spiral(kWays);
+  for (const Witness& w : points_) {
+    const Vector3d p = w.point.cast<double>(), n = w.normal.cast<double>(), right = n.unitOrthogonal(),
+                   up = n.cross(right);
+    int hits = 0;
+    std::array<Vector3d, ShadowRays::kPacket> to;
+    for (std::size_t first = 0; first < disc.size(); first += to.size()) {
+      for (std::size_t k = 0; k < to.size(); ++k) {
+        const Eigen::Vector2d& at = disc[first + k];
+        to[k] = p + reach * (at.x() * right + at.y() * up + std::sqrt(1 - at.squaredNorm()) * n);
+      }
+      hits += all_.count_blocked(p, to, kGap);
+    }
+    open_.push_back(1 - static_cast<double>(hits) / (kWays + 1));
+  }
+}
+
+double StillShadows::around(const List& list, const std::vector<double>& values) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < list.count; ++k) sum += values[around_[list.first + k]];
+  return sum / static_cast<double>(list.count);
+}
+
+std::vector<double> StillShadows::hidden(const Vector3d& lamp, double radius, const Disc& disc) const {
+  std::vector<double> out;
+  for (const Witness& w : points_) {
+    const Vector3d p = w.point.cast<double>();
+    const bool faces = w.normal.cast<double>().dot(lamp - p) > 0;
+    out.push_back(faces ? hidden_share(all_, p, lamp, radius, disc, kGap) : 1);
+  }
+  return out;
+}
+
+StillShadows::Sums StillShadows::compare(const Vector3d& lamp, double radius, const Disc& disc) const {
+  const std::vector<double> values = hidden(lamp, radius, disc);
+  Eigen::VectorXd more(luma_.size());
+  for (Eigen::Index i = 0; i < more.size(); ++i) {
+    const List& list = lists_[static_cast<std::size_t>(i)];
+    more[i] = values[list.point] - around(list, values);
+  }
+  more -= more_open_.dot(more) * more_open_;
+  return {more.dot(luma_), more.squaredNorm(), luma_.squaredNorm()};
+}
+
+StillShadows::Cast StillShadows::cast(const Vector3d& lamp, double radius, const Disc& disc) const {
+  Cast out{{}, hidden(lamp, radius, disc), {}};
+  for (const Witness& w : points_) {
+    const Vector3d l = lamp - w.point.cast<double>();
+    out.facing.push_back(std::max(0.0, w.normal.cast<double>().dot(l) / std::pow(l.norm(), 3)));
+  }
+  for (std::size_t i = 0; i < lists_.size(); ++i)
+    if (std::abs(out.hidden[lists_[i].point] - around(lists_[i], out.hidden)) > kBorder) out.borders.push_back(i);
+  return out;
+}
+
+Eigen::Array3d StillShadows::errors(const Cast& cast, double strength) const {
+  std::vector<double> shade;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    shade.push_back(std::log(open_[i] + strength * cast.facing[i] * (1 - cast.hidden[i])) / kResponse);
+  Eigen::Array3d out = Eigen::Array3d::Zero();
+  for (const std::size_t i : cast.borders)
+    out += (brighter_[i].cast<double>().array() - (shade[lists_[i].point] - around(lists_[i], shade))).abs();
+  return out;
+}
+
+}  // namespace foresight

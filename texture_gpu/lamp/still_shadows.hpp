@@ -1,0 +1,61 @@
+// Shadows as one image has them: points of a surface, each beside those around it.
+//
+// What lies across the border of a shadow is darker than what lies beside it. Print and grain are so too, but not all
+// along the shadows that a lamp at some place would throw; so that one image may tell where the lamp is. What lies in a
+// corner is darker whatever the lamp: as much as it sees less of its surroundings is left out.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "texture_gpu/lamp/lamp_record.hpp"
+#include "texture_gpu/lamp/round_lamp.hpp"
+
+namespace foresight {
+
+class StillShadows {
+ public:
+  /// At most `most` points of those that `record` has seen. `rays` must outlive this.
+  StillShadows(const ShadowRays& rays, std::span<const Witness> witnesses, const LampRecord& record, std::size_t most);
+
+  /// Points that have enough others around.
+  std::size_t size() const { return lists_.size(); }
+
+  /// Sums over all points: of how much more of a lamp is hidden than around (x), and how much brighter they are (y,
+  /// logarithms); of both, what goes with the surroundings that they see is left out.
+  struct Sums {
+    double xy = 0, xx = 0, yy = 0;
+  };
+  Sums compare(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
+
+  /// What a lamp there hides of itself, of each point that was seen.
+  struct Cast {
+    std::vector<double> facing, hidden;  ///< (n . l) / d^2; 0 .. 1
+    std::vector<std::size_t> borders;    ///< of the points, those of which more or less is hidden than around
+  };
+  Cast cast(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
+  /// For red, green and blue: sums over the borders of by how much, in logarithms, they are not as bright beside what
+  /// is around as a lamp makes them that gives `strength * facing` times the light of all else, which comes from all
+  /// around.
+  Eigen::Array3d errors(const Cast& cast, double strength) const;
+
+ private:
+  struct List {
+    std::size_t point, first, count;  // those around it, of around_
+  };
+  double around(const List& list, const std::vector<double>& values) const;
+  std::vector<double> hidden(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
+  void look_around(double reach);
+
+  ShadowRays::Posed all_;
+  std::vector<Witness> points_;
+  std::vector<List> lists_;
+  std::vector<std::size_t> around_;
+  std::vector<double> open_;               // of each point: share of what it sees that is not near
+  std::vector<Eigen::Vector3f> brighter_;  // of each list, logarithms
+  // Of each list: how much more open than around, logarithm, as a unit vector; luma, what goes with that left out.
+  Eigen::VectorXd more_open_, luma_;
+};
+
+}  // namespace foresight
