@@ -14,6 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+using Eigen::VectorXd;
 
 constexpr std::size_t kFewestValues = 4;  // of a witness
 constexpr double kLit = 0.8;              // quantile of a witness's values: hardly any shadow there
@@ -27,11 +28,14 @@ constexpr double kApart = 0.35;                                       // radians
 constexpr std::size_t kSoftRays = ShadowRays::kPacket, kFitRays = 3 * ShadowRays::kPacket;
 constexpr double kFewestExplained = 0.4, kClearly = 1.5;  // to be believed: so much, and so many times what others do
 constexpr double kGoneShare = 0.25;                       // of its strength that is left of a lamp that is off
-// Of single images: points in all, and to look all around with; new ones that another image has to show. To be
-// believed: so much likelier than no lamp (logarithm), and so many times what others explain.
-constexpr std::size_t kMostStill = 2000, kCoarseStill = 600, kFewestNew = 200;
-constexpr double kStillLikelier = 25, kStillClearly = 1.6;
+// Of single images: points in all, and to look all around with. To be believed: so much likelier than no lamp
+// (logarithm), and so many times what others explain; less where the same lamp was believed before.
+constexpr std::size_t kMostStill = 2000, kCoarseStill = 600;
+constexpr double kStillLikelier = 25, kStillClearly = 1.6, kStillAgain = 1.25;
 constexpr std::size_t kOthers = 12;  // places in other directions that are looked at with all points
+// Another lamp is there where single images are so much likelier with it (logarithm; also as a share of how much
+// likelier they are with the first alone), and where it is not much weaker.
+constexpr double kSecondLikelier = 10, kSecondShare = 0.25, kSecondStrength = 0.4;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 struct Observation {
@@ -94,8 +98,14 @@ struct Strength {
 
 /// How much likelier values are with such a share of their squared deviations explained, logarithm: as if they were
 /// normally distributed, and none told anything of another.
-double likelier(std::size_t count, double explained) {
+double likelier(std::ptrdiff_t count, double explained) {
   return -0.5 * static_cast<double>(count) * std::log(1 - std::min(explained, 0.999));
+}
+
+/// Of the line through zero by which `y` goes best with `x`.
+double slope(const VectorXd& x, const VectorXd& y) {
+  const double xx = x.squaredNorm();
+  return xx > 0 ? x.dot(y) / xx : 0;
 }
 
 /// What each position of a lamp explains of some observations.
@@ -111,15 +121,30 @@ class LampSearch {
     double explained = 0, still = 0;  // shares of squared deviations: over time, and from what is around
     double score = 0;                 // how much likelier both are with this lamp than with none, logarithm
   };
-  void look_at_single_images(const ShadowRays& rays);
+  struct Coarse {
+    Candidate lamp;
+    VectorXd more_hidden;  // of coarse_
+  };
+  struct Two {
+    double explained = 0, strength = 0;  // of the second, as a share of the first
+  };
   double hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius, const Disc& disc) const;
   double explained(const Candidate& c, const Disc& disc, std::size_t most) const;
-  double still_explained(const Candidate& c, const Disc& disc, std::span<const StillShadows> images) const;
-  void judge(Candidate& c, const Disc& disc, bool coarsely = false) const;
+  VectorXd more_hidden(const Candidate& c, const Disc& disc, const StillShadows& images) const;
+  static Two both(const VectorXd& first, const VectorXd& second, const VectorXd& brighter);
+  bool there_are_several(const Candidate& best, std::span<const Coarse> all);
+  void judge(Candidate& c, const Disc& disc) const;
+  void judge(Candidate& c, const Disc& disc, std::size_t chosen, const VectorXd& more, const VectorXd& brighter) const;
+  template <class Judge>
+  void refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc, const Judge& judge);
   void refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc);
-  std::vector<Candidate> coarse();
+  static bool is_elsewhere(const Candidate& a, const Candidate& b, double apart);
+  static void keep_best(std::vector<Candidate>& all, std::size_t most);
+  std::vector<Coarse> coarse();
+  std::vector<Candidate> fine(std::span<const Coarse> all);
   LampAnswer keep(LampAnswer out) const;
   Strength strength(const Vector3d& lamp, double radius) const;
+  Candidate as_candidate(const Lamp& lamp) const;
   Vector3d place(const Candidate& c) const { return centre_ + c.distance * c.direction; }
 
   const LampQuestion& question_;
@@ -127,8 +152,7 @@ class LampSearch {
   std::size_t dark_ = 0;
   std::vector<ShadowRays::Posed> moving_;  // of each record
   ShadowRays::Posed still_;
-  std::vector<StillShadows> single_, coarse_;  // images; the first of them, with fewer points
-  std::size_t points_ = 0;                     // of the first
+  const StillShadows single_, coarse_;  // with all points, and with fewer
   Vector3d centre_;
   double extent_ = 1;
   const Disc soft_ = spiral(kSoftRays), fit_ = spiral(kFitRays);
@@ -143,8 +167,9 @@ std::vector<bool> flipped(std::vector<bool> nodes) {
 LampSearch::LampSearch(const ShadowRays& rays, const LampQuestion& question)
     : question_(question),
       all_(observations(question)),
-      still_(rays.pose(question.records.back().T_world_node, flipped(question.moving))) {
-  look_at_single_images(rays);
+      still_(rays.pose(question.records.back().T_world_node, flipped(question.moving))),
+      single_(rays, question.witnesses, question.records, kMostStill),
+      coarse_(rays, question.witnesses, question.records, kCoarseStill) {
   for (const LampRecord& record : question.records) moving_.push_back(rays.pose(record.T_world_node, question.moving));
   std::vector<double> sizes;
   for (const Observation& o : all_)
@@ -173,25 +198,6 @@ LampSearch::LampSearch(const ShadowRays& rays, const LampQuestion& question)
   extent_ = std::max(0.2, box.diagonal().norm());
 }
 
-/// Of images that show many points each which those before do not.
-void LampSearch::look_at_single_images(const ShadowRays& rays) {
-  std::vector<bool> shown(question_.witnesses.size());
-  while (points_ + kFewestNew <= kMostStill) {
-    const LampRecord* best = nullptr;
-    std::size_t most = kFewestNew;
-    for (const LampRecord& record : question_.records) {
-      std::size_t count = 0;
-      for (std::size_t i = 0; i < shown.size(); ++i) count += !shown[i] && record.knows(i);
-      if (count >= most) best = &record, most = count;
-    }
-    if (!best) return;
-    for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = shown[i] || best->knows(i);
-    if (single_.empty()) coarse_.emplace_back(rays, question_.witnesses, *best, kCoarseStill);
-    single_.emplace_back(rays, question_.witnesses, *best, kMostStill - points_);
-    points_ += single_.back().size();
-  }
-}
-
 double LampSearch::hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius,
                           const Disc& disc) const {
   const Witness& w = question_.witnesses[witness];
@@ -213,29 +219,77 @@ double LampSearch::explained(const Candidate& c, const Disc& disc, std::size_t m
   return sxy < 0 && syy > 0 ? sxy * sxy / (sxx * syy) : 0;
 }
 
-/// Likewise of what single images show.
-double LampSearch::still_explained(const Candidate& c, const Disc& disc, std::span<const StillShadows> images) const {
-  StillShadows::Sums all;
-  for (const StillShadows& image : images) {
-    const StillShadows::Sums sums = image.compare(place(c), c.radius * c.distance, disc);
-    all.xy += sums.xy, all.xx += sums.xx, all.yy += sums.yy;
-  }
-  return all.xy < 0 && all.yy > 0 ? all.xy * all.xy / (all.xx * all.yy) : 0;
+VectorXd LampSearch::more_hidden(const Candidate& c, const Disc& disc, const StillShadows& images) const {
+  return images.more_hidden(place(c), c.radius * c.distance, disc);
 }
 
-void LampSearch::judge(Candidate& c, const Disc& disc, bool coarsely) const {
-  const std::size_t chosen = coarsely ? std::min(kMostCoarse, chosen_.size()) : chosen_.size();
-  const std::vector<StillShadows>& images = coarsely ? coarse_ : single_;
-  std::size_t points = 0;
-  for (const StillShadows& image : images) points += image.size();
-  c.explained = dark_ < kFewestDark ? 0 : explained(c, disc, chosen);
-  c.still = still_explained(c, disc, images);
-  c.score = likelier(chosen, c.explained) + likelier(points, c.still);
+void LampSearch::judge(Candidate& c, const Disc& disc) const {
+  judge(c, disc, chosen_.size(), more_hidden(c, disc, single_), single_.brighter());
 }
 
-void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc) {
+/// By so many of the chosen observations, and by points of single images.
+void LampSearch::judge(Candidate& c, const Disc& disc, std::size_t chosen, const VectorXd& more,
+                       const VectorXd& brighter) const {
+  c.explained = explained(c, disc, chosen);
+  const double xy = more.dot(brighter);
+  c.still = xy < 0 ? xy * xy / (more.squaredNorm() * brighter.squaredNorm()) : 0;
+  c.score = likelier(static_cast<std::ptrdiff_t>(chosen), c.explained) + likelier(more.size(), c.still);
+}
+
+LampSearch::Candidate LampSearch::as_candidate(const Lamp& lamp) const {
+  const Vector3d d = lamp.position - centre_;
+  return {d.normalized(), d.norm(), lamp.radius / d.norm()};
+}
+
+bool LampSearch::is_elsewhere(const Candidate& a, const Candidate& b, double apart) {
+  return a.direction.dot(b.direction) < std::cos(apart);
+}
+
+/// The best first.
+void LampSearch::keep_best(std::vector<Candidate>& all, std::size_t most) {
+  std::ranges::sort(all, std::greater(), &Candidate::score);
+  all.resize(std::min(all.size(), most));
+}
+
+/// As if each image's light were that of two lamps, and hidden from each point by so much more than around.
+LampSearch::Two LampSearch::both(const VectorXd& first, const VectorXd& second, const VectorXd& brighter) {
+  const double per = slope(first, second), of_first = slope(first, brighter), all = brighter.squaredNorm();
+  const VectorXd rest = second - per * first;
+  const double of_second = std::min(0.0, slope(rest, brighter)), with_second = of_first - per * of_second;
+  if (!(all > 0)) return {};
+  return {.explained = (of_first * of_first * first.squaredNorm() + of_second * of_second * rest.squaredNorm()) / all,
+          .strength = with_second < 0 ? of_second / with_second : std::numeric_limits<double>::infinity()};
+}
+
+/// Whether single images show shadows of another lamp that is not much weaker.
+bool LampSearch::there_are_several(const Candidate& best, std::span<const Coarse> all) {
+  if (single_.empty()) return false;
+  const VectorXd coarsely = more_hidden(best, soft_, coarse_), x = more_hidden(best, soft_, single_);
+  std::vector<Candidate> others;
+  for (const Coarse& one : all)
+    if (is_elsewhere(one.lamp, best, kApart)) {
+      others.push_back(one.lamp);
+      others.back().score = both(coarsely, one.more_hidden, coarse_.brighter()).explained;
+    }
+  keep_best(others, kOthers);
+  Two two;
+  const auto judge_second = [&](Candidate& c) {
+    if (!is_elsewhere(c, best, kApart)) return;
+    const Two with = both(x, more_hidden(c, kPoint, single_), single_.brighter());
+    c.score = with.explained;
+    if (with.explained > two.explained) two = with;
+  };
+  for (Candidate& c : others) judge_second(c);
+  keep_best(others, 2);
+  for (Candidate& c : others) refine(c, 2, 12, 0.12, kPoint, judge_second);
+  const double alone = likelier(x.size(), best.still), more = likelier(x.size(), two.explained) - alone;
+  return more >= kSecondLikelier && more >= kSecondShare * alone && two.strength >= kSecondStrength;
+}
+
+template <class Judge>
+void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc, const Judge& judge) {
   std::normal_distribution<double> normal;
-  judge(best, disc);
+  judge(best);
   for (int round = 0; round < rounds; ++round, spread /= 2)
     for (int i = 0; i < tries; ++i) {
       Candidate c = best;
@@ -243,28 +297,33 @@ void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, c
           (c.direction + spread * Vector3d(normal(generator_), normal(generator_), normal(generator_))).normalized();
       c.distance *= std::exp(2 * spread * normal(generator_));
       if (!disc.empty()) c.radius = std::clamp(c.radius * std::exp(2 * spread * normal(generator_)), 0.005, 0.4);
-      judge(c, disc);
+      judge(c);
       if (c.score > best.score) best = c;
     }
 }
 
-/// The best candidates all around, with hard shadows; the best first.
-std::vector<LampSearch::Candidate> LampSearch::coarse() {
-  std::vector<Candidate> out;
+void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc) {
+  refine(best, rounds, tries, spread, disc, [&](Candidate& c) { judge(c, disc); });
+}
+
+/// Candidates all around, with hard shadows; the best first.
+std::vector<LampSearch::Coarse> LampSearch::coarse() {
+  std::vector<Coarse> out;
   const auto add = [&](const Vector3d& direction, double distance) {
-    Candidate c{direction, distance};
-    judge(c, kPoint, true);
-    out.push_back(c);
+    Coarse one{{direction, distance}, {}};
+    one.more_hidden = more_hidden(one.lamp, kPoint, coarse_);
+    judge(one.lamp, kPoint, std::min(kMostCoarse, chosen_.size()), one.more_hidden, coarse_.brighter());
+    out.push_back(std::move(one));
   };
   for (int i = 0; i < kDirections; ++i) {  // evenly over the sphere
     const double z = 1 - 2 * (i + 0.5) / kDirections, a = i * 2.39996, r = std::sqrt(1 - z * z);
     for (const double distance : kDistances) add({r * std::cos(a), r * std::sin(a), z}, distance * extent_);
   }
   if (question_.known) {
-    const Vector3d d = question_.known->position - centre_;
-    add(d.normalized(), d.norm());
+    const Candidate known = as_candidate(*question_.known);
+    add(known.direction, known.distance);
   }
-  std::ranges::sort(out, std::greater(), &Candidate::score);
+  std::ranges::sort(out, std::greater(), [](const Coarse& one) { return one.lamp.score; });
   return out;
 }
 
@@ -281,25 +340,18 @@ LampAnswer LampSearch::keep(LampAnswer out) const {
   return out;
 }
 
-LampAnswer LampSearch::answer() {
-  LampAnswer out;
-  out.dark = static_cast<int>(dark_);
-  const bool moves = dark_ >= kFewestDark;
-  if (!moves && (question_.told_by_what_moves || single_.empty())) return keep(out);
-  const auto other = [](const Candidate& a, const Candidate& b, double apart) {
-    return a.direction.dot(b.direction) < std::cos(apart);
-  };
-  const std::vector<Candidate> all = coarse();
-  std::vector<Candidate> best;
-  for (const Candidate& c : all) {
-    if (best.size() == 6) break;
-    if (std::ranges::all_of(best, [&](const Candidate& b) { return other(b, c, kApart / 2); })) best.push_back(c);
+/// The best, the first of them first with hard shadows and then with soft ones. `all`: the best first.
+std::vector<LampSearch::Candidate> LampSearch::fine(std::span<const Coarse> all) {
+  std::vector<Candidate> out;
+  for (const Coarse& one : all) {
+    if (out.size() == 6) break;
+    if (std::ranges::all_of(out, [&](const Candidate& c) { return is_elsewhere(c, one.lamp, kApart / 2); }))
+      out.push_back(one.lamp);
   }
-  for (Candidate& c : best) refine(c, 3, 16, 0.12, kPoint);
-  std::ranges::sort(best, std::greater(), &Candidate::score);
-  const std::vector<Candidate> hard_ones = best;
-  best.resize(std::min<std::size_t>(best.size(), 3));
-  for (Candidate& c : best) {
+  for (Candidate& c : out) refine(c, 3, 16, 0.12, kPoint);
+  keep_best(out, out.size());
+  const std::span<Candidate> first = std::span(out).first(std::min<std::size_t>(out.size(), 3));
+  for (Candidate& c : first) {
     const Candidate hard = c;
     c.score = -1;
     for (const double radius : kRadii) {
@@ -310,30 +362,41 @@ LampAnswer LampSearch::answer() {
     }
     refine(c, 4, 12, 0.06, soft_);
   }
-  if (question_.known) {
-    const Vector3d d = question_.known->position - centre_;
-    Candidate& known = best.emplace_back(Candidate{d.normalized(), d.norm(), question_.known->radius / d.norm()});
-    refine(known, 4, 12, 0.06, soft_);
+  if (question_.known) refine(out.emplace_back(as_candidate(*question_.known)), 4, 12, 0.06, soft_);
+  keep_best(out, out.size());
+  return out;
+}
+
+LampAnswer LampSearch::answer() {
+  LampAnswer out;
+  out.dark = static_cast<int>(dark_);
+  const bool moves = dark_ >= kFewestDark;
+  if (!moves && (question_.told_by_what_moves || single_.empty())) return keep(out);
+  const std::vector<Coarse> all = coarse();
+  std::vector<Candidate> others = fine(all);
+  const Candidate best = others[0];
+  out.explained = best.explained;
+  out.still = best.still;
+  std::size_t looked_at = 0;
+  for (const Coarse& one : all) {
+    if (!is_elsewhere(one.lamp, best, kApart)) continue;
+    out.elsewhere = std::max(out.elsewhere, one.lamp.explained);
+    if (++looked_at <= kOthers) judge(others.emplace_back(one.lamp), kPoint);  // of all points
   }
-  std::ranges::sort(best, std::greater(), &Candidate::score);
-  out.explained = best[0].explained;
-  out.still = best[0].still;
-  for (const auto& list : {all, hard_ones, best})
-    for (const Candidate& c : list)
-      if (other(c, best[0], kApart)) out.elsewhere = std::max(out.elsewhere, c.explained);
-  std::vector<Candidate> others;
-  for (const Candidate& c : all)
-    if (others.size() < kOthers && other(c, best[0], kApart)) others.push_back(c);
-  for (Candidate& c : others) judge(c, kPoint);  // of all points
-  for (const auto& list : {others, hard_ones, best})
-    for (const Candidate& c : list)
-      if (other(c, best[0], kApart)) out.still_elsewhere = std::max(out.still_elsewhere, c.still);
-  const Lamp lamp{place(best[0]), best[0].radius * best[0].distance, {}};
+  for (const Candidate& c : others) {
+    if (!is_elsewhere(c, best, kApart)) continue;
+    out.elsewhere = std::max(out.elsewhere, c.explained);
+    out.still_elsewhere = std::max(out.still_elsewhere, c.still);
+  }
+  if (there_are_several(best, all)) return out;
+  const Lamp lamp{place(best), best.radius * best.distance, {}};
   const Strength found = strength(lamp.position, lamp.radius);
   const bool explains = moves && out.explained >= kFewestExplained;
   out.told_by_what_moves = explains && out.explained >= kClearly * out.elsewhere;
-  const bool told_by_single_images = !explains && likelier(points_, out.still) >= kStillLikelier &&
-                                     out.still >= kStillClearly * out.still_elsewhere && !is_gone(found, found.still);
+  const bool again = question_.known && !is_elsewhere(best, as_candidate(*question_.known), kApart);
+  const bool told_by_single_images = !explains && likelier(single_.brighter().size(), out.still) >= kStillLikelier &&
+                                     out.still >= (again ? kStillAgain : kStillClearly) * out.still_elsewhere &&
+                                     !is_gone(found, found.still);
   if (!out.told_by_what_moves && !told_by_single_images) return question_.told_by_what_moves ? out : keep(out);
   out.lamp = lamp;
   out.lamp->strength = found.shadows >= kFewestDark ? found.moving : found.still;
@@ -357,24 +420,22 @@ Strength LampSearch::strength(const Vector3d& lamp, double radius) const {
     const Vector3d l = lamp - w.point.cast<double>();
     shadowed.push_back({all_[i].deviation, w.normal.cast<double>().dot(l) / std::pow(l.norm(), 3), x, usually});
   }
-  std::vector<StillShadows::Cast> cast;
-  for (const StillShadows& image : single_) cast.push_back(image.cast(lamp, radius, soft_));
+  const StillShadows::Cast cast = single_.cast(lamp, radius, soft_);
   Strength out{.shadows = shadowed.size()};
   double mean = 0, count = 0;
   for (const Shadowed& s : shadowed) mean += s.facing, count += 1;
-  for (const StillShadows::Cast& image : cast)
-    for (const double facing : image.facing) mean += facing, count += 1;
+  for (const double facing : cast.facing) mean += facing, count += 1;
   mean /= std::max(1.0, count);
   if (!(mean > 0)) return out;
   Eigen::Array3d least_moving = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()),
                  least_still = least_moving;
   for (double share = 0.02; share < 50; share *= 1.05) {
-    Eigen::Array3d of_moving = Eigen::Array3d::Zero(), of_still = of_moving;
+    Eigen::Array3d of_moving = Eigen::Array3d::Zero();
     for (const Shadowed& s : shadowed)
       of_moving += (s.deviation.cast<double>().array() - std::log(shadow_factor(share / mean * s.facing, s.hidden) /
                                                                   shadow_factor(share / mean * s.facing, s.usually)))
                        .abs();
-    for (std::size_t i = 0; i < single_.size(); ++i) of_still += single_[i].errors(cast[i], share / mean);
+    const Eigen::Array3d of_still = single_.errors(cast, share / mean);
     for (int c = 0; c < 3; ++c) {
       if (of_moving[c] < least_moving[c]) least_moving[c] = of_moving[c], out.moving[c] = share / mean;
       if (of_still[c] < least_still[c]) least_still[c] = of_still[c], out.still[c] = share / mean;

@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
+constexpr std::size_t kFewestNew = 200;  // points that another image has to show
 constexpr std::size_t kAround = 80, kFewestAround = 8;
 constexpr double kNear = 0.15;         // share of the extent of what is seen: further away is another place
 constexpr float kAlike = 0.95f;        // cosine of normals
@@ -22,27 +23,44 @@ constexpr std::size_t kWays = 4 * ShadowRays::kPacket;  // over which a point se
 
 }  // namespace
 
-StillShadows::StillShadows(const ShadowRays& rays, std::span<const Witness> witnesses, const LampRecord& record,
-                           std::size_t most)
-    : all_(rays.pose(record.T_world_node, std::vector<bool>(record.T_world_node.size(), true))) {
-  std::vector<Vector3f> values;
+StillShadows::StillShadows(const ShadowRays& rays, std::span<const Witness> witnesses,
+                           const std::deque<LampRecord>& records, std::size_t most) {
+  std::vector<bool> shown(witnesses.size());
+  while (points_.size() + kFewestNew <= most) {
+    const LampRecord* best = nullptr;
+    std::size_t new_ones = kFewestNew;
+    for (const LampRecord& record : records) {
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < shown.size(); ++i) count += !shown[i] && record.knows(i);
+      if (count >= new_ones) best = &record, new_ones = count;
+    }
+    if (!best) break;
+    for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = shown[i] || best->knows(i);
+    add(rays, witnesses, *best, most);
+  }
+  leave_out_corners();
+}
+
+void StillShadows::add(const ShadowRays& rays, std::span<const Witness> witnesses, const LampRecord& record,
+                       std::size_t most) {
+  const std::size_t first = points_.size();
+  images_.push_back(rays.pose(record.T_world_node, std::vector<bool>(record.T_world_node.size(), true)));
   Eigen::AlignedBox3f box;
   for (std::size_t i = 0; i < witnesses.size() && points_.size() < most; ++i) {
     if (!record.knows(i)) continue;
-    points_.push_back(witnesses[i]);
-    values.push_back(record.value(i));
+    points_.push_back({witnesses[i], images_.size() - 1, record.value(i)});
     box.extend(witnesses[i].point);
   }
-  if (points_.empty()) return;
   const auto near = static_cast<float>(kNear * box.diagonal().norm());
-  look_around(near);
   std::vector<std::pair<float, std::size_t>> others;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Witness& here = points_[i];
+  for (std::size_t i = first; i < points_.size(); ++i) {
+    open_.push_back(open(points_[i], near));
+    const Witness& here = points_[i].witness;
     others.clear();
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      const float away = (points_[k].point - here.point).norm();
-      if (points_[k].node == here.node && away < near && points_[k].normal.dot(here.normal) > kAlike)
+    for (std::size_t k = first; k < points_.size(); ++k) {
+      const Witness& there = points_[k].witness;
+      const float away = (there.point - here.point).norm();
+      if (there.node == here.node && away < near && there.normal.dot(here.normal) > kAlike)
         others.emplace_back(away, k);
     }
     const std::size_t count = std::min(others.size(), kAround);
@@ -52,10 +70,13 @@ StillShadows::StillShadows(const ShadowRays& rays, std::span<const Witness> witn
     Vector3f mean = Vector3f::Zero();
     for (std::size_t k = 0; k < count; ++k) {
       around_.push_back(others[k].second);
-      mean += values[others[k].second] / static_cast<float>(count);
+      mean += points_[others[k].second].value / static_cast<float>(count);
     }
-    brighter_.push_back((values[i] - mean).cwiseMax(-kMostBrighter).cwiseMin(kMostBrighter));
+    brighter_.push_back((points_[i].value - mean).cwiseMax(-kMostBrighter).cwiseMin(kMostBrighter));
   }
+}
+
+void StillShadows::leave_out_corners() {
   std::vector<double> log_open;
   for (const double open : open_) log_open.push_back(std::log(open));
   const auto count = static_cast<Eigen::Index>(lists_.size());
@@ -71,22 +92,20 @@ StillShadows::StillShadows(const ShadowRays& rays, std::span<const Witness> witn
 }
 
 /// Over ways that are spread as light from all around counts: by their cosines.
-void StillShadows::look_around(double reach) {
+double StillShadows::open(const Point& point, double reach) const {
   static const Disc disc = spiral(kWays);
-  for (const Witness& w : points_) {
-    const Vector3d p = w.point.cast<double>(), n = w.normal.cast<double>(), right = n.unitOrthogonal(),
-                   up = n.cross(right);
-    int hits = 0;
-    std::array<Vector3d, ShadowRays::kPacket> to;
-    for (std::size_t first = 0; first < disc.size(); first += to.size()) {
-      for (std::size_t k = 0; k < to.size(); ++k) {
-        const Eigen::Vector2d& at = disc[first + k];
-        to[k] = p + reach * (at.x() * right + at.y() * up + std::sqrt(1 - at.squaredNorm()) * n);
-      }
-      hits += all_.count_blocked(p, to, kGap);
+  const Vector3d p = point.witness.point.cast<double>(), n = point.witness.normal.cast<double>(),
+                 right = n.unitOrthogonal(), up = n.cross(right);
+  int hits = 0;
+  std::array<Vector3d, ShadowRays::kPacket> to;
+  for (std::size_t first = 0; first < disc.size(); first += to.size()) {
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      const Eigen::Vector2d& at = disc[first + k];
+      to[k] = p + reach * (at.x() * right + at.y() * up + std::sqrt(1 - at.squaredNorm()) * n);
     }
-    open_.push_back(1 - static_cast<double>(hits) / (kWays + 1));
+    hits += images_[point.image].count_blocked(p, to, kGap);
   }
+  return 1 - static_cast<double>(hits) / (kWays + 1);
 }
 
 double StillShadows::around(const List& list, const std::vector<double>& values) const {
@@ -97,15 +116,15 @@ double StillShadows::around(const List& list, const std::vector<double>& values)
 
 std::vector<double> StillShadows::hidden(const Vector3d& lamp, double radius, const Disc& disc) const {
   std::vector<double> out;
-  for (const Witness& w : points_) {
-    const Vector3d p = w.point.cast<double>();
-    const bool faces = w.normal.cast<double>().dot(lamp - p) > 0;
-    out.push_back(faces ? hidden_share(all_, p, lamp, radius, disc, kGap) : 1);
+  for (const auto& [witness, image, value] : points_) {
+    const Vector3d p = witness.point.cast<double>();
+    const bool faces = witness.normal.cast<double>().dot(lamp - p) > 0;
+    out.push_back(faces ? hidden_share(images_[image], p, lamp, radius, disc, kGap) : 1);
   }
   return out;
 }
 
-StillShadows::Sums StillShadows::compare(const Vector3d& lamp, double radius, const Disc& disc) const {
+Eigen::VectorXd StillShadows::more_hidden(const Vector3d& lamp, double radius, const Disc& disc) const {
   const std::vector<double> values = hidden(lamp, radius, disc);
   Eigen::VectorXd more(luma_.size());
   for (Eigen::Index i = 0; i < more.size(); ++i) {
@@ -113,14 +132,14 @@ StillShadows::Sums StillShadows::compare(const Vector3d& lamp, double radius, co
     more[i] = values[list.point] - around(list, values);
   }
   more -= more_open_.dot(more) * more_open_;
-  return {more.dot(luma_), more.squaredNorm(), luma_.squaredNorm()};
+  return more;
 }
 
 StillShadows::Cast StillShadows::cast(const Vector3d& lamp, double radius, const Disc& disc) const {
   Cast out{{}, hidden(lamp, radius, disc), {}};
-  for (const Witness& w : points_) {
-    const Vector3d l = lamp - w.point.cast<double>();
-    out.facing.push_back(std::max(0.0, w.normal.cast<double>().dot(l) / std::pow(l.norm(), 3)));
+  for (const Point& point : points_) {
+    const Vector3d l = lamp - point.witness.point.cast<double>();
+    out.facing.push_back(std::max(0.0, point.witness.normal.cast<double>().dot(l) / std::pow(l.norm(), 3)));
   }
   for (std::size_t i = 0; i < lists_.size(); ++i)
     if (std::abs(out.hidden[lists_[i].point] - around(lists_[i], out.hidden)) > kBorder) out.borders.push_back(i);

@@ -1,11 +1,11 @@
-// Shadows as one image has them: points of a surface, each beside those around it.
+// Shadows as single images have them: points of a surface, each beside those around it in the same image.
 //
 // What lies across the border of a shadow is darker than what lies beside it. Print and grain are so too, but not all
 // along the shadows that a lamp at some place would throw; so that one image may tell where the lamp is. What lies in a
 // corner is darker whatever the lamp: as much as it sees less of its surroundings is left out.
 #pragma once
 
-#include <optional>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -16,18 +16,16 @@ namespace foresight {
 
 class StillShadows {
  public:
-  /// At most `most` points of those that `record` has seen. `rays` must outlive this.
-  StillShadows(const ShadowRays& rays, std::span<const Witness> witnesses, const LampRecord& record, std::size_t most);
+  /// At most `most` points, of the images that show many which those before do not. `rays` must outlive this.
+  StillShadows(const ShadowRays& rays, std::span<const Witness> witnesses, const std::deque<LampRecord>& records,
+               std::size_t most);
 
-  /// Points that have enough others around.
-  std::size_t size() const { return lists_.size(); }
+  bool empty() const { return lists_.empty(); }
 
-  /// Sums over all points: of how much more of a lamp is hidden than around (x), and how much brighter they are (y,
-  /// logarithms); of both, what goes with the surroundings that they see is left out.
-  struct Sums {
-    double xy = 0, xx = 0, yy = 0;
-  };
-  Sums compare(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
+  /// Of each point that has enough others around: how much brighter it is than these (logarithms), and how much more of
+  /// a lamp is hidden from it; of both, what goes with the surroundings that they see is left out.
+  const Eigen::VectorXd& brighter() const { return luma_; }
+  Eigen::VectorXd more_hidden(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
 
   /// What a lamp there hides of itself, of each point that was seen.
   struct Cast {
@@ -41,15 +39,22 @@ class StillShadows {
   Eigen::Array3d errors(const Cast& cast, double strength) const;
 
  private:
+  struct Point {
+    Witness witness;
+    std::size_t image;
+    Eigen::Vector3f value;  // logarithms
+  };
   struct List {
     std::size_t point, first, count;  // those around it, of around_
   };
+  void add(const ShadowRays& rays, std::span<const Witness> witnesses, const LampRecord& record, std::size_t most);
   double around(const List& list, const std::vector<double>& values) const;
   std::vector<double> hidden(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
-  void look_around(double reach);
+  double open(const Point& point, double reach) const;
+  void leave_out_corners();
 
-  ShadowRays::Posed all_;
-  std::vector<Witness> points_;
+  std::vector<ShadowRays::Posed> images_;  // all that throws shadows in them
+  std::vector<Point> points_;
   std::vector<List> lists_;
   std::vector<std::size_t> around_;
   std::vector<double> open_;               // of each point: share of what it sees that is not near
