@@ -101,6 +101,20 @@ TEST(LampFinder, SaysNothingWhereSeveralLampsAreAsBright) {
   EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
 }
 
+TEST(LampFinder, FindsTheMainLampBesideAWeakerOne) {
+  Room room;
+  room.show(0, 10, {kLamp, {{-0.8, -0.2, 1.2}, 0.05, {0.5, 0.5, 0.5}}}, 0.01, 4);
+  ASSERT_TRUE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
+  const Eigen::Vector3d middle(0, 0, 0.1), to = room.finder.lamp()->position - middle, truly = kLamp.position - middle;
+  EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
+}
+
+TEST(LampFinder, SaysNothingWhereTwoLampsAreAsBright) {
+  Room room;
+  room.show(0, 10, {{{0.6, 0.6, 1.2}, 0.05, {1.5, 1.5, 1.5}}, {{-0.8, 0.1, 1.2}, 0.05, {1.5, 1.5, 1.5}}}, 0.01, 4);
+  EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
+}
+
 TEST(LampFinder, ForgetsALampThatIsSwitchedOff) {
   Room room;
   room.show(0, 30, {kLamp});
