@@ -25,6 +25,7 @@ constexpr int kDirections = 300;
 constexpr double kDistances[] = {1.5, 3, 10};                         // extents of what moves
 constexpr double kRadii[] = {0, 0.02, 0.04, 0.07, 0.11, 0.16, 0.22};  // of the distance
 constexpr double kApart = 0.35;                                       // radians: another direction
+constexpr double kWorthSoft = 0.6;  // of the best score with hard shadows: may be the best with soft ones
 constexpr std::size_t kSoftRays = ShadowRays::kPacket, kFitRays = 3 * ShadowRays::kPacket;
 constexpr double kFewestExplained = 0.4, kClearly = 1.5;  // to be believed: so much, and so many times what others do
 constexpr double kGoneShare = 0.25;                       // of its strength that is left of a lamp that is off
@@ -350,8 +351,9 @@ std::vector<LampSearch::Candidate> LampSearch::fine(std::span<const Coarse> all)
   }
   for (Candidate& c : out) refine(c, 3, 16, 0.12, kPoint);
   keep_best(out, out.size());
-  const std::span<Candidate> first = std::span(out).first(std::min<std::size_t>(out.size(), 3));
-  for (Candidate& c : first) {
+  const double worth = kWorthSoft * out[0].score;
+  for (Candidate& c : std::span(out).first(std::min<std::size_t>(out.size(), 3))) {
+    if (c.score < worth) break;
     const Candidate hard = c;
     c.score = -1;
     for (const double radius : kRadii) {
