@@ -26,6 +26,15 @@ struct Room {
   std::shared_ptr<const SceneModel> scene = small_scene();
   LampFinder finder{scene};
   std::mt19937 generator{7};
+  std::deque<LampRecord> records = {};
+
+  /// Of all that was shown; at most so many witnesses.
+  LampQuestion question(std::size_t most = 12000) const {
+    LampQuestion out{{finder.witnesses().begin(), finder.witnesses().end()}, records, finder.moving(), {}};
+    out.witnesses.resize(std::min(most, out.witnesses.size()));
+    for (LampRecord& record : out.records) record.log_brightness.resize(out.witnesses.size());
+    return out;
+  }
 
   /// `exposure`: a factor on the values of image i. `rays`: to so many points of each lamp.
   void show(int first, int last, const std::vector<Lamp>& lamps, double noise = 0.01, int rays = 16) {
@@ -48,6 +57,9 @@ struct Room {
                                                    : Eigen::Vector3f(value.cast<float>()));
       }
       finder.add(state, kCamera, values);
+      LampRecord& record = records.emplace_back(state.T_world_node);
+      for (const Eigen::Vector3f& value : values)  // what was not seen is no number
+        record.log_brightness.emplace_back(value.array().log().cast<Eigen::half>());
     }
   }
 };
@@ -113,6 +125,45 @@ TEST(LampFinder, SaysNothingWhereTwoLampsAreAsBright) {
   Room room;
   room.show(0, 10, {{{0.6, 0.6, 1.2}, 0.05, {1.5, 1.5, 1.5}}, {{-0.8, 0.1, 1.2}, 0.05, {1.5, 1.5, 1.5}}}, 0.01, 4);
   EXPECT_FALSE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
+}
+
+TEST(LampFinder, OneSearchThatFindsAnotherLampTakesNoneAway) {
+  Room room;
+  room.show(0, 8, {kLamp, {{-0.8, -0.2, 1.2}, 0.05, {1.5, 1.5, 1.5}}}, 0.01, 4);
+  const ShadowRays rays(*room.scene);
+  LampQuestion question = room.question();
+  question.known = kLamp;
+  LampAnswer answer = find_lamp(rays, question);
+  EXPECT_TRUE(answer.several);
+  EXPECT_EQ(answer.lamp, kLamp);
+  question.several = true;
+  answer = find_lamp(rays, question);
+  EXPECT_TRUE(answer.several);
+  EXPECT_FALSE(answer.lamp);
+}
+
+TEST(LampFinder, FindsALampAgainWhereOthersExplainNearlyAsMuch) {
+  Room room;
+  room.show(0, 5, {kLamp}, 0.05, 4);
+  const ShadowRays rays(*room.scene);
+  LampQuestion question = room.question();
+  EXPECT_FALSE(find_lamp(rays, question).told_by_what_moves);
+  question.known = kLamp;
+  const LampAnswer answer = find_lamp(rays, question);
+  EXPECT_FALSE(answer.several);
+  EXPECT_TRUE(answer.told_by_what_moves) << answer.explained << " " << answer.elsewhere;
+}
+
+TEST(LampFinder, AFewPointsDoNotTellThatALampIsOff) {
+  Room room;
+  room.show(0, 10, {});
+  const ShadowRays rays(*room.scene);
+  for (const std::size_t points : {200, 12000}) {
+    LampQuestion question = room.question(points);
+    question.known = kLamp;
+    question.told_by_what_moves = true;
+    EXPECT_EQ(find_lamp(rays, question).lamp.has_value(), points == 200);
+  }
 }
 
 TEST(LampFinder, ForgetsALampThatIsSwitchedOff) {

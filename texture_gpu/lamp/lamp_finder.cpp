@@ -79,11 +79,11 @@ void LampFinder::ask() {
   ask_at_ = std::min(static_cast<int>(std::ceil(kNextSearch * recorded_)), recorded_ + static_cast<int>(kRecords));
   answer_at_ = recorded_ + kAnswerTakes;
   search_ =
-      std::async(std::launch::async,
-                 [this, question = LampQuestion{witnesses_, records_, moving_, lamp(), answer_.told_by_what_moves}] {
-                   make_background();  // frames and images go first
-                   return find_lamp(rays_, question);
-                 });
+      std::async(std::launch::async, [this, question = LampQuestion{witnesses_, records_, moving_, lamp(),
+                                                                    answer_.told_by_what_moves, answer_.several}] {
+        make_background();  // frames and images go first
+        return find_lamp(rays_, question);
+      });
 }
 
 }  // namespace foresight

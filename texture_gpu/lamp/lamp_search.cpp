@@ -27,12 +27,16 @@ constexpr double kRadii[] = {0, 0.02, 0.04, 0.07, 0.11, 0.16, 0.22};  // of the 
 constexpr double kApart = 0.35;                                       // radians: another direction
 constexpr double kWorthSoft = 0.6;  // of the best score with hard shadows: may be the best with soft ones
 constexpr std::size_t kSoftRays = ShadowRays::kPacket, kFitRays = 3 * ShadowRays::kPacket;
-constexpr double kFewestExplained = 0.4, kClearly = 1.5;  // to be believed: so much, and so many times what others do
-constexpr double kGoneShare = 0.25;                       // of its strength that is left of a lamp that is off
+// To be believed: so much, and so many times what others do; less where the same lamp was believed before.
+constexpr double kFewestExplained = 0.4, kClearly = 1.5, kAgain = 1.25;
+// Observations of shadows that tell how strong a lamp is: fewer may lie in the border of one that is foretold a bit
+// aside. A lamp that is off has so little left of its strength.
+constexpr std::size_t kFewestShadows = 120;
+constexpr double kGoneShare = 0.25;
 // Of single images: points in all, and to look all around with. To be believed: so much likelier than no lamp
-// (logarithm), and so many times what others explain; less where the same lamp was believed before.
+// (logarithm), and so many times what others explain.
 constexpr std::size_t kMostStill = 2000, kCoarseStill = 600;
-constexpr double kStillLikelier = 25, kStillClearly = 1.6, kStillAgain = 1.25;
+constexpr double kStillLikelier = 25, kStillClearly = 1.6;
 constexpr std::size_t kOthers = 12;  // places in other directions that are looked at with all points
 // Another lamp is there where single images are so much likelier with it (logarithm; also as a share of how much
 // likelier they are with the first alone), and where it is not much weaker.
@@ -330,7 +334,7 @@ std::vector<LampSearch::Coarse> LampSearch::coarse() {
 
 /// Where it should have thrown shadows, and has not.
 bool is_gone(const Strength& now, const Vector3d& usual) {
-  return now.shadows >= kFewestDark && now.moving.sum() < kGoneShare * usual.sum();
+  return now.shadows >= kFewestShadows && now.moving.sum() < kGoneShare * usual.sum();
 }
 
 /// What was known, unless something speaks against it.
@@ -390,19 +394,23 @@ LampAnswer LampSearch::answer() {
     out.elsewhere = std::max(out.elsewhere, c.explained);
     out.still_elsewhere = std::max(out.still_elsewhere, c.still);
   }
-  if (there_are_several(best, all)) return out;
+  out.several = there_are_several(best, all);
+  if (out.several) return question_.known && !question_.several ? keep(out) : out;  // one search may err
   const Lamp lamp{place(best), best.radius * best.distance, {}};
   const Strength found = strength(lamp.position, lamp.radius);
   const bool explains = moves && out.explained >= kFewestExplained;
-  out.told_by_what_moves = explains && out.explained >= kClearly * out.elsewhere;
   const bool again = question_.known && !is_elsewhere(best, as_candidate(*question_.known), kApart);
+  out.told_by_what_moves = explains && out.explained >= (again ? kAgain : kClearly) * out.elsewhere;
   const bool told_by_single_images = !explains && likelier(single_.brighter().size(), out.still) >= kStillLikelier &&
-                                     out.still >= (again ? kStillAgain : kStillClearly) * out.still_elsewhere &&
+                                     out.still >= (again ? kAgain : kStillClearly) * out.still_elsewhere &&
                                      !is_gone(found, found.still);
   if (!out.told_by_what_moves && !told_by_single_images) return question_.told_by_what_moves ? out : keep(out);
   out.lamp = lamp;
-  out.lamp->strength = found.shadows >= kFewestDark ? found.moving : found.still;
-  if (!(out.lamp->strength.minCoeff() > 0)) out.lamp.reset();
+  out.lamp->strength = found.shadows >= kFewestShadows ? found.moving : found.still;
+  if (!(out.lamp->strength.minCoeff() > 0)) {
+    out.lamp.reset();
+    out.told_by_what_moves = false;
+  }
   return out;
 }
 

@@ -16,11 +16,13 @@ struct LampQuestion {
   std::vector<bool> moving;         ///< nodes whose shadows are looked for; where the others stand does not change
   std::optional<Lamp> known;        ///< what was thought to be it
   bool told_by_what_moves = false;  ///< that one
+  bool several = false;             ///< the last search found another lamp beside it
 };
 
 struct LampAnswer {
   std::optional<Lamp> lamp;         ///< nothing where it cannot be told
   bool told_by_what_moves = false;  ///< else single images have told it
+  bool several = false;             ///< another lamp seems to be there that is not much weaker
   int dark = 0;                     ///< observations that were darker than the same point usually is
   double explained = 0;  ///< share of the squared deviations of what was looked at that the best lamp explains
   double elsewhere = 0;  ///< that the best lamp in another direction explains
