@@ -2,8 +2,6 @@
 
 #include "apps/level_options.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +9,7 @@
 
 #include "apps/replay_report/image_metrics.hpp"
 #include "common/error.hpp"
+#include "texture_gpu/lamp/lamp_words.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
 namespace foresight {
@@ -125,26 +124,6 @@ void ViewMeasures::measure(FrameRecord& record, double draw_cpu_ms, FrameSource&
   if (outputs_.pictures()) keeper_.offer(record, delayed_, predicted, actual);
 }
 
-void ViewMeasures::note_lamp() {
-  if (lamp_.lamp) {
-    const Eigen::Vector3d& p = lamp_.lamp->position;
-    std::string note = fmt::format(
-        "The main lamp is at ({:.2f}, {:.2f}, {:.2f}) m, found by shadows {}: those of what moves are shown where they "
-        "fall, with images from {:.3f} s on.",
-        p.x(), p.y(), p.z(), lamp_.told_by_what_moves ? "of what moves" : "in single images",
-        static_cast<double>(lamp_known_from_->ns) * 1e-9);
-    if (lamp_.told_by_what_moves)
-      note += fmt::format(" They explain {:.0f} % of what was darker or brighter than usual.", 100 * lamp_.explained);
-    record_.notes.push_back(std::move(note));
-  } else if (lamp_.dark > 0) {
-    record_.notes.push_back(fmt::format(
-        "It could not be told where the main lamp is: shadows of what moves are shown where they were. Of what was "
-        "darker "
-        "or brighter than usual ({} points), the best place explains {:.0f} %, the best elsewhere {:.0f} %.",
-        lamp_.dark, 100 * lamp_.explained, 100 * lamp_.elsewhere));
-  }
-}
-
 void ViewMeasures::note_policy() {
   if (policy_.evicted_pages)
     record_.notes.push_back("The texture budget was reached: " + std::to_string(policy_.evicted_pages) +
@@ -159,7 +138,8 @@ void ViewMeasures::note_policy() {
 void ViewMeasures::finish(const FrameSource& source, const ViewSession& session, const std::string& title) {
   record_.drops += source.overtaken() + session.replaced();
   note_policy();
-  note_lamp();
+  if (std::string note = lamp_in_words(lamp_, lamp_known_from_.value_or(RobotTime{})); !note.empty())
+    record_.notes.push_back(std::move(note));
   write_reports(outputs_, record_, keeper_.instants(), title);
 }
 

@@ -36,7 +36,6 @@ class ViewMeasures final : public ViewObserver {
   void take(const ExtractionReport& report, FrameRecord& record);
   void measure(FrameRecord& record, double draw_cpu_ms, FrameSource& source, ViewSession& session);
   void note_policy();
-  void note_lamp();
 
   RunRecord record_;
   ViewOutputs outputs_;
