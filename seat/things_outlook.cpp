@@ -69,15 +69,16 @@ void ThingsOutlook::saw(const PosedFrame& frame, const JointPositions& joints) {
     ++counts_.skipped;
     return;
   }
+  const JointPositions named = [&rig = rig_, joints](std::string_view name) { return joints(shaft_name(rig, name)); };
   std::vector<ExpectedThing> expected;
   for (std::size_t i = 0; i < future_->size(); ++i) {
     const auto then = future_->at(i, frame.left.time);
     if (!then) return;  // of before all that is remembered
     const PredictedThing now = future_->thing(i);
-    expected.push_back({*then, now.held, now.status == ThingStatus::falling});
+    expected.push_back(
+        {*then, now.held, now.status == ThingStatus::falling, future_->if_still_in_hand(i, frame.left.time, named)});
   }
   ++counts_.looked;
-  const JointPositions named = [&rig = rig_, joints](std::string_view name) { return joints(shaft_name(rig, name)); };
   if (!in_background_) {
     learn(finder_->look(frame, expected), named, frame.left.time, frame.left.T_world_camera);
     return;

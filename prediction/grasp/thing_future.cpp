@@ -267,10 +267,6 @@ SightingResult ThingFuture::correct(const ThingSighting& sighting, const JointPo
   const Moment& then = *std::prev(after);
   const auto spell = std::ranges::find(thing.spells, then.spell, &Spell::number);
   if (spell == thing.spells.end()) return SightingResult::not_known;
-  if (thing.gone) {
-    put_where_seen(thing, sighting, then.spell);
-    return SightingResult::moved;
-  }
   const std::size_t jaw = spell->kind == Kind::carried ? spell->jaw : 0;
   const JointPositions then_shown = joints_at(sighting.captured);
   const JointPositions& true_joints = joints ? *joints : then_shown;
@@ -278,6 +274,10 @@ SightingResult ThingFuture::correct(const ThingSighting& sighting, const JointPo
   if (is_in_hand(thing, sighting, true_joints)) {
     take_back(thing, sighting);
     return SightingResult::taken_back;
+  }
+  if (thing.gone) {
+    put_where_seen(thing, sighting, then.spell);
+    return SightingResult::moved;
   }
   const Pose expected = expected_pose(*spell, then, T_world_grip);
   const double off = gates_off(*spell, expected, sighting);
@@ -344,7 +344,7 @@ void ThingFuture::agree(Thing& thing, Spell& spell, const Pose& expected, const 
 
 /// Once may be a mistake. Twice away from the hand is lost; twice in one place is where the thing is; so is twice far
 /// off, on a way that a thing can have gone in between. What is seen otherwise has to be seen a third time.
-SightingResult ThingFuture::contradict(Thing& thing, const Spell& spell, const ThingSighting& sighting,
+SightingResult ThingFuture::contradict(Thing& thing, Spell& spell, const ThingSighting& sighting,
                                        const Pose& T_world_grip, double gates_off) {
   if (!thing.doubts.empty() && to_seconds(sighting.captured - thing.doubts.back().captured) < kNewDoubt)
     return SightingResult::doubted;
@@ -359,6 +359,7 @@ SightingResult ThingFuture::contradict(Thing& thing, const Spell& spell, const T
   const bool decided =
       way.norm() < same || moves || spell.kind == Kind::carried || thing.doubts.size() >= kDoubtsInMotion;
   if (!decided) return SightingResult::doubted;
+  if (is_caught_there(thing, spell, sighting)) return SightingResult::moved;
   if (spell.kind == Kind::carried || thing.spells.back().kind == Kind::carried) ++failed_;
   put_where_seen(thing, sighting, spell.number);
   return SightingResult::moved;

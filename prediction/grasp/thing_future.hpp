@@ -109,6 +109,9 @@ class ThingFuture {
   /// Where it was at `time`, by all that is known of it by now: what has just been learnt counts for the past too.
   /// Nothing for instants that are not remembered, or after time().
   std::optional<Pose> at(std::size_t thing, RobotTime time) const;
+  /// Where the hand had it at `time`, with the robot there, if it has not slipped from it after all: nothing where it
+  /// is in it by what is known, or where the jaws have been opened.
+  std::optional<Pose> if_still_in_hand(std::size_t thing, RobotTime time, const JointPositions& joints) const;
   /// T_world_node of all nodes for time(): the robot with its jaws where what they hold lets them be, and the things.
   std::vector<Pose> poses() const;
   /// Things that were found elsewhere than shown while they should have been in the hand.
@@ -160,9 +163,12 @@ class ThingFuture {
   static Pose expected_pose(const Spell& spell, const Moment& then, const Pose& T_world_grip);
   double gates_off(const Spell& spell, const Pose& expected, const ThingSighting& sighting) const;
   void agree(Thing& thing, Spell& spell, const Pose& expected, const ThingSighting& sighting, const Pose& T_world_grip);
-  SightingResult contradict(Thing& thing, const Spell& spell, const ThingSighting& sighting, const Pose& T_world_grip,
+  SightingResult contradict(Thing& thing, Spell& spell, const ThingSighting& sighting, const Pose& T_world_grip,
                             double gates_off);
   void put_where_seen(Thing& thing, const ThingSighting& sighting, std::uint64_t since);
+  bool is_caught_there(Thing& thing, Spell& spell, const ThingSighting& sighting);
+  static const Spell* last_carried(const Thing& thing);
+  bool jaws_opened_since(std::size_t jaw, const JointPositions& joints) const;
   bool is_in_hand(Thing& thing, const ThingSighting& sighting, const JointPositions& joints) const;
   void take_back(Thing& thing, const ThingSighting& sighting);
   void show_evenly(Thing& thing, const Pose& before, const Pose& after) const;

@@ -121,6 +121,7 @@ std::optional<ThingFinder::Fit> ThingFinder::agreeing(const Thing& thing, const 
   if (!(out.covariance.bottomRightCorner<3, 3>().trace() / 3 < options_.most_sigma * options_.most_sigma))
     return std::nullopt;
   if (!((out.T_world_thing.translation() - start.translation()).norm() < options_.farthest)) return std::nullopt;
+  out.in_hand = held;
   return out;
 }
 
@@ -197,13 +198,17 @@ FoundThings ThingFinder::look(const PosedFrame& frame, std::span<const ExpectedT
   const auto accept = [&](std::size_t i, const Fit& fit) {
     Thing& thing = things_[i];
     out.sightings.push_back(sighting(i, frame.left.time, fit.T_world_thing, fit.covariance));
-    if (!expected[i].held) thing.rested = fit.T_world_thing;
+    if (!expected[i].held && !fit.in_hand) thing.rested = fit.T_world_thing;
     thing.colours.learn(thing.shape, thing.node, looked.cameras, fit.T_world_thing);
     done[i] = true;
   };
   for (std::size_t i = 0; i < things_.size(); ++i) {
     if (done[i] || expected[i].moving) continue;
-    const auto fit = agreeing(things_[i], looked, expected[i].T_world_thing, expected[i].held);
+    auto fit = agreeing(things_[i], looked, expected[i].T_world_thing, expected[i].held);
+    if (expected[i].in_hand)
+      if (auto other = agreeing(things_[i], looked, *expected[i].in_hand, true);
+          other && (!fit || other->worth > fit->worth))
+        fit = std::move(other);
     if (fit && !taken_by_another(things_[i], fit->T_world_thing, out)) accept(i, *fit);
   }
   for (std::size_t k = 0; k < things_.size(); ++k) {  // one search a frame: the others have their turn with the next

@@ -2,7 +2,8 @@
 //
 //   a tag in the picture ----------------------------------> corners of both cameras, one pose
 //   no tag: its colours, or edges before these are known,
-//           around where it should be -------fit agrees--> sighting
+//           around where it should be,
+//           or in the hand that lost it -----fit agrees--> sighting
 //                        | not
 //                        '--> about where it was last at rest, and below the hand --fit agrees--> sighting
 //                        | not, and what is seen there is something else
@@ -33,8 +34,9 @@ struct SoughtThing {
 /// As it was thought to be at the picture's instant.
 struct ExpectedThing {
   Pose T_world_thing = Pose::Identity();
-  bool held = false;    ///< in the hand
-  bool moving = false;  ///< nothing to compare with: not looked for
+  bool held = false;                 ///< in the hand
+  bool moving = false;               ///< nothing to compare with: not looked for
+  std::optional<Pose> in_hand = {};  ///< where it is if it has not slipped from the hand after all
 };
 
 struct ThingFinderOptions {
@@ -79,6 +81,7 @@ class ThingFinder {
     Pose T_world_thing;
     Matrix6d covariance;
     double worth = 0;  // to compare two of one thing
+    bool in_hand = false;
   };
 
   std::optional<Fit> agreeing(const Thing& thing, const Looked& looked, const Pose& start, bool held) const;

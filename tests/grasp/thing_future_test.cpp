@@ -234,6 +234,7 @@ TEST(ThingFuture, WhatWasTakenForLostAndGoesWithTheHandIsTakenBack) {
   // Two pictures that were misread, alike, while the hand goes on.
   const RobotTime begin = bench.now;
   bool back = false;
+  int asked = 0;
   camera.truth = [&] {
     const double t = to_seconds(bench.now - begin);
     return t > 0.3 && t < 0.52 ? lifted(0.1, 0.1, kSide / 2) : Pose(bench.hand() * T_hand_block);
@@ -241,8 +242,15 @@ TEST(ThingFuture, WhatWasTakenForLostAndGoesWithTheHandIsTakenBack) {
   bench.move(bench.along, -0.22, 2.2, [&] {
     camera();
     back = back || camera.last == SightingResult::taken_back;
+    const auto in_hand = bench.future->if_still_in_hand(0, bench.now, bench.joints());
+    EXPECT_EQ(in_hand.has_value(), !bench.block().held);
+    if (in_hand) {
+      EXPECT_LT((in_hand->translation() - (bench.hand() * T_hand_block).translation()).norm(), 3e-3);
+    }
+    asked += in_hand ? 1 : 0;
   });
   EXPECT_GE(camera.moved, 1);
+  EXPECT_GE(asked, 1);
   EXPECT_TRUE(back);
   bench.wait(0.5, [&] { camera(); });
   EXPECT_EQ(bench.block().status, ThingStatus::carried);
@@ -250,6 +258,47 @@ TEST(ThingFuture, WhatWasTakenForLostAndGoesWithTheHandIsTakenBack) {
   bench.move(bench.grip, 0.04, 0.6);
   bench.wait(1.5);
   EXPECT_NEAR(bench.place().z(), kSide / 2, 3e-3) << "opened jaws let it go, as ever";
+  EXPECT_FALSE(bench.future->if_still_in_hand(0, bench.now - seconds(2), bench.joints()))
+      << "in it by what is known of then, or out of opened jaws";
+}
+
+TEST(ThingFuture, WhatWasPushedAsideBeforeTheJawsClosedIsInTheHandAsMuchAside) {
+  Bench bench;
+  Camera camera(bench, 1.2);
+  const Pose aside = lifted(0.012, 0, kSide / 2);
+  bool pushed = false;
+  camera.truth = [&] {
+    if (!pushed) return lifted(0, 0, kSide / 2);
+    return bench.height > 0.031 ? Pose(bench.hand() * lifted(0, 0, -0.03) * aside) : aside;
+  };
+  bench.wait(2, [&] { camera(); });
+  pushed = true;
+  bench.move(bench.grip, 0.015, 1, [&] { camera(); });
+  ASSERT_EQ(bench.block().status, ThingStatus::carried);
+  EXPECT_EQ(camera.moved, 0) << "images of it come later";
+  bench.move(bench.height, 0.18, 2, [&] {
+    camera();
+    EXPECT_TRUE(bench.block().held);
+  });
+  EXPECT_EQ(camera.moved, 1);
+  EXPECT_EQ(bench.future->failed_grasps(), 0u);
+  EXPECT_EQ(bench.block().status, ThingStatus::carried);
+  EXPECT_LT((bench.place() - camera.truth().translation()).norm(), 3e-3);
+}
+
+TEST(ThingFuture, WhatWasPushedOutOfTheJawsIsNotInTheHand) {
+  Bench bench;
+  Camera camera(bench, 1.2);
+  bool pushed = false;
+  camera.truth = [&] { return lifted(pushed ? 0.05 : 0, 0, kSide / 2); };
+  bench.wait(2, [&] { camera(); });
+  pushed = true;
+  bench.move(bench.grip, 0.015, 1, [&] { camera(); });
+  ASSERT_EQ(bench.block().status, ThingStatus::carried);
+  bench.move(bench.height, 0.18, 1, [&] { camera(); });
+  EXPECT_FALSE(bench.block().held);
+  EXPECT_EQ(bench.future->failed_grasps(), 1u);
+  EXPECT_LT((bench.place() - camera.truth().translation()).norm(), 3e-3);
 }
 
 TEST(ThingFuture, WhatTheHandPushesIsNotTakenIntoIt) {

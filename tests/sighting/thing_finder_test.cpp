@@ -63,6 +63,21 @@ class CoarseFinder : public Finder {
   CoarseFinder() : Finder(320) {}
 };
 
+TEST_F(CoarseFinder, SeesInTheHandWhatWasTakenForLost) {
+  print(look());  // what it looks like
+  truth(0) = moved(truth(0), 0.06, 0.02, 0.1, 0.4);
+  std::vector<ExpectedThing> expected{{thought(0)}, {thought(1)}};
+  for (const bool asked : {false, true}) {
+    if (asked) expected[0].in_hand = moved(truth(0), 0.004, -0.003, 0.004, 0.05);
+    bool seen = false;
+    const FoundThings found = finder_.look(room_.frame(truth_, thought_, ++number_), expected);
+    print(found);
+    for (const ThingSighting& sighting : found.sightings)
+      if (sighting.thing == 0) seen = off(sighting) < 0.015;
+    EXPECT_EQ(seen, asked);
+  }
+}
+
 TEST_P(FinderTest, SeesThingsWhereTheyAre) {
   truth(0) = moved(truth(0), 0.002, -0.002, 0, 0.02);
   const FoundThings found = look();

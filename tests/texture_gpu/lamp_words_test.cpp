@@ -13,9 +13,8 @@ constexpr RobotTime kFrom{2'500'000'000};
 
 TEST(LampWords, SayWhereItIsAndWhatHasTold) {
   LampAnswer answer{.lamp = Lamp{{0.3, -0.5, 1.25}, 0.1, {3, 3, 3}}, .explained = 0.62};
-  EXPECT_THAT(lamp_in_words(answer, kFrom),
-              AllOf(HasSubstr("(0.30, -0.50, 1.25) m"), HasSubstr("in single images"), HasSubstr("from 2.500 s on"),
-                    Not(HasSubstr("62 %"))));
+  EXPECT_THAT(lamp_in_words(answer, kFrom), AllOf(HasSubstr("(0.30, -0.50, 1.25) m"), HasSubstr("in single images"),
+                                                  HasSubstr("from 2.500 s on"), Not(HasSubstr("62 %"))));
   answer.told_by_what_moves = true;
   EXPECT_THAT(lamp_in_words(answer, kFrom), AllOf(HasSubstr("of what moves"), HasSubstr("62 %")));
 }
