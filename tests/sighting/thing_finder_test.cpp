@@ -65,7 +65,7 @@ class CoarseFinder : public Finder {
 
 TEST_F(CoarseFinder, SeesInTheHandWhatWasTakenForLost) {
   print(look());  // what it looks like
-  truth(0) = moved(truth(0), 0.06, 0.02, 0.1, 0.4);
+  truth(0) = moved(truth(0), 0.05, 0.02, 0.11, 0.3);
   std::vector<ExpectedThing> expected{{thought(0)}, {thought(1)}};
   for (const bool asked : {false, true}) {
     if (asked) expected[0].in_hand = moved(truth(0), 0.004, -0.003, 0.004, 0.05);
