@@ -12,8 +12,7 @@ constexpr double kAlong = 0.02;        // m that it goes with the hand
 constexpr double kSameInHand = 0.008;  // m, at least, within which it then stays in it
 constexpr double kAsBefore = 0.04;     // m: in the hand about where it was when it was lost
 constexpr double kSigmas = 4;
-constexpr double kCaught =
-    0.02;  // m beside where it was thought to stand: jaws that closed there have caught it all the same
+constexpr double kCaught = 0.02;  // m beside where it was thought to stand: jaws that closed there have it, too
 
 }  // namespace
 
@@ -39,14 +38,13 @@ std::optional<Pose> ThingFuture::if_still_in_hand(std::size_t at, RobotTime time
 }
 
 /// It stood a bit beside where it was thought to when the hand took it, perhaps as the hand itself had pushed it there:
-/// so it is as much beside in the hand. Should it not be, what is seen next will say so.
-bool ThingFuture::is_caught_there(Thing& thing, Spell& spell, const ThingSighting& sighting) {
+/// so it is as much beside in the hand. Should it not be, what is seen next will say so. False: that is no reason.
+bool ThingFuture::shift_in_hand(Thing& thing, Spell& spell, const ThingSighting& sighting) {
   Spell& held = thing.spells.back();
   if (spell.kind != Kind::rest || held.kind != Kind::carried || held.any_seen) return false;
   for (auto between = thing.spells.rbegin() + 1; &*between != &spell; ++between)
     if (between->kind != Kind::moving) return false;
   if ((sighting.T_world_thing.translation() - spell.T.translation()).norm() > kCaught) return false;
-  const Pose before = model_pose(thing);
   const Pose T_world_grip = world_->grip_frame(held.jaw, world_->with_jaws(joints_at(held.begin)));
   Pose taken = T_world_grip * held.T;
   taken.translation() += sighting.T_world_thing.translation() - spell.T.translation();
@@ -58,9 +56,7 @@ bool ThingFuture::is_caught_there(Thing& thing, Spell& spell, const ThingSightin
   held.variance = spell.variance + options_.grasp * options_.grasp;
   held.variance_rad = spell.variance_rad + options_.grasp_rad * options_.grasp_rad;
   thing.doubts.clear();
-  const Pose now = world_->grip_frame(held.jaw, world_->with_jaws(joints_now())) * held.T;
-  world_->rest(thing.node, now);
-  show_evenly(thing, before, now);
+  place_anew(thing);
   return true;
 }
 

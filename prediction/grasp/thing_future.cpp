@@ -333,7 +333,12 @@ void ThingFuture::agree(Thing& thing, Spell& spell, const Pose& expected, const 
   const Eigen::Vector3d turn = gain_rad * off.tail<3>();
   if (turn.norm() > 0) better.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * expected.linear();
   spell.T = spell.kind == Kind::carried ? Pose(inverse(T_world_grip) * better) : better;
-  if (&spell != &thing.spells.back()) return;
+  if (&spell == &thing.spells.back()) place_anew(thing);
+}
+
+/// Where its last spell, of which more is known now, has it.
+void ThingFuture::place_anew(Thing& thing) {
+  const Spell& spell = thing.spells.back();
   const Pose before = model_pose(thing);
   const Pose now = spell.kind == Kind::carried
                        ? Pose(world_->grip_frame(spell.jaw, world_->with_jaws(joints_now())) * spell.T)
@@ -359,7 +364,7 @@ SightingResult ThingFuture::contradict(Thing& thing, Spell& spell, const ThingSi
   const bool decided =
       way.norm() < same || moves || spell.kind == Kind::carried || thing.doubts.size() >= kDoubtsInMotion;
   if (!decided) return SightingResult::doubted;
-  if (is_caught_there(thing, spell, sighting)) return SightingResult::moved;
+  if (shift_in_hand(thing, spell, sighting)) return SightingResult::moved;
   if (spell.kind == Kind::carried || thing.spells.back().kind == Kind::carried) ++failed_;
   put_where_seen(thing, sighting, spell.number);
   return SightingResult::moved;

@@ -166,7 +166,8 @@ class ThingFuture {
   SightingResult contradict(Thing& thing, Spell& spell, const ThingSighting& sighting, const Pose& T_world_grip,
                             double gates_off);
   void put_where_seen(Thing& thing, const ThingSighting& sighting, std::uint64_t since);
-  bool is_caught_there(Thing& thing, Spell& spell, const ThingSighting& sighting);
+  bool shift_in_hand(Thing& thing, Spell& spell, const ThingSighting& sighting);
+  void place_anew(Thing& thing);
   static const Spell* last_carried(const Thing& thing);
   bool jaws_opened_since(std::size_t jaw, const JointPositions& joints) const;
   bool is_in_hand(Thing& thing, const ThingSighting& sighting, const JointPositions& joints) const;
