@@ -1,7 +1,5 @@
 #include "apps/operator/stepped_sides.hpp"
 
-#include <unistd.h>
-
 #include <array>
 
 #include "link/robot_side/rig_identity.hpp"
@@ -9,11 +7,9 @@
 namespace foresight {
 namespace {
 
-constexpr int kFirstDomain = 100, kDomains = 100;  // a trial's own, so that nothing else on this machine hears it
-
-LinkConfig own_network() {
+LinkConfig network(const link::OwnDomain& domain) {
   LinkConfig out;
-  out.domain = kFirstDomain + static_cast<int>(::getpid()) % kDomains;
+  out.domain = domain.number();
   return out;
 }
 
@@ -48,7 +44,7 @@ SteppedRobotSide::SteppedRobotSide(const Rig& rig, const std::filesystem::path& 
       clock_(clock),
       identity_(link::rig_identity(rig, file, FORESIGHT_VERSION)),
       line_(std::make_shared<link::PretendedLine>(line, link::PretendedLine::Side::robot, clock)),
-      participant_(own_network(), "robot " + rig.name, link::Role::robot, line_),
+      participant_(network(domain_), "robot " + rig.name, link::Role::robot, line_),
       devices_(rig, clock, mock_drives()),
       shape_(rig.shape()),
       robot_(std::make_unique<Robot>(rig.gate_options(), shape_.get(), devices_.networks(), devices_.drives())),

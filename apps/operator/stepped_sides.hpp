@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/clock.hpp"
+#include "link/config/own_domain.hpp"
 #include "link/dds/pretended_line.hpp"
 #include "link/operator_side/operator_end.hpp"
 #include "link/robot_side/robot_server.hpp"
@@ -42,6 +43,7 @@ class SteppedRobotSide {
   SteppedClock& clock_;
   Identity identity_;
   std::shared_ptr<link::PretendedLine> line_;
+  link::OwnDomain domain_;
   link::Participant participant_;
   RobotDevices devices_;
   std::unique_ptr<RobotShape> shape_;

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "link/config/own_domain.hpp"
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 #include "tests/link/child.hpp"
@@ -57,10 +58,9 @@ class VirtualScreen {
 };
 
 /// The lab's rig with few and small pictures, on a domain that stays on this host.
-std::string quiet_rig(const TempFolder& folder) {
+std::string quiet_rig(const TempFolder& folder, int domain) {
   const std::string rig = small_rig("minerva.yaml", folder, "160, 120", 4);
-  std::ofstream(rig, std::ios::app) << "link: {interface: lo, domain: " << 1 + ::getpid() % 99
-                                    << ", round_trip_s: 2}\n";
+  std::ofstream(rig, std::ios::app) << "link: {interface: lo, domain: " << domain << ", round_trip_s: 2}\n";
   return rig;
 }
 
@@ -71,7 +71,7 @@ class OperatorWindow : public testing::Test {
       if (!there_is(program)) GTEST_SKIP() << "no " << program << " here; scripts/setup installs it";
     screen_.emplace();
     ASSERT_NE(screen_->name(), "") << "Xvfb does not start";
-    rig_ = quiet_rig(folder_);
+    rig_ = quiet_rig(folder_, domain_.number());
     robot_.emplace(std::vector<std::string>{"robot", rig_, "--mock", "--serve"});
     ProgramOptions options;
     options.environment["DISPLAY"] = screen_->name();
@@ -170,6 +170,7 @@ class OperatorWindow : public testing::Test {
   }
 
   TempFolder folder_;
+  link::OwnDomain domain_;
   std::optional<VirtualScreen> screen_;
   std::string rig_;
   std::optional<Program> robot_, seat_;
