@@ -22,7 +22,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kTake = 4ms;
-constexpr Duration kSettle = 1s;
 constexpr Duration kLookEvery = 500ms;
 
 void say(const char* command, const std::string& words) {
@@ -54,13 +53,6 @@ std::string counts_text(const link::RecordingCounts& counts, std::uint64_t lost)
   return out;
 }
 
-/// Who is there that the recording must not speak beside: an operator would see the one and move the other. "" nobody.
-std::string robot_beside(const link::Participant& program) {
-  for (const link::Peer& peer : program.peers())
-    if (!peer.own && peer.name.starts_with("robot "))
-      return in_quotes(peer.name) + (peer.host.empty() ? "" : " on " + peer.host);
-  return "";
-}
 constexpr const char* kOtherDomain = "play it on another domain (--domain), or end the robot's program first";
 
 /// Waits until `due` while nobody stops it. False: somebody did.
@@ -86,7 +78,7 @@ class Player {
       ++sent_;
       if (clock_.now() < look_due_) continue;
       look_due_ = clock_.now() + kLookEvery;
-      if (const std::string robot = robot_beside(program_); !robot.empty())
+      if (const std::string robot = link::robot_beside(program_); !robot.empty())
         throw RuntimeFailure("the recording stopped beside " + robot + ", which has just come", kOtherDomain);
     }
     return !stop_requested();
@@ -167,8 +159,8 @@ int play(const PlayOptions& options) {
   const std::string name = "robot played from " + std::filesystem::path(options.file).filename().string();
   link::Participant program(link_config_of(options.place), name, link::Role::robot);
   MonotonicClock clock;
-  if (!wait_until(clock, clock.now() + kSettle)) return kStopped;
-  if (const std::string robot = robot_beside(program); !robot.empty())
+  if (!wait_until(clock, clock.now() + link::kAllHeardOf)) return kStopped;
+  if (const std::string robot = link::robot_beside(program); !robot.empty())
     throw InputError(options.file,
                      "cannot be played beside " + robot + ": an operator would see the recording and move the robot",
                      kOtherDomain);
@@ -185,7 +177,7 @@ int play(const PlayOptions& options) {
     throw InputError(options.file,
                      "has nothing that a robot says" + (outcome.trouble.empty() ? "" : "; " + outcome.trouble),
                      "record with `foresight record --line` while `foresight robot --serve` runs");
-  wait_until(clock, clock.now() + kSettle);  // for who asks for the last messages again
+  wait_until(clock, clock.now() + link::kAllHeardOf);  // for who asks for the last messages again
   return 0;
 }
 

@@ -152,6 +152,11 @@ std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robo
   }
   auto server = std::make_unique<link::RobotServer>(
       rig, robot, cameras, link::rig_identity(rig, arguments.rig, FORESIGHT_VERSION), clock, std::move(line));
+  clock.sleep_until(clock.now() + link::kAllHeardOf);
+  if (const std::string other = server->robot_beside(); !other.empty())
+    throw InputError(arguments.rig,
+                     "cannot be served beside " + other + ": an operator would see the one and move the other",
+                     "end the other one, or give this rig another link.domain");
   say_robot("serving on domain " + std::to_string(rig.link.domain) + ", interface " + rig.link.interface);
   if (const std::string trouble = link::receive_buffer_trouble(); !trouble.empty()) say_robot(trouble);
   return server;

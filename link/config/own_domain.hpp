@@ -5,8 +5,8 @@
 
 namespace foresight::link {
 
-/// Holds one domain among all who ask this way in the same network namespace, until it or its process ends, however that
-/// ends. Programs that name a domain themselves are not asked. Move-only; any thread.
+/// Holds one domain among all who ask this way in the same network namespace, until it or its process ends, however
+/// that ends. Programs that name a domain themselves are not asked. Move-only; any thread.
 class OwnDomain {
  public:
   static constexpr int kFirst = 100, kDomains = 100;

@@ -293,4 +293,11 @@ std::string Participant::refusal() const {
   return state_->refusals.last();
 }
 
+std::string robot_beside(const Participant& program) {
+  for (const Peer& peer : program.peers())
+    if (!peer.own && peer.name.starts_with("robot "))
+      return in_quotes(peer.name) + (peer.host.empty() ? "" : " on " + peer.host);
+  return "";
+}
+
 }  // namespace foresight::link

@@ -1,12 +1,14 @@
 // One program's place on a DDS domain, and who else is there. No header of Cyclone is needed to use it.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/time.hpp"
 #include "link/config/link_config.hpp"
 #include "link/keys/keys.hpp"
 
@@ -78,6 +80,12 @@ class Participant {
   void open(int domain, const void* qos);
   std::unique_ptr<State> state_;
 };
+
+/// Who else speaks as a robot on the domain: "'robot minerva' on lab1"; "" where nobody does. Nobody may speak beside
+/// it, as an operator would see the one and move the other.
+std::string robot_beside(const Participant& program);
+/// After so long a participant has heard of all that were there before it, on any line that this is for.
+inline constexpr Duration kAllHeardOf = std::chrono::seconds(1);
 
 /// Why images would be lost for the size of the kernel's receive buffers, and what to type about it; "" where they are
 /// large enough.

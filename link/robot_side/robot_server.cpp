@@ -2,10 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <utility>
+
 namespace foresight::link {
 namespace {
 
-constexpr std::size_t kRoom = 2;  // pairs that wait for the coder; only the newest goes
+constexpr std::size_t kRoom = 2;                                 // pairs that wait for the coder; only the newest goes
+constexpr Duration kLookEvery = std::chrono::milliseconds(500);  // for another robot
 
 ControlDeskOptions desk_options(Identity identity, Duration round_trip, DrawNonce draw) {
   ControlDeskOptions out;
@@ -55,6 +58,15 @@ void RobotServer::step(RobotTime now) {
 void RobotServer::stop() noexcept {
   if (frames_) frames_->stop();
   states_.stop();
+}
+
+std::string RobotServer::news(RobotTime now) {
+  if (now >= look_due_) {
+    look_due_ = now + kLookEvery;
+    if (const std::string before = std::exchange(beside_, robot_beside()); !beside_.empty() && beside_ != before)
+      return beside_ + " has come to the same domain, and operators hear both: end it, or change its link.domain";
+  }
+  return refusals_.news(participant_, now);
 }
 
 std::string RobotServer::line() const {

@@ -35,7 +35,8 @@ class RobotServer {
   /// One line for people: who listens, what goes out, what is wrong with the line.
   std::string line() const;
   /// What has happened on the line since it was asked the last time, for the log; mostly "".
-  std::string news(RobotTime now) { return refusals_.news(participant_, now); }
+  std::string news(RobotTime now);
+  std::string robot_beside() const { return link::robot_beside(participant_); }
   FrameCounts counts() const noexcept { return frames_ ? frames_->counts() : FrameCounts{}; }
 
  private:
@@ -45,6 +46,8 @@ class RobotServer {
   std::unique_ptr<Participant> own_;
   Participant& participant_;
   RefusalWatch refusals_;
+  std::string beside_;  // as it was told
+  RobotTime look_due_;  // for it
   WallClock wall_;
   LineCapacity capacity_;
   ServedOperator operator_;

@@ -42,6 +42,23 @@ TEST_F(Link, ARunningRobotIsSeenAndReadAndNamesAreHelpedWith) {
   EXPECT_THAT(end.err, HasSubstr("robot: serving on domain 0, interface lo"));
 }
 
+// Two robots of a lab that both kept the domain of the rig that they were copied from.
+TEST_F(Link, ASecondRobotIsNotServedBesideTheFirst) {
+  const std::vector<std::string> served{"robot", rig(), "--mock", "--no-cameras", "--serve"};
+  Program first(served);
+  const Outcome there = run_program({"link", "listen", "foresight/robot_state", "--count", "1"});
+  ASSERT_EQ(there.exit_code, 0) << there.err;
+  const Outcome second = run_program(served);
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.last_line(), HasSubstr(rig() + ": cannot be served beside 'robot minerva'"));
+  EXPECT_THAT(second.last_line(), HasSubstr("give this rig another link.domain"));
+  first.interrupt();
+  const Outcome end = first.wait();
+  EXPECT_EQ(end.exit_code, 130);
+  EXPECT_THAT(end.err, HasSubstr("line: 'robot minerva' on "));
+  EXPECT_THAT(end.err, HasSubstr("has come to the same domain, and operators hear both"));
+}
+
 // The robot is killed: who listens is told, waits with words, and hears the next one.
 TEST_F(Link, ARobotThatHasGoneIsToldToWhoListens) {
   const auto robot = [] { return Program({"robot", rig(), "--mock", "--no-cameras", "--serve"}); };
