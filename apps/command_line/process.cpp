@@ -16,6 +16,7 @@
 #include <string>
 #include <system_error>
 
+#include "apps/command_line/crash_report.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/stop_signal.hpp"
@@ -101,6 +102,7 @@ void settle_process() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   end_on_stop_signals();
   std::set_terminate(end_of_thread);
+  report_crashes();
 }
 
 int exit_code_of(const std::function<int()>& work) noexcept {

@@ -9,7 +9,7 @@ namespace foresight {
 /// empty then, and what goes to stdout or stderr fails. A reader that has gone and a limit on the size of files are
 /// errors of writing, no signals. Memory that is free goes back to the system. Stop signals end the program
 /// (common/stop_signal.hpp) until work polls them. A thread that has no memory ends the program with a word and exit
-/// code 1.
+/// code 1. A crash tells where it was (crash_report.hpp).
 void settle_process();
 
 /// Runs `work` and returns the exit code: its own; 2 for an InputError, 1 for any other failure, each told in one last

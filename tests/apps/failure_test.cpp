@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <random>
+#include <thread>
 
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
@@ -51,6 +52,20 @@ TEST_F(Failure, AWindowNeedsADisplay) {
                                       {{{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
   expect_refused(outcome, "", "leave out --window");
   EXPECT_TRUE(fs::is_empty(out_.path()));
+}
+
+TEST_F(Failure, ACrashTellsWhereItWasAndStillIsOne) {
+  for (const auto& [signal, words] : {std::pair{SIGSEGV, "Segmentation fault"}, {SIGABRT, "Aborted"}}) {
+    Program program({"robot", (source_folder() / "configs/minerva.yaml").string(), "--mock", "--no-cameras"},
+                    {.shell = "ulimit -c 0"});
+    while (program.running() && program.said().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    program.interrupt(signal);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.exit_code, 128 + signal);
+    EXPECT_THAT(outcome.last_line(),
+                testing::MatchesRegex("foresight: crashed .*" + std::string(words) +
+                                      ".* in thread 'foresight'; please report: .*foresight.0x.*"));
+  }
 }
 
 TEST_F(Failure, AFullDeviceIsNamed) {

@@ -49,7 +49,7 @@ int count(const cv::Mat& picture, const cv::Scalar& bgr) {
 TEST_F(Figures, ShowWhatTheySay) {
   const std::string out = out_ / "made/here";
   const Outcome outcome = run_program({"bench", "figures", run(), "--out", out});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.last_line() << '\n' << outcome.err;
   EXPECT_THAT(outcome.out, testing::HasSubstr(out));
   ASSERT_EQ(names_in(out), kFiles);
 
