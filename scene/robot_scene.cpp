@@ -11,10 +11,8 @@ RobotScene::RobotScene(const SceneModel* scene, const std::optional<UrdfRobot>& 
     : robot_(robot), T_world_robot_(T_world_robot) {
   if (scene) nodes_ = scene->nodes();
   if (robot_) add_robot();
-  moves_.resize(nodes_.size(), false);
-  for (std::size_t i = 1; i < node_of_link_.size(); ++i) moves_[node_of_link_[i]] = true;  // the root stands
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    if (nodes_[i].parent >= 0 && moves_[static_cast<std::size_t>(nodes_[i].parent)]) moves_[i] = true;
+  for (Node& node : nodes_)
+    if (node.parent >= 0 && nodes_[static_cast<std::size_t>(node.parent)].may_move) node.may_move = true;
   if (std::ranges::any_of(nodes_, [](const Node& node) { return !node.mesh.triangles.empty(); }))
     model_ = std::make_shared<const SceneModel>(nodes_, scene ? scene->accuracy() : std::nullopt);
 }
@@ -41,6 +39,10 @@ void RobotScene::add_robot() {
       node.parent = static_cast<int>(node_of_link_[static_cast<std::size_t>(node.parent)]);
     nodes_.push_back(std::move(node));
   }
+  const auto node_of = [&](int link) -> Node& { return nodes_[node_of_link_[static_cast<std::size_t>(link)]]; };
+  for (const UrdfJoint& joint : robot_->joints)  // parents come first
+    node_of(joint.child).may_move = joint.kind != UrdfJoint::Kind::fixed ||
+                                    node_of(robot_->links[static_cast<std::size_t>(joint.child)].parent).may_move;
   for (Node& link : robot_->links) link.mesh = {};
   robot_->collision.clear();
 }

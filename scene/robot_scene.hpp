@@ -28,7 +28,7 @@ class RobotScene {
 
   const std::vector<Node>& nodes() const { return nodes_; }
   /// Does this node move with joints?
-  bool moves(std::size_t node) const { return moves_[node]; }
+  bool moves(std::size_t node) const { return nodes_[node].may_move; }
   /// T_world_node of all nodes.
   std::vector<Pose> poses(const JointPositions& joints) const;
   /// All that has triangles; null where nothing has.
@@ -38,7 +38,6 @@ class RobotScene {
   void add_robot();
 
   std::vector<Node> nodes_;
-  std::vector<bool> moves_;
   std::shared_ptr<const SceneModel> model_;
   std::optional<UrdfRobot> robot_;
   Pose T_world_robot_;

@@ -24,6 +24,7 @@ struct Node {
   Mesh mesh;                              ///< in the node's own frame
   int parent = -1;                        ///< index of an earlier node, or -1: the world
   Pose T_parent_node = Pose::Identity();  ///< rest pose
+  bool may_move = false;                  ///< known before it does, such as a robot's link behind a joint
 };
 
 class SceneModel {

@@ -84,11 +84,11 @@ void report_crashes() {
   ::backtrace(&first, 1);  // loads what it needs now, while that can be done
   const stack_t other{.ss_sp = other_stack.data(), .ss_flags = 0, .ss_size = other_stack.size()};
   ::sigaltstack(&other, nullptr);
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = report;
   action.sa_flags = static_cast<int>(SA_ONSTACK | SA_RESETHAND);
   for (const int signal : kSignals) {
-    struct sigaction before{};
+    struct sigaction before {};
     ::sigaction(signal, nullptr, &before);
     if (before.sa_handler == SIG_DFL) ::sigaction(signal, &action, nullptr);  // a sanitizer tells more
   }

@@ -91,6 +91,25 @@ TEST(LampFinder, FindsTheLampInTheFirstImagesByShadowsThatHardlyMove) {
   EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
 }
 
+TEST(LampFinder, FindsTheLampBeforeWhatMayMoveHas) {
+  std::vector<Node> nodes = small_scene()->nodes();
+  nodes[kBlock].may_move = true;
+  Room room{std::make_shared<const SceneModel>(nodes)};
+  room.show(0, 1, {kLamp});
+  EXPECT_FALSE(room.finder.lamp()) << "the answer comes some images later";
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(room.finder.look(state_at(*room.scene, 0))) << "nothing new to be seen";
+  ASSERT_TRUE(room.finder.lamp()) << room.finder.answer().still << " " << room.finder.answer().still_elsewhere;
+  EXPECT_TRUE(room.finder.moving()[kBlock]);
+  const Eigen::Vector3d middle(0, 0, 0.1), to = room.finder.lamp()->position - middle, truly = kLamp.position - middle;
+  EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
+}
+
+TEST(LampFinder, AsksNothingAsLongAsNothingMayMoveOrHas) {
+  Room room;
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(room.finder.look(state_at(*room.scene, 0)));
+  EXPECT_TRUE(room.finder.witnesses().empty());
+}
+
 TEST(LampFinder, SaysNothingOfSingleImagesThatShowPrintAlone) {
   Room room;
   room.show(0, 4, {}, 0.15);

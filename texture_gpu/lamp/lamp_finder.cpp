@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "common/real_time.hpp"
@@ -22,20 +23,21 @@ const LampRecord::Value kNotKnown = LampRecord::Value::Constant(Eigen::half(std:
 
 }  // namespace
 
-LampFinder::LampFinder(std::shared_ptr<const SceneModel> scene)
-    : scene_(std::move(scene)), rays_(*scene_), moving_(scene_->nodes().size()) {}
+LampFinder::LampFinder(std::shared_ptr<const SceneModel> scene) : scene_(std::move(scene)), rays_(*scene_) {
+  for (const Node& node : scene_->nodes()) moving_.push_back(node.may_move);
+}
 
 bool LampFinder::look(const SceneState& state) {
   const auto far = [](const Pose& a, const Pose& b, double moved, double turned) {
     return (a.translation() - b.translation()).norm() > moved ||
            Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() > turned;
   };
+  ++looked_at_;
+  if (search_.valid() && looked_at_ >= answer_at_) answer_ = search_.get();
   const auto& T = state.T_world_node;
-  if (first_.empty()) {
-    first_ = last_ = T;
-    return false;
-  }
-  bool more = false, differs = false;
+  const bool is_first = first_.empty();
+  if (is_first) first_ = last_ = T;
+  bool differs = is_first, more = is_first && std::ranges::any_of(moving_, std::identity());
   for (std::size_t i = 0; i < T.size(); ++i) {
     differs = differs || far(T[i], last_[i], kNewMoved, kNewTurned);
     if (moving_[i] || !far(T[i], first_[i], kMoved, kTurned)) continue;
@@ -71,13 +73,12 @@ void LampFinder::add(const SceneState& state, const Vector3d& camera, std::span<
   records_.push_back(std::move(record));
   if (records_.size() > kRecords) records_.pop_front();
   ++recorded_;
-  if (search_.valid() && recorded_ >= answer_at_) answer_ = search_.get();
   if (!search_.valid() && recorded_ >= ask_at_) ask();
 }
 
 void LampFinder::ask() {
   ask_at_ = std::min(static_cast<int>(std::ceil(kNextSearch * recorded_)), recorded_ + static_cast<int>(kRecords));
-  answer_at_ = recorded_ + kAnswerTakes;
+  answer_at_ = looked_at_ + kAnswerTakes;
   search_ =
       std::async(std::launch::async, [this, question = LampQuestion{witnesses_, records_, moving_, lamp(),
                                                                     answer_.told_by_what_moves, answer_.several}] {

@@ -36,7 +36,7 @@ class LampFinder {
 
   /// Nothing as long as it cannot be told.
   const std::optional<Lamp>& lamp() const { return answer_.lamp; }
-  /// One for each node: it has moved, and throws shadows that move.
+  /// One for each node: it may move or has moved, and throws shadows that move.
   const std::vector<bool>& moving() const { return moving_; }
 
   /// What the last search found.
@@ -54,7 +54,8 @@ class LampFinder {
   std::vector<bool> turned_;  // the witness's normal shows to the cameras
   std::deque<LampRecord> records_;
   int number_ = 0;
-  int recorded_ = 0, ask_at_ = 0, answer_at_ = 0;  // counts of records
+  int recorded_ = 0, ask_at_ = 0;      // counts of records
+  int looked_at_ = 0, answer_at_ = 0;  // counts of images
   std::future<LampAnswer> search_;
   LampAnswer answer_;
 };
