@@ -8,8 +8,9 @@ namespace foresight::atlas {
 inline constexpr int kPage = 16;  ///< texels along a page's side
 inline constexpr int kTile = 8;   ///< texels along the side of a work group; four tiles a page
 /// Layers are narrow, so that the rows of a page lie close together in memory: where a renderer
-/// keeps textures row by row, a page then touches two or three memory pages instead of sixteen.
-inline constexpr int kLayerWidth = 128, kLayerHeight = 8192;  ///< texels
+/// keeps textures row by row, a page then touches two or three memory pages instead of sixteen. And low: textures grow
+/// by whole layers, 4 MB each.
+inline constexpr int kLayerWidth = 128, kLayerHeight = 4096;  ///< texels
 inline constexpr int kSlotsPerRow = kLayerWidth / kPage;
 inline constexpr int kRowsPerLayer = kLayerHeight / kPage;
 inline constexpr int kSlotsPerLayer = kSlotsPerRow * kRowsPerLayer;

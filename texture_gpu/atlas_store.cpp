@@ -9,7 +9,7 @@
 namespace foresight {
 namespace {
 
-constexpr std::uint32_t kFirstSlots = atlas::kSlotsPerLayer / 4;
+constexpr std::uint32_t kFirstSlots = atlas::kSlotsPerLayer / 2;
 
 /// Whole layers, or a single one that is only as high as needed.
 struct Extent {
