@@ -1,6 +1,8 @@
 #include "apps/bench/seat_faults.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "apps/operator/stepped_sides.hpp"
 
@@ -9,12 +11,20 @@ namespace {
 
 constexpr double kLeastApart = 15, kMostApart = 45;  // s
 constexpr double kLookEvery = 0.05;                  // s
+constexpr double kClearlyMoves = 0.2;                // rad/s: a shaft that stands soon after is missed by nobody
 
 void fail_a_drive(const SeatMoment& moment, std::size_t bus, std::size_t drive, sim::DriveFault fault) {
   if (sim::DriveRack* const rack = moment.robot.devices().rack(bus)) rack->inject(drive, fault);
 }
 
 }  // namespace
+
+/// Of the arm's drives, the one whose set-points move most.
+std::size_t fastest(const RobotStatus& status, std::size_t drives) {
+  const auto speeds = std::span(status.set_point).first(drives);
+  const auto speed = [](const JointMotion& motion) { return std::abs(motion.velocity); };
+  return static_cast<std::size_t>(std::ranges::max_element(speeds, {}, speed) - speeds.begin());
+}
 
 std::vector<Fault> seat_faults(std::size_t drives, std::mt19937& random, bool& stands) {
   const auto any_drive = [drives, &random] {
@@ -25,10 +35,12 @@ std::vector<Fault> seat_faults(std::size_t drives, std::mt19937& random, bool& s
       if (begins) fail_a_drive(moment, 0, any_drive(), fault);
     };
   };
-  const auto for_a_while = [drives, any_drive](sim::DriveFault fault) {
-    return [drives, any_drive, fault](const SeatMoment& moment, bool begins) {
-      if (begins) return fail_a_drive(moment, 0, any_drive(), fault);
-      for (std::size_t i = 0; i < drives; ++i) fail_a_drive(moment, 0, i, sim::DriveFault::recover);
+  const auto recover = [drives](const SeatMoment& moment) {
+    for (std::size_t i = 0; i < drives; ++i) fail_a_drive(moment, 0, i, sim::DriveFault::recover);
+  };
+  const auto for_a_while = [any_drive, recover](sim::DriveFault fault) {
+    return [any_drive, recover, fault](const SeatMoment& moment, bool begins) {
+      begins ? fail_a_drive(moment, 0, any_drive(), fault) : recover(moment);
     };
   };
   const std::vector<std::string> of_robot{"robot", "drives"}, of_images{"images"}, of_switch{"in command", "next"};
@@ -46,7 +58,16 @@ std::vector<Fault> seat_faults(std::size_t drives, std::mt19937& random, bool& s
       {"a shaft lags behind", 0, of_robot, on_arm(sim::DriveFault::tow_error)},
       {"a drive sends nothing", 1.5, of_robot, for_a_while(sim::DriveFault::silent)},
       {"a drive tells nonsense", 1.0, of_robot, for_a_while(sim::DriveFault::garbage)},
-      {"a shaft is held fast", 2.0, {"robot", "drives", "prediction"}, for_a_while(sim::DriveFault::jam)},
+      {"a shaft is held fast",
+       2.0,
+       {"robot", "drives", "prediction"},
+       [drives, recover](const SeatMoment& m, bool begins) {
+         begins ? fail_a_drive(m, 0, fastest(m.robot.robot().status(), drives), sim::DriveFault::jam) : recover(m);
+       },
+       [drives](const SeatMoment& m) {
+         const RobotStatus status = m.robot.robot().status();
+         return std::abs(status.set_point[fastest(status, drives)].velocity) > kClearlyMoves;
+       }},
       {"no images are taken", 4, of_images, [](const SeatMoment& m, bool begins) { m.robot.hold_cameras(begins); }},
       {"the robot's program stands still",
        3,
@@ -90,6 +111,7 @@ void FaultMaker::step(const SeatMoment& moment, double now_s, const std::functio
   next_s_ = now_s + 1;
   if (!moment.seat.status().engaged) return;
   const auto index = std::uniform_int_distribution<std::size_t>(0, faults_.size() - 1)(random_);
+  if (faults_[index].would_show && !faults_[index].would_show(moment)) return;
   const std::vector<SeatLine> before = lines();
   const auto& labels = faults_[index].labels;
   if (std::ranges::any_of(before, [&](const SeatLine& line) {

@@ -18,6 +18,7 @@ struct Fault {
   double seconds = 0;               ///< that it lasts; 0: it is an event
   std::vector<std::string> labels;  ///< one of these lines has to be marked while it lasts, or soon after
   std::function<void(const SeatMoment&, bool begins)> make;
+  std::function<bool(const SeatMoment&)> would_show{};  ///< else there is nothing to tell; empty: it always would
 };
 
 /// Of a rig's robot side in stepped time; `stands`: set while the operator's program stands still. Which drive fails is
