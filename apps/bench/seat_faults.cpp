@@ -11,13 +11,11 @@ namespace {
 
 constexpr double kLeastApart = 15, kMostApart = 45;  // s
 constexpr double kLookEvery = 0.05;                  // s
-constexpr double kClearlyMoves = 0.2;                // rad/s: a shaft that stands soon after is missed by nobody
+constexpr double kClearlyMoves = 0.05;               // rad/s: a shaft that stands soon after is missed by nobody
 
 void fail_a_drive(const SeatMoment& moment, std::size_t bus, std::size_t drive, sim::DriveFault fault) {
   if (sim::DriveRack* const rack = moment.robot.devices().rack(bus)) rack->inject(drive, fault);
 }
-
-}  // namespace
 
 /// Of the arm's drives, the one whose set-points move most.
 std::size_t fastest(const RobotStatus& status, std::size_t drives) {
@@ -25,6 +23,8 @@ std::size_t fastest(const RobotStatus& status, std::size_t drives) {
   const auto speed = [](const JointMotion& motion) { return std::abs(motion.velocity); };
   return static_cast<std::size_t>(std::ranges::max_element(speeds, {}, speed) - speeds.begin());
 }
+
+}  // namespace
 
 std::vector<Fault> seat_faults(std::size_t drives, std::mt19937& random, bool& stands) {
   const auto any_drive = [drives, &random] {
