@@ -100,7 +100,7 @@ struct LiveView::Work {
        const Clock& clock, const LiveViewOptions& given)
       : options(given),
         frames(std::move(queue)),
-        setup(live_view_setup(scene, "--view")),
+        setup(live_view_setup(scene, "--view", {.awaits_lamp = options.stepped})),
         window(options.window ? open_live_window(setup.left) : nullptr),
         headless(window ? nullptr : gl::create_headless_context()),
         session(std::make_unique<ViewSession>(window ? static_cast<gl::Context&>(*window) : *headless, setup)),

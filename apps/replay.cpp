@@ -148,6 +148,7 @@ int replay(const ReplayOptions& given) {
     throw InputError("--detail", "the thesis' pipeline draws polygon by polygon",
                      "leave --detail away, or use --pipeline core");
   ReplayOptions options = given;
+  options.textures.awaits_lamp = !options.real_time;
   const RunFolder run = open_run(options);
   const std::vector<std::size_t> arrived = arrivals(run, options);
   check_images(run);

@@ -43,6 +43,10 @@ struct TextureOptions {
   /// Find the main lamp by the shadows of what moves; then take these out of images, and let the display draw them
   /// where they fall at the instant that it shows.
   bool shadows = true;
+  /// The search for it takes some tenths of a second, more where other programs want the processors. An image waits for
+  /// the one that is to count from it on, so that the same images give the same textures. False: it counts once it is
+  /// there.
+  bool awaits_lamp = true;
 };
 
 }  // namespace foresight

@@ -39,7 +39,7 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
       survey_(all_lenses(left, right)),
       extract_(all_lenses(left, right)),
       fill_(*surface),
-      lamp_finder_(scene_),
+      lamp_finder_(scene_, options.awaits_lamp),
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
   if (options.images > 1) still_pass_ = std::make_unique<StillPass>(left);

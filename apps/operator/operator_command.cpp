@@ -167,6 +167,7 @@ SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Ta
   options.pictures_hz = arguments.pictures_hz;
   options.fall_back.lowest_db = arguments.fidelity_db;
   options.textures = arguments.textures;
+  options.textures.awaits_lamp = false;
   options.levels = level_settings(arguments.detail);
   options.out = arguments.outputs.out;
   return try_served_seat(
@@ -218,6 +219,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
   options.textures = arguments.textures;
+  options.textures.awaits_lamp = false;
   options.levels = level_settings(arguments.detail);
   options.sounds = arguments.sounds;
   options.trust.fall_back.lowest_db = arguments.fidelity_db;

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "tests/link/child.hpp"
 #include "tests/support/lamp_light.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -102,6 +103,19 @@ TEST(LampFinder, FindsTheLampBeforeWhatMayMoveHas) {
   EXPECT_TRUE(room.finder.moving()[kBlock]);
   const Eigen::Vector3d middle(0, 0, 0.1), to = room.finder.lamp()->position - middle, truly = kLamp.position - middle;
   EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
+}
+
+TEST(LampFinder, TakesAnAnswerThatIsNotAwaitedOnceItIsThere) {
+  Room awaits, goes_on{.finder = LampFinder(small_scene(), false)};
+  for (Room* room : {&awaits, &goes_on}) room->show(0, 2, {kLamp});
+  const auto at_rest = [](Room& room) { return room.finder.look(state_at(*room.scene, 1)); };
+  for (int i = 0; i < 2; ++i) at_rest(awaits);
+  ASSERT_TRUE(awaits.finder.lamp());
+  EXPECT_TRUE(comes_true([&] {
+    at_rest(goes_on);
+    return goes_on.finder.lamp().has_value();
+  }));
+  EXPECT_EQ(goes_on.finder.lamp(), awaits.finder.lamp());
 }
 
 TEST(LampFinder, AsksNothingAsLongAsNothingMayMoveOrHas) {

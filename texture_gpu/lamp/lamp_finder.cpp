@@ -23,7 +23,8 @@ const LampRecord::Value kNotKnown = LampRecord::Value::Constant(Eigen::half(std:
 
 }  // namespace
 
-LampFinder::LampFinder(std::shared_ptr<const SceneModel> scene) : scene_(std::move(scene)), rays_(*scene_) {
+LampFinder::LampFinder(std::shared_ptr<const SceneModel> scene, bool awaits)
+    : scene_(std::move(scene)), awaits_(awaits), rays_(*scene_) {
   for (const Node& node : scene_->nodes()) moving_.push_back(node.may_move);
 }
 
@@ -33,7 +34,11 @@ bool LampFinder::look(const SceneState& state) {
            Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() > turned;
   };
   ++looked_at_;
-  if (search_.valid() && looked_at_ >= answer_at_) answer_ = search_.get();
+  const auto answered = [&] {
+    return search_.valid() && looked_at_ >= answer_at_ &&
+           (awaits_ || search_.wait_for(Duration{0}) == std::future_status::ready);
+  };
+  if (answered()) answer_ = search_.get();
   const auto& T = state.T_world_node;
   const bool is_first = first_.empty();
   if (is_first) first_ = last_ = T;

@@ -16,11 +16,11 @@
 
 namespace foresight {
 
-/// One thread; searches in another one, whose answers count some images later: always as many, so that the same images
-/// give the same lamp.
+/// One thread; searches in another one, whose answers count some images later.
 class LampFinder {
  public:
-  explicit LampFinder(std::shared_ptr<const SceneModel> scene);
+  /// `awaits`: always as many images later, so that the same images give the same lamp; else so many at least.
+  explicit LampFinder(std::shared_ptr<const SceneModel> scene, bool awaits = true);
 
   /// Before each image: where everything stands there. True where the image may tell something new: then add() is to be
   /// called with it.
@@ -47,6 +47,7 @@ class LampFinder {
   void ask();
 
   std::shared_ptr<const SceneModel> scene_;
+  const bool awaits_;
   ShadowRays rays_;
   std::vector<Pose> first_, last_;  // T_world_node: of the first image, of the last record
   std::vector<bool> moving_;
