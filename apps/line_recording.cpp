@@ -23,6 +23,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kTake = 4ms;
 constexpr Duration kLookEvery = 500ms;
+constexpr Duration kLinger = 1s;
 
 void say(const char* command, const std::string& words) {
   std::fprintf(stderr, "%s: %s\n", command, words.c_str());
@@ -177,7 +178,7 @@ int play(const PlayOptions& options) {
     throw InputError(options.file,
                      "has nothing that a robot says" + (outcome.trouble.empty() ? "" : "; " + outcome.trouble),
                      "record with `foresight record --line` while `foresight robot --serve` runs");
-  wait_until(clock, clock.now() + link::kAllHeardOf);  // for who asks for the last messages again
+  wait_until(clock, clock.now() + kLinger);  // for who asks for the last messages again
   return 0;
 }
 

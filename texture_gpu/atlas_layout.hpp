@@ -9,7 +9,7 @@ inline constexpr int kPage = 16;  ///< texels along a page's side
 inline constexpr int kTile = 8;   ///< texels along the side of a work group; four tiles a page
 /// Layers are narrow, so that the rows of a page lie close together in memory: where a renderer
 /// keeps textures row by row, a page then touches two or three memory pages instead of sixteen. And low: textures grow
-/// by whole layers, 4 MB each.
+/// by whole layers, of 2.8 MB of colours with their pyramid and 1 MB of heights.
 inline constexpr int kLayerWidth = 128, kLayerHeight = 4096;  ///< texels
 inline constexpr int kSlotsPerRow = kLayerWidth / kPage;
 inline constexpr int kRowsPerLayer = kLayerHeight / kPage;

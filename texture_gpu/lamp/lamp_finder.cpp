@@ -34,11 +34,9 @@ bool LampFinder::look(const SceneState& state) {
            Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() > turned;
   };
   ++looked_at_;
-  const auto answered = [&] {
-    return search_.valid() && looked_at_ >= answer_at_ &&
-           (awaits_ || search_.wait_for(Duration{0}) == std::future_status::ready);
-  };
-  if (answered()) answer_ = search_.get();
+  if (search_.valid() && looked_at_ >= answer_at_ &&
+      (awaits_ || search_.wait_for(Duration{0}) == std::future_status::ready))
+    answer_ = search_.get();
   const auto& T = state.T_world_node;
   const bool is_first = first_.empty();
   if (is_first) first_ = last_ = T;
