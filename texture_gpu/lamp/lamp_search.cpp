@@ -139,7 +139,7 @@ class LampSearch {
   static Two both(const VectorXd& first, const VectorXd& second, const VectorXd& brighter);
   bool there_are_several(const Candidate& best, std::span<const Coarse> all);
   void judge(Candidate& c, const Disc& disc) const;
-  void judge(Candidate& c, const Disc& disc, std::size_t chosen, const VectorXd& more, const VectorXd& brighter) const;
+  void judge(Candidate& c, const Disc& disc, std::size_t most, const VectorXd& more, const VectorXd& brighter) const;
   template <class Judge>
   void refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc, const Judge& judge);
   void refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc);
@@ -232,13 +232,15 @@ void LampSearch::judge(Candidate& c, const Disc& disc) const {
   judge(c, disc, chosen_.size(), more_hidden(c, disc, single_), single_.brighter());
 }
 
-/// By so many of the chosen observations, and by points of single images.
-void LampSearch::judge(Candidate& c, const Disc& disc, std::size_t chosen, const VectorXd& more,
+/// By so many of the chosen observations at most, and by points of single images. Of the former those that were dark
+/// count: the others agree with any lamp whose shadows lie elsewhere.
+void LampSearch::judge(Candidate& c, const Disc& disc, std::size_t most, const VectorXd& more,
                        const VectorXd& brighter) const {
-  c.explained = explained(c, disc, chosen);
+  c.explained = explained(c, disc, most);
   const double xy = more.dot(brighter);
   c.still = xy < 0 ? xy * xy / (more.squaredNorm() * brighter.squaredNorm()) : 0;
-  c.score = likelier(static_cast<std::ptrdiff_t>(chosen), c.explained) + likelier(more.size(), c.still);
+  const auto dark = static_cast<std::ptrdiff_t>(std::min({most, kMostDark, dark_}));
+  c.score = likelier(dark, c.explained) + likelier(more.size(), c.still);
 }
 
 LampSearch::Candidate LampSearch::as_candidate(const Lamp& lamp) const {
@@ -317,7 +319,7 @@ std::vector<LampSearch::Coarse> LampSearch::coarse() {
   const auto add = [&](const Vector3d& direction, double distance) {
     Coarse one{{direction, distance}, {}};
     one.more_hidden = more_hidden(one.lamp, kPoint, coarse_);
-    judge(one.lamp, kPoint, std::min(kMostCoarse, chosen_.size()), one.more_hidden, coarse_.brighter());
+    judge(one.lamp, kPoint, kMostCoarse, one.more_hidden, coarse_.brighter());
     out.push_back(std::move(one));
   };
   for (int i = 0; i < kDirections; ++i) {  // evenly over the sphere
