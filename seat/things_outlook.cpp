@@ -50,13 +50,10 @@ void ThingsOutlook::advance(const PredictedRobot& robot) {
   const JointPositions by_name = positions_of(rig_, robot.position);
   const JointPositions joints = [&](std::string_view name) { return by_name(shaft_name(rig_, name)); };
   if (!future_) {
-    std::vector<bool> driven;
-    for (std::size_t i = 0; i < scene_->model()->nodes().size(); ++i)
-      driven.push_back(scene_->moves(i) && std::ranges::find(nodes_, i) == nodes_.end());
     const PartPoses poses = [scene = scene_](const JointPositions& at) {
       return scene->state_at({}, at, StateStatus::predicted).T_world_node;
     };
-    future_ = std::make_unique<ThingFuture>(*scene_->model(), driven, poses, options_, robot.time, joints);
+    future_ = std::make_unique<ThingFuture>(*scene_->model(), poses, options_, robot.time, joints);
   }
   future_->advance(robot.time, joints);
   take_looked();

@@ -26,16 +26,12 @@ LiveScene::LiveScene(const sim::MockStereo& mock) : LiveScene(mock.world(), lens
 
 LiveScene::LiveScene(std::shared_ptr<const sim::LiveLab> world, const StereoLenses& lenses)
     : lenses_(lenses), lab_(std::move(world)) {
-  const sim::Lab& lab = lab_->lab();
-  model_ = std::make_shared<const SceneModel>(sim::model_of(lab, lab_->modelled_rest()));
-  for (std::size_t i = 0; i < lab.parts.size(); ++i)  // what is loose has no encoder
-    moves_.push_back(lab.parts[i].moves && lab.parts[i].name != sim::kBall && !lab_->is_loose(i));
+  model_ = std::make_shared<const SceneModel>(lab_->modelled_scene());
 }
 
 LiveScene::LiveScene(const StereoConfig& cameras, const Rig* rig, const std::optional<fs::path>& scene_file)
     : lenses_(lenses_of(cameras)), real_(rig_scene(rig, scene_file)) {
   model_ = real_->model();
-  for (std::size_t i = 0; i < real_->nodes().size(); ++i) moves_.push_back(real_->moves(i));
 }
 
 SceneState LiveScene::state_at(RobotTime time, const JointPositions& joints, StateStatus status) const {

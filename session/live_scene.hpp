@@ -32,13 +32,10 @@ class LiveScene {
   /// By the lab's drawing: where the left camera stands on its head. Only of a mock lab.
   Pose T_world_left(const JointPositions& joints) const;
   bool is_mock() const { return lab_ != nullptr; }
-  /// Does this node move with joints?
-  bool moves(std::size_t node) const { return moves_[node]; }
 
  private:
   std::optional<StereoLenses> lenses_;
   std::shared_ptr<const SceneModel> model_;
-  std::vector<bool> moves_;                  // of each node
   std::shared_ptr<const sim::LiveLab> lab_;  // of a mock lab, else
   std::shared_ptr<const RobotScene> real_;
 };

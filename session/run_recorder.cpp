@@ -128,8 +128,8 @@ void RunRecorder::write_poses(RobotTime time, const std::optional<Pose>& T_world
   if (T_world_left) run_.add_pose(time, *T_world_left);
   if (!options_.scene) return;
   const auto& nodes = options_.scene->nodes();
-  for (std::size_t i = 0; i < std::min({nodes.size(), options_.moves.size(), scene.T_world_node.size()}); ++i)
-    if (options_.moves[i]) run_.add_node(time, nodes[i].name, scene.T_world_node[i]);
+  for (std::size_t i = 0; i < std::min(nodes.size(), scene.T_world_node.size()); ++i)
+    if (nodes[i].may_move) run_.add_node(time, nodes[i].name, scene.T_world_node[i]);
 }
 
 RecorderCounts RunRecorder::finish(const std::string& remarks) {

@@ -20,8 +20,8 @@ namespace foresight {
 
 struct RecorderOptions {
   StereoLenses lenses;
-  std::shared_ptr<const SceneModel> scene = {};  ///< null: the run gets none (`foresight replay --scene`)
-  std::vector<bool> moves = {};                  ///< of each node of the scene: its poses are written, image by image
+  /// Null: the run gets none (`foresight replay --scene`). Poses of nodes that may move are written, image by image.
+  std::shared_ptr<const SceneModel> scene = {};
   /// Frames have poses; those without are kept apart from the run. False: all are written without a trajectory.txt, and
   /// whoever replays the run has to add one. What moves in the scene is written all the same, where it is known.
   bool posed = true;

@@ -265,11 +265,11 @@ Mesh mesh_of(const Part& part) {
   return mesh;
 }
 
-SceneModel model_of(const Lab& lab, const LabState& T_world_part) {
+std::vector<Node> nodes_of(const Lab& lab, const LabState& T_world_part) {
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < lab.parts.size(); ++i)
     nodes.push_back({lab.parts[i].name, mesh_of(lab.parts[i]), -1, T_world_part[i]});
-  return SceneModel(std::move(nodes), kLabAccuracy);
+  return nodes;
 }
 
 }  // namespace foresight::sim

@@ -63,7 +63,7 @@ Mesh mesh_of(const Part& part);
 /// The model is exact; this tells thin parts from what they lie on. Metres.
 inline constexpr double kLabAccuracy = 0.004;
 
-/// The lab as a scene: node i is part i, at rest where `T_world_part` says. Every node's parent is the world.
-SceneModel model_of(const Lab& lab, const LabState& T_world_part);
+/// The lab as a scene's nodes: node i is part i, at rest where `T_world_part` says. Every node's parent is the world.
+std::vector<Node> nodes_of(const Lab& lab, const LabState& T_world_part);
 
 }  // namespace foresight::sim

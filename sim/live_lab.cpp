@@ -64,6 +64,13 @@ LiveLab::LiveLab(const Options& options) : lab_(lab_for(options)), things_(optio
   pose.rotate(Eigen::AngleAxisd(evenly(random, hidden.object_rad), Eigen::Vector3d::UnitZ()));
 }
 
+SceneModel LiveLab::modelled_scene() const {
+  std::vector<Node> nodes = nodes_of(lab_, modelled_rest_);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    nodes[i].may_move = lab_.parts[i].moves && !loose_[i] && nodes[i].name != kBall;
+  return SceneModel(std::move(nodes), kLabAccuracy);
+}
+
 void LiveLab::add_prints(const Options& options) {
   prints_ = options.prints;
   if (options.board) {

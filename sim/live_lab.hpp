@@ -57,6 +57,8 @@ class LiveLab {
   const Lab& lab() const { return lab_; }
   /// What the robot believes of the parts: rest poses of the model, one per part.
   const LabState& modelled_rest() const { return modelled_rest_; }
+  /// The same as a scene. What shafts move may move; of what is loose and of the ball, nothing tells where they are.
+  SceneModel modelled_scene() const;
   /// Those that stand still, then the board where there is one. No parts of lab(): they are painted on what stands.
   const std::vector<Print>& prints() const { return prints_; }
   bool is_loose(std::size_t part) const { return loose_[part]; }

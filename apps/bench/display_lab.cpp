@@ -66,7 +66,7 @@ DisplayLab make_display_lab(cv::Size image_size, cv::Size view_size) {
   const sim::Lab lab = sim::make_lab(0.05, 1);
   const sim::Polygons polygons = sim::polygons_of(lab);
   DisplayLab out{{}, polygons.count, {"few", {}, {}, SIZE_MAX}, {"many", {}, {}, 0}};
-  out.scene.model = std::make_shared<const SceneModel>(sim::model_of(lab, lab.at_rest()));
+  out.scene.model = std::make_shared<const SceneModel>(sim::nodes_of(lab, lab.at_rest()), sim::kLabAccuracy);
   out.scene.camera = display_lens(image_size);
 
   const gl::RasterPass raster(std::make_shared<const gl::SceneBuffers>(*out.scene.model), true);

@@ -65,9 +65,7 @@ class GraspTrial {
         number_(options.first_run - 1),
         lab_(std::make_shared<const sim::LiveLab>(
             sim::LiveLab::Options{.texel = 0.02, .task = true, .loose = sim::lab_thing_names()})),
-        model_(sim::model_of(lab_->lab(), lab_->modelled_rest())) {
-    for (std::size_t i = 0; i < lab_->lab().parts.size(); ++i)
-      driven_.push_back(lab_->lab().parts[i].moves && !lab_->is_loose(i));
+        model_(lab_->modelled_scene()) {
     figures_.sighting_hz = rig.cameras ? rig.cameras->camera(Side::left).settings.rate : 10;
     for (const ArmJoint& joint : kinematics_.chain().joints()) arm_.push_back(index_of(joint.name));
     finger_ = index_of(kFinger);
@@ -160,7 +158,7 @@ class GraspTrial {
         future.things.push_back({thing.name, thing.mass, thing.surface});
     }
     const PartPoses poses = [lab = lab_](const JointPositions& joints) { return lab->modelled_state(joints); };
-    run_->things = std::make_unique<ThingFuture>(model_, driven_, poses, future, robot.time, of(robot));
+    run_->things = std::make_unique<ThingFuture>(model_, poses, future, robot.time, of(robot));
     shown_.clear();
     looks_.clear();
     next_look_ = now;
@@ -303,7 +301,6 @@ class GraspTrial {
   int number_;
   std::shared_ptr<const sim::LiveLab> lab_;
   SceneModel model_;
-  std::vector<bool> driven_;
   std::vector<std::size_t> arm_;
   std::size_t finger_ = 0;
   GraspTrialFigures figures_;

@@ -153,7 +153,6 @@ class OperatorTrial {
     approach_->begin_at(*asked_);
     task_->lab = std::make_shared<const sim::LiveLab>(
         sim::LiveLab::Options{.texel = 0.02, .task = layout(), .loose = kLooseInTask});
-    const sim::Lab& parts = task_->lab->lab();
     sim::PhysicsOptions physics;
     std::erase_if(physics.things, [](const sim::LooseThing& thing) {
       return std::ranges::find(kLooseInTask, thing.name) == kLooseInTask.end();
@@ -169,13 +168,9 @@ class OperatorTrial {
     for (const std::string& name : {kTaskBrick, kTaskTray})
       for (const sim::LooseThing& thing : sim::lab_things())
         if (thing.name == name) future.things.push_back({thing.name, thing.mass, thing.surface});
-    std::vector<bool> driven;
-    for (std::size_t i = 0; i < parts.parts.size(); ++i)
-      driven.push_back(parts.parts[i].moves && !task_->lab->is_loose(i));
     const PartPoses poses = [lab = task_->lab](const JointPositions& joints) { return lab->modelled_state(joints); };
-    task_->model = std::make_shared<const SceneModel>(sim::model_of(parts, task_->lab->modelled_rest()));
-    task_->future =
-        std::make_unique<ThingFuture>(*task_->model, driven, poses, future, robot.time, named(robot.position));
+    task_->model = std::make_shared<const SceneModel>(task_->lab->modelled_scene());
+    task_->future = std::make_unique<ThingFuture>(*task_->model, poses, future, robot.time, named(robot.position));
     task_->guard = std::make_unique<ContactGuard>(rig_, hand_, task_->model);
     task_->guard->may_push(kLooseInTask);
     task_->next_image = now;

@@ -57,20 +57,22 @@ const char* name_of(ThingStatus status) noexcept {
   return "?";
 }
 
-ThingFuture::ThingFuture(const SceneModel& model, const std::vector<bool>& driven, PartPoses robot,
-                         ThingFutureOptions options, RobotTime start, const JointPositions& joints)
+ThingFuture::ThingFuture(const SceneModel& model, PartPoses robot, ThingFutureOptions options, RobotTime start,
+                         const JointPositions& joints)
     : options_(std::move(options)), robot_(std::move(robot)), now_(start) {
   const std::vector<Pose> rest = model.rest_poses();
   std::vector<WorldPart> parts;
-  for (std::size_t i = 0; i < rest.size(); ++i)
-    parts.push_back({model.nodes()[i].mesh, driven.at(i) ? PartRole::driven : PartRole::still, rest[i], 0,
-                     driven[i] ? kLink : kStill});
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const Node& node = model.nodes()[i];
+    parts.push_back(
+        {node.mesh, node.may_move ? PartRole::driven : PartRole::still, rest[i], 0, node.may_move ? kLink : kStill});
+  }
   for (const KnownThing& known : options_.things) {
     const auto node = model.find(known.node);
     if (!node) throw InputError("the thing '" + known.node + "'", "is no node of the scene", "name one of its nodes");
     WorldPart& part = parts[static_cast<std::size_t>(*node)];
-    if (part.role != PartRole::still)
-      throw InputError("the thing '" + known.node + "'", "is named twice, or a part of the robot", "name things once");
+    if (part.role == PartRole::loose)
+      throw InputError("the thing '" + known.node + "'", "is named twice", "name things once");
     part.role = PartRole::loose;
     part.mass = known.mass;
     part.surface = known.surface;

@@ -86,11 +86,11 @@ class ThingFuture {
  public:
   static constexpr double kMemory = 6;  ///< s that sightings may be late
 
-  /// `driven`: for each node of the model, whether joints move it. `robot`: T_world_node for given joints. The rest
-  /// poses are where the things are at `start`. Throws InputError: a thing that the model does not have or that is
-  /// driven, what ThingWorld throws.
-  ThingFuture(const SceneModel& model, const std::vector<bool>& driven, PartPoses robot, ThingFutureOptions options,
-              RobotTime start, const JointPositions& joints);
+  /// Joints move the nodes that may move and are no things. `robot`: T_world_node for given joints. The rest poses are
+  /// where the things are at `start`. Throws InputError: a thing that the model does not have or that is named twice,
+  /// what ThingWorld throws.
+  ThingFuture(const SceneModel& model, PartPoses robot, ThingFutureOptions options, RobotTime start,
+              const JointPositions& joints);
 
   /// Time has come to `time`, at which the robot is there; what lies between is even. Earlier instants change nothing.
   /// A gap of more than a second counts as one second.

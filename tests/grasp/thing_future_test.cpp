@@ -15,12 +15,12 @@ constexpr float kSide = 0.045f;
 class Bench {
  public:
   explicit Bench(double block_y = 0) {
-    const auto node = [&](const char* name, const Mesh& mesh, const Pose& pose) {
-      nodes_.push_back({name, mesh, -1, pose});
+    const auto node = [&](const char* name, const Mesh& mesh, const Pose& pose, bool driven = false) {
+      nodes_.push_back({name, mesh, -1, pose, driven});
     };
     node("table", box_mesh({1, 1, 0.1f}, {0, 0, -0.05f}), Pose::Identity());
-    node("left", box_mesh({0.02f, 0.01f, 0.06f}, {0, 0.005f, 0}), Pose::Identity());
-    node("right", box_mesh({0.02f, 0.01f, 0.06f}, {0, -0.005f, 0}), Pose::Identity());
+    node("left", box_mesh({0.02f, 0.01f, 0.06f}, {0, 0.005f, 0}), Pose::Identity(), true);
+    node("right", box_mesh({0.02f, 0.01f, 0.06f}, {0, -0.005f, 0}), Pose::Identity(), true);
     node("block", box_mesh({kSide, kSide, kSide}), lifted(0, block_y, kSide / 2));
     node("other", box_mesh({kSide, kSide, kSide}), lifted(0.3, 0, kSide / 2));
     node("ball", ball_mesh(0.03f), lifted(-0.3, 0, 0.03));
@@ -29,8 +29,7 @@ class Bench {
     options.things = {{"block", 0.1, {.friction = 0.7}},
                       {"other", 0.1, {.friction = 0.7}},
                       {"ball", 0.05, {.friction = 0.7, .rolling = 2e-4}}};
-    future = std::make_unique<ThingFuture>(
-        SceneModel(nodes_), std::vector<bool>{false, true, true, false, false, false}, poses(), options, now, joints());
+    future = std::make_unique<ThingFuture>(SceneModel(nodes_), poses(), options, now, joints());
   }
 
   static PartPoses poses() {
@@ -452,17 +451,17 @@ TEST(ThingFuture, TakesScenesWithoutThingsAndRefusesThingsWithoutAScene) {
   const SceneModel model({{"table", box_mesh({1, 1, 0.1f}), -1, Pose::Identity()}});
   const PartPoses poses = [](const JointPositions&) { return std::vector<Pose>(1, Pose::Identity()); };
   const JointPositions none = [](std::string_view) { return std::nullopt; };
-  ThingFuture future(model, {false}, poses, {}, RobotTime{}, none);
+  ThingFuture future(model, poses, {}, RobotTime{}, none);
   future.advance(RobotTime{} + std::chrono::seconds(5), none);
   EXPECT_EQ(future.size(), 0u);
   EXPECT_EQ(future.poses().size(), 1u);
   ThingFutureOptions options;
   options.things = {{"unicorn", 1, {}}};
-  EXPECT_THROW(ThingFuture(model, {false}, poses, options, RobotTime{}, none), InputError);
+  EXPECT_THROW(ThingFuture(model, poses, options, RobotTime{}, none), InputError);
   options.things = {{"table", 1, {}}, {"table", 1, {}}};
-  EXPECT_THROW(ThingFuture(model, {false}, poses, options, RobotTime{}, none), InputError);
+  EXPECT_THROW(ThingFuture(model, poses, options, RobotTime{}, none), InputError);
   options.things = {{"table", std::nan(""), {}}};
-  EXPECT_THROW(ThingFuture(model, {false}, poses, options, RobotTime{}, none), InputError);
+  EXPECT_THROW(ThingFuture(model, poses, options, RobotTime{}, none), InputError);
 }
 
 TEST(ThingFuture, RepeatsBitForBit) {

@@ -33,7 +33,7 @@ class PlaceDoubt : public testing::Test {
   }
   std::size_t count_off(bool moving, const std::vector<double>& px) const {
     std::size_t out = 0;
-    for (std::size_t i = 0; i < px.size(); ++i) out += scene_->moves(i) == moving && px[i] > 0.1;
+    for (std::size_t i = 0; i < px.size(); ++i) out += scene_->model()->nodes()[i].may_move == moving && px[i] > 0.1;
     return out;
   }
 

@@ -49,7 +49,7 @@ TEST(LiveScene, TheMockLabsModelIsWhatSynthWrites) {
     EXPECT_TRUE(node.mesh.vertices == written.nodes()[at].mesh.vertices) << node.name;
     EXPECT_TRUE(node.mesh.triangles == written.nodes()[at].mesh.triangles) << node.name;
     EXPECT_TRUE(state.T_world_node[i].isApprox(rest_poses[at], 1e-9)) << node.name;
-    EXPECT_EQ(scene.moves(i), node.name.starts_with("arm_") || node.name.starts_with("finger_")) << node.name;
+    EXPECT_EQ(node.may_move, node.name.starts_with("arm_") || node.name.starts_with("finger_")) << node.name;
   }
 }
 
@@ -71,7 +71,7 @@ TEST(LiveScene, ARealRobotsLinksFollowItsJoints) {
     ASSERT_TRUE(node) << name;
     const auto at = static_cast<std::size_t>(*node);
     EXPECT_TRUE(state.T_world_node[at].isApprox(links[i], 1e-9)) << name;
-    EXPECT_EQ(scene.moves(at), i > 0) << name;
+    EXPECT_EQ(scene.model()->nodes()[at].may_move, i > 0) << name;
   }
 }
 
@@ -84,7 +84,7 @@ TEST(LiveScene, FindsTheRobotInTheSceneOrAddsIt) {
   write_model(folder.path(), SceneModel(std::vector<Node>{{"table", triangle}}));
   const LiveScene added(StereoConfig{}, &rig, folder / "scene.yaml");
   ASSERT_EQ(added.model()->nodes().size(), 1 + rig.robot->links.size());
-  EXPECT_FALSE(added.moves(0));
+  EXPECT_FALSE(added.model()->nodes()[0].may_move);
   const SceneState state = added.state_at({}, bent, StateStatus::exact);
 
   // A cup in the hand moves along.
@@ -100,7 +100,7 @@ TEST(LiveScene, FindsTheRobotInTheSceneOrAddsIt) {
   for (std::size_t i = 0; i < state.T_world_node.size(); ++i)
     EXPECT_TRUE(with_cup.T_world_node[i].isApprox(state.T_world_node[i], 1e-9));
   EXPECT_TRUE(with_cup.T_world_node.back().isApprox(state.T_world_node.back() * beside, 1e-9));
-  EXPECT_TRUE(found.moves(nodes.size() - 1));
+  EXPECT_TRUE(found.model()->nodes().back().may_move);
 
   write_model(folder.path(), SceneModel(std::vector<Node>{{hand, triangle}}));
   EXPECT_THAT(input_error([&] { LiveScene(StereoConfig{}, &rig, folder / "scene.yaml"); }),

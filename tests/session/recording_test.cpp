@@ -140,8 +140,7 @@ class Recording : public testing::Test {
     Pose above = Pose::Identity();
     above.translation().z() = 2;
     options_.scene = std::make_shared<const SceneModel>(
-        std::vector<Node>{{"o'table", triangle, -1, above}, {"ball", triangle, 0, above}}, 0.007);
-    options_.moves = {false, true};
+        std::vector<Node>{{"o'table", triangle, -1, above}, {"ball", triangle, 0, above, true}}, 0.007);
   }
 
   /// From cameras that fall silent after so many frames; `offset` of the right one's clock.

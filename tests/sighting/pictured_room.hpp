@@ -21,7 +21,7 @@ class PicturedRoom {
   explicit PicturedRoom(int width)
       : live_(shared_lab()),
         light_(shared_light()),
-        model_(std::make_shared<const SceneModel>(model_of(live_->lab(), live_->modelled_rest()))) {
+        model_(std::make_shared<const SceneModel>(live_->modelled_scene())) {
     SynthOptions options;
     options.width = width;
     options.height = width * 3 / 4;
