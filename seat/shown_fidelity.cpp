@@ -14,10 +14,12 @@ namespace {
 constexpr double kMemory = 0.97;  // weight of what was compared before against what is compared now
 constexpr double kAssumed =
     1.0 / 1024;  // of a picture's pixels: as many of each kind are taken to have been as assumed
-// How exactly images, lenses and model agree where nothing is predicted, px, by how it was when last compared.
-constexpr double kOwnPx[] = {0.7, 0.25, 0.35, 0.5, 0.7, 1.5, 1.0};
-constexpr double kReachOfSigma = 0.5;    // joints are off by less than they may be
-constexpr double kSuspectWrong = 0.1;    // at least, of what is suspect
+// Before a kind has been seen: by how many px half of its pixels are aside, where a surface is just where it is thought
+// to be, and the share that is wrong however flat; by how it was when last compared.
+constexpr struct {
+  double px, anyway;
+} kAssumedOf[] = {{0.05, 0}, {0, 0}, {0.005, 0}, {0.025, 0}, {0.05, 0.04}, {0.1, 0.04}, {0.1, 0.08}};
+constexpr double kOfReach = 0.03;        // of the px by which it may be elsewhere; half of the pixels are within
 constexpr double kPatch = 0.6;           // share of a neighbourhood that is wrong where more than an outline is
 constexpr int kPatchPx[] = {5, 11, 21};  // sides of neighbourhoods
 
@@ -48,13 +50,12 @@ double share_of(const cv::Mat& part, const cv::Mat& whole) {
   return cv::countNonZero(part & whole) / std::max(1.0, static_cast<double>(cv::countNonZero(whole)));
 }
 
-/// Before anything is known: a surface that is off by normally distributed pixels changes grey by so many times the
-/// contrast around.
+/// Before anything is known. Nearly all pixels are where they should be and a few far from there, as if they were
+/// aside by a Cauchy distribution; grey changes by that times the contrast around.
 double assumed_risk(const DoubtKind& kind, double wrong_levels) {
-  const double own = kOwnPx[static_cast<std::size_t>(kind.compared)];
-  const double sigma = kind.levels() * std::hypot(own, kReachOfSigma * kind.px());
-  const double out = std::erfc(wrong_levels / (std::numbers::sqrt2 * sigma));
-  return kind.compared == Compared::suspect ? std::max(out, kSuspectWrong) : out;
+  const auto& [px, anyway] = kAssumedOf[static_cast<std::size_t>(kind.compared)];
+  const double half = kind.levels() * (px + kOfReach * kind.px());
+  return anyway + (1 - anyway) * 2 / std::numbers::pi * std::atan(half / wrong_levels);
 }
 
 cv::Mat grey_of(const cv::Mat& picture) {

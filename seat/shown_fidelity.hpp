@@ -21,7 +21,7 @@ struct FidelityOptions {
   Duration same_instant = std::chrono::milliseconds(20);  ///< by which picture and image may be apart, > 0
   std::size_t kept = 48;                                  ///< pictures that wait for their image, > 0
   double wrong_levels = 10;                               ///< grey levels beyond which a pixel is wrong
-  double wrong_share = 0.0165;                            ///< of the pixels that count as exact, that may be wrong
+  double wrong_share = 0.016;                             ///< of the pixels that count as exact, that may be wrong
   double wrong_of_kind = 0.15;                            ///< of the pixels of each kind, likewise
 };
 

@@ -122,6 +122,18 @@ TEST(ShownFidelity, BeforeAnythingWasComparedLittleContrastIsExact) {
   }
 }
 
+TEST(ShownFidelity, AFewPixelsOfAKindThatWasNeverSeenAreNotHeldBack) {
+  ShownFidelity fidelity;
+  const DoubtKind sure{2, 0, Compared::same}, print{8, 0, Compared::never}, edge{15, 0, Compared::never};
+  RememberedView shown = view(100ms);
+  shown.doubt = doubt_of(sure);
+  shown.doubt.colRange(0, kWidth / 10) = doubt_of(print);
+  shown.doubt.colRange(kWidth / 10, kWidth / 8) = doubt_of(edge);
+  fidelity.shown(std::move(shown));
+  EXPECT_TRUE(fidelity.exact()[doubt_of(print)]) << "few pixels lie far aside";
+  EXPECT_FALSE(fidelity.exact()[doubt_of(edge)]);
+}
+
 TEST(ShownFidelity, LearnsOfWhatKindPixelsAreRight) {
   LearntKinds learnt;
   for (int i = 0; i < 20; ++i) learnt.round(9, 3);
