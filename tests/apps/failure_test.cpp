@@ -2,6 +2,7 @@
 #include <sys/mount.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <random>
 #include <thread>
@@ -59,7 +60,8 @@ TEST_F(Failure, ACrashTellsWhereItWasAndStillIsOne) {
     Program program({"robot", (source_folder() / "configs/minerva.yaml").string(), "--mock", "--no-cameras"},
                     {.shell = "ulimit -c 0"});
     while (program.running() && program.said().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    program.interrupt(signal);
+    // To the main thread: one that just starts has nothing of the program on its stack.
+    ASSERT_EQ(::tgkill(program.pid(), program.pid(), signal), 0);
     const Outcome outcome = program.wait();
     EXPECT_EQ(outcome.exit_code, 128 + signal);
     EXPECT_THAT(outcome.last_line(),
