@@ -3,7 +3,7 @@ const uint kNoSlot = 0xffffffffu;
 
 // First texel of a slot at a pyramid level (level 0: 16 texels a side).
 ivec3 slot_origin(uint slot, int level) {
-  return ivec3(int(slot & 7u) << (4 - level), int((slot >> 3) & 511u) << (4 - level), int(slot >> 12));
+  return ivec3(int(slot & 7u) << (4 - level), int((slot >> 3) & 255u) << (4 - level), int(slot >> 11));
 }
 
 // A texel is 32 bits (texel.hpp): three mantissas of 8 bits with one power of two, up to kBrightest, and a code of 5 bits. Unpacked,

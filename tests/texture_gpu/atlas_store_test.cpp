@@ -3,6 +3,7 @@
 
 #include "scene/primitives.hpp"
 #include "tests/support/headless_test.hpp"
+#include "texture_gpu/shaders.hpp"
 #include "texture_gpu/surface_patches.hpp"
 
 namespace foresight::atlas_store_test {
@@ -74,6 +75,37 @@ TEST_F(AtlasStoreTest, GrowsByHalfAtLeastAndKeepsWhatItHeld) {
   }
   const Texels now = read(store.heights, 0, kHeights);
   EXPECT_TRUE(std::equal(heights.begin(), heights.end(), now.begin()));
+}
+
+TEST_F(AtlasStoreTest, ShadersFindSlotsWhereTheLayoutHasThem) {
+  gl::ShaderSources sources = gl::texture_gpu_shaders();
+  sources["probe.comp"] = R"(
+#include "atlas.glsl"
+layout(local_size_x = 64) in;
+layout(binding = 0, std430) buffer Places { ivec4 places[]; };
+uniform int level;
+void main() {
+  uint slot = gl_GlobalInvocationID.x;
+  if (slot < uint(places.length())) places[slot] = ivec4(slot_origin(slot, level), 0);
+}
+)";
+  const gl::Program program = gl::Program::compute(sources, "probe.comp");
+  std::vector<Eigen::Vector4i> places(3 * atlas::kSlotsPerLayer);
+  const gl::Buffer out(sizeof(places[0]) * places.size(), "places");
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.name());
+  for (int level = 0; level < atlas::kLevels; ++level) {
+    program.use();
+    program.set("level", level);
+    glDispatchCompute(gl::groups(static_cast<int>(places.size()), 64), 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    out.read(std::span(places));
+    const int side = atlas::kPage >> level;
+    for (int slot = 0; slot < 3 * atlas::kSlotsPerLayer; ++slot) {
+      const int row = slot / atlas::kSlotsPerRow % atlas::kRowsPerLayer;
+      const Eigen::Vector4i want(slot % atlas::kSlotsPerRow * side, row * side, slot / atlas::kSlotsPerLayer, 0);
+      ASSERT_EQ(places[static_cast<std::size_t>(slot)], want) << "slot " << slot << ", level " << level;
+    }
+  }
 }
 
 TEST_F(AtlasStoreTest, NeverHoldsMoreThanTheBudget) {
