@@ -49,7 +49,7 @@ void EdgePass::operator()(const CameraInput& camera, double margin_px, double de
   uncertain_.set("face_size", size);
   uncertain_.set("margin", static_cast<float>(margin_px));
   uncertain_.set("depth_tolerance", tolerance);
-  glBindImageTexture(0, camera.marked_depth().name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R32F);
+  glBindImageTexture(0, camera.marked_depth().name(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32UI);
   pixels_.dispatch();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }

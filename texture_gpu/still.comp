@@ -34,7 +34,7 @@ float near_over_z_at(vec3 place) {
   vec2 f = place.xy - vec2(base);
   vec4 near = vec4(0.0);
   for (int i = 0; i < 4; ++i)
-    near[i] = abs(texelFetch(depth0, ivec3(clamp(base + ivec2(i & 1, i >> 1), ivec2(0), last), int(place.z)), 0).r);
+    near[i] = unmarked(texelFetch(depth0, ivec3(clamp(base + ivec2(i & 1, i >> 1), ivec2(0), last), int(place.z)), 0).r);
   float between = mix(mix(near.x, near.y, f.x), mix(near.z, near.w, f.x), f.y);
   return all(greaterThan(near, vec4(0.0))) ? between : 0.0;
 }

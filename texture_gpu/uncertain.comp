@@ -1,6 +1,6 @@
 // Marks the pixels beside a depth discontinuity that a small registration error would paint with the
 // other surface: of the far one those within the margin (thesis, case 3 in section 5.1.1), of the near
-// one the outermost, unless it is thin.
+// one the outermost, unless it is thin. Marks differ: most of what an outermost pixel shows is its own surface.
 //
 //   near surface __p       p = q: of near_edges.comp; its surface is thought to go on
 //                    |margin|
@@ -12,7 +12,8 @@
 #include "depth_slope.glsl"
 #include "work_item.glsl"
 layout(local_size_x = 64) in;
-layout(binding = 0, r32f) uniform writeonly image2DArray marked_depth;  // what is marked becomes negative
+layout(binding = 0, r32ui) uniform uimage2DArray marked_depth;  // bits of near / z, the two highest of which are free
+const uint kUncertain = 1u << 31, kFarSide = 1u << 30;  // seen.glsl; a pixel may get both, by several invocations
 uniform float margin;  // px
 
 // 1/z along a line through q, which is in its middle: all that is asked of it.
@@ -71,11 +72,11 @@ void main() {
       // Never closer than at its edge: what comes closer beyond it is not seen there.
       float near = min(center, center + dot(ahead, max(offset, 0.0)) + dot(back, max(-offset, 0.0)));
       if (far <= 0.0 || !steps_back(near, far)) continue;
-      imageStore(marked_depth, ivec3(q + ivec2(x, y), layer), vec4(-kNear * far));
+      imageAtomicOr(marked_depth, ivec3(q + ivec2(x, y), layer), kUncertain | kFarSide);
       hides = true;
     }
   }
   bool thin = (ended.x && is_thin(across, 1)) || (ended.y && is_thin(down, 1)) || (ended.z && is_thin(across, -1)) ||
               (ended.w && is_thin(down, -1));
-  if (hides && !thin) imageStore(marked_depth, ivec3(q, layer), vec4(-kNear * center));
+  if (hides && !thin) imageAtomicOr(marked_depth, ivec3(q, layer), kUncertain);
 }

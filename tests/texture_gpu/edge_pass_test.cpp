@@ -135,7 +135,8 @@ TEST_F(EdgePassTest, OfTheNearSideOfAnEdgeOnlyTheOutermostPixelsAreUncertain) {
   const auto on_box = [&](std::size_t i) {
     return picture.surface[i] >= 3 && picture.surface[i] < 15;
   };  // after the table's two triangles
-  int near_side = 0, far_side = 0, marked = 0, outermost = 0, marked_outermost = 0;
+  int near_side = 0, far_side = 0, marked = 0, outermost = 0, marked_outermost = 0, said_to_be_far = 0,
+      said_to_be_near = 0;
   for (int y = 5; y < picture.height - 5; ++y)
     for (int x = 5; x < picture.width - 5; ++x) {
       const auto i = static_cast<std::size_t>(y * picture.width + x);
@@ -151,14 +152,18 @@ TEST_F(EdgePassTest, OfTheNearSideOfAnEdgeOnlyTheOutermostPixelsAreUncertain) {
       if (on_box(i) && all_behind) {
         ++(is_outermost ? outermost : near_side);
         (is_outermost ? marked_outermost : marked) += camera.uncertain[0][i] != 0;
+        said_to_be_far += camera.uncertain[0][i] == 2;
       }
-      far_side += !on_box(i) && camera.uncertain[0][i];
+      far_side += !on_box(i) && camera.uncertain[0][i] == 2;
+      said_to_be_near += !on_box(i) && camera.uncertain[0][i] == 1;
     }
   EXPECT_GT(near_side, 100);
   EXPECT_GT(outermost, 40);
   EXPECT_GT(marked_outermost, 0.8 * outermost);
   EXPECT_LE(marked, 4) << "where its top folds away behind a step of its slanted outline";
   EXPECT_GT(far_side, 100);
+  EXPECT_LE(said_to_be_far, 4) << "the same";
+  EXPECT_LE(said_to_be_near, 4) << "of the board behind it";
 }
 
 /// A solid, its centre `height` above a table of 2 m.

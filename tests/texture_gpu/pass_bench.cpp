@@ -126,7 +126,7 @@ reference::Camera PassBench::camera(std::size_t i) const {
   glGetTextureImage(input.marked_depth().name(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(marked.size() * 4),
                     marked.data());
   std::vector<std::uint8_t> uncertain;
-  for (const float near_over_z : marked) uncertain.push_back(near_over_z < 0);
+  for (const float near_over_z : marked) uncertain.push_back(near_over_z < -1 ? 2 : near_over_z < 0);
   reference::Camera out{input.lens(), faces, views[i].T_camera_node, {}, {}, images[i].pixels};
   for (std::size_t face = 0; face < static_cast<std::size_t>(faces.count); ++face) {
     const std::size_t from = face * face_pixels;

@@ -15,9 +15,10 @@ struct Camera {
   Lens lens;
   gl::Faces faces;
   std::vector<Pose> T_camera_node;
-  std::vector<FacePicture> depth;                    ///< of each face
-  std::vector<std::vector<std::uint8_t>> uncertain;  ///< of each face: not 0 on the far side of an edge
-  cv::Mat image;                                     ///< CV_8UC3, BGR
+  std::vector<FacePicture> depth;  ///< of each face
+  std::vector<std::vector<std::uint8_t>>
+      uncertain;  ///< of each face: 0 no, 1 an outermost pixel of a near side, 2 the far side
+  cv::Mat image;  ///< CV_8UC3, BGR
 };
 
 /// Those of the four depths around the point's place on its face that show model bracket it within
