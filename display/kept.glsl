@@ -33,9 +33,9 @@ vec4 kept_colour(Point point) {
   bool is_known = cameras[0].tone.x > kLonger || max(scaled.r, max(scaled.g, scaled.b)) < kWhite;
   float better = angle_to_eye(1, point) - angle_to_eye(0, point) - kPerSecond * age;
   float sharpness = older.finer / newest.finer;
-  float weight = claim * older.weight * step(0.5 / 255.0, newest.weight) * clamp(better / kBetter, 0.0, 1.0) *
+  float weight = claim * older.weight * clamp(better / kBetter, 0.0, 1.0) *
                  clamp((sharpness - kBlurred) / (kAsSharp - kBlurred), 0.0, 1.0);
-  if (!is_known || !is_still(newest.pixel)) weight = 0.0;
+  if (!is_certain(older) || !is_certain(newest) || !is_known || !is_still(newest.pixel)) weight = 0.0;
   vec3 colour = unscaled(scaled) * without_vignetting(cameras[0].tone, older.pixel, size);
   return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), weight);
 }

@@ -46,7 +46,7 @@ void main() {
   }
   if (surface == 0u) return;
   SurfaceAt at = surface_at(ray, place, surface);
-  bool from_image = shown.a > 0.99;
+  bool from_image = shown.a > 254.5 / 255.0;
   int level = at.chart.density.x <= 0.0 ? 3 : paint == 2 ? age_class(at, from_image) : confidence_class(at, from_image);
   imageStore(picture, pixel, vec4(class_colour(pixel, level, grey), shown.a));
 }

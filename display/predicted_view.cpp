@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -408,6 +409,8 @@ cv::Mat PredictedView::read() const {
   cv::Mat picture(lens_.height(), lens_.width(), CV_8UC4);
   glGetTextureImage(picture_.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(picture.total() * 4),
                     picture.data);
+  for (cv::Vec4b& pixel : std::span(picture.ptr<cv::Vec4b>(), picture.total()))
+    if (pixel[3] == kUncertain) pixel[3] = 255;
   return picture;
 }
 

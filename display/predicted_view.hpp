@@ -80,11 +80,13 @@ class PredictedView {
       draw(T_world_camera, state, *textures);
   }
 
-  /// RGBA8, straight alpha, row 0 at the top: 255 colour from a camera image, 128 filled hole,
-  /// 64 model without any colour, 0 no model.
+  /// RGBA8, straight alpha, row 0 at the top: 255 colour from a camera image, kUncertain the same, but it may be that
+  /// of another surface, 128 filled hole, 64 model without any colour, 0 no model.
   const gl::Texture& picture() const { return picture_; }
 
-  /// Waits for the GPU; CV_8UC4 in BGRA order.
+  static constexpr std::uint8_t kUncertain = 254;  ///< kFromEdge of view.glsl
+
+  /// Waits for the GPU; CV_8UC4 in BGRA order, 255 in place of kUncertain.
   cv::Mat read() const;
 
   /// The triangle seen at each pixel of the last draw()'s faces (gl::FaceImages::surface).

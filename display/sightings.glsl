@@ -1,5 +1,5 @@
-// How an image shows what a pixel of a view shows. Needs camera.glsl, seen.glsl, `sharp`, and view.glsl's Point and Surface. Defines:
-// HOMOGRAPHIES, as there.
+// How an image shows what a pixel of a view shows. Needs camera.glsl, seen.glsl, `sharp`, and view.glsl's Point, Surface and
+// kUncertain. Defines: HOMOGRAPHIES, as there.
 
 // Less than this share of the view's resolution is clearly worse than what older images may have seen. Where even the
 // less crowded axis has more pixels than that for one of the view, they would flicker: coarser levels of the textures
@@ -18,23 +18,28 @@ float sharp_for(float finer) {
 
 // How an image shows a point.
 struct Sighting {
-  float weight;  // beside what older images saw; 0: not at all
+  float weight;  // beside what older images saw; 0: not at all; kUncertain: only where these saw nothing
   vec2 pixel;    // of the image
   float finer;   // pixels of the image for one of the view, on the less crowded axis
 };
+
+bool is_certain(Sighting seen) {
+  return seen.weight > kUncertain;
+}
 
 // Of a point at `q` of camera `c`, the image's. `distance2`: square of its distance from the view's camera. `areas`: distance of its
 // surface's plane from the image's camera, of that from the view's. Few divisions and roots: they are what costs here.
 Sighting sighting_at(int c, vec3 q, float distance2, float areas) {
   const Sighting none = Sighting(0.0, vec2(0.0), 1.0);
   vec2 pixel;
-  if (!is_seen(c, q, pixel)) return none;
+  bool certain;
+  if (!is_seen(c, q, pixel, certain)) return none;
   float nearer2 = distance2 / dot(q, q), nearer = sqrt(nearer2);
   vec2 finer = nearer * cameras[c].focal.xy / camera.focal.xy;
   float share2 = finer.x * finer.y * nearer * areas;  // pixels of the image for one of the view, by area
   if (share2 < kCoarsest * kCoarsest || finer.x > kFinest) return none;
   vec2 inside = min(pixel, cameras[c].size.xy - 1.0 - pixel);
-  return Sighting(clamp(min(inside.x, inside.y) / kRim, 1.0 / 255.0, 1.0), pixel, finer.x);
+  return Sighting(certain ? clamp(min(inside.x, inside.y) / kRim, 2.0 * kUncertain, 1.0) : kUncertain, pixel, finer.x);
 }
 
 Sighting sighting_of(int c, Point point) {

@@ -164,8 +164,8 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(view.size.xy)))) return;
   vec4 colour = texelFetch(shown, pixel, 0);
-  bool seen = colour.a > 0.99;
-  float value = seen ? kind_at(pixel, colour.rgb) : kUnconfirmed;
+  bool certain = colour.a > 254.5 / 255.0;
+  float value = certain ? kind_at(pixel, colour.rgb) : kUnconfirmed;
   imageStore(doubt, pixel, vec4(value));
   uint kind = uint(round(255.0 * value));
   bool hatch = (exact[kind >> 5] >> (kind & 31u) & 1u) == 0u && colour.a > 0.4;

@@ -55,6 +55,9 @@ layout(binding = 0, rgba8) uniform image2D picture;
 layout(binding = 0, rgba8) uniform writeonly image2D picture;
 #endif
 
+// Weight of an image that may show another surface: it counts only where nothing else shows the point.
+const float kUncertain = 1.0 / 255.0;
+
 // A pixel counts as seen when at least this share of its filter weight lies on seen texels.
 const float kSeenShare = 0.25;
 
@@ -173,7 +176,14 @@ void choose_light(Place place) {
   if (age > light_age) pixel_light = vec3(1.0);
 }
 
-const float kFromImage = 1.0, kFromFill = 128.0 / 255.0, kBare = 64.0 / 255.0;
+const float kFromImage = 1.0, kFromEdge = 254.0 / 255.0, kFromFill = 128.0 / 255.0, kBare = 64.0 / 255.0;
+
+// What textures show of a pixel, beside what images do with a weight.
+vec4 beside(vec4 image, vec4 textures) {
+  bool certain = image.a > 1.5 * kUncertain;
+  float share = textures.a < kFromImage ? 1.0 : certain ? image.a : 0.0;
+  return vec4(mix(textures.rgb, image.rgb, share), max(textures.a, certain ? kFromImage : kFromEdge));
+}
 
 vec4 shown(vec4 sum, float alpha) {
   return vec4(min(sum.rgb / sum.a * gain * pixel_light, vec3(1.0)), alpha);
@@ -225,7 +235,7 @@ void draw(ivec2 pixel, vec4 colour) {
 #else
 #if BLENDED && CASES != IMAGE
   vec4 newest = imageLoad(picture, pixel);  // its weight in alpha
-  if (newest.a > 0.0) colour = vec4(mix(newest.rgb, colour.rgb, colour.a == kFromImage ? 1.0 - newest.a : 0.0), 1.0);
+  if (newest.a > 0.0) colour = beside(newest, colour);
 #endif
   imageStore(picture, pixel, colour);
 #endif
@@ -269,7 +279,7 @@ void draw_pixel(ivec2 pixel) {
     return;
   }
 #if BEFORE
-  if (sighting_of(point).weight > 0.0) {
+  if (is_certain(sighting_of(point))) {
     leave_to_before(pixel);
     return;
   }

@@ -237,6 +237,89 @@ TEST_P(NewestImage, WhatItDoesNotSeeTheImageBeforeShows) {
   expect_image_before("with its textures");
 }
 
+/// Least and largest value of each colour in the 4x4 pixels around a place.
+std::array<cv::Vec3b, 2> range_around(const cv::Mat& image, const Eigen::Vector2d& pixel) {
+  std::array<cv::Vec3b, 2> out{cv::Vec3b::all(255), cv::Vec3b::all(0)};
+  for (int i = 0; i < 16; ++i) {
+    const int x = static_cast<int>(std::floor(pixel.x())) + i % 4 - 1,
+              y = static_cast<int>(std::floor(pixel.y())) + i / 4 - 1;
+    const auto& value = image.at<cv::Vec3b>(std::clamp(y, 0, image.rows - 1), std::clamp(x, 0, image.cols - 1));
+    for (int c = 0; c < 3; ++c) {
+      out[0][c] = std::min(out[0][c], value[c]);
+      out[1][c] = std::max(out[1][c], value[c]);
+    }
+  }
+  return out;
+}
+
+// Outermost pixels of what stands in front may show what is behind it: rather than fills, but not rather than what
+// another image has seen well.
+TEST_P(NewestImage, UncertainPixelsAreShownWhereNothingElseSawThePoint) {
+  const SceneState state = state_of(*scene_);
+  const Lens image_lens = small_lens(GetParam().image), view_lens = small_lens(GetParam().view);
+  core_->process(seen_from(usual_view(), state), textures_);
+  PosedFrame newest = seen_from(usual_view(), state);
+  cv::cvtColor(newest.left.pixels, newest.left.pixels, cv::COLOR_BGR2RGB);
+  ASSERT_TRUE(core_->look(newest, images_));
+  PredictedView drawn = view();
+  drawn.mix_silhouettes(false);
+  const auto textures_alone = [&] {
+    drawn.draw(usual_view(), state, *textures_.acquire());
+    return drawn.read();
+  };
+  const auto with_image = [&] {
+    drawn.draw(usual_view(), state, *textures_.acquire(), *images_.acquire());
+    return drawn.read();
+  };
+  const cv::Mat old = textures_alone(), picture = with_image();
+  cv::Mat stored = picture.clone();
+  glGetTextureImage(drawn.picture().name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(stored.total() * 4),
+                    stored.data);
+
+  core_->process(seen_from(look_at({-0.5, -1.1, 0.9}, {0.1, 0, 0.1}), state), textures_);
+  core_->process(seen_from(look_at({-0.9, -0.4, 0.9}, {0.1, 0, 0.1}), state), textures_);
+  ASSERT_TRUE(core_->look(newest, images_));
+  const cv::Mat later_old = textures_alone(), later_picture = with_image();
+
+  const reference::RayCaster caster(*scene_, state);
+  const auto distance = [&](double x, double y) {
+    const auto ray = view_lens.unproject({x, y});
+    const auto hit = caster.cast(usual_view().translation(), usual_view().linear() * *ray, gl::kNearPlane);
+    return hit ? (hit->p_world - usual_view().translation()).norm() : 1e3;
+  };
+  int uncertain = 0, behind = 0, of_the_image = 0, seen_later = 0, changed = 0;
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) {
+      if (stored.at<cv::Vec4b>(y, x)[3] != PredictedView::kUncertain) continue;
+      ++uncertain;
+      EXPECT_EQ(picture.at<cv::Vec4b>(y, x)[3], 255) << "a colour from a camera image";
+      EXPECT_LT(old.at<cv::Vec4b>(y, x)[3], 255) << x << ' ' << y;
+      bool hidden_beside = false;
+      for (int i = 0; i < 9; ++i)
+        hidden_beside = hidden_beside || distance(x + i % 3 - 1, y + i / 3 - 1) < distance(x, y) - 0.05;
+      behind += hidden_beside;
+      const auto pixel = image_lens.project(*view_lens.unproject({x, y}));
+      ASSERT_TRUE(pixel);
+      const auto range = range_around(newest.left.pixels, *pixel);
+      bool within = true;
+      for (int c = 0; c < 3; ++c) {
+        const int value = picture.at<cv::Vec4b>(y, x)[c];
+        within = within && value >= range[0][c] - 12 && value <= range[1][c] + 12;
+      }
+      of_the_image += within;
+      if (later_old.at<cv::Vec4b>(y, x)[3] != 255) continue;
+      ++seen_later;
+      changed += cv::norm(later_picture.at<cv::Vec4b>(y, x), later_old.at<cv::Vec4b>(y, x), cv::NORM_INF) > 1;
+    }
+  RecordProperty("uncertain", uncertain);
+  RecordProperty("seen later", seen_later);
+  EXPECT_GT(uncertain, 80);
+  EXPECT_LE(behind, uncertain / 8) << "of a far side the image may show what stands before it";
+  EXPECT_GT(of_the_image, 0.95 * uncertain);
+  EXPECT_GT(seen_later, 20);
+  EXPECT_LE(changed, seen_later / 20);
+}
+
 INSTANTIATE_TEST_SUITE_P(Lenses, NewestImage,
                          testing::Values(Kinds{"pinhole", "pinhole"}, Kinds{"plumb_bob", "plumb_bob"},
                                          Kinds{"fisheye", "pinhole"}),

@@ -42,10 +42,14 @@ class TrustPassTest : public HeadlessTest, public testing::WithParamInterface<co
     trust_->saw(seen);
   }
   /// The view with the block there, and its doubt.
-  RememberedView draw(double block_x, std::vector<double> px = {}, const ExactKinds& exact = {}) {
+  RememberedView draw(double block_x, const std::vector<double>& px = {}, const ExactKinds& exact = {}) {
     const TextureLease lease = latest_.acquire();
     const SceneState state = state_of(*scene_, block_x);
     view_->draw(usual_view(), state, *lease);
+    return judge(state, px, exact);
+  }
+  /// The view that was drawn last, and its doubt.
+  RememberedView judge(const SceneState& state, const std::vector<double>& px, const ExactKinds& exact) {
     (*trust_)(*view_, usual_view(), state, px, exact);
     PictureReadback readback;
     EXPECT_TRUE(readback.start(view_->picture(), trust_->doubt(), RobotTime{1}));
@@ -92,6 +96,31 @@ TEST_P(TrustPassTest, OnlyWhatWasSeenIsConfirmed) {
   EXPECT_GT(cv::countNonZero(seen), 1500);
   EXPECT_GT(cv::countNonZero((after.doubt < kUnconfirmed) & seen), 0.95 * cv::countNonZero(seen));
   EXPECT_EQ(cv::countNonZero((after.doubt < kUnconfirmed) & ~seen), 0) << "what is filled is not exact";
+}
+
+// What lies beside an edge of the newest image, and nothing else has seen.
+TEST_P(TrustPassTest, WhatMayShowAnotherSurfaceIsNotConfirmed) {
+  const PosedImage seen = image(0, 100ms);
+  LatestImages images;
+  core_->process({seen, std::nullopt}, latest_);
+  ASSERT_TRUE(core_->look({seen, std::nullopt}, images));
+  trust_->saw(seen);
+  ExactKinds all;
+  all.set().reset(kUnconfirmed);
+  view_->draw(usual_view(), state_of(*scene_), latest_.acquire(), images.acquire());
+  const RememberedView view = judge(state_of(*scene_), {}, all);
+  const cv::Mat hatched = marked();
+  int uncertain = 0, striped = 0;
+  for (int y = 0; y < hatched.rows; ++y)
+    for (int x = 0; x < hatched.cols; ++x) {
+      const auto shown = view.picture.at<cv::Vec4b>(y, x);
+      if (shown[3] != PredictedView::kUncertain) continue;
+      ++uncertain;
+      EXPECT_EQ(view.doubt.at<uchar>(y, x), kUnconfirmed) << x << ' ' << y;
+      striped += shown != hatched.at<cv::Vec4b>(y, x);
+    }
+  EXPECT_GT(uncertain, 30);
+  EXPECT_NEAR(striped / static_cast<double>(uncertain), 1.0 / 3, 0.15);
 }
 
 // A view with fewer pixels than the images says of each place what the large one says.

@@ -74,7 +74,8 @@ class UnusualImages : public HeadlessTest {
     for (const int images : {1, 6}) {
       SCOPED_TRACE(std::to_string(images) + " images looked up");
       const Outcome with = view_of(truth, frames, images, true);
-      EXPECT_LE(with.error, 1.02 * without.error + 0.2);
+      // Outermost pixels of what stands in front count as seen, which textures alone fill.
+      EXPECT_LE(with.error, 1.03 * without.error + 0.2);
       EXPECT_GE(with.seen, without.seen - 0.01);
     }
   }
