@@ -16,6 +16,8 @@ struct PosedImage {
   SceneState scene;  ///< at `time`
   /// TextureOptions::margin_px for this image, where its registration knows better. Range 0 .. 32.
   std::optional<double> margin_px = std::nullopt;
+  /// What coding took away from it (coding_loss.hpp); empty where nothing is known to be lost.
+  cv::Mat lost = {};
 };
 
 /// The images of one stereo head, taken together. The right one may be missing.

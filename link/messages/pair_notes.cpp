@@ -6,8 +6,8 @@
 
 namespace foresight::link {
 
-Bytes to_notes(const StereoFrame& frame) {
-  const Bytes cdr = to_cdr(frame);
+Bytes to_notes(const PairNotes& notes) {
+  const Bytes cdr = to_cdr(notes);
   uLongf size = compressBound(cdr.size());
   Bytes out(size);
   if (cdr.size() > kMostNotesInflated || compress2(out.data(), &size, cdr.data(), cdr.size(), Z_BEST_SPEED) != Z_OK)
@@ -16,11 +16,14 @@ Bytes to_notes(const StereoFrame& frame) {
   return out;
 }
 
-std::optional<StereoFrame> from_notes(std::span<const std::uint8_t> notes) {
+std::optional<PairNotes> from_notes(std::span<const std::uint8_t> notes) {
   Bytes cdr(kMostNotesInflated);
   uLongf size = cdr.size();
   if (uncompress(cdr.data(), &size, notes.data(), notes.size()) != Z_OK) return std::nullopt;
-  return from_cdr<StereoFrame>(std::span(cdr).first(size));
+  const auto whole = std::span<const std::uint8_t>(cdr).first(size);
+  if (auto out = from_cdr<PairNotes>(whole)) return out;
+  auto frame = from_cdr<StereoFrame>(whole);
+  return frame ? std::optional(PairNotes{std::move(*frame), {}}) : std::nullopt;
 }
 
 }  // namespace foresight::link

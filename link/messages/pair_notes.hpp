@@ -1,5 +1,5 @@
-// What travels with the pictures of a coded pair: its StereoFrame without the images' bytes, deflated (RFC 1950), as on
-// a thin line a pair of pictures has no more than a few kilobytes itself.
+// What travels with the pictures of a coded pair: its StereoFrame without the images' bytes, and what coding took away
+// from them, deflated (RFC 1950), as on a thin line a pair of pictures has no more than a few kilobytes itself.
 #pragma once
 
 #include "link/messages/cdr.hpp"
@@ -8,10 +8,19 @@ namespace foresight::link {
 
 inline constexpr std::size_t kMostNotesInflated = 65'536;  ///< bytes
 
-/// `frame`: without data. Throws RuntimeFailure where there is more to say than fits.
-Bytes to_notes(const StereoFrame& frame);
+struct PairNotes {
+  StereoFrame frame;                    ///< without data
+  std::vector<std::uint8_t> left_lost;  ///< steps of coding_loss() of the left image, row by row; empty: not known
+  template <typename Self, typename V>
+  static void visit(Self& m, V&& v) {
+    v("frame", m.frame)("left_lost", m.left_lost);
+  }
+};
+
+/// Throws RuntimeFailure where there is more to say than fits.
+Bytes to_notes(const PairNotes& notes);
 /// Nothing where the bytes, which may be anything, are no such notes. What they say is still to be checked
-/// (checks.hpp).
-std::optional<StereoFrame> from_notes(std::span<const std::uint8_t> notes);
+/// (checks.hpp). Recordings may be older than `left_lost`, and have none.
+std::optional<PairNotes> from_notes(std::span<const std::uint8_t> notes);
 
 }  // namespace foresight::link

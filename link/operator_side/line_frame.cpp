@@ -69,6 +69,7 @@ std::optional<PosedFrame> posed_frame(const LineFrame& frame,
                                       double margin_px) {
   const auto posed = [&](const LineImage& image) {
     PosedImage out{image.bgr, image.captured, *image.T_world_camera, scene_at(image.captured, frame.joints)};
+    out.lost = image.lost;
     if (frame.predicted_px) out.margin_px = margin_for(margin_px, *frame.predicted_px);
     return out;
   };

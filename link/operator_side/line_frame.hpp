@@ -20,6 +20,7 @@ struct LineImage {
   RobotTime captured;                  ///< middle of the exposure of the centre row, on the robot's clock
   Duration uncertainty{0};             ///< of it, half width
   std::optional<Pose> T_world_camera;  ///< at `captured`; nothing where the robot side does not know it
+  cv::Mat lost = {};                   ///< what coding took away from it (scene/coding_loss.hpp); empty: not known
 };
 
 /// Where the joints were when the left image was taken.

@@ -2,6 +2,7 @@
 
 #include "link/coding/jpeg_coder.hpp"
 #include "link/messages/pair_notes.hpp"
+#include "scene/coding_loss.hpp"
 
 namespace foresight::link {
 namespace {
@@ -52,11 +53,12 @@ LineFramePtr PairIntake::refuse(std::string why) {
   return nullptr;
 }
 
-LineFramePtr PairIntake::hand_out(const StereoFrame& message, StereoPicture picture, std::size_t bytes,
-                                  OperatorTime arrived, const RobotClockTracker& robot) {
+LineFramePtr PairIntake::hand_out(const StereoFrame& message, StereoPicture picture, cv::Mat left_lost,
+                                  std::size_t bytes, OperatorTime arrived, const RobotClockTracker& robot) {
   auto out = std::make_shared<LineFrame>(line_frame(message, robot, arrived, now()));
   out->image[0].bgr = std::move(picture.left);
   out->image[1].bgr = std::move(picture.right);
+  out->image[0].lost = std::move(left_lost);
   out->bytes = bytes;
   newest_ = message.number;
   ++counts_.pairs;
@@ -77,7 +79,7 @@ LineFramePtr PairIntake::take(const StereoFrame& message, std::size_t bytes, con
   const auto right = decode_jpeg(message.right.data, size_of(message.right), true);
   if (!left || !right)
     return refuse(std::string(left ? "right" : "left") + ".data is no JPEG in colour of the image's size");
-  return hand_out(message, {*left, *right, RobotTime{message.left.capture_ns}}, bytes, arrived, robot);
+  return hand_out(message, {*left, *right, RobotTime{message.left.capture_ns}}, {}, bytes, arrived, robot);
 }
 
 void PairIntake::count_packet(std::span<const std::uint8_t> packet) {
@@ -94,8 +96,9 @@ void PairIntake::count_packet(std::span<const std::uint8_t> packet) {
 
 LineFramePtr PairIntake::frame_of(const foresight::ReceivedPair& pair, OperatorTime arrived,
                                   const RobotClockTracker& robot) {
-  const auto message = from_notes(pair.notes);
-  if (!message) return refuse("a coded pair has no notes");
+  const auto notes = from_notes(pair.notes);
+  if (!notes) return refuse("a coded pair has no notes");
+  const StereoFrame* const message = &notes->frame;
   if (message->coding != kH264Coding) return refuse("coding is not h264 in a coded pair");
   if (std::string wrong = wrong_with(*message, robot); !wrong.empty()) return refuse(std::move(wrong));
   const StereoPicture& picture = pair.picture;
@@ -108,7 +111,9 @@ LineFramePtr PairIntake::frame_of(const foresight::ReceivedPair& pair, OperatorT
     ++counts_.late;
     return nullptr;
   }
-  return hand_out(*message, picture, pair.bytes, arrived, robot);
+  auto lost = loss_of(notes->left_lost);
+  if (!lost) return refuse("what coding took away from a pair is not told in steps of its tiles");
+  return hand_out(*message, picture, std::move(*lost), pair.bytes, arrived, robot);
 }
 
 LineFramePtr PairIntake::take(const StereoPiece& piece, const RobotClockTracker& robot,

@@ -14,9 +14,9 @@ std::optional<RecordedStream::Pair> RecordedStream::take(const StereoPiece& piec
   std::optional<Pair> out;
   for (foresight::ReceivedPair& pair : receiver_->take(piece.data, now)) {
     if (!pair.newest) continue;
-    std::optional<StereoFrame> frame = from_notes(pair.notes);
-    if (!frame) continue;
-    out = Pair{std::move(*frame), std::move(pair.picture)};
+    std::optional<PairNotes> notes = from_notes(pair.notes);
+    if (!notes) continue;
+    out = Pair{std::move(notes->frame), std::move(pair.picture)};
   }
   return out;
 }

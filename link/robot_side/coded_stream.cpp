@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "link/messages/pair_notes.hpp"
+#include "scene/coding_loss.hpp"
 
 namespace foresight::link {
 
@@ -12,7 +13,7 @@ void CodedStream::Fates::tell(Fate fate) {
   // what was pending.
   constexpr std::size_t kMostKept = 1024;
   if (!busy)
-    fate.arrived ? encoder->arrived(fate.pair) : encoder->gone(fate.pair);
+    fate.arrived ? coder->encoder->arrived(fate.pair) : coder->encoder->gone(fate.pair);
   else if (!fate.arrived || kept.size() < kMostKept)
     kept.push_back(fate);
 }
@@ -25,12 +26,19 @@ void CodedStream::Fates::coder_is_done() {
 void PairToCode::code(const Clock& clock) {
   frame_.coding = kH264Coding;
   frame_.stamps.taken_ns = clock.now().ns;
-  // Notes are of the pair's share. When it was coded is not known yet: it takes the same number of bytes.
-  const std::size_t notes = to_notes(frame_).size();
-  wish_.bytes -= std::min(notes, wish_.bytes / 2);
-  CodedPair coded = encoder_->encode(picture_, wish_);
-  frame_.stamps.coded_ns = clock.now().ns;
-  coded.notes = to_notes(frame_);
+  // Notes are of the pair's share. When it was coded is not known yet: it takes the same number of bytes; and what is
+  // lost, about as many as of the last pair.
+  PairNotes notes{std::move(frame_), coder_->left_lost};
+  const std::size_t noted = to_notes(notes).size();
+  wish_.bytes -= std::min(noted, wish_.bytes / 2);
+  CodedPair coded = coder_->encoder->encode(picture_, wish_);
+  if (const auto come = coder_->decoder->decode(coded)) {
+    const cv::Mat lost = coding_loss(picture_.left, come->left);
+    notes.left_lost.assign(lost.begin<std::uint8_t>(), lost.end<std::uint8_t>());
+    coder_->left_lost = notes.left_lost;
+  }
+  notes.frame.stamps.coded_ns = clock.now().ns;
+  coded.notes = to_notes(notes);
   coded_ = std::move(coded);
 }
 
@@ -73,7 +81,7 @@ void CodedStream::watched_by(std::size_t readers) {
 
 void CodedStream::begin_anew_if_due(Stream& stream, RobotTime now) const {
   if (!stream.anew_due || now < *stream.anew_due) return;
-  stream.fates.encoder->begin_anew();
+  stream.fates.coder->encoder->begin_anew();
   stream.last_anew = now;
   stream.anew_due = now + (std::exchange(stream.again, false) ? kAgain : kAnewEvery);
 }
@@ -84,7 +92,7 @@ std::optional<PairToCode> CodedStream::begin() {
   begin_anew_if_due(*stream_, now);
   PairToCode out;
   out.stream_ = stream_->number;
-  out.encoder_ = stream_->fates.encoder;
+  out.coder_ = stream_->fates.coder;
   out.wish_ = stream_->sender.wish(now);
   out.frame_ = std::move(waiting_->frame);
   out.picture_ = std::move(waiting_->picture);

@@ -22,6 +22,13 @@
 
 namespace foresight::link {
 
+/// Codes a stream's pairs, and sees them as its reader will.
+struct StreamCoder {
+  std::unique_ptr<PairEncoder> encoder = make_pair_encoder(Coding::h264);
+  std::unique_ptr<PairDecoder> decoder = make_pair_decoder();
+  std::vector<std::uint8_t> left_lost{};  ///< of the last pair (PairNotes)
+};
+
 /// A pair on its way through the coder. The coder is the stream's: one pair at a time is there.
 class PairToCode {
  public:
@@ -31,7 +38,7 @@ class PairToCode {
  private:
   friend class CodedStream;
   std::uint32_t stream_ = 0;
-  std::shared_ptr<PairEncoder> encoder_;
+  std::shared_ptr<StreamCoder> coder_;
   PairWish wish_;
   StereoFrame frame_;
   StereoPicture picture_;
@@ -92,7 +99,7 @@ class CodedStream {
     void tell(Fate fate);
     void coder_is_done();
 
-    std::shared_ptr<PairEncoder> encoder = make_pair_encoder(Coding::h264);
+    std::shared_ptr<StreamCoder> coder = std::make_shared<StreamCoder>();
     bool busy = false;
     std::vector<Fate> kept{};
   };

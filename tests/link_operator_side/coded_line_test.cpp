@@ -9,6 +9,7 @@
 #include "link/operator_side/pair_intake.hpp"
 #include "link/robot_side/coded_stream.hpp"
 #include "link/send_control/line_trial.hpp"
+#include "scene/coding_loss.hpp"
 
 namespace foresight::link::coded_line_test {
 namespace {
@@ -143,6 +144,24 @@ TEST_F(CodedLine, EveryPairKnowsItsInstantItsPosesAndItsJoints) {
   expect_true(28);
   for (const LineFramePtr& frame : came_)
     EXPECT_LT(frame->arrived.ns - frame->image[0].captured.ns, Duration(300ms).count());
+}
+
+// Only the robot's side has the images themselves.
+TEST_F(CodedLine, EveryPairTellsWhatCodingTookAway) {
+  DirectionSpec thin = good_line().up;
+  thin.bytes_per_s = 6'000;
+  up_ = PacketLine(thin, RobotTime{}, 3);
+  run(4s);
+  ASSERT_GT(came_.size(), 10u);
+  int lossy = 0;
+  for (const LineFramePtr& frame : came_) {
+    const LineImage& left = frame->image[0];
+    const cv::Mat lost = coding_loss(sent_.at(frame->number).left, left.bgr);
+    ASSERT_EQ(left.lost.size(), lost.size());
+    EXPECT_EQ(cv::countNonZero(left.lost != lost), 0) << frame->number;
+    lossy += cv::countNonZero(lost) > 30;
+  }
+  EXPECT_GT(lossy, 3) << "the line was to be too thin for these pictures";
 }
 
 TEST_F(CodedLine, LossDelaysPairsAndDamagesNone) {

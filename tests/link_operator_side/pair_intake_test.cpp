@@ -1,5 +1,7 @@
 #include "link/operator_side/pair_intake.hpp"
 
+#include <zlib.h>
+
 #include <random>
 
 #include "described.hpp"
@@ -7,6 +9,7 @@
 #include "link/send_control/line_trial.hpp"
 #include "link/send_control/packets.hpp"
 #include "pictures/encode.hpp"
+#include "scene/coding_loss.hpp"
 #include "tests/link/random_message.hpp"
 
 namespace foresight::link::pair_intake_test {
@@ -35,10 +38,10 @@ class Intake : public testing::Test {
     return intake_.counts().refusal;
   }
   /// A coded pair of `picture` with those notes, piece by piece, in a stream of its own.
-  LineFramePtr take_coded(const StereoFrame& notes, const StereoPicture& picture) {
+  LineFramePtr take_coded(const StereoFrame& notes, const StereoPicture& picture, const Bytes& left_lost = {}) {
     const auto encoder = make_pair_encoder(Coding::h264);
     CodedPair pair = encoder->encode(picture, {.number = 1, .bytes = 8000});
-    pair.notes = to_notes(notes);
+    pair.notes = to_notes({notes, left_lost});
     const std::vector<std::uint8_t> bytes = to_bytes(pair);
     ++stream_;
     LineFramePtr out;
@@ -143,7 +146,12 @@ TEST_F(Intake, ACodedPairsNotesAreHeldAgainstItsPictures) {
   refused(wrong, picture, "position.x is inf");
   refused(notes(2), moving_picture(clock_.now(), {96, 64}), "of the size that its notes say");
   refused(notes(2), moving_picture(clock_.now(), {160, 120}, /*colour=*/false), "not in colour");
-  EXPECT_TRUE(take_coded(notes(2), picture)) << intake_.counts().refusal;
+  EXPECT_FALSE(take_coded(notes(2), picture, {1, 2, 3}));
+  EXPECT_THAT(intake_.counts().refusal, HasSubstr("what coding took away"));
+  const LineFramePtr frame = take_coded(notes(2), picture, Bytes(kLossRows * kLossColumns, 3));
+  ASSERT_TRUE(frame) << intake_.counts().refusal;
+  EXPECT_EQ(cv::countNonZero(frame->image[0].lost == 3), kLossRows * kLossColumns);
+  EXPECT_TRUE(take_coded(notes(3), picture)->image[0].lost.empty());
 }
 
 TEST_F(Intake, AnotherStartOfTheRobotIsBelievedOnceThisOneIsSilent) {
@@ -195,14 +203,27 @@ TEST(PairNotes, ComeBackAndRefuseAnythingElse) {
   StereoFrame frame = random_message<StereoFrame>(random);
   frame.left.data.clear();
   frame.right.data.clear();
-  const Bytes notes = to_notes(frame);
+  const Bytes notes = to_notes({frame, {0, 3, 6}});
   const auto back = from_notes(notes);
   ASSERT_TRUE(back);
-  EXPECT_EQ(to_cdr(*back), to_cdr(frame));
+  EXPECT_EQ(to_cdr(back->frame), to_cdr(frame));
+  EXPECT_EQ(back->left_lost, (Bytes{0, 3, 6}));
   for (std::size_t size = 0; size < notes.size(); ++size) EXPECT_FALSE(from_notes(std::span(notes).first(size)));
   StereoFrame large;
   large.left.data.resize(kMostNotesInflated);
-  EXPECT_THROW(to_notes(large), std::exception);
+  EXPECT_THROW(to_notes({large, {}}), std::exception);
+}
+
+TEST(PairNotes, OfOlderRecordingsAreFramesAlone) {
+  std::mt19937 random(7);
+  const Bytes cdr = to_cdr(random_message<StereoFrame>(random));
+  uLongf size = compressBound(cdr.size());
+  Bytes notes(size);
+  ASSERT_EQ(compress(notes.data(), &size, cdr.data(), cdr.size()), Z_OK);
+  const auto back = from_notes(std::span(notes).first(size));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(to_cdr(back->frame), cdr);
+  EXPECT_TRUE(back->left_lost.empty());
 }
 
 // They share a thin line with pictures of some 5,000 bytes.
@@ -219,7 +240,7 @@ TEST(PairNotes, AreSmall) {
     for (double* value : {&image->t_world_camera.position.x, &image->t_world_camera.position.y,
                           &image->t_world_camera.position.z, &image->t_world_camera.orientation.x})
       *value = any();
-  EXPECT_LT(to_notes(frame).size(), 500u);
+  EXPECT_LT(to_notes({frame, {}}).size(), 500u);
 }
 
 // Bytes that anybody may send: nothing crashes, and nothing is shown.

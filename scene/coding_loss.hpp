@@ -1,0 +1,35 @@
+// What coding an image for a line took away from it, tile by tile, as told by who had the image itself: who sees only
+// what came cannot know.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+
+namespace foresight {
+
+/// Tiles of an image, whatever its size.
+inline constexpr int kLossColumns = 20, kLossRows = 15;
+/// Steps of the share of a tile's pixels whose grey is off by more than kLossLevels: 0 below kLeastLoss, then one each
+/// time that it doubles.
+inline constexpr int kLossSteps = 7;
+inline constexpr double kLossLevels = 10, kLeastLoss = 1.0 / 128;
+
+/// The middle of a step. Range of `step`: 1 .. kLossSteps - 1.
+double share_lost(int step);
+
+/// Steps, CV_8UC1, kLossRows x kLossColumns, of images of one size and type: CV_8UC1 or CV_8UC3 (BGR).
+cv::Mat coding_loss(const cv::Mat& taken, const cv::Mat& came);
+
+/// Such steps row by row, as somebody else tells them; none: an empty one. Nothing where they are not as above.
+std::optional<cv::Mat> loss_of(std::span<const std::uint8_t> steps);
+
+/// Pixels of an image of `size` in tiles that have lost next to nothing: CV_8UC1, 255 or 0. `loss`: as above, or empty
+/// where nothing is known to be lost.
+cv::Mat kept_mask(const cv::Mat& loss, cv::Size size);
+
+/// Differences of grey (ITU-R BT.601), CV_8UC1. Pictures: CV_8UC1, CV_8UC3 or CV_8UC4, of one size.
+cv::Mat grey_difference(const cv::Mat& one, const cv::Mat& other);
+
+}  // namespace foresight
