@@ -2,12 +2,16 @@
 // wrong is learnt of pictures whose image has come (seat/shown_fidelity.hpp).
 //
 //   doubt 0 .. 223   contrast + 16 * (reach + 2 * compared)
+//   224 .. 229       it was last seen in a tile that lost so much when it was coded (scene/coding_loss.hpp)
+//   230 .. 245       contrast: the newest image alone shows it, beside an edge, where it may show another surface
 //   255              nothing is known of it
 #pragma once
 
 #include <bitset>
 #include <cmath>
 #include <cstdint>
+
+#include "scene/coding_loss.hpp"
 
 namespace foresight {
 
@@ -37,6 +41,10 @@ struct DoubtKind {
   double levels() const { return 3 * (std::exp2((contrast + 0.5) / 4) - 1); }
   double px() const { return reach == 0 ? 1 : 4; }
 };
+/// Doubt of what was last seen in a tile of step 1; the next ones follow. Images that came tell nothing of these.
+inline constexpr int kCodedAway = DoubtKind::kCount;
+/// Doubt of what may be the colour of another surface (PredictedView::kUncertain), by contrast.
+inline constexpr int kBesideEdge = kCodedAway + kLossSteps - 1, kKindsEnd = kBesideEdge + DoubtKind::kContrasts;
 /// `doubt`: below DoubtKind::kCount.
 constexpr DoubtKind kind_of(int doubt) {
   constexpr int kOfOne = DoubtKind::kContrasts * DoubtKind::kReaches;

@@ -1,5 +1,7 @@
 #include "display/picture_readback.hpp"
 
+#include "display/predicted_view.hpp"
+
 namespace foresight {
 namespace {
 
@@ -37,6 +39,7 @@ std::optional<RememberedView> PictureReadback::take(bool wait) {
   glGetNamedBufferSubData(way.buffer.name(), 0, 4 * pixels, out.picture.data);
   glGetNamedBufferSubData(way.buffer.name(), 4 * pixels, pixels, out.doubt.data);
   spare_.push_back(std::move(way.buffer));
+  PredictedView::count_as_seen(out.picture);
   return out;
 }
 

@@ -409,9 +409,13 @@ cv::Mat PredictedView::read() const {
   cv::Mat picture(lens_.height(), lens_.width(), CV_8UC4);
   glGetTextureImage(picture_.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(picture.total() * 4),
                     picture.data);
-  for (cv::Vec4b& pixel : std::span(picture.ptr<cv::Vec4b>(), picture.total()))
-    if (pixel[3] == kUncertain) pixel[3] = 255;
+  count_as_seen(picture);
   return picture;
+}
+
+void PredictedView::count_as_seen(cv::Mat& bgra) {
+  for (cv::Vec4b& pixel : std::span(bgra.ptr<cv::Vec4b>(), bgra.total()))
+    if (pixel[3] == kUncertain) pixel[3] = 255;
 }
 
 }  // namespace foresight

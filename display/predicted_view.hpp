@@ -88,6 +88,8 @@ class PredictedView {
 
   /// Waits for the GPU; CV_8UC4 in BGRA order, 255 in place of kUncertain.
   cv::Mat read() const;
+  /// 255 in place of kUncertain, in a picture that was read.
+  static void count_as_seen(cv::Mat& bgra);
 
   /// The triangle seen at each pixel of the last draw()'s faces (gl::FaceImages::surface).
   const gl::FaceImages& faces() const { return faces_; }

@@ -19,10 +19,11 @@ layout(binding = 5) uniform samplerBuffer node_px;  // by how many pixels each n
 layout(binding = 6) uniform samplerBuffer ways;
 layout(binding = 7) uniform sampler2DArray seen_depth;  // faces of image 0, of image 1, ...
 layout(binding = 8) uniform sampler2DArray comparisons;  // of compared images with what was shown (doubt_kinds.hpp)
+layout(binding = 9) uniform usampler2DArray losses;  // steps of what coding took away, by tile of image 0, ...
 layout(binding = 0, r8) uniform writeonly image2D doubt;
 layout(binding = 1, rgba8) uniform writeonly image2D marked;
 uniform int layer_of[FRAMES];  // each image's first
-uniform int frame_count, node_count;
+uniform int frame_count, node_count, faces;
 uniform uint exact[8];  // a bit for each kind of pixel (doubt_kinds.hpp): it counts as exact
 uniform int layer_of_comparison[COMPARISONS];  // newest first
 uniform int comparison_count, comparisons_with_patches;  // the newest ones
@@ -128,7 +129,17 @@ int step_of_reach(float px) {
   return px < 2.0 ? 0 : 1;
 }
 
-float kind_at(ivec2 pixel, vec3 colour) {
+uint lost_at(int frame, vec3 p) {
+  vec2 pixel;
+  if (!project_lens(camera, p, pixel)) return 0u;
+  ivec2 tiles = textureSize(losses, 0).xy;
+  ivec2 tile = ivec2((pixel + 0.5) / camera.size.xy * vec2(tiles));
+  return texelFetch(losses, ivec3(clamp(tile, ivec2(0), tiles - 1), layer_of[frame] / faces), 0).r;
+}
+
+const int kCodedAway = 224, kBesideEdge = 230;  // doubt_kinds.hpp
+
+float kind_at(ivec2 pixel, vec3 colour, bool certain) {
   vec3 ray, place;
   float inverse_z;
   if (!ray_through(pixel, ray) || !project_face(view, ray, place, inverse_z)) return kUnconfirmed;
@@ -146,9 +157,14 @@ float kind_at(ivec2 pixel, vec3 colour) {
   }
   // What covered it in the newest image may have left its shadow there, or have pushed it.
   if (found < 0 || newest == kHidden) return kUnconfirmed;
-  float here = grey(colour), turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
+  uint lost = lost_at(found, where(found, node, p));
+  if (lost > 0u) return certain ? float(kCodedAway + int(lost) - 1) / 255.0 : kUnconfirmed;
+  float here = grey(colour);
+  int contrast = step_of_contrast(contrast_at(pixel, here));
+  if (!certain) return float(kBesideEdge + contrast) / 255.0;
+  float turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
   int compared = kTurned * turned * here > kWrong ? kSuspect : compared_at(node, p);
-  int kind = step_of_contrast(contrast_at(pixel, here)) + 16 * (step_of_reach(uncertain_px(at, node)) + 2 * compared);
+  int kind = contrast + 16 * (step_of_reach(uncertain_px(at, node)) + 2 * compared);
   return float(kind) / 255.0;
 }
 
@@ -164,8 +180,8 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(view.size.xy)))) return;
   vec4 colour = texelFetch(shown, pixel, 0);
-  bool certain = colour.a > 254.5 / 255.0;
-  float value = certain ? kind_at(pixel, colour.rgb) : kUnconfirmed;
+  bool seen = colour.a > 0.99, certain = colour.a > 254.5 / 255.0;
+  float value = seen ? kind_at(pixel, colour.rgb, certain) : kUnconfirmed;
   imageStore(doubt, pixel, vec4(value));
   uint kind = uint(round(255.0 * value));
   bool hatch = (exact[kind >> 5] >> (kind & 31u) & 1u) == 0u && colour.a > 0.4;

@@ -30,6 +30,7 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
       view_(sizeof(gl::CameraBlock), "trusted view"),
       node_px_(GL_R32F, 16, "node px"),
       ways_(GL_RGBA32F, 16, "ways since images"),
+      losses_(GL_R8UI, kLossColumns, kLossRows, static_cast<int>(kFrames), 1, "lost by coding"),
       comparisons_(GL_R8, lens.width(), lens.height(), static_cast<int>(kComparisonsKept), 1, "as it was shown") {
   const gl::CameraBlock block = gl::make_camera_block(lens_, scratch_.faces);
   camera_.write(std::span(&block, 1));
@@ -71,6 +72,9 @@ void TrustPass::saw(const PosedImage& image) {
   raster_(image.T_world_camera, image.scene, scratch_);
   glCopyImageSubData(scratch_.depth.name(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, depths_.name(), GL_TEXTURE_2D_ARRAY, 0, 0,
                      0, layer, scratch_.faces.width, scratch_.faces.height, scratch_.faces.count);
+  const cv::Mat lost = image.lost.empty() ? cv::Mat::zeros(kLossRows, kLossColumns, CV_8UC1) : image.lost;
+  glTextureSubImage3D(losses_.name(), 0, 0, 0, layer / scratch_.faces.count, kLossColumns, kLossRows, 1, GL_RED_INTEGER,
+                      GL_UNSIGNED_BYTE, lost.data);
   seen_.insert(seen_.begin(), Seen{image.time, image.T_world_camera, image.scene, layer});
 }
 
@@ -126,6 +130,7 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
   for (std::size_t i = 0; i < seen_.size(); ++i) layers[i] = seen_[i].layer;
   glProgramUniform1iv(program_.name(), glGetUniformLocation(program_.name(), "layer_of"),
                       static_cast<GLsizei>(layers.size()), layers.data());
+  program_.set("faces", scratch_.faces.count);
   program_.set("frame_count", static_cast<int>(seen_.size()));
   program_.set("node_count", static_cast<int>(state.T_world_node.size()));
   std::array<GLuint, 8> bits{};
@@ -141,10 +146,11 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
   program_.set("comparisons_with_patches", static_cast<int>(with_patches_));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, view_.name());
-  const GLuint units[] = {
-      view.picture().name(), view.faces().surface.name(), view.faces().depth.name(), surface_->triangles(),
-      view.rays().name(),    node_px_.texture(),          ways_.texture(),           depths_.name(),
-      comparisons_.name()};
+  const GLuint units[] = {view.picture().name(),     view.faces().surface.name(),
+                          view.faces().depth.name(), surface_->triangles(),
+                          view.rays().name(),        node_px_.texture(),
+                          ways_.texture(),           depths_.name(),
+                          comparisons_.name(),       losses_.name()};
   for (GLuint unit = 0; unit < std::size(units); ++unit) glBindTextureUnit(unit, units[unit]);
   glBindImageTexture(0, doubt_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
   glBindImageTexture(1, marked_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);

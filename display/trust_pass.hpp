@@ -63,6 +63,7 @@ class TrustPass {
   gl::Program program_;
   gl::Buffer camera_, view_;  // of images, of the view
   gl::BufferTexture node_px_, ways_;
+  gl::Texture losses_;  // of each image that is remembered, what coding took away: layers as of depths_, one an image
   gl::Texture comparisons_, doubt_, marked_;
   std::vector<Seen> seen_;        // newest first
   std::vector<Seen> compared_;    // newest first, at most kComparisonsKept

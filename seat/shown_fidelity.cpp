@@ -50,18 +50,18 @@ double share_of(const cv::Mat& part, const cv::Mat& whole) {
   return cv::countNonZero(part & whole) / std::max(1.0, static_cast<double>(cv::countNonZero(whole)));
 }
 
+bool is_coded_away(std::size_t doubt) {
+  return doubt >= kCodedAway && doubt < kBesideEdge;
+}
+
 /// Before anything is known. Nearly all pixels are where they should be and a few far from there, as if they were
 /// aside by a Cauchy distribution; grey changes by that times the contrast around.
-double assumed_risk(const DoubtKind& kind, double wrong_levels) {
+double assumed_risk(std::size_t doubt, double wrong_levels) {
+  const int number = static_cast<int>(doubt);
+  const DoubtKind kind = number < kBesideEdge ? kind_of(number) : DoubtKind{number - kBesideEdge, 1, Compared::off};
   const auto& [px, anyway] = kAssumedOf[static_cast<std::size_t>(kind.compared)];
   const double half = kind.levels() * (px + kOfReach * kind.px());
   return anyway + (1 - anyway) * 2 / std::numbers::pi * std::atan(half / wrong_levels);
-}
-
-cv::Mat grey_of(const cv::Mat& picture) {
-  cv::Mat out;
-  cv::cvtColor(picture, out, picture.channels() == 4 ? cv::COLOR_BGRA2GRAY : cv::COLOR_BGR2GRAY);
-  return out;
 }
 
 /// As large as the image, as it looks there; alpha and doubt as they are at the nearest pixel. False: they do not show
@@ -111,12 +111,6 @@ cv::Mat exact_mask(const cv::Mat& picture, const cv::Mat& doubt, const ExactKind
   return out & seen_mask(picture);
 }
 
-cv::Mat grey_difference(const cv::Mat& one, const cv::Mat& other) {
-  cv::Mat out;
-  cv::absdiff(grey_of(one), grey_of(other), out);
-  return out;
-}
-
 ShownFidelity::ShownFidelity(FidelityOptions options) : options_(options) {
   begin_anew({});
 }
@@ -141,7 +135,7 @@ void ShownFidelity::shown(RememberedView picture) {
   if (kept_.size() > options_.kept) kept_.pop_front();
 }
 
-std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat& image) {
+std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat& image, const cv::Mat& lost) {
   while (!kept_.empty() && kept_.front().instant < instant - options_.same_instant) kept_.pop_front();
   if (kept_.empty()) return std::nullopt;
   auto nearest = kept_.begin();
@@ -152,7 +146,8 @@ std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat&
   kept_.erase(kept_.begin(), std::next(nearest));
   if (image.type() != CV_8UC3 || !enlarge(picture, image.size())) return std::nullopt;
 
-  const cv::Mat seen = seen_mask(picture.picture), exact = exact_mask(picture.picture, picture.doubt, exact_);
+  const cv::Mat seen = seen_mask(picture.picture) & kept_mask(lost, image.size());
+  const cv::Mat exact = exact_mask(picture.picture, picture.doubt, exact_) & seen;
   const cv::Mat off = grey_difference(picture.picture, image) & seen;
   const cv::Mat wrong = off > options_.wrong_levels;
   const ImageComparison comparison(image, seen);
@@ -194,14 +189,22 @@ void ShownFidelity::add(const ByKind& counts, ByKind& to) {
 }
 
 void ShownFidelity::learn() {
-  for (std::size_t i = 0; i < of_late_.size(); ++i) {
-    const double risk = assumed_risk(kind_of(static_cast<int>(i)), options_.wrong_levels);
+  Counts all;
+  for (std::size_t i = 0; i < risk_.size(); ++i) {
+    if (is_coded_away(i)) continue;
+    const double risk = assumed_risk(i, options_.wrong_levels);
     risk_[i] = (of_late_[i].wrong + assumed_ * risk) / (of_late_[i].all + assumed_);
+    all.all += of_late_[i].all;
+    all.wrong += of_late_[i].wrong;
   }
+  // What coding took away comparisons hardly tell: it comes on top of what is wrong elsewhere.
+  const double elsewhere = all.all > 0 ? all.wrong / all.all : 0;
+  for (std::size_t i = kCodedAway; is_coded_away(i); ++i)
+    risk_[i] = std::min(1.0, elsewhere + share_lost(static_cast<int>(i - kCodedAway) + 1));
 }
 
 void ShownFidelity::choose(const ByKind& pixels) {
-  std::array<std::size_t, DoubtKind::kCount> order;
+  std::array<std::size_t, kKindsEnd> order;
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [this](std::size_t i) { return risk_[i]; });
   exact_.reset();

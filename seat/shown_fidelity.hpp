@@ -45,8 +45,6 @@ cv::Rect tile_of(std::size_t tile, cv::Size size);
 
 /// Pixels that count as exact: coloured by an image, of kinds that do. CV_8UC1, 255 or 0.
 cv::Mat exact_mask(const cv::Mat& picture, const cv::Mat& doubt, const ExactKinds& exact);
-/// Differences of grey (ITU-R BT.601), CV_8UC1. Pictures: CV_8UC3 or CV_8UC4, of one size.
-cv::Mat grey_difference(const cv::Mat& one, const cv::Mat& other);
 
 /// One thread.
 class ShownFidelity {
@@ -59,8 +57,9 @@ class ShownFidelity {
   /// more, and tells nothing of other pixels of the same kinds.
   void begin_anew(RobotTime from);
   /// The image of an instant came, in the order of their instants: nothing where no picture was shown for it, or one of
-  /// other proportions. One of another size is compared as it looks at the image's. `image`: CV_8UC3.
-  std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image);
+  /// other proportions. One of another size is compared as it looks at the image's. `image`: CV_8UC3; where coding took
+  /// something away from it (`lost`, PosedImage::lost), nothing is compared.
+  std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image, const cv::Mat& lost = {});
   /// Which kinds of pixels count as exact: those that were wrong most rarely, as many as it takes until
   /// FidelityOptions::wrong_share of all such pixels have to be expected to be wrong, in what was shown last and in a
   /// usual picture of late together: good pictures make up for bad ones. Never a kind of which more than wrong_of_kind
@@ -71,7 +70,7 @@ class ShownFidelity {
   struct Counts {
     double all = 0, wrong = 0;
   };
-  using ByKind = std::array<Counts, DoubtKind::kCount>;
+  using ByKind = std::array<Counts, kKindsEnd>;
   static ByKind count(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong);
   static void add(const ByKind& counts, ByKind& to);
   void learn();
@@ -79,10 +78,10 @@ class ShownFidelity {
 
   FidelityOptions options_;
   std::deque<RememberedView> kept_;
-  RobotTime begin_;                               // what was shown before tells nothing
-  ByKind of_late_{}, beside_patches_{};           // all of late, and what lay in no patch that was wrong
-  double assumed_ = 1;                            // pixels of each kind that are taken to have been as assumed
-  std::array<double, DoubtKind::kCount> risk_{};  // of a pixel of each kind to be wrong
+  RobotTime begin_;                       // what was shown before tells nothing
+  ByKind of_late_{}, beside_patches_{};   // all of late, and what lay in no patch that was wrong
+  double assumed_ = 1;                    // pixels of each kind that are taken to have been as assumed
+  std::array<double, kKindsEnd> risk_{};  // of a pixel of each kind to be wrong
   ExactKinds exact_;
 };
 

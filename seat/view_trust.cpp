@@ -38,8 +38,8 @@ void ViewTrust::collect() {
 }
 
 // Nothing of OpenGL: images are heard in between pictures, whatever context is current.
-void ViewTrust::heard(RobotTime captured, const cv::Mat& image, const PosedFrame* posed) {
-  auto fidelity = shown_.arrived(captured, image);
+void ViewTrust::heard(const link::LineImage& image, const PosedFrame* posed) {
+  auto fidelity = shown_.arrived(image.captured, image.bgr, image.lost);
   if (!fidelity) return;
   if (fidelity->psnr_db) switch_.compared(now(), *fidelity->psnr_db);
   fidelity_ = std::move(fidelity);
@@ -75,7 +75,7 @@ void ViewTrust::drew(const PredictedSource& source, const ViewPlace& place, Trus
   const auto px = node_doubt_px(source.places(), source.robot(), session_.view().lens(), middles_, before);
   if (compared_) pass_.compared(*compared_, fidelity_->comparison);
   compared_.reset();
-  pass_(session_.view(), place.T_world_camera, place.scene, px, shown_.exact());
+  pass_(session_.view(), place.T_world_camera, place.scene, px, exact());
   if (is_due && readback_.start(session_.picture(), pass_.doubt(), instant)) remembered_ = instant;
   if (options_.wait) collect();
   if (marks == TrustMarks::tiles) frame_tiles();

@@ -42,9 +42,9 @@ class ViewTrust {
   /// `session` and `clock` must outlive this; not with the thesis' pipeline.
   ViewTrust(const ViewSession& session, const ViewSetup& setup, const Clock& clock, ViewTrustOptions options = {});
 
-  /// An image came (CV_8UC3), whether or not its frame is ever handed out: what was shown for its instant is compared.
+  /// A left image came, whether or not its frame is ever handed out: what was shown for its instant is compared.
   /// `posed`: where its camera and all nodes were, if that is known.
-  void heard(RobotTime captured, const cv::Mat& image, const PosedFrame* posed);
+  void heard(const link::LineImage& image, const PosedFrame* posed);
   /// A frame is handed out, before it becomes textures.
   void saw(const PosedFrame& frame);
   /// The session has drawn the source's instant at `place`. Without marks, marked() may stay as it is.
@@ -55,7 +55,8 @@ class ViewTrust {
   bool falls_back() const { return switch_.falls_back(); }
   std::string why() const { return switch_.why(); }
   const std::optional<Fidelity>& fidelity() const { return fidelity_; }
-  const ExactKinds& exact() const { return shown_.exact(); }
+  /// Nothing is, where the newest image stands in for the view.
+  ExactKinds exact() const { return falls_back() ? ExactKinds() : shown_.exact(); }
   /// The view that was drawn last, marked.
   const gl::Texture& marked() const { return pass_.marked(); }
   const gl::Texture& doubt_picture() const { return pass_.doubt(); }

@@ -101,9 +101,8 @@ class LiveSeat {
                     clock_);
     source_.show_things(&things_);
     driver_.may_push(things_.names());
-    source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
-      trust_.heard(frame.image[0].captured, frame.image[0].bgr, posed);
-    });
+    source_.listen(
+        [this](const link::LineFrame& frame, const PosedFrame* posed) { trust_.heard(frame.image[0], posed); });
   }
 
   int run() {

@@ -113,7 +113,7 @@ class Trial {
     motion_.look_by([this](const std::string& node) { return seen_.at(node); });
     source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
       const RobotTime captured = frame.image[0].captured;
-      trust_.heard(captured, frame.image[0].bgr, posed);
+      trust_.heard(frame.image[0], posed);
       if (const cv::Mat seen = measures_.image_at(captured); !seen.empty()) video_.add(captured, seen, frame.bytes);
     });
     clock_.every(5ms, [this](RobotTime) {

@@ -69,7 +69,7 @@ class ServedTrial final : ViewObserver {
         task_(options.most_s),
         measures_(describe_seat(rig, session_, setup_), options.out) {
     source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
-      trust_.heard(frame.image[0].captured, frame.image[0].bgr, posed);
+      trust_.heard(frame.image[0], posed);
       measures_.saw(frame.image[0].captured, frame.image[0].bgr);
     });
     motion_.look_by([this](const std::string& node) { return seen_.at(node); });

@@ -99,28 +99,49 @@ TEST_P(TrustPassTest, OnlyWhatWasSeenIsConfirmed) {
 }
 
 // What lies beside an edge of the newest image, and nothing else has seen.
-TEST_P(TrustPassTest, WhatMayShowAnotherSurfaceIsNotConfirmed) {
+TEST_P(TrustPassTest, WhatMayShowAnotherSurfaceIsAKindOfItsOwn) {
   const PosedImage seen = image(0, 100ms);
   LatestImages images;
   core_->process({seen, std::nullopt}, latest_);
   ASSERT_TRUE(core_->look({seen, std::nullopt}, images));
   trust_->saw(seen);
-  ExactKinds all;
-  all.set().reset(kUnconfirmed);
+  ExactKinds others;
+  for (std::size_t kind = 0; kind < kBesideEdge; ++kind) others.set(kind);
   view_->draw(usual_view(), state_of(*scene_), latest_.acquire(), images.acquire());
-  const RememberedView view = judge(state_of(*scene_), {}, all);
+  const RememberedView view = judge(state_of(*scene_), {}, others);
   const cv::Mat hatched = marked();
   int uncertain = 0, striped = 0;
   for (int y = 0; y < hatched.rows; ++y)
     for (int x = 0; x < hatched.cols; ++x) {
-      const auto shown = view.picture.at<cv::Vec4b>(y, x);
-      if (shown[3] != PredictedView::kUncertain) continue;
+      if (hatched.at<cv::Vec4b>(y, x)[3] != PredictedView::kUncertain) continue;
       ++uncertain;
-      EXPECT_EQ(view.doubt.at<uchar>(y, x), kUnconfirmed) << x << ' ' << y;
-      striped += shown != hatched.at<cv::Vec4b>(y, x);
+      const int doubt = view.doubt.at<uchar>(y, x);
+      EXPECT_TRUE(doubt >= kBesideEdge && doubt < kKindsEnd) << x << ' ' << y << ": " << doubt;
+      const auto shown = view.picture.at<cv::Vec4b>(y, x), marked = hatched.at<cv::Vec4b>(y, x);
+      EXPECT_EQ(shown[3], 255) << "an image shows it";
+      striped += shown[0] != marked[0] || shown[1] != marked[1] || shown[2] != marked[2];
     }
   EXPECT_GT(uncertain, 30);
   EXPECT_NEAR(striped / static_cast<double>(uncertain), 1.0 / 3, 0.15);
+}
+
+// The newest image that saw a point tells what coding took away there.
+TEST_P(TrustPassTest, WhatCodingTookAwayIsAKindOfItsOwn) {
+  see(0, 100ms);
+  PosedImage newest = image(0, 200ms);
+  newest.lost = cv::Mat::zeros(kLossRows, kLossColumns, CV_8UC1);
+  const cv::Point there = pixel_of(kOnTable),
+                  tile(there.x * kLossColumns / lens_.width(), there.y * kLossRows / lens_.height());
+  newest.lost.at<uchar>(tile) = 3;
+  trust_->saw(newest);
+  const RememberedView view = draw(0);
+  EXPECT_EQ(at(view.doubt, there), kCodedAway + 2);
+  const cv::Mat lossy = view.doubt >= kCodedAway & view.doubt < kKindsEnd;
+  const double area = static_cast<double>(lossy.total()) / (kLossRows * kLossColumns);
+  EXPECT_GT(cv::countNonZero(lossy), 0.3 * area);
+  EXPECT_LT(cv::countNonZero(lossy), 1.5 * area) << "other tiles have lost nothing";
+  see(0, 300ms);
+  EXPECT_EQ(cv::countNonZero(draw(0).doubt >= kCodedAway & draw(0).doubt < kKindsEnd), 0) << "it was seen anew";
 }
 
 // A view with fewer pixels than the images says of each place what the large one says.

@@ -101,7 +101,49 @@ class LearntKinds {
   int rounds_ = 0;
 };
 
+// A sharp view of what came blurred is not wrong.
+TEST(ShownFidelity, WhatCodingTookAwayIsNotCompared) {
+  ShownFidelity fidelity;
+  fidelity.shown(view(100ms));
+  cv::Mat lost = cv::Mat::zeros(kLossRows, kLossColumns, CV_8UC1), came = image();
+  lost(cv::Rect(0, 0, kLossColumns / 2, kLossRows)) = 4;
+  came(cv::Rect(0, 0, kWidth / 2, kHeight)) = cv::Scalar(160, 160, 160);
+  const auto out = fidelity.arrived(at(100ms), came, lost);
+  ASSERT_TRUE(out);
+  EXPECT_EQ(out->psnr_db, 100);
+  EXPECT_EQ(out->exact_wrong, 0);
+  EXPECT_EQ(out->wrong[0], 0);
+  EXPECT_EQ(out->comparison.at<uchar>(10, 10), kNotShown);
+  EXPECT_EQ(out->comparison.at<uchar>(10, kWidth - 10), 0);
+  fidelity.shown(view(200ms));
+  EXPECT_FALSE(fidelity.arrived(at(200ms), came, cv::Mat(kLossRows, kLossColumns, CV_8UC1, cv::Scalar(1)))->psnr_db)
+      << "nothing of it can be compared";
+}
+
+// Of half of a picture coding took some percent: how often that is wrong no image tells, so that it is as told.
+TEST(ShownFidelity, WhatCodingTookAwayCountsAsMuchAsItIs) {
+  const auto exact_beside = [](int step, double wrong_elsewhere) {
+    ShownFidelity fidelity;
+    for (int i = 0; i < 20; ++i) {
+      RememberedView shown = view(i * 100ms);
+      shown.doubt(cv::Rect(0, 0, kWidth / 2, kHeight)) = kCodedAway + step - 1;
+      fidelity.shown(std::move(shown));
+      cv::Mat truth = image();
+      truth(cv::Rect(kWidth / 2, 0, static_cast<int>(wrong_elsewhere * kWidth / 2), kHeight)) =
+          cv::Scalar(160, 160, 160);
+      EXPECT_TRUE(fidelity.arrived(at(i * 100ms), truth));
+    }
+    return bool(fidelity.exact()[static_cast<std::size_t>(kCodedAway + step - 1)]);
+  };
+  EXPECT_TRUE(exact_beside(1, 0));
+  EXPECT_TRUE(exact_beside(2, 0)) << "2.2 % of one half, nothing of the other";
+  EXPECT_FALSE(exact_beside(3, 0));
+  EXPECT_FALSE(exact_beside(kLossSteps - 1, 0));
+  EXPECT_FALSE(exact_beside(2, 0.03)) << "what is wrong elsewhere is wrong there, too";
+}
+
 TEST(ShownFidelity, KindsOfDoubtFitAByte) {
+  static_assert(kKindsEnd <= kUnconfirmed);
   for (int i = 0; i < DoubtKind::kCount; ++i) EXPECT_EQ(doubt_of(kind_of(i)), i);
   EXPECT_LT(DoubtKind::kCount, kUnconfirmed);
 }
