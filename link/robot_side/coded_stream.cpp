@@ -32,11 +32,12 @@ void PairToCode::code(const Clock& clock) {
   const std::size_t noted = to_notes(notes).size();
   wish_.bytes -= std::min(noted, wish_.bytes / 2);
   CodedPair coded = coder_->encoder->encode(picture_, wish_);
+  notes.left_lost.clear();
   if (const auto come = coder_->decoder->decode(coded)) {
     const cv::Mat lost = coding_loss(picture_.left, come->left);
     notes.left_lost.assign(lost.begin<std::uint8_t>(), lost.end<std::uint8_t>());
-    coder_->left_lost = notes.left_lost;
   }
+  coder_->left_lost = notes.left_lost;
   notes.frame.stamps.coded_ns = clock.now().ns;
   coded.notes = to_notes(notes);
   coded_ = std::move(coded);

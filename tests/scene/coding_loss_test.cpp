@@ -22,10 +22,10 @@ void change(cv::Mat& image, cv::Point tile, int pixels, int levels) {
 
 TEST(CodingLoss, IsToldByTile) {
   cv::Mat came = image();
-  change(came, {2, 1}, kTile * kTile, 9);     // all of it, by too little
-  change(came, {19, 0}, kTile * kTile, 40);   // all
-  change(came, {0, 14}, 24, 40);              // 9.4 %
-  change(came, {7, 7}, 1, 40);                // 0.4 %
+  change(came, {2, 1}, kTile * kTile, 9);    // all of it, by too little
+  change(came, {19, 0}, kTile * kTile, 40);  // all
+  change(came, {0, 14}, 24, 40);             // 9.4 %
+  change(came, {7, 7}, 1, 40);               // 0.4 %
   const cv::Mat loss = coding_loss(image(), came);
   cv::Mat expected = cv::Mat::zeros(kLossRows, kLossColumns, CV_8UC1);
   expected.at<std::uint8_t>(0, 19) = kLossSteps - 1;

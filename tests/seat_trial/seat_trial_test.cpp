@@ -29,7 +29,8 @@ struct Outcome {
 };
 
 /// A pick that is cut off after `seconds`, with few and small images.
-Outcome try_pick(double seconds, LinkCoding coding, std::function<cv::Mat(const cv::Mat&)> truth) {
+Outcome try_pick(double seconds, LinkCoding coding, std::function<cv::Mat(const cv::Mat&)> truth,
+                 const TrustSwitchOptions& fall_back = {}) {
   SeatTrialOptions options;
   options.rig_file = source_folder() / "configs" / "minerva.yaml";
   Rig rig = read_rig(options.rig_file);
@@ -49,6 +50,7 @@ Outcome try_pick(double seconds, LinkCoding coding, std::function<cv::Mat(const 
   options.pictures_hz = 2;
   options.zero_delay = false;
   options.truth = std::move(truth);
+  options.fall_back = fall_back;
   Outcome out;
   options.asked = [&](OperatorTime time, const SeatWish& wish) { out.asked.push_back({time, wish}); };
   const auto scene = std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt, true, 0));
@@ -80,6 +82,14 @@ TEST(SeatTrial, WhatTheProgramAsksForIsTheSameWhateverItIsScoredBy) {
   EXPECT_TRUE(seen.asked.back().wish.position != seen.asked.front().wish.position);
   EXPECT_EQ(seen.figures.line.coding, "h264") << "pairs are to pass the coder, as they would on a line";
   EXPECT_GT(seen.figures.fidelity.video_db.value(), 10);
+}
+
+TEST(SeatTrial, NothingIsExactWhereTheNewestImageStandsIn) {
+  const Outcome out = try_pick(2.5, LinkCoding::h264, {}, {.lowest_db = 90, .after = 0ms});
+  const TrustFigures& trust = out.figures.fidelity.trust;
+  ASSERT_TRUE(trust.exact_share && trust.fallback_share);
+  ASSERT_GT(*trust.fallback_share, 0.5);
+  EXPECT_LT(*trust.exact_share, 1.1 * (1 - *trust.fallback_share) + 0.01);
 }
 
 }  // namespace
