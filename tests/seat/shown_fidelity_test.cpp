@@ -139,7 +139,7 @@ TEST(ShownFidelity, WhatCodingTookAwayCountsAsMuchAsItIs) {
   EXPECT_TRUE(exact_beside(2, 0)) << "2.2 % of one half, nothing of the other";
   EXPECT_FALSE(exact_beside(3, 0));
   EXPECT_FALSE(exact_beside(kLossSteps - 1, 0));
-  EXPECT_FALSE(exact_beside(2, 0.03)) << "what is wrong elsewhere is wrong there, too";
+  EXPECT_FALSE(exact_beside(1, 0.03)) << "what is wrong elsewhere is wrong there, too";
 }
 
 TEST(ShownFidelity, KindsOfDoubtFitAByte) {
