@@ -3,7 +3,8 @@
 //
 //   view --depth--> point --moves with its node--> image 0, 1, 2 ... newest first: outside, hidden or seen
 //
-// Defines: FRAMES, how many of them are remembered; COMPARISONS, how many of those that were compared.
+// Defines: FRAMES, how many of them are remembered; COMPARISONS, how many of those that were compared; CODED_AWAY and
+// BESIDE_EDGE, where kinds of doubt_kinds.hpp begin.
 #include "camera.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };  // of the images
@@ -137,8 +138,6 @@ uint lost_at(int frame, vec3 p) {
   return texelFetch(losses, ivec3(clamp(tile, ivec2(0), tiles - 1), layer_of[frame] / faces), 0).r;
 }
 
-const int kCodedAway = 224, kBesideEdge = 230;  // doubt_kinds.hpp
-
 float kind_at(ivec2 pixel, vec3 colour, bool certain) {
   vec3 ray, place;
   float inverse_z;
@@ -150,18 +149,20 @@ float kind_at(ivec2 pixel, vec3 colour, bool certain) {
   vec3 p = ray * (kNear / near_over_z * inverse_z);
 
   int found = -1, newest = kOutside;
+  vec3 then;  // in the image that was found
   for (int frame = 0; frame < frame_count && found < 0; ++frame) {
-    int seen = look(frame, where(frame, node, p));
+    then = where(frame, node, p);
+    int seen = look(frame, then);
     if (frame == 0) newest = seen;
     if (seen == kSeen) found = frame;
   }
   // What covered it in the newest image may have left its shadow there, or have pushed it.
   if (found < 0 || newest == kHidden) return kUnconfirmed;
-  uint lost = lost_at(found, where(found, node, p));
-  if (lost > 0u) return certain ? float(kCodedAway + int(lost) - 1) / 255.0 : kUnconfirmed;
+  uint lost = lost_at(found, then);
+  if (lost > 0u) return certain ? float(CODED_AWAY + int(lost) - 1) / 255.0 : kUnconfirmed;
   float here = grey(colour);
   int contrast = step_of_contrast(contrast_at(pixel, here));
-  if (!certain) return float(kBesideEdge + contrast) / 255.0;
+  if (!certain) return float(BESIDE_EDGE + contrast) / 255.0;
   float turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
   int compared = kTurned * turned * here > kWrong ? kSuspect : compared_at(node, p);
   int kind = contrast + 16 * (step_of_reach(uncertain_px(at, node)) + 2 * compared);

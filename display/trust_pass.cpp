@@ -25,7 +25,8 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
               scratch_.faces.count * static_cast<int>(kFrames), 1, "depth of images"),
       program_(gl::Program::compute(
           gl::display_shaders(), "trust.comp",
-          {"FRAMES " + std::to_string(kFrames), "COMPARISONS " + std::to_string(kComparisonsKept)})),
+          {"FRAMES " + std::to_string(kFrames), "COMPARISONS " + std::to_string(kComparisonsKept),
+           "CODED_AWAY " + std::to_string(kCodedAway), "BESIDE_EDGE " + std::to_string(kBesideEdge)})),
       camera_(sizeof(gl::CameraBlock), "trusted camera"),
       view_(sizeof(gl::CameraBlock), "trusted view"),
       node_px_(GL_R32F, 16, "node px"),

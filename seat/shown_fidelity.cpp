@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/replay_report/image_metrics.hpp"
+#include "scene/coding_loss.hpp"
 
 namespace foresight {
 namespace {

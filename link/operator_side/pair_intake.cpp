@@ -98,22 +98,22 @@ LineFramePtr PairIntake::frame_of(const foresight::ReceivedPair& pair, OperatorT
                                   const RobotClockTracker& robot) {
   const auto notes = from_notes(pair.notes);
   if (!notes) return refuse("a coded pair has no notes");
-  const StereoFrame* const message = &notes->frame;
-  if (message->coding != kH264Coding) return refuse("coding is not h264 in a coded pair");
-  if (std::string wrong = wrong_with(*message, robot); !wrong.empty()) return refuse(std::move(wrong));
+  const StereoFrame& message = notes->frame;
+  if (message.coding != kH264Coding) return refuse("coding is not h264 in a coded pair");
+  if (std::string wrong = wrong_with(message, robot); !wrong.empty()) return refuse(std::move(wrong));
   const StereoPicture& picture = pair.picture;
-  if (picture.left.size() != size_of(message->left) || picture.right.size() != size_of(message->right) ||
+  if (picture.left.size() != size_of(message.left) || picture.right.size() != size_of(message.right) ||
       picture.left.type() != CV_8UC3)
     return refuse("a coded pair's pictures are not in colour and of the size that its notes say");
-  if (message->left.capture_ns != picture.captured.ns) return refuse("a coded pair has two capture instants");
-  if (message->session != session_) return refuse("it is of another start of the robot's program");
-  if (message->number <= newest_) {
+  if (message.left.capture_ns != picture.captured.ns) return refuse("a coded pair has two capture instants");
+  if (message.session != session_) return refuse("it is of another start of the robot's program");
+  if (message.number <= newest_) {
     ++counts_.late;
     return nullptr;
   }
   auto lost = loss_of(notes->left_lost);
   if (!lost) return refuse("what coding took away from a pair is not told in steps of its tiles");
-  return hand_out(*message, picture, std::move(*lost), pair.bytes, arrived, robot);
+  return hand_out(message, picture, std::move(*lost), pair.bytes, arrived, robot);
 }
 
 LineFramePtr PairIntake::take(const StereoPiece& piece, const RobotClockTracker& robot,
