@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "gl/objects.hpp"
+#include "gl/program.hpp"
 #include "tests/support/headless_test.hpp"
 
 namespace foresight::gl::context_test {
@@ -70,6 +71,35 @@ TEST_F(ContextTest, DepthIsNotRemapped) {
   glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment);
   EXPECT_EQ(depth_mode, GL_ZERO_TO_ONE);
   EXPECT_EQ(alignment, 1);
+}
+
+// Between two neighbouring grey levels there are others: a renderer that filters in 8 bits finds none.
+TEST_F(ContextTest, FiltersImagesOf8BitsFinerThanTheirSteps) {
+  const char* const look = R"(
+layout(local_size_x = 8) in;
+layout(binding = 0) uniform sampler2D image;
+layout(binding = 0, std430) writeonly buffer Answers { float answers[]; };
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  answers[i] = 255.0 * textureLod(image, vec2((float(i) + 0.5) / 8.0 / 2.0 + 0.25, 0.5), 0.0).r;
+}
+)";
+  const Texture image(GL_RGBA8, 2, 1, 0, 1, "two levels");
+  const std::array<std::uint8_t, 8> levels{100, 100, 100, 255, 101, 101, 101, 255};
+  glTextureSubImage2D(image.name(), 0, 0, 0, 2, 1, GL_RGBA, GL_UNSIGNED_BYTE, levels.data());
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTextureParameteri(image.name(), filter, GL_LINEAR);
+  Buffer buffer(8 * sizeof(float), "answers");
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.name());
+  glBindTextureUnit(0, image.name());
+  Program::compute({{"look.comp", look}}, "look.comp").use();
+  glDispatchCompute(1, 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  std::array<float, 8> found{};
+  buffer.read(std::span<float>(found));
+  check_errors("the test");
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_NEAR(found[i], 100 + (static_cast<double>(i) + 0.5) / 8, 0.01) << "place " << i;  // GPUs have 256 places
 }
 
 }  // namespace
