@@ -1,7 +1,7 @@
 // The heart of it: one back-projection per texel. A work group goes through four tiles of 8x8 texels;
 // an invocation takes four texels below each other, so that what they share is found once. Each
-// texel finds its surface point, asks the cameras whether they saw it, takes the sharper one's colour
-// and keeps the old colour only where the new one is clearly worse.
+// texel finds its surface point, asks the cameras whether they saw it, takes the first one's colour, or the other's where
+// that is clearly sharper, and keeps the old colour only where the new one is clearly worse.
 //
 // Defines: CAMERAS 1 or 2; TEXELS 0 to 4: as large as pixels, up to two, four, eight times as large, larger
 // (ExtractPass::Work::minify_above).
@@ -20,6 +20,7 @@ uniform int first_group, tile_count;
 uniform int image_number;
 const int kImagesToAge = 8;  // a power of two: remainders are slow
 const float kBeyondWhite = 0.35;
+const float kFiner = 1.5;  // than the first camera: of two about equal ones each change is a seam
 
 // Factor from the image's values to the reference exposure (exposure.hpp).
 float tone(int c, vec2 pixel) {
@@ -109,7 +110,7 @@ void extract_texel(Column column, int row) {
     View view = column.views[c];
     vec2 pixel;
     bool seen = is_seen(c, view.first + float(row) * view.down + height * view.height, pixel) && raw != 0u;
-    if (seen && view.quality > best_quality) {
+    if (seen && view.quality > kFiner * best_quality) {
       best_quality = view.quality;
       code = encode_quality(view.quality);
       sampled = sample_image(c, pixel, view.axes);

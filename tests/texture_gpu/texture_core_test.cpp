@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "tests/support/golden.hpp"
@@ -311,6 +312,27 @@ TEST_F(TextureCoreTest, MatchesTheGoldenAtlas) {
   }
   // Rounding of colours; texels whose depth test or edge falls on the other side: one in a hundred.
   EXPECT_TRUE(matches_golden(picture, "atlas", {0.5, 6, 0.01}));
+}
+
+// What two cameras show about equally well is one camera's, not patches of both.
+TEST_F(TextureCoreTest, TheSecondCameraColoursWhatItSeesClearlyFiner) {
+  const auto error_with_second_at = [&](double distance) {
+    latest_ = std::make_unique<LatestTextures>();
+    core_ = std::make_unique<TextureCore>(scene_, surface_, lens_, lens_,
+                                          TextureOptions{.memory_bytes = 12 << 20, .even_exposure = false},
+                                          driver_.is_software);
+    const Eigen::Vector3d eye{-1.0, -0.45, 0.8}, target{0.02, 0, 0.1};
+    PosedFrame both = frame(look_at(eye, target));
+    both.right = frame(look_at(target + distance * (eye - target), target)).left;
+    cv::cvtColor(both.right->pixels, both.right->pixels, cv::COLOR_BGR2RGB);
+    process(both);
+    int count = 0;
+    const double error = paint_error(kBox, count).first;
+    EXPECT_GT(count, 100);
+    return error;
+  };
+  EXPECT_LT(error_with_second_at(0.95), 4);
+  EXPECT_GT(error_with_second_at(0.5), 12);
 }
 
 }  // namespace
