@@ -22,6 +22,7 @@ void add_replay_command(Command& app, std::function<int()>& action) {
   command->add_flag("--window", options->window, "Show delayed, predicted and actual side by side");
   command->add_flag("--real-time", options->real_time, "Play by the clock and drop what comes too late");
   add_images_option(*command, options->textures.images);
+  add_accumulate_option(*command, options->textures.accumulate);
   command->add_flag("!--no-projection", options->projection,
                     "Show textures alone: the newest image only when it has become textures");
   command->add_flag("!--full-extraction", options->textures.only_what_is_needed,

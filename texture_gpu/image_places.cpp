@@ -46,7 +46,7 @@ std::shared_ptr<PublishedImage> ImagePlaces::free_place(std::size_t camera, cons
 }
 
 void ImagePlaces::place(const PosedFrame& frame, const FrameOnGpu& kept, FrameOnGpu& out) {
-  out.compared = false;
+  out.compared = out.lent = false;
   out.images = {without_pixels(frame.left)};
   if (frame.right && lenses_.size() > 1) out.images.push_back(without_pixels(*frame.right));
   out.published.clear();

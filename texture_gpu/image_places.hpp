@@ -18,6 +18,7 @@ struct FrameOnGpu {
   std::vector<AtlasView> views;                            ///< of each image
   SeenInputs inputs;
   bool compared = false;
+  bool lent = false;                        ///< `published` says all of its images
   double log_gain = 0;                      ///< of the left image (exposure.hpp)
   std::shared_ptr<const SceneLight> light;  ///< whose shadows were taken out of it; null: none were
 

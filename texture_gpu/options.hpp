@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 namespace foresight {
 
@@ -47,6 +48,9 @@ struct TextureOptions {
   /// the one that is to count from it on, so that the same images give the same textures. False: it counts once it is
   /// there.
   bool awaits_lamp = true;
+  /// Where views look the newest image up directly: as a mean over those before it, as far as these agree. Nothing: on
+  /// a GPU, and on a software renderer images of up to 320 x 240 px, of which it takes as much time as of a view.
+  std::optional<bool> accumulate = false;
 };
 
 }  // namespace foresight

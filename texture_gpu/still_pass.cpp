@@ -1,17 +1,12 @@
 #include "texture_gpu/still_pass.hpp"
 
-#include <array>
-
+#include "texture_gpu/image_before.hpp"
 #include "texture_gpu/shaders.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr GLuint kRaysUnit = 7, kStillUnit = 8;  // after those of SeenInputs
-
-Eigen::Vector3f even_tone(const PublishedImage& image) {
-  return {image.tone.x() / image.gain, image.tone.y(), image.tone.z()};
-}
+constexpr GLuint kStillUnit = kRaysUnit + 1;
 
 }  // namespace
 
@@ -27,14 +22,8 @@ void StillPass::operator()(PublishedImage& newest, const PublishedImage* before)
     glClearTexImage(newest.still.name(), 0, GL_RED, GL_FLOAT, nullptr);
     return;
   }
-  const std::array<const CameraInput*, 2> cameras{newest.camera.get(), before->camera.get()};
-  const std::array<const PosedImage*, 2> images{&newest.image, &before->image};
-  both_.update(cameras, images, std::array{even_tone(newest), even_tone(*before)});
-  both_.bind(program_, newest.depth_tolerance);
-  const Pose T_before_newest = before->image.T_world_camera.inverse() * newest.image.T_world_camera;
-  program_.set("T_before_newest", Eigen::Matrix4f(T_before_newest.matrix().cast<float>()));
+  bind_with_before(both_, program_, newest, *before);
   program_.set("interval", static_cast<float>(interval));
-  glBindTextureUnit(kRaysUnit, newest.camera->rays().name());
   glBindTextureUnit(kStillUnit, before->still.name());
   glBindImageTexture(0, newest.still.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
   glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);

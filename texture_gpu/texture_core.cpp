@@ -12,6 +12,7 @@ namespace {
 
 // Enough for a median of an image; of an average over ten images half as many.
 constexpr int kComparedPages = 600, kPagesPerAligned = 2;
+constexpr int kMostAccumulated = 320 * 240;  // px of an image, by a software renderer
 // Images within which a page that stays in view is written anyway; the same after the lamp became known or was lost.
 constexpr std::uint64_t kImagesToRefresh = 32, kImagesToRelight = 8;
 constexpr std::uint64_t kShareOfImages = 4;  // images that are kept get so much less memory than textures
@@ -43,6 +44,8 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
   if (options.images > 1) still_pass_ = std::make_unique<StillPass>(left);
+  if (options.accumulate.value_or(!software_renderer || left.width() * left.height() <= kMostAccumulated))
+    accumulation_pass_ = std::make_unique<AccumulationPass>(left, buffers_);
   // The first image is fused with an empty generation.
   current_ = generations_.take(store_);
   atlas_.write_table(table_);
@@ -169,6 +172,8 @@ void TextureCore::publish(LatestImages& latest) {
     out.light = newest_.light;
     out.depth_tolerance = options_.depth_tolerance;
   }
+  newest_.lent = true;
+  if (accumulation_pass_) accumulate();
   if (still_pass_) keep_newest();
   gl::Fence::insert().wait(kGpuTimeout);
   const bool same_light = (newest_.light == nullptr) == (before_.light == nullptr);
@@ -186,6 +191,11 @@ std::shared_ptr<const NewestImages> TextureCore::lend(bool with_before) const {
   for (const auto& image : kept_images_.images())
     if (image != newest) images->others.emplace_back(image);
   return images;
+}
+
+void TextureCore::accumulate() {
+  if (before_.lent) (*accumulation_pass_)(*newest_.published[0], *before_.published[0]);
+  mark("accumulation");
 }
 
 void TextureCore::keep_newest() {

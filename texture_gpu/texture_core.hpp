@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gl/sampler_reset.hpp"
+#include "texture_gpu/accumulation_pass.hpp"
 #include "texture_gpu/edge_pass.hpp"
 #include "texture_gpu/extract_pass.hpp"
 #include "texture_gpu/extraction_report.hpp"
@@ -63,6 +64,7 @@ class TextureCore {
   void take_out_shadows();
   void take_out_shadows(const SceneLight& light);
   void publish(LatestImages& latest);
+  void accumulate();
   void keep_newest();
   std::shared_ptr<const NewestImages> lend(bool with_before) const;
   void compare_with_textures();
@@ -86,7 +88,8 @@ class TextureCore {
   AtlasStore store_;
   ImagePlaces places_;
   KeptImages kept_images_;
-  std::unique_ptr<StillPass> still_pass_;  // where images are kept
+  std::unique_ptr<StillPass> still_pass_;                // where images are kept
+  std::unique_ptr<AccumulationPass> accumulation_pass_;  // where they are accumulated
   std::vector<ExposureEstimator> exposures_;
   SharpnessEstimator sharpness_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;

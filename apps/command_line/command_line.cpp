@@ -211,6 +211,11 @@ Option* Command::add_flag(const std::string& names, bool& target, const std::str
         names.substr(1), [&target] { target = false; }, help));
   return keep(app_.add_flag(names, target, help));
 }
+Option* Command::add_flag(const std::string& names, std::optional<bool>& target, const std::string& help) {
+  const bool clears = names.starts_with('!');
+  return keep(app_.add_flag_callback(
+      clears ? names.substr(1) : names, [&target, clears] { target = !clears; }, help));
+}
 Option* Command::add_number(const std::string& names, std::function<void(std::uint64_t)> take,
                             const std::string& help) {
   return keep(app_.add_option_function<std::uint64_t>(names, take, help));

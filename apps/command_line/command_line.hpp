@@ -85,6 +85,8 @@ class Command {
   Option* add_option(const std::string& names, T& target, const std::string& help);
   /// Sets `target`; "!--no-such-thing" clears it.
   Option* add_flag(const std::string& names, bool& target, const std::string& help);
+  /// Of which nothing is a default of its own.
+  Option* add_flag(const std::string& names, std::optional<bool>& target, const std::string& help);
   /// A number that goes through a function.
   Option* add_number(const std::string& names, std::function<void(std::uint64_t)> take, const std::string& help);
   /// One of the words of `choices`.

@@ -38,7 +38,7 @@ struct Arguments {
   double seconds = 30;
   double pictures_hz = 5;
   bool still_head = false, zero_delay = true, sounds = true;
-  TextureOptions textures;
+  TextureOptions textures{.accumulate = std::nullopt};
   LevelArguments detail;
   ViewOutputs outputs;
 };
@@ -332,6 +332,9 @@ void add_operator_command(Command& app, std::function<int()>& action) {
                     "Shadows of what moves are shown where they were; else where they fall, once it is known where the "
                     "lamp is");
   add_images_option(*command, arguments->textures.images);
+  add_accumulate_option(*command, arguments->textures.accumulate);
+  command->add_flag("!--no-accumulate", arguments->textures.accumulate,
+                    "Show it as it came (default: so on software renderers, for images above 320x240)");
   add_level_options(*command, arguments->detail);
   add_view_outputs(*command, arguments->outputs, {"shown", "delayed", "true"});
   command->footer(
