@@ -9,7 +9,7 @@ namespace foresight {
 namespace {
 
 constexpr GLuint kMovedUnit = kRaysUnit + 1;
-constexpr double kRest = 1e-3;   // m, of a box's corner
+constexpr double kRest = 1e-3;    // m, of a box's corner
 constexpr double kAround = 0.01;  // m: what lies so near a box may be of it
 
 /// Rows of what takes points of the camera's frame into [-1, 1]^3 where they lie in `box`.
@@ -23,8 +23,8 @@ void append_box(const Eigen::AlignedBox3d& box, const Pose& T_node_camera, std::
 }
 
 bool has_moved(const Eigen::AlignedBox3d& box, const Pose& T_now, const Pose& T_then) {
-  for (const auto corner : {Eigen::AlignedBox3d::BottomLeftFloor, Eigen::AlignedBox3d::TopRightCeil,
-                            Eigen::AlignedBox3d::TopLeftFloor})
+  for (const auto corner :
+       {Eigen::AlignedBox3d::BottomLeftFloor, Eigen::AlignedBox3d::TopRightCeil, Eigen::AlignedBox3d::TopLeftFloor})
     if ((T_now * box.corner(corner) - T_then * box.corner(corner)).norm() > kRest) return true;
   return false;
 }

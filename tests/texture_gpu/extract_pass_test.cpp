@@ -10,6 +10,7 @@ namespace {
 using reference::Answer;
 
 constexpr std::uint64_t kMemory = 12 << 20;
+constexpr double kFiner = 1.5;  // than the first camera sees a texel, the second one has to
 
 /// How far the GPU's texels are from the reference.
 struct Agreement {
@@ -78,8 +79,8 @@ class ExtractTest : public HeadlessTest {
               reference::footprint(cameras[c], T * p_middle, T.linear() * patch.eu / chart.raster.density.x(),
                                    T.linear() * patch.ev / chart.raster.density.y());
           const double quality = std::sqrt(std::abs(axes.determinant()));
-          borderline |= std::abs(quality - best) < 0.01 * quality;
-          if (quality <= best) continue;
+          borderline |= std::abs(quality - kFiner * best) < 0.01 * quality;
+          if (quality <= kFiner * best) continue;
           best = quality;
           code = reference::quality_code(quality);
           colour = sample(cameras[c].image, pixel, axes);
@@ -155,7 +156,7 @@ TEST_P(ExtractOfLenses, EveryTexelIsThatOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(Lenses, ExtractOfLenses, testing::ValuesIn(kLensKinds),
                          [](const auto& i) { return std::string(i.param); });
 
-TEST_F(ExtractTest, OfTwoCamerasTheSharperOneWins) {
+TEST_F(ExtractTest, OfTwoCamerasTheFirstWinsUnlessTheOtherIsClearlySharper) {
   make({"pinhole", "plumb_bob"});
   const Agreement a = compare(photographs({usual_view(), look_at({-0.6, 0.55, 0.6}, {0.05, 0, 0.1})}));
   expect_agreement(a);
