@@ -59,6 +59,14 @@ TEST(PhysicalLab, EverythingRestsWhereTheModelHasIt) {
   }
 }
 
+TEST(PhysicalLab, EverythingFallsAsleep) {
+  PhysicalLab world(
+      lab(), [](std::string_view joint, RobotTime) { return shafts_at_rest(joint); }, kStart, exact());
+  const LabState before = world.state_at(kStart + 4s), after = world.state_at(kStart + 5s);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_TRUE(before[i].matrix() == after[i].matrix()) << lab()->lab().parts[i].name << " is still awake";
+}
+
 TEST(PhysicalLab, TheShaftsGraspABrickCarryItAndDropItIntoTheTray) {
   const auto path = pick();
   PhysicalLab world(lab(), shafts_on(path, kStart), kStart, exact());
