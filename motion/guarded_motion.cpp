@@ -20,38 +20,36 @@ GuardedMotion::GuardedMotion(const GateOptions& options, RobotShape* shape) : dt
   there_.resize(shape_->couples());
 }
 
-GuardedMotion::Motions GuardedMotion::towards(const JointValues& targets, double speed) const noexcept {
-  Motions next = motion_;
-  for (std::size_t i = 0; i < limits_.size(); ++i) next[i] = approach(motion_[i], targets[i], limits_[i], speed, dt_);
+GuardedMotion::Next GuardedMotion::towards(const JointValues& targets, double speed) const noexcept {
+  Next next{motion_};
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    const StoppableMotion one = approach(motion_[i], targets[i], limits_[i], speed, dt_);
+    next.motion[i] = one.motion;
+    next.stop[i] = one.stop;
+  }
   return next;
 }
 
-/// `check` looks at the margins (there_) of poses from the next one to where the robot would stop after it.
+/// `check` is asked of positions from the next ones to where the robot would stop after them.
 template <typename Check>
-bool GuardedMotion::all_to_rest(const Motions& next, Check&& check) noexcept {
-  JointValues here{}, rest{}, between{};
-  for (std::size_t i = 0; i < limits_.size(); ++i) {
-    here[i] = next[i].position;
-    rest[i] = stop_position(next[i], limits_[i], dt_);
-  }
+bool GuardedMotion::all_to_rest(const Next& next, Check&& check) noexcept {
+  JointValues between{};
   for (int k = 0; k <= kSamplesToRest; ++k) {
     const double share = static_cast<double>(k) / kSamplesToRest;
-    for (std::size_t i = 0; i < limits_.size(); ++i) between[i] = here[i] + share * (rest[i] - here[i]);
-    shape_->margins({between.data(), limits_.size()}, there_);
-    if (!check()) return false;
+    for (std::size_t i = 0; i < limits_.size(); ++i)
+      between[i] = next.motion[i].position + share * (next.stop[i] - next.motion[i].position);
+    if (!check(std::span<const double>(between.data(), limits_.size()))) return false;
   }
   return true;
 }
 
 /// The couple of parts that would come too close.
-std::optional<std::size_t> GuardedMotion::blocking(const Motions& next) noexcept {
+std::optional<std::size_t> GuardedMotion::blocking(const Next& next) noexcept {
   std::optional<std::size_t> out;
   if (shape_ == nullptr) return out;
-  all_to_rest(next, [&] {
-    const auto least = std::min_element(there_.begin(), there_.end());
-    if (least == there_.end() || *least >= 0) return true;
-    out = static_cast<std::size_t>(least - there_.begin());
-    return false;
+  all_to_rest(next, [&](std::span<const double> positions) {
+    out = shape_->too_close(positions);
+    return !out;
   });
   return out;
 }
@@ -64,10 +62,11 @@ void GuardedMotion::measure_here() noexcept {
 
 /// After measure_here(), which found some parts too close: these only ever part, the closest of them for certain, and
 /// no others come too close. Loses what was measured.
-bool GuardedMotion::retreats(const Motions& next) noexcept {
+bool GuardedMotion::retreats(const Next& next) noexcept {
   const double least = *std::min_element(here_.begin(), here_.end());
   if (least >= 0) return false;
-  const bool only_part = all_to_rest(next, [this] {
+  const bool only_part = all_to_rest(next, [this](std::span<const double> positions) {
+    shape_->margins(positions, there_);
     for (std::size_t c = 0; c < there_.size(); ++c)
       if (there_[c] < 0 && there_[c] < here_[c] - kSameMargin) return false;
     std::swap(here_, there_);
@@ -77,17 +76,17 @@ bool GuardedMotion::retreats(const Motions& next) noexcept {
 }
 
 std::optional<GuardedMotion::Blocked> GuardedMotion::go_towards(const JointValues& targets, double speed) noexcept {
-  const Motions next = towards(targets, speed);
+  const Next next = towards(targets, speed);
   const auto couple = blocking(next);
   if (!couple) {
-    motion_ = next;
+    motion_ = next.motion;
     return std::nullopt;
   }
   measure_here();
   const Blocked blocked{*couple, here_[*couple]};
-  const Motions slow = towards(targets, std::min(speed, kRetreatSpeed));
+  const Next slow = towards(targets, std::min(speed, kRetreatSpeed));
   if (retreats(slow))
-    motion_ = slow;
+    motion_ = slow.motion;
   else
     halt();
   return blocked;

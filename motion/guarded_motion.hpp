@@ -42,12 +42,16 @@ class GuardedMotion {
   bool at_rest() const noexcept;
 
  private:
-  Motions towards(const JointValues& targets, double speed) const noexcept;
+  struct Next {
+    Motions motion;
+    JointValues stop{};  // where the fastest stop from there ends
+  };
+  Next towards(const JointValues& targets, double speed) const noexcept;
   template <typename Check>
-  bool all_to_rest(const Motions& next, Check&& check) noexcept;
-  std::optional<std::size_t> blocking(const Motions& next) noexcept;
+  bool all_to_rest(const Next& next, Check&& check) noexcept;
+  std::optional<std::size_t> blocking(const Next& next) noexcept;
   void measure_here() noexcept;
-  bool retreats(const Motions& next) noexcept;
+  bool retreats(const Next& next) noexcept;
 
   std::vector<JointLimits> limits_;
   double dt_;

@@ -46,7 +46,7 @@ double stop_position(JointMotion now, const JointLimits& limits, double dt) {
   return now.position;
 }
 
-JointMotion approach(const JointMotion& now, double target, const JointLimits& limits, double speed, double dt) {
+StoppableMotion approach(const JointMotion& now, double target, const JointLimits& limits, double speed, double dt) {
   const double jerk = kPlanned * limits.jerk, step = jerk * dt;
   const double error = std::clamp(target, limits.min_position, limits.max_position) - now.position;
   // Proportional near the target, where the square roots are too steep for whole cycles.
@@ -62,10 +62,12 @@ JointMotion approach(const JointMotion& now, double target, const JointLimits& l
       std::abs(next.velocity + std::copysign(next.acceleration * next.acceleration, next.acceleration) / (2 * jerk));
   const double end = stop_position(next, limits, dt);
   // Accelerated so far that it could no longer stop at the target.
-  if ((end - now.position - error) * error > 0 && now.velocity * error > 0) return brake(now, limits, dt);
+  const bool overshoots = (end - now.position - error) * error > 0 && now.velocity * error > 0;
   const bool stays = end >= limits.min_position && end <= limits.max_position && peak <= limits.velocity &&
                      std::abs(next.velocity) <= limits.velocity;
-  return stays ? next : brake(now, limits, dt);
+  if (stays && !overshoots) return {next, end};
+  const JointMotion slower = brake(now, limits, dt);
+  return {slower, stop_position(slower, limits, dt)};
 }
 
 }  // namespace foresight

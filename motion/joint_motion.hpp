@@ -34,9 +34,15 @@ JointMotion brake(const JointMotion& now, const JointLimits& limits, double dt);
 /// Where that stop ends.
 double stop_position(JointMotion now, const JointLimits& limits, double dt);
 
+/// A cycle, and where the fastest stop from there ends.
+struct StoppableMotion {
+  JointMotion motion;
+  double stop = 0;
+};
+
 /// The next cycle towards `target` (position), from which a stop still ends within the position limits:
 /// that holds for every later cycle too if it holds now. `speed` in 0 .. 1 scales the velocity limit.
 /// Neither throws nor allocates. `target` must be finite.
-JointMotion approach(const JointMotion& now, double target, const JointLimits& limits, double speed, double dt);
+StoppableMotion approach(const JointMotion& now, double target, const JointLimits& limits, double speed, double dt);
 
 }  // namespace foresight

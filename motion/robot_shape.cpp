@@ -116,6 +116,7 @@ RobotShape::RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, 
                        const std::string& where)
     : robot_(std::move(robot)), posed_(robot_, joints, T_world_root, where) {
   placed_.resize(robot_.links.size());
+  around_.resize(robot_.links.size());
   links_.resize(robot_.links.size());
   for (std::size_t i = 0; i < links_.size(); ++i) {
     Link& link = links_[i];
@@ -150,8 +151,31 @@ void RobotShape::pose(std::span<const double> positions) noexcept {
   posed_.pose(positions);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Pose& T = posed_.T_world_link(i);
-    placed_[i] = {T * links_[i].body.a, T * links_[i].body.b, links_[i].body.radius};
+    const Capsule& body = placed_[i] = {T * links_[i].body.a, T * links_[i].body.b, links_[i].body.radius};
+    around_[i] = {0.5 * (body.a + body.b), 0.5 * (body.a - body.b).norm() + body.radius};
   }
+}
+
+// By balls around the bodies; what this leaves open, margin() decides. That takes half of a step off what it samples of
+// the distance to a box.
+bool RobotShape::surely_clear(const Couple& couple) const noexcept {
+  const Ball& ball = around_[couple.link];
+  const auto beyond = [&](double squared_distance, double other) {
+    const double kept = ball.radius + other + surroundings_.clearance;
+    return squared_distance > kept * kept;
+  };
+  switch (couple.what) {
+    case Against::workspace: return false;  // as quick by itself
+    case Against::obstacle: {
+      const double step = 0.5 * (placed_[couple.link].b - placed_[couple.link].a).norm() / kSamples;
+      return beyond(surroundings_.obstacles[couple.other].box.squaredExteriorDistance(ball.middle), step);
+    }
+    case Against::link: {
+      const Ball& other = around_[couple.other];
+      return beyond((ball.middle - other.middle).squaredNorm(), other.radius);
+    }
+  }
+  return false;
 }
 
 double RobotShape::margin(const Couple& couple) const noexcept {
@@ -171,6 +195,20 @@ double RobotShape::margin(const Couple& couple) const noexcept {
 void RobotShape::margins(std::span<const double> positions, std::span<double> out) noexcept {
   pose(positions);
   for (std::size_t i = 0; i < couples_.size(); ++i) out[i] = margin(couples_[i]);
+}
+
+std::optional<std::size_t> RobotShape::too_close(std::span<const double> positions) noexcept {
+  pose(positions);
+  std::optional<std::size_t> out;
+  double least = 0;
+  for (std::size_t i = 0; i < couples_.size(); ++i) {
+    if (surely_clear(couples_[i])) continue;
+    const double here = margin(couples_[i]);
+    if (here >= least) continue;
+    least = here;
+    out = i;
+  }
+  return out;
 }
 
 std::vector<GuardedLink> RobotShape::guarded(std::span<const double> positions) {

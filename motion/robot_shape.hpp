@@ -71,6 +71,9 @@ class RobotShape {
   /// Of each couple, by how much it is farther apart than it must be, metres; negative: too close. `out`: couples() of
   /// them. Does not allocate.
   void margins(std::span<const double> positions, std::span<double> out) noexcept;
+  /// The couple whose parts are too close by the most: the least of the margins, where that is negative. A fraction of
+  /// their cost. Does not allocate.
+  std::optional<std::size_t> too_close(std::span<const double> positions) noexcept;
   /// Both parts of a couple in words, such as "link 'arm_5' leaves the workspace"; valid until the next surround().
   const char* message(std::size_t couple) const { return couples_[couple].message.c_str(); }
   /// How far apart its parts must be, metres; 0 from the workspace's walls.
@@ -89,6 +92,10 @@ class RobotShape {
     Capsule body;  ///< in the link's frame
     bool has_body = false, moves = false;
   };
+  struct Ball {
+    Eigen::Vector3d middle;
+    double radius = 0;
+  };
   enum class Against : std::uint8_t { workspace, obstacle, link };
   struct Couple {
     Against what;
@@ -97,11 +104,13 @@ class RobotShape {
   };
   void pose(std::span<const double> positions) noexcept;
   double margin(const Couple& couple) const noexcept;
+  bool surely_clear(const Couple& couple) const noexcept;
 
   UrdfRobot robot_;
   PosedLinks posed_;
   std::vector<Link> links_;
   std::vector<Capsule> placed_;
+  std::vector<Ball> around_;  // each of these
   Surroundings surroundings_;
   std::vector<Couple> couples_;
 };

@@ -46,9 +46,10 @@ TEST(JointMotion, ReachesTheTargetWithoutOvershoot) {
     JointMotion m;
     double farthest = 0;
     for (int i = 0; i < 2000; ++i) {
-      const JointMotion next = approach(m, target, kLimits, 1, kDt);
-      expect_within(m, next, kLimits, "approach");
-      m = next;
+      const StoppableMotion next = approach(m, target, kLimits, 1, kDt);
+      expect_within(m, next.motion, kLimits, "approach");
+      EXPECT_EQ(next.stop, stop_position(next.motion, kLimits, kDt));
+      m = next.motion;
       farthest = std::max(farthest, m.position * (target < 0 ? -1 : 1));
     }
     EXPECT_NEAR(m.position, target, 1e-6);
@@ -63,7 +64,7 @@ TEST(JointMotion, KeepsItsLimitsWhateverIsAskedFor) {
   double fastest = 0, farthest = 0, target = 0;
   for (int i = 0; i < 200'000; ++i) {
     if (i % 50 == 0 || i % 777 < 20) target = 100 * unit(random);
-    const JointMotion next = approach(m, target, kLimits, 1, kDt);
+    const JointMotion next = approach(m, target, kLimits, 1, kDt).motion;
     expect_within(m, next, kLimits, "random targets");
     m = next;
     fastest = std::max(fastest, std::abs(m.velocity));
@@ -77,7 +78,7 @@ TEST(JointMotion, SpeedScalesTheVelocity) {
   JointMotion m;
   double fastest = 0;
   for (int i = 0; i < 1000; ++i) {
-    m = approach(m, 1.9, kLimits, 0.1, kDt);
+    m = approach(m, 1.9, kLimits, 0.1, kDt).motion;
     fastest = std::max(fastest, m.velocity);
   }
   EXPECT_NEAR(fastest, 0.15, 0.01);

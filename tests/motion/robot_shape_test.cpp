@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
+#include <random>
 
 #include "common/error.hpp"
 #include "tests/scene/test_run.hpp"
@@ -72,6 +75,31 @@ TEST_F(RobotShapeTest, NamesTheLinkThatTouchesTheTable) {
 TEST_F(RobotShapeTest, NamesTheLinksThatMeet) {
   // Folded to a closed triangle and on: the fourth rod meets the first.
   EXPECT_STREQ(obstructed({0, 2.0944, 2.0944, 2.0944}), "link 'rod_4' comes too close to link 'rod_1'");
+}
+
+TEST_F(RobotShapeTest, WhatIsTooCloseHasTheLeastMargin) {
+  surroundings_.workspace = {Eigen::Vector3d(-1.2, -1, -0.5), Eigen::Vector3d(1.2, 1, 1.5)};
+  surroundings_.obstacles = {{"table", {Eigen::Vector3d(0.3, -3, -1), Eigen::Vector3d(3, 3, -0.125)}},
+                             {"post", {Eigen::Vector3d(-0.6, -0.1, -1), Eigen::Vector3d(-0.5, 0.1, 1)}}};
+  shape_.surround(surroundings_);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> turn(-2.5, 2.5);
+  std::vector<double> margins(shape_.couples());
+  std::map<std::string, int> seen;
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<double> positions{turn(random), turn(random), turn(random), turn(random)};
+    shape_.margins(positions, margins);
+    const auto least = std::ranges::min_element(margins);
+    const std::optional<std::size_t> found = shape_.too_close(positions);
+    ASSERT_EQ(found.has_value(), *least < 0);
+    if (found) {
+      ASSERT_EQ(margins[*found], *least);
+    }
+    ++seen[found ? shape_.message(*found) : "clear"];
+  }
+  EXPECT_GT(seen["clear"], 100);
+  EXPECT_GT(seen["link 'rod_4' comes too close to link 'rod_1'"], 10);
+  EXPECT_GT(seen["link 'rod_3' comes too close to obstacle 'post'"], 10);
 }
 
 // A hand on a flange is as near to the forearm as the link that it is fixed to.
