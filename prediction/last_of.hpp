@@ -15,8 +15,8 @@ class LastOf {
   std::size_t size() const noexcept { return count_; }
   bool empty() const noexcept { return count_ == 0; }
   /// From the oldest, 0, to the newest, size() - 1.
-  const T& operator[](std::size_t i) const noexcept { return values_[(first_ + i) % values_.size()]; }
-  T& operator[](std::size_t i) noexcept { return values_[(first_ + i) % values_.size()]; }
+  const T& operator[](std::size_t i) const noexcept { return values_[place(i)]; }
+  T& operator[](std::size_t i) noexcept { return values_[place(i)]; }
   const T& newest() const noexcept { return (*this)[count_ - 1]; }
   T& newest() noexcept { return (*this)[count_ - 1]; }
 
@@ -36,6 +36,11 @@ class LastOf {
   void clear() noexcept { first_ = count_ = 0; }
 
  private:
+  std::size_t place(std::size_t i) const noexcept {
+    const std::size_t straight = first_ + i;
+    return straight < values_.size() ? straight : straight - values_.size();
+  }
+
   std::vector<T> values_;
   std::size_t first_ = 0, count_ = 0;
 };

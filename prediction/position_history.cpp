@@ -12,9 +12,23 @@ bool PositionHistory::add(double time, double position) noexcept {
   return true;
 }
 
-// The first value whose time is after `time`; size() where there is none.
+// The first value whose time is after `time`; size() where there is none. Values come nearly evenly: it is sought from
+// where it would be if they did, in steps that double, and by halves within the last of these.
 std::size_t PositionHistory::first_after(double time) const noexcept {
-  std::size_t from = 0, count = values_.size();
+  const std::size_t size = values_.size();
+  if (size == 0 || !(values_.newest().time > time)) return size;
+  if (values_[0].time > time) return 0;
+  const double share = (time - values_[0].time) / (values_.newest().time - values_[0].time);
+  std::size_t from = static_cast<std::size_t>(share * static_cast<double>(size - 1)), to = from + 1;
+  for (std::size_t step = 1; to < size && values_[to].time <= time; step *= 2) {
+    from = to;
+    to = std::min(size, to + step);
+  }
+  for (std::size_t step = 1; from > 0 && values_[from].time > time; step *= 2) {
+    to = from;
+    from -= std::min(from, step);
+  }
+  std::size_t count = to - from;
   while (count > 0) {
     const std::size_t half = count / 2;
     if (values_[from + half].time > time) {
