@@ -1,6 +1,7 @@
 #include "apps/robot_command.hpp"
 
 #include <atomic>
+#include <exception>
 #include <thread>
 
 #include "apps/live_view.hpp"
@@ -86,17 +87,27 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
         clock.sleep_until(due + kTick);
       ended = true;
     };
-    if (view || windows.rig) {  // a window wants the main thread, and drawing must not make commands late
-      std::jthread ticks(tick_on);
+    // A window wants the main thread, and neither drawing nor a busy machine must make commands late.
+    std::exception_ptr failure;
+    std::jthread ticks([&] {
+      make_real_time(priority::kLine);  // where allowed
+      try {
+        tick_on();
+      } catch (...) {
+        failure = std::current_exception();
+        ended = true;
+      }
+    });
+    if (view || windows.rig) {
       const auto stopped = [&] { return ended.load(); };
       if (view)
         view->run(stopped);
       else
         run_guarded(*windows.rig, stopped);
       unseen = true;
-    } else {
-      tick_on();
     }
+    ticks.join();
+    if (failure) std::rethrow_exception(failure);
     notify_service("STOPPING=1");
   }
   const int code = console.finish();

@@ -19,7 +19,6 @@
 namespace foresight {
 namespace {
 
-constexpr int kRackPriority = 70;  // below the control loop
 constexpr Duration kRackStep = std::chrono::milliseconds(1), kRackPatience = std::chrono::milliseconds(50);
 
 /// Writes at once, in the caller's thread: for stepped time, in which nothing may be left out and waiting costs
@@ -232,7 +231,7 @@ RobotDevices::RobotDevices(const Rig& rig, Clock& clock, const RobotDeviceOption
     bus->network = make_network(*bus->patient, clock, rig, i);
     if (bus->rack && !stepped)
       bus->rack_thread = std::jthread([rack = bus->rack.get()](std::stop_token stop) {
-        make_real_time(kRackPriority);  // where allowed: real drives do not wait for this machine either
+        make_real_time(priority::kMockDrives);  // where allowed
         rack->run(std::move(stop));
       });
     buses_.push_back(std::move(bus));

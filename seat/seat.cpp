@@ -1,8 +1,11 @@
 #include "seat/seat.hpp"
 
 #include <algorithm>
+#include <future>
+#include <mutex>
 #include <utility>
 
+#include "common/real_time.hpp"
 #include "input/hand_on_line.hpp"
 
 namespace foresight {
@@ -19,13 +22,17 @@ using Phase = ControlSeatStatus::Phase;
 Seat::Seat(const Rig& rig, link::OperatorEnd& end, SeatDriver& driver, Clock& clock)
     : rig_(rig), end_(end), driver_(driver), clock_(clock), outlook_(rig) {}
 
-void Seat::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) {
+std::string Seat::start() {
+  std::promise<std::string> refused;
+  std::future<std::string> answer = refused.get_future();
+  thread_ = std::jthread([this, refused = std::move(refused)](const std::stop_token& stop) mutable {
+    refused.set_value(make_real_time(priority::kSeat));
     while (!stop.stop_requested()) {
       step();
       clock_.sleep_until(clock_.now() + kEvery);
     }
   });
+  return answer.get();
 }
 
 void Seat::stop() noexcept {

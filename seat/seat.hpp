@@ -8,10 +8,11 @@
 #pragma once
 
 #include <atomic>
-#include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "common/priority_mutex.hpp"
 #include "link/operator_side/operator_end.hpp"
 #include "seat/robot_outlook.hpp"
 #include "seat/seat_driver.hpp"
@@ -41,7 +42,9 @@ class Seat {
   Seat(const Rig& rig, link::OperatorEnd& end, SeatDriver& driver, Clock& clock);
   ~Seat() { stop(); }
 
-  void start();
+  /// Its thread asks for real-time priority: "", or why that was refused (make_real_time()). Set-points are late then
+  /// where the machine is busy, and the robot stops between them.
+  std::string start();
   void stop() noexcept;
   void step();
 
@@ -68,7 +71,7 @@ class Seat {
   link::OperatorEnd& end_;
   SeatDriver& driver_;
   Clock& clock_;
-  mutable std::mutex mutex_;  // all below
+  mutable PriorityMutex mutex_;  // all below
   RobotOutlook outlook_;
   PredictedRobot shown_;
   bool held_ = false, engaged_ = false, followed_ = false;

@@ -8,7 +8,6 @@
 namespace foresight {
 namespace {
 
-constexpr int kPriority = 80;  // above the network's and the cameras' threads, below the kernel's watchdogs
 constexpr const char* kReal = "add --mock, or leave --stepped out";
 
 }  // namespace
@@ -17,7 +16,7 @@ RobotLoop::RobotLoop(MonotonicClock& clock, Robot& robot, RobotDevices& devices,
   std::promise<void> up;
   std::future<void> is_up = up.get_future();
   thread_ = std::jthread([&clock, &robot, &devices, say, up = std::move(up)](const std::stop_token& stop) mutable {
-    if (const std::string refused = make_real_time(kPriority); !refused.empty()) say(refused);
+    if (const std::string refused = make_real_time(priority::kControlLoop); !refused.empty()) say(refused);
     // In this thread: the drives' watchdogs would find the bus silent while a new one gets its stack, every page of
     // which is locked in memory.
     try {

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 /// A thread that only wakes up: what the machine itself makes of such a loop.
 LoopStatistics empty_loop(Clock& clock, Duration period, const std::stop_token& stop) {
-  make_real_time(80);
+  make_real_time(priority::kControlLoop);
   LoopStatistics out;
   for (RobotTime due = clock.now() + period; !stop.stop_requested(); due = std::max(due + period, clock.now())) {
     clock.sleep_until(due);
@@ -88,7 +88,7 @@ int bench_robot(const RobotBenchOptions& options) {
     std::jthread loop([&](const std::stop_token& stop) {
       pthread_getcpuclockid(pthread_self(), &loop_clock);
       known = true;
-      make_real_time(80);
+      make_real_time(priority::kControlLoop);
       robot.run(clock, stop);
     });
     while (!known) std::this_thread::yield();

@@ -107,7 +107,8 @@ class LiveSeat {
 
   int run() {
     end_.start();
-    seat_.start();
+    if (const std::string refused = seat_.start(); !refused.empty())
+      std::fprintf(stderr, "operator: %s\n", refused.c_str());
     std::vector<ViewObserver*> observers{&shown_};
     if (head_) observers.push_back(&*head_);
     ViewLoop loop(session_, source_, observers, [] { return stop_requested(); });

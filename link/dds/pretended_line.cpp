@@ -1,5 +1,7 @@
 #include "link/dds/pretended_line.hpp"
 
+#include "common/real_time.hpp"
+
 namespace foresight::link {
 namespace {
 
@@ -64,7 +66,10 @@ std::optional<RobotTime> PretendedLine::receive(std::size_t bytes, bool repaired
 }
 
 void PretendedLine::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  thread_ = std::jthread([this](const std::stop_token& stop) {
+    make_real_time(priority::kLine);  // where allowed: a real line does not wait for this machine
+    run(stop);
+  });
 }
 
 void PretendedLine::run(const std::stop_token& stop) {

@@ -1,5 +1,6 @@
 #include "link/operator_side/operator_end.hpp"
 
+#include "common/real_time.hpp"
 #include "link/dds/topics.hpp"
 
 namespace foresight::link {
@@ -38,7 +39,10 @@ OperatorEnd::OperatorEnd(Participant& participant, const OperatorEndOptions& opt
 }
 
 void OperatorEnd::start() {
-  control_thread_ = std::jthread([this](const std::stop_token& stop) { run_control(stop); });
+  control_thread_ = std::jthread([this](const std::stop_token& stop) {
+    make_real_time(priority::kLine);  // where allowed: the robot stops without set-points
+    run_control(stop);
+  });
   if (pictures_) frames_thread_ = std::jthread([this](const std::stop_token& stop) { run_frames(stop); });
 }
 

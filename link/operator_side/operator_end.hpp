@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "common/bounded_queue.hpp"
+#include "common/priority_mutex.hpp"
 #include "common/suspension.hpp"
 #include "link/control_wire/control_lines.hpp"
 #include "link/operator_side/pair_intake.hpp"
@@ -98,10 +99,10 @@ class OperatorEnd {
   // Of the control thread, but for what is locked.
   SeatLine line_;
   Reader states_, motions_;
-  mutable std::mutex seat_mutex_;  // seat_
+  mutable PriorityMutex seat_mutex_;  // seat_
   ControlSeat seat_;
   SuspensionWatch suspension_;
-  mutable std::mutex heard_mutex_;  // robot_clock_, heard_, heard_motions_
+  mutable PriorityMutex heard_mutex_;  // robot_clock_, heard_, heard_motions_
   RobotClockTracker robot_clock_;
   std::optional<HeardState> heard_;
   std::deque<HeardMotion> heard_motions_;

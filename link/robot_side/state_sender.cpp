@@ -1,5 +1,6 @@
 #include "link/robot_side/state_sender.hpp"
 
+#include "common/real_time.hpp"
 #include "link/dds/topics.hpp"
 
 namespace foresight::link {
@@ -40,6 +41,7 @@ StateSender::StateSender(Participant& participant, SenderName name, const Rig& r
 
 void StateSender::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) {
+    make_real_time(priority::kLine);  // where allowed
     while (!stop.stop_requested()) {
       step(clock_.now());
       clock_.sleep_until(clock_.now() + kStateLook);

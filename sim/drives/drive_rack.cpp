@@ -1,6 +1,7 @@
 #include "sim/drives/drive_rack.hpp"
 
 #include <algorithm>
+#include <mutex>
 
 #include "common/error.hpp"
 #include "common/text.hpp"

@@ -3,13 +3,13 @@
 
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <string_view>
 #include <vector>
 
 #include "common/clock.hpp"
+#include "common/priority_mutex.hpp"
 #include "drivers/can/can_bus.hpp"
 #include "sim/drives/drive_node.hpp"
 #include "sim/drives/shaft_history.hpp"
@@ -70,7 +70,7 @@ class DriveRack {
   Clock& clock_;
   std::unique_ptr<CanBus> bus_;
   std::vector<std::unique_ptr<Slot>> slots_;
-  mutable std::mutex mutex_;
+  mutable PriorityMutex mutex_;  // cameras and consoles ask, at leisure; the real-time thread steps
   RobotTime now_;
   std::optional<ShaftHistory> history_;  // set once the shafts are there
   std::vector<double> positions_;        // of all shafts at now_
