@@ -9,7 +9,6 @@
 
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
-#include "common/real_time.hpp"
 #include "sim/live_view/stereo_renderer.hpp"
 #include "sim/motion.hpp"
 
@@ -20,6 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kPoll = 1ms;       // for finished images
 constexpr Duration kStopTime = 50ms;  // so long the renderer takes to stop in stepped time
+constexpr Duration kLatest = 400ms;   // no camera takes that long; who reads it would doubt its clock
 constexpr Duration kDrawTime = 60s;   // of one pair, on the slowest machine; more is a driver that hangs
 constexpr Duration kExposureUnit = 100us;
 constexpr int kQuicker = 4, kLightRest = 2;
@@ -97,7 +97,6 @@ void MockStereo::close(Side side) noexcept {
 }
 
 void MockStereo::render(const std::stop_token& stop, std::promise<void>& ready) noexcept {
-  if (!stepped_) make_background();  // a software renderer takes all that there is
   try {
     lit_.clear();
     light_due_ = clock_.now();
@@ -135,8 +134,12 @@ bool MockStereo::draw(StereoRenderer& renderer, RobotTime end_of_exposure, std::
 
 void MockStereo::hand_over(StereoRenderer& renderer, bool wait) {
   const double before = cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
-  if (auto pair = renderer.take(wait))
-    for (std::size_t i = 0; i < 2; ++i) newest_[i].put(std::move((*pair)[i]));
+  if (auto pair = renderer.take(wait)) {
+    if (stepped_ || clock_.now() - pair->front().time < kLatest)
+      for (std::size_t i = 0; i < 2; ++i) newest_[i].put(std::move((*pair)[i]));
+    else
+      ++skipped_;
+  }
   copying_cpu_s_ = copying_cpu_s_ + cpu_seconds(CLOCK_THREAD_CPUTIME_ID) - before;
 }
 

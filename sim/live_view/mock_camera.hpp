@@ -39,10 +39,10 @@ struct MockCameraOptions {
 /// the middle of the exposure, draws both images and hands each camera its newest one. Both cameras see the same
 /// instant; there is no motion blur and no rolling shutter. Any thread.
 ///
-/// In real time the renderer goes on by itself, in the background (make_background) lest it disturbs a robot's loop,
-/// and leaves instants out that it has no time for. At a SteppedClock, images belong to instants a period apart since
-/// the cameras started, are drawn when a camera is asked for them, and are the same on every run; a camera that is
-/// asked late gets the newest instant.
+/// In real time the renderer goes on by itself and leaves instants out that it has no time for; it gets as much of a
+/// busy machine as others do, as nothing can be operated without images. At a SteppedClock, images belong to instants a
+/// period apart since the cameras started, are drawn when a camera is asked for them, and are the same on every run; a
+/// camera that is asked late gets the newest instant.
 class MockStereo {
  public:
   /// Exposure at which the picture has its right brightness, 100 us units as V4L2 has it.
