@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <mutex>
+#include <utility>
 
 #include "apps/operator/seat_begin.hpp"
 #include "apps/operator/thing_lies.hpp"
 #include "display/view_loop.hpp"
 #include "seat/predicted_source.hpp"
+#include "seat/seat_log.hpp"
 #include "seat/seat_options.hpp"
 #include "seat/seen_nodes.hpp"
 #include "seat/view_setup.hpp"
@@ -18,6 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr Duration kNewsEvery = 100ms;
 constexpr Duration kTruthComesWithin = 10s;  // after the end, for what was shown last, and for the thing
 
 /// What becomes of the script, for another thread than the seat's.
@@ -67,7 +70,8 @@ class ServedTrial final : ViewObserver {
         source_(rig, scene_, end_, seat_, clock_, source_options(rig)),
         trust_(session_, setup_, clock_, trust_options(options)),
         task_(options.most_s),
-        measures_(describe_seat(rig, session_, setup_), options.out) {
+        measures_(describe_seat(rig, session_, setup_), options.out),
+        joints_(rig.joint_names()) {
     source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
       trust_.heard(frame.image[0], posed);
       measures_.saw(frame.image[0].captured, frame.image[0].bgr);
@@ -80,7 +84,7 @@ class ServedTrial final : ViewObserver {
 
   SeatTrialFigures run(const std::function<bool()>& stopped) {
     end_.start();
-    seat_.start();
+    if (const std::string refused = seat_.start(); !refused.empty()) say_(refused);
     ViewLoop loop(session_, source_, {this}, stopped);
     told_ = clock_.now();
     while (loop.step() != SourceState::ended && advance()) {
@@ -119,6 +123,7 @@ class ServedTrial final : ViewObserver {
     trust_.drew(source_, place, TrustMarks::hatch);
     trust_.judge(source_.why_invalid());
     if (!task_.under_way()) return;
+    tell_trust();
     const link::LineFrame& newest = *source_.newest();
     measures_.show({step.instant.time,
                     newest.image[0].captured,
@@ -138,17 +143,27 @@ class ServedTrial final : ViewObserver {
     task_.see(now, driver_.state());
     if (task_.failed()) return false;
     tell(now);
+    tell_news(now);
     const bool waits = measures_.waits() || (things_ && !things_->seen_at_rest(options_.thing));
     return !task_.ended() || (waits && now - *task_.ended() < kTruthComesWithin);
+  }
+
+  void tell_trust() {
+    if (std::exchange(fell_back_, trust_.falls_back()) == trust_.falls_back()) return;
+    say_(fell_back_ ? "the newest image stands in for the view: " + trust_.why() : "the view is back");
   }
 
   void tell(RobotTime now) {
     constexpr Duration kTellEvery = 5s;
     if (now - told_ < kTellEvery) return;
     told_ = now;
-    const SeatStatus status = seat_.status();
-    say_(task_.began() ? fmt::format("{:.0f} s: {} pictures", task_.seconds(now), measures_.measured())
-                       : status.control.words + (status.robot ? "; " + status.robot->doing.name : ""));
+    if (task_.began()) say_(fmt::format("{:.0f} s: {} pictures", task_.seconds(now), measures_.measured()));
+  }
+
+  void tell_news(RobotTime now) {
+    if (now < news_due_) return;
+    news_due_ = now + kNewsEvery;
+    for (const std::string& news : log_.news(seat_lines(seat_.status(), joints_, source_.fault()))) say_(news);
   }
 
   ThingLies where_the_thing_lies() const {
@@ -186,7 +201,10 @@ class ServedTrial final : ViewObserver {
   std::optional<ThingsOutlook> things_;
   TaskWatch task_;
   SeatMeasures measures_;
-  RobotTime told_;
+  SeatLog log_;
+  const std::vector<std::string> joints_;
+  RobotTime told_, news_due_;
+  bool fell_back_ = false;
 };
 
 }  // namespace
