@@ -58,7 +58,8 @@ class ShownFidelity {
   void begin_anew(RobotTime from);
   /// The image of an instant came, in the order of their instants: nothing where no picture was shown for it, or one of
   /// other proportions. One of another size is compared as it looks at the image's. `image`: CV_8UC3; where coding took
-  /// something away from it (`lost`, PosedImage::lost), nothing is compared.
+  /// something away from it (`lost`, PosedImage::lost), nothing is compared, and elsewhere such an image is taken to be
+  /// a little smoother than the truth.
   std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image, const cv::Mat& lost = {});
   /// Which kinds of pixels count as exact: those that were wrong most rarely, as many as it takes until
   /// FidelityOptions::wrong_share of all such pixels have to be expected to be wrong, in what was shown last and in a
@@ -82,6 +83,7 @@ class ShownFidelity {
   ByKind of_late_{}, beside_patches_{};   // all of late, and what lay in no patch that was wrong
   double assumed_ = 1;                    // pixels of each kind that are taken to have been as assumed
   std::array<double, kKindsEnd> risk_{};  // of a pixel of each kind to be wrong
+  double smoothed_ = 0;                   // share of pixels that agree with a coded image, and not with the truth
   ExactKinds exact_;
 };
 
