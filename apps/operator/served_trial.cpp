@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <mutex>
-#include <utility>
 
 #include "apps/operator/seat_begin.hpp"
 #include "apps/operator/thing_lies.hpp"
@@ -123,7 +122,6 @@ class ServedTrial final : ViewObserver {
     trust_.drew(source_, place, TrustMarks::hatch);
     trust_.judge(source_.why_invalid());
     if (!task_.under_way()) return;
-    tell_trust();
     const link::LineFrame& newest = *source_.newest();
     measures_.show({step.instant.time,
                     newest.image[0].captured,
@@ -148,11 +146,6 @@ class ServedTrial final : ViewObserver {
     return !task_.ended() || (waits && now - *task_.ended() < kTruthComesWithin);
   }
 
-  void tell_trust() {
-    if (std::exchange(fell_back_, trust_.falls_back()) == trust_.falls_back()) return;
-    say_(fell_back_ ? "the newest image stands in for the view: " + trust_.why() : "the view is back");
-  }
-
   void tell(RobotTime now) {
     constexpr Duration kTellEvery = 5s;
     if (now - told_ < kTellEvery) return;
@@ -163,7 +156,9 @@ class ServedTrial final : ViewObserver {
   void tell_news(RobotTime now) {
     if (now < news_due_) return;
     news_due_ = now + kNewsEvery;
-    for (const std::string& news : log_.news(seat_lines(seat_.status(), joints_, source_.fault()))) say_(news);
+    std::vector<SeatLine> lines = seat_lines(seat_.status(), joints_, source_.fault());
+    lines.push_back({"shown", trust_.falls_back() ? "the newest image: " + trust_.why() : "the view", ""});
+    for (const std::string& news : log_.news(lines)) say_(news);
   }
 
   ThingLies where_the_thing_lies() const {
@@ -204,7 +199,6 @@ class ServedTrial final : ViewObserver {
   SeatLog log_;
   const std::vector<std::string> joints_;
   RobotTime told_, news_due_;
-  bool fell_back_ = false;
 };
 
 }  // namespace
