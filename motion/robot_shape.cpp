@@ -167,7 +167,7 @@ bool RobotShape::surely_clear(const Couple& couple) const noexcept {
   switch (couple.what) {
     case Against::workspace: return false;  // as quick by itself
     case Against::obstacle: {
-      const double step = 0.5 * (placed_[couple.link].b - placed_[couple.link].a).norm() / kSamples;
+      const double step = (ball.radius - placed_[couple.link].radius) / kSamples;
       return beyond(surroundings_.obstacles[couple.other].box.squaredExteriorDistance(ball.middle), step);
     }
     case Against::link: {

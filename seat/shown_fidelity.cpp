@@ -20,12 +20,12 @@ constexpr double kAssumed =
 constexpr struct {
   double px, anyway;
 } kAssumedOf[] = {{0.05, 0}, {0, 0}, {0.005, 0}, {0.025, 0}, {0.05, 0.04}, {0.1, 0.04}, {0.1, 0.08}};
-// What comparing with images of a thin line does not tell: coding smooths them below what it is said to take away, and
-// so what textures took of them. 0.3 to 0.6 % of what agrees with such an image, over four recorded lines.
-constexpr double kSmoothed = 0.004;
 constexpr double kOfReach = 0.03;        // of the px by which it may be elsewhere; half of the pixels are within
 constexpr double kPatch = 0.6;           // share of a neighbourhood that is wrong where more than an outline is
 constexpr int kPatchPx[] = {5, 11, 21};  // sides of neighbourhoods
+// What comparing with images of a thin line does not tell: coding smooths them below what it is said to take away, and
+// so what textures took of them. 0.3 to 0.6 % of what agrees with such an image, over four recorded lines.
+constexpr double kSmoothed = 0.004;
 
 /// What is wrong as a patch, not as the outline of what is shown a pixel aside, and room around it: over the next delay
 /// what moves unforetold goes on by about as much as it did over the last, which is how wide a patch it left.
