@@ -98,13 +98,14 @@ bool JointResponse::observe(double time, double position, bool typical) noexcept
   return true;
 }
 
+// By the commands as they are known by now: those that were expected and did not come are no matter of the drive.
 void JointResponse::judge(const TimedPosition& before, const TimedPosition& now) noexcept {
   for (Rest& rest : rests_)
     for (; !rest.guesses.empty() && rest.guesses[0].time <= now.time; rest.guesses.drop_oldest()) {
       const PredictedAt& guess = rest.guesses[0];
       const double truth =
           std::lerp(before.position, now.position, (guess.time - before.time) / (now.time - before.time));
-      const double off = std::abs(guess.position - truth);
+      const double off = std::abs(fit_.model.output(commands_, guess.time) + guess.unexplained - truth);
       rest.sigma.score(CalibratedSigma::usual_part(off, guess.sigma), guess.sigma, kGuessEvery);
     }
 }
@@ -117,8 +118,14 @@ void JointResponse::guess() noexcept {
     // Commands that are not known yet would make another prediction of it than the one that is asked for then.
     if (asked_.values().newest().time < then) continue;
     const PredictedPosition predicted = at(then);
-    if (predicted.valid) guesses.next() = {then, predicted.position, predicted.sigma};
+    if (predicted.valid) guesses.next() = {then, rest(kHorizon[i]), predicted.sigma};
   }
+}
+
+template <typename Visit>
+void JointResponse::for_each_guess(const Visit& visit) noexcept {
+  for (Rest& rest : rests_)
+    for (std::size_t k = 0; k < rest.guesses.size(); ++k) visit(rest.guesses[k]);
 }
 
 void JointResponse::limit_commands(PositionHistory& limited, double speed) const noexcept {
@@ -156,8 +163,10 @@ bool JointResponse::identify() noexcept {
   auto found = fit_step_response(asked_, states_);
   if (!found) return false;
   if (!learnt_ && options_.known && !outdoes(found->figures(), *options_.known)) return false;
+  for_each_guess([&](PredictedAt& guess) { guess.unexplained += fit_.model.output(commands_, guess.time); });
   find_speed(*found);
   fit_ = *found;
+  for_each_guess([&](PredictedAt& guess) { guess.unexplained -= fit_.model.output(commands_, guess.time); });
   figures_ = fit_.figures();
   std::size_t first = 0;
   while (states_.values()[first].time < fit_.first) ++first;

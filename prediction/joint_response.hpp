@@ -85,7 +85,7 @@ class JointResponse {
 
  private:
   struct PredictedAt {
-    double time = 0, position = 0, sigma = 0;
+    double time = 0, unexplained = 0, sigma = 0;
   };
   static constexpr std::size_t kHorizons = 4, kMeans = 4;
   using Means = std::array<double, kMeans>;  // of what is unexplained, over longer and longer times
@@ -95,6 +95,8 @@ class JointResponse {
     LastOf<PredictedAt> guesses;  // to be judged when their time has come
     bool is_own = false;          // the sigma was learnt of this horizon's errors
   };
+  template <typename Visit>
+  void for_each_guess(const Visit& visit) noexcept;
   void limit_commands(PositionHistory& limited, double speed) const noexcept;
   void find_speed(StepResponseFit& best) noexcept;
   void learn_rest(std::size_t first) noexcept;

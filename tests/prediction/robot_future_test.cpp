@@ -171,6 +171,28 @@ TEST(RobotFuture, WhatWasShownWronglyIsCorrectedWithoutAJump) {
   EXPECT_LT(after.p95, 0.004) << "the responses' means of 2 s still know of it";
 }
 
+// The robot stops, and is shown as if it went on until that is known. Its drives are as they were.
+TEST(RobotFuture, DrivesAreAsSureAfterSetPointsWereLostAsBefore) {
+  FutureWorld world({.delay = 0.5, .jitter = 0.02});
+  const auto largest_sigma = [&](double time) {
+    const std::size_t first = world.pictures().size();
+    world.run(time);
+    double out = 0;
+    for (std::size_t k = first; k < world.pictures().size(); ++k) {
+      EXPECT_EQ(world.pictures()[k].status, StateStatus::predicted) << to_words(world.pictures()[k], kNames);
+      out = std::max(out, world.pictures()[k].sigma[0]);
+    }
+    return out;
+  };
+  world.run(12);
+  const double before = largest_sigma(2);
+  world.line_cut_down = true;
+  world.run(0.3);
+  world.line_cut_down = false;
+  world.run(2);  // until it is known, and corrected
+  EXPECT_LT(largest_sigma(6), 1.5 * before);
+}
+
 TEST(RobotFuture, StopsWhereTheGateStops) {
   FutureWorld world;
   world.wish = [](double t) {
