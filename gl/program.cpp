@@ -4,10 +4,12 @@
 #include <sstream>
 
 #include "common/error.hpp"
+#include "gl/kept_programs.hpp"
 
 namespace foresight::gl {
 
 void delete_program(GLuint name) {
+  if (KeptPrograms* store = KeptPrograms::in_use(); store && store->keep(name)) return;
   glDeleteProgram(name);
 }
 
@@ -40,13 +42,22 @@ std::string info_log(GLuint name, Get get) {
   return log;
 }
 
-GLuint compile(const ShaderSources& sources, GLenum stage, const std::string& file,
-               const std::vector<std::string>& defines) {
-  std::string text = "#version 450 core\n";
-  for (const std::string& define : defines) text += "#define " + define + "\n";
-  append_expanded(sources, file, text);
-  const GLuint shader = glCreateShader(stage);
-  const char* pointer = text.c_str();
+struct Stage {
+  GLenum stage;
+  std::string file, text;
+};
+
+Stage read_stage(const ShaderSources& sources, GLenum stage, const std::string& file,
+                 const std::vector<std::string>& defines) {
+  Stage out{stage, file, "#version 450 core\n"};
+  for (const std::string& define : defines) out.text += "#define " + define + "\n";
+  append_expanded(sources, file, out.text);
+  return out;
+}
+
+GLuint compile(const Stage& stage) {
+  const GLuint shader = glCreateShader(stage.stage);
+  const char* pointer = stage.text.c_str();
   glShaderSource(shader, 1, &pointer, nullptr);
   glCompileShader(shader);
   GLint ok = 0;
@@ -54,7 +65,8 @@ GLuint compile(const ShaderSources& sources, GLenum stage, const std::string& fi
   if (ok) return shader;
   const std::string log = info_log(shader, glGetShaderInfoLog);
   glDeleteShader(shader);
-  throw RuntimeFailure("shader " + file + " does not compile: " + log, "please report this with the driver's name");
+  throw RuntimeFailure("shader " + stage.file + " does not compile: " + log,
+                       "please report this with the driver's name");
 }
 
 /// Made anew from its binary, where the driver has one. What Mesa's compiler leaves with a program is a sixth of a
@@ -94,6 +106,19 @@ GLuint link(const std::vector<GLuint>& shaders, const std::string& label) {
   throw RuntimeFailure("program " + label + " does not link: " + log, "please report this with the driver's name");
 }
 
+GLuint make_program(const std::vector<Stage>& stages) {
+  KeptPrograms* store = KeptPrograms::in_use();
+  std::string text;
+  for (const Stage& stage : stages) text += stage.text;
+  if (store)
+    if (const auto kept = store->take(text)) return *kept;
+  std::vector<GLuint> shaders;
+  for (const Stage& stage : stages) shaders.push_back(compile(stage));
+  const GLuint program = link(shaders, stages.back().file);
+  if (store) store->made(program, text);
+  return program;
+}
+
 GLint location(const Program& program, const char* uniform) {
   return glGetUniformLocation(program.name(), uniform);
 }
@@ -102,14 +127,13 @@ GLint location(const Program& program, const char* uniform) {
 
 Program Program::compute(const ShaderSources& sources, const std::string& file,
                          const std::vector<std::string>& defines) {
-  return Program(link({compile(sources, GL_COMPUTE_SHADER, file, defines)}, file));
+  return Program(make_program({read_stage(sources, GL_COMPUTE_SHADER, file, defines)}));
 }
 
 Program Program::graphics(const ShaderSources& sources, const std::string& vertex, const std::string& fragment,
                           const std::vector<std::string>& defines) {
-  const GLuint v = compile(sources, GL_VERTEX_SHADER, vertex, defines);
-  const GLuint f = compile(sources, GL_FRAGMENT_SHADER, fragment, defines);
-  return Program(link({v, f}, fragment));
+  return Program(make_program({read_stage(sources, GL_VERTEX_SHADER, vertex, defines),
+                               read_stage(sources, GL_FRAGMENT_SHADER, fragment, defines)}));
 }
 
 void Program::set(const char* uniform, int value) const {
