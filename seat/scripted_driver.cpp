@@ -10,6 +10,7 @@ using Phase = ControlSeatStatus::Phase;
 
 constexpr Duration kAskAgain = 3s;
 constexpr double kLongestStep = 0.05;  // s: after a pause the motion goes on where it was
+constexpr Duration kAstray = 1s;       // that the robot is shown elsewhere than it is commanded to be
 
 }  // namespace
 
@@ -39,19 +40,23 @@ void ScriptedDriver::press(const SeatView& view) {
   if (!opened_) opened_ = view.now;
   if (view.now - *opened_ < options_.open_before) return;
   driving_ = true;
-  last_ = view.now;
+  last_ = followed_ = view.now;
   target_ = view.robot.begin;
   motion_.begin_at(view.robot.begin);
 }
 
+/// Lets go.
+void ScriptedDriver::lose(const std::string& why) {
+  driving_ = false;
+  opened_.reset();
+  if (++losses_ > options_.most_losses) failure_ = "the robot was lost too often: " + why;
+}
+
 void ScriptedDriver::drive(const SeatView& view, SeatWish& wish) {
   // Pressed in the tick before, or lost since.
-  if (!view.engaged && view.now - *last_ > 100ms) {
-    driving_ = false;
-    opened_.reset();
-    if (++losses_ > options_.most_losses) failure_ = "the robot was lost too often: " + view.control.words;
-    return;
-  }
+  if (!view.engaged && view.now - *last_ > 100ms) return lose(view.control.words);
+  if (view.shown.reason != FutureReason::astray) followed_ = view.now;
+  if (view.now - followed_ > kAstray) return lose("it does not follow");
   wish.deadman = true;
   wish.position = target_;
   if (!view.engaged) return;

@@ -2,7 +2,8 @@
 //
 //   wanting control --> enabling --> homing --> ready --> pressed, moving --> done
 //                                                 ^            |
-//                                                 '-- lost ----'  lets go, waits, presses again: goes on from there
+//                                                 '-- lost ----'  lets go, waits, presses again: goes on from there;
+//                                                                 likewise where it is shown not to follow
 //
 // It knows what comes over the line and nothing else.
 #pragma once
@@ -59,12 +60,14 @@ class ScriptedDriver final : public SeatDriver {
  private:
   LineRequest request(const SeatView& view);
   void press(const SeatView& view);
+  void lose(const std::string& why);
   void drive(const SeatView& view, SeatWish& wish);
 
   ScriptedMotion& motion_;
   ScriptedDriverOptions options_;
   RobotSays says_;
   std::optional<OperatorTime> first_, opened_, last_;
+  OperatorTime followed_;  // when it was shown last where it is commanded to be, or as good as that
   std::optional<OperatorTime> asked_;
   LineRequest request_ = LineRequest::none;
   bool driving_ = false, done_ = false;
