@@ -8,6 +8,7 @@
 
 #include "apps/view_measures.hpp"
 #include "common/error.hpp"
+#include "common/stop_signal.hpp"
 #include "display/live_source.hpp"
 #include "display/view_window.hpp"
 #include "seat/view_setup.hpp"
@@ -96,11 +97,20 @@ struct LiveView::Work {
   std::optional<ViewLoop> loop;
   std::exception_ptr failure;
 
+  static ViewSetup view_setup(const LiveScene& scene, const LiveViewOptions& options) {
+    ViewSetup out = live_view_setup(scene, "--view", {.awaits_lamp = options.stepped});
+    if (!options.stepped)
+      rehearse_for_real_time(
+          out, [](const std::string& words) { std::fprintf(stderr, "robot: view: %s\n", words.c_str()); },
+          [] { return stop_requested(); });
+    return out;
+  }
+
   Work(const LiveScene& scene, std::shared_ptr<FrameQueue> queue, std::function<std::string()> trouble,
        const Clock& clock, const LiveViewOptions& given)
       : options(given),
         frames(std::move(queue)),
-        setup(live_view_setup(scene, "--view", {.awaits_lamp = options.stepped})),
+        setup(view_setup(scene, options)),
         window(options.window ? open_live_window(setup.left) : nullptr),
         headless(window ? nullptr : gl::create_headless_context()),
         session(std::make_unique<ViewSession>(window ? static_cast<gl::Context&>(*window) : *headless, setup)),

@@ -317,6 +317,7 @@ void PredictedView::draw_usual_and_before(const PublishedImage& before, float sh
 
 void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
                           const std::shared_ptr<const SceneLight>& light) {
+  reset_samplers_();
   const SceneState& shown = raster_.shown(T_world_camera, state, faces_.faces);
   if (gate_) gate_->begin("depth of a view");
   raster_(T_world_camera, shown, faces_);

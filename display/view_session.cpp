@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
+
+#include "display/rehearsal.hpp"
 
 namespace foresight {
 namespace {
@@ -33,7 +36,7 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
   }
   thread_ = std::make_unique<TextureThread>(
       context.create_shared(), TextureThread::Setup{setup.scene, setup.surface, setup.left, setup.right, setup.textures,
-                                                    newest_image_, setup.gate, setup.prepares});
+                                                    newest_image_, setup.gate, setup.rehearses});
   context.make_current();
   buffers_ = std::make_shared<const gl::SceneBuffers>(*setup.scene);
   records_ = std::make_shared<const SurfaceRecords>(*setup.surface);
@@ -41,9 +44,45 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
     auto levels = std::make_shared<const SceneLevels>(*setup.scene, setup.surface->patch_of_triangle);
     levels_ = {std::make_shared<const gl::LevelBuffers>(*setup.scene, std::move(levels)), *setup.levels};
   }
+  if (setup.rehearses) rehearse(setup);
+  const gl::KeptPrograms::Use use(programs_);
+  make_own_view(setup);
+}
+
+void ViewSession::make_own_view(const ViewSetup& setup) {
   view_ = std::make_unique<PredictedView>(make_view(setup.left));
   view_->mix_silhouettes(setup.silhouettes);
-  if (setup.prepares) view_->prepare();
+}
+
+void ViewSession::rehearse(const ViewSetup& setup) {
+  const gl::KeptPrograms::Use use(programs_);
+  make_own_view(setup);
+  std::optional<TrustPass> trust(make_trust_pass());
+  const std::vector<PosedFrame> frames = rehearsal_frames(*setup.scene, setup.left, setup.right);
+  std::size_t seen = 0;
+  for (const PosedFrame& frame : frames) {
+    if (setup.goes_on && !setup.goes_on(seen++, frames.size())) break;
+    const PosedImage& image = frame.left;
+    const auto look = [&] {
+      if (!draw(image.T_world_camera, image.scene)) return;
+      const std::vector<double> no_doubt(image.scene.T_world_node.size(), 0.0);
+      (*trust)(*view_, image.T_world_camera, image.scene, no_doubt, {});
+    };
+    trust->saw(image);
+    show(frame);
+    look();
+    follow();
+    look();
+  }
+  finish();
+  trust.reset();
+  view_.reset();
+  thread_->begin_anew();
+}
+
+TrustPass ViewSession::make_trust_pass() {
+  const gl::KeptPrograms::Use use(programs_);
+  return {buffers_, records_, lens_, *view_};
 }
 
 std::vector<std::string> ViewSession::level_remarks() const {
@@ -96,6 +135,7 @@ bool ViewSession::draw(const Pose& T_world_camera, const SceneState& state) {
 }
 
 bool ViewSession::draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state) {
+  const gl::KeptPrograms::Use use(programs_);  // views make some when these are needed first
   give_back();
   if (drawings_.size() >= kMostDrawings) finish_drawings();
   ImagesLease newest = images();  // before the textures

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
 
@@ -11,6 +12,7 @@
 #include "display/view_range.hpp"
 #include "display/view_target.hpp"
 #include "gl/context.hpp"
+#include "gl/kept_programs.hpp"
 #include "texture_gpu/chart_extent.hpp"
 #include "texture_gpu/texture_thread.hpp"
 
@@ -27,9 +29,11 @@ struct ViewSetup {
   bool silhouettes = true;                    ///< of the view are mixed (SilhouettePass); not with `thesis`
   std::shared_ptr<FrameGate> gate = nullptr;  ///< TextureThread::Setup::gate; not with `thesis`
   std::optional<LevelSettings> levels{};      ///< of detail, of all views; nothing: in full. Not with `thesis`
-  /// What later images and views need is compiled for the first ones (TextureCore::prepare(),
-  /// PredictedView::prepare()): for real time. Not with `thesis`.
-  bool prepares = false;
+  /// All that is done with images is done before the first one comes, with some of its own (rehearsal_frames()), and
+  /// what came of it forgotten: for real time, as drivers compile programs at their first use. Not with `thesis`.
+  bool rehearses = false;
+  /// Is told, before each of these images, how many have been seen and of how many. False: that is enough.
+  std::function<bool(std::size_t seen, std::size_t of)> goes_on = {};
 };
 
 /// The model's surface, cut into charts of a size that suits such views.
@@ -40,7 +44,8 @@ std::shared_ptr<const SurfacePatches> surface_for(const SceneModel& scene, const
 class ViewSession {
  public:
   /// `context`: a window's, or one without; current, and outlives this. Blocks until the core is built. Throws
-  /// InputError (a lens that the thesis cannot do), RuntimeFailure.
+  /// InputError (a lens that the thesis cannot do), RuntimeFailure. With ViewSetup::rehearses it takes as long as
+  /// compilers do: 16 s on two cores where a software renderer has nothing in store.
   ViewSession(gl::Context& context, const ViewSetup& setup);
 
   const gl::DriverInfo& driver() const { return driver_; }
@@ -86,7 +91,7 @@ class ViewSession {
   /// The same for such a view.
   bool draw(PredictedView& view, const Pose& T_world_camera, const SceneState& state);
   /// What says how far pixels of the view that was drawn last can be trusted, and that view. Not with `thesis`.
-  TrustPass make_trust_pass() const { return {buffers_, records_, lens_, *view_}; }
+  TrustPass make_trust_pass();
   const PredictedView& view() const { return *view_; }
   /// From the next draw() on, its own view is as large as this lens says (PredictedView::set_lens); what is compared
   /// with images stays so until then. Not with `thesis`.
@@ -105,6 +110,8 @@ class ViewSession {
   void give_back();
 
  private:
+  void make_own_view(const ViewSetup& setup);
+  void rehearse(const ViewSetup& setup);
   struct Drawing {
     TextureLease textures;
     ImagesLease images;
@@ -113,6 +120,7 @@ class ViewSession {
   void finish_drawings();
 
   gl::DriverInfo driver_;
+  gl::KeptPrograms programs_;  // of the rehearsal
   Lens lens_;
   std::shared_ptr<const SceneModel> scene_;
   std::shared_ptr<const SurfacePatches> surface_;

@@ -19,11 +19,9 @@ SceneModel::SceneModel(std::vector<Node> nodes, std::optional<double> accuracy, 
   }
   if (triangle_count_ == 0) throw std::invalid_argument("the scene has no triangle");
 
-  Eigen::AlignedBox3d box;
   const std::vector<Pose> poses = rest_poses();
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    for (const Eigen::Vector3f& v : nodes_[i].mesh.vertices) box.extend(poses[i] * v.cast<double>());
-  diagonal_ = box.diagonal().norm();
+    for (const Eigen::Vector3f& v : nodes_[i].mesh.vertices) box_.extend(poses[i] * v.cast<double>());
   if (cells_) check_cells(poses);
 }
 

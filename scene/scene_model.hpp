@@ -46,8 +46,10 @@ class SceneModel {
 
   std::size_t triangle_count() const { return triangle_count_; }
 
-  /// Length of the diagonal of the axis-aligned box around all nodes in their rest poses, metres.
-  double diagonal() const { return diagonal_; }
+  /// Axis-aligned, around all nodes in their rest poses, metres.
+  const Eigen::AlignedBox3d& box() const { return box_; }
+  /// Length of that box's diagonal, metres.
+  double diagonal() const { return box_.isEmpty() ? 0 : box_.diagonal().norm(); }
 
   /// T_world_node of every node at rest.
   std::vector<Pose> rest_poses() const;
@@ -57,7 +59,7 @@ class SceneModel {
 
   std::vector<Node> nodes_;
   std::size_t triangle_count_ = 0;
-  double diagonal_ = 0;
+  Eigen::AlignedBox3d box_;
   std::optional<double> accuracy_;
   std::optional<CellGraph> cells_;
 };

@@ -25,13 +25,21 @@ ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, cons
   ViewSetup setup;
   setup.textures = textures;
   setup.levels = levels;
-  setup.prepares = true;
   setup.scene = scene.model();
   setup.left = scene.lenses()->left;
   setup.right = scene.lenses()->right;
   setup.surface = surface_for(*setup.scene, setup.left, expected_views(scene));
   setup.textures.depth_tolerance = setup.scene->accuracy().value_or(setup.textures.depth_tolerance);
   return setup;
+}
+
+void rehearse_for_real_time(ViewSetup& setup, const std::function<void(const std::string&)>& say,
+                            const std::function<bool()>& stopped) {
+  setup.rehearses = true;
+  setup.goes_on = [say, stopped](std::size_t seen, std::size_t /*of*/) {
+    if (seen == 0) say("the display's programs are made ready; without a GPU the first start takes 20 s");
+    return !stopped();
+  };
 }
 
 }  // namespace foresight

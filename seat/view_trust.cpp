@@ -21,7 +21,7 @@ const char* to_string(TrustMarks marks) {
   return "";
 }
 
-ViewTrust::ViewTrust(const ViewSession& session, const ViewSetup& setup, const Clock& clock, ViewTrustOptions options)
+ViewTrust::ViewTrust(ViewSession& session, const ViewSetup& setup, const Clock& clock, ViewTrustOptions options)
     : session_(session),
       clock_(clock),
       options_(options),

@@ -40,7 +40,7 @@ const char* to_string(TrustMarks marks);
 class ViewTrust {
  public:
   /// `session` and `clock` must outlive this; not with the thesis' pipeline.
-  ViewTrust(const ViewSession& session, const ViewSetup& setup, const Clock& clock, ViewTrustOptions options = {});
+  ViewTrust(ViewSession& session, const ViewSetup& setup, const Clock& clock, ViewTrustOptions options = {});
 
   /// A left image came, whether or not its frame is ever handed out: what was shown for its instant is compared.
   /// `posed`: where its camera and all nodes were, if that is known.

@@ -15,8 +15,9 @@ constexpr int kComparedPages = 600, kPagesPerAligned = 2;
 constexpr int kMostAccumulated = 320 * 240;  // px of an image, by a software renderer
 // Images within which a page that stays in view is written anyway; the same after the lamp became known or was lost.
 constexpr std::uint64_t kImagesToRefresh = 32, kImagesToRelight = 8;
-constexpr std::uint64_t kShareOfImages = 4;  // images that are kept get so much less memory than textures
-constexpr double kGpuTimeout = 20;           // seconds for one frame, software renderers included
+constexpr std::uint64_t kShareOfImages = 4;          // images that are kept get so much less memory than textures
+constexpr std::uint64_t kRehearsedWithoutLight = 3;  // images
+constexpr double kGpuTimeout = 20;                   // seconds for one frame, software renderers included
 
 std::vector<Lens> all_lenses(const Lens& left, const std::optional<Lens>& right) {
   return right ? std::vector{left, *right} : std::vector{left};
@@ -59,6 +60,7 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
 
 /// A stage ends. What follows may have to wait for the display.
 void TextureCore::mark(const char* stage) {
+  reset_samplers_();
   clock_.mark(stage);
   next_slice(gate_, stage);
 }
@@ -211,8 +213,6 @@ void TextureCore::look(const PosedFrame& frame) {
   std::swap(newest_, before_);
   places_.place(frame, before_, newest_);
   const std::size_t count = newest_.images.size();
-  if (std::exchange(prepares_shadows_, false))  // before images are uploaded, as it changes them
-    take_out_shadows(light_from_above(*buffers_, newest_.images[0].scene));
   for (std::size_t i = 0; i < count; ++i) newest_.cameras[i]->upload((i == 0 ? frame.left : *frame.right).pixels);
   mark("upload");
   for (std::size_t i = 0; i < count; ++i)
@@ -247,9 +247,12 @@ void TextureCore::find_lamp() {
 
 void TextureCore::take_out_shadows() {
   const auto& lamp = lamp_finder_.lamp();
-  if (!lamp) return light_.reset();
+  const bool rehearses_light = rehearses_ && number_ >= kRehearsedWithoutLight;
+  if (!lamp && !rehearses_light) return light_.reset();
   if (!light_) light_since_ = newest_.time();
-  if (!light_ || light_->lamp != *lamp || light_->moving != lamp_finder_.moving())
+  if (rehearses_light)
+    light_ = std::make_shared<const SceneLight>(light_from_above(*buffers_, newest_.images[0].scene));
+  else if (!light_ || light_->lamp != *lamp || light_->moving != lamp_finder_.moving())
     light_ = std::make_shared<const SceneLight>(
         SceneLight{*lamp, lamp_finder_.moving(), lamp_finder_.answer().told_by_what_moves});
   take_out_shadows(*light_);
@@ -266,6 +269,7 @@ void TextureCore::take_out_shadows(const SceneLight& light) {
     if (i >= shadows_.size()) shadows_.emplace_back(camera.lens());
     shadows_[i]({camera.lens(), camera.block(), camera.faces(), camera.rays(), image.T_world_camera}, *shadow_map_);
     shadows_[i].take_out_of(camera.image());
+    reset_samplers_();
   }
   mark("shadows");
 }

@@ -39,10 +39,10 @@ class TextureCore {
   /// From now on it works in slices, when a display leaves time for them. `gate` outlives this; null: at once.
   void use(FrameGate* gate) { gate_ = gate; }
 
-  /// With the next frame it compiles what may be needed in the middle of operation, where images would wait for it: for
-  /// texels of any size, and, with TextureOptions::shadows, for the moment from which on the lamp is known.
-  void prepare() {
-    prepares_shadows_ = options_.shadows;
+  /// What comes now is a rehearsal, for programs to be compiled: texels of any size are extracted, and from the fourth
+  /// image on, with TextureOptions::shadows, a lamp above the scene is taken to be known.
+  void rehearse() {
+    rehearses_ = true;
     extract_.prepare();
   }
 
@@ -103,9 +103,9 @@ class TextureCore {
   int witnesses_ = 0;                        // LampFinder::number() of those that the pass has
   std::shared_ptr<const SceneLight> light_;  // null as long as it is not known
   RobotTime light_since_;
-  bool lit_ = false;                       // with the image in work
-  std::int64_t light_changed_ = -1;        // the image from which on it is, or is no more
-  bool prepares_shadows_ = false;          // with the next frame
+  bool lit_ = false;                 // with the image in work
+  std::int64_t light_changed_ = -1;  // the image from which on it is, or is no more
+  bool rehearses_ = false;
   std::unique_ptr<ShadowMap> shadow_map_;  // from then on, or since they were prepared
   std::vector<ShadowPass> shadows_;        // one for each camera
   StageClock clock_;

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "common/error.hpp"
+#include "gl/kept_programs.hpp"
 
 namespace foresight {
 
@@ -23,20 +24,9 @@ void TextureThread::run(const std::stop_token& stop, const Setup& setup) {
   try {
     context_->make_current();
     gl::set_up_context();
-    {
-      TextureCore core(setup.scene, setup.surface, setup.left, setup.right, setup.options,
-                       gl::query_driver().is_software);
-      {
-        const std::scoped_lock lock(mutex_);
-        ready_ = true;
-      }
-      changed_.notify_all();
-      core.use(setup.gate.get());
-      if (setup.prepares) core.prepare();
-      work(stop, core, setup.images);
-      latest_images_.publish(nullptr);
-      latest_.publish(nullptr);  // its textures go with the core
-    }
+    gl::KeptPrograms programs;
+    const gl::KeptPrograms::Use use(programs);
+    for (bool rehearses = setup.rehearses; !stop.stop_requested(); rehearses = false) run_core(stop, setup, rehearses);
   } catch (...) {
     const std::scoped_lock lock(mutex_);
     error_ = std::current_exception();
@@ -47,11 +37,30 @@ void TextureThread::run(const std::stop_token& stop, const Setup& setup) {
   context_->release();
 }
 
+/// From the first image to begin_anew(), or the end.
+void TextureThread::run_core(const std::stop_token& stop, const Setup& setup, bool rehearses) {
+  TextureCore core(setup.scene, setup.surface, setup.left, setup.right, setup.options, gl::query_driver().is_software);
+  {
+    const std::scoped_lock lock(mutex_);
+    ready_ = true;
+    anew_ = false;
+  }
+  changed_.notify_all();
+  if (rehearses)
+    core.rehearse();
+  else
+    core.use(setup.gate.get());
+  work(stop, core, setup.images);
+  latest_images_.publish(nullptr);
+  latest_.publish(nullptr);  // its textures go with the core
+}
+
 void TextureThread::work(const std::stop_token& stop, TextureCore& core, bool images) {
   while (!stop.stop_requested()) {
     std::unique_lock lock(mutex_);
     // The time-out only bounds the wait; a stop request wakes the thread at once.
-    if (!changed_.wait_for(lock, stop, std::chrono::seconds(1), [&] { return waiting_.has_value(); })) continue;
+    if (!changed_.wait_for(lock, stop, std::chrono::seconds(1), [&] { return waiting_ || anew_; })) continue;
+    if (anew_) return;
     const PosedFrame frame = std::move(*waiting_);
     waiting_.reset();
     const std::uint64_t number = submitted_;
@@ -139,6 +148,15 @@ std::optional<ExtractionReport> TextureThread::follow(double timeout_s) {
   changed_.notify_all();
   wait_until(lock, timeout_s, [&] { return finished_ == submitted_; });
   return std::exchange(report_, std::nullopt);
+}
+
+void TextureThread::begin_anew(double timeout_s) {
+  follow(timeout_s);
+  std::unique_lock lock(mutex_);
+  ready_ = false;
+  anew_ = true;
+  changed_.notify_all();
+  wait_until(lock, timeout_s, [&] { return ready_; });
 }
 
 std::uint64_t TextureThread::replaced() const {

@@ -24,7 +24,8 @@ class TextureThread {
     bool images = false;  ///< publish each image before its textures
     /// The display's: extraction goes on when its frames leave time. Null: whenever there is an image.
     std::shared_ptr<FrameGate> gate = nullptr;
-    bool prepares = false;  ///< TextureCore::prepare()
+    /// What comes until begin_anew() is one (TextureCore::rehearse()), of whose cost the gate is not told.
+    bool rehearses = false;
   };
 
   /// `context`: shares objects with the display's context; used by this thread only from now on.
@@ -57,10 +58,16 @@ class TextureThread {
   void show(PosedFrame frame, double timeout_s = 120);
   std::optional<ExtractionReport> follow(double timeout_s = 120);
 
+  /// Ends the work on images as follow() does, forgets them all and what was learnt of them, and keeps the programs
+  /// with all that was compiled for them. Waits; whoever holds leases of textures or images gives them back before.
+  /// Rethrows an error of the thread.
+  void begin_anew(double timeout_s = 120);
+
   std::uint64_t replaced() const;  ///< frames that were never extracted because a newer one came
 
  private:
   void run(const std::stop_token& stop, const Setup& setup);
+  void run_core(const std::stop_token& stop, const Setup& setup, bool rehearses);
   void work(const std::stop_token& stop, TextureCore& core, bool images);
   std::uint64_t hand_over(PosedFrame frame, bool hold);
   template <typename Condition>
@@ -76,7 +83,7 @@ class TextureThread {
   std::optional<ExtractionReport> report_;
   std::exception_ptr error_;
   std::uint64_t replaced_ = 0, submitted_ = 0, looked_at_ = 0, finished_ = 0;
-  bool ready_ = false;
+  bool ready_ = false, anew_ = false;
   bool hold_ = false;    // rest between an image and its textures
   std::jthread thread_;  // last: it uses all of the above
 };

@@ -7,6 +7,8 @@
 #include "common/clock.hpp"
 #include "common/statistics.hpp"
 #include "display/frame_pacer.hpp"
+#include "display/rehearsal.hpp"
+#include "seat/seat_textures.hpp"
 
 namespace foresight {
 namespace {
@@ -102,8 +104,11 @@ DisplayFigures figures_of(const std::vector<Shown>& shown, double rate_hz) {
 
 BusyTextures::BusyTextures(gl::Context& context, const DisplayScene& scene, std::shared_ptr<FrameGate> gate)
     : thread_(context.create_shared(),
-              {scene.model, scene.surface, scene.camera, std::nullopt, {}, true, std::move(gate), true}) {
+              {scene.model, scene.surface, scene.camera, std::nullopt, kSeatTextures, true, std::move(gate), true}) {
   context.make_current();
+  for (PosedFrame& frame : rehearsal_frames(*scene.model, scene.camera, std::nullopt))
+    thread_.process(std::move(frame));
+  thread_.begin_anew();
   feeder_ = std::jthread([this](const std::stop_token& stop) {
     try {
       feed(stop);

@@ -107,8 +107,7 @@ class LiveSeat {
 
   int run() {
     end_.start();
-    if (const std::string refused = seat_.start(); !refused.empty())
-      std::fprintf(stderr, "operator: %s\n", refused.c_str());
+    if (const std::string refused = seat_.start(); !refused.empty()) say(refused);
     std::vector<ViewObserver*> observers{&shown_};
     if (head_) observers.push_back(&*head_);
     ViewLoop loop(session_, source_, observers, [] { return stop_requested(); });
@@ -131,6 +130,8 @@ class LiveSeat {
   }
 
  private:
+  static void say(const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); }
+
   // Whoever has them in the rig file need not wait for them to be learnt.
   void tell_responses() const {
     const std::vector<std::string> learnt = seat_.learnt_responses();
@@ -142,6 +143,12 @@ class LiveSeat {
   ViewSetup view_setup(const Rig& rig, const LiveSeatOptions& options) const {
     ViewSetup out = live_view_setup(*scene_, rig.name, options.textures, options.levels);
     out.gate = gate_;
+    // The window is there by then, and is to answer.
+    rehearse_for_real_time(out, say, [this] {
+      clear_behind_pictures(window_target(*window_));
+      window_->present();
+      return window_->should_close() || stop_requested();
+    });
     return out;
   }
   PredictedSourceOptions source_options() const {
@@ -158,7 +165,7 @@ class LiveSeat {
     out.trust = &trust_;
     out.keys = keys_of_seat();
     out.input = [this](const gl::WindowInput& input) { take(input); };
-    out.log = [](const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); };
+    out.log = say;
     out.more_lines = [this] {
       std::vector<SeatLine> lines = driver_.lines();
       for (std::string& words : things_.lines()) lines.push_back({"things", std::move(words), "", Urgency::fine});

@@ -8,8 +8,8 @@
 
 #include "rig/rig.hpp"
 #include "scene/lod/level_director.hpp"
+#include "seat/seat_textures.hpp"
 #include "seat/view_trust.hpp"
-#include "texture_gpu/options.hpp"
 
 namespace foresight {
 
@@ -31,7 +31,7 @@ struct LiveSeatOptions {
   double rate_hz = 30;
   double font_scale = 1;
   bool sounds = true;  ///< of what happens
-  TextureOptions textures;
+  TextureOptions textures = kSeatTextures;
   std::optional<LevelSettings> levels;  ///< ViewSetup::levels
   ViewTrustOptions trust;
   std::optional<std::filesystem::path> screenshot;  ///< key P writes it

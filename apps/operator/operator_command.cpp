@@ -17,6 +17,7 @@
 #include "common/stop_signal.hpp"
 #include "rig/rig.hpp"
 #include "seat/panel_lens.hpp"
+#include "seat/seat_textures.hpp"
 #include "seat/tool_script.hpp"
 #include "sim/pan_tilt_head.hpp"
 
@@ -38,7 +39,7 @@ struct Arguments {
   double seconds = 30;
   double pictures_hz = 5;
   bool still_head = false, zero_delay = true, sounds = true;
-  TextureOptions textures{.accumulate = std::nullopt};
+  TextureOptions textures = kSeatTextures;
   LevelArguments detail;
   ViewOutputs outputs;
 };
@@ -166,8 +167,7 @@ SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Ta
   options.most_s = arguments.seconds;
   options.pictures_hz = arguments.pictures_hz;
   options.fall_back.lowest_db = arguments.fidelity_db;
-  options.textures = arguments.textures;
-  options.textures.awaits_lamp = false;
+  options.textures = in_real_time(arguments.textures);
   options.levels = level_settings(arguments.detail);
   options.out = arguments.outputs.out;
   return try_served_seat(
@@ -218,8 +218,7 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.display_lenses.assign(arguments.display_lenses.begin(), arguments.display_lenses.end());
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
-  options.textures = arguments.textures;
-  options.textures.awaits_lamp = false;
+  options.textures = in_real_time(arguments.textures);
   options.levels = level_settings(arguments.detail);
   options.sounds = arguments.sounds;
   options.trust.fall_back.lowest_db = arguments.fidelity_db;

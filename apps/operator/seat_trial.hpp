@@ -14,10 +14,10 @@
 #include "rig/rig.hpp"
 #include "scene/lod/level_director.hpp"
 #include "seat/scripted_driver.hpp"
+#include "seat/seat_textures.hpp"
 #include "seat/task_watch.hpp"
 #include "seat/trust_switch.hpp"
 #include "session/live_scene.hpp"
-#include "texture_gpu/options.hpp"
 
 namespace foresight {
 
@@ -48,7 +48,7 @@ struct SeatTrialOptions {
   double pictures_hz = 5;  ///< that are measured, at most
   TrustSwitchOptions fall_back;
   bool zero_delay = true;  ///< also draws each view as it would be without a line
-  TextureOptions textures;
+  TextureOptions textures = kSeatTextures;
   std::optional<LevelSettings> levels;       ///< ViewSetup::levels
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
   /// What the camera saw, as it is to be scored; none: as it was. The operator does not know it.

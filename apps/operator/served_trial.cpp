@@ -53,12 +53,14 @@ ScriptedDriverOptions driver_options(double found_within_s) {
 class ServedTrial final : ViewObserver {
  public:
   ServedTrial(const Rig& rig, std::shared_ptr<const LiveScene> scene, const ServedTrialOptions& options,
-              ScriptedMotion& motion, const std::function<void(const std::string&)>& say)
+              ScriptedMotion& motion, const std::function<bool()>& stopped,
+              const std::function<void(const std::string&)>& say)
       : options_(options),
+        stopped_(stopped),
         say_(say),
         participant_(rig.link, options.name, link::Role::operating, begin_line(options.line, clock_)),
         scene_(std::move(scene)),
-        setup_(live_view_setup(*scene_, rig.name, options.textures, options.levels)),
+        setup_(view_setup(rig)),
         end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         motion_(motion),
         seen_(scene_->model()),
@@ -81,10 +83,10 @@ class ServedTrial final : ViewObserver {
     source_.show_things(&*things_);
   }
 
-  SeatTrialFigures run(const std::function<bool()>& stopped) {
+  SeatTrialFigures run() {
     end_.start();
     if (const std::string refused = seat_.start(); !refused.empty()) say_(refused);
-    ViewLoop loop(session_, source_, {this}, stopped);
+    ViewLoop loop(session_, source_, {this}, stopped_);
     told_ = clock_.now();
     while (loop.step() != SourceState::ended && advance()) {
     }
@@ -101,6 +103,11 @@ class ServedTrial final : ViewObserver {
   }
 
  private:
+  ViewSetup view_setup(const Rig& rig) const {
+    ViewSetup out = live_view_setup(*scene_, rig.name, options_.textures, options_.levels);
+    rehearse_for_real_time(out, say_, stopped_);
+    return out;
+  }
   PredictedSourceOptions source_options(const Rig& rig) const {
     PredictedSourceOptions out;
     out.rate_hz = options_.pictures_hz;
@@ -179,6 +186,7 @@ class ServedTrial final : ViewObserver {
   }
 
   const ServedTrialOptions& options_;
+  const std::function<bool()>& stopped_;
   const std::function<void(const std::string&)>& say_;
   MonotonicClock clock_;
   link::Participant participant_;
@@ -207,7 +215,7 @@ SeatTrialFigures try_served_seat(const Rig& rig, std::shared_ptr<const LiveScene
                                  const ServedTrialOptions& options, ScriptedMotion& motion,
                                  const std::function<bool()>& stopped,
                                  const std::function<void(const std::string&)>& say) {
-  return ServedTrial(rig, std::move(scene), options, motion, say).run(stopped);
+  return ServedTrial(rig, std::move(scene), options, motion, stopped, say).run();
 }
 
 }  // namespace foresight

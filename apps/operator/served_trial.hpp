@@ -19,7 +19,7 @@ struct ServedTrialOptions {
   double found_within_s = 60;    ///< the robot has to be driven within that time
   double pictures_hz = 5;        ///< at most
   TrustSwitchOptions fall_back;  ///< of the view that would be shown
-  TextureOptions textures;
+  TextureOptions textures = kSeatTextures;
   std::optional<LevelSettings> levels;       ///< ViewSetup::levels
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
 };

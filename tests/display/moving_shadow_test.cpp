@@ -89,7 +89,7 @@ TEST_F(MovingShadow, PreparingForItChangesNoPicture) {
   for (const bool prepares : {false, true}) {
     TextureCore core(scene_, surface_, lens_, std::nullopt, {.memory_bytes = 12 << 20}, driver_.is_software);
     PredictedView view(std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens_);
-    if (prepares) core.prepare(), view.prepare();
+    if (prepares) view.prepare();
     LatestTextures textures;
     LatestImages image;
     for (const double t : {0.0, 0.4}) {

@@ -1,6 +1,7 @@
 // From frames to a drawn view: what is shown is drawn from what has arrived, the same on every run.
 #include "display/view_session.hpp"
 
+#include <atomic>
 #include <deque>
 
 #include "display/live_source.hpp"
@@ -46,10 +47,14 @@ class Witness final : public ViewObserver {
 
 class ViewSessionTest : public HeadlessTest {
  protected:
-  std::unique_ptr<ViewSession> make_session(bool newest_image = true) {
+  ViewSetup small_setup() const {
     ViewSetup setup{scene_, surface_for(*scene_, small_lens("pinhole"), {}), small_lens("pinhole"), std::nullopt, {},
                     {}};
     setup.textures.memory_bytes = 6 << 20;
+    return setup;
+  }
+  std::unique_ptr<ViewSession> make_session(bool newest_image = true) {
+    ViewSetup setup = small_setup();
     setup.newest_image = newest_image;
     return std::make_unique<ViewSession>(*context_, setup);
   }
@@ -172,6 +177,89 @@ TEST_F(ViewSessionTest, HasAViewForEachEye) {
   glGetTextureImage(display.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(both.total() * 4), both.data);
   EXPECT_EQ(cv::norm(both.colRange(0, 160), left.read(), cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(both.colRange(160, 320), right.read(), cv::NORM_INF), 0);
+}
+
+/// Programs that are linked while it lives, by all threads.
+class LinkCount {
+ public:
+  LinkCount() : linked_before_(g_link) {
+    if (!g_link) g_link = epoxy_glLinkProgram;
+    g_links = 0;
+    epoxy_glLinkProgram = [](GLuint program) {
+      ++g_links;
+      g_link(program);
+    };
+  }
+  ~LinkCount() {
+    epoxy_glLinkProgram = g_link;
+    g_link = linked_before_;
+  }
+  static int count() { return g_links; }
+
+ private:
+  inline static PFNGLLINKPROGRAMPROC g_link = nullptr;
+  inline static std::atomic<int> g_links = 0;
+  PFNGLLINKPROGRAMPROC linked_before_;
+};
+
+/// Views of some frames, how far they can be trusted, and how many programs that took.
+struct Shown {
+  std::vector<cv::Mat> pictures;
+  int programs = 0;
+};
+
+Shown show_some(ViewSession& session, const SceneModel& scene) {
+  const LinkCount links;
+  Shown out;
+  TrustPass trust = session.make_trust_pass();
+  for (int i = 0; i < 4; ++i) {
+    const PosedFrame frame = moving_frame(scene, i);
+    trust.saw(frame.left);
+    session.show(frame);
+    const SceneState later = state_of(scene, 0.02 * i + 0.03);
+    if (session.draw(frame.left.T_world_camera, later)) {
+      trust(session.view(), frame.left.T_world_camera, later, std::vector<double>(later.T_world_node.size(), 0.0), {});
+      out.pictures.push_back(session.read());
+    }
+    session.follow();
+  }
+  out.programs = links.count();
+  return out;
+}
+
+// All that is done with images has been done once, and nothing of it is left but the programs.
+TEST_F(ViewSessionTest, ARehearsalLeavesProgramsAndNothingElse) {
+  const auto unprepared = make_session();
+  ViewSetup setup = small_setup();
+  setup.rehearses = true;
+  std::size_t asked = 0;
+  setup.goes_on = [&](std::size_t seen, std::size_t of) {
+    EXPECT_EQ(seen, asked++);
+    EXPECT_GT(of, seen);
+    return true;
+  };
+  ViewSession rehearsed(*context_, setup);
+  EXPECT_GT(asked, 2u);
+  EXPECT_FALSE(rehearsed.textures());
+  EXPECT_FALSE(rehearsed.images());
+  EXPECT_FALSE(rehearsed.draw(usual_view(), state_of(*scene_))) << "nothing was published";
+  const Shown first = show_some(*unprepared, *scene_), second = show_some(rehearsed, *scene_);
+  EXPECT_GT(first.programs, 2) << "views make some when they need them";
+  EXPECT_EQ(second.programs, 0);
+  ASSERT_EQ(first.pictures.size(), 4u);
+  ASSERT_EQ(second.pictures.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(cv::norm(first.pictures[i], second.pictures[i], cv::NORM_INF), 0) << "picture " << i;
+}
+
+TEST_F(ViewSessionTest, ARehearsalEndsWhenItIsAskedTo) {
+  ViewSetup setup = small_setup();
+  setup.rehearses = true;
+  int asked = 0;
+  setup.goes_on = [&](std::size_t, std::size_t) { return ++asked < 2; };
+  ViewSession session(*context_, setup);
+  EXPECT_EQ(asked, 2);
+  EXPECT_TRUE(session.process(moving_frame(*scene_, 0)).published);
 }
 
 }  // namespace

@@ -59,6 +59,22 @@ TEST_F(TextureThreadTest, PublishesWhatWasProcessed) {
   EXPECT_EQ(thread->replaced(), 0u);
 }
 
+TEST_F(TextureThreadTest, BeginsAnewWithNothing) {
+  const auto thread = start();
+  thread->process(frame(1));
+  const std::vector<reference::Texel> first = shown(*thread->textures().acquire());
+  PosedFrame other = frame(2);
+  cv::bitwise_not(picture_.left.pixels, other.left.pixels = cv::Mat());
+  thread->process(other);
+  thread->begin_anew();
+  EXPECT_FALSE(thread->textures().acquire());
+  EXPECT_FALSE(thread->take_report());
+  const ExtractionReport report = thread->process(frame(1));  // earlier than what it has forgotten
+  EXPECT_TRUE(report.published);
+  EXPECT_EQ(report.number, 1u);
+  EXPECT_EQ(shown(*thread->textures().acquire()), first);
+}
+
 TEST_F(TextureThreadTest, TheNewestFrameWinsAndTheOthersAreCounted) {
   const auto thread = start();
   thread->process(frame(1));
