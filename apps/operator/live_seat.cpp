@@ -85,7 +85,7 @@ class LiveSeat {
         end_(participant_, seat_end_options(rig, seat_identity(rig, options.rig_file, options.name), *scene_), clock_),
         driver_(rig, open_devices(options, controllers_), scene_->model()),
         seat_(rig, end_, driver_, clock_),
-        window_(open_seat_window("Foresight: " + rig.name, context_api(options))),
+        window_(open_seat_window("Foresight: " + rig.name + " is getting ready", context_api(options))),
         session_(*window_, setup_),
         things_(rig, scene_, things_about(options.rig_file, *scene_, options.physics), true),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
@@ -94,6 +94,7 @@ class LiveSeat {
         pacer_(clock_, {.rate_hz = options.rate_hz}, gate_),
         sounds_(options.sounds),
         shown_(*window_, seat_, source_, window_options()) {
+    window_->set_title("Foresight: " + rig.name);
     for (const std::string& remark : session_.level_remarks()) std::fprintf(stderr, "%s\n", remark.c_str());
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_, source_, shown_, controllers_,
