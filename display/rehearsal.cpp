@@ -7,10 +7,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kFarthest = 1.5;     // m, from the scene's middle
+constexpr double kFarthest = 1.5;      // m, from the scene's middle
 constexpr double kShareOfScene = 0.6;  // of its diagonal, where that is less
-constexpr double kMovesOn = 0.02;        // m, of what may move, from image to image
-constexpr double kEyesApart = 0.065;  // m
+constexpr double kMovesOn = 0.02;      // m, of what may move, from image to image
+constexpr double kEyesApart = 0.065;   // m
 constexpr std::array kCloseness{1.0, 1.0, 0.4, 0.4, 0.4, 1.0};
 constexpr Duration kApartBy = std::chrono::milliseconds(100);
 

@@ -12,7 +12,7 @@ namespace foresight {
 ViewSetup live_view_setup(const LiveScene& scene, const std::string& where, const TextureOptions& textures = {},
                           const std::optional<LevelSettings>& levels = std::nullopt);
 
-/// ViewSetup::rehearses, until `stopped`, which is asked about twice a second at worst; and says that it takes a while.
+/// ViewSetup::rehearses, until `stopped`, which is asked before each of its images; and says that it takes a while.
 void rehearse_for_real_time(ViewSetup& setup, const std::function<void(const std::string&)>& say,
                             const std::function<bool()>& stopped);
 
