@@ -58,7 +58,7 @@ TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::sha
   current_->coarse.buffer().clear_to_zero();
 }
 
-/// A stage ends. What follows may have to wait for the display.
+/// A stage ends. The next one finds samplers as always, and may have to wait for the display.
 void TextureCore::mark(const char* stage) {
   reset_samplers_();
   clock_.mark(stage);
@@ -119,7 +119,6 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   atlas_.write_job_geometry(allocation.jobs, frame.views, geometry_);
   extract_.extract({.jobs = allocation.jobs, .masks = allocation.masks, .geometry = geometry_, .image = image_},
                    frame.inputs, store_, options_.depth_tolerance, gate_);
-  reset_samplers_();
   mark("extract");
   fill_and_finish(allocation, *next);
   atlas_.note_holes(allocation, extract_.read_holes(allocation.jobs.size()));
@@ -241,7 +240,6 @@ void TextureCore::find_lamp() {
   witnesses_ = lamp_finder_.number();
   lamp_finder_.add(image.scene, image.T_world_camera.translation(),
                    witness_pass_.brightness(newest_.inputs, image.T_world_camera, options_.depth_tolerance));
-  reset_samplers_();
   mark("lamp");
 }
 
@@ -356,7 +354,6 @@ void TextureCore::compare_with_textures() {
   sharpness_.update(survey_.agreement(newest_.inputs, charts_, store_, *current_, options_.depth_tolerance,
                                       static_cast<int>(image_ % wide), wide));
   newest_.compared = true;
-  reset_samplers_();
   mark("exposure");
 }
 

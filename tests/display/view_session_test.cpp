@@ -182,24 +182,21 @@ TEST_F(ViewSessionTest, HasAViewForEachEye) {
 /// Programs that are linked while it lives, by all threads.
 class LinkCount {
  public:
-  LinkCount() : linked_before_(g_link) {
-    if (!g_link) g_link = epoxy_glLinkProgram;
+  LinkCount() {
+    g_link = epoxy_glLinkProgram;
     g_links = 0;
     epoxy_glLinkProgram = [](GLuint program) {
       ++g_links;
       g_link(program);
     };
   }
-  ~LinkCount() {
-    epoxy_glLinkProgram = g_link;
-    g_link = linked_before_;
-  }
+  ~LinkCount() { epoxy_glLinkProgram = g_link; }
+  LinkCount(const LinkCount&) = delete;
   static int count() { return g_links; }
 
  private:
   inline static PFNGLLINKPROGRAMPROC g_link = nullptr;
   inline static std::atomic<int> g_links = 0;
-  PFNGLLINKPROGRAMPROC linked_before_;
 };
 
 /// Views of some frames, how far they can be trusted, and how many programs that took.
