@@ -21,8 +21,8 @@ float unmarked(float near_over_z) {
 
 // True where `p` (camera frame) is the visible surface in camera `c` and inside its image; `pixel` is then its place there.
 // `certain`: outside its uncertain edges. Within these only near sides count: of a far side the image may show what
-// stands before it.
-bool is_seen(int c, vec3 p, out vec2 pixel, out bool certain) {
+// stands before it. A point less than `unsure` metres of depth behind what is drawn there counts, but is not certain.
+bool is_seen(int c, vec3 p, float unsure, out vec2 pixel, out bool certain) {
   pixel = vec2(0.0);
   certain = false;
   vec3 place;
@@ -45,7 +45,9 @@ bool is_seen(int c, vec3 p, out vec2 pixel, out bool certain) {
   // z beyond the farthest by more than a part of the tolerance: hidden. What stands on a surface must
   // not paint the part of it that it covers. Before the nearest: a guard texel
   // that floats beside the surface.
-  if ((1.0 - kBehind * depth_tolerance * inverse_z) * far > inverse_z || (1.0 + depth_tolerance * inverse_z) * near < inverse_z) return false;
+  float behind = far - inverse_z, per_metre = far * inverse_z, hidden = kBehind * depth_tolerance;
+  if (behind > max(hidden, unsure) * per_metre || (1.0 + depth_tolerance * inverse_z) * near < inverse_z) return false;
+  certain = certain && behind <= hidden * per_metre;
 #if defined(FACE_IS_IMAGE) && FACE_IS_IMAGE
   pixel = place.xy;
 #else
@@ -57,7 +59,7 @@ bool is_seen(int c, vec3 p, out vec2 pixel, out bool certain) {
 // The same, but certain.
 bool is_seen(int c, vec3 p, out vec2 pixel) {
   bool certain;
-  bool seen = is_seen(c, p, pixel, certain);
+  bool seen = is_seen(c, p, 0.0, pixel, certain);
   return seen && certain;
 }
 

@@ -314,7 +314,7 @@ TEST_P(NewestImage, UncertainPixelsAreShownWhereNothingElseSawThePoint) {
   RecordProperty("uncertain", uncertain);
   RecordProperty("seen later", seen_later);
   EXPECT_GT(uncertain, 80);
-  EXPECT_LE(behind, uncertain / 8) << "of a far side the image may show what stands before it";
+  EXPECT_LE(behind, uncertain / 5) << "of a far side the image may show what stands before it";
   EXPECT_GT(of_the_image, 0.95 * uncertain);
   EXPECT_GT(seen_later, 20);
   EXPECT_LE(changed, seen_later / 20);
