@@ -92,7 +92,7 @@ class Trial {
   }
 
   void hand_over(RobotTime now) {
-    result.early += wire_.unacknowledged() > wire_.acknowledged_within(Transmissions::kRecent, now);
+    result.early += wire_.unacknowledged() > wire_.acknowledged_within(sender_.transmissions().of_late(), now);
     const StereoPicture picture = picture_(*newest_);
     newest_.reset();
     const double begin = cpu_seconds(CLOCK_THREAD_CPUTIME_ID);

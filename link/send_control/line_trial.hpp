@@ -42,7 +42,8 @@ struct LineTrialResult {
   std::vector<double> recovery_ms;
   std::size_t up_bytes = 0, down_bytes = 0;  ///< sent, without headers of the network
   std::size_t packets = 0, copies = 0;       ///< of pieces; sent again
-  /// Hand-overs with more unacknowledged than was acknowledged within 200 ms, as WireCount counts it: 0.
+  /// Hand-overs with more unacknowledged than was acknowledged of late (Transmissions::of_late), as WireCount counts
+  /// it: 0.
   std::size_t early = 0;
   std::vector<double> encode_ms, decode_ms;  ///< CPU time per pair
 };

@@ -6,7 +6,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kHead_s = 0.010;   // of line time that may still be waiting
+constexpr double kHead_s = 0.010;  // of line time that may still be waiting
+// A road is long from a round trip of kFarRoad_s on. What is on it when the line gets slower has to cross before
+// anything else does, joint states among it: so a part of it stays empty.
+constexpr double kFarRoad_s = 0.130, kFarUse = 0.75;
 constexpr double kPrudence = 0.85;  // lines get slower without a word
 constexpr double kGrowth = 1.2, kGrowthCalm = 2;
 constexpr Duration kCalm = std::chrono::milliseconds(150);    // after which what was measured is old
@@ -22,6 +25,14 @@ bool PairSender::waits() const {
   return !trip || *trip - *least > Transmissions::kNoQueue;
 }
 
+double PairSender::road_s() const {
+  return to_seconds(transmissions_.least_round_trip().value_or(Duration{}));
+}
+
+bool PairSender::is_far() const {
+  return road_s() > kFarRoad_s;
+}
+
 std::optional<double> PairSender::known_bytes_per_s(RobotTime now) const {
   const bool known = transmissions_.rate(now) || (transmissions_.round_trip() && waits());
   return known ? std::optional(bytes_per_s(now)) : std::nullopt;
@@ -32,8 +43,8 @@ double PairSender::bytes_per_s(RobotTime now) const {
   if (waits()) return measured;
   // Nothing waits in the line: it carries more than it is given, though pairs of one piece would never show that. Where
   // it has been so for a while, as after a thin time, how much more is found out in larger steps.
-  const double given =
-      static_cast<double>(transmissions_.acknowledged_recently(now)) / to_seconds(Transmissions::kRecent);
+  const double given = static_cast<double>(transmissions_.acknowledged_within(Transmissions::kRecent, now)) /
+                       to_seconds(Transmissions::kRecent);
   return std::max(measured, (transmissions_.calm(now) > kCalm ? kGrowthCalm : kGrowth) * given);
 }
 
@@ -45,18 +56,18 @@ int PairSender::pairs_on_the_way() const {
 bool PairSender::wants_pair(RobotTime now) const {
   if (!fresh_.empty()) return false;
   const std::size_t on_the_way = transmissions_.unacknowledged();
-  if (on_the_way > transmissions_.acknowledged_recently(now)) return false;
+  if (on_the_way > transmissions_.acknowledged_within(transmissions_.of_late(), now)) return false;
   if (transmissions_.lost_lately(now) && pairs_on_the_way() >= options_.most_on_the_way) return false;
   // What is under way on the road itself, both ways, is no queue.
-  const double road = to_seconds(transmissions_.least_round_trip().value_or(Duration{}));
-  return static_cast<double>(on_the_way) <= bytes_per_s(now) * (road + kHead_s);
+  const double used = is_far() ? std::max(kFarRoad_s, kFarUse * road_s()) : road_s();
+  return static_cast<double>(on_the_way) <= bytes_per_s(now) * (used + kHead_s);
 }
 
 PairWish PairSender::wish(RobotTime now) const {
   const double rate = bytes_per_s(now);
   const bool lossy = transmissions_.lost_lately(now);
-  const double time =
-      std::clamp(static_cast<double>(options_.fine_bytes) / rate, options_.shortest_s, options_.longest_s);
+  const double shortest = is_far() ? options_.shortest_far_s : options_.shortest_s;
+  const double time = std::clamp(static_cast<double>(options_.fine_bytes) / rate, shortest, options_.longest_s);
   const std::size_t most = lossy ? std::min(options_.most_lossy_bytes, options_.most_bytes) : options_.most_bytes;
   const auto bytes = static_cast<std::size_t>(std::min(rate * time, static_cast<double>(most)));
   return {.number = last_number_ + 1, .bytes = std::max(bytes, options_.least_bytes), .only_what_arrived = lossy};

@@ -3,8 +3,10 @@
 // The age of the newest picture is the way, the time in the line's queue, its own transmission, and what passes until
 // the next one. So the queue is kept short, and a pair takes no more of the line than a fraction of a second:
 //
-//   hand over when    nothing has to be waited for, or what is on its way will have crossed in kHead of line time, and
-//                     bytes without acknowledgement <= bytes acknowledged within the last 200 ms
+//   hand over when    nothing has to be waited for, or what is on its way will have crossed in kHead of line time and
+//                     what the road itself holds, or a part of that where it is long; and bytes without
+//                     acknowledgement <= bytes acknowledged within the last 200 ms, or half again the road's round trip
+//                     if that is longer
 //   bytes             what the line may be trusted to carry (RateMeter) in a part of a tenth of a second: little is on
 //                     its way when the line gets slower, and what is lost of quality comes back with the next pairs
 //
@@ -24,6 +26,7 @@ class PairSender {
   struct Options {
     double first_bytes_per_s = 100'000;     ///< until the line was measured
     double shortest_s = 0.025;              ///< of line time for a pair
+    double shortest_far_s = 0.010;          ///< on a long road, where what is on the way waits for long when it must
     double longest_s = 0.060;               ///< where the line is so thin that pictures would suffer
     std::size_t fine_bytes = 9'000;         ///< what a pair needs to look well; takes up to longest_s
     std::size_t least_bytes = 1'000;        ///< however thin the line; one packet, though pairs take a sixth more
@@ -57,6 +60,8 @@ class PairSender {
 
  private:
   bool waits() const;
+  double road_s() const;  // there and back
+  bool is_far() const;
   struct Pending {
     std::uint32_t reference = 0;
     RobotTime handed_over;

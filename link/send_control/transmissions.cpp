@@ -75,7 +75,7 @@ std::vector<Transmissions::Sent> Transmissions::acknowledge(const Acknowledgemen
     last_news_ = now;
     overtaking_ = std::max(kLeastOvertaking, overtaking_ - overtaking_ / 512);
   }
-  while (!recent_.empty() && now - recent_.front().at > kRecent) recent_.pop_front();
+  while (!recent_.empty() && now - recent_.front().at > of_late()) recent_.pop_front();
   // What came may be asked for by copies of this acknowledgement for a while; what is older is settled.
   while (records_.size() > 2 * Acknowledgement::kBefore && records_.front().state != Record::State::on_the_way)
     records_.pop_front();
@@ -156,10 +156,10 @@ Duration Transmissions::overdue(RobotTime now) const {
   return now > expected ? now - expected : Duration{};
 }
 
-std::size_t Transmissions::acknowledged_recently(RobotTime now) const {
+std::size_t Transmissions::acknowledged_within(Duration time, RobotTime now) const {
   std::size_t bytes = 0;
   for (const Recent& recent : recent_)
-    if (now - recent.at <= kRecent) bytes += recent.bytes;
+    if (now - recent.at <= time) bytes += recent.bytes;
   return bytes;
 }
 

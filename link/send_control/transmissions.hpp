@@ -6,6 +6,7 @@
 // stands still is not filled with copies.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -39,9 +40,12 @@ class Transmissions {
 
   /// Bytes on their way: sent, and neither acknowledged nor lost.
   std::size_t unacknowledged() const { return unacknowledged_; }
-  /// Bytes whose acknowledgement came within kRecent.
-  std::size_t acknowledged_recently(RobotTime now) const;
+  /// Bytes whose acknowledgement came within `time`, which is at most of_late().
+  std::size_t acknowledged_within(Duration time, RobotTime now) const;
   static constexpr Duration kRecent = std::chrono::milliseconds(200);
+  /// In what a packet and its acknowledgement take on an empty line, as much is acknowledged as the road holds at the
+  /// line's rate: of a long road more than that has to be looked at to fill it, of a short one kRecent.
+  Duration of_late() const { return std::max(kRecent, least_.value_or(Duration{}) * 3 / 2); }
 
   bool lost_lately(RobotTime now) const { return last_loss_ && now - *last_loss_ < std::chrono::seconds(10); }
   std::optional<Duration> round_trip() const { return smooth_; }  ///< of late, waiting in the line included

@@ -64,6 +64,19 @@ TEST(LineTrial, AThinLineShowsRecentPictures) {
   EXPECT_GT(result.up_bytes, 60'000U) << "it should use what the line carries";
 }
 
+// 250 ms each way: how far away the robot is takes little of what the line carries.
+TEST(LineTrial, ALongRoadIsUsed) {
+  const auto near = small({.bytes_per_s = 20'000}, seconds(24));
+  auto far = near;
+  far.line.up.delay = far.line.down.delay = milliseconds(250);
+  const LineTrialResult beside = run(near), result = run(far);
+  EXPECT_GT(result.up_bytes, beside.up_bytes * 6 / 10);
+  EXPECT_GT(pairs_per_s(result, far), 0.6 * pairs_per_s(beside, near));
+  EXPECT_LT(p95(result), 400) << "the first trips, in which the line becomes known, included";
+  EXPECT_EQ(result.early, 0U);
+  EXPECT_EQ(result.damaged, 0U);
+}
+
 TEST(LineTrial, GoesOnSoonAfterAGap) {
   auto options = small({.bytes_per_s = 20'000, .outages = {{.at = seconds(5), .lasts = seconds(3)}}});
   const LineTrialResult result = run(options);

@@ -24,9 +24,26 @@ TEST(Transmissions, CountsWhatIsOnItsWayAndWhatCameLately) {
   EXPECT_EQ(sent.acknowledge(of(2, {1}, 20), at_ms(40)).size(), 2U);
   EXPECT_EQ(sent.acknowledge(of(2, {1}, 20), at_ms(41)).size(), 0U) << "a copy";
   EXPECT_EQ(sent.unacknowledged(), 2000U);
-  EXPECT_EQ(sent.acknowledged_recently(at_ms(240)), 2000U);
-  EXPECT_EQ(sent.acknowledged_recently(at_ms(241)), 0U);
+  EXPECT_EQ(sent.acknowledged_within(milliseconds(200), at_ms(240)), 2000U);
+  EXPECT_EQ(sent.acknowledged_within(milliseconds(200), at_ms(241)), 0U);
   EXPECT_EQ(sent.round_trip(), milliseconds(40));
+}
+
+// 1,000 bytes every 20 ms over a road of 400 ms and back: 20,000 are on it, and no more than 10,000 are acknowledged in
+// 200 ms.
+TEST(Transmissions, OnALongRoadLooksFartherBack) {
+  Transmissions sent;
+  EXPECT_EQ(sent.of_late(), milliseconds(200));
+  std::uint32_t told = 0;
+  for (int ms = 0; ms <= 2000; ms += 20) {
+    const std::uint32_t sequence = sent.send(1, 0, 1000, at_ms(ms));
+    if (ms >= 400) sent.acknowledge(of(++told, {}, ms - 200), at_ms(ms));
+    EXPECT_EQ(sequence, static_cast<std::uint32_t>(ms / 20 + 1));
+  }
+  EXPECT_EQ(sent.unacknowledged(), 20'000U);
+  EXPECT_LE(sent.acknowledged_within(milliseconds(200), at_ms(2000)), 11'000U);
+  EXPECT_EQ(sent.of_late(), milliseconds(600));
+  EXPECT_GT(sent.acknowledged_within(sent.of_late(), at_ms(2000)), 29'000U);
 }
 
 TEST(Transmissions, APacketIsLostWhenALaterOneCame) {
