@@ -55,6 +55,10 @@ class TextureCore {
   /// there.
   ExtractionReport extract(LatestTextures& latest, LatestImages* images = nullptr);
 
+  /// Until nothing that these have begun goes on in another thread, as a search for the lamp does: for those who
+  /// measure what an image costs.
+  void wait_for_search() const { lamp_finder_.wait_for_search(); }
+
  private:
   using Masks = std::vector<std::uint32_t>;  // of tiles, for each page of the last plan (SurveyPass::cull)
 

@@ -14,6 +14,7 @@ void require_thesis_lens(const RunFolder& run) {
 
 ExtractionReport BenchCore::process(const PosedFrame& frame) {
   ExtractionReport report = core_.process(frame, latest_);
+  core_.wait_for_search();
   if (!report.published) throw RuntimeFailure("the core dropped a frame", "give it more memory");
   return report;
 }
@@ -21,6 +22,7 @@ ExtractionReport BenchCore::process(const PosedFrame& frame) {
 ExtractionReport BenchCore::process(const PosedFrame& frame, LatestImages& newest) {
   core_.look(frame, newest);
   ExtractionReport report = core_.extract(latest_, &newest);
+  core_.wait_for_search();
   if (!report.published) throw RuntimeFailure("the core dropped a frame", "give it more memory");
   return report;
 }

@@ -14,7 +14,8 @@ namespace foresight {
 /// Throws InputError where the thesis' pipeline cannot take the run's left lens.
 void require_thesis_lens(const RunFolder& run);
 
-/// A core on the calling thread, with the place it publishes to.
+/// A core on the calling thread, with the place it publishes to. All that an image costs is done when process()
+/// returns.
 class BenchCore {
  public:
   BenchCore(std::shared_ptr<const SceneModel> scene, std::shared_ptr<const SurfacePatches> surface, const Lens& lens,

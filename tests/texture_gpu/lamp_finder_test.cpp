@@ -165,11 +165,11 @@ TEST(LampFinder, OneSearchThatFindsAnotherLampTakesNoneAway) {
   room.show(0, 8, {kLamp, {{-0.8, -0.2, 1.2}, 0.05, {1.5, 1.5, 1.5}}}, 0.01, 4);
   const ShadowRays rays(*room.scene);
   LampQuestion question = room.question();
-  question.known = kLamp;
+  question.last.lamp = kLamp;
   LampAnswer answer = find_lamp(rays, question);
   EXPECT_TRUE(answer.several);
   EXPECT_EQ(answer.lamp, kLamp);
-  question.several = true;
+  question.last.several = true;
   answer = find_lamp(rays, question);
   EXPECT_TRUE(answer.several);
   EXPECT_FALSE(answer.lamp);
@@ -202,14 +202,41 @@ TEST(LampFinder, AFewDarkPointsDoNotOutweighSingleImages) {
 
 TEST(LampFinder, FindsALampAgainWhereOthersExplainNearlyAsMuch) {
   Room room;
-  room.show(0, 5, {kLamp}, 0.05, 4);
+  room.show(0, 5, {kLamp}, 0.06, 4);
   const ShadowRays rays(*room.scene);
   LampQuestion question = room.question();
   EXPECT_FALSE(find_lamp(rays, question).told_by_what_moves);
-  question.known = kLamp;
+  question.last.lamp = kLamp;
   const LampAnswer answer = find_lamp(rays, question);
   EXPECT_FALSE(answer.several);
   EXPECT_TRUE(answer.told_by_what_moves) << answer.explained << " " << answer.elsewhere;
+}
+
+TEST(LampFinder, LooksNoFurtherThanTheKnownLampWhereThatStillExplainsAsMuch) {
+  Room room;
+  room.show(0, 10, {kLamp});
+  const ShadowRays rays(*room.scene);
+  LampQuestion question = room.question();
+  question.last = {.lamp = kLamp, .told_by_what_moves = true, .explained = 0.8, .elsewhere = 0.123};
+  question.last.lamp->position += Eigen::Vector3d(0.05, -0.04, 0.06);
+  question.all_around = false;
+  const auto off = [](const Lamp& lamp) {
+    const Eigen::Vector3d middle(0, 0, 0.1), to = lamp.position - middle, truly = kLamp.position - middle;
+    return std::acos(to.normalized().dot(truly.normalized())) * 180 / M_PI;
+  };
+  const LampAnswer near = find_lamp(rays, question);
+  ASSERT_TRUE(near.lamp);
+  EXPECT_EQ(near.elsewhere, 0.123) << "what other places explain is not asked";
+  EXPECT_LT(off(*near.lamp), off(*question.last.lamp));
+
+  question.all_around = true;
+  EXPECT_NE(find_lamp(rays, question).elsewhere, 0.123);
+
+  question.all_around = false;
+  question.last.lamp->position = Eigen::Vector3d(-0.8, -0.2, 1.2);  // somebody has moved it since
+  const LampAnswer moved = find_lamp(rays, question);
+  ASSERT_TRUE(moved.lamp);
+  EXPECT_LT(off(*moved.lamp), 4);
 }
 
 TEST(LampFinder, AFewPointsDoNotTellThatALampIsOff) {
@@ -218,8 +245,8 @@ TEST(LampFinder, AFewPointsDoNotTellThatALampIsOff) {
   const ShadowRays rays(*room.scene);
   for (const std::size_t points : {200, 12000}) {
     LampQuestion question = room.question(points);
-    question.known = kLamp;
-    question.told_by_what_moves = true;
+    question.last.lamp = kLamp;
+    question.last.told_by_what_moves = true;
     EXPECT_EQ(find_lamp(rays, question).lamp.has_value(), points == 200);
   }
 }

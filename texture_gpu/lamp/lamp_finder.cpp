@@ -18,6 +18,7 @@ constexpr double kMoved = 5e-3, kTurned = 0.01;        // metres, radians: less 
 constexpr double kNewMoved = 0.02, kNewTurned = 0.06;  // since the last record: less has much the same shadows
 constexpr int kAnswerTakes = 2;                        // images
 constexpr double kNextSearch = 1.25;                   // when there are so many times as many
+constexpr int kNextAround = 2, kMostBetween = 192;     // likewise, of searches everywhere; records between them
 constexpr float kDarkest = 0.02f;                      // of an image's values: below, noise and black level rule
 const LampRecord::Value kNotKnown = LampRecord::Value::Constant(Eigen::half(std::numeric_limits<float>::quiet_NaN()));
 
@@ -55,6 +56,10 @@ bool LampFinder::look(const SceneState& state) {
   return !witnesses_.empty();
 }
 
+void LampFinder::wait_for_search() const {
+  if (search_.valid()) search_.wait();
+}
+
 void LampFinder::choose() {
   witnesses_ = choose_witnesses(*scene_, last_, moving_, kWitnesses);
   turned_.assign(witnesses_.size(), false);
@@ -80,14 +85,14 @@ void LampFinder::add(const SceneState& state, const Vector3d& camera, std::span<
 }
 
 void LampFinder::ask() {
+  LampQuestion question{witnesses_, records_, moving_, answer_, recorded_ >= look_around_at_};
   ask_at_ = std::min(static_cast<int>(std::ceil(kNextSearch * recorded_)), recorded_ + static_cast<int>(kRecords));
+  if (question.all_around) look_around_at_ = std::min(kNextAround * recorded_, recorded_ + kMostBetween);
   answer_at_ = looked_at_ + kAnswerTakes;
-  search_ =
-      std::async(std::launch::async, [this, question = LampQuestion{witnesses_, records_, moving_, lamp(),
-                                                                    answer_.told_by_what_moves, answer_.several}] {
-        make_background();  // frames and images go first
-        return find_lamp(rays_, question);
-      });
+  search_ = std::async(std::launch::async, [this, question = std::move(question)] {
+    make_background();  // frames and images go first
+    return find_lamp(rays_, question);
+  });
 }
 
 }  // namespace foresight

@@ -39,6 +39,9 @@ class LampFinder {
   /// One for each node: it may move or has moved, and throws shadows that move.
   const std::vector<bool>& moving() const { return moving_; }
 
+  /// Until no search is under way, for those who measure; its answer counts no sooner than else.
+  void wait_for_search() const;
+
   /// What the last search found.
   const LampAnswer& answer() const { return answer_; }
 
@@ -55,8 +58,8 @@ class LampFinder {
   std::vector<bool> turned_;  // the witness's normal shows to the cameras
   std::deque<LampRecord> records_;
   int number_ = 0;
-  int recorded_ = 0, ask_at_ = 0;      // counts of records
-  int looked_at_ = 0, answer_at_ = 0;  // counts of images
+  int recorded_ = 0, ask_at_ = 0, look_around_at_ = 0;  // counts of records
+  int looked_at_ = 0, answer_at_ = 0;                   // counts of images
   std::future<LampAnswer> search_;
   LampAnswer answer_;
 };

@@ -33,6 +33,10 @@ constexpr double kFewestExplained = 0.4, kClearly = 1.5, kAgain = 1.25;
 // aside. A lamp that is off has so little left of its strength.
 constexpr std::size_t kFewestShadows = 120;
 constexpr double kGoneShare = 0.25;
+// What lamps may give, as shares of all other light: of so many, each so many times the one before.
+constexpr double kLeastShare = 0.02, kShareStep = 1.05;
+constexpr int kShares = 161, kSharesAtOnce = 4;
+constexpr double kStillExplains = 0.8;  // of what it did, at least: nothing else is looked for
 // Of single images: points in all, and to look all around with. To be believed: so much likelier than no lamp
 // (logarithm), and so many times what others explain.
 constexpr std::size_t kMostStill = 2000, kCoarseStill = 600;
@@ -139,6 +143,7 @@ class LampSearch {
   static Two both(const VectorXd& first, const VectorXd& second, const VectorXd& brighter);
   bool there_are_several(const Candidate& best, std::span<const Coarse> all);
   void judge(Candidate& c, const Disc& disc) const;
+  void judge_coarsely(Candidate& c, const VectorXd& more) const;
   void judge(Candidate& c, const Disc& disc, std::size_t most, const VectorXd& more, const VectorXd& brighter) const;
   template <class Judge>
   void refine(Candidate& best, int rounds, int tries, double spread, const Disc& disc, const Judge& judge);
@@ -148,6 +153,7 @@ class LampSearch {
   std::vector<Coarse> coarse();
   std::vector<Candidate> fine(std::span<const Coarse> all);
   LampAnswer keep(LampAnswer out) const;
+  std::optional<LampAnswer> confirm();
   Strength strength(const Vector3d& lamp, double radius) const;
   Candidate as_candidate(const Lamp& lamp) const;
   Vector3d place(const Candidate& c) const { return centre_ + c.distance * c.direction; }
@@ -230,6 +236,11 @@ VectorXd LampSearch::more_hidden(const Candidate& c, const Disc& disc, const Sti
 
 void LampSearch::judge(Candidate& c, const Disc& disc) const {
   judge(c, disc, chosen_.size(), more_hidden(c, disc, single_), single_.brighter());
+}
+
+/// With a hard shadow.
+void LampSearch::judge_coarsely(Candidate& c, const VectorXd& more) const {
+  judge(c, kPoint, kMostCoarse, more, coarse_.brighter());
 }
 
 /// By so many of the chosen observations at most, and by points of single images. Of the former those that were dark
@@ -319,15 +330,15 @@ std::vector<LampSearch::Coarse> LampSearch::coarse() {
   const auto add = [&](const Vector3d& direction, double distance) {
     Coarse one{{direction, distance}, {}};
     one.more_hidden = more_hidden(one.lamp, kPoint, coarse_);
-    judge(one.lamp, kPoint, kMostCoarse, one.more_hidden, coarse_.brighter());
+    judge_coarsely(one.lamp, one.more_hidden);
     out.push_back(std::move(one));
   };
   for (int i = 0; i < kDirections; ++i) {  // evenly over the sphere
     const double z = 1 - 2 * (i + 0.5) / kDirections, a = i * 2.39996, r = std::sqrt(1 - z * z);
     for (const double distance : kDistances) add({r * std::cos(a), r * std::sin(a), z}, distance * extent_);
   }
-  if (question_.known) {
-    const Candidate known = as_candidate(*question_.known);
+  if (question_.last.lamp) {
+    const Candidate known = as_candidate(*question_.last.lamp);
     add(known.direction, known.distance);
   }
   std::ranges::sort(out, std::greater(), [](const Coarse& one) { return one.lamp.score; });
@@ -341,9 +352,28 @@ bool is_gone(const Strength& now, const Vector3d& usual) {
 
 /// What was known, unless something speaks against it.
 LampAnswer LampSearch::keep(LampAnswer out) const {
-  out.lamp = question_.known;
-  out.told_by_what_moves = question_.told_by_what_moves;
+  out.lamp = question_.last.lamp;
+  out.told_by_what_moves = question_.last.told_by_what_moves;
   if (out.lamp && is_gone(strength(out.lamp->position, out.lamp->radius), out.lamp->strength)) out.lamp.reset();
+  return out;
+}
+
+/// The last answer, brought up to date; nothing where it no longer holds as it did.
+std::optional<LampAnswer> LampSearch::confirm() {
+  LampAnswer out = question_.last;
+  if (!out.lamp || !out.told_by_what_moves || out.several || dark_ < kFewestDark) return std::nullopt;
+  Candidate best = as_candidate(*out.lamp);
+  refine(best, 3, 8, 0.06, soft_);
+  if (best.explained < std::max(kFewestExplained, kStillExplains * out.explained)) return std::nullopt;
+  const Lamp lamp{place(best), best.radius * best.distance, {}};
+  const Strength found = strength(lamp.position, lamp.radius);
+  if (found.shadows < kFewestShadows || !(found.moving.minCoeff() > 0) || is_gone(found, out.lamp->strength))
+    return std::nullopt;
+  out.lamp = lamp;
+  out.lamp->strength = found.moving;
+  out.dark = static_cast<int>(dark_);
+  out.explained = best.explained;
+  out.still = best.still;
   return out;
 }
 
@@ -355,7 +385,11 @@ std::vector<LampSearch::Candidate> LampSearch::fine(std::span<const Coarse> all)
     if (std::ranges::all_of(out, [&](const Candidate& c) { return is_elsewhere(c, one.lamp, kApart / 2); }))
       out.push_back(one.lamp);
   }
-  for (Candidate& c : out) refine(c, 3, 16, 0.12, kPoint);
+  for (Candidate& c : out) {
+    refine(c, 3, 16, 0.12, kPoint,
+           [&](Candidate& tried) { judge_coarsely(tried, more_hidden(tried, kPoint, coarse_)); });
+    judge(c, kPoint);
+  }
   keep_best(out, out.size());
   const double worth = kWorthSoft * out[0].score;
   for (Candidate& c : std::span(out).first(std::min<std::size_t>(out.size(), 3))) {
@@ -368,18 +402,24 @@ std::vector<LampSearch::Candidate> LampSearch::fine(std::span<const Coarse> all)
       judge(soft, soft_);
       if (soft.score > c.score) c = soft;
     }
-    refine(c, 4, 12, 0.06, soft_);
   }
-  if (question_.known) refine(out.emplace_back(as_candidate(*question_.known)), 4, 12, 0.06, soft_);
+  if (question_.last.lamp) judge(out.emplace_back(as_candidate(*question_.last.lamp)), soft_);
+  keep_best(out, out.size());
+  const auto second = std::ranges::find_if(
+      out, [&](const Candidate& c) { return c.score >= worth && is_elsewhere(c, out[0], kApart / 2); });
+  if (second != out.end()) refine(*second, 4, 12, 0.06, soft_);
+  refine(out[0], 4, 12, 0.06, soft_);
   keep_best(out, out.size());
   return out;
 }
 
 LampAnswer LampSearch::answer() {
+  if (!question_.all_around)
+    if (const std::optional<LampAnswer> confirmed = confirm()) return *confirmed;
   LampAnswer out;
   out.dark = static_cast<int>(dark_);
   const bool moves = dark_ >= kFewestDark;
-  if (!moves && (question_.told_by_what_moves || single_.empty())) return keep(out);
+  if (!moves && (question_.last.told_by_what_moves || single_.empty())) return keep(out);
   const std::vector<Coarse> all = coarse();
   std::vector<Candidate> others = fine(all);
   const Candidate best = others[0];
@@ -397,16 +437,16 @@ LampAnswer LampSearch::answer() {
     out.still_elsewhere = std::max(out.still_elsewhere, c.still);
   }
   out.several = there_are_several(best, all);
-  if (out.several) return question_.known && !question_.several ? keep(out) : out;  // one search may err
+  if (out.several) return question_.last.lamp && !question_.last.several ? keep(out) : out;  // one search may err
   const Lamp lamp{place(best), best.radius * best.distance, {}};
   const Strength found = strength(lamp.position, lamp.radius);
   const bool explains = moves && out.explained >= kFewestExplained;
-  const bool again = question_.known && !is_elsewhere(best, as_candidate(*question_.known), kApart);
+  const bool again = question_.last.lamp && !is_elsewhere(best, as_candidate(*question_.last.lamp), kApart);
   out.told_by_what_moves = explains && out.explained >= (again ? kAgain : kClearly) * out.elsewhere;
   const bool told_by_single_images = !explains && likelier(single_.brighter().size(), out.still) >= kStillLikelier &&
                                      out.still >= (again ? kAgain : kStillClearly) * out.still_elsewhere &&
                                      !is_gone(found, found.still);
-  if (!out.told_by_what_moves && !told_by_single_images) return question_.told_by_what_moves ? out : keep(out);
+  if (!out.told_by_what_moves && !told_by_single_images) return question_.last.told_by_what_moves ? out : keep(out);
   out.lamp = lamp;
   out.lamp->strength = found.shadows >= kFewestShadows ? found.moving : found.still;
   if (!(out.lamp->strength.minCoeff() > 0)) {
@@ -416,7 +456,7 @@ LampAnswer LampSearch::answer() {
   return out;
 }
 
-/// For each channel those with the least absolute error.
+/// For each channel those with the least absolute error: in wide steps, and in narrow ones around the best.
 Strength LampSearch::strength(const Vector3d& lamp, double radius) const {
   struct Shadowed {
     Vector3f deviation;
@@ -425,12 +465,13 @@ Strength LampSearch::strength(const Vector3d& lamp, double radius) const {
   std::vector<Shadowed> shadowed;
   const std::size_t step = std::max<std::size_t>(1, all_.size() / (10 * kMostInFit));
   for (std::size_t i = 0; i < all_.size() && shadowed.size() < kMostInFit; i += step) {
-    const double x = hidden(all_[i].witness, all_[i].record, lamp, radius, fit_);
-    const double usually = hidden(all_[i].witness, all_[i].lit, lamp, radius, fit_);
+    const auto& [record, witness, lit, deviation, luma] = all_[i];
+    if (hidden(witness, record, lamp, radius, soft_) == 0 && hidden(witness, lit, lamp, radius, soft_) == 0) continue;
+    const double x = hidden(witness, record, lamp, radius, fit_), usually = hidden(witness, lit, lamp, radius, fit_);
     if (std::abs(x - usually) < 0.05) continue;
-    const Witness& w = question_.witnesses[all_[i].witness];
+    const Witness& w = question_.witnesses[witness];
     const Vector3d l = lamp - w.point.cast<double>();
-    shadowed.push_back({all_[i].deviation, w.normal.cast<double>().dot(l) / std::pow(l.norm(), 3), x, usually});
+    shadowed.push_back({deviation, w.normal.cast<double>().dot(l) / std::pow(l.norm(), 3), x, usually});
   }
   const StillShadows::Cast cast = single_.cast(lamp, radius, soft_);
   Strength out{.shadows = shadowed.size()};
@@ -439,19 +480,32 @@ Strength LampSearch::strength(const Vector3d& lamp, double radius) const {
   for (const double facing : cast.facing) mean += facing, count += 1;
   mean /= std::max(1.0, count);
   if (!(mean > 0)) return out;
-  Eigen::Array3d least_moving = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()),
-                 least_still = least_moving;
-  for (double share = 0.02; share < 50; share *= 1.05) {
+  const Eigen::Array3d none = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Array3d least_moving = none, least_still = none;
+  Eigen::Array3i best_moving = Eigen::Array3i::Zero(), best_still = best_moving;
+  const auto share_of = [](int step) { return kLeastShare * std::pow(kShareStep, step); };
+  const auto look_at = [&](int step) {
+    const double strength = share_of(step) / mean;
     Eigen::Array3d of_moving = Eigen::Array3d::Zero();
     for (const Shadowed& s : shadowed)
-      of_moving += (s.deviation.cast<double>().array() - std::log(shadow_factor(share / mean * s.facing, s.hidden) /
-                                                                  shadow_factor(share / mean * s.facing, s.usually)))
+      of_moving += (s.deviation.cast<double>().array() - std::log(shadow_factor(strength * s.facing, s.hidden) /
+                                                                  shadow_factor(strength * s.facing, s.usually)))
                        .abs();
-    const Eigen::Array3d of_still = single_.errors(cast, share / mean);
+    const Eigen::Array3d of_still = single_.errors(cast, strength);
     for (int c = 0; c < 3; ++c) {
-      if (of_moving[c] < least_moving[c]) least_moving[c] = of_moving[c], out.moving[c] = share / mean;
-      if (of_still[c] < least_still[c]) least_still[c] = of_still[c], out.still[c] = share / mean;
+      if (of_moving[c] < least_moving[c]) least_moving[c] = of_moving[c], best_moving[c] = step;
+      if (of_still[c] < least_still[c]) least_still[c] = of_still[c], best_still[c] = step;
     }
+  };
+  for (int step = 0; step < kShares; step += kSharesAtOnce) look_at(step);
+  const Eigen::Array3i moving = best_moving, still = best_still;
+  for (int step = 0; step < kShares; ++step) {
+    const bool is_near = ((moving - step).abs() < kSharesAtOnce || (still - step).abs() < kSharesAtOnce).any();
+    if (step % kSharesAtOnce != 0 && is_near) look_at(step);
+  }
+  for (int c = 0; c < 3; ++c) {
+    out.moving[c] = share_of(best_moving[c]) / mean;
+    out.still[c] = share_of(best_still[c]) / mean;
   }
   return out;
 }
