@@ -58,12 +58,17 @@ bool PositionHistory::covers(double time, double gap) const noexcept {
   return values_[after].time - values_[after - 1].time <= gap;
 }
 
-double PositionHistory::nearest(double time) const noexcept {
+std::optional<TimedPosition> PositionHistory::measured_about(double time, double within) const noexcept {
+  if (covers(time, kSparse)) return TimedPosition{time, at(time)};
+  if (empty() || nearest(time) > within) return {};
+  return nearest_value(time);
+}
+
+const TimedPosition& PositionHistory::nearest_value(double time) const noexcept {
   const std::size_t after = first_after(time);
-  double out = std::numeric_limits<double>::infinity();
-  if (after < values_.size()) out = values_[after].time - time;
-  if (after > 0) out = std::min(out, time - values_[after - 1].time);
-  return out;
+  if (after == 0) return values_[0];
+  if (after == values_.size()) return values_.newest();
+  return values_[after].time - time < time - values_[after - 1].time ? values_[after] : values_[after - 1];
 }
 
 }  // namespace foresight

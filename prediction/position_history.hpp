@@ -1,7 +1,9 @@
 // A joint's positions over time: commanded, or measured.
 #pragma once
 
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "prediction/last_of.hpp"
 
@@ -33,11 +35,16 @@ class PositionHistory {
             double sparse = kSparse) const noexcept;
   /// Whether values on both sides of `time` are no farther apart than `gap`.
   bool covers(double time, double gap) const noexcept;
+  /// What was measured at `time`: on the line between values on both sides, or, where these are farther apart than
+  /// kSparse, as over a thin line, and what lies between them is not known, the nearer one. Nothing where none is
+  /// within `within`.
+  std::optional<TimedPosition> measured_about(double time, double within) const noexcept;
   /// How far in time the nearest value is. Not empty.
-  double nearest(double time) const noexcept;
+  double nearest(double time) const noexcept { return std::abs(nearest_value(time).time - time); }
 
  private:
   std::size_t first_after(double time) const noexcept;
+  const TimedPosition& nearest_value(double time) const noexcept;
 
   LastOf<TimedPosition> values_;
 };

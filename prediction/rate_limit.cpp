@@ -6,10 +6,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kEvery = 0.02;  // s between points on the way to a far command: nearer than those that are steps
-constexpr double kLongest = 30;  // s
-constexpr double kOver = 0.1;    // s that speeds are means of
-constexpr double kLongestRateGap = 0.15;  // s between states that what lies between is known for
+constexpr double kEvery = 0.02;      // s between points on the way to a far command: nearer than those that are steps
+constexpr double kLongest = 30;      // s
+constexpr double kOver = 0.1;        // s that speeds are means of
+constexpr double kOtherOver = 0.05;  // s by which that may differ where states come seldom
 constexpr double kAsksForMore = 1.15;
 constexpr std::size_t kEnoughRates = 1000;
 
@@ -41,10 +41,12 @@ std::optional<double> speed_reached(const PositionHistory& commands, const Posit
   double reached = 0, asked = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < values.size(); i += stride) {
-    const double then = values[i].time - kOver;
-    if (commands.empty() || then < commands.values()[0].time || !states.covers(then, kLongestRateGap)) continue;
-    reached = std::max(reached, std::abs(values[i].position - states.at(then)) / kOver);
-    asked = std::max(asked, std::abs(commands.at(values[i].time) - commands.at(then)) / kOver);
+    const TimedPosition now = values[i];
+    const auto then = states.measured_about(now.time - kOver, kOtherOver);
+    if (commands.empty() || !then || then->time < commands.values()[0].time) continue;
+    const double over = now.time - then->time;
+    reached = std::max(reached, std::abs(now.position - then->position) / over);
+    asked = std::max(asked, std::abs(commands.at(now.time) - commands.at(then->time)) / over);
     ++count;
   }
   if (count < 40 || reached <= 0 || asked < kAsksForMore * reached) return {};

@@ -9,11 +9,11 @@ namespace foresight {
 namespace {
 
 constexpr std::array kAgesAboutDelay{-0.1, -0.04, -0.02, -0.01, 0.0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};  // s
-constexpr double kFriction = 0.01;              // rad: what friction's share is a share of
-constexpr double kFrictionSpeed = 0.02;         // rad/s: where friction is nearly all there
-constexpr double kSpeedOver = 0.01;             // s to both sides
-constexpr double kLongestBetweenStates = 0.15;  // s between states that what lies between is known for
-constexpr double kDense = 0.006;                // s: commands so near on average are alike held or joined
+constexpr double kFriction = 0.01;       // rad: what friction's share is a share of
+constexpr double kFrictionSpeed = 0.02;  // rad/s: where friction is nearly all there
+constexpr double kSpeedOver = 0.01;      // s to both sides
+constexpr double kOther = 0.5;           // share of a change's time by which it may differ where states come seldom
+constexpr double kDense = 0.006;         // s: commands so near on average are alike held or joined
 constexpr double kAllSteps = 0, kAllLines = 0.5;
 constexpr std::size_t kFewestChanges = 40;  // changes to learn from
 constexpr std::size_t kEnough = 2000;       // more are left out, evenly
@@ -22,20 +22,20 @@ constexpr double kPriorsWeight = 4;         // inverse variance of a step's shar
 constexpr double kLeastStepVariance = 1e-14;
 constexpr double kResolution = 0.001;  // s that the steps of the ages leave open
 
-// States of which both `change` seconds and `reach` of commands lie before.
+// States before which `change` seconds, and before these `reach` of commands, are known.
 struct Window {
   const PositionHistory& commands;
   const PositionHistory& states;
   std::size_t first = 0, stride = 1, count = 0;
-  double change = 0, reach = 0;
+  double change = 0, reach = 0, earliest = 0;
 
-  // Visits the state at an instant, and the same earlier.
+  // Visits a state, and what was measured about `change` earlier.
   template <typename Visit>
   void for_each_change(const Visit& visit) const {
     for (std::size_t i = first; i < states.values().size(); i += stride) {
       const TimedPosition now = states.values()[i];
-      const double then = now.time - change;
-      if (states.covers(then, kLongestBetweenStates)) visit(now, TimedPosition{then, states.at(then)});
+      const auto then = states.measured_about(now.time - change, kOther * change);
+      if (then && then->time >= earliest) visit(now, *then);
     }
   }
 };
@@ -54,7 +54,8 @@ std::optional<Window> learning_window(const PositionHistory& commands, const Pos
   Window window{commands, states};
   window.change = std::min(0.3, 0.25 * seconds);
   window.reach = std::min(0.5, 0.25 * seconds);
-  const double from = std::max(begin + window.change + window.reach, motion_begins(commands.values()));
+  window.earliest = begin + window.reach;
+  const double from = std::max(window.earliest + window.change, motion_begins(commands.values()));
   while (window.first < states.values().size() && states.values()[window.first].time < from) ++window.first;
   window.stride = (states.values().size() - window.first) / kEnough + 1;
   double moved = 0;

@@ -127,6 +127,19 @@ TEST(JointResponse, DrivesOfManyKindsArePredicted) {
   expect_predicted(run({.friction = 0.002}), 0.004, "friction");
 }
 
+// Where the shaft was between two states is not known.
+TEST(JointResponse, IsLearntFromTheFewStatesOfAThinLine) {
+  for (const double step : {0.06, 0.08, 0.1, 0.13}) {
+    const Outcome outcome = run({.state_step = step, .jitter = 0.3});
+    EXPECT_NEAR(outcome.figures.delay, 0.042, 3 * outcome.figures.delay_sigma) << step;
+    EXPECT_LT(outcome.figures.delay_sigma, 0.005) << step;
+    for (const double p95 : outcome.p95) EXPECT_LT(p95, 0.0005) << step;
+    EXPECT_LT(10 * outcome.p95[1], outcome.increment_p95) << step;
+    EXPECT_TRUE(std::isinf(outcome.largest_speed)) << step;
+  }
+  EXPECT_NEAR(run({.lag = 0.02, .state_step = 0.08, .fastest = 0.7}).largest_speed, 0.7, 0.05);
+}
+
 // Its commands ask for up to 1.4 rad/s.
 TEST(JointResponse, ADriveAtItsLargestSpeedIsPredicted) {
   for (const double fastest : {0.7, 1.0}) {
