@@ -60,8 +60,9 @@ bool PositionHistory::covers(double time, double gap) const noexcept {
 
 std::optional<TimedPosition> PositionHistory::measured_about(double time, double within) const noexcept {
   if (covers(time, kSparse)) return TimedPosition{time, at(time)};
-  if (empty() || nearest(time) > within) return {};
-  return nearest_value(time);
+  if (empty()) return {};
+  const TimedPosition& value = nearest_value(time);
+  return std::abs(value.time - time) <= within ? std::optional(value) : std::nullopt;
 }
 
 const TimedPosition& PositionHistory::nearest_value(double time) const noexcept {

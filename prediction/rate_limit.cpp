@@ -6,10 +6,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kEvery = 0.02;      // s between points on the way to a far command: nearer than those that are steps
-constexpr double kLongest = 30;      // s
-constexpr double kOver = 0.1;        // s that speeds are means of
-constexpr double kOtherOver = 0.05;  // s by which that may differ where states come seldom
+constexpr double kEvery = 0.02;  // s between points on the way to a far command: nearer than those that are steps
+constexpr double kLongest = 30;  // s
+constexpr double kOver = 0.1;    // s that speeds are means of
+constexpr double kOverMayDiffer = 0.05;  // s by which that may differ where states come seldom
 constexpr double kAsksForMore = 1.15;
 constexpr std::size_t kEnoughRates = 1000;
 
@@ -42,7 +42,7 @@ std::optional<double> speed_reached(const PositionHistory& commands, const Posit
   std::size_t count = 0;
   for (std::size_t i = 0; i < values.size(); i += stride) {
     const TimedPosition now = values[i];
-    const auto then = states.measured_about(now.time - kOver, kOtherOver);
+    const auto then = states.measured_about(now.time - kOver, kOverMayDiffer);
     if (commands.empty() || !then || then->time < commands.values()[0].time) continue;
     const double over = now.time - then->time;
     reached = std::max(reached, std::abs(now.position - then->position) / over);

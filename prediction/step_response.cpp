@@ -12,7 +12,7 @@ constexpr std::array kAgesAboutDelay{-0.1, -0.04, -0.02, -0.01, 0.0, 0.01, 0.02,
 constexpr double kFriction = 0.01;       // rad: what friction's share is a share of
 constexpr double kFrictionSpeed = 0.02;  // rad/s: where friction is nearly all there
 constexpr double kSpeedOver = 0.01;      // s to both sides
-constexpr double kOther = 0.5;           // share of a change's time by which it may differ where states come seldom
+constexpr double kMayDiffer = 0.5;       // share of a change's time by which it may differ where states come seldom
 constexpr double kDense = 0.006;         // s: commands so near on average are alike held or joined
 constexpr double kAllSteps = 0, kAllLines = 0.5;
 constexpr std::size_t kFewestChanges = 40;  // changes to learn from
@@ -34,7 +34,7 @@ struct Window {
   void for_each_change(const Visit& visit) const {
     for (std::size_t i = first; i < states.values().size(); i += stride) {
       const TimedPosition now = states.values()[i];
-      const auto then = states.measured_about(now.time - change, kOther * change);
+      const auto then = states.measured_about(now.time - change, kMayDiffer * change);
       if (then && then->time >= earliest) visit(now, *then);
     }
   }
