@@ -67,6 +67,12 @@ struct Room {
 
 const Lamp kLamp{{0.3, 0.5, 1.3}, 0.1, {3.0, 2.5, 2.0}};
 
+/// Between where a lamp is and where kLamp is, seen from the table.
+double degrees_off(const Lamp& lamp) {
+  const Eigen::Vector3d middle(0, 0, 0.1), to = lamp.position - middle, truly = kLamp.position - middle;
+  return std::acos(to.normalized().dot(truly.normalized())) * 180 / M_PI;
+}
+
 TEST(LampFinder, FindsTheLampByTheShadowsOfWhatMoves) {
   Room room;
   room.show(0, 30, {kLamp});
@@ -88,8 +94,7 @@ TEST(LampFinder, FindsTheLampInTheFirstImagesByShadowsThatHardlyMove) {
   room.show(0, 4, {kLamp});
   ASSERT_TRUE(room.finder.lamp()) << room.finder.answer().still << " " << room.finder.answer().still_elsewhere;
   EXPECT_FALSE(room.finder.answer().told_by_what_moves);
-  const Eigen::Vector3d middle(0, 0, 0.1), to = room.finder.lamp()->position - middle, truly = kLamp.position - middle;
-  EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
+  EXPECT_LT(degrees_off(*room.finder.lamp()), 8);
 }
 
 TEST(LampFinder, FindsTheLampBeforeWhatMayMoveHas) {
@@ -101,8 +106,7 @@ TEST(LampFinder, FindsTheLampBeforeWhatMayMoveHas) {
   for (int i = 0; i < 2; ++i) EXPECT_FALSE(room.finder.look(state_at(*room.scene, 0))) << "nothing new to be seen";
   ASSERT_TRUE(room.finder.lamp()) << room.finder.answer().still << " " << room.finder.answer().still_elsewhere;
   EXPECT_TRUE(room.finder.moving()[kBlock]);
-  const Eigen::Vector3d middle(0, 0, 0.1), to = room.finder.lamp()->position - middle, truly = kLamp.position - middle;
-  EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
+  EXPECT_LT(degrees_off(*room.finder.lamp()), 8);
 }
 
 TEST(LampFinder, TakesAnAnswerThatIsNotAwaitedOnceItIsThere) {
@@ -150,8 +154,7 @@ TEST(LampFinder, FindsTheMainLampBesideAWeakerOne) {
   Room room;
   room.show(0, 10, {kLamp, {{-0.8, -0.2, 1.2}, 0.05, {0.5, 0.5, 0.5}}}, 0.01, 4);
   ASSERT_TRUE(room.finder.lamp()) << room.finder.answer().explained << " " << room.finder.answer().elsewhere;
-  const Eigen::Vector3d middle(0, 0, 0.1), to = room.finder.lamp()->position - middle, truly = kLamp.position - middle;
-  EXPECT_GT(to.normalized().dot(truly.normalized()), std::cos(8 * M_PI / 180));
+  EXPECT_LT(degrees_off(*room.finder.lamp()), 8);
 }
 
 TEST(LampFinder, SaysNothingWhereTwoLampsAreAsBright) {
@@ -220,14 +223,10 @@ TEST(LampFinder, LooksNoFurtherThanTheKnownLampWhereThatStillExplainsAsMuch) {
   question.last = {.lamp = kLamp, .told_by_what_moves = true, .explained = 0.8, .elsewhere = 0.123};
   question.last.lamp->position += Eigen::Vector3d(0.05, -0.04, 0.06);
   question.all_around = false;
-  const auto off = [](const Lamp& lamp) {
-    const Eigen::Vector3d middle(0, 0, 0.1), to = lamp.position - middle, truly = kLamp.position - middle;
-    return std::acos(to.normalized().dot(truly.normalized())) * 180 / M_PI;
-  };
   const LampAnswer near = find_lamp(rays, question);
   ASSERT_TRUE(near.lamp);
   EXPECT_EQ(near.elsewhere, 0.123) << "what other places explain is not asked";
-  EXPECT_LT(off(*near.lamp), off(*question.last.lamp));
+  EXPECT_LT(degrees_off(*near.lamp), degrees_off(*question.last.lamp));
 
   question.all_around = true;
   EXPECT_NE(find_lamp(rays, question).elsewhere, 0.123);
@@ -236,7 +235,7 @@ TEST(LampFinder, LooksNoFurtherThanTheKnownLampWhereThatStillExplainsAsMuch) {
   question.last.lamp->position = Eigen::Vector3d(-0.8, -0.2, 1.2);  // somebody has moved it since
   const LampAnswer moved = find_lamp(rays, question);
   ASSERT_TRUE(moved.lamp);
-  EXPECT_LT(off(*moved.lamp), 4);
+  EXPECT_LT(degrees_off(*moved.lamp), 4);
 }
 
 TEST(LampFinder, AFewPointsDoNotTellThatALampIsOff) {

@@ -156,6 +156,7 @@ class LampSearch {
   std::optional<LampAnswer> confirm();
   Strength strength(const Vector3d& lamp, double radius) const;
   Candidate as_candidate(const Lamp& lamp) const;
+  Lamp as_lamp(const Candidate& c) const { return {place(c), c.radius * c.distance, {}}; }
   Vector3d place(const Candidate& c) const { return centre_ + c.distance * c.direction; }
 
   const LampQuestion& question_;
@@ -365,7 +366,7 @@ std::optional<LampAnswer> LampSearch::confirm() {
   Candidate best = as_candidate(*out.lamp);
   refine(best, 3, 8, 0.06, soft_);
   if (best.explained < std::max(kFewestExplained, kStillExplains * out.explained)) return std::nullopt;
-  const Lamp lamp{place(best), best.radius * best.distance, {}};
+  const Lamp lamp = as_lamp(best);
   const Strength found = strength(lamp.position, lamp.radius);
   if (found.shadows < kFewestShadows || !(found.moving.minCoeff() > 0) || is_gone(found, out.lamp->strength))
     return std::nullopt;
@@ -438,7 +439,7 @@ LampAnswer LampSearch::answer() {
   }
   out.several = there_are_several(best, all);
   if (out.several) return question_.last.lamp && !question_.last.several ? keep(out) : out;  // one search may err
-  const Lamp lamp{place(best), best.radius * best.distance, {}};
+  const Lamp lamp = as_lamp(best);
   const Strength found = strength(lamp.position, lamp.radius);
   const bool explains = moves && out.explained >= kFewestExplained;
   const bool again = question_.last.lamp && !is_elsewhere(best, as_candidate(*question_.last.lamp), kApart);
@@ -463,8 +464,8 @@ Strength LampSearch::strength(const Vector3d& lamp, double radius) const {
     double facing, hidden, usually;  // (n . l) / d^2; shares of the lamp
   };
   std::vector<Shadowed> shadowed;
-  const std::size_t step = std::max<std::size_t>(1, all_.size() / (10 * kMostInFit));
-  for (std::size_t i = 0; i < all_.size() && shadowed.size() < kMostInFit; i += step) {
+  const std::size_t stride = std::max<std::size_t>(1, all_.size() / (10 * kMostInFit));
+  for (std::size_t i = 0; i < all_.size() && shadowed.size() < kMostInFit; i += stride) {
     const auto& [record, witness, lit, deviation, luma] = all_[i];
     if (hidden(witness, record, lamp, radius, soft_) == 0 && hidden(witness, lit, lamp, radius, soft_) == 0) continue;
     const double x = hidden(witness, record, lamp, radius, fit_), usually = hidden(witness, lit, lamp, radius, fit_);
