@@ -21,17 +21,19 @@ using SteadyClock = std::chrono::steady_clock;
 
 struct Comparison {
   std::vector<double> core_ms, thesis_ms;
-  std::vector<double> needed_ms;  // the core where views look images up: extracts what is needed then
-  double texels = 0;              // written by the core, per image
-  double texels_needed = 0;       // likewise
-  double polygons = 0;            // in view, per image
+  std::vector<double> needed_ms;    // the core where views look images up: extracts what is needed then
+  std::vector<double> same_job_ms;  // likewise, with neither lamp nor shadows, as the thesis' pipeline
+  double texels = 0;                // written by the core, per image
+  double texels_needed = 0;         // likewise
+  double polygons = 0;              // in view, per image
 };
 
 /// All take every frame, one after the other, so that what disturbs the machine disturbs all.
 Comparison compare(const BenchSetup& setup) {
   auto core = make_core(setup, setup.texels_per_metre, setup.max_texture);
   auto needed = make_core(setup, setup.texels_per_metre, setup.max_texture);
-  LatestImages newest;
+  auto same_job = make_core(setup, setup.texels_per_metre, setup.max_texture, false);
+  LatestImages newest, newest_of_same_job;
   thesis::Options options;
   options.texels_per_metre = setup.texels_per_metre;
   options.max_texture = setup.max_texture;
@@ -42,6 +44,7 @@ Comparison compare(const BenchSetup& setup) {
     ExtractionReport of_core, of_needed, of_thesis;
     out.core_ms.push_back(cpu_ms_of([&] { of_core = core->process(setup.frames[i]); }));
     out.needed_ms.push_back(cpu_ms_of([&] { of_needed = needed->process(setup.frames[i], newest); }));
+    out.same_job_ms.push_back(cpu_ms_of([&] { same_job->process(setup.frames[i], newest_of_same_job); }));
     out.thesis_ms.push_back(cpu_ms_of([&] { of_thesis = thesis.process(setup.frames[i]); }));
     out.texels += static_cast<double>(of_core.tiles) * 64 / static_cast<double>(setup.frames.size());
     out.texels_needed += static_cast<double>(of_needed.tiles) * 64 / static_cast<double>(setup.frames.size());
@@ -72,9 +75,11 @@ void print(const Comparison& c) {
   };
   row("core", c.core_ms);
   row("core, what views need", c.needed_ms);
+  row("likewise, no shadows", c.same_job_ms);
   row("thesis' pipeline", c.thesis_ms);
   ratio("ratio", c.core_ms);
   ratio("ratio, what views need", c.needed_ms);
+  ratio("likewise, no shadows", c.same_job_ms);
 }
 
 BenchSetup prepare(const RunFolder& run, const ExtractionBenchOptions& options, bool software) {
@@ -104,8 +109,10 @@ int bench_extraction(const ExtractionBenchOptions& options) {
   all["speedup_over_thesis"] = thesis_ms / core_ms;
   all["thesis_images_per_core_second"] = 1000 / thesis_ms;
   all["speedup_over_thesis_needed"] = thesis_ms / mean(comparison.needed_ms);
+  all["speedup_over_thesis_needed_no_shadows"] = thesis_ms / mean(comparison.same_job_ms);
   all["core_cpu_ms"] = cost_of(comparison.core_ms);
   all["core_needed_cpu_ms"] = cost_of(comparison.needed_ms);
+  all["core_needed_no_shadows_cpu_ms"] = cost_of(comparison.same_job_ms);
   all["thesis_cpu_ms"] = cost_of(comparison.thesis_ms);
   all["images"] = setup.frames.size();
   all["image_size_px"] = {run.lens_left().width(), run.lens_left().height()};

@@ -65,10 +65,12 @@ thesis::Pipeline make_thesis(const BenchSetup& setup, const thesis::Options& opt
   return thesis::Pipeline(setup.run.scene(), setup.run.lens_left(), std::nullopt, options, setup.software);
 }
 
-std::unique_ptr<BenchCore> make_core(const BenchSetup& setup, double texels_per_metre, int max_texture) {
+std::unique_ptr<BenchCore> make_core(const BenchSetup& setup, double texels_per_metre, int max_texture,
+                                     bool shadows) {
   TextureOptions options;
   options.texels_per_metre = texels_per_metre;
   options.max_texture = max_texture;
+  options.shadows = shadows;
   options.depth_tolerance = setup.run.scene()->accuracy().value_or(options.depth_tolerance);
   return std::make_unique<BenchCore>(setup.run.scene(), setup.surface, setup.run.lens_left(), options, setup.software);
 }

@@ -36,6 +36,7 @@ TEST_F(Bench, ExtractionComparesBothPipelines) {
   EXPECT_GT(all["polygons_per_image"], 20);
   EXPECT_GT(all["texels_per_image"], 1000);
   EXPECT_GT(all["core_needed_cpu_ms"]["mean"], 0);
+  EXPECT_GT(all["core_needed_no_shadows_cpu_ms"]["mean"], 0);
   EXPECT_LT(all["texels_needed_per_image"], all["texels_per_image"]);
 }
 
