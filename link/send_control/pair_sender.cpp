@@ -19,10 +19,12 @@ constexpr std::size_t kMostPending = 64;
 
 }  // namespace
 
-/// The line, or nothing came back yet to tell.
+/// Something does in the line, or nothing came back yet to tell. The mean of trips remembers an outage for dozens of
+/// them, which are seconds on a thin line: some that found nothing in their way tell more.
 bool PairSender::waits() const {
   const auto trip = transmissions_.round_trip(), least = transmissions_.least_round_trip();
-  return !trip || *trip - *least > Transmissions::kNoQueue;
+  if (!trip) return true;
+  return *trip - *least > Transmissions::kNoQueue && transmissions_.known_calm() <= kCalm;
 }
 
 double PairSender::road_s() const {

@@ -88,6 +88,7 @@ void Transmissions::measure_round_trip(const Acknowledgement& acknowledgement, R
   const Duration trip = now - record->sent.at;
   least_ = least_ ? std::min(*least_ + *least_ / 4096, trip) : trip;  // forgets, as routes change
   variation_ = smooth_ ? (3 * variation_ + Duration(std::abs((trip - *smooth_).count()))) / 4 : trip / 2;
+  tripped_at_ = now;
   if (!queued_at_ || trip > *least_ + kNoQueue) queued_at_ = now;
   smooth_ = smooth_ ? (7 * *smooth_ + trip) / 8 : trip;
 }

@@ -54,6 +54,8 @@ class Transmissions {
   std::optional<double> rate(RobotTime now) const { return rate_.rate(overdue(now)); }
   /// For how long nothing had to wait in the line for more than kNoQueue.
   Duration calm(RobotTime now) const { return queued_at_ ? now - *queued_at_ : Duration{}; }
+  /// Likewise, until the last packet that was told of: of a silence nothing is known.
+  Duration known_calm() const { return queued_at_ ? tripped_at_ - *queued_at_ : Duration{}; }
   static constexpr Duration kNoQueue = std::chrono::milliseconds(20);
   /// Share of packets that were lost, of about the last thousand.
   double loss() const { return loss_; }
@@ -88,6 +90,7 @@ class Transmissions {
   std::optional<Duration> smooth_, least_;
   Duration variation_{}, overtaking_ = std::chrono::milliseconds(5);
   std::optional<RobotTime> queued_at_;  // the last trip that took longer than the least and kNoQueue; the first
+  RobotTime tripped_at_;                // when the last trip ended
   RobotTime last_send_, last_news_;
   int questions_ = 0;  // since the last news
   std::optional<RobotTime> last_loss_;

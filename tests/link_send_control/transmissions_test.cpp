@@ -46,6 +46,21 @@ TEST(Transmissions, OnALongRoadLooksFartherBack) {
   EXPECT_GT(sent.acknowledged_within(sent.of_late(), at_ms(2000)), 29'000U);
 }
 
+TEST(Transmissions, OfASilenceNothingIsKnown) {
+  Transmissions sent;
+  EXPECT_EQ(sent.known_calm(), milliseconds(0));
+  const auto trip = [&sent](int ms, int lasts) {
+    sent.acknowledge(of(sent.send(1, 0, 1000, at_ms(ms)), {}, ms), at_ms(ms + lasts));
+  };
+  trip(0, 40);
+  trip(100, 140);
+  EXPECT_EQ(sent.known_calm(), milliseconds(0)) << "it waited for 100 ms";
+  trip(300, 40);
+  EXPECT_EQ(sent.known_calm(), milliseconds(100));
+  EXPECT_EQ(sent.calm(at_ms(900)), milliseconds(660));
+  EXPECT_EQ(sent.known_calm(), milliseconds(100)) << "what is on its way may wait";
+}
+
 TEST(Transmissions, APacketIsLostWhenALaterOneCame) {
   Transmissions sent;
   sent.send(1, 0, 1000, at_ms(0));
