@@ -27,6 +27,19 @@ double lateness(const RobotReport& report, const GateModel::State& expected) {
   return squares > kMoves * kMoves ? std::clamp(ways / squares, -kMostAtOnce, kMostAtOnce) : 0;
 }
 
+/// What the robot's end of a line asked for, where nothing that was expected since has changed it.
+const LinePermit* told_permit(const RobotReport& report, const GateModel::State* expected) {
+  return report.permit && (expected == nullptr || report.permit->time >= expected->permitted) ? &*report.permit
+                                                                                              : nullptr;
+}
+
+bool agrees(const RobotReport& report, const GateModel::State& expected) {
+  if (expected.doing != report.doing) return false;
+  const LinePermit* told = told_permit(report, &expected);
+  return told == nullptr || (expected.consent == told->consent &&
+                             (report.doing == GateDoing::following || expected.released == told->let_go));
+}
+
 }  // namespace
 
 ExpectedMotion::ExpectedMotion(GateOptions gate, RobotShape* shape, const ExpectedMotionOptions& options)
@@ -116,6 +129,21 @@ double ExpectedMotion::deviation(const RobotReport& report, const GateModel::Sta
   return out;
 }
 
+// Who follows has consent, whatever was expected.
+void ExpectedMotion::permit(const RobotReport& report, const GateModel::State* expected, GateModel::State& out) {
+  if (!report.permit) return;
+  const LinePermit* told = report.doing == GateDoing::following ? &*report.permit : told_permit(report, expected);
+  if (told == nullptr) {
+    out.consent = expected->consent;
+    out.released = expected->released;
+    out.permitted = expected->permitted;
+    return;
+  }
+  out.consent = told->consent;
+  out.permitted = told->time;
+  if (report.doing != GateDoing::following) out.released = told->let_go;
+}
+
 GateModel::State ExpectedMotion::state_of(const RobotReport& report, const GateModel::State* expected) const noexcept {
   const GateOptions& options = gate_.options();
   GateModel::State out;
@@ -141,13 +169,17 @@ GateModel::State ExpectedMotion::state_of(const RobotReport& report, const GateM
     newest = newest_at(report.time);
     out.taken = newest != nullptr ? newest->number : 0;
   }
-  if (newest != nullptr) {
+  const bool in_time =
+      newest != nullptr && (report.newest_set_point == 0 || report.newest_came <= newest->sent + newest->lasts);
+  if (in_time) {
     out.newest = newest->deadman ? SetPointKind::pressed : SetPointKind::open;
     out.target = newest->position;
     out.expires = newest->sent + newest->lasts;
+    out.agreed = newest->consent;
   }
-  out.released = expected != nullptr && expected->doing == report.doing ? expected->released
-                                                                        : newest != nullptr && !newest->deadman;
+  out.released =
+      expected != nullptr && expected->doing == report.doing ? expected->released : in_time && !newest->deadman;
+  permit(report, expected, out);
   return out;
 }
 
@@ -188,13 +220,12 @@ std::optional<ExpectedMotion::Change> ExpectedMotion::reported(const RobotReport
       report.doing == GateDoing::following && report.newest_set_point != 0 && find(report.newest_set_point) == nullptr;
   const GateModel::State* expected = cycle_at(report.time);
   const bool other_line = std::abs(delay_.seconds - to_seconds(acts_after_)) > options_.sooner;
-  if (expected != nullptr && expected->doing == report.doing && !other_line &&
-      deviation(report, *expected) <= options_.tolerance) {
+  const bool as_expected = expected != nullptr && agrees(report, *expected);
+  if (as_expected && !other_line && deviation(report, *expected) <= options_.tolerance) {
     confirmed_ = report.time;
     return {};
   }
-  const bool urgent = expected == nullptr || expected->doing != report.doing;
-  if (!urgent && now - made_anew_ < seconds(options_.anew_every)) return {};
+  if (as_expected && now - made_anew_ < seconds(options_.anew_every)) return {};
   made_anew_ = now;
   const bool moves =
       expected != nullptr && (report.doing == GateDoing::following || expected->doing == GateDoing::following);

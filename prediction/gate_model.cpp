@@ -12,14 +12,31 @@ void GateModel::set(const State& state) noexcept {
   for (std::size_t i = 0; i < options_.joints.size(); ++i) motion_.set(i, state.motion[i]);
 }
 
+void GateModel::set_released(bool released) noexcept {
+  if (state_.released != released) state_.permitted = state_.time;
+  state_.released = released;
+}
+
 void GateModel::stop(bool released) noexcept {
   state_.doing = GateDoing::stopping;
-  state_.released = released;
+  set_released(released);
+}
+
+// The robot's end of a line will ask for another consent, which nobody knows yet.
+void GateModel::lose() noexcept {
+  if (state_.doing == GateDoing::following) stop(false);
+  if (state_.consent.value_or(0) == 0) return;
+  state_.consent = 0;
+  state_.permitted = state_.time;
+  set_released(false);
 }
 
 void GateModel::take(const SentSetPoint& set_point, RobotTime now) noexcept {
   state_.taken = set_point.number;
-  if (now > set_point.sent + set_point.lasts) return;
+  if (now > set_point.sent + set_point.lasts) {
+    if (!set_point.deadman && state_.consent && state_.doing == GateDoing::following) lose();
+    return;
+  }
   for (std::size_t i = 0; i < options_.joints.size(); ++i) {
     if (options_.joints[i].reaches(set_point.position[i])) continue;
     // The one before came for the last time a cycle ago.
@@ -31,17 +48,30 @@ void GateModel::take(const SentSetPoint& set_point, RobotTime now) noexcept {
   state_.newest = set_point.deadman ? SetPointKind::pressed : SetPointKind::open;
   state_.target = set_point.position;
   state_.expires = set_point.sent + set_point.lasts;
+  state_.agreed = set_point.consent;
+}
+
+// A press that may not move the robot now does not later either.
+void GateModel::press(RobotTime now) noexcept {
+  const bool agrees = !state_.consent || (*state_.consent != 0 && *state_.consent == state_.agreed);
+  if (state_.doing == GateDoing::idle && state_.released && agrees) {
+    state_.doing = GateDoing::following;
+    state_.engaged = now;
+  } else if (state_.doing == GateDoing::following && !agrees) {
+    lose();
+  } else if (state_.doing != GateDoing::following && state_.consent) {
+    set_released(false);
+  }
 }
 
 void GateModel::heed_newest(RobotTime now) noexcept {
   if (now > state_.expires) {
-    if (state_.doing == GateDoing::following) stop(false);
+    if (state_.newest != SetPointKind::none || state_.doing == GateDoing::following) lose();
   } else if (state_.newest == SetPointKind::open) {
     if (state_.doing == GateDoing::following) stop(true);
-    state_.released = true;
-  } else if (state_.newest == SetPointKind::pressed && state_.doing == GateDoing::idle && state_.released) {
-    state_.doing = GateDoing::following;
-    state_.engaged = now;
+    set_released(true);
+  } else if (state_.newest == SetPointKind::pressed) {
+    press(now);
   }
 }
 

@@ -2,9 +2,10 @@
 //
 //   idle --pressed, after it was seen open--> following --opened, expired--> stopping --at rest--> idle
 //
-// Set-points that expired on their way are not taken, and none is followed that a joint cannot reach. Whatever else may
-// keep the real gate from following (drives, other operators, the consent that a line asks for) it does not know: the
-// next report tells.
+// Set-points that expired on their way are not taken, and none is followed that a joint cannot reach. Where the robot's
+// end of a line asks for consent (LinePermit), presses have to name the present one, which changes with each loss, and
+// one that may not move the robot now does not later either: the switch has to be opened first. Whatever else may keep
+// the real gate from following (drives, other operators) it does not know: the next report tells.
 #pragma once
 
 #include "motion/guarded_motion.hpp"
@@ -26,9 +27,12 @@ class GateModel {
     JointValues target{};
     RobotTime expires;
     RobotTime engaged;
-    bool released = false;    ///< the open switch was seen since the last loss
-    std::uint64_t taken = 0;  ///< number of the newest set-point
-    bool blocked = false;     ///< parts that would come too close keep it from its target
+    bool released = false;                      ///< the open switch was seen since the last loss
+    std::optional<std::uint64_t> consent = {};  ///< that presses have to name; 0: not known; nothing: none is asked for
+    std::uint64_t agreed = 0;                   ///< the one that the newest set-point names
+    RobotTime permitted;                        ///< since when `released` and `consent` are so, at least
+    std::uint64_t taken = 0;                    ///< number of the newest set-point
+    bool blocked = false;                       ///< parts that would come too close keep it from its target
   };
 
   /// Throws InputError where `options` contradict themselves. `shape` may be null, is told the surroundings, is nobody
@@ -44,6 +48,9 @@ class GateModel {
 
  private:
   void stop(bool released) noexcept;
+  void lose() noexcept;
+  void set_released(bool released) noexcept;
+  void press(RobotTime now) noexcept;
   void heed_newest(RobotTime now) noexcept;
 
   GateOptions options_;

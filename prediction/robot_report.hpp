@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "common/time.hpp"
 #include "motion/gate_options.hpp"
@@ -18,7 +19,15 @@ struct SentSetPoint {
   Duration lasts{0};         ///< from `sent` on, as long as the robot allows; then it is not executed
   bool deadman = false;      ///< the switch is held
   std::size_t joints = 0;
-  JointValues position{};  ///< rad or m, in the robot's order
+  JointValues position{};     ///< rad or m, in the robot's order
+  std::uint64_t consent = 0;  ///< LinePermit::consent when the switch was pressed; 0: none was known
+};
+
+/// What the robot's end of a line asks for before its gate gets a switch that is held (link/control/motion_permit).
+struct LinePermit {
+  RobotTime time;             ///< as it was then
+  std::uint64_t consent = 0;  ///< what presses have to name; another one after each loss. 0: not known
+  bool let_go = false;        ///< the open switch was seen since, in time
 };
 
 struct ReportedJoint {
@@ -38,6 +47,7 @@ struct RobotReport {
   RobotTime newest_came;
   std::size_t joints = 0;
   std::array<ReportedJoint, kMostJoints> joint{};
+  std::optional<LinePermit> permit;  ///< the newest that was told; nothing: none is asked for
 };
 
 /// Why something was not taken.

@@ -24,6 +24,17 @@ RobotFutureOptions future_options(const Rig& rig) {
   return out;
 }
 
+/// As MotionPermit does it: a press that may not move the robot takes back that the switch was seen open.
+bool is_let_go(const ControlState& state) {
+  switch (state.fault) {
+    case SetPointFault::no_consent:
+    case SetPointFault::not_let_go:
+    case SetPointFault::elsewhere:
+    case SetPointFault::robot_is_busy: return false;
+    default: return state.cause == RestCause::let_go;
+  }
+}
+
 }  // namespace
 
 RobotReport robot_report(const link::GateMotion& motion, Nonce commander) {
@@ -51,6 +62,7 @@ RobotOutlook::RobotOutlook(const Rig& rig) : rig_(rig), shape_(rig.shape()) {
 void RobotOutlook::begin_anew() {
   future_ = std::make_unique<RobotFuture>(future_options(rig_), shape_.get());
   newest_.reset();
+  permit_.reset();
   now_ = {};
   errors_.clear();
   figures_.error.reset();
@@ -68,10 +80,17 @@ void RobotOutlook::hear(const link::GateMotion& motion, Nonce commander, RobotTi
     session_ = motion.session;
     ++figures_.robots;
   }
-  const RobotReport report = robot_report(motion, commander);
+  RobotReport report = robot_report(motion, commander);
+  report.permit = permit_;
   const HistoryFault fault = future_->reported(report, std::max(now, now_));
   count(fault, "a report of the robot");
   if (fault == HistoryFault::none) newest_ = report;
+}
+
+void RobotOutlook::hear(const ControlState& state, Nonce commander) {
+  if (state.sequence == 0) return;
+  const bool ours = state.holder == commander;
+  permit_ = {state.time, ours ? state.consent : 0, ours && is_let_go(state)};
 }
 
 void RobotOutlook::sent(const SetPoint& set_point, RobotTime now) {
@@ -82,6 +101,7 @@ void RobotOutlook::sent(const SetPoint& set_point, RobotTime now) {
   sent.deadman = set_point.deadman;
   sent.joints = set_point.joints;
   sent.position = set_point.position;
+  sent.consent = set_point.consent;
   count(future_->sent(sent, sent.sent), "a set-point");
 }
 

@@ -38,6 +38,8 @@ class RobotOutlook {
   explicit RobotOutlook(const Rig& rig);
 
   void hear(const link::GateMotion& motion, Nonce commander, RobotTime now);
+  /// What the robot's end of the line asks for, before the reports that came with it or after; the newest one counts.
+  void hear(const ControlState& state, Nonce commander);
   /// What ControlSeat::command() sent.
   void sent(const SetPoint& set_point, RobotTime now);
   /// Time has come to `now`, of the robot's clock.
@@ -64,6 +66,7 @@ class RobotOutlook {
   std::unique_ptr<RobotFuture> future_;
   std::uint64_t session_ = 0;
   std::optional<RobotReport> newest_;
+  std::optional<LinePermit> permit_;
   RobotTime now_;
   std::vector<double> errors_;  // of the last ones that were scored
   std::size_t next_error_ = 0;

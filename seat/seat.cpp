@@ -60,9 +60,12 @@ SeatView Seat::look(std::optional<RobotTime> now) {
 void Seat::step() {
   const std::lock_guard lock(mutex_);
   const auto motions = end_.take_motions();
-  const Nonce session = end_.seat([](ControlSeat& seat, OperatorTime) { return seat.session(); });
   const auto now = robot_now();
   if (now) {
+    const Nonce session = end_.seat([this](ControlSeat& seat, OperatorTime) {
+      outlook_.hear(seat.state(), seat.session());
+      return seat.session();
+    });
     for (const auto& heard : motions) outlook_.hear(heard.motion, session, *now);
     outlook_.advance(*now);
   }

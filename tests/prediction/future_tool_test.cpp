@@ -71,8 +71,11 @@ TEST(FutureTool, NothingIsLearntWhileItsJointsUncertaintySettles) {
     const double sigma = tool.show(scored.shown).sigma;
     tool.score(scored);
     if (i == 0) first = sigma;
-    if (i == 400) EXPECT_EQ(sigma, first);
-    if (i == 499) EXPECT_LT(sigma, first) << "now it is learnt that all was exact";
+    if (i == 400) {
+      EXPECT_EQ(sigma, first);
+    } else if (i == 499) {
+      EXPECT_LT(sigma, first) << "now it is learnt that all was exact";
+    }
   }
 }
 

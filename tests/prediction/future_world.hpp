@@ -20,7 +20,9 @@ struct WorldOptions {
   double quantum = 1e-5;                    // rad, of the encoders
   bool jaws = false;                        // the first joint is that of a gripper
   std::optional<KnownResponse> known = {};  // what was found of the drives before
-  int looks_every = 1;                      // cycles in which the robot's program looks for set-points that came
+  /// What the robot's end of the line asks for, and what set-points name; 0: nothing.
+  std::uint64_t consent = 0, named = 0;
+  int looks_every = 1;  // cycles in which the robot's program looks for set-points that came
   unsigned seed = 1;
 };
 
@@ -33,9 +35,11 @@ class FutureWorld {
         gate_(gate_options(), robot_shape_.get()),
         future_(future_options(), model_shape_.get()),
         random_(options.seed) {
+    lasts = options.delay + options.jitter + 0.25;
     GateModel::State state;
     state.time = now_;
     state.doing = GateDoing::idle;
+    if (options_.consent != 0) state.consent = options_.consent;
     gate_.set(state);
   }
 
@@ -44,6 +48,8 @@ class FutureWorld {
   bool robot_silent = false;   // no reports
   bool line_cut_down = false;  // no set-point arrives
   std::function<void(RobotReport&)> edit_report = [](RobotReport&) {};
+  std::function<bool(double)> holds = [](double t) { return t > 0.2; };  // the switch
+  double lasts = 0;                                                      // s, each set-point
   std::function<JointValues(double)> wish = [](double t) {
     return JointValues{-0.3 + 0.7 * std::sin(0.9 * t) + 0.2 * std::sin(2.3 * t), 0.5 * std::sin(1.7 * t)};
   };
@@ -121,15 +127,14 @@ class FutureWorld {
     out.newest_set_point = newest_;
     out.newest_came = came_;
     out.joints = 2;
+    if (gate_.state().consent) out.permit = {now_, *gate_.state().consent, gate_.state().released};
     for (std::size_t i = 0; i < 2; ++i)
       out.joint[i] = {now_, std::round(shaft_[i] / options_.quantum) * options_.quantum, gate_.state().motion[i]};
     edit_report(out);
     if (!robot_silent && uniform() >= options_.loss) up_.emplace(now_ + way(), out);
   }
   void send() {
-    const SentSetPoint set_point{
-        ++number_, now_,     seconds(options_.delay + options_.jitter + 0.25), to_seconds(now_ - begin_) > 0.2,
-        2,         wish(t())};
+    const SentSetPoint set_point{++number_, now_, seconds(lasts), holds(t()), 2, wish(t()), options_.named};
     future_.sent(set_point, now_);
     const bool lost = uniform() < options_.loss;
     if (!line_cut_down && !lost) down_.emplace(now_ + way(), set_point);

@@ -125,5 +125,85 @@ TEST(GateModel, DoesWhatTheGateDoesBitForBit) {
   EXPECT_GT(all.stops, 8);
 }
 
+/// A robot at rest whose end of a line asks for consent 7, and somebody who sends it set-points.
+class AsksForConsent : public testing::Test {
+ protected:
+  AsksForConsent() {
+    GateModel::State state;
+    state.time = now_;
+    state.doing = GateDoing::idle;
+    state.consent = 7;
+    model_.set(state);
+  }
+  /// 0.2 s.
+  GateDoing send(bool deadman, std::uint64_t consent) {
+    for (int i = 0; i < 50; ++i) {
+      now_ = now_ + kCycle;
+      SentSetPoint sent{++number_, now_, std::chrono::milliseconds(100), deadman, 2, {0.5, 0.3}};
+      sent.consent = consent;
+      model_.take(sent, now_);
+      model_.cycle(now_);
+    }
+    return model_.state().doing;
+  }
+  void wait(double time) {
+    for (const RobotTime end = now_ + seconds(time); now_ < end;) model_.cycle(now_ = now_ + kCycle);
+  }
+  Rod rod_;
+  std::unique_ptr<RobotShape> shape_ = rod_.shape();
+  GateModel model_{rod_.options(), shape_.get()};
+  RobotTime now_{1'000'000'000};
+  std::uint64_t number_ = 0;
+};
+
+TEST_F(AsksForConsent, FollowsWhoeverLetGoAndAgrees) {
+  EXPECT_EQ(send(true, 7), GateDoing::idle) << "the open switch was not seen";
+  send(false, 0);
+  EXPECT_EQ(send(true, 7), GateDoing::following);
+}
+
+TEST_F(AsksForConsent, APressThatMayNotMoveItDoesNotLaterEither) {
+  send(false, 0);
+  EXPECT_EQ(send(true, 6), GateDoing::idle);
+  EXPECT_EQ(send(true, 7), GateDoing::idle) << "the switch has to be opened first";
+  send(false, 0);
+  EXPECT_EQ(send(true, 7), GateDoing::following);
+}
+
+TEST_F(AsksForConsent, APressWhileItSlowsDownCountsForNothing) {
+  send(false, 0);
+  send(true, 7);
+  now_ = now_ + kCycle;
+  model_.take({++number_, now_, std::chrono::milliseconds(100), false, 2, {}}, now_);
+  model_.cycle(now_);
+  ASSERT_EQ(model_.state().doing, GateDoing::stopping);
+  for (int i = 0; i < 10; ++i) EXPECT_NE(send(true, 7), GateDoing::following);
+  EXPECT_EQ(model_.state().doing, GateDoing::idle);
+}
+
+TEST_F(AsksForConsent, WhatWasLostNeedsAnotherConsent) {
+  send(false, 0);
+  ASSERT_EQ(send(true, 7), GateDoing::following);
+  wait(2);
+  ASSERT_EQ(model_.state().doing, GateDoing::idle);
+  send(false, 0);
+  EXPECT_EQ(send(true, 7), GateDoing::idle) << "it was given before the loss";
+  GateModel::State told = model_.state();
+  told.consent = 8;
+  model_.set(told);
+  send(false, 0);
+  EXPECT_EQ(send(true, 8), GateDoing::following);
+}
+
+TEST_F(AsksForConsent, AnOpenSwitchStopsItHoweverLateThatIsKnown) {
+  send(false, 0);
+  ASSERT_EQ(send(true, 7), GateDoing::following);
+  now_ = now_ + kCycle;
+  model_.take({++number_, now_ - seconds(0.5), std::chrono::milliseconds(100), false, 2, {}}, now_);
+  model_.cycle(now_);
+  EXPECT_NE(model_.state().doing, GateDoing::following);
+  EXPECT_FALSE(model_.state().released) << "only what is known in time counts as let go";
+}
+
 }  // namespace
 }  // namespace foresight::gate_model_test

@@ -207,6 +207,42 @@ TEST(RobotFuture, StopsWhereTheGateStops) {
   EXPECT_NEAR(shown.position[0], world.truth_at(world.now())[0], 2e-4);
 }
 
+double farthest_off(const FutureWorld& world) {
+  double out = 0;
+  for (const PredictedRobot& shown : world.pictures()) {
+    if (shown.status == StateStatus::invalid || shown.time > world.now()) continue;
+    const JointValues truth = world.truth_at(shown.time);
+    for (std::size_t i = 0; i < 2; ++i) out = std::max(out, std::abs(shown.position[i] - truth[i]));
+  }
+  return out;
+}
+
+// As after an outage: the robot stands, whatever is sent, until somebody agrees.
+TEST(RobotFuture, ARobotThatAsksForAnotherConsentStands) {
+  FutureWorld world({.consent = 7, .named = 6});
+  world.run(4);
+  EXPECT_LT(std::abs(world.gate().state().motion[0].position), 1e-9) << "it moved: the test shows nothing";
+  EXPECT_LT(farthest_off(world), 1e-3);
+  FutureWorld agreed({.consent = 7, .named = 7});
+  agreed.run(4);
+  EXPECT_GT(std::abs(agreed.gate().state().motion[0].position), 0.1);
+}
+
+// A new lease knows nothing of the line: the first set-points, the open switch among them, do not last until they come.
+TEST(RobotFuture, AnOpenSwitchThatExpiredOnItsWayWasNotSeen) {
+  FutureWorld world({.consent = 7, .named = 7});
+  world.holds = [](double t) { return t > 1; };
+  world.lasts = 0.1;
+  world.run(1.1);
+  world.lasts = 0.6;
+  world.run(4);
+  EXPECT_LT(std::abs(world.gate().state().motion[0].position), 1e-9) << "it moved: the test shows nothing";
+  EXPECT_LT(farthest_off(world), 1e-3);
+  world.holds = [](double t) { return t > 5.5; };
+  world.run(4);
+  EXPECT_GT(std::abs(world.gate().state().motion[0].position), 0.1) << "let go and pressed again, it follows";
+}
+
 TEST(RobotFuture, WhatHoldsAJointIsNoticed) {
   FutureWorld world;
   world.run(12);

@@ -1,5 +1,7 @@
 // From messages of the line to the robot that will be.
 #include "seat/robot_outlook.hpp"
+
+#include "link/control/control_words.hpp"
 #include "tests/support/folders.hpp"
 
 namespace foresight::outlook_test {
@@ -67,6 +69,52 @@ TEST_F(Outlook, ARobotAtRestIsShownWhereItIs) {
   for (std::size_t i = 0; i < shown.joints; ++i) EXPECT_NEAR(shown.position[i], 0, 1e-9);
   EXPECT_EQ(outlook_.figures().robots, 1u);
   EXPECT_EQ(outlook_.figures().refused, 0u) << outlook_.figures().refusal;
+}
+
+/// Of the robot's end of the line, which asks for consent 9.
+ControlState told(RobotTime time, Nonce holder, RestCause cause, SetPointFault fault) {
+  ControlState out;
+  out.sequence = 1;
+  out.time = time;
+  out.holder = holder;
+  out.consent = 9;
+  out.cause = cause;
+  out.fault = fault;
+  return out;
+}
+
+// The robot says that it has seen the switch open, or why a press moves nothing: only then it moves.
+TEST_F(Outlook, ARobotThatMayNotFollowIsShownAtRest) {
+  struct Case {
+    Nonce holder = 5, named = 9;
+    RestCause cause = RestCause::let_go;
+    SetPointFault fault = SetPointFault::none;
+    bool moves = false;
+  };
+  for (const Case& one : {Case{.moves = true}, Case{.fault = SetPointFault::expired, .moves = true}, Case{.holder = 4},
+                          Case{.named = 8}, Case{.cause = RestCause::granted}, Case{.fault = SetPointFault::not_let_go},
+                          Case{.fault = SetPointFault::elsewhere}}) {
+    RobotOutlook outlook(rig_);
+    SetPoint set_point;
+    set_point.consent = one.named;
+    set_point.joints = rig_.joints.size();
+    set_point.lasts = 300ms;
+    set_point.deadman = true;
+    set_point.position[0] = 0.3;
+    const RobotTime begin = now_;
+    for (int i = 0; i < 100; ++i) {
+      now_ = now_ + 20ms;
+      outlook.hear(told(now_ - 50ms, one.holder, one.cause, one.fault), 5);
+      outlook.hear(at_rest(rig_.joints.size(), now_ - 50ms, ++number_), 5, now_);
+      ++set_point.sequence;
+      // Before, nothing is on its way: what the robot did not answer to for long is known to be refused.
+      if (now_ > begin + 1900ms) outlook.sent(set_point, now_);
+      outlook.advance(now_);
+    }
+    const PredictedRobot shown = outlook.at(outlook.instant_to_show(now_));
+    ASSERT_NE(shown.status, StateStatus::invalid) << to_words(shown, rig_.joint_names());
+    EXPECT_EQ(shown.position[0] > 1e-6, one.moves) << words_for(one.fault).name << ", named " << one.named;
+  }
 }
 
 TEST_F(Outlook, AnotherStartOfTheRobotsProgramIsAnotherRobot) {
