@@ -130,7 +130,8 @@ double ExpectedMotion::deviation(const RobotReport& report, const GateModel::Sta
 }
 
 // Who follows has consent, whatever was expected.
-void ExpectedMotion::permit(const RobotReport& report, const GateModel::State* expected, GateModel::State& out) {
+void ExpectedMotion::permit(const RobotReport& report, const GateModel::State* expected,
+                            GateModel::State& out) noexcept {
   if (!report.permit) return;
   const LinePermit* told = report.doing == GateDoing::following ? &*report.permit : told_permit(report, expected);
   if (told == nullptr) {
@@ -225,7 +226,8 @@ std::optional<ExpectedMotion::Change> ExpectedMotion::reported(const RobotReport
     confirmed_ = report.time;
     return {};
   }
-  if (as_expected && now - made_anew_ < seconds(options_.anew_every)) return {};
+  const bool urgent = expected == nullptr || expected->doing != report.doing;
+  if (!urgent && now - made_anew_ < seconds(options_.anew_every)) return {};
   made_anew_ = now;
   const bool moves =
       expected != nullptr && (report.doing == GateDoing::following || expected->doing == GateDoing::following);
