@@ -65,8 +65,7 @@ thesis::Pipeline make_thesis(const BenchSetup& setup, const thesis::Options& opt
   return thesis::Pipeline(setup.run.scene(), setup.run.lens_left(), std::nullopt, options, setup.software);
 }
 
-std::unique_ptr<BenchCore> make_core(const BenchSetup& setup, double texels_per_metre, int max_texture,
-                                     bool shadows) {
+std::unique_ptr<BenchCore> make_core(const BenchSetup& setup, double texels_per_metre, int max_texture, bool shadows) {
   TextureOptions options;
   options.texels_per_metre = texels_per_metre;
   options.max_texture = max_texture;
