@@ -1,7 +1,8 @@
 // What comes over the line, to the robot that will be: RobotFuture fed by an operator's end.
 //
-//   /foresight/gate_motion --> RobotReport --.
-//   set-points as they are sent -------------+--> RobotFuture --> where the robot is at an instant of its clock
+//   /foresight/gate_motion --> RobotReport ---.
+//   state of the line's control, its permit --+--> RobotFuture --> where the robot is at an instant of its clock
+//   set-points as they are sent --------------'
 //
 // Another start of the robot's program, or a clock of its that jumped, is another robot: nothing is known of it before
 // its first report.
