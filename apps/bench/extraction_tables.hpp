@@ -29,6 +29,7 @@ nlohmann::json bench_bandwidth(const BenchSetup& setup, double core_cpu_ms, doub
 
 /// The thesis' pipeline for the setup's left lens.
 thesis::Pipeline make_thesis(const BenchSetup& setup, const thesis::Options& options);
+/// A core of that resolution. Without shadows, and the lamp that they need, it does the job of the thesis' pipeline.
 std::unique_ptr<BenchCore> make_core(const BenchSetup& setup, double texels_per_metre, int max_texture,
                                      bool shadows = true);
 
