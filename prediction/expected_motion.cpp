@@ -27,17 +27,20 @@ double lateness(const RobotReport& report, const GateModel::State& expected) {
   return squares > kMoves * kMoves ? std::clamp(ways / squares, -kMostAtOnce, kMostAtOnce) : 0;
 }
 
-/// What the robot's end of a line asked for, where nothing that was expected since has changed it.
-const LinePermit* told_permit(const RobotReport& report, const GateModel::State* expected) {
-  return report.permit && (expected == nullptr || report.permit->time >= expected->permitted) ? &*report.permit
-                                                                                              : nullptr;
+/// What the robot's end of a line asks for: as it told, or as is expected since. Who follows has consent, whatever was
+/// expected.
+std::optional<LinePermit> permit_of(const RobotReport& report, const GateModel::State* expected) {
+  const bool is_old =
+      report.permit && expected != nullptr && expected->consent && report.permit->time < expected->permitted;
+  if (!is_old || report.doing == GateDoing::following) return report.permit;
+  return LinePermit{expected->permitted, *expected->consent, expected->released};
 }
 
 bool agrees(const RobotReport& report, const GateModel::State& expected) {
   if (expected.doing != report.doing) return false;
-  const LinePermit* told = told_permit(report, &expected);
-  return told == nullptr || (expected.consent == told->consent &&
-                             (report.doing == GateDoing::following || expected.released == told->let_go));
+  const std::optional<LinePermit> permit = permit_of(report, &expected);
+  return !permit || (expected.consent == permit->consent &&
+                     (report.doing == GateDoing::following || expected.released == permit->let_go));
 }
 
 }  // namespace
@@ -129,22 +132,6 @@ double ExpectedMotion::deviation(const RobotReport& report, const GateModel::Sta
   return out;
 }
 
-// Who follows has consent, whatever was expected.
-void ExpectedMotion::permit(const RobotReport& report, const GateModel::State* expected,
-                            GateModel::State& out) noexcept {
-  if (!report.permit) return;
-  const LinePermit* told = report.doing == GateDoing::following ? &*report.permit : told_permit(report, expected);
-  if (told == nullptr) {
-    out.consent = expected->consent;
-    out.released = expected->released;
-    out.permitted = expected->permitted;
-    return;
-  }
-  out.consent = told->consent;
-  out.permitted = told->time;
-  if (report.doing != GateDoing::following) out.released = told->let_go;
-}
-
 GateModel::State ExpectedMotion::state_of(const RobotReport& report, const GateModel::State* expected) const noexcept {
   const GateOptions& options = gate_.options();
   GateModel::State out;
@@ -180,7 +167,11 @@ GateModel::State ExpectedMotion::state_of(const RobotReport& report, const GateM
   }
   out.released =
       expected != nullptr && expected->doing == report.doing ? expected->released : in_time && !newest->deadman;
-  permit(report, expected, out);
+  if (const std::optional<LinePermit> permit = permit_of(report, expected)) {
+    out.consent = permit->consent;
+    out.permitted = permit->time;
+    if (report.doing != GateDoing::following) out.released = permit->let_go;
+  }
   return out;
 }
 

@@ -63,7 +63,6 @@ class ExpectedMotion {
   const SentSetPoint* newest_at(RobotTime time) const noexcept;
   double deviation(const RobotReport& report, const GateModel::State& expected) const noexcept;
   GateModel::State state_of(const RobotReport& report, const GateModel::State* expected) const noexcept;
-  static void permit(const RobotReport& report, const GateModel::State* expected, GateModel::State& out) noexcept;
   void correct_past(const RobotReport& report) noexcept;
   void begin_anew(const RobotReport& report, bool restarted) noexcept;
   void cycle() noexcept;

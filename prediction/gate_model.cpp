@@ -54,12 +54,12 @@ void GateModel::take(const SentSetPoint& set_point, RobotTime now) noexcept {
 // A press that may not move the robot now does not later either.
 void GateModel::press(RobotTime now) noexcept {
   const bool agrees = !state_.consent || (*state_.consent != 0 && *state_.consent == state_.agreed);
-  if (state_.doing == GateDoing::idle && state_.released && agrees) {
+  if (state_.doing == GateDoing::following) {
+    if (!agrees) lose();
+  } else if (state_.doing == GateDoing::idle && state_.released && agrees) {
     state_.doing = GateDoing::following;
     state_.engaged = now;
-  } else if (state_.doing == GateDoing::following && !agrees) {
-    lose();
-  } else if (state_.doing != GateDoing::following && state_.consent) {
+  } else if (state_.consent) {
     set_released(false);
   }
 }

@@ -137,14 +137,15 @@ class AsksForConsent : public testing::Test {
   }
   /// 0.2 s.
   GateDoing send(bool deadman, std::uint64_t consent) {
-    for (int i = 0; i < 50; ++i) {
-      now_ = now_ + kCycle;
-      SentSetPoint sent{++number_, now_, std::chrono::milliseconds(100), deadman, 2, {0.5, 0.3}};
-      sent.consent = consent;
-      model_.take(sent, now_);
-      model_.cycle(now_);
-    }
+    for (int i = 0; i < 50; ++i) cycle(deadman, 0, consent);
     return model_.state().doing;
+  }
+  /// With a set-point that was sent `age` seconds ago.
+  void cycle(bool deadman, double age, std::uint64_t consent) {
+    now_ = now_ + kCycle;
+    const auto lasts = std::chrono::milliseconds(100);
+    model_.take({++number_, now_ - seconds(age), lasts, deadman, 2, {0.5, 0.3}, consent}, now_);
+    model_.cycle(now_);
   }
   void wait(double time) {
     for (const RobotTime end = now_ + seconds(time); now_ < end;) model_.cycle(now_ = now_ + kCycle);
@@ -173,9 +174,7 @@ TEST_F(AsksForConsent, APressThatMayNotMoveItDoesNotLaterEither) {
 TEST_F(AsksForConsent, APressWhileItSlowsDownCountsForNothing) {
   send(false, 0);
   send(true, 7);
-  now_ = now_ + kCycle;
-  model_.take({++number_, now_, std::chrono::milliseconds(100), false, 2, {}}, now_);
-  model_.cycle(now_);
+  cycle(false, 0, 0);
   ASSERT_EQ(model_.state().doing, GateDoing::stopping);
   for (int i = 0; i < 10; ++i) EXPECT_NE(send(true, 7), GateDoing::following);
   EXPECT_EQ(model_.state().doing, GateDoing::idle);
@@ -198,9 +197,7 @@ TEST_F(AsksForConsent, WhatWasLostNeedsAnotherConsent) {
 TEST_F(AsksForConsent, AnOpenSwitchStopsItHoweverLateThatIsKnown) {
   send(false, 0);
   ASSERT_EQ(send(true, 7), GateDoing::following);
-  now_ = now_ + kCycle;
-  model_.take({++number_, now_ - seconds(0.5), std::chrono::milliseconds(100), false, 2, {}}, now_);
-  model_.cycle(now_);
+  cycle(false, 0.5, 0);
   EXPECT_NE(model_.state().doing, GateDoing::following);
   EXPECT_FALSE(model_.state().released) << "only what is known in time counts as let go";
 }
