@@ -282,6 +282,7 @@ void PredictedView::draw_newest(const NewestImages& images, Rows rows) const {
 void PredictedView::draw_rectangle(Rows rows) const {
   const Projection& p = *projection_;
   glNamedFramebufferTexture(p.framebuffer.name(), GL_COLOR_ATTACHMENT0, picture_.name(), 0);
+  p.fences();
   glBindFramebuffer(GL_FRAMEBUFFER, p.framebuffer.name());
   glBindVertexArray(p.rectangle.name());
   glViewport(0, rows.first, lens_.width(), rows.last - rows.first);

@@ -51,6 +51,7 @@ void SceneOverlay::draw(const OverlayLines& lines, const Pose& T_world_camera, c
   const std::vector<Eigen::Vector4f> data = texels(lines);
   strokes_.assign(std::span<const Eigen::Vector4f>(data));
 
+  fences_();
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   glViewport(target.x, target.y, target.width, target.height);
   glEnable(GL_BLEND);

@@ -31,6 +31,7 @@ class SceneOverlay {
   gl::Buffer camera_;
   gl::BufferTexture strokes_;
   gl::VertexArray nothing_;
+  gl::KeptFences fences_;
 };
 
 /// Where a point of the world is seen in such a target: px from the framebuffer's top left, whose height is `height`.

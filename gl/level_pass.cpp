@@ -84,6 +84,7 @@ void LevelPass::start_face(int i, const FaceImages& target) const {
     glNamedFramebufferTextureLayer(framebuffer_.name(), GL_COLOR_ATTACHMENT1, target.planes.name(), 0, i);
   else
     glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT1, 0, 0);
+  fences_();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   const float no_depth = 0;
   const GLuint no_surface[4] = {};

@@ -130,6 +130,7 @@ void RasterPass::operator()(const Pose& T_world_camera, const SceneState& state,
   for (int i = 0; i < faces.count; ++i) {
     glNamedFramebufferTextureLayer(framebuffer_.name(), GL_DEPTH_ATTACHMENT, target.depth.name(), 0, i);
     if (colour) glNamedFramebufferTextureLayer(framebuffer_.name(), GL_COLOR_ATTACHMENT0, colour->name(), 0, i);
+    fences_();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     const float no_depth[4] = {};
     const GLuint no_surface[4] = {};

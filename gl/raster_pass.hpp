@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "gl/faces.hpp"
+#include "gl/kept_fences.hpp"
 #include "gl/occlusion_culling.hpp"
 #include "gl/program.hpp"
 #include "gl/scene_buffers.hpp"
@@ -85,6 +86,7 @@ class RasterPass {
   Program part_program_;  // from the first draw_part() on
   std::optional<ViewPart> part_;
   Framebuffer framebuffer_;
+  mutable KeptFences fences_;
   bool with_surface_;
   LeavesOut leaves_out_;
   std::vector<bool> only_;  // empty: all

@@ -128,6 +128,7 @@ void LiveView::draw_face(const Pose& T_face_world, const LabState& T_world_part,
   glDepthFunc(GL_GREATER);
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);  // rows grow downwards: what is counter-clockwise to the eye is clockwise here
+  fences_();
   glBindFramebuffer(GL_FRAMEBUFFER, face_target_.name());
   const float nothing[4] = {};
   glClearNamedFramebufferfv(face_target_.name(), GL_COLOR, 0, nothing);
@@ -162,6 +163,7 @@ void LiveView::draw_faces(const Pose& T_world_camera, const LabState& T_world_pa
     T_face_camera.linear() = gl::Faces::rotation(i);
     draw_face(T_face_camera * T_world_camera.inverse(), T_world_part, T_world_print);
     glNamedFramebufferTextureLayer(colour_target_.name(), GL_COLOR_ATTACHMENT0, colour_.name(), 0, i);
+    fences_();
     glBindFramebuffer(GL_FRAMEBUFFER, colour_target_.name());
     resolve_.use();
     glBindTextureUnit(0, samples_.name());
@@ -184,6 +186,7 @@ bool LiveView::draw(const Pose& T_world_camera, const LabState& T_world_part, do
   glBindTextureUnit(0, colour_.name());
   glBindTextureUnit(1, places_.name());
   glBindVertexArray(nothing_.name());
+  fences_();
   glBindFramebuffer(GL_FRAMEBUFFER, sensor_target_.name());
   glViewport(0, 0, yuyv_.width(), yuyv_.height());
   glDrawArrays(GL_TRIANGLES, 0, 3);

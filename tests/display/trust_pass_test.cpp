@@ -136,12 +136,12 @@ TEST_P(TrustPassTest, WhatCodingTookAwayIsAKindOfItsOwn) {
   trust_->saw(newest);
   const RememberedView view = draw(0);
   EXPECT_EQ(at(view.doubt, there), kCodedAway + 2);
-  const cv::Mat lossy = view.doubt >= kCodedAway & view.doubt < kBesideEdge;
+  const cv::Mat lossy = (view.doubt >= kCodedAway) & (view.doubt < kBesideEdge);
   const double area = static_cast<double>(lossy.total()) / (kLossRows * kLossColumns);
   EXPECT_GT(cv::countNonZero(lossy), 0.3 * area);
   EXPECT_LT(cv::countNonZero(lossy), 1.5 * area) << "other tiles have lost nothing";
   see(0, 300ms);
-  EXPECT_EQ(cv::countNonZero(draw(0).doubt >= kCodedAway & draw(0).doubt < kBesideEdge), 0) << "it was seen anew";
+  EXPECT_EQ(cv::countNonZero((draw(0).doubt >= kCodedAway) & (draw(0).doubt < kBesideEdge)), 0) << "it was seen anew";
 }
 
 // A view with fewer pixels than the images says of each place what the large one says.

@@ -43,6 +43,7 @@ void CameraFrame::load(const TexelDrawing& drawing) {
 void CameraFrame::draw_depth(const PosedImage& image, const TexelDrawing& drawing) {
   raster_(image.T_world_camera, image.scene, input_.faces());
   if (!straight_) return;
+  fences_();
   glBindFramebuffer(GL_FRAMEBUFFER, depth_only_.name());
   glViewport(0, 0, plane().width, plane().height);
   glEnable(GL_DEPTH_TEST);
@@ -64,6 +65,7 @@ void CameraFrame::reset_alpha(int x, int y, int width, int height) const {
 }
 
 void CameraFrame::bind_alpha() const {
+  fences_();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   glViewport(0, 0, plane().width, plane().height);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);

@@ -23,6 +23,7 @@ TexelDrawing::TexelDrawing()
     : framebuffer_(gl::create_framebuffer("thesis texels")), no_vertices_(gl::create_vertex_array("no vertices")) {}
 
 void TexelDrawing::onto(const gl::Texture& target, int width, int height) const {
+  fences_();
   glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, target.name(), 0);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   glViewport(0, 0, width, height);

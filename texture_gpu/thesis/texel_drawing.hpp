@@ -1,6 +1,7 @@
 // Drawing texel by texel: the orthographic projection M_t of eq. 4.23, one texel to one pixel.
 #pragma once
 
+#include "gl/kept_fences.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 
@@ -26,6 +27,7 @@ class TexelDrawing {
  private:
   gl::Framebuffer framebuffer_;
   gl::VertexArray no_vertices_;
+  mutable gl::KeptFences fences_;
 };
 
 /// A texture that is sampled with bilinear interpolation.
