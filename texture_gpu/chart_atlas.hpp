@@ -53,6 +53,8 @@ struct AtlasPage {
   std::int64_t written = -1;                              ///< the last image whose colours it has
   std::array<std::int64_t, 4> tile_from{-1, -1, -1, -1};  ///< the same of each tile, at its present resolution
   std::uint8_t settled = 0;                               ///< a bit for each tile: that image showed nothing new of it
+  std::int64_t hidden_in = -1;                            ///< an image that shows nothing of some tiles
+  std::uint8_t hidden = 0;                                ///< a bit for each of them
   PageExposure exposure;
 };
 
@@ -130,6 +132,10 @@ class ChartAtlas {
   /// Of these masks, what image number `image` may tell something about: not what has its colours from it, or from one
   /// of the few before it that showed nothing new, but for those before image `since`.
   std::vector<std::uint32_t> stale(std::span<const std::uint32_t> masks, std::int64_t image, std::int64_t since) const;
+  /// Image number `image` shows nothing of the tiles in these masks of the last plan(), though it might have.
+  void note_hidden(std::span<const std::uint32_t> masks, std::int64_t image);
+  /// Of these masks, likewise, without tiles of which that is known of image number `image`.
+  std::vector<std::uint32_t> not_hidden(std::span<const std::uint32_t> masks, std::int64_t image) const;
   /// What an image showed of these jobs (of an Allocation): of each tile, as holes.glsl notes it.
   void note_holes(const Allocation& done, std::span<const std::uint32_t> holes);
   /// From image number `image` on, a page of the last plan() is seen far more coarsely than before.

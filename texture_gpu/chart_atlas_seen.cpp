@@ -64,6 +64,24 @@ std::vector<std::uint32_t> ChartAtlas::stale(std::span<const std::uint32_t> mask
   return out;
 }
 
+void ChartAtlas::note_hidden(std::span<const std::uint32_t> masks, std::int64_t image) {
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    if (!masks[i]) continue;
+    AtlasPage& page = page_of(records_[i]);
+    page.hidden = static_cast<std::uint8_t>(tiles_of(masks[i]));
+    page.hidden_in = image;
+  }
+}
+
+std::vector<std::uint32_t> ChartAtlas::not_hidden(std::span<const std::uint32_t> masks, std::int64_t image) const {
+  std::vector<std::uint32_t> out(masks.begin(), masks.end());
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const AtlasPage& page = charts_[records_[i].chart].page[static_cast<std::size_t>(page_index(records_[i]))];
+    if (page.hidden_in == image) out[i] &= ~of_tiles(page.hidden);
+  }
+  return out;
+}
+
 void ChartAtlas::note_holes(const Allocation& done, std::span<const std::uint32_t> holes) {
   for (std::size_t i = 0; i < done.jobs.size(); ++i) {
     AtlasChart& chart = charts_[done.jobs[i].chart];

@@ -81,6 +81,23 @@ bool may_see(int c, vec3 p, vec3 a, vec3 b, float slack) {
   return false;
 }
 
+// A page, or a tile of it, as a part of a plane: its points lie within `slack` of it (metres).
+struct Part {
+  vec3 middle, a, b;  // node frame: corners at middle +- a +- b
+  float slack;
+};
+
+Part part_of(ChartRecord chart, vec2 middle, float half_side, float height, vec2 slope, float residual) {
+  return Part(chart.origin + middle.x * chart.eu + middle.y * chart.ev + (height - 1.0) * chart.eh,
+              half_side * (chart.eu + slope.x * chart.eh), half_side * (chart.ev + slope.y * chart.eh),
+              residual * length(chart.eh));
+}
+
+bool may_see(int c, mat4x3 T_camera_node, Part part) {
+  mat3 R = mat3(T_camera_node);
+  return may_see(c, T_camera_node * vec4(part.middle, 1.0), R * part.a, R * part.b, part.slack);
+}
+
 void main() {
   int index = 64 * first_group + int(gl_GlobalInvocationID.x);
   if (index >= page_count) return;
@@ -88,25 +105,36 @@ void main() {
         planes23 = texelFetch(pages, 3 * index + 2);
   ChartRecord chart = read_chart(charts, int(page.x));
   vec2 corner = 16.0 * vec2(page.y & 0xffffu, page.y >> 16);
-  mat4x3 T_camera_node[2];
-  for (int c = 0; c < camera_count; ++c) {
-    int row = 3 * (c * node_count + chart.node);
-    T_camera_node[c] = transpose(mat3x4(texelFetch(node_poses, row), texelFetch(node_poses, row + 1), texelFetch(node_poses, row + 2)));
-  }
-  uint mask = 0u;
+  // Of each tile: height of its plane and residual, which is negative where nothing is there; slope.
+  vec2 height_residual[4], slope[4];
+  // The plane of the page's first tile, and how far the others leave it: most pages are hidden or out of view as a whole.
+  vec2 page_slope = vec2(0.0);
+  float page_height = 0.0, page_residual = -1.0;
   for (int tile = 0; tile < 4; ++tile) {
     uvec4 planes = tile < 2 ? planes01 : planes23;
     uvec2 plane = (tile & 1) == 0 ? planes.xy : planes.zw;
-    vec2 center_residual = unpackHalf2x16(plane.x), slope = unpackHalf2x16(plane.y);
-    if (center_residual.y < 0.0) continue;
-    vec2 middle = corner + vec2(tile & 1, tile >> 1) * 8.0 + 3.5;
-    vec3 p_node = chart.origin + middle.x * chart.eu + middle.y * chart.ev + (center_residual.x - 1.0) * chart.eh;
-    vec3 a_node = 3.5 * (chart.eu + slope.x * chart.eh), b_node = 3.5 * (chart.ev + slope.y * chart.eh);
-    float slack = center_residual.y * length(chart.eh);
-    for (int c = 0; c < camera_count; ++c) {
-      mat4x3 T = T_camera_node[c];
-      vec3 p = T * vec4(p_node, 1.0), a = mat3(T) * a_node, b = mat3(T) * b_node;
-      if (may_see(c, p, a, b, slack)) mask |= 1u << (2 * tile + c);
+    height_residual[tile] = unpackHalf2x16(plane.x);
+    slope[tile] = unpackHalf2x16(plane.y);
+    if (height_residual[tile].y < 0.0) continue;
+    vec2 from_middle = 8.0 * vec2(tile & 1, tile >> 1) - 4.0;
+    if (page_residual < 0.0) {
+      page_slope = slope[tile];
+      page_height = height_residual[tile].x - dot(from_middle, page_slope);
+    }
+    vec2 turned = abs(slope[tile] - page_slope);
+    float off = abs(height_residual[tile].x - page_height - dot(from_middle, page_slope));
+    page_residual = max(page_residual, off + 3.5 * (turned.x + turned.y) + height_residual[tile].y);
+  }
+  uint mask = 0u;
+  for (int c = 0; c < camera_count && page_residual >= 0.0; ++c) {
+    int row = 3 * (c * node_count + chart.node);
+    mat4x3 T = transpose(mat3x4(texelFetch(node_poses, row), texelFetch(node_poses, row + 1), texelFetch(node_poses, row + 2)));
+    if (!may_see(c, T, part_of(chart, corner + 7.5, 7.5, page_height, page_slope, page_residual))) continue;
+    for (int tile = 0; tile < 4; ++tile) {
+      if (height_residual[tile].y < 0.0) continue;
+      vec2 middle = corner + vec2(tile & 1, tile >> 1) * 8.0 + 3.5;
+      Part part = part_of(chart, middle, 3.5, height_residual[tile].x, slope[tile], height_residual[tile].y);
+      if (may_see(c, T, part)) mask |= 1u << (2 * tile + c);
     }
   }
   masks[index] = mask;

@@ -3,7 +3,8 @@
 //
 //   STEP 0: camera 0 alone, four points a tile. What stands before its plane there, up to a few pixels beside, the nearest
 //           surfaces of the blocks around tell. Says more often than not that a tile may be missed.
-//   STEP 1: of those tiles, 4x4 points, and both cameras.
+//   STEP 1: of those tiles, 4x4 points, and both cameras. Also tells where camera 0 shows none of them: camera 1 of the
+//           next question will not have, either.
 #include "camera.glsl"
 #include "seen.glsl"
 #include "atlas.glsl"
@@ -12,7 +13,7 @@ layout(binding = 7) uniform samplerBuffer geometry;  // per page and camera four
 layout(binding = 9) uniform usampler2DArray heights;
 layout(binding = 10) uniform usamplerBuffer tiles;  // page << 2 | tile
 layout(binding = 11) uniform sampler2DArray blocks0;  // of camera 0 (blocks.comp)
-layout(binding = 0, std430) writeonly buffer Answers { uint answers[]; };  // 1 missed, 3 clearly coarser
+layout(binding = 0, std430) writeonly buffer Answers { uint answers[]; };  // 1 missed, 3 clearly coarser; 4 hidden
 uniform int first_group, tile_count;
 uniform float worse;  // a share of the other camera's resolution below which this one's is clearly coarser
 
@@ -99,15 +100,17 @@ void main() {
   for (int i = 0; i < 4; ++i) clear = clear && is_clear(points[i], normal);
   answers[index] = clear && !coarser ? 0u : 1u;
 #else
-  bool seen = false;
+  bool seen = false, hidden = true;
   int missed = 0;
   for (int i = 0; i < 16; ++i) {
     ivec2 at = (7 * ivec2(i & 3, i >> 2) + 1) / 3;
     uint raw = texelFetch(heights, origin + ivec3(at, 0), 0).r;
     float shown_before = raw == 0u ? 0.0 : shown(1, point(before, vec2(at), raw));
+    float shown_now = raw == 0u ? 0.0 : shown(0, point(now, vec2(at), raw));
     seen = seen || shown_before > 0.0;
-    if (shown_before > shown(0, point(now, vec2(at), raw)) + kLessSeen) ++missed;
+    hidden = hidden && shown_now <= 0.0;
+    if (shown_before > shown_now + kLessSeen) ++missed;
   }
-  answers[index] = seen && coarser ? 3u : missed > 0 ? 1u : 0u;
+  answers[index] = (seen && coarser ? 3u : missed > 0 ? 1u : 0u) | (hidden ? 4u : 0u);
 #endif
 }

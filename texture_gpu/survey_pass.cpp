@@ -108,10 +108,12 @@ SurveyPass::Missed SurveyPass::missed(const SeenInputs& inputs, std::span<const 
     }
     tiles.resize(kept);
   }
-  Missed out{std::vector<std::uint32_t>(seen.size()), {}};
+  Missed out{std::vector<std::uint32_t>(seen.size()), std::vector<std::uint32_t>(seen.size()), {}};
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     const std::size_t page = pages[tiles[i] >> 2];
-    out.masks[page] |= seen[page] & 3u << (2 * (tiles[i] & 3u));
+    const std::uint32_t of_tile = seen[page] & 3u << (2 * (tiles[i] & 3u));
+    if (answers[i] & 1u) out.masks[page] |= of_tile;
+    if (answers[i] & 4u) out.hidden[page] |= of_tile;
     if (answers[i] & 2u && (out.coarser.empty() || out.coarser.back() != page)) out.coarser.push_back(page);
   }
   return out;

@@ -30,8 +30,9 @@ class SurveyPass {
 
   /// Which tiles hold points that camera 1 of `inputs` saw and camera 0 does not show, or less well (missed.comp).
   struct Missed {
-    std::vector<std::uint32_t> masks;  ///< one a page: of `seen`, the bits of such tiles
-    std::vector<std::size_t> coarser;  ///< pages that camera 0 shows, but below `worse` of camera 1's resolution
+    std::vector<std::uint32_t> masks;   ///< one a page: of `seen`, the bits of such tiles
+    std::vector<std::uint32_t> hidden;  ///< likewise, of tiles of which camera 0 shows nothing, as far as was asked
+    std::vector<std::size_t> coarser;   ///< pages that camera 0 shows, but below `worse` of camera 1's resolution
   };
   /// Of the tiles in `seen`, which has a mask for each page as cull() gives them; their heights are there. `geometry`:
   /// ChartAtlas::write_page_geometry() for them and both cameras. Waits for the GPU. `gate`: as above.

@@ -278,9 +278,11 @@ bool TextureCore::save_what_leaves(LatestTextures& latest) {
   const std::array<const CameraInput*, 2> cameras{newest_.cameras[0].get(), before_.cameras[0].get()};
   const std::array<const PosedImage*, 2> images{newest_.images.data(), before_.images.data()};
   both_.update(cameras, images, std::array<Eigen::Vector3f, 2>{{{1, 0, 0}, {1, 0, 0}}});
+  const Masks shown = atlas_.not_hidden(seen_, image_ - 1);
   const SurveyPass::Missed missed =
-      not_shown(both_, {newest_.views[0], before_.views[0]}, atlas_.stale(seen_, image_ - 1, light_changed_));
+      not_shown(both_, {newest_.views[0], before_.views[0]}, atlas_.stale(shown, image_ - 1, light_changed_));
   for (std::size_t page : missed.coarser) atlas_.note_coarser(page, image_);
+  atlas_.note_hidden(missed.hidden, image_);
   mark("leaving");
   ChartAtlas::Allocation allocation;
   if (std::ranges::all_of(missed.masks, [](std::uint32_t mask) { return mask == 0; })) return true;

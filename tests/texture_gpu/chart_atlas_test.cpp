@@ -470,6 +470,14 @@ TEST(ChartAtlas, WhatIsSeenNeedNotBeWritten) {
   const auto out = write(missing, 38);
   EXPECT_FLOAT_EQ(out.jobs[0].worse, 0.15F);
   EXPECT_EQ(out.jobs[1].worse, 0);
+
+  // What an image shows nothing of is known of that image alone.
+  std::vector<std::uint32_t> hidden(all.size(), 0), rest = all;
+  hidden[0] = 0x11;
+  rest[0] = 0x44;
+  atlas->note_hidden(hidden, 38);
+  EXPECT_EQ(atlas->not_hidden(all, 38), rest);
+  EXPECT_EQ(atlas->not_hidden(all, 39), all);
 }
 
 }  // namespace

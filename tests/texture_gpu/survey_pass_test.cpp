@@ -161,10 +161,11 @@ TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
         b.survey.missed(b.inputs, geometry, b.store, masks, b.options.depth_tolerance, b.options.worse, &gate);
     EXPECT_EQ(in_slices.masks, missed.masks);
     EXPECT_EQ(in_slices.coarser, missed.coarser);
+    EXPECT_EQ(in_slices.hidden, missed.hidden);
   }
   const reference::Camera newest = b.camera(0), before = b.camera(1);
   ASSERT_EQ(missed.masks.size(), masks.size());
-  int listed = 0, texels_missed = 0, texels_overlooked = 0;
+  int listed = 0, hidden = 0, texels_missed = 0, texels_overlooked = 0, texels_of_hidden = 0, texels_shown = 0;
   for (std::size_t i = 0; i < masks.size(); ++i) {
     const PageRecord& record = b.records[i];
     const AtlasChart& chart = b.atlas.charts()[record.chart];
@@ -173,6 +174,8 @@ TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
     for (int tile = 0; tile < 4; ++tile) {
       const bool answer = (missed.masks[i] >> (2 * tile) & 3) != 0;
       EXPECT_EQ(missed.masks[i] & ~masks[i], 0u) << "what no camera may see is not asked for";
+      const bool is_hidden = (missed.hidden[i] >> (2 * tile) & 3) != 0;
+      hidden += is_hidden;
       int lost = 0, worse = 0;
       for (int k = 0; k < 64; ++k) {
         const int x = 16 * static_cast<int>(record.xy & 0xffff) + 8 * (tile & 1) + k % 8;
@@ -185,6 +188,8 @@ TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
         const Answer seen_now =
             reference::is_seen(newest, newest.T_camera_node[node] * p, b.options.depth_tolerance, now);
         lost += seen_then == Answer::yes && seen_now == Answer::no;
+        texels_of_hidden += is_hidden;
+        texels_shown += is_hidden && seen_now == Answer::yes;
         const auto rim = [](const Eigen::Vector2d& at) {
           return std::min({at.x(), at.y(), 159 - at.x(), 119 - at.y(), 6.0});
         };
@@ -201,6 +206,8 @@ TEST_P(SurveyOfLenses, TellsWhichTilesTheNewestImageMisses) {
   }
   EXPECT_GT(listed, 20);
   EXPECT_GT(texels_missed, 500);
+  EXPECT_GT(hidden, 20);
+  EXPECT_LT(texels_shown, texels_of_hidden / 50) << "slivers between the points, of " << texels_of_hidden;
   // Slivers between the points, and of fewer than two of them: silhouettes are long in pictures of 160 x 120 px.
   const bool coarse = std::string(GetParam()) == "wide_fisheye";  // 1.3 degrees a pixel
   EXPECT_LT(texels_overlooked, texels_missed / (coarse ? 3 : 12)) << "of " << texels_missed;
