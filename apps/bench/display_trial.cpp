@@ -15,8 +15,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kInputs = 8;   // instants of an input that are looked at, per frame
-constexpr double kLate = 3;  // intervals
+constexpr int kInputs = 8;          // instants of an input that are looked at, per frame
+constexpr double kLate = 3;         // intervals
+constexpr double kMostRounds = 10;  // lengths of a round that the first image is waited for
 constexpr Duration kLongestWait = 1s;
 constexpr const char* kRenderer = "llvmpipe";  // what its threads are called
 
@@ -53,8 +54,13 @@ std::vector<Shown> show(const DrawFrame& draw, const DisplayRound& round, const 
                         Pacer pacer) {
   std::vector<Shown> out;
   TakenCores taken(kRenderer);
-  const RobotTime end = clock.now() + seconds(round.seconds);
-  while (clock.now() < end) {
+  const RobotTime start = clock.now();
+  const std::uint64_t finished = textures.finished();
+  const auto ends = [&] {
+    const bool has_images = !textures.runs() || textures.finished() > finished;
+    return clock.now() >= start + seconds((has_images ? 1 : kMostRounds) * round.seconds);
+  };
+  while (!ends()) {
     while (!pacer.wait(kLongestWait)) {
     }
     Shown frame;

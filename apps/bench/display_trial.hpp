@@ -34,6 +34,7 @@ class BusyTextures {
   /// outlive that.
   void take(const std::vector<PosedFrame>& images);
   void run(bool works) { works_ = works; }
+  bool runs() const { return works_; }
   std::uint64_t finished() const { return finished_; }  ///< images
   void finish(std::size_t images);                      ///< waits for so many more, then rests
   void check() const;                                   ///< throws what ended the extraction
@@ -74,7 +75,8 @@ struct DisplayFigures {
 /// Draws a place with textures and newest images, leased; `drawing_ms`: what the last drawing took; 0: not known.
 using DrawFrame = std::function<void(const ViewPlace&, const TextureLease&, const ImagesLease&, double drawing_ms)>;
 
-/// Draws with the newest image and `textures` for a while; each frame ends when the GPU has finished it. `gate`: of
+/// Draws with the newest image and `textures` for a while, which is longer where they run and have not got an image by
+/// then: up to ten times as long, on a busy machine. Each frame ends when the GPU has finished it. `gate`: of
 /// `textures`, where the round is paced.
 DisplayFigures show_frames(const DrawFrame& draw, const DisplayRound& round, BusyTextures& textures,
                            const std::shared_ptr<FrameGate>& gate);
