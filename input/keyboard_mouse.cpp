@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace foresight {
 namespace {
@@ -79,13 +80,17 @@ std::optional<HandKey> hand_key(int glfw_code) noexcept {
 }
 
 void KeyboardMouse::key(HandKey key, bool down) noexcept {
+  const bool was_held = held();
   down_[static_cast<std::size_t>(key)] = down;
+  let_go_ = let_go_ || (was_held && !held());
   if (down && key >= HandKey::joint_1)
     joint_ = static_cast<std::size_t>(key) - static_cast<std::size_t>(HandKey::joint_1);
 }
 
 void KeyboardMouse::mouse_button(MouseButton button, bool down) noexcept {
+  const bool was_held = held();
   mouse_[static_cast<std::size_t>(button)] = down;
+  let_go_ = let_go_ || (was_held && !held());
 }
 
 void KeyboardMouse::mouse_moved(double right_px, double down_px) noexcept {
@@ -103,6 +108,7 @@ void KeyboardMouse::wheel(double notches) noexcept {
 }
 
 void KeyboardMouse::focus_lost() noexcept {
+  let_go_ = let_go_ || held();
   down_.fill(false);
   mouse_.fill(false);
   way_.setZero();
@@ -145,8 +151,9 @@ TrackerState KeyboardMouse::read(OperatorTime now) noexcept {
   rate.angular += mouse.angular;
   out.T_space_hand = hand_.step(now, rate);
   const auto set = [&](TrackerButton button, bool held) { out.buttons.set(button, held); };
-  set(TrackerButton::deadman, down(HandKey::deadman) || mouse_[0]);
-  set(TrackerButton::clutch, down(HandKey::deadman) || mouse_[0]);
+  const bool was_let_go = std::exchange(let_go_, false);
+  set(TrackerButton::deadman, held() && !was_let_go);
+  set(TrackerButton::clutch, held() && !was_let_go);
   set(TrackerButton::gripper_close, down(HandKey::gripper_close));
   set(TrackerButton::gripper_open, down(HandKey::gripper_open));
   set(TrackerButton::home_view, down(HandKey::home_view));

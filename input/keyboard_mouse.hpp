@@ -76,7 +76,8 @@ struct KeyboardMouseOptions {
   Duration window_answers_within = std::chrono::milliseconds(250);
 };
 
-/// One thread, the window's. Events count from the next read() on.
+/// One thread, the window's. Events count from the next read() on. A switch that was let go of and pressed again
+/// between two of them, as while a picture is drawn, was let go of all the same: the first read() says so.
 class KeyboardMouse final : public Tracker {
  public:
   explicit KeyboardMouse(const KeyboardMouseOptions& options = {}) noexcept : options_(options), hand_(options.hand) {}
@@ -98,6 +99,7 @@ class KeyboardMouse final : public Tracker {
 
  private:
   bool down(HandKey key) const noexcept { return down_[static_cast<std::size_t>(key)]; }
+  bool held() const noexcept { return down(HandKey::deadman) || mouse_[0]; }
   double way(HandKey more, HandKey less) const noexcept;
   HandRate rate_of_keys() const noexcept;
   HandRate take_mouse(double seconds) noexcept;
@@ -106,6 +108,7 @@ class KeyboardMouse final : public Tracker {
   RateHand hand_;
   std::array<bool, kHandKeys> down_{};
   std::array<bool, 2> mouse_{};
+  bool let_go_ = false;                           // since the last read()
   Eigen::Vector3d way_{0, 0, 0}, turn_{0, 0, 0};  // of the mouse, not gone yet: m, rad
   std::optional<OperatorTime> looked_, read_;
   std::optional<std::size_t> joint_;

@@ -59,7 +59,25 @@ TEST_F(KeyboardMouseTest, TheSwitchIsAKeyOrTheMousesButton) {
   EXPECT_TRUE(round().buttons.held(TrackerButton::deadman));
   device_.key(HandKey::deadman, false);
   device_.mouse_button(KeyboardMouse::MouseButton::left, true);
-  EXPECT_TRUE(round().buttons.held(TrackerButton::clutch));
+  EXPECT_TRUE(rounds(2).buttons.held(TrackerButton::clutch));
+}
+
+// Who let go and pressed again within one picture has let go: a switch that no longer counted counts.
+TEST_F(KeyboardMouseTest, LettingGoBetweenTwoReadsIsNotLost) {
+  device_.key(HandKey::deadman, true);
+  ASSERT_TRUE(rounds(2).buttons.held(TrackerButton::deadman));
+  device_.key(HandKey::deadman, false);
+  device_.key(HandKey::deadman, true);
+  EXPECT_FALSE(round().buttons.held(TrackerButton::deadman));
+  EXPECT_TRUE(round().buttons.held(TrackerButton::deadman));
+  device_.mouse_button(KeyboardMouse::MouseButton::left, true);
+  device_.key(HandKey::deadman, false);
+  device_.key(HandKey::forward, true);
+  EXPECT_TRUE(round().buttons.held(TrackerButton::deadman)) << "by one of the two all the time";
+  device_.focus_lost();
+  device_.key(HandKey::deadman, true);
+  EXPECT_FALSE(round().buttons.held(TrackerButton::deadman));
+  EXPECT_TRUE(round().buttons.held(TrackerButton::deadman));
 }
 
 TEST_F(KeyboardMouseTest, AWindowThatLosesTheKeyboardLetsGoOfAll) {
