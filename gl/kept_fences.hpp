@@ -12,7 +12,7 @@
 
 namespace foresight::gl {
 
-/// For passes that begin thousands of scenes and wait for none. One context. Nothing on other renderers.
+/// Of a pass that draws into framebuffers. One context. Nothing on other renderers.
 class KeptFences {
  public:
   KeptFences();
