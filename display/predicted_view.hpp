@@ -108,7 +108,7 @@ class PredictedView {
     WorkList of_before;                       // of these, what the one before shows
     SeenInputs newest_inputs, inputs_before;
     gl::Framebuffer framebuffer;  // the newest image is drawn into
-    mutable gl::KeptFences fences;
+    gl::KeptFences fences;
     gl::VertexArray rectangle;
     std::optional<PlaneHomographies> homographies;  // to the newest image
   };

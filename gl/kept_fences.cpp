@@ -13,7 +13,7 @@ constexpr std::size_t kMost = 2 * 64;
 
 KeptFences::KeptFences() : keeps_(query_driver().is_software) {}
 
-void KeptFences::operator()() {
+void KeptFences::operator()() const {
   if (!keeps_) return;
   fences_.push_back(Fence::insert());
   if (fences_.size() > kMost) fences_.pop_front();

@@ -19,11 +19,11 @@ class KeptFences {
 
   /// Before another framebuffer is drawn into: the fence of the scene that this ends lives as long as any thread may
   /// be at it.
-  void operator()();
+  void operator()() const;
 
  private:
   bool keeps_ = false;
-  std::deque<Fence> fences_;
+  mutable std::deque<Fence> fences_;  // of what was drawn: who keeps them stays as it is
 };
 
 }  // namespace foresight::gl

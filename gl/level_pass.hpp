@@ -49,7 +49,7 @@ class LevelPass {
   std::shared_ptr<const LevelBuffers> levels_;
   VertexArray array_;
   Framebuffer framebuffer_;
-  mutable KeptFences fences_;
+  KeptFences fences_;
   mutable std::array<std::optional<Programs>, 4> programs_;  // with planes, of a part, both; from the first use on
   std::optional<ViewPart> part_;
   LeavesOut leaves_out_ = LeavesOut::behind_walls;

@@ -86,7 +86,7 @@ class RasterPass {
   Program part_program_;  // from the first draw_part() on
   std::optional<ViewPart> part_;
   Framebuffer framebuffer_;
-  mutable KeptFences fences_;
+  KeptFences fences_;
   bool with_surface_;
   LeavesOut leaves_out_;
   std::vector<bool> only_;  // empty: all

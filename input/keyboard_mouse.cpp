@@ -79,18 +79,20 @@ std::optional<HandKey> hand_key(int glfw_code) noexcept {
   return found->key;
 }
 
-void KeyboardMouse::key(HandKey key, bool down) noexcept {
+void KeyboardMouse::change(bool& is_down, bool down) noexcept {
   const bool was_held = held();
-  down_[static_cast<std::size_t>(key)] = down;
+  is_down = down;
   let_go_ = let_go_ || (was_held && !held());
+}
+
+void KeyboardMouse::key(HandKey key, bool down) noexcept {
+  change(down_[static_cast<std::size_t>(key)], down);
   if (down && key >= HandKey::joint_1)
     joint_ = static_cast<std::size_t>(key) - static_cast<std::size_t>(HandKey::joint_1);
 }
 
 void KeyboardMouse::mouse_button(MouseButton button, bool down) noexcept {
-  const bool was_held = held();
-  mouse_[static_cast<std::size_t>(button)] = down;
-  let_go_ = let_go_ || (was_held && !held());
+  change(mouse_[static_cast<std::size_t>(button)], down);
 }
 
 void KeyboardMouse::mouse_moved(double right_px, double down_px) noexcept {
@@ -151,9 +153,9 @@ TrackerState KeyboardMouse::read(OperatorTime now) noexcept {
   rate.angular += mouse.angular;
   out.T_space_hand = hand_.step(now, rate);
   const auto set = [&](TrackerButton button, bool held) { out.buttons.set(button, held); };
-  const bool was_let_go = std::exchange(let_go_, false);
-  set(TrackerButton::deadman, held() && !was_let_go);
-  set(TrackerButton::clutch, held() && !was_let_go);
+  const bool switch_held = !std::exchange(let_go_, false) && held();
+  set(TrackerButton::deadman, switch_held);
+  set(TrackerButton::clutch, switch_held);
   set(TrackerButton::gripper_close, down(HandKey::gripper_close));
   set(TrackerButton::gripper_open, down(HandKey::gripper_open));
   set(TrackerButton::home_view, down(HandKey::home_view));

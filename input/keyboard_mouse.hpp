@@ -99,6 +99,7 @@ class KeyboardMouse final : public Tracker {
 
  private:
   bool down(HandKey key) const noexcept { return down_[static_cast<std::size_t>(key)]; }
+  void change(bool& is_down, bool down) noexcept;
   bool held() const noexcept { return down(HandKey::deadman) || mouse_[0]; }
   double way(HandKey more, HandKey less) const noexcept;
   HandRate rate_of_keys() const noexcept;

@@ -219,6 +219,10 @@ AtlasPage& ChartAtlas::page_of(const PageRecord& r) {
   return charts_[r.chart].page[static_cast<std::size_t>(page_index(r))];
 }
 
+const AtlasPage& ChartAtlas::page_of(const PageRecord& r) const {
+  return charts_[r.chart].page[static_cast<std::size_t>(page_index(r))];
+}
+
 /// True where the published generation has colours somewhere under the page.
 bool ChartAtlas::needs_relevel(const AtlasChart& chart, int page) const {
   if (!chart.before) return false;

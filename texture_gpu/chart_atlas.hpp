@@ -160,6 +160,7 @@ class ChartAtlas {
   void give_back_colours(std::span<const std::uint32_t> slots);
 
   AtlasPage& page_of(const PageRecord& record);
+  const AtlasPage& page_of(const PageRecord& record) const;
 
   /// For the GPU: per job and view four vec4, the page's corner and texel axes in camera
   /// coordinates (extract.comp).

@@ -35,7 +35,7 @@ void ChartAtlas::write_page_geometry(std::span<const std::uint32_t> masks, std::
   out.clear();
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const PageRecord& r = records_[i];
-    const AtlasPage& page = charts_[r.chart].page[static_cast<std::size_t>(page_index(r))];
+    const AtlasPage& page = page_of(r);
     if (masks[i]) append_geometry({r.chart, r.xy, page.colour, page.colour, page.height, 0, page.covered}, views, out);
   }
 }

@@ -55,7 +55,7 @@ std::vector<std::uint32_t> ChartAtlas::stale(std::span<const std::uint32_t> mask
   const std::int64_t oldest = std::max(image - options_.images_to_rewrite + 1, since);
   std::vector<std::uint32_t> out(masks.begin(), masks.end());
   for (std::size_t i = 0; i < records_.size(); ++i) {
-    const AtlasPage& page = charts_[records_[i].chart].page[static_cast<std::size_t>(page_index(records_[i]))];
+    const AtlasPage& page = page_of(records_[i]);
     for (unsigned tile = 0; tile < 4; ++tile) {
       const bool settled = page.settled >> tile & 1u;
       if (page.tile_from[tile] >= (settled ? oldest : image)) out[i] &= ~of_tiles(1u << tile);
@@ -76,7 +76,7 @@ void ChartAtlas::note_hidden(std::span<const std::uint32_t> masks, std::int64_t 
 std::vector<std::uint32_t> ChartAtlas::not_hidden(std::span<const std::uint32_t> masks, std::int64_t image) const {
   std::vector<std::uint32_t> out(masks.begin(), masks.end());
   for (std::size_t i = 0; i < records_.size(); ++i) {
-    const AtlasPage& page = charts_[records_[i].chart].page[static_cast<std::size_t>(page_index(records_[i]))];
+    const AtlasPage& page = page_of(records_[i]);
     if (page.hidden_in == image) out[i] &= ~of_tiles(page.hidden);
   }
   return out;

@@ -64,7 +64,7 @@ class LiveView {
   gl::Handle<gl::delete_texture> samples_, depth_;  // of one face
   gl::Texture colour_, places_, yuyv_;
   gl::Framebuffer face_target_, colour_target_, sensor_target_;
-  mutable gl::KeptFences fences_;
+  gl::KeptFences fences_;
   std::array<Slot, kImages> slots_;
   std::deque<std::size_t> waiting_;  // slots under way, oldest first
   std::size_t next_ = 0;

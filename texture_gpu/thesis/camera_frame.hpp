@@ -44,7 +44,7 @@ class CameraFrame {
   gl::RasterPass raster_;
   gl::Texture straight_;  // only for lenses with distortion
   gl::Framebuffer framebuffer_, depth_only_;
-  mutable gl::KeptFences fences_;
+  gl::KeptFences fences_;
   gl::Program undistort_, unseen_;
 };
 

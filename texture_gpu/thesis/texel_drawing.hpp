@@ -27,7 +27,7 @@ class TexelDrawing {
  private:
   gl::Framebuffer framebuffer_;
   gl::VertexArray no_vertices_;
-  mutable gl::KeptFences fences_;
+  gl::KeptFences fences_;
 };
 
 /// A texture that is sampled with bilinear interpolation.
