@@ -6,36 +6,23 @@
 #include <limits>
 #include <random>
 
-#include "common/statistics.hpp"
-#include "texture_gpu/lamp/still_shadows.hpp"
+#include "texture_gpu/lamp/lamp_strength.hpp"
 
 namespace foresight {
 namespace {
 
 using Eigen::Vector3d;
-using Eigen::Vector3f;
 using Eigen::VectorXd;
 
-constexpr std::size_t kFewestValues = 4;  // of a witness
-constexpr double kLit = 0.8;              // quantile of a witness's values: hardly any shadow there
-constexpr float kLeastDark = -0.10f, kBrightest = 0.3f, kDeepest = -1.5f;  // logarithms
 constexpr std::size_t kFewestDark = 40;
-constexpr std::size_t kMostDark = 400, kMostBright = 400, kMostOthers = 200, kMostInFit = 3000, kMostCoarse = 400;
+constexpr std::size_t kMostCoarse = 400;
 constexpr int kDirections = 300;
 constexpr double kDistances[] = {1.5, 3, 10};                         // extents of what moves
 constexpr double kRadii[] = {0, 0.02, 0.04, 0.07, 0.11, 0.16, 0.22};  // of the distance
 constexpr double kApart = 0.35;                                       // radians: another direction
 constexpr double kWorthSoft = 0.6;  // of the best score with hard shadows: may be the best with soft ones
-constexpr std::size_t kSoftRays = ShadowRays::kPacket, kFitRays = 3 * ShadowRays::kPacket;
 // To be believed: so much, and so many times what others do; less where the same lamp was believed before.
 constexpr double kFewestExplained = 0.4, kClearly = 1.5, kAgain = 1.25;
-// Observations of shadows that tell how strong a lamp is: fewer may lie in the border of one that is foretold a bit
-// aside. A lamp that is off has so little left of its strength.
-constexpr std::size_t kFewestShadows = 120;
-constexpr double kGoneShare = 0.25;
-// What lamps may give, as shares of all other light: of so many, each so many times the one before.
-constexpr double kLeastShare = 0.02, kShareStep = 1.05;
-constexpr int kShares = 161, kSharesAtOnce = 4;
 constexpr double kStillExplains = 0.8;  // of what it did, at least: nothing else is looked for
 // Of single images: points in all, and to look all around with. To be believed: so much likelier than no lamp
 // (logarithm), and so many times what others explain.
@@ -45,65 +32,8 @@ constexpr std::size_t kOthers = 12;  // places in other directions that are look
 // Another lamp is there where single images are so much likelier with it (logarithm; also as a share of how much
 // likelier they are with the first alone), and where it is not much weaker.
 constexpr double kSecondLikelier = 10, kSecondShare = 0.25, kSecondStrength = 0.4;
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-struct Observation {
-  std::size_t record = 0, witness = 0;
-  std::size_t lit = 0;  // the record that shows the witness as bright as it usually is
-  Vector3f deviation;   // of red, green and blue from there, logarithms
-  float luma = 0;       // mean of these
-};
-
-/// Deviations from what each point usually looks like, with each image's own median taken out: its exposure.
-std::vector<Observation> observations(const LampQuestion& question) {
-  const auto& records = question.records;
-  const std::size_t count = question.witnesses.size();
-  std::vector<Observation> out;
-  std::vector<Vector3f> lit(count, Vector3f::Constant(kUnknown));
-  std::vector<std::size_t> lit_record(count);
-  std::vector<Vector3f> offset(records.size(), Vector3f::Zero());
-  for (int round = 0; round < 2; ++round) {
-    for (std::size_t i = 0; i < count; ++i) {
-      std::vector<std::pair<float, std::size_t>> values;
-      for (std::size_t k = 0; k < records.size(); ++k)
-        if (const Vector3f value = records[k].value(i) - offset[k]; !value.hasNaN())
-          values.emplace_back(luma_of(value), k);
-      if (values.size() < kFewestValues) continue;
-      const auto at = static_cast<std::ptrdiff_t>(kLit * static_cast<double>(values.size() - 1));
-      std::ranges::nth_element(values, values.begin() + at);
-      const std::size_t k = values[static_cast<std::size_t>(at)].second;
-      lit[i] = records[k].value(i) - offset[k];
-      lit_record[i] = k;
-    }
-    out.clear();
-    for (std::size_t k = 0; k < records.size(); ++k) {
-      std::array<std::vector<float>, 3> channel;
-      const std::size_t first = out.size();
-      for (std::size_t i = 0; i < count; ++i) {
-        const Vector3f deviation = records[k].value(i) - offset[k] - lit[i];
-        if (deviation.hasNaN()) continue;
-        out.push_back({k, i, lit_record[i], deviation, luma_of(deviation)});
-        for (int c = 0; c < 3; ++c) channel[static_cast<std::size_t>(c)].push_back(deviation[c]);
-      }
-      Vector3f middle;
-      for (int c = 0; c < 3; ++c) middle[c] = median(channel[static_cast<std::size_t>(c)]);
-      offset[k] += middle;
-      for (std::size_t n = first; n < out.size(); ++n) {
-        out[n].deviation -= middle;
-        out[n].luma = std::clamp(luma_of(out[n].deviation), kDeepest, kBrightest);
-      }
-    }
-  }
-  return out;
-}
 
 const Disc kPoint;  // a lamp without extent
-
-/// Of a lamp at some place.
-struct Strength {
-  Vector3d moving = Vector3d::Zero(), still = Vector3d::Zero();  // by the shadows of what moves; of single images
-  std::size_t shadows = 0;                                       // observations that the first is drawn from
-};
 
 /// How much likelier values are with such a share of their squared deviations explained, logarithm: as if they were
 /// normally distributed, and none told anything of another.
@@ -137,8 +67,6 @@ class LampSearch {
   struct Two {
     double explained = 0, strength = 0;  // of the second, as a share of the first
   };
-  double hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius, const Disc& disc) const;
-  double explained(const Candidate& c, const Disc& disc, std::size_t most) const;
   VectorXd more_hidden(const Candidate& c, const Disc& disc, const StillShadows& images) const;
   static Two both(const VectorXd& first, const VectorXd& second, const VectorXd& brighter);
   bool there_are_several(const Candidate& best, std::span<const Coarse> all);
@@ -154,54 +82,25 @@ class LampSearch {
   std::vector<Candidate> fine(std::span<const Coarse> all);
   LampAnswer keep(LampAnswer out) const;
   std::optional<LampAnswer> confirm();
-  Strength strength(const Vector3d& lamp, double radius) const;
+  LampStrength strength(const Lamp& lamp) const { return lamp_strength(moving_, single_, lamp.position, lamp.radius); }
   Candidate as_candidate(const Lamp& lamp) const;
   Lamp as_lamp(const Candidate& c) const { return {place(c), c.radius * c.distance, {}}; }
   Vector3d place(const Candidate& c) const { return centre_ + c.distance * c.direction; }
 
   const LampQuestion& question_;
-  std::vector<Observation> all_, chosen_;
-  std::size_t dark_ = 0;
-  std::vector<ShadowRays::Posed> moving_;  // of each record
-  ShadowRays::Posed still_;
+  std::mt19937 generator_{1};
+  const MovingShadows moving_;
   const StillShadows single_, coarse_;  // with all points, and with fewer
   Vector3d centre_;
   double extent_ = 1;
-  const Disc soft_ = spiral(kSoftRays), fit_ = spiral(kFitRays);
-  std::mt19937 generator_{1};
+  const Disc soft_ = spiral(ShadowRays::kPacket);
 };
-
-std::vector<bool> flipped(std::vector<bool> nodes) {
-  nodes.flip();
-  return nodes;
-}
 
 LampSearch::LampSearch(const ShadowRays& rays, const LampQuestion& question)
     : question_(question),
-      all_(observations(question)),
-      still_(rays.pose(question.records.back().T_world_node, flipped(question.moving))),
+      moving_(rays, question.witnesses, question.records, question.moving, generator_),
       single_(rays, question.witnesses, question.records, kMostStill),
       coarse_(rays, question.witnesses, question.records, kCoarseStill) {
-  for (const LampRecord& record : question.records) moving_.push_back(rays.pose(record.T_world_node, question.moving));
-  std::vector<double> sizes;
-  for (const Observation& o : all_)
-    if (std::abs(o.luma) < 0.2f) sizes.push_back(o.luma);
-  const float bound = std::min(kLeastDark, static_cast<float>(-3 * robust_sigma(sizes)));
-  std::vector<bool> was_dark(question.witnesses.size());
-  std::vector<Observation> dark, bright, others;
-  for (const Observation& o : all_)
-    if (o.luma < bound) was_dark[o.witness] = true;
-  for (const Observation& o : all_) (o.luma < bound ? dark : was_dark[o.witness] ? bright : others).push_back(o);
-  dark_ = dark.size();
-  const auto take = [&](std::vector<Observation>& from, std::size_t most) {
-    std::ranges::shuffle(from, generator_);
-    from.resize(std::min(from.size(), most));
-    chosen_.insert(chosen_.end(), from.begin(), from.end());
-  };
-  take(dark, kMostDark);
-  take(bright, kMostBright);
-  take(others, kMostOthers);
-
   Eigen::AlignedBox3d box;
   for (const LampRecord& record : question.records)
     for (std::size_t i = 0; i < question.moving.size(); ++i)
@@ -210,33 +109,12 @@ LampSearch::LampSearch(const ShadowRays& rays, const LampQuestion& question)
   extent_ = std::max(0.2, box.diagonal().norm());
 }
 
-double LampSearch::hidden(std::size_t witness, std::size_t record, const Vector3d& lamp, double radius,
-                          const Disc& disc) const {
-  const Witness& w = question_.witnesses[witness];
-  const Vector3d p = w.point.cast<double>();
-  if (w.normal.cast<double>().dot(lamp - p) <= 0) return 0;
-  const double share = hidden_share(moving_[record], p, lamp, radius, disc);
-  return share > 0 && !still_.blocked(p, lamp, 5e-3) ? share : 0;
-}
-
-/// Share of the squared deviations that shadows of this lamp take away, at the darkness that suits them best.
-double LampSearch::explained(const Candidate& c, const Disc& disc, std::size_t most) const {
-  const Vector3d lamp = place(c);
-  double sxy = 0, sxx = 0, syy = 0;
-  for (const Observation& o : std::span(chosen_).first(std::min(most, chosen_.size()))) {
-    const double radius = c.radius * c.distance, y = o.luma;
-    const double x = hidden(o.witness, o.record, lamp, radius, disc) - hidden(o.witness, o.lit, lamp, radius, disc);
-    sxy += x * y, sxx += x * x, syy += y * y;
-  }
-  return sxy < 0 && syy > 0 ? sxy * sxy / (sxx * syy) : 0;
-}
-
 VectorXd LampSearch::more_hidden(const Candidate& c, const Disc& disc, const StillShadows& images) const {
   return images.more_hidden(place(c), c.radius * c.distance, disc);
 }
 
 void LampSearch::judge(Candidate& c, const Disc& disc) const {
-  judge(c, disc, chosen_.size(), more_hidden(c, disc, single_), single_.brighter());
+  judge(c, disc, std::numeric_limits<std::size_t>::max(), more_hidden(c, disc, single_), single_.brighter());
 }
 
 /// With a hard shadow.
@@ -248,10 +126,10 @@ void LampSearch::judge_coarsely(Candidate& c, const VectorXd& more) const {
 /// count: the others agree with any lamp whose shadows lie elsewhere.
 void LampSearch::judge(Candidate& c, const Disc& disc, std::size_t most, const VectorXd& more,
                        const VectorXd& brighter) const {
-  c.explained = explained(c, disc, most);
+  c.explained = moving_.explained(place(c), c.radius * c.distance, disc, most);
   const double xy = more.dot(brighter);
   c.still = xy < 0 ? xy * xy / (more.squaredNorm() * brighter.squaredNorm()) : 0;
-  const auto dark = static_cast<std::ptrdiff_t>(std::min({most, kMostDark, dark_}));
+  const auto dark = static_cast<std::ptrdiff_t>(moving_.dark(most));
   c.score = likelier(dark, c.explained) + likelier(more.size(), c.still);
 }
 
@@ -346,33 +224,28 @@ std::vector<LampSearch::Coarse> LampSearch::coarse() {
   return out;
 }
 
-/// Where it should have thrown shadows, and has not.
-bool is_gone(const Strength& now, const Vector3d& usual) {
-  return now.shadows >= kFewestShadows && now.moving.sum() < kGoneShare * usual.sum();
-}
-
 /// What was known, unless something speaks against it.
 LampAnswer LampSearch::keep(LampAnswer out) const {
   out.lamp = question_.last.lamp;
   out.told_by_what_moves = question_.last.told_by_what_moves;
-  if (out.lamp && is_gone(strength(out.lamp->position, out.lamp->radius), out.lamp->strength)) out.lamp.reset();
+  if (out.lamp && strength(*out.lamp).is_gone(out.lamp->strength)) out.lamp.reset();
   return out;
 }
 
 /// The last answer, brought up to date; nothing where it no longer holds as it did.
 std::optional<LampAnswer> LampSearch::confirm() {
   LampAnswer out = question_.last;
-  if (!out.lamp || !out.told_by_what_moves || out.several || dark_ < kFewestDark) return std::nullopt;
+  if (!out.lamp || !out.told_by_what_moves || out.several || moving_.dark() < kFewestDark) return std::nullopt;
   Candidate best = as_candidate(*out.lamp);
   refine(best, 3, 8, 0.06, soft_);
   if (best.explained < std::max(kFewestExplained, kStillExplains * out.explained)) return std::nullopt;
   const Lamp lamp = as_lamp(best);
-  const Strength found = strength(lamp.position, lamp.radius);
-  if (found.shadows < kFewestShadows || !(found.moving.minCoeff() > 0) || is_gone(found, out.lamp->strength))
+  const LampStrength found = strength(lamp);
+  if (!found.is_told_by_what_moves() || !(found.moving.minCoeff() > 0) || found.is_gone(out.lamp->strength))
     return std::nullopt;
   out.lamp = lamp;
   out.lamp->strength = found.moving;
-  out.dark = static_cast<int>(dark_);
+  out.dark = static_cast<int>(moving_.dark());
   out.explained = best.explained;
   out.still = best.still;
   return out;
@@ -418,8 +291,8 @@ LampAnswer LampSearch::answer() {
   if (!question_.all_around)
     if (const std::optional<LampAnswer> confirmed = confirm()) return *confirmed;
   LampAnswer out;
-  out.dark = static_cast<int>(dark_);
-  const bool moves = dark_ >= kFewestDark;
+  out.dark = static_cast<int>(moving_.dark());
+  const bool moves = moving_.dark() >= kFewestDark;
   if (!moves && (question_.last.told_by_what_moves || single_.empty())) return keep(out);
   const std::vector<Coarse> all = coarse();
   std::vector<Candidate> others = fine(all);
@@ -440,73 +313,19 @@ LampAnswer LampSearch::answer() {
   out.several = there_are_several(best, all);
   if (out.several) return question_.last.lamp && !question_.last.several ? keep(out) : out;  // one search may err
   const Lamp lamp = as_lamp(best);
-  const Strength found = strength(lamp.position, lamp.radius);
+  const LampStrength found = strength(lamp);
   const bool explains = moves && out.explained >= kFewestExplained;
   const bool again = question_.last.lamp && !is_elsewhere(best, as_candidate(*question_.last.lamp), kApart);
   out.told_by_what_moves = explains && out.explained >= (again ? kAgain : kClearly) * out.elsewhere;
   const bool told_by_single_images = !explains && likelier(single_.brighter().size(), out.still) >= kStillLikelier &&
                                      out.still >= (again ? kAgain : kStillClearly) * out.still_elsewhere &&
-                                     !is_gone(found, found.still);
+                                     !found.is_gone(found.still);
   if (!out.told_by_what_moves && !told_by_single_images) return question_.last.told_by_what_moves ? out : keep(out);
   out.lamp = lamp;
-  out.lamp->strength = found.shadows >= kFewestShadows ? found.moving : found.still;
+  out.lamp->strength = found.is_told_by_what_moves() ? found.moving : found.still;
   if (!(out.lamp->strength.minCoeff() > 0)) {
     out.lamp.reset();
     out.told_by_what_moves = false;
-  }
-  return out;
-}
-
-/// For each channel those with the least absolute error: in wide steps, and in narrow ones around the best.
-Strength LampSearch::strength(const Vector3d& lamp, double radius) const {
-  struct Shadowed {
-    Vector3f deviation;
-    double facing, hidden, usually;  // (n . l) / d^2; shares of the lamp
-  };
-  std::vector<Shadowed> shadowed;
-  const std::size_t stride = std::max<std::size_t>(1, all_.size() / (10 * kMostInFit));
-  for (std::size_t i = 0; i < all_.size() && shadowed.size() < kMostInFit; i += stride) {
-    const auto& [record, witness, lit, deviation, luma] = all_[i];
-    if (hidden(witness, record, lamp, radius, soft_) == 0 && hidden(witness, lit, lamp, radius, soft_) == 0) continue;
-    const double x = hidden(witness, record, lamp, radius, fit_), usually = hidden(witness, lit, lamp, radius, fit_);
-    if (std::abs(x - usually) < 0.05) continue;
-    const Witness& w = question_.witnesses[witness];
-    const Vector3d l = lamp - w.point.cast<double>();
-    shadowed.push_back({deviation, w.normal.cast<double>().dot(l) / std::pow(l.norm(), 3), x, usually});
-  }
-  const StillShadows::Cast cast = single_.cast(lamp, radius, soft_);
-  Strength out{.shadows = shadowed.size()};
-  double mean = 0, count = 0;
-  for (const Shadowed& s : shadowed) mean += s.facing, count += 1;
-  for (const double facing : cast.facing) mean += facing, count += 1;
-  mean /= std::max(1.0, count);
-  if (!(mean > 0)) return out;
-  const Eigen::Array3d none = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Array3d least_moving = none, least_still = none;
-  Eigen::Array3i best_moving = Eigen::Array3i::Zero(), best_still = best_moving;
-  const auto share_of = [](int step) { return kLeastShare * std::pow(kShareStep, step); };
-  const auto look_at = [&](int step) {
-    const double strength = share_of(step) / mean;
-    Eigen::Array3d of_moving = Eigen::Array3d::Zero();
-    for (const Shadowed& s : shadowed)
-      of_moving += (s.deviation.cast<double>().array() - std::log(shadow_factor(strength * s.facing, s.hidden) /
-                                                                  shadow_factor(strength * s.facing, s.usually)))
-                       .abs();
-    const Eigen::Array3d of_still = single_.errors(cast, strength);
-    for (int c = 0; c < 3; ++c) {
-      if (of_moving[c] < least_moving[c]) least_moving[c] = of_moving[c], best_moving[c] = step;
-      if (of_still[c] < least_still[c]) least_still[c] = of_still[c], best_still[c] = step;
-    }
-  };
-  for (int step = 0; step < kShares; step += kSharesAtOnce) look_at(step);
-  const Eigen::Array3i moving = best_moving, still = best_still;
-  for (int step = 0; step < kShares; ++step) {
-    const bool is_near = ((moving - step).abs() < kSharesAtOnce || (still - step).abs() < kSharesAtOnce).any();
-    if (step % kSharesAtOnce != 0 && is_near) look_at(step);
-  }
-  for (int c = 0; c < 3; ++c) {
-    out.moving[c] = share_of(best_moving[c]) / mean;
-    out.still[c] = share_of(best_still[c]) / mean;
   }
   return out;
 }

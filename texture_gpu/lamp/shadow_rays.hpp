@@ -19,7 +19,8 @@ class ShadowRays {
   ShadowRays& operator=(const ShadowRays&) = delete;
 
   static constexpr std::size_t kPacket = 8;
-  static constexpr double kGap = 2e-3;
+  static constexpr double kGap = 2e-3;      ///< metres
+  static constexpr double kContact = 5e-3;  ///< metres: what touches a surface does not throw shadows on its points
 
   /// Some of the nodes, where they stand at one instant. Must not outlive the ShadowRays.
   class Posed {

@@ -16,7 +16,6 @@ constexpr std::size_t kFewestNew = 200;  // points that another image has to sho
 constexpr std::size_t kAround = 80, kFewestAround = 8;
 constexpr double kNear = 0.15;         // share of the extent of what is seen: further away is another place
 constexpr float kAlike = 0.95f;        // cosine of normals
-constexpr double kGap = 5e-3;          // metres: what touches a surface does not throw shadows on its own points
 constexpr float kMostBrighter = 0.4f;  // logarithm: print, of whatever lamp
 constexpr double kBorder = 0.05;       // of the lamp
 constexpr std::size_t kWays = 4 * ShadowRays::kPacket;  // over which a point sees its surroundings
@@ -103,7 +102,7 @@ double StillShadows::open(const Point& point, double reach) const {
       const Eigen::Vector2d& at = disc[first + k];
       to[k] = p + reach * (at.x() * right + at.y() * up + std::sqrt(1 - at.squaredNorm()) * n);
     }
-    hits += images_[point.image].count_blocked(p, to, kGap);
+    hits += images_[point.image].count_blocked(p, to, ShadowRays::kContact);
   }
   return 1 - static_cast<double>(hits) / (kWays + 1);
 }
@@ -119,7 +118,7 @@ std::vector<double> StillShadows::hidden(const Vector3d& lamp, double radius, co
   for (const auto& [witness, image, value] : points_) {
     const Vector3d p = witness.point.cast<double>();
     const bool faces = witness.normal.cast<double>().dot(lamp - p) > 0;
-    out.push_back(faces ? hidden_share(images_[image], p, lamp, radius, disc, kGap) : 1);
+    out.push_back(faces ? hidden_share(images_[image], p, lamp, radius, disc, ShadowRays::kContact) : 1);
   }
   return out;
 }
