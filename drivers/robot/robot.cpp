@@ -83,7 +83,7 @@ bool Robot::at_rest() const noexcept {
 // A gripper keeps its last set-point and with it its grip, but not one that moves on its own to look for home.
 void Robot::stop_all() noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i)
-    if (!gate_.options().joints[i].keeps_grip || !gate_.has_set_point(i)) drives_[i]->request(DriveRequest::quick_stop);
+    if (!gate_.options().joints[i].keeps_grip || gate_.is_homing(i)) drives_[i]->request(DriveRequest::quick_stop);
 }
 
 // The gripper stays as it is here too: what it holds must not fall because the robot rests.
@@ -157,7 +157,14 @@ void Robot::follow(RobotRequest request, RobotTime now) noexcept {
   enter(RobotPhase::enabling, now);
 }
 
+// Where a drive was off it may stand anywhere: set-points from before are no use. Only a gripper may have stayed on.
+void Robot::forget_set_points() noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    if (!gate_.options().joints[i].keeps_grip || !is_enabled(feedback_[i])) gate_.forget_set_point(i);
+}
+
 void Robot::advance_enabling(RobotTime now) noexcept {
+  forget_set_points();
   const auto missing = std::find_if_not(feedback_.begin(), feedback_.end(), is_enabled);
   if (missing == feedback_.end()) {
     if (gate_.reset(feedback_, now)) return enter(RobotPhase::ready, now);

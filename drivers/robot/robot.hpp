@@ -138,6 +138,7 @@ class Robot {
   void take_requests(RobotTime now) noexcept;
   void follow(RobotRequest request, RobotTime now) noexcept;
   void let_gate_step(RobotTime now) noexcept;
+  void forget_set_points() noexcept;
   void advance_enabling(RobotTime now) noexcept;
   void advance_homing(RobotTime now) noexcept;
   Duration home_within(std::size_t joint) const noexcept;

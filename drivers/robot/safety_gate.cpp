@@ -34,11 +34,8 @@ bool SafetyGate::reset(std::span<const DriveFeedback> feedback, RobotTime now) n
     status_.joint = static_cast<int>(i);
     return false;
   }
-  for (std::size_t i = 0; i < count_; ++i) {
-    motion_.set(i, {feedback[i].position, 0, 0});
-    target_[i] = feedback[i].position;
-    watched_[i] = {feedback[i].position, feedback[i].position, now, feedback[i].time};
-  }
+  for (std::size_t i = 0; i < count_; ++i)
+    hold(i, keeps_grip(i, feedback[i]) ? motion_[i].position : feedback[i].position, feedback[i], now);
   status_.state = GateState::idle;
   status_.reason = GateReason::none;
   status_.joint = -1;
@@ -51,6 +48,21 @@ bool SafetyGate::reset(std::span<const DriveFeedback> feedback, RobotTime now) n
   return true;
 }
 
+/// Its jaws press something, or may: they do not get to their set-point, but nearly.
+bool SafetyGate::keeps_grip(std::size_t joint, const DriveFeedback& feedback) const noexcept {
+  const GateJoint& options = options_.joints[joint];
+  return options.keeps_grip && known_[joint] &&
+         std::abs(feedback.position - motion_[joint].position) <= options.following_error;
+}
+
+/// At rest from now on.
+void SafetyGate::hold(std::size_t joint, double position, const DriveFeedback& feedback, RobotTime now) noexcept {
+  motion_.set(joint, {position, 0, 0});
+  known_[joint] = true;
+  target_[joint] = position;
+  watched_[joint] = {feedback.position, position, now, feedback.time};
+}
+
 bool SafetyGate::begin_homing(std::size_t joint, RobotTime now) noexcept {
   if (status_.state != GateState::idle || joint >= count_) return false;
   status_.state = GateState::homing;
@@ -58,6 +70,7 @@ bool SafetyGate::begin_homing(std::size_t joint, RobotTime now) noexcept {
   status_.joint = -1;
   status_.detail = "";
   homing_ = joint;
+  known_[joint] = false;
   jumps_ = 0;
   watched_[joint].since = now;
   operators_.forget_released();
@@ -66,9 +79,7 @@ bool SafetyGate::begin_homing(std::size_t joint, RobotTime now) noexcept {
 
 void SafetyGate::end_homing(const DriveFeedback& feedback, RobotTime now) noexcept {
   if (status_.state != GateState::homing) return;
-  motion_.set(*homing_, {feedback.position, 0, 0});
-  target_[*homing_] = feedback.position;
-  watched_[*homing_] = {feedback.position, feedback.position, now, feedback.time};
+  hold(*homing_, feedback.position, feedback, now);
   homing_.reset();
   status_.state = GateState::idle;
 }
@@ -189,7 +200,8 @@ GateReason SafetyGate::wrong_with(std::size_t joint, const DriveFeedback& f, Rob
   Watched& w = watched_[joint];
   if (f.position != w.position) {
     w = {f.position, motion_[joint].position, now, f.time};
-  } else if (now - w.since > seconds(kFrozenAfter) &&
+  } else if (!options_.joints[joint].keeps_grip &&  // jaws stand where they meet something
+             now - w.since > seconds(kFrozenAfter) &&
              std::abs(motion_[joint].position - w.set_point) > kFrozenWay * allowed) {
     return GateReason::feedback_frozen;
   }

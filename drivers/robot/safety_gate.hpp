@@ -113,7 +113,8 @@ class SafetyGate {
   SafetyGate(GateOptions options, RobotShape* shape);
 
   /// Starts anew from where the robot stands, at rest. Only while idle or stopped and with all feedback
-  /// fresh and within the limits; otherwise false, and the reason is in status(). Also ends `stopped`.
+  /// fresh and within the limits; otherwise false, and the reason is in status(). Also ends `stopped`. A gripper that
+  /// still has a set-point keeps it: by as much as its jaws do not get there they press what they hold.
   bool reset(std::span<const DriveFeedback> feedback, RobotTime now) noexcept;
 
   /// Latches: brakes and stays stopped until reset(). Any state. `why`: one of the latched reasons that are not the
@@ -136,8 +137,13 @@ class SafetyGate {
   const JointMotion& set_point(std::size_t joint) const { return motion_[joint]; }
   /// Where the operator in charge wants the joint; while following.
   double target(std::size_t joint) const { return target_[joint]; }
-  /// Not of a joint from the begin of its homing until its end, or until reset() where it did not end.
-  bool has_set_point(std::size_t joint) const noexcept { return homing_ != joint; }
+  /// Not before the first reset(); not of a joint from the begin of its homing until its end, or until reset() where it
+  /// did not end; not of one whose set-point was forgotten, until reset().
+  bool has_set_point(std::size_t joint) const noexcept { return known_[joint]; }
+  /// The drive of this joint does not hold it any more.
+  void forget_set_point(std::size_t joint) noexcept { known_[joint] = false; }
+  /// Moves by its drive's own orders, or did until something went wrong and nobody has called reset() since.
+  bool is_homing(std::size_t joint) const noexcept { return homing_ == joint; }
   /// All set-points stand still. The robot itself may still move: see RestWatch.
   bool set_points_rest() const noexcept;
   /// The drives must be told to stop on their own too: their feedback cannot be trusted to follow set-points.
@@ -152,6 +158,8 @@ class SafetyGate {
   void watch(std::span<const DriveFeedback> feedback, RobotTime now) noexcept;
   GateReason wrong_with(std::size_t joint, const DriveFeedback& f, RobotTime now) noexcept;
   GateReason wrong_while_homing(std::size_t joint, const DriveFeedback& f, RobotTime now) noexcept;
+  bool keeps_grip(std::size_t joint, const DriveFeedback& feedback) const noexcept;
+  void hold(std::size_t joint, double position, const DriveFeedback& feedback, RobotTime now) noexcept;
   void latch(GateReason reason, int joint, const char* detail, bool quick_stop) noexcept;
   void stop(GateReason reason) noexcept;
   void move(RobotTime now) noexcept;
@@ -172,8 +180,9 @@ class SafetyGate {
     RobotTime told;   // by the drive's
   };
   std::array<Watched, kMostJoints> watched_{};
-  std::optional<std::size_t> homing_;  // a joint without a set-point
-  int jumps_ = 0;                      // of its position
+  std::array<bool, kMostJoints> known_{};  // whether the joint has a set-point
+  std::optional<std::size_t> homing_;
+  int jumps_ = 0;  // of its position
 };
 
 }  // namespace foresight

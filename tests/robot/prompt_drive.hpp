@@ -26,7 +26,7 @@ class PromptDrive final : public Drive {
     if (what == DriveRequest::home && homes_slowly) state.state = DriveState::homing;
   }
   void set_point(double position, double) noexcept override {
-    if (state.state == DriveState::enabled && coast == 0) state.position = position;
+    if (state.state == DriveState::enabled && coast == 0) state.position = std::max(position, stops_at);
   }
   DriveFeedback feedback() const noexcept override { return state; }
   bool asked(DriveRequest what) const { return std::find(requests.begin(), requests.end(), what) != requests.end(); }
@@ -35,6 +35,7 @@ class PromptDrive final : public Drive {
   std::vector<DriveRequest> requests;
   bool stuck = false;         ///< ignores requests
   bool homes_slowly = false;  ///< moves by itself until `coast` and `state` are set
+  double stops_at = -1e9;     ///< something rigid is there: the shaft comes no further down
   double coast = 0;           ///< way per cycle that the shaft makes, whatever is asked of it
 
  private:
