@@ -82,15 +82,16 @@ std::string Gamepad::name() const {
   return name ? std::string("gamepad '") + name + "'" : "gamepad " + std::to_string(device_->index);
 }
 
-bool Gamepad::sticks_are_stale(OperatorTime now) noexcept {
-  std::array<int, 4> sticks{};
-  for (std::size_t i = 0; i < sticks.size(); ++i) {
-    const auto axis = static_cast<SDL_GameControllerAxis>(SDL_CONTROLLER_AXIS_LEFTX + static_cast<int>(i));
-    sticks[i] = SDL_GameControllerGetAxis(device_->pad, axis);
-  }
-  if (!moved_ || sticks != sticks_) moved_ = now;
-  sticks_ = sticks;
-  return now - *moved_ > options_.stale_after;
+bool Gamepad::is_stale(OperatorTime now) noexcept {
+  State state{};
+  for (int i = 0; i < SDL_CONTROLLER_AXIS_MAX; ++i)
+    state.axes[static_cast<std::size_t>(i)] =
+        SDL_GameControllerGetAxis(device_->pad, static_cast<SDL_GameControllerAxis>(i));
+  for (int i = 0; i < SDL_CONTROLLER_BUTTON_MAX; ++i)
+    state.buttons[static_cast<std::size_t>(i)] = device_->button(static_cast<SDL_GameControllerButton>(i));
+  if (!changed_ || state != last_) changed_ = now;
+  last_ = state;
+  return now - *changed_ > options_.stale_after;
 }
 
 TrackerState Gamepad::read(OperatorTime now) noexcept {
@@ -108,7 +109,9 @@ TrackerState Gamepad::read(OperatorTime now) noexcept {
   }
   out.connected = out.tracked = true;
   const Device& d = *device_;
-  const bool stale = sticks_are_stale(now);
+  const bool stale = is_stale(now);
+  const auto pressed = [&](SDL_GameControllerButton which) { return !stale && d.button(which); };
+  const auto pulled = [&](SDL_GameControllerAxis which) { return !stale && d.axis(which) > options_.trigger; };
   const auto stick = [&](SDL_GameControllerAxis axis) {
     return stale ? 0 : without_dead_zone(d.axis(axis), options_.dead_zone);
   };
@@ -127,13 +130,13 @@ TrackerState Gamepad::read(OperatorTime now) noexcept {
   const bool holds = d.button(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER);
   set(TrackerButton::deadman, holds);
   set(TrackerButton::clutch, holds);
-  set(TrackerButton::gripper_close, d.axis(SDL_CONTROLLER_AXIS_TRIGGERRIGHT) > options_.trigger);
-  set(TrackerButton::gripper_open, d.axis(SDL_CONTROLLER_AXIS_TRIGGERLEFT) > options_.trigger);
+  set(TrackerButton::gripper_close, pulled(SDL_CONTROLLER_AXIS_TRIGGERRIGHT));
+  set(TrackerButton::gripper_open, pulled(SDL_CONTROLLER_AXIS_TRIGGERLEFT));
   set(TrackerButton::joint_mode, d.button(SDL_CONTROLLER_BUTTON_X));
   set(TrackerButton::home_view, d.button(SDL_CONTROLLER_BUTTON_B));
   set(TrackerButton::recentre, d.button(SDL_CONTROLLER_BUTTON_Y));
-  const bool to_left = d.button(SDL_CONTROLLER_BUTTON_DPAD_LEFT), to_right = d.button(SDL_CONTROLLER_BUTTON_DPAD_RIGHT);
-  const bool up = d.button(SDL_CONTROLLER_BUTTON_DPAD_UP), down = d.button(SDL_CONTROLLER_BUTTON_DPAD_DOWN);
+  const bool to_left = pressed(SDL_CONTROLLER_BUTTON_DPAD_LEFT), to_right = pressed(SDL_CONTROLLER_BUTTON_DPAD_RIGHT);
+  const bool up = pressed(SDL_CONTROLLER_BUTTON_DPAD_UP), down = pressed(SDL_CONTROLLER_BUTTON_DPAD_DOWN);
   set(TrackerButton::previous_joint, to_left);
   set(TrackerButton::next_joint, to_right);
   out.joint_rate = -left_y;

@@ -19,8 +19,8 @@ struct GamepadOptions {
   RateHandOptions hand;
   double dead_zone = 0.15;  ///< of a stick, of its way
   double trigger = 0.5;     ///< of its way, from where it counts as pressed
-  /// Sticks that stand out, and not one of them moves by the smallest step for so long, count as let go of until one
-  /// does: a wireless pad that went out of range is only noticed seconds later.
+  /// Where nothing of the pad changes by the smallest step for so long, sticks, triggers and cross count as let go of
+  /// until something does: a wireless pad that went out of range is only noticed seconds later.
   Duration stale_after = std::chrono::seconds(2);
 };
 
@@ -50,12 +50,17 @@ class Gamepad final : public Tracker, public ForceSink {
 
  private:
   struct Device;
-  bool sticks_are_stale(OperatorTime now) noexcept;
+  struct State {  // raw
+    std::array<int, 6> axes;
+    std::array<bool, 21> buttons;
+    bool operator==(const State&) const = default;
+  };
+  bool is_stale(OperatorTime now) noexcept;
   std::unique_ptr<Device> device_;
   GamepadOptions options_;
   RateHand hand_;
-  std::array<int, 4> sticks_{};  // as they were last, raw
-  std::optional<OperatorTime> moved_;
+  State last_{};
+  std::optional<OperatorTime> changed_;
 };
 
 }  // namespace foresight

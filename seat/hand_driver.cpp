@@ -9,11 +9,21 @@
 namespace foresight {
 namespace {
 
+// Of the window. Longer than keys are held for: pictures of a busy machine may take this long.
+constexpr Duration kAnswersWithin = std::chrono::milliseconds(500);
 constexpr Duration kCycleEvery = std::chrono::milliseconds(10);  // a look at what is near costs milliseconds
 
 std::vector<Tracker*> all_of(KeyboardMouse& keyboard, const std::vector<std::unique_ptr<Tracker>>& devices) {
   std::vector<Tracker*> out{&keyboard};
   for (const auto& device : devices) out.push_back(device.get());
+  return out;
+}
+
+/// As of a device that is not there. Static texts.
+TrackerState not_there(const char* trouble, const char* cure) {
+  TrackerState out;
+  out.trouble = trouble;
+  out.cure = cure;
   return out;
 }
 
@@ -40,6 +50,7 @@ void HandDriver::take(const gl::WindowInput& input, OperatorTime now) {
   keyboard_.mouse_moved(input.moved_x, input.moved_y);
   keyboard_.wheel(input.scrolled);
   keyboard_.looked(now);
+  looked_ = now;
   const bool any = !input.key_events.empty() || input.moved_x != 0 || input.moved_y != 0 || input.scrolled != 0;
   if (any && !event_) event_ = now;
 }
@@ -56,9 +67,7 @@ void HandDriver::look_within(const std::optional<Pose>& T_world_space) {
 
 void HandDriver::interrupt(const char* trouble, const char* cure) {
   const std::lock_guard lock(mutex_);
-  interruption_.emplace();  // as of a device that is not there
-  interruption_->trouble = trouble;
-  interruption_->cure = cure;
+  interruption_ = not_there(trouble, cure);
 }
 
 void HandDriver::may_push(std::span<const std::string> nodes) {
@@ -105,8 +114,14 @@ SeatWish HandDriver::tick(const SeatView& view) {
   return wish;
 }
 
+void HandDriver::heed_window(OperatorTime now) {
+  if (looked_ && now - *looked_ <= kAnswersWithin) return;
+  interruption_ = not_there("the window does not answer", "wait until its picture moves; press the switch anew");
+}
+
 void HandDriver::cycle(const SeatView& view) {
   cycled_ = view.now;
+  heed_window(view.now);
   HandInput input;
   input.now = view.now;
   input.device = any_.read(view.now);

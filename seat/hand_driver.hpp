@@ -1,11 +1,11 @@
 // Hands at devices as the seat's driver: what the window and the devices say becomes set-points.
 #pragma once
 
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/priority_mutex.hpp"
 #include "gl/glfw_window.hpp"
 #include "input/any_tracker.hpp"
 #include "input/hand_control.hpp"
@@ -25,7 +25,8 @@ class HandDriver final : public SeatDriver {
   explicit HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> devices = {},
                       std::shared_ptr<const SceneModel> scene = nullptr);
 
-  /// Since the last call; at each round of the window, or its keys do not count.
+  /// Since the last call; at each round of the window, or nothing drives: who does not see the robot move must not move
+  /// it, and the key that stops it is the window's.
   void take(const gl::WindowInput& input, OperatorTime now);
   /// The camera that the operator looks through: directions are meant as he sees them.
   void look_from(const Pose& T_world_camera);
@@ -58,9 +59,10 @@ class HandDriver final : public SeatDriver {
 
  private:
   void cycle(const SeatView& view);
+  void heed_window(OperatorTime now);
 
   const Rig& rig_;
-  mutable std::mutex mutex_;  // all below
+  mutable PriorityMutex mutex_;  // all below
   const HandOptions options_;
   std::unique_ptr<ContactGuard> guard_;
   HandControl hand_;
@@ -72,7 +74,7 @@ class HandDriver final : public SeatDriver {
   std::optional<TrackerState> interruption_;  // of the next cycle
   std::vector<LineRequest> requests_;
   SeatWish wish_;
-  std::optional<OperatorTime> cycled_, event_;  // event_: of the oldest event that no cycle has taken yet
+  std::optional<OperatorTime> looked_, cycled_, event_;  // event_: of the oldest event that no cycle has taken yet
   std::optional<Duration> input_took_;
   bool control_ = true, hand_over_ = false, ended_ = false;
 };

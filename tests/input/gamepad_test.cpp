@@ -100,6 +100,24 @@ TEST_F(GamepadTest, SticksOfAPadThatWentOutOfRangeDoNotMoveOn) {
   EXPECT_NE(rounds(pad, 5).T_space_hand.matrix(), moved.T_space_hand.matrix()) << "it is there after all";
 }
 
+TEST_F(GamepadTest, TriggersAndCrossOfAPadThatWentOutOfRangeAreLetGoOf) {
+  plug();
+  Gamepad pad;
+  axis(SDL_CONTROLLER_AXIS_TRIGGERLEFT, 1);
+  button(SDL_CONTROLLER_BUTTON_DPAD_LEFT, true);
+  button(SDL_CONTROLLER_BUTTON_DPAD_UP, true);
+  const TrackerState held = rounds(pad, 150);
+  EXPECT_TRUE(held.buttons.held(TrackerButton::gripper_open));
+  EXPECT_EQ(held.pan_rate, 1);
+  EXPECT_EQ(held.tilt_rate, 1);
+  const TrackerState gone = rounds(pad, 100);
+  EXPECT_FALSE(gone.buttons.held(TrackerButton::gripper_open)) << "what it holds would fall";
+  EXPECT_EQ(gone.pan_rate, 0);
+  EXPECT_EQ(gone.tilt_rate, 0);
+  button(SDL_CONTROLLER_BUTTON_X, true);
+  EXPECT_TRUE(rounds(pad, 2).buttons.held(TrackerButton::gripper_open)) << "it is there after all";
+}
+
 TEST_F(GamepadTest, ItsMotorsFeelAContact) {
   struct Motors {
     int low = 0;

@@ -48,6 +48,7 @@ class HandAtTheSeat : public testing::Test {
       head.linear() = Eigen::AngleAxisd(0.8 * std::sin(0.1 * turns_++), Eigen::Vector3d::UnitZ()).toRotationMatrix();
       hand_->state.T_space_head = head;
       hand_->state.T_space_hand.translation() += by;
+      if (window_answers_) driver_->take({}, view_.now);
       wish_ = driver_->tick(view_);
       view_.robot.follows = wish_.deadman;
       if (wish_.deadman) view_.robot.begin = wish_.position;
@@ -78,6 +79,7 @@ class HandAtTheSeat : public testing::Test {
   SeatView view_;
   SeatWish wish_;
   int turns_ = 0;
+  bool window_answers_ = true;
 };
 
 TEST_F(HandAtTheSeat, ThroughAHeadDisplayTheToolGoesAsTheHandIsSeenToGo) {
@@ -117,6 +119,27 @@ TEST_F(HandAtTheSeat, AnInterruptedHandHasToPressAnew) {
   ASSERT_EQ(driver_->lines().size(), 1u);
   EXPECT_EQ(driver_->lines()[0].urgency, Urgency::trouble);
   cycles(50, {0.0005, 0, 0});
+  EXPECT_FALSE(wish_.deadman) << "it has been held all the time";
+  hold(false);
+  cycles(5);
+  hold(true);
+  cycles(2);
+  EXPECT_TRUE(wish_.deadman);
+}
+
+TEST_F(HandAtTheSeat, NoDeviceDrivesOnBehindAWindowThatHangs) {
+  hold(true);
+  cycles(10, {0.0005, 0, 0});
+  ASSERT_TRUE(wish_.deadman);
+  window_answers_ = false;
+  cycles(20, {0.0005, 0, 0});
+  EXPECT_TRUE(wish_.deadman) << "0.4 s: a slow picture";
+  cycles(10, {0.0005, 0, 0});
+  EXPECT_FALSE(wish_.deadman);
+  ASSERT_EQ(driver_->lines().size(), 1u);
+  EXPECT_NE(driver_->lines()[0].words.find("window"), std::string::npos) << driver_->lines()[0].words;
+  window_answers_ = true;
+  cycles(20, {0.0005, 0, 0});
   EXPECT_FALSE(wish_.deadman) << "it has been held all the time";
   hold(false);
   cycles(5);
