@@ -18,6 +18,8 @@ class AnyTracker final : public Tracker {
   /// Of the one in charge, or that was last.
   std::string name() const override { return devices_[shown_].tracker->name(); }
   TrackerState read(OperatorTime now) noexcept override;
+  /// Whose switch is held; null: nobody's.
+  const Tracker* in_charge() const noexcept { return in_charge_ ? devices_[shown_].tracker : nullptr; }
 
  private:
   struct Device {

@@ -38,6 +38,9 @@ HandDriver::HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> dev
       devices_(std::move(devices)),
       any_(all_of(keyboard_, devices_)) {
   hand_.set_guard(guard_.get());
+  for (const auto& device : devices_)
+    if (auto* const sink = dynamic_cast<ForceSink*>(device.get()))
+      pushing_.push_back({device.get(), BoundedForce(*sink)});
 }
 
 void HandDriver::take(const gl::WindowInput& input, OperatorTime now) {
@@ -139,7 +142,27 @@ void HandDriver::cycle(const SeatView& view) {
   const HandCycle& cycle = hand_.cycle(input);
   wish_.deadman = cycle.deadman;
   wish_.position = cycle.positions;
+  if (!pushing_.empty()) feel(view.now);
   if (const auto event = std::exchange(event_, std::nullopt)) input_took_ = view.now - *event;
+}
+
+/// What the tool leans on, or what the robot's gate keeps it from: back to where the tool is, then.
+HandContact HandDriver::contact() const {
+  if (!guard_) return {};
+  const GhostHand ghost = guard_->sight().ghost;
+  if (ghost.depth > 0) return {hand_.in_space(rig_.T_world_robot.linear().transpose() * ghost.out), ghost.depth, 0};
+  if (ghost.reason != GhostReason::gate) return {};
+  const Eigen::Vector3d back = hand_.last().T_base_tip.translation() - ghost.T_base_hand.translation();
+  return {hand_.in_space(back), back.norm(), 0};
+}
+
+/// As whoever drives feels it.
+void HandDriver::feel(OperatorTime now) {
+  const HandContact contact = this->contact();
+  for (Pushing& one : pushing_) {
+    one.force.feel(now, contact);
+    one.force.cycle(now, wish_.deadman && one.device == any_.in_charge());
+  }
 }
 
 std::optional<Duration> HandDriver::input_took() const {

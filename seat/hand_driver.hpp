@@ -8,6 +8,7 @@
 #include "common/priority_mutex.hpp"
 #include "gl/glfw_window.hpp"
 #include "input/any_tracker.hpp"
+#include "input/force.hpp"
 #include "input/hand_control.hpp"
 #include "input/keyboard_mouse.hpp"
 #include "seat/hand_sight.hpp"
@@ -19,9 +20,10 @@ namespace foresight {
 /// tick() in the seat's thread, all else in the window's.
 class HandDriver final : public SeatDriver {
  public:
-  /// Keyboard and mouse, and `devices`: whichever has its switch held drives. `rig` must outlive this. `scene`: what
-  /// stands around the arm, which then stops and slides where it would touch (contact_guard.hpp); null: nothing is
-  /// known of it. Throws what hand_options() and ContactGuard do.
+  /// Keyboard and mouse, and `devices`: whichever has its switch held drives, and feels what the tool leans on if it
+  /// can push (ForceSink). `rig` must outlive this. `scene`: what stands around the arm, which then stops and slides
+  /// where it would touch (contact_guard.hpp); null: nothing is known of it. Throws what hand_options() and
+  /// ContactGuard do.
   explicit HandDriver(const Rig& rig, std::vector<std::unique_ptr<Tracker>> devices = {},
                       std::shared_ptr<const SceneModel> scene = nullptr);
 
@@ -60,6 +62,8 @@ class HandDriver final : public SeatDriver {
  private:
   void cycle(const SeatView& view);
   void heed_window(OperatorTime now);
+  HandContact contact() const;
+  void feel(OperatorTime now);
 
   const Rig& rig_;
   mutable PriorityMutex mutex_;  // all below
@@ -69,6 +73,11 @@ class HandDriver final : public SeatDriver {
   KeyboardMouse keyboard_;
   std::vector<std::unique_ptr<Tracker>> devices_;
   AnyTracker any_;
+  struct Pushing {
+    const Tracker* device;
+    BoundedForce force;
+  };
+  std::vector<Pushing> pushing_;
   Pose T_world_camera_ = Pose::Identity();
   std::optional<Pose> T_world_space_;
   std::optional<TrackerState> interruption_;  // of the next cycle

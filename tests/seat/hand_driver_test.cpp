@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "input/hand_of_rig.hpp"
+#include "session/live_scene.hpp"
 #include "tests/support/folders.hpp"
 
 namespace foresight::hand_driver_test {
@@ -11,15 +12,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Says what a test has it say.
-class ToldHand final : public Tracker {
+/// Says what a test has it say, and keeps what it feels.
+class ToldHand final : public Tracker, public ForceSink {
  public:
   std::string name() const override { return "a hand"; }
   TrackerState read(OperatorTime now) noexcept override {
     state.time = now;
     return state;
   }
+  void push(OperatorTime, const HandContact& contact) noexcept override { felt = contact; }
   TrackerState state;
+  HandContact felt;
 };
 
 class HandAtTheSeat : public testing::Test {
@@ -30,7 +33,7 @@ class HandAtTheSeat : public testing::Test {
     hand_->state.connected = hand_->state.tracked = true;
     std::vector<std::unique_ptr<Tracker>> devices;
     devices.push_back(std::move(device));
-    driver_.emplace(rig_, std::move(devices));
+    driver_.emplace(rig_, std::move(devices), live_scene_of(rig_, true, std::nullopt, false).model());
     view_.robot.joints = rig_.joints.size();
     view_.robot.begin = {0.2, 0.6, -0.1, 1.2, 0.3, 0.7, -0.2, 0.03, 0.1, -0.2};
     view_.robot.ready = true;
@@ -125,6 +128,22 @@ TEST_F(HandAtTheSeat, AnInterruptedHandHasToPressAnew) {
   hold(true);
   cycles(2);
   EXPECT_TRUE(wish_.deadman);
+}
+
+TEST_F(HandAtTheSeat, WhoDrivesFeelsWhatTheToolLeansOn) {
+  Pose level = Pose::Identity();  // a camera that looks along x
+  level.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  driver_->look_from(level);
+  hold(true);
+  cycles(20);
+  ASSERT_TRUE(wish_.deadman);
+  EXPECT_EQ(hand_->felt.depth, 0);
+  cycles(350, {0, 0, -0.002});
+  EXPECT_GT(hand_->felt.depth, 0.005) << "m: the hand goes on into the table";
+  EXPECT_GT(hand_->felt.out_in_space.z(), 0.9);
+  hold(false);
+  cycles(3);
+  EXPECT_EQ(hand_->felt.depth, 0) << "nobody drives";
 }
 
 TEST_F(HandAtTheSeat, NoDeviceDrivesOnBehindAWindowThatHangs) {
