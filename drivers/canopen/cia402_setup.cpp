@@ -239,7 +239,7 @@ void Cia402Drive::write_pdos() {
 }
 
 void Cia402Drive::start() {
-  heartbeat_.forget();
+  heartbeat_.forget_state();
   bus_.send(nmt_frame(NmtCommand::start, config_.drive.node));
   const auto operational = [&] { return heartbeat_.state(clock_.now()) == NmtState::operational; };
   if (has_heartbeat_ && !access_.wait(kStateTime, operational))

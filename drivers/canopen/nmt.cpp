@@ -64,14 +64,17 @@ bool HeartbeatProducer::due(RobotTime now) noexcept {
   return true;
 }
 
-void HeartbeatConsumer::heard(NmtState state, RobotTime now) noexcept {
-  last_ = now;
+void HeartbeatConsumer::heard(NmtState state, RobotTime at) noexcept {
+  last_ = at;
   state_ = state;
 }
 
 std::optional<NmtState> HeartbeatConsumer::state(RobotTime now) const noexcept {
-  if (!last_ || now - *last_ > timeout_) return std::nullopt;
-  return state_;
+  return overdue(now) ? std::nullopt : state_;
+}
+
+bool HeartbeatConsumer::overdue(RobotTime now) const noexcept {
+  return last_ && now - *last_ > timeout_;
 }
 
 }  // namespace foresight::canopen

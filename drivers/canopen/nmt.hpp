@@ -51,15 +51,19 @@ class HeartbeatProducer {
 class HeartbeatConsumer {
  public:
   explicit HeartbeatConsumer(Duration timeout) : timeout_(timeout) {}
-  void heard(NmtState state, RobotTime now) noexcept;
-  void forget() noexcept { last_.reset(); }
-  /// Nothing while the node is silent for longer than the timeout, or was never heard.
+  /// `at`: when it was received, which may be well before it is read.
+  void heard(NmtState state, RobotTime at) noexcept;
+  /// The node was told to change its state: what it is in is known again once it says so.
+  void forget_state() noexcept { state_.reset(); }
+  /// Nothing while the node is overdue, or has not said it.
   std::optional<NmtState> state(RobotTime now) const noexcept;
+  /// Silent for longer than the timeout; false where it was never heard.
+  bool overdue(RobotTime now) const noexcept;
 
  private:
   Duration timeout_;
   std::optional<RobotTime> last_;
-  NmtState state_ = NmtState::boot_up;
+  std::optional<NmtState> state_;
 };
 
 }  // namespace foresight::canopen

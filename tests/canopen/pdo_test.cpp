@@ -64,6 +64,18 @@ TEST(Heartbeat, ConsumerNoticesSilence) {
   EXPECT_FALSE(consumer.state(RobotTime{50'000'001}));
 }
 
+TEST(Heartbeat, ConsumerForgetsAStateButNoSilence) {
+  HeartbeatConsumer consumer(50ms);
+  EXPECT_FALSE(consumer.overdue(RobotTime{1'000'000'000})) << "never heard";
+  consumer.heard(NmtState::operational, RobotTime{0});
+  consumer.forget_state();
+  EXPECT_FALSE(consumer.state(RobotTime{1}));
+  EXPECT_FALSE(consumer.overdue(RobotTime{50'000'000}));
+  EXPECT_TRUE(consumer.overdue(RobotTime{50'000'001}));
+  consumer.heard(NmtState::pre_operational, RobotTime{60'000'000});
+  EXPECT_EQ(consumer.state(RobotTime{60'000'001}), NmtState::pre_operational);
+}
+
 TEST(Heartbeat, ParsesStatesOnly) {
   EXPECT_EQ(parse_heartbeat(frame("703#00"))->state, NmtState::boot_up);
   EXPECT_EQ(parse_heartbeat(frame("703#7F"))->node, 3);
