@@ -12,6 +12,8 @@ constexpr std::size_t kControl = 0, kTarget = 1;      // in RPDO1
 constexpr std::size_t kStatus = 0, kPosition = 1;     // in TPDO1
 constexpr std::size_t kVelocity = 0, kModeShown = 1;  // in TPDO2
 constexpr const char* kNotConfigured = "configure() has not succeeded";
+constexpr const char* kZeroLost = "it restarted and has lost its zero: home it";
+constexpr const char* kZeroDoubtful = "it was silent, its power and with it its zero may have been lost: home it";
 
 std::vector<Pdo> make_pdos(int node, OperationMode mode) {
   const auto id = [node](std::uint32_t base) { return base + static_cast<std::uint32_t>(node); };
@@ -94,7 +96,7 @@ DriveFeedback Cia402Drive::feedback() const noexcept {
   }
   if (speed_seen_)
     out.velocity = d.direction * static_cast<double>(speed_) / (d.counts_per_unit * config_.velocity_factor);
-  out.homed = machine_.homed() || (config_.absolute_encoder && process_time_.ns != 0);
+  out.homed = homed();
   out.target_reached = (status_ & kStatusTargetReached) != 0;
   const bool following_error = machine_.follows() && (status_ & kStatusBit13) && !is(OperationMode::cyclic_velocity);
   out.limit = (status_ & kStatusLimit) != 0 || following_error;
@@ -105,6 +107,7 @@ DriveFeedback Cia402Drive::feedback() const noexcept {
     out.state = error_told_ ? DriveState::fault : machine_.state();
     out.fault = *machine_.trouble() != 0 ? machine_.trouble() : refusal_;
     if (mode_failed_) out.fault = "the drive refused its mode of operation";
+    if (*out.fault == 0 && !out.homed && out.state != DriveState::homing) out.fault = zero_lost_;
   } else {
     out.fault = configured_ ? "the drive is silent" : refusal_;
   }
@@ -122,15 +125,31 @@ void Cia402Drive::lose(const char* why) noexcept {
   hold();
 }
 
-void Cia402Drive::heard(const Heartbeat& heartbeat, RobotTime now) noexcept {
-  heartbeat_.heard(heartbeat.state, now);
-  if (!configured_) return;
-  if (heartbeat.state == NmtState::boot_up) {
-    machine_.set_homed(false);
-    lose("the node restarted: configure it again");
-  } else if (heartbeat.state != NmtState::operational) {
+bool Cia402Drive::homed() const noexcept {
+  return machine_.homed() || (config_.absolute_encoder && process_time_.ns != 0);
+}
+
+// It may come at any time: also while the drive waits for set-up, or is in it.
+void Cia402Drive::note_restart() noexcept {
+  if (machine_.homed() || *zero_lost_ != 0) zero_lost_ = kZeroLost;
+  machine_.set_homed(false);
+  if (configured_ || *lost_ != 0) lose("the node restarted: configure it again");
+}
+
+// In a silence the supply may have gone and come back, and the boot-up message have been missed: the bus was off.
+void Cia402Drive::note_silence(RobotTime now) noexcept {
+  if (!heartbeat_.overdue(now)) return;
+  if (machine_.homed()) zero_lost_ = kZeroDoubtful;
+  machine_.set_homed(false);
+}
+
+void Cia402Drive::heard(const Heartbeat& heartbeat, RobotTime at) noexcept {
+  note_silence(at);
+  heartbeat_.heard(heartbeat.state, at);
+  if (heartbeat.state == NmtState::boot_up)
+    note_restart();
+  else if (configured_ && heartbeat.state != NmtState::operational)
     lose("the node left the state 'operational': configure it again");
-  }
 }
 
 void Cia402Drive::take_emergency(const Emergency& emergency) noexcept {
@@ -139,9 +158,11 @@ void Cia402Drive::take_emergency(const Emergency& emergency) noexcept {
 }
 
 void Cia402Drive::receive(NodeFrame what, const CanFrame& frame, RobotTime now) noexcept {
+  // Frames that waited while the loop stood still count when they came.
+  const RobotTime at = frame.time.ns != 0 ? frame.time : now;
   switch (what) {
     case NodeFrame::heartbeat:
-      if (const auto heartbeat = parse_heartbeat(frame)) heard(*heartbeat, now);
+      if (const auto heartbeat = parse_heartbeat(frame)) heard(*heartbeat, at);
       break;
     case NodeFrame::emergency:
       if (const auto emergency = parse_emergency(frame)) take_emergency(*emergency);
@@ -151,7 +172,7 @@ void Cia402Drive::receive(NodeFrame what, const CanFrame& frame, RobotTime now) 
       if (!configured_ || !pdos_[1].carried_by(frame)) break;
       status_ = static_cast<std::uint16_t>(pdos_[1].get(frame, kStatus));
       actual_ = pdos_[1].get(frame, kPosition);
-      process_time_ = frame.time.ns != 0 ? frame.time : now;
+      process_time_ = at;
       process_seen_ = true;
       unanswered_ = 0;
       break;
@@ -166,6 +187,7 @@ void Cia402Drive::receive(NodeFrame what, const CanFrame& frame, RobotTime now) 
 
 void Cia402Drive::check(RobotTime now) noexcept {
   sdo_.check(bus_, now);
+  note_silence(now);
   // Process data is owed only where it was asked for: between set-up and the first SYNC there is but a heartbeat.
   const bool owed = unanswered_ * network_.cycle > network_.feedback_timeout;
   if (owed || now - process_time_ > network_.feedback_timeout) process_seen_ = false;
@@ -214,6 +236,7 @@ std::optional<CanFrame> Cia402Drive::command(bool permitted, RobotTime now) noex
   std::uint16_t word = 0;
   if (!waits) word = machine_.step({status_, mode_shown_, may_enable, error_told_}, now);
   if (machine_.resetting()) error_told_ = false;
+  if (machine_.homed()) zero_lost_ = "";
   // What was asked for before a stop, a fault or another mode is forgotten: it starts where the joint is.
   if (!followed || !machine_.follows()) hold();
   if (machine_.follows() && is(OperationMode::profile_position)) word = strobe(word);

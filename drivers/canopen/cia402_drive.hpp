@@ -23,7 +23,11 @@ enum class NodeFrame : std::uint8_t { heartbeat, emergency, sdo_answer, tpdo1, t
 ///   TPDO2  actual velocity 606Ch, mode shown 6061h
 /// All other PDOs 2 .. 4 of the node are switched off. Node restart, loss of the state "operational": configure()
 /// again. Loss of heartbeat or process data: a quick stop is sent, and nobody but a request enables it again,
-/// at the actual position. One thread.
+/// at the actual position.
+///
+/// An incremental encoder's zero is that of the last homing for as long as the drive provably kept its power: neither a
+/// boot-up message came (CiA 301, 7.2.8.3.3) nor was the node silent for longer than `drive_timeout`, in which one
+/// might have been missed. That is watched from homing on, whether the drive is set up or not. One thread.
 class Cia402Drive final : public Drive {
  public:
   /// `bus`, `clock` outlive the drive. Throws InputError (validate()).
@@ -36,7 +40,7 @@ class Cia402Drive final : public Drive {
   DriveIdentity identity() const override { return identity_; }
   /// Leaves the node operational, switched off. Moves nothing; a drive found enabled is stopped first.
   /// Other drives of the bus get no SYNC meanwhile: disable them before. A device without 1016h, 6007h or 1017h
-  /// does not throw: refusal() tells, and enabling is refused.
+  /// does not throw: refusal() tells, and enabling is refused. remarks() tell where its zero is lost.
   void configure() override;
   void request(DriveRequest what) noexcept override;
   void set_point(double position, double velocity) noexcept override;
@@ -73,7 +77,10 @@ class Cia402Drive final : public Drive {
 
   // cia402_drive.cpp
   void lose(const char* why) noexcept;
-  void heard(const Heartbeat& heartbeat, RobotTime now) noexcept;
+  void heard(const Heartbeat& heartbeat, RobotTime at) noexcept;
+  void note_restart() noexcept;
+  void note_silence(RobotTime now) noexcept;
+  bool homed() const noexcept;
   void take_emergency(const Emergency& emergency) noexcept;
   void switch_mode(RobotTime now) noexcept;
   std::uint16_t strobe(std::uint16_t word) noexcept;
@@ -94,7 +101,8 @@ class Cia402Drive final : public Drive {
   DriveIdentity identity_;
   std::vector<std::string> notes_;
   const char* refusal_ = "";
-  const char* lost_ = "";  // why set-up does not hold any more
+  const char* lost_ = "";       // why set-up does not hold any more
+  const char* zero_lost_ = "";  // why the last homing does not
 
   bool configured_ = false, online_ = false, has_heartbeat_ = false;
   bool process_seen_ = false;  // since set-up, or since it was lost

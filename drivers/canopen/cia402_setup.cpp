@@ -76,6 +76,7 @@ void Cia402Drive::configure() {
     refusal_ = pending;
     throw;
   }
+  if (!homed() && *zero_lost_ != 0) notes_.emplace_back(zero_lost_);
 }
 
 void Cia402Drive::refuse(const char* why) {
