@@ -133,6 +133,7 @@ bool Cia402Drive::homed() const noexcept {
 void Cia402Drive::note_restart() noexcept {
   if (machine_.homed() || *zero_lost_ != 0) zero_lost_ = kZeroLost;
   machine_.set_homed(false);
+  restarted_ = true;
   if (configured_ || *lost_ != 0) lose("the node restarted: configure it again");
 }
 

@@ -40,7 +40,8 @@ class Cia402Drive final : public Drive {
   DriveIdentity identity() const override { return identity_; }
   /// Leaves the node operational, switched off. Moves nothing; a drive found enabled is stopped first.
   /// Other drives of the bus get no SYNC meanwhile: disable them before. A device without 1016h, 6007h or 1017h
-  /// does not throw: refusal() tells, and enabling is refused. remarks() tell where its zero is lost.
+  /// does not throw: refusal() tells, and enabling is refused. Throws RuntimeFailure where the node restarts meanwhile,
+  /// and with it forgets what was written. remarks() tell where its zero is lost.
   void configure() override;
   void request(DriveRequest what) noexcept override;
   void set_point(double position, double velocity) noexcept override;
@@ -72,6 +73,7 @@ class Cia402Drive final : public Drive {
   void write_interpolation();
   void write_pdos();
   void start();
+  void require_no_restart() const;
   void refuse(const char* why);
   std::int64_t counts_rate(double joint_rate) const;
 
@@ -103,6 +105,7 @@ class Cia402Drive final : public Drive {
   const char* refusal_ = "";
   const char* lost_ = "";       // why set-up does not hold any more
   const char* zero_lost_ = "";  // why the last homing does not
+  bool restarted_ = false;      // since set-up began to write
 
   bool configured_ = false, online_ = false, has_heartbeat_ = false;
   bool process_seen_ = false;  // since set-up, or since it was lost

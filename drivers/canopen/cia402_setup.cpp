@@ -58,6 +58,8 @@ void Cia402Drive::configure() {
   notes_.clear();
   speed_seen_ = switching_ = mode_failed_ = false;
   identify();
+  // With its answers, all that had waited on the bus was read: a boot-up message that comes now is one of this set-up.
+  restarted_ = false;
   bus_.send(nmt_frame(NmtCommand::enter_pre_operational, config_.drive.node));
   switch_off();
   const char* const pending = refusal_;
@@ -74,9 +76,18 @@ void Cia402Drive::configure() {
   } catch (...) {
     configured_ = false;
     refusal_ = pending;
+    require_no_restart();  // else a restart would be told as a value that the device does not take
     throw;
   }
   if (!homed() && *zero_lost_ != 0) notes_.emplace_back(zero_lost_);
+}
+
+// What was written and proven before a restart is gone: limits, and the watchdog that stops the drive when we fall
+// silent.
+void Cia402Drive::require_no_restart() const {
+  if (restarted_)
+    throw RuntimeFailure(access_.device() + " restarted during its set-up (boot-up message)",
+                         "check its supply, then set it up again");
 }
 
 void Cia402Drive::refuse(const char* why) {
@@ -240,6 +251,7 @@ void Cia402Drive::write_pdos() {
 }
 
 void Cia402Drive::start() {
+  require_no_restart();
   heartbeat_.forget_state();
   bus_.send(nmt_frame(NmtCommand::start, config_.drive.node));
   const auto operational = [&] { return heartbeat_.state(clock_.now()) == NmtState::operational; };
@@ -255,6 +267,7 @@ void Cia402Drive::start() {
   fault_code_ = 0;
   if (state_of(status_) == Cia402State::fault)
     fault_code_ = static_cast<std::uint16_t>(access_.read_if_there(kErrorCode).value_or(0));
+  require_no_restart();
   configured_ = true;
   check(clock_.now());
 }
