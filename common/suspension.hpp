@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "common/time.hpp"
 
@@ -14,12 +15,12 @@ class SuspensionWatch {
   using Asleep = std::function<Duration()>;
   explicit SuspensionWatch(Asleep asleep = machine_asleep) : asleep_(std::move(asleep)), known_(asleep_()) {}
 
-  /// Once after each suspension of 10 ms or more.
-  bool woke() {
-    const Duration now = asleep_();
-    if (now - known_ < std::chrono::milliseconds(10)) return false;
+  /// How long a suspension of 10 ms or more took; once after each.
+  std::optional<Duration> woke() {
+    const Duration now = asleep_(), lasted = now - known_;
+    if (lasted < std::chrono::milliseconds(10)) return std::nullopt;
     known_ = now;
-    return true;
+    return lasted;
   }
 
   /// CLOCK_BOOTTIME, which goes on, less CLOCK_MONOTONIC (clock_gettime(2)).

@@ -168,10 +168,17 @@ void ControlDesk::take(DeskPeer& from, const Request& request, RobotTime now) {
   if (!outcome) {
     outcome = judge(from, request, now);
     from.requests.note(request.id, *outcome);
-    if (*outcome == RequestOutcome::taken && request.what == LineRequest::emergency_stop) requests_.clear();
-    if (*outcome == RequestOutcome::taken) requests_.push_back({request.what, permit_.consent()});
+    if (*outcome == RequestOutcome::taken) queue(request);
   }
   send(from, Answer{request.id, *outcome});
+}
+
+void ControlDesk::queue(const Request& request) {
+  if (request.what == LineRequest::emergency_stop) {
+    if (!stops_.note_new(request)) return;
+    requests_.clear();
+  }
+  requests_.push_back({request.what, permit_.consent()});
 }
 
 LineRequest ControlDesk::take_request() {

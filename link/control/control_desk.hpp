@@ -83,6 +83,7 @@ class ControlDesk {
   void forget_clocks();
   void greet(Nonce theirs, const Hello& hello, RobotTime now);
   RequestOutcome judge(const DeskPeer& from, const Request& request, RobotTime now) const;
+  void queue(const Request& request);
   void grant(DeskPeer& to, RobotTime now);
   void answer(const DeskPeer& to, LeaseVerdict verdict);
   std::string refusal(const DeskPeer& to) const;
@@ -102,6 +103,7 @@ class ControlDesk {
   DeskCounts counts_;
   TakenSetPoint taken_;
   std::vector<Queued> requests_;
+  StopLedger stops_;
   std::vector<FromRobot> out_;
   std::uint64_t states_ = 0;
   Duration repeat_every_{0};

@@ -70,13 +70,26 @@ void ControlSeat::take(const FromRobot& message, const Welcome& welcome, Operato
   ++ask_number_;
   asked_ = {};
   withdraw();
-  // Whatever was asked of the desk before, this one knows nothing of.
   drop_requests();
+  send_requests(now);
 }
 
+void ControlSeat::give_up(const Open& open) {
+  fates_.push_back({open.request.id, open.request.what, std::nullopt});
+}
+
+/// Whatever was asked of the desk before, the next one knows nothing of. An emergency stop it is told as well: the
+/// robot knows one that it has executed, by whichever connection it comes.
 void ControlSeat::drop_requests() {
-  for (const Open& open : open_) fates_.push_back({open.request.id, open.request.what, std::nullopt});
-  open_.clear();
+  for (Open& open : open_) {
+    if (!open.stops()) give_up(open);
+    open.sent = {};
+  }
+  std::erase_if(open_, [](const Open& open) { return !open.stops(); });
+}
+
+bool ControlSeat::stops() const {
+  return std::any_of(open_.begin(), open_.end(), [](const Open& open) { return open.stops(); });
 }
 
 void ControlSeat::take(const ClockPing& ping, OperatorTime now) {
@@ -127,7 +140,8 @@ void ControlSeat::connect(OperatorTime now) {
     state_ = {};
     withdraw();
   }
-  if (desk_ != 0 || (greeted_.ns != 0 && now - greeted_ < kGreetEvery)) return;
+  const Duration every = stops() ? kRepeatEvery : kGreetEvery;  // a stop is in haste
+  if (desk_ != 0 || (greeted_.ns != 0 && now - greeted_ < every)) return;
   greeted_ = now;
   send(Hello{options_.identity});
 }
@@ -165,15 +179,20 @@ bool ControlSeat::hand_over() {
   return true;
 }
 
+/// For one more: the oldest goes, but for emergency stops. Where there is nothing else, the later ones stop as well.
+void ControlSeat::make_room() {
+  if (open_.size() < kMostOpen) return;
+  auto oldest = std::find_if(open_.begin(), open_.end(), [](const Open& open) { return !open.stops(); });
+  if (oldest == open_.end()) oldest = open_.begin();
+  give_up(*oldest);
+  open_.erase(oldest);
+}
+
 std::uint64_t ControlSeat::request(LineRequest what, OperatorTime now) {
-  Request request{++request_id_, what, lease_, state_.consent, now, kRequestLife + state_.life};
-  if (open_.size() >= kMostOpen) {
-    fates_.push_back({open_.front().request.id, open_.front().request.what, std::nullopt});
-    open_.erase(open_.begin());
-  }
-  send(request);
-  open_.push_back({request, now});
-  return request.id;
+  make_room();
+  open_.push_back({{++request_id_, what, lease_, state_.consent, now, kRequestLife + state_.life}, now, {}});
+  send_requests(now);
+  return request_id_;
 }
 
 void ControlSeat::take(const Answer& answer) {
@@ -187,18 +206,26 @@ std::vector<RequestFate> ControlSeat::take_fates() {
   return std::exchange(fates_, {});
 }
 
-void ControlSeat::repeat_requests(OperatorTime now) {
+/// For the first time, and again. What was asked for after a stop must not come before it: a reset would be undone by
+/// the stop that it was to end.
+void ControlSeat::send_requests(OperatorTime now) {
+  if (desk_ == 0) return;
+  const bool stops = this->stops();
   for (Open& open : open_) {
-    const Duration most = open.request.what == LineRequest::emergency_stop ? kStopRepeated : open.request.lasts + 1s;
-    if (now - open.request.given > most) {
-      fates_.push_back({open.request.id, open.request.what, std::nullopt});
-      open.request.id = 0;
-    } else if (now - open.sent >= kRepeatEvery) {
-      open.sent = now;
-      send(open.request);
-    }
+    const bool waits = open.sent.ns != 0 && now - open.sent < kRepeatEvery;
+    if (waits || (stops && !open.stops())) continue;
+    open.sent = now;
+    send(open.request);
   }
-  std::erase_if(open_, [](const Open& open) { return open.request.id == 0; });
+}
+
+void ControlSeat::give_up_requests(OperatorTime now) {
+  const auto is_over = [now](const Open& open) {
+    return now - open.since > (open.stops() ? kStopRepeated : open.request.lasts + 1s);
+  };
+  for (const Open& open : open_)
+    if (is_over(open)) give_up(open);
+  std::erase_if(open_, is_over);
 }
 
 void ControlSeat::begin_anew() {
@@ -212,24 +239,32 @@ void ControlSeat::begin_anew() {
   withdraw();
 }
 
+void ControlSeat::stood_still(Duration asleep) {
+  for (Open& open : open_) open.since = open.since - asleep;
+  begin_anew();
+}
+
 void ControlSeat::advance(OperatorTime now) {
   if (advanced_.ns != 0 && now - advanced_ > kPause) begin_anew();
   advanced_ = now;
   if (!sees_robot(now)) withdraw();
+  give_up_requests(now);
   connect(now);
   if (desk_ == 0) return;
   if (const auto ping = clock_.ping(now)) send(*ping);
   ask(now);
-  repeat_requests(now);
+  send_requests(now);
 }
 
 std::optional<SetPoint> ControlSeat::command(OperatorTime now, const LinePositions& position, bool deadman) {
   const bool pressed = deadman && !std::exchange(held_, deadman);
   held_ = deadman;
-  if (!deadman) withdraw();
-  if (pressed && sees_robot(now)) agreed_ = state_.consent;
+  // Who has asked for a stop does not drive before he knows of it: one that came late would stop what he began since.
+  const bool drives = deadman && !stops();
+  if (!drives) withdraw();
+  if (pressed && drives && sees_robot(now)) agreed_ = state_.consent;
   if (lease_ == 0 || desk_ == 0) return std::nullopt;
-  SetPoint out{lease_, agreed_, ++sequence_, now, state_.life, deadman, state_.joints, position};
+  SetPoint out{lease_, agreed_, ++sequence_, now, state_.life, drives, state_.joints, position};
   send(out);
   return out;
 }
@@ -260,6 +295,7 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
     const bool presses = held_ && state_.fault != SetPointFault::none;
     say(presses ? fault.name : cause.name, presses ? fault.cure : cause.cure);
   }
+  if (stops()) out.words += std::string(out.words.empty() ? "" : "; ") + "the emergency stop is not answered yet";
   return out;
 }
 

@@ -57,8 +57,8 @@ class ControlSeat {
   /// Every 10 ms or so. A quarter of a second without is a pause, or a leap of our clock: then all begins anew, as if
   /// the program had just been started.
   void advance(OperatorTime now);
-  /// This host was suspended: its clock stood still. All begins anew, too.
-  void stood_still() { begin_anew(); }
+  /// This host was suspended for so long: its clock stood still. All begins anew, too.
+  void stood_still(Duration asleep);
   /// What to send, oldest first; each once.
   std::vector<FromOperator> take_outgoing();
 
@@ -66,7 +66,9 @@ class ControlSeat {
   void want_control(bool wanted);
   /// While holding: to who asks for it now. False: nobody does.
   bool hand_over();
-  /// The id by which its fate is known later.
+  /// The id by which its fate is known later. An emergency stop is repeated for half a minute, however often the robot
+  /// has to be found anew meanwhile. Until it is answered its operator's switch counts as open, and what else he asks
+  /// for waits. Other requests are given up with their connection.
   std::uint64_t request(LineRequest what, OperatorTime now);
   /// Each once.
   std::vector<RequestFate> take_fates();
@@ -86,7 +88,9 @@ class ControlSeat {
  private:
   struct Open {
     Request request;
-    OperatorTime sent;
+    OperatorTime since;  // when it was made, however long this host was suspended meanwhile
+    OperatorTime sent;   // to the present desk; 0: not yet
+    bool stops() const { return request.what == LineRequest::emergency_stop; }
   };
   void take(const FromRobot& message, const Welcome& welcome, OperatorTime now);
   void take(const ClockPing& ping, OperatorTime now);
@@ -96,7 +100,11 @@ class ControlSeat {
   void take_state(const ControlState& state, OperatorTime now);
   void connect(OperatorTime now);
   void ask(OperatorTime now);
-  void repeat_requests(OperatorTime now);
+  void send_requests(OperatorTime now);
+  void give_up_requests(OperatorTime now);
+  void give_up(const Open& open);
+  void make_room();
+  bool stops() const;
   void withdraw() { agreed_ = 0; }
   void begin_anew();
   void drop_requests();

@@ -71,7 +71,8 @@ struct TakenSetPoint {
   std::uint64_t sequence = 0;  ///< 0: none
   RobotTime came;
 };
-/// Repeated, with the same id, until an Answer comes. An emergency stop needs neither lease nor consent nor haste.
+/// Repeated, with the same id, until an Answer comes. An emergency stop needs neither lease nor consent nor haste, and
+/// is repeated by the next connection, too: with the same id and the same `given`, by which it is known to the robot.
 struct Request {
   std::uint64_t id = 0;  ///< grows strictly
   LineRequest what = LineRequest::none;

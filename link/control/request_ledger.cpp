@@ -4,6 +4,14 @@
 
 namespace foresight {
 
+bool StopLedger::note_new(const Request& stop) {
+  const Entry entry{stop.id, stop.given};
+  if (stop.id != 0 && std::find(entries_.begin(), entries_.end(), entry) != entries_.end()) return false;
+  entries_[next_] = entry;
+  next_ = (next_ + 1) % entries_.size();
+  return true;
+}
+
 std::optional<RequestOutcome> RequestLedger::answered(const Request& request) const {
   for (const Entry& entry : entries_)
     if (entry.id == request.id && request.id != 0) return entry.outcome;

@@ -9,6 +9,24 @@
 
 namespace foresight {
 
+/// Emergency stops, which an operator repeats over one connection after the other until he hears of it. One thread;
+/// does not allocate.
+class StopLedger {
+ public:
+  /// False: this one was noted before, whoever brought it. Two operators' have the same number, but were not made at
+  /// the same nanosecond of two clocks.
+  bool note_new(const Request& stop);
+
+ private:
+  struct Entry {
+    std::uint64_t id = 0;
+    OperatorTime given;
+    bool operator==(const Entry&) const = default;
+  };
+  std::array<Entry, 64> entries_{};
+  std::size_t next_ = 0;
+};
+
 /// Of one operator's connection. One thread; does not allocate.
 class RequestLedger {
  public:

@@ -78,7 +78,7 @@ void OperatorEnd::step_control() {
   RobotClockTracker known;
   {
     const std::lock_guard lock(seat_mutex_);
-    if (suspension_.woke()) seat_.stood_still();
+    if (const auto asleep = suspension_.woke()) seat_.stood_still(*asleep);
     line_.receive(seat_, now);
     seat_.advance(now);
     line_.send(seat_);

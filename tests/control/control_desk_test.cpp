@@ -197,7 +197,7 @@ TEST_F(ControlDeskTest, ASuspendedRobotsHostStops) {
 TEST_F(ControlDeskTest, ASuspendedOperatorsHostStops) {
   engage(anna_);
   anna_.ahead -= 5s;
-  anna_.seat.stood_still();
+  anna_.seat.stood_still(5s);
   EXPECT_EQ(moves_in(20ms), 2) << "what was on its way before";
   EXPECT_EQ(moves_in(3s), 0);
   EXPECT_EQ(status(anna_).phase, ControlSeatStatus::Phase::holding) << "it comes back by itself, but does not move";

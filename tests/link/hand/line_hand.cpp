@@ -52,7 +52,7 @@ class Hand {
   }
 
   void tick(OperatorTime now) {
-    if (suspension_.woke()) seat_.stood_still();
+    if (const auto asleep = suspension_.woke()) seat_.stood_still(*asleep);
     line_.receive(seat_, now);
     seat_.advance(now);
     const ControlSeatStatus status = seat_.status(now);
