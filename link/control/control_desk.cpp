@@ -38,6 +38,7 @@ void ControlDesk::receive(const FromOperator& message, RobotTime now) {
     return;
   }
   from->heard = now;
+  from->answered = true;
   std::visit(
       [&](const auto& body) {
         if constexpr (!std::is_same_v<std::decay_t<decltype(body)>, Hello>) take(*from, body, now);
@@ -47,7 +48,7 @@ void ControlDesk::receive(const FromOperator& message, RobotTime now) {
 
 void ControlDesk::greet(Nonce theirs, const Hello& hello, RobotTime now) {
   // A Hello is no proof that somebody is there: it may be a recording's.
-  if (DeskPeer* peer = peers_.greet(theirs, hello.identity, options_.identity, now))
+  if (DeskPeer* peer = peers_.greet(theirs, hello.identity, options_.identity, now, holder_))
     send(*peer, Welcome{session_, options_.identity, peer->differences});
 }
 
@@ -113,7 +114,7 @@ void ControlDesk::take(DeskPeer& from, const GiveBack& back, RobotTime now) {
 DeskPeer* ControlDesk::asking(RobotTime now) {
   DeskPeer* out = nullptr;
   for (DeskPeer& peer : peers_.all()) {
-    const bool asks = peer.asked_at.ns != 0 && now - peer.asked_at <= kAsksFor && peer.theirs != holder_;
+    const bool asks = peer.asks(now) && peer.theirs != holder_;
     if (asks && refusal_text(peer.differences).empty() && (out == nullptr || peer.asked_at > out->asked_at))
       out = &peer;
   }
@@ -136,7 +137,7 @@ void ControlDesk::take(DeskPeer& from, const HandOver& over, RobotTime now) {
   if (from.theirs != holder_ || over.lease != permit_.lease()) return;
   DeskPeer* to = peers_.find(over.to);
   // Both must want it, now.
-  if (to == nullptr || to->asked_at.ns == 0 || now - to->asked_at > kAsksFor) return;
+  if (to == nullptr || !to->asks(now)) return;
   if (refusal_text(to->differences).empty()) grant(*to, now);
 }
 

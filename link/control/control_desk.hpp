@@ -33,7 +33,6 @@ struct DeskCounts {
 class ControlDesk {
  public:
   static constexpr Duration kLease = std::chrono::seconds(2);        ///< without a word of the holder
-  static constexpr Duration kAsksFor = std::chrono::seconds(10);     ///< after an Ask
   static constexpr Duration kRequestLife = std::chrono::seconds(1);  ///< beside a slow line's allowed delay
 
   explicit ControlDesk(ControlDeskOptions options);

@@ -1,6 +1,7 @@
 #include "link/control/desk_peers.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace foresight {
 
@@ -15,10 +16,24 @@ DeskPeer* DeskPeers::find(Nonce theirs, Nonce ours) {
   return peer != nullptr && peer->ours == ours ? peer : nullptr;
 }
 
-DeskPeer* DeskPeers::greet(Nonce theirs, const Identity& identity, const Identity& robot, RobotTime now) {
+/// Anybody may have an emergency stop to tell, so who comes is let in. Each new start of a seat's program leaves the
+/// old one here for a while.
+bool DeskPeers::make_room(RobotTime now, Nonce kept) {
+  auto leaves = peers_.end();
+  for (auto peer = peers_.begin(); peer != peers_.end(); ++peer) {
+    if (peer->theirs == kept || peer->asks(now)) continue;
+    const auto rank = [](const DeskPeer& p) { return std::pair(p.answered, p.heard); };
+    if (leaves == peers_.end() || rank(*peer) < rank(*leaves)) leaves = peer;
+  }
+  if (leaves == peers_.end()) return false;
+  peers_.erase(leaves);
+  return true;
+}
+
+DeskPeer* DeskPeers::greet(Nonce theirs, const Identity& identity, const Identity& robot, RobotTime now, Nonce kept) {
   if (theirs == 0) return nullptr;
   if (DeskPeer* known = find(theirs)) return known;
-  if (peers_.size() >= kMost) return nullptr;
+  if (peers_.size() >= kMost && !make_room(now, kept)) return nullptr;
   DeskPeer peer;
   peer.theirs = theirs;
   peer.ours = draw_();

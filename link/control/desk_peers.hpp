@@ -11,6 +11,8 @@ namespace foresight {
 
 /// One start of an operator's program.
 struct DeskPeer {
+  static constexpr Duration kAsksFor = std::chrono::seconds(10);  ///< after an Ask
+
   Nonce theirs = 0;  ///< its `from`
   Nonce ours = 0;  ///< what it must address; drawn when it came, so that a recording of an earlier one is known as such
   Identity identity;
@@ -18,10 +20,12 @@ struct DeskPeer {
   OperatorClockTracker clock;
   std::uint64_t jumps_seen = 0;  ///< of `clock`
   RobotTime heard;
+  bool answered = false;      ///< has heard its Welcome: nobody may be there who hears that of a recorded Hello
   std::uint64_t asked = 0;    ///< number of its newest Ask
   std::uint64_t settled = 0;  ///< Asks up to this number have had their time: one that comes late is not followed
   RobotTime asked_at;         ///< when it last asked for control; 0: it does not
   RequestLedger requests;
+  bool asks(RobotTime now) const { return asked_at.ns != 0 && now - asked_at <= kAsksFor; }
 };
 
 /// A few of them. One thread.
@@ -31,8 +35,10 @@ class DeskPeers {
   static constexpr Duration kForgottenAfter = std::chrono::seconds(5);
 
   explicit DeskPeers(DrawNonce draw) : draw_(std::move(draw)) {}
-  /// Who has said Hello, now or before; null where there is no room: nobody who is still heard makes room for another.
-  DeskPeer* greet(Nonce theirs, const Identity& identity, const Identity& robot, RobotTime now);
+  /// Who has said Hello, now or before. Where there are kMost, somebody goes: who never answered rather than who did,
+  /// and of these who was not heard for longest, but never `kept` nor who asks for control; null where nobody else is
+  /// left. One that is there after all says Hello again when the robot's answers stay away.
+  DeskPeer* greet(Nonce theirs, const Identity& identity, const Identity& robot, RobotTime now, Nonce kept);
   /// Who sends from `theirs` to `ours`; null where this is nobody known.
   DeskPeer* find(Nonce theirs, Nonce ours);
   DeskPeer* find(Nonce theirs);
@@ -41,6 +47,8 @@ class DeskPeers {
   std::vector<DeskPeer>& all() { return peers_; }
 
  private:
+  bool make_room(RobotTime now, Nonce kept);
+
   DrawNonce draw_;
   std::vector<DeskPeer> peers_;
 };

@@ -484,6 +484,85 @@ TEST_F(ControlDeskTest, RoomForAFewOperatorsIsNotTakenByMany) {
   EXPECT_TRUE(robot_.follows);
 }
 
+/// Says Hello, and then some word: that it was greeted is known to it.
+class ManyOperatorsTest : public ControlDeskTest {
+ protected:
+  void hello(Nonce theirs) { desk_.receive({theirs, 0, Hello{sample_identity("somebody")}}, now_); }
+  void come_and_go(Nonce theirs) {
+    hello(theirs);
+    if (const DeskPeer* peer = known(theirs)) desk_.receive({theirs, peer->ours, ClockPing{1}}, now_);
+  }
+  const DeskPeer* known(Nonce theirs) {
+    for (const DeskPeer& peer : desk_.peers())
+      if (peer.theirs == theirs) return &peer;
+    return nullptr;
+  }
+};
+
+TEST_F(ManyOperatorsTest, WhoIsSilentMakesRoomForWhoComes) {
+  engage(anna_);
+  for (Nonce gone = 9'000; gone < 9'000 + DeskPeers::kMost - 1; ++gone) {
+    come_and_go(gone);
+    step();
+  }
+  ASSERT_EQ(desk_.peers().size(), DeskPeers::kMost);
+  seats_.push_back(&ben_);
+  step();
+  ben_.seat.request(LineRequest::emergency_stop, time_of(ben_));
+  run(150ms);
+  EXPECT_EQ(status(ben_).phase, ControlSeatStatus::Phase::connected);
+  EXPECT_THAT(executed_, testing::ElementsAre(LineRequest::emergency_stop));
+  EXPECT_EQ(known(9'000), nullptr) << "the one who was not heard for longest";
+  EXPECT_NE(known(9'001), nullptr);
+  EXPECT_TRUE(robot_.follows);
+}
+
+TEST_F(ManyOperatorsTest, WhoHoldsOrAsksForControlMakesRoomForNobody) {
+  seats_.push_back(&ben_);
+  engage(anna_);
+  ben_.seat.want_control(true);
+  run(500ms);
+  anna_.up_cut = ben_.up_cut = true;  // longest unheard
+  run(500ms);
+  for (Nonce other = 9'000; other < 9'020; ++other) {
+    come_and_go(other);
+    step();
+  }
+  EXPECT_EQ(desk_.peers().size(), DeskPeers::kMost);
+  EXPECT_EQ(desk_.holder_name(), "anna");
+  EXPECT_EQ(desk_.asking_name(now_), "ben");
+  EXPECT_NE(known(ben_.seat.session()), nullptr);
+}
+
+// As of a recording that is played in a loop: nobody is there who hears the Welcome.
+TEST_F(ManyOperatorsTest, AHelloThatNobodyFollowsUpTakesNobodysPlace) {
+  seats_.push_back(&ben_);
+  engage(anna_);
+  run(500ms);
+  for (Nonce played = 9'000; played < 9'100; ++played) hello(played);
+  EXPECT_EQ(desk_.peers().size(), DeskPeers::kMost);
+  EXPECT_NE(known(ben_.seat.session()), nullptr);
+  const Nonce session = ben_.seat.session();
+  run(5s);
+  EXPECT_EQ(ben_.seat.session(), session);
+  EXPECT_EQ(status(ben_).phase, ControlSeatStatus::Phase::connected);
+}
+
+TEST_F(ManyOperatorsTest, OneMoreThanThereIsRoomForCanStopTheRobot) {
+  engage(anna_);
+  std::deque<SmallSeat> others;
+  for (Nonce i = 0; i < DeskPeers::kMost; ++i) seats_.push_back(&others.emplace_back("one more", 300'000 + 1000 * i));
+  run(1s);
+  for (SmallSeat& other : others) {
+    executed_.clear();
+    other.seat.request(LineRequest::emergency_stop, time_of(other));
+    run(3s);
+    EXPECT_THAT(executed_, testing::ElementsAre(LineRequest::emergency_stop));
+    other.seat.take_fates();
+  }
+  EXPECT_TRUE(robot_.follows);
+}
+
 TEST(SetPointLifeTest, GrowsWithWhatTheLineNeedsAndNoFurther) {
   const auto life_of = [](auto age) {
     SetPointLife life;
