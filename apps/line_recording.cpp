@@ -190,7 +190,9 @@ int export_run(const ExportRunOptions& options) {
   std::fputs(run.remarks.c_str(), stderr);
   say("export-run", fmt::format("{} pairs, {} of them without a pose", run.pairs, run.without_pose));
   std::printf("%s\n", options.out.c_str());
-  return 0;
+  if (run.fault.empty()) return 0;
+  say("foresight", run.fault + "; what came before is in " + options.out);
+  return 1;
 }
 
 }  // namespace foresight

@@ -11,6 +11,7 @@
 #include "common/stop_signal.hpp"
 #include "rig/open_stereo.hpp"
 #include "rig/rig.hpp"
+#include "scene/target_folder.hpp"
 #include "session/encoder_poses.hpp"
 #include "session/recorder_options.hpp"
 #include "session/recording.hpp"
@@ -134,6 +135,8 @@ GivenPoses poses_of(const RecordArguments& a, const std::shared_ptr<const LiveSc
 
 int record_and_report(const RecordArguments& a, const OpenStereo& opened, LiveFrames& frames, RecorderOptions options,
                       Clock& clock) {
+  for (const fs::path& cut : unfinished_beside(a.out))
+    std::fprintf(stderr, "record: %s is a recording whose program was killed: rename it, or remove it\n", cut.c_str());
   RunRecorder recorder(a.out, std::move(options), frames.subscribe(RunRecorder::kRoom));
   RecordingLimits limits;
   limits.count = a.count;
@@ -144,7 +147,7 @@ int record_and_report(const RecordArguments& a, const OpenStereo& opened, LiveFr
   const RecordingResult result = record(*opened.cameras, frames, recorder, limits, clock, stop_requested);
   std::fprintf(stderr, "record: %s", counts_text(result).c_str());
   std::printf("%s\n", a.out.c_str());
-  const bool all_played = !a.images.empty() && !recorder.disk_full();
+  const bool all_played = !a.images.empty() && !recorder.stopped();
   if (result.fault.empty() || all_played) return 0;
   std::fprintf(stderr, "foresight: %s; what came before is in %s\n", result.fault.c_str(), a.out.c_str());
   return 1;

@@ -93,11 +93,10 @@ void RunWriter::add_registration(RobotTime time, std::string_view quality, doubl
   row(registration_, time) << quality << ' ' << number_text(predicted_px, 6) << '\n';
 }
 
-void RunWriter::finish() {
+void RunWriter::flush() {
   for (List* list : {&left_, &right_, &unplaced_, &trajectory_, &nodes_, &registration_}) {
     if (!list->stream.is_open()) continue;
-    list->stream.close();
-    if (!list->stream)
+    if (!list->stream.flush())
       throw RuntimeFailure("cannot write " + (folder_ / list->file).string() + " (" + std::strerror(errno) + ")",
                            cure_of_write_error(errno));
   }

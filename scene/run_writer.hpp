@@ -35,8 +35,8 @@ class RunWriter {
   void add_node(RobotTime time, const std::string& node, const Pose& T_world_node);
   void add_registration(RobotTime time, std::string_view quality, double predicted_px);
 
-  /// All is in the files. Throws RuntimeFailure where it is not.
-  void finish();
+  /// All rows are in the files. Throws RuntimeFailure where they are not.
+  void flush();
 
   const std::filesystem::path& folder() const { return folder_; }
 

@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <fstream>
-#include <utility>
 
 #include "common/error.hpp"
 #include "common/partial_path.hpp"
@@ -22,7 +22,41 @@ fs::path first_foreign(const fs::path& folder, const FolderForm& form) {
   return {};
 }
 
+constexpr std::string_view kUnfinished = ".unfinished-";
+
+/// A new folder "NAME.unfinished-N".
+fs::path make_unfinished(const fs::path& target) {
+  for (int number = 1;; ++number) {
+    fs::path out = target;
+    out += std::string(kUnfinished) + std::to_string(number);
+    if (fs::create_directory(out)) return out;
+  }
+}
+
+fs::path make_partial(const fs::path& target) {
+  const fs::path out = partial_path(target);
+  fs::create_directory(out);
+  return out;
+}
+
+/// Absolute, and without the slash that may end a folder's name.
+fs::path name_of(const fs::path& target) {
+  const fs::path out = fs::absolute(target).lexically_normal();
+  return out.has_filename() ? out : out.parent_path();
+}
+
 }  // namespace
+
+std::vector<fs::path> unfinished_beside(const fs::path& target) {
+  const fs::path name = name_of(target);
+  const std::string prefix = name.filename().string() + std::string(kUnfinished);
+  std::vector<fs::path> out;
+  std::error_code ignored;
+  for (fs::directory_iterator at(name.parent_path(), ignored), end; at != end; at.increment(ignored))
+    if (at->path().filename().string().starts_with(prefix)) out.push_back(at->path());
+  std::ranges::sort(out);
+  return out;
+}
 
 void require_replaceable(const std::string& where, const fs::path& folder, const FolderForm& form) {
   if (!fs::exists(fs::symlink_status(folder))) return;
@@ -43,14 +77,11 @@ void require_replaceable(const std::string& where, const fs::path& folder, const
                      "move it elsewhere, or choose a new or empty folder");
 }
 
-TargetFolder::TargetFolder(const fs::path& target, FolderForm form)
-    : form_(std::move(form)), target_(fs::absolute(target).lexically_normal()) {
-  if (!target_.has_filename()) target_ = target_.parent_path();
+TargetFolder::TargetFolder(const fs::path& target, FolderForm form) : form_(std::move(form)), target_(name_of(target)) {
   try {
     require_replaceable(target_.string(), target_, form_);
-    partial_ = partial_path(target_);
     fs::create_directories(target_.parent_path());
-    fs::create_directory(partial_);
+    partial_ = form_.irreplaceable ? make_unfinished(target_) : make_partial(target_);
   } catch (const fs::filesystem_error& e) {
     throw InputError(target.string(), "cannot be written (" + e.code().message() + ")", "choose a writable place");
   }
@@ -74,8 +105,7 @@ void TargetFolder::commit() {
   try {
     require_replaceable(target_.string(), target_, form_);
   } catch (const InputError& foreign) {
-    const fs::path kept = std::exchange(partial_, fs::path());
-    throw InputError("what was written is in " + kept.string(), foreign.what(), "then give it its name");
+    throw InputError("what was written is in " + keep().string(), foreign.what(), "then give it its name");
   }
   fs::remove_all(target_);  // ours, or an empty folder
   fs::rename(partial_, target_);

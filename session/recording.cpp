@@ -63,7 +63,7 @@ RecordingResult record(StereoCamera& cameras, LiveFrames& frames, RunRecorder& r
   }
   result.unregistered = frames.dropped();
   result.counts = recorder.finish(camera_remarks(result.cameras) + registration_remarks(frames));
-  if (recorder.disk_full()) result.fault = "the disk is nearly full";
+  if (const std::string fault = recorder.fault(); !fault.empty()) result.fault = fault;
   return result;
 }
 

@@ -16,7 +16,7 @@ struct RecordingResult {
   RecorderCounts counts;
   StereoStatus cameras;
   std::uint64_t unregistered = 0;  ///< pairs for which the registration was too slow
-  std::string fault;               ///< why it ended early: a silent camera, a full disk; "" where it did not
+  std::string fault;               ///< why it ended early: a silent camera, RunRecorder::fault(); "" where it did not
 };
 
 /// Starts `cameras` and `frames`, to which `recorder` has subscribed, hands the pairs over, stops them and finishes

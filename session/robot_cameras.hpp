@@ -54,8 +54,11 @@ class RobotCameras {
   /// is amiss, or nobody wants poses.
   std::string registration_trouble() const;
 
+  /// As RunRecorder::fault(); "" without a recording.
+  std::string recording_fault() const { return recorder_ ? recorder_->fault() : ""; }
+
   /// Stops the cameras and the registration, closes all subscribers' queues and finishes the recording. What there is
-  /// to say, one line each; empty without a recording. Throws RuntimeFailure where the recording cannot be finished.
+  /// to say, one line each; empty without a recording. Throws what RunRecorder::finish() does.
   std::string finish();
 
  private:

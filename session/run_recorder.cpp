@@ -22,7 +22,8 @@ fs::path beside_run(fs::path out, const char* ending) {
 
 FolderForm RunRecorder::form() {
   return {kMarker, kMarkerLine,
-          [](const fs::path& relative) { return relative == kMarker || is_file_of_run(relative); }};
+          [](const fs::path& relative) { return relative == kMarker || is_file_of_run(relative); },
+          /*irreplaceable=*/true};
 }
 
 RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options, std::shared_ptr<FrameQueue> frames)
@@ -38,8 +39,9 @@ RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options, std::shar
 }
 
 RunRecorder::~RunRecorder() {
-  failed_ = true;  // nobody wants what still waits
+  stopped_ = true;  // nobody wants what still waits
   join();
+  if (counts_.written > 0) target_.keep();
 }
 
 void RunRecorder::join() {
@@ -59,6 +61,16 @@ void RunRecorder::check(const ColourImage& image, const Lens& lens, const char* 
                      "check the clock of the camera's driver");
 }
 
+std::string RunRecorder::fault() const {
+  const std::lock_guard lock(mutex_);
+  if (failure_) try {
+      std::rethrow_exception(failure_);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  return "";
+}
+
 RecorderCounts RunRecorder::counts() const {
   const std::lock_guard lock(mutex_);
   RecorderCounts out = counts_;
@@ -74,8 +86,9 @@ void RunRecorder::run() noexcept {
     try {
       write(**frame);
     } catch (...) {
+      const std::lock_guard lock(mutex_);
       failure_ = std::current_exception();
-      failed_ = true;
+      stopped_ = true;
     }
   }
 }
@@ -83,10 +96,8 @@ void RunRecorder::run() noexcept {
 void RunRecorder::write(const LiveFrame& frame) {
   std::error_code error;
   const fs::space_info space = fs::space(target_.path(), error);
-  if (!error && static_cast<double>(space.available) < options_.spare_bytes) {
-    full_ = true;
-    return;
-  }
+  if (!error && static_cast<double>(space.available) < options_.spare_bytes)
+    throw RuntimeFailure("the disk of " + target_.target().string() + " is nearly full", "free some disk space");
   check(frame.pair.left, options_.lenses.left, "left", last_left_);
   check(frame.pair.right, options_.lenses.right, "right", last_right_);
   last_left_ = frame.pair.left.time;
@@ -96,12 +107,14 @@ void RunRecorder::write(const LiveFrame& frame) {
     run_.add_registration(frame.pair.left.time, frame.quality, *frame.predicted_px);
   write_poses(frame);
   const std::uint64_t number = counts().written;
+  const auto image_of = [&](bool right) -> const ColourImage& { return right ? frame.pair.right : frame.pair.left; };
+  for (const bool right : {false, true})
+    run_.write_image(RunWriter::image_name(right, number), image_of(right).bgr, kCompression);
   for (const bool right : {false, true}) {
-    const ColourImage& image = right ? frame.pair.right : frame.pair.left;
     const std::string name = RunWriter::image_name(right, number);
-    run_.write_image(name, image.bgr, kCompression);
-    placed ? run_.add_image(right, image.time, name) : run_.add_unplaced(image.time, name);
+    placed ? run_.add_image(right, image_of(right).time, name) : run_.add_unplaced(image_of(right).time, name);
   }
+  run_.flush();
   const std::lock_guard lock(mutex_);
   ++counts_.written;
   if (!placed) ++counts_.without_pose;
@@ -134,13 +147,22 @@ void RunRecorder::write_poses(RobotTime time, const std::optional<Pose>& T_world
 
 RecorderCounts RunRecorder::finish(const std::string& remarks) {
   join();
-  if (failure_) std::rethrow_exception(failure_);
   const RecorderCounts counts = this->counts();
-  if (counts.written == 0)
-    throw RuntimeFailure(full_ ? "the disk of " + target_.target().string() + " is full: nothing was recorded"
-                               : "no pair of images came: nothing was recorded",
-                         full_ ? "free some disk space" : "see what `foresight doctor` says of the cameras");
-  run_.finish();
+  if (counts.written == 0) {
+    if (failure_) std::rethrow_exception(failure_);
+    throw RuntimeFailure("no pair of images came: nothing was recorded",
+                         "see what `foresight doctor` says of the cameras");
+  }
+  try {
+    close_folder(counts, remarks);
+  } catch (const RuntimeFailure& failure) {
+    throw RuntimeFailure("what was recorded is in " + target_.keep().string(), failure.what());
+  }
+  return counts;
+}
+
+void RunRecorder::close_folder(const RecorderCounts& counts, const std::string& remarks) {
+  run_.flush();
   std::ostringstream text;
   text << kMarkerLine << "\npairs: " << counts.written << "\ndropped_by_disk: " << counts.dropped
        << "\nwithout_pose: " << counts.without_pose << "\n"
@@ -152,7 +174,6 @@ RecorderCounts RunRecorder::finish(const std::string& remarks) {
     throw RuntimeFailure("cannot write " + target_.target().string() + " (" + e.code().message() + ")",
                          "free some disk space");
   }
-  return counts;
 }
 
 }  // namespace foresight

@@ -40,8 +40,9 @@ struct RecorderCounts {
 };
 
 /// Only writes: a thread of its own takes frames from its queue, encodes and stores them. All goes into a neighbour
-/// folder that takes the target's name in finish(); without finish(), or where it throws, nothing stays. One thread
-/// constructs, finishes and destroys it.
+/// folder (unfinished_beside) that takes the target's name in finish(). There each pair is complete once the next one
+/// is written, so that a program that is killed leaves a run that can be read; without a pair, nothing stays. One
+/// thread constructs, finishes and destroys it.
 class RunRecorder {
  public:
   static constexpr const char* kMarker = "record.yaml";  ///< tells our folders from those of others
@@ -54,21 +55,23 @@ class RunRecorder {
   RunRecorder(const std::filesystem::path& out, RecorderOptions options, std::shared_ptr<FrameQueue> frames);
   ~RunRecorder();
 
-  /// The disk is nearly full or cannot be written, or an image has not its lens's size, or times do not ascend: what
-  /// comes now is not recorded. finish() tells.
-  bool stopped() const { return full_ || failed_; }
-  bool disk_full() const { return full_; }
+  /// What comes now is not recorded: see fault(). Any thread.
+  bool stopped() const { return stopped_; }
+  /// "", or why it stopped: the disk is nearly full or cannot be written, an image has not its lens's size, or times do
+  /// not ascend. Any thread.
+  std::string fault() const;
   RecorderCounts counts() const;
 
-  /// Writes what is in the queue, which nobody fills any more, and gives the folder its name. `remarks`: lines of YAML
-  /// for record.yaml. Throws RuntimeFailure where there is no pair, or something could not be written; InputError where
-  /// an image was refused, naming the side.
+  /// Writes what is in the queue, which nobody fills any more, and gives the folder its name: what came before a
+  /// fault(), too. `remarks`: lines of YAML for record.yaml. Throws where there is no pair: what the fault was, or
+  /// RuntimeFailure. Throws RuntimeFailure where the folder cannot be finished: it says where the pairs are.
   RecorderCounts finish(const std::string& remarks);
 
  private:
   void check(const ColourImage& image, const Lens& lens, const char* side, RobotTime last) const;
   void run() noexcept;
   void write(const LiveFrame& frame);
+  void close_folder(const RecorderCounts& counts, const std::string& remarks);
   void write_poses(const LiveFrame& frame);
   void write_poses(RobotTime time, const std::optional<Pose>& T_world_left, const SceneState& scene);
   void join();
@@ -79,10 +82,10 @@ class RunRecorder {
   RunWriter run_;
   RobotTime last_left_{INT64_MIN}, last_right_{INT64_MIN}, last_pose_{INT64_MIN};
 
-  mutable std::mutex mutex_;  // counts_
+  mutable std::mutex mutex_;  // the next two
   RecorderCounts counts_;
-  std::atomic<bool> full_ = false, failed_ = false;
-  std::exception_ptr failure_;  // of the writer; read after it ended
+  std::exception_ptr failure_;  // of the writer
+  std::atomic<bool> stopped_ = false;
   std::jthread writer_;
 };
 

@@ -94,7 +94,7 @@ class SynthRun {
     const Polygons polygons = polygons_of(lab);
     const SynthSummary summary = write_images(run, lab, polygons, progress);
     add_trajectory(run);
-    run.finish();
+    run.flush();
     write_marker(summary);
     target_.commit();
     return summary;

@@ -50,11 +50,10 @@ class Exporter {
                        "has no pair of images that can be used" + (refusal_.empty() ? "" : ": " + refusal_),
                        "record with `foresight record --line` while `foresight robot --serve` runs");
     const RecorderCounts counts = recorder.finish("recording: " + options_.recording.filename().string() + "\n");
-    RunExport out{counts.written, counts.without_pose, remarks(outcome)};
+    RunExport out{counts.written, counts.without_pose, remarks(outcome), recorder.fault()};
     if (out.without_pose == out.pairs)
       out.remarks +=
           "no pair has a pose, which `foresight replay` needs: the head was not homed, or is not calibrated\n";
-    if (recorder.disk_full()) out.remarks += "the disk is full: what came later is not in the run\n";
     return out;
   }
 

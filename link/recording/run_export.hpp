@@ -19,6 +19,7 @@ struct RunExportOptions {
 struct RunExport {
   std::uint64_t pairs = 0, without_pose = 0;
   std::string remarks;  ///< what could not be used and why, one a line; "" where all could
+  std::string fault;    ///< why it ended early (RunRecorder::fault()); "" where it did not
 };
 
 /// Decodes every recorded pair, of either coding, and writes it with its poses, and where everything that moves was by

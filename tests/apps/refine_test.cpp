@@ -40,7 +40,7 @@ class TagRun : public TempFolder {
       run.add_image(false, time, file);
       run.add_pose(time, i < wrong_images ? Pose(T * off) : T);
     }
-    run.finish();
+    run.flush();
     write("scene.ply", kRoom);
     std::string tags;
     for (const auto& [id, corners] : room.corners())

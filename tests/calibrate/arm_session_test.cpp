@@ -74,7 +74,7 @@ void record_views(const std::filesystem::path& views, const std::filesystem::pat
       joints << fmt::format(",{:.7f}", places[from][j] + share * (places[to][j] - places[from][j]));
     joints << "\n";
   }
-  writer.finish();
+  writer.flush();
 }
 
 class ArmSession : public HeadlessTest {

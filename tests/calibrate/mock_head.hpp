@@ -85,7 +85,7 @@ struct MockHead {
         writer.add_image(eye, time, name);
       }
     }
-    writer.finish();
+    writer.flush();
     write_tags(run / "tags.txt", room.corners());
   }
 

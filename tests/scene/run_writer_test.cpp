@@ -71,7 +71,7 @@ TEST(RunWriter, WritesWhatRunFolderReads) {
       run.add_node(times[i], "ball", some_pose(-x));
       run.add_registration(times[i], "tags", 0.25 * x);
     }
-    run.finish();
+    run.flush();
 
     const RunFolder read = RunFolder::open(folder.path(), {});
     expect_same(read.lens_left(), left);
@@ -101,7 +101,7 @@ TEST(RunWriter, WritesNoFileForWhatIsNotThere) {
   const TempFolder folder;
   RunWriter run(folder.path(), every_lens()[0], "left");
   run.add_image(false, RobotTime{-1'500'000'000}, "rgb/a.png");
-  run.finish();
+  run.flush();
   EXPECT_EQ(folder.read("rgb.txt"), "# time[s] file\n-1.500000000 rgb/a.png\n");
   for (const char* name : {"trajectory.txt", "nodes.txt", "registration.txt", "rgb_right.txt", "without_pose.txt"})
     EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
@@ -114,7 +114,7 @@ TEST(RunWriter, SaysWhereItCannotWrite) {
   std::filesystem::create_symlink("/dev/full", folder / "trajectory.txt");
   run.add_pose(RobotTime{}, Pose::Identity());
   try {
-    run.finish();
+    run.flush();
     FAIL();
   } catch (const RuntimeFailure& failure) {
     EXPECT_THAT(failure.what(), testing::AllOf(testing::HasSubstr("trajectory.txt"), testing::HasSubstr("No space")));

@@ -9,6 +9,7 @@
 
 #include "scene/run_folder.hpp"
 #include "scene/scene_reader.hpp"
+#include "scene/target_folder.hpp"
 #include "tests/scene/test_run.hpp"
 
 namespace foresight::recording_test {
@@ -183,6 +184,8 @@ class Recording : public testing::Test {
     return out;
   }
 
+  fs::path unfinished() const { return unfinished_beside(folder_ / "run").at(0); }
+
   static constexpr int kForever = INT_MAX;
   TempFolder folder_;
   SteppedClock clock_;
@@ -331,6 +334,7 @@ TEST_F(Recording, AFullDiskEndsItAndKeepsWhatIsThere) {
   while (recorder.counts().written == 0) std::this_thread::sleep_for(1ms);
   EXPECT_FALSE(recorder.stopped());
   EXPECT_EQ(recorder.finish("").written, 1u);
+  EXPECT_EQ(recorder.fault(), "");
 
   options_.spare_bytes = 1e18;
   try {
@@ -353,11 +357,73 @@ TEST_F(Recording, AFailingWriteLeavesNothing) {
   EXPECT_THAT(left_behind(), testing::IsEmpty());
 }
 
-TEST_F(Recording, RefusesImagesOfAnotherSizeAndTimesThatGoBack) {
+TEST_F(Recording, RefusesImagesOfAnotherSize) {
   EXPECT_THAT(input_error([&] { write(queue_of({pair_at(1, 20)})); }),
               testing::AllOf(HasSubstr("left camera"), HasSubstr("20 x 12"), HasSubstr("16 x 12")));
-  EXPECT_THAT(input_error([&] { write(queue_of({pair_at(5), pair_at(5)})); }), HasSubstr("do not ascend"));
   EXPECT_THAT(left_behind(), testing::IsEmpty());
+}
+
+TEST_F(Recording, KeepsWhatCameBeforeAPairThatCannotBeRecorded) {
+  RunRecorder recorder(folder_ / "run", options_, queue_of({pair_at(5), pair_at(7), pair_at(6), pair_at(8)}));
+  EXPECT_EQ(recorder.finish("").written, 2u);
+  EXPECT_THAT(recorder.fault(), HasSubstr("do not ascend"));
+  EXPECT_EQ(RunFolder::open(folder_ / "run", {}).frames().size(), 2u);
+  EXPECT_EQ(left_behind(), std::vector<std::string>{"run"});
+}
+
+TEST_F(Recording, KeepsWhatCameBeforeAFailingWrite) {
+  const auto queue = std::make_shared<FrameQueue>(4);
+  RunRecorder recorder(folder_ / "run", options_, queue);
+  const auto frames = queue_of({pair_at(1), pair_at(2)});
+  queue->put(*frames->take(0ns));
+  while (recorder.counts().written == 0) std::this_thread::sleep_for(1ms);
+  fs::remove_all(unfinished() / "rgb_right");
+  queue->put(*frames->take(0ns));
+  while (!recorder.stopped()) std::this_thread::sleep_for(1ms);
+  EXPECT_THAT(recorder.fault(), HasSubstr("rgb_right"));
+  fs::create_directory(unfinished() / "rgb_right");  // for who reads the run
+  EXPECT_EQ(recorder.finish("").written, 1u);
+  EXPECT_THAT(folder_.read("run/rgb.txt"), testing::Not(HasSubstr("000001.png"))) << "without its partner";
+}
+
+// What lies there while it records is what a program leaves that is killed.
+TEST_F(Recording, IsARunAtAnyInstant) {
+  const auto queue = std::make_shared<FrameQueue>(4);
+  RunRecorder recorder(folder_ / "run", options_, queue);
+  const auto frames = queue_of({pair_at(1), pair_at(2)});
+  for (std::uint64_t pairs = 1; pairs <= 2; ++pairs) {
+    queue->put(*frames->take(0ns));
+    while (recorder.counts().written < pairs) std::this_thread::sleep_for(1ms);
+    EXPECT_EQ(RunFolder::open(unfinished(), {}).frames().size(), pairs);
+  }
+}
+
+TEST_F(Recording, WithoutFinishKeepsItsPairsBesideTheTarget) {
+  for (const char* name : {"run.unfinished-1", "run.unfinished-2"}) {
+    const auto queue = queue_of({pair_at(1)});
+    {
+      const RunRecorder recorder(folder_ / "run", options_, queue);
+      while (recorder.counts().written == 0) std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_EQ(RunFolder::open(folder_ / name, {}).frames().size(), 1u);
+  }
+  { const RunRecorder without_pairs(folder_ / "run", options_, queue_of({})); }
+  EXPECT_EQ(unfinished_beside(folder_ / "run/").size(), 2u);
+  EXPECT_EQ(left_behind().size(), 2u);
+}
+
+TEST_F(Recording, SaysWhereThePairsAreIfTheFolderCannotBeFinished) {
+  const auto queue = queue_of({pair_at(1)});
+  RunRecorder recorder(folder_ / "run", options_, queue);
+  while (recorder.counts().written == 0) std::this_thread::sleep_for(1ms);
+  fs::create_directory(unfinished() / RunRecorder::kMarker);  // in the way of the file
+  try {
+    recorder.finish("");
+    FAIL();
+  } catch (const RuntimeFailure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("what was recorded is in " + (folder_ / "run.unfinished-1").string()));
+  }
+  EXPECT_EQ(RunFolder::open(folder_ / "run.unfinished-1", {}).frames().size(), 1u);
 }
 
 TEST_F(Recording, DoesNotTouchFoldersOfOthers) {
