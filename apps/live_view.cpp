@@ -8,6 +8,7 @@
 
 #include "apps/view_measures.hpp"
 #include "common/error.hpp"
+#include "common/patient_output.hpp"
 #include "common/stop_signal.hpp"
 #include "display/live_source.hpp"
 #include "display/view_window.hpp"
@@ -48,6 +49,10 @@ RunRecord described(const ViewSession& session, const ViewSetup& setup, const Li
   return record;
 }
 
+void say_of_view(const std::string& words) {
+  patient_stderr().say("robot: view: " + words + "\n");
+}
+
 void remove_old_pictures(const fs::path& out) {
   std::error_code ignored;  // what cannot be removed cannot be written either, which is told then
   fs::remove(out / "contact_sheet.png", ignored);
@@ -61,7 +66,7 @@ struct LiveView::Work {
   class StallLog final : public ViewObserver {
    public:
     void stepped(const ViewStep& /*step*/, FrameSource& /*source*/, ViewSession& /*session*/) override {
-      if (!fault_.empty()) std::fprintf(stderr, "robot: view: images again; it was: %s\n", fault_.c_str());
+      if (!fault_.empty()) say_of_view("images again; it was: " + fault_);
       fault_.clear();
       began_ = true;
     }
@@ -70,7 +75,7 @@ struct LiveView::Work {
       if (fault.empty()) return;
       if (fault_.empty()) {
         stalls_ += began_ ? 1 : 0;
-        std::fprintf(stderr, "robot: view: %s\n", fault.c_str());
+        say_of_view(fault);
       }
       fault_ = fault;
     }
@@ -99,10 +104,7 @@ struct LiveView::Work {
 
   static ViewSetup view_setup(const LiveScene& scene, const LiveViewOptions& options) {
     ViewSetup out = live_view_setup(scene, "--view", {.awaits_lamp = options.stepped});
-    if (!options.stepped)
-      rehearse_for_real_time(
-          out, [](const std::string& words) { std::fprintf(stderr, "robot: view: %s\n", words.c_str()); },
-          [] { return stop_requested(); });
+    if (!options.stepped) rehearse_for_real_time(out, say_of_view, [] { return stop_requested(); });
     return out;
   }
 

@@ -10,11 +10,13 @@
 #include "apps/robot/console.hpp"
 #include "apps/run_options.hpp"
 #include "common/error.hpp"
+#include "common/patient_output.hpp"
 #include "common/real_time.hpp"
 #include "common/stop_signal.hpp"
 #include "link/dds/pretended_line.hpp"
 #include "link/robot_side/rig_identity.hpp"
 #include "link/robot_side/robot_server.hpp"
+#include "scene/target_folder.hpp"
 #include "session/robot_loop.hpp"
 
 namespace foresight {
@@ -46,6 +48,13 @@ struct Windows {
   std::unique_ptr<LiveView> view;
   std::unique_ptr<RigBody> body;  // of `rig`
   std::unique_ptr<RigWindow> rig;
+};
+
+/// What was said is read before the program's last words, unless nobody reads.
+struct WaitsForReaders {
+  ~WaitsForReaders() {
+    for (PatientOutput* const output : {&patient_stdout(), &patient_stderr()}) output->finish(500ms);
+  }
 };
 
 /// A window that fails ends, and the robot with it, under control.
@@ -120,6 +129,9 @@ std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& d
                                            Clock& clock, const RobotArguments& arguments) {
   if (!rig.cameras || !arguments.cameras || (arguments.stepped && arguments.record.empty() && !arguments.view))
     return nullptr;
+  if (!arguments.record.empty())
+    for (const std::filesystem::path& cut : unfinished_beside(arguments.record))
+      say_robot(cut.string() + " is a recording whose program was killed: rename it, or remove it");
   RobotCameraOptions options;
   options.mock = arguments.mock;
   if (!arguments.record.empty()) options.record = arguments.record;
@@ -278,6 +290,7 @@ void check_logs(const Rig& rig, const RobotArguments& arguments) {
 }
 
 int run(const RobotArguments& arguments) {
+  const WaitsForReaders waits_for_readers;
   const Rig rig = read_rig(arguments.rig);
   check_logs(rig, arguments);
   check_rig_view(arguments);

@@ -1,9 +1,11 @@
 #include "apps/robot/console.hpp"
 
 #include <cstdio>
+#include <exception>
 
 #include "apps/robot/session_report.hpp"
 #include "apps/robot/status_view.hpp"
+#include "common/patient_output.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -14,7 +16,7 @@ constexpr Duration kRedraw = std::chrono::milliseconds(200);
 }  // namespace
 
 void say_robot(const std::string& line) {
-  std::fprintf(stderr, "robot: %s\n", line.c_str());
+  patient_stderr().say("robot: " + line + "\n");
 }
 
 Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, RobotCameras* cameras,
@@ -49,6 +51,10 @@ bool Console::tick(RobotTime now) {
   const RobotStatus status = robot_.status();
   if (joints_) joints_->write();
   if (session_) session_->write(devices_.buses());
+  if (const std::string fault = cameras_ && !told_of_recording_ ? cameras_->recording_fault() : ""; !fault.empty()) {
+    say_robot("recording has ended: " + fault);
+    told_of_recording_ = true;
+  }
   show(now, status);
   notify(now, status);
   return goes_on;
@@ -59,18 +65,34 @@ std::string Console::trouble() const {
 }
 
 int Console::finish() {
-  std::fputs(view(robot_.status(), -1).c_str(), stdout);
-  if (const std::string recorded = cameras_ ? cameras_->finish() : ""; !recorded.empty()) say_robot(recorded);
+  const std::string recording = finish_recording();  // the first: nothing else may cost it
   if (joints_ && joints_->dropped() > 0)
     say_robot(std::to_string(joints_->dropped()) +
               " cycles are missing in the joints' file: this program came too late, or a joint was silent");
   for (const std::string& line : faults_.missed()) say_robot(line);
   for (const std::filesystem::path& log : devices_.logs()) say_robot("log: " + log.string());
-  if (session_) report();
-  const std::string fault = log_fault();
   if (follow_) say_robot("follow: " + outcome());
-  if (!fault.empty()) std::fprintf(stderr, "foresight: %s\n", fault.c_str());
-  return fault.empty() && (!follow_ || follow_->succeeded()) ? 0 : 1;
+  bool well = !follow_ || follow_->succeeded();
+  for (const std::string& fault : {recording, log_fault()}) {
+    if (fault.empty()) continue;
+    patient_stderr().say("foresight: " + fault + "\n");
+    well = false;
+  }
+  const std::string last = view(robot_.status(), -1);
+  keyboard_.is_terminal() ? patient_stdout().show(last) : static_cast<void>(std::fputs(last.c_str(), stdout));
+  if (session_) report();
+  return well ? 0 : 1;
+}
+
+/// "", or what it lacks.
+std::string Console::finish_recording() {
+  if (!cameras_) return "";
+  try {
+    if (const std::string recorded = cameras_->finish(); !recorded.empty()) say_robot(recorded);
+    return cameras_->recording_fault();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
 }
 
 std::string Console::outcome() const {
@@ -88,6 +110,8 @@ std::string Console::view(const RobotStatus& status, int selected) const {
   if (cameras_) out += camera_text(cameras_->watch().line());
   if (const std::string fault = cameras_ ? cameras_->registration_trouble() : ""; !fault.empty())
     out += "  poses: " + fault + "\n";
+  if (const std::string fault = cameras_ ? cameras_->recording_fault() : ""; !fault.empty())
+    out += "  recording: ended: " + fault + "\n";
   if (line_) out += "line: " + line_() + "\n";
   return out;
 }
@@ -115,8 +139,7 @@ void Console::show(RobotTime now, const RobotStatus& status) {
   std::string text = view(status, follow_ ? -1 : static_cast<int>(keys_.selected()));
   text += std::string("\n") + KeyOperator::help() + "\n";
   if (keys_.asks_for_consent()) text += "Every joint will look for home, slowly. Is the robot's way clear? y/n\n";
-  std::fputs(("\x1b[H\x1b[J" + text).c_str(), stdout);
-  std::fflush(stdout);
+  patient_stdout().show("\x1b[H\x1b[J" + text);
 }
 
 void Console::notify(RobotTime now, const RobotStatus& status) {

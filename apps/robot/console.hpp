@@ -50,6 +50,7 @@ class Console {
  private:
   std::string outcome() const;
   std::string log_fault();
+  std::string finish_recording();
   std::string view(const RobotStatus& status, int selected) const;
   void report();
   void show(RobotTime now, const RobotStatus& status);
@@ -71,6 +72,7 @@ class Console {
   std::function<std::string(RobotTime)> line_news_;
   LoopLife life_;
   RobotTime shown_, notified_;
+  bool told_of_recording_ = false;  // that it ended
 };
 
 }  // namespace foresight

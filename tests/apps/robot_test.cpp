@@ -10,6 +10,7 @@
 #include "tests/apps/runs.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
+#include "tests/support/terminal.hpp"
 
 namespace foresight::robot_test {
 namespace {
@@ -49,6 +50,29 @@ TEST_P(Robot, DoesNotHomeWithoutConsent) {
       run_program({"robot", with_small_cameras(GetParam(), folder_), "--stepped", "--follow", motion()});
   EXPECT_EQ(out.exit_code, 1);
   EXPECT_THAT(out.err, HasSubstr("give --home"));
+}
+
+// Ctrl-S, or a line of ssh that stalls: where the program waited for it, nothing would stop the robot any more.
+TEST(RobotTerminal, StopsThoughItsTerminalTakesNoOutput) {
+  Terminal terminal;
+  const termios before = terminal.modes();
+  Program robot({"robot", config("cia402.yaml"), "--mock", "--no-cameras"}, {.shell = terminal.redirection()});
+  std::string shown;
+  while (robot.running() && shown.find("enabled") == std::string::npos) {
+    shown += terminal.shown();
+    if (shown.find("disabled") != std::string::npos) terminal.type("e");
+  }
+  const termios during = terminal.modes();
+  EXPECT_EQ(during.c_lflag, before.c_lflag & ~static_cast<tcflag_t>(ICANON | ECHO)) << "Ctrl-C is a signal";
+  EXPECT_EQ(during.c_iflag, before.c_iflag);
+  EXPECT_EQ(during.c_oflag, before.c_oflag);
+  EXPECT_EQ(during.c_cflag, before.c_cflag);
+  terminal.type("\x13");
+  while (!terminal.shown().empty()) {
+  }
+  robot.interrupt(SIGTERM);
+  EXPECT_EQ(robot.wait(std::chrono::seconds(60)).exit_code, 130) << "137: killed, since it did not end";
+  EXPECT_EQ(terminal.modes().c_lflag, before.c_lflag);
 }
 
 TEST(RobotMotion, WhatTheGateHoldsBackEndsAsNotReached) {
@@ -177,6 +201,8 @@ TEST_F(RobotInput, MissingDevicesAreNamed) {
   const Outcome doctor = run_program({"doctor", rig});
   EXPECT_EQ(doctor.exit_code, 1);
   EXPECT_THAT(doctor.out, HasSubstr("BAD   bus arm"));
+  const Outcome line = run_program({"doctor", rig_with("robot:", "link: {interface: lan9}\nrobot:")});
+  EXPECT_THAT(line.out, testing::ContainsRegex("BAD   link +.*lan9"));
 }
 
 TEST_F(RobotInput, CamerasOfTheRigAreChecked) {
