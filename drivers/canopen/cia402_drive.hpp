@@ -64,6 +64,7 @@ class Cia402Drive final : public Drive {
   std::optional<std::uint32_t> told(ObjectRef object, const char* what, std::optional<std::uint32_t> wanted);
   void switch_off();
   void prove_heartbeats();
+  void write_error_behaviour();
   void prove_abort_option();
   void write_limits();
   void write_limit(ObjectRef object, std::int64_t value, const char* what);

@@ -15,6 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr ObjectRef kDeviceType{0x1000, 0, 4}, kConsumerCount{0x1016, 0, 1}, kProducer{0x1017, 0, 2};
+constexpr ObjectRef kErrorBehaviour{0x1029, 1, 1};
 constexpr ObjectRef kVendor{0x1018, 1, 4}, kProduct{0x1018, 2, 4}, kSerial{0x1018, 4, 4};
 constexpr ObjectRef kAbortOption{0x6007, 0, 2, true}, kControlWord{0x6040, 0, 2}, kStatusWord{0x6041, 0, 2};
 constexpr ObjectRef kQuickStopOption{0x605A, 0, 2, true}, kMode{0x6060, 0, 1, true}, kModeDisplay{0x6061, 0, 1, true};
@@ -66,6 +67,7 @@ void Cia402Drive::configure() {
   refusal_ = "";
   try {
     prove_heartbeats();
+    write_error_behaviour();
     prove_abort_option();
     write_limits();
     write_homing();
@@ -128,6 +130,14 @@ void Cia402Drive::prove_heartbeats() {
   const std::int64_t entry = std::int64_t{network_.master_node} << 16 | whole_ms(network_.watchdog);
   if (access_.try_write({0x1016, sub, 4}, entry) != Written::proven)
     refuse("the drive did not keep the consumer heartbeat (1016h), it would not notice that we fell silent");
+}
+
+// CiA 301, 1029h: 0 pre-operational, 1 no change, 2 stopped. When a cable is back, what waited on it for somebody to
+// acknowledge comes first: set-points of before, which a drive that is still operational would follow.
+void Cia402Drive::write_error_behaviour() {
+  const Written written = access_.try_write(kErrorBehaviour, 0);
+  if (written == Written::proven || written == Written::absent) return;  // 0 is what devices without it do
+  notes_.push_back("1029h:01: it does not leave the operational state when we fall silent");
 }
 
 void Cia402Drive::prove_abort_option() {

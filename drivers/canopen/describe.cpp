@@ -28,6 +28,7 @@ constexpr ObjectName kObjects[] = {
     {0x1018, 2, "product code"},
     {0x1018, 3, "revision number"},
     {0x1018, 4, "serial number"},
+    {0x1029, 1, "error behaviour, communication"},
     {0x6007, 0, "abort connection option"},
     {0x603F, 0, "error code"},
     {0x6040, 0, "controlword"},

@@ -19,6 +19,7 @@ void ScriptedSlave::reboot() {
   set(0x1016, 1, 0, 4);
   set(0x1016, 2, 0, 4);
   set(0x1017, 0, 0, 2);
+  set(0x1029, 1, 1, 1);
   for (std::uint8_t sub = 1; sub <= 4; ++sub) set(0x1018, sub, 0x100u * sub, 4);
   for (std::uint16_t n = 0; n < 4; ++n)
     for (const std::uint16_t base : {0x1400, 0x1800}) {

@@ -26,6 +26,7 @@ TEST(Setup, WritesAndProvesEverything) {
   EXPECT_STREQ(rig.drive().refusal(), "");
   EXPECT_EQ(s.object(0x1016, 1).value, 0x7f0064u);
   EXPECT_EQ(s.object(0x1017).value, 50u);
+  EXPECT_EQ(s.object(0x1029, 1).value, 0u);
   EXPECT_EQ(s.object(0x6007).value, 3u);
   EXPECT_EQ(s.object(0x605A).value, 6u);
   EXPECT_EQ(static_cast<std::int32_t>(s.object(0x607D, 1).value), -10500);
@@ -121,6 +122,18 @@ TEST(Setup, UnprovenAbortOptionNoEnabling) {
   CanopenRig without;
   without.slave().remove(0x6007);
   expect_never_enabled(without, "6007h");
+}
+
+TEST(Setup, TellsOfADriveThatStaysOperationalWhenWeFallSilent) {
+  CanopenRig rig;
+  rig.slave().object(0x1029, 1).keeps = false;
+  rig.configure();
+  EXPECT_STREQ(rig.drive().refusal(), "");
+  EXPECT_THAT(rig.drive().remarks(), testing::Contains(HasSubstr("1029h:01")));
+  CanopenRig without;
+  without.slave().remove(0x1029);
+  without.configure();
+  EXPECT_THAT(without.drive().remarks(), testing::Not(testing::Contains(HasSubstr("1029h"))));
 }
 
 TEST(Setup, NoHeartbeatOfTheDriveNoEnabling) {
