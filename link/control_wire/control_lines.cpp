@@ -19,11 +19,11 @@ Topic from_robots() {
 
 DeskLine::DeskLine(Participant& participant) : in_(participant, from_operators()), out_(participant, from_robots()) {}
 
-void DeskLine::receive(ControlDesk& desk, RobotTime now) {
+void DeskLine::receive(ControlDesk& desk, const Clock& clock) {
   in_.take([&](const Sample& sample) {
     std::string why;
     if (const auto message = from_operator(sample.cdr, &why))
-      desk.receive(*message, now);
+      desk.receive(*message, clock.now());
     else
       in_.refuse(why);
   });
@@ -35,11 +35,11 @@ void DeskLine::send(ControlDesk& desk) {
 
 SeatLine::SeatLine(Participant& participant) : in_(participant, from_robots()), out_(participant, from_operators()) {}
 
-void SeatLine::receive(ControlSeat& seat, OperatorTime now) {
+void SeatLine::receive(ControlSeat& seat, const Clock& clock) {
   in_.take([&](const Sample& sample) {
     std::string why;
     if (const auto message = from_robot(sample.cdr, &why))
-      seat.receive(*message, now);
+      seat.receive(*message, {clock.now().ns});
     else
       in_.refuse(why);
   });

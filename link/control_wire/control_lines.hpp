@@ -1,6 +1,10 @@
 // Control's messages over DDS: from the desk to all operators, and from each operator to the desk.
+//
+// The clock is read for each message that is taken in: a thread that is put aside after one look at its clock would see
+// what came meanwhile as sent in the future, which is how a clock looks that jumped.
 #pragma once
 
+#include "common/clock.hpp"
 #include "link/control/control_desk.hpp"
 #include "link/control/control_seat.hpp"
 #include "link/dds/endpoints.hpp"
@@ -11,8 +15,8 @@ namespace foresight::link {
 class DeskLine {
  public:
   explicit DeskLine(Participant& participant);
-  void receive(ControlDesk& desk, RobotTime now);  ///< what has come, to the desk
-  void send(ControlDesk& desk);                    ///< what the desk has to say
+  void receive(ControlDesk& desk, const Clock& clock);  ///< what has come, to the desk
+  void send(ControlDesk& desk);                         ///< what the desk has to say
 
  private:
   Reader in_;
@@ -23,7 +27,7 @@ class DeskLine {
 class SeatLine {
  public:
   explicit SeatLine(Participant& participant);
-  void receive(ControlSeat& seat, OperatorTime now);
+  void receive(ControlSeat& seat, const Clock& clock);
   void send(ControlSeat& seat);
 
  private:

@@ -74,12 +74,13 @@ void OperatorEnd::step() {
 }
 
 void OperatorEnd::step_control() {
-  const OperatorTime now{clock_.now().ns};
+  OperatorTime now;
   RobotClockTracker known;
   {
     const std::lock_guard lock(seat_mutex_);
     if (const auto asleep = suspension_.woke()) seat_.stood_still(*asleep);
-    line_.receive(seat_, now);
+    line_.receive(seat_, clock_);
+    now = {clock_.now().ns};
     seat_.advance(now);
     line_.send(seat_);
     known = seat_.clock();

@@ -35,7 +35,7 @@ RobotServer::RobotServer(std::unique_ptr<Participant> own, Participant* others, 
       participant_(own_ ? *own_ : *others),
       wall_(clock, start.wall),
       operator_(participant_, rig.gate_options(), desk_options(std::move(identity), rig.link.round_trip, start.draw),
-                &capacity_),
+                clock, &capacity_),
       states_(participant_, {start.draw(), rig.joint_names()}, rig, robot, cameras, wall_, clock, &operator_.taken(),
               &capacity_) {
   if (!cameras) return;

@@ -1,6 +1,8 @@
 // Who commands over the line, as one of the robot's commanders.
 #pragma once
 
+#include <algorithm>
+
 #include "common/suspension.hpp"
 #include "link/control_wire/control_lines.hpp"
 #include "link/robot_side/line_share.hpp"
@@ -12,17 +14,21 @@ namespace foresight::link {
 /// LineOperator with its line: messages are taken in before each tick, and sent after it. One thread.
 class ServedOperator final : public Commander {
  public:
-  /// `capacity`: null, or of the line; must outlive this.
-  ServedOperator(Participant& participant, const GateOptions& gate, ControlDeskOptions desk,
+  /// `clock`: that of tick(). `capacity`: null, or of the line. Both must outlive this.
+  ServedOperator(Participant& participant, const GateOptions& gate, ControlDeskOptions desk, const Clock& clock,
                  const LineCapacity* capacity = nullptr, SuspensionWatch suspension = SuspensionWatch())
-      : line_(participant), operator_(gate, std::move(desk)), capacity_(capacity), suspension_(std::move(suspension)) {}
+      : line_(participant),
+        operator_(gate, std::move(desk)),
+        clock_(clock),
+        capacity_(capacity),
+        suspension_(std::move(suspension)) {}
 
   std::uint64_t operator_id() const override { return operator_.operator_id(); }
   OperatorWish tick(RobotTime now, const RobotStatus& status) override {
     if (suspension_.woke()) operator_.desk().stood_still();
     if (capacity_) operator_.desk().repeat_states_every(thinned({}, kControlShare, capacity_->bytes_per_s));
-    line_.receive(operator_.desk(), now);
-    OperatorWish wish = operator_.tick(now, status);
+    line_.receive(operator_.desk(), clock_);
+    OperatorWish wish = operator_.tick(std::max(now, clock_.now()), status);  // not before what was taken in
     line_.send(operator_.desk());
     taken_.add(operator_.desk().taken());
     return wish;
@@ -35,6 +41,7 @@ class ServedOperator final : public Commander {
  private:
   DeskLine line_;
   LineOperator operator_;
+  const Clock& clock_;
   const LineCapacity* capacity_;
   SuspensionWatch suspension_;
   SetPointHistory taken_;

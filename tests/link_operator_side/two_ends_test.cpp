@@ -172,7 +172,7 @@ class TwoEnds : public PrivateNetworkTest {
   std::optional<FrameSender> sender_;
   StateSender states_{program_,      {42, robot_.rig().joint_names()}, robot_.rig(), robot_.robot(), nullptr, wall_,
                       robot_.clock()};
-  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options()};
+  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options(), robot_.clock()};
   OperatorEnd end_{program_, operator_options(), robot_.clock()};
   std::map<std::uint64_t, LiveFramePtr> sent_frames_;
   std::vector<std::pair<std::uint64_t, PosedFrame>> shown_;

@@ -87,7 +87,7 @@ class RecordedLine : public PrivateNetworkTest {
     robot_.run(10ms);
     const RobotTime now = robot_.clock().now();
     const OperatorTime here{now.ns};
-    operator_line_.receive(seat_, here);
+    operator_line_.receive(seat_, robot_.clock());
     seat_.advance(here);
     if (seat_.status(here).phase == ControlSeatStatus::Phase::holding) seat_.command(here, positions, deadman);
     operator_line_.send(seat_);
@@ -162,7 +162,7 @@ class RecordedLine : public PrivateNetworkTest {
   FrameSender pairs_{program_,      {1, robot_.rig().joint_names()}, &*scene_.lenses(),
                      frames_,       {LinkCoding::jpeg, 90, 30},      wall_,
                      robot_.clock()};
-  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options(identity_, 1000)};
+  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options(identity_, 1000), robot_.clock()};
   SeatLine operator_line_{program_};
   ControlSeat seat_{seat_options(identity_)};
   RecordingFile file_{path_, robot_.clock()};
@@ -311,7 +311,7 @@ TEST_F(RecordedLine, RecordedCommandsMoveNothing) {
   const std::size_t elbow = robot_.joint("elbow");
   const std::vector<Bytes> said = messages_of(path_).at("/foresight/control/operator/messages");
   Writer stranger(program_, kToRobot);
-  ServedOperator again(program_, robot_.rig().gate_options(), desk_options(identity_, 5000));
+  ServedOperator again(program_, robot_.rig().gate_options(), desk_options(identity_, 5000), robot_.clock());
   for (ServedOperator* const served : {&served_, &again}) {
     for (int i = 0; i < 300; ++i) {  // the operator has gone
       robot_.run(10ms);

@@ -41,7 +41,7 @@ class ServedControl : public PrivateNetworkTest {
     const RobotTime now = robot_.clock().now();
     if (operator_lives) {
       const OperatorTime here{now.ns};
-      operator_line_.receive(seat_, here);
+      operator_line_.receive(seat_, robot_.clock());
       seat_.advance(here);
       if (seat_.status(here).phase == ControlSeatStatus::Phase::holding) seat_.command(here, positions, deadman);
       operator_line_.send(seat_);
@@ -61,8 +61,9 @@ class ServedControl : public PrivateNetworkTest {
   LiveRobot robot_{"minerva.yaml"};
   Identity identity_ = rig_identity(robot_.rig(), source_folder() / "configs" / "minerva.yaml", "test");
   Participant program_{LinkConfig{}, "test"};
-  ServedOperator served_{program_, robot_.rig().gate_options(), desk_options(), nullptr,
-                         SuspensionWatch([this] { return asleep_; })};
+  ServedOperator served_{program_,       robot_.rig().gate_options(),
+                         desk_options(), robot_.clock(),
+                         nullptr,        SuspensionWatch([this] { return asleep_; })};
   SeatLine operator_line_{program_};
   ControlSeat seat_{seat_options()};
 };

@@ -51,9 +51,10 @@ class Hand {
     seat_.want_control(true);
   }
 
-  void tick(OperatorTime now) {
+  void tick(const Clock& clock) {
     if (const auto asleep = suspension_.woke()) seat_.stood_still(*asleep);
-    line_.receive(seat_, now);
+    line_.receive(seat_, clock);
+    const OperatorTime now{clock.now().ns};
     seat_.advance(now);
     const ControlSeatStatus status = seat_.status(now);
     for (; differences_ < status.differences.size(); ++differences_)
@@ -142,7 +143,7 @@ class Hand {
   MonotonicClock clock;
   for (RobotTime next = clock.now();; next = next + kCycle) {
     clock.sleep_until(next);
-    hand.tick(OperatorTime{clock.now().ns});
+    hand.tick(clock);
   }
 }
 
