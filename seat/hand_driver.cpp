@@ -108,8 +108,10 @@ SeatWish HandDriver::tick(const SeatView& view) {
   if (!cycled_ || view.now - *cycled_ >= kCycleEvery || view.now < *cycled_) cycle(view);
   SeatWish wish = wish_;
   wish.deadman = wish.deadman && !ended_;
+  // What somebody else was given is not asked for again. Nobody asked for it: it is still wanted.
+  if (std::exchange(handed_over_, false) && !view.control.wanted) control_ = false;
   wish.control = control_;
-  wish.hand_over = std::exchange(hand_over_, false);
+  wish.hand_over = handed_over_ = std::exchange(hand_over_, false);
   if (!requests_.empty()) {
     wish.request = requests_.front();
     requests_.erase(requests_.begin());
@@ -149,7 +151,7 @@ void HandDriver::cycle(const SeatView& view) {
 /// What the tool leans on, or what the robot's gate keeps it from: back to where the tool is, then.
 HandContact HandDriver::contact() const {
   if (!guard_) return {};
-  const GhostHand ghost = guard_->sight().ghost;
+  const GhostHand& ghost = guard_->ghost();
   if (ghost.depth > 0) return {hand_.in_space(rig_.T_world_robot.linear().transpose() * ghost.out), ghost.depth, 0};
   if (ghost.reason != GhostReason::gate) return {};
   const Eigen::Vector3d back = hand_.last().T_base_tip.translation() - ghost.T_base_hand.translation();
@@ -158,9 +160,9 @@ HandContact HandDriver::contact() const {
 
 /// As whoever drives feels it.
 void HandDriver::feel(OperatorTime now) {
-  const HandContact contact = this->contact();
+  const HandContact felt = contact();
   for (Pushing& one : pushing_) {
-    one.force.feel(now, contact);
+    one.force.feel(now, felt);
     one.force.cycle(now, wish_.deadman && one.device == any_.in_charge());
   }
 }

@@ -85,7 +85,7 @@ class HandDriver final : public SeatDriver {
   SeatWish wish_;
   std::optional<OperatorTime> looked_, cycled_, event_;  // event_: of the oldest event that no cycle has taken yet
   std::optional<Duration> input_took_;
-  bool control_ = true, hand_over_ = false, ended_ = false;
+  bool control_ = true, hand_over_ = false, handed_over_ = false, ended_ = false;
 };
 
 }  // namespace foresight

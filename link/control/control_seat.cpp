@@ -120,7 +120,8 @@ void ControlSeat::take_state(const ControlState& state, OperatorTime now) {
   const auto delay = clock_.delay(state.time, now);
   state_timely_ = delay && delay->delay - delay->uncertainty <= options_.oldest_state;
   // What we gave back, and did not arrive.
-  if (!wanted_ && state.holder == session_ && now - asked_ >= kAskEvery) {
+  const bool known = state.holder == session_ || state.asking == session_;
+  if (!wanted_ && known && now - asked_ >= kAskEvery) {
     asked_ = now;
     send(GiveBack{ask_number_});
   }
@@ -147,8 +148,9 @@ void ControlSeat::connect(OperatorTime now) {
 }
 
 void ControlSeat::want_control(bool wanted) {
-  if (!wanted && desk_ != 0) send(GiveBack{ask_number_});
-  if (!wanted) {
+  if (wanted_ && !wanted) {
+    if (desk_ != 0) send(GiveBack{ask_number_});  // take_state() repeats one that is lost
+    asked_ = advanced_;
     lease_ = 0;
     refused_.clear();
     withdraw();
@@ -274,6 +276,7 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
   out.differences = differences_;
   if (state_.sequence > 0) out.state_age = now - state_came_;
   using Phase = ControlSeatStatus::Phase;
+  out.wanted = wanted_;
   out.phase = desk_ == 0 ? Phase::connecting : lease_ == 0 ? Phase::connected : Phase::holding;
   const bool sees = sees_robot(now);
   const bool agrees = agreed_ != 0 && agreed_ == state_.consent;

@@ -31,6 +31,7 @@ struct ControlSeatOptions {
 struct ControlSeatStatus {
   enum class Phase : std::uint8_t { connecting, connected, holding };
   Phase phase = Phase::connecting;
+  bool wanted = false;  ///< control is asked for, or held; not any more once it was handed over
   /// The robot follows what is sent, as far as its newest state tells.
   bool follows = false;
   /// The switch is held but moves nothing: it must be let go of and pressed again.

@@ -324,6 +324,34 @@ TEST_F(ControlDeskTest, WhatWasGivenBackStaysSoWhateverComesLate) {
   EXPECT_EQ(moves_in(500ms), 0);
 }
 
+/// How many of `messages` give back.
+std::ptrdiff_t returns_in(const std::vector<FromOperator>& messages) {
+  return std::ranges::count_if(
+      messages, [](const FromOperator& message) { return std::holds_alternative<GiveBack>(message.body); });
+}
+
+TEST_F(ControlDeskTest, GivesBackOnceHoweverOftenItIsToldThatNothingIsWanted) {
+  engage(anna_);
+  for (int i = 0; i < 50; ++i) {
+    anna_.seat.want_control(false);
+    run(10ms);
+  }
+  EXPECT_EQ(returns_in(sent_), 1);
+  EXPECT_EQ(desk_.holder_name(), "");
+}
+
+TEST_F(ControlDeskTest, ARequestThatIsWithdrawnIsNotHandedOver) {
+  seats_.push_back(&ben_);
+  engage(anna_);
+  ben_.seat.want_control(true);
+  run(500ms);
+  ben_.seat.want_control(false);
+  ben_.seat.take_outgoing();  // is lost
+  run(1s);
+  EXPECT_FALSE(desk_.consent_to_asking(now_));
+  EXPECT_EQ(desk_.holder_name(), "anna");
+}
+
 TEST_F(ControlDeskTest, ARecordingOfAnEarlierDayIsNobody) {
   engage(anna_);
   const std::vector<FromOperator> recorded = sent_;

@@ -76,6 +76,17 @@ class HandAtTheSeat : public testing::Test {
     return out;
   }
 
+  /// The switch is held, and does not count.
+  void expect_to_have_to_press_anew() {
+    cycles(50, {0.0005, 0, 0});
+    EXPECT_FALSE(wish_.deadman) << "it has been held all the time";
+    hold(false);
+    cycles(5);
+    hold(true);
+    cycles(2);
+    EXPECT_TRUE(wish_.deadman);
+  }
+
   Rig rig_ = read_rig(source_folder() / "configs" / "minerva.yaml");
   ToldHand* hand_ = nullptr;
   std::optional<HandDriver> driver_;
@@ -121,13 +132,24 @@ TEST_F(HandAtTheSeat, AnInterruptedHandHasToPressAnew) {
   EXPECT_FALSE(wish_.deadman);
   ASSERT_EQ(driver_->lines().size(), 1u);
   EXPECT_EQ(driver_->lines()[0].urgency, Urgency::trouble);
-  cycles(50, {0.0005, 0, 0});
-  EXPECT_FALSE(wish_.deadman) << "it has been held all the time";
-  hold(false);
-  cycles(5);
-  hold(true);
-  cycles(2);
-  EXPECT_TRUE(wish_.deadman);
+  expect_to_have_to_press_anew();
+}
+
+TEST_F(HandAtTheSeat, WhatWasHandedOverIsNotAskedForAgain) {
+  view_.control.wanted = true;
+  driver_->hand_over();
+  cycles(1);
+  EXPECT_TRUE(wish_.hand_over && wish_.control);
+  cycles(1);
+  EXPECT_TRUE(wish_.control) << "nobody had asked for it";
+  driver_->hand_over();
+  cycles(1);
+  view_.control.wanted = false;
+  cycles(1);
+  EXPECT_FALSE(wish_.control);
+  driver_->toggle_control();
+  cycles(1);
+  EXPECT_TRUE(wish_.control);
 }
 
 TEST_F(HandAtTheSeat, WhoDrivesFeelsWhatTheToolLeansOn) {
@@ -158,13 +180,7 @@ TEST_F(HandAtTheSeat, NoDeviceDrivesOnBehindAWindowThatHangs) {
   ASSERT_EQ(driver_->lines().size(), 1u);
   EXPECT_NE(driver_->lines()[0].words.find("window"), std::string::npos) << driver_->lines()[0].words;
   window_answers_ = true;
-  cycles(20, {0.0005, 0, 0});
-  EXPECT_FALSE(wish_.deadman) << "it has been held all the time";
-  hold(false);
-  cycles(5);
-  hold(true);
-  cycles(2);
-  EXPECT_TRUE(wish_.deadman);
+  expect_to_have_to_press_anew();
 }
 
 }  // namespace
