@@ -84,6 +84,7 @@ std::string Gamepad::name() const {
 
 bool Gamepad::is_stale(OperatorTime now) noexcept {
   State state{};
+  static_assert(state.axes.size() == SDL_CONTROLLER_AXIS_MAX && state.buttons.size() == SDL_CONTROLLER_BUTTON_MAX);
   for (int i = 0; i < SDL_CONTROLLER_AXIS_MAX; ++i)
     state.axes[static_cast<std::size_t>(i)] =
         SDL_GameControllerGetAxis(device_->pad, static_cast<SDL_GameControllerAxis>(i));

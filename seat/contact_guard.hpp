@@ -52,6 +52,8 @@ class ContactGuard final : public HandGuard {
   FollowStep go(const JointValues& from, const JointValues& to) noexcept override;
 
   TouchSight sight() const;
+  /// Of sight().
+  const GhostHand& ghost() const { return last_.ghost; }
   /// Where the robot would stand with what was told last, and its links.
   const ContactModel& model() const { return model_; }
 

@@ -8,7 +8,7 @@ bool StopLedger::note_new(const Request& stop) {
   const Entry entry{stop.id, stop.given};
   if (stop.id != 0 && std::find(entries_.begin(), entries_.end(), entry) != entries_.end()) return false;
   entries_[next_] = entry;
-  next_ = (next_ + 1) % entries_.size();
+  next_ = (next_ + 1) % kKept;
   return true;
 }
 

@@ -18,12 +18,13 @@ class StopLedger {
   bool note_new(const Request& stop);
 
  private:
+  static constexpr std::size_t kKept = 64;
   struct Entry {
     std::uint64_t id = 0;
     OperatorTime given;
     bool operator==(const Entry&) const = default;
   };
-  std::array<Entry, 64> entries_{};
+  std::array<Entry, kKept> entries_{};
   std::size_t next_ = 0;
 };
 
