@@ -31,6 +31,7 @@ int run(const std::string& rig_file) {
     add(check_buses(rig));
     add(check_drives(rig));
     if (rig.cameras) add(check_rig_cameras(*rig.cameras));
+    add(check_link(rig));
   }
   add(check_can());
   add(check_cameras());
@@ -52,7 +53,8 @@ void add_doctor_command(Command& app, std::function<int()>& action) {
   auto* command =
       app.add_subcommand("doctor", "Checks devices and permissions, and says what to type where something is missing");
   auto rig = std::make_shared<std::string>();
-  command->add_option("RIG", *rig, "Rig file whose devices to check (docs/rig-files.md); moves nothing")->reads();
+  command->add_option("RIG", *rig, "Rig file whose devices and line to check (docs/rig-files.md); moves nothing")
+      ->reads();
   command->footer(
       "ok: fine; -: not there and not needed; poor: works, but badly; BAD: does not work.\n\n"
       "Exit codes: 0 nothing is BAD, 1 something is, 2 wrong input.\n\n"

@@ -71,6 +71,13 @@ struct Measured {
   std::vector<double> ages_ms, gaps_ms;
 };
 
+/// The exit code.
+int tell_nothing_came(const link::Reader& reader, const link::Topic& topic) {
+  if (stop_requested()) return kStopped;
+  warn("nothing came on " + topic.name + (reader.writers() ? ", though somebody writes it" : ""));
+  return 1;
+}
+
 void measure(link::Reader& reader, const link::MessageType* type, Duration length, Measured& out) {
   MonotonicClock clock;
   std::optional<RobotTime> last;
@@ -245,8 +252,8 @@ int link_listen(const LinkListenOptions& options) {
     std::fflush(stdout);
     warn(watch.news(reader.writers(), came, clock.now()));
   }
-  if (stop_requested() && shown == 0) return kStopped;
-  return shown == 0 || strange > 0 ? 1 : 0;
+  if (shown == 0) return tell_nothing_came(reader, *topic);
+  return strange > 0 ? 1 : 0;
 }
 
 int link_keys(const LinkKeysOptions& options) {
@@ -267,10 +274,7 @@ int link_rate(const LinkRateOptions& options) {
   Measured m;
   measure(reader, link::find_message_type(topic->type), seconds(options.seconds), m);
   warn(link::receive_buffer_trouble());
-  if (m.samples == 0) {
-    warn("nothing came on " + topic->name + (reader.writers() ? ", though somebody writes it" : ""));
-    return stop_requested() ? kStopped : 1;
-  }
+  if (m.samples == 0) return tell_nothing_came(reader, *topic);
   const double length = options.seconds;
   std::printf("%s (%s)\n", topic->name.c_str(), link::ros_name(topic->type).c_str());
   std::printf("rate       %.1f messages/s, %.3f Mbit/s\n", static_cast<double>(m.samples) / length,

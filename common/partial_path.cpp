@@ -55,7 +55,7 @@ void sweep(const fs::path& folder, const std::string& prefix) noexcept {
 }  // namespace
 
 fs::path partial_path(const fs::path& target) {
-  fs::path out = target;
+  fs::path out = target.has_filename() ? target : target.parent_path();
   return out += std::string(kMark) + std::to_string(::getpid());
 }
 

@@ -5,7 +5,8 @@
 
 namespace foresight {
 
-/// Where what will be `target` is written until it is complete: its neighbour "NAME.partial-PID".
+/// Where what will be `target` is written until it is complete: its neighbour "NAME.partial-PID". A folder's name may
+/// end in a slash.
 std::filesystem::path partial_path(const std::filesystem::path& target);
 
 /// Whether it has such a name, whoever wrote it.

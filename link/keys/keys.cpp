@@ -8,6 +8,7 @@
 
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/partial_path.hpp"
 #include "common/read_file.hpp"
 #include "link/keys/certificates.hpp"
 
@@ -125,6 +126,27 @@ std::string read(const fs::path& file, const std::string& where, Role role) {
   return read_file(file);
 }
 
+void write_keys(const fs::path& folder, int days) {
+  const std::time_t now = std::time(nullptr);
+  const Validity validity{now - 3600, now + std::time_t{days} * 24 * 3600};  // clocks differ
+  const Credentials authority = make_credentials("foresight authority", validity, nullptr);
+  make_private_folder(folder);
+  make_private_folder(folder / kAuthority);
+  write_file_atomically(folder / kAuthority / "key.pem", authority.key_pem);
+  write_file_atomically(folder / kAuthority / "certificate.pem", authority.certificate_pem);
+  const std::string signed_rules = sign(authority, rules());
+  for (const Role role : kRoles) {
+    make_private_folder(folder / to_string(role));
+    const Credentials made = make_credentials(subject_of(role), validity, &authority);
+    const KeyFiles files = key_files(folder, role);
+    write_file_atomically(files.authority, authority.certificate_pem);
+    write_file_atomically(files.certificate, made.certificate_pem);
+    write_file_atomically(files.key, made.key_pem);
+    write_file_atomically(files.rules, signed_rules);
+    write_file_atomically(files.permissions, sign(authority, permissions(role, validity)));
+  }
+}
+
 }  // namespace
 
 const char* to_string(Role role) {
@@ -144,23 +166,17 @@ KeyFiles key_files(const fs::path& folder, Role role) {
 void make_keys(const fs::path& folder, int days) {
   if (fs::exists(folder) && !fs::is_empty(folder))
     throw InputError(folder.string(), "has something in it", "name a new folder: keys replace nothing");
-  const std::time_t now = std::time(nullptr);
-  const Validity validity{now - 3600, now + std::time_t{days} * 24 * 3600};  // clocks differ
-  const Credentials authority = make_credentials("foresight authority", validity, nullptr);
-  make_private_folder(folder);
-  make_private_folder(folder / kAuthority);
-  write_file_atomically(folder / kAuthority / "key.pem", authority.key_pem);
-  write_file_atomically(folder / kAuthority / "certificate.pem", authority.certificate_pem);
-  const std::string signed_rules = sign(authority, rules());
-  for (const Role role : kRoles) {
-    make_private_folder(folder / to_string(role));
-    const Credentials made = make_credentials(subject_of(role), validity, &authority);
-    const KeyFiles files = key_files(folder, role);
-    write_file_atomically(files.authority, authority.certificate_pem);
-    write_file_atomically(files.certificate, made.certificate_pem);
-    write_file_atomically(files.key, made.key_pem);
-    write_file_atomically(files.rules, signed_rules);
-    write_file_atomically(files.permissions, sign(authority, permissions(role, validity)));
+  const fs::path partial = partial_path(folder);  // half of the keys would be worse than none
+  try {
+    write_keys(partial, days);
+    fs::rename(partial, folder);
+  } catch (const std::exception& error) {
+    std::error_code ignored;
+    fs::remove_all(partial, ignored);
+    if (const auto* const failure = dynamic_cast<const fs::filesystem_error*>(&error))
+      throw RuntimeFailure("cannot write " + folder.string() + " (" + failure->code().message() + ")",
+                           "choose a writable place");
+    throw;
   }
 }
 

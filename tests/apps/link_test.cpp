@@ -33,6 +33,9 @@ TEST_F(Link, ARunningRobotIsSeenAndReadAndNamesAreHelpedWith) {
   const Outcome kept = run_program({"link", "listen", "tf_static", "--count", "1"});
   EXPECT_EQ(kept.exit_code, 0) << kept.err;
   EXPECT_THAT(kept.out, HasSubstr("child_frame_id: 'stand'"));
+  const Outcome silent = run_program({"link", "listen", "joint_states", "--seconds", "0.2"});
+  EXPECT_EQ(silent.exit_code, 1) << "joints that are not homed are nowhere";
+  EXPECT_EQ(silent.last_line(), "link: nothing came on rt/joint_states, though somebody writes it");
   const Outcome misspelt = run_program({"link", "listen", "joint_stats"});
   EXPECT_EQ(misspelt.exit_code, 2);
   EXPECT_THAT(misspelt.err, HasSubstr("did you mean 'rt/joint_states'?"));
@@ -137,6 +140,15 @@ TEST_F(Link, WhatCannotBeIsRefused) {
   const std::string wrong = folder.write("line.yaml", "up: {delay: 40}\n");
   refused({"robot", rig(), "--mock", "--no-cameras", "--serve", "--line", wrong}, "line.yaml:1");
   refused({"link", "status", "--line", wrong}, "line.yaml:1");
+}
+
+// Half of the keys would let one host in, and no other.
+TEST(LinkKeys, AFullDiskLeavesNone) {
+  const TempFolder folder;
+  const Outcome full = run_program({"link", "keys", (folder / "keys/").string()}, {.shell = "ulimit -f 1"});
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_THAT(full.last_line(), HasSubstr("cannot write"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 }  // namespace
