@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <limits>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
@@ -25,14 +26,21 @@ std::string fault_of(const CLI::ParseError& error) {
 
 // What is wrong with the command line, and what to do about it.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  // The command that was meant: `foresight link status` is three deep.
+  const CLI::App* command = &app;
+  std::string help = "see `foresight ";
+  for (auto chosen = app.get_subcommands(); !chosen.empty(); chosen = command->get_subcommands()) {
+    command = chosen.front();
+    help += command->get_name() + " ";
+  }
+  help += "--help`";
   std::vector<std::string> jobs;
-  for (const CLI::App* job : app.get_subcommands({})) jobs.push_back(job->get_name());
-  const auto chosen = app.get_subcommands();
-  const auto unknown = app.remaining();
-  if (chosen.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
+  for (const CLI::App* job : command->get_subcommands({})) jobs.push_back(job->get_name());
+  const auto unknown = app.remaining(true);
+  if (!jobs.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
     return "there is no subcommand " + in_quotes(unknown.front()) + "; did you mean '" +
-           nearest_word(unknown.front(), jobs) + "'? See `foresight --help`";
-  return fault_of(error) + "; see `foresight " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") + "--help`";
+           nearest_word(unknown.front(), jobs) + "'? S" + help.substr(1);
+  return fault_of(error) + "; " + help;
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -67,9 +75,13 @@ OptionCheck finite() {
 template <typename T>
 OptionCheck whole() {
   return {[](std::string given) {
+            if (CLI::TypeValidator<T>()(given).empty()) return std::string();
+            const auto number = parse_number(given);
+            if (number && *number > static_cast<double>(std::numeric_limits<T>::max()))
+              return in_quotes(given) + " is too large; give at most " + std::to_string(std::numeric_limits<T>::max());
             const std::string kind =
                 std::is_unsigned_v<T> ? " is not a whole number from 0 on" : " is not a whole number";
-            return CLI::TypeValidator<T>()(given).empty() ? std::string() : in_quotes(given) + kind + "; give one";
+            return in_quotes(given) + kind + "; give one";
           },
           ""};
 }

@@ -39,7 +39,10 @@ TEST(CommandLine, WrongWordsEndWithCode2AndTheWayToTheHelp) {
       {{"synth", "x", "--frobnicate"}, "--frobnicate"},
       {{"bench", "prediction", "grasp", "--seed", "-1"}, "--seed: '-1' is not a whole number from 0 on; give one"},
       {{"bench", "prediction", "grasp", "--runs", "1.5"}, "--runs: '1.5' is not a whole number; give one"},
+      {{"synth", "x", "--frames", "99999999999"}, "--frames: '99999999999' is too large; give at most 2147483647"},
       {{"replay", "x", "y"}, "y"},
+      {{"link", "raet"}, "did you mean 'rate'? See `foresight link --help`"},
+      {{"link", "status", "--frobnicate"}, "see `foresight link status --help`"},
   };
   for (const auto& [arguments, what] : all) {
     SCOPED_TRACE(testing::PrintToString(arguments));
