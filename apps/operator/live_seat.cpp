@@ -241,7 +241,7 @@ class LiveSeat {
       case 'n': return head_ ? head_->centre() : void();
       case 'b': return shown_.next_marks();
       case 'm': return sounds_.toggle();
-      case 'p': return shown_.save_next(options_.screenshot.value_or("foresight.png"));
+      case 'p': return shown_.save_next();
       default: return;
     }
   }

@@ -34,7 +34,6 @@ struct LiveSeatOptions {
   TextureOptions textures = kSeatTextures;
   std::optional<LevelSettings> levels;  ///< ViewSetup::levels
   ViewTrustOptions trust;
-  std::optional<std::filesystem::path> screenshot;  ///< key P writes it
 };
 
 /// Until somebody closes the window. The exit code. Throws what its parts do.

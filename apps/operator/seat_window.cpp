@@ -3,8 +3,9 @@
 #include <fmt/core.h>
 
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
-#include "apps/view_outputs.hpp"
+#include "seat/screenshot.hpp"
 
 namespace foresight {
 namespace {
@@ -107,15 +108,16 @@ HudContent SeatWindow::words(bool is_trusted) const {
   for (SeatLine& line : stage_lines(stage_times(status))) out.lines.push_back(std::move(line));
   if (options_.more_lines)
     for (SeatLine& line : options_.more_lines()) out.lines.push_back(std::move(line));
+  if (!save_trouble_.empty()) out.lines.push_back({"screenshot", save_trouble_, "", Urgency::note});
   if (help_) out.keys = options_.keys;
   return out;
 }
 
 void SeatWindow::save(const ViewTarget& whole) {
-  if (!save_) return;
-  write_png(*save_, read_window(whole));
-  if (options_.log) options_.log("wrote " + save_->string());
-  save_.reset();
+  if (!std::exchange(save_, false)) return;
+  const Screenshot saved = save_screenshot("", read_window(whole));
+  save_trouble_ = saved.trouble;
+  if (save_trouble_.empty() && options_.log) options_.log("wrote " + saved.file.string());
 }
 
 void SeatWindow::log(const HudContent& content) {

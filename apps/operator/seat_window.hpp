@@ -57,8 +57,8 @@ class SeatWindow final : public ViewObserver {
   bool warm_up(ViewSession& session) { return views_.warm_up(session, window_target(window_)); }
   void toggle_help() { help_ = !help_; }
   void next_marks();
-  /// The next picture goes into this file, too.
-  void save_next(const std::filesystem::path& file) { save_ = file; }
+  /// The next picture goes into a file, too: save_screenshot(), in the working folder.
+  void save_next() { save_ = true; }
 
   /// What there is to say now.
   HudContent words() const { return words(trusted()); }
@@ -88,7 +88,8 @@ class SeatWindow final : public ViewObserver {
   link::LineFramePtr uploaded_;
   bool help_;
   TrustMarks marks_ = TrustMarks::none;
-  std::optional<std::filesystem::path> save_;
+  bool save_ = false;
+  std::string save_trouble_;  // of the last one
 };
 
 }  // namespace foresight

@@ -55,14 +55,14 @@ shows() { # WORDS: waits until the window shows that view, and it counts
 }
 press() { xdotool key --delay 300 "$@"; }
 picture() { # NAME
-  rm -f "$folder/foresight.png"
+  rm -f "$folder/foresight-001.png"
   press p
   for _ in $(seq 100); do
-    [ -s "$folder/foresight.png" ] && break
+    [ -s "$folder/foresight-001.png" ] && break
     sleep 0.2
   done
   sleep 0.5
-  ffmpeg -v error -y -i "$folder/foresight.png" -vf scale=640:-1:flags=area -q:v 5 "docs/images/tour-$1.jpg"
+  ffmpeg -v error -y -i "$folder/foresight-001.png" -vf scale=640:-1:flags=area -q:v 5 "docs/images/tour-$1.jpg"
 }
 follows() { # holds the switch, anew where the robot does not follow the first press
   for _ in $(seq 5); do

@@ -141,10 +141,11 @@ class OperatorWindow : public testing::Test {
 
   /// The window as it is now.
   cv::Mat look() {
-    std::filesystem::remove(folder_.path() / "foresight.png");
+    const std::string name = "foresight-001.png";
+    std::filesystem::remove(folder_.path() / name);
     EXPECT_TRUE(press("p"));
-    EXPECT_TRUE(says("wrote foresight.png"));
-    return cv::imread((folder_.path() / "foresight.png").string());
+    EXPECT_TRUE(says("wrote " + name));
+    return cv::imread((folder_.path() / name).string());
   }
   /// Share of a frame's pixels that are the red of pictures which are not to be trusted.
   static double red_share(const cv::Mat& picture) {
