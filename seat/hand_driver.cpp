@@ -98,16 +98,10 @@ void HandDriver::hand_over() {
   hand_over_ = true;
 }
 
-void HandDriver::let_go() {
-  const std::lock_guard lock(mutex_);
-  ended_ = true;
-}
-
 SeatWish HandDriver::tick(const SeatView& view) {
   const std::lock_guard lock(mutex_);
   if (!cycled_ || view.now - *cycled_ >= kCycleEvery || view.now < *cycled_) cycle(view);
   SeatWish wish = wish_;
-  wish.deadman = wish.deadman && !ended_;
   // What somebody else was given is not asked for again. Nobody asked for it: it is still wanted.
   if (std::exchange(handed_over_, false) && !view.control.wanted) control_ = false;
   wish.control = control_;

@@ -44,8 +44,6 @@ class HandDriver final : public SeatDriver {
   void ask(LineRequest request);
   void toggle_control();
   void hand_over();
-  /// All switches are open from now on.
-  void let_go();
 
   /// What keeps the hand from driving, for the head-up display.
   std::vector<SeatLine> lines() const;
@@ -85,7 +83,7 @@ class HandDriver final : public SeatDriver {
   SeatWish wish_;
   std::optional<OperatorTime> looked_, cycled_, event_;  // event_: of the oldest event that no cycle has taken yet
   std::optional<Duration> input_took_;
-  bool control_ = true, hand_over_ = false, handed_over_ = false, ended_ = false;
+  bool control_ = true, hand_over_ = false, handed_over_ = false;
 };
 
 }  // namespace foresight

@@ -15,6 +15,8 @@ using namespace std::chrono_literals;
 
 constexpr Duration kEvery = 5ms;
 constexpr std::size_t kFatesKept = 8;
+// After the switch was let go of: the robot comes to rest as set-points end, too; these only say it sooner.
+constexpr Duration kLastSetPoints = 3 * Seat::kSetPointEvery;
 using Phase = ControlSeatStatus::Phase;
 
 }  // namespace
@@ -38,6 +40,17 @@ std::string Seat::start() {
 void Seat::stop() noexcept {
   thread_.request_stop();
   if (thread_.joinable()) thread_.join();
+}
+
+void Seat::let_go() {
+  const std::lock_guard lock(mutex_);
+  ended_ = true;
+}
+
+SeatEnd::~SeatEnd() {
+  seat_.let_go();
+  clock_.sleep_until(clock_.now() + kLastSetPoints);
+  seat_.stop();
 }
 
 std::optional<RobotTime> Seat::robot_now() const {
@@ -70,7 +83,8 @@ void Seat::step() {
     outlook_.advance(*now);
   }
   const SeatView view = look(now);
-  const SeatWish wish = driver_.tick(view);
+  SeatWish wish = driver_.tick(view);
+  wish.deadman = wish.deadman && !ended_;
   heed_switch(wish, view);
   command(wish, view.now);
 }

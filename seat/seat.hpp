@@ -47,6 +47,8 @@ class Seat {
   std::string start();
   void stop() noexcept;
   void step();
+  /// From now on the switch counts as open, whatever the driver says. Any thread.
+  void let_go();
 
   /// Where the robot is to be shown now; `at`: at an instant of its clock, at most the one it is now to be shown for.
   PredictedRobot show(std::optional<RobotTime> at = std::nullopt);
@@ -74,11 +76,25 @@ class Seat {
   mutable PriorityMutex mutex_;  // all below
   RobotOutlook outlook_;
   PredictedRobot shown_;
-  bool held_ = false, engaged_ = false, followed_ = false;
+  bool held_ = false, engaged_ = false, followed_ = false, ended_ = false;
   OperatorTime commanded_;
   LineRequest asked_ = LineRequest::none;
   std::vector<RequestFate> fates_;
   std::jthread thread_;
+};
+
+/// Whoever leaves its scope, by an exception too, first lets go of the seat's switch, for long enough that the robot
+/// hears of it, and then stops the seat: what is destroyed after that may take its time.
+class SeatEnd {
+ public:
+  /// Both must outlive this.
+  SeatEnd(Seat& seat, Clock& clock) : seat_(seat), clock_(clock) {}
+  ~SeatEnd();
+  SeatEnd(const SeatEnd&) = delete;
+
+ private:
+  Seat& seat_;
+  Clock& clock_;
 };
 
 }  // namespace foresight

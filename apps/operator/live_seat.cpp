@@ -109,6 +109,18 @@ class LiveSeat {
   int run() {
     end_.start();
     if (const std::string refused = seat_.start(); !refused.empty()) say(refused);
+    show_pictures();
+    end_.stop();
+    tell_responses();
+    if (head_ && !head_->stop()) end_with_runtime_hanging();
+    return stop_requested() ? kStopped : 0;
+  }
+
+ private:
+  static void say(const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); }
+
+  void show_pictures() {
+    const SeatEnd end(seat_, clock_);
     std::vector<ViewObserver*> observers{&shown_};
     if (head_) observers.push_back(&*head_);
     ViewLoop loop(session_, source_, observers, [] { return stop_requested(); });
@@ -120,18 +132,7 @@ class LiveSeat {
       // A window that stands lets go of a switch: before one is held.
       if (!status.held && shown_.warm_up(session_)) pacer_.held_up();
     }
-    // Whatever was held is let go of: the robot comes to rest by itself as set-points end, this only says it sooner.
-    driver_.let_go();
-    clock_.sleep_until(clock_.now() + std::chrono::milliseconds(60));
-    seat_.stop();
-    end_.stop();
-    tell_responses();
-    if (head_ && !head_->stop()) end_with_runtime_hanging();
-    return stop_requested() ? kStopped : 0;
   }
-
- private:
-  static void say(const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); }
 
   // Whoever has them in the rig file need not wait for them to be learnt.
   void tell_responses() const {

@@ -172,5 +172,29 @@ TEST_F(SeatAtARig, TenSecondsWithoutAnyStateAreInvalidAndMoveNothing) {
   EXPECT_NEAR(robot_.shaft(1).position, before, 1e-6);
 }
 
+// A picture that cannot be drawn: the robot hears that the switch is open, rather than no more of it.
+TEST_F(SeatAtARig, WhoLeavesByAnExceptionLetsGoFirst) {
+  ASSERT_TRUE(until([this] { return follows(); }, 400s)) << seat_->status().control.words;
+  driver_->scripted = false;  // the switch stays held, as it was
+  bool seat_runs = true;
+  robot_.clock().every(8ms, [&](RobotTime now) {
+    Commander* const commander = &server_->commander();
+    serve(std::span(&commander, 1), robot_.robot(), now);
+    server_->step(now);
+    line_->step();
+    end_->step();
+    if (seat_runs) seat_->step();
+  });
+  try {
+    const SeatEnd end(*seat_, robot_.clock());
+    throw std::runtime_error("no picture");
+  } catch (const std::runtime_error&) {
+    seat_runs = false;
+  }
+  EXPECT_FALSE(seat_->status().held);
+  robot_.run(150ms);  // a round trip
+  EXPECT_EQ(seat_->status().robot_control.cause, RestCause::let_go);
+}
+
 }  // namespace
 }  // namespace foresight::seat_test
