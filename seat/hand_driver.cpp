@@ -171,6 +171,9 @@ HandSight HandDriver::sight() const {
   const HandCycle& cycle = hand_.last();
   HandSight out;
   out.phase = cycle.phase;
+  out.has_tool = options_.arm.has_value();
+  out.mode = cycle.mode;
+  out.joint = cycle.joint;
   if (cycle.T_base_target) out.T_world_hand = rig_.T_world_robot * *cycle.T_base_target;
   out.T_world_tool = rig_.T_world_robot * cycle.T_base_tip;
   out.joints = cycle.joints;

@@ -11,6 +11,12 @@ namespace {
 constexpr double kWorthWords = 0.03;  // m: nearer than this, a distance is told
 constexpr std::size_t kMostLimits = 2;
 
+SeatLine mode_line(const HandSight& sight, std::span<const std::string> names) {
+  if (sight.mode == HandMode::tool) return {"moves", "the tool", ""};
+  const std::string name = sight.joint < names.size() ? " (" + names[sight.joint] + ")" : "";
+  return {"moves", fmt::format("joint {}{} alone", sight.joint + 1, name), sight.has_tool ? "M: the tool again" : ""};
+}
+
 SeatLine touch_line(const HandSight& sight) {
   const GhostHand& ghost = sight.touch.ghost;
   if (!sight.touch.known) return {"hand", ghost.words, "nothing moves until it is known again", Urgency::trouble};
@@ -60,6 +66,7 @@ std::vector<SeatLine> hand_lines(const HandSight& sight, std::span<const std::st
   if (sight.phase == HandPhase::driving) out = {touch_line(sight), near_line(sight)};
   if (sight.joints > 0) out.push_back(limits_line(sight, names));
   if (!sight.touch.carried.empty()) out.push_back({"carries", sight.touch.carried, ""});
+  if (sight.joints > 0) out.push_back(mode_line(sight, names));
   std::erase_if(out, [](const SeatLine& line) { return line.words.empty(); });
   return out;
 }

@@ -22,6 +22,9 @@ struct NearLimit {
 /// A copy: any thread.
 struct HandSight {
   HandPhase phase = HandPhase::released;
+  bool has_tool = false;  ///< the robot has an arm whose tool can be moved
+  HandMode mode = HandMode::tool;
+  std::size_t joint = 0;                 ///< that is moved alone, where `mode` says so
   std::optional<Pose> T_world_hand;      ///< where the hand asks the tool to be; while driving the tool
   Pose T_world_tool = Pose::Identity();  ///< where what is sent puts the tool
   std::size_t joints = 0;                ///< 0: nothing is known of them
@@ -37,7 +40,9 @@ inline constexpr double kNearLimit = 0.9;  ///< share from which on an end of a 
 /// Joints of the arm that are near an end of their range.
 std::vector<NearLimit> near_limits(const HandOptions& hand, const JointValues& positions);
 
-/// For the head-up display: what touches, how near things are, joints near their limits. `names`: of the joints.
+/// For the head-up display: what touches, how near things are, joints near their limits, what the
+/// hand moves. `names`:
+/// of the joints.
 std::vector<SeatLine> hand_lines(const HandSight& sight, std::span<const std::string> names);
 /// "joint 4 (elbow) at 96 % of its range"
 std::string words_of(const NearLimit& limit, std::span<const std::string> names);

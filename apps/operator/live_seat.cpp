@@ -16,6 +16,7 @@
 #include "link/line/line_spec.hpp"
 #include "seat/hand_driver.hpp"
 #include "seat/panel_lens.hpp"
+#include "seat/seat_keys.hpp"
 #include "seat/seat_options.hpp"
 #include "seat/view_setup.hpp"
 
@@ -27,25 +28,6 @@ constexpr Duration kLongestWait = std::chrono::milliseconds(20);
 constexpr double kUnpaced = 1000;  // Hz, of the source: FramePacer decides
 constexpr int kWindowWidth = 1280, kWindowHeight = 800;
 constexpr std::size_t kUnderWay = 16;  // instants of what the robot will do as it was sent already
-
-// A small window shows only the first ones: what stops and drives the robot.
-std::vector<std::pair<std::string, std::string>> keys_of_seat() {
-  std::vector<std::pair<std::string, std::string>> out = HandDriver::keys();
-  out.insert(out.begin(), {{"space", "stop at once"}, {"E, H, X, Z", "enable, home, reset, configure drives anew"}});
-  out.insert(out.end(), {{"G", "give control back, take it again"},
-                         {"T", "hand control over to who asks"},
-                         {"Tab", "prediction, newest image, both, split (drag its border)"},
-                         {"F2, F5", "for two eyes: which way; swap the eyes"},
-                         {"F6; F7 F8 F9", "a stereogram; its depth, pattern, variant"},
-                         {"F3", "from beside: the mouse looks around"},
-                         {"F4", "wireframe, age, confidence, error"},
-                         {"B", "what is not exact, and was wrong"},
-                         {"F1", "these keys"},
-                         {"M", "sounds off, and on again"},
-                         {"P", "screenshot"},
-                         {"Q, Esc", "end"}});
-  return out;
-}
 
 // A head display's runtime that takes contexts of GLX only gets one.
 gl::Window::ContextApi context_api(const LiveSeatOptions& options) {
@@ -165,7 +147,7 @@ class LiveSeat {
     out.font_scale = options_.font_scale;
     out.pacer = &pacer_;
     out.trust = &trust_;
-    out.keys = keys_of_seat();
+    out.keys = key_words();
     out.input = [this](const gl::WindowInput& input) { take(input); };
     out.log = say;
     out.more_lines = [this] {
@@ -204,46 +186,41 @@ class LiveSeat {
 
   void take(const gl::WindowInput& input) {
     if (window_->take_space()) driver_.ask(LineRequest::emergency_stop);
-    for (const char key : input.keys) press(key);
-    for (const auto& event : input.key_events)
-      if (event.down) press_code(event.code);
+    for (const auto& event : input.key_events) {
+      if (!event.down) continue;
+      if (const auto key = seat_key(event.code)) press(*key);
+      if (head_ && hand_key(event.code) == HandKey::recentre) head_->centre();
+    }
     const ViewPlace place = source_.place();
     driver_.look_from(shown_.views().looks_from(place.T_world_camera));
     driver_.scene_stands(place.scene.T_world_node);
     heed_head();
     driver_.take(input, {clock_.now().ns});
   }
-  void press_code(int code) {
-    constexpr int kTab = 258, kF1 = 290, kF2 = 291, kF3 = 292, kF4 = 293, kF5 = 294, kF6 = 295, kF7 = 296, kF8 = 297,
-                  kF9 = 298;  // GLFW's
+  void press(SeatKey key) {
     SeatViews& views = shown_.views();
-    switch (code) {
-      case kTab: return views.next_main();
-      case kF1: return shown_.toggle_help();
-      case kF2: return views.next_stereo();
-      case kF3: return views.toggle_observer();
-      case kF4: return views.next_paint();
-      case kF5: return views.swap_eyes();
-      case kF6: return views.toggle_stereogram();
-      case kF7: return views.stereogram().next_depth();
-      case kF8: return views.stereogram().next_pattern();
-      case kF9: return views.stereogram().next_variant();
-      default: return;
-    }
-  }
-  void press(char key) {
     switch (key) {
-      case 'e': return driver_.ask(LineRequest::enable);
-      case 'h': return driver_.ask(LineRequest::home);
-      case 'x': return driver_.ask(LineRequest::reset);
-      case 'z': return driver_.ask(LineRequest::set_up);
-      case 'g': return driver_.toggle_control();
-      case 't': return driver_.hand_over();
-      case 'n': return head_ ? head_->centre() : void();
-      case 'b': return shown_.next_marks();
-      case 'm': return sounds_.toggle();
-      case 'p': return shown_.save_next();
-      default: return;
+      case SeatKey::stop:
+      case SeatKey::end: return;  // the window has them
+      case SeatKey::enable: return driver_.ask(LineRequest::enable);
+      case SeatKey::home: return driver_.ask(LineRequest::home);
+      case SeatKey::reset: return driver_.ask(LineRequest::reset);
+      case SeatKey::set_up: return driver_.ask(LineRequest::set_up);
+      case SeatKey::control: return driver_.toggle_control();
+      case SeatKey::hand_over: return driver_.hand_over();
+      case SeatKey::main_view: return views.next_main();
+      case SeatKey::stereo: return views.next_stereo();
+      case SeatKey::swap_eyes: return views.swap_eyes();
+      case SeatKey::stereogram: return views.toggle_stereogram();
+      case SeatKey::stereogram_depth: return views.stereogram().next_depth();
+      case SeatKey::stereogram_pattern: return views.stereogram().next_pattern();
+      case SeatKey::stereogram_variant: return views.stereogram().next_variant();
+      case SeatKey::beside: return views.toggle_observer();
+      case SeatKey::paint: return views.next_paint();
+      case SeatKey::marks: return shown_.next_marks();
+      case SeatKey::help: return shown_.toggle_help();
+      case SeatKey::sounds: return sounds_.toggle();
+      case SeatKey::screenshot: return shown_.save_next();
     }
   }
 

@@ -334,8 +334,21 @@ TEST(HandLines, JointsNearTheirLimitsAreTold) {
   sight.limits = near_limits(hand, q);
   ASSERT_EQ(sight.limits.size(), 2u);
   const auto lines = hand_lines(sight, lab_rig().joint_names());
-  ASSERT_EQ(lines.size(), 1u);
+  ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0].words, "joint 6 (wrist_pitch) at 100 % of its range; joint 4 (elbow) at 96 % of its range");
+}
+
+TEST(HandLines, WhatTheHandMovesIsTold) {
+  HandSight sight;
+  sight.has_tool = true;
+  EXPECT_TRUE(hand_lines(sight, {}).empty()) << "nothing is known of the robot";
+  sight.joints = 10;
+  EXPECT_EQ(hand_lines(sight, {}).back().words, "the tool");
+  sight.mode = HandMode::joints;
+  sight.joint = 3;
+  const SeatLine line = hand_lines(sight, lab_rig().joint_names()).back();
+  EXPECT_EQ(line.words, "joint 4 (elbow) alone");
+  EXPECT_EQ(line.cure, "M: the tool again");
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ TEST_F(HandAtTheSeat, AnInterruptedHandHasToPressAnew) {
   driver_->interrupt("the headset has gone", "look at the window");
   cycles(1, {0.0005, 0, 0});
   EXPECT_FALSE(wish_.deadman);
-  ASSERT_EQ(driver_->lines().size(), 1u);
+  ASSERT_EQ(driver_->lines().size(), 2u);
   EXPECT_EQ(driver_->lines()[0].urgency, Urgency::trouble);
   expect_to_have_to_press_anew();
 }
@@ -177,7 +177,7 @@ TEST_F(HandAtTheSeat, NoDeviceDrivesOnBehindAWindowThatHangs) {
   EXPECT_TRUE(wish_.deadman) << "0.4 s: a slow picture";
   cycles(10, {0.0005, 0, 0});
   EXPECT_FALSE(wish_.deadman);
-  ASSERT_EQ(driver_->lines().size(), 1u);
+  ASSERT_EQ(driver_->lines().size(), 2u);
   EXPECT_NE(driver_->lines()[0].words.find("window"), std::string::npos) << driver_->lines()[0].words;
   window_answers_ = true;
   expect_to_have_to_press_anew();

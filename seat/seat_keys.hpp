@@ -1,0 +1,51 @@
+// Keys of the seat's window, beside those of the hand (key_bindings(), input/keyboard_mouse.hpp).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace foresight {
+
+enum class SeatKey : std::uint8_t {
+  stop,  // by gl::Window::take_space()
+  end,   // by gl::Window::should_close(), as Escape
+  enable,
+  home,
+  reset,
+  set_up,
+  control,
+  hand_over,
+  main_view,
+  stereo,
+  swap_eyes,
+  stereogram,
+  stereogram_depth,
+  stereogram_pattern,
+  stereogram_variant,
+  beside,
+  paint,
+  marks,
+  help,
+  sounds,
+  screenshot,
+};
+
+struct SeatKeyBinding {
+  SeatKey key;
+  int code;             ///< KeyBinding::code
+  const char* printed;  ///< KeyBinding::printed
+};
+/// All of them, in the order of SeatKey. No code is one of key_bindings(), too.
+std::span<const SeatKeyBinding> seat_keys() noexcept;
+/// Nothing for a key that does nothing here.
+std::optional<SeatKey> seat_key(int glfw_code) noexcept;
+
+/// For the display: each key, the hand's too, and what it does. A small window shows only the first ones: what stops
+/// and drives the robot.
+std::vector<std::pair<std::string, std::string>> key_words();
+
+}  // namespace foresight

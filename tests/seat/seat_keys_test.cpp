@@ -1,0 +1,29 @@
+// What a key of the window does is told, and is one thing.
+#include "seat/seat_keys.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "input/keyboard_mouse.hpp"
+
+namespace foresight::seat_keys_test {
+namespace {
+
+TEST(SeatKeys, NoKeyHasTwoMeanings) {
+  std::map<int, std::string> used;
+  for (const KeyBinding& binding : key_bindings())
+    EXPECT_TRUE(used.emplace(binding.code, binding.printed).second) << binding.printed;
+  for (const SeatKeyBinding& binding : seat_keys())
+    EXPECT_TRUE(used.emplace(binding.code, binding.printed).second) << binding.printed;
+}
+
+TEST(SeatKeys, EachIsTold) {
+  std::string told;
+  for (const auto& [keys, does] : key_words()) told += keys + " ";
+  for (const SeatKeyBinding& binding : seat_keys())
+    EXPECT_NE(told.find(binding.printed), std::string::npos) << binding.printed;
+}
+
+}  // namespace
+}  // namespace foresight::seat_keys_test
