@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "link/control/control_words.hpp"
 
 namespace foresight {
@@ -16,14 +19,27 @@ std::string with_our_keys(std::string cure) {
   return cure;
 }
 
-constexpr Duration kOldState = std::chrono::seconds(1);
+// States of control come every 0.2 s on the thinnest of lines, the robot's words every second (link/robot_side/
+// line_share.hpp). After the first of these the seat is blind, too.
+constexpr Duration kSilent = std::chrono::milliseconds(500), kOldWords = std::chrono::milliseconds(1500);
 
 double ms(Duration d) {
   return 1e3 * to_seconds(d);
 }
 
+/// For how long nothing has come of a robot that was heard; nothing where it is heard.
+std::optional<Duration> silence(const SeatStatus& status) {
+  const auto& control = status.control.state_age;
+  if (control && *control > kSilent) return control;
+  if (status.robot_age && *status.robot_age > kOldWords) return status.robot_age;
+  return std::nullopt;
+}
+
 SeatLine line_words(const SeatStatus& status) {
   SeatLine out{"line", "", ""};
+  if (const auto silent = silence(status))
+    return {"line", fmt::format("nothing comes of the robot for {:.1f} s", to_seconds(*silent)),
+            "see that its program runs, and that the line is up", Urgency::trouble};
   if (!status.line.clock) return {"line", "no clock of the robot yet", "wait for a round trip", Urgency::note};
   out.words =
       fmt::format("commands act after {:.0f} ± {:.0f} ms", 1e3 * status.delay.seconds, 2e3 * status.delay.sigma);
@@ -46,9 +62,8 @@ SeatLine images_words(const SeatStatus& status, const std::string& fault) {
 SeatLine robot_words(const SeatStatus& status) {
   if (!status.robot)
     return {"robot", "nothing is heard of it", "see that its program runs with --serve", Urgency::trouble};
-  if (status.robot_age && *status.robot_age > kOldState)
-    return {"robot", fmt::format("silent for {:.1f} s", to_seconds(*status.robot_age)), "wait for the line",
-            Urgency::trouble};
+  if (const auto silent = silence(status))
+    return {"robot", fmt::format("silent for {:.1f} s", to_seconds(*silent)), "wait for the line", Urgency::trouble};
   const link::RobotState& robot = *status.robot;
   SeatLine out{"robot", robot.doing.name, with_our_keys(robot.doing.cure)};
   if (!robot.hold.empty()) out.words += "; " + robot.hold;
@@ -73,6 +88,10 @@ SeatLine drives_words(const SeatStatus& status) {
     out.urgency = drive.fault.empty() ? Urgency::note : Urgency::trouble;
   }
   if (out.words.empty()) out.words = fmt::format("all {} answer", fine);
+  if (const auto silent = silence(status)) {
+    out.words = fmt::format("not known for {:.1f} s; before: {}", to_seconds(*silent), out.words);
+    out.urgency = std::max(out.urgency, Urgency::note);
+  }
   return out;
 }
 
@@ -152,6 +171,9 @@ std::vector<SeatLine> seat_lines(const SeatStatus& status, std::span<const std::
 
 SeatLine next_step(const SeatStatus& status) {
   if (status.control.phase != Phase::holding) return {"next", status.control.words, status.control.cure, Urgency::note};
+  if (silence(status))
+    return {"next", "nothing is heard of the robot", status.held ? "let go of the switch" : "wait for the line",
+            Urgency::trouble};
   if (status.held && !status.engaged)
     return {"next", "the switch does not count", "let go, and press again", Urgency::trouble};
   if (status.engaged)

@@ -55,6 +55,33 @@ TEST(SeatWords, TroubleIsToldWithoutColour) {
   EXPECT_STRNE(mark(Urgency::note), mark(Urgency::fine));
 }
 
+// As when its program was killed: all that is known of it is old, and none of it may look as if it were not.
+TEST(SeatWords, WhatIsOldOfTheRobotIsToldAsOld) {
+  SeatStatus fine = driving();
+  fine.robot_control.ready = true;
+  fine.held = fine.engaged = false;
+  fine.control.state_age = Duration{0};
+  EXPECT_EQ(next_step(fine).words, "ready");
+  SeatStatus without_control = fine, without_words = fine;
+  without_control.control.state_age = std::chrono::milliseconds(600);
+  without_words.robot_age = std::chrono::milliseconds(1600);
+  for (const SeatStatus& status : {without_control, without_words}) {
+    EXPECT_EQ(next_step(status).urgency, Urgency::trouble);
+    EXPECT_EQ(next_step(status).words, "nothing is heard of the robot");
+    const auto lines = seat_lines(status, {}, "");
+    for (const char* label : {"robot", "line", "drives"}) {
+      ASSERT_TRUE(find(lines, label)) << label;
+      EXPECT_NE(find(lines, label)->urgency, Urgency::fine) << label;
+      EXPECT_NE(find(lines, label)->words.find(" s"), std::string::npos) << find(lines, label)->words;
+    }
+  }
+  // The line may be so thin that words of the robot come once a second.
+  fine.control.state_age = std::chrono::milliseconds(400);
+  fine.robot_age = std::chrono::milliseconds(1200);
+  EXPECT_EQ(next_step(fine).words, "ready");
+  EXPECT_EQ(find(seat_lines(fine, {}, ""), "drives")->urgency, Urgency::fine);
+}
+
 TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
   SeatStatus status;
   status.control.words = "looking for the robot";
