@@ -41,8 +41,9 @@ SeatLine line_words(const SeatStatus& status) {
     return {"line", fmt::format("nothing comes of the robot for {:.1f} s", to_seconds(*silent)),
             "see that its program runs, and that the line is up", Urgency::trouble};
   if (!status.line.clock) return {"line", "no clock of the robot yet", "wait for a round trip", Urgency::note};
-  out.words =
-      fmt::format("commands act after {:.0f} ± {:.0f} ms", 1e3 * status.delay.seconds, 2e3 * status.delay.sigma);
+  out.words = status.delay.valid ? fmt::format("commands act after {:.0f} ± {:.0f} ms", 1e3 * status.delay.seconds,
+                                               2e3 * status.delay.sigma)
+                                 : "it is not known yet when commands act";
   if (status.line.round_trip) out.words += fmt::format(", round trip {:.0f} ms", ms(*status.line.round_trip));
   if (!status.line.ages.empty())
     out.words += fmt::format(", newest image {:.0f} ms old when it came", ms(status.line.ages.back().delay));

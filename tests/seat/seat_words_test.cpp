@@ -82,6 +82,14 @@ TEST(SeatWords, WhatIsOldOfTheRobotIsToldAsOld) {
   EXPECT_EQ(find(seat_lines(fine, {}, ""), "drives")->urgency, Urgency::fine);
 }
 
+TEST(SeatWords, ADelayIsToldOnceItIsKnown) {
+  SeatStatus status = driving();
+  const auto words = [&] { return find(seat_lines(status, {}, ""), "line")->words; };
+  EXPECT_NE(words().find("not known yet"), std::string::npos) << words();
+  status.delay = {0.25, 0.002, true};
+  EXPECT_NE(words().find("after 250 ± 4 ms"), std::string::npos) << words();
+}
+
 TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
   SeatStatus status;
   status.control.words = "looking for the robot";
