@@ -131,13 +131,19 @@ SeatLine request_words(const SeatStatus& status) {
   return out;
 }
 
+/// mrad or mm: no more digits than say something of where a joint is.
+std::string error_words(double error) {
+  constexpr double kFinest = 0.1;
+  return fmt::format("{:.{}f}", std::max(error, kFinest), error < 10 ? 1 : 0);
+}
+
 SeatLine prediction_words(const SeatStatus& status, std::span<const std::string> names) {
   const PredictedRobot& shown = status.shown;
   if (shown.status == StateStatus::invalid)
     return {"prediction", to_words(shown, names), "the delayed image is what counts", Urgency::trouble};
   SeatLine out{"prediction", "", ""};
   if (status.outlook.error)
-    out.words = fmt::format("95 % of joints within {:.2g} mrad or mm", 1e3 * *status.outlook.error);
+    out.words = "95 % of joints within " + error_words(1e3 * *status.outlook.error) + " mrad or mm";
   else
     out.words = "nothing to compare with yet";
   if (shown.blocked) {

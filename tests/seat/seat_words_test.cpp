@@ -90,6 +90,16 @@ TEST(SeatWords, ADelayIsToldOnceItIsKnown) {
   EXPECT_NE(words().find("after 250 ± 4 ms"), std::string::npos) << words();
 }
 
+TEST(SeatWords, ErrorsOfJointsAreNumbersForPeople) {
+  SeatStatus status = driving();
+  for (const auto& [error, words] :
+       {std::pair{1.9e-14, "within 0.1 mrad"}, {0.00234, "within 2.3 mrad"}, {0.1234, "within 123 mrad"}}) {
+    status.outlook.error = error;
+    const std::string said = find(seat_lines(status, {}, ""), "prediction")->words;
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  }
+}
+
 TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
   SeatStatus status;
   status.control.words = "looking for the robot";
