@@ -68,7 +68,7 @@ std::vector<std::pair<std::string, std::string>> key_words() {
   out.insert(out.begin(), {{printed({stop}), "stop at once"},
                            {printed({enable, home, reset, set_up}), "enable, home, reset, configure drives anew"}});
   out.insert(out.end(),
-             {{printed({control}), "give control back, take it again"},
+             {{printed({control}), "give control back, or the request for it; ask for it again"},
               {printed({hand_over}), "hand control over to who asks"},
               {printed({main_view}), "prediction, newest image, both, split (drag its border)"},
               {printed({stereo, swap_eyes}), "for two eyes: which way; swap the eyes"},

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "link/control/control_words.hpp"
 
@@ -12,11 +14,19 @@ namespace {
 
 using Phase = ControlSeatStatus::Phase;
 
-/// The robot's cures name the keys of its own terminal.
+/// The robot's cures name the keys of its own terminal; those of the line name none.
 std::string with_our_keys(std::string cure) {
-  for (const auto& [theirs, ours] : {std::pair{"(e)", "(E)"}, {"(h)", "(H)"}, {"(r)", "(X)"}, {"(c)", "(Z)"}})
-    if (const std::size_t at = cure.find(theirs); at != cure.npos) cure.replace(at, 3, ours);
+  constexpr std::pair<std::string_view, const char*> kKeys[] = {
+      {"(e)", "(E)"}, {"(h)", "(H)"}, {"(r)", "(X)"}, {"(c)", "(Z)"}, {"ask for control", "ask for control (G)"}};
+  for (const auto& [theirs, ours] : kKeys)
+    if (const std::size_t at = cure.find(theirs); at != cure.npos) cure.replace(at, theirs.size(), ours);
   return cure;
+}
+
+/// G asks, or takes the request back: who waits for control, and is told to ask for it, would lose his place by it.
+std::string control_cure(const ControlSeatStatus& control) {
+  if (!control.asks || control.phase != Phase::connected) return with_our_keys(control.cure);
+  return control.cure + (control.cure.empty() ? "" : "; ") + "G takes your request back";
 }
 
 // States of control come every 0.2 s on the thinnest of lines, the robot's words every second (link/robot_side/
@@ -98,9 +108,9 @@ SeatLine drives_words(const SeatStatus& status) {
 
 SeatLine commander_words(const SeatStatus& status) {
   const ControlState& state = status.robot_control;
-  SeatLine out{"in command", "", status.control.cure};
+  SeatLine out{"in command", "", control_cure(status.control)};
   switch (status.control.phase) {
-    case Phase::connecting: return {"in command", status.control.words, status.control.cure, Urgency::note};
+    case Phase::connecting: return {"in command", status.control.words, out.cure, Urgency::note};
     case Phase::connected:
       out.words = status.control.words;
       if (!state.holder_name.empty()) out.words += "; " + state.holder_name + " commands";
@@ -126,7 +136,8 @@ SeatLine request_words(const SeatStatus& status) {
   const ControlWords words = fate.outcome ? words_for(*fate.outcome)
                                           : ControlWords{"no answer came", "look at the robot's state, and ask again"};
   out.words = fmt::format("{}: {}", to_string(fate.what), words.name);
-  out.cure = words.cure;
+  const bool waits = fate.outcome == RequestOutcome::not_holder && status.control.asks;
+  out.cure = waits ? "wait until control is granted to you" : with_our_keys(words.cure);
   out.urgency = Urgency::note;
   return out;
 }
@@ -177,7 +188,8 @@ std::vector<SeatLine> seat_lines(const SeatStatus& status, std::span<const std::
 }
 
 SeatLine next_step(const SeatStatus& status) {
-  if (status.control.phase != Phase::holding) return {"next", status.control.words, status.control.cure, Urgency::note};
+  if (status.control.phase != Phase::holding)
+    return {"next", status.control.words, control_cure(status.control), Urgency::note};
   if (silence(status))
     return {"next", "nothing is heard of the robot", status.held ? "let go of the switch" : "wait for the line",
             Urgency::trouble};

@@ -278,6 +278,7 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
   using Phase = ControlSeatStatus::Phase;
   out.wanted = wanted_;
   out.phase = desk_ == 0 ? Phase::connecting : lease_ == 0 ? Phase::connected : Phase::holding;
+  out.asks = wanted_ && lease_ == 0;
   const bool sees = sees_robot(now);
   const bool agrees = agreed_ != 0 && agreed_ == state_.consent;
   out.follows = sees && lease_ != 0 && agrees && state_.cause == RestCause::none;
@@ -291,8 +292,8 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
   } else if (!sees) {
     say("nothing is heard of the robot", "wait for the line");
   } else if (lease_ == 0) {
-    say(wanted_ ? "control was asked for" : "connected", wanted_ ? "" : "ask for control");
-    if (!refused_.empty()) out.words = refused_;
+    say(wanted_ ? "control was asked for" : "connected", wanted_ ? "wait for the answer" : "ask for control");
+    if (!refused_.empty()) say(refused_.c_str(), "");  // it says what to do
   } else if (!out.follows) {
     const ControlWords fault = words_for(state_.fault), cause = words_for(state_.cause);
     const bool presses = held_ && state_.fault != SetPointFault::none;

@@ -100,6 +100,25 @@ TEST(SeatWords, ErrorsOfJointsAreNumbersForPeople) {
   }
 }
 
+// Of two operators: G asks for control, but takes the request back of who has asked already.
+TEST(SeatWords, WhoWaitsForControlIsNotToldToAskForIt) {
+  SeatStatus status = driving();
+  status.held = status.engaged = false;
+  status.control.phase = Phase::connected;
+  status.control.words = "connected";
+  status.control.cure = "ask for control";
+  EXPECT_EQ(next_step(status).cure, "ask for control (G)");
+  status.control.asks = true;
+  status.control.words = "'anna' commands; wait";
+  status.control.cure = "";
+  status.fates.push_back({1, LineRequest::enable, RequestOutcome::not_holder});
+  const auto lines = seat_lines(status, {}, "");
+  for (const std::string& cure : {next_step(status).cure, find(lines, "in command")->cure, find(lines, "asked")->cure})
+    EXPECT_EQ(cure.find("ask for control"), std::string::npos) << cure;
+  EXPECT_NE(next_step(status).cure.find("G takes your request back"), std::string::npos);
+  EXPECT_NE(find(lines, "asked")->cure.find("wait"), std::string::npos);
+}
+
 TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
   SeatStatus status;
   status.control.words = "looking for the robot";
