@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <ranges>
 
 #include "common/error.hpp"
@@ -14,8 +15,11 @@ namespace foresight {
 namespace {
 
 constexpr float kFontPx = 16;
-constexpr float kWordsAt = 115;           // px from a panel's left: what a line says
-constexpr float kBesideEachOther = 1100;  // px of width that keys and what is next need
+constexpr float kAround = 8;           // px around panels
+constexpr float kWordsAt = 115;        // px from a panel's left: what a line says
+constexpr float kKeyDoesAt = 138;      // px from a panel's left: what a key does
+constexpr float kSmall = 0.8f;         // of the usual letters, where these leave no room
+constexpr float kBesideInset = 0.75f;  // of the width: what the newest image in its corner leaves to the title
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -34,12 +38,47 @@ void write(const std::string& text) {
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
 }
 
+std::string row_of(const SeatLine& line) {
+  return line.cure.empty() ? line.words : line.words + " - " + line.cure;
+}
+
+std::string cure_of_next(const SeatLine& next) {
+  return "   " + next.cure;
+}
+
+constexpr float kOneRow = std::numeric_limits<float>::max();
+
+/// px, in rows of at most `width`.
+ImVec2 size_of(const std::string& text, const ImFont& font, float width) {
+  return font.CalcTextSizeA(font.FontSize, kOneRow, std::max(1.0f, width), text.data(), text.data() + text.size());
+}
+
+/// px, of the panel; its rows end `wrap` from its left.
+ImVec2 size_of_next(const SeatLine& next, const ImFont& font, float wrap) {
+  if (next.words.empty()) return {0, 0};
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float width = wrap - style.WindowPadding.x;
+  ImVec2 out = size_of(mark(next.urgency) + next.words, font, width);
+  if (!next.cure.empty()) {
+    const ImVec2 cure = size_of(cure_of_next(next), font, width);
+    out = {std::max(out.x, cure.x), out.y + style.ItemSpacing.y + cure.y};
+  }
+  return {out.x + 2 * style.WindowPadding.x, out.y + 2 * style.WindowPadding.y};
+}
+
+/// px, of the panel.
+float width_of_keys(const std::vector<std::pair<std::string, std::string>>& keys, const ImFont& font, float scale) {
+  float out = 0;
+  for (const auto& [key, does] : keys) out = std::max(out, size_of(does, font, kOneRow).x);
+  return kKeyDoesAt * scale + out + ImGui::GetStyle().WindowPadding.x;
+}
+
 void write(const SeatLine& line, float words_at, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour(line.urgency));
   write(mark(line.urgency) + line.label);
   ImGui::SameLine(words_at);
   ImGui::PushTextWrapPos(width);
-  write(line.cure.empty() ? line.words : line.words + " - " + line.cure);
+  write(row_of(line));
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
 }
@@ -47,11 +86,22 @@ void write(const SeatLine& line, float words_at, float width) {
 }  // namespace
 
 struct Hud::Work {
+  struct Text {
+    float scale;  // of letters and distances; 1: letters of kFontPx
+    ImFont *usual, *large;
+  };
+  /// Panels of which none is over another.
+  struct Layout {
+    Text text;
+    float wrap = 0, title_wrap = 0;           // px from a panel's left where rows end
+    ImVec2 next = {0, 0};                     // px, the panel of what is next
+    float lines_height = 0;                   // px, the panel of lines
+    std::vector<const SeatLine*> lines = {};  // that there is room for
+  };
   ImGuiContext* context;
-  ImFont* large = nullptr;
-  float scale;
+  std::vector<Text> texts;  // as wanted, and small
 
-  explicit Work(double wanted) : context(ImGui::CreateContext()), scale(static_cast<float>(wanted)) {
+  explicit Work(double wanted) : context(ImGui::CreateContext()) {
     ImGui::SetCurrentContext(context);
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = io.LogFilename = nullptr;
@@ -62,8 +112,10 @@ struct Hud::Work {
       config.SizePixels = px;
       return io.Fonts->AddFontDefault(&config);
     };
-    add(kFontPx * scale);
-    large = add(1.5f * kFontPx * scale);
+    for (const float share : {1.0f, kSmall}) {
+      const float scale = share * static_cast<float>(wanted);
+      texts.push_back({scale, add(kFontPx * scale), add(1.5f * kFontPx * scale)});
+    }
     if (!ImGui_ImplOpenGL3_Init("#version 330"))
       throw RuntimeFailure("the head-up display cannot be drawn", "check the graphics driver");
     ImGui::GetStyle().WindowRounding = 4;
@@ -81,16 +133,18 @@ struct Hud::Work {
     ImGui::Begin(name, nullptr, kPanel);
   }
   void draw(const HudContent& content, const HudArea& area) const;
-  float draw_next(const SeatLine& next, ImVec2 corner, float width) const;        // px that it is high
-  float draw_lines(const HudContent& content, ImVec2 corner, float width) const;  // likewise
-  void draw_keys(const HudContent& content, ImVec2 corner, float room) const;
+  Layout layout(const HudContent& content, float width, float height) const;
+  void measure_lines(const HudContent& content, Layout& layout) const;
+  void draw_next(const SeatLine& next, ImVec2 corner, float width, const Text& text) const;
+  void draw_lines(const HudContent& content, ImVec2 corner, const Layout& layout) const;
+  void draw_keys(const HudContent& content, ImVec2 corner, float room, const Text& text) const;
   void draw(const std::vector<HudLabel>& labels, float width, float height) const;
 };
 
 // Beside their places, behind the panels, none over another.
 void Hud::Work::draw(const std::vector<HudLabel>& labels, float width, float height) const {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float pad = 3 * scale, beside = 34 * scale;
+  const float scale = texts.front().scale, pad = 3 * scale, beside = 34 * scale;
   std::vector<ImVec4> taken;  // left, top, right, bottom
   for (const HudLabel& label : labels) {
     const std::string words = mark(label.urgency) + label.words;
@@ -116,62 +170,103 @@ void Hud::Work::draw(const std::vector<HudLabel>& labels, float width, float hei
   }
 }
 
-float Hud::Work::draw_next(const SeatLine& next, ImVec2 corner, float width) const {
-  if (next.words.empty()) return 0;
+void Hud::Work::measure_lines(const HudContent& content, Layout& layout) const {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const ImFont& font = *layout.text.usual;
+  const float words_width = layout.wrap - kWordsAt * layout.text.scale;
+  float height = size_of(content.title, font, layout.title_wrap - style.WindowPadding.x).y + style.ItemSpacing.y;
+  for (const SeatLine* line : layout.lines) height += style.ItemSpacing.y + size_of(row_of(*line), font, words_width).y;
+  if (layout.lines.size() < content.lines.size())
+    height += style.ItemSpacing.y + font.FontSize;  // the row that says so
+  layout.lines_height = height + 2 * style.WindowPadding.y;
+}
+
+// In small letters where the usual ones leave no room, and then without the lines that matter least.
+Hud::Work::Layout Hud::Work::layout(const HudContent& content, float width, float height) const {
+  const float gap = kAround * texts.front().scale;
+  std::vector<const SeatLine*> all;
+  for (const SeatLine& line : content.lines) all.push_back(&line);
+  Layout out;
+  const auto fits = [&] {
+    measure_lines(content, out);
+    return out.lines_height + out.next.y + 3 * gap <= height;
+  };
+  for (const Text& text : texts) {
+    out.text = text;
+    out.wrap = std::clamp(0.5f * width, std::min(380 * text.scale, std::max(1.0f, 0.7f * width)), 700 * text.scale);
+    out.title_wrap = std::max(out.wrap, kBesideInset * width - 3 * gap);
+    out.next = size_of_next(content.next, *text.large, width - 4 * gap);
+    out.lines = all;
+    if (fits()) return out;
+  }
+  std::ranges::stable_sort(all, std::ranges::greater(), &SeatLine::urgency);
+  out.lines.clear();
+  for (const SeatLine* line : all) {
+    out.lines.push_back(line);
+    if (!fits()) out.lines.pop_back();
+  }
+  std::ranges::sort(out.lines);  // in the order of the content
+  measure_lines(content, out);
+  return out;
+}
+
+void Hud::Work::draw_next(const SeatLine& next, ImVec2 corner, float width, const Text& text) const {
+  if (next.words.empty()) return;
   panel("next", corner, {1, 1});
-  ImGui::PushFont(large);
+  ImGui::PushFont(text.large);
   ImGui::PushTextWrapPos(std::max(1.0f, width));
   ImGui::PushStyleColor(ImGuiCol_Text, colour(next.urgency));
   write(mark(next.urgency) + next.words);
-  if (!next.cure.empty()) write("   " + next.cure);
+  if (!next.cure.empty()) write(cure_of_next(next));
   ImGui::PopStyleColor();
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
-  const float height = ImGui::GetWindowHeight();
   ImGui::End();
-  return height;
 }
 
-float Hud::Work::draw_lines(const HudContent& content, ImVec2 corner, float width) const {
-  const float gap = 8 * scale;
+void Hud::Work::draw_lines(const HudContent& content, ImVec2 corner, const Layout& layout) const {
   panel("lines", corner, {0, 0});
-  const float wrap = std::clamp(0.5f * width, std::min(380 * scale, std::max(1.0f, 0.7f * width)), 700 * scale);
-  ImGui::PushTextWrapPos(std::max(wrap, width - 4 * gap));
+  ImGui::PushFont(layout.text.usual);
+  ImGui::PushTextWrapPos(layout.title_wrap);
   write(content.title);
   ImGui::PopTextWrapPos();
   ImGui::Separator();
-  for (const SeatLine& line : content.lines) write(line, kWordsAt * scale, wrap);
-  const float height = ImGui::GetWindowHeight();
+  for (const SeatLine* line : layout.lines) write(*line, kWordsAt * layout.text.scale, layout.wrap);
+  if (layout.lines.size() < content.lines.size()) write("more lines in a larger window");
+  ImGui::PopFont();
   ImGui::End();
-  return height;
 }
 
 // As many as there is room for.
-void Hud::Work::draw_keys(const HudContent& content, ImVec2 corner, float room) const {
-  const float rows = (room - 2 * ImGui::GetStyle().WindowPadding.y) / ImGui::GetTextLineHeightWithSpacing();
+void Hud::Work::draw_keys(const HudContent& content, ImVec2 corner, float room, const Text& text) const {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float rows = (room - 2 * style.WindowPadding.y) / (text.usual->FontSize + style.ItemSpacing.y);
   if (content.keys.empty() || rows < 1) return;
   panel("keys", corner, {0, 1});
+  ImGui::PushFont(text.usual);
   const bool all_fit = static_cast<float>(content.keys.size()) <= rows;
   const auto fit = all_fit ? std::ssize(content.keys) : static_cast<std::ptrdiff_t>(rows) - 1;
   for (const auto& [key, does] : content.keys | std::views::take(fit)) {
     write(key);
-    ImGui::SameLine(1.2f * kWordsAt * scale);
+    ImGui::SameLine(kKeyDoesAt * text.scale);
     write(does);
   }
   if (!all_fit) write("more keys in a larger window");
+  ImGui::PopFont();
   ImGui::End();
 }
 
-// What matters more comes first: where there is little room, later panels are behind earlier ones.
 void Hud::Work::draw(const HudContent& content, const HudArea& area) const {
-  const float gap = 8 * scale;
-  const auto width = static_cast<float>(area.width);
+  const float gap = kAround * texts.front().scale;
+  const auto width = static_cast<float>(area.width), height = static_cast<float>(area.height);
   const float left = static_cast<float>(area.left) + gap, top = static_cast<float>(area.top) + gap;
-  const float right = left + width - 2 * gap, bottom = top + static_cast<float>(area.height) - 2 * gap;
-  const float next = draw_next(content.next, {right, bottom}, width - 4 * gap);
-  const float lines = draw_lines(content, {left, top}, width);
-  const float keys_end = width < kBesideEachOther * scale ? bottom - next - gap : bottom;
-  draw_keys(content, {left, keys_end}, keys_end - (top + lines + gap));
+  const float right = left + width - 2 * gap, bottom = top + height - 2 * gap;
+  const Layout fit = layout(content, width, height);
+  draw_next(content.next, {right, bottom}, width - 4 * gap, fit.text);
+  draw_lines(content, {left, top}, fit);
+  const bool beside_next = width_of_keys(content.keys, *fit.text.usual, fit.text.scale) + fit.next.x + 3 * gap <= width;
+  const float keys_end = beside_next ? bottom : bottom - fit.next.y - gap;
+  draw_keys(content, {left, keys_end}, keys_end - (top + fit.lines_height + gap), fit.text);
 }
 
 Hud::Hud(double scale) : work_(std::make_unique<Work>(scale)) {}
@@ -186,7 +281,7 @@ void Hud::draw(const HudContent& content, const ViewTarget& target) {
   io.DeltaTime = 1.0f / 60;
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   ImGui_ImplOpenGL3_NewFrame();
-  // Panels are not shown before their size is known, nor keys before that of the lines: two frames go ahead.
+  // Panels are not shown before their size is known: two frames go ahead.
   for (const bool is_seen : {false, false, true}) {
     ImGui::NewFrame();
     work_->draw(content.labels, io.DisplaySize.x, io.DisplaySize.y);

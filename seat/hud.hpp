@@ -33,7 +33,8 @@ struct HudContent {
   std::optional<HudArea> area;                            ///< where all but labels stands; nothing: the whole target
 };
 
-/// Belongs to one context. Nothing is told by colour alone: what is urgent has a mark before it.
+/// Belongs to one context. Nothing is told by colour alone: what is urgent has a mark before it. Where there is little
+/// room, letters are smaller, and lines that are not urgent, then keys, are left out: no panel is over another.
 class Hud {
  public:
   /// `scale`: of all fonts; 1: 16 px.

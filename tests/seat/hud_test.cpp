@@ -89,6 +89,26 @@ TEST(Hud, InASmallWindowKeysMakeWayForWhatIsSaid) {
   EXPECT_GT(changed(with.rowRange(0, 160)), 0.02) << "as many of them as fit";
 }
 
+// Where one panel is over another, it is darker than one panel over the picture.
+TEST(Hud, NoPanelIsOverAnotherInASmallWindow) {
+  const auto context = gl::create_headless_context();
+  HudContent content;
+  content.title = "a robot with a name: the newest image, as prediction cannot be trusted (at 78 % of its size)";
+  content.next = {"next", "joints look for home, one after the other, slowly", "wait; space stops them", Urgency::note};
+  content.lines.assign(
+      15, {"in command", "you; the robot follows, and says so in some more words than one row has room for", "wait"});
+  content.lines.push_back({"headset", "it is gone", "", Urgency::trouble});
+  content.keys.assign(22, {"W S A D R F", "the tool: forward, left, back, right, up, down"});
+  for (const auto& [width, height] : {std::pair{640, 480}, {700, 500}, {800, 600}, {900, 650}, {1280, 800}}) {
+    const cv::Mat picture = drawn(content, width, height);
+    cv::Mat dark, alarm;
+    cv::inRange(picture, cv::Scalar(0, 0, 0, 0), cv::Scalar(26, 26, 26, 255), dark);
+    EXPECT_EQ(cv::countNonZero(dark), 0) << width << " x " << height;
+    cv::inRange(picture, cv::Scalar(130, 148, 240, 0), cv::Scalar(150, 168, 255, 255), alarm);
+    EXPECT_GT(cv::countNonZero(alarm), 5) << width << " x " << height << ": what is urgent stays";
+  }
+}
+
 TEST(Hud, BearsAnyWindow) {
   const auto context = gl::create_headless_context();
   HudContent content;
