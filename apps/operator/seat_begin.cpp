@@ -12,8 +12,10 @@ std::shared_ptr<link::PretendedLine> begin_line(const std::optional<LineSpec>& s
   return out;
 }
 
-Identity seat_identity(const Rig& rig, const std::filesystem::path& rig_file, const std::string& name) {
+Identity seat_identity(const Rig& rig, const std::filesystem::path& rig_file, const LiveScene& scene,
+                       const std::string& name) {
   Identity out = link::rig_identity(rig, rig_file, FORESIGHT_VERSION);
+  out.scene = link::scene_digest(scene);
   out.name = name;
   return out;
 }

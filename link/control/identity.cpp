@@ -64,6 +64,9 @@ std::vector<Difference> differences(const Identity& robot, const Identity& other
   compare(out, "calibration", robot.calibration, other.calibration, false,
           "copy the robot's calibration results to the operator");
   compare_joints(out, robot, other);
+  if (robot.scene != 0 && other.scene != 0)
+    compare(out, "scene", robot.scene, other.scene, false,
+            "start both sides with the same --scene, --physics and --layout");
   return out;
 }
 

@@ -10,7 +10,7 @@
 namespace foresight {
 
 /// Grows whenever the messages change so that an older program would misunderstand them.
-inline constexpr std::uint32_t kLineProtocol = 2;
+inline constexpr std::uint32_t kLineProtocol = 3;
 
 /// Of a file's bytes: FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo). Tells apart what differs by mistake; who wants
 /// to deceive is for the line's security to keep out. Never 0.
@@ -23,6 +23,7 @@ struct Identity {
   std::string name;                                  ///< who this is, for people: "lab", "anna at station 2"
   std::uint64_t urdf = 0, rig = 0, calibration = 0;  ///< digests; 0: has none
   std::vector<std::string> joints;                   ///< names, in the order of all positions
+  std::uint64_t scene = 0;                           ///< digest of what stands around the cameras; 0: looks at none
 };
 
 /// One thing that the two sides do not have in common.
@@ -33,7 +34,7 @@ struct Difference {
 };
 
 /// Another protocol, URDF, rig or order of joints refuses: a set-point would mean something else on the other side.
-/// Another version of the same protocol, or another calibration, is only told.
+/// Another version of the same protocol, another calibration, or another scene where both look at one, is only told.
 std::vector<Difference> differences(const Identity& robot, const Identity& other);
 /// Those that refuse, in one line; "" where none does.
 std::string refusal_text(std::span<const Difference> differences);

@@ -13,7 +13,7 @@ concept OneOf = std::same_as<std::remove_const_t<Self>, Type>;
 template <OneOf<Identity> Self, typename V>
 void visit_fields(Self& m, V& v) {
   v("protocol", m.protocol)("program", m.program)("name", m.name)("urdf", m.urdf)("rig", m.rig)(
-      "calibration", m.calibration)("joints", m.joints);
+      "calibration", m.calibration)("joints", m.joints)("scene", m.scene);
 }
 template <OneOf<Difference> Self, typename V>
 void visit_fields(Self& m, V& v) {

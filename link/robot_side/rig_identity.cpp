@@ -1,5 +1,9 @@
 #include "link/robot_side/rig_identity.hpp"
 
+#include <fmt/core.h>
+
+#include <cmath>
+
 #include "common/read_file.hpp"
 #include "scene/yaml_fields.hpp"
 
@@ -22,6 +26,12 @@ std::string calibration_text(const YamlMap& rig) {
   return out;
 }
 
+// What is designed in round numbers is in the middle of a step, where rounding errors change nothing.
+int in_steps(double metres) {
+  constexpr double kStep = 1e-3, kAside = 0.3;
+  return static_cast<int>(std::floor(metres / kStep + kAside));
+}
+
 }  // namespace
 
 Identity rig_identity(const Rig& rig, const std::filesystem::path& file, const std::string& program) {
@@ -34,6 +44,25 @@ Identity rig_identity(const Rig& rig, const std::filesystem::path& file, const s
   if (const std::string text = calibration_text(map); !text.empty()) out.calibration = digest_of(text);
   out.joints = rig.joint_names();
   return out;
+}
+
+std::uint64_t scene_digest(const LiveScene& scene) {
+  if (!scene.model()) return 0;
+  const auto nowhere = [](std::string_view) { return std::optional(0.0); };
+  const SceneState rest = scene.state_at({}, nowhere, StateStatus::exact);
+  std::string text;
+  for (std::size_t i = 0; i < scene.model()->nodes().size(); ++i) {
+    const Node& node = scene.model()->nodes()[i];
+    text += fmt::format("{} {} {}", node.name, node.mesh.vertices.size(), node.mesh.triangles.size());
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3f& vertex : node.mesh.vertices) box.extend(rest.T_world_node[i] * vertex.cast<double>());
+    if (!box.isEmpty())
+      for (const double metres :
+           {box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()})
+        text += fmt::format(" {}", in_steps(metres));
+    text += "\n";
+  }
+  return digest_of(text);
 }
 
 }  // namespace foresight::link

@@ -4,13 +4,16 @@
 
 #include <utility>
 
+#include "link/robot_side/rig_identity.hpp"
+
 namespace foresight::link {
 namespace {
 
 constexpr std::size_t kRoom = 2;                                 // pairs that wait for the coder; only the newest goes
 constexpr Duration kLookEvery = std::chrono::milliseconds(500);  // for another robot
 
-ControlDeskOptions desk_options(Identity identity, Duration round_trip, DrawNonce draw) {
+ControlDeskOptions desk_options(Identity identity, const RobotCameras* cameras, Duration round_trip, DrawNonce draw) {
+  if (cameras) identity.scene = scene_digest(cameras->scene());
   ControlDeskOptions out;
   out.life.allowed_delay = round_trip;
   out.identity = std::move(identity);
@@ -34,8 +37,8 @@ RobotServer::RobotServer(std::unique_ptr<Participant> own, Participant* others, 
     : own_(std::move(own)),
       participant_(own_ ? *own_ : *others),
       wall_(clock, start.wall),
-      operator_(participant_, rig.gate_options(), desk_options(std::move(identity), rig.link.round_trip, start.draw),
-                clock, &capacity_),
+      operator_(participant_, rig.gate_options(),
+                desk_options(std::move(identity), cameras, rig.link.round_trip, start.draw), clock, &capacity_),
       states_(participant_, {start.draw(), rig.joint_names()}, rig, robot, cameras, wall_, clock, &operator_.taken(),
               &capacity_) {
   if (!cameras) return;

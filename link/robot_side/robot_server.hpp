@@ -12,8 +12,8 @@ namespace foresight::link {
 /// its own.
 class RobotServer {
  public:
-  /// `cameras`: null, or with frames(). `identity`: rig_identity(). `line`: null, or as of Participant. All references
-  /// must outlive this. Throws what Participant does.
+  /// `cameras`: null, or with frames(). `identity`: rig_identity(), whose scene is that of `cameras`. `line`: null, or
+  /// as of Participant. All references must outlive this. Throws what Participant does.
   RobotServer(const Rig& rig, const Robot& robot, RobotCameras* cameras, Identity identity, Clock& clock,
               std::shared_ptr<PretendedLine> line = nullptr);
   /// What a start of the program has that no other has. Seeded and stepped, a session repeats itself byte by byte.

@@ -81,6 +81,7 @@ class AnyMessages {
     Identity out = sample_identity(std::string(any() % 300, static_cast<char>(any())));
     if (any() % 2 == 0) out.joints.assign(any() % 40, "\n\x1b[2J");
     out.protocol = static_cast<std::uint32_t>(any());
+    out.scene = any();
     return out;
   }
 

@@ -444,6 +444,7 @@ TEST_F(ControlDeskTest, WhatDiffersIsNamedAndRefusedWhereItMatters) {
   Identity other = sample_identity("carl");
   other.calibration = 44;
   other.program = "1.1";
+  other.scene = 55;  // the robot looks at none
   SmallSeat harmless(other, 200'000);
   other.urdf = 12;
   other.joints[1] = "elbow";

@@ -42,5 +42,25 @@ TEST_F(RigIdentity, AnotherLimitIsAnotherRig) {
   EXPECT_THAT(refusal_text(differences(robot, other)), HasSubstr("rig"));
 }
 
+// As the two programs were started: with the same things at the same places, or not.
+TEST_F(RigIdentity, AnotherSceneIsTold) {
+  const Rig rig = read_rig(source_folder() / "configs" / "minerva.yaml");
+  const auto identity = [&](bool physics, unsigned layout) {
+    Identity out = of(text_);
+    out.scene = scene_digest(live_scene_of(rig, true, std::nullopt, physics, layout));
+    return out;
+  };
+  const Identity robot = identity(true, 3);
+  EXPECT_THAT(differences(robot, identity(true, 3)), IsEmpty());
+  for (const Identity& other : {identity(false, 0), identity(true, 0)}) {
+    const auto found = differences(robot, other);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_THAT(found[0].words, HasSubstr("another scene"));
+    EXPECT_THAT(found[0].cure, testing::AllOf(HasSubstr("--physics"), HasSubstr("--layout")));
+    EXPECT_FALSE(found[0].refuses);
+  }
+  EXPECT_THAT(differences(robot, of(text_)), IsEmpty()) << "one that looks at no scene";
+}
+
 }  // namespace
 }  // namespace foresight::link::rig_identity_test
