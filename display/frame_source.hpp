@@ -57,6 +57,10 @@ class FrameSource {
   /// What the left camera saw at the instant: CV_8UC1, or CV_8UC3 (BGR). Throws InputError where it cannot be read.
   virtual cv::Mat actual() = 0;
 
+  /// The newest image of the left camera where its pose is not known, so that it can only be looked at: as actual().
+  /// Empty: it is known, or no image comes.
+  virtual cv::Mat unposed() { return {}; }
+
   /// Frames that were never handed out, because newer ones had come.
   virtual std::uint64_t overtaken() const = 0;
   /// Why no instants come, in words; "" where all is well.

@@ -22,6 +22,8 @@ LiveSource::LiveSource(LiveFeed feed, const Clock& clock, const LiveSourceOption
 void LiveSource::take_in(LiveImage image) {
   heard_ = clock_.now();
   posed_ = image.frame.has_value();
+  unposed_ = posed_ ? cv::Mat() : std::move(image.left);
+  lacks_ = std::move(image.lacks);
   if (!posed_) {
     ++counts_.unposed;
     return;
@@ -68,12 +70,13 @@ std::optional<PosedFrame> LiveSource::arrived() {
 }
 
 std::string LiveSource::fault() const {
-  if (const Duration silent = clock_.now() - heard_; silent > options_.silent_after) {
-    const std::string text = fmt::format("NO IMAGE for {:.1f} s", to_seconds(silent));
+  if (silent()) {
+    const std::string text = fmt::format("NO IMAGE for {:.1f} s", to_seconds(clock_.now() - heard_));
     const std::string trouble = feed_.trouble ? feed_.trouble() : "";
     return trouble.empty() ? text : text + (": " + trouble);
   }
-  return posed_ ? "" : "NO POSE for the newest image";
+  if (posed_) return "";
+  return "NO POSE for the newest image" + (lacks_.empty() ? "" : ": " + lacks_);
 }
 
 }  // namespace foresight

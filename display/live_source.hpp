@@ -14,6 +14,8 @@ namespace foresight {
 struct LiveImage {
   std::uint64_t number = 0;         ///< of the images
   std::optional<PosedFrame> frame;  ///< nothing where its pose is not known: it is neither shown nor used
+  cv::Mat left = {};                ///< then: the left camera's picture, for FrameSource::unposed(); or empty
+  std::string lacks = {};           ///< then: why it is not known, in words; or ""
 };
 
 /// Where live images come from. The functions are called in the source's thread.
@@ -51,6 +53,7 @@ class LiveSource final : public FrameSource {
   std::optional<PosedFrame> arrived() override;
   ViewPlace place() override { return {shown_.T_world_camera, shown_.scene}; }
   cv::Mat actual() override { return shown_.pixels; }
+  cv::Mat unposed() override { return silent() ? cv::Mat() : unposed_; }
   std::uint64_t overtaken() const override { return overtaken_; }
   std::string fault() const override;
   const LiveCounts& counts() const { return counts_; }
@@ -60,6 +63,7 @@ class LiveSource final : public FrameSource {
     std::uint64_t number;
     PosedImage image;
   };
+  bool silent() const { return clock_.now() - heard_ > options_.silent_after; }
   void take_all();
   void take_in(LiveImage image);
 
@@ -71,6 +75,8 @@ class LiveSource final : public FrameSource {
   LiveCounts counts_;
   RobotTime heard_;
   bool posed_ = true;  // the newest image
+  cv::Mat unposed_;    // that one, where it is not
+  std::string lacks_;
   ShownInstant instant_;
   PosedImage shown_;
   bool handed_out_ = false;  // any frame

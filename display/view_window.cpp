@@ -40,7 +40,9 @@ void ViewWindow::waiting(FrameSource& source, ViewSession& session) {
   const std::string fault = source.fault();
   if (fault != fault_) window_.set_title(fault.empty() ? title_ : fault);
   fault_ = fault;
-  present(drawn_ ? &session.picture() : nullptr, !fault.empty());
+  const cv::Mat image = drawn_ ? cv::Mat() : source.unposed();
+  if (!image.empty()) delayed_.upload(image);
+  present(drawn_ ? &session.picture() : nullptr, !fault.empty() && image.empty());
 }
 
 void ViewWindow::present(const gl::Texture* predicted, bool fault) {

@@ -17,8 +17,8 @@ struct ViewWindowOptions {
   std::function<std::string(const ViewStep&)> title = {};
 };
 
-/// Belongs to the window's context. While the source has a fault, the title tells it and the frame around the pictures
-/// is red: what is shown is old.
+/// Belongs to the window's context. While the source has a fault, the title tells it. The frame around the pictures is
+/// red then, as what is shown is old; but not before the first view, while images that only lack a pose are shown.
 class ViewWindow final : public ViewObserver {
  public:
   /// `window` must outlive this.

@@ -35,6 +35,9 @@ struct Cameras {
             [this] { return closed; }, [this] { return trouble; }};
   }
   void bring(std::uint64_t number, std::optional<PosedFrame> frame) { images.push_back({number, std::move(frame)}); }
+  void bring_unposed(std::uint64_t number, const cv::Mat& left, const std::string& lacks) {
+    images.push_back({number, std::nullopt, left, lacks});
+  }
 };
 
 class FrameSources : public testing::Test {
@@ -127,6 +130,21 @@ TEST_F(FrameSources, ImagesWithoutAPoseAreNeitherShownNorUsed) {
   EXPECT_EQ(live.counts().unposed, 1u);
   cameras_.bring(2, frame(2));
   ASSERT_EQ(live.advance(), SourceState::ready);
+  EXPECT_EQ(live.fault(), "");
+}
+
+// As before joints are homed: whoever waits for a view sees that the cameras work, and what is missing.
+TEST_F(FrameSources, AnImageWithoutAPoseCanBeLookedAt) {
+  LiveSource live(cameras_.feed(), clock_, {.real_time = false, .silent_after = 500ms});
+  cameras_.bring_unposed(0, frame(0).left.pixels, "nobody is at home");
+  EXPECT_EQ(live.advance(), SourceState::waiting);
+  EXPECT_TRUE(same(live.unposed(), frame(0).left.pixels));
+  EXPECT_EQ(live.fault(), "NO POSE for the newest image: nobody is at home");
+  clock_.sleep_until(clock_.now() + 600ms);
+  EXPECT_TRUE(live.unposed().empty()) << "an old image";
+  cameras_.bring(1, frame(1));
+  ASSERT_EQ(live.advance(), SourceState::ready);
+  EXPECT_TRUE(live.unposed().empty());
   EXPECT_EQ(live.fault(), "");
 }
 
