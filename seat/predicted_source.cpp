@@ -16,6 +16,13 @@ JointPositions positions_of(const link::LineJoints& joints) {
   return [&joints](std::string_view name) { return joints.position(name); };
 }
 
+/// Why an image has no pose: joints that are not homed tell no position.
+std::string unknown_joints(const link::LineJoints& joints) {
+  const auto unknown = std::ranges::count(joints.known, false);
+  if (unknown == 0) return "";
+  return fmt::format(": {} of {} joints tell no position; home them (H)", unknown, joints.known.size());
+}
+
 }  // namespace
 
 PredictedSource::PredictedSource(const Rig& rig, std::shared_ptr<const LiveScene> scene, link::OperatorEnd& end,
@@ -104,6 +111,7 @@ SourceState PredictedSource::advance() {
   if (!options_.real_time) due_ = std::max(due_ + seconds(1 / options_.rate_hz), clock_.now());
   last_ = instant;
   robot_ = seat_.show(*instant);
+  predicted_ = predicted_ || robot_.status != StateStatus::invalid;
   instant_ = {fmt::format("{:06}", static_cast<unsigned long long>(++pictures_)), *instant};
   return SourceState::ready;
 }
@@ -125,9 +133,8 @@ std::optional<PosedFrame> PredictedSource::arrived() {
 }
 
 std::string PredictedSource::fault() const {
-  if (const Duration silent = clock_.now() - heard_; silent > options_.silent_after)
-    return fmt::format("NO IMAGE for {:.1f} s", to_seconds(silent));
-  return posed_ ? "" : "NO POSE for the newest image";
+  if (silent()) return fmt::format("NO IMAGE for {:.1f} s", to_seconds(clock_.now() - heard_));
+  return posed_ ? "" : "NO POSE for the newest image" + unknown_joints(newest_->joints);
 }
 
 }  // namespace foresight

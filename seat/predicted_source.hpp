@@ -47,6 +47,9 @@ class PredictedSource final : public FrameSource {
   const PredictedRobot& robot() const { return robot_; }
   /// Why it cannot be trusted, in words; "" where it can.
   std::string why_invalid() const;
+  /// What stands in for a prediction is to warn whoever looks at it: there was one before, or images have ended. Before
+  /// the first one, as while joints are not homed, there is a reason, but nothing to be warned of.
+  bool lost() const { return predicted_ || (newest_ && silent()); }
   const PredictedPlaces& places() const { return places_; }
   /// The newest frame; null before the first.
   const link::LineFramePtr& newest() const { return newest_; }
@@ -55,6 +58,7 @@ class PredictedSource final : public FrameSource {
   static constexpr Duration kThingsEvery = std::chrono::milliseconds(20);
   static constexpr std::size_t kLookedAt = 2;  // frames between two pictures, of more the newest
 
+  bool silent() const { return clock_.now() - heard_ > options_.silent_after; }
   void take_frames();
   void let_things_see(const link::LineFramePtr& frame, PosedFrame& posed);
   void advance_things();
@@ -73,6 +77,7 @@ class PredictedSource final : public FrameSource {
   link::LineFramePtr newest_;
   std::optional<PosedFrame> waiting_;
   bool posed_ = true, any_posed_ = false;
+  bool predicted_ = false;  // once
   RobotTime due_, heard_;
   std::uint64_t pictures_ = 0, overtaken_ = 0;
   std::optional<RobotTime> last_;

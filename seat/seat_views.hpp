@@ -84,7 +84,6 @@ class SeatViews {
   /// The session has drawn the view of `place`: draws what the mode needs besides. `drawing_ms`: what all drawing
   /// took for the last picture; 0: not known.
   void draw(ViewSession& session, const ViewPlace& place, const ViewTarget& whole, double drawing_ms);
-  bool drawn() const { return drawn_.has_value(); }
   /// Once something is drawn: draws, where the next picture will cover it, one of the looks that were never chosen, so
   /// that its first choice does not wait for programs to be compiled; on a software renderer some tenths of a second.
   /// False: none is left.

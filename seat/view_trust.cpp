@@ -104,17 +104,14 @@ void ViewTrust::frame_tiles() const {
 }
 
 SeatLine fidelity_line(const ViewTrust& trust) {
+  if (trust.falls_back())
+    return {"fidelity", trust.why(), "the newest image counts until it is better", Urgency::trouble};
   if (!trust.fidelity() || !trust.fidelity()->psnr_db) return {"fidelity", "nothing to compare with yet", ""};
   const Fidelity& of = *trust.fidelity();
   SeatLine out{"fidelity", fmt::format("{:.0f} dB", *of.psnr_db), ""};
   if (of.ssim) out.words += fmt::format(", SSIM {:.2f}", *of.ssim);
   out.words += fmt::format("; {:.0f} % exact", 1e2 * of.exact_share);
   if (of.wrong[of.worst] > kWorthNaming) out.words += "; worst: " + place_of(of.worst);
-  if (trust.falls_back()) {
-    out.words = trust.why();
-    out.cure = "the newest image counts until it is better";
-    out.urgency = Urgency::trouble;
-  }
   return out;
 }
 

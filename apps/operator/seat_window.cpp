@@ -139,7 +139,7 @@ void SeatWindow::present(const ViewSession& session) {
     return;
   }
   const bool is_trusted = trusted();
-  clear_behind_pictures(whole, !is_trusted && views_.drawn());
+  clear_behind_pictures(whole, !is_trusted && source_.lost());
   HudContent content = words(is_trusted);
   log(content);
   SeatPicture picture;
