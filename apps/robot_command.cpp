@@ -50,13 +50,6 @@ struct Windows {
   std::unique_ptr<RigWindow> rig;
 };
 
-/// What was said is read before the program's last words, unless nobody reads.
-struct WaitsForReaders {
-  ~WaitsForReaders() {
-    for (PatientOutput* const output : {&patient_stdout(), &patient_stderr()}) output->finish(500ms);
-  }
-};
-
 /// A window that fails ends, and the robot with it, under control.
 void run_guarded(RigWindow& window, const std::function<bool()>& stopped) noexcept {
   try {
@@ -290,7 +283,7 @@ void check_logs(const Rig& rig, const RobotArguments& arguments) {
 }
 
 int run(const RobotArguments& arguments) {
-  const WaitsForReaders waits_for_readers;
+  const WaitsForReaders waits;
   const Rig rig = read_rig(arguments.rig);
   check_logs(rig, arguments);
   check_rig_view(arguments);

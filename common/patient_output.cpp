@@ -121,4 +121,8 @@ PatientOutput& patient_stderr() {
   return output;
 }
 
+WaitsForReaders::~WaitsForReaders() {
+  for (PatientOutput* const output : {&patient_stdout(), &patient_stderr()}) output->finish(kFarewell);
+}
+
 }  // namespace foresight

@@ -42,4 +42,12 @@ class PatientOutput {
 PatientOutput& patient_stdout();
 PatientOutput& patient_stderr();
 
+/// In the end, what was said on both is waited for, half a second each at most: the program's last words come after it.
+struct WaitsForReaders {
+  WaitsForReaders() = default;
+  WaitsForReaders(const WaitsForReaders&) = delete;
+  WaitsForReaders& operator=(const WaitsForReaders&) = delete;
+  ~WaitsForReaders();
+};
+
 }  // namespace foresight

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cstdio>
 #include <cstdlib>
 
 #include "apps/operator/seat_begin.hpp"
@@ -10,6 +9,7 @@
 #include "apps/operator/seat_sounds.hpp"
 #include "apps/operator/seat_window.hpp"
 #include "common/error.hpp"
+#include "common/patient_output.hpp"
 #include "common/stop_signal.hpp"
 #include "display/head/runtime_offer.hpp"
 #include "input/open_tracker.hpp"
@@ -78,7 +78,7 @@ class LiveSeat {
         sounds_(options.sounds),
         shown_(*window_, seat_, source_, window_options()) {
     window_->set_title("Foresight: " + rig.name);
-    for (const std::string& remark : session_.level_remarks()) std::fprintf(stderr, "%s\n", remark.c_str());
+    for (const std::string& remark : session_.level_remarks()) patient_stderr().say(remark + "\n");
     if (options.head_display == HeadDisplayKind::openxr)
       head_.emplace(*window_, session_, setup_, source_, shown_, controllers_,
                     options.second_eye_of_first ? head::SecondEyeFrom::first_eye : head::SecondEyeFrom::own_view,
@@ -100,7 +100,7 @@ class LiveSeat {
   }
 
  private:
-  static void say(const std::string& words) { std::fprintf(stderr, "operator: %s\n", words.c_str()); }
+  static void say(const std::string& words) { patient_stderr().say("operator: " + words + "\n"); }
 
   void show_pictures() {
     const SeatEnd end(seat_, clock_);
@@ -121,8 +121,8 @@ class LiveSeat {
   void tell_responses() const {
     const std::vector<std::string> learnt = seat_.learnt_responses();
     if (learnt.empty()) return;
-    std::fprintf(stderr, "operator: how the drives followed, for the joints' lines of the rig file:\n");
-    for (const std::string& line : learnt) std::fprintf(stderr, "  %s\n", line.c_str());
+    say("how the drives followed, for the joints' lines of the rig file:");
+    for (const std::string& line : learnt) patient_stderr().say("  " + line + "\n");
   }
 
   ViewSetup view_setup(const Rig& rig, const LiveSeatOptions& options) const {
@@ -181,7 +181,8 @@ class LiveSeat {
   }
   // Its thread may never come back, and uses what would be destroyed now. The robot is at rest, and nothing is open.
   [[noreturn]] static void end_with_runtime_hanging() {
-    std::fprintf(stderr, "operator: the headset's runtime does not answer; ended without it: start it again\n");
+    say("the headset's runtime does not answer; ended without it: start it again");
+    patient_stderr().finish(std::chrono::seconds(1));
     std::_Exit(1);
   }
 
@@ -253,6 +254,7 @@ class LiveSeat {
 }  // namespace
 
 int run_live_seat(const Rig& rig, const LiveSeatOptions& options) {
+  const WaitsForReaders waits;
   poll_stop_signals();
   return LiveSeat(rig, options).run();
 }
