@@ -5,6 +5,7 @@
 
 #include "apps/calibrate/lens_file.hpp"
 #include "apps/calibrate/run_input.hpp"
+#include "calibration/result/result_file.hpp"
 #include "calibration/robot/robot_poses.hpp"
 #include "calibration/target/corner_files.hpp"
 #include "calibration/target/image_input.hpp"

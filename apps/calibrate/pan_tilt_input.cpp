@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "scene/text_table.hpp"
+#include "scene/yaml_fields.hpp"
 
 namespace foresight {
 namespace {

@@ -1,9 +1,11 @@
 #include "calibration/camera/camera_result.hpp"
 
+#include <yaml-cpp/yaml.h>
 #include <algorithm>
 
 #include "common/error.hpp"
 #include "common/exact_number.hpp"
+#include "scene/yaml_fields.hpp"
 
 namespace foresight {
 namespace {

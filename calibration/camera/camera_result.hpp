@@ -12,12 +12,15 @@
 // Numbers read back exactly as they were, but for the rotation, which reading normalises.
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
 #include "calibration/camera/rig.hpp"
-#include "scene/yaml_fields.hpp"
+
+namespace YAML {
+class Node;
+}
 
 namespace foresight {
+
+class YamlMap;
 
 /// The board that a camera was calibrated with, as far as another session can know it again.
 struct KnownBoard {

@@ -7,6 +7,7 @@
 #include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "scene/yaml_fields.hpp"
 
 namespace foresight {
 namespace {

@@ -14,9 +14,10 @@
 
 #include "calibration/result/verdict.hpp"
 #include "calibration/robot/rigid_math.hpp"
-#include "scene/yaml_fields.hpp"
 
 namespace foresight {
+
+class YamlMap;
 
 struct PanTiltModel {
   Pose T_world_pan = Pose::Identity();

@@ -1,7 +1,10 @@
 #include "calibration/robot/robot_results.hpp"
 
+#include <yaml-cpp/yaml.h>
+
 #include "calibration/camera/camera_result.hpp"
 #include "common/error.hpp"
+#include "scene/yaml_fields.hpp"
 
 namespace foresight {
 namespace {

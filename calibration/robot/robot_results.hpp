@@ -9,13 +9,23 @@
 //                    pose by the model), shaft_sigma_rad, corner_px, and offset_s where it was estimated
 #pragma once
 
-#include "calibration/result/result_file.hpp"
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "calibration/robot/hand_eye.hpp"
 #include "calibration/robot/pan_tilt.hpp"
 #include "calibration/robot/pan_tilt_tags.hpp"
 #include "calibration/robot/time_offset.hpp"
 
+namespace YAML {
+class Node;
+}
+
 namespace foresight {
+
+class YamlMap;
 
 struct ArmNames {
   std::string base = "base", flange = "flange", camera = "camera";

@@ -9,6 +9,7 @@
 #include "drivers/camera/image_folder_camera.hpp"
 #include "drivers/camera/libcamera_camera.hpp"
 #include "drivers/camera/v4l2_camera.hpp"
+#include "scene/yaml_fields.hpp"
 
 namespace foresight {
 namespace {

@@ -10,9 +10,10 @@
 #include "drivers/camera/camera.hpp"
 #include "drivers/camera/stereo_pairing.hpp"
 #include "scene/camera_info.hpp"
-#include "scene/yaml_fields.hpp"
 
 namespace foresight {
+
+class YamlMap;
 
 enum class CameraDriver : std::uint8_t {
   v4l2,

@@ -6,6 +6,7 @@
 
 #include "apps/calibrate/arm_stations.hpp"
 #include "calibration/formats/urdf_offsets.hpp"
+#include "calibration/result/result_file.hpp"
 #include "calibration/robot/robot_poses.hpp"
 #include "calibration/robot/robot_results.hpp"
 #include "common/text.hpp"

@@ -6,6 +6,7 @@
 #include "calibration/camera/camera_result.hpp"
 #include "calibration/formats/camera_formats.hpp"
 #include "calibration/formats/urdf_offsets.hpp"
+#include "calibration/result/result_file.hpp"
 #include "calibration/robot/joint_chain.hpp"
 #include "calibration/robot/robot_results.hpp"
 #include "tests/calibrate/run_calibrate.hpp"

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "calibration/registration/registration.hpp"
+#include "calibration/result/result_file.hpp"
 #include "calibration/robot/robot_results.hpp"
 #include "tests/calibrate/mock_head.hpp"
 

@@ -7,6 +7,7 @@
 #include "apps/calibrate/mock_board.hpp"
 #include "calibration/camera/camera_result.hpp"
 #include "rig/open_stereo.hpp"
+#include "scene/yaml_fields.hpp"
 #include "tests/calibrate/run_calibrate.hpp"
 #include "tests/support/headless_test.hpp"
 

@@ -1,5 +1,6 @@
 #include "drivers/camera/camera_config.hpp"
 
+#include "scene/yaml_fields.hpp"
 #include "tests/scene/test_run.hpp"
 
 namespace foresight::camera_config_test {

@@ -2,9 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include "calibration/target/board.hpp"
 #include "common/error.hpp"
+#include "scene/yaml_fields.hpp"
 #include "tests/formats/example_cameras.hpp"
 #include "tests/scene/test_run.hpp"
 

@@ -1,5 +1,6 @@
 #include "calibration/registration/calibrated_head.hpp"
 
+#include "calibration/result/result_file.hpp"
 #include "calibration/robot/robot_results.hpp"
 #include "lab_head.hpp"
 #include "tests/scene/test_run.hpp"

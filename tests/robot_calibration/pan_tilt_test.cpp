@@ -1,4 +1,5 @@
 #include "calibration/robot/pan_tilt.hpp"
+#include "calibration/result/result_file.hpp"
 
 #include "calibration/robot/robot_results.hpp"
 #include "synthetic_rig.hpp"
