@@ -28,6 +28,7 @@ struct Time {
 };
 
 using RobotTime = Time<RobotClock>;
+using OperatorTime = Time<OperatorClock>;
 
 /// Seconds as a nanosecond duration, rounded to nearest; `seconds` must be finite.
 inline Duration seconds(double seconds) {

@@ -17,8 +17,6 @@
 
 namespace foresight {
 
-using OperatorTime = Time<OperatorClock>;
-
 enum class TrackerButton : std::uint8_t {
   deadman,        ///< held, or nothing moves
   clutch,         ///< held, the tool goes with the hand; released, the hand goes alone

@@ -17,8 +17,6 @@
 
 namespace foresight {
 
-using OperatorTime = Time<OperatorClock>;
-
 /// What became of a pose.
 enum class PoseTaken {
   yes,

@@ -25,7 +25,6 @@
 
 namespace foresight {
 
-using OperatorTime = Time<OperatorClock>;
 /// A random number that names one start of a program, one lease, one consent. 0: none.
 using Nonce = std::uint64_t;
 

@@ -34,7 +34,7 @@ class TwoHosts {
     const Time<RobotClock> here{local_.at(now_)};
     if (const auto ping = tracker_.ping(here)) there_.send(now_, {*ping, now_});
     for (const Ping& ping : there_.take(now_)) {
-      const Time<OperatorClock> t{remote_.at(now_)};
+      const OperatorTime t{remote_.at(now_)};
       if (line_up) back_.send(now_, {ClockTracker<OperatorClock, RobotClock>::answer(ping.ping, t), ping.sent});
     }
     for (const Pong& pong : back_.take(now_)) {
@@ -221,7 +221,7 @@ TEST(ClockTrackerTest, StampsAreConvertedWithTheirDoubt) {
   TwoHosts hosts({.base_s = 0.03}, {.base_s = 0.01}, {.start = 900'000'000'000}, 7);
   hosts.run(10);
   const Time<RobotClock> here{hosts.local_.at(hosts.now_)};
-  const Time<OperatorClock> there{hosts.remote_.at(hosts.now_)};
+  const OperatorTime there{hosts.remote_.at(hosts.now_)};
   const auto seen = hosts.tracker_.to_here(there);
   ASSERT_TRUE(seen);
   EXPECT_LE(seen->earliest(), here);

@@ -18,9 +18,9 @@ concept Comparable = requires(A a, B b) {
 
 TEST(Time, ClocksDoNotMix) {
   static_assert(Subtractable<RobotTime, RobotTime> && Comparable<RobotTime, RobotTime>);
-  static_assert(!Subtractable<RobotTime, Time<OperatorClock>>);
-  static_assert(!Comparable<RobotTime, Time<OperatorClock>>);
-  static_assert(!std::is_convertible_v<Time<OperatorClock>, RobotTime>);
+  static_assert(!Subtractable<RobotTime, OperatorTime>);
+  static_assert(!Comparable<RobotTime, OperatorTime>);
+  static_assert(!std::is_convertible_v<OperatorTime, RobotTime>);
 }
 
 TEST(Time, AddsAndSubtractsToTheNanosecond) {
