@@ -13,7 +13,7 @@
 #include "texture_gpu/chart_resolution.hpp"
 #include "texture_gpu/options.hpp"
 #include "texture_gpu/packed_heights.hpp"
-#include "texture_gpu/page_pool.hpp"
+#include "texture_gpu/slot_pool.hpp"
 #include "texture_gpu/tile_planes.hpp"
 
 namespace foresight {

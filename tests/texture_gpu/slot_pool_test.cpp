@@ -1,10 +1,10 @@
-#include "texture_gpu/page_pool.hpp"
+#include "texture_gpu/slot_pool.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-namespace foresight::page_pool_test {
+namespace foresight::slot_pool_test {
 namespace {
 
 TEST(SlotPool, HandsOutEachSlotOnceLowestFirst) {
@@ -55,4 +55,4 @@ TEST(AtlasLayout, APageIsCountedWithItsPyramid) {
 }
 
 }  // namespace
-}  // namespace foresight::page_pool_test
+}  // namespace foresight::slot_pool_test
