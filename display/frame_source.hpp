@@ -1,4 +1,4 @@
-// Where a view's images come from, and which instants are shown: a recorded run, live cameras, later the line.
+// Where a view's images come from, and which instants are shown: a recorded run, live cameras, the line.
 //
 //            instants to show        t0     t1     t2     t3 ...
 //            frames that arrive      -      -      f0     f1         here with a delay of two images

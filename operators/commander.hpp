@@ -1,4 +1,4 @@
-// Whoever commands a robot: a file, somebody at the keyboard, later the line and its devices.
+// Whoever commands a robot: a file, somebody at the keyboard, the line.
 #pragma once
 
 #include <optional>
