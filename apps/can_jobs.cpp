@@ -39,7 +39,7 @@ void print_interface(const CanInterface& interface) {
   if (interface.transmit_errors && interface.receive_errors)
     line += ", error counters " + std::to_string(*interface.transmit_errors) + " tx " +
             std::to_string(*interface.receive_errors) + " rx";
-  if (interface.counters) line += ", bus-offs " + std::to_string(interface.counters->bus_offs);
+  if (interface.bus_offs) line += ", bus-offs " + std::to_string(*interface.bus_offs);
   line += ", queue " + std::to_string(interface.transmit_queue) + ", received " + std::to_string(interface.received) +
           " (" + std::to_string(interface.receive_dropped) + " dropped), sent " + std::to_string(interface.sent) +
           " (" + std::to_string(interface.send_dropped) + " dropped)";

@@ -17,8 +17,7 @@ std::string percent(double share) {
 std::string description(const CanInterface& interface) {
   std::string out = interface.kind + ", " + to_string(interface.state);
   if (interface.bit_rate) out += ", " + std::to_string(*interface.bit_rate / 1000) + " kbit/s";
-  if (interface.counters && interface.counters->bus_offs > 0)
-    out += ", was bus-off " + std::to_string(interface.counters->bus_offs) + " times";
+  if (interface.bus_offs.value_or(0) > 0) out += ", was bus-off " + std::to_string(*interface.bus_offs) + " times";
   return out;
 }
 

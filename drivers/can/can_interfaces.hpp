@@ -11,11 +11,6 @@
 
 namespace foresight {
 
-/// What the kernel counts of a controller since it was registered.
-struct CanDeviceCounters {
-  std::uint32_t bus_errors = 0, warnings = 0, passives = 0, bus_offs = 0, arbitrations_lost = 0, restarts = 0;
-};
-
 /// One network interface of type CAN. Optional fields are absent where its driver has no such thing (vcan, slcan).
 struct CanInterface {
   std::string name;
@@ -28,8 +23,8 @@ struct CanInterface {
   std::optional<double> sample_point;                  ///< 0 .. 1 of a bit
   std::optional<int> restart_ms;                       ///< 0: stays bus-off until restarted by hand
   std::optional<int> transmit_errors, receive_errors;  ///< the controller's error counters
-  std::optional<CanDeviceCounters> counters;
-  std::uint64_t received = 0, sent = 0;  ///< frames
+  std::optional<std::uint32_t> bus_offs;               ///< of the controller since it was registered
+  std::uint64_t received = 0, sent = 0;                ///< frames
   std::uint64_t receive_dropped = 0, send_dropped = 0;
   int transmit_queue = 0;  ///< frames
 };

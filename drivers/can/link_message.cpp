@@ -104,11 +104,8 @@ std::optional<CanInterface> read_can_interface(const nlmsghdr& message) {
   out.kind = text_of(inside(kind, IFLA_INFO_KIND));
   read_controller(inside(kind, IFLA_INFO_DATA), out);
   const nlattr* counters = inside(kind, IFLA_INFO_XSTATS);
-  if (counters != nullptr && nla_len(counters) >= static_cast<int>(sizeof(can_device_stats))) {
-    const auto stats = *value_of<can_device_stats>(counters);
-    out.counters = CanDeviceCounters{stats.bus_error, stats.error_warning,    stats.error_passive,
-                                     stats.bus_off,   stats.arbitration_lost, stats.restarts};
-  }
+  if (counters != nullptr && nla_len(counters) >= static_cast<int>(sizeof(can_device_stats)))
+    out.bus_offs = value_of<can_device_stats>(counters)->bus_off;
   if (const auto stats = value_of<rtnl_link_stats64>(of_link(message, IFLA_STATS64))) {
     out.received = stats->rx_packets;
     out.sent = stats->tx_packets;

@@ -58,21 +58,18 @@ void CanopenNetwork::receive(RobotTime now) noexcept {
   for (const auto& drive : drives_) drive->check(now);
 }
 
-void CanopenNetwork::put(const CanFrame& frame) noexcept {
-  if (bus_.send(frame) != CanSend::sent) ++unsent_;
-}
-
+// Frames that do not leave are counted by the bus.
 void CanopenNetwork::send(RobotTime now) noexcept {
-  if (heartbeat_.due(now)) put(heartbeat_frame(NmtState::operational, config_.master_node));
+  if (heartbeat_.due(now)) bus_.send(heartbeat_frame(NmtState::operational, config_.master_node));
   const bool permitted = healthy();
   for (const auto& drive : drives_)
-    if (const auto frame = drive->command(permitted, now)) put(*frame);
-  put(sync_frame());
+    if (const auto frame = drive->command(permitted, now)) bus_.send(*frame);
+  bus_.send(sync_frame());
 }
 
 void CanopenNetwork::pump(RobotTime until) {
   const RobotTime now = clock_.now();
-  if (heartbeat_.due(now)) put(heartbeat_frame(NmtState::operational, config_.master_node));
+  if (heartbeat_.due(now)) bus_.send(heartbeat_frame(NmtState::operational, config_.master_node));
   const RobotTime wake = std::min(until, heartbeat_.next());
   if (const auto frame = bus_.receive(std::max(wake - now, Duration{0}))) dispatch(*frame, clock_.now());
 }

@@ -29,8 +29,6 @@ class CanopenNetwork final : public DriveNetwork {
   void send(RobotTime now) noexcept override;
   bool healthy() const noexcept override { return *reason() == 0; }
   const char* reason() const noexcept override;
-  /// Frames that did not leave since construction: full queue, bus down.
-  std::uint64_t unsent() const noexcept { return unsent_; }
 
  private:
   enum class Kind : std::uint8_t { none, nmt, sync, own_heartbeat, master_request, node };
@@ -42,7 +40,6 @@ class CanopenNetwork final : public DriveNetwork {
   void assign(std::uint32_t id, Slot slot) { slots_[id] = slot; }
   void dispatch(const CanFrame& frame, RobotTime now) noexcept;
   void pump(RobotTime until);
-  void put(const CanFrame& frame) noexcept;
 
   CanBus& bus_;
   Clock& clock_;
@@ -52,7 +49,6 @@ class CanopenNetwork final : public DriveNetwork {
   std::array<Slot, 0x800> slots_{};  // by COB-ID
   HeartbeatProducer heartbeat_;
   const char* other_master_ = "";
-  std::uint64_t unsent_ = 0;
 };
 
 }  // namespace foresight::canopen
