@@ -92,12 +92,6 @@ void TrustPass::compared(const PosedImage& image, const cv::Mat& comparison) {
                       GL_UNSIGNED_BYTE, comparison.data);
 }
 
-std::vector<RobotTime> TrustPass::remembered() const {
-  std::vector<RobotTime> out;
-  for (const Seen& seen : seen_) out.push_back(seen.time);
-  return out;
-}
-
 void TrustPass::list_ways(const Pose& T_world_camera, const SceneState& state) {
   const std::size_t nodes = state.T_world_node.size();
   rows_.assign(4 * nodes * (kFrames + kComparisonsKept), Eigen::Vector4f::Zero());

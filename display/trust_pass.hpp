@@ -40,8 +40,6 @@ class TrustPass {
   const gl::Texture& doubt() const { return doubt_; }
   /// The view, RGBA8, with what is not exact hatched.
   const gl::Texture& marked() const { return marked_; }
-  /// Images that are remembered, newest first.
-  std::vector<RobotTime> remembered() const;
 
  private:
   static constexpr std::size_t kFrames = 12;

@@ -318,13 +318,6 @@ void BodyWorld::hold(std::size_t loose, bool held) {
   set_present(loose, present);
 }
 
-void BodyWorld::ignore(std::size_t a, std::size_t b, bool ignored) {
-  btRigidBody &one = *impl_->bodies.at(a)->body, &other = *impl_->bodies.at(b)->body;
-  one.setIgnoreCollisionCheck(&other, ignored);
-  other.setIgnoreCollisionCheck(&one, ignored);
-  impl_->broadphase.getOverlappingPairCache()->cleanProxyFromPairs(one.getBroadphaseHandle(), &impl_->dispatcher);
-}
-
 void BodyWorld::step() {
   impl_->world.stepSimulation(impl_->options.step, 0);
   for (const auto& body : impl_->bodies)

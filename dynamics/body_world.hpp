@@ -69,8 +69,6 @@ class BodyWorld {
   void set_present(std::size_t body, bool present);
   /// From now on a loose body is driven, or a body that was made loose again falls with the velocity it has.
   void hold(std::size_t loose, bool held);
-  /// May these two touch? At first all may but two that are both still or driven.
-  void ignore(std::size_t a, std::size_t b, bool ignored);
 
   /// Moves time on by one step. A body whose motion is not finite, or that is farther than 100 m away, goes back to
   /// where it was added, at rest.

@@ -17,10 +17,10 @@ Eigen::Vector3d bounded(const Eigen::Vector3d& v) noexcept {
 
 const Pose& RateHand::step(OperatorTime now, const HandRate& rate) noexcept {
   const Duration passed = last_ && now > *last_ ? now - *last_ : Duration{0};
-  step_ = passed <= options_.longest_step ? to_seconds(passed) : 0;
+  const double dt = passed <= options_.longest_step ? to_seconds(passed) : 0;
   if (!last_ || now > *last_) last_ = now;
-  const Eigen::Vector3d way = bounded(rate.linear) * (options_.speed * step_);
-  const Eigen::Vector3d turn = bounded(rate.angular) * (options_.turn * step_);
+  const Eigen::Vector3d way = bounded(rate.linear) * (options_.speed * dt);
+  const Eigen::Vector3d turn = bounded(rate.angular) * (options_.turn * dt);
   pose_.translation() += way;
   if (const double angle = turn.norm(); angle > 0) {
     const Eigen::AngleAxisd step(angle, turn / angle);

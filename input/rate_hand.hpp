@@ -30,14 +30,11 @@ class RateHand {
   const Pose& step(OperatorTime now, const HandRate& rate) noexcept;
   const Pose& pose() const noexcept { return pose_; }
   const RateHandOptions& options() const noexcept { return options_; }
-  /// Of the newest step, s; 0 where it moved nothing.
-  double step_seconds() const noexcept { return step_; }
 
  private:
   RateHandOptions options_;
   Pose pose_ = Pose::Identity();
   std::optional<OperatorTime> last_;
-  double step_ = 0;
 };
 
 /// A stick's deflection (-1 .. 1): 0 within `dead` of its middle, then evenly on to the end. What is no number is 0.

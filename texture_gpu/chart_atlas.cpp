@@ -191,7 +191,7 @@ void ChartAtlas::collect_records(std::span<const AtlasView> views) {
   }
 }
 
-std::span<const PageRecord> ChartAtlas::plan(std::span<const AtlasView> views, std::int64_t) {
+std::span<const PageRecord> ChartAtlas::plan(std::span<const AtlasView> views) {
   for (std::size_t i = 0; i < charts_.size(); ++i) {
     const Chart& shape = surface_->charts[i];
     AtlasChart& chart = charts_[i];

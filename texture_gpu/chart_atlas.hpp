@@ -112,9 +112,9 @@ class ChartAtlas {
   /// The GPU cannot hold more: from now on the memory policy makes do with so many places.
   void limit(const Slots& slots);
 
-  /// Chooses each chart's resolution for the views of image number `image` and rasterises what
-  /// changed. Returns the pages that may be seen, in table order.
-  std::span<const PageRecord> plan(std::span<const AtlasView> views, std::int64_t image);
+  /// Chooses each chart's resolution for the views of an image and rasterises what changed. Returns the pages that may
+  /// be seen, in table order.
+  std::span<const PageRecord> plan(std::span<const AtlasView> views);
 
   struct Allocation {
     std::vector<PageJob> jobs;        ///< pages to extract, each with a new place for its colours

@@ -304,7 +304,7 @@ bool TextureCore::allocate(ChartAtlas::Allocation& out) {
   generations_.reclaim(atlas_);
   for (;;) {
     next_slice(gate_, "pages");
-    records_ = atlas_.plan(newest_.views, image_);
+    records_ = atlas_.plan(newest_.views);
     atlas_.write_charts(chart_rows_);
     charts_.assign(std::span<const Eigen::Vector4f>(chart_rows_));
     survey_.set_pages(records_);

@@ -37,8 +37,7 @@ class Cia402Machine {
   /// The drive takes set-points now; otherwise it gets its own actual position.
   bool follows() const noexcept { return follows_; }
   OperationMode wanted_mode() const noexcept { return wanted_mode_; }  ///< to be written to 6060h
-  Cia402State cia402_state() const noexcept { return state_; }
-  int last_transition() const noexcept { return transition_; }  ///< 0 .. 16; -1: not one of the standard
+  int last_transition() const noexcept { return transition_; }         ///< 0 .. 16; -1: not one of the standard
   bool homed() const noexcept { return homed_; }
   void set_homed(bool homed) noexcept { homed_ = homed; }
   /// A reset was taken up: what was told before counts no more.

@@ -38,7 +38,6 @@ struct CodedPair {
   std::vector<std::uint8_t> data{};
   std::vector<std::uint8_t> notes{};  ///< what else is to be known with the picture, as whoever sends it has agreed
 };
-inline constexpr std::size_t kMostNotes = 0xFFFF;  ///< bytes
 
 /// A header of kCodedPairHeader bytes (little endian, with a checksum of everything), then the notes and the data.
 std::vector<std::uint8_t> to_bytes(const CodedPair& pair);

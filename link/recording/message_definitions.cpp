@@ -208,10 +208,4 @@ MessageDefinition message_definition(std::string_view dds_type) {
   return {ros_name(dds_type), "ros2msg", ros_text(gathered)};
 }
 
-std::vector<std::string> defined_types() {
-  std::vector<std::string> out;
-  for (const auto& [name, type] : types()) out.push_back(name);
-  return out;
-}
-
 }  // namespace foresight::link

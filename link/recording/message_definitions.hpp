@@ -4,7 +4,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace foresight::link {
 
@@ -18,9 +17,6 @@ struct MessageDefinition {
 /// By the type's name on DDS, "sensor_msgs::msg::dds_::JointState_". Of a type that the IDL does not have: its name
 /// alone.
 MessageDefinition message_definition(std::string_view dds_type);
-
-/// All types of the IDL, by their names on DDS.
-std::vector<std::string> defined_types();
 
 namespace detail {
 /// The texts of link/messages/idl. Embedded by CMake.

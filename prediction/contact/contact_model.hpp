@@ -121,7 +121,6 @@ class ContactModel {
 
   void add_part(std::string name, const Mesh& mesh, int link, int node);
   void make_couples();
-  bool can_meet(const Part& one, const Part& other) const;
   bool holds(const Part& holder, const Part& carried) const;
   Couple couple_of(std::size_t one, std::size_t other) const;
   void leave_out_what_always_overlaps(const UrdfRobot& robot, const std::vector<std::string>& joints);

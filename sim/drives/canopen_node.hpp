@@ -18,7 +18,6 @@ class CanopenNode : public DriveNode {
  public:
   void receive(const CanFrame& frame, RobotTime now) final;
   void step(RobotTime now, double dt) final;
-  NmtState nmt_state() const { return nmt_; }
 
  protected:
   CanopenNode(const NodeConfig& config, ObjectDictionary dictionary, Send send);

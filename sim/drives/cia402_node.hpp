@@ -18,7 +18,6 @@ class Cia402Node final : public CanopenNode {
   /// Throws InputError where the dictionary file cannot be read.
   Cia402Node(const NodeConfig& config, Send send);
   void inject(DriveFault fault, double value) override;
-  PowerState power_state() const { return states_.state(); }
 
  private:
   void run(RobotTime now, double dt) override;

@@ -30,7 +30,7 @@ class Atlas {
   /// One image as TextureCore takes it; what it retires comes back at once.
   ChartAtlas::Allocation take(const Pose& T_world_camera, std::uint32_t mask = 0x55) {
     for (;;) {
-      const auto records = atlas_.plan(view(T_world_camera), image_);
+      const auto records = atlas_.plan(view(T_world_camera));
       auto out = atlas_.allocate(std::vector<std::uint32_t>(records.size(), mask), image_);
       if (!out.fits) continue;
       atlas_.commit();
@@ -109,7 +109,7 @@ TEST(ChartAtlas, ResolutionRisesWithACloserViewAndStaysWhenItLeaves) {
 TEST(ChartAtlas, TellsHowFarPlacesWillReach) {
   Atlas atlas;
   for (int image = 0; image < 6; ++image) {
-    const auto records = atlas->plan(atlas.view(closer(1 - 0.1 * image)), image);
+    const auto records = atlas->plan(atlas.view(closer(1 - 0.1 * image)));
     const std::vector<std::uint32_t> masks(records.size(), 0x55);
     const ChartAtlas::Slots reach = atlas->reach(masks);
     const auto out = atlas->allocate(masks, image);
@@ -213,7 +213,7 @@ TEST(ChartAtlas, NewColoursNeverGoWhereThePublishedOnesAre) {
 
 TEST(ChartAtlas, TheTableIsInTheOrderOfTheRecords) {
   Atlas atlas;
-  const auto records = atlas->plan(atlas.view(usual_view()), 0);
+  const auto records = atlas->plan(atlas.view(usual_view()));
   ASSERT_FALSE(records.empty());
   std::vector<std::uint32_t> masks(records.size(), 0x01);
   const auto allocation = atlas->allocate(masks, 0);
@@ -235,7 +235,7 @@ TEST(ChartAtlas, RecordsHoldTheTilesThatACameraMaySeeFromTheFront) {
   Atlas atlas;
   const auto views = atlas.view(usual_view());
   int kept = 0, dropped = 0;
-  for (const PageRecord& record : atlas->plan(views, 0)) {
+  for (const PageRecord& record : atlas->plan(views)) {
     ChartRaster r = atlas->charts()[record.chart].raster;
     r.raw = atlas->charts()[record.chart].heights.unpacked();
     const Chart& shape = atlas->surface().charts[record.chart];
@@ -276,7 +276,7 @@ TEST(ChartAtlas, TilesBehindTheOutlineOfASolidAreDropped) {
   const std::vector<AtlasView> views{{&lens, &faces, {T_world_camera.inverse()}}};
   ChartAtlas atlas(surface, {});
   int dropped = 0, kept = 0;
-  const auto records = atlas.plan(views, 0);
+  const auto records = atlas.plan(views);
   for (const PageRecord& record : records)
     for (std::size_t tile = 0; tile < 4; ++tile) {
       const AtlasPage& page = atlas.page_of(record);
@@ -293,7 +293,7 @@ TEST(ChartAtlas, BacksOfSolidsAndWhatIsOutOfViewAreNotPlanned) {
   Atlas atlas;
   const auto views = atlas.view(usual_view());
   std::set<std::uint32_t> planned;
-  for (const PageRecord& record : atlas->plan(views, 0)) planned.insert(record.chart);
+  for (const PageRecord& record : atlas->plan(views)) planned.insert(record.chart);
   int backs = 0;
   for (std::size_t i = 0; i < atlas->surface().charts.size(); ++i) {
     const Chart& chart = atlas->surface().charts[i];
@@ -304,7 +304,7 @@ TEST(ChartAtlas, BacksOfSolidsAndWhatIsOutOfViewAreNotPlanned) {
     EXPECT_FALSE(back && planned.contains(static_cast<std::uint32_t>(i)));
   }
   EXPECT_GT(backs, 5);
-  EXPECT_TRUE(atlas->plan(atlas.view(look_at({0, 0, 1}, {0.1, 0, 2})), 1).empty());
+  EXPECT_TRUE(atlas->plan(atlas.view(look_at({0, 0, 1}, {0.1, 0, 2}))).empty());
 }
 
 constexpr std::uint64_t kPageBytes = 2 * atlas::kColourBytes + atlas::kHeightBytes;
@@ -383,7 +383,7 @@ TEST(ChartAtlas, ResolutionsRiseAgainWhenHalfIsFree) {
   // Everything seems to be seen until the resolution fell; then it turns out that a third is.
   std::uint32_t share = 1;
   for (int tries = 0;; ++tries) {
-    const auto records = atlas->plan(atlas.view(closer(0.7)), 0);
+    const auto records = atlas->plan(atlas.view(closer(0.7)));
     std::vector<std::uint32_t> masks(records.size(), 0);
     for (std::size_t i = 0; i < masks.size(); i += share) masks[i] = 1;
     if (atlas->allocate(masks, 0).fits) break;
@@ -415,7 +415,7 @@ TEST(ChartAtlas, FailsWhereEvenTheSmallestPagesDoNotFit) {
 TEST(ChartAtlas, ACopiedResolutionComesFromThePublishedOne) {
   Atlas atlas;
   atlas.take(usual_view());
-  const auto records = atlas->plan(atlas.view(closer(0.5)), 1);
+  const auto records = atlas->plan(atlas.view(closer(0.5)));
   const std::vector<std::uint32_t> masks(records.size(), 0x55);
   EXPECT_LE(atlas->slots_needed(masks), atlas->free_colour_slots());
   const auto allocation = atlas->allocate(masks, 1);
@@ -431,21 +431,21 @@ TEST(ChartAtlas, ACopiedResolutionComesFromThePublishedOne) {
 // Images that are seen at once, and extracted only when the next one does not show the same.
 TEST(ChartAtlas, WhatIsSeenNeedNotBeWritten) {
   Atlas atlas;
-  const auto plan = [&](std::int64_t image) { return atlas->plan(atlas.view(usual_view()), image).size(); };
+  const auto plan = [&] { return atlas->plan(atlas.view(usual_view())).size(); };
   const auto write = [&](std::span<const std::uint32_t> masks, std::int64_t image) {
     auto out = atlas->allocate(masks, image);
     atlas->commit();
     atlas->give_back_colours(out.retired);
     return out;
   };
-  std::vector<std::uint32_t> all(plan(0), 0x55);
+  std::vector<std::uint32_t> all(plan(), 0x55);
   EXPECT_EQ(atlas->not_held(all), all);
   std::vector<std::uint32_t> some = all;
   some[0] = 0x01;
   some[1] = 0;
   EXPECT_EQ(write(some, 0).jobs.size(), all.size() - 1);
 
-  ASSERT_EQ(plan(1), all.size());
+  ASSERT_EQ(plan(), all.size());
   atlas->note_seen(all, 1);
   std::vector<std::uint32_t> missing(all.size(), 0);
   missing[0] = 0x54;
@@ -455,12 +455,12 @@ TEST(ChartAtlas, WhatIsSeenNeedNotBeWritten) {
 
   // Seen by every image since it was written: had all been extracted, each would have taken the place of the one
   // before.
-  ASSERT_EQ(plan(2), all.size());
+  ASSERT_EQ(plan(), all.size());
   atlas->note_seen(all, 2);
   EXPECT_EQ(write(missing, 2).jobs[0].worse, 0);
   // After an image that did not see them, or from much further off, what is known is not given up for something far
   // coarser, but sooner with each image.
-  ASSERT_EQ(plan(4), all.size());
+  ASSERT_EQ(plan(), all.size());
   atlas->note_seen(all, 4);
   for (const PageJob& job : write(missing, 4).jobs) EXPECT_FLOAT_EQ(job.worse, 0.3F);
   atlas->note_seen(all, 5);

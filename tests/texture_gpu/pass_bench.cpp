@@ -55,7 +55,7 @@ void PassBench::look(const std::vector<PosedImage>& taken, const std::vector<Eig
 }
 
 const std::vector<std::uint32_t>& PassBench::cull() {
-  records = atlas.plan(views, image);
+  records = atlas.plan(views);
   next = fresh_generation();
   std::vector<Eigen::Vector4f> rows;
   atlas.write_charts(rows);
