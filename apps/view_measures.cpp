@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/replay_report/image_metrics.hpp"
 #include "common/error.hpp"
+#include "pictures/image_metrics.hpp"
 #include "texture_gpu/lamp/lamp_words.hpp"
 #include "texture_gpu/stage_clock.hpp"
 

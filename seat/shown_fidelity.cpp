@@ -6,7 +6,7 @@
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/replay_report/image_metrics.hpp"
+#include "pictures/image_metrics.hpp"
 #include "scene/coding_loss.hpp"
 
 namespace foresight {

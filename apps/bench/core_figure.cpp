@@ -4,11 +4,11 @@
 
 #include "apps/bench/figure_subjects.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
-#include "apps/replay_report/image_metrics.hpp"
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "display/recorded_source.hpp"
 #include "display/view_session.hpp"
+#include "pictures/image_metrics.hpp"
 
 namespace foresight {
 namespace {

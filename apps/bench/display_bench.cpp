@@ -8,7 +8,6 @@
 #include "apps/bench/bench_pipelines.hpp"
 #include "apps/bench/display_lab.hpp"
 #include "apps/command_line/picture_size.hpp"
-#include "apps/replay_report/image_metrics.hpp"
 #include "common/clock.hpp"
 #include "common/error.hpp"
 #include "common/numbers_file.hpp"
@@ -16,6 +15,7 @@
 #include "common/text.hpp"
 #include "display/view_modes.hpp"
 #include "display/view_target.hpp"
+#include "pictures/image_metrics.hpp"
 #include "texture_gpu/frame_gate.hpp"
 
 namespace foresight {

@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bench/bench_pipelines.hpp"
-#include "apps/replay_report/image_metrics.hpp"
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/error.hpp"
 #include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
 #include "display/predicted_view.hpp"
 #include "display/recorded_source.hpp"
+#include "pictures/image_metrics.hpp"
 
 namespace foresight {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "apps/replay_report/image_metrics.hpp"
+#include "pictures/image_metrics.hpp"
 #include "scene/coding_loss.hpp"
 #include "seat/shown_fidelity.hpp"
 

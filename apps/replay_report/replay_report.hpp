@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "apps/replay_report/image_metrics.hpp"
+#include "pictures/image_metrics.hpp"
 
 namespace foresight {
 

@@ -1,4 +1,4 @@
-#include "apps/replay_report/image_metrics.hpp"
+#include "pictures/image_metrics.hpp"
 
 #include <algorithm>
 #include <cmath>
