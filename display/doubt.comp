@@ -1,5 +1,6 @@
 // A view painted by how far each pixel may be off.
 #include "classes.glsl"
+#include "luma.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D shown;
 layout(binding = 1) uniform sampler2D doubt;  // as TrustPass has it
@@ -24,6 +25,6 @@ void main() {
   int kind = int(round(255.0 * texelFetch(doubt, pixel, 0).r));
   float off = levels_of(kind);
   int level = kind == kUnconfirmed ? 3 : kind >= kSuspect || off >= kLarge ? 2 : off >= kSmall ? 1 : 0;
-  float grey = dot(colour.rgb, vec3(0.299, 0.587, 0.114));
+  float grey = luma_of(colour.rgb);
   imageStore(picture, pixel, colour.a > 0.0 ? vec4(class_colour(pixel, level, grey), colour.a) : colour);
 }

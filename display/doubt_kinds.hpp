@@ -43,7 +43,7 @@ struct DoubtKind {
 };
 /// Doubt of what was last seen in a tile of step 1; the next ones follow. Images that came tell nothing of these.
 inline constexpr int kCodedAway = DoubtKind::kCount;
-/// Doubt of what may be the colour of another surface (PredictedView::kUncertain), by contrast.
+/// Doubt of what may be the colour of another surface (view_alpha::kFromEdge), by contrast.
 inline constexpr int kBesideEdge = kCodedAway + kLossSteps - 1, kKindsEnd = kBesideEdge + DoubtKind::kContrasts;
 /// `doubt`: below DoubtKind::kCount.
 constexpr DoubtKind kind_of(int doubt) {

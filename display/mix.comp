@@ -1,4 +1,5 @@
 // Two pictures in one. Row 0 is the top.
+#include "luma.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D first;   // left eye; newest image
 layout(binding = 1) uniform sampler2D second;  // right eye; prediction
@@ -20,10 +21,6 @@ vec4 scaled(sampler2D source, vec2 at) {
   return mix(above, below, f.y);
 }
 
-float grey(vec3 c) {
-  return dot(c, vec3(0.299, 0.587, 0.114));
-}
-
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(size)))) return;
@@ -36,8 +33,8 @@ void main() {
     out_colour = (pixel.y & 1) == parity ? scaled(first, at) : scaled(second, at);
   } else {
     vec4 left = scaled(first, at), right = scaled(second, at);
-    vec2 cyan = way == 2 ? vec2(grey(right.rgb)) : right.gb;
-    out_colour = vec4(grey(left.rgb), cyan, max(left.a, right.a));
+    vec2 cyan = way == 2 ? vec2(luma_of(right.rgb)) : right.gb;
+    out_colour = vec4(luma_of(left.rgb), cyan, max(left.a, right.a));
   }
   imageStore(picture, pixel, vec4(out_colour.rgb, 1.0));
 }

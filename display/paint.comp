@@ -6,6 +6,8 @@
 #include "lookup.glsl"
 #include "surface_at.glsl"
 #include "classes.glsl"
+#include "luma.glsl"
+#include "view_alpha.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
 layout(binding = 0, rgba8) uniform image2D picture;
@@ -36,7 +38,7 @@ void main() {
   ivec3 place, beside;
   uint surface = surface_of(ray, place);
   vec4 shown = imageLoad(picture, pixel);
-  float grey = dot(shown.rgb, vec3(0.299, 0.587, 0.114));
+  float grey = luma_of(shown.rgb);
   if (paint == 1) {
     vec3 right, below;
     bool border = ray_through(pixel + ivec2(1, 0), right) && surface_of(right, beside) != surface;
@@ -46,7 +48,7 @@ void main() {
   }
   if (surface == 0u) return;
   SurfaceAt at = surface_at(ray, place, surface);
-  bool from_image = shown.a > 254.5 / 255.0;
+  bool from_image = is_from_image(shown.a);
   int level = at.chart.density.x <= 0.0 ? 3 : paint == 2 ? age_class(at, from_image) : confidence_class(at, from_image);
   imageStore(picture, pixel, vec4(class_colour(pixel, level, grey), shown.a));
 }

@@ -9,6 +9,7 @@
 
 #include "display/shaders.hpp"
 #include "gl/lens_rays.hpp"
+#include "pictures/view_alpha.hpp"
 
 namespace foresight {
 namespace {
@@ -417,7 +418,7 @@ cv::Mat PredictedView::read() const {
 
 void PredictedView::count_as_seen(cv::Mat& bgra) {
   for (cv::Vec4b& pixel : std::span(bgra.ptr<cv::Vec4b>(), bgra.total()))
-    if (pixel[3] == kUncertain) pixel[3] = 255;
+    if (pixel[3] == view_alpha::kFromEdge) pixel[3] = view_alpha::kFromImage;
 }
 
 }  // namespace foresight

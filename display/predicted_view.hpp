@@ -80,15 +80,12 @@ class PredictedView {
       draw(T_world_camera, state, *textures);
   }
 
-  /// RGBA8, straight alpha, row 0 at the top: 255 colour from a camera image, kUncertain the same, but it may be that
-  /// of another surface, 128 filled hole, 64 model without any colour, 0 no model.
+  /// RGBA8, straight alpha as in pictures/view_alpha.hpp, row 0 at the top.
   const gl::Texture& picture() const { return picture_; }
 
-  static constexpr std::uint8_t kUncertain = 254;  ///< kFromEdge of view.glsl
-
-  /// Waits for the GPU; CV_8UC4 in BGRA order, 255 in place of kUncertain.
+  /// Waits for the GPU; CV_8UC4 in BGRA order, kFromImage in place of kFromEdge.
   cv::Mat read() const;
-  /// 255 in place of kUncertain, in a picture that was read.
+  /// kFromImage in place of kFromEdge, in a picture that was read.
   static void count_as_seen(cv::Mat& bgra);
 
   /// The triangle seen at each pixel of the last draw()'s faces (gl::FaceImages::surface).

@@ -1,6 +1,7 @@
 #include "display/thesis_view.hpp"
 
 #include "gl/lens_rays.hpp"
+#include "pictures/view_alpha.hpp"
 
 namespace foresight::gl {
 const ShaderSources& display_shaders();
@@ -72,7 +73,8 @@ void ThesisView::draw(const Pose& T_world_camera, const SceneState& state) {
     textured_.set("T_face_node", T_camera_node.matrix().cast<float>().eval());
     textured_.set("to_s", to_coordinate(frame.x, frame.origin, frame.width));
     textured_.set("to_t", to_coordinate(frame.y, frame.origin, frame.height));
-    textured_.set("hole_alpha", texture && filled ? 128.0f / 255.0f : 64.0f / 255.0f);
+    textured_.set("hole_alpha",
+                  static_cast<float>(texture && filled ? view_alpha::kFromFill : view_alpha::kBare) / 255.0f);
     glBindTextureUnit(0, (texture ? *texture : nothing_).name());
     pipeline_.polygon_buffers()->draw(i);
   }

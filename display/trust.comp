@@ -6,6 +6,8 @@
 // Defines: FRAMES, how many of them are remembered; COMPARISONS, how many of those that were compared; CODED_AWAY and
 // BESIDE_EDGE, where kinds of doubt_kinds.hpp begin.
 #include "camera.glsl"
+#include "luma.glsl"
+#include "view_alpha.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };  // of the images
 layout(std140, binding = 1) uniform View { CameraBlock view; };      // the same lens, perhaps of another size
@@ -63,17 +65,13 @@ int look(int frame, vec3 p) {
   return farthest > inverse_z * (1.0 + kSameSurface) ? kHidden : kSeen;
 }
 
-float grey(vec3 colour) {
-  return dot(colour, vec3(0.299, 0.587, 0.114));
-}
-
 // Grey levels by which the pixels around differ from this one.
 float contrast_at(ivec2 pixel, float here) {
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
       vec3 c = texelFetch(shown, clamp(pixel + ivec2(x, y), ivec2(0), ivec2(view.size.xy) - 1), 0).rgb;
-      float difference = grey(c) - here;
+      float difference = luma_of(c) - here;
       sum += difference * difference;
     }
   return 255.0 * sqrt(sum / 8.0);
@@ -160,7 +158,7 @@ float kind_at(ivec2 pixel, vec3 colour, bool certain) {
   if (found < 0 || newest == kHidden) return kUnconfirmed;
   uint lost = lost_at(found, then);
   if (lost > 0u) return certain ? float(CODED_AWAY + int(lost) - 1) / 255.0 : kUnconfirmed;
-  float here = grey(colour);
+  float here = luma_of(colour);
   int contrast = step_of_contrast(contrast_at(pixel, here));
   if (!certain) return float(BESIDE_EDGE + contrast) / 255.0;
   float turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
@@ -171,9 +169,9 @@ float kind_at(ivec2 pixel, vec3 colour, bool certain) {
 
 // Stripes that differ from the picture's own brightness; those of filled holes lean to the other side.
 vec4 hatched(ivec2 pixel, vec4 colour) {
-  int along = colour.a > 0.99 ? pixel.x + pixel.y : pixel.x - pixel.y + 6 * int(view.size.y);
+  int along = is_image_or_edge(colour.a) ? pixel.x + pixel.y : pixel.x - pixel.y + 6 * int(view.size.y);
   if (along % 6 >= 2) return colour;
-  bool bright = grey(colour.rgb) > 0.5;
+  bool bright = luma_of(colour.rgb) > 0.5;
   return vec4(mix(colour.rgb, vec3(bright ? 0.0 : 1.0), 0.45), colour.a);
 }
 
@@ -181,10 +179,10 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(view.size.xy)))) return;
   vec4 colour = texelFetch(shown, pixel, 0);
-  bool seen = colour.a > 0.99, certain = colour.a > 254.5 / 255.0;
+  bool seen = is_image_or_edge(colour.a), certain = is_from_image(colour.a);
   float value = seen ? kind_at(pixel, colour.rgb, certain) : kUnconfirmed;
   imageStore(doubt, pixel, vec4(value));
   uint kind = uint(round(255.0 * value));
-  bool hatch = (exact[kind >> 5] >> (kind & 31u) & 1u) == 0u && colour.a > 0.4;
+  bool hatch = (exact[kind >> 5] >> (kind & 31u) & 1u) == 0u && is_coloured(colour.a);
   imageStore(marked, pixel, hatch ? hatched(pixel, colour) : colour);
 }

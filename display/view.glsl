@@ -19,6 +19,7 @@
 #define EVERY 2
 uniform float sharp;  // share of the cubic filter, of images or of textures (sharpness.hpp)
 #include "camera.glsl"
+#include "view_alpha.glsl"
 #if CASES == IMAGE || BEFORE
 #define SEEN_BLOCK 1
 #define SEEN_UNIT 16
@@ -175,8 +176,6 @@ void choose_light(Place place) {
   float age = texelFetch(page_ages, place.chart.first_page + page.y * place.chart.pages.x + page.x).r;
   if (age > light_age) pixel_light = vec3(1.0);
 }
-
-const float kFromImage = 1.0, kFromEdge = 254.0 / 255.0, kFromFill = 128.0 / 255.0, kBare = 64.0 / 255.0;
 
 // What textures show of a pixel, beside what images do with a weight.
 vec4 beside(vec4 image, vec4 textures) {

@@ -27,7 +27,7 @@ bool has_cube_faces(const CameraBlock c) {
 #endif
 }
 
-const float kNear = 0.01;  // gl::kNearPlane; depth buffers hold kNear / z, 0 where no model is
+#include "near.glsl"
 
 // Pixel that sees p (camera frame); false where the lens model does not hold (common/lens.hpp).
 bool project_lens(const CameraBlock c, vec3 p, out vec2 pixel) {

@@ -1,4 +1,5 @@
 // Which nodes may be seen beside what is drawn already: their boxes against the farthest depth of tiles.
+#include "near.glsl"
 layout(local_size_x = 64) in;
 struct NodeBox {
   vec4 x, y, z;  // T_face_node: rows
@@ -14,7 +15,6 @@ layout(binding = 1) uniform sampler2D coarse_tiles;  // of 64 x 64 px
 uniform vec4 face;  // fx fy cx cy, px
 uniform ivec2 size;
 uniform int count;
-const float kNear = 0.01;       // gl::kNearPlane
 const float kRounding = 1.001;  // of near / z: what a rasteriser may get nearer than a corner
 const int kFine = 64;           // px: larger boxes are judged by coarse tiles
 

@@ -8,7 +8,7 @@
 #if PART
 #include "view_part.glsl"
 #else
-const float kNear = 0.01;  // gl::kNearPlane
+#include "near.glsl"
 #endif
 #if PLANES
 layout(location = 1) out vec4 plane;

@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "pictures/view_alpha.hpp"
+
 namespace foresight {
 namespace {
 
@@ -107,9 +109,9 @@ Coverage measure_coverage(const cv::Mat& predicted) {
     const auto* row = predicted.ptr<cv::Vec4b>(y);
     for (int x = 0; x < predicted.cols; ++x) {
       const int alpha = row[x][3];
-      none += alpha == 0;
-      uncoloured += alpha > 0 && alpha < 128;
-      filled += alpha >= 128 && alpha < 255;
+      none += alpha == view_alpha::kNoModel;
+      uncoloured += alpha > view_alpha::kNoModel && alpha < view_alpha::kFromFill;
+      filled += alpha >= view_alpha::kFromFill && alpha < view_alpha::kFromImage;
     }
   }
   const auto all = static_cast<double>(predicted.total());
@@ -122,7 +124,7 @@ cv::Mat seen_mask(const cv::Mat& predicted) {
   if (predicted.type() != CV_8UC4) throw std::invalid_argument("a predicted picture must be 8-bit BGRA");
   cv::Mat alpha;
   cv::extractChannel(predicted, alpha, 3);
-  return alpha == 255;
+  return alpha == view_alpha::kFromImage;
 }
 
 ImageComparison::ImageComparison(const cv::Mat& actual, const cv::Mat& seen) {

@@ -10,12 +10,12 @@
 
 namespace foresight {
 
-/// What the alpha of a predicted picture says, as shares of all image pixels. The four add up to 1.
+/// What the alpha of a predicted picture says (view_alpha.hpp), as shares of all image pixels. The four add up to 1.
 struct Coverage {
-  double seen = 0;        ///< alpha 255: colour from a camera image
-  double filled = 0;      ///< alpha 128 to 254: filled hole
-  double uncoloured = 0;  ///< alpha 1 to 127: model without any colour
-  double no_model = 0;    ///< alpha 0
+  double seen = 0;        ///< colour from a camera image
+  double filled = 0;      ///< filled hole
+  double uncoloured = 0;  ///< model without any colour
+  double no_model = 0;
 
   /// Neither seen nor filled.
   double empty() const { return uncoloured + no_model; }

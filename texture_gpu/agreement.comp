@@ -6,6 +6,7 @@
 #include "chart_record.glsl"
 #include "atlas.glsl"
 #include "asked_page.glsl"
+#include "luma.glsl"
 layout(local_size_x = 64) in;
 layout(binding = 11) uniform usamplerBuffer published_table;  // as in lookup.glsl
 layout(binding = 12) uniform samplerBuffer published_charts;
@@ -13,12 +14,8 @@ layout(binding = 13) uniform sampler2DArray published_colours;
 layout(binding = 0, std430) writeonly buffer Samples { vec2 samples[]; };  // AgreementSample (sharpness.hpp)
 const float kWhitest = 0.97;
 
-float luma(vec3 rgb) {
-  return dot(rgb, vec3(0.299, 0.587, 0.114));
-}
-
 float image_luma(vec2 pixel) {
-  return luma(unscaled(textureLod(image0, (pixel + 0.5) / cameras[0].size.xy, 0.0)));
+  return luma_of(unscaled(textureLod(image0, (pixel + 0.5) / cameras[0].size.xy, 0.0)));
 }
 
 // Squared gradient, by the differences to the pixels on either side: across both at once, what is a pixel wide would not count.
@@ -67,7 +64,7 @@ void main() {
     vec2 size = cameras[0].size.xy;
     vec4 scaled = sample_sharply(image0, pixel, size, 1.0);  // as extract.comp does
     if (max(scaled.r, max(scaled.g, scaled.b)) > kWhitest) continue;
-    float a = luma(unscaled(scaled)), b = luma(known.rgb);
+    float a = luma_of(unscaled(scaled)), b = luma_of(known.rgb);
     x += a;
     y += b;
     xx += a * a;

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/error.hpp"
+#include "pictures/view_alpha.hpp"
 #include "texture_gpu/skyline_packer.hpp"
 
 namespace foresight {
@@ -46,7 +47,7 @@ cv::Size outer_size(const Eigen::Vector2i& inner) {
 cv::Mat holes_of(const cv::Mat& bgra) {
   cv::Mat alpha, holes;
   cv::extractChannel(bgra, alpha, 3);
-  cv::compare(alpha, 128, holes, cv::CMP_LT);
+  cv::compare(alpha, view_alpha::kFromFill, holes, cv::CMP_LT);
   return holes;
 }
 
@@ -145,7 +146,7 @@ void draw_patch(const TextureReadback& textures, const Patch& patch, const Eigen
     } else if (textures.surface().charts[static_cast<std::size_t>(chart)].radius > 0) {
       const cv::Vec4b mean = textures.mean(chart);
       holes(region).setTo(0);
-      rectangle(region).setTo(mean[3] == 128 ? cv::Vec3b(mean[0], mean[1], mean[2]) : kNeverSeen);
+      rectangle(region).setTo(mean[3] == view_alpha::kFromFill ? cv::Vec3b(mean[0], mean[1], mean[2]) : kNeverSeen);
     }
   }
   fill(rectangle, holes);

@@ -6,6 +6,7 @@
 #include "chart_record.glsl"
 #include "atlas.glsl"
 #include "asked_page.glsl"
+#include "luma.glsl"
 layout(local_size_x = 64) in;
 layout(binding = 0, std430) writeonly buffer Samples { vec2 samples[]; };  // ExposureSample (exposure.hpp)
 const float kWhitest = 0.97, kSaturated = 2.0;
@@ -27,7 +28,7 @@ void main() {
     if (!is_seen(camera, p, pixel)) continue;
     vec2 uv = (pixel + 0.5) / cameras[camera].size.xy;
     vec3 rgb = min(unscaled(camera == 0 ? textureLod(image0, uv, 0.0) : textureLod(image1, uv, 0.0)), 1.0);
-    float luma = dot(rgb, vec3(0.299, 0.587, 0.114));
+    float luma = luma_of(rgb);
     sum += luma;
     highest = max(highest, max(rgb.r, max(rgb.g, rgb.b)));
     center += pixel;

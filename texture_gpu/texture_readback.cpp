@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "gl/context.hpp"
+#include "pictures/view_alpha.hpp"
 #include "texture_gpu/atlas_layout.hpp"
 #include "texture_gpu/texel.hpp"
 
 namespace foresight {
 namespace {
 
-constexpr std::uint8_t kSeen = 255, kFilled = 128, kBare = 64;
 constexpr int kFirstSeenCode = 2;
 
 Eigen::Vector2i page_grid(const Eigen::Vector2i& texels) {
@@ -26,7 +26,8 @@ std::uint8_t shown(float value, float gain) {
 cv::Vec4b shown(atlas::Texel texel, float gain) {
   if (texel.code() == 0) return {0, 0, 0, 0};
   const Eigen::Array3f c = texel.colour();
-  return {shown(c[2], gain), shown(c[1], gain), shown(c[0], gain), texel.code() >= kFirstSeenCode ? kSeen : kFilled};
+  return {shown(c[2], gain), shown(c[1], gain), shown(c[0], gain),
+          texel.code() >= kFirstSeenCode ? view_alpha::kFromImage : view_alpha::kFromFill};
 }
 
 /// Means of pages or charts.
@@ -37,8 +38,9 @@ std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t c
   halves.convertTo(values, CV_32F);
   std::vector<cv::Vec4b> out;
   for (const cv::Vec4f& c : cv::Mat_<cv::Vec4f>(values))
-    out.push_back(c[3] == 0 ? cv::Vec4b(0, 0, 0, kBare)
-                            : cv::Vec4b(shown(c[2], gain), shown(c[1], gain), shown(c[0], gain), kFilled));
+    out.push_back(c[3] == 0
+                      ? cv::Vec4b(0, 0, 0, view_alpha::kBare)
+                      : cv::Vec4b(shown(c[2], gain), shown(c[1], gain), shown(c[0], gain), view_alpha::kFromFill));
   return out;
 }
 
@@ -152,14 +154,14 @@ cv::Vec4b TextureReadback::stand_in(int chart, const Page* pages, const Eigen::V
     const Eigen::Array2i page =
         (base.cast<int>() + Eigen::Vector2i(i & 1, i >> 1)).array().max(0).min(size.array() - 1);
     const cv::Vec4b& c = pages[page.y() * size.x() + page.x()].coarse;
-    if (c[3] != kFilled) continue;
+    if (c[3] != view_alpha::kFromFill) continue;
     const double w = (i & 1 ? part.x() : 1 - part.x()) * (i >> 1 ? part.y() : 1 - part.y());
     sum += w * Eigen::Vector3d(c[0], c[1], c[2]);
     weight += w;
   }
   if (weight <= 0) return mean(chart);
   const auto byte = [&](int i) { return static_cast<std::uint8_t>(std::lround(sum[i] / weight)); };
-  return {byte(0), byte(1), byte(2), kFilled};
+  return {byte(0), byte(1), byte(2), view_alpha::kFromFill};
 }
 
 }  // namespace foresight

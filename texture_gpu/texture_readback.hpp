@@ -21,8 +21,7 @@ struct ChartTexels {
   Patch patch;         ///< its plane, and its node
   ChartRaster raster;  ///< its grid and heights
   /// CV_8UC4, BGRA, at the exposure of the newest image, as a display shows them: what is brighter than
-  /// its white is cut off. Alpha 255: seen by a camera, 128: filled from around it, 64: no colour
-  /// (BGR 0), 0: no surface (BGR 0).
+  /// its white is cut off. Alpha as in pictures/view_alpha.hpp; kNoModel: no surface. BGR 0 without colour.
   cv::Mat colours;
   /// Row-major: index in the scene of the triangle under a core texel's centre; -1: not core.
   std::vector<int> triangle;
@@ -69,7 +68,7 @@ class TextureReadback {
   Eigen::Vector2d resolution(int index) const;
 
   /// Mean colour of a chart, handed on from its neighbours where it was never seen: BGR as
-  /// ChartTexels::colours, alpha 128; all 0 but alpha 64 where there is none.
+  /// ChartTexels::colours, alpha kFromFill; all 0 but alpha kBare where there is none.
   cv::Vec4b mean(int index) const;
 
  private:

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "apps/replay_report/drawn_text.hpp"
+#include "pictures/view_alpha.hpp"
 
 namespace foresight {
 namespace {
@@ -96,9 +97,9 @@ cv::Mat pink_holes(const cv::Mat& view) {
   for (int y = 0; y < view.rows; ++y)
     for (int x = 0; x < view.cols; ++x) {
       const auto& pixel = view.at<cv::Vec4b>(y, x);
-      out.at<cv::Vec3b>(y, x) = pixel[3] == 0    ? kNoModel
-                                : pixel[3] < 128 ? kPink
-                                                 : cv::Vec3b(pixel[0], pixel[1], pixel[2]);
+      out.at<cv::Vec3b>(y, x) = pixel[3] == view_alpha::kNoModel   ? kNoModel
+                                : pixel[3] < view_alpha::kFromFill ? kPink
+                                                                   : cv::Vec3b(pixel[0], pixel[1], pixel[2]);
     }
   return out;
 }

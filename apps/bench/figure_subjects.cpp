@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/error.hpp"
+#include "pictures/view_alpha.hpp"
 
 namespace foresight {
 namespace {
@@ -26,8 +27,8 @@ cv::Mat alpha_of(const cv::Mat& view) {
 
 /// Pixels that only an extraction without the occlusion test gives a colour: doubles of what hid them.
 double doubles(const cv::Mat& without, const cv::Mat& with) {
-  const cv::Mat coloured = alpha_of(without) == 255;
-  const cv::Mat doubled = coloured & (alpha_of(with) < 128);
+  const cv::Mat coloured = alpha_of(without) == view_alpha::kFromImage;
+  const cv::Mat doubled = coloured & (alpha_of(with) < view_alpha::kFromFill);
   const double beyond = static_cast<double>(coloured.total()) - cv::countNonZero(coloured);
   return cv::countNonZero(doubled) - 0.5 * beyond;
 }
@@ -90,7 +91,7 @@ FigurePair choose_pair(const FigureLab& lab) {
     }
   }
   const auto tested = lab.extract(lab.load(best.from), with);
-  if (cv::countNonZero(alpha_of(lab.look(*tested, best.to)) < 128) == 0) nothing_hidden(lab);
+  if (cv::countNonZero(alpha_of(lab.look(*tested, best.to)) < view_alpha::kFromFill) == 0) nothing_hidden(lab);
   return best;
 }
 
@@ -153,11 +154,12 @@ int choose_direction(const FigureLab& lab, const FigurePair& pair, double mean_p
 }
 
 cv::Mat removed_errors(const cv::Mat& raw, const cv::Mat& cleaned, const cv::Mat& actual) {
-  const cv::Mat removed = (alpha_of(raw) == 255) & (alpha_of(cleaned) < 128) & unlike(bgr_of(raw), actual);
+  const cv::Mat removed = (alpha_of(raw) == view_alpha::kFromImage) & (alpha_of(cleaned) < view_alpha::kFromFill) &
+                          unlike(bgr_of(raw), actual);
   // Where a wide hole has opened since, the wrong colours stand apart from what they belong to.
   cv::Mat wide, beside;
   const int size = 2 * (raw.cols / 160) + 3;
-  cv::morphologyEx(alpha_of(raw) < 128, wide, cv::MORPH_OPEN, cv::Mat::ones(size, size, CV_8U));
+  cv::morphologyEx(alpha_of(raw) < view_alpha::kFromFill, wide, cv::MORPH_OPEN, cv::Mat::ones(size, size, CV_8U));
   cv::dilate(wide, beside, cv::Mat::ones(2 * size + 1, 2 * size + 1, CV_8U));
   const cv::Mat apart = removed & beside;
   return cv::countNonZero(apart) ? apart : removed;
@@ -168,7 +170,7 @@ cv::Mat mended_errors(const cv::Mat& raw, const cv::Mat& better, const cv::Mat& 
 }
 
 cv::Mat differences(const cv::Mat& a, const cv::Mat& b) {
-  const cv::Mat coloured_a = alpha_of(a) >= 128, coloured_b = alpha_of(b) >= 128;
+  const cv::Mat coloured_a = alpha_of(a) >= view_alpha::kFromFill, coloured_b = alpha_of(b) >= view_alpha::kFromFill;
   return (coloured_a ^ coloured_b) | (unlike(bgr_of(a), bgr_of(b)) & coloured_a & coloured_b);
 }
 

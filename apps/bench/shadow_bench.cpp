@@ -12,6 +12,7 @@
 #include "display/recorded_source.hpp"
 #include "display/view_loop.hpp"
 #include "gl/context.hpp"
+#include "pictures/view_alpha.hpp"
 #include "scene/ground_truth.hpp"
 #include "sim/lamp.hpp"
 #include "texture_gpu/lamp/shadow_rays.hpp"
@@ -65,7 +66,9 @@ class ShadowMeter final : public ViewObserver {
     for (int y = 0; y < view.rows; y += kPixelStep)
       for (int x = 0; x < view.cols; x += kPixelStep) {
         const auto point = surface.at(x, y);
-        if (!point || moving_[static_cast<std::size_t>(point->node)] || view.at<cv::Vec4b>(y, x)[3] != 255) continue;
+        if (!point || moving_[static_cast<std::size_t>(point->node)] ||
+            view.at<cv::Vec4b>(y, x)[3] != view_alpha::kFromImage)
+          continue;
         const Eigen::Vector3d p = T_world_node[static_cast<std::size_t>(point->node)] * point->p_node;
         if (!shaded(p, then) && !shaded(p, now)) continue;
         for (int c = 0; c < 3; ++c) {

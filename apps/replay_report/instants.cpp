@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "pictures/view_alpha.hpp"
+
 namespace foresight {
 namespace {
 
@@ -36,7 +38,9 @@ cv::Mat compose(const cv::Mat& predicted) {
   for (int y = 0; y < out.rows; ++y)
     for (int x = 0; x < out.cols; ++x) {
       const auto& p = predicted.at<cv::Vec4b>(y, x);
-      out.at<cv::Vec3b>(y, x) = p[3] >= 128 ? cv::Vec3b(p[0], p[1], p[2]) : p[3] ? kUncolouredColour : kNoModelColour;
+      out.at<cv::Vec3b>(y, x) = p[3] >= view_alpha::kFromFill ? cv::Vec3b(p[0], p[1], p[2])
+                                : p[3]                        ? kUncolouredColour
+                                                              : kNoModelColour;
     }
   return out;
 }
@@ -65,10 +69,10 @@ cv::Mat error_picture(const cv::Mat& predicted, const cv::Mat& actual) {
       const auto& p = predicted.at<cv::Vec4b>(y, x);
       const auto& a = actual.at<cv::Vec3b>(y, x);
       auto& o = out.at<cv::Vec3b>(y, x);
-      if (p[3] == 255) {
+      if (p[3] == view_alpha::kFromImage) {
         const int error = std::max({std::abs(p[0] - a[0]), std::abs(p[1] - a[1]), std::abs(p[2] - a[2])});
         o = error_colour(error / kErrorRange);
-      } else if (p[3] >= 128) {
+      } else if (p[3] >= view_alpha::kFromFill) {
         o = on_hatch(x, y, period) ? kFilledColour : kNoModelColour;
       } else {
         o = p[3] ? kUncolouredColour : kNoModelColour;

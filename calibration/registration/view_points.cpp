@@ -4,6 +4,7 @@
 
 #include "calibration/registration/projection_slope.hpp"
 #include "common/rotation.hpp"
+#include "pictures/view_alpha.hpp"
 
 namespace foresight {
 namespace {
@@ -60,7 +61,7 @@ std::vector<cv::Mat> grey_pyramid(const cv::Mat& picture, int levels) {
 cv::Mat evidence_mask(const RenderedView& view, const RefinementOptions& options) {
   cv::Mat alpha;
   cv::extractChannel(view.colour, alpha, 3);
-  cv::Mat mask = alpha == 255;
+  cv::Mat mask = alpha == view_alpha::kFromImage;
   for (int v = 0; v < mask.rows; ++v)
     for (int u = 0; u < mask.cols; ++u) {
       const float here = view.range.at<float>(v, u);

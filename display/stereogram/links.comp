@@ -1,4 +1,5 @@
 // For each pixel, as one eye sees it, how far to its left the other sees the same point: see stereogram.hpp.
+#include "near.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2DArray depth;  // near / z, 0 where no model is
 layout(binding = 0, r32f) uniform writeonly image2D links;
@@ -7,7 +8,6 @@ uniform vec2 range;   // inverse distance, 1/m: that of nearness 0, and 1 over t
 uniform vec2 eyes;    // distance in px; depth of field
 uniform vec2 bounds;  // least and largest separation, px
 uniform int inverted, hides, smooth_links;
-const float kNear = 0.01;   // gl::kNearPlane
 const float kStep = 1.5;    // px of separation between neighbours beyond which they are of two surfaces
 const float kBefore = 1.0;  // px by which another surface has to be before the point to hide it
 

@@ -3,6 +3,7 @@
 // DISTORTED: as in warp_rays.glsl. TELLS: 1 where depth and holes are asked for. KEEPS: 1 where what other sources have seen stays, unless this one has seen something nearer. MENDS: 1 where only holes
 // are looked up, in layers of what lies behind edges.
 layout(local_size_x = 8, local_size_y = 8) in;
+#include "view_alpha.glsl"
 #include "warp_rays.glsl"
 layout(binding = 0) uniform sampler2D depth;    // 1/m, 0 where no model is
 layout(binding = 1) uniform sampler2D picture;  // linear
@@ -62,7 +63,7 @@ vec2 in_texture(vec2 at) {
 
 // Alpha tells classes, between which nothing lies.
 vec4 classed(vec4 colour) {
-  colour.a = colour.a > 0.75 ? 1.0 : colour.a > 0.375 ? 128.0 / 255.0 : colour.a > 0.125 ? 64.0 / 255.0 : 0.0;
+  colour.a = colour.a > 0.75 ? kFromImage : colour.a > 0.375 ? kFromFill : colour.a > 0.125 ? kBare : 0.0;
   return colour;
 }
 

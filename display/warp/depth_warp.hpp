@@ -52,7 +52,7 @@ class DepthWarp {
 
   const Lens& lens() const { return target_; }
   bool tells() const { return tells_; }
-  /// RGBA8 as the source's: alpha 255 seen, 128 filled, 64 no colour, 0 no model, beyond the source's border, or where
+  /// RGBA8 as the source's: alpha as in pictures/view_alpha.hpp, kNoModel beyond the source's border, or where
   /// the target's lens sees nothing.
   const gl::Texture& picture() const { return picture_; }
   /// Where it tells. R8, the same size: 0 found in the source; 128 a hole that was filled; 255 beyond the source's

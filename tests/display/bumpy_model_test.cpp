@@ -1,6 +1,7 @@
 // Models of real things are bumpy: what stands a little above a surface may be none, and does not take its colours
 // away.
 #include "display/predicted_view.hpp"
+#include "pictures/view_alpha.hpp"
 #include "scene/primitives.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
@@ -86,7 +87,7 @@ TEST_F(BumpyModelTest, WhatABumpHidesIsShownUncertainAndWhatAThingHidesIsFilled)
       const cv::Vec4b& pixel = stored.at<cv::Vec4b>(y, x);
       Count& count = behind[*slab];
       ++count.hidden;
-      count.uncertain += pixel[3] == PredictedView::kUncertain;
+      count.uncertain += pixel[3] == view_alpha::kFromEdge;
       count.certain += pixel[3] == 255;
       const Eigen::Vector3d hue = 255 * paint(static_cast<int>(*slab), {0, 0, 0});
       count.of_the_slab += (Eigen::Vector3d(pixel[0], pixel[1], pixel[2]) - hue).norm() < 60;

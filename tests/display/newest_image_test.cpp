@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "display/predicted_view.hpp"
+#include "pictures/view_alpha.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 #include "tests/texture_gpu/reference/ray_caster.hpp"
@@ -290,7 +291,7 @@ TEST_P(NewestImage, UncertainPixelsAreShownWhereNothingElseSawThePoint) {
   int uncertain = 0, behind = 0, of_the_image = 0, seen_later = 0, changed = 0;
   for (int y = 0; y < picture.rows; ++y)
     for (int x = 0; x < picture.cols; ++x) {
-      if (stored.at<cv::Vec4b>(y, x)[3] != PredictedView::kUncertain) continue;
+      if (stored.at<cv::Vec4b>(y, x)[3] != view_alpha::kFromEdge) continue;
       ++uncertain;
       EXPECT_EQ(picture.at<cv::Vec4b>(y, x)[3], 255) << "a colour from a camera image";
       EXPECT_LT(old.at<cv::Vec4b>(y, x)[3], 255) << x << ' ' << y;

@@ -5,6 +5,7 @@
 
 #include "display/picture_readback.hpp"
 #include "display/view_modes.hpp"
+#include "pictures/view_alpha.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 #include "texture_gpu/texture_core.hpp"
@@ -113,7 +114,7 @@ TEST_P(TrustPassTest, WhatMayShowAnotherSurfaceIsAKindOfItsOwn) {
   int uncertain = 0, striped = 0;
   for (int y = 0; y < hatched.rows; ++y)
     for (int x = 0; x < hatched.cols; ++x) {
-      if (hatched.at<cv::Vec4b>(y, x)[3] != PredictedView::kUncertain) continue;
+      if (hatched.at<cv::Vec4b>(y, x)[3] != view_alpha::kFromEdge) continue;
       ++uncertain;
       const int doubt = view.doubt.at<uchar>(y, x);
       EXPECT_TRUE(doubt >= kBesideEdge && doubt < kKindsEnd) << x << ' ' << y << ": " << doubt;

@@ -1,13 +1,12 @@
 // The edges of a polygon as lines of `line_width` pixels: two triangles each, since wide lines are
 // no longer part of OpenGL's core. Conventions as in raster.vert.
+#include "near.glsl"
 layout(binding = 1) uniform samplerBuffer corners;
 uniform mat4 T_face_node;
 uniform vec4 face;       // fx fy cx cy, px
 uniform vec2 face_size;  // px
 uniform int first_corner, corner_count;
 uniform float line_width;  // px
-
-const float kNear = 0.01;  // gl::kNearPlane
 
 vec3 corner(int i) {
   return (T_face_node * texelFetch(corners, first_corner + i % corner_count)).xyz;
