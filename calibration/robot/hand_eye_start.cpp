@@ -56,10 +56,15 @@ std::vector<cv::Point2d> normalised(const CameraModel& camera, const std::vector
   return rays;
 }
 
+/// The robot's pose, or its inverse, as it stands between X and the board's pose.
+Pose of_robot(CameraMount mount, const Pose& T_base_flange) {
+  return mount == CameraMount::moving ? T_base_flange : T_base_flange.inverse();
+}
+
 Pose park(CameraMount mount, std::span<const Pose> T_base_flange, std::span<const Pose> T_camera_board) {
   std::vector<cv::Mat> Ra, ta, Rb, tb;
   for (std::size_t i = 0; i < T_base_flange.size(); ++i) {
-    const Pose A = mount == CameraMount::moving ? T_base_flange[i] : T_base_flange[i].inverse();
+    const Pose A = of_robot(mount, T_base_flange[i]);
     for (const auto& [T, R, t] : {std::tie(A, Ra, ta), std::tie(T_camera_board[i], Rb, tb)}) {
       cv::Mat rotation, translation;
       cv::eigen2cv(Eigen::Matrix3d(T.linear()), rotation);
@@ -76,19 +81,15 @@ std::vector<Pose> base_or_flange_boards(CameraMount mount, std::span<const Pose>
                                         std::span<const Pose> T_camera_board) {
   std::vector<Pose> out;
   for (std::size_t i = 0; i < T_base_flange.size(); ++i)
-    out.push_back(mount == CameraMount::moving ? T_base_flange[i] * X * T_camera_board[i]
-                                               : T_base_flange[i].inverse() * X * T_camera_board[i]);
+    out.push_back(of_robot(mount, T_base_flange[i]) * X * T_camera_board[i]);
   return out;
 }
 
 std::vector<double> misfits(const HandEyeStart& start, std::span<const Pose> T_base_flange,
                             std::span<const Pose> seen) {
   std::vector<double> out;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const Pose predicted = predicted_board(start.mount, T_base_flange[i], start.X, start.Y);
-    const double turn = rotation_vector(predicted.linear().transpose() * seen[i].linear()).norm();
-    out.push_back((predicted.translation() - seen[i].translation()).norm() + 0.1 * turn);
-  }
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    out.push_back(misfit_m(predicted_board(start.mount, T_base_flange[i], start.X, start.Y), seen[i]));
   return out;
 }
 
@@ -154,10 +155,9 @@ Eigen::Vector2d invariants(const Pose& from, const Pose& to) {
 // For each view the symmetry whose motion from `anchor` is most like the robot's.
 std::vector<std::size_t> turns_like_robot(CameraMount mount, std::span<const Pose> F, std::span<const Pose> seen,
                                           std::span<const Pose> symmetries, std::size_t anchor) {
-  const auto robot = [&](std::size_t i) { return mount == CameraMount::moving ? F[i] : Pose(F[i].inverse()); };
   std::vector<std::size_t> best(seen.size(), 0);
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const Eigen::Vector2d truth = invariants(robot(anchor), robot(i));
+    const Eigen::Vector2d truth = invariants(of_robot(mount, F[anchor]), of_robot(mount, F[i]));
     double least = 1e300;
     for (std::size_t k = 0; k < symmetries.size(); ++k) {
       const Eigen::Vector2d off = invariants(seen[anchor].inverse(), (seen[i] * symmetries[k]).inverse()) - truth;
@@ -182,10 +182,10 @@ HandEyeStart settle(CameraMount mount, std::span<const Pose> F, std::span<const 
   for (int round = 0; round < 6; ++round) {
     std::vector<std::size_t> next = k;
     for (std::size_t i = 0; i < seen.size(); ++i) {
+      const Pose predicted = predicted_board(mount, F[i], start.X, start.Y);
       double least = 1e300;
       for (std::size_t s = 0; s < symmetries.size(); ++s) {
-        const Pose off = predicted_board(mount, F[i], start.X, start.Y).inverse() * seen[i] * symmetries[s];
-        const double cost = off.translation().norm() + 0.1 * rotation_vector(off.linear()).norm();
+        const double cost = misfit_m(predicted, seen[i] * symmetries[s]);
         if (cost < least - 1e-9) least = cost, next[i] = s;
       }
     }

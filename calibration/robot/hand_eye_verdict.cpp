@@ -27,25 +27,22 @@ class BoardPlaces {
     std::vector<double> used;
     for (std::size_t v = 0; v < data.poses.size(); ++v) {
       seen_.push_back(board_pose(summary.camera, p_board, data.corners.views[v]).T_camera_board);
-      if (summary.views[v].used) used.push_back(misfit_m(v, v));
+      if (summary.views[v].used) used.push_back(misfit(v, v));
     }
     limit_ = std::max(kLeastFit, kFits * median(std::move(used)));
   }
 
-  Pose off(std::size_t image, std::size_t robot) const {
-    return predicted_board(summary_.mount, data_.poses[robot].T_base_flange, summary_.X, summary_.Y).inverse() *
-           seen_[image];
+  Pose predicted(std::size_t robot) const {
+    return predicted_board(summary_.mount, data_.poses[robot].T_base_flange, summary_.X, summary_.Y);
   }
-  double misfit_m(std::size_t image, std::size_t robot) const {
-    const Pose T = off(image, robot);
-    return T.translation().norm() + 0.1 * rotation_vector(T.linear()).norm();
-  }
+  Pose off(std::size_t image) const { return predicted(image).inverse() * seen_[image]; }
+  double misfit(std::size_t image, std::size_t robot) const { return misfit_m(predicted(robot), seen_[image]); }
 
   /// The robot pose that puts the board where `image` shows it, other than its own.
   std::optional<std::size_t> fitting(std::size_t image) const {
     std::optional<std::size_t> best;
     for (std::size_t robot = 0; robot < data_.poses.size(); ++robot)
-      if (robot != image && misfit_m(image, robot) < (best ? misfit_m(image, *best) : limit_)) best = robot;
+      if (robot != image && misfit(image, robot) < (best ? misfit(image, *best) : limit_)) best = robot;
     return best;
   }
 
@@ -58,7 +55,7 @@ class BoardPlaces {
 
 void name_contradictions(const BoardPlaces& places, const std::vector<std::size_t>& left_out, HandEyeSummary& summary) {
   for (const std::size_t v : left_out) {
-    const Pose off = places.off(v, v);
+    const Pose off = places.off(v);
     summary.notes.push_back("view " + summary.views[v].name +
                             " is left out: its robot pose contradicts the others by " +
                             readable(1e3 * off.translation().norm(), 1) + " mm and " +

@@ -25,6 +25,12 @@ Vector6d step_between(const Pose& from, const Pose& to) {
   return to_twist(from.inverse() * to);
 }
 
+double misfit_m(const Pose& one, const Pose& other) {
+  constexpr double kLever = 0.1;  // m
+  const double turn = rotation_vector(one.linear().transpose() * other.linear()).norm();
+  return (one.translation() - other.translation()).norm() + kLever * turn;
+}
+
 Pose typical_pose(std::span<const Pose> poses) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   std::array<std::vector<double>, 3> t;

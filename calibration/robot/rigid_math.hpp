@@ -23,6 +23,9 @@ Pose moved(const Pose& T, const Vector6d& step);
 /// The step with moved(from, step) = to.
 Vector6d step_between(const Pose& from, const Pose& to);
 
+/// How far two poses are from one another, m: a radian counts as much as 0.1 m.
+double misfit_m(const Pose& one, const Pose& other);
+
 /// Chordal mean rotation and median position; at least one pose.
 Pose typical_pose(std::span<const Pose> poses);
 

@@ -183,8 +183,7 @@ StreamHandEye stream_hand_eye(const std::vector<AlignedPose>& poses, bool rotati
   }
   out.Y = typical_pose(targets);
   std::vector<double> off;
-  for (const Pose& target : targets)
-    off.push_back(0.1 * rotation_vector(out.Y.linear().transpose() * target.linear()).norm());
+  for (const Pose& target : targets) off.push_back(misfit_m(out.Y, target));
   out.misfit = median(off);
   return out;
 }
