@@ -26,9 +26,7 @@ struct Outputs {
 };
 
 Outputs files_of(const fs::path& out) {
-  std::string extension = out.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower(out.extension().string());
   if (extension == ".glb") return {out, {}, {}};
   if (extension != ".gltf")
     throw InputError(

@@ -59,9 +59,9 @@ std::optional<link::Topic> find_topic(const link::Participant& program, const st
   }
   if (stop_requested()) return std::nullopt;
   const std::vector<std::string> names(written.begin(), written.end());
-  throw InputError(topic, "nobody writes this topic",
-                   names.empty() ? "nobody writes any: see `foresight link status`, and `foresight robot RIG --serve`"
-                                 : "did you mean '" + nearest_word(topic, names) + "'?");
+  throw InputError(
+      topic, "nobody writes this topic",
+      did_you_mean(topic, names, "nobody writes any: see `foresight link status`, and `foresight robot RIG --serve`"));
 }
 
 /// What came of one topic.

@@ -40,8 +40,7 @@ Layers layers_without(const std::vector<std::string>& hidden) {
   for (const std::string& word : hidden) {
     const auto at = static_cast<std::size_t>(std::ranges::find(words, word) - words.begin());
     if (at == words.size())
-      throw InputError("--hide", in_quotes(word) + " is nothing that a picture shows",
-                       "did you mean '" + nearest_word(word, words) + "'?");
+      throw InputError("--hide", in_quotes(word) + " is nothing that a picture shows", did_you_mean(word, words));
     out[at] = false;
   }
   return out;

@@ -77,14 +77,13 @@ bool obey(const std::string& line, sim::DriveRack& rack) {
     if (drive && number)
       rack.inject(*drive, fault, *number);
     else if (!drive)
-      std::fprintf(stderr, "sim: there is no drive %s; did you mean '%s'?\n", in_quotes(name).c_str(),
-                   nearest_word(name, names_of(rack)).c_str());
+      std::fprintf(stderr, "sim: there is no drive %s; %s\n", in_quotes(name).c_str(),
+                   did_you_mean(name, names_of(rack)).c_str());
     else
       std::fprintf(stderr, "sim: %s is not a number\n", in_quotes(value).c_str());
     return true;
   }
-  std::fprintf(stderr, "sim: there is no command %s; did you mean '%s'?\n", in_quotes(verb).c_str(),
-               nearest_word(verb, verbs).c_str());
+  std::fprintf(stderr, "sim: there is no command %s; %s\n", in_quotes(verb).c_str(), did_you_mean(verb, verbs).c_str());
   return true;
 }
 

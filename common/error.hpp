@@ -22,6 +22,9 @@ class RuntimeFailure : public std::runtime_error {
   RuntimeFailure(const std::string& what, const std::string& cure);
 };
 
+/// Throws InputError unless `ok`.
+void require(bool ok, const std::string& where, const std::string& what, const std::string& cure);
+
 /// "file:line", the form that editors and terminals can jump to.
 std::string at_line(const std::filesystem::path& file, int line);
 

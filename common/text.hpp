@@ -30,6 +30,19 @@ std::string in_quotes(std::string_view text);
 /// equals); empty only where there is no candidate.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 
+/// The cure for a word that is none of the candidates: "did you mean 'elbow'?"; `otherwise` where there are none.
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates,
+                         const std::string& otherwise = "correct it");
+
+/// "left, right".
+std::string joined(std::span<const std::string> words);
+
+/// With a to z in place of A to Z.
+std::string lower(std::string_view text);
+
+/// Without the blanks at its ends.
+std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r");
+
 /// "18.4 dB", "-" where nothing was measured: `digits` after the point.
 std::string readable(double value, int digits, const std::string& unit = "");
 std::string readable(const std::optional<double>& value, int digits, const std::string& unit = "");

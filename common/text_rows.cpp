@@ -13,12 +13,6 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r\v\f";
 
-std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
-  text.remove_suffix(text.size() - std::min(text.find_last_not_of(kBlank) + 1, text.size()));
-  return text;
-}
-
 void split_runs(TextRow& row, std::string_view between) {
   for (std::size_t at = row.text.find_first_not_of(between); at != std::string_view::npos;) {
     const std::size_t end = std::min(row.text.find_first_of(between, at), row.text.size());
@@ -58,7 +52,7 @@ void split_commas(TextRow& row, char* line) {
       row.fields.push_back(quoted(row, line, at));
     } else {
       const std::size_t end = std::min(row.text.find(',', at), row.text.size());
-      row.fields.push_back(trimmed(row.text.substr(at, end - at)));
+      row.fields.push_back(trimmed(row.text.substr(at, end - at), kBlank));
       at = end;
     }
     if (at >= row.text.size()) return;
@@ -85,7 +79,7 @@ void for_each_row(const std::filesystem::path& file, const RowForm& form,
   for (TextRow row{file, 1, {}}; at < all.size(); ++row.line) {
     const std::size_t end = std::min(all.find('\n', at), all.size());
     const std::string_view line = all.substr(at, end - at);
-    row.text = trimmed(line);
+    row.text = trimmed(line, kBlank);
     row.indent = std::min(line.find_first_not_of(kBlank), line.size());
     at = end + 1;
     row.fields.clear();

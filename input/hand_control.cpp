@@ -9,10 +9,6 @@
 namespace foresight {
 namespace {
 
-void require(bool ok, const std::string& where, const std::string& what, const std::string& cure) {
-  if (!ok) throw InputError(where, what, cure);
-}
-
 void require_arm(const HandOptions& options, const std::string& where) {
   if (!options.arm) return;
   require(options.arm_joints.size() == options.arm->size(), where,

@@ -6,13 +6,6 @@
 #include "common/error.hpp"
 
 namespace foresight {
-namespace {
-
-void require(bool ok, const std::string& where, const std::string& what, const std::string& cure) {
-  if (!ok) throw InputError(where, what, cure);
-}
-
-}  // namespace
 
 void GateOptions::validate(const std::string& where) const {
   require(rate_hz >= 10 && rate_hz <= 2000, where, "rate_hz is " + std::to_string(rate_hz), "choose from 10 to 2000");

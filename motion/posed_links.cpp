@@ -15,8 +15,7 @@ PosedLinks::PosedLinks(const UrdfRobot& robot, const std::vector<std::string>& j
   for (const UrdfJoint& joint : robot.joints) names.push_back(joint.name);
   for (const std::string& joint : joints)
     if (!joint.empty() && std::find(names.begin(), names.end(), joint) == names.end())
-      throw InputError(where, "the URDF has no joint " + in_quotes(joint),
-                       "did you mean '" + nearest_word(joint, names) + "'?");
+      throw InputError(where, "the URDF has no joint " + in_quotes(joint), did_you_mean(joint, names));
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const JointSource source = source_of(robot, j);
     const UrdfJoint& leads = robot.joints[static_cast<std::size_t>(source.joint)];

@@ -20,8 +20,7 @@ std::vector<std::size_t> columns_of(const TextRow& row, const Rig& rig) {
   for (std::size_t i = 1; i < names.size(); ++i) {
     const auto found = std::find(known.begin(), known.end(), names[i]);
     if (found == known.end())
-      throw InputError(row.where(i), "the rig has no joint " + in_quotes(names[i]),
-                       "did you mean '" + nearest_word(names[i], known) + "'?");
+      throw InputError(row.where(i), "the rig has no joint " + in_quotes(names[i]), did_you_mean(names[i], known));
     const auto joint = static_cast<std::size_t>(found - known.begin());
     if (std::find(out.begin(), out.end(), joint) != out.end())
       throw InputError(row.where(i), "joint " + in_quotes(names[i]) + " has two columns", "remove one");

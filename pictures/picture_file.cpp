@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "common/read_file.hpp"
+#include "common/text.hpp"
 #include "pictures/image_structure.hpp"
 
 namespace foresight {
@@ -15,8 +16,7 @@ constexpr std::uintmax_t kLargest = 0x40000000;  // bytes
 }  // namespace
 
 bool names_picture(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower(file.extension().string());
   constexpr std::string_view kEndings[] = {".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".ppm", ".tif", ".tiff"};
   return std::ranges::find(kEndings, ending) != std::end(kEndings);
 }

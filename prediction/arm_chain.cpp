@@ -26,7 +26,7 @@ std::size_t find_link(const UrdfRobot& robot, const std::string& name, const std
     if (robot.links[i].name == name) return i;
     names.push_back(robot.links[i].name);
   }
-  throw InputError(where, "has no link " + in_quotes(name), "did you mean '" + nearest_word(name, names) + "'?");
+  throw InputError(where, "has no link " + in_quotes(name), did_you_mean(name, names));
 }
 
 // Joints from `base` down to `tip`, fixed ones too. Joint i moves link i + 1.

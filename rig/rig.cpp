@@ -189,7 +189,7 @@ void check_joints(const YamlMap& map, const Rig& rig) {
     if (joint.group != JointGroup::pan_tilt &&
         std::find(movable.begin(), movable.end(), joint.drive.name) == movable.end())
       throw InputError(map.where("joints"), "joint '" + joint.drive.name + "' is none that moves in the URDF",
-                       "did you mean '" + nearest_word(joint.drive.name, movable) + "'?");
+                       did_you_mean(joint.drive.name, movable));
   for (const std::string& name : movable)
     if (!names.contains(name))
       throw InputError(

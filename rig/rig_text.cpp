@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/text.hpp"
 #include "rig/bus_plan.hpp"
 #include "rig/rig_draft.hpp"
 
@@ -19,10 +20,8 @@ std::string scalar(const std::string& text) {
       !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) && std::ranges::all_of(text, plain);
   // Words that YAML takes for something else.
   static const std::vector<std::string> kTaken{"null", "true", "false", "yes", "no", "on", "off", "y", "n"};
-  std::string lower = text;
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if ((word || text.starts_with("../")) && std::ranges::all_of(text, plain) &&
-      std::ranges::find(kTaken, lower) == kTaken.end())
+      std::ranges::find(kTaken, lower(text)) == kTaken.end())
     return text;
   std::string out = "\"";
   for (const char c : text) {

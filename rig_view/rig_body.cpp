@@ -157,8 +157,7 @@ void set_positions(const Rig& rig, const std::string& text, const std::string& w
     const std::string name = entry.substr(0, equals);
     const std::size_t at = joint_named(rig, name);
     if (at == rig.joints.size())
-      throw InputError(where, "the rig has no joint " + in_quotes(name),
-                       "did you mean '" + nearest_word(name, rig.joint_names()) + "'?");
+      throw InputError(where, "the rig has no joint " + in_quotes(name), did_you_mean(name, rig.joint_names()));
     const auto value = equals == std::string::npos ? std::nullopt : parse_number(entry.substr(equals + 1));
     if (!value)
       throw InputError(where, in_quotes(entry) + " gives no position",

@@ -110,9 +110,7 @@ Mesh read_through_assimp(const fs::path& file) {
 
 Mesh read_mesh(const fs::path& file) {
   static const std::vector<std::string> kKnown = {".ply", ".obj", ".stl", ".gltf", ".glb", ".dae"};
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower(file.extension().string());
   if (std::find(kKnown.begin(), kKnown.end(), extension) == kKnown.end())
     throw InputError(file.string(), "unknown kind of mesh " + in_quotes(extension),
                      "convert it to one of .ply .obj .stl .gltf .glb .dae");

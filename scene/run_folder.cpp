@@ -154,7 +154,7 @@ std::vector<std::optional<PoseTrack>> read_node_tracks(const fs::path& file, con
       std::vector<std::string> names;
       for (const Node& node : scene.nodes()) names.push_back(node.name);
       throw InputError(row.where(), "the scene has no node " + in_quotes(row.fields[1]),
-                       "did you mean '" + nearest_word(row.fields[1], names) + "'?");
+                       did_you_mean(row.fields[1], names));
     }
     if (!track->second.empty()) require_ascending(row, track->second.back().time, sample.time);
     track->second.push_back(sample);

@@ -128,9 +128,8 @@ class SceneYaml {
                       const std::string& key) {
     const auto it = std::find(names.begin(), names.end(), name);
     if (it == names.end())
-      throw InputError(
-          yaml.where(key), "there is no " + in_quotes(name),
-          names.empty() ? "name one that stands above" : "did you mean '" + nearest_word(name, names) + "'?");
+      throw InputError(yaml.where(key), "there is no " + in_quotes(name),
+                       did_you_mean(name, names, "name one that stands above"));
     return static_cast<int>(it - names.begin());
   }
 
@@ -147,7 +146,7 @@ class SceneYaml {
     const auto it = std::find(names.begin(), names.end(), name);
     if (it == names.end())
       throw InputError(yaml.where("parent"), "no node " + in_quotes(name) + " stands above",
-                       "name an earlier node; did you mean '" + nearest_word(name, names) + "'?");
+                       "name an earlier node; " + did_you_mean(name, names));
     return static_cast<int>(it - names.begin()) - 1;
   }
 

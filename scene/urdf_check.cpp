@@ -194,10 +194,9 @@ class UrdfCheck {
 
   /// The one of `meant` that `name` almost is, or nothing.
   static std::string misspelt(std::string_view name, const std::vector<std::string>& meant) {
-    std::string lower(name);
-    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const std::string nearest = nearest_word(lower, meant);
-    return edit_distance(lower, nearest) <= 2 ? nearest : "";
+    const std::string word = lower(name);
+    const std::string nearest = nearest_word(word, meant);
+    return edit_distance(word, nearest) <= 2 ? nearest : "";
   }
 
   static std::vector<pugi::xml_node> elements(pugi::xml_node parent, const char* name = nullptr) {

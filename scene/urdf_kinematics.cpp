@@ -16,8 +16,7 @@ void require_settable(const UrdfRobot& robot, const std::string& name, double po
   const auto joint =
       std::find_if(robot.joints.begin(), robot.joints.end(), [&](const auto& j) { return j.name == name; });
   if (joint == robot.joints.end())
-    throw InputError(where, "the robot has no joint " + shown,
-                     names.empty() ? "remove it" : "did you mean '" + nearest_word(name, names) + "'?");
+    throw InputError(where, "the robot has no joint " + shown, did_you_mean(name, names, "remove it"));
   if (joint->kind == UrdfJoint::Kind::fixed) throw InputError(where, "joint " + shown + " is fixed", "remove it");
   if (joint->mimic)
     throw InputError(where, "joint " + shown + " follows another",

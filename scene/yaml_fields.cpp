@@ -11,15 +11,6 @@
 #include "scene/text_table.hpp"
 
 namespace foresight {
-namespace {
-
-std::string join(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
-
-}  // namespace
 
 YamlMap::YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node)
     : file_(std::move(file)), prefix_(std::move(prefix)), node_(std::move(node)) {}
@@ -44,7 +35,7 @@ void YamlMap::require_known(const std::vector<std::string>& known) const {
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) == known.end())
       throw InputError(where(key), "unknown key " + in_quotes(key),
-                       "did you mean '" + nearest_word(key, known) + "'? Known are " + join(known));
+                       did_you_mean(key, known) + " Known are " + joined(known));
     if (std::find(seen.begin(), seen.end(), key) != seen.end())
       throw InputError(where(key), "key " + in_quotes(key) + " appears twice", "remove one of the two");
     seen.push_back(key);
@@ -72,8 +63,7 @@ std::vector<std::string> YamlMap::keys() const {
 
 void YamlMap::refuse_word(const std::string& key, const std::string& word,
                           const std::vector<std::string>& known) const {
-  throw InputError(where(key), in_quotes(word) + " is not known here",
-                   "did you mean '" + nearest_word(word, known) + "'?");
+  throw InputError(where(key), in_quotes(word) + " is not known here", did_you_mean(word, known));
 }
 
 std::string YamlMap::where(const std::string& key) const {

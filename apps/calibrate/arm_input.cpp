@@ -89,9 +89,8 @@ std::vector<NamedRow> read_joint_rows(const fs::path& file, const std::vector<st
       for (const std::string& joint : joints) {
         const auto at = std::find(row.fields.begin(), row.fields.end(), joint);
         if (at == row.fields.end())
-          throw InputError(
-              at_line(file, row.line), "has no joint " + in_quotes(joint),
-              "name the columns as the joints of --urdf; the nearest is " + in_quotes(nearest_word(joint, row.fields)));
+          throw InputError(at_line(file, row.line), "has no joint " + in_quotes(joint),
+                           "name the columns as the joints of --urdf; " + did_you_mean(joint, row.fields));
         column.push_back(static_cast<std::size_t>(at - row.fields.begin()));
       }
       continue;

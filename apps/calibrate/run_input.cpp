@@ -48,8 +48,7 @@ std::vector<JointRow> read_named_joints(const fs::path& file, const std::vector<
     const auto at = std::find(there.begin(), there.end(), name);
     if (at == there.end())
       throw InputError(file.string(), "has no joint " + in_quotes(name),
-                       "name the joints as they are there with " + option + "; the nearest is " +
-                           in_quotes(nearest_word(name, there)));
+                       "name the joints as they are there with " + option + "; " + did_you_mean(name, there));
     column.push_back(static_cast<std::size_t>(at - there.begin()));
   }
   for (JointRow& row : joints) {

@@ -38,15 +38,9 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   for (const CLI::App* job : command->get_subcommands({})) jobs.push_back(job->get_name());
   const auto unknown = app.remaining(true);
   if (!jobs.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
-    return "there is no subcommand " + in_quotes(unknown.front()) + "; did you mean '" +
-           nearest_word(unknown.front(), jobs) + "'? S" + help.substr(1);
+    return "there is no subcommand " + in_quotes(unknown.front()) + "; " + did_you_mean(unknown.front(), jobs) + " S" +
+           help.substr(1);
   return fault_of(error) + "; " + help;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
 }
 
 template <typename T>
@@ -108,8 +102,7 @@ OptionCheck one_of(std::vector<std::string> words) {
   return {[words = std::move(words), all](const std::string& given) {
             return std::find(words.begin(), words.end(), given) != words.end()
                        ? std::string()
-                       : in_quotes(given) + " is none of " + all + "; did you mean '" + nearest_word(given, words) +
-                             "'?";
+                       : in_quotes(given) + " is none of " + all + "; " + did_you_mean(given, words);
           },
           "one of " + all};
 }

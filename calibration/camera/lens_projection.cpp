@@ -36,7 +36,7 @@ Distortion parse_distortion(std::string_view name) {
     if (name == model.name) return model.distortion;
     names.emplace_back(model.name);
   }
-  throw InputError("--model", "there is no lens model " + in_quotes(name), "use " + nearest_word(name, names));
+  throw InputError("--model", "there is no lens model " + in_quotes(name), did_you_mean(name, names));
 }
 
 std::vector<int> free_parameters(Distortion distortion) {

@@ -124,7 +124,7 @@ CameraFormat parse_camera_format(std::string_view name) {
     if (name == format.name) return format.format;
     names.emplace_back(format.name);
   }
-  throw InputError("format", "there is no camera format " + in_quotes(name), "use " + nearest_word(name, names));
+  throw InputError("format", "there is no camera format " + in_quotes(name), did_you_mean(name, names));
 }
 
 CalibratedCameras read_cameras(CameraFormat format, const fs::path& path) {

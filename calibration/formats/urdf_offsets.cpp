@@ -185,9 +185,8 @@ class Document {
     std::vector<std::string> names;
     for (TiXmlElement* e = robot_->FirstChildElement(kind); e; e = e->NextSiblingElement(kind))
       names.push_back(attribute(*e, "name"));
-    throw InputError(
-        where_, std::string("there is no ") + kind + " " + in_quotes(name),
-        names.empty() ? "give a URDF with one" : "did you mean " + in_quotes(nearest_word(name, names)) + "?");
+    throw InputError(where_, std::string("there is no ") + kind + " " + in_quotes(name),
+                     did_you_mean(name, names, "give a URDF with one"));
   }
 
   TiXmlElement* joint_of(const std::string& child) const {

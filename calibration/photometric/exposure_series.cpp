@@ -85,7 +85,7 @@ ExposedImage read_one(const fs::path& file, const std::map<std::string, double>&
     std::vector<std::string> names;
     for (const auto& [name, exposure] : exposures) names.push_back(name);
     throw InputError("--exposures", "has no row for the image " + in_quotes(image.name),
-                     "add it; the nearest name there is " + in_quotes(nearest_word(image.name, names)));
+                     "add it; " + did_you_mean(image.name, names));
   }
   image.exposure_s = named->second;
   return image;

@@ -40,7 +40,7 @@ WorldRay world_ray(const SeenCorner& c, const std::map<std::string, Pose>& poses
     std::vector<std::string> names;
     for (const auto& [name, T] : poses) names.push_back(name);
     throw InputError("--camera-poses", "has no row for the image " + in_quotes(c.image),
-                     "add it; the nearest name there is " + in_quotes(nearest_word(c.image, names)));
+                     "add it; " + did_you_mean(c.image, names));
   }
   const auto direction = lens.unproject(c.pixel);
   if (!direction)

@@ -16,8 +16,7 @@ int find_link(const UrdfRobot& robot, const std::string& name, const std::filesy
     if (robot.links[i].name == name) return static_cast<int>(i);
     names.push_back(robot.links[i].name);
   }
-  throw InputError(urdf.string(), "has no link " + in_quotes(name),
-                   "did you mean '" + nearest_word(name, names) + "'?");
+  throw InputError(urdf.string(), "has no link " + in_quotes(name), did_you_mean(name, names));
 }
 
 // Moving joints from `base` to `link`; nothing where `base` is not above it.

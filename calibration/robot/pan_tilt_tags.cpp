@@ -258,12 +258,9 @@ PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, con
   require_sweeps(angles_of(views));
   PanTiltTagState state = solve_state(views, cameras, options, summary);
   const PanTiltTagCovariance covariance = pan_tilt_tag_covariance(views, cameras, state);
-  if (!covariance.open.empty()) {
-    std::string names;
-    for (const std::string& name : covariance.open) names += (names.empty() ? "" : ", ") + name;
-    throw InputError("--angles", "these parameters of the head stay open: " + names,
+  if (!covariance.open.empty())
+    throw InputError("--angles", "these parameters of the head stay open: " + joined(covariance.open),
                      "sweep both joints, each at several angles of the other and at several speeds");
-  }
   summary.model = to_model(state.head);
   summary.offset_s = state.offset_s;
   summary.names = pan_tilt_names(state.head);

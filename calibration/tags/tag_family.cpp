@@ -42,8 +42,7 @@ constexpr std::array<Family, 10> kFamilies{{
 const Family& family_of(const std::string& name) {
   for (const Family& family : kFamilies)
     if (name == family.name) return family;
-  throw InputError("tag family", "there is none called " + in_quotes(name),
-                   "did you mean " + nearest_word(name, tag_families()) + "?");
+  throw InputError("tag family", "there is none called " + in_quotes(name), did_you_mean(name, tag_families()));
 }
 
 }  // namespace

@@ -82,8 +82,7 @@ int charuco_dictionary(const std::string& name) {
   const auto& names = dictionary_names();
   const auto at = std::find(names.begin(), names.end(), name);
   if (at == names.end())
-    throw InputError("--board", "there is no dictionary " + in_quotes(name),
-                     "did you mean " + nearest_word(name, names) + "?");
+    throw InputError("--board", "there is no dictionary " + in_quotes(name), did_you_mean(name, names));
   return static_cast<int>(at - names.begin());
 }
 

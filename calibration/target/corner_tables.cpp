@@ -106,8 +106,7 @@ std::vector<std::size_t> tag_columns(const TextRow& row) {
   const std::vector<std::string> known(kTagColumns.begin(), kTagColumns.end());
   for (std::size_t i = 0; i < header.size(); ++i)
     if (std::find(known.begin(), known.end(), header[i]) == known.end())
-      throw InputError(row.where(i), "has an unknown column " + in_quotes(header[i]),
-                       "did you mean " + nearest_word(header[i], known) + "?");
+      throw InputError(row.where(i), "has an unknown column " + in_quotes(header[i]), did_you_mean(header[i], known));
   std::vector<std::size_t> at;
   for (const std::string& name : known) {
     if (std::count(header.begin(), header.end(), name) != 1)

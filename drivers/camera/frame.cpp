@@ -89,8 +89,7 @@ PixelFormat parse_pixel_format(std::string_view name, const std::string& where) 
     if (kForms[i].name == name) return static_cast<PixelFormat>(i);
     names.emplace_back(kForms[i].name);
   }
-  throw InputError(where, "there is no pixel format " + in_quotes(name),
-                   "did you mean " + in_quotes(nearest_word(name, names)) + "?");
+  throw InputError(where, "there is no pixel format " + in_quotes(name), did_you_mean(name, names));
 }
 
 Conversion to_bgr(const CameraFrame& frame, cv::Mat& out) noexcept {

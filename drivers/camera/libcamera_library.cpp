@@ -256,7 +256,7 @@ class Machine final : public Library {
     for (const auto& camera : all->cameras())
       if (camera->id() == device || model_of(*camera) == device) found.push_back(camera);
     if (found.size() == 1) return {new OpenCamera(all, found.front(), settings, where), end_or_keep};
-    const std::string there = listed(names(*all));
+    const std::string there = joined(names(*all));
     if (found.empty())
       throw InputError(where, "libcamera knows no such camera",
                        there.empty() ? "connect it: there is none" : "connect it, or choose one of: " + there);

@@ -50,12 +50,6 @@ lc::ControlValue value_of(lc::ControlType type, std::int64_t number) {
 
 }  // namespace
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
-
 lc::PixelFormat offered_format(const lc::StreamFormats& offered, PixelFormat format, const std::string& where) {
   const auto theirs = offered.pixelformats();
   std::vector<std::string> ours;
@@ -65,7 +59,7 @@ lc::PixelFormat offered_format(const lc::StreamFormats& offered, PixelFormat for
     ours.emplace_back(to_string(row.ours));
   }
   throw InputError(where, std::string("it has no format ") + to_string(format),
-                   "choose one that it has: " + (ours.empty() ? "none that we know" : listed(ours)));
+                   "choose one that it has: " + (ours.empty() ? "none that we know" : joined(ours)));
 }
 
 std::string plain_name(const lc::ControlId& id) {
@@ -106,8 +100,7 @@ void add_control(lc::ControlList& list, const lc::ControlInfoMap& known, const s
     list.set(id->id(), value_of(id->type(), value));
     return;
   }
-  throw InputError(where, "it has no control " + in_quotes(control),
-                   names.empty() ? "leave it out" : "did you mean " + in_quotes(nearest_word(control, names)) + "?");
+  throw InputError(where, "it has no control " + in_quotes(control), did_you_mean(control, names, "leave it out"));
 }
 
 }  // namespace foresight::libcam

@@ -9,7 +9,6 @@
 
 namespace foresight::libcam {
 
-std::string listed(const std::vector<std::string>& words);  ///< with commas
 /// libcamera's name of the format. Throws InputError where it is not among those offered, naming what is; `where` names
 /// the camera.
 libcamera::PixelFormat offered_format(const libcamera::StreamFormats& offered, PixelFormat format,

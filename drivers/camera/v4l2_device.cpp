@@ -209,8 +209,7 @@ bool set_control(Calls& calls, const Device& device, const std::string& control,
     if (names.back() == control) found = query;
   });
   if (!found) {
-    throw InputError(where, "it has no control " + in_quotes(control),
-                     names.empty() ? "leave it out" : "did you mean " + in_quotes(nearest_word(control, names)) + "?");
+    throw InputError(where, "it has no control " + in_quotes(control), did_you_mean(control, names, "leave it out"));
   }
   if (value < found->minimum || value > found->maximum) {
     throw InputError(where, control + " = " + std::to_string(value),

@@ -24,20 +24,6 @@ struct Section {
   std::map<std::string, Field> fields;  // keys in lower case
 };
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 // CiA 306, 4.4: decimal, hexadecimal with 0x, octal with a leading 0. Up to 64 bits; wider is nothing.
 std::optional<std::int64_t> parse_c_integer(std::string_view text) {
   const bool negative = !text.empty() && text[0] == '-';

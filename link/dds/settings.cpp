@@ -92,17 +92,15 @@ void check_network(const LinkConfig& config) {
     names.push_back(name);
     if (good) usable.push_back(name);
   }
-  std::string list;
-  for (const std::string& name : usable) list += (list.empty() ? "" : ", ") + name;
   if (std::ranges::find(names, config.interface) == names.end())
     throw InputError(config.where, "there is no network interface " + in_quotes(config.interface),
-                     list.empty() ? "none is up: `ip link set lo up` for this machine alone"
-                                  : "set link.interface to one of " + list);
+                     usable.empty() ? "none is up: `ip link set lo up` for this machine alone"
+                                    : "set link.interface to one of " + joined(usable));
   if (std::ranges::find(usable, config.interface) == usable.end())
     throw InputError(config.where,
                      "the network interface " + in_quotes(config.interface) + " is down or has no address",
                      "type `ip link set " + config.interface + " up` and give it an IPv4 address" +
-                         (list.empty() ? "" : ", or choose one of " + list));
+                         (usable.empty() ? "" : ", or choose one of " + joined(usable)));
   for (const std::string& peer : config.peers) check_peer(config, peer);
 }
 

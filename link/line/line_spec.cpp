@@ -13,10 +13,6 @@ namespace {
 constexpr double kLongest_s = 3600;
 constexpr double kHighestRate = 1.25e11;  // bytes per second
 
-void require(bool right, const std::string& where, const std::string& what, const std::string& cure) {
-  if (!right) throw InputError(where, what, cure);
-}
-
 /// A number of the mapping within a range; `otherwise` where it is absent.
 double within(const YamlMap& map, const std::string& key, double least, double most, double otherwise) {
   if (!map.has(key)) return otherwise;

@@ -108,8 +108,8 @@ std::string of_names(const char* field, const std::vector<std::string>& names, c
   for (const std::string& name : names) {
     if (!seen.insert(name).second) return std::string(field) + " has " + in_quotes(name) + " twice";
     if (!expected.joints.empty() && std::ranges::find(expected.joints, name) == expected.joints.end())
-      return std::string(field) + " has " + in_quotes(name) + ", which the rig has not; did you mean " +
-             in_quotes(nearest_word(name, expected.joints)) + "?";
+      return std::string(field) + " has " + in_quotes(name) + ", which the rig has not; " +
+             did_you_mean(name, expected.joints);
   }
   return "";
 }

@@ -102,7 +102,7 @@ TEST(SceneFromTagViews, NamesWhatIsWrong) {
   EXPECT_THAT(
       lab.place(lab.seen, frame_3_missing),
       AllOf(HasSubstr("--camera-poses"), HasSubstr("no row for the image 'frame_3.png'"), HasSubstr("'frame_")));
-  EXPECT_THAT(lab.place("frame_1.pgn 0 0 300 200\n", lab.poses), HasSubstr("nearest name there is 'frame_1.png'"));
+  EXPECT_THAT(lab.place("frame_1.pgn 0 0 300 200\n", lab.poses), HasSubstr("did you mean 'frame_1.png'"));
   EXPECT_THAT(lab.place("frame_1.png 0 0 300 200\n", lab.poses), HasSubstr("seen from two places"));
   EXPECT_THAT(lab.place("frame_1.png 0 0 300\n", lab.poses), HasSubstr("seen.txt"));
   EXPECT_THAT(lab.place(lab.seen, "frame_1.png 0 0 0 0 0 0 0\n"), HasSubstr("poses.txt"));

@@ -62,6 +62,21 @@ TEST(NearestWord, FindsTheSmallestEdit) {
   EXPECT_EQ(nearest_word("x", {}), "");
 }
 
+TEST(DidYouMean, NamesTheNearestOrSaysWhatElseToDo) {
+  const std::vector<std::string> known{"elbow", "wrist"};
+  EXPECT_EQ(did_you_mean("elbov", known), "did you mean 'elbow'?");
+  EXPECT_EQ(did_you_mean("elbov", {}, "leave it out"), "leave it out");
+}
+
+TEST(Words, AreJoinedLoweredAndTrimmed) {
+  EXPECT_EQ(joined(std::vector<std::string>{"left", "right"}), "left, right");
+  EXPECT_EQ(joined({}), "");
+  EXPECT_EQ(lower("DataType_Ä1"), "datatype_Ä1") << "ASCII alone";
+  EXPECT_EQ(trimmed(" \ta b\r"), "a b");
+  EXPECT_EQ(trimmed(" \t "), "");
+  EXPECT_EQ(trimmed(" -a-", "-"), " -a");
+}
+
 TEST(InQuotes, ShortensAndCleans) {
   EXPECT_EQ(in_quotes("a b"), "'a b'");
   EXPECT_EQ(in_quotes("a\n\x1b[31m"), "'a??[31m'");

@@ -67,7 +67,7 @@ TEST(CameraResult, NamesWhatIsWrong) {
     return "";
   };
   EXPECT_THAT(message("radtan4", "radtan5"), HasSubstr("distortion"));
-  EXPECT_THAT(message("radtan4", "radtan"), HasSubstr("use radtan4"));
+  EXPECT_THAT(message("radtan4", "radtan"), HasSubstr("did you mean 'radtan4'"));
   EXPECT_THAT(message("640", "640.5"), HasSubstr("no image size"));
   EXPECT_THAT(message("focal_px: [", "focal_px: [-"), HasSubstr("positive"));
   EXPECT_THAT(message("centre_px", "center_px"), HasSubstr("did you mean 'centre_px'"));
