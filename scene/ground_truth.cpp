@@ -4,7 +4,6 @@
 #include "pictures/decode.hpp"
 #include "pictures/image_structure.hpp"
 #include "scene/files.hpp"
-#include "scene/text_table.hpp"
 #include "scene/yaml_fields.hpp"
 
 namespace foresight {
@@ -68,13 +67,7 @@ GroundTruth::Camera GroundTruth::open_camera(const RunFolder& run, bool right) {
                      "the truth speaks of " + std::to_string(yaml.integer("nodes")) + " nodes, the scene has " +
                          std::to_string(nodes),
                      "open the run with the scene it was made with");
-  std::vector<PoseTrack::Sample> samples;
-  for_each_row(out.folder / "trajectory.txt", "time tx ty tz qx qy qz qw", [&](const TextRow& row) {
-    const PoseTrack::Sample sample{time_field(row, 0), pose_fields(row, 1)};
-    if (!samples.empty()) require_ascending(row, samples.back().time, sample.time);
-    samples.push_back(sample);
-  });
-  out.track = PoseTrack(std::move(samples));
+  out.track = read_trajectory(out.folder / "trajectory.txt");
   return out;
 }
 

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "common/error.hpp"
+#include "common/text.hpp"
+#include "scene/text_table.hpp"
+
 namespace foresight {
 
 Pose interpolate(const Pose& a, const Pose& b, double s) {
@@ -41,6 +45,22 @@ PoseTrack::Answer PoseTrack::at(RobotTime time, Duration exact) const {
   if (gap > kLargestGap) return {};
   const double s = to_seconds(time - a.time) / to_seconds(gap);
   return {interpolate(a.pose, b.pose, s), StateStatus::interpolated};
+}
+
+PoseTrack read_trajectory(const std::filesystem::path& file, std::optional<Duration> most_apart) {
+  std::vector<PoseTrack::Sample> samples;
+  for_each_row(file, "time tx ty tz qx qy qz qw", [&](const TextRow& row) {
+    const PoseTrack::Sample sample{time_field(row, 0), pose_fields(row, 1)};
+    if (!samples.empty()) {
+      require_ascending(row, samples.back().time, sample.time);
+      const Duration after = sample.time - samples.back().time;
+      if (most_apart && after > *most_apart)
+        throw InputError(row.where(), "comes " + readable(to_seconds(after), 3, " s") + " after the row before",
+                         "give poses no more than " + readable(to_seconds(*most_apart), 1, " s") + " apart");
+    }
+    samples.push_back(sample);
+  });
+  return PoseTrack(std::move(samples));
 }
 
 }  // namespace foresight

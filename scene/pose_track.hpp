@@ -1,6 +1,8 @@
 // A pose over time, from samples.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "scene/scene_model.hpp"
@@ -38,6 +40,10 @@ class PoseTrack {
  private:
   std::vector<Sample> samples_;
 };
+
+/// Rows "time tx ty tz qx qy qz qw", as of TUM RGB-D runs. Throws InputError naming file and line: as text_table.hpp,
+/// or a row that comes more than `most_apart` after the one before.
+PoseTrack read_trajectory(const std::filesystem::path& file, std::optional<Duration> most_apart = {});
 
 /// Position linearly, rotation along the shortest great circle; `s` from 0 (a) to 1 (b).
 Pose interpolate(const Pose& a, const Pose& b, double s);

@@ -54,16 +54,6 @@ std::vector<ListedImage> read_images(const fs::path& root, const fs::path& list)
   return out;
 }
 
-PoseTrack read_trajectory(const fs::path& file) {
-  std::vector<PoseTrack::Sample> samples;
-  for_each_row(file, "time tx ty tz qx qy qz qw", [&](const TextRow& row) {
-    const PoseTrack::Sample sample{time_field(row, 0), pose_fields(row, 1)};
-    if (!samples.empty()) require_ascending(row, samples.back().time, sample.time);
-    samples.push_back(sample);
-  });
-  return PoseTrack(std::move(samples));
-}
-
 // Gives `listed` its pose; T_left_camera is identity for the left camera.
 void place(ListedImage& listed, const PoseTrack& track, const Pose& T_left_camera) {
   const PoseTrack::Answer answer = track.at(listed.image.time);

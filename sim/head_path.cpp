@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include "common/error.hpp"
-#include "scene/text_table.hpp"
 #include "sim/tracer.hpp"
 
 namespace foresight::sim {
@@ -21,20 +20,9 @@ std::string seconds_text(double s) {
 
 }  // namespace
 
-HeadPath::HeadPath(const std::filesystem::path& file, double last) {
-  std::vector<PoseTrack::Sample> samples;
-  for_each_row(file, "time tx ty tz qx qy qz qw", [&](const TextRow& row) {
-    const PoseTrack::Sample sample{time_field(row, 0), pose_fields(row, 1)};
-    if (!samples.empty()) {
-      require_ascending(row, samples.back().time, sample.time);
-      if (sample.time - samples.back().time > PoseTrack::kLargestGap)
-        throw InputError(
-            row.where(),
-            "comes " + seconds_text(to_seconds(sample.time - samples.back().time)) + " after the row before",
-            "give poses no more than 0.2 s apart");
-    }
-    samples.push_back(sample);
-  });
+HeadPath::HeadPath(const std::filesystem::path& file, double last)
+    : track_(read_trajectory(file, PoseTrack::kLargestGap)) {
+  const auto& samples = track_.samples();
   const double first = to_seconds(samples.front().time - RobotTime{}),
                end = to_seconds(samples.back().time - RobotTime{});
   if (first > 1e-9)
@@ -42,7 +30,6 @@ HeadPath::HeadPath(const std::filesystem::path& file, double last) {
   if (end < last - 1e-9)
     throw InputError(file.string(), "ends at " + seconds_text(end) + ", but the last image is at " + seconds_text(last),
                      "give fewer --frames or a longer path");
-  track_ = PoseTrack(std::move(samples));
 }
 
 Pose HeadPath::at(double t) const {
