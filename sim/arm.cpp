@@ -44,6 +44,14 @@ std::array<Pose, kArmLinks> arm_links_at(const ArmPosition& position) {
   return out;
 }
 
+Pose pointing_down(const Eigen::Vector3d& p_world, double yaw) {
+  Pose T = Pose::Identity();
+  T.translate(p_world + Eigen::Vector3d(0, 0, kTips));
+  T.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+           Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
+  return T;
+}
+
 bool is_lab_arm(const UrdfRobot& robot, const Pose& T_world_root) {
   constexpr double kAlike = 1e-3;
   if (robot.links.size() != std::size_t{kArmLinks} || robot.links[0].name != kArmStand) return false;

@@ -45,6 +45,11 @@ Pose T_world_stand();
 /// T_world_link of the stand and all links.
 std::array<Pose, kArmLinks> arm_links_at(const ArmPosition& position);
 
+inline constexpr double kTips = 0.15;  ///< m: the finger tips, along z of the last link
+
+/// T_world_link of the last link when it points down with the tips at `p_world` and the fingers closing along `yaw`.
+Pose pointing_down(const Eigen::Vector3d& p_world, double yaw);
+
 /// Is this the lab's own arm, standing in its place? By joints, links and frames (1 mm); shapes do not count.
 bool is_lab_arm(const UrdfRobot& robot, const Pose& T_world_root);
 

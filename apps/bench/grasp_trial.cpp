@@ -9,14 +9,14 @@
 #include "common/error.hpp"
 #include "prediction/grasp/hand_path.hpp"
 #include "prediction/grasp/thing_future.hpp"
+#include "sim/arm.hpp"
 #include "sim/physics/physical_lab.hpp"
 
 namespace foresight {
 namespace {
 
 constexpr const char *kBrick = "brick_red", *kFinger = "finger", *kLink = "arm_7";
-constexpr double kTips = 0.15;    // m: finger tips, along z of that link
-constexpr double kDepth = 0.037;  // m: tips above the brick's bottom
+constexpr double kDepth = 0.037;  // m: finger tips above the brick's bottom
 constexpr double kOpen = 0.038, kClosed = 0.016, kAbove = 0.14;
 constexpr double kLook = 2.5, kLookAgain = 2.5;  // s before and after the script
 constexpr double kVisible = 0.01;                // m that one sees
@@ -218,11 +218,8 @@ class GraspTrial {
 
   /// The tool with its tips at the brick's `height` above its bottom, and the fingers at two of its sides.
   Pose reach(const Pose& T_world_brick, double height, double yaw) const {
-    Pose T = Pose::Identity();
-    T.translate(T_world_brick.translation() + Eigen::Vector3d(0, 0, kTips + height));
-    T.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-             Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
-    return rig_.T_world_robot.inverse() * T;
+    const Eigen::Vector3d tips = T_world_brick.translation() + Eigen::Vector3d(0, 0, height);
+    return rig_.T_world_robot.inverse() * sim::pointing_down(tips, yaw);
   }
 
   /// By what is shown, as an operator does.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
-#include <numbers>
 #include <random>
 
 #include "apps/bench/robot_trial.hpp"
@@ -13,6 +12,7 @@
 #include "seat/contact_guard.hpp"
 #include "seat/model_operator.hpp"
 #include "seat/tool_script.hpp"
+#include "sim/arm.hpp"
 #include "sim/lab_task.hpp"
 #include "sim/physics/physical_lab.hpp"
 
@@ -20,8 +20,7 @@ namespace foresight {
 namespace {
 
 const std::string kTaskBrick = "brick_red", kTaskTray = "tray";
-const std::vector<std::string> kLooseInTask = {kTaskBrick, "brick_blue", kTaskTray};  // the rest stands still
-constexpr double kTipsOfTool = 0.15;  // m: finger tips, along the tool's z
+const std::vector<std::string> kLooseInTask = {kTaskBrick, "brick_blue", kTaskTray};   // the rest stands still
 constexpr double kImagesHz = 10, kSightingSigma = 0.0015, kSightingSigmaRad = 0.0175;  // as GraspTrialOptions
 constexpr double kStartAbove = 0.22, kSlipsAt = 0.08, kSlipsBy = 0.06, kMovedAt = 0.10, kMovedBy = 0.06;  // m
 constexpr double kSettles = 1;  // s before a run, for the prediction to see what there is
@@ -118,12 +117,12 @@ class OperatorTrial {
   }
   static Pose along_tool(const Pose& T, double z) { return T * Eigen::Translation3d(0, 0, z); }
   Pose tips(const JointValues& position) const {
-    return along_tool(rig_.T_world_robot * kinematics_.chain().tip_pose(arm(position)), kTipsOfTool);
+    return along_tool(rig_.T_world_robot * kinematics_.chain().tip_pose(arm(position)), sim::kTips);
   }
 
   // As at the seat: what is sent goes into no contact, and not to where the robot's gate would hold it.
   void follow(const OperatorHand& hand, double dt) {
-    const Pose T_base_tool = rig_.T_world_robot.inverse() * along_tool(hand.T_world_tool, -kTipsOfTool);
+    const Pose T_base_tool = rig_.T_world_robot.inverse() * along_tool(hand.T_world_tool, -sim::kTips);
     const FollowStep made = task_->guard->step(*asked_, T_base_tool, dt);
     for (std::size_t i = 0; i < hand_.arm_joints.size(); ++i)
       (*asked_)[hand_.arm_joints[i]] = made.q[static_cast<Eigen::Index>(i)];
@@ -137,9 +136,8 @@ class OperatorTrial {
   std::vector<ToolStep> approach() const {
     const sim::TaskLayout at = sim::task_layout(layout());
     ToolStep there{ToolStep::What::there};
-    there.T_world_tool.linear() = Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()).toRotationMatrix();
-    there.T_world_tool.translation() = 0.7 * at.brick_red.translation() + 0.3 * at.tray.translation() +
-                                       Eigen::Vector3d(0, 0, kStartAbove + kTipsOfTool);
+    const Eigen::Vector3d middle = 0.7 * at.brick_red.translation() + 0.3 * at.tray.translation();
+    there.T_world_tool = sim::pointing_down(middle + Eigen::Vector3d(0, 0, kStartAbove), 0);
     there.seconds = 2;
     return {there, {ToolStep::What::gripper, Pose::Identity(), ModelOperatorOptions{}.open, 0.2}};
   }

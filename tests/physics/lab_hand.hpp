@@ -11,8 +11,6 @@
 
 namespace foresight::sim {
 
-inline constexpr double kTips = 0.15;  ///< m: the finger tips, along z of the last link
-
 inline const InverseKinematics& lab_kinematics() {
   static const InverseKinematics kinematics(read_arm_chain(source_folder() / "configs/arm.urdf", "arm_7"));
   return kinematics;
@@ -20,11 +18,7 @@ inline const InverseKinematics& lab_kinematics() {
 
 /// The last link, in the arm's base, with the tips at `p_world` and the fingers closing along `yaw`.
 inline Pose reaching_down(const Eigen::Vector3d& p_world, double yaw) {
-  Pose T = Pose::Identity();
-  T.translate(p_world + Eigen::Vector3d(0, 0, kTips));
-  T.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-           Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
-  return T_world_stand().inverse() * T;
+  return T_world_stand().inverse() * pointing_down(p_world, yaw);
 }
 
 inline JointVector bent_arm() {
