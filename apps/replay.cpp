@@ -137,7 +137,7 @@ int play(const RunFolder& run, const ReplayOptions& options, std::vector<std::si
 
 int replay(const ReplayOptions& given) {
   if (given.delay_frames && given.delay_ms)
-    throw InputError("--delay-ms", "--delay-frames is given too", "give one of the two");
+    throw InputError("--delay-ms", "stands beside --delay-frames", "give one of the two");
   if (given.pipeline == ReplayPipeline::thesis && given.refine)
     throw InputError("--refine", "the thesis' pipeline has no view to align images to",
                      "leave --refine away, or use --pipeline core");

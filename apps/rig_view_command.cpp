@@ -26,10 +26,7 @@ struct RigViewArguments {
 };
 
 cv::Size picture_size(const std::string& text) {
-  const auto [width, height] = parse_picture_size(text).value_or(std::array{0, 0});
-  if (width < 2 * kPanelWidth || width > 8000 || height < 400 || height > 8000)
-    throw InputError("--size", in_quotes(text) + " is no size of a picture",
-                     "write WIDTHxHEIGHT in px, such as 1320x860; from 660x400 to 8000x8000");
+  const auto [width, height] = size_option(text, {2 * kPanelWidth, 400}, {8000, 8000});
   return {width, height};
 }
 

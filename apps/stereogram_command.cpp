@@ -8,7 +8,6 @@
 #include "apps/command_line/picture_size.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
-#include "common/text.hpp"
 #include "display/stereogram/decode.hpp"
 #include "display/stereogram/stereogram.hpp"
 #include "gl/context.hpp"
@@ -36,10 +35,7 @@ struct StereogramArguments {
 };
 
 cv::Size stereogram_size(const std::string& text) {
-  const auto [width, height] = parse_picture_size(text).value_or(std::array{0, 0});
-  if (width < 64 || width > 8192 || height < 16 || height > 8192)
-    throw InputError("--size", in_quotes(text) + " is no size of a stereogram",
-                     "write WIDTHxHEIGHT in px, such as 1024x768; from 64x16 to 8192x8192");
+  const auto [width, height] = size_option(text, {64, 16}, {8192, 8192});
   return {width, height};
 }
 

@@ -21,6 +21,10 @@ namespace {
                    "check that it is the right one");
 }
 
+[[noreturn]] void refuse_missing(const fs::path& path) {
+  throw InputError(path.string(), "no such file", "put it there or correct the name");
+}
+
 [[noreturn]] void refuse_reading(const fs::path& file) {
   throw InputError(file.string(), std::string("cannot be read (") + std::strerror(errno) + ")",
                    "check its permissions and the disk");
@@ -32,10 +36,14 @@ void require_regular_file(const fs::path& file, std::uintmax_t largest) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) {
     if (errno != ENOENT && errno != ENOTDIR) refuse_reading(file);
-    throw InputError(file.string(), "no such file", "put it there or correct the name");
+    refuse_missing(file);
   }
   if (!S_ISREG(status.st_mode)) throw InputError(file.string(), "is not a regular file", "name a file");
   if (const auto size = static_cast<std::uintmax_t>(status.st_size); size > largest) refuse_size(file, size, largest);
+}
+
+void require_there(const fs::path& path) {
+  if (!fs::exists(path)) refuse_missing(path);
 }
 
 std::string read_file(const fs::path& file, std::uintmax_t largest) {

@@ -20,6 +20,9 @@ inline constexpr std::uintmax_t kLargestStream = std::uintmax_t{64} << 30;  ///<
 /// Throws InputError naming the file: missing, a folder, a device, a pipe, or more than `largest` bytes.
 void require_regular_file(const std::filesystem::path& file, std::uintmax_t largest = UINTMAX_MAX);
 
+/// Throws InputError where there is neither a file nor a folder of that name.
+void require_there(const std::filesystem::path& path);
+
 /// The whole content. Throws like require_regular_file, and where it cannot be read. Never waits.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t largest = kLargestText);
 

@@ -9,10 +9,8 @@
 #include "apps/bench/display_lab.hpp"
 #include "apps/command_line/picture_size.hpp"
 #include "common/clock.hpp"
-#include "common/error.hpp"
 #include "common/numbers_file.hpp"
 #include "common/statistics.hpp"
-#include "common/text.hpp"
 #include "display/view_modes.hpp"
 #include "display/view_target.hpp"
 #include "pictures/image_metrics.hpp"
@@ -34,9 +32,7 @@ constexpr int kMostSettling = 8;   // changes
 const cv::Size kTimedSize{640, 480};
 
 cv::Size read_size(const std::string& text) {
-  const auto [width, height] = parse_picture_size(text).value_or(std::array{0, 0});
-  if (width < 16 || height < 16 || width > 4096 || height > 4096)
-    throw InputError("--size", in_quotes(text) + " is no size", "give WIDTHxHEIGHT, 16x16 to 4096x4096");
+  const auto [width, height] = size_option(text, {16, 16}, {4096, 4096});
   return {width, height};
 }
 

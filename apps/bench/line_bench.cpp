@@ -19,9 +19,7 @@ namespace foresight {
 namespace {
 
 cv::Size read_size(const std::string& text) {
-  const auto [width, height] = parse_picture_size(text).value_or(std::array{0, 0});
-  if (width < 32 || height < 32 || width > 4096 || height > 2048)
-    throw InputError("--size", in_quotes(text) + " is no size", "give WIDTHxHEIGHT, 32x32 to 4096x2048");
+  const auto [width, height] = size_option(text, {32, 32}, {4096, 2048});
   return {width, height};
 }
 

@@ -19,7 +19,6 @@
 #include "common/numbers_file.hpp"
 #include "common/resident_memory.hpp"
 #include "common/statistics.hpp"
-#include "common/text.hpp"
 #include "common/unique_fd.hpp"
 #include "link/coding/jpeg_coder.hpp"
 #include "link/dds/topics.hpp"
@@ -129,9 +128,7 @@ std::vector<cv::Mat> pictures(cv::Size size) {
 }
 
 cv::Size parse_size(const std::string& text) {
-  const auto [width, height] = parse_picture_size(text).value_or(std::array{0, 0});
-  if (width < 16 || height < 16 || width > 8192 || height > 8192)
-    throw InputError("--size " + text, "is no size of a picture", "write it as 1280x720");
+  const auto [width, height] = size_option(text, {16, 16}, {8192, 8192});
   return {width, height};
 }
 

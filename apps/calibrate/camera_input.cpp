@@ -4,24 +4,18 @@
 #include "calibration/target/corner_files.hpp"
 #include "calibration/target/image_input.hpp"
 #include "common/error.hpp"
-#include "common/text.hpp"
 
 namespace foresight {
 namespace {
 
-std::array<int, 2> parse_size(const std::string& text) {
-  if (text.empty()) return {0, 0};
-  const auto size = parse_picture_size(text).value_or(std::array{0, 0});
-  if (size[0] < 16 || size[1] < 16 || size[0] > 32768 || size[1] > 32768)
-    throw InputError("--size", in_quotes(text) + " is no image size", "give WIDTHxHEIGHT in pixels, such as 640x480");
-  return size;
-}
+constexpr int kLargestSide = 32768;  // px
 
 RigViews read_corner_file(const std::filesystem::path& path, const CornerInput& input, bool pair) {
   const std::optional<Board> board =
       input.board.empty() ? std::nullopt : std::optional<Board>(parse_board(input.board));
   RigViews views = pair ? rig_views(read_stereo_corners(path, board)) : rig_views(read_corners(path, board));
-  const auto size = parse_size(input.size);
+  const auto size =
+      input.size.empty() ? std::array{0, 0} : size_option(input.size, {16, 16}, {kLargestSide, kLargestSide});
   for (std::size_t c = 0; c < 2; ++c)
     if (views.width[c] == 0) views.width[c] = size[0], views.height[c] = size[1];
   return views;
@@ -53,7 +47,7 @@ void require_one_source(const CornerInput& input, bool pair) {
   if (pair && input.left.has_value() != input.right.has_value())
     throw InputError(input.left ? "--right" : "--left", "is missing", "give both folders of the pair");
   if (input.corners.has_value() == images)
-    throw InputError("--corners", images ? "is given beside " + options : "is missing, and so is " + options,
+    throw InputError("--corners", images ? "stands beside " + options : "is missing, and so is " + options,
                      "give either corners or images");
 }
 

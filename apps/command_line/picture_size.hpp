@@ -11,4 +11,7 @@ namespace foresight {
 /// command to say.
 std::optional<std::array<int, 2>> parse_picture_size(std::string_view text);
 
+/// Of --size, likewise: InputError where either lies beyond `least` or `most`, or there is no size.
+std::array<int, 2> size_option(std::string_view text, std::array<int, 2> least, std::array<int, 2> most);
+
 }  // namespace foresight

@@ -7,6 +7,7 @@
 #include "calibration/robot/rigid_math.hpp"
 #include "common/counted.hpp"
 #include "common/error.hpp"
+#include "common/read_file.hpp"
 #include "common/rotation.hpp"
 #include "common/text.hpp"
 #include "scene/text_table.hpp"
@@ -182,8 +183,7 @@ std::optional<std::vector<Pose>> match_by(const std::vector<NamedPose>& poses, c
 }  // namespace
 
 RobotPoses read_robot_poses(const std::filesystem::path& path, PoseUnit unit) {
-  if (!std::filesystem::exists(path))
-    throw InputError(path.string(), "does not exist", "give a file or folder of poses");
+  require_there(path);
   RobotPoses out;
   if (std::filesystem::is_directory(path))
     out.poses = folder_poses(path);

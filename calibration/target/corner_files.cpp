@@ -8,6 +8,7 @@
 #include "calibration/target/corner_tables.hpp"
 #include "calibration/target/view_names.hpp"
 #include "common/error.hpp"
+#include "common/read_file.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -16,8 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_vnl(const fs::path& path) {
-  if (!fs::exists(path))
-    throw InputError("--corners", path.string() + " does not exist", "give a .vnl file or a folder");
+  require_there(path);
   return !fs::is_directory(path);
 }
 

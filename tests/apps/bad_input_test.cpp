@@ -120,8 +120,8 @@ const std::vector<Case>& cases() {
       {"negative delay in images", nothing, {"--delay-frames", "-1"}, "--delay-frames", "'-1'", "from 0"},
       {"negative delay in time", nothing, {"--delay-ms", "-0.5"}, "--delay-ms", "'-0.5'", "from 0"},
       {"NaN delay", nothing, {"--delay-ms", "nan"}, "--delay-ms", "'nan'", "give one"},
-      {"both delays", nothing, {"--delay-ms", "10", "--delay-frames", "1"}, "--delay-ms", "--delay-frames is given too", "give one of the two"},
-      {"both delays, both 0", nothing, {"--delay-ms", "0", "--delay-frames", "0"}, "--delay-ms", "--delay-frames is given too", "give one of the two"},
+      {"both delays", nothing, {"--delay-ms", "10", "--delay-frames", "1"}, "--delay-ms", "stands beside --delay-frames", "give one of the two"},
+      {"both delays, both 0", nothing, {"--delay-ms", "0", "--delay-frames", "0"}, "--delay-ms", "stands beside --delay-frames", "give one of the two"},
       {"too many images of delay", nothing, {"--delay-frames", "3"}, "--delay-frames", "longer than the run", "at most 2"},
       {"too much time of delay", nothing, {"--delay-ms", "201"}, "--delay-ms", "longer than the run", "at most 199.9"},
       // Other options.

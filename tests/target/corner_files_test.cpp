@@ -62,7 +62,7 @@ TEST_F(CornerFiles, VnlErrorsNameTheRow) {
   EXPECT_THAT(refused("one.png - - -\n"), HasSubstr("in no image"));
   EXPECT_THAT(refused(rows("left1.png") + rows("right1.png")), HasSubstr("two cameras"));
   EXPECT_THAT(input_error([&] { read_corners(write("b.vnl", rows("one.png")), std::nullopt); }), HasSubstr("--board"));
-  EXPECT_THAT(input_error([&] { read_corners(folder() / "none.vnl", board_); }), HasSubstr("does not exist"));
+  EXPECT_THAT(input_error([&] { read_corners(folder() / "none.vnl", board_); }), HasSubstr("no such file"));
 }
 
 TEST_F(CornerFiles, VnlPairsByName) {
