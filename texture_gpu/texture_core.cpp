@@ -25,23 +25,22 @@ std::vector<Lens> all_lenses(const Lens& left, const std::optional<Lens>& right)
 
 }  // namespace
 
-TextureCore::TextureCore(std::shared_ptr<const SceneModel> scene, const std::shared_ptr<const SurfacePatches>& surface,
-                         const Lens& left, const std::optional<Lens>& right, const TextureOptions& options,
-                         bool software_renderer)
-    : scene_(std::move(scene)),
-      surface_(surface),
+TextureCore::TextureCore(const std::shared_ptr<const SceneModel>& scene,
+                         const std::shared_ptr<const SurfacePatches>& surface, const Lens& left,
+                         const std::optional<Lens>& right, const TextureOptions& options, bool software_renderer)
+    : surface_(surface),
       options_(options),
       atlas_(surface, options),
       store_(atlas_),
       places_(left, right, options.margin_px),
       kept_images_(options.images, options.memory_bytes / kShareOfImages),
       exposures_(right ? 2 : 1),
-      buffers_(std::make_shared<gl::SceneBuffers>(*scene_)),
+      buffers_(std::make_shared<gl::SceneBuffers>(*scene)),
       raster_(buffers_, false),
       survey_(all_lenses(left, right)),
       extract_(all_lenses(left, right)),
       fill_(*surface),
-      lamp_finder_(scene_, options.awaits_lamp),
+      light_(scene, buffers_, options.awaits_lamp),
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
   if (options.images > 1) still_pass_ = std::make_unique<StillPass>(left);
@@ -93,7 +92,7 @@ ExtractionReport TextureCore::extract(LatestTextures& latest, LatestImages* imag
   if (owed_ && save_what_leaves(latest) && looked_up_ && images) images->publish(lend(false));
   ChartAtlas::Allocation allocation;
   if (!allocate(allocation)) return {};
-  list_ages(newest_.time());
+  ages_.update(atlas_.charts(), image_, newest_.time(), light_changed_);
   write(newest_, std::move(allocation), latest);
   atlas_.commit();
   ++image_;
@@ -111,7 +110,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   atlas_.write_table(table_);
   next->table.assign(std::span<const std::uint32_t>(table_));
   next->charts.assign(std::span<const Eigen::Vector4f>(chart_rows_));
-  next->ages.assign(std::span<const float>(ages_));
+  next->ages.assign(ages_.seconds());
   next->places.clear();
   for (const AtlasChart& chart : atlas_.charts()) next->places.push_back({chart.raster.density, chart.first_page});
   extract_.relevel(allocation.relevel, next->charts, *current_, store_);
@@ -128,7 +127,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   next->newest_image = frame.time();
   next->sharp = static_cast<float>(std::min(sharpness_.cubic_share(), SharpnessEstimator::kMostOfTextures));
   next->light = frame.light;
-  next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - light_since_)) : -1;
+  next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - light_.since())) : -1;
   next->display_gain = static_cast<float>(std::exp(frame.log_gain));
   generations_.retire(current_, std::move(allocation.retired));
   current_ = next;
@@ -152,7 +151,7 @@ ExtractionReport TextureCore::report() {
   out.stages = clock_.read();
   out.log_gain = exposures_[0].log_gain();
   if (const auto square = sharpness_.misplacement2()) out.misplacement_px = std::sqrt(*square);
-  out.lamp = lamp_finder_.answer();
+  out.lamp = light_.answer();
   out.images_kept = kept_images_.images().size();
   out.bytes_in_use = atlas_.bytes_in_use();
   out.bytes_reserved = store_.held().bytes();
@@ -225,51 +224,12 @@ void TextureCore::look(const PosedFrame& frame) {
   newest_.update_inputs(std::vector<Eigen::Vector3f>(count, {1, 0, 0}));
   newest_.log_gain = exposures_[0].log_gain();
   if (options_.shadows) {
-    find_lamp();
-    take_out_shadows();
+    if (light_.find_lamp(newest_, options_.depth_tolerance)) mark("lamp");
+    const bool rehearses_light = rehearses_ && number_ >= kRehearsedWithoutLight;
+    if (light_.take_out_shadows(newest_, rehearses_light, reset_samplers_)) mark("shadows");
   }
-  newest_.light = light_;
+  newest_.light = light_.known();
   right_is_alike_ = still_pass_ && count > 1 && are_alike_in_hue(frame.left.pixels, frame.right->pixels);
-}
-
-/// Before its shadows are taken out of the image.
-void TextureCore::find_lamp() {
-  const PosedImage& image = newest_.images[0];
-  if (!lamp_finder_.look(image.scene)) return;
-  if (witnesses_ != lamp_finder_.number()) witness_pass_.set_witnesses(lamp_finder_.witnesses());
-  witnesses_ = lamp_finder_.number();
-  lamp_finder_.add(image.scene, image.T_world_camera.translation(),
-                   witness_pass_.brightness(newest_.inputs, image.T_world_camera, options_.depth_tolerance));
-  mark("lamp");
-}
-
-void TextureCore::take_out_shadows() {
-  const auto& lamp = lamp_finder_.lamp();
-  const bool rehearses_light = rehearses_ && number_ >= kRehearsedWithoutLight;
-  if (!lamp && !rehearses_light) return light_.reset();
-  if (!light_) light_since_ = newest_.time();
-  if (rehearses_light)
-    light_ = std::make_shared<const SceneLight>(light_from_above(*buffers_, newest_.images[0].scene));
-  else if (!light_ || light_->lamp != *lamp || light_->moving != lamp_finder_.moving())
-    light_ = std::make_shared<const SceneLight>(
-        SceneLight{*lamp, lamp_finder_.moving(), lamp_finder_.answer().told_by_what_moves});
-  take_out_shadows(*light_);
-}
-
-void TextureCore::take_out_shadows(const SceneLight& light) {
-  if (!shadow_map_) shadow_map_ = std::make_unique<ShadowMap>(buffers_);
-  bool shaded = false;
-  for (std::size_t i = 0; i < newest_.images.size(); ++i) {
-    const PosedImage& image = newest_.images[i];
-    const CameraInput& camera = *newest_.cameras[i];
-    if (i == 0 || image.time != newest_.time()) shaded = shadow_map_->update(light, image.scene);
-    if (!shaded) continue;
-    if (i >= shadows_.size()) shadows_.emplace_back(camera.lens());
-    shadows_[i]({camera.lens(), camera.block(), camera.faces(), camera.rays(), image.T_world_camera}, *shadow_map_);
-    shadows_[i].take_out_of(camera.image());
-    reset_samplers_();
-  }
-  mark("shadows");
 }
 
 /// Of the image before, what the newest one shows no more, or less well: views are going to look for it in the
@@ -319,7 +279,7 @@ bool TextureCore::allocate(ChartAtlas::Allocation& out) {
 
 /// Of what the newest image shows, what the textures have to have at once.
 TextureCore::Masks TextureCore::needed() {
-  const bool lit = light_ != nullptr;
+  const bool lit = light_.known() != nullptr;
   if (lit != lit_) light_changed_ = image_;
   lit_ = lit;
   owed_ = options_.only_what_is_needed && looked_up_;
@@ -375,55 +335,10 @@ void TextureCore::estimate_exposure(int first, int stride) {
   newest_.log_gain = exposures_[0].log_gain();
 }
 
-void TextureCore::list_ages(RobotTime now) {
-  constexpr std::size_t kRemembered = 4096;  // images; what was seen before them is taken as seen with the oldest
-  image_times_.push_back(now);
-  if (image_times_.size() > kRemembered) image_times_.pop_front();
-  const std::int64_t oldest = image_ + 1 - static_cast<std::int64_t>(image_times_.size());
-  const auto age_of = [&](std::int64_t image) {
-    return static_cast<float>(
-        to_seconds(now - image_times_[static_cast<std::size_t>(std::max(image - oldest, std::int64_t{0}))]));
-  };
-  ages_.clear();
-  for (const AtlasChart& chart : atlas_.charts())
-    for (const AtlasPage& page : chart.page) {
-      // Colours in another light are as old as they are, however often the page was seen since.
-      const bool in_old_light = page.written >= 0 && page.written < light_changed_;
-      const std::int64_t image = in_old_light ? page.written : page.last_seen;
-      ages_.push_back(image < 0 ? -1.0f : age_of(image));
-    }
-}
-
-/// Coarse colours of charts that did not change move with their place in the page table.
-void TextureCore::list_fill_work(const ChartAtlas::Allocation& allocation) {
-  const auto& charts = atlas_.charts();
-  std::vector<bool> changed(charts.size());
-  for (const PageJob& job : allocation.jobs) changed[job.chart] = true;
-  dirty_.clear();
-  kept_.clear();
-  chart_of_page_.clear();
-  first_page_before_.resize(charts.size(), 0);
-  for (std::size_t i = 0; i < charts.size(); ++i) {
-    const int count = charts[i].pages.prod();
-    chart_of_page_.insert(chart_of_page_.end(), static_cast<std::size_t>(count), static_cast<std::uint32_t>(i));
-    const int before = std::exchange(first_page_before_[i], charts[i].first_page);
-    if (count == 0) continue;
-    if (changed[i] || charts[i].relevelled) {
-      dirty_.push_back(static_cast<std::uint32_t>(i));
-    } else if (!kept_.empty() && kept_.back()[0] + kept_.back()[2] == before &&
-               kept_.back()[1] + kept_.back()[2] == charts[i].first_page) {
-      kept_.back()[2] += count;
-    } else {
-      kept_.push_back({before, charts[i].first_page, count});
-    }
-  }
-}
-
 void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next) {
-  list_fill_work(allocation);
   next.coarse.reserve(static_cast<std::size_t>(atlas_.page_count()) * atlas::kMeanBytes);
   next.means.reserve(atlas_.charts().size() * atlas::kMeanBytes);
-  fill_(extract_, {allocation.jobs.size(), dirty_, chart_of_page_, kept_}, store_, *current_, next, gate_);
+  fill_(extract_, fill_list_.list(atlas_.charts(), allocation.jobs), store_, *current_, next, gate_);
   // The flip must not show what the GPU has not finished.
   gl::Fence::insert().wait(kGpuTimeout);
   gl::check_errors("texture extraction");

@@ -1,7 +1,6 @@
 // From posed camera images to textures: the order of the passes for one frame.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <vector>
 
@@ -10,15 +9,14 @@
 #include "texture_gpu/edge_pass.hpp"
 #include "texture_gpu/extract_pass.hpp"
 #include "texture_gpu/extraction_report.hpp"
-#include "texture_gpu/fill_pass.hpp"
+#include "texture_gpu/fill_list.hpp"
 #include "texture_gpu/generation_pool.hpp"
+#include "texture_gpu/image_light.hpp"
 #include "texture_gpu/image_places.hpp"
 #include "texture_gpu/kept_images.hpp"
-#include "texture_gpu/lamp/lamp_finder.hpp"
-#include "texture_gpu/shadow_pass.hpp"
+#include "texture_gpu/page_ages.hpp"
 #include "texture_gpu/still_pass.hpp"
 #include "texture_gpu/survey_pass.hpp"
-#include "texture_gpu/witness_pass.hpp"
 
 namespace foresight {
 
@@ -27,7 +25,7 @@ namespace foresight {
 class TextureCore {
  public:
   /// `scene` and `surface` describe the same model. Throws RuntimeFailure (shaders, memory).
-  TextureCore(std::shared_ptr<const SceneModel> scene, const std::shared_ptr<const SurfacePatches>& surface,
+  TextureCore(const std::shared_ptr<const SceneModel>& scene, const std::shared_ptr<const SurfacePatches>& surface,
               const Lens& left, const std::optional<Lens>& right, const TextureOptions& options,
               bool software_renderer);
 
@@ -57,16 +55,13 @@ class TextureCore {
 
   /// Until nothing that these have begun goes on in another thread, as a search for the lamp does: for those who
   /// measure what an image costs.
-  void wait_for_search() const { lamp_finder_.wait_for_search(); }
+  void wait_for_search() const { light_.wait_for_search(); }
 
  private:
   using Masks = std::vector<std::uint32_t>;  // of tiles, for each page of the last plan (SurveyPass::cull)
 
   void mark(const char* stage);
   void look(const PosedFrame& frame);
-  void find_lamp();
-  void take_out_shadows();
-  void take_out_shadows(const SceneLight& light);
   void publish(LatestImages& latest);
   void accumulate();
   void keep_newest();
@@ -79,13 +74,10 @@ class TextureCore {
   bool place(const Masks& wanted, std::int64_t image, ChartAtlas::Allocation& out);
   Masks needed();
   void write(const FrameOnGpu& frame, ChartAtlas::Allocation allocation, LatestTextures& latest);
-  void list_ages(RobotTime now);
-  void list_fill_work(const ChartAtlas::Allocation& allocation);
   void fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next);
   void count(const ChartAtlas::Allocation& allocation);
   ExtractionReport report();
 
-  std::shared_ptr<const SceneModel> scene_;
   std::shared_ptr<const SurfacePatches> surface_;
   TextureOptions options_;
   ChartAtlas atlas_;
@@ -102,16 +94,11 @@ class TextureCore {
   SurveyPass survey_;
   ExtractPass extract_;
   FillPass fill_;
-  LampFinder lamp_finder_;
-  WitnessPass witness_pass_;
-  int witnesses_ = 0;                        // LampFinder::number() of those that the pass has
-  std::shared_ptr<const SceneLight> light_;  // null as long as it is not known
-  RobotTime light_since_;
+  FillList fill_list_;
+  ImageLight light_;
   bool lit_ = false;                 // with the image in work
   std::int64_t light_changed_ = -1;  // the image from which on it is, or is no more
   bool rehearses_ = false;
-  std::unique_ptr<ShadowMap> shadow_map_;  // from then on, or since they were prepared
-  std::vector<ShadowPass> shadows_;        // one for each camera
   StageClock clock_;
   gl::SamplerReset reset_samplers_;
   FrameGate* gate_ = nullptr;
@@ -126,11 +113,8 @@ class TextureCore {
   ExtractionReport done_;     // for the frame in work, so far
   gl::BufferTexture charts_;  // planned resolutions, before they are part of a generation
   std::vector<Eigen::Vector4f> chart_rows_, geometry_;
-  std::vector<std::uint32_t> table_, dirty_, chart_of_page_;
-  std::vector<std::array<int, 3>> kept_;
-  std::vector<int> first_page_before_;  // of the published generation
-  std::deque<RobotTime> image_times_;   // of the last images
-  std::vector<float> ages_;
+  std::vector<std::uint32_t> table_;
+  PageAges ages_;
 
   GenerationPool generations_;
   GenerationPool::Generation current_;
