@@ -53,7 +53,6 @@ class ToolScript final : public ScriptedMotion {
   bool advance(const ToolStep& step, double dt);
   void begin_step();
   Pose aim_of(const ToolStep& step) const;
-  void go_there(const ToolStep& step, double dt);
   void sway(double dt);
   JointVector arm() const;
   void set_arm(const JointVector& q);
