@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 
+#include "common/held_stderr.hpp"
 #include "seat/tones.hpp"
 
 namespace foresight {
@@ -23,6 +24,7 @@ struct Speaker::Device {
   std::deque<std::int16_t> waiting;  // while the device is locked
 
   Device() {
+    const HeldStderr held;  // ALSA says at length that there is no sound card; the seat says it in a line
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     if (SDL_InitSubSystem(SDL_INIT_AUDIO) != 0) return;
     opened = true;
