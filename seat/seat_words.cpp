@@ -25,7 +25,7 @@ std::string with_our_keys(std::string cure) {
 
 /// G asks, or takes the request back: who waits for control, and is told to ask for it, would lose his place by it.
 std::string control_cure(const ControlSeatStatus& control) {
-  if (!control.asks || control.phase != Phase::connected) return with_our_keys(control.cure);
+  if (!control.wanted || control.phase != Phase::connected) return with_our_keys(control.cure);
   return control.cure + (control.cure.empty() ? "" : "; ") + "G takes your request back";
 }
 
@@ -136,7 +136,8 @@ SeatLine request_words(const SeatStatus& status) {
   const ControlWords words = fate.outcome ? words_for(*fate.outcome)
                                           : ControlWords{"no answer came", "look at the robot's state, and ask again"};
   out.words = fmt::format("{}: {}", to_string(fate.what), words.name);
-  const bool waits = fate.outcome == RequestOutcome::not_holder && status.control.asks;
+  const bool waits = status.control.wanted && status.control.phase != Phase::holding &&
+                     fate.outcome == RequestOutcome::not_holder;
   out.cure = waits ? "wait until control is granted to you" : with_our_keys(words.cure);
   out.urgency = Urgency::note;
   return out;

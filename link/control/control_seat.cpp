@@ -278,7 +278,6 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
   using Phase = ControlSeatStatus::Phase;
   out.wanted = wanted_;
   out.phase = desk_ == 0 ? Phase::connecting : lease_ == 0 ? Phase::connected : Phase::holding;
-  out.asks = wanted_ && lease_ == 0;
   const bool sees = sees_robot(now);
   const bool agrees = agreed_ != 0 && agreed_ == state_.consent;
   out.follows = sees && lease_ != 0 && agrees && state_.cause == RestCause::none;

@@ -36,8 +36,6 @@ struct ControlSeatStatus {
   bool follows = false;
   /// The switch is held but moves nothing: it must be let go of and pressed again.
   bool must_let_go = false;
-  /// Control is asked for, again and again, and was not granted yet.
-  bool asks = false;
   std::string words, cure;              ///< what keeps the robot from following; "" where nothing does
   std::vector<Difference> differences;  ///< of the two sides
   std::optional<Duration> state_age;    ///< of the newest state, since it came

@@ -274,7 +274,7 @@ TEST_F(ControlDeskTest, ASecondOperatorIsRefusedAndToldWhoCommands) {
   ben_.held = false;
   run(1s);
   EXPECT_THAT(status(ben_).words, HasSubstr("'anna' commands"));
-  EXPECT_TRUE(status(ben_).asks);
+  EXPECT_TRUE(status(ben_).wanted);
   EXPECT_EQ(status(ben_).cure, "") << "the words say what to do";
   ben_.held = true;
   run(1s);

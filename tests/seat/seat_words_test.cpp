@@ -108,7 +108,7 @@ TEST(SeatWords, WhoWaitsForControlIsNotToldToAskForIt) {
   status.control.words = "connected";
   status.control.cure = "ask for control";
   EXPECT_EQ(next_step(status).cure, "ask for control (G)");
-  status.control.asks = true;
+  status.control.wanted = true;
   status.control.words = "'anna' commands; wait";
   status.control.cure = "";
   status.fates.push_back({1, LineRequest::enable, RequestOutcome::not_holder});
