@@ -45,7 +45,8 @@ void add_export_run(Command& app, std::function<int()>& action) {
   command->add_option("--scene", options->scene, "Scene or mesh, in place of the rig's")->reads();
   command->add_flag("--mock", options->mock, "The robot's program ran with --mock, though the recording was not told");
   command->footer(
-      "Exit codes: 0 done, 1 the disk is full, 2 wrong input.\n\n"
+      "Exit codes: 0 done, 1 the disk is full, or a pair could not be written (what came before is kept), 2 wrong "
+      "input.\n\n"
       "Example: foresight export-run session.mcap --out run && foresight replay run");
   command->callback([options, &action] { action = [options] { return export_run(*options); }; });
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
@@ -64,42 +65,51 @@ void RunWriter::write_image(const std::string& name, const cv::Mat& pixels, std:
   write_bytes(folder_ / name, bytes.data(), bytes.size());
 }
 
-std::ofstream& RunWriter::row(List& list, RobotTime time) {
-  if (!list.stream.is_open()) {
-    list.stream.open(folder_ / list.file);
-    list.stream << "# " << list.heading << "\n";
-  }
-  list.stream << time_text(time) << ' ';
-  return list.stream;
+std::string& RunWriter::row(List& list, RobotTime time) {
+  if (list.size == 0 && list.rows.empty()) list.rows = std::string("# ") + list.heading + "\n";
+  return list.rows += time_text(time) + ' ';
 }
 
 void RunWriter::add_image(bool right, RobotTime time, const std::string& name) {
-  row(right ? right_ : left_, time) << name << '\n';
+  row(right ? right_ : left_, time) += name + '\n';
 }
 
 void RunWriter::add_unplaced(RobotTime time, const std::string& name) {
-  row(unplaced_, time) << name << '\n';
+  row(unplaced_, time) += name + '\n';
 }
 
 void RunWriter::add_pose(RobotTime time, const Pose& T_world_left) {
-  row(trajectory_, time) << pose_text(T_world_left) << '\n';
+  row(trajectory_, time) += pose_text(T_world_left) + '\n';
 }
 
 void RunWriter::add_node(RobotTime time, const std::string& node, const Pose& T_world_node) {
-  row(nodes_, time) << node << ' ' << pose_text(T_world_node) << '\n';
+  row(nodes_, time) += node + ' ' + pose_text(T_world_node) + '\n';
 }
 
 void RunWriter::add_registration(RobotTime time, std::string_view quality, double predicted_px) {
-  row(registration_, time) << quality << ' ' << number_text(predicted_px, 6) << '\n';
+  row(registration_, time) += std::string(quality) + ' ' + number_text(predicted_px, 6) + '\n';
+}
+
+void RunWriter::write(List& list) {
+  if (list.rows.empty()) return;
+  const fs::path file = folder_ / list.file;
+  std::ofstream stream(file, list.size == 0 ? std::ios::trunc : std::ios::app);
+  stream << list.rows;
+  stream.close();
+  if (!stream) {
+    const int error = errno;
+    std::error_code ignored;
+    fs::resize_file(file, list.size, ignored);
+    for (List* const each : lists()) each->rows.clear();
+    throw RuntimeFailure("cannot write " + file.string() + " (" + std::strerror(error) + ")",
+                         cure_of_write_error(error));
+  }
+  list.size += list.rows.size();
+  list.rows.clear();
 }
 
 void RunWriter::flush() {
-  for (List* list : {&left_, &right_, &unplaced_, &trajectory_, &nodes_, &registration_}) {
-    if (!list->stream.is_open()) continue;
-    if (!list->stream.flush())
-      throw RuntimeFailure("cannot write " + (folder_ / list->file).string() + " (" + std::strerror(errno) + ")",
-                           cure_of_write_error(errno));
-  }
+  for (List* const list : lists()) write(*list);
 }
 
 }  // namespace foresight

@@ -1,8 +1,9 @@
 // Writes a recorded run: the files that scene/run_folder.hpp reads.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -13,8 +14,8 @@
 namespace foresight {
 
 /// The files of a run but for its scene (scene/scene_writer.hpp), row by row. Times ascend in each list; what is never
-/// added has no file. Whatever is read back is what was added: numbers are written with all digits that count. One
-/// thread; write_image() any.
+/// added has no file. Rows are kept until flush(). Whatever is read back is what was added: numbers are written with
+/// all digits that count. One thread; write_image() any.
 class RunWriter {
  public:
   /// `folder` exists. Writes camera.yaml. Throws RuntimeFailure where that cannot be written.
@@ -35,7 +36,9 @@ class RunWriter {
   void add_node(RobotTime time, const std::string& node, const Pose& T_world_node);
   void add_registration(RobotTime time, std::string_view quality, double predicted_px);
 
-  /// All rows are in the files. Throws RuntimeFailure where they are not.
+  /// Writes the rows that were added since the last time, those that name images after all others: what is in the
+  /// files is a run at any instant. Throws RuntimeFailure where they cannot be written; then they are dropped, and the
+  /// files have whole rows.
   void flush();
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -43,9 +46,12 @@ class RunWriter {
  private:
   struct List {
     const char *file, *heading;
-    std::ofstream stream = {};
+    std::string rows = {};    // that flush() will write
+    std::uintmax_t size = 0;  // bytes that it has written
   };
-  std::ofstream& row(List& list, RobotTime time);
+  std::string& row(List& list, RobotTime time);
+  void write(List& list);
+  std::array<List*, 6> lists() { return {&registration_, &nodes_, &trajectory_, &unplaced_, &right_, &left_}; }
 
   std::filesystem::path folder_;
   List left_{"rgb.txt", "time[s] file"}, right_{"rgb_right.txt", "time[s] file"};

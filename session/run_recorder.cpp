@@ -11,6 +11,12 @@ namespace foresight {
 namespace fs = std::filesystem;
 namespace {
 
+FolderForm form_of(const RecorderOptions& options) {
+  FolderForm out = RunRecorder::form();
+  out.irreplaceable = options.irreplaceable;
+  return out;
+}
+
 constexpr int kCompression = 1;  // more takes longer than 33 ms
 
 }  // namespace
@@ -22,14 +28,13 @@ fs::path beside_run(fs::path out, const char* ending) {
 
 FolderForm RunRecorder::form() {
   return {kMarker, kMarkerLine,
-          [](const fs::path& relative) { return relative == kMarker || is_file_of_run(relative); },
-          /*irreplaceable=*/true};
+          [](const fs::path& relative) { return relative == kMarker || is_file_of_run(relative); }};
 }
 
 RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options, std::shared_ptr<FrameQueue> frames)
     : options_(std::move(options)),
       frames_(std::move(frames)),
-      target_(out, form()),
+      target_(out, form_of(options_)),
       run_(target_.path(), options_.lenses.left, "left") {
   target_.require_space(options_.spare_bytes);
   run_.add_right_camera(options_.lenses.right, options_.lenses.T_left_right, "right");
@@ -41,7 +46,7 @@ RunRecorder::RunRecorder(const fs::path& out, RecorderOptions options, std::shar
 RunRecorder::~RunRecorder() {
   stopped_ = true;  // nobody wants what still waits
   join();
-  if (counts_.written > 0) target_.keep();
+  if (counts_.written > 0 && options_.irreplaceable) target_.keep();
 }
 
 void RunRecorder::join() {

@@ -27,6 +27,7 @@ struct RecorderOptions {
   bool posed = true;
   std::optional<std::filesystem::path> tags = {};  ///< map of tags, copied into the run as tags.txt
   double spare_bytes = 16e6;                       ///< of the disk that are left free
+  bool irreplaceable = true;                       ///< FolderForm::irreplaceable; false: made of a file that stays
 };
 
 /// What is recorded beside the folder `out`: "run/" and "-joints.csv" give "run-joints.csv".

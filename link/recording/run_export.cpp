@@ -37,7 +37,9 @@ class Exporter {
   }
 
   RunExport run() {
-    RunRecorder recorder(options_.out, recorder_options(scene_), queue_);
+    RecorderOptions options = recorder_options(scene_);
+    options.irreplaceable = false;
+    RunRecorder recorder(options_.out, std::move(options), queue_);
     McapVisitor visitor;
     visitor.message = [&](const McapMessage& message) {
       take(message);

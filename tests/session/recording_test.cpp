@@ -386,6 +386,32 @@ TEST_F(Recording, KeepsWhatCameBeforeAFailingWrite) {
   EXPECT_THAT(folder_.read("run/rgb.txt"), testing::Not(HasSubstr("000001.png"))) << "without its partner";
 }
 
+TEST_F(Recording, AListThatCannotBeWrittenNamesNoImageWithoutItsPose) {
+  const auto queue = std::make_shared<FrameQueue>(4);
+  RunRecorder recorder(folder_ / "run", options_, queue);
+  const auto frames = queue_of({pair_at(1), pair_at(2)});
+  queue->put(*frames->take(0ns));
+  while (recorder.counts().written == 0) std::this_thread::sleep_for(1ms);
+  fs::rename(unfinished() / "trajectory.txt", folder_ / "aside.txt");
+  fs::create_directory(unfinished() / "trajectory.txt");
+  queue->put(*frames->take(0ns));
+  while (!recorder.stopped()) std::this_thread::sleep_for(1ms);
+  EXPECT_THAT(recorder.fault(), HasSubstr("trajectory.txt"));
+  fs::remove(unfinished() / "trajectory.txt");
+  fs::rename(folder_ / "aside.txt", unfinished() / "trajectory.txt");
+  EXPECT_EQ(recorder.finish("").written, 1u);
+  EXPECT_EQ(RunFolder::open(folder_ / "run", {}).frames().size(), 1u);
+}
+
+TEST_F(Recording, WhatCanBeMadeAgainIsNotKept) {
+  options_.irreplaceable = false;
+  {
+    const RunRecorder recorder(folder_ / "run", options_, queue_of({pair_at(1)}));
+    while (recorder.counts().written == 0) std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_THAT(left_behind(), testing::IsEmpty());
+}
+
 // What lies there while it records is what a program leaves that is killed.
 TEST_F(Recording, IsARunAtAnyInstant) {
   const auto queue = std::make_shared<FrameQueue>(4);
