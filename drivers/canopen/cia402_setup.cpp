@@ -137,6 +137,8 @@ void Cia402Drive::prove_heartbeats() {
 void Cia402Drive::write_error_behaviour() {
   const Written written = access_.try_write(kErrorBehaviour, 0);
   if (written == Written::proven || written == Written::absent) return;  // 0 is what devices without it do
+  constexpr std::int64_t kNoChange = 1;
+  if (access_.read_if_there(kErrorBehaviour).value_or(kNoChange) != kNoChange) return;
   notes_.push_back("1029h:01: it does not leave the operational state when we fall silent");
 }
 

@@ -130,6 +130,10 @@ TEST(Setup, TellsOfADriveThatStaysOperationalWhenWeFallSilent) {
   rig.configure();
   EXPECT_STREQ(rig.drive().refusal(), "");
   EXPECT_THAT(rig.drive().remarks(), testing::Contains(HasSubstr("1029h:01")));
+  CanopenRig stops;
+  stops.slave().object(0x1029, 1) = {.value = 2, .bytes = 1, .keeps = false};
+  stops.configure();
+  EXPECT_THAT(stops.drive().remarks(), testing::Not(testing::Contains(HasSubstr("1029h"))));
   CanopenRig without;
   without.slave().remove(0x1029);
   without.configure();
