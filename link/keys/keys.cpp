@@ -166,10 +166,19 @@ KeyFiles key_files(const fs::path& folder, Role role) {
 void make_keys(const fs::path& folder, int days) {
   if (fs::exists(folder) && !fs::is_empty(folder))
     throw InputError(folder.string(), "has something in it", "name a new folder: keys replace nothing");
-  const fs::path partial = partial_path(folder);  // half of the keys would be worse than none
+  // Half of the keys would be worse than none. A folder that is there may be the root of another disk.
+  const bool is_there = fs::exists(folder);
+  const fs::path partial = partial_path(is_there ? folder / "keys" : folder);
   try {
     write_keys(partial, days);
-    fs::rename(partial, folder);
+    if (is_there) {
+      fs::permissions(folder, fs::perms::owner_all);
+      for (const fs::directory_entry& made : fs::directory_iterator(partial))
+        fs::rename(made.path(), folder / made.path().filename());
+      fs::remove(partial);
+    } else {
+      fs::rename(partial, folder);
+    }
   } catch (const std::exception& error) {
     std::error_code ignored;
     fs::remove_all(partial, ignored);

@@ -42,6 +42,15 @@ TEST_F(Keys, EveryRoleIsLetIn) {
               testing::ThrowsMessage<InputError>(HasSubstr("has something in it")));
 }
 
+TEST_F(Keys, AnEmptyFolderIsFilledInItsPlace) {
+  const fs::path stick = folder_ / "stick";  // as where a disk is mounted: nothing can take its place
+  fs::create_directory(stick);
+  fs::create_directory_symlink(stick, folder_ / "link");
+  make_keys(folder_ / "link", 30);
+  EXPECT_NO_THROW(check_keys(stick, Role::robot, "here"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(stick), fs::directory_iterator()), 4);
+}
+
 TEST_F(Keys, WhatIsMissingIsNamed) {
   fs::remove(file("robot", "key.pem"));
   EXPECT_THAT(refusal(), HasSubstr("rig.yaml:4: link.security: the robot's key.pem is missing"));
