@@ -44,11 +44,16 @@ std::vector<std::string> read_peers(const YamlMap& map) {
   return out;
 }
 
-double read_rate(const YamlMap& map, const std::string& key, double otherwise, double most) {
+// Hz. Whoever operates takes a robot that says nothing of itself for longer for one that is gone.
+constexpr double kLeastStateRate = 1;
+
+double read_rate(const YamlMap& map, const std::string& key, double otherwise, double most, double least = 0) {
   if (!map.has(key)) return otherwise;
   const double rate = map.positive(key);
   if (rate > most)
     throw InputError(map.where(key), fmt::format("is {:g}", rate), fmt::format("give at most {:g}", most));
+  if (rate < least)
+    throw InputError(map.where(key), fmt::format("is {:g}", rate), fmt::format("give at least {:g}", least));
   return rate;
 }
 
@@ -70,7 +75,7 @@ LinkConfig read_link_config(const YamlMap& map) {
   if (map.has("interface")) out.interface = read_interface(map);
   if (map.has("peers")) out.peers = read_peers(map);
   out.joint_rate_hz = read_rate(map, "joint_rate_hz", out.joint_rate_hz, 1000);
-  out.state_rate_hz = read_rate(map, "state_rate_hz", out.state_rate_hz, 100);
+  out.state_rate_hz = read_rate(map, "state_rate_hz", out.state_rate_hz, 100, kLeastStateRate);
   out.image_rate_hz = read_rate(map, "image_rate_hz", out.image_rate_hz, 1000);
   if (map.has("coding"))
     out.coding = map.choice<LinkCoding>("coding", {{"jpeg", LinkCoding::jpeg}, {"h264", LinkCoding::h264}});

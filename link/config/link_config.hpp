@@ -25,7 +25,7 @@ struct LinkConfig {
   std::string interface = "lo";    ///< of the network, as `ip link` shows it
   std::vector<std::string> peers;  ///< addresses or names of other hosts; none: found by multicast, on a LAN
   double joint_rate_hz = 50;       ///< joint states and transforms, at most; > 0
-  double state_rate_hz = 10;       ///< robot's state; changes go at once; > 0
+  double state_rate_hz = 10;       ///< robot's state; changes go at once; >= 1
   double image_rate_hz = 30;       ///< pairs, at most; > 0
   LinkCoding coding = LinkCoding::jpeg;
   int jpeg_quality = 85;   ///< 1 .. 100

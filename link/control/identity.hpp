@@ -9,7 +9,8 @@
 
 namespace foresight {
 
-/// Grows whenever the messages change so that an older program would misunderstand them.
+/// Grows whenever the messages change so that an older program would misunderstand them. Only Hello and Welcome have to
+/// stay as they are from the first release on, or two versions could not tell each other which they are.
 inline constexpr std::uint32_t kLineProtocol = 3;
 
 /// Of a file's bytes: FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo). Tells apart what differs by mistake; who wants

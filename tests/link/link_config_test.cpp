@@ -43,6 +43,7 @@ TEST(LinkConfig, WhatCannotBeIsRefusedWithItsLine) {
   EXPECT_THAT([] { read("round_trip_s: 2.5\n"); }, refused_as("round_trip_s: is 2.5; give the line's round trip"));
   EXPECT_THAT([] { read("joint_rate_hz: 0\n"); }, refused_as("give a number above 0"));
   EXPECT_THAT([] { read("image_rate_hz: 1e6\n"); }, refused_as("give at most 1000"));
+  EXPECT_THAT([] { read("state_rate_hz: 0.5\n"); }, refused_as("give at least 1"));
 }
 
 }  // namespace
