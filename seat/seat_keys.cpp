@@ -43,10 +43,9 @@ constexpr bool in_order() {
 }
 static_assert(in_order());
 
-std::string printed(std::initializer_list<SeatKey> keys) {
+std::string all_of(std::initializer_list<SeatKey> keys) {
   std::string out;
-  for (const SeatKey key : keys)
-    out += (out.empty() ? "" : ", ") + std::string(kBindings[static_cast<std::size_t>(key)].printed);
+  for (const SeatKey key : keys) out += (out.empty() ? "" : ", ") + std::string(printed(key));
   return out;
 }
 
@@ -54,6 +53,10 @@ std::string printed(std::initializer_list<SeatKey> keys) {
 
 std::span<const SeatKeyBinding> seat_keys() noexcept {
   return kBindings;
+}
+
+const char* printed(SeatKey key) noexcept {
+  return kBindings[static_cast<std::size_t>(key)].printed;
 }
 
 std::optional<SeatKey> seat_key(int glfw_code) noexcept {
@@ -65,22 +68,22 @@ std::optional<SeatKey> seat_key(int glfw_code) noexcept {
 std::vector<std::pair<std::string, std::string>> key_words() {
   using enum SeatKey;
   std::vector<std::pair<std::string, std::string>> out = HandDriver::keys();
-  out.insert(out.begin(), {{printed({stop}), "stop at once"},
-                           {printed({enable, home, reset, set_up}), "enable, home, reset, configure drives anew"}});
+  out.insert(out.begin(), {{all_of({stop}), "stop at once"},
+                           {all_of({enable, home, reset, set_up}), "enable, home, reset, configure drives anew"}});
   out.insert(out.end(),
-             {{printed({control}), "give control back, or the request for it; ask for it again"},
-              {printed({hand_over}), "hand control over to who asks"},
-              {printed({main_view}), "prediction, newest image, both, split (drag its border)"},
-              {printed({stereo, swap_eyes}), "for two eyes: which way; swap the eyes"},
-              {printed({stereogram}) + "; " + printed({stereogram_depth, stereogram_pattern, stereogram_variant}),
+             {{all_of({control}), "give control back, or the request for it; ask for it again"},
+              {all_of({hand_over}), "hand control over to who asks"},
+              {all_of({main_view}), "prediction, newest image, both, split (drag its border)"},
+              {all_of({stereo, swap_eyes}), "for two eyes: which way; swap the eyes"},
+              {all_of({stereogram}) + "; " + all_of({stereogram_depth, stereogram_pattern, stereogram_variant}),
                "a stereogram; its depth, pattern, variant"},
-              {printed({beside}), "from beside: the mouse looks around"},
-              {printed({paint}), "wireframe, age, confidence, error"},
-              {printed({marks}), "what is not exact, and was wrong"},
-              {printed({help}), "these keys"},
-              {printed({sounds}), "sounds off, and on again"},
-              {printed({screenshot}), "screenshot"},
-              {printed({end}) + ", Esc", "end"}});
+              {all_of({beside}), "from beside: the mouse looks around"},
+              {all_of({paint}), "wireframe, age, confidence, error"},
+              {all_of({marks}), "what is not exact, and was wrong"},
+              {all_of({help}), "these keys"},
+              {all_of({sounds}), "sounds off, and on again"},
+              {all_of({screenshot}), "screenshot"},
+              {all_of({end}) + ", Esc", "end"}});
   return out;
 }
 

@@ -41,6 +41,7 @@ struct SeatKeyBinding {
 };
 /// All of them, in the order of SeatKey. No code is one of key_bindings(), too.
 std::span<const SeatKeyBinding> seat_keys() noexcept;
+const char* printed(SeatKey key) noexcept;  ///< SeatKeyBinding::printed
 /// Nothing for a key that does nothing here.
 std::optional<SeatKey> seat_key(int glfw_code) noexcept;
 

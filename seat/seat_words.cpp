@@ -136,8 +136,8 @@ SeatLine request_words(const SeatStatus& status) {
   const ControlWords words = fate.outcome ? words_for(*fate.outcome)
                                           : ControlWords{"no answer came", "look at the robot's state, and ask again"};
   out.words = fmt::format("{}: {}", to_string(fate.what), words.name);
-  const bool waits = status.control.wanted && status.control.phase != Phase::holding &&
-                     fate.outcome == RequestOutcome::not_holder;
+  const bool waits =
+      status.control.wanted && status.control.phase != Phase::holding && fate.outcome == RequestOutcome::not_holder;
   out.cure = waits ? "wait until control is granted to you" : with_our_keys(words.cure);
   out.urgency = Urgency::note;
   return out;

@@ -26,7 +26,8 @@ void SeatSounds::toggle() {
 std::vector<SeatLine> SeatSounds::lines() const {
   if (!speaker_) return {};
   if (!speaker_->silent_because().empty()) return {{"sounds", speaker_->silent_because(), "", Urgency::fine}};
-  if (speaker_->muted()) return {{"sounds", "off", "on again (M)", Urgency::fine}};
+  if (speaker_->muted())
+    return {{"sounds", "off", std::string("on again (") + printed(SeatKey::sounds) + ")", Urgency::fine}};
   return {};
 }
 

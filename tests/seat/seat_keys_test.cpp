@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "input/keyboard_mouse.hpp"
 
@@ -19,10 +22,16 @@ TEST(SeatKeys, NoKeyHasTwoMeanings) {
 }
 
 TEST(SeatKeys, EachIsTold) {
-  std::string told;
-  for (const auto& [keys, does] : key_words()) told += keys + " ";
-  for (const SeatKeyBinding& binding : seat_keys())
-    EXPECT_NE(told.find(binding.printed), std::string::npos) << binding.printed;
+  std::set<std::string> told;
+  for (const auto& [keys, does] : key_words()) {
+    std::string word;
+    for (const char c : keys + " ") {
+      const bool ends = c == ' ' || c == ',' || c == ';';
+      if (!ends) word += c;
+      if (ends && !word.empty()) told.insert(std::exchange(word, ""));
+    }
+  }
+  for (const SeatKeyBinding& binding : seat_keys()) EXPECT_TRUE(told.contains(binding.printed)) << binding.printed;
 }
 
 }  // namespace
