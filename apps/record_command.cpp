@@ -136,7 +136,7 @@ GivenPoses poses_of(const RecordArguments& a, const std::shared_ptr<const LiveSc
 int record_and_report(const RecordArguments& a, const OpenStereo& opened, LiveFrames& frames, RecorderOptions options,
                       Clock& clock) {
   for (const fs::path& cut : unfinished_beside(a.out))
-    std::fprintf(stderr, "record: %s is a recording whose program was killed: rename it, or remove it\n", cut.c_str());
+    std::fprintf(stderr, "record: %s is a recording that was not finished: rename it, or remove it\n", cut.c_str());
   RunRecorder recorder(a.out, std::move(options), frames.subscribe(RunRecorder::kRoom));
   RecordingLimits limits;
   limits.count = a.count;

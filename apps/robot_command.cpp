@@ -78,6 +78,7 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevice
 int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices& devices, RobotCameras* cameras,
              const Windows& windows) {
   LiveView* const view = windows.view.get();
+  std::exception_ptr failure;
   {
     const RobotLoop loop(clock, robot, devices, say_robot);
     if (cameras) cameras->start();  // the drives already wait for the loop: that goes first
@@ -90,7 +91,6 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
       ended = true;
     };
     // A window wants the main thread, and neither drawing nor a busy machine must make commands late.
-    std::exception_ptr failure;
     std::jthread ticks([&] {
       make_real_time(priority::kLine);  // where allowed
       try {
@@ -109,10 +109,10 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
       unseen = true;
     }
     ticks.join();
-    if (failure) std::rethrow_exception(failure);
     notify_service("STOPPING=1");
   }
   const int code = console.finish();
+  if (failure) std::rethrow_exception(failure);
   if (view) view->finish(!stop_requested(), console.trouble());
   return stop_requested() ? kStopped : code;
 }
@@ -124,7 +124,7 @@ std::unique_ptr<RobotCameras> make_cameras(const Rig& rig, const RobotDevices& d
     return nullptr;
   if (!arguments.record.empty())
     for (const std::filesystem::path& cut : unfinished_beside(arguments.record))
-      say_robot(cut.string() + " is a recording whose program was killed: rename it, or remove it");
+      say_robot(cut.string() + " is a recording that was not finished: rename it, or remove it");
   RobotCameraOptions options;
   options.mock = arguments.mock;
   if (!arguments.record.empty()) options.record = arguments.record;

@@ -1,5 +1,6 @@
 #include "common/patient_output.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -15,6 +16,12 @@ namespace foresight {
 namespace {
 
 constexpr Duration kFarewell = std::chrono::milliseconds(500);
+
+/// For the program's life; the same one where there are no more.
+int duplicate(int fd) {
+  const int out = ::fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  return out < 0 ? fd : out;
+}
 
 /// What cannot be written (the terminal is gone, nobody reads the pipe) is nobody's any more.
 void write_to(int fd, std::string_view text) noexcept {
@@ -112,13 +119,18 @@ void PatientOutput::write_all(const std::shared_ptr<Shared>& shared) noexcept {
 }
 
 PatientOutput& patient_stdout() {
-  static PatientOutput output(STDOUT_FILENO);
+  static PatientOutput output(duplicate(STDOUT_FILENO));
   return output;
 }
 
 PatientOutput& patient_stderr() {
-  static PatientOutput output(STDERR_FILENO);
+  static PatientOutput output(duplicate(STDERR_FILENO));
   return output;
+}
+
+WaitsForReaders::WaitsForReaders() {
+  patient_stdout();
+  patient_stderr();
 }
 
 WaitsForReaders::~WaitsForReaders() {

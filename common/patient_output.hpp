@@ -43,8 +43,10 @@ PatientOutput& patient_stdout();
 PatientOutput& patient_stderr();
 
 /// In the end, what was said on both is waited for, half a second each at most: the program's last words come after it.
+/// In the beginning it starts their threads: later, they would inherit real-time priority, or write to what HeldStderr
+/// has put in the terminal's place.
 struct WaitsForReaders {
-  WaitsForReaders() = default;
+  WaitsForReaders();
   WaitsForReaders(const WaitsForReaders&) = delete;
   WaitsForReaders& operator=(const WaitsForReaders&) = delete;
   ~WaitsForReaders();

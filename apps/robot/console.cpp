@@ -78,9 +78,9 @@ int Console::finish() {
     patient_stderr().say("foresight: " + fault + "\n");
     well = false;
   }
+  if (session_) report();
   const std::string last = view(robot_.status(), -1);
   keyboard_.is_terminal() ? patient_stdout().show(last) : static_cast<void>(std::fputs(last.c_str(), stdout));
-  if (session_) report();
   return well ? 0 : 1;
 }
 
