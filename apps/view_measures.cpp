@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "pictures/image_metrics.hpp"
+#include "pictures/picture_file.hpp"
 #include "texture_gpu/lamp/lamp_words.hpp"
 #include "texture_gpu/stage_clock.hpp"
 

@@ -5,10 +5,8 @@
 #include "apps/command_line/output_lock.hpp"
 #include "apps/replay_report/contact_sheet.hpp"
 #include "apps/replay_report/html_report.hpp"
-#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/partial_path.hpp"
-#include "pictures/encode.hpp"
 
 namespace foresight {
 namespace {
@@ -51,11 +49,6 @@ void add_view_outputs(Command& command, ViewOutputs& outputs, const std::vector<
       ->writes([folders](const fs::path& out) { return picture_outputs(out, folders); });
   command.add_option("--report", outputs.report, "JSON file with all measurements")->writes(numbers_form());
   command.add_option("--html", outputs.html, "HTML file with pictures and plots, self-contained")->writes(page_outputs);
-}
-
-void write_png(const fs::path& file, const cv::Mat& picture) {
-  const std::vector<std::uint8_t> bytes = encode_png(picture, 3);
-  write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 void make_folder(const fs::path& folder) {

@@ -24,8 +24,6 @@ struct ViewOutputs {
 /// Adds --out, --report and --html. `outputs` must live as long as `command`; `folders`: of pictures, within --out.
 void add_view_outputs(Command& command, ViewOutputs& outputs, const std::vector<std::string>& folders = {"predicted"});
 
-/// Atomically. Throws RuntimeFailure.
-void write_png(const std::filesystem::path& file, const cv::Mat& picture);
 /// Throws RuntimeFailure.
 void make_folder(const std::filesystem::path& folder);
 

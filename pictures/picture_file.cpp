@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cctype>
 
+#include "common/atomic_file.hpp"
 #include "common/error.hpp"
 #include "common/read_file.hpp"
 #include "common/text.hpp"
+#include "pictures/encode.hpp"
 #include "pictures/image_structure.hpp"
 
 namespace foresight {
@@ -29,6 +31,11 @@ cv::Mat read_picture(const std::filesystem::path& file, PictureColours colours) 
     throw InputError(file.string(), "is no image that can be read", "remove it, or copy it again");
   if (!picture.damage.empty()) throw InputError(file.string(), "its compressed data are damaged", "copy it again");
   return picture.pixels;
+}
+
+void write_png(const std::filesystem::path& file, const cv::Mat& picture) {
+  const std::vector<std::uint8_t> bytes = encode_png(picture, 3);
+  write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace foresight

@@ -4,8 +4,7 @@
 
 #include <exception>
 
-#include "common/atomic_file.hpp"
-#include "pictures/encode.hpp"
+#include "pictures/picture_file.hpp"
 
 namespace foresight {
 namespace {
@@ -26,8 +25,7 @@ Screenshot save_screenshot(const fs::path& folder, const cv::Mat& picture) noexc
   Screenshot out;
   try {
     out.file = first_free(folder);
-    const std::vector<std::uint8_t> bytes = encode_png(picture, 3);
-    write_file_atomically(out.file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_png(out.file, picture);
   } catch (const std::exception& error) {
     out.trouble = error.what();
   }

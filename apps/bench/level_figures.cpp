@@ -10,6 +10,7 @@
 #include "apps/view_outputs.hpp"
 #include "common/cpu_time.hpp"
 #include "common/statistics.hpp"
+#include "pictures/picture_file.hpp"
 #include "scene/lod/motion_levels.hpp"
 #include "sim/building.hpp"
 #include "sim/workshop.hpp"

@@ -3,6 +3,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/view_outputs.hpp"
+#include "pictures/picture_file.hpp"
 
 namespace foresight {
 namespace {
