@@ -13,6 +13,7 @@
 #include "display/live_source.hpp"
 #include "display/view_window.hpp"
 #include "seat/view_setup.hpp"
+#include "session/joint_tracks.hpp"
 
 namespace foresight {
 namespace {
@@ -21,21 +22,13 @@ namespace fs = std::filesystem;
 
 constexpr int kLiveWindowWidth = 1280;
 
-/// Why there is no pose: joints that are not homed tell no position.
-std::string lacks_of(const LiveFrame& frame) {
-  const std::vector<bool>& known = frame.joints.known;
-  const auto silent = std::ranges::count(known, false);
-  if (silent == 0) return "";
-  return fmt::format("{} of {} joints tell no position; home them (h)", silent, known.size());
-}
-
 LiveFeed feed_from(std::shared_ptr<FrameQueue> frames, std::function<std::string()> trouble) {
   return {[frames](Duration timeout) -> std::optional<LiveImage> {
             const auto frame = frames->take(timeout);
             if (!frame) return std::nullopt;
             const LiveFrame& of = **frame;
             if (of.posed) return LiveImage{of.number, of.posed};
-            return LiveImage{of.number, std::nullopt, of.pair.left.bgr, lacks_of(of)};
+            return LiveImage{of.number, std::nullopt, of.pair.left.bgr, unknown_joints(of.joints.known, 'h')};
           },
           [frames] { return frames->closed(); }, std::move(trouble)};
 }

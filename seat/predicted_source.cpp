@@ -6,6 +6,7 @@
 
 #include "link/operator_view/line_feed.hpp"
 #include "rig/rig_scene.hpp"
+#include "session/joint_tracks.hpp"
 
 namespace foresight {
 namespace {
@@ -14,13 +15,6 @@ constexpr Duration kLongestWait = std::chrono::milliseconds(50);  // FrameSource
 
 JointPositions positions_of(const link::LineJoints& joints) {
   return [&joints](std::string_view name) { return joints.position(name); };
-}
-
-/// Why an image has no pose: joints that are not homed tell no position.
-std::string unknown_joints(const link::LineJoints& joints) {
-  const auto unknown = std::ranges::count(joints.known, false);
-  if (unknown == 0) return "";
-  return fmt::format(": {} of {} joints tell no position; home them (H)", unknown, joints.known.size());
 }
 
 }  // namespace
@@ -134,7 +128,9 @@ std::optional<PosedFrame> PredictedSource::arrived() {
 
 std::string PredictedSource::fault() const {
   if (silent()) return fmt::format("NO IMAGE for {:.1f} s", to_seconds(clock_.now() - heard_));
-  return posed_ ? "" : "NO POSE for the newest image" + unknown_joints(newest_->joints);
+  if (posed_) return "";
+  const std::string why = unknown_joints(newest_->joints.known, 'H');
+  return "NO POSE for the newest image" + (why.empty() ? "" : ": " + why);
 }
 
 }  // namespace foresight

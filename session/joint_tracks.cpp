@@ -1,5 +1,7 @@
 #include "session/joint_tracks.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace foresight {
@@ -8,6 +10,12 @@ namespace {
 constexpr Duration kSilent = std::chrono::milliseconds(300);  // so much older than the others' word
 
 }  // namespace
+
+std::string unknown_joints(const std::vector<bool>& known, char key) {
+  const auto unknown = std::ranges::count(known, false);
+  if (unknown == 0) return "";
+  return fmt::format("{} of {} joints tell no position; home them ({})", unknown, known.size(), key);
+}
 
 void JointTracks::add(const RobotCycle& cycle) {
   for (std::size_t i = 0; i < std::min(tracks_.size(), cycle.joints); ++i)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "calibration/registration/head_kinematics.hpp"
@@ -17,6 +18,10 @@ struct JointState {
   /// Of each joint: is its position that of the instant? Else it is the last that its drive told, or not a number.
   std::vector<bool> known = {};
 };
+
+/// Why nobody knows where a robot stands, of JointState::known: "4 of 10 joints tell no position; home them (H)", with
+/// the key of who reads it; "" where all are known.
+std::string unknown_joints(const std::vector<bool>& known, char key);
 
 /// All joints of a robot, each with the instants at which its own drive told its positions. One thread.
 class JointTracks {

@@ -41,9 +41,9 @@ struct RecorderCounts {
 };
 
 /// Only writes: a thread of its own takes frames from its queue, encodes and stores them. All goes into a neighbour
-/// folder (unfinished_beside) that takes the target's name in finish(). There each pair is complete once the next one
-/// is written, so that a program that is killed leaves a run that can be read; without a pair, nothing stays. One
-/// thread constructs, finishes and destroys it.
+/// folder (unfinished_beside) that takes the target's name in finish(). There all pairs that count are complete, so
+/// that a program that is killed leaves a run that can be read; without a pair, nothing stays. One thread constructs,
+/// finishes and destroys it.
 class RunRecorder {
  public:
   static constexpr const char* kMarker = "record.yaml";  ///< tells our folders from those of others
