@@ -126,8 +126,19 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
   return best;
 }
 
+std::string near_word(std::string_view word, std::span<const std::string> candidates) {
+  const std::string best = nearest_word(word, candidates);
+  const bool holds_it = word.size() >= 3 && best.find(word) != std::string::npos;
+  return holds_it || 2 * edit_distance(lower(word), lower(best)) <= std::max(word.size(), best.size()) + 1 ? best : "";
+}
+
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates, const std::string& otherwise) {
-  return candidates.empty() ? otherwise : "did you mean " + in_quotes(nearest_word(word, candidates)) + "?";
+  constexpr std::size_t kMost = 12;  // of many, some show at least what such a word looks like
+  if (candidates.empty()) return otherwise;
+  if (const std::string near = near_word(word, candidates); !near.empty())
+    return "did you mean " + in_quotes(near) + "?";
+  if (candidates.size() <= kMost) return "known are " + joined(candidates);
+  return "known are " + joined(candidates.first(kMost)) + " and " + std::to_string(candidates.size() - kMost) + " more";
 }
 
 std::string joined(std::span<const std::string> words) {

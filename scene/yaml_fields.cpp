@@ -33,9 +33,12 @@ YamlMap YamlMap::parse(const std::filesystem::path& file, const std::string& tex
 void YamlMap::require_known(const std::vector<std::string>& known) const {
   std::vector<std::string> seen;
   for (const std::string& key : keys()) {
-    if (std::find(known.begin(), known.end(), key) == known.end())
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      const std::string near = near_word(key, known);
       throw InputError(where(key), "unknown key " + in_quotes(key),
-                       did_you_mean(key, known) + " Known are " + joined(known));
+                       near.empty() ? "known are " + joined(known)
+                                    : "did you mean " + in_quotes(near) + "? Known are " + joined(known));
+    }
     if (std::find(seen.begin(), seen.end(), key) != seen.end())
       throw InputError(where(key), "key " + in_quotes(key) + " appears twice", "remove one of the two");
     seen.push_back(key);

@@ -37,9 +37,11 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<std::string> jobs;
   for (const CLI::App* job : command->get_subcommands({})) jobs.push_back(job->get_name());
   const auto unknown = app.remaining(true);
-  if (!jobs.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
-    return "there is no subcommand " + in_quotes(unknown.front()) + "; " + did_you_mean(unknown.front(), jobs) + " S" +
-           help.substr(1);
+  if (!jobs.empty() && !unknown.empty() && !unknown.front().starts_with('-')) {
+    const std::string near = near_word(unknown.front(), jobs);
+    return "there is no subcommand " + in_quotes(unknown.front()) +
+           (near.empty() ? "; " + help : "; did you mean " + in_quotes(near) + "? S" + help.substr(1));
+  }
   return fault_of(error) + "; " + help;
 }
 
@@ -100,9 +102,10 @@ OptionCheck from_to(double low, double high) {
 OptionCheck one_of(std::vector<std::string> words) {
   const std::string all = joined(words);
   return {[words = std::move(words), all](const std::string& given) {
-            return std::find(words.begin(), words.end(), given) != words.end()
-                       ? std::string()
-                       : in_quotes(given) + " is none of " + all + "; " + did_you_mean(given, words);
+            if (std::find(words.begin(), words.end(), given) != words.end()) return std::string();
+            const std::string near = near_word(given, words);
+            return in_quotes(given) + " is none of " + all +
+                   (near.empty() ? "; give one" : "; did you mean " + in_quotes(near) + "?");
           },
           "one of " + all};
 }

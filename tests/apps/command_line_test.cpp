@@ -42,6 +42,7 @@ TEST(CommandLine, WrongWordsEndWithCode2AndTheWayToTheHelp) {
       {{"synth", "x", "--frames", "99999999999"}, "--frames: '99999999999' is too large; give at most 2147483647"},
       {{"replay", "x", "y"}, "y"},
       {{"link", "raet"}, "did you mean 'rate'? See `foresight link --help`"},
+      {{"link", "frobnicate"}, "there is no subcommand 'frobnicate'; see `foresight link --help`"},
       {{"link", "status", "--frobnicate"}, "see `foresight link status --help`"},
   };
   for (const auto& [arguments, what] : all) {

@@ -65,7 +65,12 @@ TEST(NearestWord, FindsTheSmallestEdit) {
 TEST(DidYouMean, NamesTheNearestOrSaysWhatElseToDo) {
   const std::vector<std::string> known{"elbow", "wrist"};
   EXPECT_EQ(did_you_mean("elbov", known), "did you mean 'elbow'?");
+  EXPECT_EQ(did_you_mean("xzy", std::vector<std::string>{"xyz", "quaternion"}), "did you mean 'xyz'?");
+  EXPECT_EQ(did_you_mean("ELBOW", known), "did you mean 'elbow'?");
   EXPECT_EQ(did_you_mean("elbov", {}, "leave it out"), "leave it out");
+  EXPECT_EQ(did_you_mean("gripper", known), "known are elbow, wrist");
+  EXPECT_EQ(did_you_mean("gripper", std::vector<std::string>(14, "x")),
+            "known are x, x, x, x, x, x, x, x, x, x, x, x and 2 more");
 }
 
 TEST(Words, AreJoinedLoweredAndTrimmed) {
