@@ -46,10 +46,11 @@ void add_run_options(Command& command, RunOptions& options) {
       ->check(from_to(1e-4, 1.0));
 }
 
-void add_accumulate_option(Command& command, std::optional<bool>& accumulate) {
-  command.add_flag("--accumulate", accumulate,
-                   "Show the newest image as a mean over those before it, as far as these agree: less of the sensor's "
-                   "noise, and finer edges");
+Option* add_accumulate_option(Command& command, std::optional<bool>& accumulate) {
+  return command.add_flag(
+      "--accumulate", accumulate,
+      "Show the newest image as a mean over those before it, as far as these agree: less of the sensor's "
+      "noise, and finer edges");
 }
 
 void add_images_option(Command& command, int& images) {

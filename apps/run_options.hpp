@@ -23,7 +23,7 @@ void add_run_options(Command& command, RunOptions& options);
 /// Adds --images, of views (TextureOptions::images). `images` must live as long as `command`.
 void add_images_option(Command& command, int& images);
 /// Adds --accumulate (TextureOptions::accumulate). `accumulate` must live as long as `command`.
-void add_accumulate_option(Command& command, std::optional<bool>& accumulate);
+Option* add_accumulate_option(Command& command, std::optional<bool>& accumulate);
 
 /// Reads and checks all of the run but its pixels, and sets options.textures.depth_tolerance by the
 /// model. Throws InputError.

@@ -78,8 +78,9 @@ void add_synth_command(Command& app, std::function<int()>& action) {
   command->add_option("--size", arguments->size, "Image size in pixels, WIDTHxHEIGHT")->capture_default_str();
   command->add_option("--rate", options.rate, "Images per second")->capture_default_str();
   command->add_flag("--stereo", options.stereo, "Add a second camera, 65 mm to the right");
-  command->add_flag("!--no-distortion", options.distortion, "An ideal pinhole instead of a real lens");
-  command->add_flag("--fisheye", options.fisheye, "An equidistant lens of 150 degrees");
+  const Option* pinhole =
+      command->add_flag("!--no-distortion", options.distortion, "An ideal pinhole instead of a real lens");
+  command->add_flag("--fisheye", options.fisheye, "An equidistant lens of 150 degrees")->excludes(pinhole);
   command->add_option("--seed", options.seed, "Varies wood grain, small print, noise and pose errors")
       ->capture_default_str();
   command

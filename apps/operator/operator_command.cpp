@@ -225,16 +225,41 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   return run_live_seat(rig, options);
 }
 
+/// Options that would change nothing are a mistake of whoever gave them.
+void refuse_options_of_the_other_way(const Arguments& given) {
+  const Arguments usual;
+  const std::pair<const char*, bool> of_scripts[] = {{"--out, --report, --html", given.outputs.any()},
+                                                     {"--delay-ms", given.delay_ms != usual.delay_ms},
+                                                     {"--still-head", given.still_head},
+                                                     {"--served", given.served},
+                                                     {"--seed", given.seed != usual.seed},
+                                                     {"--seconds", given.seconds != usual.seconds},
+                                                     {"--pictures-hz", given.pictures_hz != usual.pictures_hz},
+                                                     {"--no-zero-delay", !given.zero_delay}};
+  const std::pair<const char*, bool> of_windows[] = {{"--device", !given.device.empty()},
+                                                     {"--rate-hz", given.rate_hz != usual.rate_hz},
+                                                     {"--font-scale", given.font_scale != usual.font_scale},
+                                                     {"--no-sounds", !given.sounds},
+                                                     {"--head-display", given.head_display != usual.head_display}};
+  if (given.script.empty()) {
+    for (const auto& [name, is_given] : of_scripts)
+      if (is_given) throw InputError(name, "belongs to --scripted", "add --scripted, or leave it out");
+  } else {
+    for (const auto& [name, is_given] : of_windows)
+      if (is_given) throw InputError(name, "is of a seat with a window", "leave it out, or --scripted");
+  }
+}
+
 void check(const Rig& rig, const Arguments& arguments) {
   if (!rig.cameras)
     throw InputError(arguments.rig, "the rig has no cameras, of which a view could be made",
                      "add them to the rig (docs/rig-files.md)");
   if (!arguments.line.empty()) read_line_spec(arguments.line);  // known before anything is opened
-  const bool scripted_only[] = {arguments.outputs.any(), arguments.delay_ms != 0, arguments.still_head,
-                                arguments.served};
-  const char* const names[] = {"--out, --report, --html", "--delay-ms", "--still-head", "--served"};
-  for (std::size_t i = 0; i < std::size(names) && arguments.script.empty(); ++i)
-    if (scripted_only[i]) throw InputError(names[i], "belongs to --scripted", "add --scripted, or leave it out");
+  refuse_options_of_the_other_way(arguments);
+  if (!arguments.scene.empty() && !arguments.script.empty() && !arguments.served)
+    throw InputError("--scene",
+                     "is of a robot that is served: with both sides in one program the scene is the mock lab",
+                     "leave it out, or add --served");
   if (!arguments.coding.empty() && (arguments.script.empty() || arguments.served))
     throw InputError("--coding", "is of --scripted with both sides in one program",
                      "leave it out: the rig of the robot's side says it (link: coding)");
@@ -244,8 +269,6 @@ void check(const Rig& rig, const Arguments& arguments) {
                      live ? "add --mock" : "leave it out: --seed says it, too");
   if (arguments.physics && (!arguments.script.empty() || !arguments.mock))
     throw InputError("--physics", "is of a robot's side that runs with --mock", "add --mock, without --scripted");
-  if (arguments.head_display != "none" && !arguments.script.empty())
-    throw InputError("--head-display", "is of a seat with a window", "leave out --scripted");
   if (arguments.second_eye != "own" && arguments.head_display != "openxr")
     throw InputError("--second-eye", "is of a headset", "add --head-display openxr");
   if (!arguments.display_lenses.empty() && arguments.head_display != "side-by-side")
@@ -255,7 +278,17 @@ void check(const Rig& rig, const Arguments& arguments) {
   if (arguments.seed == 0) throw InputError("--seed", "is 0", "give one from 1 on");
 }
 
+/// Who gives the robot's address means the right thing, but in another place.
+void refuse_address(const std::string& rig) {
+  const bool is_address = !rig.empty() && rig.find_first_not_of("0123456789.:") == rig.npos;
+  if (is_address && !fs::exists(rig))
+    throw InputError(rig, "is an address, not a rig file",
+                     "copy the robot's rig file, write the address under its `link: peers:` (docs/line.md), and give "
+                     "that file");
+}
+
 int run(const Arguments& arguments) {
+  refuse_address(arguments.rig);
   const Rig rig = read_rig(arguments.rig);
   check(rig, arguments);
   return arguments.script.empty() ? run_live(rig, arguments) : run_scripted(rig, arguments);
@@ -331,9 +364,11 @@ void add_operator_command(Command& app, std::function<int()>& action) {
                     "Shadows of what moves are shown where they were; else where they fall, once it is known where the "
                     "lamp is");
   add_images_option(*command, arguments->textures.images);
-  add_accumulate_option(*command, arguments->textures.accumulate);
-  command->add_flag("!--no-accumulate", arguments->textures.accumulate,
-                    "Show it as it came (default: so on software renderers, for images above 320x240)");
+  const Option* accumulate = add_accumulate_option(*command, arguments->textures.accumulate);
+  command
+      ->add_flag("!--no-accumulate", arguments->textures.accumulate,
+                 "Show it as it came (default: so on software renderers, for images above 320x240)")
+      ->excludes(accumulate);
   add_level_options(*command, arguments->detail);
   add_view_outputs(*command, arguments->outputs, {"shown", "delayed", "true"});
   command->footer(

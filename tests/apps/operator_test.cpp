@@ -110,6 +110,11 @@ TEST(Operator, StartedWrongItSaysWhatToDo) {
     return result.err;
   };
   EXPECT_THAT(said({"--delay-ms", "100"}), testing::HasSubstr("belongs to --scripted"));
+  EXPECT_THAT(said({"--pictures-hz", "3"}), testing::HasSubstr("--pictures-hz: belongs to --scripted"));
+  EXPECT_THAT(said({"--seed", "3"}), testing::HasSubstr("belongs to --scripted"));
+  EXPECT_THAT(said({"--scripted", "tour", "--no-sounds"}), testing::HasSubstr("is of a seat with a window"));
+  EXPECT_THAT(said({"--scripted", "tour", "--scene", rig_file()}), testing::HasSubstr("add --served"));
+  EXPECT_THAT(run_program({"operator", "192.168.1.20"}).err, testing::HasSubstr("`link: peers:`"));
   EXPECT_THAT(said({"--line", "/no/such/line.yaml"}), testing::HasSubstr("line.yaml"));
   EXPECT_THAT(said({"--scripted", "dance"}), testing::HasSubstr("tour"));
   EXPECT_THAT(said({"--head-display", "goggles"}), testing::HasSubstr("side-by-side"));
