@@ -19,6 +19,7 @@ constexpr float kAround = 8;           // px around panels
 constexpr float kWordsAt = 115;        // px from a panel's left: what a line says
 constexpr float kKeyDoesAt = 138;      // px from a panel's left: what a key does
 constexpr float kSmall = 0.8f;         // of the usual letters, where these leave no room
+constexpr std::size_t kLeastKeys = 4;  // the first ones: what is not urgent makes way for them
 constexpr float kBesideInset = 0.75f;  // of the width: what the newest image in its corner leaves to the title
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
@@ -73,6 +74,13 @@ float width_of_keys(const std::vector<std::pair<std::string, std::string>>& keys
   return kKeyDoesAt * scale + out + ImGui::GetStyle().WindowPadding.x;
 }
 
+/// px, of the panel with the first of them.
+float height_of_keys(const HudContent& content, std::size_t first, const ImFont& font) {
+  const std::size_t rows = first + (first < content.keys.size() ? 1 : 0);  // one says that there are more
+  const ImGuiStyle& style = ImGui::GetStyle();
+  return first == 0 ? 0 : static_cast<float>(rows) * (font.FontSize + style.ItemSpacing.y) + 2 * style.WindowPadding.y;
+}
+
 void write(const SeatLine& line, float words_at, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour(line.urgency));
   write(mark(line.urgency) + line.label);
@@ -93,8 +101,9 @@ struct Hud::Work {
   /// Panels of which none is over another.
   struct Layout {
     Text text;
-    float wrap = 0, title_wrap = 0;           // px from a panel's left where rows end
-    ImVec2 next = {0, 0};                     // px, the panel of what is next
+    float wrap = 0, title_wrap = 0;  // px from a panel's left where rows end
+    ImVec2 next = {0, 0};            // px, the panel of what is next
+    bool keys_beside_next = false;
     float lines_height = 0;                   // px, the panel of lines
     std::vector<const SeatLine*> lines = {};  // that there is room for
   };
@@ -181,29 +190,34 @@ void Hud::Work::measure_lines(const HudContent& content, Layout& layout) const {
   layout.lines_height = height + 2 * style.WindowPadding.y;
 }
 
-// In small letters where the usual ones leave no room, and then without the lines that matter least.
+// In small letters where the usual ones leave no room, then without the lines that matter least, then without keys.
 Hud::Work::Layout Hud::Work::layout(const HudContent& content, float width, float height) const {
   const float gap = kAround * texts.front().scale;
   std::vector<const SeatLine*> all;
   for (const SeatLine& line : content.lines) all.push_back(&line);
   Layout out;
-  const auto fits = [&] {
+  const auto fits = [&](std::size_t keys) {
     measure_lines(content, out);
-    return out.lines_height + out.next.y + 3 * gap <= height;
+    const float keys_height = height_of_keys(content, keys, *out.text.usual);
+    const float below =
+        out.keys_beside_next ? std::max(out.next.y, keys_height) : out.next.y + (keys > 0 ? keys_height + gap : 0);
+    return out.lines_height + below + 3 * gap <= height;
   };
+  const std::size_t least_keys = std::min(kLeastKeys, content.keys.size());
   for (const Text& text : texts) {
     out.text = text;
     out.wrap = std::clamp(0.5f * width, std::min(380 * text.scale, std::max(1.0f, 0.7f * width)), 700 * text.scale);
     out.title_wrap = std::max(out.wrap, kBesideInset * width - 3 * gap);
     out.next = size_of_next(content.next, *text.large, width - 4 * gap);
+    out.keys_beside_next = width_of_keys(content.keys, *text.usual, text.scale) + out.next.x + 3 * gap <= width;
     out.lines = all;
-    if (fits()) return out;
+    if (fits(least_keys)) return out;
   }
   std::ranges::stable_sort(all, std::ranges::greater(), &SeatLine::urgency);
   out.lines.clear();
   for (const SeatLine* line : all) {
     out.lines.push_back(line);
-    if (!fits()) out.lines.pop_back();
+    if (!fits(line->urgency == Urgency::trouble ? 0 : least_keys)) out.lines.pop_back();
   }
   std::ranges::sort(out.lines);  // in the order of the content
   measure_lines(content, out);
@@ -264,8 +278,7 @@ void Hud::Work::draw(const HudContent& content, const HudArea& area) const {
   const Layout fit = layout(content, width, height);
   draw_next(content.next, {right, bottom}, width - 4 * gap, fit.text);
   draw_lines(content, {left, top}, fit);
-  const bool beside_next = width_of_keys(content.keys, *fit.text.usual, fit.text.scale) + fit.next.x + 3 * gap <= width;
-  const float keys_end = beside_next ? bottom : bottom - fit.next.y - gap;
+  const float keys_end = fit.keys_beside_next ? bottom : bottom - fit.next.y - gap;
   draw_keys(content, {left, keys_end}, keys_end - (top + fit.lines_height + gap), fit.text);
 }
 

@@ -34,7 +34,8 @@ struct HudContent {
 };
 
 /// Belongs to one context. Nothing is told by colour alone: what is urgent has a mark before it. Where there is little
-/// room, letters are smaller, and lines that are not urgent, then keys, are left out: no panel is over another.
+/// room, letters are smaller, and most keys, lines that are not urgent, then the first keys are left out: no panel is
+/// over another.
 class Hud {
  public:
   /// `scale`: of all fonts; 1: 16 px.

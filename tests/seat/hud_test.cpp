@@ -106,6 +106,10 @@ TEST(Hud, NoPanelIsOverAnotherInASmallWindow) {
     EXPECT_EQ(cv::countNonZero(dark), 0) << width << " x " << height;
     cv::inRange(picture, cv::Scalar(130, 148, 240, 0), cv::Scalar(150, 168, 255, 255), alarm);
     EXPECT_GT(cv::countNonZero(alarm), 5) << width << " x " << height << ": what is urgent stays";
+    const std::string fourth = std::exchange(content.keys[3].second, "something else");
+    EXPECT_GT(cv::norm(picture, drawn(content, width, height), cv::NORM_L1), 0)
+        << width << " x " << height << ": the first keys stay";
+    content.keys[3].second = fourth;
   }
 }
 
