@@ -63,7 +63,8 @@ void ControlSeat::take(const FromRobot& message, const Welcome& welcome, Operato
   }
   robot_ = welcome.robot;
   desk_ = message.from;
-  differences_ = welcome.differences;
+  is_understood_ = welcome.identity.protocol == options_.identity.protocol;
+  differences_ = is_understood_ ? welcome.differences : differences(welcome.identity, options_.identity);
   answered_ = state_came_ = now;
   lease_ = 0;
   verdict_came_ = false;
@@ -286,7 +287,9 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
     out.words = name;
     out.cure = cure;
   };
-  if (desk_ == 0) {
+  if (!is_understood_) {
+    say(refusal_text(differences_).c_str(), "");  // it says what to do
+  } else if (desk_ == 0) {
     say("looking for the robot", "see that its program runs with --serve, and that the line is up");
   } else if (!sees) {
     say("nothing is heard of the robot", "wait for the line");

@@ -22,7 +22,7 @@ std::string bounded_text(const std::string& text) {
 void compare(std::vector<Difference>& out, const char* what, std::uint64_t here, std::uint64_t there, bool refuses,
              const char* cure) {
   if (here == there) return;
-  const auto side = [](std::uint64_t digest) { return digest == 0 ? "none" : fmt::format("{:016x}", digest); };
+  const auto side = [](std::uint64_t digest) { return digest == 0 ? "none" : fmt::format("{:08x}", digest >> 32); };
   out.push_back(
       {fmt::format("another {}: the robot has {}, the operator {}", what, side(here), side(there)), cure, refuses});
 }
@@ -56,9 +56,11 @@ std::vector<Difference> differences(const Identity& robot, const Identity& other
                                robot.protocol, other.protocol),
                    robot.protocol < other.protocol ? "update the robot's program" : "update the operator's program",
                    true});
+  const bool is_understood = out.empty();
   if (robot.program != other.program)
     out.push_back({fmt::format("the robot runs foresight {}, the operator {}", robot.program, other.program),
                    "update the older one", false});
+  if (!is_understood) return out;
   compare(out, "URDF", robot.urdf, other.urdf, true, "copy the robot's URDF to the operator");
   compare(out, "rig file", robot.rig, other.rig, true, "copy the robot's rig file to the operator");
   compare(out, "calibration", robot.calibration, other.calibration, false,

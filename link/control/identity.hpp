@@ -9,8 +9,8 @@
 
 namespace foresight {
 
-/// Grows whenever the messages change so that an older program would misunderstand them. Only Hello and Welcome have to
-/// stay as they are from the first release on, or two versions could not tell each other which they are.
+/// Grows whenever the messages change so that an older program would misunderstand them. Only how Hello and Welcome
+/// begin stays as it is, to the name of who says it: so two versions can tell each other which they are.
 inline constexpr std::uint32_t kLineProtocol = 3;
 
 /// Of a file's bytes: FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo). Tells apart what differs by mistake; who wants
@@ -35,6 +35,7 @@ struct Difference {
 };
 
 /// Another protocol, URDF, rig or order of joints refuses: a set-point would mean something else on the other side.
+/// Across protocols nothing but the program's version is compared besides.
 /// Another version of the same protocol, another calibration, or another scene where both look at one, is only told.
 std::vector<Difference> differences(const Identity& robot, const Identity& other);
 /// Those that refuse, in one line; "" where none does.

@@ -131,9 +131,28 @@ struct Objection {
   }
 };
 
+/// Of a Hello or Welcome of another version of the protocol, whatever else that has: who it is. Nothing where it is
+/// none.
+template <typename T>
+std::optional<T> greeting_of_another_version(std::span<const std::uint8_t> bytes) {
+  T out;
+  std::variant_alternative_t<0, decltype(T::body)> greeting;
+  static_assert(OneOf<decltype(greeting), Hello> || OneOf<decltype(greeting), Welcome>);
+  std::int32_t which = -1;
+  CdrReader reader(bytes);
+  reader("from", out.from)("to", out.to)("which", which);
+  if constexpr (OneOf<decltype(greeting), Welcome>) reader("robot", greeting.robot);
+  Identity& who = greeting.identity;
+  reader("protocol", who.protocol)("program", who.program)("name", who.name);
+  if (!reader.ok() || which != 0 || who.protocol == kLineProtocol) return std::nullopt;
+  out.body = std::move(greeting);
+  return out;
+}
+
 template <typename T>
 std::optional<T> sound(std::span<const std::uint8_t> bytes, std::string* why) {
-  auto out = from_cdr<T>(bytes);
+  auto out = greeting_of_another_version<T>(bytes);
+  if (!out) out = from_cdr<T>(bytes);
   const std::string wrong = out ? std::visit(Objection{}, out->body) : "bytes are no such message";
   if (wrong.empty()) return out;
   if (why) *why = wrong;

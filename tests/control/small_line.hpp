@@ -85,6 +85,13 @@ class SmallLineTest : public testing::Test {
   void run(Duration time) {
     for (const RobotTime end = now_ + time; now_ < end;) step();
   }
+  /// What has moved since, where the switch is held all the time.
+  int moves_in(Duration time) {
+    followed_ = 0;
+    run(time);
+    return followed_;
+  }
+  std::uint64_t dropped(SetPointFault fault) const { return desk_.counts().faults[static_cast<std::size_t>(fault)]; }
   /// Until the seat drives, its switch held.
   void engage(SmallSeat& it) {
     it.seat.want_control(true);

@@ -40,6 +40,47 @@ TEST(ControlWire, WhatCannotBeMeantIsRefusedInWords) {
   EXPECT_EQ(why, "bytes are no such message");
 }
 
+/// How every version's Hello and Welcome begin, and then what this one knows nothing of.
+template <typename... Fields>
+Bytes of_another_version(const Fields&... fields) {
+  Bytes out;
+  CdrWriter writer(out);
+  (writer("", fields), ...);
+  writer("", std::vector<std::string>{"what", "is", "this"})("", 7.5);
+  return out;
+}
+
+TEST(ControlWire, AnotherVersionSaysWhoItIs) {
+  const std::uint32_t newer = kLineProtocol + 1;
+  const Bytes hello =
+      of_another_version(Nonce{4}, Nonce{0}, std::int32_t{0}, newer, std::string("9.1"), std::string("anna"));
+  const auto greeted = from_operator(hello);
+  ASSERT_TRUE(greeted);
+  EXPECT_EQ(greeted->from, 4u);
+  const Identity& anna = std::get<Hello>(greeted->body).identity;
+  EXPECT_EQ(anna.protocol, newer);
+  EXPECT_EQ(anna.name, "anna");
+  const auto differ = differences(sample_identity("the robot"), anna);
+  ASSERT_EQ(differ.size(), 2u) << "protocol and program; nothing is known of the rest";
+  EXPECT_TRUE(differ[0].refuses);
+
+  const Bytes welcome =
+      of_another_version(Nonce{5}, Nonce{4}, std::int32_t{0}, Nonce{6}, newer, std::string("9.1"), std::string("lab"));
+  const auto welcomed = from_robot(welcome);
+  ASSERT_TRUE(welcomed);
+  EXPECT_EQ(std::get<Welcome>(welcomed->body).robot, 6u);
+  EXPECT_EQ(std::get<Welcome>(welcomed->body).identity.program, "9.1");
+
+  EXPECT_FALSE(from_operator(
+      of_another_version(Nonce{4}, Nonce{0}, std::int32_t{0}, kLineProtocol, std::string("9.1"), std::string("anna"))))
+      << "of this version, but not as this version says it";
+  EXPECT_FALSE(from_operator(
+      of_another_version(Nonce{4}, Nonce{0}, std::int32_t{0}, newer, std::string("9.1"), std::string("a\x1b[2J"))));
+  EXPECT_FALSE(from_operator(
+      of_another_version(Nonce{4}, Nonce{5}, std::int32_t{3}, newer, std::string("9.1"), std::string("anna"))))
+      << "no Hello";
+}
+
 // Whatever comes: it is refused in words, or goes out again as the same bytes, and its numbers can be used.
 // FORESIGHT_FUZZ_RUNS inputs of each direction.
 TEST(ControlWireFuzz, NoBytesDoHarm) {
