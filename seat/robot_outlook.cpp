@@ -11,7 +11,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint64_t kOthers = ~std::uint64_t{0};
-constexpr Duration kClockJump = 500ms;  // by which the robot's clock may seem to go back before it is another one
 constexpr std::size_t kErrorsKept = 300;
 
 RobotFutureOptions future_options(const Rig& rig) {

@@ -20,6 +20,9 @@
 
 namespace foresight {
 
+/// By which the robot's clock may seem to go back before it is another one.
+inline constexpr Duration kClockJump = std::chrono::milliseconds(500);
+
 /// `commander`: ControlSeat::session(). Set-points of others have a number that none of ours has.
 RobotReport robot_report(const link::GateMotion& motion, Nonce commander);
 

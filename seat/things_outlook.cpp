@@ -8,6 +8,7 @@
 #include "common/real_time.hpp"
 #include "rig/rig_scene.hpp"
 #include "seat/predicted_place.hpp"
+#include "seat/robot_outlook.hpp"
 #include "sim/physics/lab_things.hpp"
 
 namespace foresight {
@@ -46,7 +47,9 @@ ThingsOutlook::ThingsOutlook(const Rig& rig, std::shared_ptr<const LiveScene> sc
 }
 
 void ThingsOutlook::advance(const PredictedRobot& robot) {
-  if (robot.status == StateStatus::invalid || (future_ && robot.time <= future_->time())) return;
+  if (robot.status == StateStatus::invalid) return;
+  if (future_ && future_->time() - robot.time >= kClockJump) begin_anew();
+  if (future_ && robot.time <= future_->time()) return;
   const JointPositions by_name = positions_of(rig_, robot.position);
   const JointPositions joints = [&](std::string_view name) { return by_name(shaft_name(rig_, name)); };
   if (!future_) {
@@ -57,6 +60,12 @@ void ThingsOutlook::advance(const PredictedRobot& robot) {
   }
   future_->advance(robot.time, joints);
   take_looked();
+}
+
+// Where things were told to be was by another clock.
+void ThingsOutlook::begin_anew() {
+  future_.reset();
+  if (look_) look_->is_of_now = false;
 }
 
 void ThingsOutlook::saw(const PosedFrame& frame, const JointPositions& joints) {
@@ -90,7 +99,7 @@ void ThingsOutlook::saw(const PosedFrame& frame, const JointPositions& joints) {
 void ThingsOutlook::take_looked() {
   if (!look_ || look_->found.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   const FoundThings found = look_->found.get();
-  learn(found, look_->joints, look_->captured, look_->T_world_camera);
+  if (look_->is_of_now) learn(found, look_->joints, look_->captured, look_->T_world_camera);
   look_.reset();
 }
 

@@ -36,7 +36,8 @@ class ThingsOutlook {
                 bool in_background);
 
   /// The robot will be there at that instant, later than the one before; often, at least twenty times a second. An
-  /// invalid one moves nothing. The first says where everything begins.
+  /// invalid one moves nothing. The first says where everything begins, and so does one that is kClockJump
+  /// (seat/robot_outlook.hpp) before the last: the robot's clock is another one.
   void advance(const PredictedRobot& robot);
   /// Images came; `joints` as they were then, which must stay callable.
   void saw(const PosedFrame& frame, const JointPositions& joints);
@@ -60,7 +61,9 @@ class ThingsOutlook {
     RobotTime captured;
     Pose T_world_camera;
     std::future<FoundThings> found;
+    bool is_of_now = true;  // of the robot's present clock
   };
+  void begin_anew();
   void learn(const FoundThings& found, const JointPositions& joints, RobotTime captured, const Pose& T_world_camera);
   bool look_alike(std::size_t thing, const Pose& one, const Pose& other, const Pose& T_world_camera) const;
   void take_looked();

@@ -125,6 +125,22 @@ TEST_F(ThingsSeen, AThingThatStandsElsewhereIsShownThereOnceItsImageCame) {
   EXPECT_EQ(outlook_.counts().missing, 0u);
 }
 
+TEST_F(ThingsSeen, AClockThatBeginsAnewIsGoneAlongWith) {
+  wait(700ms);
+  sim::LabState truth = room().rest();
+  truth[room().nodes[0]].translation() += Eigen::Vector3d(0.009, -0.012, 0);
+  robot_.time = RobotTime{5'000'000'000};
+  outlook_.advance(robot_);
+  ASSERT_EQ(outlook_.future()->time(), robot_.time);
+  wait(700ms);
+  for (int i = 0; i < 3; ++i) {
+    see(truth);
+    wait(100ms);
+  }
+  wait(300ms);
+  EXPECT_LT((shown() - truth[room().nodes[0]].translation()).norm(), 0.004) << "images count by the new clock";
+}
+
 // 2 mm are less than a pixel there: no print wanders to and fro for what an outline may be off.
 TEST_F(ThingsSeen, WhatRestsStaysWhileImagesCannotTell) {
   wait(700ms);
