@@ -22,9 +22,11 @@ std::string text_of(const SeatLine& line) {
 
 std::vector<std::string> SeatLog::news(std::span<const SeatLine> lines) {
   std::vector<std::string> out;
-  for (auto& [label, told] : told_) told.now = false;
+  for (auto& [which, told] : told_) told.now = false;
   for (const SeatLine& line : lines) {
-    Told& told = told_[line.label];
+    int nth = 0;
+    while (told_[{line.label, nth}].now) ++nth;
+    Told& told = told_[{line.label, nth}];
     told.now = true;
     const std::string words = without_figures(line);
     const bool state = std::ranges::find(kStates, line.label) != std::end(kStates);
@@ -34,9 +36,9 @@ std::vector<std::string> SeatLog::news(std::span<const SeatLine> lines) {
     told.words = words;
     told.urgency = line.urgency;
   }
-  for (auto& [label, told] : told_) {
+  for (auto& [which, told] : told_) {
     if (told.now || told.urgency == Urgency::fine) continue;
-    out.push_back(label + ": no longer");
+    out.push_back(which.first + ": no longer");
     told = {};
   }
   return out;

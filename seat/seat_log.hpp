@@ -4,6 +4,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "seat/seat_words.hpp"
@@ -22,7 +23,7 @@ class SeatLog {
     Urgency urgency = Urgency::fine;
     bool now = false;  // it is among the lines of this call
   };
-  std::map<std::string, Told> told_;  // by label
+  std::map<std::pair<std::string, int>, Told> told_;  // by label, of which a call may have several lines
 };
 
 }  // namespace foresight

@@ -22,6 +22,15 @@ TEST(SeatLog, FiguresAreNoNews) {
   EXPECT_TRUE(log.news(Lines{{"images", "NO IMAGE for 1.2 s", "", Urgency::trouble}}).empty());
 }
 
+TEST(SeatLog, TellsOfSeveralThingsThatDifferOnceEach) {
+  SeatLog log;
+  const Lines both{{"differs", "another calibration", "copy it", Urgency::note},
+                   {"differs", "another scene", "start both alike", Urgency::note}};
+  EXPECT_EQ(log.news(both).size(), 2u);
+  EXPECT_TRUE(log.news(both).empty());
+  EXPECT_THAT(log.news({both.data(), 1}), testing::ElementsAre("differs: no longer"));
+}
+
 TEST(SeatLog, SaysThatTroubleIsOver) {
   SeatLog log;
   log.news(Lines{{"images", "NO IMAGE for 1.1 s", "", Urgency::trouble}, {"hand", "gone", "", Urgency::note}});
