@@ -15,7 +15,7 @@ StateWords words_for(RobotPhase phase) {
     case RobotPhase::disabled: return {"disabled", "disabled: no torque, brakes closed", "enable the drives (e)"};
     case RobotPhase::enabling:
       return {"enabling", "drives are being enabled", "wait; one that does not get there in 5 s is named"};
-    case RobotPhase::ready: return {"ready", "ready; drives hold", "command it, or home it first where it must (h)"};
+    case RobotPhase::ready: return {"ready", "ready; drives hold", "command it"};
     case RobotPhase::homing:
       return {"homing", "joints look for home, one after the other, slowly", "wait; space stops them"};
     case RobotPhase::stopped: return {"stopped", "stopped; drives hold", kReset};
@@ -161,6 +161,8 @@ RobotWords describe(const RobotStatus& status, std::span<const JointWords> joint
   } else if (status.phase == RobotPhase::ready && reason != GateReason::none) {
     out = {"ready; last, " + reason_text(status.gate, joints), words_for(reason).cure};
   }
+  if (status.phase == RobotPhase::ready && !status.all_homed)
+    out = {"drives hold; not all joints know where they are", "home them (h)"};
   if (const std::string joint = name_of(status.waiting_for, joints); !joint.empty() && status.gate.joint < 0)
     out.name += ", waiting for " + joint;
   return out;

@@ -59,6 +59,9 @@ TEST(RobotWords, SayWhatTheRobotDoesAndWhatToDo) {
   EXPECT_EQ(describe(status, kJoints).name, "drives are being enabled, waiting for yaw");
   status.phase = RobotPhase::ready;
   status.waiting_for = -1;
+  EXPECT_EQ(describe(status, kJoints).name, "drives hold; not all joints know where they are");
+  EXPECT_EQ(describe(status, kJoints).cure, "home them (h)");
+  status.all_homed = true;
   status.gate = {.state = GateState::following, .reason = GateReason::obstructed, .detail = "link 'a' leaves"};
   EXPECT_EQ(describe(status, kJoints).name, "ready, follows the operator: the way is obstructed: link 'a' leaves");
 }
