@@ -102,11 +102,14 @@ void OperatorEnd::step_control() {
 
 void OperatorEnd::hand_out(LineFramePtr frame, const char* coding) {
   if (!frame) return;
-  if (!first_) first_ = frame->arrived;
   {
     const std::lock_guard lock(figures_mutex_);
+    if (!first_) first_ = frame->arrived;
     figures_.coding = coding;
     figures_.lasted = frame->arrived - *first_;
+    arrivals_.push_back(frame->arrived);
+    while (frame->arrived - arrivals_.front() > kRateOver) arrivals_.pop_front();
+    if (std::exchange(session_, frame->session) != frame->session) figures_.ages.clear();
     if (frame->ages.arrived) {
       if (figures_.ages.size() == kMostAges) figures_.ages.pop_front();
       figures_.ages.push_back(*frame->ages.arrived);
@@ -162,6 +165,10 @@ LineFigures OperatorEnd::figures() const {
   {
     const std::lock_guard lock(figures_mutex_);
     out = figures_;
+    const auto lately = std::ranges::count_if(arrivals_, [&](OperatorTime at) { return now() - at <= kRateOver; });
+    const Duration over =
+        first_ ? std::clamp<Duration>(now() - *first_, std::chrono::seconds(1), kRateOver) : kRateOver;
+    out.pairs_per_s = static_cast<double>(lately) / to_seconds(over);
   }
   const RobotClockTracker clock = robot_clock();
   out.round_trip = clock.round_trip();

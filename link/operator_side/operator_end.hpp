@@ -30,13 +30,14 @@ struct LineFigures {
   std::optional<Duration> round_trip;   ///< the last
   std::optional<OffsetInterval> clock;  ///< the robot's minus ours
   std::uint64_t clock_jumps = 0;
-  std::string coding;  ///< of the pairs that came; "" before the first
-  Duration lasted{0};  ///< from the arrival of the first pair to that of the last
+  std::string coding;      ///< of the pairs that came; "" before the first
+  Duration lasted{0};      ///< from the arrival of the first pair to that of the last
+  double pairs_per_s = 0;  ///< of the last kRateOver
   IntakeCounts pairs;
   std::uint64_t samples_lost = 0;  ///< messages of pairs that DDS knows it has lost
   std::uint64_t refused = 0;       ///< messages of any topic that are none, or say what cannot be
   std::string refusal;             ///< the last of them, with its topic
-  std::deque<BoundedDelay> ages;   ///< of the last pairs on their arrival, since capture
+  std::deque<BoundedDelay> ages;   ///< on their arrival, since capture: of the last pairs of this start of the robot
 };
 
 /// frames(), seat(), robot_state() and figures() from any thread. start() gives it threads; step() does the same in the
@@ -44,6 +45,7 @@ struct LineFigures {
 class OperatorEnd {
  public:
   static constexpr std::size_t kMostAges = 1000, kMostMotions = 256;
+  static constexpr Duration kRateOver = std::chrono::seconds(5);
 
   /// Throws RuntimeFailure where this program's certificate does not permit to write what an operator writes.
   OperatorEnd(Participant& participant, const OperatorEndOptions& options, Clock& clock);
@@ -63,6 +65,7 @@ class OperatorEnd {
     OperatorTime came;
     std::optional<BoundedTime<OperatorClock>> time;  ///< RobotState::time_ns on our clock
   };
+  OperatorTime now() const { return {clock_.now().ns}; }
   /// The robot's newest; nothing before the first.
   std::optional<HeardState> robot_state() const;
   struct HeardMotion {
@@ -108,10 +111,12 @@ class OperatorEnd {
   std::deque<HeardMotion> heard_motions_;
 
   // Of the frames' thread, but for what is locked.
-  std::optional<Pictures> pictures_;   // where they are wanted
-  std::optional<OperatorTime> first_;  // pair
-  mutable std::mutex figures_mutex_;   // figures_
+  std::optional<Pictures> pictures_;  // where they are wanted
+  mutable std::mutex figures_mutex_;  // what follows, but for the queue
   LineFigures figures_;
+  std::optional<OperatorTime> first_;  // pair
+  std::deque<OperatorTime> arrivals_;  // of pairs within kRateOver
+  std::uint64_t session_ = 0;          // of the last pair
 
   BoundedQueue<LineFramePtr> queue_;
   std::jthread frames_thread_, control_thread_;

@@ -5,17 +5,25 @@
 namespace foresight::link {
 namespace {
 
-std::string trouble_of(OperatorEnd& end) {
-  const LineFigures figures = end.figures();
-  const IntakeCounts& pairs = figures.pairs;
-  if (const auto heard = end.robot_state(); heard && !heard->state.cameras.fault.empty())
-    return heard->state.cameras.fault;
-  if (!pairs.refusal.empty()) return "a pair was refused: " + pairs.refusal;
-  if (pairs.others > 0 && pairs.packets == 0) return "the robot's pictures go to another program";
-  return figures.clock ? "no pairs come" : "nothing is heard of the robot";
-}
+constexpr Duration kSilent = std::chrono::milliseconds(2500);  // states come every second at least
 
 }  // namespace
+
+std::string why_no_images(const LineFigures& figures, const std::optional<OperatorEnd::HeardState>& heard,
+                          OperatorTime now) {
+  if (!heard || now - heard->came > kSilent) return "nothing is heard of the robot";
+  const CameraLines& cameras = heard->state.cameras;
+  if (!cameras.fault.empty()) return cameras.fault;
+  if (!cameras.present) return "its program runs without cameras";
+  const IntakeCounts& pairs = figures.pairs;
+  if (!pairs.refusal.empty()) return "the last that came were refused: " + pairs.refusal;
+  if (pairs.others > 0 && pairs.packets == 0) return "the robot's pictures go to another program";
+  return "the robot is heard, and none come";
+}
+
+std::string why_no_images(const OperatorEnd& end) {
+  return why_no_images(end.figures(), end.robot_state(), end.now());
+}
 
 SceneState scene_at(const Rig& rig, const LiveScene& scene, RobotTime time, const LineJoints& joints) {
   const StateStatus status = joints.status == StateStatus::invalid ? StateStatus::predicted : joints.status;
@@ -33,7 +41,7 @@ LiveFeed line_feed(OperatorEnd& end, const Rig& rig, std::shared_ptr<const LiveS
             if (!frame) return std::nullopt;
             return LiveImage{(*frame)->number, posed_frame(**frame, at, margin)};
           },
-          [&end] { return end.frames().closed(); }, [&end] { return trouble_of(end); }};
+          [&end] { return end.frames().closed(); }, [&end] { return why_no_images(end); }};
 }
 
 }  // namespace foresight::link

@@ -187,6 +187,7 @@ TEST_F(TwoEnds, JpegPairsAreShownAsTheyWereSent) {
   expect_same(32);
   const LineFigures figures = end_.figures();
   EXPECT_EQ(figures.coding, "jpeg");
+  EXPECT_NEAR(figures.pairs_per_s, static_cast<double>(shown_.size()) / 2, 3);
   EXPECT_EQ(figures.pairs.refused, 0u) << figures.pairs.refusal;
   EXPECT_EQ(source.fault(), "");
 }
@@ -246,6 +247,24 @@ TEST_F(TwoEnds, MessagesThatCannotBeAreToldWithTopicAndField) {
   motion.joints[3].position = NAN;
   EXPECT_EQ(told(topics::gate_motion(), to_cdr(motion)), "rt/foresight/gate_motion: joints[3].position is nan");
   EXPECT_EQ(end_.figures().refused, 5u);
+}
+
+TEST(WhyNoImages, IsWhatTheRobotToldOrWhatCameShows) {
+  LineFigures figures;
+  std::optional<OperatorEnd::HeardState> heard;
+  const OperatorTime now{100'000'000'000};
+  const auto why = [&] { return why_no_images(figures, heard, now); };
+  EXPECT_EQ(why(), "nothing is heard of the robot");
+  heard.emplace().came = now - 1s;
+  EXPECT_EQ(why(), "its program runs without cameras");
+  heard->state.cameras.present = true;
+  EXPECT_EQ(why(), "the robot is heard, and none come");
+  figures.pairs.refusal = "the left image is 400x300";
+  EXPECT_EQ(why(), "the last that came were refused: the left image is 400x300");
+  heard->state.cameras.fault = "the left camera is gone";
+  EXPECT_EQ(why(), "the left camera is gone");
+  heard->came = now - 3s;
+  EXPECT_EQ(why(), "nothing is heard of the robot");
 }
 
 // A reader of pieces that takes nothing, in a program that stands still: pairs go on to the one who reports.
