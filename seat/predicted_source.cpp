@@ -82,7 +82,7 @@ std::optional<RobotTime> PredictedSource::next_instant(RobotTime until) {
     if (past.count() < 0) return std::nullopt;
     until = newest_->image[0].captured + options_.image_period * (past / options_.image_period);
   }
-  if (last_ && until <= *last_) return std::nullopt;
+  if (last_ && until <= *last_ && *last_ - until < kClockJump) return std::nullopt;
   return until;
 }
 
@@ -127,7 +127,8 @@ std::optional<PosedFrame> PredictedSource::arrived() {
 }
 
 std::string PredictedSource::fault() const {
-  if (silent()) return fmt::format("NO IMAGE for {:.1f} s", to_seconds(clock_.now() - heard_));
+  if (silent())
+    return fmt::format("NO IMAGE for {:.1f} s: {}", to_seconds(clock_.now() - heard_), link::why_no_images(end_));
   if (posed_) return "";
   const std::string why = unknown_joints(newest_->joints.known, 'H');
   return "NO POSE for the newest image" + (why.empty() ? "" : ": " + why);
