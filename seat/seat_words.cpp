@@ -55,18 +55,16 @@ SeatLine line_words(const SeatStatus& status) {
                                                2e3 * status.delay.sigma)
                                  : "it is not known yet when commands act";
   if (status.line.round_trip) out.words += fmt::format(", round trip {:.0f} ms", ms(*status.line.round_trip));
-  if (!status.line.ages.empty())
+  if (!status.line.ages.empty() && status.line.pairs_per_s > 0)
     out.words += fmt::format(", newest image {:.0f} ms old when it came", ms(status.line.ages.back().delay));
   return out;
 }
 
 SeatLine images_words(const SeatStatus& status, const std::string& fault) {
-  if (!fault.empty()) return {"images", fault, "what is shown grows older", Urgency::trouble};
-  const auto& pairs = status.line.pairs;
-  const double span = to_seconds(status.line.lasted);
+  if (!fault.empty()) return {"images", fault, "", Urgency::trouble};
   return {"images",
-          fmt::format("{} pairs, {:.1f}/s, {}", static_cast<unsigned long long>(pairs.pairs),
-                      span > 0 ? static_cast<double>(pairs.pairs) / span : 0.0, status.line.coding),
+          fmt::format("{} pairs, {:.1f}/s, {}", static_cast<unsigned long long>(status.line.pairs.pairs),
+                      status.line.pairs_per_s, status.line.coding),
           ""};
 }
 
@@ -76,7 +74,8 @@ SeatLine robot_words(const SeatStatus& status) {
   if (const auto silent = silence(status))
     return {"robot", fmt::format("silent for {:.1f} s", to_seconds(*silent)), "wait for the line", Urgency::trouble};
   const link::RobotState& robot = *status.robot;
-  SeatLine out{"robot", robot.doing.name, with_our_keys(robot.doing.cure)};
+  const bool commands = status.control.phase == Phase::holding;  // else nobody here can do what a cure says
+  SeatLine out{"robot", robot.doing.name, commands ? with_our_keys(robot.doing.cure) : ""};
   if (!robot.hold.empty()) out.words += "; " + robot.hold;
   if (!robot.refused.empty()) out.words += "; refused: " + robot.refused;
   if (!robot.bus_healthy) out.words += "; bus: " + robot.bus_reason;
@@ -138,7 +137,11 @@ SeatLine request_words(const SeatStatus& status) {
   out.words = fmt::format("{}: {}", to_string(fate.what), words.name);
   const bool waits =
       status.control.wanted && status.control.phase != Phase::holding && fate.outcome == RequestOutcome::not_holder;
-  out.cure = waits ? "wait until control is granted to you" : with_our_keys(words.cure);
+  const auto refusal = std::ranges::find_if(status.control.differences, &Difference::refuses);
+  if (refusal != status.control.differences.end())
+    out.cure = refusal->cure;
+  else
+    out.cure = waits ? "wait until control is granted to you" : with_our_keys(words.cure);
   out.urgency = Urgency::note;
   return out;
 }
@@ -182,8 +185,9 @@ std::vector<SeatLine> seat_lines(const SeatStatus& status, std::span<const std::
                             line_words(status),      images_words(status, fault), prediction_words(status, names),
                             drives_words(status)};
   for (const Difference& difference : status.control.differences)
-    out.push_back({difference.refuses ? "refused" : "differs", difference.words, difference.cure,
-                   difference.refuses ? Urgency::trouble : Urgency::note});
+    if (status.control.words.find(difference.words) == std::string::npos)  // else who commands says it
+      out.push_back({difference.refuses ? "refused" : "differs", difference.words, difference.cure,
+                     difference.refuses ? Urgency::trouble : Urgency::note});
   std::erase_if(out, [](const SeatLine& line) { return line.words.empty(); });
   return out;
 }

@@ -17,9 +17,17 @@ std::string ways(const StageTimes& times) {
     if (!took) return;
     out += fmt::format("{}{} {:.0f} ms", out.empty() ? "" : ", ", words, 1e3 * to_seconds(*took));
   };
-  add(times.on_line, "image on the line");
-  add(times.to_view, "until seen");
-  add(times.to_textures, "until in textures");
+  const auto& [paired, registered, taken, coded, arrived, decoded] = times.ages;
+  add(paired, "paired");
+  add(registered, "posed");
+  add(coded, "coded");
+  add(arrived ? std::optional(arrived->delay) : std::nullopt, "here");
+  if (decoded) {
+    add(decoded->delay, "decoded");
+    if (times.to_view) add(decoded->delay + *times.to_view, "seen");
+  }
+  if (!out.empty()) out = "an image's age: " + out;
+  add(times.to_textures, "textures take");
   add(times.drawing, "drawing");
   add(times.to_set_point, "hand until sent");
   return out;
@@ -47,8 +55,9 @@ std::vector<SeatLine> stage_lines(const StageTimes& times) {
   return out;
 }
 
-void ImageWay::came(RobotTime captured, RobotTime now) {
-  if (!under_way_) under_way_ = {captured, now};
+void ImageWay::came(RobotTime captured, RobotTime decoded) {
+  const bool is_another_clock = under_way_ && captured < under_way_->captured;
+  if (!under_way_ || is_another_clock) under_way_ = {captured, decoded};
 }
 
 void ImageWay::drawn(RobotTime captured) {

@@ -1,14 +1,16 @@
 // What the way from the camera to the screen takes, stage by stage, that from the hand to the line, and what images
 // cost: for the head-up display.
 //
-//   captured ---line---> came ---> a picture shows it     hand ---> set-point sent
-//                          '-----> textures hold it
+//   captured --> paired, posed, taken, coded --line--> came --> decoded --> a picture shows it
+//                                                                  '------> textures hold it
+//   hand --> set-point sent
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "common/time.hpp"
+#include "link/operator_side/line_frame.hpp"
 #include "seat/seat_words.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
@@ -16,8 +18,8 @@ namespace foresight {
 
 /// Of the newest of each; nothing where it is not known yet.
 struct StageTimes {
-  std::optional<Duration> on_line;       ///< from an image's capture until it came
-  std::optional<Duration> to_view;       ///< from there until a picture that shows it was swapped
+  link::FrameAges ages;                  ///< of an image, from its capture on
+  std::optional<Duration> to_view;       ///< from decoded until a picture that shows it was swapped
   std::optional<Duration> to_textures;   ///< from there until textures hold it
   std::optional<Duration> drawing;       ///< of a picture
   std::optional<Duration> to_set_point;  ///< from an event of keyboard or mouse until it is in a set-point
@@ -30,8 +32,8 @@ std::vector<SeatLine> stage_lines(const StageTimes& times);
 /// How long an image takes until a picture shows it. One thread; the display's clock.
 class ImageWay {
  public:
-  /// An image was handed to the textures. Of several under way the first counts.
-  void came(RobotTime captured, RobotTime now);
+  /// An image can be used since `decoded`, of the display's clock. Of several under way the first counts.
+  void came(RobotTime captured, RobotTime decoded);
   /// A view was drawn in which this is the newest image.
   void drawn(RobotTime captured);
   void swapped(RobotTime now);

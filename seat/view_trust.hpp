@@ -86,7 +86,7 @@ class ViewTrust {
   cv::Mat doubt_;
 };
 
-/// For the head-up display: fidelity, and where it is worst.
-SeatLine fidelity_line(const ViewTrust& trust);
+/// For the head-up display: fidelity, and where it is worst. `fault`: why no images come, which another line tells.
+SeatLine fidelity_line(const ViewTrust& trust, const std::string& fault);
 
 }  // namespace foresight

@@ -57,7 +57,9 @@ bool SeatWindow::trusted() const {
 
 void SeatWindow::arrived(const PosedFrame& frame) {
   views_.arrived(frame);
-  image_way_.came(frame.left.time, clock_.now());
+  const auto& newest = source_.newest();
+  const bool is_newest = newest && newest->image[0].captured == frame.left.time;
+  image_way_.came(frame.left.time, is_newest ? RobotTime{newest->decoded.ns} : clock_.now());
   if (options_.trust) options_.trust->saw(frame);
 }
 
@@ -83,14 +85,16 @@ void SeatWindow::waiting(FrameSource& /*source*/, ViewSession& session) {
   present(session);
 }
 
-StageTimes SeatWindow::stage_times(const SeatStatus& status) const {
+StageTimes SeatWindow::stage_times() const {
   StageTimes out;
-  if (!status.line.ages.empty()) out.on_line = status.line.ages.back().delay;
-  out.to_view = image_way_.to_view();
-  out.to_textures = to_textures_;
+  if (const auto& newest = source_.newest(); newest && source_.fault().empty()) {
+    out.ages = newest->ages;
+    out.to_view = image_way_.to_view();
+    out.to_textures = to_textures_;
+    out.costs = image_costs_;
+  }
   if (options_.pacer) out.drawing = options_.pacer->figures().cost;
   if (options_.input_took) out.to_set_point = options_.input_took();
-  out.costs = image_costs_;
   return out;
 }
 
@@ -104,8 +108,8 @@ HudContent SeatWindow::words(bool is_trusted) const {
     out.title += fmt::format(" (at {:.0f} % of its size, to be drawn in time)", 1e2 * views_.scale());
   out.next = next_step(status);
   out.lines = seat_lines(status, options_.joints, source_.fault());
-  if (options_.trust) out.lines.push_back(fidelity_line(*options_.trust));
-  for (SeatLine& line : stage_lines(stage_times(status))) out.lines.push_back(std::move(line));
+  if (options_.trust) out.lines.push_back(fidelity_line(*options_.trust, source_.fault()));
+  for (SeatLine& line : stage_lines(stage_times())) out.lines.push_back(std::move(line));
   if (options_.more_lines)
     for (SeatLine& line : options_.more_lines()) out.lines.push_back(std::move(line));
   if (!save_trouble_.empty()) out.lines.push_back({"screenshot", save_trouble_, "", Urgency::note});

@@ -72,7 +72,7 @@ class SeatWindow final : public ViewObserver {
   HudContent words(bool is_trusted) const;
   void log(const HudContent& content);
   void save(const ViewTarget& whole);
-  StageTimes stage_times(const SeatStatus& status) const;
+  StageTimes stage_times() const;
 
   gl::Window& window_;
   Seat& seat_;

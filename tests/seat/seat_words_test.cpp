@@ -100,6 +100,29 @@ TEST(SeatWords, ErrorsOfJointsAreNumbersForPeople) {
   }
 }
 
+TEST(SeatWords, WhoDoesNotCommandIsNotToldKeysThatDoNothing) {
+  SeatStatus status = driving();
+  status.robot->doing = {"", "drives hold", "home them (h)"};
+  EXPECT_EQ(find(seat_lines(status, {}, ""), "robot")->cure, "home them (H)");
+  status.held = status.engaged = false;
+  status.control.phase = Phase::connected;
+  EXPECT_EQ(find(seat_lines(status, {}, ""), "robot")->cure, "");
+}
+
+TEST(SeatWords, ARobotWithOtherFilesIsRefusedOnce) {
+  SeatStatus status = driving();
+  status.held = status.engaged = false;
+  status.control.phase = Phase::connected;
+  status.control.wanted = true;
+  status.control.differences = {{"another URDF", "copy it", true}, {"another calibration", "copy that", false}};
+  status.control.words = "another URDF; copy it";
+  status.fates.push_back({1, LineRequest::home, RequestOutcome::not_holder});
+  const auto lines = seat_lines(status, {}, "");
+  EXPECT_FALSE(find(lines, "refused")) << "who commands says it";
+  EXPECT_EQ(find(lines, "differs")->cure, "copy that");
+  EXPECT_EQ(find(lines, "asked")->cure, "copy it") << "waiting for control would not help";
+}
+
 // Of two operators: G asks for control, but takes the request back of who has asked already.
 TEST(SeatWords, WhoWaitsForControlIsNotToldToAskForIt) {
   SeatStatus status = driving();

@@ -18,14 +18,16 @@ TEST(StageTimes, WhatIsNotKnownIsNotTold) {
 
 TEST(StageTimes, EachStageHasItsWords) {
   StageTimes times;
-  times.on_line = 254ms;
+  times.ages = {12ms, 20ms, 21ms, 60ms, BoundedDelay{254ms, 1ms}, BoundedDelay{262ms, 1ms}};
   times.to_view = 41ms;
   times.drawing = 24ms;
   times.to_set_point = 11ms;
   times.costs = {{"upload", 2, {}}, {"depth", 9, {}}, {"extract", 21, {}}, {"lamp", 12, {}}};
   const auto lines = stage_lines(times);
   ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0].words, "image on the line 254 ms, until seen 41 ms, drawing 24 ms, hand until sent 11 ms");
+  EXPECT_EQ(lines[0].words,
+            "an image's age: paired 12 ms, posed 20 ms, coded 60 ms, here 254 ms, decoded 262 ms, seen 303 ms, drawing "
+            "24 ms, hand until sent 11 ms");
   EXPECT_EQ(lines[1].words, "an image 44 ms of CPU: extract 21, lamp 12, depth 9");
 }
 
@@ -53,6 +55,11 @@ TEST(ImageWay, EndsWithTheSwapOfThePictureThatShowsIt) {
   way.drawn(at(1300ms));
   way.swapped(at(90ms));
   EXPECT_EQ(way.to_view(), 20ms) << "a newer one overtook it";
+  way.came(at(1400ms), at(100ms));
+  way.came(at(50ms), at(110ms));
+  way.drawn(at(50ms));
+  way.swapped(at(125ms));
+  EXPECT_EQ(way.to_view(), 15ms) << "the robot's clock began anew";
 }
 
 }  // namespace
