@@ -1,12 +1,13 @@
 #include "apps/view_measures.hpp"
 
-#include "apps/level_options.hpp"
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/level_options.hpp"
 #include "common/error.hpp"
 #include "pictures/image_metrics.hpp"
 #include "pictures/picture_file.hpp"
@@ -106,6 +107,7 @@ void ViewMeasures::take(const ExtractionReport& report, FrameRecord& record) {
   record_.images_kept = std::max<std::uint64_t>(record_.images_kept, report.images_kept);
   policy_ = report.policy;
   lamp_ = report.lamp;
+  right_factors_ = report.right_factors;
   if (lamp_.lamp && !lamp_known_from_) lamp_known_from_ = report.newest_image;
   if (!lamp_.lamp) lamp_known_from_.reset();
 }
@@ -141,6 +143,11 @@ void ViewMeasures::finish(const FrameSource& source, const ViewSession& session,
   note_policy();
   if (std::string note = lamp_in_words(lamp_, lamp_known_from_.value_or(RobotTime{})); !note.empty())
     record_.notes.push_back(std::move(note));
+  if (right_factors_)
+    record_.notes.push_back(
+        fmt::format("The right camera's colours differ from the left one's: its red counted {:.2f} "
+                    "times, its blue {:.2f} times.",
+                    right_factors_->x(), right_factors_->y()));
   write_reports(outputs_, record_, keeper_.instants(), title);
 }
 

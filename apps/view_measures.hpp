@@ -48,6 +48,7 @@ class ViewMeasures final : public ViewObserver {
   std::optional<double> misplacement_px_;
   ChartAtlas::Policy policy_;
   LampAnswer lamp_;
+  std::optional<Eigen::Vector2d> right_factors_;  // ExtractionReport::right_factors
   std::optional<RobotTime> lamp_known_from_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -39,6 +40,8 @@ struct PageExposure {
   std::int64_t image = -1;         ///< the last of them; -1: none yet
   int count = 0;                   ///< how many, up to a limit
   bool rough = false;              ///< of a somewhat other area of the surface: to be renewed at once
+  /// ExposureSample's logarithms of red and blue as the left camera saw them last; not numbers: it never did.
+  std::array<float, 2> hue{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
 };
 
 struct AtlasPage {

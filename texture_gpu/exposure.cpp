@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/statistics.hpp"
 
@@ -42,6 +43,7 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
     if (!white && middle(brightness) && middle(std::exp(ref.log_brightness))) middle_ratios.push_back(ratio);
     if (!white && brightness >= kDarkest) used.push_back(i);
   }
+  measured_ = std::exchange(first_, false) || ratios.size() >= kFewestSamples;
   if (ratios.size() >= kFewestSamples) {
     const double gain = median(middle_ratios.size() >= kFewestSamples ? middle_ratios : ratios);
     std::vector<double> deviations = ratios;

@@ -19,7 +19,8 @@ namespace foresight {
 struct ExposureSample {
   /// Mean, 0..1; -1: not seen; kWhite + mean where some of it is white: at least so bright.
   float brightness = -1;
-  float radius2 = 0;  ///< squared distance from the image's centre
+  float radius2 = 0;                ///< squared distance from the image's centre
+  float log_red = 0, log_blue = 0;  ///< of the means beside that of green (colour_balance.hpp)
   static constexpr float kWhite = 2;
   bool white() const { return brightness >= kWhite; }
 };
@@ -37,6 +38,8 @@ class ExposureEstimator {
   void update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages, std::int64_t image);
 
   double log_gain() const { return log_gain_; }
+  /// It was measured in the last image, or that was the first; else it is that of the one before, or a bound.
+  bool is_measured() const { return measured_; }
   /// (a, b); zero until it is known well enough to help: v(1) beyond three of its own sigma.
   Eigen::Vector2d vignetting() const { return applied_; }
   double vignetting_log(double r2) const { return r2 * (applied_.x() + r2 * applied_.y()); }
@@ -52,6 +55,7 @@ class ExposureEstimator {
 
   double log_gain_ = 0, steady_ = 0;
   bool rough_ = false;  // log_gain_ is a bound; steady_ is the last before
+  bool first_ = true, measured_ = false;
   Eigen::Vector2d applied_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d information_ = Eigen::Matrix2d::Zero();
   Eigen::Vector2d moment_ = Eigen::Vector2d::Zero();

@@ -43,7 +43,7 @@ void SurveyPass::set_pages(std::span<const PageRecord> pages) {
   pages_.assign(pages);
   const std::size_t mask_bytes = pages.size() * sizeof(std::uint32_t),
                     sample_bytes = pages.size() * sizeof(ExposureSample);
-  static_assert(sizeof(AgreementSample) == sizeof(ExposureSample), "samples_ has room for either");
+  static_assert(sizeof(AgreementSample) <= sizeof(ExposureSample), "samples_ has room for either");
   if (masks_.bytes() < mask_bytes) masks_ = gl::Buffer(mask_bytes * 3 / 2, "page masks");
   if (samples_.bytes() < sample_bytes) samples_ = gl::Buffer(sample_bytes * 3 / 2, "page brightness");
 }

@@ -152,6 +152,7 @@ ExtractionReport TextureCore::report() {
   out.log_gain = exposures_[0].log_gain();
   if (const auto square = sharpness_.misplacement2()) out.misplacement_px = std::sqrt(*square);
   out.lamp = light_.answer();
+  out.right_factors = balance_.factors();
   out.images_kept = kept_images_.images().size();
   out.bytes_in_use = atlas_.bytes_in_use();
   out.bytes_reserved = store_.held().bytes();
@@ -187,7 +188,7 @@ std::shared_ptr<const NewestImages> TextureCore::lend(bool with_before) const {
   images->newest = Lease<PublishedImage>(newest);
   if (with_before) images->before = Lease<PublishedImage>(before_.published[0]);
   if (!still_pass_) return images;
-  if (right_is_alike_) images->others.emplace_back(newest_.published[1]);
+  if (right_is_alike_ && is_exposure_known(1)) images->others.emplace_back(newest_.published[1]);
   for (const auto& image : kept_images_.images())
     if (image != newest) images->others.emplace_back(image);
   return images;
@@ -202,8 +203,12 @@ void TextureCore::keep_newest() {
   const std::shared_ptr<PublishedImage>& newest = newest_.published[0];
   newest->range = typical_range(*surface_, newest->camera->lens(), newest->image);
   (*still_pass_)(*newest, before_.published.empty() ? nullptr : before_.published[0].get());
-  kept_images_.keep(newest);
+  if (is_exposure_known(0)) kept_images_.keep(newest);  // later ones are shown as bright as these were
   mark("kept images");
+}
+
+bool TextureCore::is_exposure_known(std::size_t camera) const {
+  return !options_.even_exposure || exposures_[camera].is_measured();
 }
 
 /// Image upload, depth and uncertain edges of every camera of the frame.
@@ -211,7 +216,12 @@ void TextureCore::look(const PosedFrame& frame) {
   std::swap(newest_, before_);
   places_.place(frame, before_, newest_);
   const std::size_t count = newest_.images.size();
-  for (std::size_t i = 0; i < count; ++i) newest_.cameras[i]->upload((i == 0 ? frame.left : *frame.right).pixels);
+  newest_.cameras[0]->upload(frame.left.pixels);
+  cv::Mat right;
+  if (count > 1) {
+    right = options_.even_exposure ? balance_.apply(frame.left.pixels, frame.right->pixels) : frame.right->pixels;
+    newest_.cameras[1]->upload(right);
+  }
   mark("upload");
   for (std::size_t i = 0; i < count; ++i)
     raster_(newest_.images[i].T_world_camera, newest_.images[i].scene, newest_.cameras[i]->faces(),
@@ -229,7 +239,7 @@ void TextureCore::look(const PosedFrame& frame) {
     if (light_.take_out_shadows(newest_, rehearses_light, reset_samplers_)) mark("shadows");
   }
   newest_.light = light_.known();
-  right_is_alike_ = still_pass_ && count > 1 && are_alike_in_hue(frame.left.pixels, frame.right->pixels);
+  right_is_alike_ = still_pass_ && count > 1 && are_alike_in_hue(frame.left.pixels, right);
 }
 
 /// Of the image before, what the newest one shows no more, or less well: views are going to look for it in the
@@ -325,9 +335,11 @@ void TextureCore::estimate_exposure(int first, int stride) {
     pages.push_back(&atlas_.page_of(records_[i]));
   std::vector<Eigen::Vector3f> tones;
   for (std::size_t i = 0; i < newest_.images.size(); ++i) {
-    exposures_[i].update(survey_.brightness(newest_.inputs, charts_, store_, static_cast<int>(i),
-                                            options_.depth_tolerance, first, stride),
-                         pages, image_);
+    const auto samples = survey_.brightness(newest_.inputs, charts_, store_, static_cast<int>(i),
+                                            options_.depth_tolerance, first, stride);
+    exposures_[i].update(samples, pages, image_);
+    if (i == 0 && newest_.images.size() > 1) ColourBalance::remember(samples, pages);
+    if (i == 1) balance_.learn(samples, pages);
     tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
                        exposures_[i].vignetting().y());
   }

@@ -6,6 +6,7 @@
 
 #include "gl/sampler_reset.hpp"
 #include "texture_gpu/accumulation_pass.hpp"
+#include "texture_gpu/colour_balance.hpp"
 #include "texture_gpu/edge_pass.hpp"
 #include "texture_gpu/extract_pass.hpp"
 #include "texture_gpu/extraction_report.hpp"
@@ -68,6 +69,7 @@ class TextureCore {
   std::shared_ptr<const NewestImages> lend(bool with_before) const;
   void compare_with_textures();
   void estimate_exposure(int first, int stride);
+  bool is_exposure_known(std::size_t camera) const;
   bool save_what_leaves(LatestTextures& latest);
   SurveyPass::Missed not_shown(const SeenInputs& inputs, const std::vector<AtlasView>& views, const Masks& tiles);
   bool allocate(ChartAtlas::Allocation& out);
@@ -87,6 +89,7 @@ class TextureCore {
   std::unique_ptr<StillPass> still_pass_;                // where images are kept
   std::unique_ptr<AccumulationPass> accumulation_pass_;  // where they are accumulated
   std::vector<ExposureEstimator> exposures_;
+  ColourBalance balance_;
   SharpnessEstimator sharpness_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;
   gl::RasterPass raster_;

@@ -1,0 +1,99 @@
+// Cameras of different white balance, on made-up pages and images.
+#include "texture_gpu/colour_balance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace foresight::colour_balance_test {
+namespace {
+
+/// Pages of all colours, which a left camera and a right one see, each colour multiplied in the right one's.
+class Pages {
+ public:
+  explicit Pages(std::size_t count) : pages_(count) {
+    std::uniform_real_distribution<float> any(-0.5f, 0.5f);
+    for (AtlasPage& page : pages_) {
+      pointers_.push_back(&page);
+      seen_.push_back({0.4f, 0, any(random_), any(random_)});
+    }
+  }
+  void remember() { ColourBalance::remember(seen_, pointers_); }
+  void learn(ColourBalance& balance, double red, double blue) {
+    std::normal_distribution<float> noise(0, 0.02f);
+    std::vector<ExposureSample> samples = seen_;
+    const auto factors = balance.factors().value_or(Eigen::Vector2d(1, 1));
+    for (ExposureSample& sample : samples) {
+      sample.log_red += static_cast<float>(std::log(red * factors.x())) + noise(random_);
+      sample.log_blue += static_cast<float>(std::log(blue * factors.y())) + noise(random_);
+    }
+    balance.learn(samples, pointers_);
+  }
+
+ private:
+  std::mt19937 random_{3};
+  std::vector<AtlasPage> pages_;
+  std::vector<AtlasPage*> pointers_;
+  std::vector<ExposureSample> seen_;
+};
+
+cv::Mat even(double blue, double green, double red) {
+  return {4, 4, CV_8UC3, cv::Scalar(blue, green, red)};
+}
+
+TEST(ColourBalance, LearnsWhatTheRightCameraMakesOfColours) {
+  Pages pages(200);
+  pages.remember();
+  ColourBalance balance;
+  const cv::Mat grey = even(100, 100, 100);
+  for (int image = 0; image < 30; ++image) {
+    balance.apply(grey, grey);
+    pages.learn(balance, 0.9, 1.2);
+  }
+  ASSERT_TRUE(balance.factors());
+  EXPECT_NEAR(balance.factors()->x(), 1 / 0.9, 0.005);
+  EXPECT_NEAR(balance.factors()->y(), 1 / 1.2, 0.005);
+  EXPECT_EQ(balance.apply(grey, even(120, 100, 90)).at<cv::Vec3b>(0), cv::Vec3b(100, 100, 100));
+  EXPECT_EQ(balance.apply(grey, even(255, 255, 255)).at<cv::Vec3b>(0), cv::Vec3b(255, 255, 255)) << "white stays";
+}
+
+TEST(ColourBalance, LeavesCamerasAloneThatAreAlike) {
+  Pages pages(200);
+  pages.remember();
+  ColourBalance balance;
+  const cv::Mat image = even(80, 120, 60);
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_EQ(balance.apply(image, image).data, image.data);
+    pages.learn(balance, 1.01, 0.99);
+  }
+  EXPECT_FALSE(balance.factors());
+}
+
+TEST(ColourBalance, IsThereWithTheFirstPairWhereCamerasDifferClearly) {
+  ColourBalance balance;
+  EXPECT_EQ(balance.apply(even(100, 100, 100), even(140, 90, 70)).at<cv::Vec3b>(0), cv::Vec3b(90, 90, 90));
+  ColourBalance careful;
+  careful.apply(even(100, 100, 100), even(105, 100, 96));
+  EXPECT_FALSE(careful.factors()) << "borders of the two images may show other things";
+}
+
+TEST(ColourBalance, LearnsNothingOfFewPages) {
+  Pages pages(20);
+  pages.remember();
+  ColourBalance balance;
+  balance.apply(even(100, 100, 100), even(100, 100, 100));
+  pages.learn(balance, 0.5, 2);
+  EXPECT_FALSE(balance.factors());
+  Pages(200).learn(balance, 0.5, 2);
+  EXPECT_FALSE(balance.factors()) << "the left camera has seen none of them";
+}
+
+TEST(ColourBalance, HasNothingToSayOfGreyImages) {
+  ColourBalance balance;
+  const cv::Mat grey(4, 4, CV_8UC1, cv::Scalar(50));
+  EXPECT_EQ(balance.apply(even(100, 100, 100), grey).data, grey.data);
+  EXPECT_FALSE(balance.factors());
+}
+
+}  // namespace
+}  // namespace foresight::colour_balance_test
