@@ -9,9 +9,10 @@
 #include "luma.glsl"
 #include "view_alpha.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
+layout(binding = 10) uniform samplerBuffer page_ages;  // s, when the newest image was taken; negative: never seen
 layout(binding = 0, rgba8) uniform image2D picture;
-uniform int paint;  // as ViewPaint
+uniform int paint;    // as ViewPaint
+uniform float since;  // s from the newest image of the ages to the instant shown
 
 // 0 .. 3
 int age_class(SurfaceAt at, bool from_image) {
@@ -19,7 +20,7 @@ int age_class(SurfaceAt at, bool from_image) {
   ivec2 page = ivec2(floor(at.texel)) >> 4;
   page = clamp(page, ivec2(0), at.chart.pages - 1);
   float age = texelFetch(page_ages, at.chart.first_page + page.y * at.chart.pages.x + page.x).r;
-  return age < 0.0 ? 3 : age < 1.0 ? 0 : age < 5.0 ? 1 : 2;
+  return age < 0.0 ? 3 : age + since < 1.0 ? 0 : age + since < 5.0 ? 1 : 2;
 }
 
 int confidence_class(SurfaceAt at, bool from_image) {

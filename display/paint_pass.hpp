@@ -12,9 +12,10 @@ class PaintPass {
  public:
   /// `levels`: the views that it paints have some (scene_raster.hpp).
   explicit PaintPass(bool levels);
-  /// Over `picture`, the view that PredictedView has just drawn: what it bound for that is bound still. Not for
-  /// ViewPaint::colours and doubt.
-  void operator()(ViewPaint paint, const gl::Texture& picture, const PublishedTextures& textures) const;
+  /// Over `picture`, the view of `instant` that PredictedView has just drawn: what it bound for that is bound still.
+  /// Not for ViewPaint::colours and doubt.
+  void operator()(ViewPaint paint, const gl::Texture& picture, const PublishedTextures& textures,
+                  RobotTime instant) const;
 
  private:
   gl::Program program_;

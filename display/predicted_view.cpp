@@ -199,7 +199,7 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
     dispatch_all(all_, rows);
     dispatch(rest_, listed_);
   });
-  finish(textures);
+  finish(textures, state.time);
 }
 
 /// `before`: the image before the newest one; null: none is looked up.
@@ -229,7 +229,7 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
       draw_usual();
     dispatch(rest_, p.rest);
   });
-  finish(textures);
+  finish(textures, state.time);
 }
 
 /// Hands the images to the shaders.
@@ -394,7 +394,7 @@ void PredictedView::dispatch(const WorkList& list, const gl::Program& program) {
   list.dispatch();
 }
 
-void PredictedView::finish(const PublishedTextures& textures) {
+void PredictedView::finish(const PublishedTextures& textures, RobotTime instant) {
   if (mixes_ && !draws_part_) {
     if (gate_) gate_->begin("silhouettes of a view");
     silhouettes_({lens_, camera_, faces_, rays_, picture_});
@@ -404,7 +404,7 @@ void PredictedView::finish(const PublishedTextures& textures) {
       gate_->end();
     }
   }
-  if (paint_ != ViewPaint::colours) (*painter_)(paint_, picture_, textures);
+  if (paint_ != ViewPaint::colours) (*painter_)(paint_, picture_, textures, instant);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 

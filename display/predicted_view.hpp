@@ -123,7 +123,7 @@ class PredictedView {
   void shade(const Pose& T_world_camera, const SceneState& state, const std::shared_ptr<const SceneLight>& light);
   void find_shadows(const Pose& T_world_camera, const SceneState& state,
                     const std::shared_ptr<const SceneLight>& light);
-  void finish(const PublishedTextures& textures);
+  void finish(const PublishedTextures& textures, RobotTime instant);
   struct Rows {
     int first = 0, last = 0;  // beyond the last
   };

@@ -33,7 +33,7 @@ constexpr bool has_two_eyes(ViewMode mode) {
 enum class ViewPaint : std::uint8_t {
   colours,     ///< the scene's own
   wireframe,   ///< borders of triangles
-  age,         ///< for how long no image has shown what is there
+  age,         ///< for how long, at the instant shown, no image has shown what is there
   confidence,  ///< how finely images have shown it, against how finely it is shown
   doubt,       ///< how far it may be off (TrustPass), for one eye
 };

@@ -15,7 +15,7 @@ class PageAges {
   /// Image number `image` is the newest, taken at `now`; from image number `light_changed` on the light is what it is.
   void update(const std::vector<AtlasChart>& charts, std::int64_t image, RobotTime now, std::int64_t light_changed);
 
-  /// Of each page of the page table as it was then, s; -1: never seen.
+  /// Of each page of the page table as it was then, s before `now`; -1: never seen.
   std::span<const float> seconds() const { return seconds_; }
 
  private:

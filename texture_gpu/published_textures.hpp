@@ -33,7 +33,7 @@ struct PublishedTextures {
   gl::BufferTexture charts;                    ///< RGBA32F: five texels a chart (chart_record.glsl)
   gl::BufferTexture coarse;                    ///< RGBA16F: filled mean of each page
   gl::BufferTexture means;                     ///< RGBA16F: filled mean of each chart
-  gl::BufferTexture ages;                      ///< R32F: for how long no image saw each page, s; -1: none ever did
+  gl::BufferTexture ages;                      ///< R32F: s before `newest_image` that one saw each page; -1: none did
   std::shared_ptr<const SceneLight> light;     ///< shadows of what moves are not in the colours; null: they may be
   float light_age = -1;                        ///< seconds for which `light` was known then
   std::vector<ChartPlace> places;              ///< one per chart

@@ -28,11 +28,13 @@ class ObservedViewTest : public HeadlessTest {
   PredictedView view(const Lens& lens) const {
     return {std::make_shared<gl::SceneBuffers>(*scene_), std::make_shared<SurfaceRecords>(*surface_), lens};
   }
-  cv::Mat painted(ViewPaint paint, const Pose& from) {
+  cv::Mat painted(ViewPaint paint, const Pose& from, RobotTime instant = {}) {
     PredictedView drawn = view(lens_);
     drawn.set_paint(paint);
     const TextureLease lease = latest_.acquire();
-    drawn.draw(from, state_of(*scene_), *lease);
+    SceneState state = state_of(*scene_);
+    state.time = instant;
+    drawn.draw(from, state, *lease);
     return drawn.read();
   }
   static void keep(const char* name, const cv::Mat& picture) {
@@ -61,7 +63,7 @@ cv::Mat model_of(const cv::Mat& picture) {
   return alpha > 0;
 }
 const cv::Scalar kFreshFrom(90, 60, 0), kFreshTo(115, 255, 255), kNeverFrom(135, 60, 0), kNeverTo(165, 255, 255),
-    kOldFrom(5, 120, 0), kOldTo(14, 255, 255);
+    kSecondsFrom(20, 60, 0), kSecondsTo(32, 255, 255), kOldFrom(5, 120, 0), kOldTo(14, 255, 255);
 
 TEST_F(ObservedViewTest, AgesAreThoseOfTheImagesThatSaw) {
   extract(usual_view(), RobotTime{} + 1s);
@@ -76,6 +78,21 @@ TEST_F(ObservedViewTest, AgesAreThoseOfTheImagesThatSaw) {
   const cv::Mat behind = painted(ViewPaint::age, look_at({1.3, 0.5, 0.5}, {0.3, 0.1, 0.2}));
   keep("age_behind", behind);
   EXPECT_GT(share(behind, kNeverFrom, kNeverTo, model_of(behind)), 0.2) << "what no image saw";
+}
+
+// Over a line of a second each way nothing is less than a second old; where images end, all grows older.
+TEST_F(ObservedViewTest, AgesGoOnToTheInstantShown) {
+  extract(usual_view(), RobotTime{} + 1s);
+  const auto seen = [&](Duration after, const cv::Scalar& from, const cv::Scalar& to) {
+    const cv::Mat picture = painted(ViewPaint::age, usual_view(), RobotTime{} + 1s + after);
+    return share(picture, from, to, model_of(picture));
+  };
+  EXPECT_GT(seen(900ms, kFreshFrom, kFreshTo), 0.75);
+  EXPECT_EQ(seen(1100ms, kFreshFrom, kFreshTo), 0);
+  EXPECT_GT(seen(1100ms, kSecondsFrom, kSecondsTo), 0.75);
+  EXPECT_GT(seen(4900ms, kSecondsFrom, kSecondsTo), 0.75);
+  EXPECT_EQ(seen(5100ms, kSecondsFrom, kSecondsTo), 0);
+  EXPECT_GT(seen(5100ms, kOldFrom, kOldTo), 0.75);
 }
 
 TEST_F(ObservedViewTest, ConfidenceFallsWhereTheViewIsFiner) {
