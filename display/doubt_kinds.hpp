@@ -7,6 +7,7 @@
 //   255              nothing is known of it
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <cmath>
 #include <cstdint>
@@ -60,5 +61,13 @@ inline constexpr int kMostLevelsOff = 253, kInPatch = 254, kNotShown = 255;
 
 /// By doubt: such pixels count as exact. Never kUnconfirmed.
 using ExactKinds = std::bitset<256>;
+
+/// By doubt: the share of such pixels that are wrong, as far as it is known.
+using KindRisks = std::array<double, kKindsEnd>;
+/// Up to the one, a kind is right nearly always; beyond the other, it never counts as exact. ViewPaint's words tell
+/// both.
+inline constexpr double kRarelyWrong = 0.016, kOftenWrong = 0.15;
+/// Grey levels beyond which a pixel is wrong.
+inline constexpr double kWrongLevels = 10;
 
 }  // namespace foresight

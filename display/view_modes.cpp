@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/statistics.hpp"
+#include "display/doubt_kinds.hpp"
 
 namespace foresight {
 namespace {
@@ -63,7 +64,8 @@ const char* to_string(ViewPaint paint) {
     case ViewPaint::confidence:
       return "seen how finely: plain at least as shown, thin lines to a quarter, dense lines below, checked: never";
     case ViewPaint::doubt:
-      return "may be off by: plain to 10 grey levels, thin lines to 30, dense lines beyond, checked: not known";
+      static_assert(kRarelyWrong == 0.016 && kOftenWrong == 0.15);
+      return "wrong how often: plain to 1.6 %, thin lines to 15 %, dense lines beyond, checked: not known";
   }
   return "";
 }

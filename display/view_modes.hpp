@@ -35,7 +35,7 @@ enum class ViewPaint : std::uint8_t {
   wireframe,   ///< borders of triangles
   age,         ///< for how long, at the instant shown, no image has shown what is there
   confidence,  ///< how finely images have shown it, against how finely it is shown
-  doubt,       ///< how far it may be off (TrustPass), for one eye
+  doubt,       ///< how often such pixels are wrong (DoubtPaint), for one eye
 };
 inline constexpr int kViewPaints = 5;
 /// In words, with what the colours mean; "" for colours.

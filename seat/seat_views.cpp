@@ -207,9 +207,9 @@ SeatViews::Sight SeatViews::predicted(const ViewSession& session, const SeatPict
   if (!drawn_) return {};
   // Whatever its size, it is seen through the same lens: lines lie by the session's own depths.
   Sight out{&session.picture(), &session.faces(), &session.view().lens(), drawn_->T_world_camera};
-  if (what.doubt && shows_doubt()) {
+  if (what.doubt && what.risks && shows_doubt()) {
     if (!doubt_) doubt_.emplace();
-    out.picture = &(*doubt_)(session.picture(), *what.doubt);
+    out.picture = &(*doubt_)(session.picture(), *what.doubt, *what.risks);
   } else if (what.marked && shows_marks()) {
     out.picture = what.marked;
   } else if (shows_again_) {

@@ -44,6 +44,7 @@ struct SeatPicture {
   bool trusted = true;                  ///< else the newest image stands in for the prediction
   const gl::Texture* marked = nullptr;  ///< the session's view with marks on it; null: no marks are wanted
   const gl::Texture* doubt = nullptr;   ///< of the session's view; null: not known
+  const KindRisks* risks = nullptr;     ///< of pixels of each doubt; null: not known
   const HandPicture* hand = nullptr;    ///< drawn over what is predicted; null: nothing
 };
 

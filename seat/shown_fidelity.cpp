@@ -195,30 +195,30 @@ void ShownFidelity::add(const ByKind& counts, ByKind& to) {
 
 void ShownFidelity::learn() {
   Counts all;
-  for (std::size_t i = 0; i < risk_.size(); ++i) {
+  for (std::size_t i = 0; i < risks_.size(); ++i) {
     if (is_coded_away(i)) continue;
     const double risk = assumed_risk(i, options_.wrong_levels);
-    risk_[i] = (of_late_[i].wrong + assumed_ * risk) / (of_late_[i].all + assumed_);
+    risks_[i] = (of_late_[i].wrong + assumed_ * risk) / (of_late_[i].all + assumed_);
     all.all += of_late_[i].all;
     all.wrong += of_late_[i].wrong;
   }
   // What coding took away comparisons hardly tell: it comes on top of what is wrong elsewhere.
   const double elsewhere = all.all > 0 ? all.wrong / all.all : 0;
   for (std::size_t i = kCodedAway; is_coded_away(i); ++i)
-    risk_[i] = std::min(1.0, elsewhere + share_lost(static_cast<int>(i - kCodedAway) + 1));
+    risks_[i] = std::min(1.0, elsewhere + share_lost(static_cast<int>(i - kCodedAway) + 1));
 }
 
 void ShownFidelity::choose(const ByKind& pixels) {
   std::array<std::size_t, kKindsEnd> order;
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [this](std::size_t i) { return risk_[i]; });
+  std::ranges::stable_sort(order, {}, [this](std::size_t i) { return risks_[i]; });
   exact_.reset();
   double all = 0, wrong = 0;
   for (const std::size_t i : order) {
     all += pixels[i].all;
-    wrong += pixels[i].all * (risk_[i] + smoothed_);
-    if (risk_[i] > options_.wrong_of_kind) return;
-    if (all > 0 ? wrong > options_.wrong_share * all : risk_[i] > options_.wrong_share) return;
+    wrong += pixels[i].all * (risks_[i] + smoothed_);
+    if (risks_[i] > options_.wrong_of_kind) return;
+    if (all > 0 ? wrong > options_.wrong_share * all : risks_[i] > options_.wrong_share) return;
     exact_.set(i);
   }
 }

@@ -20,9 +20,9 @@ namespace foresight {
 struct FidelityOptions {
   Duration same_instant = std::chrono::milliseconds(20);  ///< by which picture and image may be apart, > 0
   std::size_t kept = 48;                                  ///< pictures that wait for their image, > 0
-  double wrong_levels = 10;                               ///< grey levels beyond which a pixel is wrong
-  double wrong_share = 0.016;                             ///< of the pixels that count as exact, that may be wrong
-  double wrong_of_kind = 0.15;                            ///< of the pixels of each kind, likewise
+  double wrong_levels = kWrongLevels;                     ///< grey levels beyond which a pixel is wrong
+  double wrong_share = kRarelyWrong;                      ///< of the pixels that count as exact, that may be wrong
+  double wrong_of_kind = kOftenWrong;                     ///< of the pixels of each kind, likewise
 };
 
 /// How alike what was shown for an instant and the image of it are, over pixels that images have coloured.
@@ -66,6 +66,8 @@ class ShownFidelity {
   /// usual picture of late together: good pictures make up for bad ones. Never a kind of which more than wrong_of_kind
   /// have to be: however good all else is, it says nothing of a ball that rolls through it.
   const ExactKinds& exact() const { return exact_; }
+  /// By which they are chosen: as learnt, or as assumed of a kind that was not compared yet.
+  const KindRisks& risks() const { return risks_; }
 
  private:
   struct Counts {
@@ -79,11 +81,11 @@ class ShownFidelity {
 
   FidelityOptions options_;
   std::deque<RememberedView> kept_;
-  RobotTime begin_;                       // what was shown before tells nothing
-  ByKind of_late_{}, beside_patches_{};   // all of late, and what lay in no patch that was wrong
-  double assumed_ = 1;                    // pixels of each kind that are taken to have been as assumed
-  std::array<double, kKindsEnd> risk_{};  // of a pixel of each kind to be wrong
-  double smoothed_ = 0;                   // share of pixels that agree with a coded image, and not with the truth
+  RobotTime begin_;                      // what was shown before tells nothing
+  ByKind of_late_{}, beside_patches_{};  // all of late, and what lay in no patch that was wrong
+  double assumed_ = 1;                   // pixels of each kind that are taken to have been as assumed
+  KindRisks risks_{};                    // of a pixel of each kind to be wrong
+  double smoothed_ = 0;                  // share of pixels that agree with a coded image, and not with the truth
   ExactKinds exact_;
 };
 

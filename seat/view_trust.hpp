@@ -57,6 +57,8 @@ class ViewTrust {
   const std::optional<Fidelity>& fidelity() const { return fidelity_; }
   /// Nothing is, where the newest image stands in for the view.
   ExactKinds exact() const { return falls_back() ? ExactKinds() : shown_.exact(); }
+  /// ShownFidelity::risks()
+  const KindRisks& risks() const { return shown_.risks(); }
   /// The view that was drawn last, marked.
   const gl::Texture& marked() const { return pass_.marked(); }
   const gl::Texture& doubt_picture() const { return pass_.doubt(); }

@@ -150,6 +150,7 @@ void SeatWindow::present(const ViewSession& session) {
   picture.trusted = is_trusted;
   if (options_.trust && marks_ != TrustMarks::none) picture.marked = &options_.trust->marked();
   if (options_.trust) picture.doubt = &options_.trust->doubt_picture();
+  if (options_.trust) picture.risks = &options_.trust->risks();
   const HandPicture hand = options_.hand && is_trusted ? options_.hand() : HandPicture{};
   picture.hand = &hand;
   for (SeatViews::Part& part : views_.show(session, whole, picture)) {

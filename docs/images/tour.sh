@@ -113,7 +113,7 @@ press F4
 shows "as it will be; age"
 picture age
 press F4 F4
-shows "may be off by"
+shows "wrong how often"
 picture errors
 press F4
 shows "as it will be"

@@ -3,11 +3,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "display/doubt_kinds.hpp"
 #include "display/view_session.hpp"
+#include "seat/shown_fidelity.hpp"
 #include "tests/support/headless_test.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -130,13 +133,17 @@ class SeatViewsPictures : public HeadlessTest {
     views_->draw(*session_, place_, target_->whole(), drawing_ms);
     fill(target_->whole(), 1, 1, 1);
     parts_ = views_->show(*session_, target_->whole(),
-                          {.trusted = trusted, .doubt = doubt_ ? &doubt_ : nullptr, .hand = &hand_});
+                          {.trusted = trusted, .doubt = doubt_ ? &doubt_ : nullptr, .risks = &risks_, .hand = &hand_});
+    cv::Mat out = read_window();
+    if (const char* folder = std::getenv("FORESIGHT_PICTURES"))
+      cv::imwrite(std::string(folder) + "/" + to_string(mode) + (trusted ? "" : "_untrusted") + ".png", out);
+    return out;
+  }
+  cv::Mat read_window() const {
     cv::Mat out(kHeight, kWidth, CV_8UC4);
     glGetTextureImage(window_.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
     cv::flip(out, out, 0);
     cv::cvtColor(out, out, cv::COLOR_BGRA2BGR);
-    if (const char* folder = std::getenv("FORESIGHT_PICTURES"))
-      cv::imwrite(std::string(folder) + "/" + to_string(mode) + (trusted ? "" : "_untrusted") + ".png", out);
     return out;
   }
   static std::string to_string(ViewMode mode) { return "mode_" + std::to_string(static_cast<int>(mode)); }
@@ -154,6 +161,7 @@ class SeatViewsPictures : public HeadlessTest {
   ViewPlace place_{usual_view(), state_of(*scene_)};
   HandPicture hand_;
   gl::Texture window_, doubt_;
+  KindRisks risks_{};
   std::optional<TextureTarget> target_;
   std::optional<ViewSession> session_;
   std::optional<SeatViews> views_;
@@ -395,23 +403,66 @@ TEST_F(SeatViewsPictures, TheSessionsViewIsLeftAlone) {
   EXPECT_EQ(cv::norm(own, session_->read(), cv::NORM_L1), 0);
 }
 
+/// Which class of classes.glsl a picture is painted in: hatching and what was shown make it darker, not of another hue.
+int class_seen(const cv::Mat& picture) {
+  const cv::Scalar kClasses[] = {{0.95, 0.75, 0.35}, {0.35, 0.85, 0.95}, {0.20, 0.40, 0.90}, {0.75, 0.35, 0.75}};
+  const cv::Scalar mean = cv::mean(picture);
+  const auto alike = [&](const cv::Scalar& c) { return mean.ddot(c) / std::sqrt(mean.ddot(mean) * c.ddot(c)); };
+  return static_cast<int>(std::ranges::max_element(kClasses, {}, alike) - std::begin(kClasses));
+}
+
+/// What is learnt of pictures in which that share of the pixels of each kind is wrong, column by column of a kind.
+ShownFidelity learnt_of(std::span<const std::pair<int, double>> wrong_of_doubt) {
+  constexpr int kSide = 100;
+  ShownFidelity out;
+  const int columns = kSide * static_cast<int>(wrong_of_doubt.size());
+  for (int round = 0; round < 60; ++round) {
+    const RobotTime time = RobotTime{} + round * std::chrono::milliseconds(100);
+    RememberedView shown{time, cv::Mat(kSide, columns, CV_8UC4, cv::Scalar(120, 120, 120, 255)),
+                         cv::Mat(kSide, columns, CV_8UC1)};
+    cv::Mat truth(kSide, columns, CV_8UC3, cv::Scalar(120, 120, 120));
+    int left = 0;
+    for (const auto& [doubt, wrong] : wrong_of_doubt) {
+      shown.doubt.colRange(left, left + kSide) = doubt;
+      truth(cv::Rect(left, 0, kSide, static_cast<int>(std::lround(kSide * wrong)))) = cv::Scalar(180, 180, 180);
+      left += kSide;
+    }
+    out.shown(std::move(shown));
+    out.arrived(time, truth);
+  }
+  return out;
+}
+
+// What is painted is what 'exact' is chosen by, and that is what images have shown.
 TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
   doubt_ = gl::Texture(GL_R8, lens_.width(), lens_.height(), 0, 1, "doubt");
+  hand_ = {};
   while (views_->paint() != ViewPaint::doubt) views_->next_paint();
-  std::vector<cv::Mat> seen;
-  const int doubts[] = {doubt_of({3, 0, Compared::never}), doubt_of({12, 0, Compared::never}),
-                        doubt_of({15, 1, Compared::never}), kUnconfirmed, doubt_of({3, 0, Compared::suspect})};
-  for (const int doubt : doubts) {
+  const auto painted = [&](int doubt, const KindRisks& risks) {
+    risks_ = risks;
     const auto value = static_cast<std::uint8_t>(doubt);
     glClearTexImage(doubt_.name(), 0, GL_RED, GL_UNSIGNED_BYTE, &value);
-    seen.push_back(shown(ViewMode::predicted)(cv::Rect(110, 110, 80, 60)).clone());
-  }
-  const auto hue = [](const cv::Mat& picture) { return cv::mean(picture); };
-  EXPECT_GT(hue(seen[0])[0], hue(seen[0])[2]) << "blue: little";
-  EXPECT_GT(hue(seen[1])[1], hue(seen[1])[0]) << "yellow";
-  EXPECT_GT(hue(seen[2])[2], 1.5 * hue(seen[2])[0]) << "red";
-  EXPECT_GT(hue(seen[3])[0], hue(seen[3])[1]) << "violet: not known";
-  EXPECT_GT(hue(seen[4])[2], 1.5 * hue(seen[4])[0]) << "red: it was wrong of late";
+    return class_seen(shown(ViewMode::predicted)(cv::Rect(110, 110, 80, 60)));
+  };
+  const std::pair<int, double> learnt[] = {{doubt_of({3, 0, Compared::never}), 0.2},
+                                           {doubt_of({15, 1, Compared::never}), 0.01},
+                                           {doubt_of({0, 0, Compared::suspect}), 0.0},
+                                           {doubt_of({0, 0, Compared::same}), 0.1},
+                                           {kBesideEdge + 8, 0.02},
+                                           {kBesideEdge, 0.5}};
+  const ShownFidelity before, after = learnt_of(learnt);
+  for (const auto& [doubt, wrong] : learnt)
+    EXPECT_EQ(painted(doubt, after.risks()), wrong <= kRarelyWrong  ? 0
+                                             : wrong <= kOftenWrong ? 1
+                                                                    : 2)
+        << "doubt " << doubt << ", wrong in " << wrong;
+  for (int doubt = 0; doubt < 256; doubt += 5)
+    for (const ShownFidelity* fidelity : {&before, &after})
+      EXPECT_EQ(painted(doubt, fidelity->risks()), class_of(static_cast<std::size_t>(doubt), fidelity->risks()))
+          << doubt;
+  EXPECT_EQ(painted(doubt_of({0, 0, Compared::same}), before.risks()), 0);
+  EXPECT_EQ(painted(doubt_of({15, 0, Compared::off}), before.risks()), 2);
+  EXPECT_EQ(painted(kUnconfirmed, after.risks()), 3) << "not known";
   EXPECT_TRUE(views_->shows_doubt());
   shown(ViewMode::two_eyes);
   EXPECT_FALSE(views_->shows_doubt());

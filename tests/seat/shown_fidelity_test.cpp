@@ -84,6 +84,7 @@ class LearntKinds {
     fidelity_.shown(std::move(shown));
     return fidelity_.arrived(at(rounds_++ * 100ms), truth).value();
   }
+  double risk(const DoubtKind& kind) const { return fidelity_.risks()[static_cast<std::size_t>(doubt_of(kind))]; }
   /// How many contrasts count as exact.
   std::vector<int> exact() const {
     std::vector<int> out(2);
@@ -204,6 +205,15 @@ TEST(ShownFidelity, LearnsOfWhatKindPixelsAreRight) {
   EXPECT_EQ(learnt.exact(), (std::vector{6, 0})) << "it has become worse";
   for (int i = 0; i < 200; ++i) learnt.round(15, 15);
   EXPECT_EQ(learnt.exact(), (std::vector{16, 16})) << "all is well";
+}
+
+TEST(ShownFidelity, RisksAreSharesThatWereWrong) {
+  LearntKinds learnt;
+  for (int i = 0; i < 60; ++i) learnt.round(9, 3);
+  for (int i = 0; i < DoubtKind::kContrasts; ++i) {
+    EXPECT_NEAR(learnt.risk({i, 0, Compared::alike}), i > 9 ? 0.5 : 0, 0.06) << i;
+    EXPECT_NEAR(learnt.risk({i, 0, Compared::suspect}), i > 3 ? 0.5 : 0, 0.06) << i;
+  }
 }
 
 TEST(ShownFidelity, PicturesMakeUpForEachOther) {
