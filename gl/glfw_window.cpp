@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "gl/x_connection.hpp"
@@ -37,7 +38,41 @@ GLFWwindow* create(int width, int height, const char* title, bool visible, GLFWw
   return glfwCreateWindow(width, height, title, nullptr, share);
 }
 
+/// px of both: how much of the one lies on the other.
+std::int64_t overlap(const DesktopArea& a, const DesktopArea& b) {
+  const int wide = std::min(a.x + a.width, b.x + b.width) - std::max(a.x, b.x),
+            high = std::min(a.y + a.height, b.y + b.height) - std::max(a.y, b.y);
+  return std::int64_t{std::max(0, wide)} * std::max(0, high);
+}
+
+std::vector<DesktopArea> desktop_screens() {
+  std::vector<DesktopArea> out;
+  int count = 0;
+  GLFWmonitor** const monitors = glfwGetMonitors(&count);
+  for (GLFWmonitor* monitor : std::span(monitors, static_cast<std::size_t>(count))) {
+    DesktopArea area;
+    glfwGetMonitorPos(monitor, &area.x, &area.y);
+    const GLFWvidmode* const mode = glfwGetVideoMode(monitor);
+    if (!mode) continue;
+    area.width = mode->width;
+    area.height = mode->height;
+    out.push_back(area);
+  }
+  return out;
+}
+
 }  // namespace
+
+int top_on_screen(const DesktopArea& window, std::span<const DesktopArea> screens) {
+  std::int64_t most = 0;
+  int top = 0;
+  for (const DesktopArea& screen : screens)
+    if (const std::int64_t of_it = overlap(window, screen); of_it > most) {
+      most = of_it;
+      top = screen.y;
+    }
+  return window.y - top;
+}
 
 Window::Window(int width, int height, const std::string& title, ContextApi api) : glfw_(start_library()), api_(api) {
   window_ = create(width, height, title.c_str(), true, nullptr, api_);
@@ -142,6 +177,18 @@ void Window::set_title(const std::string& title) {
 
 void Window::framebuffer_size(int& width, int& height) const {
   glfwGetFramebufferSize(window_, &width, &height);
+}
+
+int Window::top_on_screen() const {
+  DesktopArea area;
+  glfwGetError(nullptr);  // of before
+  glfwGetWindowPos(window_, &area.x, &area.y);
+  if (glfwGetError(nullptr) != GLFW_NO_ERROR) return 0;
+  glfwGetWindowSize(window_, &area.width, &area.height);
+  int width = 0, height = 0;
+  framebuffer_size(width, height);
+  const double scale = height / static_cast<double>(std::max(area.height, 1));
+  return static_cast<int>(std::lround(scale * gl::top_on_screen(area, desktop_screens())));
 }
 
 }  // namespace foresight::gl

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,14 @@ struct WindowInput {
   bool lost_focus = false;      ///< somebody else had the keyboard, if only for a moment: releases may have been missed
 };
 
+/// Of a window's content, or of a screen, on the desktop.
+struct DesktopArea {
+  int x = 0, y = 0, width = 0, height = 0;  ///< screen units, y downwards
+};
+/// Rows of the desktop from the top of the screen that has most of the window to the window's own; from the desktop's
+/// where no screen has any of it.
+int top_on_screen(const DesktopArea& window, std::span<const DesktopArea> screens);
+
 /// A GLFW window. All methods on the main thread (a rule of GLFW); only make_current() of shared
 /// contexts may be called elsewhere.
 class Window final : public Context {
@@ -64,6 +73,8 @@ class Window final : public Context {
   WindowInput take_input();            ///< since the last call
   void set_title(const std::string& title);
   void framebuffer_size(int& width, int& height) const;  ///< px
+  /// The row of its screen that its first row is, px. 0 where the desktop tells nobody where windows are (Wayland).
+  int top_on_screen() const;
 
  private:
   Window(Window& share, int);

@@ -47,7 +47,16 @@ ViewTarget target_of(const HudArea& area, const ViewTarget& part) {
   return out;
 }
 
+/// Of a window's part, from the window's top.
+int top_of(const ViewTarget& part, const ViewTarget& whole) {
+  return whole.height - part.y - part.height;
+}
+
 }  // namespace
+
+bool begins_at_odd_row(int window_top, const ViewTarget& whole, const ViewTarget& part) {
+  return (window_top + top_of(part, whole)) % 2 != 0;
+}
 
 SeatViews::SeatViews(const SeatViewsSetup& setup)
     : setup_(setup),
@@ -278,11 +287,11 @@ void SeatViews::put_mixed(const Sight& first, const Sight& second, const ViewTar
   of_right.x += static_cast<int>(std::lround(0.5 * apart));
   put(first, of_left, what, swaps ? labels : of_first, whole);
   put(second, of_right, what, swaps ? of_first : labels, whole);
-  const double top = whole.height - part.y - part.height;
-  for (HudLabel& label : labels) label.x += part.x, label.y += top;
+  for (HudLabel& label : labels) label.x += part.x, label.y += top_of(part, whole);
   if (way == PictureMix::Way::split)
     std::erase_if(labels, [&](const HudLabel& label) { return label.x < part.x + border_.at() * part.width; });
-  copy_(mix_(canvas_[0].picture, canvas_[1].picture, part.width, part.height, {way, border_.at(), false}), part);
+  const bool odd = begins_at_odd_row(what.window_top, whole, part);
+  copy_(mix_(canvas_[0].picture, canvas_[1].picture, part.width, part.height, {way, border_.at(), odd}), part);
 }
 
 void SeatViews::put_inset(const ViewTarget& place) const {
@@ -348,7 +357,7 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
   for (Part& part : parts)
     for (HudLabel& label : part.labels) {
       label.x -= part.place.x;
-      label.y -= whole.height - part.place.y - part.place.height;
+      label.y -= top_of(part.place, whole);
     }
   return parts;
 }

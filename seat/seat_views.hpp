@@ -46,7 +46,12 @@ struct SeatPicture {
   const gl::Texture* doubt = nullptr;   ///< of the session's view; null: not known
   const KindRisks* risks = nullptr;     ///< of pixels of each doubt; null: not known
   const HandPicture* hand = nullptr;    ///< drawn over what is predicted; null: nothing
+  int window_top = 0;                   ///< row of the screen that the window's first one is
 };
+
+/// Of rows in turn, the left eye has the even ones of the screen, wherever the window is and the picture in it. The
+/// picture `part` of `whole`, a window whose first row is the screen's `window_top`: its first row is an odd one there.
+bool begins_at_odd_row(int window_top, const ViewTarget& whole, const ViewTarget& part);
 
 /// Belongs to the session's context, but for mouse and keys, which need none. These choose what is seen and never move
 /// the robot: what the views take of the mouse, the hand does not get, until all buttons are let go of.

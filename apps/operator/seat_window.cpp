@@ -151,6 +151,7 @@ void SeatWindow::present(const ViewSession& session) {
   if (options_.trust && marks_ != TrustMarks::none) picture.marked = &options_.trust->marked();
   if (options_.trust) picture.doubt = &options_.trust->doubt_picture();
   if (options_.trust) picture.risks = &options_.trust->risks();
+  if (views_.mode() == ViewMode::interlaced) picture.window_top = window_.top_on_screen();
   const HandPicture hand = options_.hand && is_trusted ? options_.hand() : HandPicture{};
   picture.hand = &hand;
   for (SeatViews::Part& part : views_.show(session, whole, picture)) {

@@ -469,6 +469,34 @@ TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
   EXPECT_THAT(views_->words(true), testing::HasSubstr("one eye only"));
 }
 
+TEST(SeatViewsRows, OddOnesAreThoseOfTheScreen) {
+  const ViewTarget window{.width = 800, .height = 703}, lower{.width = 800, .height = 702};
+  const auto odd = [](int top, const ViewTarget& whole) { return begins_at_odd_row(top, whole, fitted(whole, 4, 3)); };
+  EXPECT_NE(odd(0, window), odd(0, lower)) << "the picture is 600 rows high, and begins a row further up";
+  for (const ViewTarget& whole : {window, lower}) {
+    EXPECT_NE(odd(0, whole), odd(1, whole));
+    EXPECT_EQ(odd(0, whole), odd(-2, whole));
+    EXPECT_EQ(odd(1, whole), odd(-1, whole)) << "above the screen's top";
+  }
+}
+
+// Wherever the window is and however high, and whatever the picture's top row in it is.
+TEST_F(SeatViewsPictures, EachEyeHasRowsOfTheScreen) {
+  for (const int height : {kHeight, kHeight - 1, kHeight - 2, kHeight - 3, 203, 202})
+    for (const int top : {0, 1, 37, -5}) {
+      views_->set_mode(ViewMode::interlaced);
+      ViewTarget window = target_->whole();
+      window.height = height;
+      fill(target_->whole(), 1, 1, 1);
+      session_->draw(place_.T_world_camera, place_.scene);
+      views_->draw(*session_, place_, window, 0);
+      views_->show(*session_, window, {.trusted = false, .window_top = top});
+      const cv::Mat rows = read_window();
+      for (int y = 20; y < height - 20; ++y)
+        ASSERT_EQ(late(rows.row(kHeight - height + y)) > 0.5, (top + y) % 2 == 0) << height << " " << top << " " << y;
+    }
+}
+
 TEST_F(SeatViewsPictures, WindowsOfAllSizesAreBorne) {
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 200}, {200, 2}, {0, 0}}) {
     ViewTarget small = target_->whole();
