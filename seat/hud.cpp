@@ -1,5 +1,6 @@
 #include "seat/hud.hpp"
 
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include <backends/imgui_impl_opengl3.h>
@@ -7,9 +8,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
-#include <ranges>
+#include <span>
 
 #include "common/error.hpp"
+#include "seat/seat_keys.hpp"
 
 namespace foresight {
 namespace {
@@ -74,11 +76,19 @@ float width_of_keys(const std::vector<std::pair<std::string, std::string>>& keys
   return kKeyDoesAt * scale + out + ImGui::GetStyle().WindowPadding.x;
 }
 
-/// px, of the panel with the first of them.
-float height_of_keys(const HudContent& content, std::size_t first, const ImFont& font) {
-  const std::size_t rows = first + (first < content.keys.size() ? 1 : 0);  // one says that there are more
+std::span<const std::pair<std::string, std::string>> keys_left(const HudContent& content) {
+  return std::span(content.keys).subspan(std::min(content.first_key, content.keys.size()));
+}
+
+/// px, of the panel with so many of those that are left; what they do is in rows that end `wrap` from its left.
+float height_of_keys(const HudContent& content, std::size_t count, const ImFont& font, float scale, float wrap) {
+  if (count == 0) return 0;
   const ImGuiStyle& style = ImGui::GetStyle();
-  return first == 0 ? 0 : static_cast<float>(rows) * (font.FontSize + style.ItemSpacing.y) + 2 * style.WindowPadding.y;
+  const auto left = keys_left(content);
+  float height = 2 * style.WindowPadding.y;
+  for (const auto& [key, does] : left.first(count))
+    height += size_of(does, font, wrap - kKeyDoesAt * scale).y + style.ItemSpacing.y;
+  return count < left.size() ? height + font.FontSize + style.ItemSpacing.y : height;  // the row that says so
 }
 
 void write(const SeatLine& line, float words_at, float width) {
@@ -101,8 +111,8 @@ struct Hud::Work {
   /// Panels of which none is over another.
   struct Layout {
     Text text;
-    float wrap = 0, title_wrap = 0;  // px from a panel's left where rows end
-    ImVec2 next = {0, 0};            // px, the panel of what is next
+    float wrap = 0, title_wrap = 0, keys_wrap = 0;  // px from a panel's left where rows end
+    ImVec2 next = {0, 0};                           // px, the panel of what is next
     bool keys_beside_next = false;
     float lines_height = 0;                   // px, the panel of lines
     std::vector<const SeatLine*> lines = {};  // that there is room for
@@ -141,12 +151,12 @@ struct Hud::Work {
     ImGui::SetNextWindowBgAlpha(0.62f);
     ImGui::Begin(name, nullptr, kPanel);
   }
-  void draw(const HudContent& content, const HudArea& area) const;
+  std::size_t draw(const HudContent& content, const HudArea& area) const;
   Layout layout(const HudContent& content, float width, float height) const;
   void measure_lines(const HudContent& content, Layout& layout) const;
   void draw_next(const SeatLine& next, ImVec2 corner, float width, const Text& text) const;
   void draw_lines(const HudContent& content, ImVec2 corner, const Layout& layout) const;
-  void draw_keys(const HudContent& content, ImVec2 corner, float room, const Text& text) const;
+  std::size_t draw_keys(const HudContent& content, ImVec2 corner, float room, const Layout& layout) const;
   void draw(const std::vector<HudLabel>& labels, float width, float height) const;
 };
 
@@ -198,16 +208,18 @@ Hud::Work::Layout Hud::Work::layout(const HudContent& content, float width, floa
   Layout out;
   const auto fits = [&](std::size_t keys) {
     measure_lines(content, out);
-    const float keys_height = height_of_keys(content, keys, *out.text.usual);
+    const float keys_height = height_of_keys(content, keys, *out.text.usual, out.text.scale, out.keys_wrap);
     const float below =
         out.keys_beside_next ? std::max(out.next.y, keys_height) : out.next.y + (keys > 0 ? keys_height + gap : 0);
     return out.lines_height + below + 3 * gap <= height;
   };
-  const std::size_t least_keys = std::min(kLeastKeys, content.keys.size());
+  const std::size_t left = keys_left(content).size(),
+                    least_keys = content.first_key > 0 ? left : std::min(kLeastKeys, left);
   for (const Text& text : texts) {
     out.text = text;
     out.wrap = std::clamp(0.5f * width, std::min(380 * text.scale, std::max(1.0f, 0.7f * width)), 700 * text.scale);
     out.title_wrap = std::max(out.wrap, kBesideInset * width - 3 * gap);
+    out.keys_wrap = width - 2 * gap - ImGui::GetStyle().WindowPadding.x;
     out.next = size_of_next(content.next, *text.large, width - 4 * gap);
     out.keys_beside_next = width_of_keys(content.keys, *text.usual, text.scale) + out.next.x + 3 * gap <= width;
     out.lines = all;
@@ -246,31 +258,36 @@ void Hud::Work::draw_lines(const HudContent& content, ImVec2 corner, const Layou
   ImGui::PopTextWrapPos();
   ImGui::Separator();
   for (const SeatLine* line : layout.lines) write(*line, kWordsAt * layout.text.scale, layout.wrap);
-  if (layout.lines.size() < content.lines.size()) write("more lines in a larger window");
+  if (layout.lines.size() < content.lines.size())
+    write(content.first_key > 0 ? "more lines without these keys" : "more lines in a larger window");
   ImGui::PopFont();
   ImGui::End();
 }
 
-// As many as there is room for.
-void Hud::Work::draw_keys(const HudContent& content, ImVec2 corner, float room, const Text& text) const {
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float rows = (room - 2 * style.WindowPadding.y) / (text.usual->FontSize + style.ItemSpacing.y);
-  if (content.keys.empty() || rows < 1) return;
+// As many as there is room for. How many that were.
+std::size_t Hud::Work::draw_keys(const HudContent& content, ImVec2 corner, float room, const Layout& layout) const {
+  const Text& text = layout.text;
+  const auto left = keys_left(content);
+  std::size_t fit = left.size();
+  while (fit > 0 && height_of_keys(content, fit, *text.usual, text.scale, layout.keys_wrap) > room) --fit;
+  if (fit == 0) return 0;
   panel("keys", corner, {0, 1});
   ImGui::PushFont(text.usual);
-  const bool all_fit = static_cast<float>(content.keys.size()) <= rows;
-  const auto fit = all_fit ? std::ssize(content.keys) : static_cast<std::ptrdiff_t>(rows) - 1;
-  for (const auto& [key, does] : content.keys | std::views::take(fit)) {
+  ImGui::PushTextWrapPos(layout.keys_wrap);
+  for (const auto& [key, does] : left.first(fit)) {
     write(key);
     ImGui::SameLine(kKeyDoesAt * text.scale);
     write(does);
   }
-  if (!all_fit) write("more keys in a larger window");
+  if (fit < left.size()) write(fmt::format("{}: {} more keys", printed(SeatKey::help), left.size() - fit));
+  ImGui::PopTextWrapPos();
   ImGui::PopFont();
   ImGui::End();
+  return fit;
 }
 
-void Hud::Work::draw(const HudContent& content, const HudArea& area) const {
+// Which key is the next one.
+std::size_t Hud::Work::draw(const HudContent& content, const HudArea& area) const {
   const float gap = kAround * texts.front().scale;
   const auto width = static_cast<float>(area.width), height = static_cast<float>(area.height);
   const float left = static_cast<float>(area.left) + gap, top = static_cast<float>(area.top) + gap;
@@ -279,7 +296,13 @@ void Hud::Work::draw(const HudContent& content, const HudArea& area) const {
   draw_next(content.next, {right, bottom}, width - 4 * gap, fit.text);
   draw_lines(content, {left, top}, fit);
   const float keys_end = fit.keys_beside_next ? bottom : bottom - fit.next.y - gap;
-  draw_keys(content, {left, keys_end}, keys_end - (top + fit.lines_height + gap), fit.text);
+  const float keys_room = keys_end - (top + fit.lines_height + gap);
+  return content.first_key + draw_keys(content, {left, keys_end}, keys_room, fit);
+}
+
+std::optional<std::size_t> keys_after(std::optional<std::size_t> first, std::size_t next, std::size_t count) {
+  if (!first) return 0;
+  return next > *first && next < count ? std::optional(next) : std::nullopt;
 }
 
 Hud::Hud(double scale) : work_(std::make_unique<Work>(scale)) {}
@@ -298,7 +321,7 @@ void Hud::draw(const HudContent& content, const ViewTarget& target) {
   for (const bool is_seen : {false, false, true}) {
     ImGui::NewFrame();
     work_->draw(content.labels, io.DisplaySize.x, io.DisplaySize.y);
-    work_->draw(content, content.area.value_or(HudArea{0, 0, io.DisplaySize.x, io.DisplaySize.y}));
+    next_key_ = work_->draw(content, content.area.value_or(HudArea{0, 0, io.DisplaySize.x, io.DisplaySize.y}));
     is_seen ? ImGui::Render() : ImGui::EndFrame();
   }
   // It draws into what begins in the framebuffer's first row and column: the target lies in that, to the right and

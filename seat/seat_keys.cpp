@@ -78,12 +78,10 @@ std::vector<std::pair<std::string, std::string>> key_words() {
               {all_of({stereogram}) + "; " + all_of({stereogram_depth, stereogram_pattern, stereogram_variant}),
                "a stereogram; its depth, pattern, variant"},
               {all_of({beside}), "from beside: the mouse looks around"},
-              {all_of({paint}), "wireframe, age, confidence, error"},
+              {all_of({paint}), "wireframe, age, fineness, errors"},
               {all_of({marks}), "what is not exact, and was wrong"},
-              {all_of({help}), "these keys"},
-              {all_of({sounds}), "sounds off, and on again"},
-              {all_of({screenshot}), "screenshot"},
-              {all_of({end}) + ", Esc", "end"}});
+              {all_of({help, sounds}), "more of these keys, or none; sounds off, or on"},
+              {all_of({screenshot, end}) + ", Esc", "screenshot; end"}});
   return out;
 }
 

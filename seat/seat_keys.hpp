@@ -45,8 +45,8 @@ const char* printed(SeatKey key) noexcept;  ///< SeatKeyBinding::printed
 /// Nothing for a key that does nothing here.
 std::optional<SeatKey> seat_key(int glfw_code) noexcept;
 
-/// For the display: each key, the hand's too, and what it does. A small window shows only the first ones: what stops
-/// and drives the robot.
+/// For the display: each key, the hand's too, and what it does. A small window shows the first ones first: what
+/// stops and drives the robot.
 std::vector<std::pair<std::string, std::string>> key_words();
 
 }  // namespace foresight

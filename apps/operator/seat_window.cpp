@@ -27,8 +27,9 @@ SeatWindow::SeatWindow(gl::Window& window, Seat& seat, PredictedSource& source, 
       source_(source),
       options_(std::move(options)),
       views_(options_.views),
-      hud_(options_.font_scale),
-      help_(options_.views.mode != ViewMode::two_eyes) {}  // who wears a head display sees no keyboard
+      hud_(options_.font_scale) {
+  if (options_.views.mode != ViewMode::two_eyes) first_key_ = 0;  // who wears a head display sees no keyboard
+}
 
 void SeatWindow::take_input() {
   window_.wait_events(0);
@@ -113,7 +114,9 @@ HudContent SeatWindow::words(bool is_trusted) const {
   if (options_.more_lines)
     for (SeatLine& line : options_.more_lines()) out.lines.push_back(std::move(line));
   if (!save_trouble_.empty()) out.lines.push_back({"screenshot", save_trouble_, "", Urgency::note});
-  if (help_) out.keys = options_.keys;
+  if (!first_key_) return out;
+  out.keys = options_.keys;
+  out.first_key = *first_key_;
   return out;
 }
 

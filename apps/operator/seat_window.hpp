@@ -55,7 +55,8 @@ class SeatWindow final : public ViewObserver {
   SeatViews& views() { return views_; }
   /// SeatViews::warm_up(), where a picture has been drawn; between pictures.
   bool warm_up(ViewSession& session) { return views_.warm_up(session, window_target(window_)); }
-  void toggle_help() { help_ = !help_; }
+  /// keys_after()
+  void next_keys() { first_key_ = keys_after(first_key_, hud_.next_key(), options_.keys.size()); }
   void next_marks();
   /// The next picture goes into a file, too: save_screenshot(), in the working folder.
   void save_next() { save_ = true; }
@@ -86,7 +87,7 @@ class SeatWindow final : public ViewObserver {
   std::optional<Duration> to_textures_;
   std::vector<StageCost> image_costs_;
   link::LineFramePtr uploaded_;
-  bool help_;
+  std::optional<std::size_t> first_key_;  // that is shown; nothing: none are
   TrustMarks marks_ = TrustMarks::none;
   bool save_ = false;
   std::string save_trouble_;  // of the last one

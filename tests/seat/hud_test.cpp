@@ -1,19 +1,37 @@
 // The head-up display, drawn without a window.
 #include "seat/hud.hpp"
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <tuple>
+
 #include "gl/context.hpp"
+#include "seat/seat_keys.hpp"
 
 namespace foresight::hud_test {
 namespace {
 
-cv::Mat drawn(const HudContent& content, int width, int height) {
+cv::Mat drawn(const HudContent& content, int width, int height, double scale = 1, std::size_t* next_key = nullptr) {
   gl::Texture texture(GL_RGBA8, width, height, 0, 1, "hud");
   const TextureTarget target(texture.name(), width, height);
   fill(target.whole(), 0.2f, 0.2f, 0.2f);
-  Hud hud;
+  Hud hud(scale);
   hud.draw(content, target.whole());
+  if (next_key) *next_key = hud.next_key();
   cv::Mat out(height, width, CV_8UC4);
   glGetTextureImage(texture.name(), 0, GL_BGRA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(out.total() * 4), out.data);
   return out;
+}
+
+void keep(const std::string& name, const cv::Mat& picture) {
+  const char* const folder = std::getenv("FORESIGHT_PICTURES");
+  if (!folder) return;
+  cv::Mat top_first;
+  cv::flip(picture, top_first, 0);
+  cv::imwrite(std::string(folder) + "/" + name + ".png", top_first);
 }
 
 double changed(const cv::Mat& picture) {
@@ -111,6 +129,48 @@ TEST(Hud, NoPanelIsOverAnotherInASmallWindow) {
         << width << " x " << height << ": the first keys stay";
     content.keys[3].second = fourth;
   }
+}
+
+// Page by page; from the second one on lines that are not urgent make way, but nothing is over another.
+TEST(Hud, EveryKeyIsShownInTheEnd) {
+  const auto context = gl::create_headless_context();
+  HudContent content;
+  content.title = "minerva: as it will be";
+  content.next = {"next", "ready", "hold the switch and move", Urgency::fine};
+  content.lines.assign(13, {"line", "commands act after 500 ms, round trip 1000 ms, newest image 500 ms old", ""});
+  content.keys = key_words();
+  for (const auto& [width, height, scale, most] : {std::tuple{1280, 800, 1.0, 1u},
+                                                   {1280, 800, 2.0, 3u},
+                                                   {640, 480, 1.0, 3u},
+                                                   {640, 480, 2.0, 8u},
+                                                   {300, 300, 1.0, 8u}}) {
+    std::size_t pages = 0;
+    std::optional<std::size_t> first = 0;
+    while (first) {
+      content.first_key = *first;
+      std::size_t next = 0;
+      const cv::Mat picture = drawn(content, width, height, scale, &next);
+      keep(fmt::format("keys_{}x{}_{}_{}", width, height, scale, pages), picture);
+      ASSERT_GT(next, *first) << width << " x " << height << " page " << pages;
+      cv::Mat dark;
+      cv::inRange(picture, cv::Scalar(0, 0, 0, 0), cv::Scalar(26, 26, 26, 255), dark);
+      EXPECT_EQ(cv::countNonZero(dark), 0) << width << " x " << height << " page " << pages;
+      EXPECT_EQ(changed(picture.colRange(width - 4, width)), 0) << "words are not cut at the window's side";
+      ++pages;
+      first = keys_after(first, next, content.keys.size());
+      if (!first) {
+        EXPECT_EQ(next, content.keys.size());
+      }
+    }
+    EXPECT_LE(pages, most) << width << " x " << height << ", " << scale;
+  }
+}
+
+TEST(Hud, AskingForKeysGoesRound) {
+  EXPECT_EQ(keys_after(std::nullopt, 0, 20), 0u);
+  EXPECT_EQ(keys_after(0, 8, 20), 8u);
+  EXPECT_EQ(keys_after(8, 20, 20), std::nullopt);
+  EXPECT_EQ(keys_after(0, 0, 20), std::nullopt) << "there was no room for any";
 }
 
 TEST(Hud, BearsAnyWindow) {
