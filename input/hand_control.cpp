@@ -65,10 +65,6 @@ const HandCycle& HandControl::cycle(const HandInput& input) noexcept {
   const HandWatch::Verdict verdict = watch_.judge(input.now, input.device);
   see(input, verdict);
   forget_cycle();
-  if (verdict.pose != HandFault::none) {
-    out_.trouble = input.device.trouble;
-    out_.cure = input.device.cure;
-  }
   if (verdict.buttons == HandFault::none) take_presses(input.device);
   if (paused) seen_open_ = false;
   heed_switch(input, verdict, paused);
@@ -86,19 +82,20 @@ const HandCycle& HandControl::cycle(const HandInput& input) noexcept {
 }
 
 void HandControl::heed_switch(const HandInput& input, const HandWatch::Verdict& verdict, bool paused) noexcept {
-  if (verdict.buttons != HandFault::none) return refuse(HandReason::device, verdict.buttons);
-  if (!input.device.buttons.held(TrackerButton::deadman)) return let_go(verdict.pose);
+  if (verdict.buttons != HandFault::none) return refuse(verdict.buttons, input.device);
+  if (!input.device.buttons.held(TrackerButton::deadman)) return let_go(verdict.pose, input.device);
   if (held_ && paused) return refuse(HandReason::paused);
   if (!held_ && out_.phase != HandPhase::refused) press(input);
 }
 
 // A hand that nobody sees is told of before the switch is pressed for nothing.
-void HandControl::let_go(HandFault pose) noexcept {
+void HandControl::let_go(HandFault pose, const TrackerState& device) noexcept {
   const bool tells = pose != HandFault::none && pose != HandFault::jumped && out_.mode == HandMode::tool;
   out_.phase = HandPhase::released;
-  out_.reason = tells ? HandReason::device : HandReason::none;
-  out_.fault = tells ? pose : HandFault::none;
-  if (!tells) out_.trouble = out_.cure = "";
+  if (tells)
+    say(pose, device);
+  else
+    say(HandReason::none);
   held_.reset();
   seen_open_ = true;
 }
@@ -167,18 +164,38 @@ void HandControl::press(const HandInput& input) noexcept {
   if (!input.robot.ready) return refuse(HandReason::robot_not_ready);
   seen_open_ = false;
   held_ = Held{.since = input.now, .grip_at = input.device.grip};
-  out_.reason = HandReason::none;
-  out_.fault = HandFault::none;
+  say(HandReason::none);
 }
 
-void HandControl::refuse(HandReason reason, HandFault fault) noexcept {
-  // Without a switch that was held there is nothing to refuse: the device is looked at again when it is back.
-  const bool was_held = held_ || reason != HandReason::device || out_.phase == HandPhase::refused;
+void HandControl::refuse(HandReason reason) noexcept {
+  say(reason);
+  stop_following(true);
+}
+
+// Without a switch that was held there is nothing to refuse: the device is looked at again when it is back.
+void HandControl::refuse(HandFault fault, const TrackerState& device) noexcept {
+  say(fault, device);
+  stop_following(held_ || out_.phase == HandPhase::refused);
+}
+
+void HandControl::stop_following(bool was_held) noexcept {
   out_.phase = was_held ? HandPhase::refused : HandPhase::released;
-  out_.reason = reason;
-  out_.fault = fault;
   held_.reset();
   seen_open_ = false;
+}
+
+void HandControl::say(HandReason reason) noexcept {
+  out_.reason = reason;
+  out_.fault = HandFault::none;
+  out_.trouble = out_.cure = "";
+}
+
+// A fault and the device's words for it come and go together: it may have others for what is wrong with it later.
+void HandControl::say(HandFault fault, const TrackerState& device) noexcept {
+  out_.reason = HandReason::device;
+  out_.fault = fault;
+  out_.trouble = device.trouble;
+  out_.cure = device.cure;
 }
 
 HandReason HandControl::fault_of_robot(const HandInput& input) noexcept {
@@ -194,12 +211,11 @@ void HandControl::hold(const HandInput& input, const HandWatch::Verdict& verdict
   ramp_ = options_.gate.speed_after(input.now - held_->since);
   out_.phase = HandPhase::holding;
   out_.joints = options_.gate.joints.size();
-  out_.reason = HandReason::none;
-  out_.fault = HandFault::none;
   if (input.now == held_->since) dt = 0;
-  if (out_.mode == HandMode::joints)
+  if (out_.mode == HandMode::joints) {
+    say(HandReason::none);
     jog(input.device.joint_rate, dt);
-  else
+  } else
     heed_clutch(input.device, verdict.pose, dt);
   if (!held_) return;
   move_grippers(input.device, dt);
@@ -209,21 +225,20 @@ void HandControl::hold(const HandInput& input, const HandWatch::Verdict& verdict
 void HandControl::heed_clutch(const TrackerState& device, HandFault fault, double dt) noexcept {
   if (!device.buttons.held(TrackerButton::clutch)) {
     held_->clutched = held_->clutch_refused = false;
-    return;
+    return say(HandReason::none);
   }
-  if (held_->clutched && fault != HandFault::none) return refuse(HandReason::device, fault);
-  if (!held_->clutched) {
-    if (fault != HandFault::none) held_->clutch_refused = true;
-    if (!kinematics_) out_.reason = HandReason::no_arm;
-    if (held_->clutch_refused) {
-      out_.reason = HandReason::device;
-      out_.fault = fault;
-    }
-    if (out_.reason != HandReason::none) return;
-    close_clutch();
-  } else {
+  if (held_->clutched && fault != HandFault::none) return refuse(fault, device);
+  if (fault != HandFault::none) {
+    say(fault, device);
+    held_->clutch_refused = true;
+  }
+  if (held_->clutch_refused) return;  // why stays in view
+  say(kinematics_ ? HandReason::none : HandReason::no_arm);
+  if (!kinematics_) return;
+  if (held_->clutched)
     go_with_hand(dt);
-  }
+  else
+    close_clutch();
   out_.phase = HandPhase::driving;
   out_.T_base_target = target_;
 }

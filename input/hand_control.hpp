@@ -179,10 +179,14 @@ class HandControl {
   void take_presses(const TrackerState& device) noexcept;
   void recentre() noexcept;
   void heed_switch(const HandInput& input, const HandWatch::Verdict& verdict, bool paused) noexcept;
-  void let_go(HandFault pose) noexcept;
+  void let_go(HandFault pose, const TrackerState& device) noexcept;
   bool rest(const HandRobot& robot) noexcept;
   void press(const HandInput& input) noexcept;
-  void refuse(HandReason reason, HandFault fault = HandFault::none) noexcept;
+  void refuse(HandReason reason) noexcept;
+  void refuse(HandFault fault, const TrackerState& device) noexcept;
+  void stop_following(bool was_held) noexcept;
+  void say(HandReason reason) noexcept;
+  void say(HandFault fault, const TrackerState& device) noexcept;
   HandReason fault_of_robot(const HandInput& input) noexcept;
   void hold(const HandInput& input, const HandWatch::Verdict& verdict, double dt) noexcept;
   void heed_clutch(const TrackerState& device, HandFault fault, double dt) noexcept;

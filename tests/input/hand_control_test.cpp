@@ -118,6 +118,21 @@ TEST_F(HandControlTest, APoseThatJumpsToZeroEndsIt) {
   for (std::size_t i = 0; i < 7; ++i) EXPECT_NEAR(out.positions[i], before[i], 1e-6);
 }
 
+TEST_F(HandControlTest, WhatIsWrongLaterDoesNotChangeTheReasonThatIsTold) {
+  engage();
+  TrackerState gone;
+  gone.trouble = "the window does not answer";
+  gone.cure = "wait";
+  world_.cycles(5, gone);
+  ASSERT_EQ(words(), "the window does not answer");
+  world_.cycle(device_at(at_ + Vector3d(2, 0, 0), true));  // back, elsewhere, its switch still held
+  EXPECT_EQ(world_.hand().last().phase, HandPhase::refused);
+  EXPECT_EQ(words(), "the window does not answer");
+  EXPECT_EQ(describe(world_.hand().last(), world_.joints()).cure, "wait");
+  stay(60, false);
+  EXPECT_EQ(words(), "");
+}
+
 TEST_F(HandControlTest, ADeviceThatFreezesEndsIt) {
   engage();
   TrackerState frozen = device_at(at_, true);
