@@ -13,6 +13,11 @@ bool held(const TrackerState& state) noexcept {
   return state.connected && state.buttons.held(TrackerButton::deadman);
 }
 
+// One that counts and has trouble has lost the device that drove (the class comment).
+bool there(const TrackerState& state) noexcept {
+  return state.connected && !(state.tracked && *state.trouble);
+}
+
 }  // namespace
 
 // Whose switch was just pressed.
@@ -24,12 +29,30 @@ bool AnyTracker::take_charge() noexcept {
   return true;
 }
 
+void AnyTracker::heed_loss() noexcept {
+  const TrackerState& driving = devices_[shown_].state;
+  if (in_charge_ && !driving.connected) lost_ = shown_;
+  if (lost_ && there(devices_[*lost_].state)) lost_.reset();
+}
+
+std::vector<AnyTracker::Missing> AnyTracker::missing() const {
+  std::vector<Missing> out;
+  for (std::size_t i = 0; was_read_ && i < devices_.size(); ++i) {
+    const Device& device = devices_[i];
+    if (!there(device.state)) out.push_back({device.tracker, lost_ == i, device.state.trouble, device.state.cure});
+  }
+  return out;
+}
+
 TrackerState AnyTracker::read(OperatorTime now) noexcept {
   for (Device& device : devices_) device.state = device.tracker->read(now);
+  was_read_ = true;
+  heed_loss();
   const bool was = in_charge_;
   const std::size_t before = shown_;
   in_charge_ = was ? held(devices_[shown_].state) : take_charge();
-  // Where nobody drives, one that is there says more than one that is not; one that has just gone has to be said.
+  if (!was && in_charge_) lost_.reset();
+  // Where nobody drives, one that is there says more than one that is not. One that has just gone ends the motion.
   if (!was && !in_charge_ && !devices_[shown_].state.connected) {
     const auto there = std::ranges::find_if(devices_, [](const Device& device) { return device.state.connected; });
     if (there != devices_.end()) shown_ = static_cast<std::size_t>(there - devices_.begin());
@@ -37,6 +60,10 @@ TrackerState AnyTracker::read(OperatorTime now) noexcept {
   TrackerState out = devices_[shown_].state;
   // Its pose has nothing to do with that of the one before: it comes with an open switch first.
   if (!in_charge_ || shown_ != before) out.buttons.set(TrackerButton::deadman, false);
+  if (lost_ && *lost_ != shown_ && !*out.trouble) {
+    out.trouble = devices_[*lost_].state.trouble;
+    out.cure = devices_[*lost_].state.cure;
+  }
   for (Device& device : devices_) {
     device.open = device.state.connected && !held(device.state);
     if (!device.state.connected) continue;

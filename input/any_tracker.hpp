@@ -1,6 +1,7 @@
 // Several devices on one table: whichever switch is pressed first is in charge until it is let go of.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "input/tracker.hpp"
@@ -10,6 +11,10 @@ namespace foresight {
 /// Only who presses a switch while nobody is in charge takes over: not one who held it before, nor a device that comes
 /// with its switch held. One that goes while it is in charge has gone; another takes another press. Views, recentring,
 /// single joints and the camera listen to all of them. One thread.
+///
+/// Where another one stands in for one that went while it was in charge, what is read counts, and has the trouble and
+/// cure of the one that went, until that is back or another switch is pressed: of several such, one that counts and has
+/// trouble has lost the device that drove.
 class AnyTracker final : public Tracker {
  public:
   /// At least one; they outlive this.
@@ -21,6 +26,15 @@ class AnyTracker final : public Tracker {
   /// Whose switch is held; null: nobody's.
   const Tracker* in_charge() const noexcept { return in_charge_ ? devices_[shown_].tracker : nullptr; }
 
+  struct Missing {
+    const Tracker* device;
+    bool drove;           ///< it went while it was in charge, and no other switch has been pressed since
+    const char* trouble;  ///< TrackerState's
+    const char* cure;
+  };
+  /// Those that were not there at the last read().
+  std::vector<Missing> missing() const;
+
  private:
   struct Device {
     explicit Device(Tracker* device) : tracker(device) {}
@@ -29,10 +43,12 @@ class AnyTracker final : public Tracker {
     bool open = false;  // was there with its switch open when it was read before
   };
   bool take_charge() noexcept;
+  void heed_loss() noexcept;
 
   std::vector<Device> devices_;
   std::size_t shown_ = 0;
-  bool in_charge_ = false;
+  bool in_charge_ = false, was_read_ = false;
+  std::optional<std::size_t> lost_;  // went while it was in charge
 };
 
 }  // namespace foresight

@@ -58,10 +58,74 @@ TEST_F(AnyTrackerTest, OneThatGoesIsNotReplacedWithoutAPress) {
   press(keys_, true);
   read();
   pad_.state.connected = false;
-  EXPECT_FALSE(read().connected) << "it has to be said";
+  EXPECT_FALSE(read().connected) << "which ends the motion";
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(read().buttons.held(TrackerButton::deadman));
   pad_.state.connected = true;
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(read().buttons.held(TrackerButton::deadman)) << "came with its switch held";
+}
+
+TEST_F(AnyTrackerTest, OneThatWentWhileItDroveIsNamedUntilItIsBackOrAnotherIsPressed) {
+  for (const bool comes_back : {true, false}) {
+    press(pad_, true);
+    read();
+    ASSERT_TRUE(drives(1));
+    EXPECT_TRUE(any_.missing().empty());
+    pad_.state = TrackerState{};
+    pad_.state.trouble = "unplugged";
+    pad_.state.cure = "plug it in";
+    for (int i = 0; i < 50; ++i) {
+      EXPECT_STREQ(read().trouble, "unplugged");
+      ASSERT_EQ(any_.missing().size(), 1u);
+      EXPECT_TRUE(any_.missing()[0].drove);
+      EXPECT_EQ(any_.missing()[0].device, &pad_);
+      EXPECT_STREQ(any_.missing()[0].cure, "plug it in");
+    }
+    if (!comes_back) {
+      press(keys_, true);
+      read();
+      EXPECT_TRUE(drives(0));
+    }
+    ASSERT_EQ(any_.missing().size(), 1u);
+    EXPECT_EQ(any_.missing()[0].drove, comes_back) << "somebody else drives: it is missing all the same";
+    pad_.state = keys_.state;
+    press(pad_, false);
+    pad_.state.T_space_hand.translation().x() = 1;
+    EXPECT_STREQ(read().trouble, "");
+    EXPECT_TRUE(any_.missing().empty());
+  }
+}
+
+// The two controllers of a head display are one device at the seat.
+TEST_F(AnyTrackerTest, OneOfSeveralWithinOneIsNamedToo) {
+  GivenTracker left, right;
+  left.state = right.state = keys_.state;
+  AnyTracker hands({&left, &right});
+  AnyTracker any({&keys_, &hands});
+  const auto reads = [&](int count) {
+    for (int i = 0; i < count; ++i) any.read(now_ = now_ + 10ms);
+  };
+  reads(1);
+  press(left, true);
+  reads(3);
+  left.state = TrackerState{};
+  left.state.trouble = "the controller is off";
+  reads(20);
+  ASSERT_EQ(any.missing().size(), 1u);
+  EXPECT_TRUE(any.missing()[0].drove);
+  EXPECT_STREQ(any.missing()[0].trouble, "the controller is off");
+  press(right, true);
+  reads(3);
+  EXPECT_EQ(any.in_charge(), &hands);
+  EXPECT_TRUE(any.missing().empty()) << "one of them is enough";
+}
+
+TEST_F(AnyTrackerTest, OneThatIsNotThereIsMissingOnceItWasAskedFor) {
+  pad_.state = TrackerState{};
+  AnyTracker fresh({&keys_, &pad_});
+  EXPECT_TRUE(fresh.missing().empty()) << "nobody has looked";
+  fresh.read(now_);
+  ASSERT_EQ(fresh.missing().size(), 1u);
+  EXPECT_FALSE(fresh.missing()[0].drove);
 }
 
 TEST_F(AnyTrackerTest, OneThatIsNotThereKeepsNobodyAway) {
