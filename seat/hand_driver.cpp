@@ -114,17 +114,21 @@ SeatWish HandDriver::tick(const SeatView& view) {
 }
 
 void HandDriver::heed_window(OperatorTime now) {
-  if (looked_ && now - *looked_ <= kAnswersWithin) return;
+  if (now - *looked_ <= kAnswersWithin) return;
   interruption_ = not_there("the window does not answer", "wait until its picture moves; press the switch anew");
 }
 
 void HandDriver::cycle(const SeatView& view) {
+  // Before the window's first look nobody sees the robot: a switch that is held by then is none that was pressed.
+  if (!looked_) return;
   cycled_ = view.now;
   heed_window(view.now);
   HandInput input;
   input.now = view.now;
   input.device = any_.read(view.now);
-  if (const auto interruption = std::exchange(interruption_, std::nullopt)) {
+  const auto interruption = std::exchange(interruption_, std::nullopt);
+  interrupted_ = interruption.has_value();
+  if (interruption) {
     input.device = *interruption;
     input.device.time = view.now;
   }
@@ -188,12 +192,16 @@ HandSight HandDriver::sight() const {
 std::vector<SeatLine> HandDriver::lines() const {
   const HandSight seen = sight();
   std::vector<SeatLine> out = hand_lines(seen, rig_.joint_names());
+  const std::lock_guard lock(mutex_);
   // What touches is told by name.
   if (std::ranges::find(out, "hand", &SeatLine::label) != out.end()) return out;
-  const std::lock_guard lock(mutex_);
-  const HandWords words = describe(hand_.last(), options_.gate.joints);
-  const Urgency urgency = hand_.last().phase == HandPhase::refused ? Urgency::trouble : Urgency::note;
-  if (!words.name.empty()) out.insert(out.begin(), {"hand", words.name, words.cure, urgency});
+  const HandCycle& cycle = hand_.last();
+  const bool refused = cycle.phase == HandPhase::refused;
+  // What interrupts a hand that holds no switch takes nothing from anybody.
+  if (interrupted_ && !refused) return out;
+  const HandWords words = describe(cycle, options_.gate.joints);
+  if (words.name.empty()) return out;
+  out.insert(out.begin(), {"hand", words.name, words.cure, refused ? Urgency::trouble : Urgency::note});
   return out;
 }
 

@@ -28,7 +28,7 @@ class HandDriver final : public SeatDriver {
                       std::shared_ptr<const SceneModel> scene = nullptr);
 
   /// Since the last call; at each round of the window, or nothing drives: who does not see the robot move must not move
-  /// it, and the key that stops it is the window's.
+  /// it, and the key that stops it is the window's. A switch that was held before the first one has to be let go of.
   void take(const gl::WindowInput& input, OperatorTime now);
   /// The camera that the operator looks through: directions are meant as he sees them.
   void look_from(const Pose& T_world_camera);
@@ -84,6 +84,7 @@ class HandDriver final : public SeatDriver {
   std::optional<OperatorTime> looked_, cycled_, event_;  // event_: of the oldest event that no cycle has taken yet
   std::optional<Duration> input_took_;
   bool control_ = true, hand_over_ = false, handed_over_ = false;
+  bool interrupted_ = false;  // in the last cycle
 };
 
 }  // namespace foresight

@@ -1,6 +1,7 @@
 // A hand at the seat: what it does is what the operator sees it do, in a window or through a head display.
 #include "seat/hand_driver.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "input/hand_of_rig.hpp"
@@ -28,16 +29,25 @@ class ToldHand final : public Tracker, public ForceSink {
 class HandAtTheSeat : public testing::Test {
  protected:
   HandAtTheSeat() {
+    open_driver();
+    view_.robot.joints = rig_.joints.size();
+    view_.robot.begin = {0.2, 0.6, -0.1, 1.2, 0.3, 0.7, -0.2, 0.03, 0.1, -0.2};
+    view_.robot.ready = true;
+    cycles(20);
+  }
+  void open_driver() {
     auto device = std::make_unique<ToldHand>();
     hand_ = device.get();
     hand_->state.connected = hand_->state.tracked = true;
     std::vector<std::unique_ptr<Tracker>> devices;
     devices.push_back(std::move(device));
     driver_.emplace(rig_, std::move(devices), live_scene_of(rig_, true, std::nullopt, false).model());
-    view_.robot.joints = rig_.joints.size();
-    view_.robot.begin = {0.2, 0.6, -0.1, 1.2, 0.3, 0.7, -0.2, 0.03, 0.1, -0.2};
-    view_.robot.ready = true;
-    cycles(20);
+  }
+  /// What is said under that label; "" nothing.
+  SeatLine said(const std::string& label) const {
+    const std::vector<SeatLine> lines = driver_->lines();
+    const auto found = std::ranges::find(lines, label, &SeatLine::label);
+    return found != lines.end() ? *found : SeatLine{};
   }
   void hold(bool held) {
     hand_->state.buttons.set(TrackerButton::deadman, held);
@@ -132,6 +142,8 @@ TEST_F(HandAtTheSeat, AnInterruptedHandHasToPressAnew) {
   EXPECT_FALSE(wish_.deadman);
   ASSERT_EQ(driver_->lines().size(), 2u);
   EXPECT_EQ(driver_->lines()[0].urgency, Urgency::trouble);
+  cycles(5);
+  EXPECT_EQ(said("hand").words, "the headset has gone") << "until the switch is let go of";
   expect_to_have_to_press_anew();
 }
 
@@ -179,6 +191,30 @@ TEST_F(HandAtTheSeat, NoDeviceDrivesOnBehindAWindowThatHangs) {
   EXPECT_FALSE(wish_.deadman);
   ASSERT_EQ(driver_->lines().size(), 2u);
   EXPECT_NE(driver_->lines()[0].words.find("window"), std::string::npos) << driver_->lines()[0].words;
+  window_answers_ = true;
+  expect_to_have_to_press_anew();
+}
+
+TEST_F(HandAtTheSeat, AWindowThatHangsIsNoMatterToASeatThatNobodyDrives) {
+  window_answers_ = false;
+  cycles(50);
+  EXPECT_EQ(said("hand").words, "");
+  hold(true);
+  cycles(5);
+  EXPECT_FALSE(wish_.deadman);
+  window_answers_ = true;
+  expect_to_have_to_press_anew();
+}
+
+TEST_F(HandAtTheSeat, BeforeTheWindowsFirstLookNothingIsJudgedAndNoSwitchCounts) {
+  open_driver();
+  window_answers_ = false;
+  cycles(30);
+  hold(true);
+  cycles(30);
+  EXPECT_FALSE(wish_.deadman);
+  driver_->take({}, view_.now);
+  EXPECT_EQ(said("hand").words, "") << "a picture is drawn before the seat's next cycle";
   window_answers_ = true;
   expect_to_have_to_press_anew();
 }
