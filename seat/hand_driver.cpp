@@ -1,6 +1,7 @@
 #include "seat/hand_driver.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "display/head/eye_geometry.hpp"
@@ -16,6 +17,19 @@ constexpr Duration kCycleEvery = std::chrono::milliseconds(10);  // a look at wh
 std::vector<Tracker*> all_of(KeyboardMouse& keyboard, const std::vector<std::unique_ptr<Tracker>>& devices) {
   std::vector<Tracker*> out{&keyboard};
   for (const auto& device : devices) out.push_back(device.get());
+  return out;
+}
+
+/// Each under a label of its own: a log tells news by label.
+std::vector<SeatLine> missing_lines(const std::vector<AnyTracker::Missing>& missing) {
+  std::vector<SeatLine> out;
+  for (const AnyTracker::Missing& one : missing) {
+    const std::string label = out.empty() ? "device" : "device " + std::to_string(out.size() + 1);
+    SeatLine line{label, one.trouble, one.cure, one.drove ? Urgency::trouble : Urgency::note};
+    if (line.words.empty()) line.words = one.device->name() + (one.drove ? " has gone" : " is not there");
+    if (line.cure.empty()) line.cure = words_for(HandFault::device_gone).cure;
+    out.push_back(std::move(line));
+  }
   return out;
 }
 
@@ -193,12 +207,17 @@ std::vector<SeatLine> HandDriver::lines() const {
   const HandSight seen = sight();
   std::vector<SeatLine> out = hand_lines(seen, rig_.joint_names());
   const std::lock_guard lock(mutex_);
+  const std::vector<AnyTracker::Missing> missing = any_.missing();
+  std::vector<SeatLine> devices = missing_lines(missing);
+  out.insert(out.begin(), std::make_move_iterator(devices.begin()), std::make_move_iterator(devices.end()));
   // What touches is told by name.
   if (std::ranges::find(out, "hand", &SeatLine::label) != out.end()) return out;
   const HandCycle& cycle = hand_.last();
   const bool refused = cycle.phase == HandPhase::refused;
   // What interrupts a hand that holds no switch takes nothing from anybody.
   if (interrupted_ && !refused) return out;
+  const bool is_named = std::ranges::any_of(missing, &AnyTracker::Missing::drove);
+  if (is_named && cycle.fault == HandFault::device_gone) return out;
   const HandWords words = describe(cycle, options_.gate.joints);
   if (words.name.empty()) return out;
   out.insert(out.begin(), {"hand", words.name, words.cure, refused ? Urgency::trouble : Urgency::note});

@@ -45,7 +45,7 @@ class HandDriver final : public SeatDriver {
   void toggle_control();
   void hand_over();
 
-  /// What keeps the hand from driving, for the head-up display.
+  /// What keeps the hand from driving, and which devices are missing, for the head-up display.
   std::vector<SeatLine> lines() const;
   /// What there is to see of the hand.
   HandSight sight() const;

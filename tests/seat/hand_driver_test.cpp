@@ -219,5 +219,41 @@ TEST_F(HandAtTheSeat, BeforeTheWindowsFirstLookNothingIsJudgedAndNoSwitchCounts)
   expect_to_have_to_press_anew();
 }
 
+TEST_F(HandAtTheSeat, ADeviceThatGoesWhileItDrivesIsNamed) {
+  hold(true);
+  cycles(10, {0.0005, 0, 0});
+  ASSERT_TRUE(wish_.deadman);
+  EXPECT_EQ(said("device").words, "");
+  hand_->state.connected = false;  // it says nothing of it itself, as a recording
+  for (int i = 0; i < 100; ++i) {
+    cycles(1);
+    EXPECT_FALSE(wish_.deadman);
+    EXPECT_EQ(said("hand").words, "") << "once is enough";
+    EXPECT_EQ(said("device").words, "a hand has gone");
+    EXPECT_NE(said("device").cure, "");
+    EXPECT_EQ(said("device").urgency, Urgency::trouble);
+  }
+  hand_->state.connected = true;
+  expect_to_have_to_press_anew();
+  EXPECT_EQ(said("device").words, "");
+}
+
+TEST_F(HandAtTheSeat, ADeviceThatIsNotThereIsNamedUntilItComes) {
+  open_driver();
+  hand_->state = TrackerState{};
+  hand_->state.trouble = "the gamepad is not there";
+  hand_->state.cure = "plug it in";
+  for (int i = 0; i < 5; ++i) {
+    cycles(5);
+    EXPECT_EQ(said("device").words, "the gamepad is not there");
+    EXPECT_EQ(said("device").cure, "plug it in");
+    EXPECT_EQ(said("device").urgency, Urgency::note);
+  }
+  hand_->state = TrackerState{};
+  hand_->state.connected = hand_->state.tracked = true;
+  cycles(2);
+  EXPECT_EQ(said("device").words, "");
+}
+
 }  // namespace
 }  // namespace foresight::hand_driver_test
