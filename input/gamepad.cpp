@@ -77,6 +77,16 @@ Gamepad::Gamepad(std::size_t index, const GamepadOptions& options)
 
 Gamepad::~Gamepad() = default;
 
+std::vector<std::pair<std::string, std::string>> Gamepad::keys() {
+  return {{"right shoulder", "of the gamepad, held: the robot moves"},
+          {"left stick", "the tool: forward, left, back, right"},
+          {"right stick", "the tool: up, down; it turns left, right"},
+          {"left shoulder", "held: the left stick tips and rolls it"},
+          {"triggers", "gripper closes (right), opens (left)"},
+          {"pad X, B, Y", "single joints; the view as it began; recentre"},
+          {"pad cross", "the camera; with single joints: which one"}};
+}
+
 std::string Gamepad::name() const {
   const char* const name = device_->pad ? SDL_GameControllerName(device_->pad) : nullptr;
   return name ? std::string("gamepad '") + name + "'" : "gamepad " + std::to_string(device_->index);

@@ -8,6 +8,8 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "input/force.hpp"
@@ -43,6 +45,8 @@ class Gamepad final : public Tracker, public ForceSink {
   Gamepad(const Gamepad&) = delete;
   Gamepad& operator=(const Gamepad&) = delete;
 
+  /// Of all gamepads: each button, and what it does.
+  static std::vector<std::pair<std::string, std::string>> keys();
   std::string name() const override;
   TrackerState read(OperatorTime now) noexcept override;
   /// By its motors, where it has some.

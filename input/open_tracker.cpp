@@ -12,6 +12,7 @@ namespace {
 constexpr std::string_view kGamepad = "gamepad";
 constexpr long long kMostGamepads = 16;
 
+constexpr const char* kSpaceMouse = "spacemouse";
 bool is_gamepad(const std::string& device) {
   return device == kGamepad || device.starts_with("gamepad:");
 }
@@ -27,15 +28,21 @@ std::size_t gamepad_index(const std::string& device) {
 }  // namespace
 
 bool is_recording(const std::string& device) {
-  return !is_gamepad(device) && device != "spacemouse" && device != "keyboard";
+  return !is_gamepad(device) && device != kSpaceMouse && device != "keyboard";
 }
 
 std::unique_ptr<Tracker> open_tracker(const std::string& device, const TrackerTraceOptions& options) {
   if (is_gamepad(device)) return std::make_unique<Gamepad>(gamepad_index(device));
-  if (device == "spacemouse") return std::make_unique<SpaceMouse>();
+  if (device == kSpaceMouse) return std::make_unique<SpaceMouse>();
   if (device == "keyboard")
     throw InputError("keyboard", "speaks to a window alone", "name a gamepad, spacemouse, or a recording");
   return std::make_unique<RecordedTracker>(read_tracker_trace(device, options));
 }
 
 }  // namespace foresight
+std::vector<std::pair<std::string, std::string>> keys_of(const std::string& device) {
+  if (is_gamepad(device)) return Gamepad::keys();
+  if (device == kSpaceMouse) return SpaceMouse::keys();
+  return {};
+}
+

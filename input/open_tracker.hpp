@@ -2,6 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "input/tracker_trace.hpp"
 
@@ -14,5 +17,8 @@ std::unique_ptr<Tracker> open_tracker(const std::string& device, const TrackerTr
 
 /// Whether it names a recording.
 bool is_recording(const std::string& device);
+
+/// For who drives by it: each of its buttons, and what it does; nothing for a recording.
+std::vector<std::pair<std::string, std::string>> keys_of(const std::string& device);
 
 }  // namespace foresight

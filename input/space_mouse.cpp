@@ -32,6 +32,13 @@ SpaceMouse::~SpaceMouse() {
   if (open_) spnav_close();
 }
 
+std::vector<std::pair<std::string, std::string>> SpaceMouse::keys() {
+  return {{"cap", "of the 6-DOF device: the tool goes and turns along"},
+          {"button 1", "held: the robot moves"},
+          {"button 2", "gripper closes, the next time opens"},
+          {"buttons 3, 4", "the view as it began; recentre"}};
+}
+
 void SpaceMouse::look_for_daemon(OperatorTime now) noexcept {
   if (open_ && daemon_gone()) {
     spnav_close();

@@ -5,6 +5,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "input/rate_hand.hpp"
 
@@ -29,6 +32,8 @@ class SpaceMouse final : public Tracker {
   SpaceMouse(const SpaceMouse&) = delete;
   SpaceMouse& operator=(const SpaceMouse&) = delete;
 
+  /// Each button, and what it does.
+  static std::vector<std::pair<std::string, std::string>> keys();
   std::string name() const override { return "6-DOF device (spacenavd)"; }
   TrackerState read(OperatorTime now) noexcept override;
 

@@ -233,9 +233,12 @@ std::vector<std::pair<std::string, std::string>> HandDriver::keys() {
   };
   using enum HandKey;
   return {{printed({deadman}), "held: the robot moves"},
+          {"left button", "of the mouse, held: the robot moves, too"},
           {printed({slow}), "held: slowly"},
           {printed({forward, left, back, right, up, down}), "the tool: forward, left, back, right, up, down"},
           {printed({pitch_down, yaw_left, pitch_up, yaw_right, roll_left, roll_right}), "it turns"},
+          {"mouse, wheel", "with its left button: the tool goes right, up; forward"},
+          {"right button", "of the mouse, held with the left one: it turns"},
           {"arrows", "the camera"},
           {printed({gripper_close, gripper_open}), "gripper closes, opens"},
           {printed({joint_mode}) + ", 1 .. 0, - =", "single joints, which one, to and fro"},

@@ -52,7 +52,7 @@ class HandDriver final : public SeatDriver {
   /// From the last event of keyboard or mouse until it was in a set-point; nothing before the first.
   std::optional<Duration> input_took() const;
   const HandOptions& options() const { return options_; }
-  /// Of devices, and what they do.
+  /// Of keyboard and mouse.
   static std::vector<std::pair<std::string, std::string>> keys();
 
   SeatWish tick(const SeatView& view) override;

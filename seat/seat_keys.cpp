@@ -65,11 +65,13 @@ std::optional<SeatKey> seat_key(int glfw_code) noexcept {
   return found->key;
 }
 
-std::vector<std::pair<std::string, std::string>> key_words() {
+std::vector<std::pair<std::string, std::string>> key_words(
+    const std::vector<std::pair<std::string, std::string>>& device) {
   using enum SeatKey;
   std::vector<std::pair<std::string, std::string>> out = HandDriver::keys();
   out.insert(out.begin(), {{all_of({stop}), "stop at once"},
                            {all_of({enable, home, reset, set_up}), "enable, home, reset, configure drives anew"}});
+  out.insert(out.end(), device.begin(), device.end());
   out.insert(out.end(),
              {{all_of({control}), "give control back, or the request for it; ask for it again"},
               {all_of({hand_over}), "hand control over to who asks"},

@@ -46,7 +46,9 @@ const char* printed(SeatKey key) noexcept;  ///< SeatKeyBinding::printed
 std::optional<SeatKey> seat_key(int glfw_code) noexcept;
 
 /// For the display: each key, the hand's too, and what it does. A small window shows the first ones first: what
-/// stops and drives the robot.
-std::vector<std::pair<std::string, std::string>> key_words();
+/// stops and drives the robot. `device`: likewise, of the device that is used beside keyboard and mouse (keys_of(),
+/// input/open_tracker.hpp).
+std::vector<std::pair<std::string, std::string>> key_words(
+    const std::vector<std::pair<std::string, std::string>>& device = {});
 
 }  // namespace foresight

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "input/keyboard_mouse.hpp"
+#include "input/open_tracker.hpp"
 
 namespace foresight::seat_keys_test {
 namespace {
@@ -19,6 +21,20 @@ TEST(SeatKeys, NoKeyHasTwoMeanings) {
     EXPECT_TRUE(used.emplace(binding.code, binding.printed).second) << binding.printed;
   for (const SeatKeyBinding& binding : seat_keys())
     EXPECT_TRUE(used.emplace(binding.code, binding.printed).second) << binding.printed;
+}
+
+/// The one for a hand that drives by the mouse, or by a device.
+bool is_told(const std::string& key, const std::string& device = "") {
+  const auto words = key_words(keys_of(device));
+  return std::ranges::any_of(words, [&](const auto& row) { return row.first.find(key) != std::string::npos; });
+}
+
+TEST(SeatKeys, TheMouseAndTheDeviceInUseAreToldToo) {
+  for (const char* of_mouse : {"left button", "right button", "wheel"}) EXPECT_TRUE(is_told(of_mouse)) << of_mouse;
+  EXPECT_FALSE(is_told("right shoulder"));
+  for (const char* device : {"gamepad", "gamepad:1"}) EXPECT_TRUE(is_told("right shoulder", device));
+  EXPECT_TRUE(is_told("cap", "spacemouse"));
+  EXPECT_EQ(key_words(keys_of("a.csv")).size(), key_words().size());
 }
 
 TEST(SeatKeys, EachIsTold) {
