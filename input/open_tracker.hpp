@@ -11,8 +11,8 @@
 namespace foresight {
 
 /// "gamepad", "gamepad:1" (the second one), "spacemouse", or the file of a recording. A device that is not there now
-/// may come later. Throws InputError (no such device or recording; `keyboard`, whose events a window has to feed),
-/// RuntimeFailure (SDL cannot be used).
+/// may come later. Throws InputError (no such device or recording: the nearest name; `keyboard`, whose events a window
+/// has to feed), RuntimeFailure (SDL cannot be used).
 std::unique_ptr<Tracker> open_tracker(const std::string& device, const TrackerTraceOptions& options = {});
 
 /// Whether it names a recording.
