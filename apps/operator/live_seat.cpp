@@ -6,7 +6,6 @@
 
 #include "apps/operator/seat_begin.hpp"
 #include "apps/operator/seat_head.hpp"
-#include "apps/operator/seat_sounds.hpp"
 #include "apps/operator/seat_window.hpp"
 #include "common/error.hpp"
 #include "common/patient_output.hpp"
@@ -19,6 +18,7 @@
 #include "seat/seat_keys.hpp"
 #include "seat/seat_options.hpp"
 #include "seat/view_setup.hpp"
+#include "seat/seat_sounds.hpp"
 
 namespace foresight {
 namespace {

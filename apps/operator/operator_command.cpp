@@ -331,7 +331,7 @@ void add_operator_command(Command& app, std::function<int()>& action) {
       ->check(from_to(1.0, 240.0));
   command->add_option("--font-scale", arguments->font_scale, "Of all words in the window (default 1)")
       ->check(from_to(0.5, 4.0));
-  command->add_flag("!--no-sounds", arguments->sounds, "Nothing is heard of what happens (key F10 does it, too)");
+  command->add_flag("!--no-sounds", arguments->sounds, "Nothing is heard before key F10 asks for it");
   command
       ->add_option("--fidelity-db", arguments->fidelity_db,
                    "The newest image is shown instead where the view was less like the images that came (default 20)")

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "seat/seat_sounds.hpp"
 #include "seat/sound_cues.hpp"
 #include "seat/speaker.hpp"
 #include "seat/tones.hpp"
@@ -135,6 +136,28 @@ TEST(Speaker, PlaysOneAfterTheOtherButNotWhatWouldComeLate) {
   EXPECT_EQ(speaker.waiting_s(), 0);
   speaker.play(Cue::stopped);
   EXPECT_EQ(speaker.waiting_s(), 0);
+}
+
+TEST(SeatSounds, BegunWithoutThemTheKeyTurnsThemOnAndOff) {
+  const Driver driver("dummy");
+  SeatSounds sounds(false);
+  ASSERT_EQ(sounds.lines().size(), 1u);
+  EXPECT_EQ(sounds.lines()[0].words, "off");
+  EXPECT_EQ(sounds.lines()[0].cure, "on (F10)");
+  sounds.hear({}, {}, true, 0);
+  sounds.toggle();
+  EXPECT_THAT(sounds.lines(), IsEmpty());
+  sounds.toggle();
+  ASSERT_EQ(sounds.lines().size(), 1u);
+  EXPECT_EQ(sounds.lines()[0].words, "off");
+}
+
+TEST(SeatSounds, TurnedOnWithoutADeviceTheySayWhyNothingIsHeard) {
+  const Driver driver("there_is_no_such_driver");
+  SeatSounds sounds(false);
+  sounds.toggle();
+  ASSERT_EQ(sounds.lines().size(), 1u);
+  EXPECT_THAT(sounds.lines()[0].words, testing::HasSubstr("no sound"));
 }
 
 }  // namespace

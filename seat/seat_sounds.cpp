@@ -1,4 +1,6 @@
-#include "apps/operator/seat_sounds.hpp"
+#include "seat/seat_sounds.hpp"
+
+#include "seat/seat_keys.hpp"
 
 namespace foresight {
 
@@ -20,15 +22,18 @@ void SeatSounds::hear(const SeatStatus& status, const HandSight& hand, bool trus
 }
 
 void SeatSounds::toggle() {
-  if (speaker_) speaker_->mute(!speaker_->muted());
+  if (speaker_)
+    speaker_->mute(!speaker_->muted());
+  else
+    speaker_.emplace();
 }
 
 std::vector<SeatLine> SeatSounds::lines() const {
-  if (!speaker_) return {};
-  if (!speaker_->silent_because().empty()) return {{"sounds", speaker_->silent_because(), "", Urgency::fine}};
-  if (speaker_->muted())
-    return {{"sounds", "off", std::string("on again (") + printed(SeatKey::sounds) + ")", Urgency::fine}};
-  return {};
+  if (speaker_ && !speaker_->silent_because().empty())
+    return {{"sounds", speaker_->silent_because(), "", Urgency::fine}};
+  if (speaker_ && !speaker_->muted()) return {};
+  return {
+      {"sounds", "off", std::string(speaker_ ? "on again (" : "on (") + printed(SeatKey::sounds) + ")", Urgency::fine}};
 }
 
 }  // namespace foresight
