@@ -112,7 +112,10 @@ void Window::press(int key, int action) {
   }
   if (action != GLFW_PRESS) return;
   if (key == GLFW_KEY_SPACE) space_ = true;
-  if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window_, GLFW_TRUE);
+  if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) {
+    input_.asked_to_end = true;
+    if (close_by_keys_) close();
+  }
   if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) input_.keys += static_cast<char>('0' + key - GLFW_KEY_0);
   if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) input_.keys += static_cast<char>('a' + key - GLFW_KEY_A);
 }
@@ -165,6 +168,14 @@ void Window::wait_events(double timeout_s) {
 
 bool Window::should_close() const {
   return glfwWindowShouldClose(window_);
+}
+
+void Window::close() {
+  glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+void Window::close_by_keys(bool may) {
+  close_by_keys_ = may;
 }
 
 bool Window::take_space() {

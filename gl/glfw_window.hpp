@@ -35,6 +35,7 @@ struct WindowInput {
     bool down = false;
   };
   std::vector<Key> key_events;  ///< each press and release, oldest first
+  bool asked_to_end = false;    ///< Escape or Q was pressed
   bool lost_focus = false;      ///< somebody else had the keyboard, if only for a moment: releases may have been missed
 };
 
@@ -68,7 +69,9 @@ class Window final : public Context {
   /// Shows what was drawn and handles events, without blocking longer than one display frame.
   void present();
   void wait_events(double timeout_s);  ///< handles events, or returns after the time-out
-  bool should_close() const;           ///< closed by the user, or Escape or Q pressed
+  bool should_close() const;           ///< closed by the user or close(), or Escape or Q pressed
+  void close();                        ///< from now on should_close()
+  void close_by_keys(bool may);        ///< false: WindowInput alone says that Escape or Q was pressed
   bool take_space();                   ///< the space bar was pressed since the last call
   WindowInput take_input();            ///< since the last call
   void set_title(const std::string& title);
@@ -83,7 +86,7 @@ class Window final : public Context {
   std::shared_ptr<void> glfw_;  // glfwTerminate with the last window
   ContextApi api_;
   GLFWwindow* window_ = nullptr;
-  bool space_ = false;
+  bool space_ = false, close_by_keys_ = true;
   WindowInput input_;
   std::array<double, 2> pointer_{};  // at the last take_input()
 };

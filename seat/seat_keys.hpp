@@ -12,7 +12,7 @@ namespace foresight {
 
 enum class SeatKey : std::uint8_t {
   stop,  // by gl::Window::take_space()
-  end,   // by gl::Window::should_close(), as Escape
+  end,   // by gl::WindowInput::asked_to_end, as Escape
   enable,
   home,
   reset,

@@ -15,10 +15,11 @@
 #include "link/line/line_spec.hpp"
 #include "seat/hand_driver.hpp"
 #include "seat/panel_lens.hpp"
+#include "seat/seat_ending.hpp"
 #include "seat/seat_keys.hpp"
 #include "seat/seat_options.hpp"
-#include "seat/view_setup.hpp"
 #include "seat/seat_sounds.hpp"
+#include "seat/view_setup.hpp"
 
 namespace foresight {
 namespace {
@@ -104,6 +105,7 @@ class LiveSeat {
 
   void show_pictures() {
     const SeatEnd end(seat_, clock_);
+    window_->close_by_keys(false);
     std::vector<ViewObserver*> observers{&shown_};
     if (head_) observers.push_back(&*head_);
     ViewLoop loop(session_, source_, observers, [] { return stop_requested(); });
@@ -111,6 +113,7 @@ class LiveSeat {
       while (!pacer_.wait(kLongestWait) && shown_.wants_more() && !stop_requested()) shown_.take_input();
       shown_.take_input();
       const SeatStatus status = seat_.status();
+      ending_.see(status, driver_.sight().phase);
       sounds_.hear(status, driver_.sight(), shown_.trusted(), 1e-9 * static_cast<double>(clock_.now().ns));
       // A window that stands lets go of a switch: before one is held.
       if (!status.held && shown_.warm_up(session_)) pacer_.held_up();
@@ -157,6 +160,7 @@ class LiveSeat {
       if (head_)
         for (SeatLine& line : head_->lines()) lines.push_back(std::move(line));
       for (SeatLine& line : sounds_.lines()) lines.push_back(std::move(line));
+      for (SeatLine& line : ending_.lines()) lines.push_back(std::move(line));
       return lines;
     };
     out.views.left = setup_.left;
@@ -198,12 +202,13 @@ class LiveSeat {
     driver_.scene_stands(place.scene.T_world_node);
     heed_head();
     driver_.take(input, {clock_.now().ns});
+    if (input.asked_to_end && ending_.press(seat_.status(), driver_.sight().phase)) window_->close();
   }
   void press(SeatKey key) {
     SeatViews& views = shown_.views();
     switch (key) {
       case SeatKey::stop:
-      case SeatKey::end: return;  // the window has them
+      case SeatKey::end: return;  // take() has them
       case SeatKey::enable: return driver_.ask(LineRequest::enable);
       case SeatKey::home: return driver_.ask(LineRequest::home);
       case SeatKey::reset: return driver_.ask(LineRequest::reset);
@@ -246,6 +251,7 @@ class LiveSeat {
   HandOverlay hand_;
   FramePacer pacer_;
   SeatSounds sounds_;
+  SeatEnding ending_;
   SeatWindow shown_;
   std::optional<SeatHead> head_;
   bool head_shown_ = false;
