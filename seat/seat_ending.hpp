@@ -3,23 +3,22 @@
 
 #include <vector>
 
-#include "input/hand_control.hpp"
 #include "seat/seat_words.hpp"
 
 namespace foresight {
 
-/// It ends only a seat that drives nothing; pressed while it drives, it is told why it did nothing. One thread.
+/// It does not while the switch is held, and says why it did nothing: a robot that was let go of comes to rest by
+/// itself. One thread.
 class SeatEnding {
  public:
-  /// At each picture. `phase`: of the hand (HandSight).
-  void see(const SeatStatus& status, HandPhase phase);
-  /// The key was pressed; likewise. True: the seat ends.
-  bool press(const SeatStatus& status, HandPhase phase);
+  void see(const SeatStatus& status);  ///< at each picture
+  /// The key was pressed. True: the seat ends.
+  bool press(const SeatStatus& status);
   /// For the head-up display: why the last press did nothing, as long as one would.
   std::vector<SeatLine> lines() const;
 
  private:
-  bool held_ = false, follows_ = false, refused_ = false;
+  bool refused_ = false;
 };
 
 }  // namespace foresight

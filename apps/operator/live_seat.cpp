@@ -113,7 +113,7 @@ class LiveSeat {
       while (!pacer_.wait(kLongestWait) && shown_.wants_more() && !stop_requested()) shown_.take_input();
       shown_.take_input();
       const SeatStatus status = seat_.status();
-      ending_.see(status, driver_.sight().phase);
+      ending_.see(status);
       sounds_.hear(status, driver_.sight(), shown_.trusted(), 1e-9 * static_cast<double>(clock_.now().ns));
       // A window that stands lets go of a switch: before one is held.
       if (!status.held && shown_.warm_up(session_)) pacer_.held_up();
@@ -202,7 +202,7 @@ class LiveSeat {
     driver_.scene_stands(place.scene.T_world_node);
     heed_head();
     driver_.take(input, {clock_.now().ns});
-    if (input.asked_to_end && ending_.press(seat_.status(), driver_.sight().phase)) window_->close();
+    if (input.asked_to_end && ending_.press(seat_.status())) window_->close();
   }
   void press(SeatKey key) {
     SeatViews& views = shown_.views();

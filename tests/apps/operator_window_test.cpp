@@ -218,7 +218,7 @@ TEST_F(OperatorWindow, ConnectsDrivesLosesTheRobotAndRecovers) {
   ASSERT_TRUE(screen_->input("search --name Foresight windowsize 500 420"));
   ASSERT_TRUE(comes_true([&] { return look().cols == 500; }));
 
-  // Again, while the robot still comes to rest.
+  // Again, where a slow window has not seen the open switch yet.
   ASSERT_TRUE(comes_true([&] { return !press("q") || !seat_->running(); }));
   const Outcome end = seat_->wait();
   EXPECT_EQ(end.exit_code, 0) << end.err;

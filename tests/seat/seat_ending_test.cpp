@@ -6,28 +6,23 @@
 namespace foresight::seat_ending_test {
 namespace {
 
-TEST(SeatEnding, NothingThatDrivesIsEndedByAKey) {
+TEST(SeatEnding, AHeldSwitchIsNotLetGoOfByAKey) {
   SeatEnding ending;
   SeatStatus status;
-  status.held = status.engaged = status.control.follows = true;
-  ending.see(status, HandPhase::driving);
+  status.held = status.engaged = true;
+  ending.see(status);
   EXPECT_TRUE(ending.lines().empty()) << "nobody asked";
-  EXPECT_FALSE(ending.press(status, HandPhase::driving));
+  EXPECT_FALSE(ending.press(status));
   ASSERT_EQ(ending.lines().size(), 1u);
   EXPECT_EQ(ending.lines()[0].cure, "let go of the switch to end");
+  status.engaged = false;
+  ending.see(status);
+  EXPECT_EQ(ending.lines().size(), 1u) << "a switch that does not count is held all the same";
 
-  status.held = status.engaged = false;  // a switch that does not count is held all the same
-  EXPECT_FALSE(ending.press(status, HandPhase::refused));
-  EXPECT_EQ(ending.lines()[0].cure, "let go of the switch to end");
-
-  ending.see(status, HandPhase::released);
-  ASSERT_EQ(ending.lines().size(), 1u) << "the robot does not know yet";
-  EXPECT_FALSE(ending.press(status, HandPhase::released));
-
-  status.control.follows = false;
-  ending.see(status, HandPhase::released);
+  status.held = false;
+  ending.see(status);
   EXPECT_TRUE(ending.lines().empty());
-  EXPECT_TRUE(ending.press(status, HandPhase::released));
+  EXPECT_TRUE(ending.press(status));
 }
 
 }  // namespace
