@@ -14,7 +14,7 @@ constexpr double kClearly = 0.15;                 // of whole images, whose bord
 constexpr double kLargest = 1.5;                  // a factor of 4.5
 constexpr double kLearns = 0.3;                   // share of what is left that an image corrects
 constexpr float kTooDark = 0.04f;                 // below, black level and noise rule
-constexpr int kWhite = 250;                       // what is white stays white
+constexpr int kWhite = 250;                       // in all three channels: it stays white
 constexpr double kLeastValue = 0.5;               // of 255
 
 bool can_tell(const ExposureSample& sample) {
@@ -54,11 +54,13 @@ cv::Mat ColourBalance::apply(const cv::Mat& left, const cv::Mat& right) {
   if (!factor) return right;
   cv::Mat table(1, 256, CV_8UC3);
   for (int value = 0; value < 256; ++value) {
-    const auto times = [&](double by) { return value < kWhite ? cv::saturate_cast<uchar>(value * by) : uchar{255}; };
+    const auto times = [&](double by) { return cv::saturate_cast<uchar>(value * by); };
     table.at<cv::Vec3b>(value) = {times(factor->y()), static_cast<uchar>(value), times(factor->x())};
   }
-  cv::Mat out;
+  cv::Mat out, white;
   cv::LUT(right, table, out);
+  cv::inRange(right, cv::Scalar::all(kWhite), cv::Scalar::all(255), white);
+  out.setTo(cv::Scalar::all(255), white);
   applied_ = true;
   return out;
 }

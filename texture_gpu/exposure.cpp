@@ -43,7 +43,9 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
     if (!white && middle(brightness) && middle(std::exp(ref.log_brightness))) middle_ratios.push_back(ratio);
     if (!white && brightness >= kDarkest) used.push_back(i);
   }
-  measured_ = std::exchange(first_, false) || ratios.size() >= kFewestSamples;
+  const auto seen = std::ranges::count_if(samples, [](const ExposureSample& s) { return s.brightness >= 0; });
+  const bool shows_enough = static_cast<std::size_t>(seen) >= 2 * kFewestSamples;
+  measured_ = std::exchange(first_, false) || ratios.size() >= kFewestSamples || !shows_enough;
   if (ratios.size() >= kFewestSamples) {
     const double gain = median(middle_ratios.size() >= kFewestSamples ? middle_ratios : ratios);
     std::vector<double> deviations = ratios;

@@ -38,7 +38,8 @@ class ExposureEstimator {
   void update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages, std::int64_t image);
 
   double log_gain() const { return log_gain_; }
-  /// It was measured in the last image, or that was the first; else it is that of the one before, or a bound.
+  /// It was measured in the last image, or that was the first, or shows too little of the scene to measure anything;
+  /// else it is that of the one before, or a bound.
   bool is_measured() const { return measured_; }
   /// (a, b); zero until it is known well enough to help: v(1) beyond three of its own sigma.
   Eigen::Vector2d vignetting() const { return applied_; }

@@ -55,6 +55,7 @@ TEST(ColourBalance, LearnsWhatTheRightCameraMakesOfColours) {
   EXPECT_NEAR(balance.factors()->y(), 1 / 1.2, 0.005);
   EXPECT_EQ(balance.apply(grey, even(120, 100, 90)).at<cv::Vec3b>(0), cv::Vec3b(100, 100, 100));
   EXPECT_EQ(balance.apply(grey, even(255, 255, 255)).at<cv::Vec3b>(0), cv::Vec3b(255, 255, 255)) << "white stays";
+  EXPECT_NEAR(balance.apply(grey, even(255, 200, 180)).at<cv::Vec3b>(0)[0], 255 / 1.2, 2) << "no other does";
 }
 
 TEST(ColourBalance, LeavesCamerasAloneThatAreAlike) {
