@@ -97,6 +97,7 @@ SourceState PredictedSource::advance() {
   }
   const bool closed = end_.frames().closed();
   take_frames();
+  why_none_ = silent() ? link::why_no_images(end_) : "";
   if (closed) return SourceState::ended;
   const auto until = seat_.instant_to_show();
   if (!any_posed_ || !until) return SourceState::waiting;
@@ -128,7 +129,8 @@ std::optional<PosedFrame> PredictedSource::arrived() {
 
 std::string PredictedSource::fault() const {
   if (silent())
-    return fmt::format("NO IMAGE for {:.1f} s: {}", to_seconds(clock_.now() - heard_), link::why_no_images(end_));
+    return fmt::format("NO IMAGE for {:.1f} s{}{}", to_seconds(clock_.now() - heard_), why_none_.empty() ? "" : ": ",
+                       why_none_);
   if (posed_) return "";
   const std::string why = unknown_joints(newest_->joints.known, 'H');
   return "NO POSE for the newest image" + (why.empty() ? "" : ": " + why);

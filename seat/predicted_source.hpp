@@ -77,6 +77,7 @@ class PredictedSource final : public FrameSource {
   link::LineFramePtr newest_;
   std::optional<PosedFrame> waiting_;
   bool posed_ = true, any_posed_ = false;
+  std::string why_none_;    // no image comes
   bool predicted_ = false;  // once
   RobotTime due_, heard_;
   std::uint64_t pictures_ = 0, overtaken_ = 0;

@@ -50,6 +50,7 @@ std::string PairIntake::wrong_with(const StereoFrame& message, const RobotClockT
 LineFramePtr PairIntake::refuse(std::string why) {
   ++counts_.refused;
   counts_.refusal = std::move(why);
+  counts_.refuses = true;
   return nullptr;
 }
 
@@ -62,6 +63,7 @@ LineFramePtr PairIntake::hand_out(const StereoFrame& message, StereoPicture pict
   out->bytes = bytes;
   newest_ = message.number;
   ++counts_.pairs;
+  counts_.refuses = false;
   return out;
 }
 

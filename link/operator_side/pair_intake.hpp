@@ -24,6 +24,7 @@ struct IntakeCounts {
   std::uint64_t packets = 0;   ///< pieces and questions that came, each once
   std::uint64_t expected = 0;  ///< of these, that were sent since the first that came
   std::string refusal;         ///< what was wrong with the last pair that was refused; "" before
+  bool refuses = false;        ///< the last pair that came was refused
 };
 
 /// Pure logic but for the time that decoding takes, which `clock` tells; one thread.

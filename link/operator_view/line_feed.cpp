@@ -5,24 +5,26 @@
 namespace foresight::link {
 namespace {
 
-constexpr Duration kSilent = std::chrono::milliseconds(2500);  // states come every second at least
+// States of control come every 0.2 s on the thinnest of lines (link/robot_side/line_share.hpp).
+constexpr Duration kSilent = std::chrono::milliseconds(500);
 
 }  // namespace
 
 std::string why_no_images(const LineFigures& figures, const std::optional<OperatorEnd::HeardState>& heard,
-                          OperatorTime now) {
-  if (!heard || now - heard->came > kSilent) return "nothing is heard of the robot";
+                          std::optional<Duration> control_age) {
+  if (!heard || !control_age || *control_age > kSilent) return "nothing is heard of the robot";
   const CameraLines& cameras = heard->state.cameras;
   if (!cameras.fault.empty()) return cameras.fault;
   if (!cameras.present) return "its program runs without cameras";
   const IntakeCounts& pairs = figures.pairs;
-  if (!pairs.refusal.empty()) return "the last that came were refused: " + pairs.refusal;
+  if (pairs.refuses) return "the last that came were refused: " + pairs.refusal;
   if (pairs.others > 0 && pairs.packets == 0) return "the robot's pictures go to another program";
   return "the robot is heard, and none come";
 }
 
-std::string why_no_images(const OperatorEnd& end) {
-  return why_no_images(end.figures(), end.robot_state(), end.now());
+std::string why_no_images(OperatorEnd& end) {
+  const auto control_age = end.seat([](ControlSeat& seat, OperatorTime now) { return seat.status(now).state_age; });
+  return why_no_images(end.figures(), end.robot_state(), control_age);
 }
 
 SceneState scene_at(const Rig& rig, const LiveScene& scene, RobotTime time, const LineJoints& joints) {

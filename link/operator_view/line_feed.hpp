@@ -15,10 +15,11 @@ struct LineFeedOptions {
 /// rest.
 SceneState scene_at(const Rig& rig, const LiveScene& scene, RobotTime time, const LineJoints& joints);
 
-/// Why no pair comes, in words, as far as the robot told it or what came shows it; `heard`: OperatorEnd::robot_state().
+/// Why no pair comes, in words, as far as the robot told it or what came shows it. `heard`: OperatorEnd::robot_state();
+/// `control_age`: ControlSeatStatus::state_age.
 std::string why_no_images(const LineFigures& figures, const std::optional<OperatorEnd::HeardState>& heard,
-                          OperatorTime now);
-std::string why_no_images(const OperatorEnd& end);
+                          std::optional<Duration> control_age);
+std::string why_no_images(OperatorEnd& end);
 
 /// Takes from `end` the newest pair that is there, as the line brought it: with its delay, so that LiveSource needs
 /// none. Times are the robot's. `trouble` tells what keeps pictures away, in words. `end` and `rig` must outlive the
