@@ -57,14 +57,19 @@ void ControlSeat::receive(const FromRobot& message, OperatorTime now) {
 void ControlSeat::take(const FromRobot& message, const Welcome& welcome, OperatorTime now) {
   // An answer to a Hello of ours, while one is open: a late one would call back a robot that has gone.
   if (message.to != session_ || message.from == 0 || desk_ != 0) return;
+  if (welcome.identity.protocol != options_.identity.protocol) {  // all else that it says means something else here
+    differences_ = differences(welcome.identity, options_.identity);
+    not_understood_ = now;
+    return;
+  }
+  not_understood_ = {};
   if (robot_ != welcome.robot) {
     clock_ = RobotClockTracker(options_.draw());
     state_ = {};
   }
   robot_ = welcome.robot;
   desk_ = message.from;
-  is_understood_ = welcome.identity.protocol == options_.identity.protocol;
-  differences_ = is_understood_ ? welcome.differences : differences(welcome.identity, options_.identity);
+  differences_ = welcome.differences;
   answered_ = state_came_ = now;
   lease_ = 0;
   verdict_came_ = false;
@@ -287,7 +292,7 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
     out.words = name;
     out.cure = cure;
   };
-  if (!is_understood_) {
+  if (not_understood_.ns != 0 && now - not_understood_ <= options_.answered_within) {
     say(refusal_text(differences_).c_str(), "");  // it says what to do
   } else if (desk_ == 0) {
     say("looking for the robot", "see that its program runs with --serve, and that the line is up");

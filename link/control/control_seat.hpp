@@ -119,7 +119,7 @@ class ControlSeat {
   Nonce desk_ = 0;   // what it wants to be called by us; 0: not connected
   RobotClockTracker clock_;
   std::vector<Difference> differences_;
-  bool is_understood_ = true;  // the robot speaks this version of the protocol
+  OperatorTime not_understood_;  // when a robot of another version of the protocol was heard last
   ControlState state_;
   bool state_timely_ = false;  // it was not too old when it came
   OperatorTime state_came_, answered_, greeted_, asked_, advanced_;

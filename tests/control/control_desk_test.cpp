@@ -379,6 +379,13 @@ TEST_F(ControlDeskTest, TheSeatItselfRefusesARobotOfAnotherVersion) {
   anna_.seat.advance(time_of(anna_));
   anna_.seat.receive({77, anna_.seat.session(), Welcome{88, newer, {}}}, time_of(anna_));
   EXPECT_THAT(status(anna_).words, HasSubstr("update the operator's program"));
+  EXPECT_EQ(status(anna_).phase, ControlSeatStatus::Phase::connecting);
+  anna_.seat.take_outgoing();
+  anna_.seat.want_control(true);
+  anna_.seat.advance(time_of(anna_));
+  EXPECT_TRUE(anna_.seat.take_outgoing().empty()) << "it would be misread";
+  now_ = now_ + 5s;
+  EXPECT_EQ(status(anna_).words, "looking for the robot") << "that one is gone";
 }
 
 TEST_F(ControlDeskTest, WhatIsNoSetPointMovesNothing) {
