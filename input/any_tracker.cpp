@@ -13,9 +13,8 @@ bool held(const TrackerState& state) noexcept {
   return state.connected && state.buttons.held(TrackerButton::deadman);
 }
 
-// One that counts and has trouble has lost the device that drove (the class comment).
 bool there(const TrackerState& state) noexcept {
-  return state.connected && !(state.tracked && *state.trouble);
+  return state.connected && !state.stands_in;
 }
 
 }  // namespace
@@ -60,7 +59,8 @@ TrackerState AnyTracker::read(OperatorTime now) noexcept {
   TrackerState out = devices_[shown_].state;
   // Its pose has nothing to do with that of the one before: it comes with an open switch first.
   if (!in_charge_ || shown_ != before) out.buttons.set(TrackerButton::deadman, false);
-  if (lost_ && *lost_ != shown_ && !*out.trouble) {
+  if (lost_ && *lost_ != shown_) {
+    out.stands_in = true;
     out.trouble = devices_[*lost_].state.trouble;
     out.cure = devices_[*lost_].state.cure;
   }

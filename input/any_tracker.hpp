@@ -13,8 +13,7 @@ namespace foresight {
 /// single joints and the camera listen to all of them. One thread.
 ///
 /// Where another one stands in for one that went while it was in charge, what is read counts, and has the trouble and
-/// cure of the one that went, until that is back or another switch is pressed: of several such, one that counts and has
-/// trouble has lost the device that drove.
+/// cure of the one that went, until that is back or another switch is pressed (TrackerState::stands_in).
 class AnyTracker final : public Tracker {
  public:
   /// At least one; they outlive this.

@@ -229,10 +229,11 @@ void HandControl::heed_clutch(const TrackerState& device, HandFault fault, doubl
   }
   if (held_->clutched && fault != HandFault::none) return refuse(fault, device);
   if (fault != HandFault::none) {
-    say(fault, device);
     held_->clutch_refused = true;
+    held_->fault = fault;
+    held_->refused_by = device;
   }
-  if (held_->clutch_refused) return;  // why stays in view
+  if (held_->clutch_refused) return say(held_->fault, *held_->refused_by);
   say(kinematics_ ? HandReason::none : HandReason::no_arm);
   if (!kinematics_) return;
   if (held_->clutched)

@@ -46,6 +46,8 @@ class TrackerButtons {
 struct TrackerState {
   bool connected = false;  ///< buttons and axes count
   bool tracked = false;    ///< the pose counts
+  /// Another device went while it drove, for which this one stands in (AnyTracker): trouble and cure are of that one.
+  bool stands_in = false;
   /// What keeps either from counting, and what to do; "" where nothing does. Static text.
   const char* trouble = "";
   const char* cure = "";
