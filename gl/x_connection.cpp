@@ -3,6 +3,7 @@
 #include <X11/Xlib.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -21,9 +22,14 @@ void end_with_x_server() {
     end("foresight: the X server is gone, and the window with it; what was saved is kept, start again on a desktop "
         "that stays\n");
   });
-  XSetErrorHandler([](Display*, XErrorEvent*) -> int {
-    end("foresight: another program has destroyed the window, or the X server refuses to show it; what was saved is "
-        "kept, start again\n");
+  XSetErrorHandler([](Display*, XErrorEvent* error) -> int {
+    const bool is_gone = error->error_code == BadWindow || error->error_code == BadDrawable;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "foresight: %s (X error %d of request %d.%d); what was saved is kept, start again\n",
+                  is_gone ? "another program has destroyed the window" : "the X server refuses what the window needs",
+                  error->error_code, error->request_code, error->minor_code);
+    end(text);
   });
 }
 

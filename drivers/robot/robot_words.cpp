@@ -161,7 +161,7 @@ RobotWords describe(const RobotStatus& status, std::span<const JointWords> joint
   } else if (status.phase == RobotPhase::ready && reason != GateReason::none) {
     out = {"ready; last, " + reason_text(status.gate, joints), words_for(reason).cure};
   }
-  if (status.phase == RobotPhase::ready && !status.all_homed)
+  if (status.phase == RobotPhase::ready && !status.all_homed && reason == GateReason::none)
     out = {"drives hold; not all joints know where they are", "home them (h)"};
   if (const std::string joint = name_of(status.waiting_for, joints); !joint.empty() && status.gate.joint < 0)
     out.name += ", waiting for " + joint;
