@@ -280,7 +280,7 @@ void check(const Rig& rig, const Arguments& arguments) {
 
 /// Who gives the robot's address means the right thing, but in another place.
 void refuse_address(const std::string& rig) {
-  const bool is_address = !rig.empty() && rig.find_first_not_of("0123456789.:") == rig.npos;
+  const bool is_address = rig.find('.') != rig.npos && rig.find_first_not_of("0123456789.:") == rig.npos;
   if (is_address && !fs::exists(rig))
     throw InputError(rig, "is an address, not a rig file",
                      "copy the robot's rig file, write the address under its `link: peers:` (docs/line.md), and give "
