@@ -15,24 +15,24 @@ namespace foresight {
 /// Of one right camera. One thread.
 class ColourBalance {
  public:
-  /// Corrects a right image, CV_8UC3, by what is known so far; at first by all of both images, which show much the
-  /// same. The image itself where nothing is to be corrected, or it is grey.
-  cv::Mat apply(const cv::Mat& left, const cv::Mat& right);
+  /// Corrects a right image, CV_8UC3, by what is known so far. The image itself where nothing is to be corrected, or it
+  /// is grey.
+  cv::Mat apply(const cv::Mat& right);
 
   /// The left camera has seen these pages so.
   static void remember(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages);
   /// Of the right camera's image that was corrected last: what is still left between it and what remember() was told.
-  /// Where fewer than 30 pages can be compared, nothing is learnt.
-  void learn(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages);
+  /// Where fewer than 30 pages can be compared, nothing is learnt. True: that image should be corrected anew.
+  bool learn(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages);
 
   /// Factors on its red and blue; nothing where the cameras are alike, within 3 %.
   std::optional<Eigen::Vector2d> factors() const;
 
  private:
-  void note_whether_alike();
-
-  std::optional<Eigen::Vector2d> log_;      // red, blue, beside green: right over left
-  bool differs_ = false, applied_ = false;  // by so much that images are corrected; the last one was
+  Eigen::Vector2d log_ = Eigen::Vector2d::Zero();      // red, blue, beside green: right over left
+  Eigen::Vector2d applied_ = Eigen::Vector2d::Zero();  // that of the last image
+  bool differs_ = false;                               // by so much that images are corrected
+  int learnt_ = 0;                                     // images
 };
 
 }  // namespace foresight

@@ -219,7 +219,8 @@ void TextureCore::look(const PosedFrame& frame) {
   newest_.cameras[0]->upload(frame.left.pixels);
   cv::Mat right;
   if (count > 1) {
-    right = options_.even_exposure ? balance_.apply(frame.left.pixels, frame.right->pixels) : frame.right->pixels;
+    right_ = frame.right->pixels;
+    right = options_.even_exposure ? balance_.apply(right_) : right_;
     newest_.cameras[1]->upload(right);
   }
   mark("upload");
@@ -339,7 +340,8 @@ void TextureCore::estimate_exposure(int first, int stride) {
                                             options_.depth_tolerance, first, stride);
     exposures_[i].update(samples, pages, image_);
     if (i == 0 && newest_.images.size() > 1) ColourBalance::remember(samples, pages);
-    if (i == 1) balance_.learn(samples, pages);
+    // Of an image that shadows were taken out of, the correction waits for the next.
+    if (i == 1 && balance_.learn(samples, pages) && !newest_.light) newest_.cameras[1]->upload(balance_.apply(right_));
     tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
                        exposures_[i].vignetting().y());
   }

@@ -90,6 +90,7 @@ class TextureCore {
   std::unique_ptr<AccumulationPass> accumulation_pass_;  // where they are accumulated
   std::vector<ExposureEstimator> exposures_;
   ColourBalance balance_;
+  cv::Mat right_;  // the newest right image as it came
   SharpnessEstimator sharpness_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;
   gl::RasterPass raster_;
