@@ -59,6 +59,10 @@ TEST(RobotWords, SayWhatTheRobotDoesAndWhatToDo) {
   EXPECT_EQ(describe(status, kJoints).name, "drives are being enabled, waiting for yaw");
   status.phase = RobotPhase::ready;
   status.waiting_for = -1;
+  status.gate = {.state = GateState::idle, .reason = GateReason::homing_too_long, .detail = "elbow"};
+  EXPECT_THAT(describe(status, kJoints).name, testing::HasSubstr("homing takes longer"))
+      << "why is more than what next";
+  status.gate = {.state = GateState::idle};
   EXPECT_EQ(describe(status, kJoints).name, "drives hold; not all joints know where they are");
   EXPECT_EQ(describe(status, kJoints).cure, "home them (h)");
   status.all_homed = true;
