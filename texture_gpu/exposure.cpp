@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "common/statistics.hpp"
 
@@ -43,9 +42,8 @@ void ExposureEstimator::update(std::span<const ExposureSample> samples, std::spa
     if (!white && middle(brightness) && middle(std::exp(ref.log_brightness))) middle_ratios.push_back(ratio);
     if (!white && brightness >= kDarkest) used.push_back(i);
   }
-  const auto seen = std::ranges::count_if(samples, [](const ExposureSample& s) { return s.brightness >= 0; });
-  const bool shows_enough = static_cast<std::size_t>(seen) >= 2 * kFewestSamples;
-  measured_ = std::exchange(first_, false) || ratios.size() >= kFewestSamples || !shows_enough;
+  ever_measured_ = ever_measured_ || ratios.size() >= kFewestSamples;
+  measured_ = !ever_measured_ || ratios.size() >= kFewestSamples;
   if (ratios.size() >= kFewestSamples) {
     const double gain = median(middle_ratios.size() >= kFewestSamples ? middle_ratios : ratios);
     std::vector<double> deviations = ratios;

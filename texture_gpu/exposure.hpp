@@ -38,8 +38,8 @@ class ExposureEstimator {
   void update(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages, std::int64_t image);
 
   double log_gain() const { return log_gain_; }
-  /// It was measured in the last image, or that was the first, or shows too little of the scene to measure anything;
-  /// else it is that of the one before, or a bound.
+  /// It was measured in the last image, or never was in any, so that all have the same; else it is that of an image
+  /// before, or a bound.
   bool is_measured() const { return measured_; }
   /// (a, b); zero until it is known well enough to help: v(1) beyond three of its own sigma.
   Eigen::Vector2d vignetting() const { return applied_; }
@@ -56,7 +56,7 @@ class ExposureEstimator {
 
   double log_gain_ = 0, steady_ = 0;
   bool rough_ = false;  // log_gain_ is a bound; steady_ is the last before
-  bool first_ = true, measured_ = false;
+  bool ever_measured_ = false, measured_ = false;
   Eigen::Vector2d applied_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d information_ = Eigen::Matrix2d::Zero();
   Eigen::Vector2d moment_ = Eigen::Vector2d::Zero();
