@@ -1,4 +1,4 @@
-// How an image shows what a pixel of a view shows. Needs camera.glsl, seen.glsl, `sharp`, and view.glsl's Point, Surface and
+// How an image shows what a pixel of a view shows. Needs camera.glsl, seen.glsl, and view.glsl's Point, Surface and
 // kUncertain. Defines: HOMOGRAPHIES, as there.
 
 // Less than this share of the view's resolution is clearly worse than what older images may have seen. Where even the
@@ -9,15 +9,6 @@ const float kCoarsest = 0.3, kFinest = 3.0;
 // lower may be none, or lie elsewhere.
 const float kBump = 0.25;
 const float kRim = 6.0;  // px of the image within which it gives way to older ones
-
-// The image as the view's own camera would have it: lens and sensor spread a point over a deviation of some 0.6 px, of each
-// camera's own pixels. Where the view shows things smaller than the image, that is more of the image's pixels, and the filter is the
-// softer; where it shows them larger, it takes some of the image's spread away. `finer`: pixels of the image for one of the view. A
-// share of 1 - 6 v of the cubic filter spreads by a variance of v (sharpness.hpp).
-const float kSpread = 0.6, kSharpest = 1.5, kSoftest = -1.0;
-float sharp_for(float finer) {
-  return clamp(sharp - 6.0 * kSpread * kSpread * (finer * finer - 1.0), kSoftest, kSharpest);
-}
 
 // How an image shows a point.
 struct Sighting {

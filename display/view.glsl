@@ -18,6 +18,16 @@
 #define USUAL 1
 #define EVERY 2
 uniform float sharp;  // share of the cubic filter, of images or of textures (sharpness.hpp)
+
+// The image as the view's own camera would have it: lens and sensor spread a point over a deviation of some 0.6 px, of each
+// camera's own pixels. Where the view shows things smaller than the image, that is more of the image's pixels, and the filter is the
+// softer; where it shows them larger, it takes some of the image's spread away. `finer`: pixels of the image for one of the view. A
+// share of 1 - 6 v of the cubic filter spreads by a variance of v (sharpness.hpp).
+const float kSpread = 0.6, kSharpest = 1.5, kSoftest = -1.0;
+float sharp_for(float finer) {
+  return clamp(sharp - 6.0 * kSpread * kSpread * (finer * finer - 1.0), kSoftest, kSharpest);
+}
+
 #include "camera.glsl"
 #include "view_alpha.glsl"
 #if CASES == IMAGE || BEFORE
@@ -34,7 +44,8 @@ uniform float gain;
 layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
 uniform float light_age;  // s; of colours that are older it is not known which shadows are in them
 #define BRIGHTEST (1.0 / gain)
-#define SHARP sharp
+// What textures hold is no sharper for being seen from nearer, and softer from farther away (sharpness.hpp).
+#define SHARP_FOR(finer) min(sharp, sharp_for(finer))
 #include "lookup.glsl"
 #endif
 #if CASES != EVERY
@@ -148,6 +159,7 @@ struct Place {
   ChartRecord chart;
   vec2 texel;  // of level 0
   int level;   // whose texels are about as large as the pixel
+  float finer; // so many of its texels are one pixel, on the less crowded axis
 };
 
 Place place_of(Point point) {
@@ -167,6 +179,7 @@ Place place_of(Point point) {
   float pixels_per_texel = max(camera.focal.x, camera.focal.y) * max(length(du), length(dv)) / (abs(point.t) * length(point.sight));
   float lod = -log2(max(pixels_per_texel, 1e-6));
   place.level = clamp(int(floor(lod + 0.15)), 0, 4);
+  place.finer = 1.0 / (max(pixels_per_texel, 1e-6) * float(1 << place.level));
   return place;
 }
 
@@ -205,8 +218,8 @@ vec4 filled(Place place) {
 vec4 shade(Place place) {
   if (place.chart.density.x > 0.0) {
     Taps taps;
-    if (place.level == 0)
-      taps = gather_sharp_taps(place.chart, place.texel);
+    if (place.level <= kCoarsestSharp)
+      taps = gather_sharp_taps(place.chart, place.texel, place.level, place.finer);
     else
       taps = gather_taps(place.chart, place.texel, place.level);
     vec4 colour = shown(taps);
@@ -285,7 +298,7 @@ void draw_pixel(ivec2 pixel) {
 #endif
   Place place = place_of(point);
   choose_light(place);
-  vec4 colour = place.level == 0 ? shown(gather_sharp_taps(place.chart, place.texel)) : vec4(0.0);
+  vec4 colour = place.level == 0 ? shown(gather_sharp_taps(place.chart, place.texel, 0, place.finer)) : vec4(0.0);
 #if LISTED  // much of what no image shows was never seen
   if (place.level == 0 && colour.a == 0.0) colour = filled(place);
 #endif

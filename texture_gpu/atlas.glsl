@@ -34,6 +34,10 @@ uvec4 pack_texel(vec4 texel) {
   return uvec4(mantissas.r | mantissas.g << 8 | mantissas.b << 16 | exponent << 24 | code << 27);
 }
 
+float decode_quality(float alpha) {  // px per texel
+  return exp2((alpha - kLeastSeen) / (kStep * kStepsPerDoubling) - 8.0);
+}
+
 float encode_quality(float px_per_texel) {
   return kLeastSeen + kStep * floor(clamp(log2(max(px_per_texel, 1e-6)) + 8.0, 0.0, 8.0) * kStepsPerDoubling + 0.5);
 }

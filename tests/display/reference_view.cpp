@@ -9,15 +9,6 @@ namespace {
 
 constexpr double kSeen = 1, kHole = 128.0 / 255, kBare = 64.0 / 255;
 
-/// Weights of the four neighbours of a place, centres at integers.
-template <typename F>
-void bilinear(const Eigen::Vector2d& at, F&& f) {
-  const Eigen::Vector2d base = at.array().floor(), part = at - base;
-  for (int i = 0; i < 4; ++i)
-    f(base.cast<int>() + Eigen::Vector2i(i & 1, i >> 1),
-      (i & 1 ? part.x() : 1 - part.x()) * (i >> 1 ? part.y() : 1 - part.y()));
-}
-
 }  // namespace
 
 ViewPixel View::at(const Lens& lens, const Pose& T_world_camera, const Eigen::Vector2d& pixel) const {
@@ -40,36 +31,6 @@ ViewPixel View::at(const Lens& lens, const Pose& T_world_camera, const Eigen::Ve
   }
   return out;
 }
-
-namespace {
-
-/// Catmull-Rom, in which the outer texels of each side are all as the one in the nearest row or column, without the
-/// corners; nothing where one that it takes was not seen.
-template <typename Fetch>
-std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at, Fetch&& fetch) {
-  const auto kernel = [](double d) {
-    d = std::abs(d);
-    return d < 1 ? 1 + d * d * (-2.5 + 1.5 * d) : d < 2 ? 2 + d * (-4 + d * (2.5 - 0.5 * d)) : 0;
-  };
-  Eigen::Vector3d sum(0, 0, 0);
-  double weights = 0;
-  const Eigen::Vector2i base = at.array().floor().cast<int>();
-  const Eigen::Vector2i nearest = (at.array() + 0.5).floor().cast<int>();
-  for (int y = -1; y <= 2; ++y)
-    for (int x = -1; x <= 2; ++x) {
-      const bool outer_x = x < 0 || x > 1, outer_y = y < 0 || y > 1;
-      if (outer_x && outer_y) continue;
-      const Eigen::Vector2i t = base + Eigen::Vector2i(x, y);
-      const Eigen::Vector4d c = fetch(Eigen::Vector2i(outer_y ? nearest.x() : t.x(), outer_x ? nearest.y() : t.y()));
-      if (31 * c.w() < 1.5) return std::nullopt;
-      const double w = kernel(at.x() - t.x()) * kernel(at.y() - t.y());
-      sum += w * c.head<3>();
-      weights += w;
-    }
-  return (sum / weights).eval();
-}
-
-}  // namespace
 
 ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, double focal_px) const {
   const auto patch_index = static_cast<std::size_t>(surface_.patch_of_triangle[static_cast<std::size_t>(hit.triangle)]);
@@ -102,15 +63,7 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
 
     Eigen::Vector4d seen(0, 0, 0, 0), filled(0, 0, 0, 0);
     const Eigen::Vector2d at = (texel + Eigen::Vector2d(0.5, 0.5)) / (1 << level) - Eigen::Vector2d(0.5, 0.5);
-    const auto fetch = [&](const Eigen::Vector2i& t) -> Eigen::Vector4d {
-      const int side = 16 >> level;
-      if (t.minCoeff() < 0 || t.x() >= side * chart.pages.x() || t.y() >= side * chart.pages.y())
-        return Eigen::Vector4d::Zero();
-      const std::uint32_t slot =
-          generation_.table[static_cast<std::size_t>(chart.first_page + t.y() / side * chart.pages.x() + t.x() / side)];
-      if (slot == atlas::kNoSlot) return Eigen::Vector4d::Zero();
-      return to_vector(pixels_.at(slot, level, t.x() % side, t.y() % side));
-    };
+    const auto fetch = [&](const Eigen::Vector2i& t) { return texel_of(generation_, pixels_, chart, level, t); };
     bilinear(at, [&](const Eigen::Vector2i& t, double weight) {
       const Eigen::Vector4d c = fetch(t);
       const double code = 31 * c.w(), share = code < 1.5 ? 0 : level == 0 ? 1 : c.w();

@@ -299,7 +299,8 @@ TEST_F(ExtractTest, TheToneIsTakenOut) {
   EXPECT_GT(compared, 500);
 }
 
-// relevel.comp: each new texel is the bilinear mean of the seen old ones around its place.
+// relevel.comp: each new texel is the cubic mean of the old ones around its place where all of them were seen, else the
+// bilinear one of those that were.
 TEST_F(ExtractTest, ANewResolutionStartsFromTheOldColours) {
   make({"pinhole"});
   bench_->run(photographs({usual_view()}));
@@ -310,7 +311,7 @@ TEST_F(ExtractTest, ANewResolutionStartsFromTheOldColours) {
   ASSERT_GT(bench_->allocation.relevel.size(), 50u);
   bench_->relevel();
   const reference::AtlasPixels after = bench_->pixels();
-  int compared = 0, wrong = 0, colourless = 0;
+  int compared = 0, cubic = 0, wrong = 0, colourless = 0;
   double worst = 0, worst_code = 0;
   for (const PageJob& job : bench_->allocation.relevel) {
     const AtlasChart& fresh = bench_->atlas.charts()[job.chart];
@@ -323,34 +324,30 @@ TEST_F(ExtractTest, ANewResolutionStartsFromTheOldColours) {
                                              16 * (job.xy >> 16) + static_cast<unsigned>(k / 16))
                                  .cwiseQuotient(fresh.raster.density);
       const Eigen::Vector2d texel = (uv - chart.uv0).cwiseProduct(chart.density);
-      const Eigen::Vector2d base = texel.array().floor(), f = texel - base;
+      const auto fetch = [&](const Eigen::Vector2i& t) { return reference::texel_of(old, before, chart, 0, t); };
       Eigen::Vector4d sum(0, 0, 0, 0);
       double weight = 0;
-      for (int i = 0; i < 4; ++i) {
-        const Eigen::Array2i t = base.cast<int>().array() + Eigen::Array2i(i & 1, i >> 1), page = t / 16;
-        if ((t < 0).any() || (page >= chart.pages.array()).any()) continue;
-        const std::uint32_t slot =
-            old.table[static_cast<std::size_t>(chart.first_page + page.y() * chart.pages.x() + page.x())];
-        if (slot == atlas::kNoSlot) continue;
-        const reference::Texel c = before.at(slot, 0, t.x() % 16, t.y() % 16);
-        const double w = (i & 1 ? f.x() : 1 - f.x()) * (i >> 1 ? f.y() : 1 - f.y());
-        if (c[3] >= 2) sum += w * Eigen::Vector4d(c[0], c[1], c[2], c[3]), weight += w;
-      }
+      reference::bilinear(texel, [&](const Eigen::Vector2i& t, double w) {
+        if (const Eigen::Vector4d c = fetch(t); 31 * c.w() > 1.5) sum += w * c, weight += w;
+      });
       const reference::Texel got = after.at(job.new_slot, 0, k % 16, k / 16);
-      if (std::abs(weight - 0.25) < 1e-3) continue;
+      const Eigen::Array2d halves = 2 * texel.array();  // there another row or column is the nearest, or the outermost
+      if (std::abs(weight - 0.25) < 1e-3 || (halves - halves.round()).abs().minCoeff() < 2e-3) continue;
       if (weight < 0.25) {
         ++colourless;
         wrong += got != reference::Texel{};
         continue;
       }
       sum /= weight;
-      const double code = std::clamp(sum[3] + 0.5 * std::log2(ratio.prod()) / 8 * 29, 2.0, 31.0);
+      const double code = std::clamp(31 * sum[3] + 0.5 * std::log2(ratio.prod()) / 8 * 29, 2.0, 31.0);
+      if (const auto sharp = reference::cubic(texel, fetch)) sum.head<3>() = sharp->cwiseMax(0).cwiseMin(1), ++cubic;
       ++compared;
-      for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(got[static_cast<std::size_t>(c)] - sum[c]));
+      for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(got[static_cast<std::size_t>(c)] - 255 * sum[c]));
       worst_code = std::max(worst_code, std::abs(got[3] - code));
     }
   }
   EXPECT_GT(compared, 5000);
+  EXPECT_GT(cubic, 2000);
   EXPECT_GT(colourless, 500);
   EXPECT_EQ(wrong, 0);
   // Both readings are rounded to eight bits, and so is what was written; float places of texels.

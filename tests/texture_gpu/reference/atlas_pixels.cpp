@@ -85,4 +85,39 @@ Eigen::Vector4d to_vector(const Texel& t) {
   return {t[0] / 255., t[1] / 255., t[2] / 255., t[3] / 31.};
 }
 
+Eigen::Vector4d texel_of(const Generation& generation, const AtlasPixels& pixels, const ChartCopy& chart, int level,
+                         const Eigen::Vector2i& at) {
+  const int side = atlas::kPage >> level;
+  if (at.minCoeff() < 0 || at.x() >= side * chart.pages.x() || at.y() >= side * chart.pages.y())
+    return Eigen::Vector4d::Zero();
+  const int page = chart.first_page + at.y() / side * chart.pages.x() + at.x() / side;
+  const std::uint32_t slot = generation.table[static_cast<std::size_t>(page)];
+  if (slot == atlas::kNoSlot) return Eigen::Vector4d::Zero();
+  return to_vector(pixels.at(slot, level, at.x() % side, at.y() % side));
+}
+
+std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at,
+                                     const std::function<Eigen::Vector4d(const Eigen::Vector2i&)>& fetch) {
+  const auto kernel = [](double d) {
+    d = std::abs(d);
+    return d < 1 ? 1 + d * d * (-2.5 + 1.5 * d) : d < 2 ? 2 + d * (-4 + d * (2.5 - 0.5 * d)) : 0;
+  };
+  Eigen::Vector3d sum(0, 0, 0);
+  double weights = 0;
+  const Eigen::Vector2i base = at.array().floor().cast<int>();
+  const Eigen::Vector2i nearest = (at.array() + 0.5).floor().cast<int>();
+  for (int y = -1; y <= 2; ++y)
+    for (int x = -1; x <= 2; ++x) {
+      const bool outer_x = x < 0 || x > 1, outer_y = y < 0 || y > 1;
+      if (outer_x && outer_y) continue;
+      const Eigen::Vector2i t = base + Eigen::Vector2i(x, y);
+      const Eigen::Vector4d c = fetch(Eigen::Vector2i(outer_y ? nearest.x() : t.x(), outer_x ? nearest.y() : t.y()));
+      if (31 * c.w() < 1.5) return std::nullopt;
+      const double w = kernel(at.x() - t.x()) * kernel(at.y() - t.y());
+      sum += w * c.head<3>();
+      weights += w;
+    }
+  return (sum / weights).eval();
+}
+
 }  // namespace foresight::reference

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "gl/objects.hpp"
@@ -46,5 +48,23 @@ struct Generation {
 
 /// Alpha: the code's share of 31.
 Eigen::Vector4d to_vector(const Texel& texel);
+
+/// Texel `at` of a chart's level; 0 where it has none.
+Eigen::Vector4d texel_of(const Generation& generation, const AtlasPixels& pixels, const ChartCopy& chart, int level,
+                         const Eigen::Vector2i& at);
+
+/// Calls `f` with each of the four neighbours of a place, centres at integers, and its weight.
+template <typename F>
+void bilinear(const Eigen::Vector2d& at, F&& f) {
+  const Eigen::Vector2d base = at.array().floor(), part = at - base;
+  for (int i = 0; i < 4; ++i)
+    f(Eigen::Vector2i(base.cast<int>() + Eigen::Vector2i(i & 1, i >> 1)),
+      (i & 1 ? part.x() : 1 - part.x()) * (i >> 1 ? part.y() : 1 - part.y()));
+}
+
+/// Catmull-Rom, in which the outer texels of each side are all as the one in the nearest row or column, without the
+/// corners; nothing where one that it takes was not seen.
+std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at,
+                                     const std::function<Eigen::Vector4d(const Eigen::Vector2i&)>& fetch);
 
 }  // namespace foresight::reference
