@@ -11,6 +11,7 @@
 #include "apps/replay_report/progress_bar.hpp"
 #include "apps/view_measures.hpp"
 #include "common/error.hpp"
+#include "common/partial_path.hpp"
 #include "common/stop_signal.hpp"
 #include "display/recorded_source.hpp"
 #include "display/view_window.hpp"
@@ -45,8 +46,7 @@ std::optional<thesis::Options> thesis_options(const ReplayOptions& options) {
 }
 
 std::string name_of(const fs::path& run) {
-  const fs::path whole = fs::absolute(run).lexically_normal();
-  return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
+  return without_end_slash(fs::absolute(run).lexically_normal()).filename().string();
 }
 
 RunRecord described(const ViewSession& session, const ViewSetup& setup, const RunFolder& run,

@@ -54,9 +54,12 @@ void sweep(const fs::path& folder, const std::string& prefix) noexcept {
 
 }  // namespace
 
+fs::path without_end_slash(const fs::path& path) {
+  return path.has_filename() ? path : path.parent_path();
+}
+
 fs::path partial_path(const fs::path& target) {
-  fs::path out = target.has_filename() ? target : target.parent_path();
-  return out += std::string(kMark) + std::to_string(::getpid());
+  return without_end_slash(target) += std::string(kMark) + std::to_string(::getpid());
 }
 
 bool is_partial(const fs::path& path) {

@@ -5,6 +5,9 @@
 
 namespace foresight {
 
+/// `path` without the slash that a folder's name may end in.
+std::filesystem::path without_end_slash(const std::filesystem::path& path);
+
 /// Where what will be `target` is written until it is complete: its neighbour "NAME.partial-PID". A folder's name may
 /// end in a slash.
 std::filesystem::path partial_path(const std::filesystem::path& target);

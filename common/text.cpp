@@ -126,17 +126,17 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
   return best;
 }
 
-std::string near_word(std::string_view word, std::span<const std::string> candidates) {
+std::string question_of_near(std::string_view word, std::span<const std::string> candidates) {
   const std::string best = nearest_word(word, candidates);
   const bool holds_it = word.size() >= 3 && best.find(word) != std::string::npos;
-  return holds_it || 2 * edit_distance(lower(word), lower(best)) <= std::max(word.size(), best.size()) + 1 ? best : "";
+  const bool near = 2 * edit_distance(lower(word), lower(best)) <= std::max(word.size(), best.size()) + 1;
+  return !best.empty() && (holds_it || near) ? "did you mean " + in_quotes(best) + "?" : "";
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates, const std::string& otherwise) {
   constexpr std::size_t kMost = 12;  // of many, some show at least what such a word looks like
   if (candidates.empty()) return otherwise;
-  if (const std::string near = near_word(word, candidates); !near.empty())
-    return "did you mean " + in_quotes(near) + "?";
+  if (std::string question = question_of_near(word, candidates); !question.empty()) return question;
   if (candidates.size() <= kMost) return "known are " + joined(candidates);
   return "known are " + joined(candidates.first(kMost)) + " and " + std::to_string(candidates.size() - kMost) + " more";
 }

@@ -30,10 +30,10 @@ std::string in_quotes(std::string_view text);
 /// equals); empty only where there is no candidate.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 
-/// nearest_word() where it is as good as `word`, or has at least half of its letters; else empty.
-std::string near_word(std::string_view word, std::span<const std::string> candidates);
+/// "did you mean 'elbow'?" where nearest_word() holds `word`, or has at least half of its letters; else empty.
+std::string question_of_near(std::string_view word, std::span<const std::string> candidates);
 
-/// The cure for a word that is none of the candidates: "did you mean 'elbow'?"; which there are, where none is near;
+/// The cure for a word that is none of the candidates: question_of_near(); which there are, where none is near;
 /// `otherwise` where there are none.
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates,
                          const std::string& otherwise = "correct it");

@@ -34,9 +34,8 @@ void require_recording(const std::string& device) {
   const std::string list = "`foresight input list` says which devices are there";
   if (device.find_first_of("/.") != std::string::npos)
     throw InputError(in_quotes(device), "no such file", "put the recording there or correct the name; " + list);
-  const std::string near = near_word(device, devices);
-  throw InputError(in_quotes(device), "is no device, and no file",
-                   (near.empty() ? "" : "did you mean " + in_quotes(near) + "? ") + list);
+  const std::string question = question_of_near(device, devices);
+  throw InputError(in_quotes(device), "is no device, and no file", question + (question.empty() ? "" : " ") + list);
 }
 
 }  // namespace

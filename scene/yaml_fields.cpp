@@ -34,10 +34,9 @@ void YamlMap::require_known(const std::vector<std::string>& known) const {
   std::vector<std::string> seen;
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
-      const std::string near = near_word(key, known);
+      const std::string question = question_of_near(key, known);
       throw InputError(where(key), "unknown key " + in_quotes(key),
-                       near.empty() ? "known are " + joined(known)
-                                    : "did you mean " + in_quotes(near) + "? Known are " + joined(known));
+                       (question.empty() ? "k" : question + " K") + "nown are " + joined(known));
     }
     if (std::find(seen.begin(), seen.end(), key) != seen.end())
       throw InputError(where(key), "key " + in_quotes(key) + " appears twice", "remove one of the two");

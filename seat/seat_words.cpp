@@ -29,9 +29,7 @@ std::string control_cure(const ControlSeatStatus& control) {
   return control.cure + (control.cure.empty() ? "" : "; ") + "G takes your request back";
 }
 
-// States of control come every 0.2 s on the thinnest of lines, the robot's words every second (link/robot_side/
-// line_share.hpp). After the first of these the seat is blind, too.
-constexpr Duration kSilent = std::chrono::milliseconds(500), kOldWords = std::chrono::milliseconds(1500);
+constexpr Duration kOldWords = std::chrono::milliseconds(1500);  // the robot's words come every second
 
 double ms(Duration d) {
   return 1e3 * to_seconds(d);
@@ -40,7 +38,7 @@ double ms(Duration d) {
 /// For how long nothing has come of a robot that was heard; nothing where it is heard.
 std::optional<Duration> silence(const SeatStatus& status) {
   const auto& control = status.control.state_age;
-  if (control && *control > kSilent) return control;
+  if (control && *control > ControlSeatStatus::kSilentAfter) return control;
   if (status.robot_age && *status.robot_age > kOldWords) return status.robot_age;
   return std::nullopt;
 }

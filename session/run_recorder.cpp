@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "common/error.hpp"
+#include "common/partial_path.hpp"
 #include "scene/files.hpp"
 #include "scene/scene_writer.hpp"
 #include "session/stop_latency.hpp"
@@ -21,9 +22,8 @@ constexpr int kCompression = 1;  // more takes longer than 33 ms
 
 }  // namespace
 
-fs::path beside_run(fs::path out, const char* ending) {
-  if (!out.has_filename()) out = out.parent_path();
-  return out.concat(ending);
+fs::path beside_run(const fs::path& run, const char* ending) {
+  return without_end_slash(run).concat(ending);
 }
 
 FolderForm RunRecorder::form() {

@@ -30,8 +30,8 @@ struct RecorderOptions {
   bool irreplaceable = true;                       ///< FolderForm::irreplaceable; false: made of a file that stays
 };
 
-/// What is recorded beside the folder `out`: "run/" and "-joints.csv" give "run-joints.csv".
-std::filesystem::path beside_run(std::filesystem::path out, const char* ending);
+/// What is recorded beside the folder `run`: "run/" and "-joints.csv" give "run-joints.csv".
+std::filesystem::path beside_run(const std::filesystem::path& run, const char* ending);
 
 struct RecorderCounts {
   std::uint64_t written = 0;  ///< pairs

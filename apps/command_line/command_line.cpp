@@ -38,9 +38,9 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   for (const CLI::App* job : command->get_subcommands({})) jobs.push_back(job->get_name());
   const auto unknown = app.remaining(true);
   if (!jobs.empty() && !unknown.empty() && !unknown.front().starts_with('-')) {
-    const std::string near = near_word(unknown.front(), jobs);
-    return "there is no subcommand " + in_quotes(unknown.front()) +
-           (near.empty() ? "; " + help : "; did you mean " + in_quotes(near) + "? S" + help.substr(1));
+    const std::string question = question_of_near(unknown.front(), jobs);
+    return "there is no subcommand " + in_quotes(unknown.front()) + "; " +
+           (question.empty() ? help : question + " S" + help.substr(1));
   }
   return fault_of(error) + "; " + help;
 }
@@ -103,9 +103,8 @@ OptionCheck one_of(std::vector<std::string> words) {
   const std::string all = joined(words);
   return {[words = std::move(words), all](const std::string& given) {
             if (std::find(words.begin(), words.end(), given) != words.end()) return std::string();
-            const std::string near = near_word(given, words);
-            return in_quotes(given) + " is none of " + all +
-                   (near.empty() ? "; give one" : "; did you mean " + in_quotes(near) + "?");
+            const std::string question = question_of_near(given, words);
+            return in_quotes(given) + " is none of " + all + "; " + (question.empty() ? "give one" : question);
           },
           "one of " + all};
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/command_line/named_files.hpp"
+#include "common/partial_path.hpp"
 
 namespace foresight {
 namespace {
@@ -28,7 +29,7 @@ fs::path canonical_place(const fs::path& path) {
   std::error_code error;
   fs::path out = fs::weakly_canonical(fs::absolute(path), error);
   if (error) out = fs::absolute(path).lexically_normal();
-  return out.has_filename() ? out : out.parent_path();
+  return without_end_slash(out);
 }
 
 bool same_file(const fs::path& a, const fs::path& b) {

@@ -53,8 +53,7 @@ UniqueFd require_writable(const std::string& where, const fs::path& path, bool i
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return opened(where, path);
-  fs::path whole = fs::absolute(path).lexically_normal();
-  if (!whole.has_filename()) whole = whole.parent_path();
+  const fs::path whole = without_end_slash(fs::absolute(path).lexically_normal());
   const fs::path folder = inside && fs::is_directory(status) ? whole : whole.parent_path();
   std::error_code error = folders.make(folder);
   if (!error) error = try_file(partial_path(folder / whole.filename()));

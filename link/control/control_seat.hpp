@@ -39,6 +39,8 @@ struct ControlSeatStatus {
   std::string words, cure;              ///< what keeps the robot from following; "" where nothing does
   std::vector<Difference> differences;  ///< of the two sides
   std::optional<Duration> state_age;    ///< of the newest state, since it came
+  /// A robot is silent then: states come every 0.2 s on the thinnest of lines (link/robot_side/line_share.hpp).
+  static constexpr Duration kSilentAfter = std::chrono::milliseconds(500);
 };
 
 /// How a request went.

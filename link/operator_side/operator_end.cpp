@@ -165,9 +165,9 @@ LineFigures OperatorEnd::figures() const {
   {
     const std::lock_guard lock(figures_mutex_);
     out = figures_;
-    const auto lately = std::ranges::count_if(arrivals_, [&](OperatorTime at) { return now() - at <= kRateOver; });
-    const Duration over =
-        first_ ? std::clamp<Duration>(now() - *first_, std::chrono::seconds(1), kRateOver) : kRateOver;
+    const OperatorTime at = now();
+    const auto lately = std::ranges::count_if(arrivals_, [at](OperatorTime came) { return at - came <= kRateOver; });
+    const Duration over = first_ ? std::clamp<Duration>(at - *first_, std::chrono::seconds(1), kRateOver) : kRateOver;
     out.pairs_per_s = static_cast<double>(lately) / to_seconds(over);
   }
   const RobotClockTracker clock = robot_clock();

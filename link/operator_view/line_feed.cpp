@@ -3,16 +3,10 @@
 #include <fmt/core.h>
 
 namespace foresight::link {
-namespace {
-
-// States of control come every 0.2 s on the thinnest of lines (link/robot_side/line_share.hpp).
-constexpr Duration kSilent = std::chrono::milliseconds(500);
-
-}  // namespace
 
 std::string why_no_images(const LineFigures& figures, const std::optional<OperatorEnd::HeardState>& heard,
                           std::optional<Duration> control_age) {
-  if (!heard || !control_age || *control_age > kSilent) return "nothing is heard of the robot";
+  if (!heard || !control_age || *control_age > ControlSeatStatus::kSilentAfter) return "nothing is heard of the robot";
   const CameraLines& cameras = heard->state.cameras;
   if (!cameras.fault.empty()) return cameras.fault;
   if (!cameras.present) return "its program runs without cameras";
