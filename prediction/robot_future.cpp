@@ -96,7 +96,9 @@ HistoryFault RobotFuture::reported(const RobotReport& report, RobotTime now) noe
   }
   const Shown before = any_shown_ ? predict(shown_) : Shown{};
   reported_ = report.time;
-  came_ = now_ = std::max(now, now_);
+  now_ = std::max(now, now_);
+  learn_gap(to_seconds(now_ - came_));
+  came_ = now_;
   doing_ = report.doing;
   if (doing_ != GateDoing::away) {
     const std::optional<ExpectedMotion::Change> change = motion_.reported(report, now);
@@ -111,6 +113,18 @@ HistoryFault RobotFuture::reported(const RobotReport& report, RobotTime now) noe
     if (before.judged && after.judged) joints_[i].correction.jumped(after.predicted[i] - before.predicted[i]);
   score();
   return HistoryFault::none;
+}
+
+// A quantile is above so many of all values that it falls as often by little as it rises by much.
+void RobotFuture::learn_gap(double seconds) noexcept {
+  constexpr double kTogether = 5e-3;  // s: what was held up came at once, and was waited for once
+  constexpr double kRise = 0.2, kFall = kRise * 0.05 / 0.95;
+  if (seconds < kTogether) return;
+  usual_gap_ = std::clamp(usual_gap_ * (seconds > usual_gap_ ? 1 + kRise : 1 - kFall), 0.01, options_.stale);
+}
+
+bool RobotFuture::overdue() const noexcept {
+  return to_seconds(now_ - came_) > std::max(options_.overdue, options_.overdue_gaps * usual_gap_);
 }
 
 void RobotFuture::advance(RobotTime now) noexcept {
@@ -249,7 +263,8 @@ FutureReason RobotFuture::doubt(const Shown& shown, int& joint) const noexcept {
 
 FutureReason RobotFuture::doubt(const Shown& shown, std::size_t joint) const noexcept {
   if (joints_[joint].held.doubted || joints_[joint].missed.doubted) return FutureReason::astray;
-  return shown.robot.sigma[joint] > joints_[joint].least_sure ? FutureReason::unsure : FutureReason::none;
+  if (shown.robot.sigma[joint] <= joints_[joint].least_sure) return FutureReason::none;
+  return overdue() ? FutureReason::stale : FutureReason::unsure;
 }
 
 // Jaws that hold something stand elsewhere than they are asked to for as long as they do, and carry neither tool nor
@@ -268,8 +283,9 @@ bool RobotFuture::predict(std::size_t joint, Shown& out) const noexcept {
   const PredictedPosition there = of.response.at(since_epoch(time));
   if (!there.valid) return false;
   const double beyond = std::max(0.0, to_seconds(time - motion_.known_until()));
+  const double stopped = overdue() ? there.position - of.response.at(since_epoch(reported_)).position : 0;
   out.predicted[joint] = out.robot.position[joint] = there.position;
-  out.prior[joint] = std::hypot(there.sigma, beyond * motion_.cycles().newest().motion[joint].velocity);
+  out.prior[joint] = std::hypot(there.sigma, beyond * motion_.cycles().newest().motion[joint].velocity, stopped);
   out.scale[joint] = of.scale.sigma();
   out.robot.sigma[joint] = out.scale[joint] * out.prior[joint];
   const bool is_new = of.response.identified() && time <= of.judged_from;

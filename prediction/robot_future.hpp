@@ -67,6 +67,9 @@ struct RobotFutureOptions {
   GateOptions gate;
   std::vector<std::optional<KnownResponse>> responses = {};  ///< of the joints' drives; none: of none
   double stale = 1;                                          ///< s without a report beyond the line's delay
+  /// s without a report, and as often as long as 95 % of the reports keep the seat waiting, after which the robot may
+  /// have stopped where the newest one told of it: what keeps reports away keeps set-points away.
+  double overdue = 0.1, overdue_gaps = 3;
   double astray_share = 0.125;  ///< of a joint's largest following error, that is no more a matter of precision
   double astray_after = 0.2;    ///< s that it lasts before it counts, and that it is gone before it does not
   double missed_after = 0.5;    ///< likewise, of what was shown, beyond the line's delay there and back
@@ -138,6 +141,7 @@ class RobotFuture {
   double since_epoch(RobotTime time) const noexcept { return to_seconds(time - epoch_); }
   void begin_anew(RobotTime after) noexcept;
   void feed(RobotTime after) noexcept;
+  void learn_gap(double seconds) noexcept;
   void observe(const RobotReport& report) noexcept;
   static void forget_hold(Joint& joint, double noticed) noexcept;
   void identify() noexcept;
@@ -148,6 +152,7 @@ class RobotFuture {
   Shown predict(RobotTime time) const noexcept;
   /// One joint of it; false: too far ahead.
   bool predict(std::size_t joint, Shown& out) const noexcept;
+  bool overdue() const noexcept;
   FutureReason obstacle(RobotTime time, int& joint) const noexcept;
   FutureReason doubt(const Shown& shown, int& joint) const noexcept;
   FutureReason doubt(const Shown& shown, std::size_t joint) const noexcept;
@@ -158,6 +163,7 @@ class RobotFuture {
   ExpectedMotion motion_;
   std::vector<Joint> joints_;
   RobotTime epoch_, now_, reported_, came_, fed_, shown_, sent_at_;
+  double usual_gap_ = 0.05;  // s between reports that 95 % of them keep
   std::uint64_t sent_number_ = 0;
   GateDoing doing_ = GateDoing::away;
   bool any_shown_ = false;

@@ -334,6 +334,32 @@ TEST(RobotFuture, SaysWhyItCannotKnow) {
   EXPECT_GT(world.pictures().size(), began);
 }
 
+// What keeps reports away keeps set-points away: the robot stops, and nobody tells.
+TEST(RobotFuture, ThatItMayHaveStoppedIsDoubtedBeforeItIsKnown) {
+  FutureWorld world;
+  world.run(15);
+  int seen = 0, wrong = 0;
+  for (int cut = 0; cut < 10; ++cut) {
+    const std::size_t began = world.pictures().size();
+    const RobotTime cut_at = world.now();
+    world.robot_silent = world.line_cut_down = true;
+    world.run(2.5);
+    for (std::size_t i = began; i < world.pictures().size(); ++i) {
+      const PredictedRobot& shown = world.pictures()[i];
+      if (shown.time > world.now() || shown.time < cut_at) continue;
+      ++seen;
+      if (shown.status != StateStatus::predicted) continue;
+      const double off = std::abs(shown.position[0] - world.truth_at(shown.time)[0]);
+      wrong += off > std::max(2 * shown.sigma[0], 0.02);
+    }
+    world.robot_silent = world.line_cut_down = false;
+    world.run(4.3);
+  }
+  EXPECT_GT(seen, 800);
+  EXPECT_LT(wrong, seen / 50);
+  EXPECT_EQ(world.future().at(world.now()).status, StateStatus::predicted);
+}
+
 TEST(RobotFuture, HistoriesThatAreWrongAreRefused) {
   FutureWorld world;
   world.run(5);
