@@ -10,8 +10,11 @@ constexpr std::size_t kMostRecords = 20'000;
 constexpr Duration kFirstTrip = std::chrono::milliseconds(300);  // until one was measured
 constexpr Duration kLeastOvertaking = std::chrono::milliseconds(5), kMostOvertaking = std::chrono::milliseconds(60);
 constexpr Duration kLeastQuestion = std::chrono::milliseconds(60);
-constexpr Duration kMostQuestion = std::chrono::seconds(1);
-constexpr int kQuickQuestions = 12;                             // then at growing distances: losses come in rows, too
+constexpr Duration kFirstQuestion = std::chrono::seconds(1);  // at the latest
+// Where losses come in rows of packets, a row is as long as its packets are apart; a question is 60 bytes with its
+// headers.
+constexpr Duration kMostQuestion = std::chrono::milliseconds(200);
+constexpr int kQuickQuestions = 12;                             // then at growing distances
 constexpr Duration kNewsEvery = std::chrono::milliseconds(10);  // acknowledgements, at most, while packets come
 constexpr double kLossMemory = 1e-3;
 constexpr Duration kArrivalWrap = std::chrono::microseconds(10) * (std::int64_t{1} << 32);
@@ -128,9 +131,8 @@ std::vector<Transmissions::Sent> Transmissions::lost(RobotTime now) {
 std::optional<RobotTime> Transmissions::question_time() const {
   if (on_the_way_ == 0) return std::nullopt;
   const Duration usual = smooth_ ? *smooth_ + std::max(4 * variation_, kLeastQuestion / 2) : kFirstTrip;
-  const Duration wait =
-      std::min(std::max(usual, kLeastQuestion) * (1 << std::clamp(questions_ - kQuickQuestions, 0, 5)), kMostQuestion);
-  return std::max(last_send_, last_news_) + wait;
+  const Duration quick = std::max(usual, kLeastQuestion) * (1 << std::clamp(questions_ - kQuickQuestions, 0, 5));
+  return std::max(last_send_, last_news_) + std::min(quick, questions_ == 0 ? kFirstQuestion : kMostQuestion);
 }
 
 bool Transmissions::question_due(RobotTime now) const {
