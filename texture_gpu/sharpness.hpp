@@ -38,8 +38,8 @@ class SharpnessEstimator {
   static constexpr double kMost = 1;
   /// What textures hold has passed through a cubic filter before: a full one more rings at edges.
   static constexpr double kMostOfTextures = 0.6;
-  /// Softer than linear would err less, and look blurred.
-  static constexpr double kLeast = 0;
+  /// Linear and softer would err less, and looks blurred.
+  static constexpr double kLeast = 0.1;
 
  private:
   std::optional<double> misplacement2_;
