@@ -9,7 +9,7 @@
 namespace foresight {
 namespace {
 
-constexpr double kWatchdogHz = 25, kHeartbeatHz = 50;
+constexpr double kWatchdogHz = 100, kHeartbeatHz = 50;
 
 double bits(std::uint8_t bytes) {
   CanFrame frame;

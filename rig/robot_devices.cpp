@@ -146,6 +146,9 @@ std::unique_ptr<DriveNetwork> make_network(CanBus& bus, Clock& clock, const Rig&
       if (joint.bus == number) drives.push_back(joint.drive);
     powercube::Options options;
     options.cycle = cycle;
+    // No less than the gate itself waits for a position, and so that it is told what is wrong by then.
+    const int within_age = static_cast<int>(rig.feedback_age_s * rig.rate_hz) - 1;
+    options.missing_cycles = std::max(options.missing_cycles, within_age);
     return std::make_unique<powercube::Network>(bus, clock, drives, options);
   }
   std::vector<canopen::Cia402Config> drives;

@@ -26,7 +26,7 @@ double milliseconds(Duration d) {
 // --- what the module says -------------------------------------------------------------------------------------------
 
 void Module::take(const Message& m, RobotTime time) noexcept {
-  heard_ = std::max(heard_, time);
+  silent_ = 0;
   if (state_ == DriveState::offline) {
     enter(DriveState::stopping);  // whatever it did meanwhile, it begins anew from a halt
     want_halt_ = true;
@@ -107,11 +107,13 @@ void Module::take_position(double wire, RobotTime time) noexcept {
   position_ = wire;
   position_time_ = time;
   position_fresh_ = true;
+  without_position_ = 0;
 }
 
 void Module::check(RobotTime now) noexcept {
   now_ = now;
-  if (state_ == DriveState::offline || now - heard_ <= options_.cycle * options_.missing_cycles) return;
+  // By cycles, not by the clock: a loop that was late has asked nothing meanwhile.
+  if (state_ == DriveState::offline || silent_ <= options_.missing_cycles) return;
   own_fault_ = "";
   velocity_.reset();
   enter(DriveState::offline);
@@ -190,6 +192,8 @@ void Module::obey() noexcept {
 void Module::send(RobotTime now, CanBus& bus) noexcept {
   now_ = now;
   ++cycles_;
+  silent_ = std::min(silent_ + 1, options_.missing_cycles + 1);
+  without_position_ = std::min(without_position_ + 1, options_.missing_cycles + 1);
   obey();
   if (state_ == DriveState::homing) watch_homing();
   if (state_ == DriveState::enabling) send_enabling(bus);
@@ -231,7 +235,7 @@ void Module::send_enabling(CanBus& bus) noexcept {
 
 void Module::send_enabled(CanBus& bus) noexcept {
   if (!word_is(kHomeOk)) return;
-  if (now_ - position_time_ > options_.cycle * options_.missing_cycles) return fail("does not answer set-points");
+  if (without_position_ > options_.missing_cycles) return fail("does not answer set-points");
   double wire = target_ ? to_wire(*target_) : last_sent_;
   if (options_.set_points == SetPoints::ramp) {
     if (target_ && send_ramp(wire, bus)) last_sent_ = wire;

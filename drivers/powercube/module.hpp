@@ -30,7 +30,9 @@ enum class SetPoints : std::uint8_t {
 
 struct Options {
   Duration cycle = std::chrono::milliseconds(10);  ///< of the loop, 1 .. 30 ms: the watchdog must be fed each 40 ms
-  int missing_cycles = 5;                          ///< without any answer, then a module is offline; > 0
+  /// Cycles in which a module was asked and said nothing, then it is offline; > 0. A loop that is late itself asks
+  /// nothing meanwhile, and has nothing to miss.
+  int missing_cycles = 5;
   SetPoints set_points = SetPoints::step;
 };
 
@@ -108,8 +110,8 @@ class Module final : public Drive {
   bool configured_ = false;
 
   // What the module told.
-  RobotTime heard_;
-  std::uint32_t word_ = 0;  // CubeState
+  int silent_ = 0, without_position_ = 0;  // cycles sent since it said anything, and where it is
+  std::uint32_t word_ = 0;                 // CubeState
   RobotTime position_time_;
   double position_ = 0;             // wire units
   std::optional<double> velocity_;  // wire units

@@ -8,7 +8,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kScanTime = 200ms;
-constexpr Duration kFedWithin = 30ms;      // 40 ms, less what a late cycle may take
+constexpr Duration kFedWithin = 15ms;      // of 40 ms: a cycle that is late by the rest stops no module
 constexpr int kMostFramesPerCycle = 2048;  // a babbling bus must not hold the loop
 
 }  // namespace

@@ -284,6 +284,18 @@ TEST_F(PowerCube, SilentModulesAreOfflineAndComeBackHalted) {
   EXPECT_THAT(shoulder_.steps, Each(testing::DoubleNear(-0.3, 1e-6)));
 }
 
+TEST_F(PowerCube, ALoopThatIsLateDoesNotTakeModulesForSilent) {
+  start_enabled({.missing_cycles = 1});
+  for (int i = 0; i < 5; ++i) {
+    clock_.sleep_until(clock_.now() + 15ms);  // a cycle and a half, besides its own; within the modules' own patience
+    run(3);
+    ASSERT_EQ(state(), DriveState::enabled) << drive().feedback().fault;
+  }
+  shoulder_.silent = true;
+  run(3);
+  EXPECT_EQ(state(), DriveState::offline) << "one that was asked in vain is missed all the same";
+}
+
 TEST_F(PowerCube, AModuleThatLostItsPowerMustBeConfiguredAgain) {
   start_enabled();
   shoulder_.silent = true;

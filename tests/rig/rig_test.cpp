@@ -50,7 +50,7 @@ TEST(BusPlan, KnowsWhatARigWillSend) {
   rig.buses[0].bit_rate = 500'000;
   EXPECT_THAT(
       input_error([&] { require_room_on_buses(rig); }),
-      testing::AllOf(testing::HasSubstr("'arm'"), testing::HasSubstr("108 %"), testing::HasSubstr("rate_hz to 158")));
+      testing::AllOf(testing::HasSubstr("'arm'"), testing::HasSubstr("109 %"), testing::HasSubstr("rate_hz to 156")));
   const Rig cia402 = read_rig(config("cia402.yaml"));
   EXPECT_LT(planned_bus_load(cia402, 0), kMostBusLoad);
   EXPECT_GT(planned_bus_load(cia402, 0), 0.5);
