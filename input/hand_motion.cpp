@@ -82,8 +82,9 @@ void HandControl::jog(double rate, double dt) noexcept {
   move_to(out_.joint, rate > 0 ? limits.max_position : limits.min_position, dt,
           options_.joint_speed * std::min(std::abs(rate), 1.0));
   const auto of_arm = std::ranges::find(options_.arm_joints, out_.joint);
-  if (!guard_ || of_arm == options_.arm_joints.end() || out_.positions[out_.joint] == before[out_.joint]) return;
+  if (!guard_ || out_.positions[out_.joint] == before[out_.joint]) return;
   const FollowStep step = guard_->go(before, out_.positions);
+  if (of_arm == options_.arm_joints.end()) return;  // nothing holds it back, but what jaws take is seen
   const double to = step.q[of_arm - options_.arm_joints.begin()];
   out_.positions[out_.joint] = std::clamp(to, std::min(before[out_.joint], out_.positions[out_.joint]),
                                           std::max(before[out_.joint], out_.positions[out_.joint]));
@@ -134,6 +135,7 @@ void HandControl::move_grippers(const TrackerState& device, double dt) noexcept 
   const bool open = device.buttons.held(TrackerButton::gripper_open);
   const bool close = device.buttons.held(TrackerButton::gripper_close);
   const bool trigger = device.grip && std::isfinite(*device.grip);
+  const JointValues before = out_.positions;
   for (std::size_t i = 0; i < out_.joints; ++i) {
     if (options_.roles[i] != JointRole::gripper) continue;
     if (open != close) {
@@ -145,6 +147,10 @@ void HandControl::move_grippers(const TrackerState& device, double dt) noexcept 
     }
   }
   grip_ = trigger ? device.grip : std::nullopt;
+  // Under a hand that has not moved yet, and where single joints do, nobody else asks the guard: it would not see what
+  // the jaws take.
+  const bool asked = out_.mode == HandMode::tool && held_->clutched && moved_;
+  if (guard_ && !asked && out_.positions != before) guard_->go(before, out_.positions);
 }
 
 void HandControl::move_to(std::size_t joint, double target, double dt, double share) noexcept {

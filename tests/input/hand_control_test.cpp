@@ -368,6 +368,37 @@ TEST_F(HandControlTest, TheGripperOpensAndClosesByButtons) {
   EXPECT_NEAR(world_.shaft(7), 0, 1e-4);
 }
 
+/// Lets all pass, and keeps what the jaws' joint was last asked for.
+class WatchfulGuard final : public HandGuard {
+ public:
+  FollowStep step(const JointValues& from, const Pose&, double) noexcept override { return seen(from); }
+  FollowStep go(const JointValues&, const JointValues& to) noexcept override { return seen(to); }
+  std::optional<double> jaws;
+
+ private:
+  FollowStep seen(const JointValues& positions) noexcept {
+    jaws = positions[7];
+    FollowStep out;
+    out.q = JointVector::Map(positions.data(), 7);
+    return out;
+  }
+};
+
+// What jaws take is told by the guard, also where nothing but the gripper moves.
+TEST_F(HandControlTest, TheGuardSeesJawsUnderAHandThatIsStill) {
+  WatchfulGuard guard;
+  world_.hand().set_guard(&guard);
+  engage();
+  TrackerState device = device_at(at_, true);
+  device.buttons.set(TrackerButton::gripper_close);
+  world_.cycles(100, device);
+  EXPECT_EQ(guard.jaws, world_.hand().last().positions[7]);
+  guard.jaws.reset();
+  world_.cycles(5, device_at(at_, true));
+  EXPECT_FALSE(guard.jaws) << "a hand that is still asks nothing";
+  world_.hand().set_guard(nullptr);
+}
+
 TEST_F(HandControlTest, ATriggerDoesNotOpenAGripperThatHolds) {
   TrackerState device = device_at(at_, false);
   device.grip = 0;  // open, and the gripper holds something at a quarter of its way
