@@ -6,7 +6,11 @@ namespace foresight {
 namespace {
 
 /// Lines of these labels are states rather than figures.
-constexpr const char* kStates[] = {"next", "in command", "robot", "drives", "shown"};
+constexpr const char* kStates[] = {"next", "in command", "robot", "drives", "shown", "carries"};
+
+bool is_state(const std::string& label) {
+  return std::ranges::find(kStates, label) != std::end(kStates);
+}
 
 std::string without_figures(const SeatLine& line) {
   std::string out = line.words + "|" + line.cure;
@@ -29,7 +33,7 @@ std::vector<std::string> SeatLog::news(std::span<const SeatLine> lines) {
     Told& told = told_[{line.label, nth}];
     told.now = true;
     const std::string words = without_figures(line);
-    const bool state = std::ranges::find(kStates, line.label) != std::end(kStates);
+    const bool state = is_state(line.label);
     const bool worse = line.urgency != Urgency::fine && words != told.words;
     const bool over = line.urgency == Urgency::fine && told.urgency != Urgency::fine;
     if (worse || over || (state && words != told.words)) out.push_back(text_of(line));
@@ -37,7 +41,7 @@ std::vector<std::string> SeatLog::news(std::span<const SeatLine> lines) {
     told.urgency = line.urgency;
   }
   for (auto& [which, told] : told_) {
-    if (told.now || told.urgency == Urgency::fine) continue;
+    if (told.now || told.words.empty() || (told.urgency == Urgency::fine && !is_state(which.first))) continue;
     out.push_back(which.first + ": no longer");
     told = {};
   }

@@ -41,5 +41,15 @@ TEST(SeatLog, SaysThatTroubleIsOver) {
   EXPECT_TRUE(log.news(Lines{{"images", "11 pairs", ""}}).empty());
 }
 
+TEST(SeatLog, TellsWhatIsHeldAndThatItWasLetGoOf) {
+  SeatLog log;
+  const Lines robot{{"robot", "ready", "press"}};
+  log.news(robot);
+  EXPECT_THAT(log.news(Lines{robot[0], {"carries", "brick_red", ""}}), testing::ElementsAre("carries:   brick_red"));
+  EXPECT_TRUE(log.news(Lines{robot[0], {"carries", "brick_red", ""}}).empty());
+  EXPECT_THAT(log.news(robot), testing::ElementsAre("carries: no longer"));
+  EXPECT_TRUE(log.news(robot).empty());
+}
+
 }  // namespace
 }  // namespace foresight::seat_log_test
