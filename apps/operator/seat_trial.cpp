@@ -47,9 +47,10 @@ link::OperatorEndOptions end_options(const Rig& rig, const Identity& identity, c
 class ToldDriver final : public SeatDriver {
  public:
   ToldDriver(ScriptedMotion& motion, const SeatTrialOptions& options)
-      : script_(motion, {.most_losses = options.most_losses}), told_(options.asked) {}
+      : script_(motion, {.most_losses = options.most_losses}), hand_(options.hand), told_(options.asked) {}
   SeatWish tick(const SeatView& view) override {
-    const SeatWish wish = script_.tick(view);
+    SeatWish wish = script_.tick(view);
+    if (hand_) wish = hand_(view, wish);
     if (told_) told_(view.now, wish);
     return wish;
   }
@@ -57,6 +58,7 @@ class ToldDriver final : public SeatDriver {
 
  private:
   ScriptedDriver script_;
+  const std::function<SeatWish(const SeatView&, const SeatWish&)>& hand_;
   const std::function<void(OperatorTime, const SeatWish&)>& told_;
 };
 
@@ -98,10 +100,10 @@ class Trial {
         period_(seconds(1 / mock_options(as_mock(*rig.cameras)).rate)),
         source_(rig, scene_, end_, seat_, clock_, source_options()),
         trust_(view_.session(), setup_, clock_, trust_options()),
-        truth_(robot_.cameras().frames().subscribe(kFramesKept)),
+        truth_(options.scored ? robot_.cameras().frames().subscribe(kFramesKept) : nullptr),
         task_(options.most_s),
         measures_(describe_seat(rig, view_.session(), setup_), options.out) {
-    if (options.zero_delay) {
+    if (options.scored && options.zero_delay) {
       near_.emplace(setup_);
       measures_.compare_without_line([this](RobotTime instant) { return without_line(instant); });
     }
@@ -162,7 +164,7 @@ class Trial {
     PredictedSourceOptions out;
     out.real_time = false;
     out.rate_hz = options_.pictures_hz;
-    out.image_period = period_;
+    if (options_.scored) out.image_period = period_;
     return out;
   }
   ViewTrustOptions trust_options() const {
@@ -194,7 +196,7 @@ class Trial {
     ++pictures_;
     trust_.drew(source_, place, TrustMarks::hatch);
     trust_.judge(source_.why_invalid());
-    if (!counts) return;
+    if (!counts || !options_.scored) return;
     const ShownInstant& instant = source_.instant();
     measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(), as_video_.clone(),
                     source_.robot().status == StateStatus::invalid, trust_.doubt(), trust_.exact(),
@@ -202,6 +204,7 @@ class Trial {
   }
 
   void learn_truth() {
+    if (!truth_) return;
     while (const auto frame = truth_->take(Duration{0})) {
       const RobotTime time = (*frame)->pair.left.time;
       if (near_) truths_[time] = *frame;
@@ -261,7 +264,7 @@ class Trial {
   PredictedSource source_;
   ViewTrust trust_;
   std::optional<ThingsOutlook> things_;
-  std::shared_ptr<FrameQueue> truth_;
+  std::shared_ptr<FrameQueue> truth_;  // null: nothing is scored
   TaskWatch task_;
   SeatMeasures measures_;
   LineVideo video_;

@@ -47,7 +47,10 @@ struct SeatTrialOptions {
   double most_s = 120;     ///< of motion
   double pictures_hz = 5;  ///< that are measured, at most
   TrustSwitchOptions fall_back;
-  bool zero_delay = true;  ///< also draws each view as it would be without a line
+  /// Pictures are of the instants of the robot's own images, and are compared with these. Else the robot's program may
+  /// be started again meanwhile.
+  bool scored = true;
+  bool zero_delay = true;  ///< with `scored`, also draws each view as it would be without a line
   TextureOptions textures = kSeatTextures;
   std::optional<LevelSettings> levels;       ///< ViewSetup::levels
   std::optional<std::filesystem::path> out;  ///< folder for shown/, delayed/, true/
@@ -55,6 +58,9 @@ struct SeatTrialOptions {
   std::function<cv::Mat(const cv::Mat&)> truth;
   /// Is told all that the operator asks for.
   std::function<void(OperatorTime, const SeatWish&)> asked;
+  /// What is sent in place of what the program means to do: for a program whose hand is at a device. None: what it
+  /// means.
+  std::function<SeatWish(const SeatView&, const SeatWish& meant)> hand;
   /// After each cycle of the robot, in the trial's thread.
   std::function<void(const SeatMoment&)> each;
   /// Asked every 5 ms: the operator's program stands still.

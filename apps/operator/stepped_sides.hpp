@@ -17,6 +17,8 @@
 namespace foresight {
 
 /// The robot's side, with mock drives and mock cameras: all of `foresight robot --serve` but its console. One thread.
+///
+/// Its host has a clock of its own. At first that is `clock`; a program that is started again has one that began anew.
 class SteppedRobotSide {
  public:
   static constexpr Duration kTick = std::chrono::milliseconds(10);  ///< as the console's
@@ -30,29 +32,37 @@ class SteppedRobotSide {
   /// One cycle of the control loop; time passes until it is due.
   void cycle();
   link::Participant& participant() { return participant_; }
-  Robot& robot() { return *robot_; }
-  RobotDevices& devices() { return devices_; }
-  RobotCameras& cameras() { return *cameras_; }
+  /// Of the program that runs.
+  Robot& robot();
+  RobotDevices& devices();
+  RobotCameras& cameras();
+  const Rig& rig() const { return rig_; }
+  /// Of the first one.
   const Identity& identity() const { return identity_; }
   /// To try faults: no images are taken; the program does nothing but its control loop.
   void hold_cameras(bool held) { cameras_held_ = held; }
   void hold_program(bool held) { program_held_ = held; }
+  /// Likewise: it is gone at once, and its drives and cameras with it; or is there again, of that rig, as a host that
+  /// has just been switched on. That may take seconds of this machine's time, and none of `clock`.
+  void end();
+  void start(const Rig& rig, const Identity& identity);
+  bool runs() const { return program_ != nullptr; }
+  unsigned starts() const { return starts_; }
 
  private:
+  struct Program;
   const Rig& rig_;
   SteppedClock& clock_;
   Identity identity_;
   std::shared_ptr<link::PretendedLine> line_;
   link::OwnDomain domain_;
   link::Participant participant_;
-  RobotDevices devices_;
-  std::unique_ptr<RobotShape> shape_;
-  std::unique_ptr<Robot> robot_;
-  std::unique_ptr<RobotCameras> cameras_;
-  std::unique_ptr<link::RobotServer> server_;
-  Duration period_;
-  RobotTime next_;
+  std::optional<unsigned> physics_;
+  unsigned layout_, starts_ = 0;
   bool cameras_held_ = false, program_held_ = false;
+  std::unique_ptr<Program> program_;  // while it runs
+  Duration period_;
+  RobotTime next_;  // by `clock`
 };
 
 }  // namespace foresight

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "apps/operator/stepped_sides.hpp"
+#include "seat/predicted_source.hpp"
+#include "seat/seat.hpp"
+#include "seat/seat_words.hpp"
 #include "seat/tool_script.hpp"
 #include "tests/support/folders.hpp"
 
@@ -90,6 +94,43 @@ TEST(SeatTrial, NothingIsExactWhereTheNewestImageStandsIn) {
   ASSERT_TRUE(trust.exact_share && trust.fallback_share);
   ASSERT_GT(*trust.fallback_share, 0.5);
   EXPECT_LT(*trust.exact_share, 1.1 * (1 - *trust.fallback_share) + 0.01);
+}
+
+/// A robot that is driven, is gone for five seconds, and is there again with a clock that began anew.
+TEST(SeatTrial, ARobotThatComesBackIsToldOfAndDrivenAgain) {
+  SeatTrialOptions options;
+  options.rig_file = source_folder() / "configs" / "minerva.yaml";
+  Rig rig = read_rig(options.rig_file);
+  for (CameraConfig& camera : rig.cameras->cameras) {
+    camera.settings.rate = 2;
+    camera.settings.width = 160;
+    camera.settings.height = 120;
+  }
+  options.line.up.delay = options.line.down.delay = 50ms;
+  options.pictures_hz = 2;
+  options.scored = false;
+  std::optional<RobotTime> driven, back;
+  bool told = false, again = false;
+  options.each = [&](const SeatMoment& moment) {
+    const SeatStatus status = moment.seat.status();
+    if (!driven && status.engaged) driven = moment.now;
+    if (!driven || moment.now - *driven < 4s) return;
+    if (!back && moment.robot.runs()) moment.robot.end();
+    for (const SeatLine& line : seat_lines(status, rig.joint_names(), moment.source.fault()))
+      told = told || line.words.find("nothing comes of the robot") != line.words.npos;
+    EXPECT_FALSE(!back && moment.now - *driven > 6s && status.engaged) << "nobody is there";
+    again = again || (back && status.engaged);
+    if (back || moment.now - *driven < 9s) return;
+    back = moment.now;
+    moment.robot.start(moment.robot.rig(), moment.robot.identity());
+  };
+  const auto scene = std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt, false, 0));
+  ToolScript script(rig, tour(rig, 1, 100), {});
+  const SeatTrialFigures figures = try_seat(
+      rig, scene, options, script, [&] { return again; }, [](const std::string&) {});
+  EXPECT_TRUE(driven && back);
+  EXPECT_TRUE(told);
+  EXPECT_TRUE(again) << figures.task.failure;
 }
 
 }  // namespace
