@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/bench/seat_faults.hpp"
 #include "apps/operator/stepped_sides.hpp"
@@ -53,6 +55,8 @@ class SetPointWatch {
     last_ = cycle;
     ++cycles_;
   }
+  /// The robot's program was started again.
+  void begin_anew() { last_ = {}; }
   std::uint64_t cycles() const { return cycles_; }
   std::uint64_t unsafe() const { return unsafe_; }
   const std::string& first() const { return first_; }
@@ -76,24 +80,26 @@ class SetPointWatch {
 /// All that is looked at while the seat is in use.
 class Endurance {
  public:
-  Endurance(const Rig& rig, const SeatBenchOptions& options, double round_trip_s)
+  Endurance(const Rig& rig, const SeatBenchOptions& options, SeatHand& hand, double round_trip_s)
       : rig_(rig),
         options_(options),
+        hand_(hand),
         names_(rig.joint_names()),
         random_(options.seed),
+        strangers_(rig),
         watch_(rig),
         rests_after_(round_trip_s + 2),
-        faults_(seat_faults(arm_drives(rig), random_, stands_), random_, round_trip_s + 3) {}
+        faults_(all_faults(), random_, round_trip_s + 3) {}
 
   bool stands_still() const { return stands_; }
 
   void see(const SeatMoment& moment) {
-    if (!cycles_) cycles_.emplace(moment.robot.robot().cycles()), begin_ = moment.now;
+    if (!cycles_) begin_ = moment.now;
+    heed_start(moment.robot);
     const double now_s = to_seconds(moment.now - begin_);
     look_at_switch(moment, now_s);
     look_at_picture(moment, now_s);
-    if (began_)
-      faults_.step(moment, now_s, [&] { return seat_lines(moment.seat.status(), names_, moment.source.fault()); });
+    if (began_) faults_.step(moment, now_s, [&] { return lines(moment); });
     if (now_s < told_ + kTellEvery) return;
     told_ = now_s;
     memory_.push_back({now_s, resident_mb(), 1e-6 * static_cast<double>(moment.texture_bytes)});
@@ -105,7 +111,7 @@ class Endurance {
   nlohmann::ordered_json report(const SeatTrialFigures& figures) const;
   bool met() const {
     return watch_.unsafe() == 0 && longest_gap_ <= 1 / options_.pictures_hz + kStandsFor && unnamed() == 0 &&
-           growth() <= kMostGrowth;
+           drove_on() == 0 && growth() <= kMostGrowth;
   }
   void print() const;
 
@@ -113,22 +119,48 @@ class Endurance {
   static std::size_t arm_drives(const Rig& rig) {
     return static_cast<std::size_t>(std::ranges::count(rig.joints, rig.joints.front().bus, &RigJoint::bus));
   }
+  std::vector<Fault> all_faults() {
+    std::vector<Fault> out = seat_faults(arm_drives(rig_), random_, stands_);
+    std::ranges::move(hand_faults(hand_, random_), std::back_inserter(out));
+    std::ranges::move(start_faults(strangers_), std::back_inserter(out));
+    return out;
+  }
+  /// All that the display says.
+  std::vector<SeatLine> lines(const SeatMoment& moment) const {
+    std::vector<SeatLine> out = seat_lines(moment.seat.status(), names_, moment.source.fault());
+    std::ranges::move(hand_.lines(), std::back_inserter(out));
+    out.push_back(next_step(moment.seat.status()));
+    return out;
+  }
+  void heed_start(SteppedRobotSide& robot) {
+    if (!robot.runs() || (cycles_ && std::exchange(starts_, robot.starts()) == robot.starts())) return;
+    cycles_.emplace(robot.robot().cycles());
+    watch_.begin_anew();
+  }
   void look_at_switch(const SeatMoment& moment, double now_s) {
     const bool held = moment.seat.status().engaged;
     began_ = began_ || held;
     if (held) held_s_ = now_s;
-    while (const auto cycle = cycles_->take()) {
+    const bool must_rest = strangers_.must_rest();
+    while (const auto cycle = moment.robot.runs() ? cycles_->take() : std::nullopt) {
       const bool homes = cycle->phase == RobotPhase::homing || cycle->phase == RobotPhase::enabling;
       if (homes) held_s_ = now_s;
-      watch_.see(*cycle, now_s - held_s_, rests_after_);
+      watch_.see(*cycle, must_rest ? std::numeric_limits<double>::infinity() : now_s - held_s_, rests_after_);
     }
   }
   void look_at_picture(const SeatMoment& moment, double now_s) {
-    if (moment.pictures != pictures_) pictures_ = moment.pictures, drew_s_ = now_s;
+    if (moment.pictures != pictures_) {
+      pictures_ = moment.pictures;
+      drew_s_ = now_s;
+      hand_.look(moment.source.places().place(moment.source.robot()));
+    }
     if (pictures_ > 0) longest_gap_ = std::max(longest_gap_, now_s - drew_s_);
   }
   std::size_t unnamed() const {
     return static_cast<std::size_t>(std::ranges::count(faults_.records(), "", &FaultRecord::named));
+  }
+  std::size_t drove_on() const {
+    return static_cast<std::size_t>(std::ranges::count(faults_.records(), true, &FaultRecord::drove_on));
   }
   struct Memory {
     double at_s = 0, resident_mb = 0, textures_mb = 0;  // textures_mb: of resident_mb on a software renderer
@@ -146,13 +178,16 @@ class Endurance {
 
   const Rig& rig_;
   const SeatBenchOptions& options_;
+  SeatHand& hand_;
   std::vector<std::string> names_;
   std::mt19937 random_;
   bool stands_ = false;
+  Strangers strangers_;
   SetPointWatch watch_;
   double rests_after_;
   FaultMaker faults_;
   std::optional<BroadcastRing<RobotCycle>::Reader> cycles_;
+  unsigned starts_ = 0;
   RobotTime begin_;
   bool began_ = false;
   double held_s_ = 0, drew_s_ = 0, longest_gap_ = 0, told_ = 0;
@@ -176,17 +211,24 @@ nlohmann::ordered_json Endurance::report(const SeatTrialFigures& figures) const 
     out["memory_mb"].push_back({memory.at_s, memory.resident_mb});
     out["texture_mb"].push_back({memory.at_s, memory.textures_mb});
   }
-  for (const FaultRecord& fault : faults_.records())
-    out["faults"].push_back(
-        {{"what", fault.name}, {"at_s", fault.at_s}, {"named", fault.named}, {"after_s", fault.after_s}});
+  for (const FaultRecord& fault : faults_.records()) {
+    out["faults"].push_back({{"what", fault.name},
+                             {"at_s", fault.at_s},
+                             {"named", fault.named},
+                             {"after_s", fault.after_s},
+                             {"drove_on", fault.drove_on}});
+    if (fault.let_go_s) out["faults"].back()["let_go_s"] = *fault.let_go_s;
+  }
   return out;
 }
 
 void Endurance::print() const {
   for (const FaultRecord& fault : faults_.records())
-    fmt::print("{:7.1f} s  {:38} {}\n", fault.at_s, fault.name,
-               fault.named.empty() ? "NOT NAMED" : fmt::format("{:.2f} s later: {}", fault.after_s, fault.named));
-  fmt::print("{} faults, {} not named\n", faults_.records().size(), unnamed());
+    fmt::print("{:7.1f} s  {:38} {}{}\n", fault.at_s, fault.name,
+               fault.named.empty() ? "NOT NAMED" : fmt::format("{:.2f} s later: {}", fault.after_s, fault.named),
+               fault.drove_on ? "; DROVE ON" : "");
+  fmt::print("{} faults, {} not named, {} in which the switch went on to count\n", faults_.records().size(), unnamed(),
+             drove_on());
   fmt::print("{} set-points, {} unsafe{}\n", watch_.cycles(), watch_.unsafe(),
              watch_.unsafe() ? ", first " + watch_.first() : "");
   fmt::print("{} pictures, at most {:.2f} s without one\n", pictures_, longest_gap_);
@@ -213,14 +255,16 @@ int bench_seat(const SeatBenchOptions& options) {
   trial.seed = options.seed;
   trial.most_s = options.seconds;
   trial.pictures_hz = options.pictures_hz;
-  trial.zero_delay = false;
+  trial.scored = false;
   trial.most_losses = std::numeric_limits<int>::max();
   if (!options.line.empty()) rig.link.coding = LinkCoding::h264;
   rig.link.round_trip = std::max(rig.link.round_trip, trial.line.up.delay + trial.line.down.delay + seconds(0.5));
-  Endurance endurance(rig, options, to_seconds(rig.link.round_trip));
+  const auto scene = std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt, false, 0));
+  SeatHand hand(rig, scene->model());
+  trial.hand = [&](const SeatView& view, const SeatWish& meant) { return hand.pass_on(view, meant); };
+  Endurance endurance(rig, options, hand, to_seconds(rig.link.round_trip));
   trial.each = [&](const SeatMoment& moment) { endurance.see(moment); };
   trial.stands_still = [&] { return endurance.stands_still(); };
-  const auto scene = std::make_shared<const LiveScene>(live_scene_of(rig, true, std::nullopt, false, 0));
   ToolScript script(rig, tour(rig, options.seed, kStops), {});
   const SeatTrialFigures figures = try_seat(
       rig, scene, trial, script, [] { return stop_requested(); }, [](const std::string&) {});
