@@ -1,8 +1,9 @@
 #include "seat/predicted_source.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "link/operator_view/line_feed.hpp"
 #include "rig/rig_scene.hpp"
@@ -132,8 +133,18 @@ std::string PredictedSource::fault() const {
     return fmt::format("NO IMAGE for {:.1f} s{}{}", to_seconds(clock_.now() - heard_), why_none_.empty() ? "" : ": ",
                        why_none_);
   if (posed_) return "";
-  const std::string why = unknown_joints(newest_->joints.known, 'H');
-  return "NO POSE for the newest image" + (why.empty() ? "" : ": " + why);
+  return "NO POSE for the newest image" + why_no_pose(newest_->joints);
+}
+
+// Whose drive told its position before is homed: looking for home again would not bring its word back.
+std::string why_no_pose(const link::LineJoints& joints) {
+  std::vector<std::string> silent;
+  for (std::size_t i = 0; i < joints.known.size(); ++i)
+    if (!joints.known[i] && std::isfinite(joints.positions.at(i))) silent.push_back(joints.names.at(i));
+  if (!silent.empty())
+    return fmt::format(": {} {} no position any more", fmt::join(silent, ", "), silent.size() == 1 ? "tells" : "tell");
+  const std::string why = unknown_joints(joints.known, 'H');
+  return why.empty() ? "" : ": " + why;
 }
 
 }  // namespace foresight

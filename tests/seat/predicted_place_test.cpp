@@ -1,6 +1,7 @@
 // The camera of images that are still to come.
 #include "seat/predicted_place.hpp"
 
+#include "seat/predicted_source.hpp"
 #include "sim/live_lab.hpp"
 #include "tests/support/folders.hpp"
 
@@ -66,6 +67,18 @@ TEST_F(Places, PositionsThatAreNoNumbersAreNotKnown) {
   EXPECT_FALSE(positions_of(rig_, robot_.position)("tilt"));
   EXPECT_FALSE(positions_of(rig_, robot_.position)("no such joint"));
   EXPECT_EQ(positions_of(rig_, robot_.position)("pan"), 0.0);
+}
+
+TEST(WhyNoPose, TellsWhoseDriveIsSilentAndWhatIsToBeHomed) {
+  constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+  link::LineJoints joints{StateStatus::predicted, {"elbow", "pan", "tilt"}, {0.1, 0.2, 0.3}, {true, true, true}};
+  EXPECT_EQ(why_no_pose(joints), "");
+  joints.known[1] = false;
+  EXPECT_EQ(why_no_pose(joints), ": pan tells no position any more") << "homing it would not help";
+  joints.known[2] = false;
+  EXPECT_EQ(why_no_pose(joints), ": pan, tilt tell no position any more");
+  joints.positions[1] = joints.positions[2] = kNever;
+  EXPECT_EQ(why_no_pose(joints), ": 2 of 3 joints tell no position; home them (H)");
 }
 
 }  // namespace
