@@ -250,6 +250,7 @@ void add_seat(Command& bench, std::function<int()>& action) {
       ->check(from_to(0.5, 60))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of faults, motion and losses")->capture_default_str();
+  command->add_option("--fault", options->fault, "Only faults with this in their names");
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer(
       "Both sides run in this program, in stepped time.\n"

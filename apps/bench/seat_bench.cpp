@@ -14,6 +14,7 @@
 #include "common/numbers_file.hpp"
 #include "common/resident_memory.hpp"
 #include "common/stop_signal.hpp"
+#include "common/text.hpp"
 #include "seat/predicted_source.hpp"
 #include "seat/seat.hpp"
 #include "seat/tool_script.hpp"
@@ -123,6 +124,9 @@ class Endurance {
     std::vector<Fault> out = seat_faults(arm_drives(rig_), random_, stands_);
     std::ranges::move(hand_faults(hand_, random_), std::back_inserter(out));
     std::ranges::move(start_faults(strangers_), std::back_inserter(out));
+    std::erase_if(out, [&](const Fault& fault) { return fault.name.find(options_.fault) == fault.name.npos; });
+    if (out.empty())
+      throw InputError("--fault", "no fault has " + in_quotes(options_.fault) + " in its name", "leave it out");
     return out;
   }
   /// All that the display says.

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace foresight {
 
@@ -14,13 +15,15 @@ struct SeatBenchOptions {
   double image_hz = 2;         ///< of the mock cameras
   double pictures_hz = 5;
   unsigned seed = 1;
+  std::string fault;  ///< only those with this in their names
   std::optional<std::filesystem::path> json;
 };
 
 /// Every half minute or so something fails at the robot's side or at the operator's: see Fault in seat_faults.hpp.
 /// Prints each fault and what the display said of it, and what memory the program holds. Returns 1 where a set-point
 /// left its joint's range, speed or acceleration, the robot moved with nobody holding the switch, the display stood
-/// still, a fault was not named, or memory grew by more than 10 MB after the fifth minute. Throws what try_seat() does.
+/// still, a fault was not named, or memory grew by more than 10 MB after the fifth minute. Throws InputError (no fault
+/// of such a name), and what try_seat() does.
 int bench_seat(const SeatBenchOptions& options);
 
 }  // namespace foresight

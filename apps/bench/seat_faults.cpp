@@ -93,7 +93,7 @@ std::vector<Fault> seat_faults(std::size_t drives, std::mt19937& random, bool& s
          fail_a_drive(m, kHeadBus, 0, begins ? sim::DriveFault::silent : sim::DriveFault::recover);
        },
        {},
-       "NO POSE"},
+       "NO POSE for the newest image: pan"},
       {"no images are taken", 4, of_images, [](const SeatMoment& m, bool begins) { m.robot.hold_cameras(begins); }},
       {"the robot's program stands still",
        3,
@@ -195,7 +195,7 @@ std::vector<Fault> start_faults(Strangers& strangers) {
        kLost},
       stranger("a robot with other joints in its place", Strangers::Kind::other_joints, refused, "joint"),
       stranger("a robot of another model in its place", Strangers::Kind::other_model, refused, "URDF"),
-      stranger("a robot with other lenses in its place", Strangers::Kind::other_lenses, {"differs", "images"}, ""),
+      stranger("a robot with other lenses in its place", Strangers::Kind::other_lenses, {"differs"}, "calibration"),
   };
 }
 
