@@ -60,6 +60,9 @@ const std::vector<ShapeRule>& joint_parts() {
         {"upper", 1, Sign::any, false, "write it in radians, or metres where the joint slides"},
         {"velocity", 1, Sign::not_negative, true, "write it per second, in radians or metres"},
         {"effort", 1, Sign::any, true, "write a number"}}},
+      {"safety_controller",
+       {{"soft_lower_limit", 1, Sign::any, false, "write it in radians, or metres where the joint slides"},
+        {"soft_upper_limit", 1, Sign::any, false, "write it in radians, or metres where the joint slides"}}},
       {"mimic",
        {{"multiplier", 1, Sign::any, false, "write a number"}, {"offset", 1, Sign::any, false, "write a number"}}}};
   return rules;

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <pugixml.hpp>
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "scene/files.hpp"
+#include "scene/urdf_limits.hpp"
 #include "scene/urdf_reader.hpp"
 
 namespace foresight {
@@ -52,6 +55,40 @@ JointSource source_of(const UrdfRobot& robot, std::size_t index) {
     source.joint = mimic->joint;
   }
   return source;
+}
+
+std::map<std::string, SoftLimits> read_soft_limits(const std::filesystem::path& file) {
+  pugi::xml_document document;
+  const std::string xml = read_file(file);
+  document.load_buffer(xml.data(), xml.size());
+  std::map<std::string, SoftLimits> out;
+  for (const pugi::xml_node joint : document.child("robot").children("joint")) {
+    const pugi::xml_node safety = joint.child("safety_controller");
+    // One that is not given counts as 0; so do both, where only gains are given, which is no range.
+    const SoftLimits limits{safety.attribute("soft_lower_limit").as_double(),
+                            safety.attribute("soft_upper_limit").as_double()};
+    if (limits.lower < limits.upper) out[joint.attribute("name").value()] = limits;
+  }
+  return out;
+}
+
+UrdfJoint within_followers(const UrdfRobot& robot, std::size_t index) {
+  UrdfJoint out = robot.joints[index];
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const UrdfJoint& follower = robot.joints[i];
+    const JointSource source = source_of(robot, i);
+    if (!follower.mimic || source.joint != static_cast<int>(index) || source.factor == 0) continue;
+    const auto [low, high] = std::minmax(
+        {(follower.lower - source.offset) / source.factor, (follower.upper - source.offset) / source.factor});
+    if (follower.lower < follower.upper) {  // else it was given none
+      out.lower = std::max(out.lower, low);
+      out.upper = std::min(out.upper, high);
+    }
+    if (follower.velocity <= 0) continue;
+    const double velocity = follower.velocity / std::abs(source.factor);
+    out.velocity = out.velocity > 0 ? std::min(out.velocity, velocity) : velocity;
+  }
+  return out;
 }
 
 Pose joint_transform(const UrdfJoint& joint, double position) noexcept {

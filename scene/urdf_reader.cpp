@@ -22,6 +22,8 @@ namespace foresight {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
 // urdfdom reports only through a process-wide logger: this keeps the first error for our own
 // message and the terminal quiet.
 class LogCapture : public console_bridge::OutputHandler {
@@ -60,6 +62,25 @@ bool is_deep(std::string_view xml) {
   return false;
 }
 
+// What a comment says of macros is none.
+std::string without_comments(std::string_view xml) {
+  std::string out;
+  for (;;) {
+    const std::size_t begin = xml.find("<!--");
+    out += xml.substr(0, begin);
+    const std::size_t end = begin == std::string_view::npos ? begin : xml.find("-->", begin + 4);
+    if (end == std::string_view::npos) return out;
+    xml.remove_prefix(end + 3);
+  }
+}
+
+bool is_xacro(const std::string& xml) {
+  const std::string text = without_comments(xml);
+  // A URDF that was made of a xacro file keeps its name space, but none of its macros and variables.
+  return text.find("<xacro:") != std::string::npos ||
+         (text.find("xmlns:xacro") != std::string::npos && text.find("${") != std::string::npos);
+}
+
 struct ParsedUrdf {
   urdf::ModelInterfaceSharedPtr model;
   std::map<std::string, UrdfShapeCount> shapes;  // by link
@@ -69,9 +90,7 @@ struct ParsedUrdf {
 ParsedUrdf parse(const fs::path& file) {
   const std::string xml = read_file(file);
   if (is_deep(xml)) throw InputError(file.string(), "its elements nest too deep", "write a plain URDF");
-  // A URDF that was made of a xacro file keeps its name space, but none of its macros and variables.
-  if (xml.find("<xacro:") != std::string::npos ||
-      (xml.find("xmlns:xacro") != std::string::npos && xml.find("${") != std::string::npos))
+  if (is_xacro(xml))
     throw InputError(file.string(), "is a xacro file, from which a URDF is still to be made",
                      "run `xacro " + file.filename().string() + " > robot.urdf` first, and give robot.urdf");
   ParsedUrdf out{nullptr, check_urdf(file, xml), {}};
@@ -212,8 +231,12 @@ class RobotBuilder {
         throw InputError(where, "its axis has no direction", "write a unit vector");
       joint.axis.normalize();
       const bool endless = from.type == urdf::Joint::CONTINUOUS || !from.limits;
-      joint.lower = endless ? -std::numeric_limits<double>::infinity() : from.limits->lower;
-      joint.upper = endless ? std::numeric_limits<double>::infinity() : from.limits->upper;
+      joint.lower = endless ? -kInfinite : from.limits->lower;
+      joint.upper = endless ? kInfinite : from.limits->upper;
+      // Values as 1e5 stand for none; degrees are smaller.
+      constexpr double kEndless = 3600;
+      if (joint.kind == UrdfJoint::Kind::rotating && joint.lower < -kEndless) joint.lower = -kInfinite;
+      if (joint.kind == UrdfJoint::Kind::rotating && joint.upper > kEndless) joint.upper = kInfinite;
       if (from.limits && std::isfinite(from.limits->velocity)) joint.velocity = std::max(from.limits->velocity, 0.0);
       if (!(joint.lower <= joint.upper))
         throw InputError(where, "its lower limit exceeds the upper one", "swap lower and upper");

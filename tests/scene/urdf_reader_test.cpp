@@ -296,6 +296,10 @@ TEST_F(Urdf, NamesWhatIsWrong) {
       "x.urdf", "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'><xacro:include filename='y'/></robot>");
   EXPECT_THAT(input_error([&] { read_urdf(xacro, folder_.path()); }),
               says("x.urdf", "is a xacro file", "`xacro x.urdf"));
+  folder_.write("x.urdf",
+                "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'><!-- of <xacro:arm side='${side}'/> -->"
+                "<link name='base'/></robot>");
+  EXPECT_EQ(input_error([&] { read_urdf(xacro, folder_.path()); }), "no error") << "a comment is no macro";
 }
 
 }  // namespace
