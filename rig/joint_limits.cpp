@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "scene/urdf_limits.hpp"
 #include "scene/yaml_fields.hpp"
 
 namespace foresight {
@@ -22,6 +23,8 @@ struct Plausible {
   const char* other;  // that may have been meant
   double factor;
 };
+constexpr double kMostTurned = 8 * std::numbers::pi;  // rad, of what a URDF may say: no arm turns that far
+constexpr double kMostSlid = 20;                      // m
 constexpr Plausible kTurning{"rad", 4 * std::numbers::pi, 30, 0.5, "degrees", std::numbers::pi / 180};
 constexpr Plausible kSliding{"m", 10, 10, 0.1, "millimetres", 1e-3};
 
@@ -145,6 +148,26 @@ void require_unit(const YamlMap& map, const UrdfJoint* urdf, const RigJoint& joi
 }
 
 }  // namespace
+
+void require_joint_units(const UrdfRobot& robot, const std::string& file) {
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const UrdfJoint& joint = robot.joints[i];
+    if (joint.kind == UrdfJoint::Kind::fixed || joint.mimic) continue;
+    const std::string where = file + ": joint " + in_quotes(joint.name) + " <limit>";
+    const bool turns = joint.kind == UrdfJoint::Kind::rotating;
+    for (const auto& [key, value] : {std::pair("lower", joint.lower), {"upper", joint.upper}})
+      if (std::isfinite(value) && std::abs(value) > (turns ? kMostTurned : kMostSlid))
+        throw InputError(where,
+                         fmt::format("{} is {:g}, and URDF counts in {}", key, value, turns ? "radians" : "metres"),
+                         turns ? fmt::format("write radians: {:g} degrees are {:.4g}; type=\"continuous\" has no end",
+                                             value, value * kTurning.factor)
+                               : fmt::format("write metres: {:g} mm are {:g}", value, value * kSliding.factor));
+    const UrdfJoint cut = within_followers(robot, i);
+    if (joint.lower < joint.upper && !(cut.lower < cut.upper))
+      throw InputError(where, "the limits of the joints that follow it leave it no way to move",
+                       "correct their <limit>, or multiplier and offset of their <mimic>");
+  }
+}
 
 void read_limits(const YamlMap& map, const UrdfJoint* urdf, double rate_hz, RigJoint& joint) {
   require_unit(map, urdf, joint);

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "rig/joint_limits.hpp"
 #include "rig/loose_things.hpp"
+#include "scene/urdf_limits.hpp"
 #include "scene/yaml_fields.hpp"
 
 namespace foresight {
@@ -71,12 +73,14 @@ RigBus read_bus(const YamlMap& map) {
   return bus;
 }
 
-/// The joint of that name in the URDF, or null.
-const UrdfJoint* in_urdf(const Rig& rig, const std::string& name) {
-  if (!rig.robot) return nullptr;
-  const auto found = std::ranges::find_if(
-      rig.robot->joints, [&](const UrdfJoint& j) { return j.name == name && j.kind != UrdfJoint::Kind::fixed; });
-  return found == rig.robot->joints.end() ? nullptr : &*found;
+/// The joint of that name in the URDF, with what it may do for the sake of those that follow it; or nothing.
+std::optional<UrdfJoint> in_urdf(const Rig& rig, const std::string& name) {
+  if (!rig.robot) return std::nullopt;
+  for (std::size_t i = 0; i < rig.robot->joints.size(); ++i) {
+    const UrdfJoint& joint = rig.robot->joints[i];
+    if (joint.name == name && joint.kind != UrdfJoint::Kind::fixed) return within_followers(*rig.robot, i);
+  }
+  return std::nullopt;
 }
 
 // How the joint learns where it is. "Here is home" would make the model that all checks rest on whatever the arm's
@@ -93,10 +97,42 @@ void read_reference(const YamlMap& map, bool powercube, RigJoint& joint) {
   if (!joint.absolute && joint.homing_method == 0)
     throw InputError(map.where("encoder"), "joint '" + joint.drive.name + "' has no way to know where it is",
                      "say `encoder: absolute`, or give the homing_method of its switches");
-  if (!joint.absolute && (joint.homing_method == 35 || joint.homing_method == 37) && joint.group != JointGroup::gripper)
+  if (joint.absolute || joint.group == JointGroup::gripper) return;
+  if (joint.homing_method == 35 || joint.homing_method == 37)
     throw InputError(map.where("homing_method"),
                      "35 and 37 take the joint's pose of the moment for home, wherever it stands",
                      "home to a switch, or use an absolute encoder");
+  // The rig knows counts per unit of the joint, not how many of them the motor's turn has.
+  if (joint.homing_method == 33 || joint.homing_method == 34)
+    throw InputError(map.where("homing_method"),
+                     "33 and 34 take the nearest index pulse for home, of whichever of the motor's turns it is",
+                     "home to a switch and the index pulse beside it, 1 to 14, or use an absolute encoder");
+}
+
+// A drive may say 0 far from where its joint goes: absolute encoders where their maker put it, others by the home
+// offset (607Ch) that they keep. Only emulated ones are known to keep none: they look for home at the offset.
+void check_offset(const YamlMap& map, const RigBus& bus, const RigJoint& joint) {
+  const DriveConfig& d = joint.drive;
+  const bool turns = joint.unit == "rad";
+  const double beyond = std::max({d.min_position - d.offset, d.offset - d.max_position, 0.0});
+  const double most = turns ? 4 * std::numbers::pi : 10;
+  const std::string range = fmt::format("{:g} to {:g} {}", d.min_position, d.max_position, joint.unit);
+  if (!(beyond <= most)) {
+    const double meant = d.offset * (turns ? std::numbers::pi / 180 : 1e-3);
+    const bool fits = meant >= d.min_position - most && meant <= d.max_position + most;
+    throw InputError(map.where("offset"),
+                     fmt::format("{:g} {} is more than {} from the joint's range of {}", d.offset, joint.unit,
+                                 turns ? "two turns" : "10 m", range),
+                     fits ? fmt::format("{:g} looks like {}: {:.4g} {}", d.offset, turns ? "degrees" : "millimetres",
+                                        meant, joint.unit)
+                          : "give the joint's position where the drive says 0");
+  }
+  if (bus.interface == "mock" && bus.protocol == DriveProtocol::cia402 && !joint.absolute && beyond > 0)
+    throw InputError(
+        map.where("offset"),
+        fmt::format("{:g} {} is beyond the joint's range of {}, and an emulated drive looks for home there", d.offset,
+                    joint.unit, range),
+        "give a position within, or say `encoder: absolute`");
 }
 
 // Slower drives than that are none that an arm follows a hand with.
@@ -159,9 +195,11 @@ RigJoint read_joint(const YamlMap& map, const Rig& rig) {
       throw InputError(map.where("direction"), "is " + std::to_string(joint.drive.direction), "give 1 or -1");
   }
   joint.drive.offset = number(map, "offset", 0);
-  read_limits(map, in_urdf(rig, joint.drive.name), rig.rate_hz, joint);
+  const std::optional<UrdfJoint> urdf = in_urdf(rig, joint.drive.name);
+  read_limits(map, urdf ? &*urdf : nullptr, rig.rate_hz, joint);
   if (!powercube) check_counts(map, joint);
   read_reference(map, powercube, joint);
+  check_offset(map, buses[joint.bus], joint);
   if (map.has("response")) joint.response = read_response(map.map("response"));
   joint.drive.vendor = identity(map, "vendor");
   joint.drive.product = identity(map, "product");
@@ -234,6 +272,7 @@ void read_robot(const YamlMap& map, Rig& rig) {
           ? map.choice<UrdfShapes>("shapes", {{"collision", UrdfShapes::all}, {"visual", UrdfShapes::visual}})
           : UrdfShapes::all;
   rig.robot = read_urdf(urdf, meshes, shapes);
+  require_joint_units(*rig.robot, urdf.string());
   if (!map.has("pose")) return;
   rig.T_world_robot = map.pose("pose");
   require_metres(map, "pose", rig.T_world_robot.translation());

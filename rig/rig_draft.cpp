@@ -11,7 +11,8 @@
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "rig/bus_plan.hpp"
-#include "scene/urdf_reader.hpp"
+#include "rig/joint_limits.hpp"
+#include "scene/urdf_limits.hpp"
 #include "sim/drives/homing_search.hpp"
 
 namespace foresight {
@@ -221,10 +222,14 @@ void choose_surroundings(RigDraft& draft) {
 }
 
 void note_left_out(const UrdfRobot& robot, RigDraft& draft) {
-  for (const UrdfJoint& joint : robot.joints)
+  for (const UrdfJoint& joint : robot.joints) {
     if (joint.mimic)
       draft.notes.push_back(fmt::format("{} follows {}: it has no drive of its own", joint.name,
                                         robot.joints[static_cast<std::size_t>(joint.mimic->joint)].name));
+    if (joint.loose)
+      draft.notes.push_back(joint.name +
+                            " is floating or planar: it counts as fixed where the URDF has it, and has no drive");
+  }
 }
 
 void note_sheet(const DriveSheet& sheet, RigDraft& draft) {
@@ -251,6 +256,23 @@ void read_robot(const RigDraftOptions& options, RigDraft& draft) {
     draft.notes.push_back("links are guarded by their visual shapes alone (robot.shapes): " +
                           why.substr(0, why.find("; looked for")));
   }
+  require_joint_units(*draft.rig.robot, options.urdf.string());
+}
+
+/// The joints within their soft limits, where these are narrower, and within what follows them.
+std::vector<UrdfJoint> guarded_joints(const UrdfRobot& robot, const std::map<std::string, SoftLimits>& soft_limits) {
+  UrdfRobot soft;
+  soft.joints = robot.joints;
+  for (UrdfJoint& joint : soft.joints) {
+    const auto found = soft_limits.find(joint.name);
+    if (found == soft_limits.end()) continue;
+    const double lower = std::max(joint.lower, found->second.lower);
+    const double upper = std::min(joint.upper, found->second.upper);
+    if (lower < upper) joint.lower = lower, joint.upper = upper;
+  }
+  std::vector<UrdfJoint> out;
+  for (std::size_t i = 0; i < soft.joints.size(); ++i) out.push_back(within_followers(soft, i));
+  return out;
 }
 
 }  // namespace
@@ -261,8 +283,9 @@ RigDraft draft_rig(const RigDraftOptions& options) {
   const UrdfRobot& robot = *draft.rig.robot;
   draft.rig.name = robot.name.empty() ? options.urdf.stem().string() : robot.name;
   const std::vector<std::size_t> head = pan_tilt_of(robot);
+  const std::vector<UrdfJoint> guarded = guarded_joints(robot, read_soft_limits(options.urdf));
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    const UrdfJoint& from = robot.joints[i];
+    const UrdfJoint& from = guarded[i];
     if (!moves(from)) continue;
     DraftJoint out;
     out.joint.drive.name = from.name;
@@ -271,6 +294,8 @@ RigDraft draft_rig(const RigDraftOptions& options) {
                       : is_gripper(robot, i)                   ? JointGroup::gripper
                                                                : JointGroup::arm;
     choose_limits(from, options.sheet, options.urdf.string() + ": joint " + in_quotes(from.name), out);
+    if (from.lower > robot.joints[i].lower || from.upper < robot.joints[i].upper)
+      out.urdf_says += "; narrower by soft limits, or by what follows it";
     if (options.protocol == DriveProtocol::cia402) {
       choose_scaling(options.sheet, out.joint);
       choose_homing(options.sheet, out.joint);

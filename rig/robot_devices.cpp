@@ -7,6 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/real_time.hpp"
+#include "common/text.hpp"
 #include "drivers/can/candump_log.hpp"
 #include "drivers/can/metered_bus.hpp"
 #include "drivers/can/recording_bus.hpp"
@@ -124,6 +125,10 @@ sim::NodeConfig emulated(const RigJoint& joint, DriveProtocol protocol) {
   out.motor.start = at_drive(powercube && !joint.absolute ? std::min(home + 0.02 * room, d.max_position) : home);
   // A CiA 402 drive says 0 at the home that it has found: there its switches must be.
   if (!powercube && !joint.absolute) {
+    if (!(out.min_position <= 0 && 0 <= out.max_position))
+      throw InputError("joint " + in_quotes(d.name),
+                       "its offset lies beyond min and max, and emulated drives have home there",
+                       "give a rig for mock drives an offset within, or `encoder: absolute`");
     sim::place_homing_switches(out, joint.homing_method, 0);
     out.motor.start = start_beside(0, joint.homing_method, out);
   }

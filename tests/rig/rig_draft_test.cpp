@@ -120,6 +120,30 @@ TEST_F(Draft, TakesLimitsFromTheUrdfAndIsSlowAtFirst) {
   }
 }
 
+TEST_F(Draft, KeepsWithinSoftLimitsAndThoseOfFollowers) {
+  std::string urdf = kArm;
+  const std::string safety =
+      R"(<safety_controller k_velocity="1" soft_lower_limit="-1" soft_upper_limit="3"/></joint>)";
+  urdf.replace(urdf.find("</joint>"), 8, safety);
+  const std::string mimic = R"(<mimic joint="grip"/>)";
+  urdf.replace(urdf.find(mimic), mimic.size(), R"(<mimic joint="grip" multiplier="-2" offset="0.04"/>)");
+  folder_.write("arm.urdf", urdf);
+  const Rig rig = written();
+  EXPECT_EQ(rig.joints[0].drive.min_position, -1);
+  EXPECT_EQ(rig.joints[0].drive.max_position, 1.5);
+  EXPECT_EQ(rig.joints[3].drive.min_position, 0);
+  EXPECT_NEAR(rig.joints[3].drive.max_position, 0.02, 1e-9);
+  EXPECT_THAT(text_, HasSubstr("narrower by soft limits"));
+}
+
+TEST_F(Draft, NotesWhatCountsAsFixed) {
+  std::string urdf = kArm;
+  urdf.replace(urdf.find(R"(type="fixed")"), 12, R"(type="floating")");
+  folder_.write("arm.urdf", urdf);
+  written();
+  EXPECT_THAT(text_, HasSubstr("Note: flange is floating or planar: it counts as fixed"));
+}
+
 TEST_F(Draft, HomesToASwitchInsideOrAtAnEnd) {
   const Rig rig = written();
   EXPECT_EQ(rig.joints[0].homing_method, 20) << "0 lies inside the range";
@@ -204,6 +228,10 @@ TEST_F(Draft, RefusesRobotsOfWhichItCanMakeNone) {
   };
   EXPECT_THAT(refusal(R"(lower="-2" upper="1.5")", R"(lower="0" upper="0")"),
               says("'shoulder'", "cannot move", "<limit"));
+  EXPECT_THAT(refusal(R"(lower="-2" upper="1.5")", R"(lower="-170" upper="170")"),
+              says("arm.urdf: joint 'shoulder' <limit>", "radians", "-170 degrees are -2.967"));
+  EXPECT_THAT(refusal(R"(lower="0" upper="0.04")", R"(lower="0" upper="300")"),
+              says("arm.urdf: joint 'grip' <limit>", "metres", "300 mm are 0.3"));
   folder_.write("arm.urdf", "<robot name='r'><link name='a'/></robot>");
   EXPECT_THAT(error(), says("arm.urdf", "0 of its joints move", "1 to 16"));
 }

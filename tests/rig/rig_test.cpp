@@ -107,6 +107,11 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("velocity: 1, acc", "velocity: .nan, acc", {"velocity"});
   expect("encoder: absolute, ", "", {"encoder", "no way to know"});
   expect("encoder: absolute", "homing_method: 35", {"wherever it stands"});
+  for (const char* index_pulse : {"homing_method: 33", "homing_method: 34"})
+    expect("encoder: absolute", index_pulse, {"joints[0].homing_method", "whichever of the motor's turns", "1 to 14"});
+  expect("node: 1,", "node: 1, offset: 90,",
+         {"rig.yaml:5: joints[0].offset", "90 rad", "two turns", "-1 to 1 rad", "90 looks like degrees: 1.571 rad"});
+  expect("node: 2,", "node: 2, offset: 50,", {"joints[1].offset", "50 m", "10 m", "looks like millimetres: 0.05 m"});
   expect("encoder: absolute", "encoder: relative", {"relative", "absolute"});
   expect("node: 2", "node: 2, serial: 12g", {"12g", "32-bit"});
   expect("node: 2", "node: 2, serial: 0x100000000", {"32-bit"});
@@ -120,6 +125,18 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("name: small", "name: small\ncameras: {left: {driver: mock}}", {"cameras.right", "missing"});
   expect("name: small", "name: small\ncameras: {left: {driver: mock}, right: {driver: mokc}}",
          {"rig.yaml:2: cameras.right.driver", "mokc", "mock"});
+}
+
+// A real drive may keep a home offset of its own; an emulated one looks for home where it says 0.
+TEST_F(BadRig, HomeMayLieBeyondTheLimitsOfARealDriveOnly) {
+  EXPECT_EQ(error_with("encoder: absolute,", "encoder: absolute, offset: 3,"), "no error");
+  EXPECT_EQ(error_with("encoder: absolute,", "homing_method: 20, offset: 3,"), "no error");
+  text_.replace(text_.find("can0"), 4, "mock");
+  EXPECT_EQ(error_with("encoder: absolute,", "encoder: absolute, offset: 3,"), "no error");
+  EXPECT_EQ(error_with("encoder: absolute,", "homing_method: 20, offset: 1,"), "no error");
+  EXPECT_THAT(error_with("encoder: absolute,", "homing_method: 20, offset: 3,"),
+              testing::AllOf(testing::HasSubstr("rig.yaml:5: joints[0].offset"),
+                             testing::HasSubstr("3 rad is beyond the joint's range of -1 to 1 rad")));
 }
 
 TEST_F(BadRig, CalibrationNamesItsFiles) {
@@ -197,6 +214,44 @@ TEST_F(LimitedRig, WhatIsBeyondTheUrdfIsRefusedWithAGuess) {
   expect("velocity: 1,", "velocity: 2.5,", {"2.5 rad/s is beyond the URDF's 2 rad/s"});
   expect("unit: rad", "unit: m", {"unit", "is m, but joint 'a' turns in the URDF", "unit: rad"});
   expect("unit: m", "unit: rad", {"unit", "is rad, but joint 'b' slides in the URDF", "unit: m"});
+}
+
+TEST_F(LimitedRig, LimitsOfTheUrdfItselfAreRadiansAndMetres) {
+  const auto refusal = [&](const std::string& limit, const std::string& instead) {
+    std::string urdf = kLimited;
+    urdf.replace(urdf.find(limit), limit.size(), instead);
+    folder_.write("two.urdf", urdf);
+    return error_with("name: small", "name: tall");
+  };
+  using testing::AllOf;
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("upper='1.57'", "upper='170'"), AllOf(HasSubstr("two.urdf: joint 'a' <limit>: upper is 170"),
+                                                            HasSubstr("radians: 170 degrees are 2.967")));
+  EXPECT_THAT(refusal("upper='0.1'", "upper='300'"),
+              AllOf(HasSubstr("two.urdf: joint 'b' <limit>: upper is 300"), HasSubstr("metres: 300 mm are 0.3")));
+  EXPECT_EQ(refusal("lower='-1.5' upper='1.57'", "lower='-1e5' upper='1e5'"), "no error") << "stands for endless";
+}
+
+TEST_F(LimitedRig, FollowersKeepWithinTheirLimits) {
+  const auto refusal = [&](const std::string& limit, const std::string& mimic) {
+    std::string urdf = kLimited;
+    urdf.replace(urdf.find("</robot>"), 8,
+                 "<link name='l3'/><joint name='c' type='prismatic'><parent link='l1'/><child link='l3'/><limit " +
+                     limit + " effort='1'/><mimic joint='b' " + mimic + "/></joint></robot>");
+    folder_.write("two.urdf", urdf);
+    return error_with("name: small", "name: tall");
+  };
+  using testing::HasSubstr;
+  EXPECT_EQ(refusal("lower='0' upper='0.2' velocity='0.2'", "multiplier='2'"), "no error");
+  EXPECT_THAT(refusal("lower='0' upper='0.01' velocity='1'", "multiplier='2'"),
+              HasSubstr("joints[1].max: 0.1 m is beyond the URDF's 0.005 m"));
+  EXPECT_THAT(refusal("lower='-0.15' upper='0' velocity='1'", "multiplier='-2' offset='-0.01'"),
+              HasSubstr("joints[1].max: 0.1 m is beyond the URDF's 0.07 m"));
+  EXPECT_THAT(refusal("lower='0' upper='0.2' velocity='0.1'", "multiplier='2'"),
+              HasSubstr("joints[1].velocity: 0.1 m/s is beyond the URDF's 0.05 m/s"));
+  EXPECT_THAT(refusal("lower='1' upper='2' velocity='1'", ""),
+              HasSubstr("joint 'b' <limit>: the limits of the joints"));
+  EXPECT_EQ(refusal("lower='0' upper='0' velocity='1'", ""), "no error") << "it was given none";
 }
 
 TEST_F(LimitedRig, AbsurdValuesAreRefused) {
