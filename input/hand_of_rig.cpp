@@ -26,6 +26,20 @@ JointRole role_of(JointGroup group) {
   return JointRole::other;
 }
 
+// All joints between the root and the tool.
+void require_own_drives(const Rig& rig, const std::string& tool) {
+  const UrdfRobot& robot = *rig.robot;
+  auto link = static_cast<std::size_t>(std::ranges::find(robot.links, tool, &Node::name) - robot.links.begin());
+  for (; link > 0; link = static_cast<std::size_t>(robot.links[link].parent)) {
+    const UrdfJoint& joint = robot.joints[link - 1];
+    if (joint.mimic)
+      throw InputError(
+          rig.name, "joint '" + joint.name + "' follows another, but lies in the arm: its tool cannot be moved",
+          "give joints beyond it another group than `arm`, so that the tool is before it, or make it fixed "
+          "in the URDF");
+  }
+}
+
 ArmChain within(const ArmChain& chain, const HandOptions& options, const Pose& T_tip_tool, const std::string& where) {
   std::vector<ArmJoint> joints(chain.joints().begin(), chain.joints().end());
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -56,7 +70,9 @@ std::string tool_link(const Rig& rig) {
     found = robot.links[child].name;
   }
   if (found.empty()) throw InputError(rig.name, "has no arm joint that its URDF knows", "give joints the group `arm`");
-  if (two) throw InputError(rig.name, "has more than one arm", "name the tool's link: --tip LINK");
+  if (two)
+    throw InputError(rig.name, "has more than one arm",
+                     "make a rig of each, in whose URDF the other one's joints are fixed");
   return found;
 }
 
@@ -93,13 +109,14 @@ HandOptions hand_options(const Rig& rig, const std::string& tip, const Pose& T_t
   }
   const bool any_arm = std::ranges::find(out.roles, JointRole::arm) != out.roles.end();
   if (!rig.robot || (!any_arm && tip.empty())) return out;
+  if (tip.empty()) require_own_drives(rig, tool_link(rig));
   const ArmChain chain = arm_chain(*rig.robot, tip.empty() ? tool_link(rig) : tip, "", rig.name);
   const std::vector<std::string> names = rig.joint_names();
   for (const ArmJoint& joint : chain.joints()) {
     const auto found = std::ranges::find(names, joint.name);
     if (found == names.end())
       throw InputError(rig.name, "has no joint '" + joint.name + "', which is on the way to the tool",
-                       "name another link: --tip LINK");
+                       "add it to the rig's joints, or make it fixed in the URDF");
     out.arm_joints.push_back(static_cast<std::size_t>(found - names.begin()));
   }
   out.arm = within(chain, out, T_tip_tool, rig.name);

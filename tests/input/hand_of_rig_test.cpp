@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "common/error.hpp"
 #include "tests/support/folders.hpp"
 
@@ -51,6 +53,26 @@ TEST_F(HandOfRigTest, ALinkThatIsNotThereIsRefusedAndSoIsOneThatTheArmDoesNotRea
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("finger"));
   }
+}
+
+TEST_F(HandOfRigTest, ACureIsOneThatTheRigFileHas) {
+  const auto refusal = [&] {
+    try {
+      hand_options(rig_);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  UrdfJoint& elbow = *std::ranges::find(rig_.robot->joints, rig_.joints[3].drive.name, &UrdfJoint::name);
+  elbow.mimic = UrdfJoint::Mimic{0, 1, 0};
+  EXPECT_THAT(refusal(),
+              testing::AllOf(testing::HasSubstr("follows another, but lies in the arm"),
+                             testing::HasSubstr("another group"), testing::Not(testing::HasSubstr("--tip"))));
+  elbow.mimic.reset();
+  rig_.joints[3].drive.name = "another";
+  EXPECT_THAT(refusal(), testing::AllOf(testing::HasSubstr("add it to the rig's joints"),
+                                        testing::Not(testing::HasSubstr("--tip"))));
 }
 
 TEST_F(HandOfRigTest, WithoutAModelJointsAreMovedAlone) {
