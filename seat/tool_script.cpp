@@ -27,8 +27,11 @@ std::vector<std::size_t> of_group(const Rig& rig, JointGroup group) {
 HandOptions arm_of(const Rig& rig) {
   HandOptions out = hand_options(rig);
   if (!out.arm)
-    throw InputError(rig.name, "the rig has no robot, whose tool could be moved",
-                     "give it a `robot:` section with a URDF (docs/rig-files.md)");
+    throw InputError(rig.name,
+                     rig.robot ? "no joint has `group: arm`, so that there is no tool to be moved"
+                               : "the rig has no robot, whose tool could be moved",
+                     rig.robot ? "give the arm's joints `group: arm` (docs/rig-files.md)"
+                               : "give it a `robot:` section with a URDF (docs/rig-files.md)");
   return out;
 }
 
@@ -250,6 +253,10 @@ std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
     const auto what = out.empty() || out.size() % 2 == 0 ? ToolStep::What::there : ToolStep::What::line;
     out.push_back({what, pose, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5});
   }
+  if (out.empty())
+    throw InputError(rig.name,
+                     "the arm reaches none of the tour's poses, 0.30 to 0.55 m above the world's origin, tool down",
+                     "correct robot.pose, min and max of the rig, or operate it by hand, without --scripted");
   return out;
 }
 

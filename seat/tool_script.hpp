@@ -86,6 +86,7 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
                                      const std::string& tray);
 
 /// A tour of poses above what lies in reach of the arm, the tool pointing down: `count` of them, by `seed`.
+/// Throws InputError: no arm, or it reaches none of them.
 std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count);
 
 }  // namespace foresight

@@ -1,6 +1,7 @@
 // Scripts move a tool as a hand would: within what joints may, to where they were told.
 #include "seat/tool_script.hpp"
 #include "common/error.hpp"
+#include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
 namespace foresight::tool_script_test {
@@ -101,6 +102,15 @@ TEST(ToolScript, WhatIsSeenOutOfReachIsLookedForWhereItWasPlanned) {
   Pose far = Pose::Identity();
   far.translation().x() = 5;
   EXPECT_TRUE(closes_at(far, "brick_red").isApprox(closes_at(Pose::Identity(), "brick_red"), 1e-6));
+}
+
+TEST(ToolScript, ATourOfNoPoseIsRefused) {
+  Rig rig = minerva();
+  rig.T_world_robot.translation().z() += 5;
+  EXPECT_THAT(input_error([&] { tour(rig, 1, 4); }), testing::HasSubstr("reaches none of the tour's poses"));
+  for (RigJoint& joint : rig.joints)
+    if (joint.group == JointGroup::arm) joint.group = JointGroup::pan_tilt;
+  EXPECT_THAT(input_error([&] { tour(rig, 1, 4); }), testing::HasSubstr("no joint has `group: arm`"));
 }
 
 TEST(ToolScript, AnUnreachablePoseIsRefused) {
