@@ -14,6 +14,9 @@
 namespace foresight {
 namespace {
 
+constexpr const char* kTimes =
+    "Times of a CSV: time_s in seconds; or timestamp, in nanoseconds or in ticks of 100 ns since the year 1.\n\n";
+
 void add_ik(Command& prediction, std::function<int()>& action) {
   auto* command = prediction.add_subcommand("ik", "Inverse kinematics of an arm: solved, CPU time, paths followed");
   auto options = std::make_shared<PredictionIkOptions>();
@@ -35,9 +38,9 @@ void add_ik(Command& prediction, std::function<int()>& action) {
                    "into the workspace")
       ->reads();
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
-  command->footer(
-      "Example: foresight bench prediction ik --urdf configs/arm.urdf --tip arm_7 --json ik.json\n"
-      "Exit code: 1 where a joint stepped farther than its velocity allows.");
+  command->footer(std::string(kTimes) +
+                  "Example: foresight bench prediction ik --urdf configs/arm.urdf --tip arm_7 --json ik.json\n"
+                  "Exit code: 1 where a joint stepped farther than its velocity allows.");
   command->callback([options, &action] { action = [options] { return bench_prediction_ik(*options); }; });
 }
 
@@ -77,7 +80,7 @@ void add_prediction_head(Command& prediction, std::function<int()>& action) {
       ->check(from_to(1, 500))
       ->capture_default_str();
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
-  command->footer("Example: foresight bench prediction head head.csv --json head.json");
+  command->footer(std::string(kTimes) + "Example: foresight bench prediction head head.csv --json head.json");
   command->callback([options, &action] { action = [options] { return bench_prediction_head(*options); }; });
 }
 
@@ -91,7 +94,7 @@ void add_hand(Command& prediction, std::function<int()>& action) {
       ->reads()
       ->required();
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
-  command->footer("Example: foresight bench prediction hand hands.csv --json hands.json");
+  command->footer(std::string(kTimes) + "Example: foresight bench prediction hand hands.csv --json hands.json");
   command->callback([options, &action] { action = [options] { return bench_prediction_hand(*options); }; });
 }
 
@@ -106,6 +109,7 @@ void add_response(Command& prediction, std::function<int()>& action) {
       ->required();
   command->add_option("--json", options->json, "File for all numbers")->writes(numbers_form());
   command->footer(
+      std::string(kTimes) +
       "Example: foresight bench prediction response --commands command.csv --states state.csv --json response.json");
   command->callback([options, &action] { action = [options] { return bench_prediction_response(*options); }; });
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "apps/bench/joint_table.hpp"
@@ -141,11 +142,16 @@ struct Scores {
   nlohmann::json joints = nlohmann::json::array();
 };
 
+// A step between sparse states would be an error of the truth.
+double between(const PositionHistory& states, double time) {
+  return states.at(time, std::numeric_limits<double>::infinity(), kLongestGap);
+}
+
 double velocity_at(const Joint& joint, const PositionHistory& states, std::size_t i) {
   if (!joint.velocities.empty()) return joint.velocities[i];
   const TimedPosition& now = joint.states[i];
   const double then = std::max(now.time - kVelocityOver, joint.states.front().time);
-  return now.time > then ? (now.position - states.at(then)) / (now.time - then) : 0;
+  return now.time > then ? (now.position - between(states, then)) / (now.time - then) : 0;
 }
 
 void describe(const Joint& joint, const JointResponse& response, Scores& scores) {
@@ -196,7 +202,7 @@ void score(const Joint& joint, const Truth& truth, std::size_t i, const std::arr
     if (then > truth.end || !truth.states.covers(then, kLongestGap)) continue;
     if (any_hole(joint.holes, now.time - kSettles, then)) continue;
     const PredictedPosition predicted = learners[0]->at(then), online = learners[1]->at(then);
-    const double there = truth.states.at(then);
+    const double there = between(truth.states, then);
     const double way = truth.commands.at(then) - truth.commands.at(now.time);
     const std::array guesses{predicted.position, online.position, now.position + way,
                              now.position + velocity_at(joint, truth.states, i) * kAhead[h], now.position};

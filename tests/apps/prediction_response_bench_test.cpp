@@ -88,6 +88,18 @@ TEST(PredictionResponse, CommandsAreTakenAsPositionsOrVelocities) {
   EXPECT_EQ(by_position["joints"][0]["name"], "elbow");
 }
 
+// As over a thin line: what lies between two states is on the line between them, no step.
+TEST(PredictionResponse, SparseStatesAreJoinedByLines) {
+  const TempFolder out;
+  std::string commands = "time_s,elbow\n", states = commands;
+  const auto slow = [](double t) { return 0.5 * std::sin(0.5 * t); };
+  for (int i = 0; i < 6000; ++i) commands += number(i * 0.005) + "," + number(slow(i * 0.005)) + "\n";
+  for (int i = 0; i < 428; ++i) states += number(i * 0.07) + "," + number(slow(i * 0.07 - 0.04)) + "\n";
+  const auto all = measured(out, out.write("c.csv", commands).string(), out.write("s.csv", states).string());
+  EXPECT_LT(all["increment_p95_rad_100ms"].get<double>(), 0.004);
+  EXPECT_LT(all["velocity_p95_rad_100ms"].get<double>(), 0.004);
+}
+
 // Another clock cannot be told from its numbers, but from a motion that its commands have nothing to do with.
 TEST(PredictionResponse, CommandsThatExplainLittleOfTheMotionAreNamed) {
   const TempFolder out;
