@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 #include "apps/command_line/picture_size.hpp"
 #include "common/atomic_file.hpp"
@@ -30,11 +31,22 @@ cv::Size picture_size(const std::string& text) {
   return {width, height};
 }
 
+/// Between blanks, as the command line has them, or commas, as --joints has.
+std::vector<std::string> words_of(const std::vector<std::string>& given) {
+  std::vector<std::string> out;
+  for (const std::string& list : given) {
+    std::istringstream stream(list);
+    for (std::string word; std::getline(stream, word, ',');)
+      if (!word.empty()) out.push_back(word);
+  }
+  return out;
+}
+
 Layers layers_without(const std::vector<std::string>& hidden) {
   static const std::vector<std::string> words = {"links",  "guards", "obstacles", "workspace",
                                                  "limits", "frames", "cameras",   "names"};
   Layers out = kAllLayers;
-  for (const std::string& word : hidden) {
+  for (const std::string& word : words_of(hidden)) {
     const auto at = static_cast<std::size_t>(std::ranges::find(words, word) - words.begin());
     if (at == words.size())
       throw InputError("--hide", in_quotes(word) + " is nothing that a picture shows", did_you_mean(word, words));
@@ -106,7 +118,8 @@ void add_rig_view_command(Command& rig, std::function<int()>& action) {
       ->check(from_to(0.05, 20))
       ->capture_default_str();
   command->add_option("--size", a->size, "With --out: WIDTHxHEIGHT in px")->capture_default_str();
-  command->add_option("--hide", a->hide, "With --out: links guards obstacles workspace limits frames cameras names")
+  command
+      ->add_option("--hide", a->hide, "With --out: any of links,guards,obstacles,workspace,limits,frames,cameras,names")
       ->expected(1, static_cast<int>(kLayers));
   command->footer(
       "In the window the mouse turns the view and pulls sliders; keys are written in it. While a robot runs:\n"

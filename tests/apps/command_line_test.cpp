@@ -78,6 +78,21 @@ TEST(CommandLine, SynthRefusesWhatItCannotWrite) {
   EXPECT_EQ(folder.read("mine/diary.txt"), "kept");
 }
 
+TEST(CommandLine, WhatAPictureHidesStandsBetweenCommasOrBlanks) {
+  const TempFolder folder;
+  const std::string rig = source_folder() / "configs/minerva.yaml", out = folder / "rig.png";
+  for (const std::vector<std::string>& hidden :
+       {std::vector<std::string>{"guards,names"}, {"guards", "names"}, {"guards,nmaes"}}) {
+    std::vector<std::string> arguments{"rig", "view", rig, "--out", out, "--hide"};
+    arguments.insert(arguments.end(), hidden.begin(), hidden.end());
+    const Outcome outcome = run_program(arguments);
+    if (hidden.front() == "guards,nmaes")
+      EXPECT_THAT(outcome.last_line(), HasSubstr("'nmaes' is nothing that a picture shows; did you mean 'names'"));
+    else
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+}
+
 TEST(CommandLine, SynthStoppedByCtrlCLeavesNothing) {
   const TempFolder folder;
   Program program({"synth", folder / "out", "--frames", "10000", "--size", "64x48"});
