@@ -9,6 +9,11 @@ namespace {
 
 constexpr double kSeen = 1, kHole = 128.0 / 255, kBare = 64.0 / 255;
 
+/// Pixels of the image per texel, of a texel's alpha (atlas.glsl).
+double image_px(double alpha) {
+  return std::exp2((31 * alpha - 2) * 8 / 29 - 8);
+}
+
 }  // namespace
 
 ViewPixel View::at(const Lens& lens, const Pose& T_world_camera, const Eigen::Vector2d& pixel) const {
@@ -62,6 +67,7 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
     out.borderline |= std::abs(lod + 0.15 - std::round(lod + 0.15)) < 1e-3;
 
     Eigen::Vector4d seen(0, 0, 0, 0), filled(0, 0, 0, 0);
+    double quality = 0;
     const Eigen::Vector2d at = (texel + Eigen::Vector2d(0.5, 0.5)) / (1 << level) - Eigen::Vector2d(0.5, 0.5);
     const auto fetch = [&](const Eigen::Vector2i& t) { return texel_of(generation_, pixels_, chart, level, t); };
     bilinear(at, [&](const Eigen::Vector2i& t, double weight) {
@@ -69,10 +75,15 @@ ViewPixel View::shade(const RayCaster::Hit& hit, const Eigen::Vector3d& ray, dou
       const double code = 31 * c.w(), share = code < 1.5 ? 0 : level == 0 ? 1 : c.w();
       const Eigen::Vector4d opaque(c.x(), c.y(), c.z(), 1);
       seen += weight * share * opaque;
+      quality += weight * share * c.w();
       if (code > 0.5) filled += weight * (1 - share) * opaque;
     });
-    if (const auto sharp = level == 0 ? cubic(at, fetch) : std::nullopt) {
-      seen.head<3>() = ((1 - generation_.sharp) * seen.head<3>() + generation_.sharp * *sharp).cwiseMax(0).cwiseMin(1);
+    if (const auto sharp = level <= 2 ? cubic(at, level, fetch) : std::nullopt) {
+      // Pixels of the image, as an image saw the texels of level 0, for one here.
+      const double finer = (level == 0 ? image_px(quality) : 1) / (pixels * (1 << level));
+      const double share =
+          std::min<double>(generation_.sharp, std::max(generation_.sharp - 6 * 0.36 * (finer * finer - 1), -1.0));
+      seen.head<3>() = ((1 - share) * seen.head<3>() + share * *sharp).cwiseMax(0).cwiseMin(1);
       const Eigen::Array2d middle = at.array() + 0.5;
       out.borderline |= (middle - middle.round()).abs().minCoeff() < 1e-3;  // between two rows or columns
     }

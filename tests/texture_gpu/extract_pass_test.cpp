@@ -340,7 +340,7 @@ TEST_F(ExtractTest, ANewResolutionStartsFromTheOldColours) {
       }
       sum /= weight;
       const double code = std::clamp(31 * sum[3] + 0.5 * std::log2(ratio.prod()) / 8 * 29, 2.0, 31.0);
-      if (const auto sharp = reference::cubic(texel, fetch)) sum.head<3>() = sharp->cwiseMax(0).cwiseMin(1), ++cubic;
+      if (const auto sharp = reference::cubic(texel, 0, fetch)) sum.head<3>() = sharp->cwiseMax(0).cwiseMin(1), ++cubic;
       ++compared;
       for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(got[static_cast<std::size_t>(c)] - 255 * sum[c]));
       worst_code = std::max(worst_code, std::abs(got[3] - code));

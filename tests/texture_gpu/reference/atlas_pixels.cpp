@@ -96,7 +96,7 @@ Eigen::Vector4d texel_of(const Generation& generation, const AtlasPixels& pixels
   return to_vector(pixels.at(slot, level, at.x() % side, at.y() % side));
 }
 
-std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at,
+std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at, int level,
                                      const std::function<Eigen::Vector4d(const Eigen::Vector2i&)>& fetch) {
   const auto kernel = [](double d) {
     d = std::abs(d);
@@ -112,7 +112,7 @@ std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at,
       if (outer_x && outer_y) continue;
       const Eigen::Vector2i t = base + Eigen::Vector2i(x, y);
       const Eigen::Vector4d c = fetch(Eigen::Vector2i(outer_y ? nearest.x() : t.x(), outer_x ? nearest.y() : t.y()));
-      if (31 * c.w() < 1.5) return std::nullopt;
+      if (c.w() < (level == 0 ? 1.5 / 31 : 0.999)) return std::nullopt;
       const double w = kernel(at.x() - t.x()) * kernel(at.y() - t.y());
       sum += w * c.head<3>();
       weights += w;

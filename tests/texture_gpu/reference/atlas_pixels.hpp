@@ -63,8 +63,8 @@ void bilinear(const Eigen::Vector2d& at, F&& f) {
 }
 
 /// Catmull-Rom, in which the outer texels of each side are all as the one in the nearest row or column, without the
-/// corners; nothing where one that it takes was not seen.
-std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at,
+/// corners; nothing where one that it takes was not seen, at levels above 0: in part.
+std::optional<Eigen::Vector3d> cubic(const Eigen::Vector2d& at, int level,
                                      const std::function<Eigen::Vector4d(const Eigen::Vector2i&)>& fetch);
 
 }  // namespace foresight::reference
