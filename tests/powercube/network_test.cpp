@@ -296,6 +296,22 @@ TEST_F(PowerCube, ALoopThatIsLateDoesNotTakeModulesForSilent) {
   EXPECT_EQ(state(), DriveState::offline) << "one that was asked in vain is missed all the same";
 }
 
+// Late by 24 ms, however long after it fed them.
+TEST_F(PowerCube, ALoopThatIsLateLetsNoWatchdogRunOut) {
+  start_enabled({.cycle = 4ms});
+  const auto cycle = [&] {
+    network_->receive(clock_.now());
+    network_->send(clock_.now());
+    clock_.sleep_until(clock_.now() + 4ms);
+  };
+  for (int cycles = 0; cycles < 10; ++cycles) {
+    for (const std::size_t fed = shoulder_.refreshes.size(); shoulder_.refreshes.size() == fed;) cycle();
+    for (int i = 0; i < cycles; ++i) cycle();
+    clock_.sleep_until(clock_.now() + 24ms);
+    ASSERT_FALSE(shoulder_.state & kHalted) << "late " << cycles << " cycles after";
+  }
+}
+
 TEST_F(PowerCube, AModuleThatLostItsPowerMustBeConfiguredAgain) {
   start_enabled();
   shoulder_.silent = true;
