@@ -170,11 +170,11 @@ class HandControl {
   struct Held {  // while the switch is held
     OperatorTime since;
     bool followed = false, clutched = false;
-    bool clutch_refused = false;             // and has to be let go of
-    HandFault fault = HandFault::none;       // why
-    std::optional<TrackerState> refused_by;  // with the words for that
-    bool grip_caught = false;                // the trigger has been where the gripper is
-    std::optional<double> grip_at;           // the trigger, when the switch was pressed
+    bool clutch_refused = false;                  // and has to be let go of
+    HandFault fault = HandFault::none;            // why
+    std::optional<TrackerState> refused_by = {};  // with the words for that
+    bool grip_caught = false;                     // the trigger has been where the gripper is
+    std::optional<double> grip_at = {};           // the trigger, when the switch was pressed
   };
   void forget_cycle() noexcept;
   void see(const HandInput& input, const HandWatch::Verdict& verdict) noexcept;

@@ -123,4 +123,15 @@ HandOptions hand_options(const Rig& rig, const std::string& tip, const Pose& T_t
   return out;
 }
 
+HandOptions arm_options(const Rig& rig) {
+  HandOptions out = hand_options(rig);
+  if (!out.arm)
+    throw InputError(rig.name,
+                     rig.robot ? "no joint has `group: arm`, so that there is no tool to be moved"
+                               : "the rig has no robot, whose tool could be moved",
+                     rig.robot ? "give the arm's joints `group: arm` (docs/rig-files.md)"
+                               : "give it a `robot:` section with a URDF (docs/rig-files.md)");
+  return out;
+}
+
 }  // namespace foresight

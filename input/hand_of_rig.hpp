@@ -20,4 +20,7 @@ Pose grip_point(const Rig& rig, const std::string& tip);
 /// naming the rig: no such link, joints on the way to it that are not the arm's.
 HandOptions hand_options(const Rig& rig, const std::string& tip = "", const Pose& T_tip_tool = Pose::Identity());
 
+/// hand_options() with an arm. Throws InputError where the rig has none, too.
+HandOptions arm_options(const Rig& rig);
+
 }  // namespace foresight

@@ -24,21 +24,10 @@ std::vector<std::size_t> of_group(const Rig& rig, JointGroup group) {
   return out;
 }
 
-HandOptions arm_of(const Rig& rig) {
-  HandOptions out = hand_options(rig);
-  if (!out.arm)
-    throw InputError(rig.name,
-                     rig.robot ? "no joint has `group: arm`, so that there is no tool to be moved"
-                               : "the rig has no robot, whose tool could be moved",
-                     rig.robot ? "give the arm's joints `group: arm` (docs/rig-files.md)"
-                               : "give it a `robot:` section with a URDF (docs/rig-files.md)");
-  return out;
-}
-
 }  // namespace
 
 ToolScript::ToolScript(const Rig& rig, std::vector<ToolStep> steps, const HeadSway& sway)
-    : ToolScript(rig, arm_of(rig), std::move(steps), sway) {}
+    : ToolScript(rig, arm_options(rig), std::move(steps), sway) {}
 
 ToolScript::ToolScript(const Rig& rig, const HandOptions& hand, std::vector<ToolStep> steps, const HeadSway& sway)
     : rig_(rig),
@@ -176,7 +165,7 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
   constexpr double kOpen = 0.038, kClosed = 0.016;    // m, of the jaws' joint
   constexpr double kAbove = 0.14, kIntoTray = 0.012;  // m
   const Pose from = place_at_rest(scene, thing), to = place_at_rest(scene, tray);
-  const HandOptions hand = arm_of(rig);
+  const HandOptions hand = arm_options(rig);
   const InverseKinematics kinematics(*hand.arm);
   const double yaw = std::atan2(from.linear()(1, 0), from.linear()(0, 0));
   for (int quarter = 0; quarter < 4; ++quarter) {
@@ -217,7 +206,7 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
 }
 
 std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
-  const HandOptions hand = arm_of(rig);
+  const HandOptions hand = arm_options(rig);
   const InverseKinematics kinematics(*hand.arm);
   const std::vector<std::size_t>& arm = hand.arm_joints;
   const auto shape = rig.shape();

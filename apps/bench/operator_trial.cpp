@@ -52,7 +52,7 @@ struct OperatorTask {
 class OperatorTrial {
  public:
   OperatorTrial(const Rig& rig, const OperatorTrialOptions& options)
-      : rig_(rig), options_(options), hand_(hand_options(rig)), kinematics_(*hand_.arm), random_(options.seed) {
+      : rig_(rig), options_(options), hand_(arm_options(rig)), kinematics_(*hand_.arm), random_(options.seed) {
     for (std::size_t i = 0; i < rig.joints.size(); ++i)
       if (rig.joints[i].group == JointGroup::gripper) jaws_.push_back(i);
     if (jaws_.empty())
