@@ -20,9 +20,8 @@ struct PredictedSourceOptions {
   Duration silent_after = std::chrono::milliseconds(1000);  ///< without an image: fault() says so
 };
 
-/// Why an image has no pose, by what its joints told: ": pan tells no position any more", or that they have to be
-/// homed;
-/// "" where all were known.
+/// Why an image has no pose, by what its joints told: ": pan tells no position any more", or that joints have to be
+/// homed; "" where all were known.
 std::string why_no_pose(const link::LineJoints& joints);
 
 /// One thread. In stepped time, advance() does not wait.
