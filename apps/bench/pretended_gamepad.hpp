@@ -23,7 +23,6 @@ class PretendedGamepad {
   PretendedGamepad& operator=(const PretendedGamepad&) = delete;
 
   void plug(bool in);
-  bool plugged() const { return pad_ != nullptr; }
   void move(const PadSticks& sticks);
   /// For Gamepad(): real ones may come before it.
   std::size_t index() const { return index_; }

@@ -84,7 +84,7 @@ TrackerState SeatHand::controller(const SeatView& view, const SeatWish& meant) c
   out.connected = out.tracked = true;
   out.time = view.now;
   out.T_space_hand = T_space_hand_;
-  out.T_space_head = T_space_head_;
+  out.T_space_head = Pose::Identity();
   const bool held = meant.deadman && !at_gamepad_;
   out.buttons.set(TrackerButton::deadman, held);
   out.buttons.set(TrackerButton::clutch, held);

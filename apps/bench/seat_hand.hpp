@@ -45,7 +45,6 @@ class SeatHand {
   void fail(ControllerFault fault) { fault_ = fault; }
   /// All at once, and it stays there.
   void jump_hand(const Pose& by) { T_space_hand_ = by * T_space_hand_; }
-  void jump_head(const Pose& by) { T_space_head_ = by * T_space_head_; }
   void plug_gamepad(bool in) { gamepad_.plug(in); }
 
  private:
@@ -60,9 +59,9 @@ class SeatHand {
   PretendedGamepad gamepad_;
   std::shared_ptr<head::HeldControllers> controllers_ = std::make_shared<head::HeldControllers>();
   HandDriver driver_;
-  Pose T_world_space_ = Pose::Identity();                                   // of the head display
-  Pose T_space_hand_ = Pose::Identity(), T_space_head_ = Pose::Identity();  // in truth
-  Pose T_world_camera_ = Pose::Identity();                                  // that the gamepad's sticks are meant by
+  Pose T_world_space_ = Pose::Identity();   // of the head display
+  Pose T_space_hand_ = Pose::Identity();    // in truth
+  Pose T_world_camera_ = Pose::Identity();  // that the gamepad's sticks are meant by
   ControllerFault fault_ = ControllerFault::none;
   PadSticks sticks_;
   bool at_gamepad_ = false;

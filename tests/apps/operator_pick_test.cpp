@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "common/read_file.hpp"
 #include "display/view_target.hpp"
@@ -15,6 +14,7 @@
 #include "link/dds/topics.hpp"
 #include "prediction/inverse_kinematics.hpp"
 #include "seat/tool_script.hpp"
+#include "sim/arm.hpp"
 #include "sim/lab_task.hpp"
 #include "tests/apps/operator_window.hpp"
 
@@ -22,11 +22,11 @@ namespace foresight::operator_pick_test {
 namespace {
 
 constexpr const char* kThing = "brick_red";
-constexpr double kTips = 0.15, kGrasp = 0.037;  // m: finger tips along the tool's z; above the thing's bottom
-constexpr double kOpen = 0.036;                 // m, of the jaws' joint
-constexpr double kPressed = 0.017;              // m: by so much less than half the thing's width do the jaws press
-constexpr double kAbove = 0.11;                 // m, along the view's vertical
-constexpr double kTilt = 0.5;                   // rad, of the head that looks on
+constexpr double kGrasp = 0.037;    // m: finger tips above the thing's bottom
+constexpr double kOpen = 0.036;     // m, of the jaws' joint
+constexpr double kPressed = 0.017;  // m: by so much less than half the thing's width do the jaws press
+constexpr double kAbove = 0.11;     // m, along the view's vertical
+constexpr double kTilt = 0.5;       // rad, of the head that looks on
 
 /// An arm of `urdf` whose joints are at zero where those of the old one are at `q`.
 std::string with_zeros_at(std::string urdf, const ArmChain& arm, const JointVector& q) {
@@ -51,11 +51,7 @@ class OperatorPicks : public OperatorWindow {
     scene_.emplace(live_scene_of(lab, true, std::nullopt, true));
     T_world_thing_ = place_at_rest(*scene_, kThing);
     const double yaw = std::atan2(T_world_thing_.linear()(1, 0), T_world_thing_.linear()(0, 0));
-    Pose above = Pose::Identity();
-    above.linear() = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                      Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
-                         .toRotationMatrix();
-    above.translation() = T_world_thing_.translation() + Eigen::Vector3d(0, 0, kGrasp + kTips);
+    Pose above = sim::pointing_down(T_world_thing_.translation() + Eigen::Vector3d(0, 0, kGrasp), yaw);
     grasp_height_ = above.translation().z();
     above.pretranslate(-kAbove * T_world_camera(kTilt).linear().col(1));  // where the key for "down" leads to the thing
     const InverseKinematics kinematics(*hand_options(lab).arm);

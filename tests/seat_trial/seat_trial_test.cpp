@@ -32,17 +32,23 @@ struct Outcome {
   std::vector<Asked> asked;
 };
 
+/// The lab's rig with few and small images.
+Rig small_rig(const std::filesystem::path& file, double images_hz) {
+  Rig rig = read_rig(file);
+  for (CameraConfig& camera : rig.cameras->cameras) {
+    camera.settings.rate = images_hz;
+    camera.settings.width = 160;
+    camera.settings.height = 120;
+  }
+  return rig;
+}
+
 /// A pick that is cut off after `seconds`, with few and small images.
 Outcome try_pick(double seconds, LinkCoding coding, std::function<cv::Mat(const cv::Mat&)> truth,
                  const TrustSwitchOptions& fall_back = {}) {
   SeatTrialOptions options;
   options.rig_file = source_folder() / "configs" / "minerva.yaml";
-  Rig rig = read_rig(options.rig_file);
-  for (CameraConfig& camera : rig.cameras->cameras) {
-    camera.settings.rate = 5;
-    camera.settings.width = 160;
-    camera.settings.height = 120;
-  }
+  Rig rig = small_rig(options.rig_file, 5);
   rig.link.coding = coding;
   options.line.up.delay = options.line.down.delay = 200ms;
   // States at their full rate would fill it, and be seconds old: no press would ever be answered.
@@ -100,12 +106,7 @@ TEST(SeatTrial, NothingIsExactWhereTheNewestImageStandsIn) {
 TEST(SeatTrial, ARobotThatComesBackIsToldOfAndDrivenAgain) {
   SeatTrialOptions options;
   options.rig_file = source_folder() / "configs" / "minerva.yaml";
-  Rig rig = read_rig(options.rig_file);
-  for (CameraConfig& camera : rig.cameras->cameras) {
-    camera.settings.rate = 2;
-    camera.settings.width = 160;
-    camera.settings.height = 120;
-  }
+  const Rig rig = small_rig(options.rig_file, 2);
   options.line.up.delay = options.line.down.delay = 50ms;
   options.pictures_hz = 2;
   options.scored = false;
