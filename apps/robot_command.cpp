@@ -206,6 +206,9 @@ int run_with(const Rig& rig, const RobotArguments& arguments,
   const auto shape = rig.shape();
   say_robot(shape ? to_text(guarded_links(*rig.robot))
                   : "the rig has no robot.urdf: nothing is checked against the surroundings");
+  if (shape)
+    for (const auto& [link, other] : shape->nested())
+      say_robot("links " + other + " and " + link + " lie in each other in most positions: the gate lets them touch");
   if (arguments.check_only) {
     devices.bring_up(say_robot);
     for (const Drive* drive : devices.drives())

@@ -53,18 +53,6 @@ double segment_distance(const Capsule& s, const Capsule& t) {
   return (s.a + u * d1 - t.a - v * d2).norm();
 }
 
-/// How many joints that move lie between two links of the tree.
-int joints_between(const UrdfRobot& robot, std::size_t one, std::size_t other) {
-  const auto parent = [&](std::size_t i) { return static_cast<std::size_t>(robot.links[i].parent); };
-  int apart = 0;
-  while (one != other) {
-    std::size_t& later = one > other ? one : other;  // parents come first: it is no ancestor of the other
-    apart += robot.joints[later - 1].kind != UrdfJoint::Kind::fixed ? 1 : 0;
-    later = parent(later);
-  }
-  return apart;
-}
-
 /// Negative inside: the way to the nearest face.
 double signed_distance(const Eigen::Vector3d& p, const Eigen::AlignedBox3d& box) {
   if (!box.contains(p)) return box.exteriorDistance(p);
@@ -113,8 +101,13 @@ std::string to_text(const GuardedLinks& guarded) {
 }
 
 RobotShape::RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, const Pose& T_world_root,
-                       const std::string& where)
-    : robot_(std::move(robot)), posed_(robot_, joints, T_world_root, where) {
+                       const std::string& where, std::vector<bool> jaws)
+    : robot_(std::move(robot)),
+      joints_(joints),
+      jaws_(std::move(jaws)),
+      posed_(robot_, joints, T_world_root, where),
+      positions_(joints.size()) {
+  jaws_.resize(joints.size());
   placed_.resize(robot_.links.size());
   around_.resize(robot_.links.size());
   links_.resize(robot_.links.size());
@@ -130,24 +123,35 @@ RobotShape::RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, 
 
 void RobotShape::surround(const Surroundings& surroundings) {
   surroundings_ = surroundings;
+  const double clearance = surroundings.clearance;
+  const MovedRobot moved{robot_, joints_, jaws_, posed_};
+  near_ = NearCouples::of(moved, clearance);
   couples_.clear();
   const auto link_name = [this](std::size_t i) { return "link '" + robot_.links[i].name + "'"; };
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (!links_[i].has_body || !links_[i].moves) continue;
     if (!surroundings_.workspace.isEmpty())
-      couples_.push_back({Against::workspace, i, 0, link_name(i) + " leaves the workspace"});
+      couples_.push_back({Against::workspace, i, 0, 0, link_name(i) + " leaves the workspace"});
     for (std::size_t k = 0; k < surroundings_.obstacles.size(); ++k)
-      couples_.push_back({Against::obstacle, i, k,
+      couples_.push_back({Against::obstacle, i, k, clearance,
                           link_name(i) + " comes too close to obstacle '" + surroundings_.obstacles[k].name + "'"});
   }
+  const auto too_close = [&](std::size_t i, std::size_t k) {
+    return link_name(i) + " comes too close to " + link_name(k);
+  };
   for (std::size_t i = 0; i < links_.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
-      if (links_[i].has_body && links_[k].has_body && (links_[i].moves || links_[k].moves) &&
-          joints_between(robot_, i, k) > 2)
-        couples_.push_back({Against::link, i, k, link_name(i) + " comes too close to " + link_name(k)});
+      if (links_[i].has_body && links_[k].has_body)
+        if (const LinkPath between = moved.between(i, k); between.apart() && !between.near())
+          couples_.push_back({Against::link, i, k, clearance, too_close(i, k)});
+  for (std::size_t n = 0; n < near_->couples.size(); ++n) {
+    const NearCouples::Couple& near = near_->couples[n];
+    couples_.push_back({Against::near_link, near.link, n, near.apart.kept(), too_close(near.link, near.other)});
+  }
 }
 
 void RobotShape::pose(std::span<const double> positions) noexcept {
+  std::copy_n(positions.begin(), positions_.size(), positions_.begin());
   posed_.pose(positions);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Pose& T = posed_.T_world_link(i);
@@ -165,7 +169,8 @@ bool RobotShape::surely_clear(const Couple& couple) const noexcept {
     return squared_distance > kept * kept;
   };
   switch (couple.what) {
-    case Against::workspace: return false;  // as quick by itself
+    case Against::workspace:
+    case Against::near_link: return false;  // as quick by themselves
     case Against::obstacle: {
       const double step = (ball.radius - placed_[couple.link].radius) / kSamples;
       return beyond(surroundings_.obstacles[couple.other].box.squaredExteriorDistance(ball.middle), step);
@@ -186,8 +191,9 @@ double RobotShape::margin(const Couple& couple) const noexcept {
       const Eigen::Vector3d low = body.a.cwiseMin(body.b) - space.min(), high = space.max() - body.a.cwiseMax(body.b);
       return std::min(low.minCoeff(), high.minCoeff()) - body.radius;
     }
-    case Against::obstacle: return distance(body, surroundings_.obstacles[couple.other].box) - surroundings_.clearance;
-    case Against::link: return distance(body, placed_[couple.other]) - surroundings_.clearance;
+    case Against::obstacle: return distance(body, surroundings_.obstacles[couple.other].box) - couple.kept;
+    case Against::link: return distance(body, placed_[couple.other]) - couple.kept;
+    case Against::near_link: return near_->couples[couple.other].apart.margin(positions_);
   }
   return 0;
 }

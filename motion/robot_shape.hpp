@@ -2,11 +2,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "motion/near_couples.hpp"
 #include "motion/posed_links.hpp"
 #include "scene/urdf_reader.hpp"
 
@@ -55,19 +58,25 @@ GuardedLinks guarded_links(const UrdfRobot& robot);
 /// "11 of 11 links guarded (9 by collision shapes, 2 by visual ones)"; names those without a shape.
 std::string to_text(const GuardedLinks& guarded);
 
-/// A robot's links as capsules around their meshes (UrdfRobot::body). Thread: one at a time.
+/// A robot's links: as capsules around their meshes (UrdfRobot::body), but against links that one or two joints move
+/// against them, as the meshes are (near_links.hpp). Thread: one at a time.
 class RobotShape {
  public:
-  /// `joints`: those whose positions obstructed() gets; they and `where` as PosedLinks takes them.
+  /// `joints`: those whose positions obstructed() gets; they and `where` as PosedLinks takes them. `jaws`: which of
+  /// them close on things; links that only these move against each other may touch.
   RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, const Pose& T_world_root,
-             const std::string& where);
+             const std::string& where, std::vector<bool> jaws = {});
 
-  /// What it must stay clear of from now on; of a new shape, only its own links. Allocates.
+  /// What it must stay clear of from now on; of a new shape, only its own links. Allocates; takes longer the first time
+  /// (NearCouples::of).
   void surround(const Surroundings& surroundings);
 
   /// How many couples of parts must stay apart: links and the workspace's walls, links and obstacles, links and other
-  /// links. Those with at most two joints that move between them are not compared: their covers overlap.
+  /// links. Neighbours, with one joint that moves between them, are not compared: they touch at that joint.
   std::size_t couples() const { return couples_.size(); }
+  /// Two joints away from each other and nearer than 4 mm in half of all positions, as the housings of a compact wrist
+  /// are: not compared either. Names of both links.
+  const std::vector<std::array<std::string, 2>>& nested() const { return near_->nested; }
   /// Of each couple, by how much it is farther apart than it must be, metres; negative: too close. `out`: couples() of
   /// them. Does not allocate.
   void margins(std::span<const double> positions, std::span<double> out) noexcept;
@@ -77,9 +86,7 @@ class RobotShape {
   /// Both parts of a couple in words, such as "link 'arm_5' leaves the workspace"; valid until the next surround().
   const char* message(std::size_t couple) const { return couples_[couple].message.c_str(); }
   /// How far apart its parts must be, metres; 0 from the workspace's walls.
-  double kept_apart(std::size_t couple) const {
-    return couples_[couple].what == Against::workspace ? 0 : surroundings_.clearance;
-  }
+  double kept_apart(std::size_t couple) const { return couples_[couple].kept; }
 
   /// The links that have a body, as they stand there. Allocates: for pictures, not for the loop.
   std::vector<GuardedLink> guarded(std::span<const double> positions);
@@ -96,10 +103,11 @@ class RobotShape {
     Eigen::Vector3d middle;
     double radius = 0;
   };
-  enum class Against : std::uint8_t { workspace, obstacle, link };
+  enum class Against : std::uint8_t { workspace, obstacle, link, near_link };
   struct Couple {
     Against what;
-    std::size_t link, other;  ///< `other`: index of the obstacle or link
+    std::size_t link, other;  ///< `other`: index of the obstacle, the link, or into near_->couples
+    double kept = 0;          ///< m
     std::string message;
   };
   void pose(std::span<const double> positions) noexcept;
@@ -107,11 +115,15 @@ class RobotShape {
   bool surely_clear(const Couple& couple) const noexcept;
 
   UrdfRobot robot_;
+  std::vector<std::string> joints_;
+  std::vector<bool> jaws_;
   PosedLinks posed_;
+  std::vector<double> positions_;
   std::vector<Link> links_;
   std::vector<Capsule> placed_;
   std::vector<Ball> around_;  // each of these
   Surroundings surroundings_;
+  std::shared_ptr<const NearCouples> near_;
   std::vector<Couple> couples_;
 };
 

@@ -341,10 +341,12 @@ std::vector<JointWords> Rig::joint_words() const {
 std::unique_ptr<RobotShape> Rig::shape() const {
   if (!robot) return nullptr;
   std::vector<std::string> names = joint_names();
+  std::vector<bool> jaws;
+  for (const RigJoint& joint : joints) jaws.push_back(joint.group == JointGroup::gripper);
   for (std::string& joint : names)
     if (std::none_of(robot->joints.begin(), robot->joints.end(), [&](const UrdfJoint& j) { return j.name == joint; }))
       joint.clear();
-  return std::make_unique<RobotShape>(*robot, std::move(names), T_world_robot, name);
+  return std::make_unique<RobotShape>(*robot, std::move(names), T_world_robot, name, std::move(jaws));
 }
 
 Rig read_rig(const std::filesystem::path& file) {

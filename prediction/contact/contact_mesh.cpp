@@ -1,6 +1,6 @@
 #include "prediction/contact/contact_mesh.hpp"
 
-#include "prediction/contact/triangle_tree.hpp"
+#include "motion/triangle_tree.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>

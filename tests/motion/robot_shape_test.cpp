@@ -1,10 +1,11 @@
-#include "motion/robot_shape.hpp"
+#include "motion/guarded_motion.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <random>
 
 #include "common/error.hpp"
@@ -50,6 +51,14 @@ class RobotShapeTest : public testing::Test {
     shape_.surround(surroundings_);
     return shape_.obstructed(positions);
   }
+  double margin(const std::string& couple, std::vector<double> positions) {
+    std::vector<double> margins(shape_.couples());
+    shape_.margins(positions, margins);
+    for (std::size_t i = 0; i < margins.size(); ++i)
+      if (shape_.message(i) == couple) return margins[i];
+    ADD_FAILURE() << "not compared: " << couple;
+    return 0;
+  }
   TempFolder folder_;
   RobotShape shape_{rods(folder_.path()), {"turn_1", "turn_2", "turn_3", "turn_4"}, Pose::Identity(), "rig.yaml"};
   Surroundings surroundings_;
@@ -77,6 +86,61 @@ TEST_F(RobotShapeTest, NamesTheLinksThatMeet) {
   EXPECT_STREQ(obstructed({0, 2.0944, 2.0944, 2.0944}), "link 'rod_4' comes too close to link 'rod_1'");
 }
 
+// With two joints between them: no capsule could tell, as its cap reaches over the joint.
+TEST_F(RobotShapeTest, LinksFoldOntoTheOneBeforeTheLast) {
+  EXPECT_LT(margin("link 'rod_3' comes too close to link 'rod_1'", {0, 2.2, 2.2, 0}), 0);
+  EXPECT_LT(margin("link 'rod_4' comes too close to link 'rod_2'", {0, 0, -2.2, -2.2}), 0);
+  EXPECT_EQ(obstructed({0, 1.5, 1.5, 0}), nullptr);
+  EXPECT_EQ(obstructed({0, 2.2, -2.2, 0}), nullptr) << "the other way";
+  EXPECT_TRUE(shape_.nested().empty());
+}
+
+// Positions between those of the table, against the meshes themselves.
+TEST_F(RobotShapeTest, NearLinksAreKeptApartAsTheirMeshesAre) {
+  shape_.surround(surroundings_);
+  const UrdfRobot robot = rods(folder_.path());
+  const TriangleTree rod(robot.links[1].mesh);
+  PosedLinks posed(robot, {"turn_1", "turn_2", "turn_3", "turn_4"}, Pose::Identity(), "rig.yaml");
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> turn(-3, 3);
+  int refused = 0, needlessly = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const std::vector<double> positions{0.3, turn(random), turn(random), 0.1};
+    const double here = margin("link 'rod_3' comes too close to link 'rod_1'", positions);
+    posed.pose(positions);
+    const double apart = rod.nearest(rod, posed.T_world_link(1).inverse() * posed.T_world_link(3), 0.1).distance;
+    if (here >= 0) {
+      EXPECT_GT(apart, 0.0175) << positions[1] << " " << positions[2];
+    }
+    refused += here < 0 ? 1 : 0;
+    needlessly += here < 0 && apart > 0.04 ? 1 : 0;
+  }
+  EXPECT_GT(refused, 1500);
+  EXPECT_EQ(needlessly, 0);
+}
+
+TEST_F(RobotShapeTest, OutOfAFoldThereIsAWay) {
+  GateOptions options;
+  options.joints.assign(4, {"turn", {-3, 3, 1, 4, 60}});
+  GuardedMotion motion(options, &shape_);
+  JointValues at{0, 2.4, 2.4, 0}, deeper{0, 2.4, 2.9, 0}, out{0, 2.4, 0, 0};
+  const auto depth = [&] {
+    return margin("link 'rod_3' comes too close to link 'rod_1'", {at[0], at[1], at[2], at[3]});
+  };
+  for (std::size_t i = 0; i < 4; ++i) motion.set(i, {at[i]});
+  ASSERT_LT(depth(), -0.05) << "through each other";
+  for (int cycle = 0; cycle < 200; ++cycle) EXPECT_TRUE(motion.go_towards(deeper, 1));
+  EXPECT_EQ(motion[2].position, 2.4);
+  double before = depth();
+  for (int cycle = 0; cycle < 10'000 && std::abs(at[2]) > 1e-3; ++cycle) {
+    motion.go_towards(out, 1);
+    for (std::size_t i = 0; i < 4; ++i) at[i] = motion[i].position;
+    ASSERT_TRUE(depth() >= 0 || depth() >= before - 1e-9) << at[2];
+    before = depth();
+  }
+  EXPECT_NEAR(at[2], 0, 1e-3);
+}
+
 TEST_F(RobotShapeTest, WhatIsTooCloseHasTheLeastMargin) {
   surroundings_.workspace = {Eigen::Vector3d(-1.2, -1, -0.5), Eigen::Vector3d(1.2, 1, 1.5)};
   surroundings_.obstacles = {{"table", {Eigen::Vector3d(0.3, -3, -1), Eigen::Vector3d(3, 3, -0.125)}},
@@ -99,12 +163,13 @@ TEST_F(RobotShapeTest, WhatIsTooCloseHasTheLeastMargin) {
   }
   EXPECT_GT(seen["clear"], 100);
   EXPECT_GT(seen["link 'rod_4' comes too close to link 'rod_1'"], 10);
+  EXPECT_GT(seen["link 'rod_3' comes too close to link 'rod_1'"], 10);
   EXPECT_GT(seen["link 'rod_3' comes too close to obstacle 'post'"], 10);
 }
 
-// A hand on a flange is as near to the forearm as the link that it is fixed to.
+// A hand on a flange is as near to the forearm as the link that it is fixed to. And balls in each other stay so.
 TEST_F(RobotShapeTest, RigidJointsDoNotSetLinksApart) {
-  const auto couples = [&](const std::string& kind) {
+  const auto shape = [&](const std::string& kind, bool jaws = false) {
     const auto rod = [](const std::string& name) {
       return "<link name='" + name + "'><visual><geometry><sphere radius='0.1'/></geometry></visual></link>";
     };
@@ -118,10 +183,31 @@ TEST_F(RobotShapeTest, RigidJointsDoNotSetLinksApart) {
                                        joint(1, "revolute") + joint(2, "revolute") + joint(3, kind) + "</robot>");
     std::vector<std::string> moving{"j1", "j2"};
     if (kind != "fixed") moving.emplace_back("j3");
-    return RobotShape(read_urdf(file), moving, Pose::Identity(), "rig.yaml").couples();
+    return RobotShape(read_urdf(file), moving, Pose::Identity(), "rig.yaml", std::vector<bool>(moving.size(), jaws));
   };
-  EXPECT_EQ(couples("revolute"), 1u) << "the first and the last";
-  EXPECT_EQ(couples("fixed"), 0u);
+  EXPECT_EQ(shape("revolute").couples(), 1u) << "the first and the last";
+  EXPECT_EQ(shape("revolute", true).couples(), 0u) << "jaws close on each other";
+  EXPECT_EQ(shape("fixed").couples(), 0u);
+  EXPECT_THAT(shape("fixed").nested(),
+              testing::UnorderedElementsAre(testing::ElementsAre("l2", "l0"), testing::ElementsAre("l3", "l0")));
+}
+
+// A wrist that turns without end, with a paddle that passes the forearm once a turn.
+TEST_F(RobotShapeTest, JointsWithoutEndAreGuardedInEveryTurn) {
+  const auto file = folder_.write("wrist.urdf", R"(<robot name='wrist'>
+<link name='forearm'><visual><origin xyz='0 0 -0.2'/><geometry><box size='0.06 0.06 0.4'/></geometry></visual></link>
+<link name='wrist'><visual><geometry><box size='0.02 0.02 0.02'/></geometry></visual></link>
+<link name='paddle'><visual><origin xyz='0 0 0.1'/><geometry><box size='0.02 0.1 0.1'/></geometry></visual></link>
+<joint name='pitch' type='continuous'><parent link='forearm'/><child link='wrist'/><axis xyz='0 1 0'/></joint>
+<joint name='roll' type='continuous'><parent link='wrist'/><child link='paddle'/><axis xyz='0 0 1'/></joint></robot>)");
+  RobotShape shape(read_urdf(file), {"pitch", "roll"}, Pose::Identity(), "rig.yaml");
+  for (const double turns : {0, 1, -3}) {
+    const double whole = turns * 2 * std::numbers::pi;
+    EXPECT_EQ(shape.obstructed(std::vector<double>{whole + 1, 0.5 - whole}), nullptr) << turns;
+    EXPECT_STREQ(shape.obstructed(std::vector<double>{whole + std::numbers::pi, 2 - whole}),
+                 "link 'paddle' comes too close to link 'forearm'")
+        << turns;
+  }
 }
 
 TEST_F(RobotShapeTest, SaysWhichLinksItGuards) {

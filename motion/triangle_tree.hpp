@@ -20,6 +20,7 @@ class TriangleTree {
  public:
   TriangleTree() = default;
   explicit TriangleTree(std::vector<Corners> triangles);
+  explicit TriangleTree(const Mesh& mesh);
 
   std::size_t size() const noexcept { return triangles_.size(); }
   const Corners& triangle(std::size_t index) const noexcept { return triangles_[index]; }

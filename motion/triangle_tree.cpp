@@ -1,4 +1,4 @@
-#include "prediction/contact/triangle_tree.hpp"
+#include "motion/triangle_tree.hpp"
 
 #include <fcl/narrowphase/detail/primitive_shape_algorithm/triangle_distance.h>
 
@@ -12,7 +12,16 @@ Eigen::Vector3d middle(const Corners& t) {
   return (t[0] + t[1] + t[2]) / 3;
 }
 
+std::vector<Corners> corners_of(const Mesh& mesh) {
+  std::vector<Corners> out;
+  const auto at = [&](std::uint32_t i) { return Eigen::Vector3d(mesh.vertices[i].cast<double>()); };
+  for (const auto& t : mesh.triangles) out.push_back({at(t[0]), at(t[1]), at(t[2])});
+  return out;
+}
+
 }  // namespace
+
+TriangleTree::TriangleTree(const Mesh& mesh) : TriangleTree(corners_of(mesh)) {}
 
 TriangleTree::TriangleTree(std::vector<Corners> triangles) : triangles_(std::move(triangles)) {
   std::vector<int> order(triangles_.size());

@@ -1,0 +1,49 @@
+// Which couples of a robot's links are so near to each other in the chain that their distances are looked up
+// (near_links.hpp), and the tables of these.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "motion/near_links.hpp"
+
+namespace foresight {
+
+/// What moves two links of a robot against each other.
+struct LinkPath {
+  int joints = 0;                     ///< that move, followers too
+  bool jaws = true;                   ///< all of them close on things
+  std::vector<NearLinks::Axis> axes;  ///< what they follow
+
+  /// Neighbours touch at the joint between them, jaws where they close: all others have to stay apart.
+  bool apart() const { return joints >= 2 && !jaws; }
+  bool near() const { return axes.size() <= 2; }
+};
+
+/// A robot, and which of its joints are moved.
+struct MovedRobot {
+  const UrdfRobot& robot;
+  const std::vector<std::string>& joints;  ///< as PosedLinks takes them
+  const std::vector<bool>& jaws;           ///< of these, which close on things
+  const PosedLinks& posed;
+
+  LinkPath between(std::size_t link, std::size_t other) const;
+};
+
+/// Immutable; any thread.
+struct NearCouples {
+  struct Couple {
+    std::size_t link, other;
+    NearLinks apart;
+  };
+  std::vector<Couple> couples;
+  /// Links of which one's housing is in the other's (NearLinks::nested), by their names.
+  std::vector<std::array<std::string, 2>> nested;
+
+  /// Made once for all of a process that ask for the same and hold it: a second where meshes are detailed. Any thread.
+  static std::shared_ptr<const NearCouples> of(const MovedRobot& robot, double clearance);
+};
+
+}  // namespace foresight
