@@ -62,6 +62,8 @@ struct HandOptions {
 /// In which axes the hand's motion is meant: x forward, y left, z up of the view that the operator looks at, or of the
 /// robot's base.
 enum class HandFrame : std::uint8_t { view, base };
+/// The operator's forward (x) is the view's z, left (y) its -x, up (z) its -y.
+Eigen::Matrix3d R_view_operator() noexcept;
 enum class HandMode : std::uint8_t { tool, joints };
 
 /// What the operator may change at any time.

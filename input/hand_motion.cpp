@@ -161,19 +161,19 @@ void HandControl::move_to(std::size_t joint, double target, double dt, double sh
   out_.positions[joint] = std::abs(to - here) <= room ? to : here + std::copysign(room, to - here);
 }
 
-JointVector HandControl::arm_positions() const noexcept {
-  JointVector q(static_cast<Eigen::Index>(options_.arm_joints.size()));
-  for (std::size_t i = 0; i < options_.arm_joints.size(); ++i)
-    q[static_cast<Eigen::Index>(i)] = out_.positions[options_.arm_joints[i]];
-  return q;
+Eigen::Matrix3d R_view_operator() noexcept {
+  Eigen::Matrix3d out;
+  out << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return out;
 }
 
-// The operator's forward is the view's z, left its -x, up its -y.
+JointVector HandControl::arm_positions() const noexcept {
+  return joints_of(out_.positions, options_.arm_joints);
+}
+
 Eigen::Matrix3d HandControl::R_base_operator() const noexcept {
   if (settings_.frame == HandFrame::base) return Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d R_view_operator;
-  R_view_operator << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  return T_base_view_.linear() * R_view_operator;
+  return T_base_view_.linear() * R_view_operator();
 }
 
 Eigen::Matrix3d HandControl::R_operator_space() const noexcept {

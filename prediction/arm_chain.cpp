@@ -66,6 +66,12 @@ ArmJoint arm_joint(const UrdfJoint& from, const Pose& T_base_joint, const std::s
 
 }  // namespace
 
+JointVector joints_of(std::span<const double> positions, std::span<const std::size_t> joints) noexcept {
+  JointVector out(static_cast<Eigen::Index>(joints.size()));
+  for (std::size_t i = 0; i < joints.size(); ++i) out[static_cast<Eigen::Index>(i)] = positions[joints[i]];
+  return out;
+}
+
 ArmChain::ArmChain(std::vector<ArmJoint> joints, const Pose& T_base_tip_at_zero, const std::string& where)
     : joints_(std::move(joints)), T_base_tip_at_zero_(T_base_tip_at_zero) {
   if (joints_.empty()) throw InputError(where, "has no moving joint between base and tip", "choose a tip that moves");

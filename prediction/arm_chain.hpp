@@ -22,6 +22,8 @@ inline constexpr std::size_t kMostArmJoints = 12;
 
 /// One number per joint, in rad or m. Never allocates.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMostArmJoints), 1>;
+/// Those of all of a robot's positions that `joints` are the indices of, no more than kMostArmJoints.
+JointVector joints_of(std::span<const double> positions, std::span<const std::size_t> joints) noexcept;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct ArmJoint {

@@ -20,18 +20,12 @@ FutureTool::FutureTool(ArmChain chain, std::span<const std::string> names, const
   }
 }
 
-JointVector FutureTool::of_chain(const JointValues& joints) const noexcept {
-  JointVector q(static_cast<Eigen::Index>(joints_.size()));
-  for (std::size_t i = 0; i < joints_.size(); ++i) q[static_cast<Eigen::Index>(i)] = joints[joints_[i]];
-  return q;
-}
-
 PredictedTool FutureTool::show(const PredictedRobot& robot) noexcept {
   PredictedTool out;
   out.status = robot.status;
   out.sigma = std::numeric_limits<double>::infinity();
   TipChange change;
-  out.T_base_tip = chain_.tip_pose(of_chain(robot.position), change);
+  out.T_base_tip = chain_.tip_pose(joints_of(robot.position, joints_), change);
   if (robot.status == StateStatus::invalid) return out;
   double square = 0;
   for (std::size_t i = 0; i < joints_.size(); ++i)

@@ -37,7 +37,7 @@ class FutureTool {
   /// `names`: the robot's joints, in its order. Throws InputError at `where` where they lack one of the chain's.
   FutureTool(ArmChain chain, std::span<const std::string> names, const std::string& where);
 
-  Pose place(const JointValues& joints) const noexcept { return chain_.tip_pose(of_chain(joints)); }
+  Pose place(const JointValues& joints) const noexcept { return chain_.tip_pose(joints_of(joints, joints_)); }
   /// Where what RobotFuture::show() gave puts the tool.
   PredictedTool show(const PredictedRobot& robot) noexcept;
   /// Of what was shown, in that order. Nothing where it was not.
@@ -48,7 +48,6 @@ class FutureTool {
     RobotTime time;
     double prior = 0, scale = 0;
   };
-  JointVector of_chain(const JointValues& joints) const noexcept;
 
   ArmChain chain_;
   std::vector<std::size_t> joints_;  // of the robot, per joint of the chain

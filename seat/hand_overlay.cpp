@@ -68,10 +68,7 @@ HandOverlay::HandOverlay(const Rig& rig, const HandOptions& hand) : rig_(rig), h
 }
 
 Pose HandOverlay::T_world_tool(const JointValues& joints) const {
-  JointVector q(static_cast<Eigen::Index>(hand_.arm_joints.size()));
-  for (std::size_t i = 0; i < hand_.arm_joints.size(); ++i)
-    q[static_cast<Eigen::Index>(i)] = joints[hand_.arm_joints[i]];
-  return rig_.T_world_robot * hand_.arm->tip_pose(q);
+  return rig_.T_world_robot * hand_.arm->tip_pose(joints_of(joints, hand_.arm_joints));
 }
 
 HandPicture HandOverlay::draw(const HandSight& sight, const std::vector<PredictedRobot>& under_way) {

@@ -109,12 +109,7 @@ class OperatorTrial {
     };
   }
   double normal(double sigma) { return std::normal_distribution<double>(0, sigma)(random_); }
-  JointVector arm(const JointValues& position) const {
-    JointVector q(static_cast<Eigen::Index>(hand_.arm_joints.size()));
-    for (std::size_t i = 0; i < hand_.arm_joints.size(); ++i)
-      q[static_cast<Eigen::Index>(i)] = position[hand_.arm_joints[i]];
-    return q;
-  }
+  JointVector arm(const JointValues& position) const { return joints_of(position, hand_.arm_joints); }
   static Pose along_tool(const Pose& T, double z) { return T * Eigen::Translation3d(0, 0, z); }
   Pose tips(const JointValues& position) const {
     return along_tool(rig_.T_world_robot * kinematics_.chain().tip_pose(arm(position)), sim::kTips);

@@ -20,12 +20,6 @@ double deflection(double share) {
   return size < 1e-3 ? 0 : std::copysign(kDead + (1 - kDead) * size, share);
 }
 
-Eigen::Matrix3d operator_of_view() {
-  Eigen::Matrix3d R_view_operator;
-  R_view_operator << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  return R_view_operator;
-}
-
 }  // namespace
 
 SeatHand::SeatHand(const Rig& rig, std::shared_ptr<const SceneModel> scene)
@@ -48,10 +42,7 @@ void SeatHand::look(const ViewPlace& place) {
 
 Pose SeatHand::tool(const JointValues& positions) const {
   const HandOptions& hand = driver_.options();
-  JointVector arm(static_cast<Eigen::Index>(hand.arm_joints.size()));
-  for (std::size_t i = 0; i < hand.arm_joints.size(); ++i)
-    arm[static_cast<Eigen::Index>(i)] = positions[hand.arm_joints[i]];
-  return hand.arm->tip_pose(arm);
+  return hand.arm->tip_pose(joints_of(positions, hand.arm_joints));
 }
 
 void SeatHand::go_by_controller(const Pose& from, const Pose& to) {
@@ -63,7 +54,7 @@ void SeatHand::go_by_controller(const Pose& from, const Pose& to) {
 
 void SeatHand::go_by_gamepad(const Pose& from, const Pose& to, double dt) {
   const Eigen::Matrix3d R_operator_base =
-      (T_world_camera_.linear() * operator_of_view()).transpose() * rig_.T_world_robot.linear();
+      (T_world_camera_.linear() * R_view_operator()).transpose() * rig_.T_world_robot.linear();
   const Eigen::Vector3d share =
       R_operator_base * (to.translation() - from.translation()) / (dt * RateHandOptions{}.speed);
   sticks_.left_x = -deflection(share.y());

@@ -104,15 +104,9 @@ SlidingHand::SlidingHand(ContactModel& model, const InverseKinematics& kinematic
                        "name all joints between base and tip");
     arm_.push_back(static_cast<std::size_t>(at - joints.begin()));
   }
-  follower_.stand_at(of_arm(positions_));
+  follower_.stand_at(joints_of(positions_, arm_));
   const JointVector& q = follower_.joints();
   for (std::size_t i = 0; i < arm_.size(); ++i) positions_[arm_[i]] = q[static_cast<Eigen::Index>(i)];
-}
-
-JointVector SlidingHand::of_arm(std::span<const double> all) const {
-  JointVector q(static_cast<Eigen::Index>(arm_.size()));
-  for (std::size_t i = 0; i < arm_.size(); ++i) q[static_cast<Eigen::Index>(i)] = all[arm_[i]];
-  return q;
 }
 
 std::vector<double> SlidingHand::spread(const JointVector& change) const {
@@ -243,7 +237,7 @@ std::vector<ClosedWay> SlidingHand::closed_ways(const Look& now) {
   for (const Nearness& n : now.near) {
     if (ways.size() + 4 >= kMostClosedWays) break;  // four for the gate's
     const double least = n.distance > 0 ? kSkin - n.distance : 0;
-    ways.push_back({of_arm(model_.change_of(n, now.direction(n))), least});
+    ways.push_back({joints_of(model_.change_of(n, now.direction(n)), arm_), least});
   }
   std::vector<std::pair<double, std::size_t>> tight;
   for (std::size_t i = 0; i < now.margins.size(); ++i)
@@ -302,7 +296,7 @@ void SlidingHand::slide(const Pose& hand, double dt, const JointVector& start, L
   const ArmChain& chain = kinematics_.chain();
   const DescentGoal goal{hand, kinematics_.position_only(), kTurnLess * kinematics_.length()};
   while (parts_ < kMostParts) {
-    const JointVector q = of_arm(positions_);
+    const JointVector q = joints_of(positions_, arm_);
     JointVector lower = chain.lower() - q, upper = chain.upper() - q;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const double room = chain.joints()[static_cast<std::size_t>(i)].velocity * dt * (1 - 1e-9);
@@ -326,7 +320,7 @@ void SlidingHand::slide(const Pose& hand, double dt, const JointVector& start, L
 
 // The arm is taken to be within its limits, to the last bit.
 void SlidingHand::settle_arm() {
-  follower_.stand_at(of_arm(positions_));
+  follower_.stand_at(joints_of(positions_, arm_));
   for (std::size_t i = 0; i < arm_.size(); ++i) positions_[arm_[i]] = follower_.joints()[static_cast<Eigen::Index>(i)];
 }
 
@@ -395,7 +389,7 @@ HandStep SlidingHand::step(const Pose& hand, std::span<const double> others, std
   if (const char* why = model_.pose(positions_, T_world_node)) return unknown(hand, why);
   parts_ = 0;
   leans_ = GhostReason::none;
-  const JointVector start = of_arm(positions_);
+  const JointVector start = joints_of(positions_, arm_);
   const FollowStep follow = follower_.step(hand, dt);
   if (follow.reason == FollowReason::bad_target) return unknown(hand, "the hand has no finite rigid pose");
 
@@ -419,7 +413,7 @@ HandStep SlidingHand::step(const Pose& hand, std::span<const double> others, std
   } else {  // without what rounding left of it
     for (std::size_t i = 0; i < arm_.size(); ++i) positions_[arm_[i]] = follow.q[static_cast<Eigen::Index>(i)];
   }
-  if (!(of_arm(positions_) == follower_.joints())) settle_arm();
+  if (!(joints_of(positions_, arm_) == follower_.joints())) settle_arm();
   HandStep out = finish(now);
   out.ghost = ghost(hand, reason);
   out.joint = out.ghost.reason == ghost_reason(follow.reason) ? follow.joint : -1;
@@ -433,7 +427,7 @@ HandStep SlidingHand::go_to(std::span<const double> positions, std::span<const P
   leans_ = GhostReason::none;
   std::vector<double> change(positions.begin(), positions.end());
   for (std::size_t i = 0; i < change.size(); ++i) change[i] -= positions_[i];
-  const JointVector arm_change = of_arm(change);
+  const JointVector arm_change = joints_of(change, arm_);
   pushes_ = !pushed_.empty() && spread(arm_change) == change;  // jaws stay as they are
   Look now = look(2 * kClose + model_.farthest(change));
   settle_depths(now, T_world_node);
@@ -444,7 +438,7 @@ HandStep SlidingHand::go_to(std::span<const double> positions, std::span<const P
     blame(now);
   settle_arm();
   HandStep out = finish(now);
-  const Pose hand = kinematics_.chain().tip_pose(of_arm(positions));
+  const Pose hand = kinematics_.chain().tip_pose(joints_of(positions, arm_));
   out.ghost = ghost(hand, all ? GhostReason::none : GhostReason::joint_speed);
   if (!all && out.ghost.reason == GhostReason::none) {  // so short a way that the tool is almost there
     out.ghost.reason = leans_ == GhostReason::none ? GhostReason::joint_speed : leans_;

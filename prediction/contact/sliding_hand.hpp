@@ -116,7 +116,6 @@ class SlidingHand {
   bool fits(std::span<const double> positions) const;
   HandStep finish(Look& now);
   std::vector<double> spread(const JointVector& change) const;
-  JointVector of_arm(std::span<const double> all) const;
   HandStep unknown(const Pose& hand, std::string why) const;
   GhostHand ghost(const Pose& hand, GhostReason otherwise) const;
 

@@ -90,12 +90,7 @@ class OperatorPicks : public OperatorWindow {
     return joints().at(static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()));
   }
   double jaws() { return joint("finger"); }
-  Pose T_world_tool() {
-    const std::vector<double>& all = joints();
-    JointVector q(static_cast<Eigen::Index>(hand_.arm_joints.size()));
-    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = all.at(hand_.arm_joints[static_cast<std::size_t>(i)]);
-    return rig_read_.T_world_robot * hand_.arm->tip_pose(q);
-  }
+  Pose T_world_tool() { return rig_read_.T_world_robot * hand_.arm->tip_pose(joints_of(joints(), hand_.arm_joints)); }
   /// Of the tool above where it grasps the thing, m.
   double height() { return T_world_tool().translation().z() - grasp_height_; }
 

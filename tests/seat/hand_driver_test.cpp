@@ -69,10 +69,7 @@ class HandAtTheSeat : public testing::Test {
   }
   Eigen::Vector3d tip_in_world() const {
     const HandOptions options = hand_options(rig_);
-    JointVector arm(static_cast<Eigen::Index>(options.arm_joints.size()));
-    for (std::size_t i = 0; i < options.arm_joints.size(); ++i)
-      arm[static_cast<Eigen::Index>(i)] = wish_.position[options.arm_joints[i]];
-    return rig_.T_world_robot * options.arm->tip_pose(arm).translation();
+    return rig_.T_world_robot * options.arm->tip_pose(joints_of(wish_.position, options.arm_joints)).translation();
   }
   Eigen::Vector3d way_of_the_tool() {
     hold(true);

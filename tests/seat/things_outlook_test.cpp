@@ -67,9 +67,7 @@ class ThingsSeen : public testing::Test {
   void go(const std::vector<HandStop>& stops) {
     const HandOptions hand = hand_options(rig_);
     const InverseKinematics kinematics(*hand.arm);
-    JointVector from(static_cast<Eigen::Index>(hand.arm_joints.size()));
-    for (std::size_t i = 0; i < hand.arm_joints.size(); ++i)
-      from[static_cast<Eigen::Index>(i)] = robot_.position[hand.arm_joints[i]];
+    const JointVector from = joints_of(robot_.position, hand.arm_joints);
     const auto finger =
         static_cast<std::size_t>(std::ranges::find(hand.roles, JointRole::gripper) - hand.roles.begin());
     const HandPath path(kinematics, from, robot_.position[finger], stops);
