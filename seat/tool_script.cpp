@@ -47,9 +47,7 @@ ToolScript::ToolScript(const Rig& rig, const HandOptions& hand, std::vector<Tool
 }
 
 JointVector ToolScript::arm() const {
-  JointVector q(static_cast<Eigen::Index>(arm_.size()));
-  for (std::size_t i = 0; i < arm_.size(); ++i) q[static_cast<Eigen::Index>(i)] = position_[arm_[i]];
-  return q;
+  return joints_of(position_, arm_);
 }
 
 void ToolScript::set_arm(const JointVector& q) {
@@ -159,6 +157,25 @@ Pose place_at_rest(const LiveScene& scene, const std::string& node) {
   return state.T_world_node[static_cast<std::size_t>(found - nodes.begin())];
 }
 
+namespace {
+
+/// From where the joints stand after homing.
+bool stays_clear(const Rig& rig, RobotShape& shape, const std::vector<ToolStep>& steps) {
+  constexpr double kLook = 0.05;  // s between two looks
+  ToolScript script(rig, steps, {.pan = 0, .tilt = 0});
+  JointValues home{};
+  for (std::size_t i = 0; i < rig.joints.size(); ++i) {
+    const DriveConfig& drive = rig.joints[i].drive;
+    home[i] = std::clamp(drive.offset, drive.min_position, drive.max_position);
+  }
+  script.begin_at(home);
+  while (const auto at = script.step(kLook, {}))
+    if (shape.obstructed({at->data(), rig.joints.size()}) != nullptr) return false;
+  return true;
+}
+
+}  // namespace
+
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray) {
   constexpr double kTips = 0.15, kGrasp = 0.037;      // m: finger tips along the tool's z; above the thing's bottom
@@ -168,6 +185,9 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
   const HandOptions hand = arm_options(rig);
   const InverseKinematics kinematics(*hand.arm);
   const double yaw = std::atan2(from.linear()(1, 0), from.linear()(0, 0));
+  const auto shape = rig.shape();
+  if (shape) shape->surround(rig.surroundings);
+  std::optional<std::vector<ToolStep>> in_the_way;  // of itself, or of the table
   for (int quarter = 0; quarter < 4; ++quarter) {
     const double turn = yaw + quarter * std::numbers::pi / 2;
     const auto at = [&](const Pose& place, double above) {
@@ -199,8 +219,11 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
       return (step.what != there && step.what != line) ||
              kinematics.solve(rig.T_world_robot.inverse() * step.T_world_tool).status == IkStatus::solved;
     });
-    if (reached) return steps;
+    if (!reached) continue;
+    if (!shape || stays_clear(rig, *shape, steps)) return steps;
+    if (!in_the_way) in_the_way = std::move(steps);
   }
+  if (in_the_way) return std::move(*in_the_way);  // the gate stops where it has to
   throw InputError("the script", "the arm does not reach '" + thing + "' or '" + tray + "' from above",
                    "use the lab's own arm");
 }

@@ -81,7 +81,8 @@ Pose place_at_rest(const LiveScene& scene, const std::string& node);
 
 /// With two jaws that slide along y of the rig's tool, which points along its z: from above at a thing of the mock
 /// lab's own size of bricks (sim/lab_task.hpp), and into a tray. Planned for where the scene's model has them at rest;
-/// gone to where they are seen. Throws InputError: the scene lacks one of the two, or the arm does not reach them.
+/// gone to where they are seen. Of the four ways to grasp a brick, the first on which the arm stays as clear as the rig
+/// asks for, if there is one. Throws InputError: the scene lacks one of the two, or the arm does not reach them.
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray);
 

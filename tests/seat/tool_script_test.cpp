@@ -58,6 +58,24 @@ TEST(ToolScript, GoesOnFromWhereALossLeftIt) {
   for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(next[i], elsewhere[i], 0.03) << i;
 }
 
+// A hand turned across the forearm meets it where the wrist is bent most; a brick can be taken from four sides.
+TEST(ToolScript, PicksSoThatTheArmStaysClear) {
+  const Rig rig = minerva();
+  const auto shape = rig.shape();
+  shape->surround(rig.surroundings);
+  for (unsigned layout = 0; layout <= 20; ++layout) {
+    const LiveScene scene = live_scene_of(rig, true, std::nullopt, true, layout);
+    for (const char* const brick : {"brick_red", "brick_blue"}) {
+      ToolScript script(rig, pick_and_place(rig, scene, brick, "tray"), {});
+      script.begin_at({});
+      const char* blocked = nullptr;
+      while (const auto at = script.step(0.02, {}))
+        if (const char* const what = shape->obstructed({at->data(), rig.joints.size()})) blocked = what;
+      EXPECT_EQ(blocked, nullptr) << "layout " << layout << ", " << brick << ": " << blocked;
+    }
+  }
+}
+
 /// Where the tool is when the jaws close, if the brick is seen by `seen` from where the model has it.
 Pose closes_at(const Pose& T_there_seen, const std::string& node) {
   const Rig rig = minerva();
@@ -78,9 +96,7 @@ Pose closes_at(const Pose& T_there_seen, const std::string& node) {
     opened = opened || at[jaw] > 0.03;
     if (opened && at[jaw] < last[jaw]) break;
   }
-  JointVector q(static_cast<Eigen::Index>(hand.arm_joints.size()));
-  for (std::size_t i = 0; i < hand.arm_joints.size(); ++i) q[static_cast<Eigen::Index>(i)] = at[hand.arm_joints[i]];
-  return rig.T_world_robot * hand.arm->tip_pose(q);
+  return rig.T_world_robot * hand.arm->tip_pose(joints_of(at, hand.arm_joints));
 }
 
 TEST(ToolScript, TakesAThingWhereItIsSeen) {
