@@ -11,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "rig/bus_plan.hpp"
+#include "rig/joint_groups.hpp"
 #include "rig/joint_limits.hpp"
 #include "scene/urdf_limits.hpp"
 #include "sim/drives/homing_search.hpp"
@@ -31,45 +32,10 @@ constexpr double kMockCountsPerMetre = 100'000'000;
 constexpr double kMetresPerTurn = 0.01;  // of a spindle of which nobody knows
 constexpr double kHomeInside = 0.01;     // of the range: from its end to the home that a limit switch gives
 constexpr double kRoomAtZero = 0.1;      // of the range, on both sides of a home at 0
-constexpr double kShortStroke = 0.15;    // m: a last link that slides no farther is a finger
 constexpr double kFloorStep = 0.01, kDeepestFloor = 0.5;
 
 bool moves(const UrdfJoint& joint) {
   return joint.kind != UrdfJoint::Kind::fixed && !joint.mimic;
-}
-
-bool is_word_of(std::string_view name, std::string_view word) {
-  const std::size_t at = name.find(word);
-  const auto ends = [&](std::size_t i) { return i >= name.size() || name[i] == '_' || name[i] == '-'; };
-  return at != std::string_view::npos && (at == 0 || ends(at - 1)) && ends(at + word.size());
-}
-
-/// Whether another joint that moves hangs on the link that `joint` moves.
-bool carries_others(const UrdfRobot& robot, const UrdfJoint& joint) {
-  for (const UrdfJoint& other : robot.joints) {
-    if (!moves(other) || &other == &joint) continue;
-    for (int link = other.child; link >= 0; link = robot.links[static_cast<std::size_t>(link)].parent)
-      if (link == joint.child) return true;
-  }
-  return false;
-}
-
-/// The last in its chain, and others follow it or it slides a little: fingers.
-bool is_gripper(const UrdfRobot& robot, std::size_t index) {
-  const UrdfJoint& joint = robot.joints[index];
-  if (carries_others(robot, joint)) return false;
-  const bool followed = std::ranges::any_of(robot.joints, [&](const UrdfJoint& other) {
-    return other.mimic && other.mimic->joint == static_cast<int>(index);
-  });
-  return followed || (joint.kind == UrdfJoint::Kind::sliding && joint.upper - joint.lower <= kShortStroke);
-}
-
-std::vector<std::size_t> pan_tilt_of(const UrdfRobot& robot) {
-  std::vector<std::size_t> out;
-  for (const char* word : {"pan", "tilt"})
-    for (std::size_t i = 0; i < robot.joints.size(); ++i)
-      if (moves(robot.joints[i]) && is_word_of(robot.joints[i].name, word)) out.push_back(i);
-  return out.size() == 2 ? out : std::vector<std::size_t>{};
 }
 
 void choose_limits(const UrdfJoint& from, const std::optional<DriveSheet>& sheet, const std::string& where,
@@ -282,7 +248,7 @@ RigDraft draft_rig(const RigDraftOptions& options) {
   read_robot(options, draft);
   const UrdfRobot& robot = *draft.rig.robot;
   draft.rig.name = robot.name.empty() ? options.urdf.stem().string() : robot.name;
-  const std::vector<std::size_t> head = pan_tilt_of(robot);
+  const std::vector<JointGroup> groups = guess_joint_groups(robot);
   const std::vector<UrdfJoint> guarded = guarded_joints(robot, read_soft_limits(options.urdf));
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const UrdfJoint& from = guarded[i];
@@ -290,9 +256,7 @@ RigDraft draft_rig(const RigDraftOptions& options) {
     DraftJoint out;
     out.joint.drive.name = from.name;
     out.joint.unit = from.kind == UrdfJoint::Kind::sliding ? "m" : "rad";
-    out.joint.group = std::ranges::find(head, i) != head.end() ? JointGroup::pan_tilt
-                      : is_gripper(robot, i)                   ? JointGroup::gripper
-                                                               : JointGroup::arm;
+    out.joint.group = groups[i];
     choose_limits(from, options.sheet, options.urdf.string() + ": joint " + in_quotes(from.name), out);
     if (from.lower > robot.joints[i].lower || from.upper < robot.joints[i].upper)
       out.urdf_says += "; narrower by soft limits, or by what follows it";

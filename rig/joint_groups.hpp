@@ -1,0 +1,20 @@
+// Which of a robot's joints are an arm's, which a gripper's, and which turn a camera head: guessed for a first rig.
+#pragma once
+
+#include <vector>
+
+#include "rig/rig.hpp"
+
+namespace foresight {
+
+/// One per joint of the URDF; those that have no drive of their own count as the arm's. What is told by structure:
+///
+///   a gripper   ends the chain. Something follows it on the other side of the hand, or has a drive of its own there;
+///               or it is alone, and the tool's frame stands beside it, or it slides a little and leads nowhere new.
+///   a head      two joints called pan and tilt that turn a branch of their own, with nothing that moves beyond.
+///
+/// An arm's last joint has the tool's frame behind it, turns far, slides far, or slides where none before it goes (a
+/// gantry, a SCARA). Names decide where that leaves it open. Needs the links' shapes; reads nothing else.
+std::vector<JointGroup> guess_joint_groups(const UrdfRobot& robot);
+
+}  // namespace foresight
