@@ -1,5 +1,7 @@
 #include "seat/tool_script.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,6 +18,11 @@ constexpr double kPeak = 1.875;        // of minimum jerk, over its mean
 constexpr double kThere = 1e-3;        // m and rad: a line has ended
 constexpr double kLongestLine = 10;    // s more than asked for: then it goes on with the next
 constexpr int kTries = 2000;
+constexpr double kTourNear = 0.35, kTourFar = 0.75;  // of the arm's reach, from its foot
+// Of the arm's reach, from its first axis on, the way that its base stands: over what lies about the lab's own arm,
+// from 0.30 to 0.55 m above its table.
+constexpr double kTourLow = 0.10 / 0.89, kTourHigh = 0.35 / 0.89;
+constexpr double kTourRoom = 0.01 / 0.89;  // beyond the rig's clearance, of the reach, too
 
 std::vector<std::size_t> of_group(const Rig& rig, JointGroup group) {
   std::vector<std::size_t> out;
@@ -228,6 +235,17 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
                    "use the lab's own arm");
 }
 
+namespace {
+
+/// Heights above the world's origin, m, the lower one first.
+std::pair<double, double> heights_of_tour(const ArmChain& chain, const Pose& T_world_base) {
+  const double first_axis = (T_world_base * chain.joints().front().point).z();
+  const double up = T_world_base.linear()(2, 2) < 0 ? -1 : 1;  // under a ceiling
+  return std::minmax({first_axis + up * kTourLow * chain.reach(), first_axis + up * kTourHigh * chain.reach()});
+}
+
+}  // namespace
+
 std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
   const HandOptions hand = arm_options(rig);
   const InverseKinematics kinematics(*hand.arm);
@@ -235,7 +253,7 @@ std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
   const auto shape = rig.shape();
   if (shape) {
     Surroundings wide = rig.surroundings;
-    wide.clearance += 0.01;
+    wide.clearance += kTourRoom * kinematics.chain().reach();
     shape->surround(wide);
   }
   std::mt19937 random(seed);
@@ -245,31 +263,43 @@ std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
   std::vector<ToolStep> out;
   const double reach = kinematics.chain().reach();
   const Pose& T_world_base = rig.T_world_robot;
+  const auto [low, high] = heights_of_tour(kinematics.chain(), T_world_base);
+  int reached = 0;
+  const char* obstructed = nullptr;
   for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
     // Before the arm, at heights where things stand; the tool's z points down.
     Pose pose = Pose::Identity();
-    const double angle = uniform(-0.9, 0.9), distance = uniform(0.35, 0.75) * reach;
+    const double angle = uniform(-0.9, 0.9), distance = uniform(kTourNear, kTourFar) * reach;
     const Eigen::Vector3d ahead = T_world_base.linear() * Eigen::Vector3d::UnitX();
     const double yaw = std::atan2(ahead.y(), ahead.x()) + angle;
     const Eigen::Vector3d foot = T_world_base.translation();
     pose.translation() =
-        Eigen::Vector3d(foot.x() + distance * std::cos(yaw), foot.y() + distance * std::sin(yaw), uniform(0.30, 0.55));
+        Eigen::Vector3d(foot.x() + distance * std::cos(yaw), foot.y() + distance * std::sin(yaw), uniform(low, high));
     pose.linear() = (Eigen::AngleAxisd(uniform(-1.5, 1.5), Eigen::Vector3d::UnitZ()) *
                      Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
                         .toRotationMatrix();
     const IkAnswer answer = kinematics.solve(T_world_base.inverse() * pose);
     if (answer.status != IkStatus::solved) continue;
+    ++reached;
     JointValues q{};
     for (std::size_t i = 0; i < arm.size(); ++i) q[arm[i]] = answer.q[static_cast<Eigen::Index>(i)];
-    if (shape && shape->obstructed({q.data(), rig.joints.size()}) != nullptr) continue;
+    if (const char* const what = shape ? shape->obstructed({q.data(), rig.joints.size()}) : nullptr) {
+      obstructed = what;
+      continue;
+    }
     const auto what = out.empty() || out.size() % 2 == 0 ? ToolStep::What::there : ToolStep::What::line;
     out.push_back({what, pose, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5});
   }
-  if (out.empty())
+  if (!out.empty()) return out;
+  const std::string where =
+      fmt::format("of the tour's poses, {:.2f} to {:.2f} m above the world's origin, tool down", low, high);
+  const char* const by_hand = ", or operate it by hand, without --scripted";
+  if (obstructed != nullptr)
     throw InputError(rig.name,
-                     "the arm reaches none of the tour's poses, 0.30 to 0.55 m above the world's origin, tool down",
-                     "correct robot.pose, min and max of the rig, or operate it by hand, without --scripted");
-  return out;
+                     fmt::format("the arm reaches {} of {} {}, but there {}", reached, kTries, where, obstructed),
+                     std::string("correct robot.pose and surroundings of the rig") + by_hand);
+  throw InputError(rig.name, "the arm reaches none " + where,
+                   std::string("correct robot.pose, min and max of the rig") + by_hand);
 }
 
 }  // namespace foresight

@@ -86,8 +86,9 @@ Pose place_at_rest(const LiveScene& scene, const std::string& node);
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray);
 
-/// A tour of poses above what lies in reach of the arm, the tool pointing down: `count` of them, by `seed`.
-/// Throws InputError: no arm, or it reaches none of them.
+/// A tour of poses above what lies in reach of the arm, the tool pointing down: `count` of them, by `seed`. How far
+/// away and how high follows from the arm's reach, and from where its first axis stands. Throws InputError: no arm, or
+/// it reaches none of them, or none that is clear.
 std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count);
 
 }  // namespace foresight

@@ -120,10 +120,69 @@ TEST(ToolScript, WhatIsSeenOutOfReachIsLookedForWhereItWasPlanned) {
   EXPECT_TRUE(closes_at(far, "brick_red").isApprox(closes_at(Pose::Identity(), "brick_red"), 1e-6));
 }
 
+// The benches' figures are of these.
+TEST(ToolScript, ATourOfTheLabsArmIsOverItsTable) {
+  const Rig rig = minerva();
+  double low = 1, high = 0;
+  for (const ToolStep& step : tour(rig, 1, 200)) {
+    low = std::min(low, step.T_world_tool.translation().z());
+    high = std::max(high, step.T_world_tool.translation().z());
+  }
+  EXPECT_GE(low, 0.30 - 1e-12);
+  EXPECT_LE(high, 0.55 + 1e-12);
+  EXPECT_NEAR(low, 0.30, 0.02);
+  EXPECT_GT(high, 0.45) << "higher ones are out of reach";
+}
+
+/// The lab's arm, `scale` times as large, on the ground or hanging from above, with nothing about it.
+Rig scaled(double scale, bool hangs = false) {
+  Rig rig = minerva();
+  for (UrdfJoint& joint : rig.robot->joints) joint.T_parent_joint.translation() *= scale;
+  for (Node& link : rig.robot->links) {
+    link.T_parent_node.translation() *= scale;
+    for (auto& vertex : link.mesh.vertices) vertex *= static_cast<float>(scale);
+  }
+  for (Mesh& mesh : rig.robot->collision)
+    for (auto& vertex : mesh.vertices) vertex *= static_cast<float>(scale);
+  rig.T_world_robot = Pose::Identity();
+  if (hangs) rig.T_world_robot = Eigen::Translation3d(0, 0, 3) * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
+  rig.surroundings = {};
+  rig.surroundings.clearance = 1e-3;  // a small one's fingers are near its own forearm
+  return rig;
+}
+
+TEST(ToolScript, ATourIsAsLargeAsTheArm) {
+  for (const double scale : {0.4, 2.2}) {
+    const Rig rig = scaled(scale);
+    const auto steps = tour(rig, 1, 20);
+    ASSERT_EQ(steps.size(), 20u) << scale;
+    for (const ToolStep& step : steps) {
+      EXPECT_GT(step.T_world_tool.translation().z(), 1.05 * scale - 1e-9);
+      EXPECT_LT(step.T_world_tool.translation().z(), 1.30 * scale + 1e-9);
+      EXPECT_LT(step.T_world_tool.translation().head<2>().norm(), 0.75 * 0.89 * scale + 1e-9);
+    }
+    ToolScript(rig, steps, {});
+  }
+  Rig hanging = scaled(1, true);
+  for (Node& link : hanging.robot->links) link.mesh = {};  // how it bends there is another matter
+  hanging.robot->collision.clear();
+  const auto below = tour(hanging, 1, 20);
+  ASSERT_FALSE(below.empty());
+  for (const ToolStep& step : below) EXPECT_LT(step.T_world_tool.translation().z(), 3 - 1.05 + 1e-9);
+}
+
 TEST(ToolScript, ATourOfNoPoseIsRefused) {
   Rig rig = minerva();
   rig.T_world_robot.translation().z() += 5;
-  EXPECT_THAT(input_error([&] { tour(rig, 1, 4); }), testing::HasSubstr("reaches none of the tour's poses"));
+  EXPECT_THAT(input_error([&] { tour(rig, 1, 4); }),
+              testing::AllOf(testing::ContainsRegex("reaches [1-9][0-9]* of 2000 of the tour's poses, 5.30 to 5.55 m"),
+                             testing::HasSubstr("tool down, but there ")))
+      << "which is beyond the workspace";
+  Rig stiff = minerva();
+  for (RigJoint& joint : stiff.joints)
+    if (joint.group == JointGroup::arm) joint.drive.min_position = joint.drive.max_position - 0.01;
+  EXPECT_THAT(input_error([&] { tour(stiff, 1, 4); }),
+              testing::HasSubstr("reaches none of the tour's poses, 0.30 to 0.55 m above the world's origin"));
   for (RigJoint& joint : rig.joints)
     if (joint.group == JointGroup::arm) joint.group = JointGroup::pan_tilt;
   EXPECT_THAT(input_error([&] { tour(rig, 1, 4); }), testing::HasSubstr("no joint has `group: arm`"));
