@@ -66,10 +66,17 @@ class LimitReader {
     joint_.drive.max_velocity = std::min(joint_.drive.max_velocity, most);
   }
 
-  void read_following_error() {
+  void read_following_error(double rate_hz) {
     joint_.following_error = map_.positive("following_error");
     const double range = joint_.drive.max_position - joint_.drive.min_position;
     const double most = std::min(0.5 * range, plausible_.following_error);
+    const double in_a_cycle = joint_.drive.max_velocity / rate_hz;
+    if (joint_.following_error <= in_a_cycle)
+      throw InputError(map_.where("following_error"),
+                       fmt::format("{} {} is no more than the joint moves in one cycle of the control loop, {} {}",
+                                   shown(joint_.following_error), joint_.unit, shown(in_a_cycle), joint_.unit),
+                       fmt::format("give more than {}, at most {}, or a larger control.rate_hz than {:g}",
+                                   shown(in_a_cycle), shown(most), rate_hz));
     if (joint_.following_error <= most * (1 + kRounding)) return;
     throw InputError(
         map_.where("following_error"),
@@ -176,7 +183,7 @@ void read_limits(const YamlMap& map, const UrdfJoint* urdf, double rate_hz, RigJ
   reader.read_velocity();
   joint.drive.max_acceleration = map.positive("acceleration");
   joint.jerk = map.positive("jerk");
-  reader.read_following_error();
+  reader.read_following_error(rate_hz);
   reader.check_stop(rate_hz);
   joint.drive.homing_velocity =
       map.has("homing_velocity") ? map.positive("homing_velocity") : 0.1 * joint.drive.max_velocity;

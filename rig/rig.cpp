@@ -10,6 +10,8 @@
 
 #include "common/error.hpp"
 #include "common/text.hpp"
+#include "drivers/canopen/canopen_config.hpp"
+#include "drivers/powercube/module.hpp"
 #include "rig/joint_limits.hpp"
 #include "rig/loose_things.hpp"
 #include "scene/urdf_limits.hpp"
@@ -240,6 +242,8 @@ void read_surroundings(const YamlMap& map, Surroundings& out) {
   map.require_known({"workspace_m", "clearance_m", "obstacles"});
   if (map.has("workspace_m")) out.workspace = box(map, "workspace_m");
   if (map.has("clearance_m")) out.clearance = map.positive("clearance_m");
+  require(out.clearance < 1, map.where("clearance_m"), fmt::format("is {:g} m", out.clearance),
+          "choose more than 0, and less than 1");
   if (!map.has("obstacles")) return;
   for (const YamlMap& obstacle : map.maps("obstacles")) {
     obstacle.require_known({"name", "box_m"});
@@ -247,14 +251,46 @@ void read_surroundings(const YamlMap& map, Surroundings& out) {
   }
 }
 
+constexpr double kSlowestLoop = 10, kFastestLoop = 2000;  // Hz
+constexpr double kCycleRounding = 1e-3;                   // Hz, of a cycle's nanoseconds
+
+// As GateOptions::validate(), which knows no lines.
 void read_control(const YamlMap& map, Rig& rig) {
   map.require_known({"rate_hz", "command_age_s", "feedback_age_s", "ramp_s"});
   rig.rate_hz = number(map, "rate_hz", rig.rate_hz);
-  if (!(rig.rate_hz >= 10 && rig.rate_hz <= 2000))  // joints are judged by it before the gate's options are
-    throw InputError(map.where("rate_hz"), "is " + std::to_string(rig.rate_hz), "choose from 10 to 2000");
-  rig.command_age_s = number(map, "command_age_s", rig.command_age_s);
-  rig.feedback_age_s = number(map, "feedback_age_s", rig.feedback_age_s);
+  require(rig.rate_hz >= kSlowestLoop && rig.rate_hz <= kFastestLoop, map.where("rate_hz"),
+          fmt::format("is {:g}", rig.rate_hz), fmt::format("choose from {:g} to {:g}", kSlowestLoop, kFastestLoop));
+  const auto age = [&](const char* key, double otherwise, double most) {
+    const double value = number(map, key, otherwise);
+    require(value > 1 / rig.rate_hz && value <= most, map.where(key),
+            fmt::format("is {:g} s, and a cycle of the control loop is {:g} s", value, 1 / rig.rate_hz),
+            fmt::format("choose more than one cycle, and at most {:g} s", most));
+    return value;
+  };
+  rig.command_age_s = age("command_age_s", rig.command_age_s, 2);
+  rig.feedback_age_s = age("feedback_age_s", rig.feedback_age_s, 1);
   rig.ramp_s = number(map, "ramp_s", rig.ramp_s);
+  require(rig.ramp_s >= 0 && rig.ramp_s <= 60, map.where("ramp_s"), fmt::format("is {:g} s", rig.ramp_s),
+          "choose from 0 to 60");
+}
+
+/// What a bus of that protocol can be asked in: where the drives or their masters' watchdogs would not do, all commands
+/// that open them would fail.
+std::pair<Duration, Duration> cycles_of(DriveProtocol protocol) {
+  if (protocol == DriveProtocol::powercube) return {powercube::kShortestCycle, powercube::kLongestCycle};
+  const canopen::NetworkConfig usual;
+  return {canopen::kShortestCycle, usual.feedback_timeout / canopen::kCyclesOfFeedback};
+}
+
+void check_rate(const YamlMap& map, const Rig& rig) {
+  for (const RigBus& bus : rig.buses) {
+    const auto [shortest, longest] = cycles_of(bus.protocol);
+    const Duration cycle = seconds(1 / rig.rate_hz);
+    require(cycle >= shortest && cycle <= longest, map.where("rate_hz"),
+            fmt::format("is {:g}, and the drives of bus {} cannot be driven at that", rig.rate_hz, in_quotes(bus.name)),
+            fmt::format("choose from {:.0f} to {:.0f}", std::ceil(1 / to_seconds(longest) - kCycleRounding),
+                        std::min(std::floor(1 / to_seconds(shortest) + kCycleRounding), kFastestLoop)));
+  }
 }
 
 void read_robot(const YamlMap& map, Rig& rig) {
@@ -359,6 +395,7 @@ Rig read_rig(const std::filesystem::path& file) {
   if (map.has("control")) read_control(map.map("control"), rig);
   if (map.has("surroundings")) read_surroundings(map.map("surroundings"), rig.surroundings);
   for (const YamlMap& bus : map.maps("buses")) rig.buses.push_back(read_bus(bus));
+  if (map.has("control")) check_rate(map.map("control"), rig);
   for (const YamlMap& joint : map.maps("joints")) rig.joints.push_back(read_joint(joint, rig));
   check_joints(map, rig);
   if (map.has("scene")) rig.scene = existing_file(map, "scene");

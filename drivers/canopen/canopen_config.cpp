@@ -24,7 +24,7 @@ void validate(const NetworkConfig& c) {
   const std::string where = "CANopen network";
   need(c.master_node >= 1 && c.master_node <= kLargestNode, where, "master_node", std::to_string(c.master_node),
        "give 1 to 127");
-  need(c.cycle >= 100us && c.cycle <= 255ms, where, "cycle", ms(c.cycle), "give 0.1 to 255 ms");
+  need(c.cycle >= kShortestCycle && c.cycle <= 255ms, where, "cycle", ms(c.cycle), "give 0.1 to 255 ms");
   need(c.watchdog >= 3ms && c.watchdog <= 65s, where, "watchdog", ms(c.watchdog), "give 3 ms to 65 s");
   need(c.heartbeat >= 1ms && c.heartbeat * 3 <= c.watchdog, where, "heartbeat", ms(c.heartbeat),
        "give 1 ms to a third of watchdog");
@@ -32,7 +32,7 @@ void validate(const NetworkConfig& c) {
        "give 1 ms to 65 s");
   need(c.drive_timeout > c.drive_heartbeat * 2, where, "drive_timeout", ms(c.drive_timeout),
        "give more than twice drive_heartbeat");
-  need(c.feedback_timeout >= c.cycle * 3, where, "feedback_timeout", ms(c.feedback_timeout),
+  need(c.feedback_timeout >= c.cycle * kCyclesOfFeedback, where, "feedback_timeout", ms(c.feedback_timeout),
        "give at least three cycles");
   need(c.sdo_timeout >= 1ms && c.sdo_timeout <= 500ms, where, "sdo_timeout", ms(c.sdo_timeout), "give 1 to 500 ms");
 }

@@ -6,6 +6,9 @@
 
 namespace foresight::canopen {
 
+inline constexpr Duration kShortestCycle = std::chrono::microseconds(100);
+inline constexpr int kCyclesOfFeedback = 3;  ///< that feedback_timeout lasts, at least
+
 /// What all nodes of a bus share. Times are rounded to the millisecond that CANopen counts in.
 struct NetworkConfig {
   int master_node = 127;                                       ///< 1 .. 127, of no drive; our heartbeat's
@@ -14,7 +17,7 @@ struct NetworkConfig {
   Duration watchdog = std::chrono::milliseconds(100);          ///< silence of ours after which a drive stops (1016h)
   Duration drive_heartbeat = std::chrono::milliseconds(50);    ///< theirs (1017h)
   Duration drive_timeout = std::chrono::milliseconds(160);     ///< more than twice drive_heartbeat
-  Duration feedback_timeout = std::chrono::milliseconds(100);  ///< without a position, at least 3 cycles
+  Duration feedback_timeout = std::chrono::milliseconds(100);  ///< without a position, at least kCyclesOfFeedback
   Duration sdo_timeout = std::chrono::milliseconds(300);       ///< for one answer
 };
 

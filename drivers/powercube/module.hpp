@@ -28,8 +28,11 @@ enum class SetPoints : std::uint8_t {
   ramp,  ///< FRAMP_ACK where the set-point changed: the module's own ramp; for single far targets
 };
 
+/// Of the loop: the watchdog must be fed each 40 ms.
+inline constexpr Duration kShortestCycle = std::chrono::milliseconds(1), kLongestCycle = std::chrono::milliseconds(30);
+
 struct Options {
-  Duration cycle = std::chrono::milliseconds(10);  ///< of the loop, 1 .. 30 ms: the watchdog must be fed each 40 ms
+  Duration cycle = std::chrono::milliseconds(10);  ///< kShortestCycle .. kLongestCycle
   /// Cycles in which a module was asked and said nothing, then it is offline; > 0. A loop that is late itself asks
   /// nothing meanwhile, and has nothing to miss.
   int missing_cycles = 5;

@@ -38,7 +38,7 @@ std::vector<ModuleInfo> scan(CanBus& bus, Clock& clock) {
 
 Network::Network(CanBus& bus, Clock& clock, const std::vector<DriveConfig>& drives, const Options& options)
     : bus_(bus), link_(bus, clock), options_(options) {
-  if (options.cycle < 1ms || options.cycle > 30ms) {
+  if (options.cycle < kShortestCycle || options.cycle > kLongestCycle) {
     throw InputError("PowerCube bus " + bus.name(), "cycle = " + std::to_string(to_seconds(options.cycle)) + " s",
                      "give 0.001 to 0.030 s");
   }

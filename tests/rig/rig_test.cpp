@@ -100,7 +100,7 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("group: arm", "group: leg", {"leg"});
   expect("protocol: cia402", "protocol: cia403", {"cia403", "cia402"});
   expect("jerk: 20", "jerk: -1", {"jerk", "above 0"});
-  expect("following_error: 0.1", "following_error: 0.001", {"following error"});
+  expect("following_error: 0.1", "following_error: 0.001", {"following_error", "in one cycle"});
   expect("node: 2", "node: 2, response: {lag_s: 0.01}", {"response.sigma_s", "missing"});
   expect("node: 2", "node: 2, response: {lag_s: 12, sigma_s: 0.001}", {"response.lag_s", "12 s", "seconds"});
   expect("node: 2", "node: 2, response: {delay_s: 0.1, sigma_s: 0.001}", {"response.delay_s", "dead_time_s"});
@@ -269,6 +269,29 @@ TEST_F(LimitedRig, AbsurdValuesAreRefused) {
          {"joints[0].counts_per_unit", "one count 1 rad", "a tenth of the following error of 0.1 rad", "gear"});
   expect("counts_per_unit: 1000,\n     min: -1", "counts_per_unit: 1e10,\n     min: -1", {"1e+10 counts", "32 bits"});
   expect("name: small", "name: small\ncontrol: {rate_hz: 0}", {"control.rate_hz", "10 to 2000"});
+}
+
+// All name file, line and key, what was given, and what may be.
+TEST_F(BadRig, OutsideOfTheControlLoopsRangesIsToldWhere) {
+  const auto expect = [&](const std::string& instead, std::initializer_list<const char*> words) {
+    const std::string message = error_with("name: small", "name: small\n" + instead);
+    EXPECT_THAT(message, testing::HasSubstr("rig.yaml:2: ")) << instead;
+    for (const char* word : words) EXPECT_THAT(message, testing::HasSubstr(word)) << instead;
+  };
+  expect("control: {rate_hz: 25}", {"control.rate_hz", "is 25", "bus 'main'", "30 to 2000"});
+  expect("control: {rate_hz: 3000}", {"control.rate_hz", "is 3000", "10 to 2000"});
+  expect("control: {rate_hz: 50, feedback_age_s: 0.02}",
+         {"control.feedback_age_s", "is 0.02 s", "0.02 s; choose more"});
+  expect("control: {command_age_s: 5}", {"control.command_age_s", "is 5 s", "at most 2 s"});
+  expect("control: {ramp_s: -1}", {"control.ramp_s", "is -1 s", "0 to 60"});
+  expect("surroundings: {clearance_m: 3}", {"surroundings.clearance_m", "is 3 m", "less than 1"});
+  EXPECT_THAT(error_with("following_error: 0.1}", "following_error: 0.003}"),
+              testing::AllOf(testing::HasSubstr("rig.yaml:6: joints[0].following_error"),
+                             testing::HasSubstr("0.003 rad is no more than the joint moves in one cycle"),
+                             testing::HasSubstr("0.004 rad")));
+  text_.replace(text_.find("cia402"), 6, "powercube");
+  expect("control: {rate_hz: 25}", {"control.rate_hz", "is 25", "34 to 1000"});
+  expect("control: {rate_hz: 1200}", {"control.rate_hz", "is 1200", "34 to 1000"});
 }
 
 TEST_F(BadRig, WithoutAUrdfLimitsMustBePlausible) {
