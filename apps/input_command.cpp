@@ -79,6 +79,14 @@ struct SeenOfDevice {
   double percent(int of) const { return rounds > 0 ? 100.0 * of / rounds : 0; }
 };
 
+void tell_beyond(const TrackerTrace::Beyond& beyond) {
+  if (beyond.rows == 0) return;
+  fmt::print(
+      "{} of {} numbers of column {}, {:g} to {:g}, lie beyond {:g} (open) and {:g} (closed): grip shows, and a\n"
+      "robot is told, the nearer end\n",
+      beyond.rows, beyond.of, beyond.column, beyond.least, beyond.most, beyond.open, beyond.closed);
+}
+
 int show_device(const InputArguments& arguments) {
   poll_stop_signals();
   const std::unique_ptr<Tracker> device = open_tracker(arguments.device, arguments.trace);
@@ -90,6 +98,7 @@ int show_device(const InputArguments& arguments) {
   fmt::print("{}: forward, left and up since its begin, and which buttons are held\n", device->name());
   const RobotTime begin = clock.now();
   const auto* const recording = dynamic_cast<const RecordedTracker*>(device.get());
+  if (recording) tell_beyond(recording->beyond());
   std::string rows = trace_heading();
   SeenOfDevice seen;
   while (!stop_requested() && clock.now() - begin < seconds(arguments.seconds)) {

@@ -14,6 +14,8 @@ class RecordedTracker final : public Tracker {
   std::string name() const override { return "recording of " + trace_.what; }
   TrackerState read(OperatorTime now) noexcept override;
   bool ended() const noexcept { return ended_; }
+  /// How far its gripper goes beyond what counts.
+  const TrackerTrace::Beyond& beyond() const noexcept { return trace_.beyond; }
   Duration length() const noexcept { return trace_.rows.back().time; }
 
  private:

@@ -50,11 +50,13 @@ TrackerState own_row(const TraceColumns& columns, const TextRow& row) {
   return out;
 }
 
+constexpr double kTipOpen = 100, kTipClosed = 30;
+
 TrackerState tip_row(const TraceColumns& columns, const TextRow& row) {
   TrackerState out;
   out.connected = out.tracked = true;
   out.T_space_hand = columns.pose(row, "");
-  out.grip = std::clamp((100 - columns.number(row, "gripper")) / 70, 0.0, 1.0);
+  out.grip = std::clamp((kTipOpen - columns.number(row, "gripper")) / (kTipOpen - kTipClosed), 0.0, 1.0);
   hold_switch(out, true);
   return out;
 }
@@ -100,6 +102,10 @@ struct Form {
   std::string what;
   std::function<TrackerState(const TraceColumns&, const TextRow&)> read;
   bool pedal = false;  // it has rows only while the switch is held
+  struct Gripper {
+    std::string column;  // whose numbers may be beyond the ends; "": none
+    double open = 0, closed = 1;
+  } gripper = {};
 };
 
 Form form_of(const TraceColumns& columns, const TextRow& heading, TrackerSide side) {
@@ -119,14 +125,17 @@ Form form_of(const TraceColumns& columns, const TextRow& heading, TrackerSide si
       columns.has_all({"L_valid", "R_valid", "L_trigger", "L_squeeze", "L_stick_x", "L_stick_y", "L_pressed",
                        "R_trigger", "R_squeeze", "R_stick_x", "R_stick_y", "R_pressed"}))
     return {"tracked controllers" + word,
-            [prefix](const TraceColumns& c, const TextRow& row) { return controller_row(c, row, prefix); }};
+            [prefix](const TraceColumns& c, const TextRow& row) { return controller_row(c, row, prefix); },
+            false,
+            {prefix + "trigger"}};
   const auto tips = [&](const std::string& axis) {
     return columns.has(prefix + "thumb_tip_" + axis) && columns.has(prefix + "index_tip_" + axis);
   };
   if (timed && head && has("wrist_") && columns.has(prefix + "valid") && tips("x") && tips("y") && tips("z"))
     return {"tracked hands" + word,
             [prefix](const TraceColumns& c, const TextRow& row) { return hand_row(c, row, prefix); }};
-  if (timed && posed && columns.has("gripper")) return {"the tip of a tool", tip_row, true};
+  if (timed && posed && columns.has("gripper"))
+    return {"the tip of a tool", tip_row, true, {"gripper", kTipOpen, kTipClosed}};
   throw InputError(
       heading.where(), "is not the heading of a recording of a device",
       "name columns: time_s,x,y,z,qx,qy,qz,qw,gripper, or those that `foresight input show --record` writes");
@@ -163,6 +172,7 @@ class Reading {
       columns_ = TraceColumns(row);
       form_ = form_of(columns_, row, side_);
       trace_.what = form_->what;
+      trace_.beyond = {form_->gripper.column, form_->gripper.open, form_->gripper.closed};
       return;
     }
     const Duration stamp = columns_.seconds_since(row, "time_s");
@@ -171,6 +181,7 @@ class Reading {
     if (!trace_.rows.empty() && time < trace_.rows.back().time)
       throw InputError(row.where(), "time_s goes back", "sort the rows by time");
     TrackerTrace::Row next{time, form_->read(columns_, row)};
+    if (next.state.grip) look_at_gripper(row);
     if (form_->pedal) let_go(next);
     trace_.rows.push_back(next);
     if (trace_.rows.size() > kMostTraceRows)
@@ -178,6 +189,16 @@ class Reading {
   }
 
  private:
+  void look_at_gripper(const TextRow& row) {
+    TrackerTrace::Beyond& beyond = trace_.beyond;
+    if (beyond.column.empty()) return;
+    const double value = columns_.number(row, beyond.column);
+    const auto [least, most] = std::minmax(beyond.open, beyond.closed);
+    beyond.least = beyond.of == 0 ? value : std::min(beyond.least, value);
+    beyond.most = beyond.of == 0 ? value : std::max(beyond.most, value);
+    beyond.rows += value < least || value > most;
+    ++beyond.of;
+  }
   void let_go(const TrackerTrace::Row& next) {
     if (trace_.rows.empty()) {
       trace_.rows.push_back({Duration{0}, next.state});

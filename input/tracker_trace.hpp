@@ -25,8 +25,16 @@ struct TrackerTrace {
     Duration time{0};    ///< since the begin of the recording; never goes back
     TrackerState state;  ///< its `time` is of no meaning
   };
+  /// Numbers for the gripper that are beyond its ends: they count as the nearer end.
+  struct Beyond {
+    std::string column;
+    double open = 0, closed = 1;  ///< the ends
+    double least = 0, most = 0;   ///< of all its numbers
+    std::size_t rows = 0, of = 0;
+  };
   std::string what;  ///< "tracked controllers, right"
   std::vector<Row> rows;
+  Beyond beyond;
 };
 
 enum class TrackerSide : std::uint8_t { left, right };

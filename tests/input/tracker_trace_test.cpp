@@ -123,6 +123,19 @@ TEST_F(TrackerTraceTest, RecordedControllersAreReadInOurFrames) {
   EXPECT_LT(first.y(), left.rows.front().state.T_space_hand.translation().y()) << "the right hand is to the right";
 }
 
+TEST_F(TrackerTraceTest, NumbersBeyondTheGrippersEndsAreCounted) {
+  const std::string pose = ",0,0,0,0,0,0,1,";
+  const TrackerTrace trace =
+      read(kTip + ("0" + pose + "100\n0.1" + pose + "30\n0.2" + pose + "0.08\n0.3" + pose + "120\n"));
+  EXPECT_EQ(trace.beyond.column, "gripper");
+  EXPECT_EQ(trace.beyond.rows, 2u);
+  EXPECT_EQ(trace.beyond.of, 4u);
+  EXPECT_EQ(trace.beyond.least, 0.08);
+  EXPECT_EQ(trace.beyond.most, 120);
+  EXPECT_EQ(trace.rows.back().state.grip, 0) << "the nearer end";
+  EXPECT_EQ(read(kTip + ("0" + pose + "50\n")).beyond.rows, 0u);
+}
+
 TEST_F(TrackerTraceTest, RecordedHandsCarryNoSwitchUnlessItIsHeldForThem) {
   const auto file = recorded("quest_controllers/hands.csv");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recorded data: " << file;
