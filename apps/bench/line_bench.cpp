@@ -11,7 +11,6 @@
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/error.hpp"
 #include "common/numbers_file.hpp"
-#include "common/statistics.hpp"
 #include "common/text.hpp"
 #include "link/send_control/line_trial.hpp"
 
@@ -105,8 +104,8 @@ nlohmann::json figures(const LineTrialResult& result, double length_s) {
           {"early_hand_overs", result.early},
           {"packets", result.packets},
           {"packets_sent_again", result.copies},
-          {"encode_ms", median(result.encode_ms)},
-          {"decode_ms", median(result.decode_ms)}};
+          {"encode_ms", nearest_rank(result.encode_ms, 0.5)},
+          {"decode_ms", nearest_rank(result.decode_ms, 0.5)}};
 }
 
 }  // namespace
@@ -119,16 +118,22 @@ int bench_line(const LineBenchOptions& options) {
   const LineTrialResult result = run_line_trial(trial, [&](RobotTime time) { return pictures.at(time); });
   const nlohmann::json all = figures(result, options.seconds);
   const auto number = [&](const char* key) { return all.at(key).get<double>(); };
+  const auto figure = [&](const char* key, int digits = 0) {  // "-" for what nothing came of
+    return readable(number(key) >= 0 ? number(key) : NAN, digits);
+  };
   std::printf("2 x %s, %.0f s of the line, %s; ages beyond those of a packet on the idle line\n", options.size.c_str(),
               options.seconds, options.coding.c_str());
-  std::printf("  age p50 / p95                %8.0f / %.0f ms\n", number("age_p50_ms"), number("age_p95_ms"));
+  if (result.pairs.empty()) std::printf("  no picture came\n");
+  std::printf("  age p50 / p95                %8s / %s ms\n", figure("age_p50_ms").c_str(),
+              figure("age_p95_ms").c_str());
   if (!result.gaps.empty())
-    std::printf("    without %.1f s in which the line stood still for 1 s and more; with them, p95 is %.0f ms\n",
-                number("gaps_s"), number("age_all_p95_ms"));
+    std::printf("    without %.1f s in which the line stood still for 1 s and more; with them, p95 is %s ms\n",
+                number("gaps_s"), figure("age_all_p95_ms").c_str());
   if (number("age_worst_minute_p95_ms") >= 0)
     std::printf("    p95 of the worst minute    %8.0f ms\n", number("age_worst_minute_p95_ms"));
   std::printf("  pairs per s                  %8.1f\n", number("pairs_per_s"));
-  std::printf("  PSNR of luma, mean / p5      %8.1f / %.1f dB\n", number("psnr_db"), number("psnr_p5_db"));
+  std::printf("  PSNR of luma, mean / p5      %8s / %s dB\n", figure("psnr_db", 1).c_str(),
+              figure("psnr_p5_db", 1).c_str());
   std::printf("  sent                         %8.0f kB/s up, %.1f kB/s down\n", number("bytes_per_s") * 1e-3,
               number("down_bytes_per_s") * 1e-3);
   std::printf("  gaps of 1 s and more         %8.0f, worst recovery %.0f ms after 30 kB\n", number("gaps"),
@@ -136,8 +141,8 @@ int bench_line(const LineBenchOptions& options) {
   std::printf("  packets sent again           %8.0f of %.0f\n", number("packets_sent_again"), number("packets"));
   std::printf("  damaged pictures shown       %8.0f\n", number("damaged"));
   std::printf("  hand-overs too early         %8.0f\n", number("early_hand_overs"));
-  std::printf("  CPU time of a pair           %8.1f ms to encode, %.1f ms to decode\n", number("encode_ms"),
-              number("decode_ms"));
+  std::printf("  CPU time of a pair           %8s ms to encode, %s ms to decode\n", figure("encode_ms", 1).c_str(),
+              figure("decode_ms", 1).c_str());
   write_numbers(options.json, all.dump(2));
   return result.damaged > 0 || result.early > 0 || result.pairs.empty() ? 1 : 0;
 }

@@ -7,7 +7,7 @@
 namespace foresight {
 namespace {
 
-constexpr int kPatience = 10'000'000;  // steps without carrying anything, after which a line counts as dead
+constexpr int kPatience = 10'000'000;  // steps without getting a packet across, after which a line counts as dead
 
 /// The instant of an outage's last begin at or before `at`.
 std::optional<Duration> last_begin(const Outage& outage, Duration at) {
@@ -129,9 +129,9 @@ Bottleneck::Stretch Bottleneck::stretch(Duration at) const {
 Duration Bottleneck::carry_by_rate(Place& place, Duration at, std::size_t bytes) const {
   Duration now = std::max(at, place.at);
   double left = static_cast<double>(bytes);
-  for (int in_vain = 0; in_vain < kPatience && now < kNever; ++in_vain) {
+  // However little each stretch carries, a packet that needs so many of them is one that nobody waits for.
+  for (int stretches = 0; stretches < kPatience && now < kNever; ++stretches) {
     const Stretch here = stretch(now);
-    if (here.bytes_per_s > 0) in_vain = 0;
     const double share = here.bytes_per_s > 0 ? left / here.bytes_per_s : INFINITY;
     if (share < to_seconds(here.end - now)) return place.at = now + seconds(share);
     left -= here.bytes_per_s * to_seconds(here.end - now);

@@ -1,5 +1,7 @@
 #include "link/line/line_spec.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <functional>
 
@@ -11,7 +13,7 @@ namespace foresight {
 namespace {
 
 constexpr double kLongest_s = 3600;
-constexpr double kHighestRate = 1.25e11;  // bytes per second
+constexpr double kShortest_s = 1e-3;  // of an outage, and between two
 
 /// A number of the mapping within a range; `otherwise` where it is absent.
 double within(const YamlMap& map, const std::string& key, double least, double most, double otherwise) {
@@ -33,10 +35,18 @@ Outage read_outage(const YamlMap& map) {
   outage.lasts = seconds(map.positive("for_s"));
   outage.every = seconds(within(map, "every_s", 0, 1e6, 0));
   outage.loses = flag(map, "loses");
-  require(outage.lasts <= seconds(1e6), map.where("for_s"), "the outage is too long", "give 1,000,000 s at most");
+  require(outage.lasts >= seconds(kShortest_s) && outage.lasts <= seconds(1e6), map.where("for_s"),
+          fmt::format("it is {:g} s", map.number("for_s")), "give 0.001 to 1,000,000 s");
   require(outage.every.count() == 0 || outage.every > outage.lasts, map.where("every_s"), "the outage would never end",
           "give more than for_s");
+  require(outage.every.count() == 0 || outage.every - outage.lasts >= seconds(kShortest_s), map.where("every_s"),
+          "less than 1 ms is left between two outages", "give more");
   return outage;
+}
+
+void require_rate(double bytes_per_s, const std::string& where) {
+  require(bytes_per_s >= kLowestRate_kbps * 125 && bytes_per_s <= kHighestRate_kbps * 125, where,
+          fmt::format("the rate is {:g} kbps", bytes_per_s / 125), "give 0.001 to 1e9 kbps, or none for no limit");
 }
 
 DirectionSpec read_direction(const YamlMap& map, bool up) {
@@ -49,7 +59,10 @@ DirectionSpec read_direction(const YamlMap& map, bool up) {
   spec.loss = within(map, "loss", 0, 1, 0);
   spec.burst = within(map, "burst", 1, 10'000, 1);
   spec.duplicates = within(map, "duplicates", 0, 1, 0);
-  if (map.has("rate_kbps")) spec.bytes_per_s = map.positive("rate_kbps") * 125;
+  if (map.has("rate_kbps")) {
+    spec.bytes_per_s = map.positive("rate_kbps") * 125;
+    require_rate(spec.bytes_per_s, map.where("rate_kbps"));
+  }
   if (map.has("queue_kb")) spec.queue_bytes = static_cast<std::size_t>(1000 * within(map, "queue_kb", 1, 1e9, 0));
   if (map.has("outages"))
     for (const YamlMap& outage : map.maps("outages")) spec.outages.push_back(read_outage(outage));
@@ -75,8 +88,7 @@ void check(const DirectionSpec& spec, const std::string& where) {
   require(spec.delay.count() >= 0 && spec.delay <= seconds(kLongest_s) && spec.jitter.count() >= 0 &&
               spec.jitter <= seconds(kLongest_s),
           where, "a delay is out of range", "give 0 to 3600 s");
-  require(std::isfinite(spec.bytes_per_s) && spec.bytes_per_s >= 0 && spec.bytes_per_s <= kHighestRate, where,
-          "the rate is out of range", "give up to 1e9 kbps, or none for no limit");
+  if (spec.bytes_per_s != 0) require_rate(spec.bytes_per_s, where);
   require(spec.loss < 1 || spec.burst == 1, where, "everything is lost, in bursts", "give a loss below 1");
   // A bottleneck is one: two rates in a row would need two queues.
   require(!spec.trace || spec.bytes_per_s == 0 || std::holds_alternative<PacketTrace>(*spec.trace), where,

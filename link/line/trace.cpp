@@ -13,7 +13,6 @@ namespace foresight {
 namespace {
 
 constexpr double kLargestDelay_ms = 600'000;
-constexpr double kLargestRate_kbps = 1e9;
 constexpr long long kLargestTime_ms = 1'000'000'000;  // 11 days
 constexpr std::size_t kMostRows = 50'000'000;
 
@@ -39,6 +38,15 @@ class CsvRows {
     return value;
   }
 
+  /// Column `index`, kbps.
+  double rate(const TextRow& row, std::size_t index) const {
+    const double value = field(row, index, kHighestRate_kbps);
+    if (value > 0 && value < kLowestRate_kbps)
+      throw InputError(row.where(index), columns_[index] + " is " + in_quotes(row.fields[index]),
+                       "give 0 where the line stands still, else 0.001 to 1e9 kbps");
+    return value;
+  }
+
   void add_time(const TextRow& row) {
     if (row.fields.size() != columns_.size())
       throw InputError(
@@ -57,7 +65,11 @@ class CsvRows {
   /// Of the rows that came; the last one lasts as long as the one before it.
   Duration period(const std::filesystem::path& file) const {
     if (at_.size() < 2) throw InputError(file.string(), "the trace has fewer than two rows", kForms);
-    return at_.back() + (at_.back() - at_[at_.size() - 2]);
+    const Duration out = at_.back() + (at_.back() - at_[at_.size() - 2]);
+    if (out < kShortestPeriod)
+      throw InputError(file.string(), "the trace lasts less than 1 ms, after which it repeats",
+                       "write time_s in seconds");
+    return out;
   }
   const std::vector<Duration>& at() const { return at_; }
 
@@ -114,8 +126,7 @@ LineTraces read_rates(const std::filesystem::path& file) {
   CsvRows rows(columns);
   std::array<RateTrace, 2> ways;
   for_each_csv_row(file, columns, rows, [&](const TextRow& row) {
-    for (std::size_t way = 0; way < 2; ++way)
-      ways[way].bytes_per_s.push_back(rows.field(row, 1 + way, kLargestRate_kbps) * 125);
+    for (std::size_t way = 0; way < 2; ++way) ways[way].bytes_per_s.push_back(rows.rate(row, 1 + way) * 125);
   });
   for (RateTrace& way : ways) {
     way.period = rows.period(file);
@@ -151,41 +162,6 @@ std::string first_row(const std::filesystem::path& file) {
   return {};
 }
 
-void add_gap(std::vector<Gap>& gaps, Duration begin, Duration end, Duration least, Duration length) {
-  end = std::min(end, length);
-  if (end - begin >= least) gaps.push_back({begin, end});
-}
-
-std::vector<Gap> gaps_between(const DeliveryTrace& trace, Duration least, Duration length) {
-  std::vector<Gap> gaps;
-  Duration last{};
-  const Duration period = std::chrono::milliseconds(trace.at_ms.back());
-  for (Duration round{}; round < length; round += period)
-    for (const std::uint32_t ms : trace.at_ms) {
-      const Duration at = round + std::chrono::milliseconds(ms);
-      add_gap(gaps, last, at, least, length);
-      last = at;
-    }
-  return gaps;
-}
-
-std::vector<Gap> gaps_between(const RateTrace& trace, Duration least, Duration length) {
-  std::vector<Gap> gaps;
-  std::optional<Duration> begin;
-  for (Duration round{}; round < length; round += trace.period)
-    for (std::size_t i = 0; i < trace.at.size(); ++i) {
-      const Duration at = round + trace.at[i];
-      if (trace.bytes_per_s[i] > 0) {
-        if (begin) add_gap(gaps, *begin, at, least, length);
-        begin.reset();
-      } else if (!begin) {
-        begin = at;
-      }
-    }
-  if (begin) add_gap(gaps, *begin, length, least, length);
-  return gaps;
-}
-
 }  // namespace
 
 LineTraces read_line_traces(const std::filesystem::path& file) {
@@ -199,12 +175,6 @@ Duration period_of(const Trace& trace) {
     return std::chrono::milliseconds(deliveries->at_ms.back());
   if (const auto* packets = std::get_if<PacketTrace>(&trace)) return packets->period;
   return std::get<RateTrace>(trace).period;
-}
-
-std::vector<Gap> gaps_of(const Trace& trace, Duration least, Duration length) {
-  if (const auto* deliveries = std::get_if<DeliveryTrace>(&trace)) return gaps_between(*deliveries, least, length);
-  if (const auto* rates = std::get_if<RateTrace>(&trace)) return gaps_between(*rates, least, length);
-  return {};
 }
 
 }  // namespace foresight

@@ -24,6 +24,9 @@ struct DeliveryTrace {
   std::vector<std::uint32_t> at_ms;  ///< never decreasing, the last one is the period
 };
 inline constexpr std::size_t kChanceBytes = 1500;
+/// Rates are 0 or within these. On the slowest line a packet takes hours already: less is a mistake.
+inline constexpr double kLowestRate_kbps = 1e-3, kHighestRate_kbps = 1e9;
+inline constexpr Duration kShortestPeriod = std::chrono::milliseconds(1);  ///< of a trace
 
 /// The fate of packets by the instant at which they are sent; between two rows that of the earlier.
 struct PacketTrace {
@@ -48,18 +51,10 @@ struct LineTraces {
 };
 
 /// Reads any of the three forms; a mahimahi file gives `up`. Throws InputError naming file and line: empty, not sorted,
-/// other columns, a field that is no such number, a line that never carries anything.
+/// other columns, a field that is no such number, a rate out of range, a line that never carries anything.
 LineTraces read_line_traces(const std::filesystem::path& file);
 
 /// After how long it repeats.
 Duration period_of(const Trace& trace);
-
-/// A time in which nothing crosses the line.
-struct Gap {
-  Duration begin{}, end{};
-};
-
-/// The gaps of at least `least` within the first `length`, of chances and rates; others have none.
-std::vector<Gap> gaps_of(const Trace& trace, Duration least, Duration length);
 
 }  // namespace foresight

@@ -203,7 +203,7 @@ LineTrialResult run_line_trial(const LineTrialOptions& options, const std::funct
   Trial trial(options, picture);
   trial.run(poll);
   LineTrialResult result = std::move(trial.result);
-  if (options.line.up.trace) result.gaps = gaps_of(*options.line.up.trace, kGap, options.length);
+  result.gaps = gaps_of(options.line.up, kGap, options.length);
   measure_ages(result, trial.up(), options);
   measure_recovery(result, trial.up(), options.length);
   return result;

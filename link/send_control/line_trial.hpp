@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "link/line/gaps.hpp"
 #include "link/line/packet_line.hpp"
 #include "link/send_control/pair_receiver.hpp"
 #include "link/send_control/pair_sender.hpp"

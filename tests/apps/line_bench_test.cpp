@@ -31,6 +31,32 @@ TEST(LineBench, SaysAgeRateAndQualityAndRepeats) {
   EXPECT_EQ(all[0]["damaged"], 0);
 }
 
+TEST(LineBench, SaysWhereNothingCame) {
+  const TempFolder out;
+  const std::string json = out / "line.json";
+  const std::string line = out.write("dead.yaml", "up: {delay_ms: 20, outages: [{at_s: 0, for_s: 100}]}\n");
+  const Outcome outcome = run_program(
+      {"bench", "line", "--line", line, "--seconds", "3", "--size", "64x48", "--pictures", "2", "--json", json});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("no picture came"), HasSubstr("- / - ms"), HasSubstr("- / - dB"),
+                                 HasSubstr("- ms to decode"), testing::Not(HasSubstr("-1"))));
+  EXPECT_EQ(read_json(json)["gaps"], 1);
+}
+
+TEST(LineBench, OutagesAreGaps) {
+  const TempFolder out;
+  const std::string json = out / "line.json";
+  const std::string line =
+      out.write("out.yaml", "up: {delay_ms: 20, rate_kbps: 400, outages: [{at_s: 3, for_s: 2}]}\n");
+  ASSERT_EQ(run_program({"bench", "line", "--line", line, "--seconds", "8", "--size", "64x48", "--pictures", "2",
+                         "--json", json})
+                .exit_code,
+            0);
+  const nlohmann::json numbers = read_json(json);
+  EXPECT_EQ(numbers["gaps"], 1);
+  EXPECT_NEAR(numbers["gaps_s"].get<double>(), 2, 0.1);
+}
+
 TEST(LineBench, RefusesLinesThatAreNone) {
   const TempFolder out;
   const auto refused = [&](std::vector<std::string> words, const std::string& what) {

@@ -76,6 +76,10 @@ TEST_F(LineSpecFile, RefusesNamingLineAndField) {
   expect_refused("up: {delay_ms: nan}\n", "up.delay_ms");
   expect_refused("up: {burst: 0}\n", "up.burst");
   expect_refused("up: {rate_kbps: 0}\n", "up.rate_kbps");
+  expect_refused("up: {rate_kbps: 1e-300}\n", "up.rate_kbps: the rate is 1e-300 kbps; give 0.001 to 1e9 kbps");
+  expect_refused("up: {rate_kbps: 1e10}\n", "up.rate_kbps");
+  expect_refused("up: {outages: [{at_s: 1, for_s: 1e-9}]}\n", "for_s");
+  expect_refused("up: {outages: [{at_s: 1, for_s: 1, every_s: 1.0001}]}\n", "less than 1 ms");
   expect_refused("up: {reorder: 3}\n", "up.reorder");
   expect_refused("up: {outages: [{at_s: 1, for_s: 2, every_s: 1}]}\n", "never end");
   expect_refused("sideways: {}\n", "sideways");

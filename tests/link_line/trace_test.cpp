@@ -69,25 +69,16 @@ TEST(Trace, RefusesWhatIsNoTraceNamingTheLine) {
   expect_refused("time_s,up_kbps,down_kbps\n0,1,0\n1,1,0\n", ": ", "never carries");
   expect_refused("time_s,up_kbps,down_kbps\n0,1,1\n1,nan,1\n", ":3", "up_kbps");
   expect_refused("time_s,up_kbps,down_kbps\n0,1,1\n1,-1,1\n", ":3", "up_kbps");
+  expect_refused("time_s,up_kbps,down_kbps\n0,1,1\n1,1e-300,1\n", ":3", "0.001 to 1e9 kbps");
+  expect_refused("time_s,up_kbps,down_kbps\n0,1,1\n0.0000001,1,1\n", ": ", "less than 1 ms");
   expect_refused("time_s,up_delay_ms,up_loss,down_delay_ms,down_loss\n0,1,0,1,2\n", ":2", "0 or 1");
   expect_refused("time_s,up_delay_ms,up_loss,down_delay_ms,down_loss\n0,1,1,1,0\n1,1,1,1,0\n", ": ", "lost");
-}
-
-TEST(Trace, FindsGaps) {
-  const TraceFile chances("1500\n1600\n4000\n");
-  const auto gaps = gaps_of(*read_line_traces(chances.path).up, milliseconds(1000), milliseconds(6000));
-  ASSERT_EQ(gaps.size(), 3U);
-  EXPECT_EQ(gaps[1].begin, milliseconds(1600));
-  EXPECT_EQ(gaps[1].end, milliseconds(4000));
-  EXPECT_EQ(gaps[2].begin, milliseconds(4000));
-  EXPECT_EQ(gaps[2].end, milliseconds(5500));
 }
 
 TEST(Trace, ReadsTheRecordedOnes) {
   const std::filesystem::path folder = data_folder() / "line_traces";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recorded lines at " << folder;
-  const auto att = read_line_traces(folder / "ATT-LTE-driving.up").up;
-  EXPECT_EQ(gaps_of(*att, milliseconds(1000), period_of(*att)).size(), 18U);
+  EXPECT_TRUE(read_line_traces(folder / "ATT-LTE-driving.up").up);
   EXPECT_EQ(std::get<PacketTrace>(*read_line_traces(folder / "starlink.csv").down).at.size(), 10'000U);
 }
 
