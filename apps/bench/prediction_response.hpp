@@ -22,7 +22,8 @@ struct PredictionResponseOptions {
 ///   inside_2_sigma_*   share of the truths within twice the uncertainty that was told
 ///   joints       of each: name, whether it was identified, delay_s, dead_time_s, lag_s, with delay_sigma_s and
 ///                dead_time_sigma_s; unexplained_rad; explained, the share of its motion that the commands explain
-///                (little of it: another clock, another unit, which is also said)
+///                (little of it: another clock, another unit, which is also said); evened_s: by how much the stamps
+///                of its commands scatter about an even interval, where that explains more than the stamps do; else 0
 ///   scored       predictions judged, per horizon
 /// Returns 0. Throws InputError as read_joint_table, and where the files share no joint or no time, or nothing can be
 /// judged.

@@ -1,5 +1,6 @@
 // `foresight bench prediction response`: recorded and made-up arms, its keys, and words for wrong input.
 #include <cmath>
+#include <random>
 
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
@@ -43,6 +44,44 @@ std::string number(double value) {
 
 double wish(double t) {
   return 0.5 * std::sin(1.2 * t) + 0.1 * std::sin(4 * t);
+}
+
+/// A drive with 30 ms of dead time and 20 ms of lag, on commands every `interval` seconds that it holds. `sent`: they
+/// are sent that much off their time; `stamped`: commands and states are stamped so much off theirs (sigma, s).
+nlohmann::json joint_of_held_commands(double interval, double sent, double stamped) {
+  constexpr double kTick = 0.0005;
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  std::string commands = "time_s,q1\n", states = "time_s,q1\n";
+  std::vector<double> at;
+  for (int i = 0; i * interval < 30; ++i) {
+    at.push_back(1 + i * interval + sent * normal(random));
+    commands += number(at.back() + stamped * normal(random)) + "," + number(wish(i * interval)) + "\n";
+  }
+  double position = wish(0);
+  std::size_t held = 0;
+  for (int i = 0; i * kTick < 30; ++i) {
+    const double now = 1 + i * kTick;
+    while (held + 1 < at.size() && at[held + 1] <= now - 0.03) ++held;
+    position += (wish(static_cast<double>(held) * interval) - position) / 0.02 * kTick;
+    if (i % 12 == 0) states += number(now + stamped * normal(random)) + "," + number(position) + "\n";
+  }
+  const TempFolder out;
+  return measured(out, out.write("c.csv", commands).string(), out.write("s.csv", states).string())["joints"][0];
+}
+
+TEST(PredictionResponse, NoiseOfStampsLeavesTheDelayAsItIs) {
+  for (const double interval : {0.01, 0.02}) {
+    const nlohmann::json quiet = joint_of_held_commands(interval, 0, 0),
+                         noisy = joint_of_held_commands(interval, 0, 1e-3);
+    EXPECT_NEAR(quiet["delay_s"], 0.05 + 0.5 * interval, 0.002) << interval;
+    EXPECT_NEAR(noisy["delay_s"], 0.05 + 0.5 * interval, 0.002) << interval;
+    EXPECT_EQ(quiet["evened_s"], 0);
+    EXPECT_NEAR(noisy["evened_s"], 1e-3, 1e-4);
+    const nlohmann::json uneven = joint_of_held_commands(interval, 1e-3, 0);
+    EXPECT_NEAR(uneven["delay_s"], 0.05 + 0.5 * interval, 0.002) << interval;
+    EXPECT_EQ(uneven["evened_s"], 0) << "these stamps are right";
+  }
 }
 
 // What was commanded in a hole nobody knows: nothing is guessed of it.
