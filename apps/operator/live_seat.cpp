@@ -94,6 +94,7 @@ class LiveSeat {
     end_.start();
     if (const std::string refused = seat_.start(); !refused.empty()) say(refused);
     show_pictures();
+    shown_.finish_saving();
     end_.stop();
     tell_responses();
     if (head_ && !head_->stop()) end_with_runtime_hanging();

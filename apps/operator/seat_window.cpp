@@ -2,20 +2,17 @@
 
 #include <fmt/core.h>
 
-#include <opencv2/imgproc.hpp>
 #include <utility>
-
-#include "seat/screenshot.hpp"
 
 namespace foresight {
 namespace {
 
+/// From its lowest row on.
 cv::Mat read_window(const ViewTarget& whole) {
   cv::Mat out(whole.height, whole.width, CV_8UC3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, whole.width, whole.height, GL_BGR, GL_UNSIGNED_BYTE, out.data);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  cv::flip(out, out, 0);
   return out;
 }
 
@@ -121,10 +118,23 @@ HudContent SeatWindow::words(bool is_trusted) const {
 }
 
 void SeatWindow::save(const ViewTarget& whole) {
+  tell_saved();
   if (!std::exchange(save_, false)) return;
-  const Screenshot saved = save_screenshot("", read_window(whole));
-  save_trouble_ = saved.trouble;
-  if (save_trouble_.empty() && options_.log) options_.log("wrote " + saved.file.string());
+  if (!screenshots_.take(read_window(whole)))
+    save_trouble_ = "not taken: the disk still writes those before it; press P again later";
+}
+
+void SeatWindow::tell_saved() {
+  while (const std::optional<Screenshot> saved = screenshots_.done()) {
+    save_trouble_ = saved->trouble;
+    if (save_trouble_.empty() && options_.log) options_.log("wrote " + saved->file.string());
+  }
+}
+
+void SeatWindow::finish_saving() {
+  screenshots_.finish();
+  tell_saved();
+  if (!save_trouble_.empty() && options_.log) options_.log("screenshot: " + save_trouble_);
 }
 
 void SeatWindow::log(const HudContent& content) {

@@ -14,6 +14,7 @@
 #include "seat/hand_overlay.hpp"
 #include "seat/hud.hpp"
 #include "seat/predicted_source.hpp"
+#include "seat/screenshot.hpp"
 #include "seat/seat_log.hpp"
 #include "seat/seat_views.hpp"
 #include "seat/stage_times.hpp"
@@ -58,8 +59,10 @@ class SeatWindow final : public ViewObserver {
   /// keys_after()
   void next_keys() { first_key_ = keys_after(first_key_, hud_.next_key(), options_.keys.size()); }
   void next_marks();
-  /// The next picture goes into a file, too: save_screenshot(), in the working folder.
+  /// The next picture goes into a file, too: ScreenshotWriter, in the working folder.
   void save_next() { save_ = true; }
+  /// Waits for those that are not written yet, and tells what became of them. Where nobody drives any more.
+  void finish_saving();
 
   /// What there is to say now.
   HudContent words() const { return words(trusted()); }
@@ -73,6 +76,7 @@ class SeatWindow final : public ViewObserver {
   HudContent words(bool is_trusted) const;
   void log(const HudContent& content);
   void save(const ViewTarget& whole);
+  void tell_saved();
   StageTimes stage_times() const;
 
   gl::Window& window_;
@@ -90,6 +94,7 @@ class SeatWindow final : public ViewObserver {
   std::optional<std::size_t> first_key_;  // that is shown; nothing: none are
   TrustMarks marks_ = TrustMarks::none;
   bool save_ = false;
+  ScreenshotWriter screenshots_{""};
   std::string save_trouble_;  // of the last one
 };
 
