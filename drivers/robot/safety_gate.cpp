@@ -27,7 +27,9 @@ bool SafetyGate::reset(std::span<const DriveFeedback> feedback, RobotTime now) n
     const JointLimits& limits = options_.joints[i].limits;
     const double position = feedback[i].position;
     const bool fresh = feedback[i].time.ns != 0 && now - feedback[i].time <= seconds(options_.feedback_age_s);
-    if (fresh && position >= limits.min_position && position <= limits.max_position) continue;
+    // Before it is homed, a drive counts from anywhere: only looking for home tells where the joint stands.
+    const bool within = position >= limits.min_position && position <= limits.max_position;
+    if (fresh && (within || (!feedback[i].homed && std::isfinite(position)))) continue;
     status_.reason = !fresh                     ? GateReason::feedback_lost
                      : !std::isfinite(position) ? GateReason::feedback_not_finite
                                                 : GateReason::stands_out_of_range;

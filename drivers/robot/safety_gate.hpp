@@ -113,8 +113,9 @@ class SafetyGate {
   SafetyGate(GateOptions options, RobotShape* shape);
 
   /// Starts anew from where the robot stands, at rest. Only while idle or stopped and with all feedback
-  /// fresh and within the limits; otherwise false, and the reason is in status(). Also ends `stopped`. A gripper that
-  /// still has a set-point keeps it: by as much as its jaws do not get there they press what they hold.
+  /// fresh and, of drives that are homed, within the limits; otherwise false, and the reason is in status(). Also ends
+  /// `stopped`. A gripper that still has a set-point keeps it: by as much as its jaws do not get there they press what
+  /// they hold.
   bool reset(std::span<const DriveFeedback> feedback, RobotTime now) noexcept;
 
   /// Latches: brakes and stays stopped until reset(). Any state. `why`: one of the latched reasons that are not the

@@ -179,6 +179,7 @@ TEST_F(SafetyGateTest, AJointThatDoesNotFollowLatches) {
 TEST_F(SafetyGateTest, ResetNeedsFreshFeedbackWithinTheLimits) {
   gate_.emergency_stop();
   feedback_[0].position = 2.5;
+  feedback_[0].homed = true;
   EXPECT_FALSE(gate_.reset(feedback_, now_));
   EXPECT_EQ(gate_.status().reason, GateReason::stands_out_of_range);
   feedback_[0].position = 0;
@@ -186,6 +187,12 @@ TEST_F(SafetyGateTest, ResetNeedsFreshFeedbackWithinTheLimits) {
   EXPECT_EQ(gate_.status().reason, GateReason::feedback_lost);
   EXPECT_EQ(gate_.status().state, GateState::stopped);
   EXPECT_TRUE(gate_.reset(feedback_, now_));
+  gate_.emergency_stop();
+  feedback_[0] = {now_, 2.5, 0, DriveState::enabled};
+  EXPECT_TRUE(gate_.reset(feedback_, now_)) << "before it is homed, a drive does not know where its joint stands";
+  gate_.emergency_stop();
+  feedback_[0].position = std::nan("");
+  EXPECT_FALSE(gate_.reset(feedback_, now_));
 }
 
 TEST_F(SafetyGateTest, KeepsAllLimitsUnderAnyCommands) {

@@ -62,6 +62,22 @@ TEST(HomingMethods, EachIsThatOfAJointSomewhere) {
   }
 }
 
+// Like an elbow that never stretches.
+TEST(HomingMethods, AJointWhoseRangeExcludesZeroHomesWithinIt) {
+  for (const char* file : {"minerva.yaml", "cia402.yaml"})
+    for (const double side : {1.0, -1.0}) {
+      Rig rig = read_rig(source_folder() / "configs" / file);
+      DriveConfig& d = rig.joints[3].drive;
+      d.min_position = side > 0 ? 0.3 : -1.9;
+      d.max_position = side > 0 ? 1.9 : -0.3;
+      d.direction = side > 0 ? 1 : -1;
+      LiveRobot live(rig);
+      expect_homes(live, file);
+      EXPECT_NEAR(live.robot().status().feedback[3].position, side * 1.1, 0.1) << "in the middle";
+      EXPECT_NEAR(live.robot().status().feedback[1].position, 0, 0.1) << "others where they had it";
+    }
+}
+
 TEST(HomingMethods, OneThatADriveLacksIsSaidBeforeAnythingMoves) {
   Rig rig = read_rig(source_folder() / "configs/cia402.yaml");
   rig.joints[2].homing_method = 15;
