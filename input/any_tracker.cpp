@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "input/hand_watch.hpp"
+
 namespace foresight {
 namespace {
 
@@ -18,6 +20,20 @@ bool there(const TrackerState& state) noexcept {
 }
 
 }  // namespace
+
+void AnyTracker::watch(Device& device, OperatorTime now) noexcept {
+  const TrackerState& state = device.state;
+  if (!state.connected || !state.tracked || state.integrated) return device.pose.reset();
+  if (device.pose && device.pose->matrix() == state.T_space_hand.matrix()) return;
+  device.pose = state.T_space_hand;
+  device.stirred = now;
+}
+
+// Compared, not subtracted: an instant of another clock may be any number.
+bool AnyTracker::is_frozen(const Device& device, OperatorTime now) noexcept {
+  if (!device.state.connected) return false;
+  return device.state.time < now - HandWatchOptions{}.frozen_after || (device.pose && device.stirred < now - kStill);
+}
 
 // Whose switch was just pressed.
 bool AnyTracker::take_charge() noexcept {
@@ -44,12 +60,17 @@ std::vector<AnyTracker::Missing> AnyTracker::missing() const {
 }
 
 TrackerState AnyTracker::read(OperatorTime now) noexcept {
-  for (Device& device : devices_) device.state = device.tracker->read(now);
+  for (Device& device : devices_) {
+    device.state = device.tracker->read(now);
+    watch(device, now);
+  }
   was_read_ = true;
   heed_loss();
   const bool was = in_charge_;
   const std::size_t before = shown_;
-  in_charge_ = was ? held(devices_[shown_].state) : take_charge();
+  const bool goes_on = was && held(devices_[shown_].state);
+  if (goes_on && is_frozen(devices_[shown_], now)) take_charge();
+  in_charge_ = was ? goes_on : take_charge();
   if (!was && in_charge_) lost_.reset();
   // Where nobody drives, one that is there says more than one that is not. One that has just gone ends the motion.
   if (!was && !in_charge_ && !devices_[shown_].state.connected) {

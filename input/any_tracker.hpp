@@ -9,13 +9,18 @@
 namespace foresight {
 
 /// Only who presses a switch while nobody is in charge takes over: not one who held it before, nor a device that comes
-/// with its switch held. One that goes while it is in charge has gone; another takes another press. Views, recentring,
-/// single joints and the camera listen to all of them. One thread.
+/// with its switch held. One that goes while it is in charge has gone; another takes another press. From one that says
+/// nothing new (HandWatchOptions::frozen_after), or whose tracked hand does not stir by a single bit (kStill), with its
+/// switch held, another one's press takes over; it then has to let go, as one that held its switch before. Views,
+/// recentring, single joints and the camera listen to all of them. One thread.
 ///
 /// Where another one stands in for one that went while it was in charge, what is read counts, and has the trouble and
 /// cure of the one that went, until that is back or another switch is pressed (TrackerState::stands_in).
 class AnyTracker final : public Tracker {
  public:
+  /// A hand trembles, and trackers are noisy: nobody holds one so still for so long.
+  static constexpr Duration kStill = std::chrono::milliseconds(1000);
+
   /// At least one; they outlive this.
   explicit AnyTracker(std::vector<Tracker*> devices) : devices_(devices.begin(), devices.end()) {}
 
@@ -39,8 +44,12 @@ class AnyTracker final : public Tracker {
     explicit Device(Tracker* device) : tracker(device) {}
     Tracker* tracker;
     TrackerState state;
-    bool open = false;  // was there with its switch open when it was read before
+    bool open = false;         // was there with its switch open when it was read before
+    std::optional<Pose> pose;  // of the tracked hand, which has been there since `stirred`
+    OperatorTime stirred;
   };
+  static void watch(Device& device, OperatorTime now) noexcept;
+  static bool is_frozen(const Device& device, OperatorTime now) noexcept;
   bool take_charge() noexcept;
   void heed_loss() noexcept;
 

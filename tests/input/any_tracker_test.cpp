@@ -12,10 +12,11 @@ class GivenTracker final : public Tracker {
  public:
   std::string name() const override { return "given"; }
   TrackerState read(OperatorTime now) noexcept override {
-    state.time = now;
+    if (says_more) state.time = now;
     return state;
   }
   TrackerState state;
+  bool says_more = true;
 };
 
 class AnyTrackerTest : public testing::Test {
@@ -49,6 +50,50 @@ TEST_F(AnyTrackerTest, WhoPressesFirstIsInChargeUntilItLetsGo) {
   press(keys_, true);
   read();
   EXPECT_TRUE(drives(0));
+}
+
+TEST_F(AnyTrackerTest, FromOneThatIsFrozenALivingOneTakesOver) {
+  press(pad_, true);
+  read();
+  ASSERT_TRUE(drives(1));
+  pad_.says_more = false;
+  for (int i = 0; i < 15; ++i) read();
+  press(keys_, true);
+  for (int i = 0; i < 15; ++i) {
+    read();
+    EXPECT_EQ(any_.in_charge(), &pad_) << "it had been silent for no longer than 200 ms then";
+  }
+  press(keys_, false);
+  read();
+  press(keys_, true);
+  EXPECT_FALSE(read().buttons.held(TrackerButton::deadman)) << "its pose comes with an open switch first";
+  EXPECT_TRUE(drives(0));
+  pad_.says_more = true;
+  press(keys_, false);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(read().buttons.held(TrackerButton::deadman)) << "the other held it before";
+}
+
+// It comes with new instants, but nobody can be so still.
+TEST_F(AnyTrackerTest, FromAHandThatDoesNotStirAtAllAnotherTakesOver) {
+  for (const bool made_of_speeds : {false, true}) {
+    pad_.state.integrated = made_of_speeds;
+    press(pad_, true);
+    read();
+    ASSERT_TRUE(drives(1));
+    for (int i = 0; i < 50; ++i) read();
+    press(keys_, true);
+    read();
+    EXPECT_TRUE(drives(1)) << "half a second is not long";
+    press(keys_, false);
+    for (int i = 0; i < 80; ++i) read();
+    EXPECT_TRUE(drives(1)) << "while nobody else wants to drive";
+    press(keys_, true);
+    read();
+    EXPECT_EQ(drives(0), !made_of_speeds) << "nobody deflects a stick that rests";
+    press(keys_, false);
+    press(pad_, false);
+    read();
+  }
 }
 
 TEST_F(AnyTrackerTest, OneThatGoesIsNotReplacedWithoutAPress) {
