@@ -133,17 +133,24 @@ std::string PredictedSource::fault() const {
     return fmt::format("NO IMAGE for {:.1f} s{}{}", to_seconds(clock_.now() - heard_), why_none_.empty() ? "" : ": ",
                        why_none_);
   if (posed_) return "";
-  return "NO POSE for the newest image" + why_no_pose(newest_->joints);
+  return "NO POSE for the newest image" + why_no_pose(newest_->joints, homed_since_newest());
+}
+
+// What the robot says of itself is on its way for less long than an image.
+bool PredictedSource::homed_since_newest() const {
+  const auto heard = end_.robot_state();
+  return heard && heard->state.all_homed && heard->state.time_ns > newest_->image[0].captured.ns;
 }
 
 // Whose drive told its position before is homed: looking for home again would not bring its word back.
-std::string why_no_pose(const link::LineJoints& joints) {
+std::string why_no_pose(const link::LineJoints& joints, bool homed_since) {
   std::vector<std::string> silent;
   for (std::size_t i = 0; i < joints.known.size(); ++i)
     if (!joints.known[i] && std::isfinite(joints.positions.at(i))) silent.push_back(joints.names.at(i));
   if (!silent.empty())
     return fmt::format(": {} {} no position any more", fmt::join(silent, ", "), silent.size() == 1 ? "tells" : "tell");
   const std::string why = unknown_joints(joints.known, 'H');
+  if (!why.empty() && homed_since) return ": it was taken before all joints were homed; later ones are on their way";
   return why.empty() ? "" : ": " + why;
 }
 

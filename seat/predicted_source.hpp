@@ -21,8 +21,8 @@ struct PredictedSourceOptions {
 };
 
 /// Why an image has no pose, by what its joints told: ": pan tells no position any more", or that joints have to be
-/// homed; "" where all were known.
-std::string why_no_pose(const link::LineJoints& joints);
+/// homed; "" where all were known. `homed_since`: all were homed after it was taken, and nothing is to be done.
+std::string why_no_pose(const link::LineJoints& joints, bool homed_since);
 
 /// One thread. In stepped time, advance() does not wait.
 class PredictedSource final : public FrameSource {
@@ -62,6 +62,7 @@ class PredictedSource final : public FrameSource {
   static constexpr Duration kThingsEvery = std::chrono::milliseconds(20);
   static constexpr std::size_t kLookedAt = 2;  // frames between two pictures, of more the newest
 
+  bool homed_since_newest() const;
   bool silent() const { return clock_.now() - heard_ > options_.silent_after; }
   void take_frames();
   void let_things_see(const link::LineFramePtr& frame, PosedFrame& posed);

@@ -19,6 +19,7 @@ bool lasts(std::optional<OperatorTime>& since, bool holds, OperatorTime now, Dur
 
 void TrustSwitch::judged(OperatorTime now, const std::string& fault) {
   if (!fault.empty()) fault_ = fault;
+  is_over_ = fault.empty();
   const bool is_well = lasts(valid_since_, fault.empty(), now, options_.valid_after);
   invalid_ = !fault.empty() || (invalid_ && !is_well);
 }
@@ -32,6 +33,7 @@ void TrustSwitch::compared(OperatorTime now, double fidelity_db) {
 }
 
 std::string TrustSwitch::why() const {
+  if (invalid_ && is_over_) return "it can be predicted again, and is shown as soon as that has lasted for a moment";
   if (invalid_) return fault_;
   return poor_ ? fmt::format("what was shown was {:.0f} dB like the image that came, below {:.0f}", fidelity_db_,
                              options_.lowest_db)

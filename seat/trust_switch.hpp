@@ -36,13 +36,14 @@ class TrustSwitch {
 
   /// The newest image is to be shown.
   bool falls_back() const { return invalid_ || poor_; }
-  /// Why, in words; "" where it does not.
+  /// Why, in words; "" where it does not. Of what is over, that it is.
   std::string why() const;
 
  private:
   TrustSwitchOptions options_;
   bool invalid_ = false, poor_ = false;
   std::string fault_;
+  bool is_over_ = false;  // the fault
   double fidelity_db_ = 0;
   std::optional<OperatorTime> valid_since_, low_since_, high_since_;
 };

@@ -72,13 +72,16 @@ TEST_F(Places, PositionsThatAreNoNumbersAreNotKnown) {
 TEST(WhyNoPose, TellsWhoseDriveIsSilentAndWhatIsToBeHomed) {
   constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
   link::LineJoints joints{StateStatus::predicted, {"elbow", "pan", "tilt"}, {0.1, 0.2, 0.3}, {true, true, true}};
-  EXPECT_EQ(why_no_pose(joints), "");
+  EXPECT_EQ(why_no_pose(joints, false), "");
   joints.known[1] = false;
-  EXPECT_EQ(why_no_pose(joints), ": pan tells no position any more") << "homing it would not help";
+  EXPECT_EQ(why_no_pose(joints, false), ": pan tells no position any more") << "homing it would not help";
   joints.known[2] = false;
-  EXPECT_EQ(why_no_pose(joints), ": pan, tilt tell no position any more");
+  EXPECT_EQ(why_no_pose(joints, false), ": pan, tilt tell no position any more");
   joints.positions[1] = joints.positions[2] = kNever;
-  EXPECT_EQ(why_no_pose(joints), ": 2 of 3 joints tell no position; home them (H)");
+  EXPECT_EQ(why_no_pose(joints, false), ": 2 of 3 joints tell no position; home them (H)");
+  EXPECT_EQ(why_no_pose(joints, true), ": it was taken before all joints were homed; later ones are on their way");
+  joints.positions[1] = 0.2;
+  EXPECT_EQ(why_no_pose(joints, true), ": pan tells no position any more") << "which homing did not end";
 }
 
 }  // namespace

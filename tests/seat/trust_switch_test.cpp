@@ -63,6 +63,7 @@ TEST(TrustSwitch, GivesWayAtOnceWhereNothingCanBePredictedAndSaysWhy) {
   EXPECT_TRUE(trust.falls_back()) << "not yet";
   trust.judged(at(400ms), "");
   EXPECT_TRUE(trust.falls_back());
+  EXPECT_THAT(trust.why(), testing::HasSubstr("can be predicted again")) << "what was heard of is over";
   trust.judged(at(600ms), "");
   EXPECT_FALSE(trust.falls_back());
   EXPECT_EQ(trust.why(), "");
