@@ -5,6 +5,7 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -65,16 +66,23 @@ struct Participant::State {
   CountedWords refusals;
   int domain_id = 0;
   std::shared_ptr<PretendedLine> line;  // null: none
-  Entity domain, participant, programs, publications, subscriptions;
+  Entity domain, participant;
+  /// Readers of who is there. Made when somebody asks first: what they hear of whoever comes and goes is kept until it
+  /// is taken, and most programs never ask.
+  struct Discovery {
+    Entity programs, publications, subscriptions;
+  };
   struct UsedTopic {
     Entity topic;
     const struct ddsi_sertype* type = nullptr;
     std::string type_name;
   };
-  std::mutex mutex;  // topics
+  std::mutex mutex;  // discovery, topics
+  std::optional<Discovery> discovery;
   std::map<std::string, UsedTopic> topics;
 
   const UsedTopic& topic(const Topic& wanted);
+  const Discovery& who_is_there();
 };
 
 Qos qos_of(const Topic& topic);

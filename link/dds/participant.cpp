@@ -103,12 +103,20 @@ std::string id_of(const dds_guid_t& guid) {
   return out;
 }
 
-/// Visits what a reader of Cyclone's own topics holds, alive only.
+/// Visits what a reader of Cyclone's own topics holds, alive only. What has ended is let go of: Cyclone keeps it until
+/// it is taken, and after some hundred ends those who are there would not be among the first kMost.
 template <typename T, typename Visit>
 void each_alive(dds_entity_t reader, Visit&& visit) {
   constexpr std::size_t kMost = 512;
+  constexpr std::uint32_t kEnded = DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE |
+                                   DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE;
   std::array<void*, kMost> samples{};
   std::array<dds_sample_info_t, kMost> infos;
+  for (;;) {
+    const dds_return_t ended = dds_take_mask(reader, samples.data(), infos.data(), kMost, kMost, kEnded);
+    if (ended <= 0) break;
+    dds_return_loan(reader, samples.data(), ended);
+  }
   const dds_return_t count = dds_read(reader, samples.data(), infos.data(), kMost, kMost);
   if (count <= 0) return;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
@@ -212,6 +220,18 @@ const Participant::State::UsedTopic& Participant::State::topic(const Topic& want
   return used;
 }
 
+// A reader gets what was heard before it was made, too.
+const Participant::State::Discovery& Participant::State::who_is_there() {
+  const std::lock_guard lock(mutex);
+  if (discovery) return *discovery;
+  const auto reader = [this](dds_entity_t topic) {
+    return Entity(checked(dds_create_reader(participant.get(), topic, nullptr, nullptr), "discovery"));
+  };
+  return discovery.emplace(Discovery{reader(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT),
+                                     reader(DDS_BUILTIN_TOPIC_DCPSPUBLICATION),
+                                     reader(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION)});
+}
+
 Participant::Participant(const LinkConfig& config, const std::string& name, Role role,
                          std::shared_ptr<PretendedLine> line)
     : state_(std::make_unique<State>()) {
@@ -247,28 +267,22 @@ void Participant::open(int domain, const void* qos) {
   s.participant = Entity(
       checked(dds_create_participant(static_cast<dds_domainid_t>(domain), static_cast<const dds_qos_t*>(qos), nullptr),
               "the link cannot be opened"));
-  const auto reader = [&](dds_entity_t topic) {
-    return Entity(checked(dds_create_reader(s.participant.get(), topic, nullptr, nullptr), "discovery"));
-  };
-  s.programs = reader(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT);
-  s.publications = reader(DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
-  s.subscriptions = reader(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
 }
 
 Participant::~Participant() = default;
 
 std::vector<Peer> Participant::peers() const {
-  const State& s = *state_;
+  const State::Discovery& there = state_->who_is_there();
   std::vector<Peer> out;
   dds_guid_t own{};
-  dds_get_guid(s.participant.get(), &own);
-  each_alive<dds_builtintopic_participant_t>(s.programs.get(), [&](const dds_builtintopic_participant_t& one) {
+  dds_get_guid(state_->participant.get(), &own);
+  each_alive<dds_builtintopic_participant_t>(there.programs.get(), [&](const dds_builtintopic_participant_t& one) {
     out.push_back(peer_of(one));
     out.back().own = out.back().id == id_of(own);
   });
   for (const bool writes : {true, false})
     each_alive<dds_builtintopic_endpoint_t>(
-        (writes ? s.publications : s.subscriptions).get(), [&](const dds_builtintopic_endpoint_t& one) {
+        (writes ? there.publications : there.subscriptions).get(), [&](const dds_builtintopic_endpoint_t& one) {
           const auto of = std::ranges::find(out, id_of(one.participant_key), &Peer::id);
           if (of != out.end())
             of->endpoints.push_back({shown(one.topic_name), shown(one.type_name), writes, delivery_of(one.qos)});

@@ -183,6 +183,26 @@ TEST_F(Dds, ProgramsSeeEachOther) {
   EXPECT_NE(peers[1].host, "");
 }
 
+// More endpoints have ended than are looked at in one go: whoever is there now is seen nevertheless.
+TEST_F(Dds, ProgramsThatHaveEndedHideNobody) {
+  Participant program(LinkConfig{}, "robot test");
+  EXPECT_EQ(program.peers().size(), 1u);
+  const auto run = [&](const std::string& name, const std::function<void()>& then) {
+    Participant other(program, name);
+    std::vector<std::unique_ptr<Writer>> writers;
+    for (const char* topic : {"rt/a", "rt/b", "rt/c", "rt/d", "rt/e", "rt/f", "rt/g", "rt/h", "rt/i", "rt/j"})
+      writers.push_back(std::make_unique<Writer>(other, Topic{topic, Header::kType}));
+    then();
+  };
+  for (int i = 0; i < 60; ++i) run("operator before", [] {});
+  run("operator now", [&] {
+    ASSERT_TRUE(comes_true([&] { return program.peers().size() == 2; }));
+    const Peer peer = program.peers().front();
+    EXPECT_EQ(peer.name, "operator now");
+    EXPECT_EQ(peer.endpoints.size(), 10u);
+  });
+}
+
 // A reader that takes nothing, and a whole program that stands still: each write goes on at once, and a third one who
 // listens gets what is newest. write() would be false, or never return, where a writer waits for its readers.
 TEST_F(Dds, ASlowReaderHoldsUpNobody) {
