@@ -4,8 +4,9 @@ namespace foresight {
 
 EncoderLanes::Place EncoderLanes::place(const PairWish& wish) const {
   const Lane *newest = nullptr, *unused = nullptr, *on_the_way = nullptr;
+  const auto begins = [this](const Lane& lane) { return lane.broken || lane_rests(lane.captured, newest_); };
   for (const Lane& lane : lanes_) {
-    if (lane.broken) {
+    if (begins(lane)) {
       if (!unused) unused = &lane;
       continue;
     }
@@ -13,11 +14,12 @@ EncoderLanes::Place EncoderLanes::place(const PairWish& wish) const {
     if ((lane.arrived || !wish.only_what_arrived) && (!newest || lane.number > newest->number)) newest = &lane;
   }
   const Lane& chosen = newest ? *newest : unused ? *unused : *on_the_way;
-  return {static_cast<std::size_t>(&chosen - lanes_.data()), chosen.broken ? 0 : chosen.number};
+  return {static_cast<std::size_t>(&chosen - lanes_.data()), begins(chosen) ? 0 : chosen.number};
 }
 
-void EncoderLanes::coded(std::size_t lane, std::uint32_t number) {
-  lanes_[lane] = {.number = number, .arrived = false, .broken = false};
+void EncoderLanes::coded(std::size_t lane, std::uint32_t number, RobotTime captured) {
+  lanes_[lane] = {.number = number, .captured = captured, .arrived = false, .broken = false};
+  newest_ = captured;
 }
 
 void EncoderLanes::arrived(std::uint32_t number) {

@@ -62,6 +62,8 @@ CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& 
     asked_ = 1;
   }
   if (halved_) planes = to_planes(halve(picture));
+  for (std::size_t i = 0; i < encoders_.size(); ++i)
+    if (lanes_.rests(i)) encoders_[i].reset();
   const auto [lane, reference] = lanes_.place(wish);
   const bool intra = reference == 0;
   std::optional<H264Encoder>& encoder = encoders_[lane];
@@ -79,7 +81,7 @@ CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& 
   const double asked = static_cast<double>(bytes) * (intra || softness > 0 || wish.only_what_arrived ? 1 : asked_);
   pair.data = encoder->encode(planes, static_cast<std::size_t>(asked), intra);
   learn(pair.data.size(), bytes, softness, intra);
-  lanes_.coded(lane, wish.number);
+  lanes_.coded(lane, wish.number, picture.captured);
   return pair;
 }
 
@@ -100,6 +102,9 @@ std::optional<StereoPicture> H264PairDecoder::decode(const CodedPair& pair) {
   const std::optional<Planes> planes = lane.decoder->decode(pair.data, size);
   if (!planes) return std::nullopt;
   lane.number = pair.number;
+  lane.captured = pair.captured;
+  for (Lane& other : lanes_)
+    if (lane_rests(other.captured, pair.captured)) other = {};
   StereoPicture out = from_planes(*planes, coded.width, coded.height, pair.colour, pair.stereo);
   if (pair.halved) out = enlarge(out, whole);
   out.captured = pair.captured;

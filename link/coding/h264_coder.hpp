@@ -41,6 +41,7 @@ class H264PairDecoder {
   struct Lane {
     std::optional<H264Decoder> decoder;
     std::uint32_t number = 0;  // of the last pair decoded; 0: none that could be built on
+    RobotTime captured{};      // likewise
   };
   std::array<Lane, kMostLanes> lanes_;
 };

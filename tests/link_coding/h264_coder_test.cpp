@@ -92,6 +92,26 @@ TEST_F(H264Lanes, BeginsALaneAnewWhenItsPairIsGone) {
   expect_shown(encode());
 }
 
+// What codes and decodes a lane takes memory: one that rests for long is no more gone back to.
+TEST_F(H264Lanes, GivesUpALaneThatRests) {
+  constexpr std::uint32_t kOften = kLaneRests / std::chrono::milliseconds(33);  // pairs in that time
+  for (const std::uint32_t rests : {kOften - 2, kOften + 2}) {
+    const std::uint32_t first = number_ + 1;
+    expect_shown(encode(true));
+    encoder_.arrived(first);
+    const CodedPair late = encode(true), begins = encode(true);
+    ASSERT_EQ(late.reference, first);
+    ASSERT_NE(begins.lane, late.lane);
+    expect_shown(late);
+    for (expect_shown(begins); number_ < late.number + rests; expect_shown(encode())) encoder_.arrived(number_);
+    encoder_.gone(number_);
+    const CodedPair after = encode();
+    EXPECT_EQ(after.reference, rests < kOften ? late.number : 0) << rests;
+    expect_shown(after);
+    encoder_.begin_anew();
+  }
+}
+
 TEST_F(H264Lanes, ADamagedPictureIsNotShownNorBuiltOn) {
   for (std::size_t hit = 8; hit < 200; hit += 24) {
     H264PairDecoder receiver;

@@ -36,7 +36,7 @@ class ModelPairEncoder final : public PairEncoder {
     const double bytes = static_cast<double>(wish.bytes) * std::exp(options_.spread * normal);
     const auto least = reference == 0 ? options_.least_intra : options_.least_predicted;
     pair.data.resize(std::clamp(static_cast<std::size_t>(bytes), least, options_.most));
-    lanes_.coded(lane, wish.number);
+    lanes_.coded(lane, wish.number, picture.captured);
     return pair;
   }
   void arrived(std::uint32_t number) override { lanes_.arrived(number); }
