@@ -101,8 +101,10 @@ SourceState PredictedSource::advance() {
   why_none_ = silent() ? link::why_no_images(end_) : "";
   if (closed) return SourceState::ended;
   const auto until = seat_.instant_to_show();
-  if (!any_posed_ || !until) return SourceState::waiting;
-  const auto instant = next_instant(*until);
+  if (!any_posed_) return SourceState::waiting;
+  // Of a robot that has just come no clock is known before the first round trip, which a bad line may take seconds for.
+  // Pictures go on meanwhile, of where the robot was shown last: the view still follows the head.
+  const auto instant = until ? next_instant(*until) : last_;
   if (!instant) return SourceState::waiting;
   if (!options_.real_time) due_ = std::max(due_ + seconds(1 / options_.rate_hz), clock_.now());
   last_ = instant;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <future>
+#include <limits>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include "common/real_time.hpp"
@@ -18,6 +20,15 @@ constexpr std::size_t kFatesKept = 8;
 // After the switch was let go of: the robot comes to rest as set-points end, too; these only say it sooner.
 constexpr Duration kLastSetPoints = 3 * Seat::kSetPointEvery;
 using Phase = ControlSeatStatus::Phase;
+
+/// The robot's instants are not known any more: where it was shown stands in for where it is.
+void lose_clock(PredictedRobot& shown) {
+  if (shown.status == StateStatus::invalid) return;
+  shown.status = StateStatus::invalid;
+  shown.reason = FutureReason::stale;
+  shown.joint = -1;
+  std::ranges::fill(std::span(shown.sigma).first(shown.joints), std::numeric_limits<double>::infinity());
+}
 
 }  // namespace
 
@@ -128,7 +139,10 @@ std::optional<RobotTime> Seat::instant_to_show() {
 PredictedRobot Seat::show(std::optional<RobotTime> at) {
   const std::lock_guard lock(mutex_);
   const auto now = robot_now();
-  if (now) shown_ = outlook_.show(at ? *at : outlook_.instant_to_show(*now));
+  if (now)
+    shown_ = outlook_.show(at ? *at : outlook_.instant_to_show(*now));
+  else
+    lose_clock(shown_);
   return shown_;
 }
 

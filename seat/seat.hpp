@@ -51,6 +51,7 @@ class Seat {
   void let_go();
 
   /// Where the robot is to be shown now; `at`: at an instant of its clock, at most the one it is now to be shown for.
+  /// While its clock is not known, as after another start of its program: where it was shown last, as invalid.
   PredictedRobot show(std::optional<RobotTime> at = std::nullopt);
   /// The instant of the robot's clock to show now; nothing while the clocks have not met.
   std::optional<RobotTime> instant_to_show();
