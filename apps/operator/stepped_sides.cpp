@@ -1,5 +1,7 @@
 #include "apps/operator/stepped_sides.hpp"
 
+#include <malloc.h>
+
 #include <array>
 
 #include "link/robot_side/rig_identity.hpp"
@@ -116,12 +118,15 @@ RobotCameras& SteppedRobotSide::cameras() {
   return program_->cameras;
 }
 
+// A real program is a process, and its memory goes with it. Here it leaves gaps in a heap that is the operator's, too,
+// more with each start, which would be counted as that one's growth.
 void SteppedRobotSide::end() {
   program_.reset();
+  ::malloc_trim(0);
 }
 
 void SteppedRobotSide::start(const Rig& rig, const Identity& identity) {
-  program_.reset();
+  end();
   ++starts_;
   program_ = std::make_unique<Program>(rig, identity, *this);
   program_->behind = clock_.now() - program_->clock.now();
