@@ -1,6 +1,7 @@
 #include "apps/bench/seat_bench.hpp"
 
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include <cmath>
 #include <cstdio>
@@ -103,10 +104,10 @@ class Endurance {
     if (began_) faults_.step(moment, now_s, [&] { return lines(moment); });
     if (now_s < told_ + kTellEvery) return;
     told_ = now_s;
-    memory_.push_back({now_s, resident_mb(), 1e-6 * static_cast<double>(moment.texture_bytes)});
-    std::fprintf(stderr, "bench: seat: %.0f min, %.1f MB (textures %.1f), %zu faults, %llu pictures\n", now_s / 60,
-                 memory_.back().resident_mb, memory_.back().textures_mb, faults_.records().size(),
-                 static_cast<unsigned long long>(moment.pictures));
+    memory_.push_back(look_at_memory(now_s, moment.texture_bytes));
+    std::fprintf(stderr, "bench: seat: %.0f min, %.1f MB (textures %.1f) and %.1f in gaps, %zu faults, %llu pictures\n",
+                 now_s / 60, memory_.back().resident_mb, memory_.back().textures_mb, memory_.back().gaps_mb,
+                 faults_.records().size(), static_cast<unsigned long long>(moment.pictures));
   }
 
   nlohmann::ordered_json report(const SeatTrialFigures& figures) const;
@@ -168,7 +169,16 @@ class Endurance {
   }
   struct Memory {
     double at_s = 0, resident_mb = 0, textures_mb = 0;  // textures_mb: of resident_mb on a software renderer
+    double gaps_mb = 0;                                 // free pages of the heap, not of resident_mb
   };
+  /// Two programs share this heap, and one of them ends and starts again in it: the gaps that it leaves are filled by
+  /// pictures of both, and stay resident when those are gone. What one of them keeps is never a whole free page.
+  static Memory look_at_memory(double at_s, std::uint64_t texture_bytes) {
+    const double before = resident_mb();
+    ::malloc_trim(0);
+    const double after = resident_mb();
+    return {at_s, after, 1e-6 * static_cast<double>(texture_bytes), before - after};
+  }
   /// After the fifth minute; 0 before.
   double growth(double Memory::*of = &Memory::resident_mb) const {
     double first = 0, most = 0;
@@ -214,6 +224,7 @@ nlohmann::ordered_json Endurance::report(const SeatTrialFigures& figures) const 
   for (const Memory& memory : memory_) {
     out["memory_mb"].push_back({memory.at_s, memory.resident_mb});
     out["texture_mb"].push_back({memory.at_s, memory.textures_mb});
+    out["gaps_mb"].push_back({memory.at_s, memory.gaps_mb});
   }
   for (const FaultRecord& fault : faults_.records()) {
     out["faults"].push_back({{"what", fault.name},
@@ -237,8 +248,12 @@ void Endurance::print() const {
              watch_.unsafe() ? ", first " + watch_.first() : "");
   fmt::print("{} pictures, at most {:.2f} s without one\n", pictures_, longest_gap_);
   if (!memory_.empty())
-    fmt::print("memory {:.1f} MB at the end, grown by {:.1f} MB after the fifth minute, textures by {:.1f} MB\n",
-               memory_.back().resident_mb, growth(), growth(&Memory::textures_mb));
+    fmt::print(
+        "memory {:.1f} MB at the end, grown by {:.1f} MB after the fifth minute, textures by {:.1f} MB; gaps of a "
+        "minute "
+        "at most {:.1f} MB\n",
+        memory_.back().resident_mb, growth(), growth(&Memory::textures_mb),
+        std::ranges::max(memory_, {}, &Memory::gaps_mb).gaps_mb);
 }
 
 }  // namespace
