@@ -20,9 +20,9 @@ constexpr double kNewWay = 0.5;                 // of a direction that earlier s
 constexpr std::array kJawWords{std::string_view("finger"), std::string_view("fingers"),   std::string_view("jaw"),
                                std::string_view("jaws"),   std::string_view("grip"),      std::string_view("gripper"),
                                std::string_view("claw"),   std::string_view("fingertip"), std::string_view("pad")};
-constexpr std::array kAxisWords{std::string_view("wrist"),  std::string_view("roll"),     std::string_view("pitch"),
-                                std::string_view("yaw"),    std::string_view("rotate"),   std::string_view("lift"),
-                                std::string_view("z"),      std::string_view("rotation"), std::string_view("slide")};
+constexpr std::array kAxisWords{std::string_view("wrist"), std::string_view("roll"),     std::string_view("pitch"),
+                                std::string_view("yaw"),   std::string_view("rotate"),   std::string_view("lift"),
+                                std::string_view("z"),     std::string_view("rotation"), std::string_view("slide")};
 constexpr std::array kToolWords{std::string_view("tool"), std::string_view("tcp"),      std::string_view("ee"),
                                 std::string_view("eef"),  std::string_view("effector"), std::string_view("tip"),
                                 std::string_view("hand"), std::string_view("flange"),   std::string_view("grasp")};

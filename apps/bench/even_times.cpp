@@ -9,7 +9,7 @@ namespace foresight {
 namespace {
 
 constexpr std::size_t kNear = 25;  // stamps to each side that tell when one was given
-constexpr double kFollowed = 0.1;    // share of what a stamp is off by
+constexpr double kFollowed = 0.1;  // share of what a stamp is off by
 constexpr double kMostScatter = 0.2, kLeastScatter = 0.01;
 
 /// By how many intervals each is later than the first. One stamp alone is no place to count from.

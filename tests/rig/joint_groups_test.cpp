@@ -44,8 +44,7 @@ class Built {
     std::map<std::size_t, std::string> found;  // by the place in the text
     for (std::size_t i = 0; i < groups.size(); ++i)
       if (robot.joints[i].kind != UrdfJoint::Kind::fixed && !robot.joints[i].mimic)
-        found[text_.find("name='" + robot.joints[i].name + "'")] =
-            robot.joints[i].name + " " + to_string(groups[i])[0];
+        found[text_.find("name='" + robot.joints[i].name + "'")] = robot.joints[i].name + " " + to_string(groups[i])[0];
     std::string out;
     for (const auto& [at, words] : found) out += (out.empty() ? "" : ", ") + words;
     return out;
@@ -134,7 +133,8 @@ TEST(JointGroups, ALastShortSlideOfAnArmIsTheArms) {
   EXPECT_EQ(Built(scara).slides("j3", "j2", "0 0 1", 0.12).slides("j4", "j3", "0 1 0", 0.02).groups(),
             "j1 a, j2 a, j3 a, j4 g")
       << "a SCARA's jaw";
-  EXPECT_EQ(Built().arm(4).slides("j5", "j4", "1 0 0", 0.1).frame("flange", "j5").groups(), "j1 a, j2 a, j3 a, j4 a, j5 a")
+  EXPECT_EQ(Built().arm(4).slides("j5", "j4", "1 0 0", 0.1).frame("flange", "j5").groups(),
+            "j1 a, j2 a, j3 a, j4 a, j5 a")
       << "the tool is behind it";
   EXPECT_EQ(Built().arm(4).slides("j5", "j4", "1 0 0", 0.4).groups(), "j1 a, j2 a, j3 a, j4 a, j5 a") << "far";
 }
@@ -157,8 +157,9 @@ TEST(JointGroups, AHeadIsABranchOfItsOwn) {
                 .turns("tilt", "pan", "0 1 0")
                 .groups(),
             "torso a, j1 a, j2 a, j3 a, j4 a, j5 a, pan p, tilt p");
-  EXPECT_EQ(Built().turns("head_pan_joint", "base", "0 0 1").turns("head_tilt_joint", "head_pan_joint", "0 1 0").groups(),
-            "head_pan_joint p, head_tilt_joint p");
+  EXPECT_EQ(
+      Built().turns("head_pan_joint", "base", "0 0 1").turns("head_tilt_joint", "head_pan_joint", "0 1 0").groups(),
+      "head_pan_joint p, head_tilt_joint p");
   EXPECT_EQ(Built()
                 .turns("shoulder_pan", "base", "0 0 1")
                 .arm(3, "j", "shoulder_pan")
@@ -189,12 +190,7 @@ TEST(JointGroups, AnArmThatPansAndTiltsIsNoHead) {
                 .groups(),
             "pan a, tilt a, j1 g")
       << "it grips";
-  EXPECT_EQ(Built()
-                .arm(3)
-                .turns("pan", "j3", "0 0 1")
-                .turns("tilt", "pan", "0 1 0")
-                .arm(4, "k")
-                .groups(),
+  EXPECT_EQ(Built().arm(3).turns("pan", "j3", "0 0 1").turns("tilt", "pan", "0 1 0").arm(4, "k").groups(),
             "j1 a, j2 a, j3 a, pan a, tilt a, k1 a, k2 a, k3 a, k4 a")
       << "one of two arms";
 }
