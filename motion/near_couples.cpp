@@ -5,6 +5,9 @@
 #include <map>
 #include <mutex>
 
+#include "scene/robot_scene.hpp"
+#include "scene/simplify.hpp"
+
 namespace foresight {
 namespace {
 
@@ -24,7 +27,10 @@ NearCouples make(const MovedRobot& moved, double clearance) {
   const UrdfRobot& robot = moved.robot;
   std::vector<TriangleTree> bodies(robot.links.size());  // of those that are asked for
   const auto body = [&](std::size_t i) -> const TriangleTree& {
-    if (bodies[i].size() == 0) bodies[i] = TriangleTree(robot.body(i));
+    if (bodies[i].size() == 0) {
+      const Mesh& mesh = robot.body(i);
+      bodies[i] = TriangleTree(mesh.triangles.size() > kFineLink ? simplified(mesh, kLinkTolerance) : mesh);
+    }
     return bodies[i];
   };
   for (std::size_t i = 0; i < robot.links.size(); ++i)

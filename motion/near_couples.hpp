@@ -42,7 +42,8 @@ struct NearCouples {
   /// Links of which one's housing is in the other's (NearLinks::nested), by their names.
   std::vector<std::array<std::string, 2>> nested;
 
-  /// Made once for all of a process that ask for the same and hold it: a second where meshes are detailed. Any thread.
+  /// Made once for all of a process that ask for the same and hold it: a second where meshes are detailed. Of more than
+  /// kFineLink triangles they are simplified, to kLinkTolerance. Any thread.
   static std::shared_ptr<const NearCouples> of(const MovedRobot& robot, double clearance);
 };
 

@@ -119,6 +119,24 @@ TEST_F(RobotShapeTest, NearLinksAreKeptApartAsTheirMeshesAre) {
   EXPECT_EQ(needlessly, 0);
 }
 
+TEST_F(RobotShapeTest, TablesAreMadeOnceForAllThatAskForTheSame) {
+  const std::vector<std::string> joints{"turn_1", "turn_2", "turn_3", "turn_4"};
+  const std::vector<bool> jaws(joints.size());
+  const auto tables = [&](const UrdfRobot& robot, double clearance) {
+    const PosedLinks posed(robot, joints, Pose::Identity(), "rig.yaml");
+    return NearCouples::of({robot, joints, jaws, posed}, clearance);
+  };
+  UrdfRobot robot = rods(folder_.path());
+  const auto first = tables(robot, 0.02);
+  EXPECT_EQ(first, tables(rods(folder_.path()), 0.02));
+  EXPECT_NE(first, tables(robot, 0.03));
+  robot.joints[2].upper = 2;
+  const auto narrower = tables(robot, 0.02);
+  EXPECT_NE(first, narrower);
+  robot.links[3].mesh.vertices[0].x() += 0.01F;
+  EXPECT_NE(narrower, tables(robot, 0.02));
+}
+
 TEST_F(RobotShapeTest, OutOfAFoldThereIsAWay) {
   GateOptions options;
   options.joints.assign(4, {"turn", {-3, 3, 1, 4, 60}});
