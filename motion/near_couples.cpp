@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
 
@@ -25,7 +26,8 @@ double travel(const UrdfJoint& joint) {
 NearCouples make(const MovedRobot& moved, double clearance) {
   NearCouples out;
   const UrdfRobot& robot = moved.robot;
-  std::vector<TriangleTree> bodies(robot.links.size());  // of those that are asked for
+  std::vector<TriangleTree>& bodies = out.bodies;
+  bodies.resize(robot.links.size());
   const auto body = [&](std::size_t i) -> const TriangleTree& {
     if (bodies[i].size() == 0) {
       const Mesh& mesh = robot.body(i);
@@ -113,6 +115,11 @@ LinkPath MovedRobot::between(std::size_t link, std::size_t other) const {
     }
   }
   return out;
+}
+
+double NearCouples::distance(const Couple& couple, const PosedLinks& posed) const noexcept {
+  const Pose T = posed.T_world_link(couple.link).inverse(Eigen::Isometry) * posed.T_world_link(couple.other);
+  return bodies[couple.link].nearest(bodies[couple.other], T, std::numeric_limits<double>::max()).distance;
 }
 
 std::shared_ptr<const NearCouples> NearCouples::of(const MovedRobot& robot, double clearance) {

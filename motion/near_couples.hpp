@@ -39,8 +39,12 @@ struct NearCouples {
     NearLinks apart;
   };
   std::vector<Couple> couples;
+  std::vector<TriangleTree> bodies;  ///< per link; empty: of no couple
   /// Links of which one's housing is in the other's (NearLinks::nested), by their names.
   std::vector<std::array<std::string, 2>> nested;
+
+  /// What the meshes of a couple are apart, m: for pictures, not for the loop. Does not allocate.
+  double distance(const Couple& couple, const PosedLinks& posed) const noexcept;
 
   /// Made once for all of a process that ask for the same and hold it: a second where meshes are detailed. Of more than
   /// kFineLink triangles they are simplified, to kLinkTolerance. Any thread.

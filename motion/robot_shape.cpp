@@ -203,6 +203,13 @@ void RobotShape::margins(std::span<const double> positions, std::span<double> ou
   for (std::size_t i = 0; i < couples_.size(); ++i) out[i] = margin(couples_[i]);
 }
 
+void RobotShape::margins_by_meshes(std::span<const double> positions, std::span<double> out) noexcept {
+  margins(positions, out);
+  for (std::size_t i = 0; i < couples_.size(); ++i)
+    if (const Couple& couple = couples_[i]; couple.what == Against::near_link && out[i] >= 0)
+      out[i] = std::max(0.0, near_->distance(near_->couples[couple.other], posed_) - couple.kept);
+}
+
 std::optional<std::size_t> RobotShape::too_close(std::span<const double> positions) noexcept {
   pose(positions);
   std::optional<std::size_t> out;

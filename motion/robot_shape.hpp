@@ -80,6 +80,9 @@ class RobotShape {
   /// Of each couple, by how much it is farther apart than it must be, metres; negative: too close. `out`: couples() of
   /// them. Does not allocate.
   void margins(std::span<const double> positions, std::span<double> out) noexcept;
+  /// The same for pictures: of near links that are clear, no lower bound (NearLinks::margin) but what their meshes are
+  /// apart. A hundred times the cost.
+  void margins_by_meshes(std::span<const double> positions, std::span<double> out) noexcept;
   /// The couple whose parts are too close by the most: the least of the margins, where that is negative. A fraction of
   /// their cost. Does not allocate.
   std::optional<std::size_t> too_close(std::span<const double> positions) noexcept;

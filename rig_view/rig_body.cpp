@@ -84,7 +84,7 @@ PlacedRig RigBody::at(std::span<const double> positions) {
   if (shape_) {
     out.guards = shape_->guarded(positions);
     std::vector<double> margins(shape_->couples());
-    shape_->margins(positions, margins);
+    shape_->margins_by_meshes(positions, margins);
     for (std::size_t i = 0; i < margins.size(); ++i) out.couples.push_back({shape_->message(i), margins[i]});
     std::ranges::stable_sort(out.couples, {}, &NearCouple::margin_m);
     place_joints(positions, out);
