@@ -30,6 +30,8 @@ inline bool enter_private_network() {
 
 class PrivateNetworkTest : public testing::Test {
  protected:
+  /// Before what a derived test has among its members opens the link.
+  PrivateNetworkTest() { enter_private_network(); }
   void SetUp() override {
     if (!enter_private_network()) GTEST_SKIP() << "this machine gives us no network of our own (unshare -n)";
   }
