@@ -25,6 +25,7 @@ double travel(const UrdfJoint& joint) {
 
 NearCouples make(const MovedRobot& moved, double clearance) {
   NearCouples out;
+  out.clearance = clearance;
   const UrdfRobot& robot = moved.robot;
   std::vector<TriangleTree>& bodies = out.bodies;
   bodies.resize(robot.links.size());
@@ -39,7 +40,11 @@ NearCouples make(const MovedRobot& moved, double clearance) {
     for (std::size_t k = 0; k < i; ++k) {
       if (robot.body(i).triangles.empty() || robot.body(k).triangles.empty()) continue;
       const LinkPath between = moved.between(i, k);
-      if (!between.apart() || !between.near()) continue;
+      if (!between.apart()) continue;
+      if (!between.near()) {
+        out.far.push_back({i, k});
+        continue;
+      }
       NearLinks apart(moved.posed, between.axes, i, body(i), k, body(k), clearance);
       if (apart.nested())
         out.nested.push_back({robot.links[i].name, robot.links[k].name});

@@ -38,8 +38,10 @@ struct NearCouples {
     std::size_t link, other;
     NearLinks apart;
   };
+  double clearance = 0;  ///< m, that these were made for
   std::vector<Couple> couples;
-  std::vector<TriangleTree> bodies;  ///< per link; empty: of no couple
+  std::vector<std::array<std::size_t, 2>> far;  ///< links that have to stay apart, too, moved by more joints
+  std::vector<TriangleTree> bodies;             ///< per link; empty: of no couple
   /// Links of which one's housing is in the other's (NearLinks::nested), by their names.
   std::vector<std::array<std::string, 2>> nested;
 

@@ -101,7 +101,7 @@ std::string to_text(const GuardedLinks& guarded) {
 }
 
 RobotShape::RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, const Pose& T_world_root,
-                       const std::string& where, std::vector<bool> jaws)
+                       const std::string& where, std::vector<bool> jaws, double clearance)
     : robot_(std::move(robot)),
       joints_(joints),
       jaws_(std::move(jaws)),
@@ -118,14 +118,13 @@ RobotShape::RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, 
     if (link.has_body) link.body = capsule_around(body);
     link.moves = posed_.moves(i);
   }
-  surround({});
+  surround({.workspace = {}, .obstacles = {}, .clearance = clearance});
 }
 
 void RobotShape::surround(const Surroundings& surroundings) {
   surroundings_ = surroundings;
   const double clearance = surroundings.clearance;
-  const MovedRobot moved{robot_, joints_, jaws_, posed_};
-  near_ = NearCouples::of(moved, clearance);
+  if (!near_ || near_->clearance != clearance) near_ = NearCouples::of({robot_, joints_, jaws_, posed_}, clearance);
   couples_.clear();
   const auto link_name = [this](std::size_t i) { return "link '" + robot_.links[i].name + "'"; };
   for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -139,11 +138,7 @@ void RobotShape::surround(const Surroundings& surroundings) {
   const auto too_close = [&](std::size_t i, std::size_t k) {
     return link_name(i) + " comes too close to " + link_name(k);
   };
-  for (std::size_t i = 0; i < links_.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if (links_[i].has_body && links_[k].has_body)
-        if (const LinkPath between = moved.between(i, k); between.apart() && !between.near())
-          couples_.push_back({Against::link, i, k, clearance, too_close(i, k)});
+  for (const auto& [i, k] : near_->far) couples_.push_back({Against::link, i, k, clearance, too_close(i, k)});
   for (std::size_t n = 0; n < near_->couples.size(); ++n) {
     const NearCouples::Couple& near = near_->couples[n];
     couples_.push_back({Against::near_link, near.link, n, near.apart.kept(), too_close(near.link, near.other)});

@@ -63,12 +63,13 @@ std::string to_text(const GuardedLinks& guarded);
 class RobotShape {
  public:
   /// `joints`: those whose positions obstructed() gets; they and `where` as PosedLinks takes them. `jaws`: which of
-  /// them close on things; links that only these move against each other may touch.
+  /// them close on things; links that only these move against each other may touch. `clearance`: until it is
+  /// told another one, for which tables would have to be made again.
   RobotShape(UrdfRobot robot, const std::vector<std::string>& joints, const Pose& T_world_root,
-             const std::string& where, std::vector<bool> jaws = {});
+             const std::string& where, std::vector<bool> jaws = {}, double clearance = Surroundings{}.clearance);
 
-  /// What it must stay clear of from now on; of a new shape, only its own links. Allocates; takes longer the first time
-  /// (NearCouples::of).
+  /// What it must stay clear of from now on; of a new shape, only its own links. Allocates; takes longer where the
+  /// clearance is another one (NearCouples::of).
   void surround(const Surroundings& surroundings);
 
   /// How many couples of parts must stay apart: links and the workspace's walls, links and obstacles, links and other

@@ -382,7 +382,8 @@ std::unique_ptr<RobotShape> Rig::shape() const {
   for (std::string& joint : names)
     if (std::none_of(robot->joints.begin(), robot->joints.end(), [&](const UrdfJoint& j) { return j.name == joint; }))
       joint.clear();
-  return std::make_unique<RobotShape>(*robot, std::move(names), T_world_robot, name, std::move(jaws));
+  return std::make_unique<RobotShape>(*robot, std::move(names), T_world_robot, name, std::move(jaws),
+                                      surroundings.clearance);
 }
 
 Rig read_rig(const std::filesystem::path& file) {
