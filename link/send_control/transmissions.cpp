@@ -9,12 +9,10 @@ namespace {
 constexpr std::size_t kMostRecords = 20'000;
 constexpr Duration kFirstTrip = std::chrono::milliseconds(300);  // until one was measured
 constexpr Duration kLeastOvertaking = std::chrono::milliseconds(5), kMostOvertaking = std::chrono::milliseconds(60);
-constexpr Duration kLeastQuestion = std::chrono::milliseconds(60);
 constexpr Duration kFirstQuestion = std::chrono::seconds(1);  // at the latest
-// Where losses come in rows of packets, a row is as long as its packets are apart; a question is 60 bytes with its
-// headers.
-constexpr Duration kMostQuestion = std::chrono::milliseconds(200);
-constexpr int kQuickQuestions = 12;                             // then at growing distances
+// Where losses come in rows of packets, a row is as long as its packets are apart, and holds up pictures for as long. A
+// question is 60 bytes with its headers: 8 kbit/s.
+constexpr Duration kNextQuestion = std::chrono::milliseconds(60);
 constexpr Duration kNewsEvery = std::chrono::milliseconds(10);  // acknowledgements, at most, while packets come
 constexpr double kLossMemory = 1e-3;
 constexpr Duration kArrivalWrap = std::chrono::microseconds(10) * (std::int64_t{1} << 32);
@@ -27,7 +25,7 @@ std::uint32_t Transmissions::send(std::uint32_t pair, std::uint16_t index, std::
   unacknowledged_ += bytes;
   ++on_the_way_;
   last_send_ = now;
-  if (pair == 0) ++questions_;
+  if (pair == 0) asked_ = true;
   if (records_.size() > kMostRecords) {
     if (records_.front().state == Record::State::on_the_way) {
       unacknowledged_ -= records_.front().sent.bytes;
@@ -74,7 +72,7 @@ std::vector<Transmissions::Sent> Transmissions::acknowledge(const Acknowledgemen
     if (acknowledgement.before[i])
       if (Record* record = find(acknowledgement.newest - 1 - static_cast<std::uint32_t>(i))) take(*record, now, out);
   if (!out.empty()) {
-    questions_ = 0;
+    asked_ = false;
     last_news_ = now;
     overtaking_ = std::max(kLeastOvertaking, overtaking_ - overtaking_ / 512);
   }
@@ -130,9 +128,8 @@ std::vector<Transmissions::Sent> Transmissions::lost(RobotTime now) {
 
 std::optional<RobotTime> Transmissions::question_time() const {
   if (on_the_way_ == 0) return std::nullopt;
-  const Duration usual = smooth_ ? *smooth_ + std::max(4 * variation_, kLeastQuestion / 2) : kFirstTrip;
-  const Duration quick = std::max(usual, kLeastQuestion) * (1 << std::clamp(questions_ - kQuickQuestions, 0, 5));
-  return std::max(last_send_, last_news_) + std::min(quick, questions_ == 0 ? kFirstQuestion : kMostQuestion);
+  const Duration usual = smooth_ ? *smooth_ + std::max(4 * variation_, kNextQuestion / 2) : kFirstTrip;
+  return std::max(last_send_, last_news_) + (asked_ ? kNextQuestion : std::clamp(usual, kNextQuestion, kFirstQuestion));
 }
 
 bool Transmissions::question_due(RobotTime now) const {

@@ -2,8 +2,8 @@
 //
 // A packet counts as lost when one that was sent later has come, and it has had the time that the later one took, and a
 // little more for packets that overtake each other (the rule of RACK, RFC 8985, by time and not by count). Where
-// nothing comes back at all, a question is asked, at growing distances: its answer tells what is lost, and a line that
-// stands still is not filled with copies.
+// nothing comes back at all, questions are asked: the first answer tells what is lost, and a line that stands still is
+// not filled with copies.
 #pragma once
 
 #include <algorithm>
@@ -92,7 +92,7 @@ class Transmissions {
   std::optional<RobotTime> queued_at_;  // the last trip that took longer than the least and kNoQueue; the first
   RobotTime tripped_at_;                // when the last trip ended
   RobotTime last_send_, last_news_;
-  int questions_ = 0;  // since the last news
+  bool asked_ = false;  // since the last news
   std::optional<RobotTime> last_loss_;
   double loss_ = 0;
 };

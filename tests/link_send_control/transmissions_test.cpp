@@ -100,10 +100,10 @@ TEST(Transmissions, AsksOnWhileALineStandsStill) {
       sent.send(0, 0, 5, at_ms(ms));
       ++questions;
     }
-  EXPECT_GE(questions, 95) << "a row of thirty lost packets ends within seconds";
-  EXPECT_LE(questions, 105) << "and a thin line is not filled: 2.4 kbit/s";
+  EXPECT_GE(questions, 325) << "a row of thirty lost packets ends within two seconds";
+  EXPECT_LE(questions, 335) << "and a thin line is not filled: 8 kbit/s with headers";
   EXPECT_TRUE(sent.lost(at_ms(20'000)).empty()) << "nothing tells that it was lost";
-  EXPECT_LE(sent.unacknowledged(), 1000U + 105 * 5);
+  EXPECT_LE(sent.unacknowledged(), 1000U + 335 * 5);
 }
 
 TEST(Transmissions, TakesNothingFromAcknowledgementsOfOthers) {
