@@ -27,20 +27,36 @@ double lateness(const RobotReport& report, const GateModel::State& expected) {
   return squares > kMoves * kMoves ? std::clamp(ways / squares, -kMostAtOnce, kMostAtOnce) : 0;
 }
 
-/// What the robot's end of a line asks for: as it told, or as is expected since. Who follows has consent, whatever was
-/// expected.
-std::optional<LinePermit> permit_of(const RobotReport& report, const GateModel::State* expected) {
-  const bool is_old =
-      report.permit && expected != nullptr && expected->consent && report.permit->time < expected->permitted;
-  if (!is_old || report.doing == GateDoing::following) return report.permit;
-  return LinePermit{expected->permitted, *expected->consent, expected->released};
+/// What the robot's end of a line asks for, and since when that is known.
+struct Permit {
+  std::uint64_t consent = 0;
+  bool released = false;
+  RobotTime consent_at, released_at;
+};
+
+/// As it told, or as is expected since: that the switch was opened meanwhile makes no consent an old one. Who follows
+/// has consent, whatever was expected.
+std::optional<Permit> permit_of(const RobotReport& report, const GateModel::State* expected) {
+  if (!report.permit) return std::nullopt;
+  const RobotTime told = report.permit->time;
+  Permit out{report.permit->consent, report.permit->let_go, told, told};
+  if (expected == nullptr || !expected->consent || report.doing == GateDoing::following) return out;
+  if (told < expected->consent_at) {
+    out.consent = *expected->consent;
+    out.consent_at = expected->consent_at;
+  }
+  if (told < expected->released_at) {
+    out.released = expected->released;
+    out.released_at = expected->released_at;
+  }
+  return out;
 }
 
 bool agrees(const RobotReport& report, const GateModel::State& expected) {
   if (expected.doing != report.doing) return false;
-  const std::optional<LinePermit> permit = permit_of(report, &expected);
+  const std::optional<Permit> permit = permit_of(report, &expected);
   return !permit || (expected.consent == permit->consent &&
-                     (report.doing == GateDoing::following || expected.released == permit->let_go));
+                     (report.doing == GateDoing::following || expected.released == permit->released));
 }
 
 }  // namespace
@@ -167,10 +183,11 @@ GateModel::State ExpectedMotion::state_of(const RobotReport& report, const GateM
   }
   out.released =
       expected != nullptr && expected->doing == report.doing ? expected->released : in_time && !newest->deadman;
-  if (const std::optional<LinePermit> permit = permit_of(report, expected)) {
+  if (const std::optional<Permit> permit = permit_of(report, expected)) {
     out.consent = permit->consent;
-    out.permitted = permit->time;
-    if (report.doing != GateDoing::following) out.released = permit->let_go;
+    out.consent_at = permit->consent_at;
+    out.released_at = permit->released_at;
+    if (report.doing != GateDoing::following) out.released = permit->released;
   }
   return out;
 }

@@ -13,7 +13,7 @@ void GateModel::set(const State& state) noexcept {
 }
 
 void GateModel::set_released(bool released) noexcept {
-  if (state_.released != released) state_.permitted = state_.time;
+  if (state_.released != released) state_.released_at = state_.time;
   state_.released = released;
 }
 
@@ -27,7 +27,7 @@ void GateModel::lose() noexcept {
   if (state_.doing == GateDoing::following) stop(false);
   if (state_.consent.value_or(0) == 0) return;
   state_.consent = 0;
-  state_.permitted = state_.time;
+  state_.consent_at = state_.time;
   set_released(false);
 }
 

@@ -30,7 +30,7 @@ class GateModel {
     bool released = false;                      ///< the open switch was seen since the last loss
     std::optional<std::uint64_t> consent = {};  ///< that presses have to name; 0: not known; nothing: none is asked for
     std::uint64_t agreed = 0;                   ///< the one that the newest set-point names
-    RobotTime permitted;                        ///< since when `released` and `consent` are so, at least
+    RobotTime released_at, consent_at;          ///< since when these are so, at least
     std::uint64_t taken = 0;                    ///< number of the newest set-point
     bool blocked = false;                       ///< parts that would come too close keep it from its target
   };

@@ -22,7 +22,10 @@ struct WorldOptions {
   std::optional<KnownResponse> known = {};  // what was found of the drives before
   /// What the robot's end of the line asks for, and what set-points name; 0: nothing.
   std::uint64_t consent = 0, named = 0;
-  int looks_every = 1;  // cycles in which the robot's program looks for set-points that came
+  bool agrees = false;  // `named` is what reports told last
+  double tells_every = 0,
+         tells_late = 0;  // s; what is asked for is told so often, and comes so much later than reports
+  int looks_every = 1;    // cycles in which the robot's program looks for set-points that came
   unsigned seed = 1;
 };
 
@@ -106,6 +109,7 @@ class FutureWorld {
     if (waits_ && ticks_ % static_cast<std::uint64_t>(options_.looks_every) == 0)
       gate_.take(*std::exchange(waits_, std::nullopt), now_);
     gate_.cycle(now_);
+    draw_consent();
     for (std::size_t i = 0; i < 2; ++i) {
       const double share = 1 - std::exp(-to_seconds(kTick) / options_.lag);
       if (i > 0 || !jammed) motor_[i] += share * (gate_.state().motion[i].position - motor_[i]);
@@ -113,11 +117,28 @@ class FutureWorld {
     }
     shafts_[now_] = shaft_;
     if (ticks_ % 5 == 0) report();
-    for (; !up_.empty() && up_.begin()->first <= now_; up_.erase(up_.begin()))
-      future_.reported(up_.begin()->second, now_);
+    for (; !up_.empty() && up_.begin()->first <= now_; up_.erase(up_.begin())) {
+      const RobotReport& report = up_.begin()->second;
+      if (options_.agrees && report.permit) options_.named = report.permit->consent;
+      future_.reported(report, now_);
+    }
     if (ticks_ % 3 == 0) send();
     future_.advance(now_);
     if (ticks_ % 4 == 0) pictures_.push_back(future_.show(future_.instant_to_show(now_)));
+  }
+  /// After a loss another one.
+  void draw_consent() {
+    if (gate_.state().consent != std::optional<std::uint64_t>(0)) return;
+    GateModel::State state = gate_.state();
+    state.consent = ++options_.consent;
+    gate_.set(state);
+  }
+  std::optional<LinePermit> permit() {
+    if (!gate_.state().consent) return {};
+    if (!telling_ || now_ - telling_->time >= seconds(options_.tells_every))
+      telling_ = {now_, *gate_.state().consent, gate_.state().released};
+    if (!told_ || now_ - telling_->time >= seconds(options_.tells_late)) told_ = telling_;
+    return told_;
   }
   void report() {
     RobotReport out;
@@ -127,7 +148,7 @@ class FutureWorld {
     out.newest_set_point = newest_;
     out.newest_came = came_;
     out.joints = 2;
-    if (gate_.state().consent) out.permit = {now_, *gate_.state().consent, gate_.state().released};
+    out.permit = permit();
     for (std::size_t i = 0; i < 2; ++i)
       out.joint[i] = {now_, std::round(shaft_[i] / options_.quantum) * options_.quantum, gate_.state().motion[i]};
     edit_report(out);
@@ -155,6 +176,7 @@ class FutureWorld {
   std::map<RobotTime, JointValues> shafts_;
   std::multimap<RobotTime, SentSetPoint> down_;
   std::optional<SentSetPoint> waits_;
+  std::optional<LinePermit> telling_, told_;
   std::multimap<RobotTime, RobotReport> up_;
   std::vector<PredictedRobot> pictures_;
 };

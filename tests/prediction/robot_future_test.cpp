@@ -207,9 +207,10 @@ TEST(RobotFuture, StopsWhereTheGateStops) {
   EXPECT_NEAR(shown.position[0], world.truth_at(world.now())[0], 2e-4);
 }
 
-double farthest_off(const FutureWorld& world) {
+double farthest_off(const FutureWorld& world, std::size_t from = 0) {
   double out = 0;
-  for (const PredictedRobot& shown : world.pictures()) {
+  for (std::size_t k = from; k < world.pictures().size(); ++k) {
+    const PredictedRobot& shown = world.pictures()[k];
     if (shown.status == StateStatus::invalid || shown.time > world.now()) continue;
     const JointValues truth = world.truth_at(shown.time);
     for (std::size_t i = 0; i < 2; ++i) out = std::max(out, std::abs(shown.position[i] - truth[i]));
@@ -226,6 +227,23 @@ TEST(RobotFuture, ARobotThatAsksForAnotherConsentStands) {
   FutureWorld agreed({.consent = 7, .named = 7});
   agreed.run(4);
   EXPECT_GT(std::abs(agreed.gate().state().motion[0].position), 0.1);
+}
+
+// The robot told of the new consent before it saw the switch open, though that came later than reports of the time
+// after: it is no older consent for that.
+TEST(RobotFuture, WhoPressesAgainAfterALossIsFollowedAtOnce) {
+  FutureWorld world({.consent = 7, .named = 7, .agrees = true, .tells_every = 1, .tells_late = 0.2});
+  world.holds = [](double t) { return t > 0.2 && !(t > 3.8 && t < 4.6); };
+  world.run(3);
+  const double lasted = std::exchange(world.lasts, 0.1);  // they expire on their way
+  world.run(0.5);
+  world.lasts = lasted;
+  world.run(0.8);
+  const std::size_t begin = world.pictures().size();
+  const double stood = world.truth_at(world.now())[0];
+  world.run(1.7);
+  EXPECT_GT(std::abs(world.truth_at(world.now())[0] - stood), 0.1) << "it did not move: the test shows nothing";
+  EXPECT_LT(farthest_off(world, begin), 0.01);
 }
 
 // A new lease knows nothing of the line: the first set-points, the open switch among them, do not last until they come.
