@@ -16,7 +16,8 @@
 
 namespace foresight {
 
-inline constexpr int kUnconfirmed = 255;  ///< doubt of what no camera has confirmed
+inline constexpr int kUnconfirmed = 255;   ///< doubt of what no camera has confirmed, or may be anywhere
+inline constexpr double kAnywherePx = 50;  ///< by which a surface may be elsewhere: nothing is known of what it covers
 
 /// How the same place of the surface was shown when images could be compared of late: the mean of up to
 /// kComparisonsKept times that it was shown. Once tells little of an edge, which may be right by chance.

@@ -4,7 +4,7 @@
 //   view --depth--> point --moves with its node--> image 0, 1, 2 ... newest first: outside, hidden or seen
 //
 // Defines: FRAMES, how many of them are remembered; COMPARISONS, how many of those that were compared; CODED_AWAY and
-// BESIDE_EDGE, where kinds of doubt_kinds.hpp begin.
+// BESIDE_EDGE, where kinds of doubt_kinds.hpp begin; ANYWHERE_PX, there.
 #include "camera.glsl"
 #include "luma.glsl"
 #include "view_alpha.glsl"
@@ -155,7 +155,8 @@ float kind_at(ivec2 pixel, vec3 colour, bool certain) {
     if (seen == kSeen) found = frame;
   }
   // What covered it in the newest image may have left its shadow there, or have pushed it.
-  if (found < 0 || newest == kHidden) return kUnconfirmed;
+  float uncertain = uncertain_px(at, node);
+  if (found < 0 || newest == kHidden || uncertain >= ANYWHERE_PX) return kUnconfirmed;
   uint lost = lost_at(found, then);
   if (lost > 0u) return certain ? float(CODED_AWAY + int(lost) - 1) / 255.0 : kUnconfirmed;
   float here = luma_of(colour);
@@ -163,7 +164,7 @@ float kind_at(ivec2 pixel, vec3 colour, bool certain) {
   if (!certain) return float(BESIDE_EDGE + contrast) / 255.0;
   float turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
   int compared = kTurned * turned * here > kWrong ? kSuspect : compared_at(node, p);
-  int kind = contrast + 16 * (step_of_reach(uncertain_px(at, node)) + 2 * compared);
+  int kind = contrast + 16 * (step_of_reach(uncertain) + 2 * compared);
   return float(kind) / 255.0;
 }
 

@@ -26,7 +26,8 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
       program_(gl::Program::compute(
           gl::display_shaders(), "trust.comp",
           {"FRAMES " + std::to_string(kFrames), "COMPARISONS " + std::to_string(kComparisonsKept),
-           "CODED_AWAY " + std::to_string(kCodedAway), "BESIDE_EDGE " + std::to_string(kBesideEdge)})),
+           "CODED_AWAY " + std::to_string(kCodedAway), "BESIDE_EDGE " + std::to_string(kBesideEdge),
+           "ANYWHERE_PX " + std::to_string(kAnywherePx)})),
       camera_(sizeof(gl::CameraBlock), "trusted camera"),
       view_(sizeof(gl::CameraBlock), "trusted view"),
       node_px_(GL_R32F, 16, "node px"),

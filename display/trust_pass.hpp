@@ -32,7 +32,8 @@ class TrustPass {
   void forget_patches() { with_patches_ = 0; }
 
   /// Fills doubt() and marked() for the view that was drawn last. `node_px`: by how many pixels each node of `state`
-  /// may be elsewhere (one standard deviation). `exact`: what is not hatched. Does not wait for the GPU.
+  /// may be elsewhere (one standard deviation; kAnywherePx: anywhere). `exact`: what is not hatched. Does not wait for
+  /// the GPU.
   void operator()(const PredictedView& view, const Pose& T_world_camera, const SceneState& state,
                   std::span<const double> node_px, const ExactKinds& exact);
 

@@ -36,7 +36,7 @@ std::vector<Eigen::Vector3d> node_middles(const SceneModel& scene) {
 
 std::vector<double> node_doubt_px(const PredictedPlaces& places, const PredictedRobot& robot, const Lens& lens,
                                   std::span<const Eigen::Vector3d> middles, const std::optional<ViewPlace>& before) {
-  if (robot.status == StateStatus::invalid) return std::vector<double>(middles.size(), kMostPx);
+  if (robot.status == StateStatus::invalid) return std::vector<double>(middles.size(), kAnywherePx);
   const auto here = seen_at(places.place(robot), lens, middles);
   std::vector<double> squares(middles.size(), 0);
   const auto add = [&](const ViewPlace& other, double share) {
@@ -50,9 +50,11 @@ std::vector<double> node_doubt_px(const PredictedPlaces& places, const Predicted
     other.position[joint] += sigma;
     add(places.place(other), kSeenOfSigma);
   }
+  for (double& px : squares)
+    if (px > kNotKnownPx * kNotKnownPx) px = kAnywherePx * kAnywherePx;
   const double passed = before ? to_seconds(robot.time - before->scene.time) : 0;
   if (passed > 0 && before->scene.T_world_node.size() == middles.size()) add(*before, kBlurred / passed);
-  for (double& px : squares) px = std::isfinite(px) ? std::min(std::sqrt(px), kMostPx) : kMostPx;
+  for (double& px : squares) px = std::isfinite(px) ? std::min(std::sqrt(px), kAnywherePx) : kAnywherePx;
   return squares;
 }
 

@@ -194,6 +194,9 @@ TEST_P(TrustPassTest, DoubtTellsHowFarOffAPartMayBe) {
     EXPECT_EQ(kind.contrast, still.contrast);
     EXPECT_EQ(kind.reach, reach) << px;
   }
+  std::vector<double> anywhere(scene_->nodes().size(), 0);
+  anywhere[kBlock] = kAnywherePx;
+  EXPECT_EQ(at(draw(0, anywhere).doubt, middle), kUnconfirmed);
 }
 
 TEST_P(TrustPassTest, DoubtTellsContrast) {
