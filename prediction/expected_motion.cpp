@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kSetPointsPerSecond = 200;
 constexpr double kOvertakingOver = 4, kMostOvertaken = 0.1;  // s
-constexpr double kMostAtOnce = 0.03;                         // s: a gap is no jitter
+constexpr double kMostAtOnce = 0.03;                         // s
+constexpr double kGap = 0.2;                                 // s: that late the line stands still, which is no jitter
 constexpr double kLateOver = 0.2, kMostLate = 0.05;          // s
 constexpr double kMoves = 0.02;                              // rad/s or m/s, of all joints: slower tells no time
 constexpr double kBlind = 0.3;                               // s without agreement: what went on meanwhile is not known
@@ -111,8 +112,10 @@ const SentSetPoint* ExpectedMotion::newest_at(RobotTime time) const noexcept {
 void ExpectedMotion::learn_overtaking(const RobotReport& report) noexcept {
   const SentSetPoint *newest = find(report.newest_set_point), *expected = newest_at(report.time + seconds(late_));
   if (newest == nullptr || expected == nullptr || reported_.ns == 0) return;
+  const double late = to_seconds(expected->sent - newest->sent);
+  if (std::abs(late) > kGap) return;
   const double share = 1 - std::exp(-to_seconds(report.time - reported_) / kOvertakingOver);
-  overtaken_ += share * std::clamp(to_seconds(expected->sent - newest->sent), -kMostAtOnce, kMostAtOnce);
+  overtaken_ += share * std::clamp(late, -kMostAtOnce, kMostAtOnce);
   overtaken_ = std::clamp(overtaken_, -kMostOvertaken, kMostOvertaken);
 }
 
