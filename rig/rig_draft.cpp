@@ -29,10 +29,11 @@ constexpr double kHomingShare = 0.1;       // of the velocity
 constexpr double kEndlessRange = 3.1;      // rad to each side, of a joint without limits
 constexpr double kMockCounts = 2'000'000;  // per rad
 constexpr double kMockCountsPerMetre = 100'000'000;
-constexpr double kMetresPerTurn = 0.01;  // of a spindle of which nobody knows
-constexpr double kHomeInside = 0.01;     // of the range: from its end to the home that a limit switch gives
-constexpr double kRoomAtZero = 0.1;      // of the range, on both sides of a home at 0
-constexpr double kFloorStep = 0.01, kDeepestFloor = 0.5;
+constexpr double kMetresPerTurn = 0.01;            // of a spindle of which nobody knows
+constexpr double kHomeInside = 0.01;               // of the range: from its end to the home that a limit switch gives
+constexpr double kRoomAtZero = 0.1;                // of the range, on both sides of a home at 0
+constexpr double kFloor = 0.1, kFloorStep = 0.01;  // m: its thickness, and how finely its place is sought
+constexpr double kHangs = 0.25;  // of its reach: a robot that is so far below its foot at home hangs from there
 
 bool moves(const UrdfJoint& joint) {
   return joint.kind != UrdfJoint::Kind::fixed && !joint.mimic;
@@ -171,18 +172,28 @@ void choose_surroundings(RigDraft& draft) {
     draft.notes.push_back(
         fmt::format("at home {}, as the gate sees them: it lets them only part from there", touching));
   const double stand = std::floor(100 * lowest_of(rig.robot->links[0].mesh) + 0.1) / 100;
-  const Eigen::Vector3d far(reach, reach, 0);
+  const auto put_floor = [&](double depth, double thickness) {
+    const Eigen::Vector3d top(0, 0, stand - depth), far(reach, reach, 0);
+    rig.surroundings.obstacles = {{"floor", {top - far - thickness * Eigen::Vector3d::UnitZ(), top + far}}};
+  };
   double below = 0;  // the robot's foot
-  for (; below < kDeepestFloor; below += kFloorStep) {
-    const Eigen::Vector3d top(0, 0, stand - below);
-    rig.surroundings.obstacles = {{"floor", {top - far - 0.1 * Eigen::Vector3d::UnitZ(), top + far}}};
+  for (; below < kHangs * reach; below += kFloorStep) {
+    put_floor(below, reach);  // so thick that nothing can be below it
     shape->surround(rig.surroundings);
     const char* const what = shape->obstructed(home);
     if (what == nullptr || std::string_view(what).find("'floor'") == std::string_view::npos) break;
   }
+  const bool hangs = below >= kHangs * reach;
+  if (hangs) below = reach;
+  put_floor(below, kFloor);
   rig.surroundings.workspace = {Eigen::Vector3d(-reach, -reach, stand - below),
                                 Eigen::Vector3d(reach, reach, stand + reach)};
-  if (below > 0)
+  if (hangs)
+    draft.notes.push_back(
+        fmt::format("it hangs from its foot: the floor is as far below as it reaches, {:.2f} m; robot.pose lifts it, "
+                    "and obstacles take floor and ceiling where they are",
+                    below));
+  else if (below > 0)
     draft.notes.push_back(fmt::format(
         "the floor is {:.2f} m below the robot's foot: higher, the gate would see a moving link in it at home", below));
 }

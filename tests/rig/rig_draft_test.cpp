@@ -162,6 +162,20 @@ TEST_F(Draft, StandsClearAtHome) {
   EXPECT_NE(shape->obstructed(std::vector<double>{2, 1.1, 0, 0.0004}), nullptr) << "the floor";
 }
 
+// Its root is at the ceiling, or turned over there: below its foot is all that it has.
+TEST_F(Draft, LetsARobotThatHangsFromItsRootMove) {
+  std::string urdf = kArm;
+  urdf.insert(urdf.find("<joint"), R"(<link name="ceiling"/><joint name="mount" type="fixed"><parent link="ceiling"/>
+    <child link="foot"/><origin rpy="3.14159265 0 0"/></joint>)");
+  folder_.write("arm.urdf", urdf);
+  Rig rig = written();
+  const auto shape = rig.shape();
+  shape->surround(rig.surroundings);
+  for (const double shoulder : {-1., 0., 1.})
+    EXPECT_EQ(shape->obstructed(std::vector<double>{shoulder, 1.1, 0, 0.0004}), nullptr) << shoulder;
+  EXPECT_THAT(text_, HasSubstr("Note: it hangs from its foot"));
+}
+
 TEST_F(Draft, GuardsByVisualShapesWhereCollisionMeshesAreMissing) {
   std::string urdf = kArm;
   urdf.insert(urdf.find("</link>"),
