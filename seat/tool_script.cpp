@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "common/error.hpp"
 #include "prediction/grasp/hand_path.hpp"
@@ -17,12 +16,6 @@ constexpr double kShareOfSpeed = 0.5;  // of the joints' velocities that a scrip
 constexpr double kPeak = 1.875;        // of minimum jerk, over its mean
 constexpr double kThere = 1e-3;        // m and rad: a line has ended
 constexpr double kLongestLine = 10;    // s more than asked for: then it goes on with the next
-constexpr int kTries = 2000;
-constexpr double kTourNear = 0.35, kTourFar = 0.75;  // of the arm's reach, from its foot
-// Of the arm's reach, from its first axis on, the way that its base stands: over what lies about the lab's own arm,
-// from 0.30 to 0.55 m above its table.
-constexpr double kTourLow = 0.10 / 0.89, kTourHigh = 0.35 / 0.89;
-constexpr double kTourRoom = 0.01 / 0.89;  // beyond the rig's clearance, of the reach, too
 
 std::vector<std::size_t> of_group(const Rig& rig, JointGroup group) {
   std::vector<std::size_t> out;
@@ -47,6 +40,7 @@ ToolScript::ToolScript(const Rig& rig, const HandOptions& hand, std::vector<Tool
       T_world_base_(rig.T_world_robot) {
   for (const ToolStep& step : steps_) {
     if (step.what != ToolStep::What::there && step.what != ToolStep::What::line) continue;
+    if (step.what == ToolStep::What::there && step.joints) continue;
     const IkAnswer answer = kinematics_.solve(T_world_base_.inverse() * step.T_world_tool);
     if (answer.status != IkStatus::solved)
       throw InputError("the script", "asks for a pose that the arm cannot reach", "move it nearer");
@@ -93,7 +87,7 @@ void ToolScript::begin_step() {
   T_base_aim_ = aim_of(step);
   if (step.what == ToolStep::What::there) {
     from_ = arm();
-    to_ = kinematics_.solve(T_base_aim_, from_).q;
+    to_ = step.joints ? *step.joints : kinematics_.solve(T_base_aim_, from_).q;
     for (std::size_t i = 0; i < arm_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const double speed = kShareOfSpeed * rig_.joints[arm_[i]].drive.max_velocity;
@@ -233,73 +227,6 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
   if (in_the_way) return std::move(*in_the_way);  // the gate stops where it has to
   throw InputError("the script", "the arm does not reach '" + thing + "' or '" + tray + "' from above",
                    "use the lab's own arm");
-}
-
-namespace {
-
-/// Heights above the world's origin, m, the lower one first.
-std::pair<double, double> heights_of_tour(const ArmChain& chain, const Pose& T_world_base) {
-  const double first_axis = (T_world_base * chain.joints().front().point).z();
-  const double up = T_world_base.linear()(2, 2) < 0 ? -1 : 1;  // under a ceiling
-  return std::minmax({first_axis + up * kTourLow * chain.reach(), first_axis + up * kTourHigh * chain.reach()});
-}
-
-}  // namespace
-
-std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
-  const HandOptions hand = arm_options(rig);
-  const InverseKinematics kinematics(*hand.arm);
-  const std::vector<std::size_t>& arm = hand.arm_joints;
-  const auto shape = rig.shape();
-  if (shape) {
-    Surroundings wide = rig.surroundings;
-    wide.clearance += kTourRoom * kinematics.chain().reach();
-    shape->surround(wide);
-  }
-  std::mt19937 random(seed);
-  const auto uniform = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
-  std::vector<ToolStep> out;
-  const double reach = kinematics.chain().reach();
-  const Pose& T_world_base = rig.T_world_robot;
-  const auto [low, high] = heights_of_tour(kinematics.chain(), T_world_base);
-  int reached = 0;
-  const char* obstructed = nullptr;
-  for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
-    // Before the arm, at heights where things stand; the tool's z points down.
-    Pose pose = Pose::Identity();
-    const double angle = uniform(-0.9, 0.9), distance = uniform(kTourNear, kTourFar) * reach;
-    const Eigen::Vector3d ahead = T_world_base.linear() * Eigen::Vector3d::UnitX();
-    const double yaw = std::atan2(ahead.y(), ahead.x()) + angle;
-    const Eigen::Vector3d foot = T_world_base.translation();
-    pose.translation() =
-        Eigen::Vector3d(foot.x() + distance * std::cos(yaw), foot.y() + distance * std::sin(yaw), uniform(low, high));
-    pose.linear() = (Eigen::AngleAxisd(uniform(-1.5, 1.5), Eigen::Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
-                        .toRotationMatrix();
-    const IkAnswer answer = kinematics.solve(T_world_base.inverse() * pose);
-    if (answer.status != IkStatus::solved) continue;
-    ++reached;
-    JointValues q{};
-    for (std::size_t i = 0; i < arm.size(); ++i) q[arm[i]] = answer.q[static_cast<Eigen::Index>(i)];
-    if (const char* const what = shape ? shape->obstructed({q.data(), rig.joints.size()}) : nullptr) {
-      obstructed = what;
-      continue;
-    }
-    const auto what = out.empty() || out.size() % 2 == 0 ? ToolStep::What::there : ToolStep::What::line;
-    out.push_back({what, pose, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5});
-  }
-  if (!out.empty()) return out;
-  const std::string where =
-      fmt::format("of the tour's poses, {:.2f} to {:.2f} m above the world's origin, tool down", low, high);
-  const char* const by_hand = ", or operate it by hand, without --scripted";
-  if (obstructed != nullptr)
-    throw InputError(rig.name,
-                     fmt::format("the arm reaches {} of {} {}, but there {}", reached, kTries, where, obstructed),
-                     std::string("correct robot.pose and surroundings of the rig") + by_hand);
-  throw InputError(rig.name, "the arm reaches none " + where,
-                   std::string("correct robot.pose, min and max of the rig") + by_hand);
 }
 
 }  // namespace foresight

@@ -28,6 +28,8 @@ struct ToolStep {
   /// step begins, the tool goes elsewhere as far. "": wherever anything is seen.
   std::string about = {};
   Pose T_world_about = Pose::Identity();
+  /// With `there`: the arm's joints to go to, one per joint of its chain. Nothing: those of the pose that are nearest.
+  std::optional<JointVector> joints = {};
 };
 
 /// The rig's pan-tilt head turns to and fro meanwhile, by so much (rad); 0: it stands still.
@@ -35,7 +37,7 @@ struct HeadSway {
   double pan = 0.20, tilt = 0.06;
   double pan_s = 9, tilt_s = 6.5;  ///< periods
   /// Where it looks in the middle, rad; nothing: where it stood at first. It gets there within seconds.
-  std::optional<double> middle_pan, middle_tilt;
+  std::optional<double> middle_pan = {}, middle_tilt = {};
 };
 
 /// The same rig and steps give the same motion.
@@ -85,10 +87,5 @@ Pose place_at_rest(const LiveScene& scene, const std::string& node);
 /// asks for, if there is one. Throws InputError: the scene lacks one of the two, or the arm does not reach them.
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray);
-
-/// A tour of poses above what lies in reach of the arm, the tool pointing down: `count` of them, by `seed`. How far
-/// away and how high follows from the arm's reach, and from where its first axis stands. Throws InputError: no arm, or
-/// it reaches none of them, or none that is clear.
-std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count);
 
 }  // namespace foresight

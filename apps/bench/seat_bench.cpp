@@ -19,6 +19,7 @@
 #include "seat/predicted_source.hpp"
 #include "seat/seat.hpp"
 #include "seat/tool_script.hpp"
+#include "seat/tour.hpp"
 
 namespace foresight {
 namespace {

@@ -19,6 +19,7 @@
 #include "seat/panel_lens.hpp"
 #include "seat/seat_textures.hpp"
 #include "seat/tool_script.hpp"
+#include "seat/tour.hpp"
 #include "sim/pan_tilt_head.hpp"
 
 namespace foresight {

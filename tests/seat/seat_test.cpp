@@ -5,7 +5,7 @@
 #include "link/line/line_spec.hpp"
 #include "link/robot_side/rig_identity.hpp"
 #include "link/robot_side/robot_server.hpp"
-#include "seat/tool_script.hpp"
+#include "seat/tour.hpp"
 #include "tests/robot_devices/live_robot.hpp"
 #include "tests/support/folders.hpp"
 #include "tests/support/private_network.hpp"

@@ -1,6 +1,6 @@
 // Scripts move a tool as a hand would: within what joints may, to where they were told.
-#include "seat/tool_script.hpp"
 #include "common/error.hpp"
+#include "seat/tour.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 
@@ -169,6 +169,46 @@ TEST(ToolScript, ATourIsAsLargeAsTheArm) {
   const auto below = tour(hanging, 1, 20);
   ASSERT_FALSE(below.empty());
   for (const ToolStep& step : below) EXPECT_LT(step.T_world_tool.translation().z(), 3 - 1.05 + 1e-9);
+}
+
+/// Every pose of a tour, and the ways between them, as the gate sees them.
+void expect_clear(const Rig& rig, const std::vector<ToolStep>& steps) {
+  const auto shape = rig.shape();
+  shape->surround(rig.surroundings);
+  ToolScript script(rig, steps, {});
+  script.begin_at({});
+  while (const auto next = script.step(0.05, {}))
+    ASSERT_EQ(shape->obstructed({next->data(), rig.joints.size()}), nullptr);
+}
+
+// Turned over in its URDF rather than by robot.pose.
+TEST(ToolScript, AnArmThatHangsByItsUrdfIsToured) {
+  Rig rig = scaled(1, true);
+  const Pose turned = std::exchange(rig.T_world_robot, Pose::Identity());
+  for (UrdfJoint& joint : rig.robot->joints) {
+    Node& child = rig.robot->links[static_cast<std::size_t>(joint.child)];
+    if (child.parent != 0) continue;
+    joint.T_parent_joint = turned * joint.T_parent_joint;
+    child.T_parent_node = turned * child.T_parent_node;
+  }
+  const auto steps = tour(rig, 1, 20);
+  ASSERT_EQ(steps.size(), 20u);
+  for (const ToolStep& step : steps) {
+    EXPECT_LT(step.T_world_tool.translation().z(), 3 - 0.95 - 0.3 * 0.89);
+    EXPECT_GT((step.T_world_tool.linear() * -Eigen::Vector3d::UnitZ()).z(), 0.99) << "the tool points down";
+  }
+}
+
+// As that of a SCARA or of a gantry: its tool has the heights that it has.
+TEST(ToolScript, AnArmThatCannotPointDownIsTouredByItsJoints) {
+  Rig rig = scaled(1);
+  for (RigJoint& joint : rig.joints)
+    if (joint.group == JointGroup::arm && joint.drive.name != "shoulder_yaw" && joint.drive.name != "shoulder_pitch")
+      joint.drive.min_position = -5e-4, joint.drive.max_position = 5e-4;
+  const auto steps = tour(rig, 1, 8);
+  ASSERT_EQ(steps.size(), 8u);
+  for (const ToolStep& step : steps) ASSERT_TRUE(step.joints);
+  expect_clear(rig, steps);
 }
 
 TEST(ToolScript, ATourOfNoPoseIsRefused) {

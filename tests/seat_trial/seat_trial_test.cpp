@@ -8,6 +8,7 @@
 #include "seat/seat.hpp"
 #include "seat/seat_words.hpp"
 #include "seat/tool_script.hpp"
+#include "seat/tour.hpp"
 #include "tests/support/folders.hpp"
 
 namespace foresight::seat_trial_test {

@@ -1,0 +1,185 @@
+#include "seat/tour.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <tuple>
+
+#include "common/error.hpp"
+#include "input/hand_of_rig.hpp"
+
+namespace foresight {
+namespace {
+
+constexpr int kTries = 2000;
+constexpr std::size_t kFewest = 5;                   // poses that make a tour; with fewer, other ways are tried
+constexpr double kTourNear = 0.35, kTourFar = 0.75;  // of the arm's reach, from its foot
+// Of the arm's reach, from its first axis on, the way that its base stands: over what lies about the lab's own arm,
+// from 0.30 to 0.55 m above its table.
+constexpr double kTourLow = 0.10 / 0.89, kTourHigh = 0.35 / 0.89;
+constexpr double kUnderLow = 0.75, kUnderHigh = 0.35;  // the same below an arm that hangs
+constexpr double kHangs = 0.3;                         // of its reach: so far below its first axis is its tool midway
+constexpr double kTourRoom = 0.01 / 0.89;              // beyond the rig's clearance, of the reach, too
+constexpr double kEndOfRange = 0.05;                   // of a joint's range, that a tour of joints leaves at both ends
+constexpr double kLook = 0.05;                         // s between two looks at where the arm is under way
+
+class TourPlan {
+ public:
+  TourPlan(const Rig& rig, unsigned seed)
+      : rig_(rig), hand_(arm_options(rig)), kinematics_(*hand_.arm), shape_(rig.shape()), random_(seed) {
+    if (shape_) {
+      Surroundings wide = rig.surroundings;
+      wide.clearance += kTourRoom * chain().reach();
+      shape_->surround(wide);
+    }
+    look_about();
+    for (std::size_t i = 0; i < rig.joints.size(); ++i) {
+      const DriveConfig& drive = rig.joints[i].drive;
+      at_[i] = std::clamp(drive.offset, drive.min_position, drive.max_position);
+    }
+  }
+  std::vector<ToolStep> with_tool_down(int count);
+  std::vector<ToolStep> of_joints(int count);
+  InputError nothing() const;
+
+ private:
+  const ArmChain& chain() const { return kinematics_.chain(); }
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  void look_about();
+  Pose tool_down();
+  JointVector any_joints();
+  bool clear(const JointVector& q);
+  bool clear_all_the_way(const ToolStep& step);
+
+  const Rig& rig_;
+  HandOptions hand_;
+  InverseKinematics kinematics_;
+  std::unique_ptr<RobotShape> shape_;
+  std::mt19937 random_;
+  double ahead_ = 0;                        // rad about the vertical, where the arm looks
+  double low_ = 0, high_ = 0;               // m above the world's origin
+  JointValues at_{};                        // of all joints, where the tour has come to
+  int reached_ = 0;                         // of the poses with the tool down
+  const char* in_the_way_ = nullptr;        // of the joints that were looked at last
+  const char* in_the_way_there_ = nullptr;  // of the first tour's poses
+};
+
+void TourPlan::look_about() {
+  const Pose& T_world_base = rig_.T_world_robot;
+  const double reach = chain().reach();
+  const ArmJoint& first = chain().joints().front();
+  const double foot = (T_world_base * first.point).z();
+  const double tool = (T_world_base * chain().tip_pose(chain().middle())).translation().z();
+  const bool turned_over = !first.slides && (T_world_base.linear() * first.axis).z() < -0.5;
+  const bool hangs = tool < foot - kHangs * reach || (turned_over && tool < foot + kHangs * reach);
+  std::tie(low_, high_) = hangs ? std::pair{foot - kUnderLow * reach, foot - kUnderHigh * reach}
+                                : std::pair{foot + kTourLow * reach, foot + kTourHigh * reach};
+  // Its base's x; of a base that is mounted on a wall such that x points up or down, the way out of the wall.
+  Eigen::Vector3d ahead = T_world_base.linear() * Eigen::Vector3d::UnitX();
+  if (ahead.head<2>().norm() < 0.5) ahead = T_world_base.linear() * Eigen::Vector3d::UnitZ();
+  ahead_ = std::atan2(ahead.y(), ahead.x());
+}
+
+// Before the arm, at heights where things stand; the tool's z points down.
+Pose TourPlan::tool_down() {
+  Pose pose = Pose::Identity();
+  const double angle = uniform(-0.9, 0.9), distance = uniform(kTourNear, kTourFar) * chain().reach();
+  const double yaw = ahead_ + angle;
+  const Eigen::Vector3d foot = rig_.T_world_robot.translation();
+  pose.translation() =
+      Eigen::Vector3d(foot.x() + distance * std::cos(yaw), foot.y() + distance * std::sin(yaw), uniform(low_, high_));
+  pose.linear() = (Eigen::AngleAxisd(uniform(-1.5, 1.5), Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  return pose;
+}
+
+bool TourPlan::clear(const JointVector& q) {
+  JointValues all = at_;
+  for (std::size_t i = 0; i < hand_.arm_joints.size(); ++i) all[hand_.arm_joints[i]] = q[static_cast<Eigen::Index>(i)];
+  const char* const what = shape_ ? shape_->obstructed({all.data(), rig_.joints.size()}) : nullptr;
+  if (what != nullptr) in_the_way_ = what;
+  return what == nullptr;
+}
+
+/// From where the tour has come to; then it has come to the step's end.
+bool TourPlan::clear_all_the_way(const ToolStep& step) {
+  ToolScript script(rig_, {step}, {.pan = 0, .tilt = 0});
+  script.begin_at(at_);
+  JointValues end = at_;
+  while (const auto next = script.step(kLook, {})) {
+    end = *next;
+    if (!clear(joints_of({end.data(), rig_.joints.size()}, hand_.arm_joints))) return false;
+  }
+  at_ = end;
+  return true;
+}
+
+std::vector<ToolStep> TourPlan::with_tool_down(int count) {
+  std::vector<ToolStep> out;
+  for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
+    const Pose pose = tool_down();
+    const IkAnswer answer = kinematics_.solve(rig_.T_world_robot.inverse() * pose);
+    if (answer.status != IkStatus::solved) continue;
+    ++reached_;
+    if (!clear(answer.q)) {
+      in_the_way_there_ = in_the_way_;
+      continue;
+    }
+    const auto what = out.size() % 2 == 0 ? ToolStep::What::there : ToolStep::What::line;
+    out.push_back({what, pose, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5});
+  }
+  return out;
+}
+
+JointVector TourPlan::any_joints() {
+  JointVector q = chain().middle();
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const double low = std::max(chain().lower()[i], q[i] - std::numbers::pi);
+    const double high = std::min(chain().upper()[i], q[i] + std::numbers::pi);
+    const double end = kEndOfRange * (high - low);
+    q[i] = uniform(low + end, high - end);
+  }
+  return q;
+}
+
+std::vector<ToolStep> TourPlan::of_joints(int count) {
+  std::vector<ToolStep> out;
+  for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
+    ToolStep step{ToolStep::What::there, Pose::Identity(), 0, 1.5};
+    step.joints = any_joints();
+    step.T_world_tool = rig_.T_world_robot * chain().tip_pose(*step.joints);
+    if (clear(*step.joints) && clear_all_the_way(step)) out.push_back(step);
+  }
+  return out;
+}
+
+InputError TourPlan::nothing() const {
+  const std::string where =
+      fmt::format("of the tour's poses, {:.2f} to {:.2f} m above the world's origin, tool down", low_, high_);
+  const char* const by_hand = ", or operate it by hand, without --scripted";
+  if (in_the_way_there_ != nullptr)
+    return {rig_.name,
+            fmt::format("the arm reaches {} of {} {}, but there {}", reached_, kTries, where, in_the_way_there_),
+            std::string("correct robot.pose and surroundings of the rig") + by_hand};
+  const std::string elsewhere = in_the_way_ != nullptr ? std::string("; elsewhere ") + in_the_way_ : "";
+  return {rig_.name, "the arm reaches none " + where + elsewhere,
+          std::string("correct robot.pose, min and max of the rig") + by_hand};
+}
+
+}  // namespace
+
+std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
+  TourPlan plan(rig, seed);
+  std::vector<ToolStep> down = plan.with_tool_down(count);
+  if (down.size() >= std::min(kFewest, static_cast<std::size_t>(count))) return down;
+  std::vector<ToolStep> of_joints = plan.of_joints(count);
+  if (of_joints.empty() && down.empty()) throw plan.nothing();
+  return of_joints.size() > down.size() ? of_joints : down;
+}
+
+}  // namespace foresight

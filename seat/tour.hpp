@@ -1,0 +1,16 @@
+// A scripted hand that goes from place to place where its arm can.
+#pragma once
+
+#include <vector>
+
+#include "seat/tool_script.hpp"
+
+namespace foresight {
+
+/// A tour of at most `count` poses, by `seed`: before the arm, above what lies in its reach, the tool pointing down.
+/// How far away and how high follows from the arm's reach, and from where its first axis stands; below it where the arm
+/// hangs. Where it hardly gets to any of them (a SCARA, a gantry, an arm on a wall), the tour is one of joints:
+/// wherever the arm stands clear, and so on the way there. Throws InputError: no arm, or none that is clear.
+std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count);
+
+}  // namespace foresight
