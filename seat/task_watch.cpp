@@ -1,9 +1,16 @@
 #include "seat/task_watch.hpp"
 
+#include <utility>
+
 namespace foresight {
 
-void TaskWatch::see(RobotTime now, const ScriptState& script) {
+void TaskWatch::see(RobotTime now, const ScriptState& script, const std::string& hold) {
   if (ended_ || failed()) return;
+  const RobotTime before = std::exchange(seen_, now).value_or(now);
+  if (under_way() && !hold.empty()) {
+    held_s_ += to_seconds(now - before);
+    held_by_ = hold;
+  }
   if (!pressed_ && script.driving) pressed_ = now;
   failure_ = script.failure;
   if (under_way() && (script.done || seconds(now) > most_s_)) ended_ = now;
@@ -14,6 +21,8 @@ double TaskWatch::seconds(RobotTime now) const {
 }
 
 namespace {
+
+constexpr double kHeldAllTheTime = 0.8;  // of the time: it takes some to get to where it is held, and to know that
 
 const char* what_is_wrong(ThingLies lies) noexcept {
   switch (lies) {
@@ -28,11 +37,15 @@ const char* what_is_wrong(ThingLies lies) noexcept {
 
 TaskOutcome TaskWatch::outcome(RobotTime now, const std::string& words, const std::function<ThingLies()>& where) const {
   TaskOutcome out{false, failure_, seconds(now)};
+  out.held_share = out.seconds > 0 ? held_s_ / out.seconds : 0;
+  out.held_by = held_by_;
   if (failed()) return out;
   if (!pressed_)
     out.failure = "it never drove: " + words;
   else if (!ended_)
     out.failure = "stopped before its end";
+  else if (out.held_share > kHeldAllTheTime)
+    out.failure = "the safety gate held the robot back all the time: " + held_by_;
   else
     out.failure = what_is_wrong(where());
   out.succeeded = out.failure.empty();

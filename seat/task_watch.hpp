@@ -23,8 +23,10 @@ enum class ThingLies : std::uint8_t {
 
 struct TaskOutcome {
   bool succeeded = false;
-  std::string failure;  ///< why not; "" where it did
-  double seconds = 0;   ///< from the first press of the switch to the end; 0 where it never was pressed
+  std::string failure;       ///< why not; "" where it did
+  double seconds = 0;        ///< from the first press of the switch to the end; 0 where it never was pressed
+  double held_share = 0;     ///< of these seconds, those in which the safety gate held the robot back
+  std::string held_by = {};  ///< what held it last; "" where nothing did
 };
 
 /// Pure logic; one thread.
@@ -33,8 +35,9 @@ class TaskWatch {
   /// `most_s`: of motion, after which the task ends, whatever the script still wants.
   explicit TaskWatch(double most_s) : most_s_(most_s) {}
 
-  /// How the script is at `now`, which never goes back.
-  void see(RobotTime now, const ScriptState& script);
+  /// How the script is at `now`, which never goes back. `hold`: what keeps the robot from where it is asked to be, as
+  /// it says (link::RobotState::hold); "" where nothing does.
+  void see(RobotTime now, const ScriptState& script, const std::string& hold = {});
 
   bool began() const { return pressed_.has_value(); }
   /// Driven, and neither ended nor failed: what is shown now counts.
@@ -51,8 +54,9 @@ class TaskWatch {
 
  private:
   double most_s_;
-  std::optional<RobotTime> pressed_, ended_;
-  std::string failure_;
+  std::optional<RobotTime> pressed_, ended_, seen_;
+  double held_s_ = 0;
+  std::string failure_, held_by_;
 };
 
 }  // namespace foresight

@@ -84,6 +84,8 @@ nlohmann::ordered_json report_of(const SeatTrialFigures& figures, const Argument
   out["failure"] = figures.task.failure;
   out["seen_in_tray"] = figures.seen_in_tray ? nlohmann::json(*figures.seen_in_tray) : nlohmann::json();
   out["task_s"] = figures.task.seconds;
+  out["held_share"] = figures.task.held_share;
+  out["held_by"] = figures.task.held_by;
   out["delay_ms"] = arguments.delay_ms;
   if (!arguments.line.empty()) out["line"] = arguments.line;
   out["seed"] = arguments.seed;
@@ -115,6 +117,9 @@ void print(const SeatTrialFigures& f) {
   fmt::print("joints shown within {:.2g} mrad or mm (95 %); commands act after {:.0f} ms; {:.1f} s, {}\n",
              1e3 * f.joints_p95, 1e3 * f.delay_s, f.task.seconds,
              f.task.succeeded ? "succeeded" : "failed: " + f.task.failure);
+  if (f.task.held_share >= 0.01)
+    fmt::print("the safety gate held the robot back for {:.0f} % of the time; at last: {}\n", 1e2 * f.task.held_share,
+               f.task.held_by);
   if (seen.trust.exact_share) fmt::print("{}\n", to_sentence(seen.trust));
 }
 

@@ -136,7 +136,8 @@ class Trial {
     while (!stopped() && clock_.now() - begin < seconds(kLongest + options_.most_s)) {
       robot_.cycle();
       const RobotTime now = clock_.now();
-      task_.see(now, driver_.script().state());
+      const auto said = end_.robot_state();
+      task_.see(now, driver_.script().state(), said ? said->state.hold : "");
       if (task_.failed()) break;
       look(task_.under_way());
       learn_truth();

@@ -146,7 +146,8 @@ class ServedTrial final : ViewObserver {
   // False: there is nothing left to be done.
   bool advance() {
     const RobotTime now = clock_.now();
-    task_.see(now, driver_.state());
+    const auto said = end_.robot_state();
+    task_.see(now, driver_.state(), said ? said->state.hold : "");
     if (task_.failed()) return false;
     tell(now);
     tell_news(now);

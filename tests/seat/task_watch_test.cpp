@@ -46,6 +46,29 @@ TEST(TaskWatch, EndsWhereTheScriptTakesTooLong) {
   EXPECT_TRUE(task.outcome(at(11), "", in_place).succeeded);
 }
 
+TEST(TaskWatch, TellsHowLongTheRobotWasHeldBack) {
+  TaskWatch task(10);
+  task.see(at(0), kWaits, "before");
+  task.see(at(1), kDrives);
+  task.see(at(2), kDrives, "link 'hand' comes too close to obstacle 'floor'");
+  task.see(at(3), kDrives);
+  task.see(at(5), kDone);
+  const TaskOutcome out = task.outcome(at(5), "", in_place);
+  EXPECT_TRUE(out.succeeded) << "it went on";
+  EXPECT_NEAR(out.held_share, 0.25, 1e-9);
+  EXPECT_EQ(out.held_by, "link 'hand' comes too close to obstacle 'floor'");
+}
+
+TEST(TaskWatch, DidNotSucceedWhereTheRobotNeverMoved) {
+  TaskWatch task(10);
+  task.see(at(0), kDrives);
+  for (int i = 1; i <= 50; ++i) task.see(at(0.1 * i), kDrives, "link 'hand' leaves the workspace");
+  task.see(at(5.1), kDone);
+  const TaskOutcome out = task.outcome(at(6), "", in_place);
+  EXPECT_FALSE(out.succeeded);
+  EXPECT_EQ(out.failure, "the safety gate held the robot back all the time: link 'hand' leaves the workspace");
+}
+
 TEST(TaskWatch, DidNotSucceedWhereNoImageHasShownThatItDid) {
   TaskWatch task(10);
   task.see(at(0), kDrives);
