@@ -87,6 +87,7 @@ void KeyboardMouse::change(bool& is_down, bool down) noexcept {
 
 void KeyboardMouse::key(HandKey key, bool down) noexcept {
   change(down_[static_cast<std::size_t>(key)], down);
+  if (down) tapped_[static_cast<std::size_t>(key)] = true;
   if (down && key >= HandKey::joint_1)
     joint_ = static_cast<std::size_t>(key) - static_cast<std::size_t>(HandKey::joint_1);
 }
@@ -112,9 +113,16 @@ void KeyboardMouse::wheel(double notches) noexcept {
 void KeyboardMouse::focus_lost() noexcept {
   let_go_ = let_go_ || held();
   down_.fill(false);
+  tapped_.fill(false);
   mouse_.fill(false);
   way_.setZero();
   turn_.setZero();
+}
+
+// A window that draws ten pictures a second tells of a short press and of its end at once.
+bool KeyboardMouse::take_tap(HandKey key) noexcept {
+  const bool tapped = std::exchange(tapped_[static_cast<std::size_t>(key)], false);
+  return down(key) || tapped;
 }
 
 double KeyboardMouse::way(HandKey more, HandKey less) const noexcept {
@@ -158,9 +166,9 @@ TrackerState KeyboardMouse::read(OperatorTime now) noexcept {
   set(TrackerButton::clutch, switch_held);
   set(TrackerButton::gripper_close, down(HandKey::gripper_close));
   set(TrackerButton::gripper_open, down(HandKey::gripper_open));
-  set(TrackerButton::home_view, down(HandKey::home_view));
-  set(TrackerButton::recentre, down(HandKey::recentre));
-  set(TrackerButton::joint_mode, down(HandKey::joint_mode));
+  set(TrackerButton::home_view, take_tap(HandKey::home_view));
+  set(TrackerButton::recentre, take_tap(HandKey::recentre));
+  set(TrackerButton::joint_mode, take_tap(HandKey::joint_mode));
   const double scale = down(HandKey::slow) ? options_.slow : 1;
   out.joint = joint_;
   out.joint_rate = scale * way(HandKey::joint_more, HandKey::joint_less);

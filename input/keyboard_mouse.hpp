@@ -99,6 +99,7 @@ class KeyboardMouse final : public Tracker {
 
  private:
   bool down(HandKey key) const noexcept { return down_[static_cast<std::size_t>(key)]; }
+  bool take_tap(HandKey key) noexcept;
   void change(bool& is_down, bool down) noexcept;
   bool held() const noexcept { return down(HandKey::deadman) || mouse_[0]; }
   double way(HandKey more, HandKey less) const noexcept;
@@ -107,7 +108,7 @@ class KeyboardMouse final : public Tracker {
 
   KeyboardMouseOptions options_;
   RateHand hand_;
-  std::array<bool, kHandKeys> down_{};
+  std::array<bool, kHandKeys> down_{}, tapped_{};  // now; since the last read(), if only for a moment
   std::array<bool, 2> mouse_{};
   bool let_go_ = false;                           // since the last read()
   Eigen::Vector3d way_{0, 0, 0}, turn_{0, 0, 0};  // of the mouse, not gone yet: m, rad

@@ -80,6 +80,30 @@ TEST_F(KeyboardMouseTest, LettingGoBetweenTwoReadsIsNotLost) {
   EXPECT_TRUE(round().buttons.held(TrackerButton::deadman));
 }
 
+// Both ends of a short press come at once from a window that draws slowly.
+TEST_F(KeyboardMouseTest, AShortPressOfAKeyThatChangesSomethingIsNotLost) {
+  const std::pair<HandKey, TrackerButton> keys[] = {{HandKey::joint_mode, TrackerButton::joint_mode},
+                                                    {HandKey::recentre, TrackerButton::recentre},
+                                                    {HandKey::home_view, TrackerButton::home_view}};
+  for (const auto& [key, button] : keys) {
+    round();
+    device_.key(key, true);
+    device_.key(key, false);
+    EXPECT_TRUE(round().buttons.held(button));
+    EXPECT_FALSE(round().buttons.held(button)) << "once";
+    device_.key(key, true);
+    EXPECT_TRUE(rounds(3).buttons.held(button));
+    device_.key(key, false);
+    EXPECT_FALSE(round().buttons.held(button));
+  }
+  device_.key(HandKey::deadman, true);
+  device_.key(HandKey::deadman, false);
+  EXPECT_FALSE(round().buttons.held(TrackerButton::deadman)) << "a switch counts while it is held";
+  device_.key(HandKey::joint_mode, true);
+  device_.focus_lost();
+  EXPECT_FALSE(round().buttons.held(TrackerButton::joint_mode));
+}
+
 TEST_F(KeyboardMouseTest, AWindowThatLosesTheKeyboardLetsGoOfAll) {
   device_.key(HandKey::deadman, true);
   device_.key(HandKey::left, true);
