@@ -102,6 +102,7 @@ void Seat::step() {
 
 void Seat::heed_switch(const SeatWish& wish, const SeatView& view) {
   const bool held_before = std::exchange(held_, wish.deadman), pressed = wish.deadman && !held_before;
+  refused_ = wish.refused && !ended_;
   if (!wish.deadman) {
     engaged_ = followed_ = false;
     return;
@@ -182,6 +183,7 @@ SeatStatus Seat::status() const {
   out.outlook = outlook_.figures();
   out.shown = shown_;
   out.held = held_;
+  out.refused = refused_;
   out.engaged = engaged_;
   out.fates = fates_;
   return out;

@@ -30,6 +30,7 @@ struct SeatStatus {
   OutlookFigures outlook;
   PredictedRobot shown;                ///< the last
   bool held = false, engaged = false;  ///< the switch is held; it counts
+  bool refused = false;                ///< SeatWish::refused
   std::vector<RequestFate> fates;      ///< of the last requests, oldest first
 };
 
@@ -77,7 +78,7 @@ class Seat {
   mutable PriorityMutex mutex_;  // all below
   RobotOutlook outlook_;
   PredictedRobot shown_;
-  bool held_ = false, engaged_ = false, followed_ = false, ended_ = false;
+  bool held_ = false, refused_ = false, engaged_ = false, followed_ = false, ended_ = false;
   OperatorTime commanded_;
   LineRequest asked_ = LineRequest::none;
   std::vector<RequestFate> fates_;

@@ -196,7 +196,8 @@ SeatLine next_step(const SeatStatus& status) {
   if (silence(status))
     return {"next", "nothing is heard of the robot", status.held ? "let go of the switch" : "wait for the line",
             Urgency::trouble};
-  if (status.held && !status.engaged)
+  const bool refused = status.refused && status.robot_control.ready;  // else it would be in vain to press again
+  if ((status.held && !status.engaged) || refused)
     return {"next", "the switch does not count", "let go, and press again", Urgency::trouble};
   if (status.engaged)
     return {"next", status.control.follows ? "driving" : "waiting for the robot to follow", "", Urgency::fine};

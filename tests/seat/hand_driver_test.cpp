@@ -89,6 +89,7 @@ class HandAtTheSeat : public testing::Test {
     EXPECT_FALSE(wish_.deadman) << "it has been held all the time";
     hold(false);
     cycles(5);
+    EXPECT_FALSE(wish_.refused);
     hold(true);
     cycles(2);
     EXPECT_TRUE(wish_.deadman);
@@ -141,6 +142,7 @@ TEST_F(HandAtTheSeat, AnInterruptedHandHasToPressAnew) {
   EXPECT_EQ(driver_->lines()[0].urgency, Urgency::trouble);
   cycles(5);
   EXPECT_EQ(said("hand").words, "the headset has gone") << "until the switch is let go of";
+  EXPECT_TRUE(wish_.refused);
   expect_to_have_to_press_anew();
 }
 

@@ -41,6 +41,20 @@ TEST(SeatWords, ASwitchThatDoesNotCountSaysWhatToDo) {
   EXPECT_EQ(find(lines, "in command")->urgency, Urgency::trouble);
 }
 
+// Held since before the robot was ready: what to do first is said of the robot, then of the switch.
+TEST(SeatWords, ASwitchThatWasPressedTooEarlySaysWhatToDo) {
+  SeatStatus status = driving();
+  status.held = status.engaged = status.control.follows = false;
+  status.refused = true;
+  status.robot->doing.name = "disabled";
+  status.robot->doing.cure = "enable the drives (e)";
+  EXPECT_EQ(next_step(status).words, "disabled");
+  status.robot_control.ready = true;
+  EXPECT_EQ(next_step(status).cure, "let go, and press again");
+  status.refused = false;
+  EXPECT_EQ(next_step(status).words, "ready");
+}
+
 TEST(SeatWords, TroubleIsToldWithoutColour) {
   SeatStatus status = driving();
   status.robot_age = std::chrono::seconds(5);
