@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "apps/bench/even_times.hpp"
 #include "apps/bench/joint_table.hpp"
@@ -164,6 +165,28 @@ Joint with_the_better_times(const Joint& joint, double learnt) {
   return unexplained_by(other, learnt) < kBetter * unexplained_by(joint, learnt) ? other : joint;
 }
 
+// Seconds between commands where states come always at the same instant between two of them, such as those that one
+// loop writes down with its commands; 0 elsewhere. What a drive does between two commands is seen by no state then, and
+// steps that it takes at once give the same states as lines that it takes until the next command.
+double unseen_between_commands(const Joint& joint, double learnt) {
+  constexpr double kAlike = 0.95;  // mean of unit vectors: a standard deviation of a twentieth of the interval
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  std::size_t next = 1;
+  double count = 0, intervals = 0;
+  for (const TimedPosition& state : joint.states) {
+    while (next < joint.commands.size() && joint.commands[next].time <= state.time) ++next;
+    if (state.time > learnt || next == joint.commands.size()) break;
+    const double before = joint.commands[next - 1].time, interval = joint.commands[next].time - before;
+    if (state.time < before || !(interval > 0)) continue;
+    const double turn = 2 * std::numbers::pi * (state.time - before) / interval;
+    sum += Eigen::Vector2d(std::cos(turn), std::sin(turn));
+    intervals += interval;
+    ++count;
+  }
+  const bool unseen = count > 0 && sum.norm() > kAlike * count && intervals > kFewCommands * count;
+  return unseen ? intervals / count : 0;
+}
+
 struct Scores {
   std::array<Errors, 5> methods{Errors{"predicted", ""}, Errors{"predicted, learning goes on", "online_"},
                                 Errors{"increment", "increment_"}, Errors{"velocity", "velocity_"},
@@ -184,7 +207,7 @@ double velocity_at(const Joint& joint, const PositionHistory& states, std::size_
   return now.time > then ? (now.position - between(states, then)) / (now.time - then) : 0;
 }
 
-void describe(const Joint& joint, const JointResponse& response, Scores& scores) {
+void describe(const Joint& joint, const JointResponse& response, double unseen, Scores& scores) {
   const ResponseFigures& f = response.figures();
   scores.joints.push_back({{"name", joint.name},
                            {"identified", f.samples > 0},
@@ -195,7 +218,8 @@ void describe(const Joint& joint, const JointResponse& response, Scores& scores)
                            {"lag_s", f.lag},
                            {"unexplained_rad", f.unexplained},
                            {"explained", f.explained},
-                           {"evened_s", joint.evened ? joint.evened->scatter : 0}});
+                           {"evened_s", joint.evened ? joint.evened->scatter : 0},
+                           {"unseen_s", unseen}});
   if (f.samples == 0) {
     std::printf("%-12s not identified: its commands do not move it in the first 40 %% of the time\n",
                 joint.name.c_str());
@@ -214,6 +238,13 @@ void describe(const Joint& joint, const JointResponse& response, Scores& scores)
   if (joint.evened)
     std::printf("%-12s the stamps of its commands scatter by %.1f ms about every %.1f ms: evened, they explain more\n",
                 "", joint.evened->scatter * 1e3, joint.evened->interval * 1e3);
+  if (unseen > 0)
+    std::printf(
+        "%-12s its states come with its commands, every %.1f ms: whether the drive takes these as steps or as lines to "
+        "the next one cannot be told, and delay and dead time may be off by as much; record states oftener, or at "
+        "other "
+        "instants\n",
+        "", unseen * 1e3);
 }
 
 // All that the recordings show, at once: what predictions are judged by.
@@ -258,7 +289,7 @@ void measure(const Joint& recorded, Scores& scores) {
     if (!identified && now.time > learnt) {
       identified = true;
       kept.response.identify();
-      describe(joint, kept.response, scores);
+      describe(joint, kept.response, unseen_between_commands(joint, learnt), scores);
     }
     kept.take(joint, now);
     online.take(joint, now);

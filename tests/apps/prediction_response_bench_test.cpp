@@ -84,6 +84,25 @@ TEST(PredictionResponse, NoiseOfStampsLeavesTheDelayAsItIs) {
   }
 }
 
+// One loop that writes down what it commands and what it reads: of the drive between two commands no state tells.
+TEST(PredictionResponse, StatesAtTheCommandsInstantsAreToldToLeaveTheDelayOpen) {
+  for (const double every : {0.02, 0.007}) {
+    const TempFolder out;
+    std::string commands = "time_s,q1\n", states = "time_s,q1\n";
+    for (double t = 0; t < 25; t += 0.02) commands += number(t) + "," + number(wish(t)) + "\n";
+    for (double t = 0; t < 25; t += every)
+      states += number(t) + "," + number(wish(0.02 * std::floor(std::max(0.0, t - 0.05) / 0.02))) + "\n";
+    const std::string json = out / "response.json";
+    const Outcome outcome =
+        run_program({"bench", "prediction", "response", "--commands", out.write("c.csv", commands).string(), "--states",
+                     out.write("s.csv", states).string(), "--json", json});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const bool blind = every == 0.02;
+    EXPECT_NEAR(read_json(json)["joints"][0]["unseen_s"], blind ? 0.02 : 0, 1e-9);
+    EXPECT_EQ(outcome.out.find("cannot be told") != std::string::npos, blind) << outcome.out;
+  }
+}
+
 // What was commanded in a hole nobody knows: nothing is guessed of it.
 TEST(PredictionResponse, HolesInTheCommandsAreNotJudged) {
   const TempFolder out;
