@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -60,6 +61,15 @@ void write_new_file(const fs::path& file, const std::string& text) {
   }
 }
 
+/// As one word of a shell's command line.
+std::string shell_word(const std::string& text) {
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("./_-+,:@%", c); };
+  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
 void tell(const RigDraft& draft, const std::string& file) {
   const Rig& rig = draft.rig;
   std::printf("%s: %s with %zu joints\n", file.c_str(), rig.name.c_str(), rig.joints.size());
@@ -71,7 +81,8 @@ void tell(const RigDraft& draft, const std::string& file) {
                 100 * planned_bus_load(rig, i), rig.buses[i].bit_rate / 1000);
   }
   for (const std::string& note : draft.notes) std::printf("  note: %s\n", note.c_str());
-  std::printf("try it: foresight doctor %s; foresight robot %s\n", file.c_str(), file.c_str());
+  const std::string word = shell_word(file);
+  std::printf("try it: foresight doctor %s; foresight robot %s\n", word.c_str(), word.c_str());
 }
 
 int run(const RigNewArguments& arguments) {

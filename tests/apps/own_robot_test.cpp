@@ -32,6 +32,14 @@ class OwnRobot : public testing::Test {
   std::string text_;
 };
 
+TEST_F(OwnRobot, WhatToTryCanBeCopiedToAShell) {
+  const std::string rig = (folder_ / "Anna's arm ä.yaml").string();
+  const Outcome out =
+      run_program({"rig", "new", "--urdf", (source_folder() / "configs/arm.urdf").string(), "--out", rig});
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_THAT(out.out, HasSubstr("Anna'\\''s arm ä.yaml'; foresight robot '"));
+}
+
 TEST_F(OwnRobot, AnIiwaIsHomedMovedRecordedAndReplayed) {
   const std::string rig = new_rig("iiwa7/diff_robot_data/kuka_iiwa/urdf/iiwa7.urdf");
   EXPECT_THAT(text_, HasSubstr("7 drives at 250 Hz: 63 % of it"));
