@@ -46,10 +46,14 @@ std::vector<Place> places_of(const std::vector<GivenPath>& given) {
 }
 
 void require_words(const std::vector<GivenPath>& given) {
-  for (const GivenPath& path : given)
+  for (const GivenPath& path : given) {
     if (path.word.empty())
       throw InputError(path.option, "is an empty name",
                        path.outputs ? "name what to write, or leave it out" : "name what to read, or leave it out");
+    if (path.word == "-" && path.outputs)  // of many other programs: standard output
+      throw InputError(path.option + " -", "would be a file that is called '-'",
+                       "name a file; /dev/stdout is the standard output, ./- that file");
+  }
 }
 
 /// What is there is of the right kind.

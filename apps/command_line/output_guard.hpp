@@ -1,7 +1,7 @@
 // Nothing of the user's is lost: the one check of all outputs, before a command does anything.
 //
 // An output is refused where
-//   - its name is empty, or it cannot be written,
+//   - its name is empty or "-", or it cannot be written,
 //   - it is an input, or a file that an input names, under whatever name: other spellings, symbolic and hard links,
 //   - it is another output, or lies in a folder that is replaced as a whole,
 //   - something is there that no such command wrote (file_forms.hpp), or that is write-protected,

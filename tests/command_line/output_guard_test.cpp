@@ -146,6 +146,7 @@ TEST_F(OutputGuardTest, PlacesThatCannotBeWrittenAreNamed) {
   const std::vector<std::pair<GivenPath, std::string>> all = {
       {writes("--json", ""), "is an empty name"},
       {reads("RIG", ""), "is an empty name"},
+      {writes("--json", "-"), "--json -: would be a file that is called '-'"},
       {writes("--json", at("in")), "this is a folder"},
       {writes("--json", at("new") / ""), "this is a folder"},
       {writes("--json", at("file/below")), "cannot be written to"},
