@@ -8,7 +8,8 @@ namespace {
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kSize = 0.44;
-constexpr int kGap = 3;  // px between words
+constexpr double kSmallest = 0.75;  // of a text's size: what is smaller nobody reads
+constexpr int kGap = 3;             // px between words
 const cv::Scalar kHalo(246, 245, 244);
 
 struct Place {
@@ -38,11 +39,23 @@ cv::Rect free_box(cv::Point anchor, cv::Size size, const std::vector<Place>& tak
 
 }  // namespace
 
+std::string fitting_text(const std::string& text, double size, int width_px, int weight) {
+  std::string out;
+  for (const char c : text)  // the font has one '?' for each byte that it does not know
+    if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) out += c;
+  const std::string whole = out;
+  const auto too_wide = [&] { return cv::getTextSize(out, kFont, size, weight, nullptr).width > width_px; };
+  for (std::size_t kept = whole.size(); kept > 2 && width_px > 0 && too_wide(); --kept)
+    out = whole.substr(0, kept / 2) + ".." + whole.substr(whole.size() - (kept - kept / 2));
+  return out;
+}
+
 void put_text(cv::Mat& picture, const std::string& text, cv::Point at, double size, const cv::Scalar& colour,
               int width_px, int weight) {
-  const int wanted = cv::getTextSize(text, kFont, size, weight, nullptr).width;
+  const std::string shown = fitting_text(text, kSmallest * size, width_px, weight);
+  const int wanted = cv::getTextSize(shown, kFont, size, weight, nullptr).width;
   const double fitting = width_px > 0 && wanted > width_px ? size * width_px / wanted : size;
-  cv::putText(picture, text, at, kFont, fitting, colour, weight, cv::LINE_AA);
+  cv::putText(picture, shown, at, kFont, fitting, colour, weight, cv::LINE_AA);
 }
 
 std::size_t write_words(cv::Mat& picture, const std::vector<Drawing::Word>& words, const Eye& eye) {

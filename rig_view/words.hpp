@@ -12,7 +12,12 @@ inline cv::Scalar bgr(const Colour& c) {
   return {255.0 * static_cast<double>(c[2]), 255.0 * static_cast<double>(c[1]), 255.0 * static_cast<double>(c[0])};
 }
 
-/// One line of text, its baseline's left end at `at`; smaller where it would be wider than `width_px` (0: as it is).
+/// `text` as it is where it has room within `width_px` (0: any) at `size`, else without its middle, as "the_joi..r_11".
+/// One '?' for each letter that is not ASCII.
+std::string fitting_text(const std::string& text, double size, int width_px, int weight = 1);
+
+/// One line of text, its baseline's left end at `at`; where it would be wider than `width_px` (0: as it is) a little
+/// smaller, then without its middle.
 void put_text(cv::Mat& picture, const std::string& text, cv::Point at, double size, const cv::Scalar& colour,
               int width_px = 0, int weight = 1);
 

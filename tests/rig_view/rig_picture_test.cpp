@@ -33,6 +33,16 @@ class RigPictureTest : public HeadlessTest {
   const Eye eye_ = Eye::from(LookFrom::side, body_.extent(), (kWidth - kPanelWidth) / double{kHeight});
 };
 
+// Names of joints differ at their ends; a whole one would be too small to be read.
+TEST(Words, LongOnesLoseTheirMiddle) {
+  EXPECT_EQ(fitting_text("elbow", 0.4, 120), "elbow");
+  const std::string cut = fitting_text("the_left_manipulators_long_descriptive_joint_name_number_11", 0.4, 120);
+  EXPECT_LT(cut.size(), 24u);
+  EXPECT_GT(cut.size(), 8u);
+  EXPECT_TRUE(cut.starts_with("the_") && cut.ends_with("_11")) << cut;
+  EXPECT_EQ(fitting_text("a\u00e4\u80a9z", 0.4, 0), "a\xc3\xe8z") << "one letter each";
+}
+
 TEST_F(RigPictureTest, ShowsLinksWhereTheyStandAndGuardsAroundThem) {
   Layers bare{};
   bare[static_cast<std::size_t>(Layer::links)] = true;
