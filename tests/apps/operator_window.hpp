@@ -104,6 +104,13 @@ class OperatorWindow : public testing::Test {
                                        << all << "\nrobot:\n"
                                        << robot_->said();
   }
+  /// Its newest line of that label comes to have these words, whatever was said before or after it.
+  testing::AssertionResult tells(const std::string& label, const std::string& words) {
+    if (comes_true([&] { return last(label).find(words) != std::string::npos || !seat_->running(); }) &&
+        last(label).find(words) != std::string::npos)
+      return testing::AssertionSuccess();
+    return testing::AssertionFailure() << label << " never told '" << words << "':\n" << seat_->said();
+  }
   bool press(const std::string& keys) const { return screen_->input("key " + keys); }
   bool hold(const std::string& key, bool down) const { return screen_->input((down ? "keydown " : "keyup ") + key); }
 

@@ -8,7 +8,7 @@ TEST_F(OperatorWindow, ConnectsDrivesLosesTheRobotAndRecovers) {
   ASSERT_TRUE(says("in command:   you"));
   ASSERT_TRUE(screen_->input("search --sync --name Foresight windowfocus"));
   // Before joints are homed: the newest image, why, and nothing in red.
-  ASSERT_TRUE(says("joints tell no position"));
+  ASSERT_TRUE(tells("images", "joints tell no position"));
   EXPECT_TRUE(shows("as prediction cannot be trusted", false));
   ASSERT_TRUE(gets_ready());  // consent: enabling, homing
   EXPECT_TRUE(shows("as it will be", false));
