@@ -8,14 +8,6 @@
 #include "common/error.hpp"
 #include "gl/context.hpp"
 
-#ifdef __SANITIZE_THREAD__
-/// ThreadSanitizer does not see Mesa let go of some of its mutexes, and what looks for wrong orders of locks bears 64
-/// that are held: the programs of these tests do without.
-extern "C" __attribute__((used)) inline const char* __tsan_default_options() {
-  return "detect_deadlocks=0";
-}
-#endif
-
 namespace foresight {
 
 /// A fresh headless context for each test, so that no state is left of the one before; skips where this machine has no
