@@ -1,10 +1,9 @@
 // `foresight operator`: a program at the seat, both sides in stepped time; and the seat started wrong.
-#include <chrono>
 #include <cstdlib>
-#include <thread>
 
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
+#include "tests/link/child.hpp"
 #include "tests/support/folders.hpp"
 
 namespace foresight::operator_test {
@@ -79,9 +78,7 @@ TEST(Operator, TheSeatOutlivesItsHeadset) {
       }
       return true;
     };
-    for (int i = 0; i < 600 && seat.running() && !said_all(); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    EXPECT_TRUE(said_all()) << seat.said();
+    EXPECT_TRUE(comes_true([&] { return said_all() || !seat.running(); }) && said_all()) << seat.said();
     seat.interrupt();
     const Outcome outcome = seat.wait();
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err;

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/patience.hpp"
+
 namespace foresight {
 
 struct Outcome {
@@ -42,8 +44,9 @@ class Program {
   std::string said() const { return read("err"); }
   void interrupt(int signal = SIGINT) const;  ///< SIGINT, as Ctrl-C sends it, or another one
 
-  /// Waits; kills it and reports exit code 137 after `timeout`.
-  Outcome wait(std::chrono::seconds timeout = std::chrono::seconds(540));
+  /// Waits; kills it and reports exit code 137 `timeout` after its start; where none is given, a little before its test
+  /// is ended as one that hangs.
+  Outcome wait(std::chrono::seconds timeout = std::chrono::seconds(9 * hangs_after_s() / 10));
 
  private:
   std::string read(const char* name) const;
