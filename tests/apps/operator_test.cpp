@@ -83,8 +83,7 @@ TEST(Operator, TheSeatOutlivesItsHeadset) {
     const Outcome outcome = seat.wait();
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
   };
-  sit(FORESIGHT_TEST_RUNTIME, "real-time lose-session@60",
-      {"simulated headset", "the headset was lost", "simulated headset"});
+  sit(FORESIGHT_TEST_RUNTIME, "real-time lose-session@60", {"the headset was lost", "simulated headset"});
   sit(FORESIGHT_TEST_RUNTIME, "real-time no-egl", {"simulated headset, 90 Hz"}, "first");
   sit(FORESIGHT_TEST_RUNTIME, "no-opengl", {"does not know OpenGL"});
   sit("/nowhere/runtime.json", "", {"no OpenXR runtime"});
