@@ -263,7 +263,8 @@ FutureReason RobotFuture::doubt(const Shown& shown, int& joint) const noexcept {
 
 FutureReason RobotFuture::doubt(const Shown& shown, std::size_t joint) const noexcept {
   if (joints_[joint].held.doubted || joints_[joint].missed.doubted) return FutureReason::astray;
-  if (shown.robot.sigma[joint] <= joints_[joint].least_sure) return FutureReason::none;
+  // Most times that reports are overdue the robot goes on: pixels are in doubt, the view as a whole is not yet.
+  if (shown.scale[joint] * shown.any_prior(joint) <= joints_[joint].least_sure) return FutureReason::none;
   return overdue() ? FutureReason::stale : FutureReason::unsure;
 }
 
@@ -283,11 +284,12 @@ bool RobotFuture::predict(std::size_t joint, Shown& out) const noexcept {
   const PredictedPosition there = of.response.at(since_epoch(time));
   if (!there.valid) return false;
   const double beyond = std::max(0.0, to_seconds(time - motion_.known_until()));
-  const double stopped = overdue() ? there.position - of.response.at(since_epoch(reported_)).position : 0;
+  // Whether it has is not told by any scale that was learnt while reports came.
+  if (overdue()) out.stopped[joint] = there.position - of.response.at(since_epoch(reported_)).position;
   out.predicted[joint] = out.robot.position[joint] = there.position;
-  out.prior[joint] = std::hypot(there.sigma, beyond * motion_.cycles().newest().motion[joint].velocity, stopped);
+  out.prior[joint] = std::hypot(there.sigma, beyond * motion_.cycles().newest().motion[joint].velocity);
   out.scale[joint] = of.scale.sigma();
-  out.robot.sigma[joint] = out.scale[joint] * out.prior[joint];
+  out.robot.sigma[joint] = out.sigma(joint);
   const bool is_new = of.response.identified() && time <= of.judged_from;
   out.settling[joint] = !of.response.identified() || is_new;
   out.robot.settling = out.robot.settling || there.assumed || is_new;
@@ -345,7 +347,7 @@ PredictedRobot RobotFuture::show(RobotTime time) noexcept {
     joint.correction.pass(passed, joint.fastest);
     shown.robot.position[i] += joint.correction.offset();
     shown.prior[i] = std::hypot(shown.prior[i], joint.correction.offset());
-    shown.robot.sigma[i] = shown.scale[i] * shown.prior[i];
+    shown.robot.sigma[i] = shown.sigma(i);
   }
   shown_ = time;
   any_shown_ = shown.judged;
@@ -386,8 +388,8 @@ void RobotFuture::score(const Shown& shown) noexcept {
     const bool as_shown = trusted && std::isfinite(shown.robot.sigma[i]);
     const double off = std::abs((as_shown ? shown.robot.position[i] : shown.predicted[i]) - truth.position[i]);
     if (!shown.settling[i])
-      joint.scale.score(CalibratedSigma::usual_part(off / shown.prior[i], shown.scale[i]), shown.scale[i], passed);
-    const double usual = std::max(joint.precise, 3 * shown.scale[i] * shown.prior[i]);
+      joint.scale.score(CalibratedSigma::usual_part(off / shown.any_prior(i), shown.scale[i]), shown.scale[i], passed);
+    const double usual = std::max(joint.precise, 3 * shown.sigma(i));
     // What a line loses is shown wrongly until the report of it has come: a way there and back.
     const double blind = joint.missed.doubted ? 0 : 2 * motion_.delay().seconds;
     joint.missed.see(time, off > usual, options_.missed_after + blind);

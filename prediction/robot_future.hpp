@@ -11,6 +11,7 @@
 // Units: rad (m for joints that slide). All instants are of the robot's clock.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -132,9 +133,12 @@ class RobotFuture {
   };
   struct Shown {
     PredictedRobot robot;
-    bool judged = false;           // there is a prediction, whether it can be trusted or not
-    JointValues predicted{};       // that one
-    JointValues prior{}, scale{};  // sigma = scale * prior
+    bool judged = false;      // there is a prediction, whether it can be trusted or not
+    JointValues predicted{};  // that one
+    JointValues prior{}, scale{};
+    JointValues stopped{};  // how far from there it is if it has stopped
+    double sigma(std::size_t joint) const noexcept { return std::hypot(scale[joint] * prior[joint], stopped[joint]); }
+    double any_prior(std::size_t joint) const noexcept { return std::hypot(prior[joint], stopped[joint]); }
     std::array<bool, std::tuple_size_v<JointValues>> settling{};
   };
   HistoryFault check(const RobotReport& report, RobotTime now) const noexcept;

@@ -378,6 +378,26 @@ TEST(RobotFuture, ThatItMayHaveStoppedIsDoubtedBeforeItIsKnown) {
   EXPECT_EQ(world.future().at(world.now()).status, StateStatus::predicted);
 }
 
+// What moves slowly is not given up at once: how sure the drives have been lately does not make it surer.
+TEST(RobotFuture, HowFarItMayHaveStoppedIsTold) {
+  FutureWorld world({.known = KnownResponse{0, 0.015, 0.02}});  // surer than was said of them
+  world.wish = [](double t) { return JointValues{0.05 * std::sin(0.4 * t), 0.02 * std::sin(0.3 * t)}; };
+  world.run(15);
+  const std::size_t began = world.pictures().size();
+  const RobotTime cut_at = world.now() + seconds(0.8);  // what is shown once that is noticed
+  world.robot_silent = world.line_cut_down = true;
+  world.run(1.5);
+  int off = 0;
+  for (std::size_t i = began; i < world.pictures().size(); ++i) {
+    const PredictedRobot& shown = world.pictures()[i];
+    if (shown.status != StateStatus::predicted || shown.time > world.now() || shown.time < cut_at) continue;
+    const double by = std::abs(shown.position[0] - world.truth_at(shown.time)[0]);
+    off += by > 0.002;
+    EXPECT_LE(by, shown.sigma[0] + 5e-4) << to_seconds(shown.time - cut_at);
+  }
+  EXPECT_GT(off, 5) << "it was given up at once: the test shows nothing";
+}
+
 TEST(RobotFuture, HistoriesThatAreWrongAreRefused) {
   FutureWorld world;
   world.run(5);
