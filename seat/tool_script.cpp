@@ -26,6 +26,15 @@ std::vector<std::size_t> of_group(const Rig& rig, JointGroup group) {
 
 }  // namespace
 
+JointValues home_of(const Rig& rig) {
+  JointValues out{};
+  for (std::size_t i = 0; i < rig.joints.size(); ++i) {
+    const DriveConfig& drive = rig.joints[i].drive;
+    out[i] = std::clamp(drive.offset, drive.min_position, drive.max_position);
+  }
+  return out;
+}
+
 ToolScript::ToolScript(const Rig& rig, std::vector<ToolStep> steps, const HeadSway& sway)
     : ToolScript(rig, arm_options(rig), std::move(steps), sway) {}
 
@@ -164,12 +173,7 @@ namespace {
 bool stays_clear(const Rig& rig, RobotShape& shape, const std::vector<ToolStep>& steps) {
   constexpr double kLook = 0.05;  // s between two looks
   ToolScript script(rig, steps, {.pan = 0, .tilt = 0});
-  JointValues home{};
-  for (std::size_t i = 0; i < rig.joints.size(); ++i) {
-    const DriveConfig& drive = rig.joints[i].drive;
-    home[i] = std::clamp(drive.offset, drive.min_position, drive.max_position);
-  }
-  script.begin_at(home);
+  script.begin_at(home_of(rig));
   while (const auto at = script.step(kLook, {}))
     if (shape.obstructed({at->data(), rig.joints.size()}) != nullptr) return false;
   return true;

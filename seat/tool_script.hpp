@@ -32,6 +32,9 @@ struct ToolStep {
   std::optional<JointVector> joints = {};
 };
 
+/// Where all joints are once they have looked for home, as far as their ranges go; rad or m.
+JointValues home_of(const Rig& rig);
+
 /// The rig's pan-tilt head turns to and fro meanwhile, by so much (rad); 0: it stands still.
 struct HeadSway {
   double pan = 0.20, tilt = 0.06;

@@ -30,17 +30,18 @@ constexpr double kLook = 0.05;                         // s between two looks at
 class TourPlan {
  public:
   TourPlan(const Rig& rig, unsigned seed)
-      : rig_(rig), hand_(arm_options(rig)), kinematics_(*hand_.arm), shape_(rig.shape()), random_(seed) {
+      : rig_(rig),
+        hand_(arm_options(rig)),
+        kinematics_(*hand_.arm),
+        shape_(rig.shape()),
+        random_(seed),
+        at_(home_of(rig)) {
     if (shape_) {
       Surroundings wide = rig.surroundings;
       wide.clearance += kTourRoom * chain().reach();
       shape_->surround(wide);
     }
     look_about();
-    for (std::size_t i = 0; i < rig.joints.size(); ++i) {
-      const DriveConfig& drive = rig.joints[i].drive;
-      at_[i] = std::clamp(drive.offset, drive.min_position, drive.max_position);
-    }
   }
   std::vector<ToolStep> with_tool_down(int count);
   std::vector<ToolStep> of_joints(int count);
@@ -62,7 +63,7 @@ class TourPlan {
   std::mt19937 random_;
   double ahead_ = 0;                        // rad about the vertical, where the arm looks
   double low_ = 0, high_ = 0;               // m above the world's origin
-  JointValues at_{};                        // of all joints, where the tour has come to
+  JointValues at_;                          // of all joints, where the tour has come to
   int reached_ = 0;                         // of the poses with the tool down
   const char* in_the_way_ = nullptr;        // of the joints that were looked at last
   const char* in_the_way_there_ = nullptr;  // of the first tour's poses

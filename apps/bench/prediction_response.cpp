@@ -242,8 +242,7 @@ void describe(const Joint& joint, const JointResponse& response, double unseen, 
     std::printf(
         "%-12s its states come with its commands, every %.1f ms: whether the drive takes these as steps or as lines to "
         "the next one cannot be told, and delay and dead time may be off by as much; record states oftener, or at "
-        "other "
-        "instants\n",
+        "other instants\n",
         "", unseen * 1e3);
 }
 
