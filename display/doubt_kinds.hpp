@@ -2,14 +2,14 @@
 // wrong is learnt of pictures whose image has come (seat/shown_fidelity.hpp).
 //
 //   doubt 0 .. 223   contrast + 16 * (reach + 2 * compared)
-//   224 .. 229       it was last seen in a tile that lost so much when it was coded (scene/coding_loss.hpp)
-//   230 .. 245       contrast: the newest image alone shows it, beside an edge, where it may show another surface
+//   224 .. 243       it was last seen in a tile that lost something when it was coded: loss_contrast() + 5 * (step - 1)
+//                    (scene/coding_loss.hpp); 244: in one that lost more
+//   245 .. 252       contrast / 2: the newest image alone shows it, beside an edge, where it may show another surface
 //   255              nothing is known of it
 #pragma once
 
 #include <array>
 #include <bitset>
-#include <cmath>
 #include <cstdint>
 
 #include "scene/coding_loss.hpp"
@@ -35,18 +35,23 @@ inline constexpr std::size_t kComparisonsKept = 4;
 
 /// Steps of trust.comp.
 struct DoubtKind {
-  static constexpr int kContrasts = 16, kReaches = 2, kComparisons = 7, kCount = kContrasts * kReaches * kComparisons;
-  int contrast = 0;  ///< by how many grey levels the pixels around differ: 4 steps each time that these + 3 double
+  static constexpr int kContrasts = kContrastSteps, kReaches = 2, kComparisons = 7,
+                       kCount = kContrasts * kReaches * kComparisons;
+  int contrast = 0;  ///< step of contrast.hpp
   int reach = 0;     ///< by how many pixels the surface may be elsewhere: below 2, more
   Compared compared = Compared::never;
 
-  double levels() const { return 3 * (std::exp2((contrast + 0.5) / 4) - 1); }
+  double levels() const { return contrast_levels(contrast); }
   double px() const { return reach == 0 ? 1 : 4; }
 };
-/// Doubt of what was last seen in a tile of step 1; the next ones follow. Images that came tell nothing of these.
-inline constexpr int kCodedAway = DoubtKind::kCount;
-/// Doubt of what may be the colour of another surface (view_alpha::kFromEdge), by contrast.
-inline constexpr int kBesideEdge = kCodedAway + kLossSteps - 1, kKindsEnd = kBesideEdge + DoubtKind::kContrasts;
+/// Doubt of what was last seen in a tile that lost something. Images that came tell nothing of these.
+inline constexpr int kCodedAway = DoubtKind::kCount, kMostlyCodedAway = kCodedAway + kToldSteps * kLossContrasts;
+/// Doubt of what may be the colour of another surface (view_alpha::kFromEdge), by two steps of contrast each.
+inline constexpr int kBesideEdge = kMostlyCodedAway + 1, kKindsEnd = kBesideEdge + DoubtKind::kContrasts / 2;
+/// `step`: 1 .. kLossSteps - 1; `contrast`: loss_contrast().
+constexpr int coded_away(int step, int contrast) {
+  return step <= kToldSteps ? kCodedAway + kLossContrasts * (step - 1) + contrast : kMostlyCodedAway;
+}
 /// `doubt`: below DoubtKind::kCount.
 constexpr DoubtKind kind_of(int doubt) {
   constexpr int kOfOne = DoubtKind::kContrasts * DoubtKind::kReaches;

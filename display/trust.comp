@@ -3,8 +3,9 @@
 //
 //   view --depth--> point --moves with its node--> image 0, 1, 2 ... newest first: outside, hidden or seen
 //
-// Defines: FRAMES, how many of them are remembered; COMPARISONS, how many of those that were compared; CODED_AWAY and
-// BESIDE_EDGE, where kinds of doubt_kinds.hpp begin; ANYWHERE_PX, there.
+// Defines: FRAMES, how many of them are remembered; COMPARISONS, how many of those that were compared; CODED_AWAY,
+// MOSTLY_CODED_AWAY and BESIDE_EDGE, where kinds of doubt_kinds.hpp begin; ANYWHERE_PX, there; TOLD_STEPS, LOSS_CONTRASTS
+// and STEPS_A_CONTRAST of coding_loss.hpp.
 #include "camera.glsl"
 #include "luma.glsl"
 #include "view_alpha.glsl"
@@ -65,7 +66,7 @@ int look(int frame, vec3 p) {
   return farthest > inverse_z * (1.0 + kSameSurface) ? kHidden : kSeen;
 }
 
-// Grey levels by which the pixels around differ from this one.
+// Grey levels by which the pixels around differ from this one (scene/contrast.hpp).
 float contrast_at(ivec2 pixel, float here) {
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y)
@@ -136,6 +137,11 @@ uint lost_at(int frame, vec3 p) {
   return texelFetch(losses, ivec3(clamp(tile, ivec2(0), tiles - 1), layer_of[frame] / faces), 0).r;
 }
 
+int coded_away(int step, int contrast) {
+  int kind = CODED_AWAY + LOSS_CONTRASTS * (step - 1) + min(contrast / STEPS_A_CONTRAST, LOSS_CONTRASTS - 1);
+  return step <= TOLD_STEPS ? kind : MOSTLY_CODED_AWAY;
+}
+
 float kind_at(ivec2 pixel, vec3 colour, bool certain) {
   vec3 ray, place;
   float inverse_z;
@@ -157,11 +163,11 @@ float kind_at(ivec2 pixel, vec3 colour, bool certain) {
   // What covered it in the newest image may have left its shadow there, or have pushed it.
   float uncertain = uncertain_px(at, node);
   if (found < 0 || newest == kHidden || uncertain >= ANYWHERE_PX) return kUnconfirmed;
-  uint lost = lost_at(found, then);
-  if (lost > 0u) return certain ? float(CODED_AWAY + int(lost) - 1) / 255.0 : kUnconfirmed;
   float here = luma_of(colour);
   int contrast = step_of_contrast(contrast_at(pixel, here));
-  if (!certain) return float(BESIDE_EDGE + contrast) / 255.0;
+  int lost = int(lost_at(found, then));
+  if (lost > 0) return certain ? float(coded_away(lost, contrast)) / 255.0 : kUnconfirmed;
+  if (!certain) return float(BESIDE_EDGE + contrast / 2) / 255.0;
   float turned = texelFetch(ways, 4 * (found * node_count + node) + 3).x;
   int compared = kTurned * turned * here > kWrong ? kSuspect : compared_at(node, p);
   int kind = contrast + 16 * (step_of_reach(uncertain) + 2 * compared);

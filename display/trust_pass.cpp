@@ -26,8 +26,10 @@ TrustPass::TrustPass(std::shared_ptr<const gl::SceneBuffers> scene, std::shared_
       program_(gl::Program::compute(
           gl::display_shaders(), "trust.comp",
           {"FRAMES " + std::to_string(kFrames), "COMPARISONS " + std::to_string(kComparisonsKept),
-           "CODED_AWAY " + std::to_string(kCodedAway), "BESIDE_EDGE " + std::to_string(kBesideEdge),
-           "ANYWHERE_PX " + std::to_string(kAnywherePx)})),
+           "CODED_AWAY " + std::to_string(kCodedAway), "MOSTLY_CODED_AWAY " + std::to_string(kMostlyCodedAway),
+           "BESIDE_EDGE " + std::to_string(kBesideEdge), "ANYWHERE_PX " + std::to_string(kAnywherePx),
+           "TOLD_STEPS " + std::to_string(kToldSteps), "LOSS_CONTRASTS " + std::to_string(kLossContrasts),
+           "STEPS_A_CONTRAST " + std::to_string(kStepsAContrast)})),
       camera_(sizeof(gl::CameraBlock), "trusted camera"),
       view_(sizeof(gl::CameraBlock), "trusted view"),
       node_px_(GL_R32F, 16, "node px"),

@@ -62,7 +62,8 @@ bool is_coded_away(std::size_t doubt) {
 /// aside by a Cauchy distribution; grey changes by that times the contrast around.
 double assumed_risk(std::size_t doubt, double wrong_levels) {
   const int number = static_cast<int>(doubt);
-  const DoubtKind kind = number < kBesideEdge ? kind_of(number) : DoubtKind{number - kBesideEdge, 1, Compared::off};
+  const DoubtKind kind =
+      number < kBesideEdge ? kind_of(number) : DoubtKind{2 * (number - kBesideEdge), 1, Compared::off};
   const auto& [px, anyway] = kAssumedOf[static_cast<std::size_t>(kind.compared)];
   const double half = kind.levels() * (px + kOfReach * kind.px());
   return anyway + (1 - anyway) * 2 / std::numbers::pi * std::atan(half / wrong_levels);
@@ -124,6 +125,11 @@ void ShownFidelity::begin_anew(RobotTime from) {
   of_late_ = beside_patches_;
   learn();
   choose({});
+}
+
+void ShownFidelity::told(const LossShares& lost) {
+  lost_ = lost;
+  learn_coded_away();
 }
 
 void ShownFidelity::shown(RememberedView picture) {
@@ -194,18 +200,32 @@ void ShownFidelity::add(const ByKind& counts, ByKind& to) {
 }
 
 void ShownFidelity::learn() {
-  Counts all;
   for (std::size_t i = 0; i < risks_.size(); ++i) {
     if (is_coded_away(i)) continue;
     const double risk = assumed_risk(i, options_.wrong_levels);
     risks_[i] = (of_late_[i].wrong + assumed_ * risk) / (of_late_[i].all + assumed_);
-    all.all += of_late_[i].all;
-    all.wrong += of_late_[i].wrong;
   }
-  // What coding took away comparisons hardly tell: it comes on top of what is wrong elsewhere.
-  const double elsewhere = all.all > 0 ? all.wrong / all.all : 0;
-  for (std::size_t i = kCodedAway; is_coded_away(i); ++i)
-    risks_[i] = std::min(1.0, elsewhere + share_lost(static_cast<int>(i - kCodedAway) + 1));
+  learn_coded_away();
+}
+
+// What coding took away comparisons hardly tell: it comes on top of what is wrong elsewhere at such a contrast.
+void ShownFidelity::learn_coded_away() {
+  std::array<Counts, kLossContrasts> elsewhere{};
+  for (int doubt = 0; doubt < kCodedAway; ++doubt) {
+    Counts& at_contrast = elsewhere[static_cast<std::size_t>(loss_contrast(kind_of(doubt).contrast))];
+    at_contrast.all += of_late_[static_cast<std::size_t>(doubt)].all;
+    at_contrast.wrong += of_late_[static_cast<std::size_t>(doubt)].wrong;
+  }
+  for (int contrast = 0; contrast < kLossContrasts; ++contrast) {
+    const auto& [all, wrong] = elsewhere[static_cast<std::size_t>(contrast)];
+    const int middle = kStepsAContrast * contrast + kStepsAContrast / 2;
+    const double assumed = assumed_risk(static_cast<std::size_t>(doubt_of({middle})), options_.wrong_levels);
+    const double beside = (wrong + assumed_ * assumed) / (all + assumed_);
+    for (int step = 1; step <= kToldSteps; ++step)
+      risks_[static_cast<std::size_t>(coded_away(step, contrast))] =
+          std::min(1.0, beside + lost_[static_cast<std::size_t>(step - 1)][static_cast<std::size_t>(contrast)]);
+  }
+  risks_[kMostlyCodedAway] = 1;
 }
 
 void ShownFidelity::choose(const ByKind& pixels) {

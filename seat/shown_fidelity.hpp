@@ -51,6 +51,8 @@ class ShownFidelity {
  public:
   explicit ShownFidelity(FidelityOptions options = {});
 
+  /// What the newest images that came have lost where coding took something away, as told with them.
+  void told(const LossShares& lost);
   /// Was shown; later than what was shown before, else all that is kept goes.
   void shown(RememberedView picture);
   /// What is shown from this instant on is drawn another way: what was wrong in patches before had a reason that is no
@@ -77,6 +79,7 @@ class ShownFidelity {
   static ByKind count(const cv::Mat& seen, const cv::Mat& doubt, const cv::Mat& wrong);
   static void add(const ByKind& counts, ByKind& to);
   void learn();
+  void learn_coded_away();
   void choose(const ByKind& pixels);
 
   FidelityOptions options_;
@@ -85,7 +88,8 @@ class ShownFidelity {
   ByKind of_late_{}, beside_patches_{};  // all of late, and what lay in no patch that was wrong
   double assumed_ = 1;                   // pixels of each kind that are taken to have been as assumed
   KindRisks risks_{};                    // of a pixel of each kind to be wrong
-  double smoothed_ = 0;                  // share of pixels that agree with a coded image, and not with the truth
+  LossShares lost_ = even_loss_shares();
+  double smoothed_ = 0;  // share of pixels that agree with a coded image, and not with the truth
   ExactKinds exact_;
 };
 

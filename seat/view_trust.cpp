@@ -39,6 +39,7 @@ void ViewTrust::collect() {
 
 // Nothing of OpenGL: images are heard in between pictures, whatever context is current.
 void ViewTrust::heard(const link::LineImage& image, const PosedFrame* posed) {
+  shown_.told(image.loss_shares);
   auto fidelity = shown_.arrived(image.captured, image.bgr, image.lost);
   if (!fidelity) return;
   if (fidelity->psnr_db) switch_.compared(now(), *fidelity->psnr_db);

@@ -11,7 +11,7 @@ namespace foresight {
 
 /// Grows whenever the messages change so that an older program would misunderstand them. Only how Hello and Welcome
 /// begin stays as it is, to the name of who says it: so two versions can tell each other which they are.
-inline constexpr std::uint32_t kLineProtocol = 3;
+inline constexpr std::uint32_t kLineProtocol = 4;
 
 /// Of a file's bytes: FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo). Tells apart what differs by mistake; who wants
 /// to deceive is for the line's security to keep out. Never 0.

@@ -5,6 +5,19 @@
 #include "common/error.hpp"
 
 namespace foresight::link {
+namespace {
+
+/// As they were before they told of contrasts.
+struct NotesOfSteps {
+  StereoFrame frame;
+  std::vector<std::uint8_t> left_lost;
+  template <typename Self, typename V>
+  static void visit(Self& m, V&& v) {
+    v("frame", m.frame)("left_lost", m.left_lost);
+  }
+};
+
+}  // namespace
 
 Bytes to_notes(const PairNotes& notes) {
   const Bytes cdr = to_cdr(notes);
@@ -22,8 +35,10 @@ std::optional<PairNotes> from_notes(std::span<const std::uint8_t> notes) {
   if (uncompress(cdr.data(), &size, notes.data(), notes.size()) != Z_OK) return std::nullopt;
   const auto whole = std::span<const std::uint8_t>(cdr).first(size);
   if (auto out = from_cdr<PairNotes>(whole)) return out;
-  auto frame = from_cdr<StereoFrame>(whole);
-  return frame ? std::optional(PairNotes{std::move(*frame), {}}) : std::nullopt;
+  if (auto older = from_cdr<NotesOfSteps>(whole))
+    return PairNotes{std::move(older->frame), std::move(older->left_lost), {}};
+  auto oldest = from_cdr<StereoFrame>(whole);
+  return oldest ? std::optional(PairNotes{std::move(*oldest), {}, {}}) : std::nullopt;
 }
 
 }  // namespace foresight::link

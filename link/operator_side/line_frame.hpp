@@ -11,6 +11,7 @@
 #include "link/clocks/clock_tracker.hpp"
 #include "link/control/control_seat.hpp"
 #include "link/messages/foresight_messages.hpp"
+#include "scene/coding_loss.hpp"
 #include "scene/posed_frame.hpp"
 
 namespace foresight::link {
@@ -21,6 +22,7 @@ struct LineImage {
   Duration uncertainty{0};             ///< of it, half width
   std::optional<Pose> T_world_camera;  ///< at `captured`; nothing where the robot side does not know it
   cv::Mat lost = {};                   ///< what coding took away from it (scene/coding_loss.hpp); empty: not known
+  LossShares loss_shares = even_loss_shares();  ///< of its pixels
 };
 
 /// Where the joints were when the left image was taken.

@@ -54,12 +54,11 @@ LineFramePtr PairIntake::refuse(std::string why) {
   return nullptr;
 }
 
-LineFramePtr PairIntake::hand_out(const StereoFrame& message, StereoPicture picture, cv::Mat left_lost,
-                                  std::size_t bytes, OperatorTime arrived, const RobotClockTracker& robot) {
+std::shared_ptr<LineFrame> PairIntake::hand_out(const StereoFrame& message, StereoPicture picture, std::size_t bytes,
+                                                OperatorTime arrived, const RobotClockTracker& robot) {
   auto out = std::make_shared<LineFrame>(line_frame(message, robot, arrived, now()));
   out->image[0].bgr = std::move(picture.left);
   out->image[1].bgr = std::move(picture.right);
-  out->image[0].lost = std::move(left_lost);
   out->bytes = bytes;
   newest_ = message.number;
   ++counts_.pairs;
@@ -81,7 +80,7 @@ LineFramePtr PairIntake::take(const StereoFrame& message, std::size_t bytes, con
   const auto right = decode_jpeg(message.right.data, size_of(message.right), true);
   if (!left || !right)
     return refuse(std::string(left ? "right" : "left") + ".data is no JPEG in colour of the image's size");
-  return hand_out(message, {*left, *right, RobotTime{message.left.capture_ns}}, {}, bytes, arrived, robot);
+  return hand_out(message, {*left, *right, RobotTime{message.left.capture_ns}}, bytes, arrived, robot);
 }
 
 void PairIntake::count_packet(std::span<const std::uint8_t> packet) {
@@ -115,7 +114,12 @@ LineFramePtr PairIntake::frame_of(const foresight::ReceivedPair& pair, OperatorT
   }
   auto lost = loss_of(notes->left_lost);
   if (!lost) return refuse("what coding took away from a pair is not told in steps of its tiles");
-  return hand_out(message, picture, std::move(*lost), pair.bytes, arrived, robot);
+  const auto shares = loss_shares_of(notes->loss_shares);
+  if (!shares) return refuse("what coding took away from a pair is not told by contrast");
+  auto out = hand_out(message, picture, pair.bytes, arrived, robot);
+  out->image[0].lost = std::move(*lost);
+  out->image[0].loss_shares = *shares;
+  return out;
 }
 
 LineFramePtr PairIntake::take(const StereoPiece& piece, const RobotClockTracker& robot,

@@ -56,8 +56,8 @@ class PairIntake {
   void count_packet(std::span<const std::uint8_t> packet);
   std::string wrong_with(const StereoFrame& message, const RobotClockTracker& robot) const;
   LineFramePtr refuse(std::string why);
-  LineFramePtr hand_out(const StereoFrame& message, StereoPicture picture, cv::Mat left_lost, std::size_t bytes,
-                        OperatorTime arrived, const RobotClockTracker& robot);
+  std::shared_ptr<LineFrame> hand_out(const StereoFrame& message, StereoPicture picture, std::size_t bytes,
+                                      OperatorTime arrived, const RobotClockTracker& robot);
   LineFramePtr frame_of(const foresight::ReceivedPair& pair, OperatorTime arrived, const RobotClockTracker& robot);
 
   const std::uint64_t reader_;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "link/messages/pair_notes.hpp"
-#include "scene/coding_loss.hpp"
 
 namespace foresight::link {
 
@@ -28,16 +27,20 @@ void PairToCode::code(const Clock& clock) {
   frame_.stamps.taken_ns = clock.now().ns;
   // Notes are of the pair's share. When it was coded is not known yet: it takes the same number of bytes; and what is
   // lost, about as many as of the last pair.
-  PairNotes notes{std::move(frame_), coder_->left_lost};
+  PairNotes notes{std::move(frame_), coder_->left_lost, coder_->loss_shares};
   const std::size_t noted = to_notes(notes).size();
   wish_.bytes -= std::min(noted, wish_.bytes / 2);
   CodedPair coded = coder_->encoder->encode(picture_, wish_);
   notes.left_lost.clear();
+  notes.loss_shares.clear();
   if (const auto come = coder_->decoder->decode(coded)) {
     const cv::Mat lost = coding_loss(picture_.left, come->left);
     notes.left_lost.assign(lost.begin<std::uint8_t>(), lost.end<std::uint8_t>());
+    coder_->lost.add(picture_.left, come->left, lost);
+    notes.loss_shares = to_bytes(coder_->lost.shares());
   }
   coder_->left_lost = notes.left_lost;
+  coder_->loss_shares = notes.loss_shares;
   notes.frame.stamps.coded_ns = clock.now().ns;
   coded.notes = to_notes(notes);
   coded_ = std::move(coded);

@@ -19,6 +19,7 @@
 #include "common/clock.hpp"
 #include "link/messages/foresight_messages.hpp"
 #include "link/send_control/pair_sender.hpp"
+#include "scene/coding_loss.hpp"
 
 namespace foresight::link {
 
@@ -26,7 +27,8 @@ namespace foresight::link {
 struct StreamCoder {
   std::unique_ptr<PairEncoder> encoder = make_pair_encoder(Coding::h264);
   std::unique_ptr<PairDecoder> decoder = make_pair_decoder();
-  std::vector<std::uint8_t> left_lost{};  ///< of the last pair (PairNotes)
+  std::vector<std::uint8_t> left_lost{}, loss_shares{};  ///< of the last pair (PairNotes)
+  LossCount lost{};
 };
 
 /// A pair on its way through the coder. The coder is the stream's: one pair at a time is there.

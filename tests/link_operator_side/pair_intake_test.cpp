@@ -38,10 +38,11 @@ class Intake : public testing::Test {
     return intake_.counts().refusal;
   }
   /// A coded pair of `picture` with those notes, piece by piece, in a stream of its own.
-  LineFramePtr take_coded(const StereoFrame& notes, const StereoPicture& picture, const Bytes& left_lost = {}) {
+  LineFramePtr take_coded(const StereoFrame& notes, const StereoPicture& picture, const Bytes& left_lost = {},
+                          const Bytes& loss_shares = {}) {
     const auto encoder = make_pair_encoder(Coding::h264);
     CodedPair pair = encoder->encode(picture, {.number = 1, .bytes = 8000});
-    pair.notes = to_notes({notes, left_lost});
+    pair.notes = to_notes({notes, left_lost, loss_shares});
     const std::vector<std::uint8_t> bytes = to_bytes(pair);
     ++stream_;
     LineFramePtr out;
@@ -148,9 +149,14 @@ TEST_F(Intake, ACodedPairsNotesAreHeldAgainstItsPictures) {
   refused(notes(2), moving_picture(clock_.now(), {160, 120}, /*colour=*/false), "not in colour");
   EXPECT_FALSE(take_coded(notes(2), picture, {1, 2, 3}));
   EXPECT_THAT(intake_.counts().refusal, HasSubstr("what coding took away"));
-  const LineFramePtr frame = take_coded(notes(2), picture, Bytes(kLossRows * kLossColumns, 3));
+  EXPECT_FALSE(take_coded(notes(2), picture, {}, {1, 2, 3}));
+  EXPECT_THAT(intake_.counts().refusal, HasSubstr("not told by contrast"));
+  LossShares shares;
+  shares.fill({0, 0.04, 0.16, 0.36, 1});
+  const LineFramePtr frame = take_coded(notes(2), picture, Bytes(kLossRows * kLossColumns, 3), to_bytes(shares));
   ASSERT_TRUE(frame) << intake_.counts().refusal;
   EXPECT_EQ(cv::countNonZero(frame->image[0].lost == 3), kLossRows * kLossColumns);
+  EXPECT_EQ(frame->image[0].loss_shares, loss_shares_of(to_bytes(shares)));
   EXPECT_TRUE(take_coded(notes(3), picture)->image[0].lost.empty());
 }
 
@@ -203,27 +209,43 @@ TEST(PairNotes, ComeBackAndRefuseAnythingElse) {
   StereoFrame frame = random_message<StereoFrame>(random);
   frame.left.data.clear();
   frame.right.data.clear();
-  const Bytes notes = to_notes({frame, {0, 3, 6}});
+  const Bytes notes = to_notes({frame, {0, 3, 6}, {7, 255}});
   const auto back = from_notes(notes);
   ASSERT_TRUE(back);
   EXPECT_EQ(to_cdr(back->frame), to_cdr(frame));
   EXPECT_EQ(back->left_lost, (Bytes{0, 3, 6}));
+  EXPECT_EQ(back->loss_shares, (Bytes{7, 255}));
   for (std::size_t size = 0; size < notes.size(); ++size) EXPECT_FALSE(from_notes(std::span(notes).first(size)));
   StereoFrame large;
   large.left.data.resize(kMostNotesInflated);
-  EXPECT_THROW(to_notes({large, {}}), std::exception);
+  EXPECT_THROW(to_notes({large, {}, {}}), std::exception);
 }
 
-TEST(PairNotes, OfOlderRecordingsAreFramesAlone) {
-  std::mt19937 random(7);
-  const Bytes cdr = to_cdr(random_message<StereoFrame>(random));
+/// As older programs wrote them.
+Bytes deflated(const Bytes& cdr) {
   uLongf size = compressBound(cdr.size());
-  Bytes notes(size);
-  ASSERT_EQ(compress(notes.data(), &size, cdr.data(), cdr.size()), Z_OK);
-  const auto back = from_notes(std::span(notes).first(size));
+  Bytes out(size);
+  EXPECT_EQ(compress(out.data(), &size, cdr.data(), cdr.size()), Z_OK);
+  out.resize(size);
+  return out;
+}
+
+TEST(PairNotes, OfOlderRecordingsTellLess) {
+  std::mt19937 random(7);
+  const StereoFrame frame = random_message<StereoFrame>(random);
+  const Bytes alone = to_cdr(frame);
+  auto back = from_notes(deflated(alone));
   ASSERT_TRUE(back);
-  EXPECT_EQ(to_cdr(back->frame), cdr);
-  EXPECT_TRUE(back->left_lost.empty());
+  EXPECT_EQ(to_cdr(back->frame), alone);
+  EXPECT_TRUE(back->left_lost.empty() && back->loss_shares.empty());
+
+  Bytes with_steps = to_cdr(PairNotes{frame, {0, 3, 6, 1}, {}});
+  with_steps.resize(with_steps.size() - sizeof(std::uint32_t));  // the number of shares
+  back = from_notes(deflated(with_steps));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(to_cdr(back->frame), alone);
+  EXPECT_EQ(back->left_lost, (Bytes{0, 3, 6, 1}));
+  EXPECT_TRUE(back->loss_shares.empty());
 }
 
 // They share a thin line with pictures of some 5,000 bytes.
@@ -240,7 +262,7 @@ TEST(PairNotes, AreSmall) {
     for (double* value : {&image->t_world_camera.position.x, &image->t_world_camera.position.y,
                           &image->t_world_camera.position.z, &image->t_world_camera.orientation.x})
       *value = any();
-  EXPECT_LT(to_notes({frame, {}}).size(), 500u);
+  EXPECT_LT(to_notes({frame, {}, {}}).size(), 500u);
 }
 
 // Bytes that anybody may send: nothing crashes, and nothing is shown.

@@ -50,6 +50,52 @@ TEST(CodingLoss, PixelsOfGoodTilesAreKept) {
   EXPECT_EQ(cv::countNonZero(~kept_mask({}, {33, 21})), 0) << "nothing is known to be lost";
 }
 
+// Left halves of tiles are flat and stay, of right halves, which are striped, a part of a stripe is smoothed away.
+TEST(CodingLoss, IsCountedByContrast) {
+  cv::Mat taken = image();
+  for (int x = 0; x < taken.cols; ++x)
+    if (x % kTile >= kTile / 2 && x % 2 == 0) taken.col(x) = cv::Scalar(140, 140, 140);
+  cv::Mat came = taken.clone();
+  for (int y = 0; y < came.rows; y += 4)
+    for (int x = kTile / 2; x < came.cols; x += kTile) came.at<cv::Vec3b>(y, x) = {100, 100, 100};
+  const cv::Mat steps = coding_loss(taken, came);
+  ASSERT_EQ(cv::countNonZero(steps != 2), 0) << "1.6 %";
+  LossCount count;
+  EXPECT_EQ(count.shares(), even_loss_shares());
+  for (int i = 0; i < 20; ++i) count.add(taken, came, steps);
+  const auto& of_step = count.shares()[1];
+  EXPECT_LT(of_step[0], 2e-3) << "flat";
+  EXPECT_GT(of_step[3], 0.2) << "among stripes";
+  EXPECT_EQ(count.shares()[0], even_loss_shares()[0]) << "no tile is of this step";
+  for (int i = 0; i < 100; ++i) count.add(taken, taken, coding_loss(taken, taken));
+  EXPECT_NEAR(count.shares()[1][0], share_lost(2), 1e-3) << "what was long ago tells nothing";
+}
+
+TEST(CodingLoss, SharesFitBytes) {
+  LossShares shares = even_loss_shares();
+  shares[3] = {0, 0.001, 0.03, 0.5, 1};
+  const auto back = loss_shares_of(to_bytes(shares));
+  ASSERT_TRUE(back);
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    for (std::size_t k = 0; k < shares[i].size(); ++k)
+      EXPECT_NEAR((*back)[i][k], shares[i][k], 0.13 * shares[i][k]) << i << ' ' << k;
+  EXPECT_EQ(loss_shares_of({}), even_loss_shares());
+  EXPECT_FALSE(loss_shares_of(std::vector<std::uint8_t>(kToldSteps * kLossContrasts + 1)));
+}
+
+TEST(Contrast, IsToldInSteps) {
+  cv::Mat grey(9, 40, CV_8UC1, cv::Scalar(100));
+  grey.colRange(20, 40) = 120;
+  const cv::Mat steps = contrast_steps(grey);
+  const double levels = std::sqrt(3 * 400 / 8.0);  // three of eight neighbours are on the other side
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      EXPECT_EQ(steps.at<uchar>(y, x), x == 19 || x == 20 ? static_cast<int>(4 * std::log2(1 + levels / 3)) : 0);
+  grey.colRange(20, 40) = 255;
+  EXPECT_EQ(contrast_steps(grey).at<uchar>(0, 20), kContrastSteps - 1);
+  EXPECT_NEAR(contrast_levels(4), 3.55, 0.01);
+}
+
 TEST(CodingLoss, WhatOthersTellIsLookedAt) {
   std::array<std::uint8_t, kLossRows * kLossColumns> steps{};
   steps[kLossColumns + 3] = kLossSteps - 1;

@@ -448,7 +448,7 @@ TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
                                            {doubt_of({15, 1, Compared::never}), 0.01},
                                            {doubt_of({0, 0, Compared::suspect}), 0.0},
                                            {doubt_of({0, 0, Compared::same}), 0.1},
-                                           {kBesideEdge + 8, 0.02},
+                                           {kBesideEdge + 4, 0.02},
                                            {kBesideEdge, 0.5}};
   const ShownFidelity before, after = learnt_of(learnt);
   for (const auto& [doubt, wrong] : learnt)

@@ -122,25 +122,54 @@ TEST(ShownFidelity, WhatCodingTookAwayIsNotCompared) {
 }
 
 // Of half of a picture coding took some percent: how often that is wrong no image tells, so that it is as told.
-TEST(ShownFidelity, WhatCodingTookAwayCountsAsMuchAsItIs) {
-  const auto exact_beside = [](int step, double wrong_elsewhere) {
-    ShownFidelity fidelity;
+class CodedAway {
+ public:
+  /// Shares that are told, by contrast, of tiles of each step; nothing: no robot tells them.
+  explicit CodedAway(const std::optional<std::array<double, kLossContrasts>>& told = {}) {
+    if (!told) return;
+    LossShares shares;
+    shares.fill(*told);
+    fidelity_.told(shares);
+  }
+  /// `contrast`: loss_contrast().
+  bool is_exact(int step, int contrast, double wrong_elsewhere = 0) {
+    const int doubt = coded_away(step, contrast);
     for (int i = 0; i < 20; ++i) {
-      RememberedView shown = view(i * 100ms);
-      shown.doubt(cv::Rect(0, 0, kWidth / 2, kHeight)) = kCodedAway + step - 1;
-      fidelity.shown(std::move(shown));
+      RememberedView shown = view(++rounds_ * 100ms);
+      shown.doubt = doubt_of({kStepsAContrast * contrast, 0, Compared::same});
+      shown.doubt(cv::Rect(0, 0, kWidth / 2, kHeight)) = doubt;
+      fidelity_.shown(std::move(shown));
       cv::Mat truth = image();
       truth(cv::Rect(kWidth / 2, 0, static_cast<int>(wrong_elsewhere * kWidth / 2), kHeight)) =
           cv::Scalar(160, 160, 160);
-      EXPECT_TRUE(fidelity.arrived(at(i * 100ms), truth));
+      EXPECT_TRUE(fidelity_.arrived(at(rounds_ * 100ms), truth));
     }
-    return bool(fidelity.exact()[static_cast<std::size_t>(kCodedAway + step - 1)]);
-  };
-  EXPECT_TRUE(exact_beside(1, 0));
-  EXPECT_TRUE(exact_beside(2, 0)) << "2.2 % of one half, nothing of the other";
-  EXPECT_FALSE(exact_beside(3, 0));
-  EXPECT_FALSE(exact_beside(kLossSteps - 1, 0));
-  EXPECT_FALSE(exact_beside(1, 0.03)) << "what is wrong elsewhere is wrong there, too";
+    return fidelity_.exact()[static_cast<std::size_t>(doubt)];
+  }
+
+ private:
+  ShownFidelity fidelity_;
+  int rounds_ = 0;
+};
+
+TEST(ShownFidelity, WhatCodingTookAwayCountsAsMuchAsItIs) {
+  EXPECT_TRUE(CodedAway().is_exact(1, 0));
+  EXPECT_TRUE(CodedAway().is_exact(2, 0)) << "2.2 % of one half, nothing of the other";
+  EXPECT_FALSE(CodedAway().is_exact(3, 0));
+  EXPECT_FALSE(CodedAway().is_exact(kLossSteps - 1, 0));
+  EXPECT_FALSE(CodedAway().is_exact(1, 0, 0.03)) << "what is wrong elsewhere is wrong there, too";
+}
+
+TEST(ShownFidelity, CodingSparesWhatIsFlat) {
+  CodedAway lossy({{0.002, 0.01, 0.1, 0.3, 0.5}});
+  EXPECT_TRUE(lossy.is_exact(3, 0)) << "4 % of its tile, and next to nothing of what is flat there";
+  EXPECT_TRUE(lossy.is_exact(kToldSteps, 1));
+  EXPECT_FALSE(lossy.is_exact(1, 2));
+  EXPECT_FALSE(lossy.is_exact(kToldSteps + 1, 0)) << "of which nothing is told";
+  CodedAway kept({{0, 0, 0, 0, 0}});
+  EXPECT_TRUE(kept.is_exact(1, 3));
+  EXPECT_FALSE(kept.is_exact(1, 3, 0.08)) << "of this contrast much is wrong elsewhere";
+  EXPECT_TRUE(kept.is_exact(1, 1)) << "and little of that";
 }
 
 // One column in 72 is wrong: 1.4 %.
@@ -164,6 +193,8 @@ TEST(ShownFidelity, ImagesOfAThinLineAgreeMoreThanTheTruth) {
 
 TEST(ShownFidelity, KindsOfDoubtFitAByte) {
   static_assert(kKindsEnd <= kUnconfirmed);
+  static_assert(coded_away(kToldSteps, kLossContrasts - 1) + 1 == kMostlyCodedAway);
+  static_assert(coded_away(kToldSteps + 1, 0) == kMostlyCodedAway && coded_away(1, 0) == kCodedAway);
   for (int i = 0; i < DoubtKind::kCount; ++i) EXPECT_EQ(doubt_of(kind_of(i)), i);
   EXPECT_LT(DoubtKind::kCount, kUnconfirmed);
 }
