@@ -107,17 +107,21 @@ bool TourPlan::clear(const JointVector& q) {
   return what == nullptr;
 }
 
-/// From where the tour has come to; then it has come to the step's end.
+/// From where the tour has come to; then it has come to the step's end. Where that is too close to something, it may
+/// part.
 bool TourPlan::clear_all_the_way(const ToolStep& step) {
   ToolScript script(rig_, {step}, {.pan = 0, .tilt = 0});
   script.begin_at(at_);
   JointValues end = at_;
+  bool was_clear = false;
   while (const auto next = script.step(kLook, {})) {
     end = *next;
-    if (!clear(joints_of({end.data(), rig_.joints.size()}, hand_.arm_joints))) return false;
+    const bool is_clear = clear(joints_of({end.data(), rig_.joints.size()}, hand_.arm_joints));
+    if (was_clear && !is_clear) return false;
+    was_clear = is_clear;
   }
-  at_ = end;
-  return true;
+  if (was_clear) at_ = end;
+  return was_clear;
 }
 
 std::vector<ToolStep> TourPlan::with_tool_down(int count) {
@@ -127,12 +131,12 @@ std::vector<ToolStep> TourPlan::with_tool_down(int count) {
     const IkAnswer answer = kinematics_.solve(rig_.T_world_robot.inverse() * pose);
     if (answer.status != IkStatus::solved) continue;
     ++reached_;
-    if (!clear(answer.q)) {
-      in_the_way_there_ = in_the_way_;
-      continue;
-    }
     const auto what = out.size() % 2 == 0 ? ToolStep::What::there : ToolStep::What::line;
-    out.push_back({what, pose, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5});
+    const ToolStep step{what, pose, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5};
+    if (clear(answer.q) && clear_all_the_way(step))
+      out.push_back(step);
+    else
+      in_the_way_there_ = in_the_way_;
   }
   return out;
 }

@@ -21,6 +21,7 @@ TEST(ToolScript, ATourKeepsWithinJointsAndAwayFromObstacles) {
     script.begin_at(at);
     constexpr double kStep = 0.02;
     int steps = 0;
+    bool was_clear = false;
     for (; steps < 10000; ++steps) {
       const auto next = script.step(kStep, {});
       if (!next) break;
@@ -31,7 +32,11 @@ TEST(ToolScript, ATourKeepsWithinJointsAndAwayFromObstacles) {
         EXPECT_LE((*next)[i], drive.max_position + 1e-9);
       }
       at = *next;
+      const char* const in_the_way = shape->obstructed({at.data(), rig.joints.size()});
+      ASSERT_FALSE(was_clear && in_the_way != nullptr) << "seed " << seed << ", step " << steps << ": " << in_the_way;
+      was_clear = in_the_way == nullptr;
     }
+    EXPECT_TRUE(was_clear);
     EXPECT_GT(steps, 500) << "seed " << seed;
     EXPECT_LT(steps, 10000) << "it never ended";
   }
