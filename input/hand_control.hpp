@@ -41,6 +41,7 @@ struct HandOptions {
   /// The arm between the robot's base and the tool, within the gate's limits; without it single joints can be moved.
   std::optional<ArmChain> arm;
   std::vector<std::size_t> arm_joints;   ///< of the robot, per joint of `arm`
+  std::size_t tip = 0;                   ///< of the URDF's links, the one that the tool is on
   std::optional<std::size_t> pan, tilt;  ///< the joints that the device's pan and tilt rates move
   bool tilt_looks_down = true;           ///< larger positions of `tilt` look farther down
   double look_speed = 0.3;               ///< share of their velocity

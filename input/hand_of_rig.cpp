@@ -26,20 +26,6 @@ JointRole role_of(JointGroup group) {
   return JointRole::other;
 }
 
-// All joints between the root and the tool.
-void require_own_drives(const Rig& rig, const std::string& tool) {
-  const UrdfRobot& robot = *rig.robot;
-  auto link = static_cast<std::size_t>(std::ranges::find(robot.links, tool, &Node::name) - robot.links.begin());
-  for (; link > 0; link = static_cast<std::size_t>(robot.links[link].parent)) {
-    const UrdfJoint& joint = robot.joints[link - 1];
-    if (joint.mimic)
-      throw InputError(
-          rig.name, "joint '" + joint.name + "' follows another, but lies in the arm: its tool cannot be moved",
-          "give joints beyond it another group than `arm`, so that the tool is before it, or make it fixed "
-          "in the URDF");
-  }
-}
-
 ArmChain within(const ArmChain& chain, const HandOptions& options, const Pose& T_tip_tool, const std::string& where) {
   std::vector<ArmJoint> joints(chain.joints().begin(), chain.joints().end());
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -49,24 +35,28 @@ ArmChain within(const ArmChain& chain, const HandOptions& options, const Pose& T
     joints[i].velocity = joints[i].velocity_known ? std::min(joints[i].velocity, limits.velocity) : limits.velocity;
     joints[i].velocity_known = true;
   }
-  return {std::move(joints), chain.tip_at_zero() * T_tip_tool, where};
+  return {std::move(joints), chain.tip_at_zero() * T_tip_tool, where, chain.followers()};
 }
 
 }  // namespace
 
 std::string tool_link(const Rig& rig) {
   const UrdfRobot& robot = *rig.robot;
-  std::vector<int> arm_joints(robot.links.size(), 0);  // on the way from the root; parents come first
+  using Count = std::pair<int, int>;                  // of drives, then of what follows them
+  std::vector<Count> arm_joints(robot.links.size());  // on the way from the root; parents come first
   std::string found;
-  int most = 0;
+  Count most;
   bool two = false;
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    const auto child = static_cast<std::size_t>(robot.joints[i].child);
-    const bool arm = is_of(rig, JointGroup::arm, robot.joints[i].name);
-    arm_joints[child] = arm_joints[static_cast<std::size_t>(robot.links[child].parent)] + (arm ? 1 : 0);
-    if (!arm || arm_joints[child] < most) continue;
-    two = arm_joints[child] == most;
-    most = arm_joints[child];
+    const UrdfJoint& joint = robot.joints[i];
+    const auto child = static_cast<std::size_t>(joint.child);
+    const bool arm = joint.kind != UrdfJoint::Kind::fixed && is_of(rig, JointGroup::arm, mover_of(robot, i));
+    Count& here = arm_joints[child] = arm_joints[static_cast<std::size_t>(robot.links[child].parent)];
+    if (!arm) continue;
+    ++(joint.mimic ? here.second : here.first);
+    if (here < most) continue;
+    two = here == most;
+    most = here;
     found = robot.links[child].name;
   }
   if (found.empty()) throw InputError(rig.name, "has no arm joint that its URDF knows", "give joints the group `arm`");
@@ -109,8 +99,9 @@ HandOptions hand_options(const Rig& rig, const std::string& tip, const Pose& T_t
   }
   const bool any_arm = std::ranges::find(out.roles, JointRole::arm) != out.roles.end();
   if (!rig.robot || (!any_arm && tip.empty())) return out;
-  if (tip.empty()) require_own_drives(rig, tool_link(rig));
-  const ArmChain chain = arm_chain(*rig.robot, tip.empty() ? tool_link(rig) : tip, "", rig.name);
+  const std::string on = tip.empty() ? tool_link(rig) : tip;
+  const ArmChain chain = arm_chain(*rig.robot, on, "", rig.name);
+  out.tip = static_cast<std::size_t>(std::ranges::find(rig.robot->links, on, &Node::name) - rig.robot->links.begin());
   const std::vector<std::string> names = rig.joint_names();
   for (const ArmJoint& joint : chain.joints()) {
     const auto found = std::ranges::find(names, joint.name);

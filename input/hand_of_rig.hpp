@@ -6,8 +6,9 @@
 
 namespace foresight {
 
-/// The link that the rig's last arm joint moves: the farthest from the root. Throws InputError where two are equally
-/// far (two arms), or none of the rig's arm joints is in its URDF; the rig must have one.
+/// The link that the rig's last arm joint moves: the farthest from the root, by drives and then by what follows them.
+/// Throws InputError where two are equally far (two arms), or none of the rig's arm joints is in its URDF; the rig must
+/// have one.
 std::string tool_link(const Rig& rig);
 
 /// The place between the fingers, by the link `tip`: the middle of what the rig's grippers move beyond it, with the

@@ -55,7 +55,10 @@ void PathFollower::stand_at(const JointVector& q) noexcept {
 // directions: the gradient of log sqrt(det(J J')), Yoshikawa's measure, from the derivatives of the columns of J.
 JointVector PathFollower::freedom(const TipChange& change) const noexcept {
   const std::size_t n = chain_.size();
+  const std::span<const ArmLine> lines = chain_.lines();
   const double length = kinematics_.length();
+  LineChange by_line;
+  chain_.tip_pose(q_, by_line);
   std::array<Vector6, kMostArmJoints> solved;
   Eigen::Matrix<double, 6, 6> A = 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
   const auto weighted = [&](Vector6 column) {
@@ -70,18 +73,20 @@ JointVector PathFollower::freedom(const TipChange& change) const noexcept {
   const auto factor = A.llt();
   for (std::size_t i = 0; i < n; ++i) solved[i] = factor.solve(weighted(change[i]));
   JointVector wish = JointVector::Zero(static_cast<Eigen::Index>(n));
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    const Eigen::Vector3d v_k = change[k].head<3>(), w_k = change[k].tail<3>();
-    for (std::size_t i = 0; i < n; ++i) {
-      const Eigen::Vector3d v_i = change[i].head<3>(), w_i = change[i].tail<3>();
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const Eigen::Vector3d v_k = by_line[k].head<3>(), w_k = by_line[k].tail<3>();
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const Eigen::Vector3d v_i = by_line[i].head<3>(), w_i = by_line[i].tail<3>();
       Vector6 derivative;
       if (k <= i)
         derivative << w_k.cross(v_i), w_k.cross(w_i);
       else
         derivative << w_i.cross(v_k), Eigen::Vector3d::Zero();
-      wish[at] += weighted(derivative).dot(solved[i]);
+      wish[static_cast<Eigen::Index>(lines[k].joint)] +=
+          lines[k].factor * lines[i].factor * weighted(derivative).dot(solved[lines[i].joint]);
     }
+  }
+  for (Eigen::Index at = 0; at < wish.size(); ++at) {
     wish[at] = std::clamp(wish[at], -3.0, 3.0);
     const double half = 0.5 * (chain_.upper()[at] - chain_.lower()[at]);
     if (!std::isfinite(half)) continue;

@@ -71,7 +71,8 @@ struct SphericalArm::Elbow {
 
 std::optional<SphericalArm> SphericalArm::recognise(const ArmChain& chain) {
   const auto j = chain.joints();
-  if (j.size() != 7 || std::any_of(j.begin(), j.end(), [](const ArmJoint& joint) { return joint.slides; }))
+  if (j.size() != 7 || !chain.followers().empty() ||
+      std::any_of(j.begin(), j.end(), [](const ArmJoint& joint) { return joint.slides; }))
     return std::nullopt;
   const auto S = ball_centre(j.first(3)), W = ball_centre(j.last(3));
   if (!S || !W) return std::nullopt;

@@ -28,12 +28,6 @@ std::unique_ptr<RobotShape> gate_of(const Rig& rig) {
   return out;
 }
 
-// The link that the arm's last joint moves.
-std::size_t tool_of(const Rig& rig, const ArmChain& arm) {
-  const auto joint = std::ranges::find(rig.robot->joints, arm.joints().back().name, &UrdfJoint::name);
-  return static_cast<std::size_t>(joint->child);
-}
-
 // Links that any gripper of the rig moves, by a joint of its own or one that follows.
 std::vector<std::string> jaws_of(const Rig& rig, const HandOptions& hand) {
   const UrdfRobot& robot = *rig.robot;
@@ -74,7 +68,7 @@ ContactGuard::ContactGuard(const Rig& rig, const HandOptions& hand, std::shared_
       model_(*rig.robot, urdf_joints(rig), scene_.get(), rig.T_world_robot, rig.name),
       gate_(gate_of(rig)),
       T_world_base_(rig.T_world_robot),
-      tool_(tool_of(rig, *hand_.arm)),
+      tool_(hand_.tip),
       jaw_names_(jaws_of(rig, hand_)) {
   const std::vector<double> anywhere(rig.joints.size(), 0.0);
   sliding_.emplace(model_, kinematics_, urdf_joints(rig), anywhere, T_world_base_, gate_.get(), rig.name);

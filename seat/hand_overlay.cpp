@@ -38,10 +38,6 @@ bool hangs_on(const UrdfRobot& robot, std::size_t link, std::size_t on) {
   return false;
 }
 
-std::size_t child_of(const UrdfRobot& robot, const std::string& joint) {
-  return static_cast<std::size_t>(std::ranges::find(robot.joints, joint, &UrdfJoint::name)->child);
-}
-
 std::string ghost_words(const HandSight& sight, std::span<const std::string> names) {
   const GhostHand& ghost = sight.touch.ghost;
   if (ghost.reason == GhostReason::contact || ghost.reason == GhostReason::gate || !sight.touch.known)
@@ -61,7 +57,7 @@ HandOverlay::HandOverlay(const Rig& rig, const HandOptions& hand) : rig_(rig), h
   for (std::string& name : joints)
     if (std::ranges::find(robot.joints, name, &UrdfJoint::name) == robot.joints.end()) name.clear();
   links_.emplace(robot, joints, rig.T_world_robot, rig.name);
-  tool_ = child_of(robot, hand_.arm->joints().back().name);
+  tool_ = hand_.tip;
   for (std::size_t i = 0; i < robot.links.size(); ++i)
     if (hangs_on(robot, i, tool_) && !robot.body(i).triangles.empty()) gripper_.push_back({i, wire_of(robot.body(i))});
   T_tool_part_.resize(gripper_.size());

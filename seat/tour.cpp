@@ -72,7 +72,7 @@ class TourPlan {
 void TourPlan::look_about() {
   const Pose& T_world_base = rig_.T_world_robot;
   const double reach = chain().reach();
-  const ArmJoint& first = chain().joints().front();
+  const ArmLine& first = chain().lines().front();
   const double foot = (T_world_base * first.point).z();
   const double tool = (T_world_base * chain().tip_pose(chain().middle())).translation().z();
   const bool turned_over = !first.slides && (T_world_base.linear() * first.axis).z() < -0.5;

@@ -1,5 +1,6 @@
 #include "apps/bench/prediction_ik.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -23,15 +24,13 @@ class Judge {
     int link = find(options.tip);
     for (const int base = options.base.empty() ? 0 : find(options.base); link != base;
          link = robot_.links[static_cast<std::size_t>(link)].parent)
-      joints_.insert(joints_.begin(), static_cast<std::size_t>(link - 1));
+      joints_.insert(joints_.begin(), driven(static_cast<std::size_t>(link - 1)));
   }
   Pose tip(const JointVector& q) const {
     Pose T = Pose::Identity();
-    Eigen::Index next = 0;
-    for (const std::size_t j : joints_) {
-      const UrdfJoint& joint = robot_.joints[j];
-      T = T * joint.T_parent_joint;
-      if (joint.kind != UrdfJoint::Kind::fixed) T = T * joint_transform(joint, q[next++]);
+    for (const Driven& joint : joints_) {
+      const double at = joint.offset + (joint.by < 0 ? 0 : joint.factor * q[joint.by]);
+      T = T * joint.joint->T_parent_joint * joint_transform(*joint.joint, at);
     }
     return T;
   }
@@ -42,6 +41,18 @@ class Judge {
   }
 
  private:
+  struct Driven {
+    const UrdfJoint* joint;
+    Eigen::Index by;  // of the chain's joints; -1: none
+    double factor, offset;
+  };
+  Driven driven(std::size_t index) const {
+    const JointSource source = source_of(robot_, index);
+    const std::string& leader = robot_.joints[static_cast<std::size_t>(source.joint)].name;
+    const auto by = std::ranges::find(chain_.joints(), leader, &ArmJoint::name);
+    const bool none = by == chain_.joints().end();
+    return {&robot_.joints[index], none ? -1 : by - chain_.joints().begin(), source.factor, source.offset};
+  }
   int find(const std::string& name) const {
     std::size_t i = 0;
     while (robot_.links[i].name != name) ++i;  // read_arm_chain has found it before
@@ -50,7 +61,7 @@ class Judge {
 
   const ArmChain& chain_;
   UrdfRobot robot_;
-  std::vector<std::size_t> joints_;
+  std::vector<Driven> joints_;
 };
 
 struct Solved {

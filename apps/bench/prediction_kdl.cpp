@@ -64,6 +64,7 @@ struct Solvers {
 }  // namespace
 
 std::optional<KdlPeer> make_kdl_peer(const ArmChain& chain) {
+  if (!chain.followers().empty()) return std::nullopt;  // KDL's chains know none
   const auto solvers = std::make_shared<Solvers>(chain);
   const KDL::JntArray zero(static_cast<unsigned>(chain.size()));
   return KdlPeer{[solvers](const Pose& T) {

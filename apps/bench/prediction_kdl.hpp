@@ -13,7 +13,8 @@ struct KdlPeer {
   std::function<JointVector(const Pose&)> lma;    ///< weights 1, 1e-8, start 0
 };
 
-/// Nothing where this was built without KDL. `chain` need not outlive the peer.
+/// Nothing where this was built without KDL, and for an arm with joints that follow others. `chain` need not outlive
+/// the peer.
 std::optional<KdlPeer> make_kdl_peer(const ArmChain& chain);
 
 }  // namespace foresight

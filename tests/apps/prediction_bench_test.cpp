@@ -67,7 +67,6 @@ TEST(Prediction, WrongInputIsRefused) {
       {{"/nowhere.urdf", "--tip", "arm_7"}, "/nowhere.urdf"},
       {{kArm, "--tip", "arm_77"}, "did you mean 'arm_7'"},
       {{kArm, "--tip", "stand"}, "no moving joint"},
-      {{kArm, "--tip", "finger_right"}, "follows another"},
       {{kArm, "--tip", "arm_7", "--path", "/nowhere.csv"}, "/nowhere.csv"},
       {{kArm, "--tip", "arm_7", "--path", no_pose}, "no pose"},
       {{kArm, "--tip", "arm_7", "--path", short_row}, "b.csv:2"},

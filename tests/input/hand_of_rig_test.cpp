@@ -6,7 +6,10 @@
 #include <algorithm>
 
 #include "common/error.hpp"
+#include "rig/rig_draft.hpp"
+#include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
+#include "tests/support/palletiser.hpp"
 
 namespace foresight::hand_of_rig_test {
 namespace {
@@ -64,15 +67,33 @@ TEST_F(HandOfRigTest, ACureIsOneThatTheRigFileHas) {
     }
     return std::string("no error");
   };
-  UrdfJoint& elbow = *std::ranges::find(rig_.robot->joints, rig_.joints[3].drive.name, &UrdfJoint::name);
-  elbow.mimic = UrdfJoint::Mimic{0, 1, 0};
-  EXPECT_THAT(refusal(),
-              testing::AllOf(testing::HasSubstr("follows another, but lies in the arm"),
-                             testing::HasSubstr("another group"), testing::Not(testing::HasSubstr("--tip"))));
-  elbow.mimic.reset();
   rig_.joints[3].drive.name = "another";
   EXPECT_THAT(refusal(), testing::AllOf(testing::HasSubstr("add it to the rig's joints"),
                                         testing::Not(testing::HasSubstr("--tip"))));
+}
+
+// The rig that `foresight rig new` makes of a palletising arm.
+Rig palletiser(Linkage linkage, bool roll) {
+  const TempFolder folder;
+  RigDraftOptions options;
+  options.urdf = folder.write("arm.urdf", palletiser_urdf(linkage, roll));
+  return read_rig(folder.write("rig.yaml", rig_text(draft_rig(options), options, folder / "rig.yaml")));
+}
+
+TEST(PalletiserHand, ItsDrivesAreTheArmAndItsLastLinkTheTool) {
+  for (const Linkage linkage :
+       {Linkage::forearm_by_rods, Linkage::at_the_wrist, Linkage::by_lever, Linkage::in_two_halves})
+    for (const bool roll : {true, false}) {
+      const Rig rig = palletiser(linkage, roll);
+      EXPECT_EQ(tool_link(rig), roll ? "hand" : "wrist");
+      const HandOptions options = hand_options(rig);
+      ASSERT_TRUE(options.arm);
+      EXPECT_EQ(rig.robot->links[options.tip].name, roll ? "hand" : "wrist");
+      EXPECT_EQ(options.arm->size(), roll ? 4u : 3u);
+      for (std::size_t i = 0; i < options.arm->size(); ++i)
+        EXPECT_EQ(options.arm->joints()[i].name, rig.joints[options.arm_joints[i]].drive.name);
+      HandControl(options, "palletiser");
+    }
 }
 
 TEST_F(HandOfRigTest, WithoutAModelJointsAreMovedAlone) {
