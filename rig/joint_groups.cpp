@@ -100,6 +100,7 @@ class Structure {
   bool follows(std::size_t follower, std::size_t joint) const {
     return robot_.joints[follower].mimic && source_of(robot_, follower).joint == static_cast<int>(joint);
   }
+  double factor(std::size_t follower) const { return source_of(robot_, follower).factor; }
 
   /// A frame without a body, as descriptions have where a tool is held.
   bool is_frame(std::size_t link) const {
@@ -203,11 +204,29 @@ bool ends_chain(const Structure& robot, std::size_t joint) {
   return robot.count_carried(joint) == 0;
 }
 
+/// A lever that moves a joint beyond `branch` by a rod, beside it.
+bool moves_from_beside(const Structure& robot, std::size_t lever, std::size_t branch) {
+  for (std::size_t i = 0; i < robot.joints(); ++i)
+    if (robot.follows(i, lever) && robot.carries_joint(branch, i) && !robot.carries_joint(lever, i)) return true;
+  return false;
+}
+
+/// Something turns back what the joint turns, beyond it.
+bool is_levelled(const Structure& robot, std::size_t joint) {
+  for (std::size_t i = 0; i < robot.joints(); ++i)
+    if (robot.follows(i, joint) && robot.carries_joint(joint, i) && robot.factor(i) < 0 &&
+        robot.axis(i).dot(robot.axis(joint)) > kParallel)
+      return true;
+  return false;
+}
+
 /// Branches that stand on the same body and are shorter than the way to it are fingers; longer ones are arms.
 bool are_fingers(const Structure& robot, const std::vector<std::size_t>& branches) {
   if (branches.size() < 2) return false;
   const std::size_t depth = robot.before(branches.front()).size();
   for (const std::size_t first : branches) {
+    if (std::ranges::any_of(branches, [&](std::size_t other) { return moves_from_beside(robot, other, first); }))
+      return false;
     std::size_t longest = 0;
     for (std::size_t i = 0; i < robot.joints(); ++i)
       if (robot.drives(i) && (i == first || robot.carries_joint(first, i))) {
@@ -223,14 +242,15 @@ bool is_followed_jaw(const Structure& robot, std::size_t joint) {
   bool followed = false;
   for (std::size_t i = 0; i < robot.joints(); ++i) {
     if (!robot.follows(i, joint)) continue;
-    if (!robot.carries_joint(joint, i)) return true;  // on the other side
-    followed = true;
+    if (robot.stands_on(i) == robot.stands_on(joint)) return true;  // on the other side
+    followed = followed || robot.carries_joint(joint, i);
   }
   if (!followed) return false;
   // A finger's own links, or a telescope, or what keeps a tool level.
   const bool behind = robot.has_tool_behind(joint), beside = robot.has_tool_beside(joint);
   if (behind != beside) return beside;
-  return robot.joint(joint).kind == UrdfJoint::Kind::rotating || has_word(robot.joint(joint).name, kJawWords);
+  if (has_word(robot.joint(joint).name, kJawWords)) return true;
+  return robot.joint(joint).kind == UrdfJoint::Kind::rotating && !is_levelled(robot, joint);
 }
 
 }  // namespace

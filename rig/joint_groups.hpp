@@ -11,6 +11,8 @@ namespace foresight {
 ///
 ///   a gripper   ends the chain. Something follows it on the other side of the hand, or has a drive of its own there;
 ///               or it is alone, and the tool's frame stands beside it, or it slides a little and leads nowhere new.
+///               What moves the arm by a joint that follows it (a lever beside it), or keeps its hand level, is no
+///               gripper.
 ///   a head      two joints called pan and tilt that turn a branch of their own, with nothing that moves beyond.
 ///
 /// An arm's last joint has the tool's frame behind it, turns far, slides far, or slides where none before it goes (a

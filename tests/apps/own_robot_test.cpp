@@ -7,6 +7,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
+#include "tests/support/palletiser.hpp"
 
 namespace foresight::own_robot_test {
 namespace {
@@ -79,6 +80,23 @@ TEST_F(OwnRobot, APandaIsHomedAndMovedWithItsGripper) {
   const Outcome robot = run_program({"robot", rig, "--stepped", "--no-cameras", "--home", "--follow", motion});
   EXPECT_EQ(robot.exit_code, 0) << robot.err << robot.out;
   EXPECT_THAT(robot.err, HasSubstr("follow: done"));
+}
+
+// Four drives, and joints that follow them and keep the hand level.
+TEST(PalletisingArm, IsOperatedByAScript) {
+  const TempFolder folder;
+  const std::string urdf = folder.write("arm.urdf", palletiser_urdf(Linkage::by_lever)).string();
+  const std::string rig = (folder / "rig.yaml").string();
+  const Outcome made = run_program({"rig", "new", "--urdf", urdf, "--out", rig});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("wrist_rods follows rear_lever: it has no drive of its own"));
+  const std::string small =
+      std::regex_replace(folder.read("rig.yaml"), std::regex("\\[320, 240\\], rate_hz: 10"), "[80, 60], rate_hz: 5");
+  const Outcome toured =
+      run_program({"operator", folder.write("small.yaml", small).string(), "--scripted", "tour", "--delay-ms", "100",
+                   "--seconds", "4", "--pictures-hz", "0.5", "--no-zero-delay"});
+  EXPECT_EQ(toured.exit_code, 0) << toured.err;
+  EXPECT_THAT(toured.out, HasSubstr("succeeded"));
 }
 
 // In the machine's own time; stepped time is in tests/robot_devices.

@@ -201,5 +201,23 @@ TEST(JointGroups, WheelsAndArmsOfATorsoAreNoFingers) {
             "torso a, l1 a, l2 a, l3 a, r1 a, r2 a, r3 a");
 }
 
+TEST(JointGroups, WhatKeepsAHandLevelIsTheArms) {
+  const Built upper = Built().turns("j1", "base", "0 0 1").turns("j2", "j1", "0 1 0").follows("rods", "j2", "j2", -1);
+  EXPECT_EQ(Built(upper).turns("j3", "rods", "0 1 0").follows("level", "j3", "j3", -1).groups(), "j1 a, j2 a, j3 a");
+  EXPECT_EQ(Built(upper).turns("finger", "rods", "0 1 0").follows("level", "finger", "finger", -1).groups(),
+            "j1 a, j2 a, finger g")
+      << "fingers have links that stay level, too";
+  Built lever =
+      Built(upper).turns("lever", "j1", "0 1 0").follows("j3", "rods", "lever").follows("level", "j3", "lever", -1);
+  EXPECT_EQ(lever.groups(), "j1 a, j2 a, lever a") << "it ends its chain, but moves the other one";
+  EXPECT_EQ(Built(lever).turns("roll", "level", "0 0 1").groups(), "j1 a, j2 a, lever a, roll a");
+  EXPECT_EQ(Built(lever)
+                .slides("jaw", "level", "0 1 0", 0.04)
+                .follows("other", "level", "jaw")
+                .turns("cap", "j1", "0 0 1")
+                .groups(),
+            "j1 a, j2 a, lever a, jaw g, cap a");
+}
+
 }  // namespace
 }  // namespace foresight::joint_groups_test
