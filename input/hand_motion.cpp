@@ -66,12 +66,17 @@ void HandControl::tell(const FollowStep& step) noexcept {
 }
 
 void HandControl::leash(const FollowStep& step) noexcept {
-  const double over = std::max(step.position_error / options_.leash, step.rotation_error / options_.leash_turn);
-  out_.slipped = over > 1;
-  if (!out_.slipped) return;
-  target_ = pose_between(step.T_base_tip, target_, 1 / over);
-  out_.position_error /= over;
-  out_.rotation_error /= over;
+  const double over = step.position_error / options_.leash, turned_over = step.rotation_error / options_.leash_turn;
+  out_.slipped = over > 1 || turned_over > 1;
+  // Each for itself: an arm that cannot turn as the hand does still goes where it goes.
+  if (over > 1) {
+    target_.translation() = pose_between(step.T_base_tip, target_, 1 / over).translation();
+    out_.position_error /= over;
+  }
+  if (turned_over > 1) {
+    target_.linear() = pose_between(step.T_base_tip, target_, 1 / turned_over).linear();
+    out_.rotation_error /= turned_over;
+  }
 }
 
 void HandControl::jog(double rate, double dt) noexcept {

@@ -65,6 +65,8 @@ HandWords words_for(FollowReason reason, const std::string& joint) {
     case FollowReason::singularity:
       return {"the arm is stretched or folded, and hardly moves that way", "move across it slowly"};
     case FollowReason::out_of_reach: return {"the hand is out of the arm's reach", "come back"};
+    case FollowReason::few_joints:
+      return {"the arm has too few joints to turn as your hand does", "its place is followed; turn your hand back"};
     case FollowReason::other_branch:
       return {"the arm would have to come round another way", "move single joints, or come another way"};
     case FollowReason::contact: return {"something is in the way", "move away"};

@@ -9,7 +9,12 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kLongestStep = 1;  // rad or m in one step: farther the tangent says nothing
+constexpr double kLongestStep = 1;      // rad or m in one step: farther the tangent says nothing
+constexpr double kPlaceOverTurn = 100;  // how much heavier the position weighs while the tip is turned
+constexpr double kTurnDamping = 1e-6;
+constexpr int kPlaceSteps = 10;      // back to the position after a turn
+constexpr double kLeastTurn = 1e-9;  // rad that must be gained
+constexpr int kTurnHalvings = 3;     // of a step that gains nothing
 
 Vector6 weights(const DescentGoal& goal) {
   Vector6 w;
@@ -114,6 +119,37 @@ DescentEnd descend(const ArmChain& chain, const DescentGoal& goal, const Descent
     }
   }
   return at;
+}
+
+JointVector turned_to_goal(const ArmChain& chain, const DescentGoal& goal, const DescentLimits& limits,
+                           const JointVector& from) noexcept {
+  DescentGoal place = goal, both = goal;
+  place.position_only = true;
+  both.position_only = false;
+  both.length = goal.length / kPlaceOverTurn;
+  DescentLimits placing = limits;
+  placing.steps = kPlaceSteps;
+  placing.give_up_early = false;
+  TipChange change;
+  JointVector q = from;
+  Vector6 e = weighted_error(chain.tip_pose(q, change), both);
+  for (int step = 0; step < limits.steps; ++step) {
+    JointVector dq = damped_step(chain, both, change, e, kTurnDamping, q, limits.lower, limits.upper);
+    bool gained = false;
+    for (int k = 0; k < kTurnHalvings && !gained; ++k, dq *= 0.5) {
+      const JointVector there = (q + dq).cwiseMax(limits.lower).cwiseMin(limits.upper);
+      const DescentEnd end = descend(chain, place, placing, there);
+      TipChange change_there;
+      const Vector6 left = weighted_error(chain.tip_pose(end.q, change_there), both);
+      gained = end.error <= limits.tolerance && left.tail<3>().norm() < e.tail<3>().norm() - kLeastTurn;
+      if (!gained) continue;
+      q = end.q;
+      e = left;
+      change = change_there;
+    }
+    if (!gained) break;
+  }
+  return q;
 }
 
 }  // namespace foresight

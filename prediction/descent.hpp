@@ -39,6 +39,12 @@ Vector6 weighted_error(const Pose& T_base_tip, const DescentGoal& goal) noexcept
 DescentEnd descend(const ArmChain& chain, const DescentGoal& goal, const DescentLimits& limits,
                    const JointVector& q) noexcept;
 
+/// For arms that cannot choose their tip's orientation: from `q`, where the goal's position is reached, on to where the
+/// tip is turned to the goal as nearly as the joints and `limits` let it, with the position as exact as
+/// `limits.tolerance`. Returns `q` where nothing is gained. Neither throws nor allocates; any thread.
+JointVector turned_to_goal(const ArmChain& chain, const DescentGoal& goal, const DescentLimits& limits,
+                           const JointVector& q) noexcept;
+
 /// One step: the joints' changes that bring the error e (weighted) towards 0 with damping mu > 0, plus `wish`, as far
 /// as that changes nothing at the tip. `q` + the changes stay within the limits. `held` gets true for joints that a
 /// limit stopped. `change` is weighted in place.

@@ -13,7 +13,9 @@ namespace {
 constexpr int kStarts = 60;             // most targets within reach are found by the third
 constexpr double kPastLimit = 5e-3;     // rad that joints may stand beyond limits while a swivel angle is sought
 constexpr double kFinestSwivel = 1e-5;  // rad
-constexpr int kStartsOutOfReach = 6;    // then the nearest pose is what is wanted, and one valley leads there as a rule
+constexpr int kTurnedStarts = 6;        // of arms that reach a position, in how many ways their tip's turn is looked at
+constexpr int kTurnSteps = 20;
+constexpr int kStartsOutOfReach = 6;  // then the nearest pose is what is wanted, and one valley leads there as a rule
 
 // Places spread evenly over the limits, the same ones for every target: Kronecker's sequence with the powers of the
 // generalised golden ratio of so many dimensions.
@@ -52,21 +54,22 @@ InverseKinematics::InverseKinematics(ArmChain chain)
 std::string InverseKinematics::description() const {
   if (closed_form()) return "seven joints with spherical shoulder and wrist: closed form";
   const std::string count = std::to_string(chain_.size()) + (chain_.size() == 1 ? " joint" : " joints");
-  if (position_only()) return count + ", fewer than six: position only, step by step";
+  if (position_first()) return count + ", fewer than six: the position first, then the orientation; step by step";
   return count + ": step by step";
 }
 
 DescentGoal InverseKinematics::goal(const Pose& target) const noexcept {
-  return {target, position_only(), length_};
+  return {target, position_first(), length_};
 }
 
 IkAnswer InverseKinematics::answer(IkStatus status, const JointVector& q, const Pose& target) const noexcept {
   IkAnswer a{status, q, chain_.tip_pose(q), 0, 0, 0};
   const Vector6 difference = pose_difference(a.T_base_tip, target);
   a.position_error = difference.head<3>().norm();
-  if (!position_only()) a.rotation_error = difference.tail<3>().norm();
+  a.rotation_error = difference.tail<3>().norm();
+  const bool turned = position_first() || a.rotation_error <= kIkExact;
   if (status != IkStatus::bad_target)
-    a.status = a.position_error <= kIkExact && a.rotation_error <= kIkExact ? IkStatus::solved : IkStatus::nearest;
+    a.status = a.position_error <= kIkExact && turned ? IkStatus::solved : IkStatus::nearest;
   return a;
 }
 
@@ -120,9 +123,44 @@ IkAnswer InverseKinematics::turned_off_limits(const Pose& target) const noexcept
   return found;
 }
 
+// The nearest pose: along the valley's floor to where nothing falls any more.
+IkAnswer InverseKinematics::nearest_below(const Pose& target, const JointVector& q) const noexcept {
+  const DescentLimits limits{chain_.lower(), chain_.upper(), 200, 1e-11, false};
+  return answer(IkStatus::nearest, descend(chain_, goal(target), limits, q).q, target);
+}
+
+// Where all of the pose can be reached, a descent towards all of it finds that; else it ends where the tip is turned
+// well, from where the position is not far.
+IkAnswer InverseKinematics::search_position_first(const Pose& target, const JointVector* last) const noexcept {
+  const DescentGoal place = goal(target);
+  DescentGoal all = place;
+  all.position_only = false;
+  const DescentLimits limits{chain_.lower(), chain_.upper(), 40, 1e-11, true};
+  const DescentLimits turning{chain_.lower(), chain_.upper(), kTurnSteps, 1e-11, false};
+  const double exact = 0.5 * kIkExact * std::min(1.0, 1 / length_);
+  const Starts starts(chain_);
+  std::optional<IkAnswer> turned;
+  DescentEnd nearest;
+  nearest.error = std::numeric_limits<double>::infinity();
+  for (int start = last ? -1 : 0, found = 0; start < kStarts && found < kTurnedStarts; ++start) {
+    const JointVector from = start < 0    ? last->cwiseMax(chain_.lower()).cwiseMin(chain_.upper()).eval()
+                             : start == 0 ? chain_.middle()
+                                          : starts(start);
+    const DescentEnd end = descend(chain_, place, limits, descend(chain_, all, limits, from).q);
+    if (end.error < nearest.error) nearest = end;
+    if (end.error > exact) continue;
+    ++found;
+    const IkAnswer here = answer(IkStatus::solved, turned_to_goal(chain_, place, turning, end.q), target);
+    if (!turned || here.rotation_error < turned->rotation_error) turned = here;
+    if (last || turned->rotation_error <= kIkExact) break;
+  }
+  return turned ? *turned : nearest_below(target, nearest.q);
+}
+
 IkAnswer InverseKinematics::search(const Pose& target, const JointVector* last) const noexcept {
+  if (position_first()) return search_position_first(target, last);
   const DescentGoal wanted = goal(target);
-  DescentLimits limits{chain_.lower(), chain_.upper(), 40, 1e-11, true};
+  const DescentLimits limits{chain_.lower(), chain_.upper(), 40, 1e-11, true};
   const double exact = 0.5 * kIkExact * std::min(1.0, 1 / length_);
   const Starts starts(chain_);
   DescentEnd best;
@@ -137,11 +175,7 @@ IkAnswer InverseKinematics::search(const Pose& target, const JointVector* last) 
     if (end.error < best.error) best = end;
     if (best.error <= exact) return answer(IkStatus::solved, best.q, target);
   }
-  // The nearest pose: along the valley's floor to where nothing falls any more.
-  limits.steps = 200;
-  limits.give_up_early = false;
-  best = descend(chain_, wanted, limits, best.q);
-  return answer(IkStatus::nearest, best.q, target);
+  return nearest_below(target, best.q);
 }
 
 IkAnswer InverseKinematics::solve(const Pose& target) const noexcept {

@@ -12,6 +12,8 @@ namespace {
 constexpr double kThere = 1e-12;        // weighted error at which the hand is at its target
 constexpr double kOnLine = 2e-10;       // weighted error at which a point of the line is reached
 constexpr double kSmallestPart = 1e-3;  // of the way, in one cycle: slower, the hand leaves its line instead
+constexpr int kTurnsACycle = 2;         // towards the hand's orientation in a cycle, where the position comes first
+constexpr double kTurnTold = 0.05;      // rad: a hand that such an arm turns no nearer than this is told of
 constexpr double kGain = 1e-9;          // weighted error that a step must take away to count as one
 
 }  // namespace
@@ -23,6 +25,7 @@ const char* name_of(FollowReason reason) noexcept {
     case FollowReason::joint_limit: return "joint limit";
     case FollowReason::singularity: return "singularity";
     case FollowReason::out_of_reach: return "out of reach";
+    case FollowReason::few_joints: return "too few joints";
     case FollowReason::other_branch: return "other branch";
     case FollowReason::contact: return "contact";
     case FollowReason::unknown: return "unknown";
@@ -63,7 +66,6 @@ JointVector PathFollower::freedom(const TipChange& change) const noexcept {
   Eigen::Matrix<double, 6, 6> A = 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
   const auto weighted = [&](Vector6 column) {
     column.head<3>() /= length;
-    if (kinematics_.position_only()) column.tail<3>().setZero();
     return column;
   };
   for (std::size_t i = 0; i < n; ++i) {
@@ -96,21 +98,28 @@ JointVector PathFollower::freedom(const TipChange& change) const noexcept {
   return wish;
 }
 
-// Newton's method for one pose, within what the cycle allows.
+// One pose, within what the cycle allows.
 bool PathFollower::reach(const Pose& pose, const Cycle& cycle, JointVector& q) const noexcept {
   DescentGoal goal = cycle.goal;
   goal.T_base_tip = pose;
+  if (!reach_place(goal, cycle, q)) return false;
+  if (kinematics_.position_first())
+    q = turned_to_goal(chain_, goal, {cycle.lower, cycle.upper, kTurnsACycle, kOnLine, false}, q);
+  return true;
+}
+
+// By Newton's method: all of the goal, or its position where that comes first.
+bool PathFollower::reach_place(const DescentGoal& goal, const Cycle& cycle, JointVector& q) const noexcept {
   TipChange change;
   q = q_;
-  const std::size_t redundant =
-      chain_.size() - (kinematics_.position_only() ? std::min<std::size_t>(chain_.size(), 3) : 6);
+  const bool redundant = chain_.size() > 6;
   for (int round = 0; round < 10; ++round) {
     const Vector6 e = weighted_error(chain_.tip_pose(q, change), goal);
     const double error = e.norm();
     if (error <= kOnLine && (round > 0 || error <= kThere)) return true;
     const double mu = 1e-3 * error * error + 1e-14;
     JointVector dq = damped_step(chain_, goal, change, e, mu, q, cycle.lower, cycle.upper);
-    if (round == 0 && redundant > 0 && options_.freedom > 0) {
+    if (round == 0 && redundant && options_.freedom > 0) {
       JointVector wish = freedom(change);
       const double wanted = wish.cwiseAbs().maxCoeff(), own = options_.freedom * dq.cwiseAbs().maxCoeff();
       if (wanted > 0) {
@@ -211,20 +220,36 @@ void PathFollower::name_reason(const Cycle& cycle, const JointVector& before, Fo
   step.joint = limited ? at_limit : at_speed;
 }
 
+// Where the position is reached: what keeps the arm from turning as the hand does. The joint that would go farthest
+// beyond what the cycle allows, if any would.
+void PathFollower::name_turn_left(const Pose& target, FollowStep& step) const noexcept {
+  if (step.rotation_error < kTurnTold) return;
+  const double endless = std::numeric_limits<double>::infinity();
+  const DescentLimits free{JointVector::Constant(q_.size(), -endless), JointVector::Constant(q_.size(), endless), 1,
+                           kOnLine, false};
+  const JointVector wanted = turned_to_goal(chain_, {target, true, kinematics_.length()}, free, step.q) - step.q;
+  Eigen::Index joint = 0;
+  step.reason = FollowReason::few_joints;
+  if (!(wanted.cwiseAbs().maxCoeff(&joint) > kTurnTold)) return;
+  const bool at_limit = step.q[joint] <= chain_.lower()[joint] + 1e-9 || step.q[joint] >= chain_.upper()[joint] - 1e-9;
+  step.reason = at_limit ? FollowReason::joint_limit : FollowReason::joint_speed;
+  step.joint = static_cast<int>(joint);
+}
+
 FollowStep PathFollower::finish(const Pose& target, const Cycle& cycle, const JointVector& q) noexcept {
   FollowStep step;
   q_ = step.q = q;
   hand_ = step.T_base_tip = chain_.tip_pose(q);
   const Vector6 left = pose_difference(hand_, target);
   step.position_error = left.head<3>().norm();
-  if (!kinematics_.position_only()) step.rotation_error = left.tail<3>().norm();
+  step.rotation_error = left.tail<3>().norm();
   const double error = weighted_error(hand_, cycle.goal).norm();
   step.progress = cycle.error > kThere ? 1 - error / cycle.error : 1;
   return step;
 }
 
 FollowStep PathFollower::step(const Pose& target, double dt) noexcept {
-  Cycle cycle{{target, kinematics_.position_only(), kinematics_.length()}, q_, q_, 0};
+  Cycle cycle{{target, kinematics_.position_first(), kinematics_.length()}, q_, q_, 0};
   if (!is_rigid(target) || !(dt > 0) || !std::isfinite(dt)) {
     cycle.goal.T_base_tip = hand_;
     FollowStep stand = finish(hand_, cycle, q_);
@@ -252,7 +277,9 @@ FollowStep PathFollower::step(const Pose& target, double dt) noexcept {
   }
   if (reach(target, cycle, q)) {
     stuck_target_.reset();
-    return finish(target, cycle, q);
+    FollowStep step = finish(target, cycle, q);
+    if (kinematics_.position_first()) name_turn_left(target, step);
+    return step;
   }
   if (reach_part(target, cycle, q) > 0) {
     stuck_target_.reset();

@@ -8,7 +8,8 @@
 // and no branch is left but by moving through what lies between. Where the hand cannot keep up (a joint at its velocity
 // or limit, a singularity, the end of its reach) it slows down, stays on its line while that is possible, and says why.
 // Arms with more joints than the task needs use the freedom to stay away from limits and singularities, but only while
-// the hand moves: a target where the hand is moves nothing, bit for bit.
+// the hand moves: a target where the hand is moves nothing, bit for bit. Arms with fewer follow the hand's place, and
+// turn with it as far as that leaves their joints free to.
 #pragma once
 
 #include <optional>
@@ -24,6 +25,7 @@ enum class FollowReason {
   joint_limit,   ///< a joint stands at its limit
   singularity,   ///< the arm can hardly move the hand in some direction (stretched, folded, axes in line)
   out_of_reach,  ///< no joints within limits bring it there: it goes to the nearest pose
+  few_joints,    ///< its place is reached, but the arm has too few joints to turn the hand so
   other_branch,  ///< only joints far from the present ones bring it there: the arm would have to be brought round
   contact,       ///< parts would touch, or come too close; only where somebody looks out for that (prediction/contact)
   unknown,       ///< so looked out for, but what is around the arm is not known: it stands
@@ -46,7 +48,7 @@ struct FollowStep {
   bool on_line = true;        ///< the hand stayed on the straight line to its target, to 1e-9
   double progress = 1;        ///< share of the way to the target that this cycle went, at most 1
   double position_error = 0;  ///< m left
-  double rotation_error = 0;  ///< rad left; 0 for arms that only reach positions
+  double rotation_error = 0;  ///< rad left
 };
 
 /// One thread. step() neither throws nor allocates.
@@ -65,6 +67,8 @@ class PathFollower {
  private:
   struct Cycle;
   bool reach(const Pose& pose, const Cycle& cycle, JointVector& q) const noexcept;
+  bool reach_place(const DescentGoal& goal, const Cycle& cycle, JointVector& q) const noexcept;
+  void name_turn_left(const Pose& target, FollowStep& step) const noexcept;
   double reach_part(const Pose& target, const Cycle& cycle, JointVector& q) const noexcept;
   JointVector freedom(const TipChange& change) const noexcept;
   bool way_round(const Pose& target, const Cycle& cycle, JointVector& q, FollowReason& why) noexcept;

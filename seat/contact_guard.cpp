@@ -52,6 +52,7 @@ FollowReason follow_reason(GhostReason reason) {
     case GhostReason::joint_limit: return FollowReason::joint_limit;
     case GhostReason::singularity: return FollowReason::singularity;
     case GhostReason::out_of_reach: return FollowReason::out_of_reach;
+    case GhostReason::few_joints: return FollowReason::few_joints;
     case GhostReason::other_branch: return FollowReason::other_branch;
     case GhostReason::bad_target: return FollowReason::bad_target;
     case GhostReason::unknown: return FollowReason::unknown;
@@ -203,7 +204,8 @@ FollowStep ContactGuard::step(const JointValues& from, const Pose& T_base_target
   stand_at(from);
   const std::vector<double> others = heed_grip(from);
   FollowStep out = told(from, from, sliding_->step(T_base_target, others, nodes(), dt));
-  const bool settled = out.reason == FollowReason::none || out.reason == FollowReason::contact;
+  const bool settled =
+      out.reason == FollowReason::none || out.reason == FollowReason::contact || out.reason == FollowReason::few_joints;
   if (settled && std::ranges::all_of(hand_.arm_joints, [&, i = Eigen::Index{0}](std::size_t joint) mutable {
         return out.q[i++] == from[joint];
       }))

@@ -186,6 +186,7 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
   constexpr double kTips = 0.15, kGrasp = 0.037;      // m: finger tips along the tool's z; above the thing's bottom
   constexpr double kOpen = 0.038, kClosed = 0.016;    // m, of the jaws' joint
   constexpr double kAbove = 0.14, kIntoTray = 0.012;  // m
+  constexpr double kAskew = 0.02;                     // rad that jaws may be turned off the thing's sides
   const Pose from = place_at_rest(scene, thing), to = place_at_rest(scene, tray);
   const HandOptions hand = arm_options(rig);
   const InverseKinematics kinematics(*hand.arm);
@@ -221,8 +222,9 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
                                 {wait, Pose::Identity(), 0, 0.3},
                                 {line, at(to, kAbove), 0, 2}};
     const bool reached = std::ranges::all_of(steps, [&](const ToolStep& step) {
-      return (step.what != there && step.what != line) ||
-             kinematics.solve(rig.T_world_robot.inverse() * step.T_world_tool).status == IkStatus::solved;
+      if (step.what != there && step.what != line) return true;
+      const IkAnswer answer = kinematics.solve(rig.T_world_robot.inverse() * step.T_world_tool);
+      return answer.status == IkStatus::solved && answer.rotation_error < kAskew;
     });
     if (!reached) continue;
     if (!shape || stays_clear(rig, *shape, steps)) return steps;

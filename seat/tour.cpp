@@ -132,7 +132,9 @@ std::vector<ToolStep> TourPlan::with_tool_down(int count) {
     if (answer.status != IkStatus::solved) continue;
     ++reached_;
     const auto what = out.size() % 2 == 0 ? ToolStep::What::there : ToolStep::What::line;
-    const ToolStep step{what, pose, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5};
+    // Few joints hold the tool there as they can, and are asked for no more.
+    const Pose held = kinematics_.position_first() ? rig_.T_world_robot * answer.T_base_tip : pose;
+    const ToolStep step{what, held, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5};
     if (clear(answer.q) && clear_all_the_way(step))
       out.push_back(step);
     else

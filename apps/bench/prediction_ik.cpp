@@ -14,6 +14,7 @@ namespace foresight {
 namespace {
 
 constexpr double kLimitTolerance = 1e-12;
+constexpr double kTurnedExactly = 1e-6;  // m and rad: fewer than six joints get there in the end of a descent
 constexpr double kPeerTolerance = 1e-4;  // m and rad: what KDL is asked for is 1e-5 or less
 
 // The tip by the frames of the URDF, joint by joint: another way than the one that inverse kinematics takes.
@@ -144,7 +145,7 @@ int bench_prediction_ik(const PredictionIkOptions& options) {
   const InverseKinematics kinematics(read_arm_chain(options.urdf, options.tip, options.base));
   const ArmChain& chain = kinematics.chain();
   const Judge judge(options, chain);
-  const bool position_only = kinematics.position_only();
+  const bool position_only = kinematics.position_first();
   std::printf("%s to %s: %s\n", options.urdf.c_str(), options.tip.c_str(), kinematics.description().c_str());
   say_what_is_assumed(chain);
 
@@ -172,6 +173,13 @@ int bench_prediction_ik(const PredictionIkOptions& options) {
   const Solved any = solve_all(targets, count, ours, exact), limit = solve_all(at_limit, count, ours, exact);
   print("uniform joints", any);
   print("one joint on its limit", limit);
+  if (position_only) {
+    const Solved turned = solve_all(targets, count, ours, [&](const JointVector& q, const Pose& T) {
+      return judge.reaches(q, T, kTurnedExactly, false);
+    });
+    print("uniform joints, and turned exactly", turned);
+    add(all, "turned_", turned);
+  }
   add(all, "", any);
   add(all, "at_limit_", limit);
 

@@ -27,7 +27,7 @@ const Pose kUnseen = [] {
 // Joints from which the hand can go far to all sides: the most mobile and farthest from limits of 500.
 JointVector roomy_start(const InverseKinematics& kinematics) {
   const ArmChain& chain = kinematics.chain();
-  const DescentGoal goal{Pose::Identity(), kinematics.position_only(), kinematics.length()};
+  const DescentGoal goal{Pose::Identity(), kinematics.position_first(), kinematics.length()};
   UniformJoints joints(chain, 7);
   JointVector best = chain.middle();
   double most = -1;
@@ -74,7 +74,7 @@ std::vector<PosePath> random_paths(const InverseKinematics& kinematics, std::siz
     path.start = joints.next();
     const Pose from = kinematics.chain().tip_pose(path.start), to = kinematics.chain().tip_pose(joints.next());
     const Vector6 way = pose_difference(from, to);
-    const double turn = kinematics.position_only() ? 0 : way.tail<3>().norm();
+    const double turn = way.tail<3>().norm();
     const double seconds = std::max(way.head<3>().norm() / kLinearSpeed, turn / kTurningSpeed);
     const auto cycles = static_cast<std::size_t>(std::ceil(seconds / kCycle)) + 1;
     for (std::size_t i = 1; i <= cycles; ++i)
@@ -109,11 +109,11 @@ FollowFigures follow(const InverseKinematics& kinematics, const std::vector<Pose
   FollowFigures figures;
   for (const PosePath& path : paths) {
     PathFollower follower(kinematics, path.start);
-    FollowStep step;
+    bool there = false;
     for (std::size_t i = 0; i < path.dt.size(); ++i) {
       const JointVector before = follower.joints();
       const double from = cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
-      step = follower.step(path.T_base_tip[i], path.dt[i]);
+      const FollowStep step = follower.step(path.T_base_tip[i], path.dt[i]);
       const double seconds = cpu_seconds(CLOCK_THREAD_CPUTIME_ID) - from;
       figures.cpu_seconds += seconds;
       figures.slowest_cycle = std::max(figures.slowest_cycle, seconds);
@@ -125,7 +125,9 @@ FollowFigures follow(const InverseKinematics& kinematics, const std::vector<Pose
             std::max(figures.largest_step_over_limit, std::abs(step.q[at] - before[at]) / allowed);
       }
       const bool moved = step.q != before;
-      if (step.reason == FollowReason::none) {
+      there = step.reason == FollowReason::none ||
+              (kinematics.position_first() && step.position_error <= kIkExact);  // its turn is another question
+      if (there) {
         ++figures.exact;
       } else {
         ++(moved ? figures.slowed : figures.stopped);
@@ -137,7 +139,7 @@ FollowFigures follow(const InverseKinematics& kinematics, const std::vector<Pose
       }
     }
     ++figures.paths;
-    figures.ends_reached += step.reason == FollowReason::none;
+    figures.ends_reached += there;
   }
   return figures;
 }

@@ -21,8 +21,9 @@ constexpr double kGateNear = 0.03;      // m of margin within which the gate's c
 constexpr double kUnmoved = 1e-5;       // rad or m that a step changes once the tool is as near as it gets
 constexpr double kDamping = 1e-4;       // of bounded_step, where 1 rad of the joints moves the tool by about 1
 constexpr double kThere = 1e-4;         // m and rad from the hand that need no reason
-constexpr double kTurnLess = 4;    // by how much more turning weighs than in the open: tools do not twist to get deeper
-constexpr double kSideways = 0.5;  // of what is pushed: the most that the way out may go up or down
+constexpr double kTurnLess = 4;  // by how much more turning weighs than in the open: tools do not twist to get deeper
+constexpr double kTurnSecond = 0.02;  // of that, for arms that cannot choose how their tool is turned
+constexpr double kSideways = 0.5;     // of what is pushed: the most that the way out may go up or down
 constexpr double kGhostAhead = 0.002, kGhostTurned = 0.0175;  // from which on the ghost is shown
 
 GhostReason ghost_reason(FollowReason reason) {
@@ -32,6 +33,7 @@ GhostReason ghost_reason(FollowReason reason) {
     case FollowReason::joint_limit: return GhostReason::joint_limit;
     case FollowReason::singularity: return GhostReason::singularity;
     case FollowReason::out_of_reach: return GhostReason::out_of_reach;
+    case FollowReason::few_joints: return GhostReason::few_joints;
     case FollowReason::other_branch: return GhostReason::other_branch;
     case FollowReason::contact: return GhostReason::contact;
     case FollowReason::unknown: return GhostReason::unknown;
@@ -61,6 +63,7 @@ const char* name_of(GhostReason reason) noexcept {
     case GhostReason::joint_limit: return "joint limit";
     case GhostReason::singularity: return "singularity";
     case GhostReason::out_of_reach: return "out of reach";
+    case GhostReason::few_joints: return "too few joints";
     case GhostReason::other_branch: return "other branch";
     case GhostReason::bad_target: return "bad target";
     case GhostReason::unknown: return "unknown";
@@ -294,7 +297,8 @@ void SlidingHand::lean_on_pushed(const Look& now) {
 
 void SlidingHand::slide(const Pose& hand, double dt, const JointVector& start, Look& now) {
   const ArmChain& chain = kinematics_.chain();
-  const DescentGoal goal{hand, kinematics_.position_only(), kTurnLess * kinematics_.length()};
+  const DescentGoal goal{hand, false, kTurnLess * kinematics_.length()};
+  const double turns = kinematics_.position_first() ? kTurnSecond : 1;
   while (parts_ < kMostParts) {
     const JointVector q = joints_of(positions_, arm_);
     JointVector lower = chain.lower() - q, upper = chain.upper() - q;
@@ -304,10 +308,11 @@ void SlidingHand::slide(const Pose& hand, double dt, const JointVector& start, L
       upper[i] = std::max(0.0, std::min(upper[i], start[i] + room - q[i]));
     }
     TipChange change;
-    const Vector6 e = weighted_error(chain.tip_pose(q, change), goal);
+    Vector6 e = weighted_error(chain.tip_pose(q, change), goal);
+    e.tail<3>() *= turns;
     for (std::size_t i = 0; i < chain.size(); ++i) {
       change[i].head<3>() /= goal.length;
-      if (goal.position_only) change[i].tail<3>().setZero();
+      change[i].tail<3>() *= turns;
     }
     std::vector<ClosedWay> ways = closed_ways(now);
     const JointVector dq = bounded_step(change, e, kDamping, lower, upper, ways);
@@ -368,8 +373,9 @@ GhostHand SlidingHand::ghost(const Pose& hand, GhostReason otherwise) const {
   out.T_base_hand = hand;
   const Vector6 left = pose_difference(follower_.hand(), hand);
   out.ahead = left.head<3>().norm();
-  out.turned = kinematics_.position_only() ? 0 : left.tail<3>().norm();
-  out.shown = out.ahead > kGhostAhead || out.turned > kGhostTurned;
+  out.turned = left.tail<3>().norm();
+  const bool turns = !kinematics_.position_first();  // else no ghost for what the arm cannot do: its words are enough
+  out.shown = out.ahead > kGhostAhead || (turns && out.turned > kGhostTurned);
   const bool there = out.ahead < kThere && out.turned < kThere;
   out.reason = there ? GhostReason::none : leans_ != GhostReason::none ? leans_ : otherwise;
   if (out.reason == GhostReason::contact || out.reason == GhostReason::gate)

@@ -37,6 +37,7 @@ enum class GhostReason {
   joint_limit,
   singularity,
   out_of_reach,
+  few_joints,
   other_branch,
   bad_target,
   unknown,  ///< where the scene or the robot is is not known

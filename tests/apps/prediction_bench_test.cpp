@@ -1,6 +1,7 @@
 // `foresight bench prediction ik` on the lab's arm: its keys, and words for wrong input.
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
+#include "tests/support/palletiser.hpp"
 
 namespace foresight::prediction_bench_test {
 namespace {
@@ -24,6 +25,17 @@ TEST(Prediction, IkSolvesAllOfTheLabArmsPosesWithinItsLimits) {
   EXPECT_LE(all["largest_step_over_limit"], 1);
   const double sum = all["followed_exactly"].get<double>() + all["slowed"].get<double>() + all["stopped"].get<double>();
   EXPECT_NEAR(sum, 1, 1e-9);
+}
+
+TEST(Prediction, AnArmWithJointsThatFollowIsJudgedByItsUrdf) {
+  const TempFolder out;
+  const std::string json = out / "ik.json", urdf = out.write("arm.urdf", palletiser_urdf(Linkage::by_lever));
+  const Outcome outcome = run_program(
+      {"bench", "prediction", "ik", "--urdf", urdf, "--tip", "hand", "--poses", "200", "--paths", "2", "--json", json});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_GE(read_json(json)["solved"], 0.99);
+  EXPECT_GE(read_json(json)["turned_solved"], 0.98);
+  EXPECT_TRUE(read_json(json)["kdl_solved"].is_null()) << "KDL's chains know no joints that follow";
 }
 
 // Late images make the model operator wait; the prediction does not.

@@ -9,6 +9,8 @@
 #include "common/error.hpp"
 #include "scene/primitives.hpp"
 #include "tests/contact/made_robot.hpp"
+#include "tests/scene/test_run.hpp"
+#include "tests/support/palletiser.hpp"
 
 namespace foresight::sliding_hand_test {
 namespace {
@@ -51,6 +53,29 @@ struct LabArm {
   SlidingHand hand;
 };
 
+// Four drives: it cannot tilt its hand.
+struct Palletiser {
+  explicit Palletiser(const SceneModel* scene)
+      : robot(read_urdf(folder.write("arm.urdf", palletiser_urdf(Linkage::by_lever)))),
+        kinematics(arm_chain(robot, "hand", "foot", "test")),
+        model(robot, joints(), scene, Pose::Identity(), "test"),
+        hand(model, kinematics, joints(), start(), Pose::Identity(), nullptr, "test") {}
+  std::vector<std::string> joints() const {
+    std::vector<std::string> out;
+    for (const ArmJoint& joint : kinematics.chain().joints()) out.push_back(joint.name);
+    return out;
+  }
+  std::vector<double> start() const {
+    const JointVector& q = kinematics.chain().middle();
+    return {q.begin(), q.end()};
+  }
+  TempFolder folder;
+  UrdfRobot robot;
+  InverseKinematics kinematics;
+  ContactModel model;
+  SlidingHand hand;
+};
+
 SceneModel table() {
   return made_scene({{"table", make_box({2, 2, 0.02}), shifted(0, 0, -0.01)}});
 }
@@ -60,6 +85,26 @@ double step_over_limit(const ArmChain& chain, std::span<const double> before, st
   for (std::size_t i = 0; i < chain.size(); ++i)
     most = std::max(most, std::abs(after[i] - before[i]) / (chain.joints()[i].velocity * kPicture));
   return most;
+}
+
+TEST(SlidingHand, OfFewJointsGoesAlongASurfaceWithAHandThatItCannotTiltLike) {
+  constexpr double kTop = 0.55, kHandBelow = 0.07;
+  const SceneModel scene = made_scene({{"table", make_box({0.8, 2, 0.02}), shifted(0.9, 0, kTop - 0.01)}});
+  Palletiser arm(&scene);
+  const Pose begin = arm.kinematics.chain().tip_pose(arm.kinematics.chain().middle());
+  Pose wanted = begin;
+  wanted.translation() += Vector3d(-0.05, 0.1, -0.3);
+  wanted.linear() =
+      Eigen::AngleAxisd(0.3, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.4, Vector3d::UnitX()) * begin.linear();
+  HandStep step;
+  for (int i = 1; i <= 180; ++i)
+    step = arm.hand.step(pose_between(begin, wanted, std::min(1.0, i / 120.0)), arm.start(), {}, kPicture);
+  const Pose& T = step.T_base_tip;
+  EXPECT_EQ(step.ghost.reason, GhostReason::contact) << step.ghost.words;
+  EXPECT_NEAR(T.translation().z(), kTop + kHandBelow, 0.005);
+  EXPECT_LT((T.translation() - wanted.translation()).head<2>().norm(), 0.003) << "the place comes first";
+  const Eigen::Matrix3d turned = T.linear() * begin.linear().transpose();
+  EXPECT_NEAR(std::atan2(turned(1, 0), turned(0, 0)), 0.3, 0.1) << "and is turned about the vertical";
 }
 
 TEST(SlidingHand, InTheOpenItIsWhereTheHandIs) {

@@ -7,6 +7,7 @@
 
 #include "common/error.hpp"
 #include "rig/rig_draft.hpp"
+#include "tests/input/hand_world.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
 #include "tests/support/palletiser.hpp"
@@ -94,6 +95,73 @@ TEST(PalletiserHand, ItsDrivesAreTheArmAndItsLastLinkTheTool) {
         EXPECT_EQ(options.arm->joints()[i].name, rig.joints[options.arm_joints[i]].drive.name);
       HandControl(options, "palletiser");
     }
+}
+
+// An operator's hand at a robot that does at once what it is told.
+class Operated {
+ public:
+  explicit Operated(const Rig& rig) : options_(hand_options(rig)), hand_(options_, "palletiser") {
+    hand_.settings().frame = HandFrame::base;
+    for (std::size_t i = 0; i < options_.gate.joints.size(); ++i)
+      at_[i] = 0.5 * (options_.gate.joints[i].limits.min_position + options_.gate.joints[i].limits.max_position);
+    stay(50, false);
+    stay(300, true);
+  }
+  const HandCycle& stay(int cycles, bool held) {
+    for (int i = 0; i < cycles; ++i) {
+      now_ = now_ + std::chrono::milliseconds(8);
+      HandInput input;
+      input.now = now_;
+      input.device = device_at(place_.translation(), held);
+      input.device.T_space_hand = place_;
+      input.device.time = now_;
+      input.robot = {options_.gate.joints.size(), at_, true, held, false};
+      const HandCycle& cycle = hand_.cycle(input);
+      if (cycle.joints > 0) at_ = cycle.positions;
+    }
+    return hand_.last();
+  }
+  /// There evenly in 4 s.
+  const HandCycle& go(const Eigen::Vector3d& way, const Eigen::AngleAxisd& turn) {
+    const Pose from = place_;
+    Pose to = from;
+    to.translation() += way;
+    to.linear() = turn.toRotationMatrix() * from.linear();
+    for (int i = 1; i <= 500; ++i) {
+      place_ = pose_between(from, to, i / 500.0);
+      stay(1, true);
+    }
+    return stay(100, true);
+  }
+
+ private:
+  HandOptions options_;
+  HandControl hand_;
+  OperatorTime now_{1'000'000'000};
+  JointValues at_{};
+  Pose place_ = Pose::Identity();
+};
+
+TEST(PalletiserHand, GoesWhereTheOperatorsHandGoesHoweverThatIsTilted) {
+  for (const Linkage linkage : {Linkage::forearm_by_rods, Linkage::at_the_wrist, Linkage::by_lever}) {
+    Operated operated(palletiser(linkage, true));
+    const Pose begin = operated.stay(1, true).T_base_tip;
+    const auto off = [&](const HandCycle& cycle, const Eigen::Vector3d& way, double turn) {
+      Pose there = begin;
+      there.translation() += way;
+      there.linear() = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) * begin.linear();
+      return pose_difference(cycle.T_base_tip, there).norm();
+    };
+    const HandCycle turned = operated.go({-0.1, 0.1, 0.05}, Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
+    EXPECT_EQ(turned.phase, HandPhase::driving);
+    EXPECT_EQ(turned.follow, FollowReason::none) << name_of(turned.follow);
+    EXPECT_LT(off(turned, {-0.1, 0.1, 0.05}, 0.5), 1e-6);
+    const HandCycle tilted = operated.go({0.05, 0, 0.05}, Eigen::AngleAxisd(1.3, Eigen::Vector3d::UnitX()));
+    EXPECT_LT((tilted.T_base_tip.translation() - begin.translation() - Eigen::Vector3d(-0.05, 0.1, 0.1)).norm(), 1e-6);
+    EXPECT_NEAR(tilted.rotation_error, 1, 0.01) << "the leash of its turn, which does not hold its place";
+    EXPECT_EQ(tilted.follow, FollowReason::few_joints) << name_of(tilted.follow);
+    EXPECT_THAT(describe(tilted, {}).name, testing::HasSubstr("too few joints"));
+  }
 }
 
 TEST_F(HandOfRigTest, WithoutAModelJointsAreMovedAlone) {

@@ -6,6 +6,7 @@
 #include "tests/prediction/sample_arms.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/allocations.hpp"
+#include "tests/support/palletiser.hpp"
 
 namespace foresight::inverse_kinematics_test {
 namespace {
@@ -111,12 +112,12 @@ TEST(InverseKinematics, NothingNearIsNearerThanTheNearest) {
   }
 }
 
-TEST(InverseKinematics, FewerThanSixJointsReachPositionsOnly) {
+TEST(InverseKinematics, FewerThanSixJointsReachThePositionFirst) {
   std::mt19937_64 random(6);
   for (const std::size_t joints : {3, 4, 5}) {
     const InverseKinematics kinematics(short_arm(joints));
-    EXPECT_TRUE(kinematics.position_only());
-    EXPECT_NE(kinematics.description().find("position only"), std::string::npos);
+    EXPECT_TRUE(kinematics.position_first());
+    EXPECT_NE(kinematics.description().find("the position first"), std::string::npos);
     int solved = 0;
     for (int i = 0; i < 100; ++i) {
       Pose target = kinematics.chain().tip_pose(any_joints(kinematics.chain(), random));
@@ -129,6 +130,61 @@ TEST(InverseKinematics, FewerThanSixJointsReachPositionsOnly) {
     }
     EXPECT_GE(solved, 98) << joints;
   }
+}
+
+TEST(InverseKinematics, FewerThanSixJointsTurnTheTipAsNearlyAsTheyCan) {
+  std::mt19937_64 random(8);
+  for (const std::size_t joints : {4, 5}) {
+    const InverseKinematics kinematics(short_arm(joints));
+    const ArmChain& arm = kinematics.chain();
+    int exact = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Pose target = arm.tip_pose(any_joints(arm, random));
+      const IkAnswer a = kinematics.solve(target);
+      exact += a.status == IkStatus::solved && a.rotation_error < 1e-8;
+    }
+    EXPECT_GE(exact, 95) << joints << " joints, of poses that can be reached";
+    for (int i = 0; i < 50; ++i) {
+      const JointVector near = any_joints(arm, random);
+      Pose target = arm.tip_pose(near);
+      target.linear() = Eigen::AngleAxisd(0.4, any_direction(random)).toRotationMatrix() * target.linear();
+      const IkAnswer a = kinematics.solve(target, near);
+      ASSERT_EQ(a.status, IkStatus::solved);
+      EXPECT_LT(a.rotation_error, 0.4 + 1e-9) << "no farther than where it is";
+      EXPECT_LT(kinematics.solve(target, a.q).largest_change, 0.01) << "and there it stays";
+    }
+  }
+}
+
+// What the four drives of a palletiser can do: go anywhere, with the hand level, and turn it about the vertical.
+TEST(InverseKinematics, APalletisersHandIsTurnedAboutTheVertical) {
+  const TempFolder folder;
+  std::mt19937_64 random(9);
+  for (const Linkage linkage :
+       {Linkage::forearm_by_rods, Linkage::at_the_wrist, Linkage::by_lever, Linkage::in_two_halves}) {
+    const InverseKinematics kinematics(read_arm_chain(folder.write("r.urdf", palletiser_urdf(linkage)), "hand"));
+    EXPECT_FALSE(kinematics.closed_form());
+    int exact = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Pose target = kinematics.chain().tip_pose(any_joints(kinematics.chain(), random));
+      const IkAnswer a = kinematics.solve(target);
+      exact += a.status == IkStatus::solved && a.rotation_error < 1e-8;
+    }
+    EXPECT_GE(exact, 98);
+  }
+}
+
+// A follower that turns back what the first wrist joint does: no spherical wrist, though seven joints have the lines.
+TEST(InverseKinematics, AnArmWithFollowersIsNotSolvedInClosedForm) {
+  const ArmChain lab = lab_arm();
+  const std::vector<ArmJoint> joints(lab.joints().begin(), lab.joints().end());
+  const ArmChain arm(joints, lab.tip_at_zero(), "arm", {{4, 6, -0.5, false, joints[5].axis, joints[5].point}});
+  const InverseKinematics kinematics(arm);
+  EXPECT_TRUE(InverseKinematics(lab).closed_form());
+  EXPECT_FALSE(kinematics.closed_form());
+  std::mt19937_64 random(10);
+  for (int i = 0; i < 30; ++i)
+    EXPECT_EQ(kinematics.solve(arm.tip_pose(any_joints(arm, random))).status, IkStatus::solved);
 }
 
 TEST(InverseKinematics, TargetsThatAreNoPosesAreRefused) {

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/prediction/sample_arms.hpp"
 #include "tests/support/allocations.hpp"
+#include "tests/support/folders.hpp"
+#include "tests/support/palletiser.hpp"
 
 namespace foresight::path_follower_test {
 namespace {
@@ -165,6 +168,86 @@ TEST(PathFollower, TheHandPassesThroughASingularWrist) {
   EXPECT_EQ(standing, 0);
 }
 
+ArmChain palletiser(Linkage linkage) {
+  const TempFolder folder;
+  return read_arm_chain(folder.write("r.urdf", palletiser_urdf(linkage)), "hand");
+}
+
+Pose moved(const Pose& from, const Eigen::Vector3d& way, const Eigen::AngleAxisd& turn) {
+  Pose to = from;
+  to.translation() += way;
+  to.linear() = turn.toRotationMatrix() * from.linear();
+  return to;
+}
+
+TEST(PathFollower, WhatFollowsAJointIsNeverFasterThanItMay) {
+  std::mt19937_64 random(3);
+  for (const Linkage linkage : {Linkage::forearm_by_rods, Linkage::by_lever, Linkage::in_two_halves}) {
+    const InverseKinematics kinematics(palletiser(linkage));
+    const ArmChain& arm = kinematics.chain();
+    const auto named = [&](const char* name) {
+      return std::ranges::find(arm.joints(), name, &ArmJoint::name) - arm.joints().begin();
+    };
+    const Eigen::Index elbow = named(linkage == Linkage::by_lever ? "rear_lever" : "elbow");
+    const bool halves = linkage == Linkage::in_two_halves;
+    const double factor = halves ? 0.7 : 1, most = halves ? 0.9 : 0.8;  // of wrist_rods
+    double fastest = 0;
+    PathFollower follower(kinematics, arm.middle());
+    for (int leap = 0; leap < 10; ++leap) {
+      const Pose target = arm.tip_pose(any_joints(arm, random));
+      for (int i = 0; i < 100; ++i) {
+        const JointVector before = follower.joints();
+        const FollowStep step = follower.step(target, kCycle);
+        fastest = std::max(fastest, factor * std::abs(step.q[elbow] - before[elbow]) / kCycle);
+        ASSERT_LE(step_over_limit(arm, before, step.q, kCycle), 1.0);
+      }
+    }
+    EXPECT_LE(fastest, most);
+    EXPECT_GT(fastest, 0.99 * most) << "and no slower";
+  }
+}
+
+TEST(PathFollower, APalletisersHandGoesAndTurnsWithTheOperators) {
+  for (const Linkage linkage : {Linkage::forearm_by_rods, Linkage::at_the_wrist, Linkage::by_lever}) {
+    const InverseKinematics kinematics(palletiser(linkage));
+    PathFollower follower(kinematics, kinematics.chain().middle());
+    const Pose from = follower.hand();
+    const Pose to = moved(from, {-0.1, 0.15, 0.08}, Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitZ()));
+    for (int i = 1; i <= 500; ++i) {
+      const FollowStep step = follower.step(pose_between(from, to, i / 500.0), kCycle);
+      ASSERT_EQ(step.reason, FollowReason::none) << i;
+      EXPECT_LT(step.position_error, 1e-9);
+      EXPECT_LT(step.rotation_error, 1e-6);
+    }
+    const JointVector there = follower.joints();
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(follower.step(to, kCycle).q == there) << "a still hand";
+  }
+}
+
+TEST(PathFollower, AHandThatFewJointsCannotTurnIsFollowedInPlaceAndTold) {
+  const InverseKinematics kinematics(palletiser(Linkage::forearm_by_rods));
+  PathFollower follower(kinematics, kinematics.chain().middle());
+  const Pose from = follower.hand();
+  const Pose tilted = moved(from, {-0.1, 0.1, 0.1}, Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()));
+  FollowStep step;
+  for (int i = 1; i <= 300; ++i) {
+    step = follower.step(pose_between(from, tilted, std::min(1.0, i / 250.0)), kCycle);
+    ASSERT_LT(step.position_error, 1e-9) << i;
+  }
+  EXPECT_EQ(step.reason, FollowReason::few_joints);
+  EXPECT_NEAR(step.rotation_error, 0.5, 0.01) << "all of the tilt is left";
+  const JointVector there = follower.joints();
+  EXPECT_TRUE(follower.step(tilted, kCycle).q == there);
+  const Pose turned = moved(tilted, {0, 0, 0}, Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()));
+  step = follower.step(turned, kCycle);
+  EXPECT_EQ(step.reason, FollowReason::joint_speed) << "what it can turn takes its time";
+  EXPECT_EQ(kinematics.chain().joints()[static_cast<std::size_t>(step.joint)].name, "wrist_roll");
+  const Pose back = moved(from, {-0.1, 0.1, 0.1}, Eigen::AngleAxisd(0, Eigen::Vector3d::UnitX()));
+  for (int i = 1; i <= 100; ++i) step = follower.step(back, kCycle);
+  EXPECT_EQ(step.reason, FollowReason::none);
+  EXPECT_LT(step.rotation_error, 1e-6);
+}
+
 TEST(PathFollower, BadTargetsAndCyclesMoveNothing) {
   const InverseKinematics kinematics(lab_arm());
   PathFollower follower(kinematics, bent(kinematics.chain()));
@@ -181,15 +264,17 @@ TEST(PathFollower, BadTargetsAndCyclesMoveNothing) {
 
 TEST(PathFollower, AStepDoesNotAllocate) {
   std::mt19937_64 random(2);
-  const InverseKinematics kinematics(lab_arm());
-  const ArmChain& arm = kinematics.chain();
-  PathFollower follower(kinematics, bent(arm));
-  for (int leap = 0; leap < 20; ++leap) {
-    Pose target = arm.tip_pose(any_joints(arm, random));
-    if (leap % 4 == 0) target.translation() *= 2;
-    const std::size_t before = allocations();
-    for (int i = 0; i < 50; ++i) follower.step(target, 0.02);
-    EXPECT_EQ(allocations() - before, 0u);
+  const InverseKinematics kinematics(lab_arm()), of_few(palletiser(Linkage::forearm_by_rods));
+  for (const InverseKinematics* k : {&kinematics, &of_few}) {
+    const ArmChain& arm = k->chain();
+    PathFollower follower(*k, arm.middle());
+    for (int leap = 0; leap < 20; ++leap) {
+      Pose target = arm.tip_pose(any_joints(arm, random));
+      if (leap % 4 == 0) target.translation() *= 2;
+      const std::size_t before = allocations();
+      for (int i = 0; i < 50; ++i) follower.step(target, 0.02);
+      EXPECT_EQ(allocations() - before, 0u);
+    }
   }
 }
 

@@ -21,7 +21,7 @@ inline std::string body(const std::string& name, const std::string& middle = "",
 }
 
 inline std::string joint(const std::string& name, const std::string& parent, const std::string& child,
-                                    const std::string& origin, const std::string& limit, const std::string& more = "") {
+                         const std::string& origin, const std::string& limit, const std::string& more = "") {
   return "<joint name='" + name + "' type='revolute'><parent link='" + parent + "'/><child link='" + child +
          "'/><origin " + origin + "/><axis xyz='0 1 0'/><limit " + limit + " effort='1'/>" + more + "</joint>";
 }
@@ -37,7 +37,8 @@ inline std::string follows(const std::string& leader, double factor, double offs
 /// along its z; else the tool is the link `wrist`, level.
 inline std::string palletiser_urdf(Linkage linkage, bool roll = true) {
   using namespace palletiser;
-  const std::string arm = "lower='-0.6' upper='1.2' velocity='1.5'", wide = "lower='-3' upper='3' velocity='0'", slow = "lower='-3' upper='3' velocity='0.9'";
+  const std::string arm = "lower='-0.6' upper='1.2' velocity='1.5'", wide = "lower='-3' upper='3' velocity='0'",
+                    slow = "lower='-3' upper='3' velocity='0.9'";
   std::string out = "<robot name='palletiser'>" + body("foot", "0 0 0.1", "0.3 0.3 0.2") +
                     body("turret", "0 0 0.1", "0.2 0.2 0.2") + body("upper", "0 0 0.3", "0.1 0.12 0.5") +
                     body("forearm", "0.33 0 0", "0.4 0.1 0.1") + body("wrist", "0.03 0 -0.02", "0.12 0.08 0.06") +
@@ -54,7 +55,8 @@ inline std::string palletiser_urdf(Linkage linkage, bool roll = true) {
       if (lever)
         out += body("lever", "0.15 0 0", "0.3 0.03 0.03") +
                joint("rear_lever", "turret", "lever", "xyz='-0.05 0.15 0.2'", arm);
-      out += body("level") + joint("rods", "upper", "level", at_elbow, "lower='-1.3' upper='1' velocity='0'", follows("shoulder", -1)) +
+      out += body("level") +
+             joint("rods", "upper", "level", at_elbow, "lower='-1.3' upper='1' velocity='0'", follows("shoulder", -1)) +
              joint("elbow", "level", "forearm", none, arm, lever ? follows(drive, 1) : "") +
              joint("wrist_rods", "forearm", "wrist", at_wrist, "lower='-1.3' upper='1.3' velocity='0.8'",
                    follows(drive, -1));
@@ -68,8 +70,7 @@ inline std::string palletiser_urdf(Linkage linkage, bool roll = true) {
     case Linkage::in_two_halves:
       out += body("half", "0.15 0 0", "0.2 0.08 0.08") + joint("elbow", "upper", "forearm", at_elbow, arm) +
              joint("rods", "forearm", "half", at_wrist, wide, follows("elbow", -0.5, 0.2)) +
-             joint("wrist_rods", "half", "wrist", "xyz='0.3 0 0'", slow,
-                   follows("elbow", 0.7, -0.3));
+             joint("wrist_rods", "half", "wrist", "xyz='0.3 0 0'", slow, follows("elbow", 0.7, -0.3));
       break;
   }
   if (roll)
