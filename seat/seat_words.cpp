@@ -58,8 +58,17 @@ SeatLine line_words(const SeatStatus& status) {
   return out;
 }
 
+/// Who has asked the joints to look for home is not told to.
+std::string fault_words(std::string fault, const SeatStatus& status) {
+  constexpr std::string_view kCure = "home them (H)";
+  const std::size_t at = fault.find(kCure);
+  if (at != fault.npos && status.robot && status.robot->phase.label == "homing")
+    fault.replace(at, kCure.size(), "they look for home");
+  return fault;
+}
+
 SeatLine images_words(const SeatStatus& status, const std::string& fault) {
-  if (!fault.empty()) return {"images", fault, "", Urgency::trouble};
+  if (!fault.empty()) return {"images", fault_words(fault, status), "", Urgency::trouble};
   return {"images",
           fmt::format("{} pairs, {:.1f}/s, {}", static_cast<unsigned long long>(status.line.pairs.pairs),
                       status.line.pairs_per_s, status.line.coding),
@@ -110,14 +119,16 @@ SeatLine commander_words(const SeatStatus& status) {
     case Phase::connecting: return {"in command", status.control.words, out.cure, Urgency::note};
     case Phase::connected:
       out.words = status.control.words;
-      if (!state.holder_name.empty()) out.words += "; " + state.holder_name + " commands";
+      if (!state.holder_name.empty() && out.words.find(state.holder_name) == std::string::npos)
+        out.words += "; " + state.holder_name + " commands";
       out.urgency = Urgency::note;
       return out;
     case Phase::holding: break;
   }
   out.words = status.control.follows ? "you; the robot follows" : "you";
   if (!status.control.words.empty()) out.words += "; " + status.control.words;
-  if (!state.asking_name.empty()) out.words += "; " + state.asking_name + " asks for it";
+  if (!state.asking_name.empty()) out.words += "; " + state.asking_name + " asks for it: T hands it over";
+  if (!state.ready) out.cure.clear();  // the switch would be in vain: the robot's line says what it needs
   if (status.held && !status.engaged) {
     out.urgency = Urgency::trouble;
     out.cure = "let go of the switch, and press it again";
@@ -130,6 +141,7 @@ SeatLine request_words(const SeatStatus& status) {
   SeatLine out{"asked", "", ""};
   if (status.fates.empty() || status.fates.back().outcome == RequestOutcome::taken) return out;
   const RequestFate& fate = status.fates.back();
+  if (fate.outcome == RequestOutcome::not_holder && status.control.phase == Phase::holding) return out;  // he is now
   const ControlWords words = fate.outcome ? words_for(*fate.outcome)
                                           : ControlWords{"no answer came", "look at the robot's state, and ask again"};
   out.words = fmt::format("{}: {}", to_string(fate.what), words.name);
@@ -204,7 +216,8 @@ SeatLine next_step(const SeatStatus& status) {
   const link::RobotState* robot = status.robot ? &*status.robot : nullptr;
   if (robot && !robot->doing.cure.empty() && !status.robot_control.ready)
     return {"next", robot->doing.name, with_our_keys(robot->doing.cure), Urgency::note};
-  if (status.robot_control.ready) return {"next", "ready", "hold the switch and move", Urgency::fine};
+  if (status.robot_control.ready)
+    return {"next", "ready", "hold the switch and move, or Enter with it to begin", Urgency::fine};
   return {"next", status.control.words, status.control.cure, Urgency::note};
 }
 

@@ -71,6 +71,7 @@ RobotStatus Robot::status() const {
 }
 
 void Robot::enter(RobotPhase phase, RobotTime now, int waiting_for) noexcept {
+  if (phase == RobotPhase::ready) refused_ = "";
   phase_ = phase;
   phase_since_ = now;
   waiting_for_ = waiting_for;
@@ -146,6 +147,7 @@ void Robot::follow(RobotRequest request, RobotTime now) noexcept {
       disable_all();
       return enter(RobotPhase::disabled, now);
     case RobotRequest::home:
+      if (phase_ == RobotPhase::homing) return void(refused_ = "home: the joints are looking for it already");
       if (phase_ != RobotPhase::ready || gate != GateState::idle)
         return void(refused_ = "home: only while ready and nobody is in charge");
       homing_ = 0;
@@ -234,7 +236,8 @@ void Robot::let_gate_step(RobotTime now) noexcept {
   const std::size_t commands = take_commands();
   if (phase_ != RobotPhase::ready && phase_ != RobotPhase::homing && phase_ != RobotPhase::stopped) return;
   const bool may_move = phase_ == RobotPhase::ready && all_homed();
-  if (phase_ == RobotPhase::ready && !may_move && commands > 0)
+  const auto is_to_move = [](const MotionCommand& command) { return command.deadman; };
+  if (phase_ == RobotPhase::ready && !may_move && std::any_of(taken_.begin(), taken_.begin() + commands, is_to_move))
     refused_ = "not all joints know where they are: home first";
   gate_.step(now, {taken_.data(), may_move ? commands : 0}, feedback_);
   if (phase_ == RobotPhase::homing && gate_.status().state != GateState::stopped) advance_homing(now);

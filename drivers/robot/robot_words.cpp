@@ -148,9 +148,9 @@ std::string reason_text(const GateStatus& gate, std::span<const JointWords> join
 RobotWords describe(const RobotStatus& status, std::span<const JointWords> joints) {
   const GateReason reason = status.gate.reason;
   RobotWords out{words_for(status.phase).name, words_for(status.phase).cure};
+  const bool by_hand = reason == GateReason::emergency_stop;
   if (status.phase == RobotPhase::stopped && reason != GateReason::none) {
-    const bool says_so = reason == GateReason::emergency_stop;
-    out = {(says_so ? "" : "stopped: ") + reason_text(status.gate, joints) + (says_so ? "" : "; drives hold"),
+    out = {(by_hand ? "" : "stopped: ") + reason_text(status.gate, joints) + (by_hand ? "" : "; drives hold"),
            words_for(reason).cure};
   } else if (status.phase == RobotPhase::ready && status.gate.state != GateState::idle) {
     out = {std::string("ready, ") + words_for(status.gate.state).name, words_for(status.gate.state).cure};
@@ -163,7 +163,8 @@ RobotWords describe(const RobotStatus& status, std::span<const JointWords> joint
   }
   if (status.phase == RobotPhase::ready && !status.all_homed && reason == GateReason::none)
     out = {"drives hold; not all joints know where they are", "home them (h)"};
-  if (const std::string joint = name_of(status.waiting_for, joints); !joint.empty() && status.gate.joint < 0)
+  if (const std::string joint = name_of(status.waiting_for, joints);
+      !joint.empty() && status.gate.joint < 0 && !by_hand)
     out.name += ", waiting for " + joint;
   return out;
 }

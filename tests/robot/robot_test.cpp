@@ -31,6 +31,7 @@ TEST_F(RobotTest, MovesNothingBeforeAllJointsAreHomed) {
   make_ready();
   command(1, 0, false);
   run(1);
+  EXPECT_STREQ(robot_.status().refused, "") << "with an open switch nobody asks to move anything";
   for (int i = 0; i < 100; ++i) {
     command(1, 0);
     run(1);
@@ -264,6 +265,19 @@ TEST_F(HomingRobotTest, EndsReadyWithAllHomed) {
   run(5);
   EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
   EXPECT_TRUE(robot_.status().all_homed);
+}
+
+TEST_F(HomingRobotTest, WhatWasRefusedMeanwhileIsOverOnceItIsReady) {
+  robot_.ask(RobotRequest::home);
+  run(1);
+  EXPECT_THAT(robot_.status().refused, testing::HasSubstr("already"));
+  arrive(0);
+  move(1);
+  EXPECT_THAT(robot_.status().refused, testing::HasSubstr("already"));
+  arrive(1);
+  run(5);
+  ASSERT_EQ(robot_.status().phase, RobotPhase::ready);
+  EXPECT_STREQ(robot_.status().refused, "");
 }
 
 TEST_F(HomingRobotTest, AFaultOfAnotherDriveStopsIt) {

@@ -46,6 +46,10 @@ TEST(RobotWords, SayWhatTheRobotDoesAndWhatToDo) {
   status.gate = {.state = GateState::stopped, .reason = GateReason::emergency_stop};
   EXPECT_EQ(describe(status, kJoints).name, "stopped by the operator; drives hold");
   EXPECT_EQ(describe(status, kJoints).cure, "reset (r) once the way is clear");
+  status.waiting_for = 0;
+  EXPECT_EQ(describe(status, kJoints).name, "stopped by the operator; drives hold")
+      << "no longer for the joint that homed";
+  status.waiting_for = -1;
   status.gate.reason = GateReason::drive_fault;
   status.gate.joint = 1;
   status.gate.detail = "overcurrent";

@@ -156,6 +156,44 @@ TEST(SeatWords, WhoWaitsForControlIsNotToldToAskForIt) {
   EXPECT_NE(find(lines, "asked")->cure.find("wait"), std::string::npos);
 }
 
+// What he asked for before he had control is over: G would now give it away.
+TEST(SeatWords, WhoHasControlIsNotToldToAskForIt) {
+  SeatStatus status = driving();
+  status.fates.push_back({1, LineRequest::home, RequestOutcome::not_holder});
+  EXPECT_FALSE(find(seat_lines(status, {}, ""), "asked"));
+}
+
+TEST(SeatWords, WhoMayNotMoveAnythingYetIsNotToldToPressTheSwitch) {
+  SeatStatus status = driving();
+  status.held = status.engaged = status.control.follows = false;
+  status.control.words = "the switch is open";
+  status.control.cure = "press the switch";
+  EXPECT_EQ(find(seat_lines(status, {}, ""), "in command")->cure, "");
+  status.robot_control.ready = true;
+  EXPECT_EQ(find(seat_lines(status, {}, ""), "in command")->cure, "press the switch");
+}
+
+TEST(SeatWords, TheOtherOperatorIsNamedOnceAndWithTheKey) {
+  SeatStatus status = driving();
+  status.robot_control.asking_name = "anna";
+  EXPECT_THAT(find(seat_lines(status, {}, ""), "in command")->words, testing::HasSubstr("anna asks for it: T"));
+  status.control.phase = Phase::connected;
+  status.robot_control.holder_name = "anna";
+  status.control.words = "'anna' commands; wait";
+  EXPECT_EQ(find(seat_lines(status, {}, ""), "in command")->words, "'anna' commands; wait");
+  status.control.words = "connected";
+  EXPECT_EQ(find(seat_lines(status, {}, ""), "in command")->words, "connected; anna commands");
+}
+
+TEST(SeatWords, WhileJointsLookForHomeNobodyIsToldToHomeThem) {
+  SeatStatus status = driving();
+  const std::string fault = "no pose: 3 of 10 joints tell no position; home them (H)";
+  EXPECT_EQ(find(seat_lines(status, {}, fault), "images")->words, fault);
+  status.robot->phase.label = "homing";
+  EXPECT_EQ(find(seat_lines(status, {}, fault), "images")->words,
+            "no pose: 3 of 10 joints tell no position; they look for home");
+}
+
 TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
   SeatStatus status;
   status.control.words = "looking for the robot";
