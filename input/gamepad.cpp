@@ -146,6 +146,7 @@ TrackerState Gamepad::read(OperatorTime now) noexcept {
   set(TrackerButton::joint_mode, d.button(SDL_CONTROLLER_BUTTON_X));
   set(TrackerButton::home_view, d.button(SDL_CONTROLLER_BUTTON_B));
   set(TrackerButton::recentre, d.button(SDL_CONTROLLER_BUTTON_Y));
+  set(TrackerButton::to_start, pressed(SDL_CONTROLLER_BUTTON_START));
   const bool to_left = pressed(SDL_CONTROLLER_BUTTON_DPAD_LEFT), to_right = pressed(SDL_CONTROLLER_BUTTON_DPAD_RIGHT);
   const bool up = pressed(SDL_CONTROLLER_BUTTON_DPAD_UP), down = pressed(SDL_CONTROLLER_BUTTON_DPAD_DOWN);
   set(TrackerButton::previous_joint, to_left);

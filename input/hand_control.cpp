@@ -212,7 +212,9 @@ void HandControl::hold(const HandInput& input, const HandWatch::Verdict& verdict
   out_.phase = HandPhase::holding;
   out_.joints = options_.gate.joints.size();
   if (input.now == held_->since) dt = 0;
-  if (out_.mode == HandMode::joints) {
+  if (input.device.buttons.held(TrackerButton::to_start)) {
+    go_to_start(input, dt);
+  } else if (out_.mode == HandMode::joints) {
     say(HandReason::none);
     jog(input.device.joint_rate, dt);
   } else

@@ -44,10 +44,12 @@ struct HandOptions {
   std::size_t tip = 0;                   ///< of the URDF's links, the one that the tool is on
   std::optional<std::size_t> pan, tilt;  ///< the joints that the device's pan and tilt rates move
   bool tilt_looks_down = true;           ///< larger positions of `tilt` look farther down
-  double look_speed = 0.3;               ///< share of their velocity
-  bool gripper_opens_up = true;          ///< larger positions are wider open
-  double joint_speed = 0.3;              ///< share of a joint's velocity at which it is jogged
-  double gripper_speed = 1;              ///< share of its velocity at which a gripper opens and closes
+  /// Where a person begins, rad or m, one per joint: the button to_start brings those that are given there.
+  std::vector<std::optional<double>> start{};
+  double look_speed = 0.3;       ///< share of their velocity
+  bool gripper_opens_up = true;  ///< larger positions are wider open
+  double joint_speed = 0.3;      ///< share of a joint's velocity at which it is jogged
+  double gripper_speed = 1;      ///< share of its velocity at which a gripper opens and closes
   /// How far the target may get ahead of the tool. Beyond it, it slips: what the arm cannot follow is not made up for
   /// later.
   double leash = 0.3;       ///< m
@@ -111,6 +113,7 @@ enum class HandReason : std::uint8_t {
   robot_silent,     ///< it did not begin to follow in time
   paused,           ///< this program stood still
   no_arm,           ///< the robot has no arm whose tool could be moved
+  no_start,         ///< it has no start position to go to
   bad_number,       ///< what is known of the robot is no number
 };
 
@@ -201,6 +204,8 @@ class HandControl {
   void tell(const FollowStep& step) noexcept;
   void leash(const FollowStep& step) noexcept;
   void jog(double rate, double dt) noexcept;
+  void go_to_start(const HandInput& input, double dt) noexcept;
+  void guard_joints(const JointValues& before) noexcept;
   void look(const TrackerState& device, double dt) noexcept;
   void move_others(const HandInput& input, double dt) noexcept;
   void move_grippers(const TrackerState& device, double dt) noexcept;

@@ -79,6 +79,45 @@ void HandControl::leash(const FollowStep& step) noexcept {
   }
 }
 
+// All at once, so that they arrive together; the clutch connects the hand anew afterwards.
+void HandControl::go_to_start(const HandInput& input, double dt) noexcept {
+  held_->clutched = held_->clutch_refused = false;
+  const auto goal = [&](std::size_t joint) -> std::optional<double> {
+    if (joint >= options_.start.size() || options_.roles[joint] == JointRole::gripper) return std::nullopt;
+    if (input.others[joint] && options_.roles[joint] == JointRole::other) return std::nullopt;
+    return options_.start[joint];
+  };
+  double longest = 0;  // s at full speed
+  bool any = false;
+  for (std::size_t i = 0; i < out_.joints; ++i) {
+    const auto to = goal(i);
+    any = any || to;
+    if (to) longest = std::max(longest, std::abs(*to - out_.positions[i]) / options_.gate.joints[i].limits.velocity);
+  }
+  say(any ? HandReason::none : HandReason::no_start);
+  if (!(longest > 0)) return;
+  out_.phase = HandPhase::driving;
+  const JointValues before = out_.positions;
+  for (std::size_t i = 0; i < out_.joints; ++i) {
+    const auto to = goal(i);
+    if (!to) continue;
+    const double alone = std::abs(*to - before[i]) / options_.gate.joints[i].limits.velocity;
+    move_to(i, *to, dt, options_.joint_speed * alone / longest);
+  }
+  if (guard_) guard_joints(before);
+}
+
+// Where the guard lets the arm get to on its way from there; no joint beyond where it was to go.
+void HandControl::guard_joints(const JointValues& before) noexcept {
+  const FollowStep step = guard_->go(before, out_.positions);
+  for (std::size_t i = 0; i < options_.arm_joints.size(); ++i) {
+    const std::size_t joint = options_.arm_joints[i];
+    const auto [low, high] = std::minmax(before[joint], out_.positions[joint]);
+    out_.positions[joint] = std::clamp(step.q[static_cast<Eigen::Index>(i)], low, high);
+  }
+  tell(step);
+}
+
 void HandControl::jog(double rate, double dt) noexcept {
   if (!std::isfinite(rate) || rate == 0) return;
   out_.phase = HandPhase::driving;
@@ -88,12 +127,10 @@ void HandControl::jog(double rate, double dt) noexcept {
           options_.joint_speed * std::min(std::abs(rate), 1.0));
   const auto of_arm = std::ranges::find(options_.arm_joints, out_.joint);
   if (!guard_ || out_.positions[out_.joint] == before[out_.joint]) return;
-  const FollowStep step = guard_->go(before, out_.positions);
-  if (of_arm == options_.arm_joints.end()) return;  // nothing holds it back, but what jaws take is seen
-  const double to = step.q[of_arm - options_.arm_joints.begin()];
-  out_.positions[out_.joint] = std::clamp(to, std::min(before[out_.joint], out_.positions[out_.joint]),
-                                          std::max(before[out_.joint], out_.positions[out_.joint]));
-  tell(step);
+  if (of_arm != options_.arm_joints.end())
+    guard_joints(before);
+  else
+    guard_->go(before, out_.positions);  // nothing holds it back, but what jaws take is seen
 }
 
 void HandControl::move_others(const HandInput& input, double dt) noexcept {

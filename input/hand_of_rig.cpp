@@ -95,6 +95,7 @@ HandOptions hand_options(const Rig& rig, const std::string& tip, const Pose& T_t
   out.gate = rig.gate_options();
   for (std::size_t i = 0; i < rig.joints.size(); ++i) {
     out.roles.push_back(role_of(rig.joints[i].group));
+    out.start.push_back(rig.joints[i].start);
     if (rig.joints[i].group == JointGroup::pan_tilt) (out.pan ? out.tilt : out.pan) = i;  // in this order, as rigs say
   }
   const bool any_arm = std::ranges::find(out.roles, JointRole::arm) != out.roles.end();

@@ -18,6 +18,8 @@ HandWords words_for(HandReason reason) {
     case HandReason::robot_silent:
       return {"the robot did not begin to follow", "see what it says; let go, and press again"};
     case HandReason::paused: return {"this program stood still", "let go, and press again"};
+    case HandReason::no_start:
+      return {"this robot has no start position", "write one to the rig: `start:` of its joints"};
     case HandReason::no_arm: return {"this robot has no arm whose tool could be moved", "move single joints"};
     case HandReason::bad_number:
       return {"a joint's position is no number", "see what the robot says of its drives; let go, and press again"};
@@ -38,6 +40,7 @@ const char* to_string(TrackerButton button) noexcept {
     case TrackerButton::joint_mode: return "joint_mode";
     case TrackerButton::next_joint: return "next_joint";
     case TrackerButton::previous_joint: return "previous_joint";
+    case TrackerButton::to_start: return "to_start";
   }
   return "?";
 }
@@ -63,7 +66,8 @@ HandWords words_for(FollowReason reason, const std::string& joint) {
     case FollowReason::joint_speed: return {of_joint + " goes as fast as it may", "move more slowly"};
     case FollowReason::joint_limit: return {of_joint + " stands at its limit", "come another way"};
     case FollowReason::singularity:
-      return {"the arm is stretched or folded, and hardly moves that way", "move across it slowly"};
+      return {"the arm is stretched or folded, and hardly moves that way",
+              "move across it slowly, or go to the start position"};
     case FollowReason::out_of_reach: return {"the hand is out of the arm's reach", "come back"};
     case FollowReason::few_joints:
       return {"the arm has too few joints to turn as your hand does", "its place is followed; turn your hand back"};

@@ -38,6 +38,7 @@ constexpr std::array<KeyBinding, kHandKeys> kBindings{{
     {HandKey::joint_mode, GLFW_KEY_M, "M", "move single joints, or the tool"},
     {HandKey::joint_less, GLFW_KEY_MINUS, "-", "move the joint back"},
     {HandKey::joint_more, GLFW_KEY_EQUAL, "=", "move the joint on"},
+    {HandKey::to_start, GLFW_KEY_ENTER, "Enter", "hold to go to the start position"},
     {HandKey::joint_1, GLFW_KEY_1, "1", "the first joint"},
     {HandKey::joint_2, GLFW_KEY_2, "2", "the second joint"},
     {HandKey::joint_3, GLFW_KEY_3, "3", "the third joint"},
@@ -166,6 +167,7 @@ TrackerState KeyboardMouse::read(OperatorTime now) noexcept {
   set(TrackerButton::clutch, switch_held);
   set(TrackerButton::gripper_close, down(HandKey::gripper_close));
   set(TrackerButton::gripper_open, down(HandKey::gripper_open));
+  set(TrackerButton::to_start, down(HandKey::to_start));
   set(TrackerButton::home_view, take_tap(HandKey::home_view));
   set(TrackerButton::recentre, take_tap(HandKey::recentre));
   set(TrackerButton::joint_mode, take_tap(HandKey::joint_mode));

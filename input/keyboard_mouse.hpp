@@ -42,6 +42,7 @@ enum class HandKey : std::uint8_t {
   joint_mode,
   joint_less,
   joint_more,
+  to_start,
   joint_1,
   joint_2,
   joint_3,
@@ -53,7 +54,7 @@ enum class HandKey : std::uint8_t {
   joint_9,
   joint_10,
 };
-inline constexpr std::size_t kHandKeys = 35;
+inline constexpr std::size_t kHandKeys = 36;
 
 struct KeyBinding {
   HandKey key;

@@ -27,8 +27,9 @@ enum class TrackerButton : std::uint8_t {
   joint_mode,     ///< each press changes between moving the tool and moving one joint
   next_joint,
   previous_joint,
+  to_start,  ///< held, the joints go to the start position
 };
-inline constexpr std::size_t kTrackerButtons = 9;
+inline constexpr std::size_t kTrackerButtons = 10;
 const char* to_string(TrackerButton button) noexcept;
 
 /// Which buttons are held.

@@ -23,7 +23,8 @@ constexpr double kHalf = 0.5;  // of a trigger
 
 constexpr std::array kButtons{TrackerButton::deadman,       TrackerButton::clutch,     TrackerButton::gripper_open,
                               TrackerButton::gripper_close, TrackerButton::home_view,  TrackerButton::recentre,
-                              TrackerButton::joint_mode,    TrackerButton::next_joint, TrackerButton::previous_joint};
+                              TrackerButton::joint_mode,    TrackerButton::next_joint, TrackerButton::previous_joint,
+                              TrackerButton::to_start};
 static_assert(kButtons.size() == kTrackerButtons);
 
 constexpr const char* kHead = "head_";
@@ -40,7 +41,8 @@ TrackerState own_row(const TraceColumns& columns, const TextRow& row) {
   out.integrated = columns.flag(row, "integrated");
   if (out.tracked) out.T_space_hand = columns.pose(row, "");
   if (std::isfinite(columns.number_or_nan(row, "head_x"))) out.T_space_head = columns.pose(row, kHead);
-  for (const TrackerButton button : kButtons) out.buttons.set(button, columns.flag(row, to_string(button)));
+  for (const TrackerButton button : kButtons)
+    if (columns.has(to_string(button))) out.buttons.set(button, columns.flag(row, to_string(button)));
   if (const double grip = columns.number_or_nan(row, "grip"); std::isfinite(grip)) out.grip = grip;
   const double joint = columns.number_or_nan(row, "joint");
   if (joint >= 0 && joint < 1000) out.joint = static_cast<std::size_t>(joint);
@@ -117,7 +119,9 @@ Form form_of(const TraceColumns& columns, const TextRow& heading, TrackerSide si
     return std::ranges::all_of(std::array{"x", "y", "z", "qx", "qy", "qz", "qw"},
                                [&](const char* axis) { return columns.has(prefix + part + axis); });
   };
-  const bool buttons = std::ranges::all_of(kButtons, [&](TrackerButton b) { return columns.has(to_string(b)); });
+  const bool buttons = std::ranges::all_of(kButtons, [&](TrackerButton b) {
+    return b == TrackerButton::to_start || columns.has(to_string(b));  // which older recordings lack
+  });
   if (timed && posed && head && buttons &&
       columns.has_all({"connected", "tracked", "integrated", "grip", "joint", "joint_rate", "pan_rate", "tilt_rate"}))
     return {"a device", own_row};

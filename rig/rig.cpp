@@ -151,6 +151,15 @@ RigJoint::Response read_response(const YamlMap& map) {
   return out;
 }
 
+double read_start(const YamlMap& map, const RigJoint& joint) {
+  const DriveConfig& d = joint.drive;
+  const double start = number(map, "start", 0);
+  if (!(start >= d.min_position && start <= d.max_position))
+    throw InputError(map.where("start"), fmt::format("{:g} {} is beyond the joint's range", start, joint.unit),
+                     fmt::format("give {:g} to {:g}", d.min_position, d.max_position));
+  return start;
+}
+
 RigJoint read_joint(const YamlMap& map, const Rig& rig) {
   const std::vector<RigBus>& buses = rig.buses;
   map.require_known({"name",
@@ -173,7 +182,8 @@ RigJoint read_joint(const YamlMap& map, const Rig& rig) {
                      "vendor",
                      "product",
                      "serial",
-                     "response"});
+                     "response",
+                     "start"});
   RigJoint joint;
   joint.drive.name = map.text("name");
   joint.group = map.choice<JointGroup>(
@@ -202,6 +212,7 @@ RigJoint read_joint(const YamlMap& map, const Rig& rig) {
   if (!powercube) check_counts(map, joint);
   read_reference(map, powercube, joint);
   check_offset(map, buses[joint.bus], joint);
+  if (map.has("start")) joint.start = read_start(map, joint);
   if (map.has("response")) joint.response = read_response(map.map("response"));
   joint.drive.vendor = identity(map, "vendor");
   joint.drive.product = identity(map, "product");

@@ -41,8 +41,9 @@ struct RigJoint {
     double sigma_s = 0;                 ///< s: standard deviation of their sum; > 0
   };
   std::optional<Response> response = {};
-  int homing_method = 0;  ///< CiA 402, object 6098h; 0: none
-  bool absolute = false;  ///< CiA 402: its encoder knows the position from power-on, it needs no homing
+  std::optional<double> start = {};  ///< unit: where a person begins to work, within the joint's range
+  int homing_method = 0;             ///< CiA 402, object 6098h; 0: none
+  bool absolute = false;             ///< CiA 402: its encoder knows the position from power-on, it needs no homing
 };
 
 /// Results of `foresight calibrate`; whoever uses them reads them.

@@ -233,7 +233,7 @@ std::vector<std::pair<std::string, std::string>> HandDriver::keys() {
     return out;
   };
   using enum HandKey;
-  return {{printed({deadman}), "held: the robot moves"},
+  return {{printed({deadman}) + "; + " + printed({to_start}), "held: the robot moves; it goes to its start"},
           {"left button", "of the mouse, held: the robot moves, too"},
           {printed({slow}), "held: slowly"},
           {printed({forward, left, back, right, up, down}), "the tool: forward, left, back, right, up, down"},

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <span>
 #include <tuple>
 
 #include "common/error.hpp"
@@ -45,13 +47,17 @@ class TourPlan {
   }
   std::vector<ToolStep> with_tool_down(int count);
   std::vector<ToolStep> of_joints(int count);
+  /// All joints in the middle of where a tour goes, or on one.
+  std::optional<JointValues> start();
+  std::span<const std::size_t> arm_joints() const { return hand_.arm_joints; }
   InputError nothing() const;
 
  private:
   const ArmChain& chain() const { return kinematics_.chain(); }
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   void look_about();
-  Pose tool_down();
+  Pose tool_down(double yaw, double distance, double height, double turn) const;
+  Pose tool_down_anywhere();
   JointVector any_joints();
   bool clear(const JointVector& q);
   bool clear_all_the_way(const ToolStep& step);
@@ -85,18 +91,23 @@ void TourPlan::look_about() {
   ahead_ = std::atan2(ahead.y(), ahead.x());
 }
 
-// Before the arm, at heights where things stand; the tool's z points down.
-Pose TourPlan::tool_down() {
+// The tool's z points down. `distance`: of the arm's reach, from its foot.
+Pose TourPlan::tool_down(double yaw, double distance, double height, double turn) const {
   Pose pose = Pose::Identity();
-  const double angle = uniform(-0.9, 0.9), distance = uniform(kTourNear, kTourFar) * chain().reach();
-  const double yaw = ahead_ + angle;
+  const double out = distance * chain().reach();
   const Eigen::Vector3d foot = rig_.T_world_robot.translation();
   pose.translation() =
-      Eigen::Vector3d(foot.x() + distance * std::cos(yaw), foot.y() + distance * std::sin(yaw), uniform(low_, high_));
-  pose.linear() = (Eigen::AngleAxisd(uniform(-1.5, 1.5), Eigen::Vector3d::UnitZ()) *
+      Eigen::Vector3d(foot.x() + out * std::cos(ahead_ + yaw), foot.y() + out * std::sin(ahead_ + yaw), height);
+  pose.linear() = (Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) *
                    Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
                       .toRotationMatrix();
   return pose;
+}
+
+// Before the arm, at heights where things stand.
+Pose TourPlan::tool_down_anywhere() {
+  const double yaw = uniform(-0.9, 0.9), distance = uniform(kTourNear, kTourFar), height = uniform(low_, high_);
+  return tool_down(yaw, distance, height, uniform(-1.5, 1.5));
 }
 
 bool TourPlan::clear(const JointVector& q) {
@@ -127,7 +138,7 @@ bool TourPlan::clear_all_the_way(const ToolStep& step) {
 std::vector<ToolStep> TourPlan::with_tool_down(int count) {
   std::vector<ToolStep> out;
   for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
-    const Pose pose = tool_down();
+    const Pose pose = tool_down_anywhere();
     const IkAnswer answer = kinematics_.solve(rig_.T_world_robot.inverse() * pose);
     if (answer.status != IkStatus::solved) continue;
     ++reached_;
@@ -165,6 +176,20 @@ std::vector<ToolStep> TourPlan::of_joints(int count) {
   return out;
 }
 
+std::optional<JointValues> TourPlan::start() {
+  constexpr int kFew = 50;  // who waits for a window does not wait for a place that is hard to find
+  for (int tries = 0; tries < kFew; ++tries) {
+    const Pose pose =
+        tries == 0 ? tool_down(0, 0.5 * (kTourNear + kTourFar), 0.5 * (low_ + high_), ahead_) : tool_down_anywhere();
+    const IkAnswer answer = kinematics_.solve(rig_.T_world_robot.inverse() * pose);
+    if (answer.status != IkStatus::solved || !clear(answer.q)) continue;
+    ToolStep step{ToolStep::What::there, rig_.T_world_robot * answer.T_base_tip, 0, 1.5};
+    step.joints = answer.q;
+    if (clear_all_the_way(step)) return at_;
+  }
+  return of_joints(1).empty() ? std::nullopt : std::optional(at_);
+}
+
 InputError TourPlan::nothing() const {
   const std::string where =
       fmt::format("of the tour's poses, {:.2f} to {:.2f} m above the world's origin, tool down", low_, high_);
@@ -187,6 +212,16 @@ std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
   std::vector<ToolStep> of_joints = plan.of_joints(count);
   if (of_joints.empty() && down.empty()) throw plan.nothing();
   return of_joints.size() > down.size() ? of_joints : down;
+}
+
+void give_start(Rig& rig) {
+  const bool names_one = std::ranges::any_of(rig.joints, [](const RigJoint& joint) { return joint.start.has_value(); });
+  const bool has_arm = std::ranges::find(rig.joints, JointGroup::arm, &RigJoint::group) != rig.joints.end();
+  if (names_one || !rig.robot || !has_arm) return;
+  TourPlan plan(rig, 1);
+  const auto start = plan.start();
+  if (!start) return;
+  for (const std::size_t joint : plan.arm_joints()) rig.joints[joint].start = (*start)[joint];
 }
 
 }  // namespace foresight

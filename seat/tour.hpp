@@ -13,4 +13,8 @@ namespace foresight {
 /// wherever the arm stands clear, and so on the way there. Throws InputError: no arm, or none that is clear.
 std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count);
 
+/// A rig that names no start position gets one: of its arm, in the middle of where tours go, and clear all the way from
+/// home. Where there is none such, or no arm, it stays without.
+void give_start(Rig& rig);
+
 }  // namespace foresight

@@ -295,9 +295,11 @@ void refuse_address(const std::string& rig) {
 
 int run(const Arguments& arguments) {
   refuse_address(arguments.rig);
-  const Rig rig = read_rig(arguments.rig);
+  Rig rig = read_rig(arguments.rig);
   check(rig, arguments);
-  return arguments.script.empty() ? run_live(rig, arguments) : run_scripted(rig, arguments);
+  if (!arguments.script.empty()) return run_scripted(rig, arguments);
+  give_start(rig);
+  return run_live(rig, arguments);
 }
 
 }  // namespace

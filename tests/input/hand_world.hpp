@@ -27,6 +27,8 @@ class HandWorld {
   double cycle_seconds() const { return 0.008; }
   const std::vector<GateJoint>& joints() const { return options_.gate.joints; }
   HandControl& hand() { return *hand_; }
+  const HandControl& hand() const { return *hand_; }
+  std::optional<double> start(std::size_t joint) const { return options_.start[joint]; }
   Robot& robot() { return robot_; }
   GateStatus gate() const { return robot_.status().gate; }
   double shaft(std::size_t joint) const { return drives_[joint].state.position; }

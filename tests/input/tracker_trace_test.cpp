@@ -33,6 +33,21 @@ class TrackerTraceTest : public testing::Test {
 
 constexpr const char* kTip = "time_s,x,y,z,qx,qy,qz,qw,gripper\n";
 
+TEST_F(TrackerTraceTest, OlderRecordingsLackAButton) {
+  TrackerState said;
+  said.connected = true;
+  said.buttons.set(TrackerButton::clutch);
+  said.buttons.set(TrackerButton::to_start);
+  std::string heading = trace_heading();
+  const std::string column = "to_start";
+  ASSERT_NE(heading.find(column), heading.npos);
+  heading.replace(heading.find(column), column.size(), "something_else");
+  const TrackerTrace trace = read(heading + trace_row(0ns, said));
+  ASSERT_EQ(trace.rows.size(), 1u);
+  EXPECT_TRUE(trace.rows[0].state.buttons.held(TrackerButton::clutch));
+  EXPECT_FALSE(trace.rows[0].state.buttons.held(TrackerButton::to_start));
+}
+
 TEST_F(TrackerTraceTest, WhatWeWriteIsReadAsItWas) {
   TrackerState said;
   said.connected = said.tracked = true;

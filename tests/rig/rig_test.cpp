@@ -101,6 +101,7 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("protocol: cia402", "protocol: cia403", {"cia403", "cia402"});
   expect("jerk: 20", "jerk: -1", {"jerk", "above 0"});
   expect("following_error: 0.1", "following_error: 0.001", {"following_error", "in one cycle"});
+  expect("node: 2", "node: 2, start: 7", {"start", "7 m is beyond", "give "});
   expect("node: 2", "node: 2, response: {lag_s: 0.01}", {"response.sigma_s", "missing"});
   expect("node: 2", "node: 2, response: {lag_s: 12, sigma_s: 0.001}", {"response.lag_s", "12 s", "seconds"});
   expect("node: 2", "node: 2, response: {delay_s: 0.1, sigma_s: 0.001}", {"response.delay_s", "dead_time_s"});

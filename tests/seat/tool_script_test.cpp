@@ -205,6 +205,35 @@ TEST(ToolScript, AnArmThatHangsByItsUrdfIsToured) {
 }
 
 // As that of a SCARA or of a gantry: its tool has the heights that it has.
+TEST(StartPosition, IsWhatTheRigSaysOrClearAllTheWayFromHome) {
+  Rig lab = minerva();
+  give_start(lab);
+  EXPECT_EQ(lab.joints[3].start, minerva().joints[3].start) << "the rig's own";
+  for (RigJoint& joint : lab.joints) joint.start.reset();
+  give_start(lab);
+  const auto shape = lab.shape();
+  shape->surround(lab.surroundings);
+  JointValues at{}, goal{};
+  for (std::size_t i = 0; i < lab.joints.size(); ++i) {
+    ASSERT_EQ(lab.joints[i].start.has_value(), lab.joints[i].group == JointGroup::arm) << i;
+    goal[i] = lab.joints[i].start.value_or(0);
+  }
+  bool was_clear = false;
+  for (int part = 0; part <= 100; ++part) {
+    for (std::size_t i = 0; i < lab.joints.size(); ++i) at[i] = 0.01 * part * goal[i];
+    const char* const in_the_way = shape->obstructed({at.data(), lab.joints.size()});
+    ASSERT_FALSE(was_clear && in_the_way) << part << " %: " << in_the_way;
+    was_clear = in_the_way == nullptr;
+  }
+  EXPECT_TRUE(was_clear);
+
+  Rig without = minerva();
+  without.robot.reset();
+  for (RigJoint& joint : without.joints) joint.start.reset();
+  give_start(without);
+  EXPECT_FALSE(without.joints[3].start);
+}
+
 TEST(ToolScript, AnArmThatCannotPointDownIsTouredByItsJoints) {
   Rig rig = scaled(1);
   for (RigJoint& joint : rig.joints)
