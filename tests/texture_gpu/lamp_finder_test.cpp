@@ -178,6 +178,23 @@ TEST(LampFinder, OneSearchThatFindsAnotherLampTakesNoneAway) {
   EXPECT_FALSE(answer.lamp);
 }
 
+TEST(LampFinder, WhatMovesTellsThatThereIsNoSecondLamp) {
+  Room room;
+  room.show(0, 20, {kLamp}, 0.01, 4);
+  const ShadowRays rays(*room.scene);
+  LampQuestion question = room.question();
+  // Dark where another lamp would throw shadows of what stands still: print, or corners.
+  std::vector<bool> still = room.finder.moving();
+  still.flip();
+  const ShadowRays::Posed posed = rays.pose(room.records[0].T_world_node, still);
+  for (std::size_t i = 0; i < question.witnesses.size(); ++i)
+    if (posed.blocked(question.witnesses[i].point.cast<double>(), {-0.8, -0.2, 1.2}, ShadowRays::kContact))
+      for (LampRecord& record : question.records) record.log_brightness[i].array() -= Eigen::half(0.2f);
+  const LampAnswer answer = find_lamp(rays, question);
+  EXPECT_FALSE(answer.several) << answer.explained << " " << answer.still << " dark " << answer.dark;
+  EXPECT_TRUE(answer.told_by_what_moves) << answer.explained << " " << answer.elsewhere;
+}
+
 TEST(LampFinder, AFewDarkPointsDoNotOutweighSingleImages) {
   Room room;
   room.show(0, 3, {kLamp}, 0.05);
@@ -213,6 +230,21 @@ TEST(LampFinder, FindsALampAgainWhereOthersExplainNearlyAsMuch) {
   const LampAnswer answer = find_lamp(rays, question);
   EXPECT_FALSE(answer.several);
   EXPECT_TRUE(answer.told_by_what_moves) << answer.explained << " " << answer.elsewhere;
+}
+
+TEST(LampFinder, KeepsALampWhoseShadowsOthersExplainToo) {
+  Room room;
+  room.show(0, 3, {kLamp}, 0.01, 4);
+  const ShadowRays rays(*room.scene);
+  LampQuestion question = room.question();
+  const LampRecord &before = room.records[0], &after = room.records[1];
+  question.records = {before, before, before, before, before, after};  // one shadow
+  EXPECT_FALSE(find_lamp(rays, question).told_by_what_moves);
+  question.last.lamp = kLamp;
+  question.last.told_by_what_moves = true;
+  const LampAnswer answer = find_lamp(rays, question);
+  EXPECT_LT(answer.explained, 1.25 * answer.elsewhere);
+  EXPECT_TRUE(answer.lamp) << answer.explained << " " << answer.elsewhere << " dark " << answer.dark;
 }
 
 TEST(LampFinder, LooksNoFurtherThanTheKnownLampWhereThatStillExplainsAsMuch) {

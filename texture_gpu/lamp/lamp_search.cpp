@@ -32,6 +32,10 @@ constexpr std::size_t kOthers = 12;  // places in other directions that are look
 // Another lamp is there where single images are so much likelier with it (logarithm; also as a share of how much
 // likelier they are with the first alone), and where it is not much weaker.
 constexpr double kSecondLikelier = 10, kSecondShare = 0.25, kSecondStrength = 0.4;
+// What moves speaks against it by so many dark observations, or more.
+constexpr std::size_t kDarkAgainstSecond = 120;
+// Shares that two lamps explain, in sum, when they explain the same: each its own shadows would be 1 at most.
+constexpr double kSameShadows = 1.2;
 
 const Disc kPoint;  // a lamp without extent
 
@@ -70,6 +74,7 @@ class LampSearch {
   VectorXd more_hidden(const Candidate& c, const Disc& disc, const StillShadows& images) const;
   static Two both(const VectorXd& first, const VectorXd& second, const VectorXd& brighter);
   bool there_are_several(const Candidate& best, std::span<const Coarse> all);
+  bool throws_no_shadows(double strength, const Candidate& first) const;
   void judge(Candidate& c, const Disc& disc) const;
   void judge_coarsely(Candidate& c, const VectorXd& more) const;
   void judge(Candidate& c, const Disc& disc, std::size_t most, const VectorXd& more, const VectorXd& brighter) const;
@@ -158,6 +163,12 @@ LampSearch::Two LampSearch::both(const VectorXd& first, const VectorXd& second, 
           .strength = with_second < 0 ? of_second / with_second : std::numeric_limits<double>::infinity()};
 }
 
+/// A second lamp that is weaker, of such a strength beside the first. What moves would throw shadows of it too, which
+/// the first lamp would not explain.
+bool LampSearch::throws_no_shadows(double strength, const Candidate& first) const {
+  return strength < 1 && moving_.dark() >= kDarkAgainstSecond && first.explained > 1 / (1 + strength * strength);
+}
+
 /// Whether single images show shadows of another lamp that is not much weaker.
 bool LampSearch::there_are_several(const Candidate& best, std::span<const Coarse> all) {
   if (single_.empty()) return false;
@@ -180,7 +191,8 @@ bool LampSearch::there_are_several(const Candidate& best, std::span<const Coarse
   keep_best(others, 2);
   for (Candidate& c : others) refine(c, 2, 12, 0.12, kPoint, judge_second);
   const double alone = likelier(x.size(), best.still), more = likelier(x.size(), two.explained) - alone;
-  return more >= kSecondLikelier && more >= kSecondShare * alone && two.strength >= kSecondStrength;
+  return more >= kSecondLikelier && more >= kSecondShare * alone && two.strength >= kSecondStrength &&
+         !throws_no_shadows(two.strength, best);
 }
 
 template <class Judge>
@@ -316,7 +328,9 @@ LampAnswer LampSearch::answer() {
   const LampStrength found = strength(lamp);
   const bool explains = moves && out.explained >= kFewestExplained;
   const bool again = question_.last.lamp && !is_elsewhere(best, as_candidate(*question_.last.lamp), kApart);
-  out.told_by_what_moves = explains && out.explained >= (again ? kAgain : kClearly) * out.elsewhere;
+  const bool clearly = out.explained >= (again ? kAgain : kClearly) * out.elsewhere;
+  const bool holds = again && question_.last.told_by_what_moves && out.explained + out.elsewhere > kSameShadows;
+  out.told_by_what_moves = explains && (clearly || holds);
   const bool told_by_single_images = !explains && likelier(single_.brighter().size(), out.still) >= kStillLikelier &&
                                      out.still >= (again ? kAgain : kStillClearly) * out.still_elsewhere &&
                                      !found.is_gone(found.still);
