@@ -89,6 +89,18 @@ Eigen::Vector2i ChartAtlas::wanted_level(int index) const {
   return level;
 }
 
+ChartAtlas::Ball ChartAtlas::ball_around(std::size_t index, int page) const {
+  const AtlasChart& chart = charts_[index];
+  const Chart& shape = surface_->charts[index];
+  const Patch& patch = surface_->patches[static_cast<std::size_t>(shape.patch)];
+  const Eigen::Vector2d side = atlas::kPage * chart.raster.density.cwiseInverse(),
+                        uv = chart.raster.uv0 + side.cwiseProduct(Eigen::Vector2d(page % chart.pages.x() + 0.5,
+                                                                                  page / chart.pages.x() + 0.5));
+  const double above = patch.n.dot(shape.center - patch.origin);
+  return {static_cast<std::size_t>(patch.node), patch.origin + uv.x() * patch.eu + uv.y() * patch.ev + above * patch.n,
+          std::hypot(0.5 * side.norm(), shape.cone > 0 ? shape.radius : 0.0)};
+}
+
 void ChartAtlas::drop_page(AtlasPage& page) {
   if (page.height == atlas::kNoSlot) return;
   heights_.give_back(page.height);
@@ -337,6 +349,26 @@ ChartAtlas::Allocation ChartAtlas::allocate(std::span<const std::uint32_t> masks
   }
   out.retired.insert(out.retired.end(), retired_.begin(), retired_.end());
   retired_.clear();
+  return out;
+}
+
+ChartAtlas::Slots ChartAtlas::reach(std::size_t pages) const {
+  return {colours_.reach(pages), heights_.reach(0)};
+}
+
+ChartAtlas::Allocation ChartAtlas::renew(std::span<const PagePlace> pages) {
+  Allocation out;
+  for (const auto& [chart_index, index] : pages) {
+    AtlasChart& chart = charts_[chart_index];
+    AtlasPage& page = chart.page[static_cast<std::size_t>(index)];
+    const auto x = static_cast<std::uint32_t>(index % chart.pages.x()),
+               y = static_cast<std::uint32_t>(index / chart.pages.x());
+    out.retired.push_back(page.colour);
+    out.jobs.push_back({chart_index, x | y << 16, page.colour, colours_.take(), page.height,
+                        static_cast<std::uint32_t>(chart.first_page + index), page.covered});
+    page.colour = out.jobs.back().new_slot;
+  }
+  out.masks.resize(pages.size());
   return out;
 }
 

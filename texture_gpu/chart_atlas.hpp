@@ -150,6 +150,23 @@ class ChartAtlas {
   /// slots_needed() of them.
   Allocation allocate(std::span<const std::uint32_t> masks, std::int64_t image);
 
+  struct PagePlace {
+    std::uint32_t chart;
+    int page;  ///< of the chart
+  };
+  /// All places that renew() may give for so many pages lie below.
+  Slots reach(std::size_t pages) const;
+  /// Gives these pages, which have colours, new places for them. Needs a free colour slot for each. `masks` are 0.
+  Allocation renew(std::span<const PagePlace> pages);
+
+  /// A ball around what the chart has on the page.
+  struct Ball {
+    std::size_t node;        ///< in whose frame it is
+    Eigen::Vector3d middle;  ///< metres
+    double radius;           ///< metres
+  };
+  Ball ball_around(std::size_t chart, int page) const;
+
   /// Free colour slots that allocate() needs for these masks.
   std::size_t slots_needed(std::span<const std::uint32_t> masks) const;
   std::uint32_t free_colour_slots() const { return colours_.free(); }

@@ -24,7 +24,6 @@ bool ImageLight::take_out_shadows(const FrameOnGpu& frame, bool rehearses, const
     known_.reset();
     return false;
   }
-  if (!known_) since_ = frame.time();
   if (rehearses)
     known_ = std::make_shared<const SceneLight>(light_from_above(*buffers_, frame.images[0].scene));
   else if (!known_ || known_->lamp != *lamp || known_->moving != finder_.moving())

@@ -27,7 +27,6 @@ class ImageLight {
 
   /// Of the last frame; null where no lamp was known.
   const std::shared_ptr<const SceneLight>& known() const { return known_; }
-  RobotTime since() const { return since_; }  ///< it is known, where it is
   const LampAnswer& answer() const { return finder_.answer(); }
   /// Until no search is under way.
   void wait_for_search() const { finder_.wait_for_search(); }
@@ -40,7 +39,6 @@ class ImageLight {
   WitnessPass witness_pass_;
   int witnesses_ = 0;  // LampFinder::number() of those that the pass has
   std::shared_ptr<const SceneLight> known_;
-  RobotTime since_;
   std::unique_ptr<ShadowMap> map_;   // from the first lamp on
   std::vector<ShadowPass> shadows_;  // one for each camera
 };

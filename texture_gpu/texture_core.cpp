@@ -41,6 +41,7 @@ TextureCore::TextureCore(const std::shared_ptr<const SceneModel>& scene,
       extract_(all_lenses(left, right)),
       fill_(*surface),
       light_(scene, buffers_, options.awaits_lamp),
+      old_shadows_(buffers_),
       clock_(software_renderer),
       charts_(GL_RGBA32F, 16, "planned charts") {
   if (options.images > 1) still_pass_ = std::make_unique<StillPass>(left);
@@ -90,6 +91,8 @@ ExtractionReport TextureCore::extract(LatestTextures& latest, LatestImages* imag
   clock_.resume();
   const SlicedWork slices(gate_, "textures");
   if (owed_ && save_what_leaves(latest) && looked_up_ && images) images->publish(lend(false));
+  note_light();
+  if (newest_.light && !old_shadows_.empty()) take_out_old_shadows(latest);
   ChartAtlas::Allocation allocation;
   if (!allocate(allocation)) return {};
   ages_.update(atlas_.charts(), image_, newest_.time(), light_changed_);
@@ -99,8 +102,35 @@ ExtractionReport TextureCore::extract(LatestTextures& latest, LatestImages* imag
   return report();
 }
 
+void TextureCore::note_light() {
+  const bool lit = newest_.light != nullptr;
+  if (!lit && options_.shadows)
+    old_shadows_.note(
+        {image_, newest_.time(), newest_.images[0].scene, newest_.images[0].T_world_camera.translation()});
+  if (lit == lit_) return;
+  lit_ = lit;
+  light_changed_ = image_;
+  in_light_since_ = newest_.time();
+}
+
+/// The lamp has become known: what textures hold of images before is as if it had been.
+void TextureCore::take_out_old_shadows(LatestTextures& latest) {
+  const OldShadows::Pages pages = old_shadows_.in_shadow(atlas_, *newest_.light);
+  if (!pages.list.empty()) {
+    const bool is_room = generations_.wait_for_slots(atlas_, pages.list.size()) &&
+                         atlas_.free_colour_slots() >= pages.list.size() &&
+                         store_.hold(atlas_.reach(pages.list.size()));
+    if (!is_room) return;
+    write(newest_, atlas_.renew(pages.list), latest, &pages);
+  }
+  light_changed_ = old_shadows_.oldest().number;
+  in_light_since_ = old_shadows_.oldest().time;
+  old_shadows_.clear();
+}
+
 /// From the image's pages to a published generation.
-void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocation, LatestTextures& latest) {
+void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocation, LatestTextures& latest,
+                        const OldShadows::Pages* in_old_shadows) {
   extract_.upload_heights(atlas_, allocation.new_heights, store_);
   if (!allocation.new_heights.empty()) survey_.set_pages(records_ = atlas_.placed_records());
   mark("prepare");
@@ -119,6 +149,10 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   extract_.extract({.jobs = allocation.jobs, .masks = allocation.masks, .geometry = geometry_, .image = image_},
                    frame.inputs, store_, options_.depth_tolerance, gate_);
   mark("extract");
+  if (in_old_shadows) {
+    old_shadows_.take_out(*in_old_shadows, allocation.jobs, atlas_, store_, *frame.light, reset_samplers_);
+    mark("old shadows");
+  }
   fill_and_finish(allocation, *next);
   atlas_.note_holes(allocation, extract_.read_holes(allocation.jobs.size()));
   count(allocation);
@@ -127,7 +161,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   next->newest_image = frame.time();
   next->sharp = static_cast<float>(std::min(sharpness_.cubic_share(), SharpnessEstimator::kMostOfTextures));
   next->light = frame.light;
-  next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - light_.since())) : -1;
+  next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - in_light_since_)) : -1;
   next->display_gain = static_cast<float>(std::exp(frame.log_gain));
   generations_.retire(current_, std::move(allocation.retired));
   current_ = next;
@@ -290,9 +324,6 @@ bool TextureCore::allocate(ChartAtlas::Allocation& out) {
 
 /// Of what the newest image shows, what the textures have to have at once.
 TextureCore::Masks TextureCore::needed() {
-  const bool lit = light_.known() != nullptr;
-  if (lit != lit_) light_changed_ = image_;
-  lit_ = lit;
   owed_ = options_.only_what_is_needed && looked_up_;
   if (!owed_) return seen_;
   atlas_.note_seen(seen_, image_);

@@ -15,6 +15,7 @@
 #include "texture_gpu/image_light.hpp"
 #include "texture_gpu/image_places.hpp"
 #include "texture_gpu/kept_images.hpp"
+#include "texture_gpu/old_shadows.hpp"
 #include "texture_gpu/page_ages.hpp"
 #include "texture_gpu/still_pass.hpp"
 #include "texture_gpu/survey_pass.hpp"
@@ -75,7 +76,10 @@ class TextureCore {
   bool allocate(ChartAtlas::Allocation& out);
   bool place(const Masks& wanted, std::int64_t image, ChartAtlas::Allocation& out);
   Masks needed();
-  void write(const FrameOnGpu& frame, ChartAtlas::Allocation allocation, LatestTextures& latest);
+  void note_light();
+  void take_out_old_shadows(LatestTextures& latest);
+  void write(const FrameOnGpu& frame, ChartAtlas::Allocation allocation, LatestTextures& latest,
+             const OldShadows::Pages* in_old_shadows = nullptr);
   void fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next);
   void count(const ChartAtlas::Allocation& allocation);
   ExtractionReport report();
@@ -100,8 +104,10 @@ class TextureCore {
   FillPass fill_;
   FillList fill_list_;
   ImageLight light_;
+  OldShadows old_shadows_;
   bool lit_ = false;                 // with the image in work
-  std::int64_t light_changed_ = -1;  // the image from which on it is, or is no more
+  std::int64_t light_changed_ = -1;  // the image from which on textures are in this light
+  RobotTime in_light_since_;         // when it was taken
   bool rehearses_ = false;
   StageClock clock_;
   gl::SamplerReset reset_samplers_;
