@@ -72,15 +72,15 @@ void OldShadows::take_out(const Pages& pages, std::span<const PageJob> jobs, con
                           const AtlasStore& store, const SceneLight& light, const gl::SamplerReset& reset_samplers) {
   if (!map_) {
     map_ = std::make_unique<ShadowMap>(scene_);
-    program_ =
-        std::make_unique<gl::Program>(gl::Program::compute(gl::texture_gpu_shaders(), "unshade_texels.comp"));
+    program_ = std::make_unique<gl::Program>(gl::Program::compute(gl::texture_gpu_shaders(), "unshade_texels.comp"));
   }
   std::vector<Eigen::Vector4f> geometry;
   for (const auto& [image, tiles] : pages.shaded) {
     if (!map_->update(light, image->state)) continue;
     AtlasView lamp;
     const Pose T_lamp_world = map_->T_world_lamp().inverse();
-    for (const Pose& T_world_node : image->state.T_world_node) lamp.T_camera_node.push_back(T_lamp_world * T_world_node);
+    for (const Pose& T_world_node : image->state.T_world_node)
+      lamp.T_camera_node.push_back(T_lamp_world * T_world_node);
     atlas.write_job_geometry(jobs, {&lamp, 1}, geometry);
     geometry_.assign(std::span<const Eigen::Vector4f>(geometry));
     tiles_.assign(std::span<const std::uint32_t>(tiles));

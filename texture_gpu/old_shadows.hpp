@@ -11,8 +11,8 @@
 
 namespace foresight {
 
-/// Remembers where everything stood in images whose shadows were left in them, and takes these out of textures once it is
-/// known where the lamp is. One context.
+/// Remembers where everything stood in images whose shadows were left in them, and takes these out of textures once it
+/// is known where the lamp is. One context.
 class OldShadows {
  public:
   explicit OldShadows(std::shared_ptr<const gl::SceneBuffers> scene);
