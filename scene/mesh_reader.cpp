@@ -110,11 +110,11 @@ Mesh read_through_assimp(const fs::path& file) {
 
 Mesh read_mesh(const fs::path& file) {
   static const std::vector<std::string> kKnown = {".ply", ".obj", ".stl", ".gltf", ".glb", ".dae"};
+  require_regular_file(file, kLargestMesh);
   const std::string extension = lower(file.extension().string());
   if (std::find(kKnown.begin(), kKnown.end(), extension) == kKnown.end())
     throw InputError(file.string(), "unknown kind of mesh " + in_quotes(extension),
                      "convert it to one of .ply .obj .stl .gltf .glb .dae");
-  require_regular_file(file, kLargestMesh);
   if (extension == ".dae") check_collada(file);
   Mesh mesh = extension == ".ply" ? read_ply(file) : read_through_assimp(file);
   if (mesh.triangles.empty())

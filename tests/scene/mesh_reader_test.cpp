@@ -290,6 +290,7 @@ TEST(MeshReader, ReadsAColladaAsXmlMeansIt) {
 }
 
 TEST(MeshReader, RefusesWhatIsNoMesh) {
+  EXPECT_THAT(input_error([] { read_mesh("nothing_there"); }), says("nothing_there", "no such file", "name"));
   EXPECT_THAT(error("m.xyz", "1 2 3"), says("m.xyz", "unknown kind of mesh '.xyz'", "convert it to one of .ply"));
   EXPECT_THAT(error("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), says("m.obj", "cannot be read", "export"));
   EXPECT_THAT(error("m.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), says("m.obj", "not finite", "repair"));
