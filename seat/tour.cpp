@@ -27,7 +27,7 @@ constexpr double kUnderLow = 0.75, kUnderHigh = 0.35;  // the same below an arm 
 constexpr double kHangs = 0.3;                         // of its reach: so far below its first axis is its tool midway
 constexpr double kTourRoom = 0.01 / 0.89;              // beyond the rig's clearance, of the reach, too
 constexpr double kEndOfRange = 0.05;                   // of a joint's range, that a tour of joints leaves at both ends
-constexpr double kLook = 0.05;                         // s between two looks at where the arm is under way
+constexpr double kLook = 0.02;                         // s between two looks at where the arm is under way
 
 class TourPlan {
  public:
