@@ -82,7 +82,7 @@ std::vector<std::pair<std::string, std::string>> key_words(
               {all_of({beside}), "from beside: the mouse looks around"},
               {all_of({paint}), "wireframe, age, fineness, errors"},
               {all_of({marks}), "what is not exact, and was wrong"},
-              {all_of({help, sounds}), "more of these keys, or none; sounds off, or on"},
+              {all_of({help, sounds}), "more keys, none, few words; sounds off, or on"},
               {all_of({screenshot, end}) + ", Esc", "screenshot; end, while no switch is held"}});
   return out;
 }

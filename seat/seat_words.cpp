@@ -14,6 +14,8 @@ namespace {
 
 using Phase = ControlSeatStatus::Phase;
 
+constexpr const char* kInCommand = "in command";
+
 /// The robot's cures name the keys of its own terminal; those of the line name none.
 std::string with_our_keys(std::string cure) {
   constexpr std::pair<std::string_view, const char*> kKeys[] = {
@@ -114,9 +116,9 @@ SeatLine drives_words(const SeatStatus& status) {
 
 SeatLine commander_words(const SeatStatus& status) {
   const ControlState& state = status.robot_control;
-  SeatLine out{"in command", "", control_cure(status.control)};
+  SeatLine out{kInCommand, "", control_cure(status.control)};
   switch (status.control.phase) {
-    case Phase::connecting: return {"in command", status.control.words, out.cure, Urgency::note};
+    case Phase::connecting: return {kInCommand, status.control.words, out.cure, Urgency::note};
     case Phase::connected:
       out.words = status.control.words;
       if (!state.holder_name.empty() && out.words.find(state.holder_name) == std::string::npos)
@@ -200,6 +202,10 @@ std::vector<SeatLine> seat_lines(const SeatStatus& status, std::span<const std::
                      difference.refuses ? Urgency::trouble : Urgency::note});
   std::erase_if(out, [](const SeatLine& line) { return line.words.empty(); });
   return out;
+}
+
+void leave_out_fine(std::vector<SeatLine>& lines) {
+  std::erase_if(lines, [](const SeatLine& line) { return line.urgency == Urgency::fine && line.label != kInCommand; });
 }
 
 SeatLine next_step(const SeatStatus& status) {

@@ -24,6 +24,9 @@ const char* mark(Urgency urgency);
 std::vector<SeatLine> seat_lines(const SeatStatus& status, std::span<const std::string> names,
                                  const std::string& fault);
 
+/// Without what is well, but who is in command: for who wants to see the picture.
+void leave_out_fine(std::vector<SeatLine>& lines);
+
 /// One sentence: may the operator drive, and if not, what is to be done first.
 SeatLine next_step(const SeatStatus& status);
 

@@ -226,7 +226,7 @@ class LiveSeat {
       case SeatKey::beside: return views.toggle_observer();
       case SeatKey::paint: return views.next_paint();
       case SeatKey::marks: return shown_.next_marks();
-      case SeatKey::help: return shown_.next_keys();
+      case SeatKey::help: return shown_.next_words();
       case SeatKey::sounds: return sounds_.toggle();
       case SeatKey::screenshot: return shown_.save_next();
     }

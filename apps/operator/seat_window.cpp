@@ -96,6 +96,12 @@ StageTimes SeatWindow::stage_times() const {
   return out;
 }
 
+void SeatWindow::next_words() {
+  const bool were_no_keys = !first_key_ && !few_lines_;
+  few_lines_ = were_no_keys;
+  if (!were_no_keys) first_key_ = keys_after(first_key_, hud_.next_key(), options_.keys.size());
+}
+
 HudContent SeatWindow::words(bool is_trusted) const {
   const SeatStatus status = seat_.status();
   HudContent out;
@@ -159,6 +165,7 @@ void SeatWindow::present(const ViewSession& session) {
   clear_behind_pictures(whole, !is_trusted && source_.lost());
   HudContent content = words(is_trusted);
   log(content);
+  if (few_lines_) leave_out_fine(content.lines);
   SeatPicture picture;
   picture.trusted = is_trusted;
   if (options_.trust && marks_ != TrustMarks::none) picture.marked = &options_.trust->marked();

@@ -56,8 +56,8 @@ class SeatWindow final : public ViewObserver {
   SeatViews& views() { return views_; }
   /// SeatViews::warm_up(), where a picture has been drawn; between pictures.
   bool warm_up(ViewSession& session) { return views_.warm_up(session, window_target(window_)); }
-  /// keys_after()
-  void next_keys() { first_key_ = keys_after(first_key_, hud_.next_key(), options_.keys.size()); }
+  /// keys_after(); after none of them, only the lines that are not well, too.
+  void next_words();
   void next_marks();
   /// The next picture goes into a file, too: ScreenshotWriter, in the working folder.
   void save_next() { save_ = true; }
@@ -92,6 +92,7 @@ class SeatWindow final : public ViewObserver {
   std::vector<StageCost> image_costs_;
   link::LineFramePtr uploaded_;
   std::optional<std::size_t> first_key_;  // that is shown; nothing: none are
+  bool few_lines_ = false;
   TrustMarks marks_ = TrustMarks::none;
   bool save_ = false;
   ScreenshotWriter screenshots_{""};

@@ -194,6 +194,16 @@ TEST(SeatWords, WhileJointsLookForHomeNobodyIsToldToHomeThem) {
             "no pose: 3 of 10 joints tell no position; they look for home");
 }
 
+TEST(SeatWords, WhoWantsToSeeThePictureIsToldWhatIsNotWell) {
+  SeatStatus status = driving();
+  status.robot->hold = "joint elbow stands";
+  auto lines = seat_lines(status, {}, "no image has come");
+  ASSERT_TRUE(find(lines, "drives"));
+  leave_out_fine(lines);
+  EXPECT_FALSE(find(lines, "drives"));
+  for (const char* label : {"in command", "robot", "images"}) EXPECT_TRUE(find(lines, label)) << label;
+}
+
 TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
   SeatStatus status;
   status.control.words = "looking for the robot";
