@@ -155,14 +155,17 @@ int ThingWorld::gripped_by(std::size_t loose) const {
     double size;
     int jaw;
   };
-  std::vector<Force> forces;  // on it, by jaws
+  std::vector<Force> forces;  // on it, by the robot; no jaw's: -1
   for (const Touch& touch : bodies_.touches()) {
     const bool first = touch.body == loose;
     const std::size_t other = first ? touch.other : touch.body;
-    if ((!first && touch.other != loose) || other >= roles_.size() || jaw_of_[other] < 0 || touch.force <= 0) continue;
+    if ((!first && touch.other != loose) || other >= roles_.size() || roles_[other] != PartRole::driven ||
+        touch.force <= 0)
+      continue;
     forces.push_back({first ? touch.normal : Eigen::Vector3d(-touch.normal), touch.force, jaw_of_[other]});
   }
   for (const auto& [axis, unused, jaw] : forces) {
+    if (jaw < 0) continue;
     double along = 0, against = 0;
     for (const auto& [direction, force, other] : forces) {
       if (direction.dot(axis) > -kOpposite) along += force;

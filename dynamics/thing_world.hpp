@@ -56,7 +56,8 @@ class ThingWorld {
   JointPositions with_jaws(const JointPositions& joints) const;
   /// How far the jaws are kept from their shafts, rad or m; > 0: held open.
   double jaw_lag(std::string_view joint) const;
-  /// The number of the joint (of ThingWorldOptions::jaws) whose jaws press it from opposite sides; -1: none.
+  /// The number of the joint (of ThingWorldOptions::jaws) whose jaws press it from opposite sides, or one of which
+  /// presses it against another link; -1: none.
   int gripped_by(std::size_t loose) const;
   bool gripped(std::size_t loose) const { return gripped_by(loose) >= 0; }
   /// A frame that stands still in the hand while the jaws of a joint go: in their middle, parallel to the first.

@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "common/error.hpp"
+#include "input/sliding_jaws.hpp"
 #include "prediction/grasp/hand_path.hpp"
+#include "sim/lab_task.hpp"
 
 namespace foresight {
 namespace {
@@ -118,14 +120,17 @@ bool ToolScript::advance(const ToolStep& step, double dt) {
       const FollowStep made = follower_->step(pose_between(line_from_, to, share), dt);
       set_arm(made.q);
       const bool there = (made.T_base_tip.translation() - to.translation()).norm() < kThere && share == 1;
-      return there || in_step_ > lasts_ + kLongestLine;
+      const bool given_up = !there && in_step_ > lasts_ + kLongestLine;
+      fell_short_ = fell_short_ || given_up;
+      return there || given_up;
     }
     case ToolStep::What::gripper: {
       bool there = true;
-      for (const std::size_t i : grippers_) {
-        const double most = kShareOfSpeed * rig_.joints[i].drive.max_velocity * dt;
-        position_[i] += std::clamp(step.opening - position_[i], -most, most);
-        there = there && std::abs(step.opening - position_[i]) < 1e-9;
+      for (std::size_t k = 0; k < grippers_.size(); ++k) {
+        double& position = position_[grippers_[k]];
+        const double most = kShareOfSpeed * rig_.joints[grippers_[k]].drive.max_velocity * dt;
+        position += std::clamp(step.grip[k] - position, -most, most);
+        there = there && std::abs(step.grip[k] - position) < 1e-9;
       }
       return there && in_step_ >= lasts_;
     }
@@ -169,70 +174,125 @@ Pose place_at_rest(const LiveScene& scene, const std::string& node) {
 
 namespace {
 
-/// From where the joints stand after homing.
-bool stays_clear(const Rig& rig, RobotShape& shape, const std::vector<ToolStep>& steps) {
+// How a brick is taken, m.
+constexpr double kOnBrick = 0.028, kLeastOnBrick = 0.01;   // of the jaws, from their tips on, beside it
+constexpr double kRoom = 0.036, kLeastRoom = 0.006;        // that they open wider than it
+constexpr double kSqueeze = 0.008, kLeastSqueeze = 0.004;  // that they would close further: sprung, and their pads give
+constexpr double kAbove = 0.14, kIntoTray = 0.012;         // that the hand comes and goes higher, and lets go higher
+constexpr double kAskew = 0.02;                            // rad that jaws may be turned off the thing's sides
+
+struct BrickGrasp {
+  SlidingJaws::Place open, closed;
+  double tips = 0;  // m above the brick's bottom
+};
+
+BrickGrasp brick_grasp(const Rig& rig) {
+  const SlidingJaws jaws = sliding_jaws(rig, kOnBrick);
+  const std::string brick = fmt::format(", a brick is {:.3f} m wide, ", sim::kBrickSide);
+  require(jaws.depth >= kLeastOnBrick, rig.name,
+          fmt::format("the jaws stand {:.3f} m out of the hand, and {:.3f} m are to lie on a brick", jaws.depth,
+                      kLeastOnBrick),
+          "use longer jaws");
+  require(jaws.widest.gap >= sim::kBrickSide + kLeastRoom, rig.name,
+          fmt::format("the jaws open {:.3f} m", jaws.widest.gap) + brick +
+              fmt::format("and {:.3f} m more are needed", kLeastRoom),
+          "correct min and max of the gripper's joints, or use jaws that open wider");
+  require(jaws.narrowest.gap <= sim::kBrickSide - kLeastSqueeze, rig.name,
+          fmt::format("the jaws close to {:.3f} m", jaws.narrowest.gap) + brick +
+              fmt::format("and is held by jaws that would close {:.3f} m further", kLeastSqueeze),
+          "correct min and max of the gripper's joints, or use jaws that close further");
+  return {jaws.at(sim::kBrickSide + kRoom), jaws.at(sim::kBrickSide - kSqueeze), sim::kBrickHeight - jaws.depth};
+}
+
+/// From where the joints stand after homing: all the way, and clear. `shape` may be null.
+bool goes_well(const Rig& rig, RobotShape* shape, const std::vector<ToolStep>& steps) {
   constexpr double kLook = 0.05;  // s between two looks
   ToolScript script(rig, steps, {.pan = 0, .tilt = 0});
   script.begin_at(home_of(rig));
   while (const auto at = script.step(kLook, {}))
-    if (shape.obstructed({at->data(), rig.joints.size()}) != nullptr) return false;
-  return true;
+    if (shape != nullptr && shape->obstructed({at->data(), rig.joints.size()}) != nullptr) return false;
+  return !script.fell_short();
 }
 
-}  // namespace
+InputError out_of_reach(const Rig& rig, const ArmChain& arm, const Pose& from, const Pose& to,
+                        const std::string& what) {
+  const Eigen::Vector3d foot = rig.T_world_robot * arm.lines().front().point;
+  return {
+      rig.name,
+      fmt::format("the arm does not reach {} with its jaws pointing down: they are {:.2f} and {:.2f} m from its first "
+                  "axis, and its last link gets {:.2f} m far",
+                  what, (from.translation() - foot).norm(), (to.translation() - foot).norm(), arm.reach()),
+      "correct robot.pose of the rig such that the lab's table is before it, or use a larger arm"};
+}
 
-std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
-                                     const std::string& tray) {
-  constexpr double kTips = 0.15, kGrasp = 0.037;      // m: finger tips along the tool's z; above the thing's bottom
-  constexpr double kOpen = 0.038, kClosed = 0.016;    // m, of the jaws' joint
-  constexpr double kAbove = 0.14, kIntoTray = 0.012;  // m
-  constexpr double kAskew = 0.02;                     // rad that jaws may be turned off the thing's sides
-  const Pose from = place_at_rest(scene, thing), to = place_at_rest(scene, tray);
-  const HandOptions hand = arm_options(rig);
-  const InverseKinematics kinematics(*hand.arm);
-  const double yaw = std::atan2(from.linear()(1, 0), from.linear()(0, 0));
-  const auto shape = rig.shape();
-  if (shape) shape->surround(rig.surroundings);
-  std::optional<std::vector<ToolStep>> in_the_way;  // of itself, or of the table
-  for (int quarter = 0; quarter < 4; ++quarter) {
-    const double turn = yaw + quarter * std::numbers::pi / 2;
-    const auto at = [&](const Pose& place, double above) {
-      Pose out = Pose::Identity();
-      out.linear() = (Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) *
-                      Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
-                         .toRotationMatrix();
-      out.translation() = place.translation() + Eigen::Vector3d(0, 0, kGrasp + kTips + above);
-      return out;
-    };
+/// From a thing at one place to another, the jaws' y turned by `turn` about the vertical.
+class PickPlan {
+ public:
+  PickPlan(const BrickGrasp& grasp, double turn) : grasp_(grasp) {
+    R_world_grip_ = (Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()))
+                        .toRotationMatrix();
+  }
+  std::vector<ToolStep> steps(const std::string& thing, const Pose& from, const std::string& tray,
+                              const Pose& to) const {
     using enum ToolStep::What;
     const auto about = [](ToolStep step, const std::string& node, const Pose& T_world_node) {
       step.about = node;
       step.T_world_about = T_world_node;
       return step;
     };
-    std::vector<ToolStep> steps{{gripper, Pose::Identity(), kOpen, 0.2},
-                                about({there, at(from, kAbove), 0, 2}, thing, from),
-                                about({line, at(from, 0), 0, 2.5}, thing, from),
-                                {gripper, Pose::Identity(), kClosed, 1},
-                                {wait, Pose::Identity(), 0, 0.5},
-                                {line, at(from, kAbove), 0, 2},
-                                about({line, at(to, kAbove), 0, 3}, tray, to),
-                                about({line, at(to, kIntoTray), 0, 2}, tray, to),
-                                {gripper, Pose::Identity(), kOpen, 1},
-                                {wait, Pose::Identity(), 0, 0.3},
-                                {line, at(to, kAbove), 0, 2}};
-    const bool reached = std::ranges::all_of(steps, [&](const ToolStep& step) {
-      if (step.what != there && step.what != line) return true;
-      const IkAnswer answer = kinematics.solve(rig.T_world_robot.inverse() * step.T_world_tool);
-      return answer.status == IkStatus::solved && answer.rotation_error < kAskew;
-    });
-    if (!reached) continue;
-    if (!shape || stays_clear(rig, *shape, steps)) return steps;
-    if (!in_the_way) in_the_way = std::move(steps);
+    return {{gripper, Pose::Identity(), grasp_.open.joints, 0.2},
+            about({there, tool_at(from, kAbove), {}, 2}, thing, from),
+            about({line, tool_at(from, 0), {}, 2.5}, thing, from),
+            {gripper, Pose::Identity(), grasp_.closed.joints, 1},
+            {wait, Pose::Identity(), {}, 0.5},
+            {line, tool_at(from, kAbove), {}, 2},
+            about({line, tool_at(to, kAbove), {}, 3}, tray, to),
+            about({line, tool_at(to, kIntoTray), {}, 2}, tray, to),
+            {gripper, Pose::Identity(), grasp_.open.joints, 1},
+            {wait, Pose::Identity(), {}, 0.3},
+            {line, tool_at(to, kAbove), {}, 2}};
   }
-  if (in_the_way) return std::move(*in_the_way);  // the gate stops where it has to
-  throw InputError("the script", "the arm does not reach '" + thing + "' or '" + tray + "' from above",
-                   "use the lab's own arm");
+
+ private:
+  Pose tool_at(const Pose& place, double above) const {
+    Pose T_world_grip = Pose::Identity();
+    T_world_grip.linear() = R_world_grip_;
+    T_world_grip.translation() = place.translation() + Eigen::Vector3d(0, 0, grasp_.tips + above);
+    return T_world_grip * grasp_.open.T_tool_grip.inverse();
+  }
+
+  const BrickGrasp& grasp_;
+  Eigen::Matrix3d R_world_grip_;
+};
+
+bool reaches(const Rig& rig, const InverseKinematics& kinematics, const std::vector<ToolStep>& steps) {
+  return std::ranges::all_of(steps, [&](const ToolStep& step) {
+    if (step.what != ToolStep::What::there && step.what != ToolStep::What::line) return true;
+    const IkAnswer answer = kinematics.solve(rig.T_world_robot.inverse() * step.T_world_tool);
+    return answer.status == IkStatus::solved && answer.rotation_error < kAskew;
+  });
+}
+
+}  // namespace
+
+std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
+                                     const std::string& tray) {
+  const BrickGrasp grasp = brick_grasp(rig);
+  const Pose from = place_at_rest(scene, thing), to = place_at_rest(scene, tray);
+  const InverseKinematics kinematics(*arm_options(rig).arm);
+  const double yaw = std::atan2(from.linear()(1, 0), from.linear()(0, 0));
+  const auto shape = rig.shape();
+  if (shape) shape->surround(rig.surroundings);
+  std::optional<std::vector<ToolStep>> second_best;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    std::vector<ToolStep> steps = PickPlan(grasp, yaw + quarter * std::numbers::pi / 2).steps(thing, from, tray, to);
+    if (!reaches(rig, kinematics, steps)) continue;
+    if (goes_well(rig, shape.get(), steps)) return steps;
+    if (!second_best) second_best = std::move(steps);
+  }
+  if (second_best) return std::move(*second_best);  // the gate stops where it has to
+  throw out_of_reach(rig, kinematics.chain(), from, to, "'" + thing + "' and '" + tray + "'");
 }
 
 }  // namespace foresight

@@ -17,13 +17,13 @@ struct ToolStep {
   enum class What : std::uint8_t {
     there,    ///< all joints at once, to where the tool is at `T_world_tool`
     line,     ///< the tool straight to it
-    gripper,  ///< to `opening`
+    gripper,  ///< to `grip`
     wait
   };
   What what = What::wait;
   Pose T_world_tool = Pose::Identity();
-  double opening = 0;  ///< m or rad, the gripper's joint
-  double seconds = 1;  ///< at least; longer where the joints take longer
+  std::vector<double> grip = {};  ///< m or rad, of the rig's joints of `group: gripper`, in their order
+  double seconds = 1;             ///< at least; longer where the joints take longer
   /// T_world_tool is meant with this node at `T_world_about`: where the node is seen elsewhere on its ground as the
   /// step begins, the tool goes elsewhere as far. "": wherever anything is seen.
   std::string about = {};
@@ -52,6 +52,8 @@ class ToolScript final : public ScriptedMotion {
   void begin_at(const JointValues& begin) override;
   std::optional<JointValues> step(double dt, const PredictedRobot& shown) override;
   void look_by(Sees sees) override { sees_ = std::move(sees); }
+  /// A line was given up, as the arm's joints did not get along it.
+  bool fell_short() const { return fell_short_; }
 
  private:
   ToolScript(const Rig& rig, const HandOptions& hand, std::vector<ToolStep> steps, const HeadSway& sway);
@@ -78,16 +80,17 @@ class ToolScript final : public ScriptedMotion {
   JointVector from_, to_;
   Pose line_from_ = Pose::Identity();
   std::optional<PathFollower> follower_;
-  bool began_ = false;
+  bool began_ = false, fell_short_ = false;
 };
 
 /// Of a node of the scene's model, while nothing has moved yet. Throws InputError: there is none of that name.
 Pose place_at_rest(const LiveScene& scene, const std::string& node);
 
-/// With two jaws that slide along y of the rig's tool, which points along its z: from above at a thing of the mock
-/// lab's own size of bricks (sim/lab_task.hpp), and into a tray. Planned for where the scene's model has them at rest;
-/// gone to where they are seen. Of the four ways to grasp a brick, the first on which the arm stays as clear as the rig
-/// asks for, if there is one. Throws InputError: the scene lacks one of the two, or the arm does not reach them.
+/// With any two jaws that slide (input/sliding_jaws.hpp): from above at a thing of the mock lab's own size of bricks
+/// (sim/lab_task.hpp), and into a tray. Planned for where the scene's model has them at rest; gone to where they are
+/// seen. Of the four ways to grasp a brick, the first on which the arm gets everywhere and stays as clear as the rig
+/// asks for, if there is one. Throws InputError: the scene lacks one of the two, the jaws do not take a brick, or the
+/// arm does not reach them.
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray);
 

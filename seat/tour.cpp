@@ -145,7 +145,7 @@ std::vector<ToolStep> TourPlan::with_tool_down(int count) {
     const auto what = out.size() % 2 == 0 ? ToolStep::What::there : ToolStep::What::line;
     // Few joints hold the tool there as they can, and are asked for no more.
     const Pose held = kinematics_.position_first() ? rig_.T_world_robot * answer.T_base_tip : pose;
-    const ToolStep step{what, held, 0, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5};
+    const ToolStep step{what, held, {}, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5};
     if (clear(answer.q) && clear_all_the_way(step))
       out.push_back(step);
     else
@@ -168,7 +168,7 @@ JointVector TourPlan::any_joints() {
 std::vector<ToolStep> TourPlan::of_joints(int count) {
   std::vector<ToolStep> out;
   for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
-    ToolStep step{ToolStep::What::there, Pose::Identity(), 0, 1.5};
+    ToolStep step{ToolStep::What::there, Pose::Identity(), {}, 1.5};
     step.joints = any_joints();
     step.T_world_tool = rig_.T_world_robot * chain().tip_pose(*step.joints);
     if (clear(*step.joints) && clear_all_the_way(step)) out.push_back(step);
@@ -183,7 +183,7 @@ std::optional<JointValues> TourPlan::start() {
         tries == 0 ? tool_down(0, 0.5 * (kTourNear + kTourFar), 0.5 * (low_ + high_), ahead_) : tool_down_anywhere();
     const IkAnswer answer = kinematics_.solve(rig_.T_world_robot.inverse() * pose);
     if (answer.status != IkStatus::solved || !clear(answer.q)) continue;
-    ToolStep step{ToolStep::What::there, rig_.T_world_robot * answer.T_base_tip, 0, 1.5};
+    ToolStep step{ToolStep::What::there, rig_.T_world_robot * answer.T_base_tip, {}, 1.5};
     step.joints = answer.q;
     if (clear_all_the_way(step)) return at_;
   }

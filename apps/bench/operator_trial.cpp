@@ -134,7 +134,7 @@ class OperatorTrial {
     const Eigen::Vector3d middle = 0.7 * at.brick_red.translation() + 0.3 * at.tray.translation();
     there.T_world_tool = sim::pointing_down(middle + Eigen::Vector3d(0, 0, kStartAbove), 0);
     there.seconds = 2;
-    return {there, {ToolStep::What::gripper, Pose::Identity(), ModelOperatorOptions{}.open, 0.2}};
+    return {there, {ToolStep::What::gripper, Pose::Identity(), {ModelOperatorOptions{}.open}, 0.2}};
   }
   unsigned layout() const { return options_.seed - 1 + static_cast<unsigned>(runs_.size()); }
 

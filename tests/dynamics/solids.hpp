@@ -58,10 +58,11 @@ inline Pose lifted(double x, double y, double z) {
 }
 
 /// A table (part 0, its top at 0), a hand of two jaws along y (parts 1 and 2), then the things. Joints: "grip", each
-/// jaw's way from the middle, and "height", "along" of the hand.
+/// jaw's way from the middle (with `one_jaw` the first one's alone), and "height", "along" of the hand.
 class HandWorld {
  public:
-  explicit HandWorld(std::vector<WorldPart> things, ThingWorldOptions options = {}) {
+  explicit HandWorld(std::vector<WorldPart> things, ThingWorldOptions options = {}, bool one_jaw = false)
+      : one_jaw_(one_jaw) {
     parts_.push_back({box_mesh({1, 1, 0.1f}, {0, 0, -0.05f}), PartRole::still, Pose::Identity(), 0, {.friction = 0.9}});
     for (int side : {1, -1})
       parts_.push_back({box_mesh({0.02f, 0.01f, 0.06f}, {0, 0.005f * static_cast<float>(side), 0}),
@@ -95,13 +96,14 @@ class HandWorld {
 
  private:
   PartPoses poses() const {
-    return [n = parts_.size()](const JointPositions& q) {
+    return [n = parts_.size(), one = one_jaw_](const JointPositions& q) {
       std::vector<Pose> out(n, Pose::Identity());
       out[1] = lifted(*q("along"), *q("grip"), *q("height"));
-      out[2] = lifted(*q("along"), -*q("grip"), *q("height"));
+      out[2] = lifted(*q("along"), one ? -0.0225 : -*q("grip"), *q("height"));
       return out;
     };
   }
+  const bool one_jaw_;
   std::vector<WorldPart> parts_;
   std::unique_ptr<ThingWorld> world_;
 };

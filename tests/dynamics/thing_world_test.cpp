@@ -27,6 +27,18 @@ TEST(ThingWorld, JawsCloseAroundAThingAndLiftIt) {
   EXPECT_NEAR(hand.place(0).z(), 0.0225, 2e-3) << "dropped";
 }
 
+TEST(ThingWorld, AJawAlonePressesAThingAgainstTheHand) {
+  HandWorld hand({block(0.004)}, {}, true);
+  hand.wait(0.2);
+  EXPECT_FALSE(hand.world().gripped(3));
+  hand.move(hand.grip, 0.01, 1);
+  EXPECT_TRUE(hand.world().gripped(3));
+  hand.move(hand.height, 0.23, 1);
+  EXPECT_GT(hand.place(0).z(), 0.2);
+  hand.move(hand.grip, 0.04, 1);
+  EXPECT_FALSE(hand.world().gripped(3));
+}
+
 TEST(ThingWorld, AThingThatIsNotInTheMiddleIsPushedThere) {
   HandWorld hand({block(0.012)});
   hand.move(hand.grip, 0.015, 1);

@@ -1,8 +1,13 @@
 // Scripts move a tool as a hand would: within what joints may, to where they were told.
 #include "common/error.hpp"
+#include "rig/open_stereo.hpp"
+#include "rig/rig_draft.hpp"
+#include "rig/rig_scene.hpp"
 #include "seat/tour.hpp"
+#include "sim/lab_task.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
+#include "tests/support/six_axis_arm.hpp"
 
 namespace foresight::tool_script_test {
 namespace {
@@ -79,6 +84,76 @@ TEST(ToolScript, PicksSoThatTheArmStaysClear) {
       EXPECT_EQ(blocked, nullptr) << "layout " << layout << ", " << brick << ": " << blocked;
     }
   }
+}
+
+/// The rig that `foresight rig new` makes of an arm of its own, before the lab's table.
+Rig six_axes(const BoxJaws& jaws) {
+  const TempFolder folder;
+  RigDraftOptions options;
+  options.urdf = folder.write("arm.urdf", six_axis_urdf(0.9, jaws));
+  Rig rig = read_rig(folder.write("rig.yaml", rig_text(draft_rig(options), options, folder / "rig.yaml")));
+  rig.T_world_robot = Eigen::Translation3d(0, -0.5, 0) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  return rig;
+}
+
+/// Does the brick of the physical lab end in the tray?
+bool picks(const Rig& rig) {
+  using namespace std::chrono_literals;
+  const LiveScene scene = live_scene_of(rig, true, std::nullopt, true, 0);
+  ToolScript script(rig, pick_and_place(rig, scene, "brick_red", "tray"), {.pan = 0, .tilt = 0});
+  MockWorld world = mock_world(rig);
+  sim::PhysicsOptions& options = world.physics.emplace();
+  options.hidden = {1, 0, 0, 0, 0};  // nobody looks where the brick is
+  options.jaws.clear();
+  for (const RigJoint& joint : rig.joints)
+    if (joint.group == JointGroup::gripper) options.jaws.push_back(joint.drive.name);
+  constexpr Duration kStep = 20ms;
+  std::vector<JointValues> path{home_of(rig)};
+  script.begin_at(path.front());
+  while (const auto next = script.step(to_seconds(kStep), {})) path.push_back(*next);
+  const std::vector<std::string> names = rig.joint_names();
+  const RobotTime start = RobotTime{} + 10s;
+  const sim::ShaftsAt shafts = [&](std::string_view joint, RobotTime time) -> std::optional<double> {
+    const auto found = std::ranges::find(names, joint);
+    if (found == names.end()) return std::nullopt;
+    const auto i = static_cast<std::size_t>(found - names.begin());
+    const double steps = std::clamp(to_seconds(time - start) / to_seconds(kStep), 0.0, path.size() - 1.0);
+    const auto before = static_cast<std::size_t>(steps);
+    return std::lerp(path[before][i], path[std::min(before + 1, path.size() - 1)][i], steps - std::floor(steps));
+  };
+  sim::PhysicalLab lab(mock_lab(world), shafts, start, options);
+  for (std::size_t i = 0; i < path.size() + 50; ++i) lab.thing_at("brick_red", start + static_cast<int>(i) * kStep);
+  const RobotTime end = start + static_cast<int>(path.size() + 50) * kStep;
+  return sim::lies_in_tray(lab.thing_at("brick_red", end), lab.thing_at("tray", end));
+}
+
+TEST(ToolScript, PicksWithJawsOfAnyKind) {
+  BoxJaws turned, large, two, one;
+  turned.mount_rpy = "0 0 1.5707963";
+  large.most = 0.06;
+  large.length = 0.11;
+  large.thickness = 0.02;
+  two.moves = BoxJaws::Moves::two_drives;
+  one.moves = BoxJaws::Moves::one;
+  one.most = 0.07;
+  for (const BoxJaws& jaws : {BoxJaws{}, turned, large, two, one})
+    EXPECT_TRUE(picks(six_axes(jaws))) << six_axis_urdf(0.9, jaws);
+}
+
+TEST(ToolScript, JawsThatDoNotTakeABrickAreRefused) {
+  const auto refusal = [](const BoxJaws& jaws) {
+    const Rig rig = six_axes(jaws);
+    const LiveScene scene = live_scene_of(rig, true, std::nullopt, true, 0);
+    return input_error([&] { pick_and_place(rig, scene, "brick_red", "tray"); });
+  };
+  BoxJaws narrow, open, stubs;
+  narrow.most = 0.02;
+  open.gap = 0.045;
+  stubs.length = 0.01;
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal(narrow), HasSubstr("the jaws open 0.040 m, a brick is 0.045 m wide, and 0.006 m more"));
+  EXPECT_THAT(refusal(open), HasSubstr("the jaws close to 0.046 m, a brick is 0.045 m wide"));
+  EXPECT_THAT(refusal(stubs), HasSubstr("the jaws stand 0.007 m out of the hand"));
 }
 
 /// Where the tool is when the jaws close, if the brick is seen by `seen` from where the model has it.
