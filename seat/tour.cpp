@@ -26,8 +26,10 @@ constexpr double kTourLow = 0.10 / 0.89, kTourHigh = 0.35 / 0.89;
 constexpr double kUnderLow = 0.75, kUnderHigh = 0.35;  // the same below an arm that hangs
 constexpr double kHangs = 0.3;                         // of its reach: so far below its first axis is its tool midway
 constexpr double kTourRoom = 0.01 / 0.89;              // beyond the rig's clearance, of the reach, too
+constexpr double kNearer = 1e-6;                       // m
 constexpr double kEndOfRange = 0.05;                   // of a joint's range, that a tour of joints leaves at both ends
 constexpr double kLook = 0.02;                         // s between two looks at where the arm is under way
+constexpr int kProbes = 300;                           // positions that tell what never comes nearer than at home
 
 class TourPlan {
  public:
@@ -38,11 +40,7 @@ class TourPlan {
         shape_(rig.shape()),
         random_(seed),
         at_(home_of(rig)) {
-    if (shape_) {
-      Surroundings wide = rig.surroundings;
-      wide.clearance += kTourRoom * chain().reach();
-      shape_->surround(wide);
-    }
+    if (shape_) leave_room(kTourRoom * chain().reach());
     look_about();
   }
   std::vector<ToolStep> with_tool_down(int count);
@@ -55,10 +53,12 @@ class TourPlan {
  private:
   const ArmChain& chain() const { return kinematics_.chain(); }
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  void leave_room(double room);
   void look_about();
   Pose tool_down(double yaw, double distance, double height, double turn) const;
   Pose tool_down_anywhere();
   JointVector any_joints();
+  void look_at(const JointVector& q);
   bool clear(const JointVector& q);
   bool clear_all_the_way(const ToolStep& step);
 
@@ -66,6 +66,7 @@ class TourPlan {
   HandOptions hand_;
   InverseKinematics kinematics_;
   std::unique_ptr<RobotShape> shape_;
+  std::vector<double> margins_, least_margins_;  // of its couples
   std::mt19937 random_;
   double ahead_ = 0;                        // rad about the vertical, where the arm looks
   double low_ = 0, high_ = 0;               // m above the world's origin
@@ -110,12 +111,42 @@ Pose TourPlan::tool_down_anywhere() {
   return tool_down(yaw, distance, height, uniform(-1.5, 1.5));
 }
 
-bool TourPlan::clear(const JointVector& q) {
+/// Beyond the rig's clearance. What cannot come nearer than it is at home, as a floor and a link that turns about the
+/// vertical over it, has no room to lose.
+void TourPlan::leave_room(double room) {
+  Surroundings wide = rig_.surroundings;
+  wide.clearance += room;
+  shape_->surround(wide);
+  margins_.resize(shape_->couples());
+  look_at(joints_of({at_.data(), rig_.joints.size()}, hand_.arm_joints));
+  const std::vector<double> at_home = margins_;
+  std::vector<double> nearest = at_home;
+  const std::mt19937 unused = random_;
+  for (int i = 0; i < kProbes; ++i) {
+    look_at(any_joints());
+    std::ranges::transform(nearest, margins_, nearest.begin(), [](double a, double b) { return std::min(a, b); });
+  }
+  random_ = unused;
+  for (std::size_t i = 0; i < nearest.size(); ++i)
+    least_margins_.push_back(nearest[i] < at_home[i] - kNearer ? 0 : -room);
+}
+
+/// Into margins_.
+void TourPlan::look_at(const JointVector& q) {
   JointValues all = at_;
   for (std::size_t i = 0; i < hand_.arm_joints.size(); ++i) all[hand_.arm_joints[i]] = q[static_cast<Eigen::Index>(i)];
-  const char* const what = shape_ ? shape_->obstructed({all.data(), rig_.joints.size()}) : nullptr;
-  if (what != nullptr) in_the_way_ = what;
-  return what == nullptr;
+  shape_->margins({all.data(), rig_.joints.size()}, margins_);
+}
+
+bool TourPlan::clear(const JointVector& q) {
+  if (!shape_) return true;
+  look_at(q);
+  for (std::size_t i = 0; i < margins_.size(); ++i)
+    if (margins_[i] < least_margins_[i]) {
+      in_the_way_ = shape_->message(i);
+      return false;
+    }
+  return true;
 }
 
 /// From where the tour has come to; then it has come to the step's end. Where that is too close to something, it may

@@ -200,6 +200,39 @@ TEST(ToolScript, WhatIsSeenOutOfReachIsLookedForWhereItWasPlanned) {
   EXPECT_TRUE(closes_at(far, "brick_red").isApprox(closes_at(Pose::Identity(), "brick_red"), 1e-6));
 }
 
+// A link that turns about the vertical over a floor: nearer than a tour's room, and never nearer than at home.
+TEST(ToolScript, WhatCannotComeNearerDoesNotHinderATour) {
+  Rig rig = six_axes({});
+  rig.surroundings = {};
+  const std::vector<double> home(rig.joints.size(), 0);
+  double lowest = 1;
+  for (const GuardedLink& link : rig.shape()->guarded(home))
+    if (link.name == "turret") lowest = std::min(link.body.a.z(), link.body.b.z()) - link.body.radius;
+  const double top = lowest - rig.surroundings.clearance - 0.004;
+  rig.surroundings.obstacles = {{"floor", {Eigen::Vector3d(-2, -2, top - 0.1), Eigen::Vector3d(2, 2, top)}}};
+  const auto steps = tour(rig, 1, 8);
+  ASSERT_EQ(steps.size(), 8u);
+  // All else has room.
+  const auto shape = rig.shape();
+  Surroundings wide = rig.surroundings;
+  wide.clearance += 0.009;
+  shape->surround(wide);
+  std::vector<double> margins(shape->couples());
+  ToolScript script(rig, steps, {.pan = 0, .tilt = 0});
+  script.begin_at(home_of(rig));
+  bool was_clear = false;
+  while (const auto next = script.step(0.05, {})) {
+    shape->margins({next->data(), rig.joints.size()}, margins);
+    bool is_clear = true;
+    for (std::size_t i = 0; i < margins.size(); ++i)
+      if (margins[i] < 0 && std::string_view(shape->message(i)) != "link 'turret' comes too close to obstacle 'floor'")
+        is_clear = false;
+    EXPECT_FALSE(was_clear && !is_clear);
+    was_clear = is_clear;
+  }
+  EXPECT_TRUE(was_clear);
+}
+
 // The benches' figures are of these.
 TEST(ToolScript, ATourOfTheLabsArmIsOverItsTable) {
   const Rig rig = minerva();
