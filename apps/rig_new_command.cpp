@@ -80,6 +80,7 @@ void tell(const RigDraft& draft, const std::string& file) {
     std::printf("  %s: nodes %s; %.0f %% of %d kbit/s\n", rig.buses[i].name.c_str(), nodes.c_str(),
                 100 * planned_bus_load(rig, i), rig.buses[i].bit_rate / 1000);
   }
+  for (const std::string& warning : draft.warnings) std::printf("  warning: %s\n", warning.c_str());
   for (const std::string& note : draft.notes) std::printf("  note: %s\n", note.c_str());
   const std::string word = shell_word(file);
   std::printf("try it: foresight doctor %s; foresight robot %s\n", word.c_str(), word.c_str());

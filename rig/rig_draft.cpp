@@ -32,6 +32,8 @@ constexpr double kMockCountsPerMetre = 100'000'000;
 constexpr double kMetresPerTurn = 0.01;            // of a spindle of which nobody knows
 constexpr double kHomeInside = 0.01;               // of the range: from its end to the home that a limit switch gives
 constexpr double kRoomAtZero = 0.1;                // of the range, on both sides of a home at 0
+constexpr double kLabReach = 0.9;                  // m, of an arm whose links are kept Surroundings::clearance apart
+constexpr double kLeastClearance = 0.003;          // m
 constexpr double kFloor = 0.1, kFloorStep = 0.01;  // m: its thickness, and how finely its place is sought
 constexpr double kHangs = 0.25;  // of its reach: a robot that is so far below its foot at home hangs from there
 
@@ -133,18 +135,24 @@ void choose_buses(DriveProtocol protocol, RigDraft& draft) {
                                       100 * kMostBusLoad, rig.buses.size()));
 }
 
-/// How far from its root any point of the robot can be, metres; never too little.
-double reach_of(const UrdfRobot& robot) {
+/// How far from its root each link's origin can be, metres; never too little.
+std::vector<double> farthest_origins(const UrdfRobot& robot) {
   std::vector<double> far(robot.links.size());
+  for (std::size_t i = 1; i < robot.links.size(); ++i) {
+    const UrdfJoint& joint = robot.joints[i - 1];
+    const double slide =
+        joint.kind == UrdfJoint::Kind::sliding ? std::max(std::abs(joint.lower), std::abs(joint.upper)) : 0;
+    far[i] = far[static_cast<std::size_t>(robot.links[i].parent)] + joint.T_parent_joint.translation().norm() +
+             (std::isfinite(slide) ? slide : 0);
+  }
+  return far;
+}
+
+/// The same of any of its points.
+double reach_of(const UrdfRobot& robot) {
+  const std::vector<double> far = farthest_origins(robot);
   double out = 0;
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    if (i > 0) {
-      const UrdfJoint& joint = robot.joints[i - 1];
-      const double slide =
-          joint.kind == UrdfJoint::Kind::sliding ? std::max(std::abs(joint.lower), std::abs(joint.upper)) : 0;
-      far[i] = far[static_cast<std::size_t>(robot.links[i].parent)] + joint.T_parent_joint.translation().norm() +
-               (std::isfinite(slide) ? slide : 0);
-    }
     double size = 0;
     for (const auto& v : robot.links[i].mesh.vertices) size = std::max(size, v.cast<double>().norm());
     out = std::max(out, far[i] + size);
@@ -152,10 +160,47 @@ double reach_of(const UrdfRobot& robot) {
   return out;
 }
 
+/// How far the arm's last joint can be from its first, metres; never too little. 0: it has but one, or none.
+double arm_reach_of(const Rig& rig) {
+  const UrdfRobot& robot = *rig.robot;
+  const std::vector<double> far = farthest_origins(robot);
+  double first = std::numeric_limits<double>::infinity(), last = 0;
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const std::string& mover = robot.joints[static_cast<std::size_t>(source_of(robot, i).joint)].name;
+    const auto moves_it = [&](const RigJoint& joint) {
+      return joint.group == JointGroup::arm && joint.drive.name == mover;
+    };
+    if (robot.joints[i].kind == UrdfJoint::Kind::fixed || std::ranges::none_of(rig.joints, moves_it)) continue;
+    const double here = far[static_cast<std::size_t>(robot.joints[i].child)];
+    first = std::min(first, here);
+    last = std::max(last, here);
+  }
+  return std::max(0.0, last - first);
+}
+
+/// That of the lab's arm, less of a smaller one, in whole millimetres.
+double clearance_of(const Rig& rig) {
+  const double reach = arm_reach_of(rig), usual = Surroundings{}.clearance;
+  const double wanted = reach > 0 ? usual * std::min(1.0, reach / kLabReach) : usual;
+  return std::max(kLeastClearance, std::floor(1000 * wanted + 1e-6) / 1000);
+}
+
 double lowest_of(const Mesh& mesh) {
   double out = 0;
   for (const auto& v : mesh.vertices) out = std::min(out, static_cast<double>(v.z()));
   return out;
+}
+
+std::string too_close_at_home(RobotShape& shape, std::size_t couple, std::span<const double> home) {
+  std::vector<double> margins(shape.couples());
+  shape.margins(home, margins);
+  const double apart = shape.kept_apart(couple) + margins[couple], leaves = std::floor(1000 * apart) / 1000;
+  const std::string what = fmt::format("at home {}, {:.3f} m apart of {:.3f} m", shape.message(couple),
+                                       std::max(0.0, apart), shape.kept_apart(couple));
+  return what + ": the gate lets them only part, and may hold the robot as it looks for home. " +
+         (leaves >= 0.001 ? fmt::format("A clearance_m of {:g} lets them be", leaves)
+                          : std::string("Give these links slimmer <collision> shapes, or set the offset of a joint "
+                                        "between them such that they stand clear at home"));
 }
 
 /// Floor and workspace, such that the robot stands clear at home.
@@ -167,10 +212,9 @@ void choose_surroundings(RigDraft& draft) {
     home.push_back(std::clamp(joint.drive.offset, joint.drive.min_position, joint.drive.max_position));
   const auto shape = rig.shape();
   rig.surroundings = {};
+  rig.surroundings.clearance = clearance_of(rig);
   shape->surround(rig.surroundings);
-  if (const char* const touching = shape->obstructed(home))
-    draft.notes.push_back(
-        fmt::format("at home {}, as the gate sees them: it lets them only part from there", touching));
+  if (const auto couple = shape->too_close(home)) draft.warnings.push_back(too_close_at_home(*shape, *couple, home));
   const double stand = std::floor(100 * lowest_of(rig.robot->links[0].mesh) + 0.1) / 100;
   const auto put_floor = [&](double depth, double thickness) {
     const Eigen::Vector3d top(0, 0, stand - depth), far(reach, reach, 0);

@@ -25,9 +25,10 @@ struct DraftJoint {
 /// A rig that passes all checks of read_rig(), and words about it.
 struct RigDraft {
   Rig rig;
-  std::vector<DraftJoint> joints;  ///< in the rig's order
-  std::vector<std::string> notes;  ///< what was left out or is to be checked; one line each
-  bool visual_only = false;        ///< the URDF's collision meshes are not there: robot.shapes is `visual`
+  std::vector<DraftJoint> joints;     ///< in the rig's order
+  std::vector<std::string> notes;     ///< what was left out or is to be checked; one line each
+  std::vector<std::string> warnings;  ///< what will keep it from working, and the cure; one line each
+  bool visual_only = false;           ///< the URDF's collision meshes are not there: robot.shapes is `visual`
 };
 
 /// Every joint that moves on its own, in the URDF's order; those that follow another and fixed ones have no drive. What

@@ -59,6 +59,7 @@ std::string heading(const RigDraft& draft, const RigDraftOptions& options) {
       "of a\n"
       "# joint are in its unit, rad or m, and per second where they are speeds.\n",
       draft.rig.name, options.urdf.filename().string());
+  for (const std::string& warning : draft.warnings) out += "# Warning: " + warning + ".\n";
   for (const std::string& note : draft.notes) out += "# Note: " + note + ".\n";
   return out;
 }
@@ -69,7 +70,8 @@ std::string surroundings_text(const Surroundings& surroundings) {
       "  # As far as any part of the robot can reach. Make it as small as the work allows: links never leave it.\n"
       "  workspace_m: " +
       box(surroundings.workspace) + "\n" +
-      fmt::format("  clearance_m: {:g}  # kept from obstacles and between links\n", surroundings.clearance) +
+      fmt::format("  clearance_m: {:g}  # kept from obstacles and between links; 0.02 of an arm of 0.9 m or more\n",
+                  surroundings.clearance) +
       "  # Add what stands around the robot: tables, walls, the stand of the cameras.\n"
       "  obstacles:\n";
   for (const Obstacle& obstacle : surroundings.obstacles)

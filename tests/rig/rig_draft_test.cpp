@@ -7,6 +7,7 @@
 #include "rig/bus_plan.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
+#include "tests/support/six_axis_arm.hpp"
 
 namespace foresight::rig_draft_test {
 namespace {
@@ -296,6 +297,27 @@ TEST(RecordedRobotsRigs, AreDraftedAndStandClear) {
     const char* const touching = shape->obstructed(home);
     EXPECT_EQ(touching, nullptr) << known.urdf << ": " << touching;
   }
+}
+
+TEST_F(Draft, KeepsLinksApartAsTheArmIsLarge) {
+  for (const auto& [size, clearance] : {std::pair{0.1, 0.003}, {0.2, 0.004}, {0.5, 0.011}, {0.9, 0.02}, {3.0, 0.02}}) {
+    folder_.write("arm.urdf", six_axis_urdf(size, {.length = 0.06 * size}));
+    EXPECT_EQ(written().surroundings.clearance, clearance) << size;
+    if (size > 0.1) EXPECT_THAT(draft_.warnings, testing::IsEmpty()) << size;
+  }
+}
+
+TEST_F(Draft, WarnsOfWhatIsTooCloseAtHomeAndTellsTheCure) {
+  folder_.write("arm.urdf", six_axis_urdf(0.2, {.length = 0.06, .thickness = 0.03}));
+  written();
+  ASSERT_EQ(draft_.warnings.size(), 1u);
+  EXPECT_THAT(draft_.warnings[0], AllOf(HasSubstr("at home link 'jaw_"), HasSubstr("too close to link 'wr'"),
+                                        HasSubstr("0.003 m apart of 0.004 m"), HasSubstr("A clearance_m of 0.002")));
+  EXPECT_THAT(text_, HasSubstr("# Warning: at home"));
+  folder_.write("arm.urdf", six_axis_urdf(0.1, {.length = 0.06, .thickness = 0.03}));
+  written();
+  ASSERT_EQ(draft_.warnings.size(), 1u);
+  EXPECT_THAT(draft_.warnings[0], AllOf(HasSubstr("0.000 m apart"), HasSubstr("slimmer <collision> shapes")));
 }
 
 }  // namespace
