@@ -9,7 +9,7 @@
 namespace foresight {
 namespace {
 
-constexpr std::size_t kPosesKept = 1 << 17;  // of nodes: 16 MiB
+constexpr std::size_t kPosesKept = 1 << 14;  // of nodes: 2 MiB, some 500 images of the lab
 constexpr GLuint kMapUnit = 3;
 
 }  // namespace
