@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "input/keyboard_mouse.hpp"
-#include "tests/input/hand_world.hpp"
+#include "tests/input/hand_control_fixture.hpp"
 #include "tests/support/allocations.hpp"
 #include "tests/support/folders.hpp"
 
@@ -15,38 +15,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using Eigen::Vector3d;
-
-class HandControlTest : public testing::Test {
- protected:
-  HandControlTest() { world_.hand().settings().frame = HandFrame::base; }
-  void TearDown() override {
-    EXPECT_EQ(world_.steps_too_long, 0);
-    EXPECT_EQ(world_.moved_while_open, 0);
-    EXPECT_EQ(world_.jumps_at_press, 0);
-    EXPECT_EQ(world_.shafts_moved_at_rest, 0);
-  }
-  /// The hand goes there, evenly, from where it is.
-  const HandCycle& go(const Vector3d& to, int cycles, bool held = true, bool clutched = true) {
-    const Vector3d from = at_;
-    for (int i = 1; i <= cycles; ++i) {
-      at_ = from + (to - from) * i / cycles;
-      world_.cycle(device_at(at_, held, clutched));
-    }
-    return world_.hand().last();
-  }
-  const HandCycle& stay(int cycles, bool held = true, bool clutched = true) { return go(at_, cycles, held, clutched); }
-  /// The switch is pressed, and the ramp is over.
-  void engage() {
-    stay(60, false);
-    ASSERT_EQ(stay(400).phase, HandPhase::driving) << describe(world_.hand().last(), world_.joints()).name;
-    ASSERT_EQ(world_.gate().state, GateState::following);
-  }
-  Vector3d tool() { return world_.hand().last().T_base_tip.translation(); }
-  std::string words() { return describe(world_.hand().last(), world_.joints()).name; }
-
-  HandWorld world_;
-  Vector3d at_{0, 0, 0};
-};
 
 TEST_F(HandControlTest, TheToolGoesWithTheHand) {
   engage();
@@ -355,79 +323,6 @@ TEST_F(HandControlTest, OneJointAtATime) {
   device.joint_rate = NAN;
   world_.cycles(5, device);
   EXPECT_EQ(out.positions[4], world_.joints()[4].limits.min_position);
-}
-
-// Enter, held with the switch.
-class ToStart : public HandControlTest {
- protected:
-  ToStart() { device_.buttons.set(TrackerButton::to_start); }
-  double left(std::size_t joint) const {
-    return std::abs(*world_.start(joint) - world_.hand().last().positions[joint]);
-  }
-  TrackerState device_ = device_at(at_, true);
-};
-
-TEST_F(ToStart, AllJointsButTheGripperArriveTogether) {
-  engage();
-  const JointValues before = world_.hand().last().positions;
-  const double yaw = left(0), elbow = left(3);
-  ASSERT_GT(yaw * elbow, 0);
-  world_.cycles(60, device_);
-  EXPECT_EQ(world_.hand().last().phase, HandPhase::driving);
-  EXPECT_NEAR(left(0) / yaw, left(3) / elbow, 1e-3) << "on the straight way of all joints";
-  world_.cycles(1500, device_);
-  for (std::size_t i = 0; i < 10; ++i)
-    EXPECT_EQ(world_.hand().last().positions[i], i == 7 ? before[7] : *world_.start(i)) << i;
-  EXPECT_NEAR(world_.shaft(3), *world_.start(3), 1e-3);
-}
-
-TEST_F(ToStart, StopsWhenEitherIsLetGoOf) {
-  world_.cycles(60, device_at(at_, false));
-  TrackerState alone = device_at(at_, false);
-  alone.buttons.set(TrackerButton::to_start);
-  const double stands = world_.shaft(3);
-  world_.cycles(200, alone);
-  EXPECT_EQ(world_.shaft(3), stands) << "without the switch";
-  engage();
-  world_.cycles(60, device_);
-  const JointValues then = world_.hand().last().positions;
-  stay(100);
-  EXPECT_EQ(world_.hand().last().positions, then) << "and the hand begins anew where the tool has come to";
-  const Vector3d before = tool();
-  go(at_ + Vector3d(0.02, 0, 0), 100);
-  stay(100);
-  EXPECT_NEAR((tool() - before - Vector3d(0.02, 0, 0)).norm(), 0, 1e-3);
-}
-
-TEST_F(ToStart, GoesOnlyWhereItsGuardLetsIt) {
-  class Wall final : public HandGuard {
-   public:
-    FollowStep step(const JointValues& from, const Pose&, double) noexcept override { return stands(from); }
-    FollowStep go(const JointValues& from, const JointValues&) noexcept override { return stands(from); }
-
-   private:
-    static FollowStep stands(const JointValues& from) noexcept {
-      FollowStep out;
-      out.q = JointVector::Map(from.data(), 7);
-      out.reason = FollowReason::contact;
-      return out;
-    }
-  } wall;
-  engage();
-  const JointValues before = world_.hand().last().positions;
-  world_.hand().set_guard(&wall);
-  world_.cycles(200, device_);
-  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(world_.hand().last().positions[i], before[i]) << i;
-  EXPECT_EQ(world_.hand().last().follow, FollowReason::contact);
-  world_.hand().set_guard(nullptr);
-}
-
-TEST_F(ToStart, AHeadThatSomebodyWearsStaysWithHim) {
-  engage();
-  world_.others[8] = 0.3;
-  world_.cycles(1500, device_);
-  EXPECT_EQ(world_.hand().last().positions[8], 0.3);
-  EXPECT_EQ(world_.hand().last().positions[3], *world_.start(3));
 }
 
 TEST_F(HandControlTest, TheGripperOpensAndClosesByButtons) {
