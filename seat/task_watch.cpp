@@ -1,5 +1,7 @@
 #include "seat/task_watch.hpp"
 
+#include <fmt/core.h>
+
 #include <utility>
 
 namespace foresight {
@@ -13,7 +15,9 @@ void TaskWatch::see(RobotTime now, const ScriptState& script, const std::string&
   }
   if (!pressed_ && script.driving) pressed_ = now;
   failure_ = script.failure;
-  if (under_way() && (script.done || seconds(now) > most_s_)) ended_ = now;
+  if (!under_way() || (!script.done && seconds(now) <= most_s_)) return;
+  ended_ = now;
+  done_ = script.done;
 }
 
 double TaskWatch::seconds(RobotTime now) const {
@@ -44,6 +48,8 @@ TaskOutcome TaskWatch::outcome(RobotTime now, const std::string& words, const st
     out.failure = "it never drove: " + words;
   else if (!ended_)
     out.failure = "stopped before its end";
+  else if (!done_ && over_time_ == OverTime::fails)
+    out.failure = fmt::format("not done after {:.0f} s; give it more by --seconds", most_s_);
   else if (out.held_share > kMostly)
     out.failure = "the safety gate held the robot back most of the time: " + held_by_;
   else

@@ -32,8 +32,13 @@ struct TaskOutcome {
 /// Pure logic; one thread.
 class TaskWatch {
  public:
+  /// What it means that the script still wants something after all its time.
+  enum class OverTime : std::uint8_t {
+    ends,   ///< nothing, as of a tour that goes on for ever
+    fails,  ///< the task was not done
+  };
   /// `most_s`: of motion, after which the task ends, whatever the script still wants.
-  explicit TaskWatch(double most_s) : most_s_(most_s) {}
+  TaskWatch(double most_s, OverTime over_time) : most_s_(most_s), over_time_(over_time) {}
 
   /// How the script is at `now`, which never goes back. `hold`: what keeps the robot from where it is asked to be, as
   /// it says (link::RobotState::hold); "" where nothing does.
@@ -54,6 +59,8 @@ class TaskWatch {
 
  private:
   double most_s_;
+  OverTime over_time_;
+  bool done_ = false;
   std::optional<RobotTime> pressed_, ended_, seen_;
   double held_s_ = 0;
   std::string failure_, held_by_;

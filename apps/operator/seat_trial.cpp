@@ -101,7 +101,7 @@ class Trial {
         source_(rig, scene_, end_, seat_, clock_, source_options()),
         trust_(view_.session(), setup_, clock_, trust_options()),
         truth_(options.scored ? robot_.cameras().frames().subscribe(kFramesKept) : nullptr),
-        task_(options.most_s),
+        task_(options.most_s, options.physics ? TaskWatch::OverTime::fails : TaskWatch::OverTime::ends),
         measures_(describe_seat(rig, view_.session(), setup_), options.out) {
     if (options.scored && options.zero_delay) {
       near_.emplace(setup_);

@@ -71,7 +71,7 @@ class ServedTrial final : ViewObserver {
         session_(*context_, setup_),
         source_(rig, scene_, end_, seat_, clock_, source_options(rig)),
         trust_(session_, setup_, clock_, trust_options(options)),
-        task_(options.most_s),
+        task_(options.most_s, options.things ? TaskWatch::OverTime::fails : TaskWatch::OverTime::ends),
         measures_(describe_seat(rig, session_, setup_), options.out),
         joints_(rig.joint_names()) {
     source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {

@@ -17,7 +17,7 @@ ThingLies in_place() {
 }
 
 TEST(TaskWatch, LastsFromTheFirstPressToTheEndOfTheScript) {
-  TaskWatch task(60);
+  TaskWatch task(60, TaskWatch::OverTime::ends);
   task.see(at(1), kWaits);
   EXPECT_FALSE(task.began());
   task.see(at(2), kDrives);
@@ -37,7 +37,7 @@ TEST(TaskWatch, LastsFromTheFirstPressToTheEndOfTheScript) {
 }
 
 TEST(TaskWatch, EndsWhereTheScriptTakesTooLong) {
-  TaskWatch task(10);
+  TaskWatch task(10, TaskWatch::OverTime::ends);
   task.see(at(0), kDrives);
   task.see(at(10), kDrives);
   EXPECT_TRUE(task.under_way());
@@ -46,8 +46,20 @@ TEST(TaskWatch, EndsWhereTheScriptTakesTooLong) {
   EXPECT_TRUE(task.outcome(at(11), "", in_place).succeeded);
 }
 
+TEST(TaskWatch, ATaskIsDoneInItsTimeOrNotAtAll) {
+  TaskWatch in_time(10, TaskWatch::OverTime::fails), late(10, TaskWatch::OverTime::fails);
+  for (TaskWatch* task : {&in_time, &late}) task->see(at(0), kDrives);
+  in_time.see(at(9.9), kDone);
+  late.see(at(10.1), kDrives);
+  late.see(at(10.2), kDone);
+  EXPECT_TRUE(in_time.outcome(at(11), "", in_place).succeeded);
+  const TaskOutcome out = late.outcome(at(11), "", in_place);
+  EXPECT_FALSE(out.succeeded);
+  EXPECT_EQ(out.failure, "not done after 10 s; give it more by --seconds");
+}
+
 TEST(TaskWatch, TellsHowLongTheRobotWasHeldBack) {
-  TaskWatch task(10);
+  TaskWatch task(10, TaskWatch::OverTime::ends);
   task.see(at(0), kWaits, "before");
   task.see(at(1), kDrives);
   task.see(at(2), kDrives, "link 'hand' comes too close to obstacle 'floor'");
@@ -60,7 +72,7 @@ TEST(TaskWatch, TellsHowLongTheRobotWasHeldBack) {
 }
 
 TEST(TaskWatch, DidNotSucceedWhereTheRobotMostlyStood) {
-  TaskWatch task(10);
+  TaskWatch task(10, TaskWatch::OverTime::ends);
   task.see(at(0), kDrives);
   task.see(at(4), kDrives);
   for (int i = 1; i <= 50; ++i) task.see(at(4 + 0.1 * i), kDrives, "link 'hand' leaves the workspace");
@@ -71,7 +83,7 @@ TEST(TaskWatch, DidNotSucceedWhereTheRobotMostlyStood) {
 }
 
 TEST(TaskWatch, DidNotSucceedWhereNoImageHasShownThatItDid) {
-  TaskWatch task(10);
+  TaskWatch task(10, TaskWatch::OverTime::ends);
   task.see(at(0), kDrives);
   task.see(at(9), kDone);
   const auto outcome = [&](ThingLies lies) { return task.outcome(at(11), "", [lies] { return lies; }); };
@@ -86,18 +98,18 @@ TEST(TaskWatch, SaysWhyItDidNotSucceedAndAsksForNothingElse) {
     ADD_FAILURE() << "asked where things are, of a task that did not end";
     return ThingLies::in_place;
   };
-  TaskWatch idle(10);
+  TaskWatch idle(10, TaskWatch::OverTime::ends);
   idle.see(at(0), kWaits);
   EXPECT_THAT(idle.outcome(at(1), "no robot heard of", never).failure, testing::HasSubstr("no robot heard of"));
 
-  TaskWatch stopped(10);
+  TaskWatch stopped(10, TaskWatch::OverTime::ends);
   stopped.see(at(0), kDrives);
   const TaskOutcome half = stopped.outcome(at(3), "", never);
   EXPECT_FALSE(half.succeeded);
   EXPECT_THAT(half.failure, testing::HasSubstr("stopped"));
   EXPECT_DOUBLE_EQ(half.seconds, 3);
 
-  TaskWatch failed(10);
+  TaskWatch failed(10, TaskWatch::OverTime::ends);
   failed.see(at(0), kDrives);
   failed.see(at(2), {.done = true, .failure = "lost too often"});
   EXPECT_TRUE(failed.failed());
