@@ -69,6 +69,17 @@ nlohmann::json number(const std::optional<double>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
+nlohmann::ordered_json to_json(const std::vector<PictureTrust>& pictures) {
+  auto out = nlohmann::ordered_json::array();
+  for (const PictureTrust& picture : pictures)
+    out.push_back({{"picture", picture.stem},
+                   {"exact_share", number(picture.figures.exact_share)},
+                   {"exact_wrong", number(picture.figures.exact_wrong)},
+                   {"wrong_share", number(picture.figures.wrong_share)},
+                   {"newest_instead", picture.newest_instead}});
+  return out;
+}
+
 nlohmann::ordered_json report_of(const SeatTrialFigures& figures, const Arguments& arguments) {
   nlohmann::ordered_json out;
   const SeatFidelity& seen = figures.fidelity;
@@ -102,6 +113,7 @@ nlohmann::ordered_json report_of(const SeatTrialFigures& figures, const Argument
   out["wrong_share"] = number(seen.trust.wrong_share);
   out["unconfirmed_share"] = number(seen.trust.unconfirmed);
   out["fallback_share"] = number(seen.trust.fallback_share);
+  out["trust"] = to_json(seen.trust_of_pictures);
   out["view"] = to_json(seen.record);
   return out;
 }

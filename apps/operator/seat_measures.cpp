@@ -72,7 +72,11 @@ void SeatMeasures::measure(ShownPicture& shown, const cv::Mat& truth) {
   ages_.add(record.delay_s);
   invalid_ += shown.invalid ? 1 : 0;
   ++measured_;
-  if (!shown.doubt.empty()) trust_.add(shown.predicted, shown.doubt, shown.exact, truth, shown.fell_back);
+  if (!shown.doubt.empty()) {
+    const bool fell_back = !shown.newest_instead.empty();
+    trust_of_pictures_.push_back(
+        {shown.stem, trust_.add(shown.predicted, shown.doubt, shown.exact, truth, fell_back), shown.newest_instead});
+  }
   if (const cv::Mat before = image_at(shown.newest); !before.empty()) measure_moved(shown, truth, before, seen);
   if (without_line_)
     if (const cv::Mat view = without_line_(shown.instant); !view.empty()) zero_.add(all.psnr_db(view));
@@ -117,6 +121,7 @@ SeatFidelity SeatMeasures::finish() {
   out.image_age_s = ages_.mean();
   out.invalid_share = measured_ ? static_cast<double>(invalid_) / static_cast<double>(measured_) : 1;
   out.trust = trust_.figures();
+  out.trust_of_pictures = std::move(trust_of_pictures_);
   if (out.trust.exact_share) record_.notes.push_back(to_sentence(out.trust));
   out.instants = keeper_.instants();
   out.record = std::move(record_);

@@ -19,16 +19,22 @@ namespace foresight {
 
 /// As it was shown.
 struct ShownPicture {
-  RobotTime instant;       ///< that it was shown for
-  RobotTime newest;        ///< capture instant of `delayed`
-  std::string stem;        ///< file name
-  cv::Mat predicted;       ///< CV_8UC4, as PredictedView::read()
-  cv::Mat delayed;         ///< CV_8UC3: the newest image that had come
-  cv::Mat video = {};      ///< likewise, as a video of one eye in the same bytes would have it; empty: not made
-  bool invalid = false;    ///< prediction was not to be trusted
-  cv::Mat doubt = {};      ///< CV_8UC1 (display/doubt_kinds.hpp); empty: trust is not measured
-  ExactKinds exact = {};   ///< of doubt, of which pixels were shown as exact
-  bool fell_back = false;  ///< the newest image was shown instead
+  RobotTime instant;      ///< that it was shown for
+  RobotTime newest;       ///< capture instant of `delayed`
+  std::string stem;       ///< file name
+  cv::Mat predicted;      ///< CV_8UC4, as PredictedView::read()
+  cv::Mat delayed;        ///< CV_8UC3: the newest image that had come
+  cv::Mat video = {};     ///< likewise, as a video of one eye in the same bytes would have it; empty: not made
+  bool invalid = false;   ///< prediction was not to be trusted
+  cv::Mat doubt = {};     ///< CV_8UC1 (display/doubt_kinds.hpp); empty: trust is not measured
+  ExactKinds exact = {};  ///< of doubt, of which pixels were shown as exact
+  std::string newest_instead = {};  ///< why the newest image was shown instead; "" where it was not
+};
+
+struct PictureTrust {
+  std::string stem;
+  TrustFigures figures;
+  std::string newest_instead;  ///< as in ShownPicture
 };
 
 /// Means over the pictures that were measured; nothing where none could be.
@@ -40,6 +46,7 @@ struct SeatFidelity {
   double invalid_share = 0;                                       ///< of pictures without a prediction to trust
   std::optional<double> image_age_s;                              ///< of the newest image against the shown instant
   TrustFigures trust;                                             ///< of pictures with their doubt
+  std::vector<PictureTrust> trust_of_pictures;                    ///< each of these
   RunRecord record;
   std::vector<Instant> instants;
 };
@@ -92,6 +99,7 @@ class SeatMeasures {
   std::uint64_t measured_ = 0, invalid_ = 0;
   Mean zero_, moving_predicted_, moving_delayed_, video_, moving_video_, moved_share_, ages_;
   TrustMeasures trust_;
+  std::vector<PictureTrust> trust_of_pictures_;
   InstantKeeper keeper_{4};
   RunRecord record_;
 };

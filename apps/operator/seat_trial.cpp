@@ -200,8 +200,7 @@ class Trial {
     if (!counts || !options_.scored) return;
     const ShownInstant& instant = source_.instant();
     measures_.show({instant.time, newest_, instant.name, session.read(), delayed_.clone(), as_video_.clone(),
-                    source_.robot().status == StateStatus::invalid, trust_.doubt(), trust_.exact(),
-                    trust_.falls_back()});
+                    source_.robot().status == StateStatus::invalid, trust_.doubt(), trust_.exact(), trust_.why()});
   }
 
   void learn_truth() {

@@ -140,7 +140,7 @@ class ServedTrial final : ViewObserver {
                     source_.robot().status == StateStatus::invalid,
                     trust_.doubt(),
                     trust_.exact(),
-                    trust_.falls_back()});
+                    trust_.why()});
   }
 
   // False: there is nothing left to be done.

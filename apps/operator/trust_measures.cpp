@@ -35,23 +35,37 @@ cv::Mat any_channel_wrong(const cv::Mat& predicted, const cv::Mat& truth) {
 
 }  // namespace
 
-void TrustMeasures::add(const cv::Mat& predicted, const cv::Mat& doubt, const ExactKinds& kinds, const cv::Mat& truth,
-                        bool fell_back) {
-  ++pictures_;
-  fallbacks_ += fell_back ? 1 : 0;
-  const cv::Mat seen = seen_mask(predicted), exact = exact_mask(predicted, doubt, kinds);
-  const cv::Mat wrong = (grey_difference(predicted, truth) > kWrong) & seen;
-  seen_ += count(seen);
-  exact_ += count(exact);
-  unconfirmed_ += count((doubt == kUnconfirmed) & seen);
-  wrong_ += count(wrong);
-  exact_wrong_ += count(wrong & exact);
-  exact_wrong_any_ += count(any_channel_wrong(predicted, truth) & exact);
+TrustMeasures::Counts& TrustMeasures::Counts::operator+=(const Counts& other) {
+  pictures += other.pictures;
+  fallbacks += other.fallbacks;
+  seen += other.seen;
+  exact += other.exact;
+  unconfirmed += other.unconfirmed;
+  wrong += other.wrong;
+  exact_wrong += other.exact_wrong;
+  exact_wrong_any += other.exact_wrong_any;
+  return *this;
 }
 
-TrustFigures TrustMeasures::figures() const {
-  return {share(exact_, seen_), share(exact_wrong_, exact_), share(exact_wrong_any_, exact_),
-          share(wrong_, seen_), share(unconfirmed_, seen_),  share(fallbacks_, pictures_)};
+TrustFigures TrustMeasures::Counts::figures() const {
+  return {share(exact, seen), share(exact_wrong, exact), share(exact_wrong_any, exact),
+          share(wrong, seen), share(unconfirmed, seen),  share(fallbacks, pictures)};
+}
+
+TrustFigures TrustMeasures::add(const cv::Mat& predicted, const cv::Mat& doubt, const ExactKinds& kinds,
+                                const cv::Mat& truth, bool fell_back) {
+  const cv::Mat seen = seen_mask(predicted), exact = exact_mask(predicted, doubt, kinds);
+  const cv::Mat wrong = (grey_difference(predicted, truth) > kWrong) & seen;
+  const Counts one{.pictures = 1,
+                   .fallbacks = fell_back ? 1U : 0U,
+                   .seen = count(seen),
+                   .exact = count(exact),
+                   .unconfirmed = count((doubt == kUnconfirmed) & seen),
+                   .wrong = count(wrong),
+                   .exact_wrong = count(wrong & exact),
+                   .exact_wrong_any = count(any_channel_wrong(predicted, truth) & exact)};
+  all_ += one;
+  return one.figures();
 }
 
 std::string to_sentence(const TrustFigures& figures) {

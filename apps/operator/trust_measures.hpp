@@ -25,13 +25,20 @@ std::string to_sentence(const TrustFigures& figures);
 class TrustMeasures {
  public:
   /// `predicted`: CV_8UC4; `doubt`, `kinds`: as they were when it was shown; `truth`: CV_8UC3 of the same size.
-  void add(const cv::Mat& predicted, const cv::Mat& doubt, const ExactKinds& kinds, const cv::Mat& truth,
-           bool fell_back);
-  TrustFigures figures() const;
+  /// Returns the figures of this picture.
+  TrustFigures add(const cv::Mat& predicted, const cv::Mat& doubt, const ExactKinds& kinds, const cv::Mat& truth,
+                   bool fell_back);
+  TrustFigures figures() const { return all_.figures(); }
 
  private:
-  std::uint64_t pictures_ = 0, fallbacks_ = 0;
-  std::uint64_t seen_ = 0, exact_ = 0, unconfirmed_ = 0, wrong_ = 0, exact_wrong_ = 0, exact_wrong_any_ = 0;
+  struct Counts {
+    std::uint64_t pictures = 0, fallbacks = 0;
+    std::uint64_t seen = 0, exact = 0, unconfirmed = 0, wrong = 0, exact_wrong = 0, exact_wrong_any = 0;
+
+    Counts& operator+=(const Counts& other);
+    TrustFigures figures() const;
+  };
+  Counts all_;
 };
 
 }  // namespace foresight
