@@ -17,7 +17,7 @@ std::string file_name(std::uint64_t number) {
 }  // namespace
 
 LiveSource::LiveSource(LiveFeed feed, const Clock& clock, const LiveSourceOptions& options)
-    : feed_(std::move(feed)), clock_(clock), options_(options), heard_(clock.now()) {}
+    : feed_(std::move(feed)), clock_(clock), options_(options), heard_(clock.now()), looked_(heard_) {}
 
 void LiveSource::take_in(LiveImage image) {
   heard_ = clock_.now();
@@ -43,6 +43,7 @@ void LiveSource::take_all() {
     take_in(std::move(*image));
     wait = Duration{0};
   }
+  looked_ = clock_.now();
 }
 
 SourceState LiveSource::advance() {
@@ -71,7 +72,7 @@ std::optional<PosedFrame> LiveSource::arrived() {
 
 std::string LiveSource::fault() const {
   if (silent()) {
-    const std::string text = fmt::format("NO IMAGE for {:.1f} s", to_seconds(clock_.now() - heard_));
+    const std::string text = fmt::format("NO IMAGE for {:.1f} s", to_seconds(silence()));
     const std::string trouble = feed_.trouble ? feed_.trouble() : "";
     return trouble.empty() ? text : text + (": " + trouble);
   }

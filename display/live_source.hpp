@@ -63,7 +63,9 @@ class LiveSource final : public FrameSource {
     std::uint64_t number;
     PosedImage image;
   };
-  bool silent() const { return clock_.now() - heard_ > options_.silent_after; }
+  /// Images that came while a picture was drawn are no silence.
+  Duration silence() const { return looked_ - heard_; }
+  bool silent() const { return silence() > options_.silent_after; }
   void take_all();
   void take_in(LiveImage image);
 
@@ -73,7 +75,7 @@ class LiveSource final : public FrameSource {
   std::deque<Instant> instants_;       // to be shown
   std::deque<PosedFrame> travelling_;  // to become textures
   LiveCounts counts_;
-  RobotTime heard_;
+  RobotTime heard_, looked_;
   bool posed_ = true;  // the newest image
   cv::Mat unposed_;    // that one, where it is not
   std::string lacks_;

@@ -30,13 +30,15 @@ PredictedSource::PredictedSource(const Rig& rig, std::shared_ptr<const LiveScene
       options_(options),
       places_(rig, scene_),
       due_(clock.now()),
-      heard_(clock.now()) {}
+      heard_(clock.now()),
+      looked_(heard_) {}
 
 void PredictedSource::take_frames() {
+  looked_ = clock_.now();
   std::vector<link::LineFramePtr> came;
   while (auto frame = end_.frames().take(Duration{0})) came.push_back(std::move(*frame));
   for (std::size_t i = 0; i < came.size(); ++i) {
-    heard_ = clock_.now();
+    heard_ = looked_;
     newest_ = came[i];
     const auto at = [this](RobotTime time, const link::LineJoints& joints) {
       SceneState state = link::scene_at(rig_, *scene_, time, joints);
@@ -132,8 +134,7 @@ std::optional<PosedFrame> PredictedSource::arrived() {
 
 std::string PredictedSource::fault() const {
   if (silent())
-    return fmt::format("NO IMAGE for {:.1f} s{}{}", to_seconds(clock_.now() - heard_), why_none_.empty() ? "" : ": ",
-                       why_none_);
+    return fmt::format("NO IMAGE for {:.1f} s{}{}", to_seconds(silence()), why_none_.empty() ? "" : ": ", why_none_);
   if (posed_) return "";
   return "NO POSE for the newest image" + why_no_pose(newest_->joints, homed_since_newest());
 }

@@ -63,7 +63,9 @@ class PredictedSource final : public FrameSource {
   static constexpr std::size_t kLookedAt = 2;  // frames between two pictures, of more the newest
 
   bool homed_since_newest() const;
-  bool silent() const { return clock_.now() - heard_ > options_.silent_after; }
+  /// Images that came while a picture was drawn are no silence.
+  Duration silence() const { return looked_ - heard_; }
+  bool silent() const { return silence() > options_.silent_after; }
   void take_frames();
   void let_things_see(const link::LineFramePtr& frame, PosedFrame& posed);
   void advance_things();
@@ -84,7 +86,7 @@ class PredictedSource final : public FrameSource {
   bool posed_ = true, any_posed_ = false;
   std::string why_none_;    // no image comes
   bool predicted_ = false;  // once
-  RobotTime due_, heard_;
+  RobotTime due_, heard_, looked_;
   std::uint64_t pictures_ = 0, overtaken_ = 0;
   std::optional<RobotTime> last_;
   ShownInstant instant_;

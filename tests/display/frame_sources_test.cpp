@@ -141,6 +141,7 @@ TEST_F(FrameSources, AnImageWithoutAPoseCanBeLookedAt) {
   EXPECT_TRUE(same(live.unposed(), frame(0).left.pixels));
   EXPECT_EQ(live.fault(), "NO POSE for the newest image: nobody is at home");
   clock_.sleep_until(clock_.now() + 600ms);
+  EXPECT_EQ(live.advance(), SourceState::waiting);
   EXPECT_TRUE(live.unposed().empty()) << "an old image";
   cameras_.bring(1, frame(1));
   ASSERT_EQ(live.advance(), SourceState::ready);
@@ -157,6 +158,8 @@ TEST_F(FrameSources, ASilentSourceSaysSo) {
   EXPECT_EQ(live.advance(), SourceState::waiting);
   EXPECT_EQ(live.fault(), "");
   clock_.sleep_until(clock_.now() + 900ms);
+  EXPECT_EQ(live.fault(), "") << "nobody has looked: a picture takes long";
+  EXPECT_EQ(live.advance(), SourceState::waiting);
   EXPECT_EQ(live.fault(), "NO IMAGE for 1.3 s: the left camera is lost");
   cameras_.bring(1, frame(1));
   ASSERT_EQ(live.advance(), SourceState::ready);
