@@ -149,8 +149,20 @@ HandRate KeyboardMouse::take_mouse(double seconds) noexcept {
   return {take_share(way_, options_.hand.speed, seconds), take_share(turn_, options_.hand.turn, seconds)};
 }
 
+void KeyboardMouse::looked(OperatorTime now) noexcept {
+  if (std::exchange(was_in_vain_, false)) late_ = {now, now - *looked_};
+  looked_ = now;
+}
+
+std::optional<Duration> KeyboardMouse::held_in_vain(OperatorTime now) const noexcept {
+  return late_ && now - late_->at < kToldFor ? std::optional(late_->after) : std::nullopt;
+}
+
 TrackerState KeyboardMouse::read(OperatorTime now) noexcept {
-  if (!looked_ || now - *looked_ > options_.window_answers_within) focus_lost();
+  if (!looked_ || now - *looked_ > options_.window_answers_within) {
+    was_in_vain_ = was_in_vain_ || (looked_ && held());
+    focus_lost();
+  }
   TrackerState out;
   out.connected = out.tracked = out.integrated = true;
   out.time = now;

@@ -93,7 +93,11 @@ class KeyboardMouse final : public Tracker {
   /// The window lost the keyboard (or closed): all is released. What is held when it comes back must be pressed again.
   void focus_lost() noexcept;
   /// The window has looked for events. At each of its rounds, or keys do not count.
-  void looked(OperatorTime now) noexcept { looked_ = now; }
+  void looked(OperatorTime now) noexcept;
+  /// How long the window did not look while a switch was held that did not count any more because of that, within the
+  /// last kToldFor; nothing where no switch was held in vain.
+  std::optional<Duration> held_in_vain(OperatorTime now) const noexcept;
+  static constexpr Duration kToldFor = std::chrono::seconds(4);
 
   std::string name() const override { return "keyboard and mouse"; }
   TrackerState read(OperatorTime now) noexcept override;
@@ -114,6 +118,12 @@ class KeyboardMouse final : public Tracker {
   bool let_go_ = false;                           // since the last read()
   Eigen::Vector3d way_{0, 0, 0}, turn_{0, 0, 0};  // of the mouse, not gone yet: m, rad
   std::optional<OperatorTime> looked_, read_;
+  struct LateLook {
+    OperatorTime at;
+    Duration after;
+  };
+  std::optional<LateLook> late_;
+  bool was_in_vain_ = false;  // since the window looked
   std::optional<std::size_t> joint_;
 };
 

@@ -1,5 +1,7 @@
 #include "seat/hand_driver.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -31,6 +33,13 @@ std::vector<SeatLine> missing_lines(const std::vector<AnyTracker::Missing>& miss
     out.push_back(std::move(line));
   }
   return out;
+}
+
+SeatLine keys_line(Duration late) {
+  return {"keys",
+          fmt::format("the switch did not count: a picture took {:.1f} s, and a key counts for {:.2f} s",
+                      to_seconds(late), to_seconds(KeyboardMouseOptions{}.window_answers_within)),
+          "make the window smaller, or drive by another device", Urgency::trouble};
 }
 
 /// As of a device that is not there. Static texts.
@@ -211,6 +220,7 @@ std::vector<SeatLine> HandDriver::lines() const {
   const std::vector<AnyTracker::Missing> missing = any_.missing();
   std::vector<SeatLine> devices = missing_lines(missing);
   out.insert(out.begin(), std::make_move_iterator(devices.begin()), std::make_move_iterator(devices.end()));
+  if (const auto late = looked_ ? keyboard_.held_in_vain(*looked_) : std::nullopt) out.push_back(keys_line(*late));
   // What touches is told by name.
   if (std::ranges::find(out, "hand", &SeatLine::label) != out.end()) return out;
   const HandCycle& cycle = hand_.last();

@@ -125,6 +125,25 @@ TEST_F(KeyboardMouseTest, AWindowThatHangsLetsGoOfAll) {
   EXPECT_FALSE(rounds(5).buttons.held(TrackerButton::deadman)) << "what was held has to be pressed again";
 }
 
+TEST_F(KeyboardMouseTest, TellsOfASwitchThatWasHeldInVain) {
+  round();
+  rounds(60, false);
+  round();
+  EXPECT_FALSE(device_.held_in_vain(now_)) << "no switch was held while the window did not look";
+  device_.key(HandKey::deadman, true);
+  rounds(5);
+  rounds(20, false);
+  round();
+  EXPECT_FALSE(device_.held_in_vain(now_)) << "0.2 s: it counted all the time";
+  rounds(39, false);
+  round();
+  EXPECT_EQ(device_.held_in_vain(now_), 400ms);
+  rounds(390);
+  EXPECT_EQ(device_.held_in_vain(now_), 400ms);
+  rounds(20);
+  EXPECT_FALSE(device_.held_in_vain(now_));
+}
+
 TEST_F(KeyboardMouseTest, TheMouseMovesTheHandNoFasterThanKeysAndNotForLong) {
   round();
   device_.mouse_moved(100, 0);

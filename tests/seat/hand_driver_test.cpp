@@ -1,6 +1,8 @@
 // A hand at the seat: what it does is what the operator sees it do, in a window or through a head display.
 #include "seat/hand_driver.hpp"
 
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -192,6 +194,24 @@ TEST_F(HandAtTheSeat, NoDeviceDrivesOnBehindAWindowThatHangs) {
   EXPECT_NE(driver_->lines()[0].words.find("window"), std::string::npos) << driver_->lines()[0].words;
   window_answers_ = true;
   expect_to_have_to_press_anew();
+}
+
+TEST_F(HandAtTheSeat, WhoHoldsAKeyThatDoesNotCountIsToldWhy) {
+  gl::WindowInput pressed;
+  pressed.key_events.push_back({key_bindings()[static_cast<std::size_t>(HandKey::deadman)].code, true});
+  driver_->take(pressed, view_.now);
+  cycles(5);
+  ASSERT_TRUE(wish_.deadman);
+  EXPECT_EQ(said("keys").words, "");
+  window_answers_ = false;
+  cycles(19);  // of 0.02 s
+  EXPECT_FALSE(wish_.deadman);
+  window_answers_ = true;
+  cycles(1);
+  EXPECT_THAT(said("keys").words, testing::HasSubstr("a picture took 0.4 s"));
+  EXPECT_EQ(said("keys").urgency, Urgency::trouble);
+  cycles(250);
+  EXPECT_EQ(said("keys").words, "");
 }
 
 TEST_F(HandAtTheSeat, AWindowThatHangsIsNoMatterToASeatThatNobodyDrives) {
