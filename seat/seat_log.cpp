@@ -38,11 +38,12 @@ std::vector<std::string> SeatLog::news(std::span<const SeatLine> lines) {
     const bool over = line.urgency == Urgency::fine && told.urgency != Urgency::fine;
     if (worse || over || (state && words != told.words)) out.push_back(text_of(line));
     told.words = words;
+    told.text = line.words;
     told.urgency = line.urgency;
   }
   for (auto& [which, told] : told_) {
     if (told.now || told.words.empty() || (told.urgency == Urgency::fine && !is_state(which.first))) continue;
-    out.push_back(which.first + ": no longer");
+    out.push_back(which.first + ": no longer: " + told.text);
     told = {};
   }
   return out;

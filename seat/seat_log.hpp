@@ -19,7 +19,7 @@ class SeatLog {
 
  private:
   struct Told {
-    std::string words;  // without figures
+    std::string words, text;  // words: without figures, with the cure
     Urgency urgency = Urgency::fine;
     bool now = false;  // it is among the lines of this call
   };

@@ -33,7 +33,8 @@ void TrustSwitch::compared(OperatorTime now, double fidelity_db) {
 }
 
 std::string TrustSwitch::why() const {
-  if (invalid_ && is_over_) return "it can be predicted again, and is shown as soon as that has lasted for a moment";
+  if (invalid_ && is_over_)
+    return "just now: " + fault_ + "; it can be predicted again, and is shown as soon as that has lasted";
   if (invalid_) return fault_;
   return poor_ ? fmt::format("what was shown was {:.0f} dB like the image that came, below {:.0f}", fidelity_db_,
                              options_.lowest_db)

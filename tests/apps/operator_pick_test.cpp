@@ -240,7 +240,8 @@ TEST_F(OperatorPicks, AThingUpAndSetsItDown) {
   EXPECT_LT(jaws(), kPressed);
   const Pose set_down = T_world_tool() * T_tool_thing;
   ASSERT_TRUE(holds("v", Pace::full, [&] { return jaws() > kOpen; }));
-  EXPECT_TRUE(comes_true([&] { return last("carries") == "operator: carries: no longer"; })) << seat_->said();
+  EXPECT_TRUE(comes_true([&] { return last("carries") == std::string("operator: carries: no longer: ") + kThing; }))
+      << seat_->said();
   ASSERT_TRUE(goes_up());
   EXPECT_TRUE(shows_thing("set_down", set_down, T_world_tool() * T_tool_thing));
 

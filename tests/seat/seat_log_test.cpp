@@ -28,7 +28,7 @@ TEST(SeatLog, TellsOfSeveralThingsThatDifferOnceEach) {
                    {"differs", "another scene", "start both alike", Urgency::note}};
   EXPECT_EQ(log.news(both).size(), 2u);
   EXPECT_TRUE(log.news(both).empty());
-  EXPECT_THAT(log.news({both.data(), 1}), testing::ElementsAre("differs: no longer"));
+  EXPECT_THAT(log.news({both.data(), 1}), testing::ElementsAre("differs: no longer: another scene"));
 }
 
 TEST(SeatLog, SaysThatTroubleIsOver) {
@@ -37,7 +37,7 @@ TEST(SeatLog, SaysThatTroubleIsOver) {
   const auto over = log.news(Lines{{"images", "10 pairs", ""}});
   ASSERT_EQ(over.size(), 2u);
   EXPECT_EQ(over[0], "images:   10 pairs");
-  EXPECT_EQ(over[1], "hand: no longer");
+  EXPECT_EQ(over[1], "hand: no longer: gone");
   EXPECT_TRUE(log.news(Lines{{"images", "11 pairs", ""}}).empty());
 }
 
@@ -47,7 +47,7 @@ TEST(SeatLog, TellsWhatIsHeldAndThatItWasLetGoOf) {
   log.news(robot);
   EXPECT_THAT(log.news(Lines{robot[0], {"carries", "brick_red", ""}}), testing::ElementsAre("carries:   brick_red"));
   EXPECT_TRUE(log.news(Lines{robot[0], {"carries", "brick_red", ""}}).empty());
-  EXPECT_THAT(log.news(robot), testing::ElementsAre("carries: no longer"));
+  EXPECT_THAT(log.news(robot), testing::ElementsAre("carries: no longer: brick_red"));
   EXPECT_TRUE(log.news(robot).empty());
 }
 
