@@ -23,14 +23,15 @@ RobotFutureOptions future_options(const Rig& rig) {
   return out;
 }
 
-/// As MotionPermit does it: a press that may not move the robot takes back that the switch was seen open.
+/// As MotionPermit does it: a press that may not move the robot takes back that the switch was seen open. One that may
+/// is no rest any more, and the gate follows a cycle later at the earliest.
 bool is_let_go(const ControlState& state) {
   switch (state.fault) {
     case SetPointFault::no_consent:
     case SetPointFault::not_let_go:
     case SetPointFault::elsewhere:
     case SetPointFault::robot_is_busy: return false;
-    default: return state.cause == RestCause::let_go;
+    default: return state.cause == RestCause::let_go || state.cause == RestCause::none;
   }
 }
 

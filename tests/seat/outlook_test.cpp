@@ -91,8 +91,9 @@ TEST_F(Outlook, ARobotThatMayNotFollowIsShownAtRest) {
     SetPointFault fault = SetPointFault::none;
     bool moves = false;
   };
-  for (const Case& one : {Case{.moves = true}, Case{.fault = SetPointFault::expired, .moves = true}, Case{.holder = 4},
-                          Case{.named = 8}, Case{.cause = RestCause::granted}, Case{.fault = SetPointFault::not_let_go},
+  for (const Case& one : {Case{.moves = true}, Case{.cause = RestCause::none, .moves = true},
+                          Case{.fault = SetPointFault::expired, .moves = true}, Case{.holder = 4}, Case{.named = 8},
+                          Case{.cause = RestCause::granted}, Case{.fault = SetPointFault::not_let_go},
                           Case{.fault = SetPointFault::elsewhere}}) {
     RobotOutlook outlook(rig_);
     SetPoint set_point;
