@@ -42,7 +42,6 @@ int run(SynthArguments arguments) {
   arguments.options.shutter.readout_s = arguments.rolling_shutter_ms * 1e-3;
   if (arguments.auto_exposure) arguments.options.auto_exposure.emplace();
   if (!arguments.head_path.empty()) arguments.options.head_path = arguments.head_path;
-  poll_stop_signals();
   const std::size_t images =
       static_cast<std::size_t>(std::max(0, arguments.options.frames)) * (arguments.options.stereo ? 2 : 1);
   const auto now = [] { return std::chrono::steady_clock::now(); };
@@ -50,10 +49,13 @@ int run(SynthArguments arguments) {
   ProgressBar bar("synth", "images", images, now(), ProgressBar::for_stderr());
   sim::SynthSummary summary;
   try {
-    summary = sim::write_synth_run(arguments.out, arguments.options, [&](int done, int) {
-      if (stop_requested()) throw Interrupted();
-      std::fputs(bar.update(static_cast<std::size_t>(done), now()).c_str(), stderr);
-    });
+    summary = sim::write_synth_run(
+        arguments.out, arguments.options,
+        [&](int done, int) {
+          if (stop_requested()) throw Interrupted();
+          std::fputs(bar.update(static_cast<std::size_t>(done), now()).c_str(), stderr);
+        },
+        [] { poll_stop_signals(); });  // until there is something to remove, a signal ends the program at once
   } catch (const Interrupted&) {
     std::fprintf(stderr, "\nforesight: stopped by %s, nothing was written\n", stopped_by());
     return kStopped;

@@ -30,7 +30,7 @@ void tell(const char* text) {
 
 extern "C" void end_now(int signal) {
   for (auto& slot : to_remove)
-    if (const char* const path = slot.exchange(nullptr)) ::unlink(path);
+    if (const char* const path = slot.exchange(nullptr); path && ::unlink(path) != 0) ::rmdir(path);
   tell("\nforesight: stopped by ");
   tell(name_of(signal));
   tell("\n");

@@ -22,8 +22,8 @@ bool stop_requested() noexcept;
 /// "Ctrl-C", "SIGTERM", "SIGHUP"; "" before one came.
 const char* stopped_by() noexcept;
 
-/// A file that would be left behind. `path` must stay valid until keep_when_stopped(path). Any thread; beyond 64 of
-/// them, and where the program dies otherwise, they are left.
+/// A file, or an empty folder, that would be left behind. `path` must stay valid until keep_when_stopped(path). Any
+/// thread; beyond 64 of them, and where the program dies otherwise, they are left.
 void remove_when_stopped(const char* path) noexcept;
 void keep_when_stopped(const char* path) noexcept;
 

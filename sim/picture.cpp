@@ -226,6 +226,7 @@ void Renderer::render(const RayTable& rays, const Pose& T_world_camera, const La
   const cv::Size size = whole.height < 8 ? cv::Size(kTilePixels, 1) : cv::Size(8, 8);
   for (int by = first_row; by < end_row; by += kBlock)
     for (int bx = 0; bx < whole.width; bx += kBlock) {
+      if (poll_) poll_();
       const cv::Rect block = cv::Rect(bx, by, kBlock, kBlock) & whole;
       const std::vector<int> near = narrow(views, all, window_of(rays, block));
       for (int y = by; y < block.br().y; y += size.height)

@@ -3,7 +3,9 @@
 // Shares no code with the OpenGL path, so its pictures are an independent truth for it.
 #pragma once
 
+#include <functional>
 #include <opencv2/core.hpp>
+#include <utility>
 #include <vector>
 
 #include "common/lens.hpp"
@@ -53,7 +55,9 @@ class Renderer {
   /// kSide^2 rays per pixel, on a regular grid; odd, so that one goes through the pixel's centre.
   static constexpr int kSide = 3;
 
-  Renderer(const Lab& lab, const LightMap& light) : lab_(lab), light_(light) {}
+  /// `poll` is called now and then, from every thread that renders; what it throws stops the work.
+  Renderer(const Lab& lab, const LightMap& light, std::function<void()> poll = {})
+      : lab_(lab), light_(light), poll_(std::move(poll)) {}
 
   const Lab& lab() const { return lab_; }
   const LightMap& light() const { return light_; }
@@ -70,6 +74,7 @@ class Renderer {
  private:
   const Lab& lab_;
   const LightMap& light_;
+  std::function<void()> poll_;
 };
 
 }  // namespace foresight::sim

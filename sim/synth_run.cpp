@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 
 #include "common/error.hpp"
 #include "common/parallel.hpp"
+#include "common/stop_signal.hpp"
 #include "pictures/encode.hpp"
 #include "scene/files.hpp"
 #include "scene/run_writer.hpp"
@@ -38,6 +40,18 @@ void write_png(const fs::path& file, const cv::Mat& image) {
   write_bytes(file, bytes.data(), bytes.size());
 }
 
+/// An empty folder, all that a signal could leave behind that ends the program at once while this lives.
+class RemovedWhenStopped {
+ public:
+  explicit RemovedWhenStopped(const fs::path& folder) : folder_(folder) { remove_when_stopped(folder_.c_str()); }
+  ~RemovedWhenStopped() { keep_when_stopped(folder_.c_str()); }
+  RemovedWhenStopped(const RemovedWhenStopped&) = delete;
+  RemovedWhenStopped& operator=(const RemovedWhenStopped&) = delete;
+
+ private:
+  fs::path folder_;
+};
+
 // One run while it is written.
 class SynthRun {
  public:
@@ -53,9 +67,9 @@ class SynthRun {
     for (int eye = 0; eye <= int{options.stereo}; ++eye) lenses_.push_back(synth_lens(options, eye == 1));
   }
 
-  SynthSummary write(const std::function<void(int, int)>& progress) {
+  SynthSummary write(const std::function<void(int, int)>& progress, const std::function<void()>& begins) {
     try {
-      return write_all(progress);
+      return write_all(progress, begins);
     } catch (const fs::filesystem_error& e) {
       throw RuntimeFailure("cannot write " + target_.target().string() + " (" + e.code().message() + ")",
                            "free some disk space");
@@ -80,11 +94,22 @@ class SynthRun {
     return right ? Pose(T_world_left(t) * T_left_right()) : T_world_left(t);
   }
 
-  SynthSummary write_all(const std::function<void(int, int)>& progress) {
+  SynthSummary write_all(const std::function<void(int, int)>& progress, const std::function<void()>& begins) {
+    std::optional<RemovedWhenStopped> empty(target_.path());
     Lab lab = make_lab(0.0005 * std::clamp(relative_, 0.6, 8.0), options_.seed);
     for (Material& material : lab.materials)
       material.gloss = std::max(material.gloss, static_cast<float>(options_.gloss));
     if (head_path_) check_head(lab);
+    const int images = options_.frames * static_cast<int>(lenses_.size());
+    std::mutex mutex;
+    const std::function<void()> poll = [&] {
+      const std::scoped_lock lock(mutex);
+      if (progress) progress(done_, images);
+    };
+    const LightMap light(lab, std::clamp(relative_, 0.6, 16.0), poll);
+    const Renderer renderer(lab, light, poll);
+    if (begins) begins();
+    empty.reset();
     RunWriter run(target_.path(), lenses_[0], "synth_left");
     if (options_.stereo) run.add_right_camera(lenses_[1], T_left_right(), "synth_right");
     write_scene(target_.path(), lab, arm_position_at(0));
@@ -92,7 +117,7 @@ class SynthRun {
     add_node_track(run, lab);
     for (int eye = 0; eye <= int{options_.stereo}; ++eye) add_images(run, eye == 1);
     const Polygons polygons = polygons_of(lab);
-    const SynthSummary summary = write_images(run, lab, polygons, progress);
+    const SynthSummary summary = write_images(run, renderer, polygons, poll);
     add_trajectory(run);
     run.flush();
     write_marker(summary);
@@ -150,34 +175,28 @@ class SynthRun {
                                                  options_.shutter.readout_s, node_count_));
   }
 
-  SynthSummary write_images(const RunWriter& run, const Lab& lab, const Polygons& polygons,
-                            const std::function<void(int, int)>& progress) {
+  SynthSummary write_images(const RunWriter& run, const Renderer& renderer, const Polygons& polygons,
+                            const std::function<void()>& poll) {
     std::mutex mutex;
-    int done = 0;
-    const int total = options_.frames * static_cast<int>(lenses_.size());
-    const LightMap light(lab, std::clamp(relative_, 0.6, 16.0), [&] {
-      const std::scoped_lock lock(mutex);
-      if (progress) progress(0, total);
-    });
-    const Renderer renderer(lab, light);
     std::vector<RayTable> rays(lenses_.begin(), lenses_.end());
-    meter(renderer, progress, total);
+    meter(renderer);
     pose_errors_.assign(options_.frames, Pose::Identity());
     SynthSummary summary{polygons.count, polygons.count, 0};
     parallel_for(options_.frames, [&](std::size_t frame) {
       for (std::size_t eye = 0; eye < rays.size(); ++eye) {
         const int in_view = write_image(run, renderer, rays[eye], polygons, static_cast<int>(frame), eye == 1);
+        ++done_;
+        poll();
         const std::scoped_lock lock(mutex);
         summary.fewest_polygons_in_view = std::min(summary.fewest_polygons_in_view, in_view);
         summary.most_polygons_in_view = std::max(summary.most_polygons_in_view, in_view);
-        if (progress) progress(++done, total);
       }
     });
     return summary;
   }
 
   // What an exposure control would choose for each image: it meters small pictures of the same views.
-  void meter(const Renderer& renderer, const std::function<void(int, int)>& progress, int total) {
+  void meter(const Renderer& renderer) {
     exposure_.assign(static_cast<std::size_t>(options_.frames), 1);
     if (!options_.auto_exposure) return;
     SynthOptions small = options_;
@@ -185,13 +204,10 @@ class SynthRun {
     small.height = std::max(16, options_.height * kMeterSide / std::max(options_.width, options_.height));
     const RayTable rays(synth_lens(small, false));
     std::vector<cv::Mat> light(exposure_.size());
-    std::mutex mutex;
     parallel_for(options_.frames, [&](std::size_t frame) {
       const double t = time(static_cast<int>(frame));
       const LabState state = lab_state(renderer.lab(), t);
       light[frame] = renderer.render(rays, T_world_left(t), state, renderer.light().lit(state)).light;
-      const std::scoped_lock lock(mutex);
-      if (progress) progress(0, total);
     });
     Sensor sensor = options_.sensor;
     sensor.blur = sensor.noise = 0;
@@ -264,6 +280,7 @@ class SynthRun {
   SynthOptions options_;
   TargetFolder target_;
   double relative_;
+  std::atomic<int> done_ = 0;  // images
   std::optional<HeadPath> head_path_;
   std::vector<Lens> lenses_;
   std::vector<int> node_;  // of each facet
@@ -331,9 +348,9 @@ Lens synth_lens(const SynthOptions& options, bool right) {
 }
 
 SynthSummary write_synth_run(const fs::path& out, const SynthOptions& options,
-                             const std::function<void(int, int)>& progress) {
+                             const std::function<void(int, int)>& progress, const std::function<void()>& begins) {
   check(options);
-  return SynthRun(out, options).write(progress);
+  return SynthRun(out, options).write(progress, begins);
 }
 
 }  // namespace foresight::sim

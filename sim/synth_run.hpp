@@ -54,14 +54,17 @@ void check(const SynthOptions& options);
 
 /// Writes a run as scene/run_folder.hpp reads it, and the truth as scene/ground_truth.hpp does.
 /// The same options give the same bytes. Uses all cores; calls `progress(done, total)` images from
-/// one thread at a time, with done = 0 as long as the light is computed. An exception thrown by
-/// `progress` stops the work and is passed on.
+/// one thread at a time, more often than images are done, with done = 0 as long as the light is computed. An exception
+/// thrown by `progress` stops the work within a tenth of a second and is passed on; only what paints the lab, the first
+/// seconds, does not call it. `begins` is called once, when the lab is lit: until then a signal that ends the program
+/// (end_on_stop_signals) leaves nothing on the disk either.
 ///
 /// `out` must not exist, be an empty folder, or hold an earlier synthetic run, which is replaced.
 /// All is written into a neighbour folder that takes the name `out` when it is complete; on any
 /// error nothing is left. Throws InputError: an option out of range, a head path that does not do,
 /// a folder of someone else, one that cannot be written. Throws RuntimeFailure: disk full.
 SynthSummary write_synth_run(const std::filesystem::path& out, const SynthOptions& options,
-                             const std::function<void(int, int)>& progress = {});
+                             const std::function<void(int, int)>& progress = {},
+                             const std::function<void()>& begins = {});
 
 }  // namespace foresight::sim

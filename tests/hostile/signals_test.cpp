@@ -1,4 +1,5 @@
 // SIGINT, SIGTERM and SIGHUP stop every kind of work alike.
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <thread>
@@ -52,11 +53,13 @@ TEST_P(Signals, ARobotIsStoppedUnderControl) {
 
 TEST_P(Signals, WhatPollsEndsItselfAndLeavesNothing) {
   fs::create_directory(victim_ / "new");
-  // The folder in which it works; a file of that name only tries whether one can be written.
+  // In the folder in which it works: until then it does not poll. A file of that name only tries whether one can be
+  // written.
   const auto works = [&] {
-    for (const auto& entry : fs::directory_iterator(victim_ / "new"))
-      if (entry.is_directory() && entry.path().filename().string().find(".partial-") != std::string::npos) return true;
-    return false;
+    return std::ranges::any_of(fs::directory_iterator(victim_ / "new"), [](const fs::directory_entry& entry) {
+      const bool is_partial = entry.path().filename().string().find(".partial-") != std::string::npos;
+      return is_partial && entry.is_directory() && !fs::is_empty(entry.path());
+    });
   };
   const Outcome outcome = stop("synth", {{"--frames", {"10000"}}}, works);
   EXPECT_EQ(outcome.exit_code, 130) << outcome.err;

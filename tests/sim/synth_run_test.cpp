@@ -275,6 +275,20 @@ TEST_F(SynthRun, KeepsTheFoldersOfOthersAndReplacesItsOwn) {
   EXPECT_EQ(left_behind().size(), 2u);
 }
 
+// Who is asked to stop before has nothing to take back; after that he hears of it between blocks of pixels.
+TEST_F(SynthRun, BeginsToWriteOnceTheLabIsLit) {
+  int lighting = 0, drawing = 0;
+  bool begun = false;
+  write_synth_run(
+      folder_ / "run", tiny_, [&](int, int) { ++(begun ? drawing : lighting); },
+      [&] {
+        begun = true;
+        for (const fs::path& there : left_behind()) EXPECT_TRUE(fs::is_empty(there)) << there;
+      });
+  EXPECT_GT(lighting, 0);
+  EXPECT_GE(drawing, 2 * tiny_.frames) << "when an image is done, and while it is drawn";
+}
+
 TEST_F(SynthRun, LeavesNothingWhenStopped) {
   EXPECT_THROW(write_synth_run(folder_ / "run", tiny_, [](int, int) { throw std::runtime_error("stop"); }),
                std::runtime_error);
