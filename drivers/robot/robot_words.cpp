@@ -2,6 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <vector>
+
+#include "common/text.hpp"
+
 namespace foresight {
 namespace {
 
@@ -143,12 +148,22 @@ std::string reason_text(const GateStatus& gate, std::span<const JointWords> join
   return out;
 }
 
+/// ", but for finger, which keeps its grip": those whose drives hold while all others are disabled; "" where none does.
+std::string grips_text(const RobotStatus& status, std::span<const JointWords> joints) {
+  std::vector<std::string> grip;
+  for (std::size_t i = 0; i < std::min(joints.size(), status.feedback.size()); ++i)
+    if (status.feedback[i].state == DriveState::enabled) grip.push_back(joints[i].name);
+  if (grip.empty()) return "";
+  return ", but for " + joined(grip) + ", which " + (grip.size() == 1 ? "keeps its" : "keep their") + " grip";
+}
+
 }  // namespace
 
 RobotWords describe(const RobotStatus& status, std::span<const JointWords> joints) {
   const GateReason reason = status.gate.reason;
   RobotWords out{words_for(status.phase).name, words_for(status.phase).cure};
   const bool by_hand = reason == GateReason::emergency_stop;
+  if (status.phase == RobotPhase::disabled) out.name += grips_text(status, joints);
   if (status.phase == RobotPhase::stopped && reason != GateReason::none) {
     out = {(by_hand ? "" : "stopped: ") + reason_text(status.gate, joints) + (by_hand ? "" : "; drives hold"),
            words_for(reason).cure};

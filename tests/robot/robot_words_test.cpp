@@ -58,6 +58,9 @@ TEST(RobotWords, SayWhatTheRobotDoesAndWhatToDo) {
   status = {};
   status.gate = {.state = GateState::stopped, .reason = GateReason::not_started};
   EXPECT_EQ(describe(status, kJoints).name, "disabled: no torque, brakes closed");
+  status.feedback[1].state = DriveState::enabled;
+  EXPECT_EQ(describe(status, kJoints).name, "disabled: no torque, brakes closed, but for finger, which keeps its grip");
+  status.feedback[1].state = DriveState::disabled;
   status.phase = RobotPhase::enabling;
   status.waiting_for = 0;
   EXPECT_EQ(describe(status, kJoints).name, "drives are being enabled, waiting for yaw");
