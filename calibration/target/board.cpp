@@ -5,6 +5,7 @@
 
 #include "common/counted.hpp"
 #include "common/error.hpp"
+#include "common/split.hpp"
 #include "common/text.hpp"
 
 namespace foresight {
@@ -23,7 +24,7 @@ constexpr std::array<Kind, 4> kKinds{{
     {BoardKind::apriltag, "apriltag", "apriltag:6x6:0.055:0.0165:tag36h11", 5, 1},
     {BoardKind::circles, "circles", "circles:10x10:0.0254", 3, 2},
 }};
-constexpr int kMostPoints = 1000;  // columns or rows: more cannot be told apart in an image
+constexpr int kMostPoints = 1000;  // columns or rows
 constexpr double kLargest = 1;     // metres: what is printed is smaller
 constexpr double kKalibrGap = 0.3;
 
@@ -31,15 +32,6 @@ const Kind& kind_of(BoardKind kind) {
   for (const Kind& k : kKinds)
     if (k.kind == kind) return k;
   return kKinds.front();
-}
-
-std::vector<std::string> split(std::string_view text, char at) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t end; (end = text.find(at, begin)) != std::string_view::npos; begin = end + 1)
-    parts.emplace_back(text.substr(begin, end - begin));
-  parts.emplace_back(text.substr(begin));
-  return parts;
 }
 
 class Parser {
@@ -84,7 +76,10 @@ class Parser {
 
   int count(const std::string& text, int fewest) {
     const auto value = parse_integer(text);
-    if (!value || *value < fewest || *value > kMostPoints)
+    if (value && *value > kMostPoints)
+      refuse("has " + in_quotes(text) + " columns or rows, and more than " + std::to_string(kMostPoints) +
+             " cannot be told apart in an image");
+    if (!value || *value < fewest)
       refuse("has " + in_quotes(text) + " where a count of at least " + std::to_string(fewest) + " belongs");
     return static_cast<int>(*value);
   }

@@ -75,6 +75,13 @@ TEST(PrintBoard, TooLargeNamesWhatFits) {
   EXPECT_EQ(parse_paper("600x400_mm").height_mm, 600);
 }
 
+TEST(PrintBoard, MoreColumnsThanAnImageShowsAreRefusedAsSuch) {
+  for (const char* board : {"chessboard:9999x6:0.001", "circles:6x1001:0.001"})
+    EXPECT_THAT(input_error([&] { parse_board(board); }), HasSubstr("more than 1000 cannot be told apart in an image"));
+  EXPECT_THAT(input_error([] { parse_board("chessboard:2x6:0.02"); }), Not(HasSubstr("1000")));
+  EXPECT_EQ(parse_board("circles:6x1000:0.001").rows, 1000);
+}
+
 TEST(PrintBoard, MeasuredScale) {
   const Board board = parse_board("apriltag:4x3:0.045:0.0135");
   const Board printed = measured_board(board, 99.0, 99.2);
