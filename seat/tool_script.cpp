@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "common/error.hpp"
 #include "input/sliding_jaws.hpp"
 #include "prediction/grasp/hand_path.hpp"
+#include "seat/ways_to_pose.hpp"
 #include "sim/lab_task.hpp"
 
 namespace foresight {
@@ -98,7 +100,8 @@ void ToolScript::begin_step() {
   T_base_aim_ = aim_of(step);
   if (step.what == ToolStep::What::there) {
     from_ = arm();
-    to_ = step.joints ? *step.joints : kinematics_.solve(T_base_aim_, from_).q;
+    to_ = step.joints && step.about.empty() ? *step.joints
+                                            : kinematics_.solve(T_base_aim_, step.joints.value_or(from_)).q;
     for (std::size_t i = 0; i < arm_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const double speed = kShareOfSpeed * rig_.joints[arm_[i]].drive.max_velocity;
@@ -204,14 +207,19 @@ BrickGrasp brick_grasp(const Rig& rig) {
   return {jaws.at(sim::kBrickSide + kRoom), jaws.at(sim::kBrickSide - kSqueeze), sim::kBrickHeight - jaws.depth};
 }
 
-/// From where the joints stand after homing: all the way, and clear. `shape` may be null.
+/// From where the joints stand after homing: all the way, and clear. Where they are too close to something at home,
+/// they may part. `shape` may be null.
 bool goes_well(const Rig& rig, RobotShape* shape, const std::vector<ToolStep>& steps) {
   constexpr double kLook = 0.05;  // s between two looks
   ToolScript script(rig, steps, {.pan = 0, .tilt = 0});
   script.begin_at(home_of(rig));
-  while (const auto at = script.step(kLook, {}))
-    if (shape != nullptr && shape->obstructed({at->data(), rig.joints.size()}) != nullptr) return false;
-  return !script.fell_short();
+  bool was_clear = false;
+  while (const auto at = script.step(kLook, {})) {
+    const bool is_clear = shape == nullptr || shape->obstructed({at->data(), rig.joints.size()}) == nullptr;
+    if (was_clear && !is_clear) return false;
+    was_clear = is_clear;
+  }
+  return was_clear && !script.fell_short();
 }
 
 InputError out_of_reach(const Rig& rig, const ArmChain& arm, const Pose& from, const Pose& to,
@@ -274,6 +282,21 @@ bool reaches(const Rig& rig, const InverseKinematics& kinematics, const std::vec
   });
 }
 
+/// The same, clear all the way, with other joints at the step that takes all of them at once.
+std::optional<std::vector<ToolStep>> by_other_joints(const Rig& rig, RobotShape* shape,
+                                                     const InverseKinematics& kinematics, std::vector<ToolStep> steps) {
+  constexpr int kWays = 8;
+  ToolStep& there = *std::ranges::find(steps, ToolStep::What::there, &ToolStep::what);
+  const JointVector home = joints_of(home_of(rig), arm_options(rig).arm_joints);
+  std::mt19937 random(1);
+  for (const JointVector& q :
+       ways_to_pose(kinematics, rig.T_world_robot.inverse() * there.T_world_tool, home, kWays, random)) {
+    there.joints = q;
+    if (goes_well(rig, shape, steps)) return steps;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
@@ -284,14 +307,16 @@ std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, con
   const double yaw = std::atan2(from.linear()(1, 0), from.linear()(0, 0));
   const auto shape = rig.shape();
   if (shape) shape->surround(rig.surroundings);
-  std::optional<std::vector<ToolStep>> second_best;
+  std::vector<std::vector<ToolStep>> reached;
   for (int quarter = 0; quarter < 4; ++quarter) {
     std::vector<ToolStep> steps = PickPlan(grasp, yaw + quarter * std::numbers::pi / 2).steps(thing, from, tray, to);
     if (!reaches(rig, kinematics, steps)) continue;
     if (goes_well(rig, shape.get(), steps)) return steps;
-    if (!second_best) second_best = std::move(steps);
+    reached.push_back(std::move(steps));
   }
-  if (second_best) return std::move(*second_best);  // the gate stops where it has to
+  for (const std::vector<ToolStep>& steps : reached)
+    if (auto other = by_other_joints(rig, shape.get(), kinematics, steps)) return std::move(*other);
+  if (!reached.empty()) return reached.front();  // the gate stops where it has to
   throw out_of_reach(rig, kinematics.chain(), from, to, "'" + thing + "' and '" + tray + "'");
 }
 

@@ -28,7 +28,8 @@ struct ToolStep {
   /// step begins, the tool goes elsewhere as far. "": wherever anything is seen.
   std::string about = {};
   Pose T_world_about = Pose::Identity();
-  /// With `there`: the arm's joints to go to, one per joint of its chain. Nothing: those of the pose that are nearest.
+  /// With `there`: the arm's joints to go to, one per joint of its chain; with `about`, those near them. Nothing: those
+  /// of the pose that are nearest.
   std::optional<JointVector> joints = {};
 };
 
@@ -88,9 +89,9 @@ Pose place_at_rest(const LiveScene& scene, const std::string& node);
 
 /// With any two jaws that slide (input/sliding_jaws.hpp): from above at a thing of the mock lab's own size of bricks
 /// (sim/lab_task.hpp), and into a tray. Planned for where the scene's model has them at rest; gone to where they are
-/// seen. Of the four ways to grasp a brick, the first on which the arm gets everywhere and stays as clear as the rig
-/// asks for, if there is one. Throws InputError: the scene lacks one of the two, the jaws do not take a brick, or the
-/// arm does not reach them.
+/// seen. Of the four ways to grasp a brick, and then of several ways of the joints to it, the first on which the arm
+/// gets everywhere and stays as clear as the rig asks for, if there is one. Throws InputError: the scene lacks one of
+/// the two, the jaws do not take a brick, or the arm does not reach them.
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray);
 

@@ -4,15 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <random>
 #include <span>
+#include <string>
 #include <tuple>
 
 #include "common/error.hpp"
 #include "input/hand_of_rig.hpp"
+#include "seat/ways_to_pose.hpp"
 
 namespace foresight {
 namespace {
@@ -27,37 +30,43 @@ constexpr double kUnderLow = 0.75, kUnderHigh = 0.35;  // the same below an arm 
 constexpr double kHangs = 0.3;                         // of its reach: so far below its first axis is its tool midway
 constexpr double kTourRoom = 0.01 / 0.89;              // beyond the rig's clearance, of the reach, too
 constexpr double kNearer = 1e-6;                       // m
-constexpr double kEndOfRange = 0.05;                   // of a joint's range, that a tour of joints leaves at both ends
 constexpr double kLook = 0.02;                         // s between two looks at where the arm is under way
 constexpr int kProbes = 300;                           // positions that tell what never comes nearer than at home
+
+/// How a tour is looked for.
+struct Care {
+  double room;  // share of kTourRoom
+  int ways;     // of the joints to a pose that are tried, beside the first that is found
+};
+// What is near itself wherever it stands, as a small arm with its jaws, has less room.
+constexpr Care kCares[] = {{1, 0}, {1, 8}, {0.5, 8}, {0.25, 8}};
 
 class TourPlan {
  public:
   TourPlan(const Rig& rig, unsigned seed)
-      : rig_(rig),
-        hand_(arm_options(rig)),
-        kinematics_(*hand_.arm),
-        shape_(rig.shape()),
-        random_(seed),
-        at_(home_of(rig)) {
-    if (shape_) leave_room(kTourRoom * chain().reach());
+      : rig_(rig), hand_(arm_options(rig)), kinematics_(*hand_.arm), shape_(rig.shape()), seed_(seed) {
     look_about();
   }
+  /// With ever more ways of the joints and ever less room, the tool down at first, until one of the two finds enough.
+  bool find(const std::function<bool()>& tool_down, const std::function<bool()>& by_joints);
   std::vector<ToolStep> with_tool_down(int count);
   std::vector<ToolStep> of_joints(int count);
-  /// All joints in the middle of where a tour goes, or on one.
-  std::optional<JointValues> start();
+  /// All joints in the middle of where a tour goes.
+  bool start();
+  const JointValues& at() const { return at_; }
   std::span<const std::size_t> arm_joints() const { return hand_.arm_joints; }
   InputError nothing() const;
 
  private:
   const ArmChain& chain() const { return kinematics_.chain(); }
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  void begin(const Care& care);
   void leave_room(double room);
   void look_about();
   Pose tool_down(double yaw, double distance, double height, double turn) const;
   Pose tool_down_anywhere();
-  JointVector any_joints();
+  std::optional<ToolStep> by_other_joints(const Pose& pose);
+  ToolStep to_joints(const JointVector& q) const;
   void look_at(const JointVector& q);
   bool clear(const JointVector& q);
   bool clear_all_the_way(const ToolStep& step);
@@ -67,14 +76,39 @@ class TourPlan {
   InverseKinematics kinematics_;
   std::unique_ptr<RobotShape> shape_;
   std::vector<double> margins_, least_margins_;  // of its couples
-  std::mt19937 random_;
-  double ahead_ = 0;                        // rad about the vertical, where the arm looks
-  double low_ = 0, high_ = 0;               // m above the world's origin
-  JointValues at_;                          // of all joints, where the tour has come to
-  int reached_ = 0;                         // of the poses with the tool down
-  const char* in_the_way_ = nullptr;        // of the joints that were looked at last
-  const char* in_the_way_there_ = nullptr;  // of the first tour's poses
+  const unsigned seed_;
+  std::mt19937 random_, random_ways_;
+  int ways_ = 0;
+  double ahead_ = 0;              // rad about the vertical, where the arm looks
+  double low_ = 0, high_ = 0;     // m above the world's origin
+  JointValues at_;                // of all joints, where the tour has come to
+  int reached_ = 0;               // of the poses with the tool down
+  std::string in_the_way_;        // of the joints that were looked at last
+  std::string in_the_way_there_;  // of the poses with the tool down
 };
+
+bool TourPlan::find(const std::function<bool()>& tool_down, const std::function<bool()>& by_joints) {
+  for (const Care& care : kCares) {
+    begin(care);
+    if (tool_down()) return true;
+    if (reached_ == 0) break;
+  }
+  for (const Care& care : kCares) {
+    if (care.ways == 0) continue;  // the same room as the next one
+    begin(care);
+    if (by_joints()) return true;
+  }
+  return false;
+}
+
+/// From home, and by the same poses each time.
+void TourPlan::begin(const Care& care) {
+  random_.seed(seed_);
+  random_ways_.seed(seed_);
+  ways_ = care.ways;
+  at_ = home_of(rig_);
+  if (shape_) leave_room(care.room * kTourRoom * chain().reach());
+}
 
 void TourPlan::look_about() {
   const Pose& T_world_base = rig_.T_world_robot;
@@ -121,12 +155,12 @@ void TourPlan::leave_room(double room) {
   look_at(joints_of({at_.data(), rig_.joints.size()}, hand_.arm_joints));
   const std::vector<double> at_home = margins_;
   std::vector<double> nearest = at_home;
-  const std::mt19937 unused = random_;
+  std::mt19937 random(seed_);
   for (int i = 0; i < kProbes; ++i) {
-    look_at(any_joints());
+    look_at(any_joints(chain(), random));
     std::ranges::transform(nearest, margins_, nearest.begin(), [](double a, double b) { return std::min(a, b); });
   }
-  random_ = unused;
+  least_margins_.clear();
   for (std::size_t i = 0; i < nearest.size(); ++i)
     least_margins_.push_back(nearest[i] < at_home[i] - kNearer ? 0 : -room);
 }
@@ -168,6 +202,7 @@ bool TourPlan::clear_all_the_way(const ToolStep& step) {
 
 std::vector<ToolStep> TourPlan::with_tool_down(int count) {
   std::vector<ToolStep> out;
+  reached_ = 0;
   for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
     const Pose pose = tool_down_anywhere();
     const IkAnswer answer = kinematics_.solve(rig_.T_world_robot.inverse() * pose);
@@ -179,57 +214,63 @@ std::vector<ToolStep> TourPlan::with_tool_down(int count) {
     const ToolStep step{what, held, {}, what == ToolStep::What::line ? uniform(2.0, 4.0) : 1.5};
     if (clear(answer.q) && clear_all_the_way(step))
       out.push_back(step);
+    else if (const auto other = by_other_joints(pose))
+      out.push_back(*other);
     else
       in_the_way_there_ = in_the_way_;
   }
   return out;
 }
 
-JointVector TourPlan::any_joints() {
-  JointVector q = chain().middle();
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const double low = std::max(chain().lower()[i], q[i] - std::numbers::pi);
-    const double high = std::min(chain().upper()[i], q[i] + std::numbers::pi);
-    const double end = kEndOfRange * (high - low);
-    q[i] = uniform(low + end, high - end);
+/// All joints at once, first those that are nearest to where the tour has come to.
+std::optional<ToolStep> TourPlan::by_other_joints(const Pose& pose) {
+  const Pose T_base_tool = rig_.T_world_robot.inverse() * pose;
+  for (const JointVector& q :
+       ways_to_pose(kinematics_, T_base_tool, joints_of(at_, hand_.arm_joints), ways_, random_ways_)) {
+    const ToolStep step = to_joints(q);
+    if (clear(q) && clear_all_the_way(step)) return step;
   }
-  return q;
+  return std::nullopt;
+}
+
+ToolStep TourPlan::to_joints(const JointVector& q) const {
+  ToolStep out{ToolStep::What::there, rig_.T_world_robot * chain().tip_pose(q), {}, 1.5};
+  out.joints = q;
+  return out;
 }
 
 std::vector<ToolStep> TourPlan::of_joints(int count) {
   std::vector<ToolStep> out;
   for (int tries = 0; tries < kTries && static_cast<int>(out.size()) < count; ++tries) {
-    ToolStep step{ToolStep::What::there, Pose::Identity(), {}, 1.5};
-    step.joints = any_joints();
-    step.T_world_tool = rig_.T_world_robot * chain().tip_pose(*step.joints);
+    const ToolStep step = to_joints(any_joints(chain(), random_));
     if (clear(*step.joints) && clear_all_the_way(step)) out.push_back(step);
   }
   return out;
 }
 
-std::optional<JointValues> TourPlan::start() {
+bool TourPlan::start() {
   constexpr int kFew = 50;  // who waits for a window does not wait for a place that is hard to find
+  reached_ = 0;
   for (int tries = 0; tries < kFew; ++tries) {
     const Pose pose =
         tries == 0 ? tool_down(0, 0.5 * (kTourNear + kTourFar), 0.5 * (low_ + high_), ahead_) : tool_down_anywhere();
     const IkAnswer answer = kinematics_.solve(rig_.T_world_robot.inverse() * pose);
-    if (answer.status != IkStatus::solved || !clear(answer.q)) continue;
-    ToolStep step{ToolStep::What::there, rig_.T_world_robot * answer.T_base_tip, {}, 1.5};
-    step.joints = answer.q;
-    if (clear_all_the_way(step)) return at_;
+    if (answer.status != IkStatus::solved) continue;
+    ++reached_;
+    if ((clear(answer.q) && clear_all_the_way(to_joints(answer.q))) || by_other_joints(pose)) return true;
   }
-  return of_joints(1).empty() ? std::nullopt : std::optional(at_);
+  return false;
 }
 
 InputError TourPlan::nothing() const {
   const std::string where =
       fmt::format("of the tour's poses, {:.2f} to {:.2f} m above the world's origin, tool down", low_, high_);
   const char* const by_hand = ", or operate it by hand, without --scripted";
-  if (in_the_way_there_ != nullptr)
+  if (!in_the_way_there_.empty())
     return {rig_.name,
             fmt::format("the arm reaches {} of {} {}, but there {}", reached_, kTries, where, in_the_way_there_),
             std::string("correct robot.pose and surroundings of the rig") + by_hand};
-  const std::string elsewhere = in_the_way_ != nullptr ? std::string("; elsewhere ") + in_the_way_ : "";
+  const std::string elsewhere = in_the_way_.empty() ? "" : "; elsewhere " + in_the_way_;
   return {rig_.name, "the arm reaches none " + where + elsewhere,
           std::string("correct robot.pose, min and max of the rig") + by_hand};
 }
@@ -238,11 +279,14 @@ InputError TourPlan::nothing() const {
 
 std::vector<ToolStep> tour(const Rig& rig, unsigned seed, int count) {
   TourPlan plan(rig, seed);
-  std::vector<ToolStep> down = plan.with_tool_down(count);
-  if (down.size() >= std::min(kFewest, static_cast<std::size_t>(count))) return down;
-  std::vector<ToolStep> of_joints = plan.of_joints(count);
-  if (of_joints.empty() && down.empty()) throw plan.nothing();
-  return of_joints.size() > down.size() ? of_joints : down;
+  std::vector<ToolStep> best;
+  const auto is_enough = [&](std::vector<ToolStep> steps) {
+    if (steps.size() > best.size()) best = std::move(steps);
+    return best.size() >= std::min(kFewest, static_cast<std::size_t>(count));
+  };
+  plan.find([&] { return is_enough(plan.with_tool_down(count)); }, [&] { return is_enough(plan.of_joints(count)); });
+  if (best.empty()) throw plan.nothing();
+  return best;
 }
 
 void give_start(Rig& rig) {
@@ -250,9 +294,8 @@ void give_start(Rig& rig) {
   const bool has_arm = std::ranges::find(rig.joints, JointGroup::arm, &RigJoint::group) != rig.joints.end();
   if (names_one || !rig.robot || !has_arm) return;
   TourPlan plan(rig, 1);
-  const auto start = plan.start();
-  if (!start) return;
-  for (const std::size_t joint : plan.arm_joints()) rig.joints[joint].start = (*start)[joint];
+  if (!plan.find([&] { return plan.start(); }, [&] { return !plan.of_joints(1).empty(); })) return;
+  for (const std::size_t joint : plan.arm_joints()) rig.joints[joint].start = plan.at()[joint];
 }
 
 }  // namespace foresight

@@ -68,29 +68,53 @@ TEST(ToolScript, GoesOnFromWhereALossLeftIt) {
   for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(next[i], elsewhere[i], 0.03) << i;
 }
 
+/// All the way, as the gate sees it. At home the arm may be too close to something.
+void expect_clear(const Rig& rig, const std::vector<ToolStep>& steps) {
+  const auto shape = rig.shape();
+  shape->surround(rig.surroundings);
+  ToolScript script(rig, steps, {});
+  script.begin_at(home_of(rig));
+  bool was_clear = false;
+  while (const auto next = script.step(0.02, {})) {
+    const char* const in_the_way = shape->obstructed({next->data(), rig.joints.size()});
+    ASSERT_FALSE(was_clear && in_the_way != nullptr) << in_the_way;
+    was_clear = in_the_way == nullptr;
+  }
+  EXPECT_TRUE(was_clear);
+}
+
+void expect_picked_clear(const Rig& rig, unsigned layout, const char* brick) {
+  SCOPED_TRACE(fmt::format("layout {}, {}", layout, brick));
+  const LiveScene scene = live_scene_of(rig, true, std::nullopt, true, layout);
+  expect_clear(rig, pick_and_place(rig, scene, brick, "tray"));
+}
+
 // A hand turned across the forearm meets it where the wrist is bent most; a brick can be taken from four sides.
 TEST(ToolScript, PicksSoThatTheArmStaysClear) {
   const Rig rig = minerva();
-  const auto shape = rig.shape();
-  shape->surround(rig.surroundings);
-  for (unsigned layout = 0; layout <= 20; ++layout) {
-    const LiveScene scene = live_scene_of(rig, true, std::nullopt, true, layout);
-    for (const char* const brick : {"brick_red", "brick_blue"}) {
-      ToolScript script(rig, pick_and_place(rig, scene, brick, "tray"), {});
-      script.begin_at({});
-      const char* blocked = nullptr;
-      while (const auto at = script.step(0.02, {}))
-        if (const char* const what = shape->obstructed({at->data(), rig.joints.size()})) blocked = what;
-      EXPECT_EQ(blocked, nullptr) << "layout " << layout << ", " << brick << ": " << blocked;
-    }
+  for (unsigned layout = 0; layout <= 20; ++layout)
+    for (const char* const brick : {"brick_red", "brick_blue"}) expect_picked_clear(rig, layout, brick);
+}
+
+// With the joints that are nearest to home, the hand meets the forearm from each side.
+TEST(ToolScript, PicksByWhateverJointsAreClear) {
+  Rig rig = minerva();
+  rig.T_world_robot =
+      Eigen::Translation3d(0, -0.35, 1.7) * Eigen::AngleAxisd(M_PI, Eigen::Vector3d(1, 1, 0).normalized());
+  rig.surroundings.workspace.extend(Eigen::Vector3d(0, 0, 2.5));
+  for (RigJoint& joint : rig.joints) {
+    if (joint.drive.name == "shoulder_pitch") joint.drive.offset = 0.8;
+    if (joint.drive.name == "elbow") joint.drive.offset = 1.4;
   }
+  expect_picked_clear(rig, 1, "brick_blue");
+  expect_picked_clear(rig, 2, "brick_red");
 }
 
 /// The rig that `foresight rig new` makes of an arm of its own, before the lab's table.
-Rig six_axes(const BoxJaws& jaws) {
+Rig six_axes(const BoxJaws& jaws, double size = 0.9) {
   const TempFolder folder;
   RigDraftOptions options;
-  options.urdf = folder.write("arm.urdf", six_axis_urdf(0.9, jaws));
+  options.urdf = folder.write("arm.urdf", six_axis_urdf(size, jaws));
   Rig rig = read_rig(folder.write("rig.yaml", rig_text(draft_rig(options), options, folder / "rig.yaml")));
   rig.T_world_robot = Eigen::Translation3d(0, -0.5, 0) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
   return rig;
@@ -233,6 +257,20 @@ TEST(ToolScript, WhatCannotComeNearerDoesNotHinderATour) {
   EXPECT_TRUE(was_clear);
 }
 
+bool points_down(const ToolStep& step) {
+  return (step.T_world_tool.linear() * -Eigen::Vector3d::UnitZ()).z() > 0.99;
+}
+
+// Wherever it stands, its jaws are hardly farther from its wrist than the clearance.
+TEST(ToolScript, AnArmThatIsNearItselfIsToured) {
+  Rig rig = six_axes({}, 0.2);
+  rig.T_world_robot = Pose::Identity();
+  const auto steps = tour(rig, 1, 8);
+  ASSERT_EQ(steps.size(), 8u);
+  for (const ToolStep& step : steps) EXPECT_TRUE(points_down(step));
+  expect_clear(rig, steps);
+}
+
 // The benches' figures are of these.
 TEST(ToolScript, ATourOfTheLabsArmIsOverItsTable) {
   const Rig rig = minerva();
@@ -284,16 +322,6 @@ TEST(ToolScript, ATourIsAsLargeAsTheArm) {
   for (const ToolStep& step : below) EXPECT_LT(step.T_world_tool.translation().z(), 3 - 1.05 + 1e-9);
 }
 
-/// Every pose of a tour, and the ways between them, as the gate sees them.
-void expect_clear(const Rig& rig, const std::vector<ToolStep>& steps) {
-  const auto shape = rig.shape();
-  shape->surround(rig.surroundings);
-  ToolScript script(rig, steps, {});
-  script.begin_at({});
-  while (const auto next = script.step(0.05, {}))
-    ASSERT_EQ(shape->obstructed({next->data(), rig.joints.size()}), nullptr);
-}
-
 // Turned over in its URDF rather than by robot.pose.
 TEST(ToolScript, AnArmThatHangsByItsUrdfIsToured) {
   Rig rig = scaled(1, true);
@@ -308,7 +336,7 @@ TEST(ToolScript, AnArmThatHangsByItsUrdfIsToured) {
   ASSERT_EQ(steps.size(), 20u);
   for (const ToolStep& step : steps) {
     EXPECT_LT(step.T_world_tool.translation().z(), 3 - 0.95 - 0.3 * 0.89);
-    EXPECT_GT((step.T_world_tool.linear() * -Eigen::Vector3d::UnitZ()).z(), 0.99) << "the tool points down";
+    EXPECT_TRUE(points_down(step));
   }
 }
 
