@@ -68,8 +68,11 @@ bool PairSender::wants_pair(RobotTime now) const {
 PairWish PairSender::wish(RobotTime now) const {
   const double rate = bytes_per_s(now);
   const bool lossy = transmissions_.lost_lately(now);
-  const double shortest = is_far() ? options_.shortest_far_s : options_.shortest_s;
-  const double time = std::clamp(static_cast<double>(options_.fine_bytes) / rate, shortest, options_.longest_s);
+  const bool far = is_far();
+  const double shortest = far ? options_.shortest_far_s : options_.shortest_s;
+  const double longest = far ? options_.longest_far_s : options_.longest_s;
+  const auto fine = static_cast<double>(far ? options_.fine_far_bytes : options_.fine_bytes);
+  const double time = std::clamp(fine / rate, shortest, longest);
   const std::size_t most = lossy ? std::min(options_.most_lossy_bytes, options_.most_bytes) : options_.most_bytes;
   const auto bytes = static_cast<std::size_t>(std::min(rate * time, static_cast<double>(most)));
   return {.number = last_number_ + 1, .bytes = std::max(bytes, options_.least_bytes), .only_what_arrived = lossy};

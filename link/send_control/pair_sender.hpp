@@ -8,7 +8,9 @@
 //                     acknowledgement <= bytes acknowledged within the last 200 ms, or half again the road's round trip
 //                     if that is longer
 //   bytes             what the line may be trusted to carry (RateMeter) in a part of a tenth of a second: little is on
-//                     its way when the line gets slower, and what is lost of quality comes back with the next pairs
+//                     its way when the line gets slower, and what is lost of quality comes back with the next pairs.
+//                     Where the road is long, every picture is old, and who looks at predictions has more of fewer and
+//                     sharper ones (decision 49): then in a tenth of a second and a bit
 //
 // Pure logic; one thread.
 #pragma once
@@ -28,7 +30,9 @@ class PairSender {
     double shortest_s = 0.025;              ///< of line time for a pair
     double shortest_far_s = 0.010;          ///< on a long road, where what is on the way waits for long when it must
     double longest_s = 0.060;               ///< where the line is so thin that pictures would suffer
+    double longest_far_s = 0.120;           ///< likewise on a long road
     std::size_t fine_bytes = 9'000;         ///< what a pair needs to look well; takes up to longest_s
+    std::size_t fine_far_bytes = 20'000;    ///< what makes it a good texture; takes up to longest_far_s
     std::size_t least_bytes = 1'000;        ///< however thin the line; one packet, though pairs take a sixth more
     std::size_t most_bytes = 40'000;        ///< more shows little but the sensor's noise
     std::size_t most_lossy_bytes = 24'000;  ///< while packets get lost: the more pieces, the likelier one is missing

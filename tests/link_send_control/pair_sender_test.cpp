@@ -14,6 +14,8 @@ class NoFates final : public PairFates {
 /// A sender of ten pairs a second, which other traffic leaves little of the line; its receiver tells of each packet.
 class Sender {
  public:
+  explicit Sender(double first_bytes_per_s = 2'000) : sender_({.first_bytes_per_s = first_bytes_per_s}) {}
+
   /// So many pairs, each there and back in `trip`.
   void send(int pairs, Duration trip) {
     for (int i = 0; i < pairs; ++i) {
@@ -34,6 +36,8 @@ class Sender {
     }
   }
   double bytes_per_s() const { return sender_.bytes_per_s(now_); }
+  /// Of the line's time, for the next pair.
+  double wished_s() const { return static_cast<double>(sender_.wish(now_).bytes) / bytes_per_s(); }
   double given_per_s() const {
     return static_cast<double>(sender_.transmissions().acknowledged_within(Transmissions::kRecent, now_)) /
            to_seconds(Transmissions::kRecent);
@@ -55,7 +59,7 @@ class Sender {
       sender_.take(to_packet(out), way.told, fates_);
     }
   }
-  PairSender sender_{{.first_bytes_per_s = 2'000}};
+  PairSender sender_;
   NoFates fates_;
   RobotTime now_{1'000'000'000};
   std::uint32_t number_ = 0;
@@ -72,6 +76,18 @@ TEST(PairSender, GivesMoreOnceNothingWaitsWhateverTheMeanRemembers) {
   EXPECT_GT(sender.given_per_s(), 3'000);
   ASSERT_GT(sender.mean_trip(), milliseconds(600)) << "it would have been found out anyhow: the test shows nothing";
   EXPECT_GE(sender.bytes_per_s(), 2 * sender.given_per_s());
+}
+
+// What is far away is old in any case: sharper pairs make better textures than more of them.
+TEST(PairSender, FarAwayPairsAreFewerAndLarger) {
+  Sender near(80'000), far(80'000);
+  near.send(10, milliseconds(40));
+  near.wait(5);
+  far.send(10, milliseconds(500));
+  far.wait(10);
+  ASSERT_LT(near.bytes_per_s(), 120'000) << "a pair would not take the longest time";
+  EXPECT_NEAR(near.wished_s(), 0.06, 1e-3);
+  EXPECT_NEAR(far.wished_s(), 0.12, 1e-3);
 }
 
 }  // namespace
