@@ -37,7 +37,7 @@ struct Arguments {
   double delay_ms = 0;
   std::string line, coding;
   unsigned seed = 1;
-  double seconds = 30;
+  std::optional<double> seconds;
   double pictures_hz = 5;
   bool still_head = false, zero_delay = true, sounds = true;
   TextureOptions textures = kSeatTextures;
@@ -57,6 +57,12 @@ LineSpec line_of(const Arguments& arguments) {
   out.down.delay += delay;
   out.seed = arguments.seed;
   return out;
+}
+
+/// A tour goes on for ever; a pick ends when it is done, which bad lines make late.
+double most_seconds(const Arguments& arguments) {
+  constexpr double kTour = 30, kPick = 120;
+  return arguments.seconds.value_or(arguments.script == "pick" ? kPick : kTour);
 }
 
 /// Over a line that is written down, pairs are coded as they would be on it.
@@ -162,7 +168,7 @@ SeatTrialFigures run_stepped(const Rig& rig, const Arguments& arguments, const T
   options.thing = task.thing;
   options.tray = task.tray;
   options.seed = arguments.seed;
-  options.most_s = arguments.seconds;
+  options.most_s = most_seconds(arguments);
   options.pictures_hz = arguments.pictures_hz;
   options.zero_delay = arguments.zero_delay;
   options.textures = arguments.textures;
@@ -182,7 +188,7 @@ SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Ta
   options.things = task.picks;
   options.thing = task.thing;
   options.tray = task.tray;
-  options.most_s = arguments.seconds;
+  options.most_s = most_seconds(arguments);
   options.pictures_hz = arguments.pictures_hz;
   options.fall_back.lowest_db = arguments.fidelity_db;
   options.textures = in_real_time(arguments.textures);
@@ -251,7 +257,7 @@ void refuse_options_of_the_other_way(const Arguments& given) {
                                                      {"--still-head", given.still_head},
                                                      {"--served", given.served},
                                                      {"--seed", given.seed != usual.seed},
-                                                     {"--seconds", given.seconds != usual.seconds},
+                                                     {"--seconds", given.seconds.has_value()},
                                                      {"--pictures-hz", given.pictures_hz != usual.pictures_hz},
                                                      {"--no-zero-delay", !given.zero_delay}};
   const std::pair<const char*, bool> of_windows[] = {{"--device", !given.device.empty()},
@@ -372,7 +378,8 @@ void add_operator_command(Command& app, std::function<int()>& action) {
                    "With --scripted: of pairs on the line, jpeg or h264 (default: h264 with --line, else the rig's)")
       ->check(one_of({"jpeg", "h264"}));
   command->add_option("--seed", arguments->seed, "With --scripted: another seed, another motion");
-  command->add_option("--seconds", arguments->seconds, "With --scripted: of motion, at most (default 30)")
+  command
+      ->add_option("--seconds", arguments->seconds, "With --scripted: of motion, at most (default 30, of a pick 120)")
       ->check(from_to(1.0, 1e4));
   command
       ->add_option("--pictures-hz", arguments->pictures_hz, "With --scripted: measured pictures a second (default 5)")
