@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <tuple>
 
 #include "common/error.hpp"
 #include "common/statistics.hpp"
@@ -13,6 +14,7 @@
 #include "link/dds/endpoints.hpp"
 #include "link/dds/pretended_line.hpp"
 #include "link/dds/topic_watch.hpp"
+#include "link/dds/topics.hpp"
 #include "link/messages/message_types.hpp"
 #include "rig/rig.hpp"
 
@@ -71,11 +73,40 @@ struct Measured {
   std::vector<double> ages_ms, gaps_ms;
 };
 
+/// Why joints, and the transforms that follow them, do not come, as the robot's state says it; "" where it does not.
+std::string why_silent(link::Participant& program, const link::Topic& topic) {
+  constexpr Duration kStateComes = 1s;  // the last one, as it is kept
+  if (topic.name != link::topics::joint_states().name && topic.name != link::topics::transforms().name) return "";
+  link::Reader states(program, link::topics::robot_state());
+  states.wait(kStateComes);
+  std::string out;
+  states.take<link::RobotState>({}, [&](const link::RobotState& state, const link::Sample&) {
+    if (!state.all_homed)
+      out = ": where joints are that are not homed is not known; home those of " + in_quotes(state.rig) +
+            " (h in its console, H at the operator's seat)";
+  });
+  return out;
+}
+
 /// The exit code.
-int tell_nothing_came(const link::Reader& reader, const link::Topic& topic) {
+int tell_nothing_came(link::Participant& program, const link::Reader& reader, const link::Topic& topic) {
   if (stop_requested()) return kStopped;
-  warn("nothing came on " + topic.name + (reader.writers() ? ", though somebody writes it" : ""));
+  warn("nothing came on " + topic.name +
+       (reader.writers() ? ", though somebody writes it" + why_silent(program, topic) : ""));
   return 1;
+}
+
+/// Each topic once, however many writers and readers of it a program has.
+std::string topics_text(std::vector<link::Peer::Endpoint> endpoints) {
+  const auto key = [](const link::Peer::Endpoint& e) { return std::tie(e.topic, e.type, e.writes); };
+  std::ranges::sort(endpoints, [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  const auto others = std::ranges::unique(endpoints, [&](const auto& a, const auto& b) { return key(a) == key(b); });
+  endpoints.erase(others.begin(), others.end());
+  std::string out;
+  for (const link::Peer::Endpoint& endpoint : endpoints)
+    out += fmt::format("  {} {} ({})\n", endpoint.writes ? "writes" : "reads ", endpoint.topic,
+                       link::ros_name(endpoint.type));
+  return out;
 }
 
 void measure(link::Reader& reader, const link::MessageType* type, Duration length, Measured& out) {
@@ -128,9 +159,7 @@ std::string peers_text(const std::vector<link::Peer>& peers) {
     if (peer.own) continue;
     out += fmt::format("{}{}{}\n", peer.name, peer.host.empty() ? "" : ", on " + peer.host,
                        peer.process.empty() ? "" : ", " + peer.process);
-    for (const link::Peer::Endpoint& endpoint : peer.endpoints)
-      out += fmt::format("  {} {} ({})\n", endpoint.writes ? "writes" : "reads ", endpoint.topic,
-                         link::ros_name(endpoint.type));
+    out += topics_text(peer.endpoints);
   }
   return out;
 }
@@ -252,7 +281,7 @@ int link_listen(const LinkListenOptions& options) {
     std::fflush(stdout);
     warn(watch.news(reader.writers(), came, clock.now()));
   }
-  if (shown == 0) return tell_nothing_came(reader, *topic);
+  if (shown == 0) return tell_nothing_came(program, reader, *topic);
   return strange > 0 ? 1 : 0;
 }
 
@@ -274,7 +303,7 @@ int link_rate(const LinkRateOptions& options) {
   Measured m;
   measure(reader, link::find_message_type(topic->type), seconds(options.seconds), m);
   warn(link::receive_buffer_trouble());
-  if (m.samples == 0) return tell_nothing_came(reader, *topic);
+  if (m.samples == 0) return tell_nothing_came(program, reader, *topic);
   const double length = options.seconds;
   std::printf("%s (%s)\n", topic->name.c_str(), link::ros_name(topic->type).c_str());
   std::printf("rate       %.1f messages/s, %.3f Mbit/s\n", static_cast<double>(m.samples) / length,

@@ -35,7 +35,9 @@ TEST_F(Link, ARunningRobotIsSeenAndReadAndNamesAreHelpedWith) {
   EXPECT_THAT(kept.out, HasSubstr("child_frame_id: 'stand'"));
   const Outcome silent = run_program({"link", "listen", "joint_states", "--seconds", "0.2"});
   EXPECT_EQ(silent.exit_code, 1) << "joints that are not homed are nowhere";
-  EXPECT_EQ(silent.last_line(), "link: nothing came on rt/joint_states, though somebody writes it");
+  EXPECT_EQ(silent.last_line(),
+            "link: nothing came on rt/joint_states, though somebody writes it: where joints are that are not homed is "
+            "not known; home those of 'minerva' (h in its console, H at the operator's seat)");
   const Outcome misspelt = run_program({"link", "listen", "joint_stats"});
   EXPECT_EQ(misspelt.exit_code, 2);
   EXPECT_THAT(misspelt.err, HasSubstr("did you mean 'rt/joint_states'?"));
