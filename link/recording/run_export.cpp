@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/counted.hpp"
 #include "common/error.hpp"
 #include "common/read_file.hpp"
 #include "link/dds/topics.hpp"
@@ -51,12 +52,13 @@ class Exporter {
       throw InputError(options_.recording.string(),
                        "has no pair of images that can be used" + (refusal_.empty() ? "" : ": " + refusal_),
                        "record with `foresight record --line` while `foresight robot --serve` runs");
+    if (posed_ == 0 && recorder.fault().empty())
+      throw InputError(
+          options_.recording.string(),
+          "has " + counted(good_, "pair") + " of images, and no pose of any, which makes a run of them",
+          "home the robot's head before you record; where it is homed, calibrate it (docs/calibration.md)");
     const RecorderCounts counts = recorder.finish("recording: " + options_.recording.filename().string() + "\n");
-    RunExport out{counts.written, counts.without_pose, remarks(outcome), recorder.fault()};
-    if (out.without_pose == out.pairs)
-      out.remarks +=
-          "no pair has a pose, which `foresight replay` needs: the head was not homed, or is not calibrated\n";
-    return out;
+    return {counts.written, counts.without_pose, remarks(outcome), recorder.fault()};
   }
 
  private:
@@ -121,6 +123,7 @@ class Exporter {
       posed.left.T_world_camera = *line->image[0].T_world_camera;
       posed.right.emplace().T_world_camera = *line->image[1].T_world_camera;
       frame->posed = std::move(posed);
+      ++posed_;
     }
     if (!line->lenses_revision.empty() && line->lenses_revision != lenses_) ++other_lenses_;
     queue_->put(std::move(frame));
@@ -137,7 +140,7 @@ class Exporter {
   std::optional<PairIntake> intake_;
   std::array<RobotTime, 2> last_{RobotTime{INT64_MIN}, RobotTime{INT64_MIN}};
   const std::string lenses_ = lenses_revision(*scene_.lenses());
-  std::uint64_t good_ = 0, other_lenses_ = 0, refused_ = 0, pieces_ = 0, decoded_pieces_ = 0;
+  std::uint64_t good_ = 0, posed_ = 0, other_lenses_ = 0, refused_ = 0, pieces_ = 0, decoded_pieces_ = 0;
   std::string refusal_;  // the last
 };
 

@@ -24,7 +24,7 @@ struct RunExport {
 
 /// Decodes every recorded pair, of either coding, and writes it with its poses, and where everything that moves was by
 /// the joints of that instant. Throws InputError (no recording; no rig in it; what the rig lacks; no pair that can be
-/// used), RuntimeFailure (the disk).
+/// used, or none with a pose), RuntimeFailure (the disk); then nothing is left.
 RunExport export_run(const RunExportOptions& options);
 
 }  // namespace foresight::link

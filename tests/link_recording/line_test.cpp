@@ -25,6 +25,7 @@ namespace foresight::link::line_test {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -351,6 +352,26 @@ TEST_F(RecordedLine, AnExportSaysWhatItLacks) {
     bare.finish({});
   }
   EXPECT_THAT(words({folder_ / "bare.mcap", folder_ / "run", {}, {}, false}), HasSubstr("has no rig in it"));
+}
+
+// As of a head that was not homed all the while.
+TEST_F(RecordedLine, PairsWithoutAnyPoseAreNoRun) {
+  for (int i = 0; i < 20; ++i) {
+    tick(served_, seat_.begin(), false);
+    const auto pair = next_pair();
+    pair->posed.reset();
+    frames_->put(pair);
+    pairs_.step(0ns);
+  }
+  finish();
+  try {
+    export_run({path_, folder_ / "run", {}, {}, false});
+    ADD_FAILURE() << "was exported";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ContainsRegex("session.mcap: has [0-9]+ pairs of images, and no pose of any"));
+    EXPECT_THAT(error.what(), HasSubstr("home the robot's head before you record"));
+  }
+  for (const auto& left : fs::directory_iterator(folder_.path())) EXPECT_EQ(left.path(), path_);
 }
 
 TEST(RigFiles, NothingIsUnpackedElsewhere) {
