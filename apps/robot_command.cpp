@@ -50,6 +50,11 @@ struct Windows {
   std::unique_ptr<RigWindow> rig;
 };
 
+/// At once: what has to end first, such as a camera that is being opened, may take seconds.
+void tell_of_signal() {
+  if (stop_requested()) say_robot(std::string("stopped by ") + stopped_by() + ": drives and cameras end");
+}
+
 /// A window that fails ends, and the robot with it, under control.
 void run_guarded(RigWindow& window, const std::function<bool()>& stopped) noexcept {
   try {
@@ -70,6 +75,7 @@ int run_stepped(SteppedClock& clock, Robot& robot, Console& console, RobotDevice
     if (!stop.stop_requested() && (!console.tick(now) || stop_requested())) stop.request_stop();
   });
   robot.run(clock, stop.get_token());
+  tell_of_signal();
   const int code = console.finish();
   if (view) view->finish(!stop_requested(), console.trouble());
   return stop_requested() ? kStopped : code;
@@ -88,6 +94,7 @@ int run_real(MonotonicClock& clock, Robot& robot, Console& console, RobotDevices
       for (RobotTime due = clock.now(); !stop_requested() && !unseen && console.tick(due);
            due = std::max(due + kTick, clock.now()))
         clock.sleep_until(due + kTick);
+      tell_of_signal();
       ended = true;
     };
     // A window wants the main thread, and neither drawing nor a busy machine must make commands late.

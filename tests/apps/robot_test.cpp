@@ -106,6 +106,7 @@ TEST_P(Robot, StopsUnderControlWhenItIsTerminated) {
     EXPECT_EQ(out.exit_code, 130);
     EXPECT_THAT(out.out, HasSubstr(": disabled")) << "brakes closed";
     EXPECT_THAT(out.out, HasSubstr(" 0 overruns"));
+    EXPECT_THAT(out.err, HasSubstr("robot: stopped by SIGTERM: drives and cameras end"));
     EXPECT_THAT(out.err, HasSubstr("follow: interrupted")) << "and no stop of the gate's";
   }
 }

@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <thread>
 
 #include "scene/ground_truth.hpp"
 #include "tests/apps/program.hpp"
@@ -113,6 +114,18 @@ TEST_F(Synth, FollowsAGivenHeadPath) {
   ASSERT_EQ(synth({"--head-path", folder_ / "head.txt"}).exit_code, 0);
   const RunFolder run = RunFolder::open(folder_ / "out", {});
   EXPECT_NEAR(run.frames()[1].left.T_world_camera.translation().y(), 0.2 / 3, 1e-6);
+}
+
+// Its first seconds paint and light the lab.
+TEST_F(Synth, ASignalEndsItAtOnceWhileTheLabIsMade) {
+  Program program({"synth", folder_ / "out"});
+  while (program.running() && program.said().find("lighting the lab") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  program.interrupt();
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130);
+  EXPECT_EQ(outcome.last_line(), "foresight: stopped by Ctrl-C") << "it had not begun to write";
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(Synth, RunsOfOthersAreKept) {
