@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <sstream>
 
 #include "apps/command_line/picture_size.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/split.hpp"
 #include "common/text.hpp"
 #include "gl/context.hpp"
 #include "pictures/encode.hpp"
@@ -34,11 +34,9 @@ cv::Size picture_size(const std::string& text) {
 /// Between blanks, as the command line has them, or commas, as --joints has.
 std::vector<std::string> words_of(const std::vector<std::string>& given) {
   std::vector<std::string> out;
-  for (const std::string& list : given) {
-    std::istringstream stream(list);
-    for (std::string word; std::getline(stream, word, ',');)
+  for (const std::string& list : given)
+    for (const std::string& word : split(list, ','))
       if (!word.empty()) out.push_back(word);
-  }
   return out;
 }
 

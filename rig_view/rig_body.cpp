@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "calibration/registration/calibrated_head.hpp"
 #include "common/error.hpp"
+#include "common/split.hpp"
 #include "common/text.hpp"
 #include "sim/live_lab.hpp"
 
@@ -151,8 +151,8 @@ Eigen::AlignedBox3d RigBody::extent() {
 }
 
 void set_positions(const Rig& rig, const std::string& text, const std::string& where, std::vector<double>& positions) {
-  std::istringstream stream(text);
-  for (std::string entry; std::getline(stream, entry, ',');) {
+  for (const std::string& entry : split(text, ',')) {
+    if (entry.empty()) continue;
     const std::size_t equals = entry.find('=');
     const std::string name = entry.substr(0, equals);
     const std::size_t at = joint_named(rig, name);

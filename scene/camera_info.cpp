@@ -56,8 +56,7 @@ LensModel read_model(const YamlMap& yaml) {
   }
   const auto other = kOtherNames.find(name);
   throw InputError(yaml.where("distortion_model"), "unknown model " + in_quotes(name),
-                   "did you mean '" + (other != kOtherNames.end() ? other->second : nearest_word(name, known)) +
-                       "'? Known are plumb_bob, rational_polynomial and equidistant");
+                   did_you_mean(other != kOtherNames.end() ? other->second : name, known));
 }
 
 void read_matrix(const YamlMap& yaml, Lens::Parameters& p) {

@@ -10,6 +10,7 @@
 
 #include "common/cpu_time.hpp"
 #include "common/error.hpp"
+#include "common/text.hpp"
 #include "sim/live_view/stereo_renderer.hpp"
 #include "sim/motion.hpp"
 
@@ -240,8 +241,8 @@ std::vector<CameraControl> MockCamera::controls() {
 
 void MockCamera::set_control(const std::string& control, std::int64_t value) {
   if (control != kControl)
-    throw InputError("camera '" + name_ + "'", "has no control '" + control + "'",
-                     std::string("did you mean '") + kControl + "'?");
+    throw InputError("camera '" + name_ + "'", "has no control " + in_quotes(control),
+                     did_you_mean(control, std::vector<std::string>{kControl}));
   if (value < 1 || value > MockStereo::kLongestExposure)
     throw InputError("camera '" + name_ + "': " + kControl,
                      fmt::format("{} is outside 1 .. {}", static_cast<long long>(value),
