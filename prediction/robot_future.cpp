@@ -247,7 +247,10 @@ FutureReason RobotFuture::obstacle(RobotTime time, int& joint) const noexcept {
       joint = static_cast<int>(i);
       return FutureReason::stale;
     }
-  return time > motion_.known_until() + seconds(kBeyond) ? FutureReason::too_far : FutureReason::none;
+  if (time <= motion_.known_until() + seconds(kBeyond)) return FutureReason::none;
+  // After a gap reports come in a row, old ones first.
+  const bool are_old = now_ + seconds(delay().seconds) > reported_ + seconds(options_.motion.farthest);
+  return are_old ? FutureReason::stale : FutureReason::too_far;
 }
 
 // Why there is a prediction, but no trust in it.

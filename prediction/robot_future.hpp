@@ -29,7 +29,7 @@ namespace foresight {
 enum class FutureReason : std::uint8_t {
   none,
   no_state,   ///< nothing came of the robot yet
-  stale,      ///< nothing came for too long, of the robot or of one joint
+  stale,      ///< nothing came for too long, or what comes is too old, of the robot or of one joint
   not_ready,  ///< it does not follow set-points: without torque, enabling, looking for home
   strangers,  ///< it follows set-points that are not known here
   too_far,    ///< later than a set-point that is sent now acts

@@ -72,6 +72,23 @@ TEST(RobotFuture, ALineThatStandsStillIsNotLearntAsASlowOne) {
   EXPECT_NEAR(world.future().delay().seconds, usual, 0.004);
 }
 
+// As when a line that stood still gives out what it held, the oldest first.
+TEST(RobotFuture, ReportsThatComeTooOldAreNoNews) {
+  FutureWorld world;
+  world.run(10);
+  const RobotTime begin = world.now();
+  world.edit_report = [begin](RobotReport& report) {
+    const Duration late = std::max(Duration{0}, (report.time - begin) * 9 / 10);
+    report.time = report.time - late;
+    report.newest_came = report.newest_came - late;
+    for (ReportedJoint& joint : report.joint) joint.time = joint.time - late;
+  };
+  world.run(2);
+  EXPECT_EQ(world.future().at(world.now()).reason, FutureReason::none);
+  world.run(2);
+  EXPECT_EQ(world.future().at(world.now()).reason, FutureReason::stale);
+}
+
 TEST(RobotFuture, SaysWhyItCannotKnow) {
   FutureWorld world;
   const auto reason = [&](Duration ahead = Duration{0}) { return world.future().at(world.now() + ahead).reason; };
