@@ -31,13 +31,18 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
       keys_(rig.gate_options().joints,
             options.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops),
       line_(options.line),
-      line_news_(options.line_news) {
+      line_news_(options.line_news),
+      news_(rig.joint_words()) {
   if (!options.follow.empty()) {
     follow_.emplace(FollowFile(options.follow, rig), options.may_home);
     commanders_.push_back(&*follow_);
+    news_.name(follow_->operator_id(), "the file");
   }
   if (keyboard_.is_terminal()) commanders_.push_back(&keys_);
-  if (options.commander) commanders_.push_back(options.commander);
+  if (options.commander) {
+    commanders_.push_back(options.commander);
+    news_.name(options.commander->operator_id(), "an operator over the line");
+  }
   if (!options.joints.empty()) joints_.emplace(options.joints, rig, robot.cycles());
   if (!options.session.empty()) session_.emplace(rig, robot.cycles());
   if (keyboard_.is_terminal()) say_robot(KeyOperator::help());
@@ -55,6 +60,8 @@ bool Console::tick(RobotTime now) {
     say_robot("recording has ended: " + fault);
     told_of_recording_ = true;
   }
+  if (!keyboard_.is_terminal())  // else the view shows it
+    if (const std::string news = news_.of(status, std::chrono::system_clock::now()); !news.empty()) say_robot(news);
   show(now, status);
   notify(now, status);
   return goes_on;

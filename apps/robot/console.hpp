@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/robot/keyboard.hpp"
+#include "apps/robot/robot_news.hpp"
 #include "apps/robot/service_notify.hpp"
 #include "apps/robot/session_record.hpp"
 #include "operators/follow_operator.hpp"
@@ -70,6 +71,7 @@ class Console {
   std::vector<Commander*> commanders_;
   std::function<std::string()> line_;
   std::function<std::string(RobotTime)> line_news_;
+  RobotNews news_;
   LoopLife life_;
   RobotTime shown_, notified_;
   bool told_of_recording_ = false;  // that it ended

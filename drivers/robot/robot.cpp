@@ -11,6 +11,8 @@ constexpr Duration kEnableWithin = 5s;
 constexpr Duration kAskAgain = 100ms;
 constexpr Duration kHomeWithin = 30s;  // a joint, beside its ways
 constexpr Duration kRestWithin = 3s;
+constexpr Duration kStandsStill = 100ms;  // without a cycle: drives expect to hear from us within that
+constexpr Duration kComesOfIt = 1s;       // what stops the robot so soon after, drives tell it only when asked again
 
 bool is_enabled(const DriveFeedback& f) {
   return f.state == DriveState::enabled;
@@ -70,8 +72,17 @@ RobotStatus Robot::status() const {
   return last_;
 }
 
+void Robot::note_standstill(RobotTime now) noexcept {
+  if (last_cycle_.ns != 0 && now - last_cycle_ > kStandsStill) {
+    stood_still_ = now - last_cycle_;
+    went_on_ = now;
+  }
+  last_cycle_ = now;
+}
+
 void Robot::enter(RobotPhase phase, RobotTime now, int waiting_for) noexcept {
   if (phase == RobotPhase::ready) refused_ = "";
+  if (phase != RobotPhase::stopped || now - went_on_ > kComesOfIt) stood_still_ = {};
   phase_ = phase;
   phase_since_ = now;
   waiting_for_ = waiting_for;
@@ -251,6 +262,7 @@ void Robot::let_gate_step(RobotTime now) noexcept {
 }
 
 void Robot::cycle(RobotTime now) noexcept {
+  note_standstill(now);
   for (DriveNetwork* network : networks_) network->receive(now);
   for (std::size_t i = 0; i < drives_.size(); ++i) feedback_[i] = drives_[i]->feedback();
   rest_.see(feedback_, now);
@@ -279,6 +291,7 @@ void Robot::publish(RobotTime now) noexcept {
     }
   status.all_homed = all_homed();
   status.waiting_for = waiting_for_;
+  if (phase_ == RobotPhase::stopped) status.stood_still = stood_still_;
   status.last_request = last_request_;
   status.refused = refused_;
   std::copy(feedback_.begin(), feedback_.end(), status.feedback.begin());
@@ -322,6 +335,7 @@ void Robot::run(Clock& clock, std::stop_token stop, const std::function<void()>&
       set_up();
       enter(RobotPhase::disabled, clock.now());
       due = clock.now();
+      last_cycle_ = {};
     }
     // Skipped cycles are not made up for: set-points go on from where they are.
     due = std::max(due + period, late >= period ? clock.now() : due);

@@ -64,6 +64,7 @@ struct RobotStatus {
   const char* bus_reason = "";
   bool all_homed = false;
   int waiting_for = -1;       ///< enabling, homing: the joint that is not there yet
+  Duration stood_still{};     ///< stopped: for so long no cycle came just before; 0: they came
   AskedRequest last_request;  ///< that was taken up, followed or not
   const char* refused = "";   ///< why it was not followed; static text
   std::array<DriveFeedback, kMostJoints> feedback{};
@@ -142,6 +143,7 @@ class Robot {
   void advance_enabling(RobotTime now) noexcept;
   void advance_homing(RobotTime now) noexcept;
   Duration home_within(std::size_t joint) const noexcept;
+  void note_standstill(RobotTime now) noexcept;
   void enter(RobotPhase phase, RobotTime now, int waiting_for = -1) noexcept;
   bool at_rest() const noexcept;
   void stop_all() noexcept;
@@ -159,6 +161,9 @@ class Robot {
   std::vector<DriveFeedback> feedback_;
   RobotPhase phase_ = RobotPhase::disabled;
   RobotTime phase_since_;
+  RobotTime last_cycle_;  // 0: there is none to compare with
+  Duration stood_still_{};
+  RobotTime went_on_;  // after stood_still_
   std::size_t homing_ = 0;
   bool homing_asked_ = false;
   bool set_up_asked_ = false;

@@ -12,6 +12,8 @@ namespace {
 
 constexpr const char* kReset = "remove its cause, then reset (r)";
 constexpr const char* kProgram = "correct the program that commands";
+constexpr const char* kStoodStill =
+    "look for what held it up, such as a suspended or an overloaded host; then reset (r)";
 
 }  // namespace
 
@@ -157,6 +159,32 @@ std::string grips_text(const RobotStatus& status, std::span<const JointWords> jo
   return ", but for " + joined(grip) + ", which " + (grip.size() == 1 ? "keeps its" : "keep their") + " grip";
 }
 
+/// Whether drives stop the robot so when they hear nothing.
+bool comes_of_silence(GateReason reason) {
+  switch (reason) {
+    case GateReason::following_error:
+    case GateReason::feedback_lost:
+    case GateReason::feedback_frozen:
+    case GateReason::feedback_jumps:
+    case GateReason::drive_fault:
+    case GateReason::drive_offline:
+    case GateReason::drive_not_enabled:
+    case GateReason::bus_fault: return true;
+    default: return false;
+  }
+}
+
+RobotWords describe_stop(const RobotStatus& status, std::span<const JointWords> joints) {
+  const GateReason reason = status.gate.reason;
+  const std::string text = reason_text(status.gate, joints);
+  if (reason == GateReason::emergency_stop) return {text, words_for(reason).cure};
+  if (status.stood_still > Duration{} && comes_of_silence(reason))
+    return {fmt::format("stopped: the program stood still for {:.1f} s, then {}; drives hold",
+                        to_seconds(status.stood_still), text),
+            kStoodStill};
+  return {"stopped: " + text + "; drives hold", words_for(reason).cure};
+}
+
 }  // namespace
 
 RobotWords describe(const RobotStatus& status, std::span<const JointWords> joints) {
@@ -165,8 +193,7 @@ RobotWords describe(const RobotStatus& status, std::span<const JointWords> joint
   const bool by_hand = reason == GateReason::emergency_stop;
   if (status.phase == RobotPhase::disabled) out.name += grips_text(status, joints);
   if (status.phase == RobotPhase::stopped && reason != GateReason::none) {
-    out = {(by_hand ? "" : "stopped: ") + reason_text(status.gate, joints) + (by_hand ? "" : "; drives hold"),
-           words_for(reason).cure};
+    out = describe_stop(status, joints);
   } else if (status.phase == RobotPhase::ready && status.gate.state != GateState::idle) {
     out = {std::string("ready, ") + words_for(status.gate.state).name, words_for(status.gate.state).cure};
     if (reason != GateReason::none) {

@@ -83,6 +83,27 @@ TEST_F(RobotTest, AnEmergencyStopBrakesAlongSetPoints) {
   EXPECT_EQ(robot_.status().set_point[0].velocity, 0);
 }
 
+TEST_F(RobotTest, AStopSaysThatNoCyclesCameBeforeIt) {
+  make_ready();
+  now_ = now_ + std::chrono::seconds(5);
+  run(10);
+  EXPECT_EQ(robot_.status().stood_still, Duration{}) << "nothing came of it";
+  drives_[0].state.state = DriveState::fault;
+  run(1);
+  ASSERT_EQ(robot_.status().phase, RobotPhase::stopped);
+  EXPECT_NEAR(to_seconds(robot_.status().stood_still), 5, 0.01);
+}
+
+TEST_F(RobotTest, AStopLongAfterwardsHasAnotherCause) {
+  make_ready();
+  now_ = now_ + std::chrono::seconds(5);
+  run(300);
+  drives_[0].state.state = DriveState::fault;
+  run(1);
+  ASSERT_EQ(robot_.status().phase, RobotPhase::stopped);
+  EXPECT_EQ(robot_.status().stood_still, Duration{});
+}
+
 TEST_F(RobotTest, ABusThatFailsStops) {
   get_moving();
   network_.fault = "bus-off";

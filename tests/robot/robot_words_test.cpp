@@ -77,6 +77,19 @@ TEST(RobotWords, SayWhatTheRobotDoesAndWhatToDo) {
   EXPECT_EQ(describe(status, kJoints).name, "ready, follows the operator: the way is obstructed: link 'a' leaves");
 }
 
+TEST(RobotWords, AProgramThatStoodStillIsTheCauseOfWhatDrivesSayThen) {
+  RobotStatus status;
+  status.phase = RobotPhase::stopped;
+  status.stood_still = std::chrono::milliseconds(5012);
+  status.gate = {.state = GateState::stopped, .reason = GateReason::drive_fault, .joint = 1, .detail = "silence"};
+  EXPECT_EQ(
+      describe(status, kJoints).name,
+      "stopped: the program stood still for 5.0 s, then the drive reports a fault (finger): silence; drives hold");
+  EXPECT_THAT(describe(status, kJoints).cure, testing::HasSubstr("held it up"));
+  status.gate.reason = GateReason::emergency_stop;
+  EXPECT_THAT(describe(status, kJoints).name, testing::StartsWith("stopped by the operator"));
+}
+
 TEST(RobotWords, SayWhatHoldsIt) {
   GateHold hold;
   EXPECT_EQ(hold_text(hold, kJoints, RobotTime{}), "");
