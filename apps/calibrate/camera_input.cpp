@@ -1,14 +1,18 @@
 #include "apps/calibrate/camera_input.hpp"
 
+#include <chrono>
+
 #include "apps/command_line/picture_size.hpp"
 #include "calibration/target/corner_files.hpp"
 #include "calibration/target/image_input.hpp"
 #include "common/error.hpp"
+#include "common/patient_output.hpp"
 
 namespace foresight {
 namespace {
 
 constexpr int kLargestSide = 32768;  // px
+constexpr std::chrono::seconds kBetweenLines{2};
 
 RigViews read_corner_file(const std::filesystem::path& path, const CornerInput& input, bool pair) {
   const std::optional<Board> board =
@@ -25,17 +29,28 @@ void note_dropped(const std::vector<DroppedView>& dropped, std::vector<std::stri
   for (const DroppedView& view : dropped) notes.push_back("view " + view.name + " is not used: " + view.reason);
 }
 
+/// Lines about images that are looked at, where it takes more than a moment.
+LookingAt told_on_stderr() {
+  using Time = std::chrono::steady_clock;
+  return [last = Time::now()](const std::filesystem::path& file, std::size_t before, std::size_t all) mutable {
+    if (Time::now() - last < kBetweenLines) return;
+    last = Time::now();
+    patient_stderr().say("calibrate: looking for the board in image " + std::to_string(before + 1) + " of " +
+                         std::to_string(all) + ", " + file.string() + "\n");
+  };
+}
+
 RigViews find_in_images(const CornerInput& input, CameraViewsInput& read) {
   if (input.board.empty())
     throw InputError("--board", "is missing", "say what is in the images, such as chessboard:9x6:0.025");
   const Board board = parse_board(input.board);
   if (input.images) {
-    const FoundCorners found = find_in_folder(*input.images, board);
+    const FoundCorners found = find_in_folder(*input.images, board, told_on_stderr());
     note_dropped(found.dropped, read.notes);
     read.files = found.files;
     return rig_views(found.corners);
   }
-  const FoundStereoCorners found = find_pairs_in_folders(*input.left, *input.right, board);
+  const FoundStereoCorners found = find_pairs_in_folders(*input.left, *input.right, board, told_on_stderr());
   note_dropped(found.dropped, read.notes);
   read.files = found.files;
   return rig_views(found.corners);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kReducedSide = 1000;  // px: finding takes a tenth of a second, refining sees all pixels
 
-cv::Mat reduced(const cv::Mat& grey) {
-  const double scale = static_cast<double>(kReducedSide) / std::max(grey.cols, grey.rows);
+cv::Mat reduced(const cv::Mat& grey, int side = kReducedSide) {
+  const double scale = static_cast<double>(side) / std::max(grey.cols, grey.rows);
   if (scale >= 1) return grey;
   cv::Mat small;
   cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
@@ -20,8 +20,10 @@ cv::Mat reduced(const cv::Mat& grey) {
 }
 
 // The finder by quads takes milliseconds where all are seen, but where one of many is missing it tries them in
-// combinations: minutes for an image of a large board.
+// combinations: minutes for an image of a large board. In noise it goes through thousands of them, 10 s for 640 x 480:
+// so it looks only where a fast check sees squares, and goes on without that check in a picture that is small.
 constexpr int kMostByQuads = 150;
+constexpr int kUncheckedSide = 320;  // px
 
 // The finder by sectors sees through blur and glare, at ten times the cost of a good image's quads. Equalising lifts
 // boards out of the dark, and fills others with noise.
@@ -30,23 +32,36 @@ bool find_by_sectors(const cv::Mat& grey, cv::Size size, GridPoints& points) {
          cv::findChessboardCornersSB(grey, size, points, cv::CALIB_CB_NORMALIZE_IMAGE);
 }
 
+// Equalised grey values find boards in poor light, but lose those before something brighter and move corners.
+constexpr int kPlain = cv::CALIB_CB_ADAPTIVE_THRESH, kEqualised = kPlain | cv::CALIB_CB_NORMALIZE_IMAGE;
+
+bool find_by_quads(const cv::Mat& grey, cv::Size size, GridPoints& points, int flags) {
+  return cv::findChessboardCorners(grey, size, points, kPlain | flags) ||
+         cv::findChessboardCorners(grey, size, points, kEqualised | flags);
+}
+
+/// From pixels of `small` to those of `grey`, of which it is a reduced picture.
+GridPoints enlarged(const GridPoints& points, const cv::Mat& small, const cv::Mat& grey) {
+  const float x = static_cast<float>(grey.cols) / static_cast<float>(small.cols);
+  const float y = static_cast<float>(grey.rows) / static_cast<float>(small.rows);
+  GridPoints out;
+  for (const cv::Point2f& p : points) out.emplace_back((p.x + 0.5f) * x - 0.5f, (p.y + 0.5f) * y - 0.5f);
+  return out;
+}
+
 GridPoints rough_corners(const cv::Mat& grey, cv::Size size) {
-  // Equalised grey values find boards in poor light, but lose those before something brighter and move corners.
-  constexpr int kPlain = cv::CALIB_CB_ADAPTIVE_THRESH, kEqualised = kPlain | cv::CALIB_CB_NORMALIZE_IMAGE;
   const bool by_quads = size.area() <= kMostByQuads;
   const cv::Mat small = reduced(grey);
   GridPoints points;
-  bool found = by_quads && (cv::findChessboardCorners(small, size, points, kPlain) ||
-                            cv::findChessboardCorners(small, size, points, kEqualised));
-  if (!found) found = find_by_sectors(small, size, points);
-  if (found) {
-    const float x = static_cast<float>(grey.cols) / static_cast<float>(small.cols);
-    const float y = static_cast<float>(grey.rows) / static_cast<float>(small.rows);
-    for (cv::Point2f& p : points) p = {(p.x + 0.5f) * x - 0.5f, (p.y + 0.5f) * y - 0.5f};
-  } else if (small.size() != grey.size()) {
-    found = by_quads ? cv::findChessboardCorners(grey, size, points, kEqualised | cv::CALIB_CB_FAST_CHECK)
-                     : cv::findChessboardCornersSB(grey, size, points, 0);
+  if ((by_quads && find_by_quads(small, size, points, cv::CALIB_CB_FAST_CHECK)) || find_by_sectors(small, size, points))
+    return enlarged(points, small, grey);
+  if (by_quads) {
+    const cv::Mat smallest = reduced(grey, kUncheckedSide);
+    if (find_by_quads(smallest, size, points, 0)) return enlarged(points, smallest, grey);
   }
+  if (small.size() == grey.size()) return {};
+  const bool found = by_quads ? cv::findChessboardCorners(grey, size, points, kEqualised | cv::CALIB_CB_FAST_CHECK)
+                              : cv::findChessboardCornersSB(grey, size, points, 0);
   return found ? points : GridPoints{};
 }
 

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <thread>
 
 #include "calibration/target/view_names.hpp"
@@ -86,12 +87,18 @@ struct Seen {
   std::optional<FoundBoard> found;
 };
 
-std::vector<Seen> look_at(const std::vector<fs::path>& files, const Board& board) {
+std::vector<Seen> look_at(const std::vector<fs::path>& files, const Board& board, const LookingAt& looking) {
   std::vector<Seen> seen(files.size());
+  std::mutex telling;
+  std::size_t begun = 0;
   for_all(files.size(), [&](std::size_t i) {
     thread_local std::optional<std::pair<std::string, BoardFinder>> finder;
     const std::string text = to_string(board);
     if (!finder || finder->first != text) finder.emplace(text, BoardFinder(board));
+    if (looking) {
+      const std::lock_guard lock(telling);
+      looking(files[i], begun++, files.size());
+    }
     const cv::Mat grey = read_grey(files[i]);
     seen[i] = {files[i], grey.size(), finder->second.find(grey)};
   });
@@ -212,14 +219,14 @@ std::vector<std::array<fs::path, 2>> list_pairs(const fs::path& left, const fs::
   return out;
 }
 
-FoundCorners find_in_folder(const fs::path& folder, const Board& board) {
-  return find_in_files(list_images(folder), board);
+FoundCorners find_in_folder(const fs::path& folder, const Board& board, const LookingAt& looking) {
+  return find_in_files(list_images(folder), board, looking);
 }
 
-FoundCorners find_in_files(const std::vector<fs::path>& files, const Board& board) {
+FoundCorners find_in_files(const std::vector<fs::path>& files, const Board& board, const LookingAt& looking) {
   FoundCorners result;
   result.board = completed(board, files);
-  const auto seen = look_at(files, result.board);
+  const auto seen = look_at(files, result.board, looking);
   require_found(seen, result.board, files.front().parent_path());
   start_set(result.corners, seen, result.board);
   const BlurRule blur(seen);
@@ -237,13 +244,14 @@ FoundCorners find_in_files(const std::vector<fs::path>& files, const Board& boar
   return result;
 }
 
-FoundStereoCorners find_pairs_in_folders(const fs::path& left, const fs::path& right, const Board& board) {
+FoundStereoCorners find_pairs_in_folders(const fs::path& left, const fs::path& right, const Board& board,
+                                         const LookingAt& looking) {
   const auto left_files = list_images(left), right_files = list_images(right);
   const Pairs pairs = pair_up(left_files, right_files);
   FoundStereoCorners result;
   result.board = completed(board, left_files);
-  auto left_seen = look_at(left_files, result.board);
-  auto right_seen = look_at(right_files, result.board);
+  auto left_seen = look_at(left_files, result.board, looking);
+  auto right_seen = look_at(right_files, result.board, looking);
   require_found(left_seen, result.board, left);
   require_found(right_seen, result.board, right);
   start_set(result.corners.left, left_seen, result.board);

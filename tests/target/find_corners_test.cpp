@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -16,6 +17,11 @@ namespace foresight::find_corners_test {
 namespace {
 
 const std::filesystem::path kOpenCvPictures = "/usr/share/doc/opencv-doc/examples/data";
+
+/// Of all threads.
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 double worst_error(const FoundBoard& found, const DrawnView& view) {
   double worst = 0;
@@ -139,6 +145,26 @@ TEST(FindCorners, SaysWhatFits) {
   cv::Mat mirrored;
   cv::flip(drawn("apriltag:4x3:0.05:0.015"), mirrored, 1);
   EXPECT_THAT(explain_nothing_found(parse_board("apriltag:4x3:0.05:0.015"), {mirrored}), HasSubstr("mirrored"));
+}
+
+// The finder by quads alone takes ten seconds.
+TEST(FindCorners, NoiseCostsLittle) {
+  cv::Mat noise(480, 640, CV_8UC1);
+  cv::RNG random(1);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 256);
+  const double before = cpu_seconds();
+  EXPECT_FALSE(BoardFinder(parse_board("chessboard:9x6:0.025")).find(noise));
+  EXPECT_LT(cpu_seconds() - before, 3);
+}
+
+TEST(FindCorners, SaysWhichTagsAndBoardsThereAre) {
+  EXPECT_THAT(input_error([] { BoardFinder(parse_board("apriltag:30x30:0.05")); }),
+              AllOf(testing::HasSubstr("tag36h11 has 587 tags, the board 900"),
+                    testing::Not(testing::HasSubstr("such as tag36h11;"))));
+  for (const char* board : {"checker:9x6:0.025", "CHESSBOARD:9x6:0.025", "checkerboard:9x6:0.025"})
+    EXPECT_THAT(input_error([&] { parse_board(board); }),
+                AllOf(testing::HasSubstr("kinds are chessboard, charuco, apriltag, circles"),
+                      testing::HasSubstr("such as chessboard:9x6:0.025")));
 }
 
 TEST(FindCorners, RefusesUnknownFamilies) {
