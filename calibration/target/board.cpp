@@ -68,10 +68,11 @@ class Parser {
       if (parts_[0] == k.name) return k;
       names.emplace_back(k.name);
     }
-    const std::string nearest = nearest_word(parts_[0], names);
+    const std::string word = lower(parts_[0]);
+    const std::string nearest = nearest_word(word.starts_with("check") ? "chessboard" : word, names);
     for (const Kind& k : kKinds)
       if (nearest == k.name) example_ = k.example;
-    refuse("is of no known kind " + in_quotes(parts_[0]));
+    refuse("is of no known kind " + in_quotes(parts_[0]) + "; kinds are " + joined(names));
   }
 
   int count(const std::string& text, int fewest) {

@@ -14,13 +14,23 @@ namespace {
 
 constexpr double kWindowShare = 0.1;  // half window of a corner over the tag's side: only for its noise
 
+std::string cure_for_few_tags(const Board& board) {
+  int most = 0;
+  for (const std::string& family : tag_families()) {
+    const int tags = tags_in_family(family);
+    if (tags >= board.cols * board.rows) return "name a larger family, such as " + family;
+    most = std::max(most, tags);
+  }
+  return "no family has so many: take fewer columns or rows, at most " + counted(most, "tag");
+}
+
 TagDetector::Options detector_options(const Board& board) {
   const int tags = tags_in_family(board.family);
   if (tags < board.cols * board.rows)
     throw InputError(
         "--board",
         board.family + " has " + counted(tags, "tag") + ", the board " + std::to_string(board.cols * board.rows),
-        "name a larger family, such as tag36h11");
+        cure_for_few_tags(board));
   return {board.family, 0, 0, 0};
 }
 
