@@ -217,7 +217,8 @@ void count_residuals(const RigViews& views, const Accepted& accepted, bool warp,
 }  // namespace
 
 OutlierBound outlier_bound(const RigViews& views, const RigErrors& errors, double reject_sigmas) {
-  return {reject_sigmas * robust_noise(views, errors), median_sigma(views)};
+  constexpr double kLeast = 0.02;  // px: in drawn images all errors are smaller, and none of them is a mistake
+  return {std::max(kLeast, reject_sigmas * robust_noise(views, errors)), median_sigma(views)};
 }
 
 RigErrors rig_errors(const RigViews& views, const RigSolution& solution) {

@@ -59,7 +59,8 @@ struct OutlierBound {
   double weighted_px(const Corner& corner, double error_px) const { return error_px * sigma_px / corner.sigma_px; }
 };
 
-/// `reject_sigmas` as in RigSolverOptions: times the deviation that the median of all errors has.
+/// `reject_sigmas` as in RigSolverOptions: times the deviation that the median of all errors has; at
+/// least 0.02 px.
 OutlierBound outlier_bound(const RigViews& views, const RigErrors& errors, double reject_sigmas);
 
 /// What the accepted corners say about the parameters: J^T W J at `solution`, symmetric, W in units of

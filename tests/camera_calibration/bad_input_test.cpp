@@ -197,6 +197,12 @@ TEST(Rejection, TakesOutWhatWasMovedAndNamesIt) {
   EXPECT_THAT(c.full(), HasSubstr("rejected: left view view3, corner 17"));
 }
 
+TEST(Rejection, TakesNothingOutOfWhatIsDrawnExactly) {
+  auto s = synthetic_rig(10, {.views = 12, .noise_px = 1e-4});
+  s.views.views[3].corners[0][17].pixel.x() += 0.01;
+  EXPECT_THAT(calibrate(s.views).solution.rejected, IsEmpty());
+}
+
 TEST(HeldOut, InlierFiguresAreThoseOfTheViewsWithoutWrongCorners) {
   auto s = synthetic_rig(11, {.views = 12});
   const CameraCalibration clean = calibrate(s.views);
