@@ -83,7 +83,7 @@ class LimitReader {
         fmt::format("{} {} is more than {} {}, half of the joint's range or what links may be off their place: "
                     "nothing would be noticed",
                     shown(joint_.following_error), joint_.unit, shown(most), joint_.unit),
-        guess(joint_.following_error, most).value_or("give a few hundredths, at most " + shown(most)));
+        guess(joint_.following_error, most, "").value_or("give a few hundredths, at most " + shown(most)));
   }
 
   void check_stop(double rate_hz) const {
@@ -95,7 +95,7 @@ class LimitReader {
           fmt::format("{} {}/s^2 reaches the velocity of {} {}/s in {:.3g} ms, less than a control cycle of "
                       "{:.3g} ms: nothing that has a mass does that",
                       shown(a), joint_.unit, shown(v), joint_.unit, 1e3 * v / a, 1e3 / rate_hz),
-          guess(a, v * rate_hz).value_or("give what the drive can do, at most " + shown(v * rate_hz)));
+          guess(a, v * rate_hz, "/s^2").value_or("give what the drive can do, at most " + shown(v * rate_hz)));
     const double way = stop_position(
         {0, v, 0}, {joint_.drive.min_position, joint_.drive.max_position, v, a, joint_.jerk}, 1 / rate_hz);
     if (way <= range) return;
@@ -116,13 +116,13 @@ class LimitReader {
     throw InputError(map_.where(key), "is missing, and the URDF has no such limit", "add it");
   }
 
-  /// What `value` would be in the unit that is mistaken for ours, where it then fits.
-  std::optional<std::string> guess(double value, double most) const {
+  /// What `value` would be in the unit that is mistaken for ours, where it then fits. `per_second`: of ours, "/s^2".
+  std::optional<std::string> guess(double value, double most, const char* per_second) const {
     const double meant = value * plausible_.factor;
     const bool little_too_much = std::abs(value) < 2.5 * most;  // that is another mistake
     if (little_too_much || !(std::abs(meant) <= 1.1 * most)) return std::nullopt;
-    return fmt::format("{} looks like {}: {:.4g} {}{}", shown(value), plausible_.other, meant, joint_.unit,
-                       std::abs(meant) > most ? ", and give at most " + shown(most) : "");
+    return fmt::format("{} looks like {}{}: {:.4g} {}{}{}", shown(value), plausible_.other, per_second, meant,
+                       joint_.unit, per_second, std::abs(meant) > most ? ", and give at most " + shown(most) : "");
   }
 
   [[noreturn]] void refuse(const char* key, double value, double bound, bool by_urdf, const char* per_second,
@@ -133,7 +133,7 @@ class LimitReader {
                 : fmt::format("{} {} is more than {} {}, and the URDF has no limit that says so", shown(value), unit,
                               shown(bound), unit);
     throw InputError(map_.where(key), what,
-                     guess(value, most)
+                     guess(value, most, per_second)
                          .value_or(by_urdf ? "give at most that, or correct the URDF"
                                            : "correct it, or give the joint its limits in the URDF"));
   }
@@ -154,11 +154,29 @@ void require_unit(const YamlMap& map, const UrdfJoint* urdf, const RigJoint& joi
       turns ? "write `unit: rad`, and its numbers in rad" : "write `unit: m`, and its numbers in m");
 }
 
+void require_name(const UrdfRobot& robot, const UrdfJoint& joint, const std::string& file) {
+  if (joint.name.empty())
+    throw InputError(file,
+                     "the <joint> that moves link " +
+                         in_quotes(robot.links[static_cast<std::size_t>(joint.child)].name) + " has an empty name",
+                     "name it: rig and commands call it so");
+}
+
+void require_near_origin(const UrdfJoint& joint, const std::string& file) {
+  const double far = joint.T_parent_joint.translation().cwiseAbs().maxCoeff();
+  if (far > kMostSlid)
+    throw InputError(file + ": joint " + in_quotes(joint.name) + " <origin>",
+                     fmt::format("is {:g} m from its parent's, and URDF counts in metres", far),
+                     fmt::format("write metres: {:g} mm are {:g}", far, far * kSliding.factor));
+}
+
 }  // namespace
 
 void require_joint_units(const UrdfRobot& robot, const std::string& file) {
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const UrdfJoint& joint = robot.joints[i];
+    require_name(robot, joint, file);
+    require_near_origin(joint, file);
     if (joint.kind == UrdfJoint::Kind::fixed || joint.mimic) continue;
     const std::string where = file + ": joint " + in_quotes(joint.name) + " <limit>";
     const bool turns = joint.kind == UrdfJoint::Kind::rotating;

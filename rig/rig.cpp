@@ -64,10 +64,20 @@ std::filesystem::path existing_file(const YamlMap& map, const std::string& key) 
   return path;
 }
 
-RigBus read_bus(const YamlMap& map) {
+/// The name of one more bus or joint.
+std::string new_name(const YamlMap& map, const char* kind, const std::vector<std::string>& before) {
+  std::string name = map.text("name");
+  if (std::find(before.begin(), before.end(), name) != before.end())
+    throw InputError(map.where("name"), std::string(kind) + " '" + name + "' is given twice", "rename or remove one");
+  return name;
+}
+
+RigBus read_bus(const YamlMap& map, const std::vector<RigBus>& before) {
   map.require_known({"name", "interface", "protocol", "bit_rate"});
+  std::vector<std::string> names;
+  for (const RigBus& bus : before) names.push_back(bus.name);
   RigBus bus;
-  bus.name = map.text("name");
+  bus.name = new_name(map, "bus", names);
   bus.interface = map.text("interface");
   bus.protocol = map.choice<DriveProtocol>(
       "protocol", {{"powercube", DriveProtocol::powercube}, {"cia402", DriveProtocol::cia402}});
@@ -185,7 +195,7 @@ RigJoint read_joint(const YamlMap& map, const Rig& rig) {
                      "response",
                      "start"});
   RigJoint joint;
-  joint.drive.name = map.text("name");
+  joint.drive.name = new_name(map, "joint", rig.joint_names());
   joint.group = map.choice<JointGroup>(
       "group", {{"arm", JointGroup::arm}, {"gripper", JointGroup::gripper}, {"pan_tilt", JointGroup::pan_tilt}});
   if (!map.has("unit"))
@@ -224,8 +234,7 @@ void check_joints(const YamlMap& map, const Rig& rig) {
   std::set<std::string> names;
   std::set<std::pair<std::size_t, int>> nodes;
   for (const RigJoint& joint : rig.joints) {
-    if (!names.insert(joint.drive.name).second)
-      throw InputError(map.where("joints"), "joint '" + joint.drive.name + "' is given twice", "rename or remove one");
+    names.insert(joint.drive.name);
     if (!nodes.insert({joint.bus, joint.drive.node}).second)
       throw InputError(map.where("joints"),
                        "node " + std::to_string(joint.drive.node) + " on bus '" + rig.buses[joint.bus].name +
@@ -406,7 +415,7 @@ Rig read_rig(const std::filesystem::path& file) {
   if (map.has("robot")) read_robot(map.map("robot"), rig);
   if (map.has("control")) read_control(map.map("control"), rig);
   if (map.has("surroundings")) read_surroundings(map.map("surroundings"), rig.surroundings);
-  for (const YamlMap& bus : map.maps("buses")) rig.buses.push_back(read_bus(bus));
+  for (const YamlMap& bus : map.maps("buses")) rig.buses.push_back(read_bus(bus, rig.buses));
   if (map.has("control")) check_rate(map.map("control"), rig);
   for (const YamlMap& joint : map.maps("joints")) rig.joints.push_back(read_joint(joint, rig));
   check_joints(map, rig);

@@ -12,6 +12,56 @@
 
 namespace foresight {
 
+namespace {
+
+/// Bytes of the character at `at`; 0 where it is none in UTF-8 (RFC 3629).
+std::size_t utf8_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const unsigned first = byte(at), second = byte(at + 1);
+  if (first < 0x80) return 1;
+  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(at + i) & 0xC0) != 0x80) return 0;
+  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool no_character = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
+  return overlong || no_character ? 0 : length;
+}
+
+void require_utf8(const std::filesystem::path& file, std::string_view text) {
+  int line = 1;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0)
+      throw InputError(at_line(file, line), "has a letter that is not in UTF-8",
+                       "save the file as UTF-8; `iconv -f latin1 -t utf-8` makes it of a Latin-1 one");
+    if (text[at] == '\n') ++line;
+    at += length;
+  }
+}
+
+/// The first line, up to `last`, that a tab indents; 0: none. Counted from 1.
+int line_indented_by_tab(std::string_view text, int last) {
+  for (int line = 1; line <= last; ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view indent = text.substr(0, std::min(text.find_first_not_of(" \t"), end));
+    if (indent.find('\t') != std::string_view::npos) return line;
+    if (end == text.size()) break;
+    text.remove_prefix(end + 1);
+  }
+  return 0;
+}
+
+YAML::Node only_document(const std::filesystem::path& file, const std::string& text) {
+  std::vector<YAML::Node> documents = YAML::LoadAll(text);
+  for (std::size_t i = 1; i < documents.size(); ++i)
+    if (!documents[i].IsNull())
+      throw InputError(at_line(file, documents[i].Mark().line + 1), "begins a second document, after `---`",
+                       "keep one of them: the others would not be read");
+  return documents.empty() ? YAML::Node() : documents.front();
+}
+
+}  // namespace
+
 YamlMap::YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node)
     : file_(std::move(file)), prefix_(std::move(prefix)), node_(std::move(node)) {}
 
@@ -20,10 +70,14 @@ YamlMap YamlMap::load(const std::filesystem::path& file) {
 }
 
 YamlMap YamlMap::parse(const std::filesystem::path& file, const std::string& text) {
+  require_utf8(file, text);
   YAML::Node node;
   try {
-    node = YAML::Load(text);
+    node = only_document(file, text);
   } catch (const YAML::Exception& error) {
+    if (const int line = line_indented_by_tab(text, error.mark.line + 1); line > 0)
+      throw InputError(at_line(file, line), "is indented by a tab, which YAML does not allow",
+                       "indent it by spaces, as the lines about it");
     throw InputError(at_line(file, error.mark.line + 1), "is not valid YAML (" + error.msg + ")", "correct the line");
   }
   if (!node.IsMap()) throw InputError(file.string(), "is not a mapping", "write one 'key: value' a line");

@@ -95,7 +95,12 @@ TEST_F(BadRig, EveryMistakeHasItsMessage) {
   expect("min: -1, max: 1", "min: 1, max: -1", {"min", "not below max"});
   expect("node: 2", "node: 1", {"node 1", "used twice", "'b'"});
   expect("node: 2", "node: 200", {"200", "1 to 126"});
-  expect("name: b", "name: a", {"'a' is given twice"});
+  expect("name: b", "name: a", {"joints[1].name", "joint 'a' is given twice"});
+  expect("protocol: cia402}", "protocol: cia402}\n  - {name: main, interface: can1, protocol: cia402}",
+         {"buses[1].name", "bus 'main' is given twice"});
+  expect("name: small", "name: sm\xE4ll", {"rig.yaml:1", "not in UTF-8", "iconv"});
+  expect("name: small\n", "name: sm\u00E4ll\n---\n", {"rig.yaml:3", "second document", "---"});
+  expect("  - {name: main", "\t- {name: main", {"rig.yaml:3", "indented by a tab", "spaces"});
   expect("bus: main, node: 1", "bus: mian, node: 1", {"mian", "main"});
   expect("group: arm", "group: leg", {"leg"});
   expect("protocol: cia402", "protocol: cia403", {"cia403", "cia402"});
@@ -211,7 +216,7 @@ TEST_F(LimitedRig, WhatIsBeyondTheUrdfIsRefusedWithAGuess) {
   expect("min: -1,", "min: -85,", {"joints[0].min", "-85 rad", "-1.5 rad", "looks like degrees: -1.484 rad"});
   expect("max: 1,", "max: 1.7,", {"1.7 rad is beyond the URDF's 1.57 rad", "at most that, or correct the URDF"});
   expect("max: 0.1,", "max: 100,", {"joints[1].max", "100 m", "0.1 m", "looks like millimetres: 0.1 m"});
-  expect("velocity: 1,", "velocity: 60,", {"velocity", "60 rad/s", "2 rad/s", "looks like degrees: 1.047 rad"});
+  expect("velocity: 1,", "velocity: 60,", {"velocity", "60 rad/s", "2 rad/s", "60 looks like degrees/s: 1.047 rad/s"});
   expect("velocity: 1,", "velocity: 2.5,", {"2.5 rad/s is beyond the URDF's 2 rad/s"});
   expect("unit: rad", "unit: m", {"unit", "is m, but joint 'a' turns in the URDF", "unit: rad"});
   expect("unit: m", "unit: rad", {"unit", "is rad, but joint 'b' slides in the URDF", "unit: m"});
@@ -231,6 +236,21 @@ TEST_F(LimitedRig, LimitsOfTheUrdfItselfAreRadiansAndMetres) {
   EXPECT_THAT(refusal("upper='0.1'", "upper='300'"),
               AllOf(HasSubstr("two.urdf: joint 'b' <limit>: upper is 300"), HasSubstr("metres: 300 mm are 0.3")));
   EXPECT_EQ(refusal("lower='-1.5' upper='1.57'", "lower='-1e5' upper='1e5'"), "no error") << "stands for endless";
+}
+
+TEST_F(LimitedRig, JointsOfTheUrdfItselfHaveNamesAndArePlacedInMetres) {
+  const auto refusal = [&](const std::string& what, const std::string& instead) {
+    std::string urdf = kLimited;
+    urdf.replace(urdf.find(what), what.size(), instead);
+    folder_.write("two.urdf", urdf);
+    return error_with("name: small", "name: tall");
+  };
+  using testing::AllOf;
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("<child link='l2'/>", "<child link='l2'/><origin xyz='0 0 300'/>"),
+              AllOf(HasSubstr("two.urdf: joint 'b' <origin>: is 300 m"), HasSubstr("300 mm are 0.3")));
+  EXPECT_THAT(refusal("joint name='b'", "joint name=''"),
+              AllOf(HasSubstr("two.urdf: the <joint> that moves link 'l2' has an empty name"), HasSubstr("name it")));
 }
 
 TEST_F(LimitedRig, FollowersKeepWithinTheirLimits) {
