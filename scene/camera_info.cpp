@@ -86,6 +86,29 @@ void read_coefficients(const YamlMap& yaml, Lens::Parameters& p) {
   std::copy(d.begin(), d.end(), p.d.begin());
 }
 
+/// Share of the picture's pixels that see anything: where the model folds back before them, they see nothing.
+double seen_share(const Lens& lens) {
+  constexpr int kSamples = 32;  // along each side
+  int seen = 0;
+  for (int y = 0; y < kSamples; ++y)
+    for (int x = 0; x < kSamples; ++x)
+      seen += lens.unproject({(x + 0.5) / kSamples * lens.width() - 0.5, (y + 0.5) / kSamples * lens.height() - 0.5})
+                  .has_value();
+  return seen / static_cast<double>(kSamples * kSamples);
+}
+
+// The round picture of a fisheye fills less than half of a wide sensor.
+constexpr double kLeastSeen = 0.25;
+
+void require_mostly_unfolded(const YamlMap& yaml, const Lens& lens) {
+  const double seen = seen_share(lens);
+  if (seen < kLeastSeen)
+    throw InputError(yaml.where("distortion_coefficients"),
+                     "they fold the lens back inside of the picture: only " + readable(100 * seen, 0) +
+                         " % of its pixels would see anything",
+                     "correct them, their order (k1, k2, p1, p2, k3, ...), or camera_matrix");
+}
+
 // What would make the images something else than the raw ones that the calibration speaks of.
 void refuse_reduced_images(const YamlMap& yaml, const Lens::Parameters& p) {
   for (const std::string key : {"binning_x", "binning_y"}) {
@@ -125,6 +148,7 @@ CameraInfo read_camera_info(const std::filesystem::path& file) {
   } catch (const std::invalid_argument& error) {  // names the field, such as the image size
     throw InputError(file.string(), error.what(), "correct the calibration");
   }
+  require_mostly_unfolded(yaml, info.lens);
   if (yaml.has("T_left_right")) info.T_left_right = yaml.pose("T_left_right");
   return info;
 }

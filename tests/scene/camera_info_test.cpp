@@ -106,6 +106,12 @@ TEST(CameraInfo, RefusesWhatIsNoCamera) {
               says("camera.yaml:6", "'.inf' is not a finite number", "decimal"));
 }
 
+// A sign or a decimal point that is lost leaves a picture that sees nothing but its middle.
+TEST(CameraInfo, RefusesALensThatFoldsInsideOfThePicture) {
+  EXPECT_THAT(error("distortion_coefficients", "distortion_coefficients: [-28, 0.09, 0, 0, 0]"),
+              says("camera.yaml:6: distortion_coefficients", "fold the lens back", "camera_matrix"));
+}
+
 TEST(CameraInfo, NamesUnknownMissingAndRepeatedKeys) {
   EXPECT_THAT(error("image_widht", "image_widht: 3"),
               says("camera.yaml:7: image_widht", "unknown key", "did you mean 'image_width'?"));
