@@ -54,6 +54,18 @@ std::vector<ListedImage> read_images(const fs::path& root, const fs::path& list)
   return out;
 }
 
+/// Cure of a stamp that no pose belongs to: where it would lie beside one in another unit, that it does.
+std::string cure_of_stamp(const PoseTrack& track, RobotTime stamp) {
+  constexpr Duration kBeside = std::chrono::seconds(1);
+  for (const auto& [unit, per_second] :
+       {std::pair{"milliseconds", 1'000}, {"microseconds", 1'000'000}, {"nanoseconds", 1'000'000'000}}) {
+    const RobotTime meant{stamp.ns / per_second};
+    if (std::chrono::abs(track.nearest(meant).time - meant) <= kBeside)
+      return std::string("it looks like ") + unit + ": write seconds, as trajectory.txt";
+  }
+  return "remove the line, or add poses no more than 0.2 s apart on both sides of it";
+}
+
 // Gives `listed` its pose; T_left_camera is identity for the left camera.
 void place(ListedImage& listed, const PoseTrack& track, const Pose& T_left_camera) {
   const PoseTrack::Answer answer = track.at(listed.image.time);
@@ -61,7 +73,7 @@ void place(ListedImage& listed, const PoseTrack& track, const Pose& T_left_camer
     const double away = to_seconds(std::chrono::abs(track.nearest(listed.image.time).time - listed.image.time));
     throw InputError(listed.where,
                      "no pose in trajectory.txt for this image (the nearest is " + std::to_string(away) + " s away)",
-                     "remove the line, or add poses no more than 0.2 s apart on both sides of it");
+                     cure_of_stamp(track, listed.image.time));
   }
   listed.image.T_world_camera = answer.pose * T_left_camera;
   listed.image.pose_status = answer.status;

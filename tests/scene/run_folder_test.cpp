@@ -134,6 +134,13 @@ TEST(RunFolder, RefusesBadTrajectories) {
               says("rgb.txt:3", "no pose in trajectory.txt", "remove the line, or add poses"));
   EXPECT_THAT(error("trajectory.txt", "1699999999.85 0 0 0 0 0 0 1\n1700000000.051 0 0 0 0 0 0 1\n"),
               says("rgb.txt:2", "0.051000 s away", "0.2 s apart"));
+  const std::string poses = "1.7 0 0 0 0 0 0 1\n1.75 0 0 0 0 0 0 1\n";
+  TestRun run;
+  run.write("trajectory.txt", poses);
+  run.write("rgb.txt", "1700 rgb/a.png\n");
+  EXPECT_THAT(error(run), says("rgb.txt:1", "no pose in trajectory.txt", "looks like milliseconds: write seconds"));
+  run.write("rgb.txt", "1700000000 rgb/a.png\n");
+  EXPECT_THAT(error(run), says("rgb.txt:1", "no pose in trajectory.txt", "looks like nanoseconds: write seconds"));
   EXPECT_THAT(error("trajectory.txt", "1700000000 0 0 0 0 0 0\n"),
               says("trajectory.txt:1", "has 7 fields", "time tx ty tz qx qy qz qw"));
   EXPECT_THAT(error("trajectory.txt", "1700000000 0 0 0 0 0 0 2\n"),
