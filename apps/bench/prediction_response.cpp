@@ -207,6 +207,12 @@ double velocity_at(const Joint& joint, const PositionHistory& states, std::size_
   return now.time > then ? (now.position - between(states, then)) / (now.time - then) : 0;
 }
 
+/// Whether its states come before its commands, by more than they may seem to.
+bool leads(const ResponseFigures& figures) {
+  constexpr double kSeems = 0.002;  // s: stamps of one loop's commands and states
+  return figures.delay < -std::max(kSeems, 3 * figures.delay_sigma);
+}
+
 void describe(const Joint& joint, const JointResponse& response, double unseen, Scores& scores) {
   const ResponseFigures& f = response.figures();
   scores.joints.push_back({{"name", joint.name},
@@ -238,6 +244,11 @@ void describe(const Joint& joint, const JointResponse& response, double unseen, 
   if (joint.evened)
     std::printf("%-12s the stamps of its commands scatter by %.1f ms about every %.1f ms: evened, they explain more\n",
                 "", joint.evened->scatter * 1e3, joint.evened->interval * 1e3);
+  if (leads(f))
+    std::printf(
+        "%-12s its states lead its commands: no drive knows them before; record both with one clock, and name "
+        "neither file in the other's place\n",
+        "");
   if (unseen > 0)
     std::printf(
         "%-12s its states come with its commands, every %.1f ms: whether the drive takes these as steps or as lines to "

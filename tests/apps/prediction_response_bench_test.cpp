@@ -70,6 +70,21 @@ nlohmann::json joint_of_held_commands(double interval, double sent, double stamp
   return measured(out, out.write("c.csv", commands).string(), out.write("s.csv", states).string())["joints"][0];
 }
 
+TEST(PredictionResponse, StatesThatLeadTheirCommandsAreTold) {
+  std::string commands = "time_s,q1\n", states = "time_s,q1\n";
+  for (int i = 0; i < 3000; ++i) {
+    const double now = 0.01 * i;
+    commands += number(1 + now) + "," + number(wish(now)) + "\n";
+    states += number(1.003 + now) + "," + number(wish(now + 0.05)) + "\n";
+  }
+  const TempFolder out;
+  const std::string c = out.write("c.csv", commands).string(), s = out.write("s.csv", states).string();
+  const Outcome early = run_program({"bench", "prediction", "response", "--commands", c, "--states", s});
+  EXPECT_THAT(early.out, testing::HasSubstr("its states lead its commands"));
+  const Outcome late = run_program({"bench", "prediction", "response", "--commands", s, "--states", c});
+  EXPECT_THAT(late.out, testing::Not(testing::HasSubstr("lead its commands")));
+}
+
 TEST(PredictionResponse, NoiseOfStampsLeavesTheDelayAsItIs) {
   for (const double interval : {0.01, 0.02}) {
     const nlohmann::json quiet = joint_of_held_commands(interval, 0, 0),
