@@ -163,6 +163,21 @@ std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCam
 }
 
 /// Null without --serve.
+/// `other`: link::robot_beside().
+void require_alone(const std::string& other, const std::string& rig) {
+  if (!other.empty())
+    throw InputError(rig, "cannot be served beside " + other + ": an operator would see the one and move the other",
+                     "end the other one, or give this rig another link.domain");
+}
+
+/// Before a lab is lit and cameras are opened, which takes seconds. One that comes meanwhile, make_server() sees.
+void require_free_domain(const Rig& rig, Clock& clock, const RobotArguments& arguments) {
+  if (!arguments.serve || !rig.cameras || !arguments.cameras) return;
+  const link::Participant program(rig.link, "robot " + rig.name, link::Role::robot);
+  clock.sleep_until(clock.now() + link::kAllHeardOf);
+  require_alone(link::robot_beside(program), arguments.rig);
+}
+
 std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock,
                                                const RobotArguments& arguments) {
   if (!arguments.serve) return nullptr;
@@ -176,10 +191,7 @@ std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robo
   auto server = std::make_unique<link::RobotServer>(
       rig, robot, cameras, link::rig_identity(rig, arguments.rig, FORESIGHT_VERSION), clock, std::move(line));
   clock.sleep_until(clock.now() + link::kAllHeardOf);
-  if (const std::string other = server->robot_beside(); !other.empty())
-    throw InputError(arguments.rig,
-                     "cannot be served beside " + other + ": an operator would see the one and move the other",
-                     "end the other one, or give this rig another link.domain");
+  require_alone(server->robot_beside(), arguments.rig);
   say_robot("serving on domain " + std::to_string(rig.link.domain) + ", interface " + rig.link.interface);
   if (const std::string trouble = link::receive_buffer_trouble(); !trouble.empty()) say_robot(trouble);
   return server;
@@ -226,6 +238,7 @@ int run_with(const Rig& rig, const RobotArguments& arguments,
   const auto cameras = make_cameras(rig, devices, robot, clock, arguments);
   Windows windows;
   windows.view = make_view(rig, robot, cameras.get(), clock, arguments);
+  require_free_domain(rig, clock, arguments);
   if (arguments.rig_view) {
     windows.body = std::make_unique<RigBody>(
         rig, arguments.scene.empty() ? std::nullopt : std::optional<std::filesystem::path>(arguments.scene));

@@ -68,6 +68,8 @@ std::string RobotServer::news(RobotTime now) {
     look_due_ = now + kLookEvery;
     if (const std::string before = std::exchange(beside_, robot_beside()); !beside_.empty() && beside_ != before)
       return beside_ + " has come to the same domain, and operators hear both: end it, or change its link.domain";
+    else if (beside_.empty() && !before.empty())
+      return before + " has gone from the domain: operators hear this robot alone";
   }
   return refusals_.news(participant_, now);
 }

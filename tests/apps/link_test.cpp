@@ -57,11 +57,24 @@ TEST_F(Link, ASecondRobotIsNotServedBesideTheFirst) {
   EXPECT_EQ(second.exit_code, 2);
   EXPECT_THAT(second.last_line(), HasSubstr(rig() + ": cannot be served beside 'robot minerva'"));
   EXPECT_THAT(second.last_line(), HasSubstr("give this rig another link.domain"));
+  const auto gone = "has gone from the domain: operators hear this robot alone";
+  for (int i = 0; i < 200 && first.said().find(gone) == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
   first.interrupt();
   const Outcome end = first.wait();
   EXPECT_EQ(end.exit_code, 130);
   EXPECT_THAT(end.err, HasSubstr("line: 'robot minerva' on "));
   EXPECT_THAT(end.err, HasSubstr("has come to the same domain, and operators hear both"));
+  EXPECT_THAT(end.err, HasSubstr(gone));
+}
+
+TEST_F(Link, ASecondRobotIsRefusedBeforeItsLabIsLit) {
+  Program first({"robot", rig(), "--mock", "--no-cameras", "--serve"});
+  ASSERT_EQ(run_program({"link", "listen", "foresight/robot_state", "--count", "1"}).exit_code, 0);
+  const Outcome second = run_program({"robot", rig(), "--mock", "--serve"});
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.last_line(), HasSubstr("cannot be served beside 'robot minerva'"));
+  EXPECT_THAT(second.err, testing::Not(HasSubstr("lighting the lab")));
 }
 
 // The robot is killed: who listens is told, waits with words, and hears the next one.
