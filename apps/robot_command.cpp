@@ -16,6 +16,7 @@
 #include "link/dds/pretended_line.hpp"
 #include "link/robot_side/rig_identity.hpp"
 #include "link/robot_side/robot_server.hpp"
+#include "rig/home_check.hpp"
 #include "scene/target_folder.hpp"
 #include "session/robot_loop.hpp"
 
@@ -162,7 +163,6 @@ std::unique_ptr<LiveView> make_view(const Rig& rig, const Robot& robot, RobotCam
   return std::make_unique<LiveView>(cameras->scene(), cameras->frames().subscribe(kRoom), trouble, clock, options);
 }
 
-/// Null without --serve.
 /// `other`: link::robot_beside().
 void require_alone(const std::string& other, const std::string& rig) {
   if (!other.empty())
@@ -178,6 +178,7 @@ void require_free_domain(const Rig& rig, Clock& clock, const RobotArguments& arg
   require_alone(link::robot_beside(program), arguments.rig);
 }
 
+/// Null without --serve.
 std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robot, RobotCameras* cameras, Clock& clock,
                                                const RobotArguments& arguments) {
   if (!arguments.serve) return nullptr;
@@ -229,16 +230,18 @@ int run_with(const Rig& rig, const RobotArguments& arguments,
     for (const auto& [link, other] : shape->nested())
       say_robot("links " + other + " and " + link + " lie in each other in most positions: the gate lets them touch");
   if (arguments.check_only) {
+    for (const TooClose& parts : parts_too_close_at_home(rig))
+      say_robot("at home " + parts.what + ": the gate would let them only part");
     devices.bring_up(say_robot);
     for (const Drive* drive : devices.drives())
       say_robot("drive " + drive->config().name + ": " + to_text(drive->identity()));
     return 0;
   }
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
+  require_free_domain(rig, clock, arguments);
   const auto cameras = make_cameras(rig, devices, robot, clock, arguments);
   Windows windows;
   windows.view = make_view(rig, robot, cameras.get(), clock, arguments);
-  require_free_domain(rig, clock, arguments);
   if (arguments.rig_view) {
     windows.body = std::make_unique<RigBody>(
         rig, arguments.scene.empty() ? std::nullopt : std::optional<std::filesystem::path>(arguments.scene));

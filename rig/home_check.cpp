@@ -1,0 +1,22 @@
+#include "rig/home_check.hpp"
+
+#include <algorithm>
+
+namespace foresight {
+
+std::vector<TooClose> parts_too_close_at_home(const Rig& rig) {
+  const auto shape = rig.shape();
+  if (!shape) return {};
+  shape->surround(rig.surroundings);
+  std::vector<double> home, margins(shape->couples());
+  for (const RigJoint& joint : rig.joints)
+    home.push_back(
+        std::clamp(joint.absolute ? 0 : joint.drive.offset, joint.drive.min_position, joint.drive.max_position));
+  shape->margins(home, margins);
+  std::vector<TooClose> out;
+  for (std::size_t i = 0; i < margins.size(); ++i)
+    if (margins[i] < 0) out.push_back({shape->message(i), shape->kept_apart(i) + margins[i] <= 0});
+  return out;
+}
+
+}  // namespace foresight

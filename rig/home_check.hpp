@@ -1,0 +1,21 @@
+// Whether a rig's robot could move at all from where its joints find home.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rig/rig.hpp"
+
+namespace foresight {
+
+/// Two parts that are too close for the gate: it would let them only part.
+struct TooClose {
+  std::string what;  ///< RobotShape::message()
+  bool touch;        ///< they overlap, or the link is outside of the workspace
+};
+
+/// All of them with every joint at home: where its drive says 0, at 0 of an absolute encoder's joint, and within its
+/// limits. None where the rig has no robot.
+std::vector<TooClose> parts_too_close_at_home(const Rig& rig);
+
+}  // namespace foresight
