@@ -191,6 +191,13 @@ class LimitedRig : public BadRig {
     EXPECT_THAT(message, testing::HasSubstr("rig.yaml:")) << instead;
     for (const char* word : words) EXPECT_THAT(message, testing::HasSubstr(word)) << instead;
   }
+  /// What is said of the rig with a URDF that has `instead` in the place of `what`.
+  std::string error_of_urdf(const std::string& what, const std::string& instead) {
+    std::string urdf = kLimited;
+    urdf.replace(urdf.find(what), what.size(), instead);
+    folder_.write("two.urdf", urdf);
+    return error_with("name: small", "name: tall");
+  }
 };
 
 TEST_F(LimitedRig, TheUrdfsLimitsAreTheDefaults) {
@@ -223,44 +230,30 @@ TEST_F(LimitedRig, WhatIsBeyondTheUrdfIsRefusedWithAGuess) {
 }
 
 TEST_F(LimitedRig, LimitsOfTheUrdfItselfAreRadiansAndMetres) {
-  const auto refusal = [&](const std::string& limit, const std::string& instead) {
-    std::string urdf = kLimited;
-    urdf.replace(urdf.find(limit), limit.size(), instead);
-    folder_.write("two.urdf", urdf);
-    return error_with("name: small", "name: tall");
-  };
   using testing::AllOf;
   using testing::HasSubstr;
-  EXPECT_THAT(refusal("upper='1.57'", "upper='170'"), AllOf(HasSubstr("two.urdf: joint 'a' <limit>: upper is 170"),
-                                                            HasSubstr("radians: 170 degrees are 2.967")));
-  EXPECT_THAT(refusal("upper='0.1'", "upper='300'"),
+  EXPECT_THAT(
+      error_of_urdf("upper='1.57'", "upper='170'"),
+      AllOf(HasSubstr("two.urdf: joint 'a' <limit>: upper is 170"), HasSubstr("radians: 170 degrees are 2.967")));
+  EXPECT_THAT(error_of_urdf("upper='0.1'", "upper='300'"),
               AllOf(HasSubstr("two.urdf: joint 'b' <limit>: upper is 300"), HasSubstr("metres: 300 mm are 0.3")));
-  EXPECT_EQ(refusal("lower='-1.5' upper='1.57'", "lower='-1e5' upper='1e5'"), "no error") << "stands for endless";
+  EXPECT_EQ(error_of_urdf("lower='-1.5' upper='1.57'", "lower='-1e5' upper='1e5'"), "no error") << "stands for endless";
 }
 
 TEST_F(LimitedRig, JointsOfTheUrdfItselfHaveNamesAndArePlacedInMetres) {
-  const auto refusal = [&](const std::string& what, const std::string& instead) {
-    std::string urdf = kLimited;
-    urdf.replace(urdf.find(what), what.size(), instead);
-    folder_.write("two.urdf", urdf);
-    return error_with("name: small", "name: tall");
-  };
   using testing::AllOf;
   using testing::HasSubstr;
-  EXPECT_THAT(refusal("<child link='l2'/>", "<child link='l2'/><origin xyz='0 0 300'/>"),
+  EXPECT_THAT(error_of_urdf("<child link='l2'/>", "<child link='l2'/><origin xyz='0 0 300'/>"),
               AllOf(HasSubstr("two.urdf: joint 'b' <origin>: is 300 m"), HasSubstr("300 mm are 0.3")));
-  EXPECT_THAT(refusal("joint name='b'", "joint name=''"),
+  EXPECT_THAT(error_of_urdf("joint name='b'", "joint name=''"),
               AllOf(HasSubstr("two.urdf: the <joint> that moves link 'l2' has an empty name"), HasSubstr("name it")));
 }
 
 TEST_F(LimitedRig, FollowersKeepWithinTheirLimits) {
   const auto refusal = [&](const std::string& limit, const std::string& mimic) {
-    std::string urdf = kLimited;
-    urdf.replace(urdf.find("</robot>"), 8,
-                 "<link name='l3'/><joint name='c' type='prismatic'><parent link='l1'/><child link='l3'/><limit " +
-                     limit + " effort='1'/><mimic joint='b' " + mimic + "/></joint></robot>");
-    folder_.write("two.urdf", urdf);
-    return error_with("name: small", "name: tall");
+    return error_of_urdf(
+        "</robot>", "<link name='l3'/><joint name='c' type='prismatic'><parent link='l1'/><child link='l3'/><limit " +
+                        limit + " effort='1'/><mimic joint='b' " + mimic + "/></joint></robot>");
   };
   using testing::HasSubstr;
   EXPECT_EQ(refusal("lower='0' upper='0.2' velocity='0.2'", "multiplier='2'"), "no error");
