@@ -12,15 +12,27 @@ constexpr double kFirstTimes = 3;                                // bytes over w
 constexpr double kFirstBytes = 0.03;                             // per pixel, until one was coded
 constexpr double kTooLarge = 1.5;                                // bytes over wish
 constexpr std::size_t kSuddenly = 4;  // a wish that so much less than the last pair took is not waited for
+constexpr double kFloor = 2;  // bytes per block of 16 x 16 px: what the coarsest step takes, and half as much again
 constexpr double kMostAsked = 2.5, kAskingGain = 0.25;
+constexpr double kAsFineAsItGets =
+    0.5;  // bytes over wish: below it the picture needed no more, and got its finest step
 
 }  // namespace
 
-// Even the coarsest step has a floor: what moves has to be said somehow. A softer picture has a lower one.
+double H264PairEncoder::area() const {
+  return size_.area() * (halved_ ? 0.25 : 1.0);
+}
+
+bool H264PairEncoder::is_near_floor(std::size_t wish) const {
+  return static_cast<double>(wish) < kFloor * area() / (16 * 16);
+}
+
+// Even the coarsest step has a floor: what moves has to be said somehow. A softer picture has a lower one. Far above it
+// softness would be one more change that takes bytes, first to blur what was sharp, then to sharpen it again.
 std::size_t H264PairEncoder::softness_for(std::size_t wish, bool intra) const {
+  if (!intra && !is_near_floor(wish)) return 0;
   if (!intra) return wish * kSuddenly < last_bytes_ ? std::max<std::size_t>(softness_, 2) : softness_;
-  const double area = size_.area() * (halved_ ? 0.25 : 1.0);
-  const double bytes = area * (first_bytes_per_px_ > 0 ? first_bytes_per_px_ : kFirstBytes);
+  const double bytes = area() * (first_bytes_per_px_ > 0 ? first_bytes_per_px_ : kFirstBytes);
   std::size_t softness = 0;
   while (softness + 1 < kSoftness.size() && bytes * kFirstShare[softness] > kFirstTimes * static_cast<double>(wish))
     ++softness;
@@ -30,18 +42,22 @@ std::size_t H264PairEncoder::softness_for(std::size_t wish, bool intra) const {
 void H264PairEncoder::learn(std::size_t bytes, std::size_t wish, std::size_t softness, bool intra) {
   const double ratio = static_cast<double>(bytes) / static_cast<double>(wish);
   if (intra) {
-    const double area = size_.area() * (halved_ ? 0.25 : 1.0);
-    first_bytes_per_px_ = static_cast<double>(bytes) / area / kFirstShare[softness];
+    first_bytes_per_px_ = static_cast<double>(bytes) / area() / kFirstShare[softness];
     return;
   }
   last_bytes_ = bytes;
   softness_ = softness;
-  if (ratio > kTooLarge) {
+  if (ratio > kTooLarge && is_near_floor(wish)) {
     softness_ = std::min(softness + 1, kSoftness.size() - 1);
   } else if (bytes <= wish && softness > 0) {
     --softness_;
   }
-  if (softness == 0) asked_ = std::clamp(asked_ * std::pow(ratio, -kAskingGain), 1.0, kMostAsked);
+  if (softness > 0) return;
+  if (ratio > 1) {
+    asked_ = std::max(1.0, asked_ / ratio);
+  } else if (ratio > kAsFineAsItGets) {
+    asked_ = std::min(asked_ * std::pow(ratio, -kAskingGain), kMostAsked);
+  }
 }
 
 CodedPair H264PairEncoder::encode(const StereoPicture& picture, const PairWish& wish) {

@@ -18,6 +18,8 @@ class H264PairEncoder final : public PairEncoder {
   void begin_anew() override { lanes_.begin_anew(); }
 
  private:
+  double area() const;  // px of both eyes, as they are coded
+  bool is_near_floor(std::size_t wish) const;
   std::size_t softness_for(std::size_t wish, bool intra) const;
   void learn(std::size_t bytes, std::size_t wish, std::size_t softness, bool intra);
 
