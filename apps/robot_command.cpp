@@ -204,7 +204,10 @@ ConsoleOptions console_options(const RobotArguments& arguments, link::RobotServe
     options.line = [server] { return server->line(); };
     options.line_news = [server](RobotTime now) { return server->news(now); };
   }
-  if (server && arguments.follow.empty()) options.commander = &server->commander();
+  if (server && arguments.follow.empty()) {
+    options.commander = &server->commander();
+    options.give_control = [server](RobotTime now) { server->give_control(now); };
+  }
   options.follow = arguments.follow;
   options.may_home = arguments.may_home;
   if (!arguments.record.empty()) options.joints = joint_log_beside(arguments.record);
@@ -393,8 +396,10 @@ void add_robot_command(Command& app, std::function<int()>& action) {
                       "following_error, lost_node, noisy_encoder or lost_power; again for more");
   command->add_flag("--check", arguments->check_only, "Only identify and configure the drives; move nothing");
   command->footer(
-      "On a terminal, keys enable, home, move and stop the robot; space is a stop. A software stop does not replace a\n"
-      "hardware emergency stop. The drives stop on their own when this program ends in whatever way.\n\n"
+      "On a terminal, keys enable, home, move and stop the robot; space is a stop; g gives control to who\n"
+      "asks for it over the line. A software stop does not replace a hardware emergency stop. The drives stop on "
+      "their\n"
+      "own when this program ends in whatever way.\n\n"
       "Exit codes: 0 done, 1 stopped, held back or a device failed, 2 wrong input, 130 Ctrl-C or SIGTERM.\n\n"
       "Example: foresight robot configs/minerva.yaml --mock --home --follow motion.csv --log session.log");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });

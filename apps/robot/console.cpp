@@ -32,6 +32,7 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
             options.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops),
       line_(options.line),
       line_news_(options.line_news),
+      give_control_(options.give_control),
       news_(rig.joint_words()) {
   if (!options.follow.empty()) {
     follow_.emplace(FollowFile(options.follow, rig), options.may_home);
@@ -51,7 +52,7 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
 bool Console::tick(RobotTime now) {
   for (const std::string& line : faults_.step(now)) say_robot(line);
   if (const std::string news = line_news_ ? line_news_(now) : ""; !news.empty()) say_robot("line: " + news);
-  keys_.press(keyboard_.pressed());
+  take_keys(now);
   const bool goes_on = serve(commanders_, robot_, now);
   const RobotStatus status = robot_.status();
   if (joints_) joints_->write();
@@ -65,6 +66,12 @@ bool Console::tick(RobotTime now) {
   show(now, status);
   notify(now, status);
   return goes_on;
+}
+
+void Console::take_keys(RobotTime now) {
+  const std::string keys = keyboard_.pressed();
+  if (give_control_ && keys.find('g') != std::string::npos) give_control_(now);
+  keys_.press(keys);
 }
 
 std::string Console::trouble() const {

@@ -29,6 +29,7 @@ struct ConsoleOptions {
   Commander* commander = nullptr;     ///< somebody else who may command, beside the keyboard; null: nobody
   std::function<std::string()> line;  ///< how the line to others is, in one line; empty: there is none
   std::function<std::string(RobotTime)> line_news;  ///< what has happened on it since; mostly ""; empty as `line`
+  std::function<void(RobotTime)> give_control;      ///< to who asks for it over the line; empty as `line`
 };
 
 /// One line for whoever started the program.
@@ -55,6 +56,7 @@ class Console {
   std::string view(const RobotStatus& status, int selected) const;
   void report();
   void show(RobotTime now, const RobotStatus& status);
+  void take_keys(RobotTime now);
   void notify(RobotTime now, const RobotStatus& status);
 
   const Rig& rig_;
@@ -71,6 +73,7 @@ class Console {
   std::vector<Commander*> commanders_;
   std::function<std::string()> line_;
   std::function<std::string(RobotTime)> line_news_;
+  std::function<void(RobotTime)> give_control_;
   RobotNews news_;
   LoopLife life_;
   RobotTime shown_, notified_;

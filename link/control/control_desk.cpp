@@ -169,14 +169,15 @@ void ControlDesk::take(DeskPeer& from, const Request& request, RobotTime now) {
   if (!outcome) {
     outcome = judge(from, request, now);
     from.requests.note(request.id, *outcome);
-    if (*outcome == RequestOutcome::taken) queue(request);
+    if (*outcome == RequestOutcome::taken) queue(from, request);
   }
   send(from, Answer{request.id, *outcome});
 }
 
-void ControlDesk::queue(const Request& request) {
+void ControlDesk::queue(const DeskPeer& from, const Request& request) {
   if (request.what == LineRequest::emergency_stop) {
     if (!stops_.note_new(request)) return;
+    stopper_ = from.identity.name;
     requests_.clear();
   }
   requests_.push_back({request.what, permit_.consent()});

@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "link/control/desk_peers.hpp"
@@ -51,6 +52,8 @@ class ControlDesk {
   LineMotion motion(RobotTime now) const { return permit_.motion(now); }
   /// The next request that is to be executed; each comes once. An emergency stop goes before all others.
   LineRequest take_request();
+  /// The name of who asked for the newest emergency stop since the last call, or "".
+  std::string take_stopper() { return std::exchange(stopper_, ""); }
 
   /// Somebody beside the robot gives the lease to who asks for it. False: nobody does.
   bool consent_to_asking(RobotTime now);
@@ -82,7 +85,7 @@ class ControlDesk {
   void forget_clocks();
   void greet(Nonce theirs, const Hello& hello, RobotTime now);
   RequestOutcome judge(const DeskPeer& from, const Request& request, RobotTime now) const;
-  void queue(const Request& request);
+  void queue(const DeskPeer& from, const Request& request);
   void grant(DeskPeer& to, RobotTime now);
   void answer(const DeskPeer& to, LeaseVerdict verdict);
   std::string refusal(const DeskPeer& to) const;
@@ -103,6 +106,7 @@ class ControlDesk {
   TakenSetPoint taken_;
   std::vector<Queued> requests_;
   StopLedger stops_;
+  std::string stopper_;
   std::vector<FromRobot> out_;
   std::uint64_t states_ = 0;
   Duration repeat_every_{0};

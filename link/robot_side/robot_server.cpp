@@ -64,6 +64,7 @@ void RobotServer::stop() noexcept {
 }
 
 std::string RobotServer::news(RobotTime now) {
+  if (const std::string lease = lease_.of(operator_.desk(), now); !lease.empty()) return lease;
   if (now >= look_due_) {
     look_due_ = now + kLookEvery;
     if (const std::string before = std::exchange(beside_, robot_beside()); !beside_.empty() && beside_ != before)
@@ -80,6 +81,7 @@ std::string RobotServer::line() const {
     if (!peer.own) others += (others.empty() ? "" : ", ") + peer.name;
   const FrameCounts counts = this->counts();
   std::string out = others.empty() ? "nobody listens" : others;
+  if (const std::string lease = lease_.line(); !lease.empty()) out += "; " + lease;
   if (frames_) out += fmt::format("; {} pairs sent", static_cast<unsigned long long>(counts.sent));
   if (counts.bytes_per_s > 0) out += fmt::format(", the line carries {:.0f} kbit/s", 8e-3 * counts.bytes_per_s);
   if (frames_ && !counts.watched) out += ", nobody takes pictures";

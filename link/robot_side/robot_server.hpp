@@ -1,6 +1,7 @@
 // The robot's end of the line: everything that `foresight robot --serve` publishes.
 #pragma once
 
+#include "link/control/lease_news.hpp"
 #include "link/dds/refusal_watch.hpp"
 #include "link/robot_side/served_operator.hpp"
 #include "link/robot_side/state_sender.hpp"
@@ -28,13 +29,16 @@ class RobotServer {
   /// Whoever commands over the line; to be asked in one thread, that of all commanders.
   Commander& commander() { return operator_; }
 
+  /// Somebody beside the robot gives control to who asks for it over the line; in commander()'s thread.
+  void give_control(RobotTime now) { operator_.desk().consent_to_asking(now); }
+
   void start();
   void step(RobotTime now);  ///< in stepped time, in place of start()
   void stop() noexcept;
 
-  /// One line for people: who listens, what goes out, what is wrong with the line.
+  /// One line for people: who listens, commands and asks to, what goes out, what is wrong with the line.
   std::string line() const;
-  /// What has happened on the line since it was asked the last time, for the log; mostly "".
+  /// What has happened on the line since it was asked the last time, for the log; mostly "". In commander()'s thread.
   std::string news(RobotTime now);
   std::string robot_beside() const { return link::robot_beside(participant_); }
   FrameCounts counts() const noexcept { return frames_ ? frames_->counts() : FrameCounts{}; }
@@ -46,6 +50,7 @@ class RobotServer {
   std::unique_ptr<Participant> own_;
   Participant& participant_;
   RefusalWatch refusals_;
+  LeaseNews lease_;
   std::string beside_;  // as it was told
   RobotTime look_due_;  // for it
   WallClock wall_;
