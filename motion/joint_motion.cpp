@@ -31,7 +31,8 @@ JointMotion after(const JointMotion& now, double acceleration, double dt) {
 
 JointMotion brake(const JointMotion& now, const JointLimits& limits, double dt) {
   const double jerk = kPlanned * limits.jerk, step = jerk * dt;
-  if (std::abs(now.velocity) <= 0.5 * step * dt && std::abs(now.acceleration) <= step) return {now.position, 0, 0};
+  const double last = std::min(0.5 * step, limits.acceleration) * dt;  // that one cycle takes away
+  if (std::abs(now.velocity) <= last && std::abs(now.acceleration) <= step) return {now.position, 0, 0};
   const double sign = now.velocity < 0 || (now.velocity == 0 && now.acceleration < 0) ? -1 : 1;
   const double v = sign * now.velocity, a = sign * now.acceleration;
   // The largest deceleration x after which v and a can still reach zero together:

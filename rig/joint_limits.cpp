@@ -23,6 +23,7 @@ struct Plausible {
   const char* other;  // that may have been meant
   double factor;
 };
+constexpr double kMostJerk = 4;                       // times the acceleration, a cycle
 constexpr double kMostTurned = 8 * std::numbers::pi;  // rad, of what a URDF may say: no arm turns that far
 constexpr double kMostSlid = 20;                      // m
 constexpr Plausible kTurning{"rad", 4 * std::numbers::pi, 30, 0.5, "degrees", std::numbers::pi / 180};
@@ -96,6 +97,13 @@ class LimitReader {
                       "{:.3g} ms: nothing that has a mass does that",
                       shown(a), joint_.unit, shown(v), joint_.unit, 1e3 * v / a, 1e3 / rate_hz),
           guess(a, v * rate_hz, "/s^2").value_or("give what the drive can do, at most " + shown(v * rate_hz)));
+    if (joint_.jerk > kMostJerk * a * rate_hz)
+      throw InputError(
+          map_.where("jerk"),
+          fmt::format("{} {}/s^3 reaches the acceleration of {} {}/s^2 in {:.3g} ms, less than a quarter of "
+                      "a control cycle of {:.3g} ms: that is no limit",
+                      shown(joint_.jerk), joint_.unit, shown(a), joint_.unit, 1e3 * a / joint_.jerk, 1e3 / rate_hz),
+          "give ten times the acceleration or so, at most " + shown(kMostJerk * a * rate_hz));
     const double way = stop_position(
         {0, v, 0}, {joint_.drive.min_position, joint_.drive.max_position, v, a, joint_.jerk}, 1 / rate_hz);
     if (way <= range) return;

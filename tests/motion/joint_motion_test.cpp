@@ -41,6 +41,20 @@ TEST(JointMotion, BrakeEndsAtRestWithinTheLimitsFromAnywhere) {
   }
 }
 
+TEST(JointMotion, BrakesNoHarderThanItsAccelerationHoweverLargeTheJerk) {
+  for (const double jerk : {40.0, 4e3, 4e4, 1e6, 1e12, 1e160, 1e308}) {
+    JointLimits limits = kLimits;
+    limits.jerk = jerk;
+    const JointMotion start{0, 1.5, 0};
+    for (JointMotion m = start; m.velocity != 0;) {
+      const JointMotion next = brake(m, limits, kDt);
+      ASSERT_LE(m.velocity - next.velocity, limits.acceleration * kDt * (1 + 1e-9)) << jerk;
+      m = next;
+    }
+    EXPECT_GE(stop_position(start, limits, kDt), 0.95 * 1.5 * 1.5 / (2 * limits.acceleration)) << jerk;
+  }
+}
+
 TEST(JointMotion, ReachesTheTargetWithoutOvershoot) {
   for (double target : {0.001, 0.05, 1.0, -1.9}) {
     JointMotion m;

@@ -274,6 +274,7 @@ TEST_F(LimitedRig, AbsurdValuesAreRefused) {
   expect("following_error: 0.1", "following_error: 5", {"5 looks like degrees: 0.08727 rad"});
   expect("following_error: 0.01", "following_error: 10",
          {"10 m is more than 0.05 m", "10 looks like millimetres: 0.01 m"});
+  expect("jerk: 20", "jerk: 1e6", {"joints[0].jerk", "less than a quarter of a control cycle", "at most"});
   expect("jerk: 20", "jerk: 1e-9", {"joints[0].jerk", "a jerk of 1e-09", "it has 2 rad", "more jerk"});
   expect("acceleration: 2", "acceleration: 0.1",
          {"joints[0].acceleration", "an acceleration of 0.1", "it has 2 rad", "or less velocity"});
