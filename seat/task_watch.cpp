@@ -48,10 +48,10 @@ TaskOutcome TaskWatch::outcome(RobotTime now, const std::string& words, const st
     out.failure = "it never drove: " + words;
   else if (!ended_)
     out.failure = "stopped before its end";
-  else if (!done_ && over_time_ == OverTime::fails)
-    out.failure = fmt::format("not done after {:.0f} s; give it more by --seconds", most_s_);
   else if (out.held_share > kMostly)
     out.failure = "the safety gate held the robot back most of the time: " + held_by_;
+  else if (!done_ && over_time_ == OverTime::fails)
+    out.failure = fmt::format("not done after {:.0f} s; give it more by --seconds", most_s_);
   else
     out.failure = what_is_wrong(where());
   out.succeeded = out.failure.empty();

@@ -82,6 +82,15 @@ TEST(TaskWatch, DidNotSucceedWhereTheRobotMostlyStood) {
   EXPECT_EQ(out.failure, "the safety gate held the robot back most of the time: link 'hand' leaves the workspace");
 }
 
+TEST(TaskWatch, MoreTimeIsNoCureForARobotThatMostlyStood) {
+  TaskWatch task(10, TaskWatch::OverTime::fails);
+  task.see(at(0), kDrives);
+  task.see(at(4), kDrives);
+  for (int i = 1; i <= 61; ++i) task.see(at(4 + 0.1 * i), kDrives, "link 'hand' leaves the workspace");
+  EXPECT_EQ(task.outcome(at(11), "", in_place).failure,
+            "the safety gate held the robot back most of the time: link 'hand' leaves the workspace");
+}
+
 TEST(TaskWatch, DidNotSucceedWhereNoImageHasShownThatItDid) {
   TaskWatch task(10, TaskWatch::OverTime::ends);
   task.see(at(0), kDrives);
