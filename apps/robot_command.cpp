@@ -232,9 +232,8 @@ int run_with(const Rig& rig, const RobotArguments& arguments,
   if (shape)
     for (const auto& [link, other] : shape->nested())
       say_robot("links " + other + " and " + link + " lie in each other in most positions: the gate lets them touch");
+  for (const std::string& words : words_on_home(rig)) say_robot(words);
   if (arguments.check_only) {
-    for (const TooClose& parts : parts_too_close_at_home(rig))
-      say_robot("at home " + parts.what + ": the gate would let them only part");
     devices.bring_up(say_robot);
     for (const Drive* drive : devices.drives())
       say_robot("drive " + drive->config().name + ": " + to_text(drive->identity()));

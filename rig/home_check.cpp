@@ -19,4 +19,11 @@ std::vector<TooClose> parts_too_close_at_home(const Rig& rig) {
   return out;
 }
 
+std::vector<std::string> words_on_home(const Rig& rig) {
+  std::vector<std::string> out;
+  for (const TooClose& parts : parts_too_close_at_home(rig))
+    out.push_back("at home " + parts.what + ": the gate would let them only part");
+  return out;
+}
+
 }  // namespace foresight

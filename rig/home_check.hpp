@@ -18,4 +18,7 @@ struct TooClose {
 /// limits. None where the rig has no robot.
 std::vector<TooClose> parts_too_close_at_home(const Rig& rig);
 
+/// The same as lines for whoever starts a program: "at home link 'hand' comes too close ...: the gate would ...".
+std::vector<std::string> words_on_home(const Rig& rig);
+
 }  // namespace foresight

@@ -30,6 +30,14 @@ TEST(HomeCheck, NamesLinksInAnObstacleAndOutsideOfTheWorkspace) {
   EXPECT_THAT(parts_too_close_at_home(rig), Contains(Field(&TooClose::what, HasSubstr("leaves the workspace"))));
 }
 
+TEST(HomeCheck, SaysInALineWhatTheGateWouldDo) {
+  Rig rig = minerva();
+  EXPECT_THAT(words_on_home(rig), IsEmpty());
+  rig.surroundings.workspace = {Eigen::Vector3d(-0.1, -0.1, 0), Eigen::Vector3d(0.1, 0.1, 0.1)};
+  EXPECT_THAT(words_on_home(rig), Contains(testing::AllOf(testing::StartsWith("at home link '"),
+                                                          HasSubstr("leaves the workspace"), HasSubstr("the gate"))));
+}
+
 TEST(HomeCheck, ARigWithoutABodyHasNothingToCheck) {
   Rig rig = minerva();
   rig.robot.reset();
