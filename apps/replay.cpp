@@ -30,6 +30,9 @@ std::vector<std::size_t> arrivals(const RunFolder& run, const ReplayOptions& opt
   auto arrived = options.delay_frames ? arrivals_after(run, static_cast<std::size_t>(*options.delay_frames))
                                       : arrivals_after(run, seconds(options.delay_ms.value_or(0) * 1e-3));
   if (arrived.back() > 0) return arrived;
+  if (frames.size() == 1)
+    throw InputError(options.delay_frames ? "--delay-frames" : "--delay-ms", "the run has one image, and no later one",
+                     "give 0, or a run of more images");
   const double length_ms = to_seconds(frames.back().left.time - frames.front().left.time) * 1e3;
   throw InputError(options.delay_frames ? "--delay-frames" : "--delay-ms", "the delay is longer than the run",
                    options.delay_frames ? "give at most " + std::to_string(frames.size() - 1) + " images"

@@ -9,6 +9,7 @@
 
 #include "apps/level_options.hpp"
 #include "common/error.hpp"
+#include "common/text.hpp"
 #include "pictures/image_metrics.hpp"
 #include "pictures/picture_file.hpp"
 #include "texture_gpu/lamp/lamp_words.hpp"
@@ -159,8 +160,8 @@ void print_summary(const RunRecord& record) {
   }
   std::printf("%zu image times: predicted %.2f dB, delayed image %.2f dB on the same pixels\n", s.frames,
               s.predicted.psnr_db.mean, s.delayed.psnr_db.mean);
-  std::printf("seen %.3f, filled %.3f, empty %.3f of the image; sharpness %.2f of the real image's\n", s.coverage.seen,
-              s.coverage.filled, s.coverage.empty(), s.predicted.sharpness.mean);
+  std::printf("seen %.3f, filled %.3f, empty %.3f of the image; sharpness %s of the real image's\n", s.coverage.seen,
+              s.coverage.filled, s.coverage.empty(), readable(s.predicted.sharpness.mean, 2).c_str());
   std::printf("%.1f images per core-second, %.1f CPU-ms per image; renderer: %s\n", s.images_per_core_second,
               s.texture_cpu_ms, record.renderer.c_str());
   if (std::isfinite(s.arrival_to_visible_ms.median))

@@ -45,6 +45,11 @@ struct Case {
 
 void nothing(StereoRun&) {}
 
+void one_image(StereoRun& run) {
+  run.write("rgb.txt", "1700000000.0 rgb/a.png\n");
+  run.write("rgb_right.txt", "1700000000.0 right/a.png\n");
+}
+
 std::function<void(StereoRun&)> edited(std::string file, std::string old_text, std::string new_text) {
   return [=](StereoRun& run) { run.edit(file, old_text, new_text); };
 }
@@ -124,6 +129,7 @@ const std::vector<Case>& cases() {
       {"both delays, both 0", nothing, {"--delay-ms", "0", "--delay-frames", "0"}, "--delay-ms", "stands beside --delay-frames", "give one of the two"},
       {"too many images of delay", nothing, {"--delay-frames", "3"}, "--delay-frames", "longer than the run", "at most 2"},
       {"too much time of delay", nothing, {"--delay-ms", "201"}, "--delay-ms", "longer than the run", "at most 199.9"},
+      {"a delay of the only image", one_image, {"--delay-ms", "30"}, "--delay-ms", "one image", "give 0"},
       // Other options.
       {"margin out of range", nothing, {"--margin-px", "-1"}, "--margin-px", "'-1'", "from 0 to 32"},
       {"density out of range", nothing, {"--texels-per-metre", "0"}, "--texels-per-metre", "'0'", "from 1"},
