@@ -35,12 +35,13 @@ void require_room_on_buses(const Rig& rig) {
   for (std::size_t i = 0; i < rig.buses.size(); ++i) {
     const double load = planned_bus_load(rig, i);
     if (load <= kMostBusLoad) continue;
-    throw InputError("bus '" + rig.buses[i].name + "' of rig '" + rig.name + "'",
-                     "its drives would fill " + std::to_string(std::lround(100 * load)) + " % of it, more than " +
-                         std::to_string(std::lround(100 * kMostBusLoad)) + " %",
-                     "set control.rate_hz to " +
-                         std::to_string(std::lround(std::floor(0.98 * rig.rate_hz * kMostBusLoad / load))) +
-                         ", raise bit_rate, or put some joints on another bus");
+    const double rate_hz = std::floor(0.98 * rig.rate_hz * kMostBusLoad / load);
+    throw InputError(
+        "bus '" + rig.buses[i].name + "' of rig '" + rig.name + "'",
+        "its drives would fill " + std::to_string(std::lround(100 * load)) + " % of it, more than " +
+            std::to_string(std::lround(100 * kMostBusLoad)) + " %",
+        (rate_hz < kSlowestLoopHz ? "" : "set control.rate_hz to " + std::to_string(std::lround(rate_hz)) + ", ") +
+            "raise bit_rate, or put some joints on another bus");
   }
 }
 

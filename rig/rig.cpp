@@ -12,6 +12,7 @@
 #include "common/text.hpp"
 #include "drivers/canopen/canopen_config.hpp"
 #include "drivers/powercube/module.hpp"
+#include "rig/bus_plan.hpp"
 #include "rig/joint_limits.hpp"
 #include "rig/loose_things.hpp"
 #include "scene/urdf_limits.hpp"
@@ -271,15 +272,14 @@ void read_surroundings(const YamlMap& map, Surroundings& out) {
   }
 }
 
-constexpr double kSlowestLoop = 10, kFastestLoop = 2000;  // Hz
-constexpr double kCycleRounding = 1e-3;                   // Hz, of a cycle's nanoseconds
+constexpr double kCycleRounding = 1e-3;  // Hz, of a cycle's nanoseconds
 
 // As GateOptions::validate(), which knows no lines.
 void read_control(const YamlMap& map, Rig& rig) {
   map.require_known({"rate_hz", "command_age_s", "feedback_age_s", "ramp_s"});
   rig.rate_hz = number(map, "rate_hz", rig.rate_hz);
-  require(rig.rate_hz >= kSlowestLoop && rig.rate_hz <= kFastestLoop, map.where("rate_hz"),
-          fmt::format("is {:g}", rig.rate_hz), fmt::format("choose from {:g} to {:g}", kSlowestLoop, kFastestLoop));
+  require(rig.rate_hz >= kSlowestLoopHz && rig.rate_hz <= kFastestLoopHz, map.where("rate_hz"),
+          fmt::format("is {:g}", rig.rate_hz), fmt::format("choose from {:g} to {:g}", kSlowestLoopHz, kFastestLoopHz));
   const auto age = [&](const char* key, double otherwise, double most) {
     const double value = number(map, key, otherwise);
     require(value > 1 / rig.rate_hz && value <= most, map.where(key),
@@ -309,7 +309,7 @@ void check_rate(const YamlMap& map, const Rig& rig) {
     require(cycle >= shortest && cycle <= longest, map.where("rate_hz"),
             fmt::format("is {:g}, and the drives of bus {} cannot be driven at that", rig.rate_hz, in_quotes(bus.name)),
             fmt::format("choose from {:.0f} to {:.0f}", std::ceil(1 / to_seconds(longest) - kCycleRounding),
-                        std::min(std::floor(1 / to_seconds(shortest) + kCycleRounding), kFastestLoop)));
+                        std::min(std::floor(1 / to_seconds(shortest) + kCycleRounding), kFastestLoopHz)));
   }
 }
 

@@ -51,6 +51,10 @@ TEST(BusPlan, KnowsWhatARigWillSend) {
   EXPECT_THAT(
       input_error([&] { require_room_on_buses(rig); }),
       testing::AllOf(testing::HasSubstr("'arm'"), testing::HasSubstr("109 %"), testing::HasSubstr("rate_hz to 156")));
+  rig.buses[0].bit_rate = 20'000;
+  EXPECT_THAT(input_error([&] { require_room_on_buses(rig); }),
+              testing::AllOf(testing::HasSubstr("raise bit_rate"), testing::Not(testing::HasSubstr("rate_hz"))))
+      << "no loop is as slow as that";
   const Rig cia402 = read_rig(config("cia402.yaml"));
   EXPECT_LT(planned_bus_load(cia402, 0), kMostBusLoad);
   EXPECT_GT(planned_bus_load(cia402, 0), 0.5);
