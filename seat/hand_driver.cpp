@@ -39,7 +39,7 @@ SeatLine keys_line(Duration late) {
   return {"keys",
           fmt::format("the switch did not count: a picture took {:.1f} s, and a key counts for {:.2f} s",
                       to_seconds(late), to_seconds(KeyboardMouseOptions{}.window_answers_within)),
-          "make the window smaller, or drive by another device", Urgency::trouble};
+          "let go, and press again; make the window smaller, or drive by another device", Urgency::trouble};
 }
 
 /// As of a device that is not there. Static texts.
