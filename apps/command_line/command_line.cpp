@@ -1,6 +1,7 @@
 #include "apps/command_line/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -24,6 +25,23 @@ std::string fault_of(const CLI::ParseError& error) {
   return parts[1].str() + ": its value is missing" + (parts[2].length() > 0 ? "; give " + parts[2].str() : "");
 }
 
+/// "there is no option '--delay'; did you mean '--delay-ms'? See `...`". `dashes`: before the given word and all that
+/// are known, which are not told apart by them.
+std::string no_such(const char* kind, const std::string& dashes, const std::string& given,
+                    const std::vector<std::string>& known, const std::string& help) {
+  std::string question = question_of_near(given, known);
+  if (!question.empty()) question.insert(question.find('\'') + 1, dashes);
+  return std::string("there is no ") + kind + " " + in_quotes(dashes + given) + "; " +
+         (question.empty() ? help : question + " S" + help.substr(1));
+}
+
+std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<std::string> out;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) out.push_back(name);
+  return out;
+}
+
 // What is wrong with the command line, and what to do about it.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   // The command that was meant: `foresight link status` is three deep.
@@ -37,11 +55,11 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<std::string> jobs;
   for (const CLI::App* job : command->get_subcommands({})) jobs.push_back(job->get_name());
   const auto unknown = app.remaining(true);
-  if (!jobs.empty() && !unknown.empty() && !unknown.front().starts_with('-')) {
-    const std::string question = question_of_near(unknown.front(), jobs);
-    return "there is no subcommand " + in_quotes(unknown.front()) + "; " +
-           (question.empty() ? help : question + " S" + help.substr(1));
-  }
+  if (!jobs.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
+    return no_such("subcommand", "", unknown.front(), jobs, help);
+  const auto option = std::ranges::find_if(unknown, [](const std::string& word) { return word.starts_with("--"); });
+  if (option != unknown.end() && dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
+    return no_such("option", "--", option->substr(2, option->find('=') - 2), options_of(*command), help);
   return fault_of(error) + "; " + help;
 }
 

@@ -135,7 +135,7 @@ const std::vector<Case>& cases() {
       {"density out of range", nothing, {"--texels-per-metre", "0"}, "--texels-per-metre", "'0'", "from 1"},
       {"no texture memory", nothing, {"--texture-memory-mb", "0"}, "--texture-memory-mb", "'0'", "from 1"},
       {"texture too small", nothing, {"--max-texture", "8"}, "--max-texture", "'8'", "from 16"},
-      {"unknown option", nothing, {"--delay", "3"}, "--delay", "not expected", "foresight replay --help"},
+      {"unknown option", nothing, {"--delay", "3"}, "option '--delay'", "did you mean '--delay-", "foresight replay --help"},
       {"option without value", nothing, {"--delay-ms"}, "--delay-ms", "", "foresight replay --help"},
   };
   return all;
