@@ -12,6 +12,7 @@ constexpr double kExact = 0.001;           // s (docs/conventions.md, time)
 constexpr double kLongestLineGap = 0.2;    // s, likewise
 constexpr double kBeyond = 0.05;           // s later than what is known for certain, while a line becomes faster
 constexpr double kOften = 9, kSeldom = 5;  // s since a drive was identified first: often for so long, then as seldom
+constexpr double kOutlasts = 0.9;          // of how long a set-point lasts once it came: a gap after which it may not
 constexpr double kUnknownDelay = 0.02;     // s that a drive's response may be off before it was identified
 constexpr double kAtEase = 0.1;            // of what is no more a matter of precision: surely nothing holds the joint
 constexpr double kSettling = 5;            // s until the sigma of a drive just learnt is that of what was seen since
@@ -46,6 +47,7 @@ void RobotFuture::Doubt::see(double time, bool doubtful, double after) noexcept 
 RobotFuture::RobotFuture(RobotFutureOptions options, RobotShape* shape)
     : options_(std::move(options)),
       motion_(options_.gate, shape, options_.motion),
+      gaps_(options_.stale),
       shown_ones_(kShown),
       scored_(kShown) {
   options_.responses.resize(options_.gate.joints.size());
@@ -71,6 +73,7 @@ HistoryFault RobotFuture::sent(const SentSetPoint& set_point, RobotTime now) noe
   if (set_point.number <= sent_number_ || set_point.sent < sent_at_) return HistoryFault::out_of_order;
   sent_number_ = set_point.number;
   sent_at_ = set_point.sent;
+  lasts_ = set_point.lasts;
   motion_.sent(set_point);
   return HistoryFault::none;
 }
@@ -97,7 +100,7 @@ HistoryFault RobotFuture::reported(const RobotReport& report, RobotTime now) noe
   const Shown before = any_shown_ ? predict(shown_) : Shown{};
   reported_ = report.time;
   now_ = std::max(now, now_);
-  learn_gap(to_seconds(now_ - came_));
+  if (came_.ns != 0) gaps_.add(to_seconds(now_ - came_), since_epoch(now_));
   came_ = now_;
   doing_ = report.doing;
   if (doing_ != GateDoing::away) {
@@ -115,16 +118,11 @@ HistoryFault RobotFuture::reported(const RobotReport& report, RobotTime now) noe
   return HistoryFault::none;
 }
 
-// A quantile is above so many of all values that it falls as often by little as it rises by much.
-void RobotFuture::learn_gap(double seconds) noexcept {
-  constexpr double kTogether = 5e-3;  // s: what was held up came at once, and was waited for once
-  constexpr double kRise = 0.2, kFall = kRise * 0.05 / 0.95;
-  if (seconds < kTogether) return;
-  usual_gap_ = std::clamp(usual_gap_ * (seconds > usual_gap_ ? 1 + kRise : 1 - kFall), 0.01, options_.stale);
-}
-
 bool RobotFuture::overdue() const noexcept {
-  return to_seconds(now_ - came_) > std::max(options_.overdue, options_.overdue_gaps * usual_gap_);
+  const double waited = to_seconds(now_ - came_);
+  if (waited <= std::max(options_.overdue, options_.overdue_gaps * gaps_.usual())) return false;
+  const double outlasts = kOutlasts * (to_seconds(lasts_) - delay().seconds);
+  return gaps_.chance_to_reach(outlasts, waited) > options_.overdue_chance;
 }
 
 void RobotFuture::advance(RobotTime now) noexcept {

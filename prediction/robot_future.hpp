@@ -21,6 +21,7 @@
 #include "prediction/correction_blend.hpp"
 #include "prediction/expected_motion.hpp"
 #include "prediction/joint_response.hpp"
+#include "prediction/report_gaps.hpp"
 #include "scene/scene_model.hpp"
 
 namespace foresight {
@@ -69,8 +70,9 @@ struct RobotFutureOptions {
   std::vector<std::optional<KnownResponse>> responses = {};  ///< of the joints' drives; none: of none
   double stale = 1;                                          ///< s without a report beyond the line's delay
   /// s without a report, and as often as long as 95 % of the reports keep the seat waiting, after which the robot may
-  /// have stopped where the newest one told of it: what keeps reports away keeps set-points away.
-  double overdue = 0.1, overdue_gaps = 3;
+  /// have stopped where the newest one told of it: what keeps reports away keeps set-points away. Not where such gaps
+  /// have ended in time of late: all but for this share, before the set-points that it has are outlasted.
+  double overdue = 0.1, overdue_gaps = 3, overdue_chance = 0.1;
   double astray_share = 0.125;  ///< of a joint's largest following error, that is no more a matter of precision
   double astray_after = 0.2;    ///< s that it lasts before it counts, and that it is gone before it does not
   double missed_after = 0.5;    ///< likewise, of what was shown, beyond the line's delay there and back
@@ -145,7 +147,6 @@ class RobotFuture {
   double since_epoch(RobotTime time) const noexcept { return to_seconds(time - epoch_); }
   void begin_anew(RobotTime after) noexcept;
   void feed(RobotTime after) noexcept;
-  void learn_gap(double seconds) noexcept;
   void observe(const RobotReport& report) noexcept;
   static void forget_hold(Joint& joint, double noticed) noexcept;
   void identify() noexcept;
@@ -167,7 +168,8 @@ class RobotFuture {
   ExpectedMotion motion_;
   std::vector<Joint> joints_;
   RobotTime epoch_, now_, reported_, came_, fed_, shown_, sent_at_;
-  double usual_gap_ = 0.05;  // s between reports that 95 % of them keep
+  ReportGaps gaps_;
+  Duration lasts_{};  // the newest set-point
   std::uint64_t sent_number_ = 0;
   GateDoing doing_ = GateDoing::away;
   bool any_shown_ = false;

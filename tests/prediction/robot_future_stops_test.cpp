@@ -152,5 +152,27 @@ TEST(RobotFuture, HowFarItMayHaveStoppedIsTold) {
   EXPECT_GT(off, 5) << "it was given up at once: the test shows nothing";
 }
 
+// A line that stands still for less long than a set-point lasts, again and again: the robot went on each time.
+TEST(RobotFuture, ReportsThatAreLateAsOftenBeforeAreNoStop) {
+  FutureWorld world;
+  world.wish = [](double t) { return JointValues{0.5 * std::sin(t), 0.3 * std::sin(2 * t)}; };
+  world.run(15);
+  const auto stall = [&world] {
+    const std::size_t began = world.pictures().size();
+    world.robot_silent = true;
+    world.run(0.15);
+    world.robot_silent = false;
+    world.run(0.85);
+    double widest = 0;
+    for (std::size_t i = began; i < world.pictures().size(); ++i)
+      widest = std::max(widest, world.pictures()[i].sigma[0]);
+    return widest;
+  };
+  const double first = stall();
+  for (int i = 0; i < 15; ++i) stall();
+  EXPECT_GT(first, 0.02) << "it may have stopped";
+  EXPECT_LT(stall(), 0.2 * first);
+}
+
 }  // namespace
 }  // namespace foresight::robot_future_stops_test

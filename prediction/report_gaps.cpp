@@ -1,0 +1,33 @@
+#include "prediction/report_gaps.hpp"
+
+#include <algorithm>
+
+namespace foresight {
+namespace {
+
+constexpr double kTogether = 5e-3;  // what was held up came at once, and was waited for once
+constexpr double kNotable = 0.05;   // shorter gaps are nobody's concern
+constexpr double kRemembered = 60;
+constexpr double kRise = 0.2, kFall = kRise * 0.05 / 0.95;  // a quantile's: as often by little as it falls by much
+
+}  // namespace
+
+void ReportGaps::add(double gap, double now) noexcept {
+  if (gap < kTogether) return;
+  usual_ = std::clamp(usual_ * (gap > usual_ ? 1 + kRise : 1 - kFall), 0.01, longest_);
+  newest_ = now;
+  if (gap >= kNotable) notable_.next() = {gap, now};
+}
+
+double ReportGaps::chance_to_reach(double length, double so_far) const noexcept {
+  double as_long = 0, reached = 0;
+  for (std::size_t i = 0; i < notable_.size(); ++i) {
+    const Gap& gap = notable_[i];
+    if (newest_ - gap.ended > kRemembered || gap.length < so_far) continue;
+    ++as_long;
+    if (gap.length >= length) ++reached;
+  }
+  return (reached + 0.5) / (as_long + 1);
+}
+
+}  // namespace foresight

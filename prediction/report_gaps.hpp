@@ -1,0 +1,38 @@
+// How long the robot's reports keep the seat waiting, and what that says of the gap that lasts now.
+//
+// What keeps reports away keeps set-points away, and the robot stops once none of those that it has lasts any more.
+// Over a line that stands still for a tenth of a second now and then, and goes on each time, that a report is late
+// tells little; over one that had no such gap yet, or long ones, it may be the begin of a long one.
+#pragma once
+
+#include "prediction/last_of.hpp"
+
+namespace foresight {
+
+/// One thread. Allocates at the start only; no method but the constructor throws. All times in s.
+class ReportGaps {
+ public:
+  /// `longest`: what is longer counts as that.
+  explicit ReportGaps(double longest) : longest_(longest), notable_(kKept) {}
+
+  /// A report came at `now`, so long after the one before.
+  void add(double gap, double now) noexcept;
+  /// What 95 % of the gaps do not exceed.
+  double usual() const noexcept { return usual_; }
+  /// How probable it is that a gap that has lasted `so_far` comes to `length`: by those of the last minute that lasted
+  /// as long, with Jeffreys' prior for a share of which nothing is known (0.5 without any).
+  double chance_to_reach(double length, double so_far) const noexcept;
+
+ private:
+  static constexpr std::size_t kKept = 256;
+  struct Gap {
+    double length = 0, ended = 0;
+  };
+
+  double longest_;
+  double usual_ = 0.05;
+  double newest_ = 0;
+  LastOf<Gap> notable_;
+};
+
+}  // namespace foresight

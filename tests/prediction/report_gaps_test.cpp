@@ -1,0 +1,54 @@
+#include "prediction/report_gaps.hpp"
+
+#include <gtest/gtest.h>
+
+namespace foresight::report_gaps_test {
+namespace {
+
+// Reports each 10 ms, and a gap of these seconds each second, until `until`.
+void pass(ReportGaps& gaps, double& now, double until, double gap) {
+  while (now < until) {
+    for (int i = 0; i < 80; ++i) gaps.add(0.01, now += 0.01);
+    gaps.add(gap, now += gap);
+  }
+}
+
+TEST(ReportGaps, NothingIsKnownBeforeTheFirst) {
+  ReportGaps gaps(1);
+  EXPECT_EQ(gaps.chance_to_reach(0.3, 0.1), 0.5);
+  gaps.add(0.01, 1);
+  EXPECT_EQ(gaps.chance_to_reach(0.3, 0.1), 0.5) << "what was not late says nothing of what is";
+}
+
+TEST(ReportGaps, GapsThatEndInTimeAreTrustedToDoSoAgain) {
+  ReportGaps gaps(1);
+  double now = 0;
+  pass(gaps, now, 20, 0.2);
+  EXPECT_LT(gaps.chance_to_reach(0.3, 0.15), 0.03);
+  EXPECT_EQ(gaps.chance_to_reach(0.3, 0.25), 0.5) << "none has lasted as long";
+  EXPECT_GT(gaps.chance_to_reach(0.18, 0.15), 0.9);
+}
+
+TEST(ReportGaps, LongOnesAreNotForgottenForAMinute) {
+  ReportGaps gaps(1);
+  double now = 0;
+  pass(gaps, now, 5, 0.6);
+  pass(gaps, now, 40, 0.2);
+  EXPECT_NEAR(gaps.chance_to_reach(0.3, 0.15), 0.1, 0.03);
+  pass(gaps, now, 70, 0.2);
+  EXPECT_LT(gaps.chance_to_reach(0.3, 0.15), 0.02);
+}
+
+TEST(ReportGaps, UsualIsWhatMostKeep) {
+  ReportGaps gaps(1);
+  double now = 0;
+  pass(gaps, now, 30, 0.2);
+  EXPECT_LT(gaps.usual(), 0.03);
+  for (int i = 0; i < 500; ++i) gaps.add(0.15, now += 0.15);
+  EXPECT_NEAR(gaps.usual(), 0.15, 0.03);
+  for (int i = 0; i < 50; ++i) gaps.add(100, now += 100);
+  EXPECT_LE(gaps.usual(), 1);
+}
+
+}  // namespace
+}  // namespace foresight::report_gaps_test
