@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 #include "common/error.hpp"
+#include "common/removed_when_stopped.hpp"
 #include "common/text.hpp"
 #include "common/unique_fd.hpp"
 #include "rig/bus_plan.hpp"
@@ -42,13 +44,16 @@ RigDraftOptions options_of(const RigNewArguments& arguments) {
 }
 
 /// Never over a file that is there, not even one that came a moment ago.
-void write_new_file(const fs::path& file, const std::string& text) {
-  const UniqueFd fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
-  if (fd.get() < 0 && errno == EEXIST)
+UniqueFd make_new_file(const fs::path& file) {
+  UniqueFd fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  if (fd) return fd;
+  if (errno == EEXIST)
     throw InputError("--out " + file.string(), "is there already", "give another name, or remove it first");
-  if (fd.get() < 0)
-    throw InputError("--out " + file.string(), std::string("cannot be made (") + std::strerror(errno) + ")",
-                     "give a file in a folder that can be written");
+  throw InputError("--out " + file.string(), std::string("cannot be made (") + std::strerror(errno) + ")",
+                   "give a file in a folder that can be written");
+}
+
+void write_whole(const UniqueFd& fd, const fs::path& file, const std::string& text) {
   for (std::string_view rest = text; !rest.empty();) {
     const ssize_t written = ::write(fd.get(), rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;
@@ -95,13 +100,22 @@ int run(const RigNewArguments& arguments) {
   const RigDraftOptions options = options_of(arguments);
   const RigDraft draft = draft_rig(options);
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  write_new_file(file, rig_text(draft, options, file));
+  const std::string text = rig_text(draft, options, file);
+  std::optional<RemovedWhenStopped> until_checked;
+  UniqueFd fd;
+  {
+    const StopSignalsHeld held;
+    fd = make_new_file(file);
+    until_checked.emplace(file);
+  }
+  write_whole(fd, file, text);
   try {
     read_rig(file);  // what is written is what works
   } catch (...) {
     fs::remove(file, error);
     throw;
   }
+  until_checked.reset();
   tell(draft, file.string());
   return 0;
 }

@@ -9,7 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/parallel.hpp"
-#include "common/stop_signal.hpp"
+#include "common/removed_when_stopped.hpp"
 #include "pictures/encode.hpp"
 #include "scene/files.hpp"
 #include "scene/run_writer.hpp"
@@ -39,18 +39,6 @@ void write_png(const fs::path& file, const cv::Mat& image) {
   const std::vector<std::uint8_t> bytes = encode_png(image);
   write_bytes(file, bytes.data(), bytes.size());
 }
-
-/// An empty folder, all that a signal could leave behind that ends the program at once while this lives.
-class RemovedWhenStopped {
- public:
-  explicit RemovedWhenStopped(const fs::path& folder) : folder_(folder) { remove_when_stopped(folder_.c_str()); }
-  ~RemovedWhenStopped() { keep_when_stopped(folder_.c_str()); }
-  RemovedWhenStopped(const RemovedWhenStopped&) = delete;
-  RemovedWhenStopped& operator=(const RemovedWhenStopped&) = delete;
-
- private:
-  fs::path folder_;
-};
 
 // One run while it is written.
 class SynthRun {
@@ -95,6 +83,7 @@ class SynthRun {
   }
 
   SynthSummary write_all(const std::function<void(int, int)>& progress, const std::function<void()>& begins) {
+    // Until something is in it: all that a signal could leave behind that ends the program at once.
     std::optional<RemovedWhenStopped> empty(target_.path());
     Lab lab = make_lab(0.0005 * std::clamp(relative_, 0.6, 8.0), options_.seed);
     for (Material& material : lab.materials)

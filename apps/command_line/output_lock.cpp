@@ -6,11 +6,9 @@
 
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <functional>
 
 #include "common/error.hpp"
-#include "common/stop_signal.hpp"
 
 namespace foresight {
 namespace {
@@ -24,23 +22,6 @@ fs::path lock_file_of(const fs::path& target) {
   if (name.size() > kLongestName) name = std::to_string(std::hash<std::string>{}(name));
   return target.parent_path() / ("." + name + ".lock");
 }
-
-/// While it lives, stop signals to this thread wait, which is the only one before the work begins.
-class StopSignalsHeld {
- public:
-  StopSignalsHeld() {
-    sigset_t held;
-    ::sigemptyset(&held);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&held, signal);
-    ::pthread_sigmask(SIG_BLOCK, &held, &before_);
-  }
-  ~StopSignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  StopSignalsHeld(const StopSignalsHeld&) = delete;
-  StopSignalsHeld& operator=(const StopSignalsHeld&) = delete;
-
- private:
-  sigset_t before_{};
-};
 
 bool is_still(const std::string& file, int fd) {
   struct stat open {
@@ -81,12 +62,12 @@ OutputLock::OutputLock(const std::string& where, const fs::path& target) : file_
   const std::string pid = std::to_string(::getpid()) + "\n";
   [[maybe_unused]] const bool told =
       ::ftruncate(fd_.get(), 0) == 0 && ::pwrite(fd_.get(), pid.data(), pid.size(), 0) > 0;  // only for people
-  remove_when_stopped(file_.c_str());
+  removed_.emplace(file_);
 }
 
 OutputLock::~OutputLock() {
   if (!fd_) return;
-  keep_when_stopped(file_.c_str());
+  removed_.reset();
   ::unlink(file_.c_str());  // before the lock ends
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "common/removed_when_stopped.hpp"
 #include "common/unique_fd.hpp"
 
 namespace foresight {
@@ -22,6 +24,7 @@ class OutputLock {
  private:
   std::string file_;
   UniqueFd fd_;
+  std::optional<RemovedWhenStopped> removed_;
 };
 
 /// Whether it has the name of such a lock: one may have been left by a program that was killed.

@@ -7,7 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/partial_path.hpp"
-#include "common/stop_signal.hpp"
+#include "common/removed_when_stopped.hpp"
 
 namespace foresight {
 namespace {
@@ -15,14 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 
 std::error_code try_file(const fs::path& file) {
-  remove_when_stopped(file.c_str());  // its name is this process's own
+  const RemovedWhenStopped removed(file);  // its name is this process's own
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   const std::error_code error = fd < 0 ? std::error_code{errno, std::generic_category()} : std::error_code{};
   if (fd >= 0) {
     ::close(fd);
     ::unlink(file.c_str());
   }
-  keep_when_stopped(file.c_str());
   return error;
 }
 
