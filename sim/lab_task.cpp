@@ -44,7 +44,7 @@ TaskLayout task_layout(unsigned number) {
 
 bool lies_in_tray(const Pose& T_world_thing, const Pose& T_world_tray) {
   const Eigen::Vector3d at = T_world_tray.inverse() * T_world_thing.translation();
-  return at.head<2>().cwiseAbs().maxCoeff() < kTraySide / 2 && at.z() < kTrayHeight;
+  return at.head<2>().cwiseAbs().maxCoeff() < kTraySide / 2 && at.z() > kTrayBoard / 2 && at.z() < kTrayHeight;
 }
 
 void add_task_things(LabBuilder& b, unsigned layout) {

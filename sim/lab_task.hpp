@@ -16,7 +16,7 @@ TaskLayout task_layout(unsigned number);
 /// Parts "brick_red" and "brick_blue", and "tray", an open box of five boards, as task_layout() has them.
 void add_task_things(LabBuilder& builder, unsigned layout = 0);
 
-/// Does what stands there stand in a tray that is there?
+/// Does what stands there stand in a tray that is there: within its walls, above its bottom?
 bool lies_in_tray(const Pose& T_world_thing, const Pose& T_world_tray);
 
 inline constexpr double kBrickSide = 0.045, kBrickHeight = 0.065;  ///< m; a brick's origin is the middle of its bottom

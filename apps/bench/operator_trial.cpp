@@ -15,6 +15,7 @@
 #include "sim/arm.hpp"
 #include "sim/lab_task.hpp"
 #include "sim/physics/physical_lab.hpp"
+#include "sim/physics/rests_in_tray.hpp"
 
 namespace foresight {
 namespace {
@@ -254,8 +255,7 @@ class OperatorTrial {
   void end_task(RobotTime now) {
     const OperatorTask& task = *task_;
     OperatorRun run;
-    run.succeeded =
-        done_ && sim::lies_in_tray(task.physics->thing_at(kTaskBrick, now), task.physics->thing_at(kTaskTray, now));
+    run.succeeded = done_ && sim::rests_in_tray(*task.physics, kTaskBrick, task.physics->thing_at(kTaskTray, now), now);
     run.seconds = to_seconds(done_.value_or(now) - task.begin);
     run.moves = task.operating->moves();
     run.regrasps = task.operating->regrasps();

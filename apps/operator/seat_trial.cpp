@@ -19,7 +19,7 @@
 #include "seat/tool_script.hpp"
 #include "seat/view_setup.hpp"
 #include "seat/view_trust.hpp"
-#include "sim/lab_task.hpp"
+#include "sim/physics/rests_in_tray.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
 namespace foresight {
@@ -154,8 +154,8 @@ class Trial {
  private:
   // In truth, which the operator's side does not know.
   bool in_tray() {
-    return sim::lies_in_tray(robot_.cameras().physics()->thing_at(options_.thing, clock_.now()),
-                             place_at_rest(*scene_, options_.tray));
+    return sim::rests_in_tray(*robot_.cameras().physics(), options_.thing, place_at_rest(*scene_, options_.tray),
+                              clock_.now());
   }
   // By what images show at the operator's side.
   bool waits_for_the_thing(Duration since_end) const {

@@ -32,6 +32,7 @@ TEST(LabTask, AThingLiesInATurnedTray) {
   corner = tray * Eigen::Translation3d(0.08, 0, sim::kTrayBoard);
   EXPECT_FALSE(sim::lies_in_tray(corner, tray));
   EXPECT_FALSE(sim::lies_in_tray(tray * Eigen::Translation3d(0, 0, 0.1), tray)) << "held above it";
+  EXPECT_FALSE(sim::lies_in_tray(tray, tray)) << "fallen through it, onto the table";
 }
 
 }  // namespace
