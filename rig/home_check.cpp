@@ -1,6 +1,6 @@
 #include "rig/home_check.hpp"
 
-#include <algorithm>
+#include "rig/home.hpp"
 
 namespace foresight {
 
@@ -8,11 +8,9 @@ std::vector<TooClose> parts_too_close_at_home(const Rig& rig) {
   const auto shape = rig.shape();
   if (!shape) return {};
   shape->surround(rig.surroundings);
-  std::vector<double> home, margins(shape->couples());
-  for (const RigJoint& joint : rig.joints)
-    home.push_back(
-        std::clamp(joint.absolute ? 0 : joint.drive.offset, joint.drive.min_position, joint.drive.max_position));
-  shape->margins(home, margins);
+  const JointValues home = home_of(rig);
+  std::vector<double> margins(shape->couples());
+  shape->margins({home.data(), rig.joints.size()}, margins);
   std::vector<TooClose> out;
   for (std::size_t i = 0; i < margins.size(); ++i)
     if (margins[i] < 0) out.push_back({shape->message(i), shape->kept_apart(i) + margins[i] <= 0});

@@ -14,8 +14,7 @@ struct TooClose {
   bool touch;        ///< they overlap, or the link is outside of the workspace
 };
 
-/// All of them with every joint at home: where its drive says 0, at 0 of an absolute encoder's joint, and within its
-/// limits. None where the rig has no robot.
+/// All of them with every joint at home (home_of()). None where the rig has no robot.
 std::vector<TooClose> parts_too_close_at_home(const Rig& rig);
 
 /// The same as lines for whoever starts a program: "at home link 'hand' comes too close ...: the gate would ...".

@@ -11,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/text.hpp"
 #include "rig/bus_plan.hpp"
+#include "rig/home.hpp"
 #include "rig/joint_groups.hpp"
 #include "rig/joint_limits.hpp"
 #include "scene/urdf_limits.hpp"
@@ -207,9 +208,8 @@ std::string too_close_at_home(RobotShape& shape, std::size_t couple, std::span<c
 void choose_surroundings(RigDraft& draft) {
   Rig& rig = draft.rig;
   const double reach = 0.05 * std::ceil((reach_of(*rig.robot) + 0.05) / 0.05);
-  std::vector<double> home;
-  for (const RigJoint& joint : rig.joints)
-    home.push_back(std::clamp(joint.drive.offset, joint.drive.min_position, joint.drive.max_position));
+  const JointValues stands = home_of(rig);
+  const std::span home(stands.data(), rig.joints.size());
   const auto shape = rig.shape();
   rig.surroundings = {};
   rig.surroundings.clearance = clearance_of(rig);

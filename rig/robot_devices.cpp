@@ -15,6 +15,7 @@
 #include "drivers/canopen/canopen_network.hpp"
 #include "drivers/powercube/network.hpp"
 #include "rig/bus_plan.hpp"
+#include "rig/home.hpp"
 #include "sim/drives/homing_search.hpp"
 
 namespace foresight {
@@ -120,9 +121,7 @@ sim::NodeConfig emulated(const RigJoint& joint, DriveProtocol protocol) {
   if (!powercube) out.counts_per_unit = d.counts_per_unit;
   out.homed = joint.absolute;
   std::tie(out.min_position, out.max_position) = std::minmax({at_drive(d.min_position), at_drive(d.max_position)});
-  // At an end of its range, rounding would put it beyond.
-  const bool has_zero = d.min_position <= 0 && 0 <= d.max_position;
-  const double home = has_zero ? 0 : 0.5 * (d.min_position + d.max_position);
+  const double home = home_of(joint, protocol);
   out.home_position = at_drive(home);
   out.motor.start = at_drive(powercube && !joint.absolute ? std::min(home + 0.02 * room, d.max_position) : home);
   // A CiA 402 drive says 0 at the home that it has found: there its switches must be.

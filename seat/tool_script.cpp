@@ -30,15 +30,6 @@ std::vector<std::size_t> of_group(const Rig& rig, JointGroup group) {
 
 }  // namespace
 
-JointValues home_of(const Rig& rig) {
-  JointValues out{};
-  for (std::size_t i = 0; i < rig.joints.size(); ++i) {
-    const DriveConfig& drive = rig.joints[i].drive;
-    out[i] = std::clamp(drive.offset, drive.min_position, drive.max_position);
-  }
-  return out;
-}
-
 ToolScript::ToolScript(const Rig& rig, std::vector<ToolStep> steps, const HeadSway& sway)
     : ToolScript(rig, arm_options(rig), std::move(steps), sway) {}
 

@@ -1,12 +1,14 @@
 // A scripted hand: the tool goes along straight lines, the gripper opens and closes, the head looks about meanwhile.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "input/hand_of_rig.hpp"
 #include "prediction/path_follower.hpp"
+#include "rig/home.hpp"
 #include "rig/rig.hpp"
 #include "seat/scripted_driver.hpp"
 #include "session/live_scene.hpp"
@@ -32,9 +34,6 @@ struct ToolStep {
   /// of the pose that are nearest.
   std::optional<JointVector> joints = {};
 };
-
-/// Where all joints are once they have looked for home, as far as their ranges go; rad or m.
-JointValues home_of(const Rig& rig);
 
 /// The rig's pan-tilt head turns to and fro meanwhile, by so much (rad); 0: it stands still.
 struct HeadSway {
