@@ -198,19 +198,14 @@ BrickGrasp brick_grasp(const Rig& rig) {
   return {jaws.at(sim::kBrickSide + kRoom), jaws.at(sim::kBrickSide - kSqueeze), sim::kBrickHeight - jaws.depth};
 }
 
-/// From where the joints stand after homing: all the way, and clear. Where they are too close to something at home,
-/// they may part. `shape` may be null.
+/// From where the joints stand after homing: all the way, and clear. `shape` may be null.
 bool goes_well(const Rig& rig, RobotShape* shape, const std::vector<ToolStep>& steps) {
   constexpr double kLook = 0.05;  // s between two looks
   ToolScript script(rig, steps, {.pan = 0, .tilt = 0});
-  script.begin_at(home_of(rig));
-  bool was_clear = false;
-  while (const auto at = script.step(kLook, {})) {
-    const bool is_clear = shape == nullptr || shape->obstructed({at->data(), rig.joints.size()}) == nullptr;
-    if (was_clear && !is_clear) return false;
-    was_clear = is_clear;
-  }
-  return was_clear && !script.fell_short();
+  const auto end = end_of_clear_way(script, home_of(rig), kLook, [&](const JointValues& joints) {
+    return shape == nullptr || shape->obstructed({joints.data(), rig.joints.size()}) == nullptr;
+  });
+  return end && !script.fell_short();
 }
 
 InputError out_of_reach(const Rig& rig, const ArmChain& arm, const Pose& from, const Pose& to,
@@ -289,6 +284,20 @@ std::optional<std::vector<ToolStep>> by_other_joints(const Rig& rig, RobotShape*
 }
 
 }  // namespace
+
+std::optional<JointValues> end_of_clear_way(ToolScript& script, const JointValues& from, double look_s,
+                                            const std::function<bool(const JointValues&)>& is_clear) {
+  script.begin_at(from);
+  JointValues end = from;
+  bool was_clear = false;
+  while (const auto next = script.step(look_s, {})) {
+    end = *next;
+    const bool clear_now = is_clear(end);
+    if (was_clear && !clear_now) return std::nullopt;
+    was_clear = clear_now;
+  }
+  return was_clear ? std::optional(end) : std::nullopt;
+}
 
 std::vector<ToolStep> pick_and_place(const Rig& rig, const LiveScene& scene, const std::string& thing,
                                      const std::string& tray) {

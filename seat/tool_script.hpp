@@ -83,6 +83,11 @@ class ToolScript final : public ScriptedMotion {
   bool began_ = false, fell_short_ = false;
 };
 
+/// Where `script` ends that begins at `from`, asked every `look_s` seconds of its motion; nothing where that is not
+/// clear, or where it was clear before and is not any more: what begins too close to something may part.
+std::optional<JointValues> end_of_clear_way(ToolScript& script, const JointValues& from, double look_s,
+                                            const std::function<bool(const JointValues&)>& is_clear);
+
 /// Of a node of the scene's model, while nothing has moved yet. Throws InputError: there is none of that name.
 Pose place_at_rest(const LiveScene& scene, const std::string& node);
 

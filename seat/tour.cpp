@@ -187,17 +187,11 @@ bool TourPlan::clear(const JointVector& q) {
 /// part.
 bool TourPlan::clear_all_the_way(const ToolStep& step) {
   ToolScript script(rig_, {step}, {.pan = 0, .tilt = 0});
-  script.begin_at(at_);
-  JointValues end = at_;
-  bool was_clear = false;
-  while (const auto next = script.step(kLook, {})) {
-    end = *next;
-    const bool is_clear = clear(joints_of({end.data(), rig_.joints.size()}, hand_.arm_joints));
-    if (was_clear && !is_clear) return false;
-    was_clear = is_clear;
-  }
-  if (was_clear) at_ = end;
-  return was_clear;
+  const auto end = end_of_clear_way(script, at_, kLook, [this](const JointValues& joints) {
+    return clear(joints_of({joints.data(), rig_.joints.size()}, hand_.arm_joints));
+  });
+  if (end) at_ = *end;
+  return end.has_value();
 }
 
 std::vector<ToolStep> TourPlan::with_tool_down(int count) {
