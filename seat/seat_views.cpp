@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kBetweenPictures = 4;  // px around pictures
 constexpr int kInset = 4;            // share of the width that the newest image takes in its corner
+constexpr int kInsetRows = 2;        // of the height, in a low window
 constexpr double kReadable = 0.7;    // tangent: farther aside, words behind a lens are hard to read
 
 /// What programs differ by.
@@ -27,15 +28,6 @@ constexpr Look kLooks[] = {
     {ViewMode::anaglyph, ViewPaint::colours}, {ViewMode::anaglyph_colours, ViewPaint::colours},
     {ViewMode::observer, ViewPaint::colours}, {ViewMode::stereogram, ViewPaint::colours},
 };
-
-ViewTarget corner_of(const ViewTarget& place, int width, int height) {
-  ViewTarget out = place;
-  out.width = std::max(1, place.width / kInset);
-  out.height = std::max(1, out.width * height / std::max(1, width));
-  out.x = place.x + place.width - out.width - kBetweenPictures;
-  out.y = place.y + place.height - out.height - kBetweenPictures;  // windows begin at the bottom
-  return out;
-}
 
 /// An area of a part of a window as a target of its own.
 ViewTarget target_of(const HudArea& area, const ViewTarget& part) {
@@ -53,6 +45,16 @@ int top_of(const ViewTarget& part, const ViewTarget& whole) {
 }
 
 }  // namespace
+
+ViewTarget inset_place(const ViewTarget& place, int width, int height) {
+  ViewTarget most = place;
+  most.width = std::max(1, place.width / kInset);
+  most.height = std::max(1, place.height / kInsetRows);
+  ViewTarget out = fitted(most, std::max(1, width), std::max(1, height));
+  out.x = place.x + place.width - out.width - kBetweenPictures;
+  out.y = place.y + place.height - out.height - kBetweenPictures;  // windows begin at the bottom
+  return out;
+}
 
 bool begins_at_odd_row(int window_top, const ViewTarget& whole, const ViewTarget& part) {
   return (window_top + top_of(part, whole)) % 2 != 0;
@@ -297,7 +299,7 @@ void SeatViews::put_mixed(const Sight& first, const Sight& second, const ViewTar
 void SeatViews::put_inset(const ViewTarget& place) const {
   if (newest_[0].empty()) return;
   const gl::Texture& picture = newest_[0].texture();
-  copy_(picture, corner_of(place, picture.width(), picture.height()));
+  copy_(picture, inset_place(place, picture.width(), picture.height()));
 }
 
 // Words and the newest image's corner stand at one place before both eyes.

@@ -49,6 +49,10 @@ struct SeatPicture {
   int window_top = 0;                   ///< row of the screen that the window's first one is
 };
 
+/// The upper right corner of `place` in which a picture of `width` x `height` px stands beside a view: a quarter of the
+/// width, or half of the height where that is less.
+ViewTarget inset_place(const ViewTarget& place, int width, int height);
+
 /// Of rows in turn, the left eye has the even ones of the screen, wherever the window is and the picture in it. The
 /// picture `part` of `whole`, a window whose first row is the screen's `window_top`: its first row is an odd one there.
 bool begins_at_odd_row(int window_top, const ViewTarget& whole, const ViewTarget& part);

@@ -469,6 +469,19 @@ TEST_F(SeatViewsPictures, ErrorsThatAreExpectedHaveColours) {
   EXPECT_THAT(views_->words(true), testing::HasSubstr("one eye only"));
 }
 
+TEST(SeatViewsInset, StandsWithinWindowsOfAnyForm) {
+  for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 300}, {320, 1200}, {3840, 100}}) {
+    const ViewTarget window{.x = 7, .y = 9, .width = width, .height = height};
+    const ViewTarget inset = inset_place(window, 640, 480);
+    EXPECT_NEAR(4.0 * inset.height, 3.0 * inset.width, 4) << width << " x " << height;
+    EXPECT_GE(inset.x, window.x + width / 2);
+    EXPECT_LE(inset.x + inset.width, window.x + width);
+    EXPECT_GE(inset.y, window.y + height / 3);
+    EXPECT_LE(inset.y + inset.height, window.y + height);
+  }
+  EXPECT_EQ(inset_place({.width = 1280, .height = 720}, 640, 480).width, 320) << "where there is room, a quarter";
+}
+
 TEST(SeatViewsRows, OddOnesAreThoseOfTheScreen) {
   const ViewTarget window{.width = 800, .height = 703}, lower{.width = 800, .height = 702};
   const auto odd = [](int top, const ViewTarget& whole) { return begins_at_odd_row(top, whole, fitted(whole, 4, 3)); };
