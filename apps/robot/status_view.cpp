@@ -20,6 +20,13 @@ std::string headline(const Rig& rig, const RobotStatus& status) {
   return out;
 }
 
+/// Of the column that holds the longest one.
+std::size_t width_of_names(const Rig& rig) {
+  std::size_t out = 16;
+  for (const RigJoint& joint : rig.joints) out = std::max(out, joint.drive.name.size());
+  return out;
+}
+
 }  // namespace
 
 std::string status_text(const Rig& rig, const RobotStatus& status, const std::vector<BusLine>& buses, int selected) {
@@ -27,14 +34,15 @@ std::string status_text(const Rig& rig, const RobotStatus& status, const std::ve
   out += fmt::format("  commands: {} followed, {} dropped{}{}; speed {:.0f} %\n", status.gate.accepted,
                      status.gate.dropped, status.gate.last_dropped == GateReason::none ? "" : ", last: ",
                      to_string(status.gate.last_dropped), 100 * status.gate.speed);
-  out +=
-      fmt::format("  {:<16} {:>10} {:>10} {:>5} {:>7}  {}\n", "joint", "position", "set-point", "", "age ms", "drive");
+  const std::size_t names = width_of_names(rig);
+  out += fmt::format("  {:<{}} {:>10} {:>10} {:>5} {:>7}  {}\n", "joint", names, "position", "set-point", "", "age ms",
+                     "drive");
   for (std::size_t i = 0; i < rig.joints.size(); ++i) {
     const DriveFeedback& f = status.feedback[i];
     const double age_ms = f.time.ns == 0 ? 0 : std::max(0.0, 1e3 * to_seconds(status.time - f.time));
     out +=
-        fmt::format("{} {:<16} {:10.4f} {:10.4f} {:<5} {:7.1f}  {}{}{}{}{}\n",
-                    static_cast<int>(i) == selected ? '>' : ' ', rig.joints[i].drive.name, f.position,
+        fmt::format("{} {:<{}} {:10.4f} {:10.4f} {:<5} {:7.1f}  {}{}{}{}{}\n",
+                    static_cast<int>(i) == selected ? '>' : ' ', rig.joints[i].drive.name, names, f.position,
                     status.set_point[i].position, rig.joints[i].unit, age_ms, to_string(f.state),
                     f.homed ? "" : ", not homed", f.limit ? ", at a limit" : "", *f.fault != '\0' ? ": " : "", f.fault);
   }

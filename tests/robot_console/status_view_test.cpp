@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+#include <sstream>
+
 #include "tests/support/folders.hpp"
 
 namespace foresight::status_view_test {
@@ -29,6 +32,18 @@ TEST(StatusView, ShowsWhatHoldsTheRobotBack) {
   status.gate.hold = {.joint = 3, .stands = 0.5, .asked = 1, .since = {}, .parts = "link 'arm_5' leaves the workspace"};
   EXPECT_THAT(status_text(rig, status, {}, 2),
               testing::HasSubstr("joint elbow stands at 0.5000 rad and should be at 1.0000 rad: link 'arm_5' leaves"));
+}
+
+// Names of own robots may be longer than those of ours.
+TEST(StatusView, ColumnsStandBelowEachOtherHoweverLongNamesAre) {
+  Rig rig = read_rig(source_folder() / "configs/minerva.yaml");
+  rig.joints[2].drive.name = "the_elbow_of_the_upper_left_arm";
+  const std::string text = status_text(rig, {}, {}, 1);
+  std::set<std::size_t> ends;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (const auto at = line.find("  offline"); at != line.npos) ends.insert(at);
+  EXPECT_EQ(ends.size(), 1u) << text;
 }
 
 }  // namespace
