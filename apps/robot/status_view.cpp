@@ -4,13 +4,15 @@
 
 #include <algorithm>
 
+#include "operators/who_stopped.hpp"
+
 namespace foresight {
 namespace {
 
 std::string headline(const Rig& rig, const RobotStatus& status) {
   const std::vector<JointWords> joints = rig.joint_words();
   const RobotWords words = describe(status, joints);
-  std::string out = rig.name + ": " + words.name;
+  std::string out = rig.name + ": " + name_and_who(words.name, status);
   if (*status.refused != '\0') out += std::string("; ") + status.refused;
   if (!status.bus_healthy) out += std::string("; bus: ") + status.bus_reason;
   out += "\n";

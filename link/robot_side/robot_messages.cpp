@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "operators/who_stopped.hpp"
 #include "scene/camera_info.hpp"
 
 namespace foresight::link {
@@ -231,7 +232,7 @@ RobotState robot_state(const RobotStatus& status, const Rig& rig) {
   out.gate = words(words_for(gate.state));
   out.reason = words(words_for(gate.reason));
   const RobotWords doing = describe(status, joints);
-  out.doing = {"", doing.name, doing.cure};
+  out.doing = {"", name_and_who(doing.name, status), doing.cure};
   out.detail = gate.detail;
   out.hold = hold_text(gate.hold, joints, status.time);
   out.operator_id = gate.operator_id;

@@ -1,6 +1,7 @@
 #include "operators/follow_operator.hpp"
 #include "operators/key_operator.hpp"
 #include "operators/station_operator.hpp"
+#include "operators/who_stopped.hpp"
 #include "tests/robot/prompt_drive.hpp"
 #include "tests/scene/test_run.hpp"
 #include "tests/support/folders.hpp"
@@ -247,6 +248,7 @@ TEST_F(KeyOperatorTest, BesideAFileKeysOnlyStopAndQuit) {
   tick({&file, &keys});
   EXPECT_EQ(robot_->status().phase, RobotPhase::stopped);
   EXPECT_EQ(robot_->status().last_request.operator_id, KeyOperator::kId);
+  EXPECT_EQ(who_stopped(robot_->status()), "asked for by a key of the robot's console");
   keys.press("q");
   EXPECT_FALSE(tick({&file, &keys}));
 }
