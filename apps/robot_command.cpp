@@ -1,5 +1,6 @@
 #include "apps/robot_command.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <thread>
@@ -237,6 +238,9 @@ int run_with(const Rig& rig, const RobotArguments& arguments,
     devices.bring_up(say_robot);
     for (const Drive* drive : devices.drives())
       say_robot("drive " + drive->config().name + ": " + to_text(drive->identity()));
+    if (std::ranges::any_of(parts_too_close_at_home(rig), &TooClose::touch))
+      throw RuntimeFailure("the robot could not move freely from home",
+                           "correct surroundings, robot.pose or the joint's offset");
     return 0;
   }
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());
@@ -393,7 +397,9 @@ void add_robot_command(Command& app, std::function<int()>& action) {
   command->add_option("--fault", arguments->faults,
                       "JOINT:KIND@TIME: what goes wrong with a mock drive, so many seconds after the start: stuck,\n"
                       "following_error, lost_node, noisy_encoder or lost_power; again for more");
-  command->add_flag("--check", arguments->check_only, "Only identify and configure the drives; move nothing");
+  command->add_flag("--check", arguments->check_only,
+                    "Only identify and configure the drives, and see that the robot stands clear at home; move\n"
+                    "nothing");
   command->footer(
       "On a terminal, keys enable, home, move and stop the robot; space is a stop; g gives control to who\n"
       "asks for it over the line. A software stop does not replace a hardware emergency stop. The drives stop on "

@@ -206,6 +206,16 @@ TEST_F(RobotInput, MissingDevicesAreNamed) {
   EXPECT_THAT(line.out, testing::ContainsRegex("BAD   link +.*lan9"));
 }
 
+TEST_F(RobotInput, ACheckedRobotThatStandsInSomethingAtHomeIsAnError) {
+  const Outcome fine = run_program({"robot", rig_with("no such words", ""), "--check"});
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+  const Outcome out =
+      run_program({"robot", rig_with("-0.46, -0.50, -0.03, 0.46, 0.78, 0.0", "-1, -1, 0, 1, 1, 1"), "--check"});
+  EXPECT_EQ(out.exit_code, 1);
+  EXPECT_THAT(out.err, HasSubstr("'table'"));
+  EXPECT_THAT(out.last_line(), HasSubstr("from home"));
+}
+
 TEST_F(RobotInput, CamerasOfTheRigAreChecked) {
   for (const char* side : {"left", "right"}) {
     std::filesystem::create_directory(folder_ / side);
