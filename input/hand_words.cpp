@@ -31,7 +31,7 @@ HandWords words_for(HandReason reason) {
 
 const char* to_string(TrackerButton button) noexcept {
   switch (button) {
-    case TrackerButton::deadman: return "deadman";
+    case TrackerButton::deadman: return "switch";
     case TrackerButton::clutch: return "clutch";
     case TrackerButton::gripper_open: return "gripper_open";
     case TrackerButton::gripper_close: return "gripper_close";

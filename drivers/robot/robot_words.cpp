@@ -33,8 +33,8 @@ StateWords words_for(RobotPhase phase) {
 
 StateWords words_for(GateState state) {
   switch (state) {
-    case GateState::idle: return {"idle", "nobody commands; set-points stay", "hold the deadman switch and command"};
-    case GateState::following: return {"following", "follows the operator", "let go of the deadman switch to stop"};
+    case GateState::idle: return {"idle", "nobody commands; set-points stay", "hold the switch and command"};
+    case GateState::following: return {"following", "follows the operator", "let go of the switch to stop"};
     case GateState::homing: return {"homing", "a joint looks for home, all others hold", "wait; space stops it"};
     case GateState::stopping: return {"stopping", "slows down to rest", "wait; then command anew"};
     case GateState::stopped: return {"stopped", "stopped; drives hold", kReset};
@@ -65,8 +65,8 @@ StateWords words_for(GateReason reason) {
       return {"obstructed", "the way is obstructed", "command it another way, or away from what is named"};
     case GateReason::operator_lost:
       return {"operator lost", "no command in time: the operator is lost",
-              "look for what held the commands up; let go of the deadman switch, and engage anew"};
-    case GateReason::deadman_released: return {"let go", "the deadman switch was released", "hold it again to go on"};
+              "look for what held the commands up; let go of the switch, and engage anew"};
+    case GateReason::deadman_released: return {"let go", "the switch was released", "hold it again to go on"};
     case GateReason::not_started: return {"not started", "not started yet", "enable the drives (e)"};
     case GateReason::emergency_stop:
       return {"operator's stop", "stopped by the operator; drives hold", "reset (r) once the way is clear"};

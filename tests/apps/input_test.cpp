@@ -32,10 +32,10 @@ TEST_F(Input, ARecordingIsShownAndRecordedAgain) {
   const Outcome first = run_program({"input", "show", recording(), "--record", again});
   EXPECT_EQ(first.exit_code, 0) << first.err;
   EXPECT_THAT(first.out, HasSubstr("forward    100.0"));
-  EXPECT_THAT(first.out, HasSubstr("deadman  clutch  grip 0.50"));
+  EXPECT_THAT(first.out, HasSubstr("switch  clutch  grip 0.50"));
   const Outcome second = run_program({"input", "show", again});
   EXPECT_EQ(second.exit_code, 0) << second.err;
-  EXPECT_THAT(second.out, HasSubstr("deadman  clutch  grip 0.50"));
+  EXPECT_THAT(second.out, HasSubstr("switch  clutch  grip 0.50"));
   EXPECT_EQ(run_program({"input", "show", recording(), "--record", again}).exit_code, 2) << "it stays";
 }
 
