@@ -163,8 +163,9 @@ std::string_view trimmed(std::string_view text, std::string_view blanks) {
 std::string readable(double value, int digits, const std::string& unit) {
   if (!std::isfinite(value)) return "-";
   char text[64];  // not printf: its decimal point depends on the locale
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
-  return end.ec == std::errc() ? std::string(text, end.ptr) + unit : "-";
+  auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
+  if (end.ec != std::errc()) end = std::to_chars(text, text + sizeof text, value);  // 1e+300
+  return std::string(text, end.ptr) + unit;
 }
 
 std::string readable(const std::optional<double>& value, int digits, const std::string& unit) {

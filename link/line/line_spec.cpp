@@ -19,7 +19,7 @@ constexpr double kShortest_s = 1e-3;  // of an outage, and between two
 double within(const YamlMap& map, const std::string& key, double least, double most, double otherwise) {
   if (!map.has(key)) return otherwise;
   const double value = map.number(key);
-  require(value >= least && value <= most, map.where(key), "it is " + readable(value, 6),
+  require(value >= least && value <= most, map.where(key), fmt::format("it is {}", value),
           "give a number from " + readable(least, 0) + " to " + readable(most, 0));
   return value;
 }
@@ -78,12 +78,12 @@ DirectionSpec read_direction(const YamlMap& map, bool up) {
 
 void check(const DirectionSpec& spec, const std::string& where) {
   const auto share = [&](double value, const char* name) {
-    require(std::isfinite(value) && value >= 0 && value <= 1, where, std::string(name) + " is " + readable(value, 6),
+    require(std::isfinite(value) && value >= 0 && value <= 1, where, fmt::format("{} is {}", name, value),
             "give a share from 0 to 1");
   };
   share(spec.loss, "loss");
   share(spec.duplicates, "duplicates");
-  require(std::isfinite(spec.burst) && spec.burst >= 1, where, "burst is " + readable(spec.burst, 3),
+  require(std::isfinite(spec.burst) && spec.burst >= 1, where, fmt::format("burst is {}", spec.burst),
           "give 1 or more packets");
   require(spec.delay.count() >= 0 && spec.delay <= seconds(kLongest_s) && spec.jitter.count() >= 0 &&
               spec.jitter <= seconds(kLongest_s),

@@ -82,6 +82,13 @@ TEST(Words, AreJoinedLoweredAndTrimmed) {
   EXPECT_EQ(trimmed(" -a-", "-"), " -a");
 }
 
+TEST(Readable, LosesNoNumber) {
+  EXPECT_EQ(readable(18.44, 1, " dB"), "18.4 dB");
+  EXPECT_EQ(readable(1e300, 6), "1e+300");
+  EXPECT_EQ(readable(-1e300, 6, " ms"), "-1e+300 ms");
+  EXPECT_EQ(readable(std::nullopt, 1), "-");
+}
+
 TEST(InQuotes, ShortensAndCleans) {
   EXPECT_EQ(in_quotes("a b"), "'a b'");
   EXPECT_EQ(in_quotes("a\n\x1b[31m"), "'a??[31m'");

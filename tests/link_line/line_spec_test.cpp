@@ -74,6 +74,9 @@ TEST_F(LineSpecFile, RefusesNamingLineAndField) {
   expect_refused("up: {loss: 2}\n", "up.loss");
   expect_refused("up: {delay_ms: -1}\n", "up.delay_ms");
   expect_refused("up: {delay_ms: nan}\n", "up.delay_ms");
+  expect_refused("up: {delay_ms: 1e300}\n", "up.delay_ms: it is 1e+300; give a number from 0 to 3600000");
+  expect_refused("up: {delay_ms: 3600001}\n", "it is 3600001;");
+  expect_refused("up: {burst: 1e-9}\n", "it is 1e-09; give a number from 1 to 10000");
   expect_refused("up: {burst: 0}\n", "up.burst");
   expect_refused("up: {rate_kbps: 0}\n", "up.rate_kbps");
   expect_refused("up: {rate_kbps: 1e-300}\n", "up.rate_kbps: the rate is 1e-300 kbps; give 0.001 to 1e9 kbps");
