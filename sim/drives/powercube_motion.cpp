@@ -77,7 +77,7 @@ Reference PowerCubeNode::next_reference(double dt) {
       beyond_soft_ = next.position == end;
       return next;
     }
-    case Activity::homing: return approach(reference_, config_.home_position, {values_[0x0F], a, a}, dt);
+    case Activity::homing: return approach(reference_, config_.home_position, {values_[kDefHomeVel], a, a}, dt);
     default: return change_speed(reference_, 0, values_[kMaxAcc], dt);
   }
 }

@@ -43,22 +43,22 @@ void PowerCubeNode::power_up() {
   const bool limited = config_.min_position < config_.max_position;
   values_ = {};
   const double low = limited ? config_.min_position : -1e6, high = limited ? config_.max_position : 1e6;
-  values_[0x01] = values_[0x02] = values_[0x07] = values_[0x08] = 1;
-  values_[0x03] = values_[kMinPos] = low;
-  values_[0x04] = values_[kMaxPos] = high;
-  values_[0x05] = values_[kMaxDelta] = motor.following_error_limit;
-  values_[0x0A] = values_[kMaxVel] = motor.max_velocity;
-  values_[0x0C] = values_[kMaxAcc] = motor.max_acceleration;
-  values_[0x0E] = values_[kMaxCur] = motor.torque_limit / kTorquePerAmpere;
-  values_[0x0F] = motor.max_velocity / 20;
-  values_[0x10] = values_[kTargetAcc] = motor.max_acceleration / 2;
+  values_[kDefGearRatio] = values_[kDefLinRatio] = values_[kDefTorqueRatio] = values_[kDefCurRatio] = 1;
+  values_[kDefMinPos] = values_[kMinPos] = low;
+  values_[kDefMaxPos] = values_[kMaxPos] = high;
+  values_[kDefMaxDeltaPos] = values_[kMaxDelta] = motor.following_error_limit;
+  values_[kDefMaxVel] = values_[kMaxVel] = motor.max_velocity;
+  values_[kDefMaxAcc] = values_[kMaxAcc] = motor.max_acceleration;
+  values_[kDefMaxCur] = values_[kMaxCur] = motor.torque_limit / kTorquePerAmpere;
+  values_[kDefHomeVel] = motor.max_velocity / 20;
+  values_[kDefHomeAcc] = values_[kTargetAcc] = motor.max_acceleration / 2;
   values_[kTargetVel] = motor.max_velocity / 2;
-  values_[0x00] = values_[kHomeOffset] = config_.home_position;
-  values_[0x1A] = config_.serial;
-  values_[0x1D] = config_.revision;
-  values_[0x20] = config_.node;
-  values_[0x22] = values_[0x23] = 2;  // 500 kbit/s
-  values_[0x3B] = config_.counts_per_unit;
+  values_[kDefHomeOffset] = values_[kHomeOffset] = config_.home_position;
+  values_[kDefCubeSerial] = config_.serial;
+  values_[kDefCubeVersion] = config_.revision;
+  values_[kDefAddress] = config_.node;
+  values_[kDefPrimBaud] = values_[kDefScndBaud] = 2;  // 500 kbit/s
+  values_[kIncRatio] = config_.counts_per_unit;
   homed_ = config_.homed;
   zero_ = homed_ ? 0 : motor_.shaft().position;
   errors_ = 0;
@@ -228,8 +228,8 @@ bool PowerCubeNode::set(std::uint8_t parameter, Bytes value) {
   if (!settable(parameter) || value.size() != powercube::size_of(how)) return false;
   const double number = decode(value, how);
   if (!std::isfinite(number) || (positive(parameter) && number <= 0)) return false;
-  if (parameter == kMaxVel && number > values_[0x0A]) return false;
-  if (parameter == kMaxAcc && number > values_[0x0C]) return false;
+  if (parameter == kMaxVel && number > values_[kDefMaxVel]) return false;
+  if (parameter == kMaxAcc && number > values_[kDefMaxAcc]) return false;
   values_[parameter] = number;
   return true;
 }
@@ -245,17 +245,17 @@ void PowerCubeNode::get(std::uint8_t parameter) {
 double PowerCubeNode::parameter(std::uint8_t parameter) {
   const ShaftState& shaft = motor_.shaft();
   switch (parameter) {
-    case 0x24: return shown_position() * config_.counts_per_unit;
-    case 0x27: return state_word();
-    case 0x3C:
-    case 0x3D: return shown_position();
-    case 0x3E: return reference_.position - zero_;
-    case 0x3F: return motor_.following_error();
-    case 0x41: return garbage_ ? arbitrary() * 1e6 : frozen_ ? 0 : shaft.velocity;
-    case 0x42: return reference_.velocity;
-    case 0x4D: return shaft.torque / kTorquePerAmpere;
-    case 0x4E: return target_ - zero_;
-    case 0x35: return shaft.torque / kTorquePerAmpere / kAmperePerDigit;
+    case kPosCount: return shown_position() * config_.counts_per_unit;
+    case kCubeState: return state_word();
+    case kActPos:
+    case kActPosPrev: return shown_position();
+    case kIPolPos: return reference_.position - zero_;
+    case kDeltaPos: return motor_.following_error();
+    case kActVel: return garbage_ ? arbitrary() * 1e6 : frozen_ ? 0 : shaft.velocity;
+    case kIPolVel: return reference_.velocity;
+    case kCur: return shaft.torque / kTorquePerAmpere;
+    case kTargetPos: return target_ - zero_;
+    case kRawCur: return shaft.torque / kTorquePerAmpere / kAmperePerDigit;
     default: return values_[parameter];
   }
 }
@@ -274,8 +274,8 @@ void PowerCubeNode::inject(DriveFault fault, double value) {
       frozen_ = garbage_ = false;
       noise_ = 0;
       motor_.jam(false);
-      values_[0x1A] = config_.serial;
-      values_[0x1D] = config_.revision;
+      values_[kDefCubeSerial] = config_.serial;
+      values_[kDefCubeVersion] = config_.revision;
       return;
     case DriveFault::overcurrent:
       // A short circuit leaves no current to brake with.
@@ -291,8 +291,8 @@ void PowerCubeNode::inject(DriveFault fault, double value) {
       return;
     case DriveFault::garbage: garbage_ = true; return;
     case DriveFault::wrong_identity:
-      values_[0x1A] = config_.serial ^ 0x5555u;
-      values_[0x1D] = (config_.revision ^ 0x5555u) & 0xffff;
+      values_[kDefCubeSerial] = config_.serial ^ 0x5555u;
+      values_[kDefCubeVersion] = (config_.revision ^ 0x5555u) & 0xffff;
       return;
     case DriveFault::jam: motor_.jam(true); return;
     case DriveFault::noisy: noise_ = value; return;
