@@ -18,7 +18,8 @@ class RemovedWhenStopped {
   std::filesystem::path path_;
 };
 
-/// While it lives, stop signals to its thread wait: in a program of one thread, until what is being made can be removed.
+/// While it lives, stop signals to its thread wait: in a program of one thread, until what is being made can be
+/// removed.
 class StopSignalsHeld {
  public:
   StopSignalsHeld();

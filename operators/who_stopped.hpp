@@ -7,8 +7,8 @@
 
 namespace foresight {
 
-/// "asked for over the line": of a robot that is stopped by an operator. "" where it is not, or where something else was
-/// asked for since.
+/// "asked for over the line": of a robot that is stopped by an operator. "" where it is not, or where something else
+/// was asked for since.
 std::string who_stopped(const RobotStatus& status);
 
 /// What describe() says of the robot, and who_stopped() behind it.

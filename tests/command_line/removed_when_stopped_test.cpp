@@ -46,15 +46,17 @@ TEST(RemovedWhenStopped, IsGoneAfterASignalAndStaysOtherwise) {
 
 TEST(RemovedWhenStopped, ASignalWaitsWhileSomethingIsMade) {
   const TempFolder folder;
-  const fs::path made = folder / "made";
+  const fs::path made = folder / "made", waited = folder / "waited";
   EXPECT_EQ(in_a_process([&] {
               std::optional<RemovedWhenStopped> removed;
               const StopSignalsHeld held;
               ::raise(SIGTERM);
+              std::ofstream(waited) << "1";
               std::ofstream(made) << "1";
               removed.emplace(made);
             }),
             kStopped);
+  EXPECT_TRUE(fs::exists(waited));
   EXPECT_FALSE(fs::exists(made));
 }
 

@@ -15,7 +15,8 @@ TEST(RestsInTray, OnlyOnceItFliesNoMore) {
   constexpr RobotTime kStart{5'000'000'000};
   const auto lab =
       std::make_shared<const LiveLab>(LiveLab::Options{.texel = 0.02, .task = 0u, .loose = lab_thing_names()});
-  PhysicalLab world(lab, [](std::string_view joint, RobotTime) { return shafts_at_rest(joint); }, kStart);
+  PhysicalLab world(
+      lab, [](std::string_view joint, RobotTime) { return shafts_at_rest(joint); }, kStart);
   const Pose tray = world.thing_at("tray", kStart + 1s);
   const auto rests = [&](RobotTime time) { return rests_in_tray(world, "brick_red", tray, time); };
   EXPECT_FALSE(rests(kStart + 1s)) << "beside it";
