@@ -187,6 +187,8 @@ GateModel::State ExpectedMotion::state_of(const RobotReport& report, const GateM
   out.released =
       expected != nullptr && expected->doing == report.doing ? expected->released : in_time && !newest->deadman;
   if (const std::optional<Permit> permit = permit_of(report, expected)) {
+    // It asks for another consent since the last set-point expired: that is no loss to come.
+    if (report.doing != GateDoing::following && permit->consent_at > out.expires) out.newest = SetPointKind::none;
     out.consent = permit->consent;
     out.consent_at = permit->consent_at;
     out.released_at = permit->released_at;

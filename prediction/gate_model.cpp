@@ -67,6 +67,7 @@ void GateModel::press(RobotTime now) noexcept {
 void GateModel::heed_newest(RobotTime now) noexcept {
   if (now > state_.expires) {
     if (state_.newest != SetPointKind::none || state_.doing == GateDoing::following) lose();
+    state_.newest = SetPointKind::none;  // one loss asks for one other consent
   } else if (state_.newest == SetPointKind::open) {
     if (state_.doing == GateDoing::following) stop(true);
     set_released(true);

@@ -50,6 +50,7 @@ class FutureWorld {
   bool jammed = false;         // the first joint is held fast by something
   bool robot_silent = false;   // no reports
   bool line_cut_down = false;  // no set-point arrives
+  bool sends = true;           // set-points
   std::function<void(RobotReport&)> edit_report = [](RobotReport&) {};
   std::function<bool(double)> holds = [](double t) { return t > 0.2; };  // the switch
   double lasts = 0;                                                      // s, each set-point
@@ -155,6 +156,7 @@ class FutureWorld {
     if (!robot_silent && uniform() >= options_.loss) up_.emplace(now_ + way(), out);
   }
   void send() {
+    if (!sends) return;
     const SentSetPoint set_point{++number_, now_, seconds(lasts), holds(t()), 2, wish(t()), options_.named};
     future_.sent(set_point, now_);
     const bool lost = uniform() < options_.loss;

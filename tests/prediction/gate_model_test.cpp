@@ -194,6 +194,18 @@ TEST_F(AsksForConsent, WhatWasLostNeedsAnotherConsent) {
   EXPECT_EQ(send(true, 8), GateDoing::following);
 }
 
+TEST_F(AsksForConsent, OneLossAsksForOneOtherConsent) {
+  send(false, 0);
+  ASSERT_EQ(send(true, 7), GateDoing::following);
+  wait(2);
+  ASSERT_EQ(model_.state().consent, 0U);
+  GateModel::State told = model_.state();
+  told.consent = 8;
+  model_.set(told);
+  wait(1);
+  EXPECT_EQ(model_.state().consent, 8U) << "what had expired before it was told is no other loss";
+}
+
 TEST_F(AsksForConsent, AnOpenSwitchStopsItHoweverLateThatIsKnown) {
   send(false, 0);
   ASSERT_EQ(send(true, 7), GateDoing::following);

@@ -91,6 +91,26 @@ TEST(RobotFuture, WhoPressesAgainAfterALossIsFollowedAtOnce) {
   EXPECT_LT(farthest_off(world, begin), 0.01);
 }
 
+// Reports of a robot that has lost its operator go on naming the last set-point that came, and the new consent: that
+// this one has expired is no other loss.
+TEST(RobotFuture, WhoPressesOnceTheLineIsBackIsFollowedAtOnce) {
+  FutureWorld world({.delay = 0.2, .consent = 7, .named = 7, .agrees = true});
+  constexpr double kPressed = 4.26;  // no report has come yet that has seen a set-point after the gap
+  world.holds = [](double t) { return t > 0.2 && !(t > 3.3 && t < kPressed); };
+  world.wish = [](double t) { return JointValues{t < kPressed ? 0.2 : 0.2 + 0.5 * std::sin(3 * (t - kPressed)), 0}; };
+  world.run(3);
+  world.robot_silent = world.line_cut_down = true;
+  world.sends = false;
+  world.run(1);
+  world.robot_silent = world.line_cut_down = false;
+  world.run(0.22);
+  world.sends = true;
+  const std::size_t begin = world.pictures().size();
+  world.run(0.8);
+  EXPECT_GT(std::abs(world.truth_at(world.now())[0] - 0.2), 0.1) << "it did not move: the test shows nothing";
+  EXPECT_LT(farthest_off(world, begin), 2e-3);
+}
+
 // A new lease knows nothing of the line: the first set-points, the open switch among them, do not last until they come.
 TEST(RobotFuture, AnOpenSwitchThatExpiredOnItsWayWasNotSeen) {
   FutureWorld world({.consent = 7, .named = 7});
