@@ -72,7 +72,7 @@ struct RobotFutureOptions {
   /// s without a report, and as often as long as 95 % of the reports keep the seat waiting, after which the robot may
   /// have stopped where the newest one told of it: what keeps reports away keeps set-points away. Not where such gaps
   /// have ended in time of late: all but for this share, before the set-points that it has are outlasted.
-  double overdue = 0.1, overdue_gaps = 3, overdue_chance = 0.1;
+  double overdue = 0.1, overdue_gaps = 3, overdue_chance = 0.2;
   double astray_share = 0.125;  ///< of a joint's largest following error, that is no more a matter of precision
   double astray_after = 0.2;    ///< s that it lasts before it counts, and that it is gone before it does not
   double missed_after = 0.5;    ///< likewise, of what was shown, beyond the line's delay there and back
