@@ -8,7 +8,7 @@ namespace {
 constexpr double kTogether = 5e-3;  // what was held up came at once, and was waited for once
 constexpr double kNotable = 0.05;   // shorter gaps are nobody's concern
 constexpr double kRemembered = 60;
-constexpr double kRise = 0.2, kFall = kRise * 0.05 / 0.95;  // a quantile's: as often by little as it falls by much
+constexpr double kRise = 0.2, kFall = kRise * 0.05 / 0.95;  // a quantile rises seldom by much, falls often by little
 
 }  // namespace
 

@@ -12,10 +12,9 @@ constexpr double kFirstTimes = 3;                                // bytes over w
 constexpr double kFirstBytes = 0.03;                             // per pixel, until one was coded
 constexpr double kTooLarge = 1.5;                                // bytes over wish
 constexpr std::size_t kSuddenly = 4;  // a wish that so much less than the last pair took is not waited for
-constexpr double kFloor = 2;  // bytes per block of 16 x 16 px: what the coarsest step takes, and half as much again
+constexpr double kFloor = 2;          // bytes per block of 16 x 16 px: twice of what the coarsest step takes
 constexpr double kMostAsked = 2.5, kAskingGain = 0.25;
-constexpr double kAsFineAsItGets =
-    0.5;  // bytes over wish: below it the picture needed no more, and got its finest step
+constexpr double kNoMoreNeeded = 0.5;  // bytes over wish: so little is taken at the finest step
 
 }  // namespace
 
@@ -55,7 +54,7 @@ void H264PairEncoder::learn(std::size_t bytes, std::size_t wish, std::size_t sof
   if (softness > 0) return;
   if (ratio > 1) {
     asked_ = std::max(1.0, asked_ / ratio);
-  } else if (ratio > kAsFineAsItGets) {
+  } else if (ratio > kNoMoreNeeded) {
     asked_ = std::min(asked_ * std::pow(ratio, -kAskingGain), kMostAsked);
   }
 }
