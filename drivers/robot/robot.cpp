@@ -161,7 +161,8 @@ void Robot::follow(RobotRequest request, RobotTime now) noexcept {
       if (phase_ == RobotPhase::homing) return void(refused_ = "home: the joints are looking for it already");
       if (phase_ != RobotPhase::ready || gate != GateState::idle)
         return void(refused_ = "home: only while ready and nobody is in charge");
-      homing_ = 0;
+      if (all_homed()) return void(refused_ = "home: all joints know where they are");
+      homing_ = next_to_home(0);
       homing_asked_ = false;
       return enter(RobotPhase::homing, now);
   }
@@ -211,6 +212,11 @@ Duration Robot::home_within(std::size_t joint) const noexcept {
   return kHomeWithin + seconds(std::min(2.5 * (d.max_position - d.min_position) / d.homing_velocity, 3600.0));
 }
 
+std::size_t Robot::next_to_home(std::size_t from) const noexcept {
+  while (from < drives_.size() && feedback_[from].homed) ++from;
+  return from;
+}
+
 // After the gate has looked at all drives: if it stopped, nothing goes on here.
 void Robot::advance_homing(RobotTime now) noexcept {
   waiting_for_ = static_cast<int>(homing_);
@@ -227,7 +233,8 @@ void Robot::advance_homing(RobotTime now) noexcept {
   if (now - phase_since_ < 200ms || !f.homed || f.state != DriveState::enabled) return;
   gate_.end_homing(f, now);
   homing_asked_ = false;
-  if (++homing_ < drives_.size()) return;
+  homing_ = next_to_home(homing_ + 1);
+  if (homing_ < drives_.size()) return;
   if (gate_.reset(feedback_, now)) return enter(RobotPhase::ready, now);
   gate_.emergency_stop(GateReason::homed_out_of_range);
 }

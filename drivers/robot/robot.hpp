@@ -42,8 +42,8 @@ enum class RobotRequest : std::uint8_t {
   none,
   enable,   ///< from disabled: drives hold where they stand
   disable,  ///< at rest only: no torque, brakes close
-  home,    ///< consent to homing: joint by joint, slowly; from ready, while nobody is in charge. No command is followed
-           ///< before
+  home,    ///< consent to homing of the joints that need it: one by one, slowly; from ready, while nobody is in charge.
+           ///< No command is followed before. Refused where all are homed
   reset,   ///< from stopped, once what stopped it is gone: clears faults, enables again
   set_up,  ///< from disabled or stopped, at rest: identifies and configures all drives anew, such as one that lost its
            ///< power
@@ -142,6 +142,8 @@ class Robot {
   void forget_set_points() noexcept;
   void advance_enabling(RobotTime now) noexcept;
   void advance_homing(RobotTime now) noexcept;
+  /// The first from `from` on that does not know where it is; as many as there are drives: none.
+  std::size_t next_to_home(std::size_t from) const noexcept;
   Duration home_within(std::size_t joint) const noexcept;
   void note_standstill(RobotTime now) noexcept;
   void enter(RobotPhase phase, RobotTime now, int waiting_for = -1) noexcept;

@@ -224,6 +224,7 @@ TEST_F(KeyOperatorTest, SpaceStopsWhateverElseIsTyped) {
 }
 
 TEST_F(KeyOperatorTest, HomingAsksForConsent) {
+  drives_[0].state.homed = false;
   type("e", 10);
   type("h");
   EXPECT_TRUE(who_.asks_for_consent());

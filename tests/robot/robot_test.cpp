@@ -133,6 +133,26 @@ TEST_F(RobotTest, HomesOnlyWithConsentAndOnlyWhileNobodyIsInCharge) {
   EXPECT_FALSE(drives_[0].asked(DriveRequest::home));
 }
 
+TEST_F(RobotTest, HomesOnlyJointsThatDoNotKnowWhereTheyAre) {
+  drives_[1].state.homed = false;
+  make_ready();
+  robot_.ask(RobotRequest::home);
+  run(100);
+  EXPECT_FALSE(drives_[0].asked(DriveRequest::home));
+  EXPECT_TRUE(drives_[1].asked(DriveRequest::home));
+  EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
+  EXPECT_TRUE(robot_.status().all_homed);
+}
+
+TEST_F(RobotTest, WhereAllAreHomedItStaysReadyAndSaysSo) {
+  make_ready();
+  robot_.ask(RobotRequest::home);
+  run(1);
+  EXPECT_EQ(robot_.status().phase, RobotPhase::ready);
+  EXPECT_STREQ(robot_.status().refused, "home: all joints know where they are");
+  for (const PromptDrive& drive : drives_) EXPECT_FALSE(drive.asked(DriveRequest::home));
+}
+
 TEST_F(RobotTest, ADriveThatIsNeverEnabledIsNamed) {
   drives_[1].stuck = true;
   robot_.ask(RobotRequest::enable);
