@@ -63,8 +63,11 @@ OperatorWish LineOperator::tick(RobotTime now, const RobotStatus& status) {
   wish.request = request_of(desk_.take_request());
   const LineMotion motion = desk_.motion(now);
   const bool lost = motion.what == LineMotion::What::nothing && robot.follows;
+  const Nonce lease = desk_.permit().lease();
+  const bool handed_over = std::exchange(lease_, lease) != lease;
   if (std::exchange(round_, motion.round) != motion.round || lost) {
     wish.command = begin_session(now, status);
+    wish.command->handed_over = handed_over;
   } else if (motion.what == LineMotion::What::open) {
     wish.command = command(now, false, robot.set_point);
   } else if (motion.what == LineMotion::What::follow) {

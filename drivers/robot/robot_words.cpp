@@ -66,6 +66,9 @@ StateWords words_for(GateReason reason) {
     case GateReason::operator_lost:
       return {"operator lost", "no command in time: the operator is lost",
               "look for what held the commands up; let go of the switch, and engage anew"};
+    case GateReason::handed_over:
+      return {"handed over", "control changed hands, which stops it",
+              "whoever has it now: let go of the switch, and hold it anew"};
     case GateReason::deadman_released: return {"let go", "the switch was released", "hold it again to go on"};
     case GateReason::not_started: return {"not started", "not started yet", "enable the drives (e)"};
     case GateReason::emergency_stop:

@@ -147,7 +147,8 @@ void SafetyGate::take(const MotionCommand& command, RobotTime now) noexcept {
   if (command.session != who.session) {
     // Started anew: what it held before, it does not hold now.
     who.released = false;
-    if (in_charge && status_.state == GateState::following) stop(GateReason::operator_lost);
+    if (in_charge && status_.state == GateState::following)
+      stop(command.handed_over ? GateReason::handed_over : GateReason::operator_lost);
   }
   who.session = command.session;
   who.sequence = command.sequence;

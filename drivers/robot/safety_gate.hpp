@@ -37,6 +37,7 @@ struct MotionCommand {
   std::size_t joints = 0;         ///< how many positions follow; all that the rig has
   JointValues position{};         ///< rad or m, in the rig's order
   std::uint64_t session = 0;      ///< grows with every start of the operator, which counts `sequence` anew
+  bool handed_over = false;       ///< the session begins as somebody else took over, or nobody; for words alone
 };
 
 enum class GateState : std::uint8_t {
@@ -61,6 +62,7 @@ enum class GateReason : std::uint8_t {
   obstructed,
   // a controlled stop
   operator_lost,
+  handed_over,
   deadman_released,
   // latched
   not_started,  ///< since the program began

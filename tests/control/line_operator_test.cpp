@@ -71,9 +71,16 @@ TEST_F(LineOperatorTest, ALeaseThatEndsStopsAtOnceAndTheGateWantsToSeeTheSwitchO
   line_.desk().end_lease(now_);
   run(12ms);
   EXPECT_EQ(gate().state, GateState::stopping);
-  EXPECT_EQ(gate().reason, GateReason::operator_lost);
+  EXPECT_EQ(gate().reason, GateReason::handed_over);
   run(2s);
   EXPECT_EQ(gate().state, GateState::idle);
+}
+
+TEST_F(LineOperatorTest, WhatIsNotHeardInTimeIsALossThoughTheLeaseStays) {
+  engage();
+  sends_ = false;
+  run(200ms);
+  EXPECT_EQ(gate().reason, GateReason::operator_lost);
 }
 
 TEST_F(LineOperatorTest, TheGateStopsWithTheSetPointThoughTheProgramStandsStill) {
