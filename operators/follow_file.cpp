@@ -1,5 +1,7 @@
 #include "operators/follow_file.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +30,8 @@ std::vector<std::size_t> columns_of(const TextRow& row, const Rig& rig) {
   }
   return out;
 }
+
+constexpr double kHardlyMoves = 0.01;  // of what a joint may do: as if times in ms were taken for seconds
 
 }  // namespace
 
@@ -59,11 +63,14 @@ void FollowFile::add(const TextRow& row, const Rig& rig) {
                            " is beyond its limits",
                        "choose from " + std::to_string(joint.drive.min_position) + " to " +
                            std::to_string(joint.drive.max_position));
-    if (!rows_.empty() && std::abs(q - rows_.back()[i]) > 1.001 * joint.drive.max_velocity * (time - times_.back()))
+    const double share =
+        rows_.empty() ? 0 : std::abs(q - rows_.back()[i]) / (joint.drive.max_velocity * (time - times_.back()));
+    if (share > 1.001)
       throw InputError(row.where(i + 1),
                        "joint '" + joint.drive.name + "' would move faster than " +
                            std::to_string(joint.drive.max_velocity) + " " + joint.unit + "/s",
                        "give it more time");
+    fastest_ = std::max(fastest_, share);
     positions.push_back(q);
   }
   times_.push_back(time);
@@ -77,6 +84,15 @@ void FollowFile::at(double seconds, JointValues& positions) const {
   const double share = a == b ? 0 : std::clamp((t - times_[a]) / (times_[b] - times_[a]), 0.0, 1.0);
   for (std::size_t i = 0; i < joints_.size(); ++i)
     positions[joints_[i]] = rows_[a][i] + share * (rows_[b][i] - rows_[a][i]);
+}
+
+std::vector<std::string> words_on_start(const FollowFile& file) {
+  std::vector<std::string> out{"the motion of the file takes " + readable(file.duration_s(), 2, " s")};
+  if (file.fastest() > 0 && file.fastest() < kHardlyMoves)
+    out.push_back(
+        fmt::format("no joint gets faster than {:.1g} % of what it may: time_s counts seconds, not milliseconds",
+                    100 * file.fastest()));
+  return out;
 }
 
 }  // namespace foresight

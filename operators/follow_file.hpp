@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "rig/rig.hpp"
@@ -19,6 +20,8 @@ class FollowFile {
   FollowFile(const std::filesystem::path& file, const Rig& rig);
 
   double duration_s() const { return times_.back() - times_.front(); }
+  /// Of what its joint may do, the fastest motion: 0, where nothing moves, to 1.
+  double fastest() const { return fastest_; }
   /// `seconds` after the first row; before and after, where it begins and ends. Joints that are not named keep
   /// their value in `positions`.
   void at(double seconds, JointValues& positions) const;
@@ -32,6 +35,10 @@ class FollowFile {
   std::vector<std::size_t> joints_;  // of each column, its joint
   std::vector<double> times_;
   std::vector<std::vector<double>> rows_;
+  double fastest_ = 0;
 };
+
+/// How long it takes, for whoever starts it; and that it is so slow that its times may be in another unit.
+std::vector<std::string> words_on_start(const FollowFile& file);
 
 }  // namespace foresight

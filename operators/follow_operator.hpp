@@ -20,6 +20,7 @@ class FollowOperator final : public Commander {
 
   FollowOperator(FollowFile file, bool may_home);
   std::uint64_t operator_id() const override { return kId; }
+  const FollowFile& file() const { return file_; }
   OperatorWish tick(RobotTime now, const RobotStatus& status) override;
   /// "done", or why not; empty while it goes on.
   const std::string& outcome() const { return outcome_; }

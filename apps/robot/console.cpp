@@ -38,6 +38,7 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
     follow_.emplace(FollowFile(options.follow, rig), options.may_home);
     commanders_.push_back(&*follow_);
     news_.name(follow_->operator_id(), "the file");
+    for (const std::string& words : words_on_start(follow_->file())) say_robot("follow: " + words);
   }
   if (keyboard_.is_terminal()) commanders_.push_back(&keys_);
   if (options.commander) {

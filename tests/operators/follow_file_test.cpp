@@ -35,6 +35,18 @@ TEST_F(FollowFileTest, GoesStraightBetweenItsRows) {
   expect(9, 1, 0.5);
 }
 
+TEST_F(FollowFileTest, SaysHowLongItTakesAndThatItHardlyMoves) {
+  const auto words = [&](const char* rows) {
+    return words_on_start(FollowFile(folder_.write("motion.csv", std::string("time_s,elbow\n") + rows), rig_));
+  };
+  const auto takes = [](const char* time) { return testing::HasSubstr(std::string("takes ") + time); };
+  EXPECT_THAT(words("0,0\n2,0.5\n4,0\n"), testing::ElementsAre(takes("4.00 s")));
+  EXPECT_THAT(words("0,0\n2000,0.5\n4000,0\n"),
+              testing::ElementsAre(takes("4000.00 s"), testing::HasSubstr("seconds, not milliseconds")));
+  EXPECT_THAT(words("0,0\n2000,0\n2001,0.5\n"), testing::ElementsAre(takes("2001.00 s"))) << "it waits, then moves";
+  EXPECT_THAT(words("0,0\n60,0\n"), testing::ElementsAre(takes("60.00 s"))) << "it stands on purpose";
+}
+
 TEST_F(FollowFileTest, EveryMistakeHasItsMessage) {
   const auto expect = [&](const char* text, std::initializer_list<const char*> words) {
     const std::string message = error_of(text);
