@@ -30,6 +30,7 @@ int run(const std::string& rig_file) {
     std::printf("rig %s: %zu joints on %zu buses\n", rig.name.c_str(), rig.joints.size(), rig.buses.size());
     add(check_buses(rig));
     add(check_drives(rig));
+    add(check_groups(rig));
     add(check_home(rig));
     if (rig.cameras) add(check_rig_cameras(*rig.cameras));
     add(check_link(rig));

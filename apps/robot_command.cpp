@@ -18,6 +18,7 @@
 #include "link/robot_side/rig_identity.hpp"
 #include "link/robot_side/robot_server.hpp"
 #include "rig/home_check.hpp"
+#include "rig/joint_groups.hpp"
 #include "scene/target_folder.hpp"
 #include "session/robot_loop.hpp"
 
@@ -234,6 +235,7 @@ int run_with(const Rig& rig, const RobotArguments& arguments,
     for (const auto& [link, other] : shape->nested())
       say_robot("links " + other + " and " + link + " lie in each other in most positions: the gate lets them touch");
   for (const std::string& words : words_on_home(rig)) say_robot(words);
+  for (const std::string& words : words_on_groups(rig)) say_robot(words);
   if (arguments.check_only) {
     devices.bring_up(say_robot);
     for (const Drive* drive : devices.drives())

@@ -1,9 +1,13 @@
 #include "rig/joint_groups.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <ranges>
 #include <span>
 #include <string_view>
 
@@ -254,6 +258,51 @@ bool is_followed_jaw(const Structure& robot, std::size_t joint) {
 }
 
 }  // namespace
+
+namespace {
+
+bool is_farther_than_jaws(const UrdfJoint& joint) {
+  const double most = joint.kind == UrdfJoint::Kind::sliding ? kShortStroke : kJawsTurn;
+  return !ends(joint) || joint.upper - joint.lower > most;
+}
+
+bool is_named_as_jaw(const std::string& name) {
+  return has_word(name, kJawWords) && !has_word(name, kAxisWords);
+}
+
+/// Why `joint`, in the group `given`, belongs to `guess` beyond doubt; "" where there is doubt.
+std::string certain_of(const UrdfJoint& joint, JointGroup given, JointGroup guess, bool carries_others) {
+  if (guess == JointGroup::pan_tilt) return "it is named and placed as one";
+  if (guess == JointGroup::gripper) return is_named_as_jaw(joint.name) ? "it is named and placed as one" : "";
+  if (carries_others) return "others of other groups move with it";
+  if (given == JointGroup::pan_tilt || is_named_as_jaw(joint.name)) return "";
+  return is_farther_than_jaws(joint) ? "it moves farther than jaws do" : "";
+}
+
+}  // namespace
+
+std::vector<std::string> words_on_groups(const Rig& rig) {
+  if (!rig.robot) return {};
+  const Structure robot(*rig.robot);
+  const std::vector<JointGroup> guesses = guess_joint_groups(*rig.robot);
+  std::map<std::string, JointGroup> groups;
+  for (const RigJoint& joint : rig.joints) groups[joint.drive.name] = joint.group;
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < guesses.size(); ++i) {
+    const auto given = groups.find(robot.joint(i).name);
+    if (given == groups.end() || given->second == guesses[i]) continue;
+    const auto is_carried_other = [&](std::size_t other) {
+      const auto its = groups.find(robot.joint(other).name);
+      return its != groups.end() && its->second != given->second && robot.carries_joint(i, other);
+    };
+    const bool carries_others = std::ranges::any_of(std::views::iota(std::size_t{0}, robot.joints()), is_carried_other);
+    const std::string why = certain_of(robot.joint(i), given->second, guesses[i], carries_others);
+    if (!why.empty())
+      out.push_back(fmt::format("joint '{}' is in the group {}, but looks as if it belonged to {}: {}", given->first,
+                                to_string(given->second), to_string(guesses[i]), why));
+  }
+  return out;
+}
 
 std::vector<JointGroup> guess_joint_groups(const UrdfRobot& urdf) {
   const Structure robot(urdf);

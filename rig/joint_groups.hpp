@@ -1,6 +1,8 @@
-// Which of a robot's joints are an arm's, which a gripper's, and which turn a camera head: guessed for a first rig.
+// Which of a robot's joints are an arm's, which a gripper's, and which turn a camera head: guessed for a first rig,
+// and to see mistakes in others.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "rig/rig.hpp"
@@ -18,5 +20,9 @@ namespace foresight {
 /// An arm's last joint has the tool's frame behind it, turns far, slides far, or slides where none before it goes (a
 /// gantry, a SCARA). Names decide where that leaves it open. Needs the links' shapes; reads nothing else.
 std::vector<JointGroup> guess_joint_groups(const UrdfRobot& robot);
+
+/// The joints of a rig that are in another group beyond doubt, as lines: "joint 'wrist' is in the group gripper, but
+/// looks as if it belonged to arm: ...". None where the rig has no robot.
+std::vector<std::string> words_on_groups(const Rig& rig);
 
 }  // namespace foresight

@@ -27,9 +27,10 @@ Findings check_drives(const Rig& rig);  ///< identifies every drive; moves nothi
 Findings check_camera(const StereoConfig& config, Side side, Clock& clock);
 /// Formats, rates, capture times and bandwidth of the rig's cameras, each alone and as a pair; takes some seconds.
 Findings check_rig_cameras(const StereoConfig& config);
-Findings check_home(const Rig& rig);  ///< links that are too close to something with every joint at home
-Findings check_link(const Rig& rig);  ///< interface, peers and keys of its `link:` section; others see it come and go
-Findings check_cameras();             ///< takes ten images of each that V4L2 knows; lists those that libcamera knows
+Findings check_groups(const Rig& rig);  ///< joints that are in the wrong group; nothing where none is
+Findings check_home(const Rig& rig);    ///< links that are too close to something with every joint at home
+Findings check_link(const Rig& rig);    ///< interface, peers and keys of its `link:` section; others see it come and go
+Findings check_cameras();               ///< takes ten images of each that V4L2 knows; lists those that libcamera knows
 Findings check_real_time();
 Findings check_graphics();
 Findings check_network();

@@ -1,5 +1,6 @@
 #include "apps/doctor/findings.hpp"
 #include "rig/home_check.hpp"
+#include "rig/joint_groups.hpp"
 
 namespace foresight::doctor {
 
@@ -11,6 +12,13 @@ Findings check_home(const Rig& rig) {
                    parts.touch ? "correct surroundings, robot.pose or the joint's offset: the gate lets it only part"
                                : "leave more room, or less surroundings.clearance_m: the gate lets them only part"});
   if (out.empty()) out.push_back({Verdict::good, "robot at home", "stands clear of its surroundings", ""});
+  return out;
+}
+
+Findings check_groups(const Rig& rig) {
+  Findings out;
+  for (const std::string& words : words_on_groups(rig))
+    out.push_back({Verdict::poor, "joint groups", words, "correct its `group` in the rig file"});
   return out;
 }
 

@@ -16,6 +16,7 @@
 #include "common/numbers_file.hpp"
 #include "common/stop_signal.hpp"
 #include "rig/home_check.hpp"
+#include "rig/joint_groups.hpp"
 #include "rig/rig.hpp"
 #include "seat/panel_lens.hpp"
 #include "seat/seat_textures.hpp"
@@ -317,6 +318,7 @@ int run(const Arguments& arguments) {
   refuse_address(arguments.rig);
   Rig rig = read_rig(arguments.rig);
   check(rig, arguments);
+  for (const std::string& words : words_on_groups(rig)) say(words);
   if (!arguments.script.empty()) return run_scripted(rig, arguments);
   give_start(rig);
   return run_live(rig, arguments);

@@ -36,10 +36,13 @@ class Built {
       turns(prefix + std::to_string(i), i == 1 ? on : prefix + std::to_string(i - 1), i % 2 != 0 ? "0 0 1" : "0 1 0");
     return *this;
   }
+  UrdfRobot robot() const {
+    const TempFolder folder;
+    return read_urdf(folder.write("robot.urdf", text_ + "</robot>"));
+  }
   /// "j1 a, finger g": joints with drives, in their order here, and the first letters of their groups.
   std::string groups() const {
-    const TempFolder folder;
-    const UrdfRobot robot = read_urdf(folder.write("robot.urdf", text_ + "</robot>"));
+    const UrdfRobot robot = this->robot();
     const std::vector<JointGroup> groups = guess_joint_groups(robot);
     std::map<std::size_t, std::string> found;  // by the place in the text
     for (std::size_t i = 0; i < groups.size(); ++i)
@@ -217,6 +220,43 @@ TEST(JointGroups, WhatKeepsAHandLevelIsTheArms) {
                 .turns("cap", "j1", "0 0 1")
                 .groups(),
             "j1 a, j2 a, lever a, jaw g, cap a");
+}
+
+class WordsOnGroups : public testing::Test {
+ protected:
+  std::vector<std::string> words(const std::string& joint, JointGroup group) {
+    Rig rig = read_rig(source_folder() / "configs/minerva.yaml");
+    std::ranges::find(rig.joints, joint, [](const RigJoint& j) { return j.drive.name; })->group = group;
+    return words_on_groups(rig);
+  }
+};
+
+TEST_F(WordsOnGroups, RigsAsTheyShouldBeRaiseNone) {
+  for (const char* rig : {"minerva.yaml", "cia402.yaml"})
+    EXPECT_THAT(words_on_groups(read_rig(source_folder() / "configs" / rig)), testing::IsEmpty()) << rig;
+  Rig no_robot = read_rig(source_folder() / "configs/minerva.yaml");
+  no_robot.robot.reset();
+  EXPECT_THAT(words_on_groups(no_robot), testing::IsEmpty());
+}
+
+TEST_F(WordsOnGroups, AHeadAmongTheArmsJointsIsNamed) {
+  Rig rig;
+  rig.robot = Built().arm(4).turns("pan", "base", "0 0 1").turns("tilt", "pan", "0 1 0").robot();
+  for (const UrdfJoint& joint : rig.robot->joints) rig.joints.emplace_back().drive.name = joint.name;
+  EXPECT_THAT(words_on_groups(rig), testing::UnorderedElementsAre(testing::HasSubstr("'pan' is in the group arm"),
+                                                                  testing::HasSubstr("'tilt' is in the group arm")));
+}
+
+TEST_F(WordsOnGroups, JointsInWrongGroupsAreNamedAndWhy) {
+  const auto says = [](const char* joint, const char* group, const char* why) {
+    return testing::ElementsAre(testing::AllOf(testing::HasSubstr(std::string("joint '") + joint + "'"),
+                                               testing::HasSubstr(std::string("belonged to ") + group),
+                                               testing::HasSubstr(why)));
+  };
+  EXPECT_THAT(words("wrist_roll", JointGroup::gripper), says("wrist_roll", "arm", "farther than jaws"));
+  EXPECT_THAT(words("wrist_pitch", JointGroup::gripper), says("wrist_pitch", "arm", "move with it"));
+  EXPECT_THAT(words("elbow", JointGroup::pan_tilt), says("elbow", "arm", "move with it"));
+  EXPECT_THAT(words("finger", JointGroup::arm), says("finger", "gripper", "named and placed"));
 }
 
 }  // namespace
