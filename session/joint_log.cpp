@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "common/atomic_file.hpp"
+#include "common/empty_file.hpp"
 #include "common/error.hpp"
 #include "scene/run_writer.hpp"
 
@@ -22,6 +23,11 @@ JointLog::JointLog(const std::filesystem::path& file, const Rig& rig, BroadcastR
   stream_ << "time_s";
   for (const std::string& joint : rig.joint_names()) stream_ << ',' << joint;
   stream_ << '\n';
+}
+
+JointLog::~JointLog() {
+  stream_.close();
+  remove_empty(file_);
 }
 
 void JointLog::write() {

@@ -17,6 +17,10 @@ class JointLog {
  public:
   /// Throws RuntimeFailure where the file cannot be written.
   JointLog(const std::filesystem::path& file, const Rig& rig, BroadcastRing<RobotCycle>::Reader cycles);
+  /// A file that nothing could be written to goes.
+  ~JointLog();
+  JointLog(const JointLog&) = delete;
+  JointLog& operator=(const JointLog&) = delete;
 
   /// Writes a row for the instant of each cycle that came since the last call, once all joints are homed (before, they
   /// tell no position) and have told of it. To be called before the ring comes round.

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "common/atomic_file.hpp"
+#include "common/empty_file.hpp"
 #include "common/error.hpp"
 #include "common/read_file.hpp"
 #include "common/text.hpp"
@@ -227,6 +228,11 @@ CandumpWriter::CandumpWriter(const std::filesystem::path& file) : file_(file), o
   if (!out_)
     throw RuntimeFailure(file.string() + ": cannot be made: " + std::strerror(errno),
                          "give a file that can be written");
+}
+
+CandumpWriter::~CandumpWriter() {
+  out_.close();
+  remove_empty(file_);
 }
 
 void CandumpWriter::write(Duration time, std::string_view interface, const CanFrame& frame, std::optional<bool> sent) {

@@ -70,6 +70,11 @@ class CandumpWriter {
  public:
   /// Throws RuntimeFailure where the file cannot be made.
   explicit CandumpWriter(const std::filesystem::path& file);
+  /// A file that nothing came to, or that nothing could be written to, goes.
+  ~CandumpWriter();
+  CandumpWriter(const CandumpWriter&) = delete;
+  CandumpWriter& operator=(const CandumpWriter&) = delete;
+
   /// Throws RuntimeFailure where the disk is full or the like.
   void write(Duration time, std::string_view interface, const CanFrame& frame, std::optional<bool> sent = {});
   void flush();  ///< throws as write() does

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
 
 #include "common/error.hpp"
 #include "tests/can/frames.hpp"
@@ -185,6 +188,27 @@ TEST(CandumpWriter, SaysThatTheDiskIsFull) {
       },
       RuntimeFailure);
   EXPECT_THROW(CandumpWriter("/nowhere/at/all.log"), RuntimeFailure);
+}
+
+// A file's size limit ends writing as a full disk does.
+TEST(CandumpWriter, AnEmptyFileGoes) {
+  const TempFile file;
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit none{0, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &none);
+  {
+    CandumpWriter writer(file.path());
+    EXPECT_TRUE(std::filesystem::exists(file.path()));
+    writer.write(Duration{0}, "can0", frame(1));
+    EXPECT_THROW(writer.flush(), RuntimeFailure);
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, ignored);
+  EXPECT_FALSE(std::filesystem::exists(file.path()));
+  { CandumpWriter writer(file.path()); }
+  EXPECT_FALSE(std::filesystem::exists(file.path())) << "nothing came";
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
 #include "session/joint_log.hpp"
 
+#include <sys/resource.h>
+
+#include <csignal>
+
 #include "calibration/robot/robot_poses.hpp"
 #include "common/text.hpp"
 #include "tests/scene/test_run.hpp"
@@ -36,6 +40,21 @@ class JointLogTest : public testing::Test {
   Rig rig_ = read_rig(source_folder() / "configs/minerva.yaml");
   BroadcastRing<RobotCycle> ring_{1024};
 };
+
+TEST_F(JointLogTest, AFileThatCannotBeWrittenToGoes) {
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto usual = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit none{0, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &none);
+  {
+    JointLog log(folder_ / "joints.csv", rig_, ring_.reader());
+    EXPECT_NE(log.fault(), "");
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, usual);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "joints.csv"));
+}
 
 TEST_F(JointLogTest, HasAllJointsAtTheInstantOfTheRow) {
   {
