@@ -45,6 +45,7 @@ int run(SynthArguments arguments) {
   const std::size_t images =
       static_cast<std::size_t>(std::max(0, arguments.options.frames)) * (arguments.options.stereo ? 2 : 1);
   const auto now = [] { return std::chrono::steady_clock::now(); };
+  sim::check(arguments.options);
   std::fputs("synth: lighting the lab\n", stderr);
   ProgressBar bar("synth", "images", images, now(), ProgressBar::for_stderr());
   sim::SynthSummary summary;

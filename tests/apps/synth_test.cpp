@@ -77,7 +77,9 @@ TEST_F(Synth, OptionsOutOfRangeAreRefused) {
     SCOPED_TRACE(testing::PrintToString(c.options));
     std::vector<std::string> words{"synth", folder_ / "out"};
     words.insert(words.end(), c.options.begin(), c.options.end());
-    expect_refused(run_program(words), 2, c.where, c.what, c.cure);
+    const Outcome outcome = run_program(words);
+    expect_refused(outcome, 2, c.where, c.what, c.cure);
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("lighting"))) << "nothing has begun";
     EXPECT_TRUE(fs::is_empty(folder_.path()));
   }
 }
