@@ -149,15 +149,18 @@ std::vector<double> farthest_origins(const UrdfRobot& robot) {
   return far;
 }
 
-/// The same of any of its points.
+double radius_of(const Mesh& mesh) {
+  double out = 0;
+  for (const auto& v : mesh.vertices) out = std::max(out, v.cast<double>().norm());
+  return out;
+}
+
+/// The same of any of its points, those that are seen and those that it is guarded by.
 double reach_of(const UrdfRobot& robot) {
   const std::vector<double> far = farthest_origins(robot);
   double out = 0;
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    double size = 0;
-    for (const auto& v : robot.links[i].mesh.vertices) size = std::max(size, v.cast<double>().norm());
-    out = std::max(out, far[i] + size);
-  }
+  for (std::size_t i = 0; i < robot.links.size(); ++i)
+    out = std::max(out, far[i] + std::max(radius_of(robot.links[i].mesh), radius_of(robot.body(i))));
   return out;
 }
 

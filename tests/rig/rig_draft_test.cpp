@@ -163,6 +163,19 @@ TEST_F(Draft, StandsClearAtHome) {
   EXPECT_NE(shape->obstructed(std::vector<double>{2, 1.1, 0, 0.0004}), nullptr) << "the floor";
 }
 
+TEST_F(Draft, ItsWorkspaceHoldsWhatGuardsALinkThoughNobodySeesIt) {
+  std::string urdf = kArm;
+  const std::string wrist = R"(<link name="wrist"/>)";
+  urdf.replace(
+      urdf.find(wrist), wrist.size(),
+      R"(<link name="wrist"><collision><origin xyz="0 0 2"/><geometry><box size="0.1 0.1 4"/></geometry></collision></link>)");
+  folder_.write("arm.urdf", urdf);
+  Rig rig = written();
+  const auto shape = rig.shape();
+  shape->surround(rig.surroundings);
+  EXPECT_EQ(shape->obstructed(std::vector<double>{0, 0.1, 0, 0.0004}), nullptr);
+}
+
 // Its root is at the ceiling, or turned over there: below its foot is all that it has.
 TEST_F(Draft, LetsARobotThatHangsFromItsRootMove) {
   std::string urdf = kArm;
