@@ -217,9 +217,10 @@ Hud::Work::Layout Hud::Work::layout(const HudContent& content, float width, floa
                     least_keys = content.first_key > 0 ? left : std::min(kLeastKeys, left);
   for (const Text& text : texts) {
     out.text = text;
-    out.wrap = std::clamp(0.5f * width, std::min(380 * text.scale, std::max(1.0f, 0.7f * width)), 700 * text.scale);
+    const float all_of_it = std::max(1.0f, width - 2 * gap - ImGui::GetStyle().WindowPadding.x);
+    out.wrap = std::clamp(0.5f * width, std::min(380 * text.scale, all_of_it), 700 * text.scale);
     out.title_wrap = std::max(out.wrap, kBesideInset * width - 3 * gap);
-    out.keys_wrap = width - 2 * gap - ImGui::GetStyle().WindowPadding.x;
+    out.keys_wrap = all_of_it;
     out.next = size_of_next(content.next, *text.large, width - 4 * gap);
     out.keys_beside_next = width_of_keys(content.keys, *text.usual, text.scale) + out.next.x + 3 * gap <= width;
     out.lines = all;

@@ -93,6 +93,21 @@ TEST(Hud, LongWordsStayWithinTheirArea) {
       << "keys make way for what is next";
 }
 
+TEST(Hud, ANarrowWindowBreaksNoWord) {
+  const auto context = gl::create_headless_context();
+  const auto rows = [](const std::string& word) {
+    HudContent content;
+    content.title = "a robot";
+    content.lines = {{"robot", word, "", Urgency::trouble}};
+    const cv::Mat picture = drawn(content, 320, 240);
+    keep("narrow_" + word, picture);
+    int out = 0;
+    for (int y = 0; y < picture.rows; ++y) out += changed(picture.row(y)) > 0;
+    return out;
+  };
+  EXPECT_EQ(rows("shoulder_pitch_joint"), rows("elbow"));
+}
+
 TEST(Hud, InASmallWindowKeysMakeWayForWhatIsSaid) {
   const auto context = gl::create_headless_context();
   HudContent content;
