@@ -9,6 +9,12 @@ struct CameraBlock {
   vec4 tone;
 };
 
+// For gl/early_uniforms.hpp.
+CameraBlock at_start(CameraBlock c) {
+  return CameraBlock(min(c.focal, c.focal), min(c.radial, c.radial), min(c.radial_denominator, c.radial_denominator),
+                     min(c.tangential, c.tangential), min(c.size, c.size), min(c.face, c.face), min(c.tone, c.tone));
+}
+
 // Software renderers run both sides of every branch: where a program knows its lens model and
 // faces when it is built, it defines LENS_MODEL, CUBE_FACES and FACE_IS_IMAGE (gl::camera_defines).
 int lens_model(const CameraBlock c) {

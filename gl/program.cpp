@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "common/error.hpp"
+#include "gl/early_uniforms.hpp"
 #include "gl/kept_programs.hpp"
 
 namespace foresight::gl {
@@ -52,6 +53,7 @@ Stage read_stage(const ShaderSources& sources, GLenum stage, const std::string& 
   Stage out{stage, file, "#version 450 core\n"};
   for (const std::string& define : defines) out.text += "#define " + define + "\n";
   append_expanded(sources, file, out.text);
+  if (stage == GL_COMPUTE_SHADER) out.text = with_early_uniforms(out.text);
   return out;
 }
 
@@ -120,7 +122,8 @@ GLuint make_program(const std::vector<Stage>& stages) {
 }
 
 GLint location(const Program& program, const char* uniform) {
-  return glGetUniformLocation(program.name(), uniform);
+  const GLint early = glGetUniformLocation(program.name(), (std::string(uniform) + kAsGiven).c_str());
+  return early >= 0 ? early : glGetUniformLocation(program.name(), uniform);
 }
 
 }  // namespace
