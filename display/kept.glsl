@@ -28,7 +28,7 @@ bool is_still(vec2 newest) {
 vec4 kept_colour(Point point) {
   Sighting older = sighting_of(0, point), newest = sighting_of(1, point);
   vec2 size = cameras[0].size.xy;
-  vec4 scaled = sample_for_view(image0, older.pixel, size, sharp_for(older.finer), older.finer);
+  vec4 scaled = sample_for_view(older.pixel, ivec2(size), sharp_for(older.finer), older.finer);
   // What is white in a longer exposure than the one shown may be of any brightness there.
   bool is_known = cameras[0].tone.x > kLonger || max(scaled.r, max(scaled.g, scaled.b)) < kWhite;
   float better = angle_to_eye(1, point) - angle_to_eye(0, point) - kPerSecond * age;

@@ -30,11 +30,11 @@ void KeptPass::compile(const NewestImages& images, const Lens& view) {
   std::vector<Lens> lenses{view, images.newest->camera->lens()};
   for (const auto& other : images.others) lenses.push_back(other->camera->lens());
   auto defines = gl::camera_defines(lenses);
-  for (const char* define : {"CASES 0", "LISTED 0", "BLENDED 0", "BEFORE 0", "HOMOGRAPHIES 0", "FRAGMENT 1", "KEPT 1"})
+  for (const char* define : {"CASES 0", "LISTED 0", "BLENDED 0", "BEFORE 0", "HOMOGRAPHIES 0", "KEPT 1"})
     defines.emplace_back(define);
   defines.push_back("LEVELS " + std::to_string(levels_));
   if (program_ && defines == defines_) return;
-  program_ = gl::Program::graphics(display_and_lookup_shaders(), "rectangle.vert", "view.frag", defines);
+  program_ = gl::Program::compute(display_and_lookup_shaders(), "view.comp", defines);
   defines_ = std::move(defines);
 }
 
@@ -57,19 +57,17 @@ void KeptPass::choose(const NewestImages& images, const Lens& view, const Pose& 
   }
 }
 
-void KeptPass::operator()(const std::function<void()>& draw) const {
-  glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+void KeptPass::operator()(GLuint pixels_image, const std::function<void(const gl::Program&)>& draw) const {
   for (std::size_t i = 0; i < count_; ++i) {
     const Chosen& one = places_[i];
     one.inputs.bind(program_, one.image.image->depth_tolerance, kImagesBlock, kImagesUnit);
+    one.inputs.bind_pixels(pixels_image);
     glBindTextureUnit(kStillUnit, still_);
     program_.set("sharp", sharp_);
     program_.set("age", static_cast<float>(one.image.age));
     program_.set("claim", one.image.claim);
-    draw();
+    draw(program_);
   }
-  glDisable(GL_BLEND);
 }
 
 }  // namespace foresight

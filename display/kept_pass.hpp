@@ -21,9 +21,9 @@ class KeptPass {
 
   /// Chooses for an eye there that looks through `view`. The images must stay leased.
   void choose(const NewestImages& images, const Lens& view, const Pose& T_world_eye);
-  /// Blends each that was chosen: `draw` draws the pixels of the view, to which the newest image has been drawn. All
-  /// else that view.glsl needs is bound.
-  void operator()(const std::function<void()>& draw) const;
+  /// Blends each that was chosen: `draw` runs the program for the pixels of the view, to which the newest image has
+  /// been drawn. All else that view.glsl needs is bound, but for the image's pixels, which are to be at `pixels_image`.
+  void operator()(GLuint pixels_image, const std::function<void(const gl::Program&)>& draw) const;
 
  private:
   struct Chosen {

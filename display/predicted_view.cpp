@@ -15,10 +15,11 @@ namespace foresight {
 namespace {
 
 // As in view.glsl and view.comp.
-constexpr unsigned kGroup = 64;  // invocations of a group over a list
+constexpr unsigned kGroup = 64;  // invocations of a group, of a row or of a list
 constexpr int kBand = 64;        // rows: fewer cost as much as these, as each band is waited for
-constexpr GLuint kListUnit = 5, kLightUnit = 6, kPlanesUnit = 7, kHomographiesUnit = 8, kAgesUnit = 10;
+constexpr GLuint kListUnit = 5, kPlanesUnit = 7, kHomographiesUnit = 8, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
+constexpr GLuint kPictureImage = 0, kSurfacesImage = 1, kLightImage = 2, kPixelsImage = 3;
 constexpr unsigned kBeforeBlock = 2;
 
 enum class Cases { image, usual, every };
@@ -31,7 +32,7 @@ struct Pixels {
   bool homographies = false;
 };
 
-std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases, Pixels pixels, bool fragment) {
+std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
   auto defines = gl::camera_defines(lenses);
   defines.push_back("CASES " + std::to_string(static_cast<int>(cases)));
   defines.push_back("LEVELS " + std::to_string(pixels.levels));
@@ -39,18 +40,12 @@ std::vector<std::string> view_defines(std::span<const Lens> lenses, Cases cases,
   defines.push_back("BLENDED " + std::to_string(pixels.blended));
   defines.push_back("BEFORE " + std::to_string(pixels.before));
   defines.push_back("HOMOGRAPHIES " + std::to_string(pixels.homographies));
-  defines.push_back("FRAGMENT " + std::to_string(fragment));
   defines.emplace_back("KEPT 0");
   return defines;
 }
 
 gl::Program view_program(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
-  return gl::Program::compute(display_and_lookup_shaders(), "view.comp", view_defines(lenses, cases, pixels, false));
-}
-
-gl::Program whole_view_program(std::span<const Lens> lenses, Cases cases, Pixels pixels) {
-  return gl::Program::graphics(display_and_lookup_shaders(), "rectangle.vert", "view.frag",
-                               view_defines(lenses, cases, pixels, true));
+  return gl::Program::compute(display_and_lookup_shaders(), "view.comp", view_defines(lenses, cases, pixels));
 }
 
 /// No programs are compiled anew where the one takes the other's place (gl::no_power_of_two).
@@ -76,16 +71,13 @@ void set_tone(const gl::Program& program, float gain, float sharp, const Publish
 }  // namespace
 
 PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool levels, bool with_homographies)
-    : newest(whole_view_program(std::array{view, lens}, Cases::image,
-                                {.levels = levels, .homographies = with_homographies})),
+    : newest(view_program(std::array{view, lens}, Cases::image, {.levels = levels, .homographies = with_homographies})),
       before(view_program(std::array{view, lens}, Cases::image, {.levels = levels, .listed = true, .blended = true})),
       usual(view_program(std::array{view, lens}, Cases::usual,
                          {.levels = levels, .listed = true, .blended = true, .before = true})),
       rest(view_program({&view, 1}, Cases::every, {.levels = levels, .listed = true, .blended = true})),
       unseen("pixels that the newest image does not see", kGroup),
-      of_before("pixels that the image before shows", kGroup),
-      framebuffer(gl::create_framebuffer("newest image")),
-      rectangle(gl::create_vertex_array("newest image")) {
+      of_before("pixels that the image before shows", kGroup) {
   if (with_homographies) homographies.emplace();
 }
 
@@ -220,8 +212,11 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
   draw_rows([&](Rows rows) {
     draw_newest(images, rows);
     if (any_kept) {
-      (*kept_)([&] { draw_rectangle(rows); });
-      glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+      (*kept_)(kPixelsImage, [&](const gl::Program& program) {
+        dispatch_all(program, rows);
+        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+      });
+      reset_samplers_();
     }
     if (before)
       draw_usual_and_before(*before, images.newest->sharp);
@@ -268,28 +263,15 @@ void PredictedView::draw_newest(const NewestImages& images, Rows rows) const {
   start(p.unseen);
   const gl::Program& newest = draws_part_ ? p.newest_of_part : p.newest;
   p.newest_inputs.bind(newest, images.newest->depth_tolerance, kSeenBlock, kSeenUnit);
+  p.newest_inputs.bind_pixels(kPixelsImage);
   newest.set("sharp", images.newest->sharp);
-  if (draws_part_) {
+  if (draws_part_)
     part_->pixels.dispatch();
-    reset_samplers_();
-  } else {
-    draw_rectangle(rows);
-  }
+  else
+    dispatch_all(newest, rows);
+  reset_samplers_();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   p.unseen.finish(kListUnit);
-}
-
-/// Runs the current program for all pixels of some rows.
-void PredictedView::draw_rectangle(Rows rows) const {
-  const Projection& p = *projection_;
-  glNamedFramebufferTexture(p.framebuffer.name(), GL_COLOR_ATTACHMENT0, picture_.name(), 0);
-  p.fences();
-  glBindFramebuffer(GL_FRAMEBUFFER, p.framebuffer.name());
-  glBindVertexArray(p.rectangle.name());
-  glViewport(0, rows.first, lens_.width(), rows.last - rows.first);
-  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  glBindVertexArray(0);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 /// What the newest image does not show; lists what is left.
@@ -311,6 +293,7 @@ void PredictedView::draw_usual_and_before(const PublishedImage& before, float sh
   p.of_before.finish(kListUnit);
   rest_.bind();
   p.inputs_before.bind(p.before, before.depth_tolerance, kSeenBlock, kSeenUnit);
+  p.inputs_before.bind_pixels(kPixelsImage);
   p.before.set("sharp", sharp);
   p.of_before.dispatch();
   reset_samplers_();
@@ -341,23 +324,27 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   glBindTextureUnit(0, node_poses_.texture());
   glBindTextureUnit(1, faces_.surface.name());
+  glBindImageTexture(kSurfacesImage, faces_.surface.name(), 0, GL_TRUE, 0, GL_READ_ONLY, GL_R32UI);
   glBindTextureUnit(2, surface_->triangles());
   glBindTextureUnit(3, surface_->patches());
   glBindTextureUnit(4, rays_.name());
   if (raster_.has_levels()) glBindTextureUnit(kPlanesUnit, faces_.planes.name());
   textures.bind();
   glBindTextureUnit(kAgesUnit, textures.ages.texture());
-  glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
+  glBindImageTexture(kPictureImage, picture_.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
 }
 
 /// Binds what shadows leave of each pixel.
 void PredictedView::shade(const Pose& T_world_camera, const SceneState& state,
                           const std::shared_ptr<const SceneLight>& light) {
-  glBindTextureUnit(kLightUnit, unshaded_.name());
+  const auto bind = [](const gl::Texture& texture) {
+    glBindImageTexture(kLightImage, texture.name(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA8);
+  };
+  bind(unshaded_);
   if (!light) return;
   if (gate_) gate_->begin("shadows of a view");
   find_shadows(T_world_camera, state, light);
-  if (shadows_->is_there) glBindTextureUnit(kLightUnit, shadows_->pass.light().name());
+  if (shadows_->is_there) bind(shadows_->pass.light());
   if (gate_) {
     glFinish();
     gate_->end();
@@ -385,7 +372,7 @@ void PredictedView::start(WorkList& list) const {
 void PredictedView::dispatch_all(const gl::Program& program, Rows rows) const {
   program.use();
   program.set("rows", Eigen::Vector2i(rows.first, rows.last));
-  glDispatchCompute(gl::groups(lens_.width(), 8), gl::groups(rows.last - rows.first, 8), 1);
+  glDispatchCompute(gl::groups(lens_.width(), kGroup), static_cast<GLuint>(rows.last - rows.first), 1);
 }
 
 void PredictedView::dispatch(const WorkList& list, const gl::Program& program) {

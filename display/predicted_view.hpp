@@ -104,9 +104,6 @@ class PredictedView {
     WorkList unseen;                          // by the newest image
     WorkList of_before;                       // of these, what the one before shows
     SeenInputs newest_inputs, inputs_before;
-    gl::Framebuffer framebuffer;  // the newest image is drawn into
-    gl::KeptFences fences;
-    gl::VertexArray rectangle;
     std::optional<PlaneHomographies> homographies;  // to the newest image
   };
   /// What shadows need besides.
@@ -136,7 +133,6 @@ class PredictedView {
                 const PublishedImage* before);
   void look_up(const NewestImages& images, const PublishedImage* before);
   void draw_newest(const NewestImages& images, Rows rows) const;
-  void draw_rectangle(Rows rows) const;
   void draw_usual();
   void draw_usual_and_before(const PublishedImage& before, float sharp);
   void start_part() const;

@@ -5,7 +5,7 @@
 #include "work_item.glsl"
 layout(local_size_x = 64) in;
 #else
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 uniform ivec2 rows;  // first, and beyond the last
 #endif
 #include "view.glsl"

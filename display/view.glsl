@@ -9,11 +9,14 @@
 //   image before, of these       what it shows in part only is listed for the last
 //   every case, of these
 //
-// view.frag and view.comp choose the pixels. Defines: CASES 0: an image; 1: the usual case; 2: every case.
+// view.comp chooses the pixels. Defines: CASES 0: an image; 1: the usual case; 2: every case.
 //          LEVELS: seen_plane.glsl. LISTED: 1 where the pixels come from a list. BLENDED: 1 where the picture holds newer
-//          images already. BEFORE: 1 where what the image before shows is left to it. FRAGMENT: 1 in view.frag.
+//          images already. BEFORE: 1 where what the image before shows is left to it.
 //          HOMOGRAPHIES: 1 where those of the triangles' planes to the image are there (homographies.comp).
 //          KEPT: 1 for an image that is blended over the newest one where it saw from the eye's side (kept.glsl).
+//
+// Where a texture has one level, its texels are loaded as an image's: software renderers fetch a texture's after looking up the
+// level for each lane by itself (docs/decisions/0050).
 #define IMAGE 0
 #define USUAL 1
 #define EVERY 2
@@ -37,6 +40,7 @@ float sharp_for(float finer) {
 #endif
 #if CASES == IMAGE
 #include "image_taps.glsl"
+#include "view_taps.glsl"
 #else
 #include "chart_record.glsl"
 #include "atlas.glsl"
@@ -53,15 +57,13 @@ uniform float light_age;  // s; of colours that are older it is not known which 
 #endif
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
 layout(binding = 0) uniform samplerBuffer view_nodes;    // T_node_camera
-layout(binding = 1) uniform usampler2DArray surfaces;    // triangle + 1
+layout(binding = 1, r32ui) readonly uniform uimage2DArray surfaces;    // triangle + 1
 layout(binding = 2) uniform samplerBuffer triangles;
 layout(binding = 3) uniform samplerBuffer patches;
 #include "seen_plane.glsl"
 #include "view_ray.glsl"
-layout(binding = 6) uniform sampler2D light;  // ShadowPass::light(), or white, and smaller
-#if FRAGMENT
-layout(location = 0) out vec4 picture;
-#elif BLENDED
+layout(binding = 2, rgba8) readonly uniform image2D light;  // ShadowPass::light(), or white, and smaller
+#if BLENDED || KEPT
 layout(binding = 0, rgba8) uniform image2D picture;
 #else
 layout(binding = 0, rgba8) uniform writeonly image2D picture;
@@ -76,7 +78,7 @@ const float kSeenShare = 0.25;
 vec3 pixel_light;  // what shadows of moving parts leave of the pixel's value
 
 void find_light(ivec2 pixel) {
-  pixel_light = texelFetch(light, min(pixel, textureSize(light, 0) - 1), 0).rgb;
+  pixel_light = imageLoad(light, min(pixel, imageSize(light) - 1)).rgb;
 }
 
 // What a pixel shows.
@@ -98,7 +100,7 @@ bool find_surface(ivec2 pixel, out Surface found) {
   if (!project_face(camera, found.ray, place, inverse_z)) return false;
   found.at = ivec3(ivec2(floor(place.xy + 0.5)), int(place.z));
 #endif
-  found.number = texelFetch(surfaces, found.at, 0).r;
+  found.number = imageLoad(surfaces, found.at).r;
   return found.number != 0u;
 }
 
@@ -141,7 +143,7 @@ bool find_point(ivec2 pixel, out Point found) {
 vec4 image_colour(Sighting seen) {
   if (seen.weight == 0.0) return vec4(0.0);
   vec2 size = cameras[0].size.xy;
-  vec3 colour = unscaled(sample_for_view(image0, seen.pixel, size, sharp_for(seen.finer), seen.finer)) * without_vignetting(cameras[0].tone, seen.pixel, size);
+  vec3 colour = unscaled(sample_for_view(seen.pixel, ivec2(size), sharp_for(seen.finer), seen.finer)) * without_vignetting(cameras[0].tone, seen.pixel, size);
   return vec4(min(cameras[0].tone.x * colour * pixel_light, vec3(1.0)), seen.weight);
 }
 
@@ -242,21 +244,19 @@ void leave_to_before(ivec2 pixel) {
 #endif
 
 void draw(ivec2 pixel, vec4 colour) {
-#if FRAGMENT
-  picture = colour;
-#else
 #if BLENDED && CASES != IMAGE
   vec4 newest = imageLoad(picture, pixel);  // its weight in alpha
   if (newest.a > 0.0) colour = beside(newest, colour);
 #endif
   imageStore(picture, pixel, colour);
-#endif
 }
 
 #if KEPT
 void draw_pixel(ivec2 pixel) {
   Point point;
-  draw(pixel, find_point(pixel, point) ? kept_colour(point) : vec4(0.0));
+  if (!find_point(pixel, point)) return;
+  vec4 kept = kept_colour(point), newest = imageLoad(picture, pixel);
+  if (kept.a > 0.0) imageStore(picture, pixel, vec4(mix(newest.rgb, kept.rgb, kept.a), newest.a));
 }
 #elif CASES == IMAGE
 // How the image shows a pixel; false where no model is.

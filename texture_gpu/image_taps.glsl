@@ -17,32 +17,6 @@ vec4 sample_sharply(sampler2D image, vec2 pixel, vec2 size, float sharp) {
   return clamp(sum / (wm + wc.x + wc.y + wc.z + wc.w), 0.0, 1.0);
 }
 
-// The same for views, which take as many as they have pixels: the inner four pixels by one bilinear tap, and outside of them those
-// of the nearest row and column for all on that side, as gather_sharp_taps() (lookup.glsl) does. Where the view shows `side`
-// pixels of the image for one of its own, more than kMagnified, what is added to linear weights is a share of a tent of four
-// pixels: as wide as the mean of a square of `side`, whatever the place.
-const float kMagnified = 1.5;
-vec4 sample_for_view(sampler2D image, vec2 pixel, vec2 size, float sharp, float side) {
-  vec2 center = floor(pixel);
-  vec2 f = pixel - center;
-  // Not branches: software renderers would sample twice.
-  bool is_mean = side > kMagnified;
-  float share = is_mean ? min(0.144 * side * side, 1.0) : sharp;  // a tent's variance is a half more than that of linear weights
-  vec2 w0 = is_mean ? 0.25 - 0.25 * f : f * (-0.5 + f * (1.0 - 0.5 * f));
-  vec2 w1 = is_mean ? 0.75 * f - 0.5 : f * (1.0 + f * (-2.5 + 1.5 * f));
-  vec2 w3 = is_mean ? 0.25 * f : f * f * (-0.5 + 0.5 * f);
-  vec2 w2 = f - share * (w0 + w1 + w3);
-  w0 *= share, w1 = 1.0 - f + share * w1, w3 *= share;
-  vec2 w12 = w1 + w2, at12 = center + w2 / w12, last = size - 1.0;
-  vec2 nearest = min(center + step(0.5, f), last), before = max(center - 1.0, 0.0), after = min(center + 2.0, last);
-  vec4 wc = vec4(w12.x * w0.y, w0.x * w12.y, w3.x * w12.y, w12.x * w3.y);
-  float wm = w12.x * w12.y;
-  vec4 sum = wm * textureLod(image, (at12 + 0.5) / size, 0.0) + wc.x * texelFetch(image, ivec2(nearest.x, before.y), 0) +
-             wc.y * texelFetch(image, ivec2(before.x, nearest.y), 0) + wc.z * texelFetch(image, ivec2(after.x, nearest.y), 0) +
-             wc.w * texelFetch(image, ivec2(nearest.x, after.y), 0);
-  return clamp(sum / (wm + wc.x + wc.y + wc.z + wc.w), 0.0, 1.0);
-}
-
 vec3 unscaled(vec4 colour) {
   return colour.rgb / max(colour.a, 0.05);
 }

@@ -40,6 +40,10 @@ void SeenInputs::bind(const gl::Program& program, double depth_tolerance, GLuint
   }
 }
 
+void SeenInputs::bind_pixels(GLuint image) const {
+  glBindImageTexture(image, camera(0).image().name(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA8);
+}
+
 void SeenInputs::sample_images_by(GLuint sampler) {
   for (GLuint i = 0; i < 2; ++i) glBindSampler(kImages + i, sampler);
 }

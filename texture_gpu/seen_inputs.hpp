@@ -20,6 +20,8 @@ class SeenInputs {
 
   /// Binds uniform block `block` and seven texture units from `unit` on, and sets the shared uniforms of `program`.
   void bind(const gl::Program& program, double depth_tolerance, GLuint block = 0, GLuint unit = 0) const;
+  /// Binds the first camera's image, to be loaded pixel by pixel, to image unit `image`.
+  void bind_pixels(GLuint image) const;
   /// How images are sampled that are bound so from unit 0 on; 0: as their textures say.
   static void sample_images_by(GLuint sampler);
 
