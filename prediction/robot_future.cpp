@@ -266,7 +266,7 @@ FutureReason RobotFuture::doubt(const Shown& shown, std::size_t joint) const noe
   if (joints_[joint].held.doubted || joints_[joint].missed.doubted) return FutureReason::astray;
   // Most times that reports are overdue the robot goes on: pixels are in doubt, the view as a whole is not yet.
   if (shown.scale[joint] * shown.any_prior(joint) <= joints_[joint].least_sure) return FutureReason::none;
-  return overdue() ? FutureReason::stale : FutureReason::unsure;
+  return shown.overdue ? FutureReason::stale : FutureReason::unsure;
 }
 
 // Jaws that hold something stand elsewhere than they are asked to for as long as they do, and carry neither tool nor
@@ -286,7 +286,7 @@ bool RobotFuture::predict(std::size_t joint, Shown& out) const noexcept {
   if (!there.valid) return false;
   const double beyond = std::max(0.0, to_seconds(time - motion_.known_until()));
   // Whether it has is not told by any scale that was learnt while reports came.
-  if (overdue()) out.stopped[joint] = there.position - of.response.at(since_epoch(reported_)).position;
+  if (out.overdue) out.stopped[joint] = there.position - of.response.at(since_epoch(reported_)).position;
   out.predicted[joint] = out.robot.position[joint] = there.position;
   out.prior[joint] = std::hypot(there.sigma, beyond * motion_.cycles().newest().motion[joint].velocity);
   out.scale[joint] = of.scale.sigma();
@@ -314,6 +314,7 @@ RobotFuture::Shown RobotFuture::predict(RobotTime time) const noexcept {
   if (reason != FutureReason::none) fall_back(robot, reason, joint);
   if (reason != FutureReason::none || since_epoch(time) <= *until) return out;
   robot.status = StateStatus::predicted;
+  out.overdue = overdue();
   // While all rests, all is right.
   robot.settling = std::ranges::none_of(joints_, [](const Joint& one) { return one.response.identified(); });
   for (std::size_t i = 0; i < joints_.size(); ++i) {

@@ -135,6 +135,7 @@ class RobotFuture {
   };
   struct Shown {
     PredictedRobot robot;
+    bool overdue = false;     // reports are
     bool judged = false;      // there is a prediction, whether it can be trusted or not
     JointValues predicted{};  // that one
     JointValues prior{}, scale{};
