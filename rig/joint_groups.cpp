@@ -257,9 +257,7 @@ bool is_followed_jaw(const Structure& robot, std::size_t joint) {
   return robot.joint(joint).kind == UrdfJoint::Kind::rotating && !is_levelled(robot, joint);
 }
 
-}  // namespace
-
-namespace {
+// ---- groups that were given
 
 bool is_farther_than_jaws(const UrdfJoint& joint) {
   const double most = joint.kind == UrdfJoint::Kind::sliding ? kShortStroke : kJawsTurn;
