@@ -234,15 +234,16 @@ int run_with(const Rig& rig, const RobotArguments& arguments,
   if (shape)
     for (const auto& [link, other] : shape->nested())
       say_robot("links " + other + " and " + link + " lie in each other in most positions: the gate lets them touch");
-  for (const std::string& words : words_on_home(rig)) say_robot(words);
+  const std::vector<TooClose> close_at_home = parts_too_close_at_home(rig);
+  for (const std::string& words : words_on_home(close_at_home)) say_robot(words);
   for (const std::string& words : words_on_groups(rig)) say_robot(words);
   if (arguments.check_only) {
     devices.bring_up(say_robot);
     for (const Drive* drive : devices.drives())
       say_robot("drive " + drive->config().name + ": " + to_text(drive->identity()));
-    if (std::ranges::any_of(parts_too_close_at_home(rig), &TooClose::touch))
-      throw RuntimeFailure("the robot could not move freely from home",
-                           "correct surroundings, robot.pose or the joint's offset");
+    const auto touching = std::ranges::find_if(close_at_home, &TooClose::touch);
+    if (touching != close_at_home.end())
+      throw RuntimeFailure("the robot could not move freely from home", touching->cure);
     return 0;
   }
   Robot robot(rig.gate_options(), shape.get(), devices.networks(), devices.drives());

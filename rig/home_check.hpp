@@ -1,6 +1,7 @@
 // Whether a rig's robot could move at all from where its joints find home.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,13 @@ namespace foresight {
 struct TooClose {
   std::string what;  ///< RobotShape::message()
   bool touch;        ///< they overlap, or the link is outside of the workspace
+  std::string cure;  ///< what to do: "leave more room, or less surroundings.clearance_m: the gate lets ..."
 };
 
 /// All of them with every joint at home (home_of()). None where the rig has no robot.
 std::vector<TooClose> parts_too_close_at_home(const Rig& rig);
 
-/// The same as lines for whoever starts a program: "at home link 'hand' comes too close ...: the gate would ...".
-std::vector<std::string> words_on_home(const Rig& rig);
+/// The same as lines for whoever starts a program: "at home link 'hand' comes too close ...; leave more room ...".
+std::vector<std::string> words_on_home(std::span<const TooClose> all);
 
 }  // namespace foresight

@@ -8,9 +8,7 @@ Findings check_home(const Rig& rig) {
   if (!rig.robot) return {};
   Findings out;
   for (const TooClose& parts : parts_too_close_at_home(rig))
-    out.push_back({parts.touch ? Verdict::bad : Verdict::poor, "robot at home", parts.what,
-                   parts.touch ? "correct surroundings, robot.pose or the joint's offset: the gate lets it only part"
-                               : "leave more room, or less surroundings.clearance_m: the gate lets them only part"});
+    out.push_back({parts.touch ? Verdict::bad : Verdict::poor, "robot at home", parts.what, parts.cure});
   if (out.empty()) out.push_back({Verdict::good, "robot at home", "stands clear of its surroundings", ""});
   return out;
 }

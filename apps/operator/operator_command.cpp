@@ -202,7 +202,7 @@ SeatTrialFigures run_served(const Rig& rig, const Arguments& arguments, const Ta
 
 int run_scripted(const Rig& given, const Arguments& arguments) {
   Rig rig = given;
-  for (const std::string& words : words_on_home(rig)) say(words);
+  for (const std::string& words : words_on_home(parts_too_close_at_home(rig))) say(words);
   // What the line takes by its file is known; the robot's side is told, as the rig's round_trip_s does.
   const LineSpec line = line_of(arguments);
   if (!arguments.served) rig.link.coding = coding_of(rig, arguments);

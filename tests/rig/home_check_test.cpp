@@ -32,10 +32,12 @@ TEST(HomeCheck, NamesLinksInAnObstacleAndOutsideOfTheWorkspace) {
 
 TEST(HomeCheck, SaysInALineWhatTheGateWouldDo) {
   Rig rig = minerva();
-  EXPECT_THAT(words_on_home(rig), IsEmpty());
+  EXPECT_THAT(words_on_home(parts_too_close_at_home(rig)), IsEmpty());
   rig.surroundings.workspace = {Eigen::Vector3d(-0.1, -0.1, 0), Eigen::Vector3d(0.1, 0.1, 0.1)};
-  EXPECT_THAT(words_on_home(rig), Contains(testing::AllOf(testing::StartsWith("at home link '"),
-                                                          HasSubstr("leaves the workspace"), HasSubstr("the gate"))));
+  EXPECT_THAT(
+      words_on_home(parts_too_close_at_home(rig)),
+      Contains(testing::AllOf(testing::StartsWith("at home link '"), HasSubstr("leaves the workspace"),
+                              HasSubstr("; correct surroundings, robot.pose or the joint's offset: the gate"))));
 }
 
 TEST(HomeCheck, ARigWithoutABodyHasNothingToCheck) {
