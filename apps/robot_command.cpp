@@ -205,6 +205,7 @@ ConsoleOptions console_options(const RobotArguments& arguments, link::RobotServe
   if (server) {
     options.line = [server] { return server->line(); };
     options.line_news = [server](RobotTime now) { return server->news(now); };
+    options.line_stopper = [server] { return server->stopper(); };
   }
   if (server && arguments.follow.empty()) {
     options.commander = &server->commander();

@@ -24,6 +24,11 @@ RobotRequest request_of(LineRequest request) {
   return RobotRequest::none;
 }
 
+/// What ended the motion is that the lease began or ended.
+bool is_of_lease(RestCause cause) {
+  return cause == RestCause::granted || cause == RestCause::nobody;
+}
+
 }  // namespace
 
 LineOperator::LineOperator(const GateOptions& options, ControlDeskOptions desk)
@@ -63,11 +68,9 @@ OperatorWish LineOperator::tick(RobotTime now, const RobotStatus& status) {
   wish.request = request_of(desk_.take_request());
   const LineMotion motion = desk_.motion(now);
   const bool lost = motion.what == LineMotion::What::nothing && robot.follows;
-  const Nonce lease = desk_.permit().lease();
-  const bool handed_over = std::exchange(lease_, lease) != lease;
   if (std::exchange(round_, motion.round) != motion.round || lost) {
     wish.command = begin_session(now, status);
-    wish.command->handed_over = handed_over;
+    wish.command->handed_over = is_of_lease(desk_.permit().cause());
   } else if (motion.what == LineMotion::What::open) {
     wish.command = command(now, false, robot.set_point);
   } else if (motion.what == LineMotion::What::follow) {

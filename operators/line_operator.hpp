@@ -33,7 +33,6 @@ class LineOperator final : public Commander {
   ControlDesk desk_;
   CommandCounter counter_{kId};
   std::uint64_t round_ = 0;
-  Nonce lease_ = 0;
 };
 
 }  // namespace foresight

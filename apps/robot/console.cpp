@@ -32,6 +32,7 @@ Console::Console(const Rig& rig, const RobotDevices& devices, Robot& robot, Robo
             options.follow.empty() ? KeyOperator::Rights::drives : KeyOperator::Rights::only_stops),
       line_(options.line),
       line_news_(options.line_news),
+      line_stopper_(options.line_stopper),
       give_control_(options.give_control),
       news_(rig.joint_words()) {
   if (!options.follow.empty()) {
@@ -63,7 +64,8 @@ bool Console::tick(RobotTime now) {
     told_of_recording_ = true;
   }
   if (!keyboard_.is_terminal())  // else the view shows it
-    if (const std::string news = news_.of(status, std::chrono::system_clock::now()); !news.empty()) say_robot(news);
+    if (const std::string news = news_.of(status, std::chrono::system_clock::now(), line_stopper()); !news.empty())
+      say_robot(news);
   show(now, status);
   notify(now, status);
   return goes_on;
@@ -121,7 +123,7 @@ std::string Console::log_fault() {
 }
 
 std::string Console::view(const RobotStatus& status, int selected) const {
-  std::string out = status_text(rig_, status, devices_.buses(), selected);
+  std::string out = status_text(rig_, status, devices_.buses(), selected, line_stopper());
   if (cameras_) out += camera_text(cameras_->watch().line());
   if (const std::string fault = cameras_ ? cameras_->registration_trouble() : ""; !fault.empty())
     out += "  poses: " + fault + "\n";

@@ -29,6 +29,7 @@ struct ConsoleOptions {
   Commander* commander = nullptr;     ///< somebody else who may command, beside the keyboard; null: nobody
   std::function<std::string()> line;  ///< how the line to others is, in one line; empty: there is none
   std::function<std::string(RobotTime)> line_news;  ///< what has happened on it since; mostly ""; empty as `line`
+  std::function<std::string()> line_stopper;        ///< who asked over it for the newest stop; empty as `line`
   std::function<void(RobotTime)> give_control;      ///< to who asks for it over the line; empty as `line`
 };
 
@@ -54,6 +55,7 @@ class Console {
   std::string log_fault();
   std::string finish_recording();
   std::string view(const RobotStatus& status, int selected) const;
+  std::string line_stopper() const { return line_stopper_ ? line_stopper_() : ""; }
   void report();
   void show(RobotTime now, const RobotStatus& status);
   void take_keys(RobotTime now);
@@ -73,6 +75,7 @@ class Console {
   std::vector<Commander*> commanders_;
   std::function<std::string()> line_;
   std::function<std::string(RobotTime)> line_news_;
+  std::function<std::string()> line_stopper_;
   std::function<void(RobotTime)> give_control_;
   RobotNews news_;
   LoopLife life_;

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "operators/who_stopped.hpp"
+
 namespace foresight {
 namespace {
 
@@ -15,19 +17,20 @@ std::string utc_text(std::chrono::system_clock::time_point at) {
 
 }  // namespace
 
-RobotNews::Doing RobotNews::doing(const RobotStatus& status) {
+RobotNews::Doing RobotNews::doing(const RobotStatus& status, const std::string& line_stopper) {
   const GateStatus& gate = status.gate;
-  Doing out{status.phase, GateReason::none, -1, gate.operator_id};
+  Doing out{status.phase, GateReason::none, -1, gate.operator_id, who_stopped(status, line_stopper)};
   const bool has_reason =
       status.phase == RobotPhase::stopped || (status.phase == RobotPhase::ready && gate.state != GateState::following);
   if (has_reason) out.reason = gate.reason, out.joint = gate.joint;
   return out;
 }
 
-std::string RobotNews::of(const RobotStatus& status, std::chrono::system_clock::time_point now) {
-  const Doing doing = RobotNews::doing(status);
+std::string RobotNews::of(const RobotStatus& status, std::chrono::system_clock::time_point now,
+                          const std::string& line_stopper) {
+  const Doing doing = RobotNews::doing(status, line_stopper);
   if (std::exchange(last_, doing) == doing) return "";
-  std::string out = utc_text(now) + ": " + describe(status, joints_).name;
+  std::string out = utc_text(now) + ": " + name_and_who(describe(status, joints_).name, status, line_stopper);
   if (const auto who = names_.find(doing.operator_id); who != names_.end()) out += "; " + who->second + " is in charge";
   return out;
 }

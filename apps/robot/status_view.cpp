@@ -9,10 +9,10 @@
 namespace foresight {
 namespace {
 
-std::string headline(const Rig& rig, const RobotStatus& status) {
+std::string headline(const Rig& rig, const RobotStatus& status, const std::string& line_stopper) {
   const std::vector<JointWords> joints = rig.joint_words();
   const RobotWords words = describe(status, joints);
-  std::string out = rig.name + ": " + name_and_who(words.name, status);
+  std::string out = rig.name + ": " + name_and_who(words.name, status, line_stopper);
   if (*status.refused != '\0') out += std::string("; ") + status.refused;
   if (!status.bus_healthy) out += std::string("; bus: ") + status.bus_reason;
   out += "\n";
@@ -31,8 +31,9 @@ std::size_t width_of_names(const Rig& rig) {
 
 }  // namespace
 
-std::string status_text(const Rig& rig, const RobotStatus& status, const std::vector<BusLine>& buses, int selected) {
-  std::string out = headline(rig, status);
+std::string status_text(const Rig& rig, const RobotStatus& status, const std::vector<BusLine>& buses, int selected,
+                        const std::string& line_stopper) {
+  std::string out = headline(rig, status, line_stopper);
   out += fmt::format("  commands: {} followed, {} dropped{}{}; speed {:.0f} %\n", status.gate.accepted,
                      status.gate.dropped, status.gate.last_dropped == GateReason::none ? "" : ", last: ",
                      to_string(status.gate.last_dropped), 100 * status.gate.speed);

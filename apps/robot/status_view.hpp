@@ -10,7 +10,8 @@
 namespace foresight {
 
 /// Several lines: what the robot does and why, what holds it back, what to do next, a line per joint, a line per bus,
-/// punctuality of the loop. `selected`: the joint that the keys move, or -1.
-std::string status_text(const Rig& rig, const RobotStatus& status, const std::vector<BusLine>& buses, int selected);
+/// punctuality of the loop. `selected`: the joint that the keys move, or -1. `line_stopper`: of who_stopped().
+std::string status_text(const Rig& rig, const RobotStatus& status, const std::vector<BusLine>& buses, int selected,
+                        const std::string& line_stopper = "");
 
 }  // namespace foresight

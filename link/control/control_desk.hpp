@@ -52,8 +52,8 @@ class ControlDesk {
   LineMotion motion(RobotTime now) const { return permit_.motion(now); }
   /// The next request that is to be executed; each comes once. An emergency stop goes before all others.
   LineRequest take_request();
-  /// The name of who asked for the newest emergency stop since the last call, or "".
-  std::string take_stopper() { return std::exchange(stopper_, ""); }
+  /// The name of who asked for the newest emergency stop, or "".
+  const std::string& stopper() const { return stopper_; }
 
   /// Somebody beside the robot gives the lease to who asks for it. False: nobody does.
   bool consent_to_asking(RobotTime now);

@@ -20,7 +20,6 @@ std::string lease_words(const std::string& holder, const std::string& before) {
 
 std::string LeaseNews::of(ControlDesk& desk, RobotTime now) {
   std::string out;
-  if (const std::string who = desk.take_stopper(); !who.empty()) add(out, in_quotes(who) + " stops the robot");
   if (const Nonce before = std::exchange(lease_, desk.permit().lease()); lease_ != before)
     add(out, lease_words(desk.holder_name(), std::exchange(holder_, desk.holder_name())));
   const std::string before = std::exchange(asking_, desk.asking_name(now));

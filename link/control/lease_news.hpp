@@ -1,4 +1,4 @@
-// Who commands, who asks for control and who stops the robot, in words for people beside it.
+// Who commands and who asks for control, in words for people beside the robot.
 #pragma once
 
 #include <string>

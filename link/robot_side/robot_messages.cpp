@@ -222,7 +222,7 @@ std::string lenses_revision(const StereoLenses& lenses) {
   return fmt::format("{:016x}", hash);
 }
 
-RobotState robot_state(const RobotStatus& status, const Rig& rig) {
+RobotState robot_state(const RobotStatus& status, const Rig& rig, const std::string& line_stopper) {
   const std::vector<JointWords> joints = rig.joint_words();
   const GateStatus& gate = status.gate;
   RobotState out;
@@ -232,7 +232,7 @@ RobotState robot_state(const RobotStatus& status, const Rig& rig) {
   out.gate = words(words_for(gate.state));
   out.reason = words(words_for(gate.reason));
   const RobotWords doing = describe(status, joints);
-  out.doing = {"", name_and_who(doing.name, status), doing.cure};
+  out.doing = {"", name_and_who(doing.name, status, line_stopper), doing.cure};
   out.detail = gate.detail;
   out.hold = hold_text(gate.hold, joints, status.time);
   out.operator_id = gate.operator_id;

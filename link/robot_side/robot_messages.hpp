@@ -32,8 +32,8 @@ CameraInfoMessage camera_info(const Lens& lens, const std::string& frame_id, Ros
 /// Another text for every other calibration of either lens.
 std::string lenses_revision(const StereoLenses& lenses);
 
-/// All but header, session, number and cameras.
-RobotState robot_state(const RobotStatus& status, const Rig& rig);
+/// All but header, session, number and cameras. `line_stopper`: of who_stopped().
+RobotState robot_state(const RobotStatus& status, const Rig& rig, const std::string& line_stopper = "");
 CameraLines camera_lines(const CameraLine& line, const std::string& registration, RobotTime now);
 /// The same for ROS 2's tools: the robot, each drive, the cameras and the loop.
 DiagnosticArray diagnostics(const RobotState& state);

@@ -40,6 +40,8 @@ class RobotServer {
   std::string line() const;
   /// What has happened on the line since it was asked the last time, for the log; mostly "". In commander()'s thread.
   std::string news(RobotTime now);
+  /// Who asked over the line for the newest stop; "" where nobody did.
+  std::string stopper() const { return operator_.taken().stopper(); }
   std::string robot_beside() const { return link::robot_beside(participant_); }
   FrameCounts counts() const noexcept { return frames_ ? frames_->counts() : FrameCounts{}; }
 

@@ -5,8 +5,8 @@
 
 #include "common/suspension.hpp"
 #include "link/control_wire/control_lines.hpp"
+#include "link/robot_side/command_history.hpp"
 #include "link/robot_side/line_share.hpp"
-#include "link/robot_side/set_point_history.hpp"
 #include "operators/line_operator.hpp"
 
 namespace foresight::link {
@@ -31,12 +31,13 @@ class ServedOperator final : public Commander {
     OperatorWish wish = operator_.tick(std::max(now, clock_.now()), status);  // not before what was taken in
     line_.send(operator_.desk());
     taken_.add(operator_.desk().taken());
+    taken_.stopped_by(operator_.desk().stopper());
     return wish;
   }
 
   ControlDesk& desk() { return operator_.desk(); }
   /// For any thread.
-  const SetPointHistory& taken() const { return taken_; }
+  const CommandHistory& taken() const { return taken_; }
 
  private:
   DeskLine line_;
@@ -44,7 +45,7 @@ class ServedOperator final : public Commander {
   const Clock& clock_;
   const LineCapacity* capacity_;
   SuspensionWatch suspension_;
-  SetPointHistory taken_;
+  CommandHistory taken_;
 };
 
 }  // namespace foresight::link

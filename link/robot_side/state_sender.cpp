@@ -14,7 +14,7 @@ constexpr Duration kDiagnostics = 1s;
 }  // namespace
 
 StateSender::StateSender(Participant& participant, SenderName name, const Rig& rig, const Robot& robot,
-                         const RobotCameras* cameras, WallClock& wall, Clock& clock, const SetPointHistory* taken,
+                         const RobotCameras* cameras, WallClock& wall, Clock& clock, const CommandHistory* taken,
                          const LineCapacity* line)
     : name_(std::move(name)),
       rig_(rig),
@@ -108,7 +108,7 @@ void StateSender::send_joints() {
 }
 
 void StateSender::send_state(RobotTime now) {
-  RobotState state = robot_state(robot_.status(), rig_);
+  RobotState state = robot_state(robot_.status(), rig_, taken_ ? taken_->stopper() : "");
   state.header.stamp = ros_time(wall_.unix_ns(now));
   state.session = name_.session;
   state.number = ++number_;

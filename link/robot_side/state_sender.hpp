@@ -3,9 +3,9 @@
 
 #include <thread>
 
+#include "link/robot_side/command_history.hpp"
 #include "link/robot_side/frame_sender.hpp"
 #include "link/robot_side/line_share.hpp"
-#include "link/robot_side/set_point_history.hpp"
 #include "session/robot_cameras.hpp"
 
 namespace foresight::link {
@@ -20,7 +20,7 @@ class StateSender {
   /// `cameras` may be null, and so may `taken`: then nobody commands over the line; and `line`: then it is never thin.
   /// All that is pointed at must outlive this.
   StateSender(Participant& participant, SenderName name, const Rig& rig, const Robot& robot,
-              const RobotCameras* cameras, WallClock& wall, Clock& clock, const SetPointHistory* taken = nullptr,
+              const RobotCameras* cameras, WallClock& wall, Clock& clock, const CommandHistory* taken = nullptr,
               const LineCapacity* line = nullptr);
   ~StateSender() { stop(); }
 
@@ -43,7 +43,7 @@ class StateSender {
   const RobotCameras* cameras_;
   WallClock& wall_;
   Clock& clock_;
-  const SetPointHistory* taken_;
+  const CommandHistory* taken_;
   const LineCapacity* line_;
   const Duration joint_period_, state_period_;
 

@@ -43,15 +43,15 @@ TEST_F(LeaseNewsTest, TellsWhenControlGoesToSomebodyElseOrToNobody) {
   EXPECT_EQ(news_.line(), "");
 }
 
-TEST_F(LeaseNewsTest, TellsWhoStopsTheRobotThoughSomebodyElseCommands) {
+TEST_F(LeaseNewsTest, LeavesAStopToTheRobotsStateForWhichTheDeskKnowsWhoAskedForIt) {
   seats_.push_back(&ben_);
   engage(anna_);
   run(500ms);
   news();
   ben_.seat.request(LineRequest::emergency_stop, time_of(ben_));
   run(500ms);
-  EXPECT_EQ(news(), "'ben' stops the robot");
-  EXPECT_EQ(news(), "") << "though the request is repeated until it is answered";
+  EXPECT_EQ(news(), "");
+  EXPECT_EQ(desk_.stopper(), "ben") << "though anna commands";
 }
 
 }  // namespace

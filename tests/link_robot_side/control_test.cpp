@@ -1,6 +1,7 @@
 // An operator over the line and an emulated robot, in stepped time: only the bytes between them are DDS'.
 #include "link/control_wire/control_wire.hpp"
 #include "link/robot_side/rig_identity.hpp"
+#include "link/robot_side/robot_messages.hpp"
 #include "link/robot_side/served_operator.hpp"
 #include "tests/control/small_line.hpp"
 #include "tests/link/child.hpp"
@@ -93,6 +94,16 @@ TEST_F(ServedControl, AfterASuspensionOfTheRobotsHostNothingMovesWithoutAnotherP
   for (int i = 0; i < 200; ++i) tick(positions, true);
   EXPECT_EQ(robot_.robot().status().gate.state, GateState::idle);
   EXPECT_TRUE(seat_.status(OperatorTime{robot_.clock().now().ns}).must_let_go);
+}
+
+TEST_F(ServedControl, TheRobotsStateNamesWhoStoppedIt) {
+  const LinePositions positions = take_control();
+  for (int i = 0; i < 50; ++i) tick(positions, true);
+  ASSERT_EQ(robot_.robot().status().gate.state, GateState::following);
+  seat_.request(LineRequest::emergency_stop, OperatorTime{robot_.clock().now().ns});
+  for (int i = 0; i < 100; ++i) tick(positions, true);
+  const RobotState state = robot_state(robot_.robot().status(), robot_.rig(), served_.taken().stopper());
+  EXPECT_THAT(state.doing.name, testing::EndsWith("(asked for over the line by '" + identity_.name + "')"));
 }
 
 // What somebody else writes on the same topics, and on those that look like it, moves nothing.

@@ -1,5 +1,6 @@
 #include "operators/follow_operator.hpp"
 #include "operators/key_operator.hpp"
+#include "operators/line_operator.hpp"
 #include "operators/station_operator.hpp"
 #include "operators/who_stopped.hpp"
 #include "tests/robot/prompt_drive.hpp"
@@ -252,6 +253,17 @@ TEST_F(KeyOperatorTest, BesideAFileKeysOnlyStopAndQuit) {
   EXPECT_EQ(who_stopped(robot_->status()), "asked for by a key of the robot's console");
   keys.press("q");
   EXPECT_FALSE(tick({&file, &keys}));
+}
+
+TEST(WhoStopped, NamesWhoAskedForItOverTheLine) {
+  RobotStatus status;
+  status.phase = RobotPhase::stopped;
+  status.gate.reason = GateReason::emergency_stop;
+  status.last_request = {RobotRequest::emergency_stop, LineOperator::kId};
+  EXPECT_EQ(who_stopped(status, "anna"), "asked for over the line by 'anna'");
+  EXPECT_EQ(name_and_who("stopped", status), "stopped (asked for over the line)") << "where no name is known";
+  status.last_request.operator_id = KeyOperator::kId;
+  EXPECT_EQ(who_stopped(status, "anna"), "asked for by a key of the robot's console") << "anna did so before";
 }
 
 TEST_F(KeyOperatorTest, AnOperatorThatStartsAnewIsHeardAtOnce) {

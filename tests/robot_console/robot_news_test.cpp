@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "operators/line_operator.hpp"
+
 namespace foresight::robot_news_test {
 namespace {
 
@@ -30,6 +32,17 @@ TEST(RobotNews, TellEveryChangeOnceWithItsInstant) {
   status.gate = {.state = GateState::stopped, .reason = GateReason::drive_fault, .joint = 0, .detail = "hot"};
   EXPECT_THAT(news.of(status, kNoon), testing::EndsWith("stopped: the drive reports a fault (yaw): hot; drives hold"));
   EXPECT_EQ(news.of(status, kNoon + 10ms), "");
+}
+
+TEST(RobotNews, TellWhoStopsTheRobotOverTheLine) {
+  RobotNews news(std::vector<JointWords>{{"yaw", "rad"}});
+  RobotStatus status;
+  status.phase = RobotPhase::stopped;
+  status.gate = {.state = GateState::stopped, .reason = GateReason::emergency_stop};
+  status.last_request = {RobotRequest::emergency_stop, LineOperator::kId};
+  EXPECT_THAT(news.of(status, kNoon, "anna"), testing::EndsWith("hold (asked for over the line by 'anna')"));
+  EXPECT_EQ(news.of(status, kNoon, "anna"), "") << "though the request is repeated until it is answered";
+  EXPECT_THAT(news.of(status, kNoon, "ben"), testing::EndsWith("by 'ben')")) << "a stop beside hers";
 }
 
 }  // namespace
