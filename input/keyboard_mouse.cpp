@@ -86,15 +86,28 @@ void KeyboardMouse::change(bool& is_down, bool down) noexcept {
   let_go_ = let_go_ || (was_held && !held());
 }
 
+void KeyboardMouse::release_all() noexcept {
+  let_go_ = let_go_ || held();
+  down_.fill(false);
+  tapped_.fill(false);
+  mouse_.fill(false);
+  way_.setZero();
+  turn_.setZero();
+}
+
 void KeyboardMouse::key(HandKey key, bool down) noexcept {
   change(down_[static_cast<std::size_t>(key)], down);
+  if (key == HandKey::deadman) is_in_vain_ = false;
   if (down) tapped_[static_cast<std::size_t>(key)] = true;
   if (down && key >= HandKey::joint_1)
     joint_ = static_cast<std::size_t>(key) - static_cast<std::size_t>(HandKey::joint_1);
 }
 
 void KeyboardMouse::mouse_button(MouseButton button, bool down) noexcept {
-  change(mouse_[static_cast<std::size_t>(button)], down);
+  const auto i = static_cast<std::size_t>(button);
+  if (std::exchange(mouse_told_[i], down) == down) return;
+  change(mouse_[i], down);
+  if (button == MouseButton::left) is_in_vain_ = false;
 }
 
 void KeyboardMouse::mouse_moved(double right_px, double down_px) noexcept {
@@ -112,12 +125,8 @@ void KeyboardMouse::wheel(double notches) noexcept {
 }
 
 void KeyboardMouse::focus_lost() noexcept {
-  let_go_ = let_go_ || held();
-  down_.fill(false);
-  tapped_.fill(false);
-  mouse_.fill(false);
-  way_.setZero();
-  turn_.setZero();
+  is_in_vain_ = false;  // that it is let go of may not be told
+  release_all();
 }
 
 // A window that draws ten pictures a second tells of a short press and of its end at once.
@@ -155,13 +164,14 @@ void KeyboardMouse::looked(OperatorTime now) noexcept {
 }
 
 std::optional<Duration> KeyboardMouse::held_in_vain(OperatorTime now) const noexcept {
-  return late_ && now - late_->at < kToldFor ? std::optional(late_->after) : std::nullopt;
+  return late_ && (is_in_vain_ || now - late_->at < kToldFor) ? std::optional(late_->after) : std::nullopt;
 }
 
 TrackerState KeyboardMouse::read(OperatorTime now) noexcept {
   if (!looked_ || now - *looked_ > options_.window_answers_within) {
     was_in_vain_ = was_in_vain_ || (looked_ && held());
-    focus_lost();
+    is_in_vain_ = is_in_vain_ || was_in_vain_;
+    release_all();
   }
   TrackerState out;
   out.connected = out.tracked = out.integrated = true;

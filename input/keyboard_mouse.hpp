@@ -85,6 +85,7 @@ class KeyboardMouse final : public Tracker {
 
   void key(HandKey key, bool down) noexcept;
   enum class MouseButton : std::uint8_t { left, right };
+  /// As it is now, as often as one likes: what no longer counts does so again once it was let go of and pressed.
   void mouse_button(MouseButton button, bool down) noexcept;
   /// The pointer went so far, px: to the right, downwards.
   void mouse_moved(double right_px, double down_px) noexcept;
@@ -94,8 +95,8 @@ class KeyboardMouse final : public Tracker {
   void focus_lost() noexcept;
   /// The window has looked for events. At each of its rounds, or keys do not count.
   void looked(OperatorTime now) noexcept;
-  /// How long the window did not look while a switch was held that did not count any more because of that, within the
-  /// last kToldFor; nothing where no switch was held in vain.
+  /// How long the window did not look while a switch was held that did not count any more because of that: as long as
+  /// it is held on, and for kToldFor at least; nothing where no switch was held in vain.
   std::optional<Duration> held_in_vain(OperatorTime now) const noexcept;
   static constexpr Duration kToldFor = std::chrono::seconds(4);
 
@@ -106,6 +107,7 @@ class KeyboardMouse final : public Tracker {
   bool down(HandKey key) const noexcept { return down_[static_cast<std::size_t>(key)]; }
   bool take_tap(HandKey key) noexcept;
   void change(bool& is_down, bool down) noexcept;
+  void release_all() noexcept;
   bool held() const noexcept { return down(HandKey::deadman) || mouse_[0]; }
   double way(HandKey more, HandKey less) const noexcept;
   HandRate rate_of_keys() const noexcept;
@@ -114,9 +116,9 @@ class KeyboardMouse final : public Tracker {
   KeyboardMouseOptions options_;
   RateHand hand_;
   std::array<bool, kHandKeys> down_{}, tapped_{};  // now; since the last read(), if only for a moment
-  std::array<bool, 2> mouse_{};
-  bool let_go_ = false;                           // since the last read()
-  Eigen::Vector3d way_{0, 0, 0}, turn_{0, 0, 0};  // of the mouse, not gone yet: m, rad
+  std::array<bool, 2> mouse_{}, mouse_told_{};     // what counts; what the window said last
+  bool let_go_ = false;                            // since the last read()
+  Eigen::Vector3d way_{0, 0, 0}, turn_{0, 0, 0};   // of the mouse, not gone yet: m, rad
   std::optional<OperatorTime> looked_, read_;
   struct LateLook {
     OperatorTime at;
@@ -124,6 +126,7 @@ class KeyboardMouse final : public Tracker {
   };
   std::optional<LateLook> late_;
   bool was_in_vain_ = false;  // since the window looked
+  bool is_in_vain_ = false;   // a switch is held that does not count
   std::optional<std::size_t> joint_;
 };
 

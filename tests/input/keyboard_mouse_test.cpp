@@ -138,10 +138,53 @@ TEST_F(KeyboardMouseTest, TellsOfASwitchThatWasHeldInVain) {
   rounds(39, false);
   round();
   EXPECT_EQ(device_.held_in_vain(now_), 400ms);
+  device_.key(HandKey::deadman, false);
   rounds(390);
   EXPECT_EQ(device_.held_in_vain(now_), 400ms);
   rounds(20);
   EXPECT_FALSE(device_.held_in_vain(now_));
+}
+
+TEST_F(KeyboardMouseTest, TellsItForAsLongAsTheSwitchIsHeldOnInVain) {
+  const auto hold_in_vain = [&](auto press) {
+    round();
+    press(true);
+    rounds(5);
+    rounds(40, false);
+    const TrackerState later = rounds(1000);
+    EXPECT_FALSE(later.buttons.held(TrackerButton::deadman)) << "it does not count again by itself";
+    EXPECT_TRUE(device_.held_in_vain(now_));
+  };
+  const auto press_key = [&](bool down) { device_.key(HandKey::deadman, down); };
+  const auto press_mouse = [&](bool down) { device_.mouse_button(KeyboardMouse::MouseButton::left, down); };
+  hold_in_vain(press_key);
+  press_key(false);
+  EXPECT_FALSE(device_.held_in_vain(now_));
+  press_key(true);
+  EXPECT_TRUE(rounds(5).buttons.held(TrackerButton::deadman));
+  press_key(false);
+  hold_in_vain(press_mouse);
+  press_mouse(false);
+  EXPECT_FALSE(device_.held_in_vain(now_));
+  hold_in_vain(press_key);
+  device_.focus_lost();
+  EXPECT_FALSE(device_.held_in_vain(now_)) << "nobody would tell that it was let go of";
+}
+
+// Windows tell of the mouse's buttons in every round.
+TEST_F(KeyboardMouseTest, AMouseButtonThatStayedDownDoesNotCountAgainByItself) {
+  const auto round_with_button = [&](bool down) {
+    device_.mouse_button(KeyboardMouse::MouseButton::left, down);
+    return round().buttons.held(TrackerButton::deadman);
+  };
+  round();
+  ASSERT_TRUE(round_with_button(true));
+  rounds(60, false);
+  for (int i = 0; i < 50; ++i) EXPECT_FALSE(round_with_button(true)) << i;
+  EXPECT_FALSE(round_with_button(false));
+  EXPECT_TRUE(round_with_button(true));
+  device_.focus_lost();
+  EXPECT_FALSE(round_with_button(true)) << "the window has come back";
 }
 
 TEST_F(KeyboardMouseTest, TheMouseMovesTheHandNoFasterThanKeysAndNotForLong) {

@@ -211,6 +211,9 @@ TEST_F(HandAtTheSeat, WhoHoldsAKeyThatDoesNotCountIsToldWhy) {
   EXPECT_THAT(said("keys").words, testing::HasSubstr("a picture took 0.4 s"));
   EXPECT_EQ(said("keys").urgency, Urgency::trouble);
   cycles(250);
+  EXPECT_THAT(said("keys").cure, testing::HasSubstr("let go, and press again")) << "the key is still held";
+  pressed.key_events.front().down = false;
+  driver_->take(pressed, view_.now);
   EXPECT_EQ(said("keys").words, "");
 }
 
