@@ -28,9 +28,23 @@ void tell(const char* text) {
   [[maybe_unused]] const auto told = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
+/// False: none could be removed.
+bool remove_each(int (*remove)(const char*)) {
+  bool any = false;
+  for (const auto& slot : to_remove)
+    if (const char* const path = slot; path && remove(path) == 0) any = true;
+  return any;
+}
+
+/// Folders go once they are empty: after the files in them, and the inner ones first.
+void remove_all() {
+  remove_each(::unlink);
+  while (remove_each(::rmdir)) {
+  }
+}
+
 extern "C" void end_now(int signal) {
-  for (auto& slot : to_remove)
-    if (const char* const path = slot.exchange(nullptr); path && ::unlink(path) != 0) ::rmdir(path);
+  remove_all();
   tell("\nforesight: stopped by ");
   tell(name_of(signal));
   tell("\n");

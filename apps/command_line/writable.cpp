@@ -7,7 +7,6 @@
 
 #include "common/error.hpp"
 #include "common/partial_path.hpp"
-#include "common/removed_when_stopped.hpp"
 
 namespace foresight {
 namespace {
@@ -39,7 +38,7 @@ UniqueFd opened(const std::string& where, const fs::path& file) {
 MadeFolder::MadeFolder(const fs::path& folder) {
   std::error_code ignored;
   for (fs::path at = folder; at.has_relative_path() && !fs::exists(at, ignored); at = at.parent_path())
-    made_.push_back(at);
+    on_signal_.emplace_back(made_.emplace_back(at));
   fs::create_directories(folder, error_);
   if (!error_ && !fs::is_directory(folder, ignored)) error_ = std::make_error_code(std::errc::not_a_directory);
 }

@@ -7,12 +7,13 @@
 #include <system_error>
 #include <vector>
 
+#include "common/removed_when_stopped.hpp"
 #include "common/unique_fd.hpp"
 
 namespace foresight {
 
-/// A folder, and those above it, made where they are missing; those that were made and stay empty go with this. One
-/// thread.
+/// A folder, and those above it, made where they are missing; those that were made and stay empty go with this, or with
+/// a stop signal that ends the program. One thread.
 class MadeFolder {
  public:
   explicit MadeFolder(const std::filesystem::path& folder);
@@ -24,6 +25,7 @@ class MadeFolder {
 
  private:
   std::vector<std::filesystem::path> made_;  // the innermost first
+  std::deque<RemovedWhenStopped> on_signal_;
   std::error_code error_;
 };
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 
+#include "apps/command_line/writable.hpp"
 #include "common/stop_signal.hpp"
 #include "tests/scene/test_run.hpp"
 
@@ -42,6 +43,22 @@ TEST(RemovedWhenStopped, IsGoneAfterASignalAndStaysOtherwise) {
             kStopped);
   EXPECT_TRUE(fs::exists(stays));
   EXPECT_FALSE(fs::exists(goes));
+}
+
+TEST(RemovedWhenStopped, FoldersThatWereMadeGoAfterWhatWasInThemAndStayWithWhatStays) {
+  const TempFolder folder;
+  const fs::path outer = folder / "outer", inner = outer / "inner", other = folder / "other";
+  EXPECT_EQ(in_a_process([&] {
+              const MadeFolder first(outer), second(inner), kept(other);
+              const fs::path file = inner / "file";
+              const RemovedWhenStopped unfinished(file);
+              std::ofstream(file) << "1";
+              std::ofstream(other / "file") << "1";
+              ::raise(SIGTERM);
+            }),
+            kStopped);
+  EXPECT_FALSE(fs::exists(outer));
+  EXPECT_TRUE(fs::exists(other / "file"));
 }
 
 TEST(RemovedWhenStopped, ASignalWaitsWhileSomethingIsMade) {
