@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "common/error.hpp"
@@ -22,6 +23,7 @@ constexpr float kWordsAt = 115;        // px from a panel's left: what a line sa
 constexpr float kKeyDoesAt = 138;      // px from a panel's left: what a key does
 constexpr float kSmall = 0.8f;         // of the usual letters, where these leave no room
 constexpr std::size_t kLeastKeys = 4;  // the first ones: what is not urgent makes way for them
+constexpr float kLeastPanel = 300;     // px: of two panels of lines side by side, each
 constexpr float kBesideInset = 0.75f;  // of the width: what the newest image in its corner leaves to the title
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
@@ -91,6 +93,20 @@ float height_of_keys(const HudContent& content, std::size_t count, const ImFont&
   return count < left.size() ? height + font.FontSize + style.ItemSpacing.y : height;  // the row that says so
 }
 
+/// How many of `rows` (px) go into the first of two panels, below its title, such that the higher one is as low as can
+/// be.
+std::size_t rows_of_first(std::span<const float> rows, float title) {
+  float first = title, second = std::accumulate(rows.begin(), rows.end(), 0.0f);
+  std::size_t out = 0;
+  for (; out < rows.size() && first + rows[out] < second; ++out) first += rows[out], second -= rows[out];
+  return out;
+}
+
+std::string words_on_left_out(const HudContent& content) {
+  if (content.clear) return fmt::format("more lines in other views ({})", printed(SeatKey::main_view));
+  return content.first_key > 0 ? "more lines without these keys" : "more lines in a larger window";
+}
+
 void write(const SeatLine& line, float words_at, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour(line.urgency));
   write(mark(line.urgency) + line.label);
@@ -114,8 +130,11 @@ struct Hud::Work {
     float wrap = 0, title_wrap = 0, keys_wrap = 0;  // px from a panel's left where rows end
     ImVec2 next = {0, 0};                           // px, the panel of what is next
     bool keys_beside_next = false;
-    float lines_height = 0;                   // px, the panel of lines
+    bool two_panels = false;                  // of lines
+    float lines_height = 0;                   // px, the panel of lines, or the higher one
     std::vector<const SeatLine*> lines = {};  // that there is room for
+    std::size_t in_first = 0;                 // of the rows below the title: in the first panel
+    float least_keys_height = 0;              // px, the panel of the first keys
   };
   ImGuiContext* context;
   std::vector<Text> texts;  // as wanted, and small
@@ -153,9 +172,10 @@ struct Hud::Work {
   }
   std::size_t draw(const HudContent& content, const HudArea& area) const;
   Layout layout(const HudContent& content, float width, float height) const;
+  Layout widths(const HudContent& content, const Text& text, float width) const;
   void measure_lines(const HudContent& content, Layout& layout) const;
   void draw_next(const SeatLine& next, ImVec2 corner, float width, const Text& text) const;
-  void draw_lines(const HudContent& content, ImVec2 corner, const Layout& layout) const;
+  void draw_lines(const HudContent& content, ImVec2 corner, float width, const Layout& layout) const;
   std::size_t draw_keys(const HudContent& content, ImVec2 corner, float room, const Layout& layout) const;
   void draw(const std::vector<HudLabel>& labels, float width, float height) const;
 };
@@ -193,11 +213,31 @@ void Hud::Work::measure_lines(const HudContent& content, Layout& layout) const {
   const ImGuiStyle& style = ImGui::GetStyle();
   const ImFont& font = *layout.text.usual;
   const float words_width = layout.wrap - kWordsAt * layout.text.scale;
-  float height = size_of(content.title, font, layout.title_wrap - style.WindowPadding.x).y + style.ItemSpacing.y;
-  for (const SeatLine* line : layout.lines) height += style.ItemSpacing.y + size_of(row_of(*line), font, words_width).y;
+  const float title = size_of(content.title, font, layout.title_wrap - style.WindowPadding.x).y + style.ItemSpacing.y;
+  std::vector<float> rows;
+  for (const SeatLine* line : layout.lines)
+    rows.push_back(style.ItemSpacing.y + size_of(row_of(*line), font, words_width).y);
   if (layout.lines.size() < content.lines.size())
-    height += style.ItemSpacing.y + font.FontSize;  // the row that says so
-  layout.lines_height = height + 2 * style.WindowPadding.y;
+    rows.push_back(style.ItemSpacing.y + font.FontSize);  // the row that says so
+  layout.in_first = layout.two_panels ? rows_of_first(rows, title) : rows.size();
+  const auto second = rows.begin() + static_cast<std::ptrdiff_t>(layout.in_first);
+  layout.lines_height =
+      std::max(std::accumulate(rows.begin(), second, title), std::accumulate(second, rows.end(), 0.0f)) +
+      2 * style.WindowPadding.y;
+}
+
+/// Of a layout in such letters: all that does not depend on the height.
+Hud::Work::Layout Hud::Work::widths(const HudContent& content, const Text& text, float width) const {
+  const float gap = kAround * texts.front().scale, padding = ImGui::GetStyle().WindowPadding.x;
+  const float all_of_it = std::max(1.0f, width - 2 * gap - padding), half = 0.5f * width - 2 * gap - padding;
+  Layout out{text};
+  out.two_panels = content.clear && half >= kLeastPanel * text.scale;
+  out.wrap = out.two_panels ? half : std::clamp(0.5f * width, std::min(380 * text.scale, all_of_it), 700 * text.scale);
+  out.title_wrap = out.two_panels ? half : std::max(out.wrap, kBesideInset * width - 3 * gap);
+  out.keys_wrap = all_of_it;
+  out.next = size_of_next(content.next, *text.large, width - 4 * gap);
+  out.keys_beside_next = width_of_keys(content.keys, *text.usual, text.scale) + out.next.x + 3 * gap <= width;
+  return out;
 }
 
 // In small letters where the usual ones leave no room, then without the lines that matter least, then without keys.
@@ -206,31 +246,31 @@ Hud::Work::Layout Hud::Work::layout(const HudContent& content, float width, floa
   std::vector<const SeatLine*> all;
   for (const SeatLine& line : content.lines) all.push_back(&line);
   Layout out;
-  const auto fits = [&](std::size_t keys) {
-    measure_lines(content, out);
+  const auto below = [&](std::size_t keys) {
     const float keys_height = height_of_keys(content, keys, *out.text.usual, out.text.scale, out.keys_wrap);
-    const float below =
-        out.keys_beside_next ? std::max(out.next.y, keys_height) : out.next.y + (keys > 0 ? keys_height + gap : 0);
-    return out.lines_height + below + 3 * gap <= height;
+    return out.keys_beside_next ? std::max(out.next.y, keys_height) : out.next.y + (keys > 0 ? keys_height + gap : 0);
   };
-  const std::size_t left = keys_left(content).size(),
-                    least_keys = content.first_key > 0 ? left : std::min(kLeastKeys, left);
+  const auto fits = [&](std::size_t keys, bool over_pictures) {
+    measure_lines(content, out);
+    if (!over_pictures && content.clear && out.lines_height + 2 * gap > content.clear->top) return false;
+    return out.lines_height + below(keys) + 3 * gap <= height;
+  };
+  const std::size_t left = keys_left(content).size();
+  const bool are_asked_for = content.first_key > 0 && !content.clear;
+  const std::size_t least_keys = are_asked_for ? left : std::min(kLeastKeys, left);
   for (const Text& text : texts) {
-    out.text = text;
-    const float all_of_it = std::max(1.0f, width - 2 * gap - ImGui::GetStyle().WindowPadding.x);
-    out.wrap = std::clamp(0.5f * width, std::min(380 * text.scale, all_of_it), 700 * text.scale);
-    out.title_wrap = std::max(out.wrap, kBesideInset * width - 3 * gap);
-    out.keys_wrap = all_of_it;
-    out.next = size_of_next(content.next, *text.large, width - 4 * gap);
-    out.keys_beside_next = width_of_keys(content.keys, *text.usual, text.scale) + out.next.x + 3 * gap <= width;
+    out = widths(content, text, width);
+    out.least_keys_height = height_of_keys(content, least_keys, *text.usual, text.scale, out.keys_wrap);
     out.lines = all;
-    if (fits(least_keys)) return out;
+    const bool is_clear_below = !content.clear || content.clear->bottom + below(least_keys) + 2 * gap <= height;
+    if (is_clear_below && fits(least_keys, false)) return out;
   }
   std::ranges::stable_sort(all, std::ranges::greater(), &SeatLine::urgency);
   out.lines.clear();
   for (const SeatLine* line : all) {
     out.lines.push_back(line);
-    if (!fits(line->urgency == Urgency::trouble ? 0 : least_keys)) out.lines.pop_back();
+    const bool is_trouble = line->urgency == Urgency::trouble;
+    if (!fits(is_trouble ? 0 : least_keys, is_trouble)) out.lines.pop_back();
   }
   std::ranges::sort(out.lines);  // in the order of the content
   measure_lines(content, out);
@@ -251,16 +291,28 @@ void Hud::Work::draw_next(const SeatLine& next, ImVec2 corner, float width, cons
   ImGui::End();
 }
 
-void Hud::Work::draw_lines(const HudContent& content, ImVec2 corner, const Layout& layout) const {
+void Hud::Work::draw_lines(const HudContent& content, ImVec2 corner, float width, const Layout& layout) const {
+  const std::span lines(layout.lines);
+  const std::size_t left_out = content.lines.size() - lines.size();
+  const std::size_t in_first = std::min(layout.in_first, lines.size());
+  const bool has_second = layout.in_first < lines.size() + (left_out > 0 ? 1 : 0);
+  const auto write_rows = [&](std::span<const SeatLine* const> some, bool are_last) {
+    for (const SeatLine* line : some) write(*line, kWordsAt * layout.text.scale, layout.wrap);
+    if (are_last && left_out > 0) write(words_on_left_out(content));
+  };
   panel("lines", corner, {0, 0});
   ImGui::PushFont(layout.text.usual);
   ImGui::PushTextWrapPos(layout.title_wrap);
   write(content.title);
   ImGui::PopTextWrapPos();
   ImGui::Separator();
-  for (const SeatLine* line : layout.lines) write(*line, kWordsAt * layout.text.scale, layout.wrap);
-  if (layout.lines.size() < content.lines.size())
-    write(content.first_key > 0 ? "more lines without these keys" : "more lines in a larger window");
+  write_rows(lines.first(in_first), !has_second);
+  ImGui::PopFont();
+  ImGui::End();
+  if (!has_second) return;
+  panel("lines beside", {corner.x + 0.5f * width, corner.y}, {0, 0});
+  ImGui::PushFont(layout.text.usual);
+  write_rows(lines.subspan(in_first), true);
   ImGui::PopFont();
   ImGui::End();
 }
@@ -295,9 +347,13 @@ std::size_t Hud::Work::draw(const HudContent& content, const HudArea& area) cons
   const float right = left + width - 2 * gap, bottom = top + height - 2 * gap;
   const Layout fit = layout(content, width, height);
   draw_next(content.next, {right, bottom}, width - 4 * gap, fit.text);
-  draw_lines(content, {left, top}, fit);
+  draw_lines(content, {left, top}, width, fit);
   const float keys_end = fit.keys_beside_next ? bottom : bottom - fit.next.y - gap;
-  const float keys_room = keys_end - (top + fit.lines_height + gap);
+  float keys_room = keys_end - (top + fit.lines_height + gap);
+  if (content.clear) {
+    const float below = keys_end - static_cast<float>(area.top + content.clear->bottom) - gap;
+    keys_room = std::min(keys_room, std::max(below, fit.least_keys_height));
+  }
   return content.first_key + draw_keys(content, {left, keys_end}, keys_room, fit);
 }
 

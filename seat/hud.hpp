@@ -24,6 +24,11 @@ struct HudArea {
   double left = 0, top = 0, width = 0, height = 0;
 };
 
+/// Rows of a target, px from its top.
+struct HudRows {
+  double top = 0, bottom = 0;
+};
+
 struct HudContent {
   std::string title;  ///< of the robot, and of the view that is shown
   SeatLine next;      ///< what is to be done first: large, below
@@ -32,6 +37,9 @@ struct HudContent {
   std::size_t first_key = 0;                              ///< that is shown; above 0, lines make way for what is left
   std::vector<HudLabel> labels;                           ///< the first matter most: others make way for them
   std::optional<HudArea> area;                            ///< where all but labels stands; nothing: the whole target
+  /// Of pictures that are to be compared. Lines stand above them, in two panels where there is room for two, and keys
+  /// below; only trouble and the first keys go over them. Nothing: panels go anywhere.
+  std::optional<HudRows> clear;
 };
 
 /// Of `count` keys, which ones come when others are asked for: those that had no room (`next`, Hud::next_key()) after

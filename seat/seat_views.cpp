@@ -44,6 +44,13 @@ int top_of(const ViewTarget& part, const ViewTarget& whole) {
   return whole.height - part.y - part.height;
 }
 
+/// Of pictures through such a lens.
+HudRows rows_side_by_side(const ViewTarget& whole, const Lens& lens) {
+  const ViewTarget picture = fitted(column(whole, 0, 2, kBetweenPictures), lens.width(), lens.height());
+  const int top = top_of(picture, whole);
+  return {static_cast<double>(top), static_cast<double>(top + picture.height)};
+}
+
 }  // namespace
 
 ViewTarget inset_place(const ViewTarget& place, int width, int height) {
@@ -339,6 +346,7 @@ std::vector<SeatViews::Part> SeatViews::show(const ViewSession& session, const V
     case ViewMode::both:
       put(newest(0), column(whole, 0, 2, kBetweenPictures), what, labels, whole);
       put(predicted(session, what), column(whole, 1, 2, kBetweenPictures), what, labels, whole);
+      parts.front().compared = rows_side_by_side(whole, setup_.left);
       break;
     case ViewMode::split:
       put_mixed(newest(0), predicted(session, what), place, whole, PictureMix::Way::split, what, labels);

@@ -104,6 +104,7 @@ class SeatViews {
     ViewTarget place;
     std::vector<HudLabel> labels = {};       ///< px from its top left
     std::optional<HudArea> words_area = {};  ///< all but labels, at one place in space for both eyes; nothing: anywhere
+    std::optional<HudRows> compared = {};    ///< pictures side by side that words are to leave clear; px from its top
   };
   std::vector<Part> show(const ViewSession& session, const ViewTarget& whole, const SeatPicture& what);
 

@@ -177,6 +177,7 @@ void SeatWindow::present(const ViewSession& session) {
   for (SeatViews::Part& part : views_.show(session, whole, picture)) {
     content.labels = std::move(part.labels);
     content.area = part.words_area;
+    content.clear = part.compared;
     hud_.draw(content, part.place);
   }
   save(whole);

@@ -181,6 +181,49 @@ TEST(Hud, EveryKeyIsShownInTheEnd) {
   }
 }
 
+// As the seat shows the newest image beside the prediction.
+TEST(Hud, PicturesThatAreComparedStayClear) {
+  const auto context = gl::create_headless_context();
+  HudContent content;
+  content.title = "minerva: newest image | as it will be";
+  content.next = {"next", "ready", "hold the switch and move", Urgency::fine};
+  content.lines.assign(11, {"line", "commands act after 500 ms, round trip 1000 ms, newest image 500 ms old", ""});
+  for (const auto& [width, height] : {std::pair{1280, 800}, {1000, 700}}) {
+    const int above = height / 2 - 3 * width / 16, below = height - above;  // of 4:3
+    content.clear = HudRows{static_cast<double>(above), static_cast<double>(below)};
+    content.keys = key_words();
+    content.first_key = 0;
+    while (content.first_key < content.keys.size()) {
+      std::size_t next = 0;
+      const cv::Mat picture = drawn(content, width, height, 1, &next);
+      keep(fmt::format("compared_{}x{}_{}", width, height, content.first_key), picture);
+      ASSERT_GT(next, content.first_key);
+      EXPECT_EQ(changed(picture.rowRange(height - below, height - above)), 0) << width << " x " << height;
+      const cv::Mat words = picture.rowRange(height - above, height);
+      EXPECT_GT(changed(words.colRange(0, width / 2)), 0.2) << "lines over the left picture";
+      EXPECT_GT(changed(words.colRange(width / 2, width)), 0.2) << "and over the right one";
+      content.first_key = next;
+    }
+  }
+}
+
+TEST(Hud, WhatIsUrgentGoesOverPicturesThatAreCompared) {
+  const auto context = gl::create_headless_context();
+  HudContent content;
+  content.title = "minerva: newest image | as it will be";
+  content.lines.assign(11, {"line", "commands act after 500 ms", ""});
+  content.clear = HudRows{60, 540};
+  const cv::Mat without = drawn(content, 1280, 600);
+  EXPECT_EQ(changed(without.rowRange(60, 540)), 0);
+  content.lines.insert(content.lines.end(), 8, {"drives", "elbow: overcurrent", "reset", Urgency::trouble});
+  EXPECT_GT(changed(drawn(content, 1280, 600).rowRange(60, 540)), 0.02);
+  content.lines.clear();
+  content.keys = key_words();
+  std::size_t shown = 0;
+  drawn(content, 1280, 600, 1, &shown);
+  EXPECT_EQ(shown, 4u) << "the first of them, such as the one that stops the robot";
+}
+
 TEST(Hud, AskingForKeysGoesRound) {
   EXPECT_EQ(keys_after(std::nullopt, 0, 20), 0u);
   EXPECT_EQ(keys_after(0, 8, 20), 8u);

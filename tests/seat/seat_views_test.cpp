@@ -182,7 +182,13 @@ TEST_F(SeatViewsPictures, OneEyeSeesPredictionAndImageWhereTheModeSaysSo) {
   EXPECT_GT(late(picture(kLeft)), 0.85);
   EXPECT_EQ(late(picture(kRight)), 0);
   EXPECT_GT(line(picture(kRight)), 0.003);
+  ASSERT_TRUE(parts_.at(0).compared);
+  const auto [top, bottom] = *parts_.at(0).compared;
+  EXPECT_EQ(late(picture(cv::Rect(80, static_cast<int>(top), 1, static_cast<int>(bottom - top)))), 1);
+  EXPECT_EQ(late(picture.rowRange(0, static_cast<int>(top))), 0);
+  EXPECT_EQ(late(picture.rowRange(static_cast<int>(bottom), kHeight)), 0);
   picture = shown(ViewMode::split);
+  EXPECT_FALSE(parts_.at(0).compared);
   EXPECT_GT(late(picture(kLeft)), 0.95);
   EXPECT_EQ(line(picture(kLeft)), 0);
   EXPECT_EQ(late(picture(kRight)), 0);
