@@ -1,5 +1,8 @@
 // An operator over the line and an emulated robot, in stepped time: only the bytes between them are DDS'.
 #include "link/control_wire/control_wire.hpp"
+
+#include <set>
+
 #include "link/robot_side/rig_identity.hpp"
 #include "link/robot_side/robot_messages.hpp"
 #include "link/robot_side/served_operator.hpp"
@@ -94,6 +97,40 @@ TEST_F(ServedControl, AfterASuspensionOfTheRobotsHostNothingMovesWithoutAnotherP
   for (int i = 0; i < 200; ++i) tick(positions, true);
   EXPECT_EQ(robot_.robot().status().gate.state, GateState::idle);
   EXPECT_TRUE(seat_.status(OperatorTime{robot_.clock().now().ns}).must_let_go);
+}
+
+/// A thread that is put aside at each look at it.
+class SlowClock final : public Clock {
+ public:
+  RobotTime now() const noexcept override { return now_ = now_ + 1ms; }
+  void sleep_until(RobotTime) noexcept override {}
+
+ private:
+  mutable RobotTime now_{1'000'000'000};
+};
+
+TEST_F(ServedControl, EachMessageIsTakenInAtAnInstantOfItsOwn) {
+  ControlDesk desk(desk_options());
+  DeskLine line(program_);
+  Writer writer(program_, {"rt/foresight/control/operator/messages", kFromOperatorType, Delivery::newest, 64});
+  const SlowClock clock;
+  const auto answers = [&](std::size_t count) {
+    std::vector<FromRobot> out;
+    comes_true([&] {
+      line.receive(desk, clock);
+      std::ranges::move(desk.take_outgoing(), std::back_inserter(out));
+      return out.size() >= count;
+    });
+    return out;
+  };
+  writer.write(to_bytes(FromOperator{7, 0, Hello{identity_}}));
+  const std::vector<FromRobot> welcome = answers(1);
+  ASSERT_EQ(welcome.size(), 1u);
+  for (const std::uint64_t number : {1, 2, 3})
+    writer.write(to_bytes(FromOperator{7, welcome[0].from, ClockPing{number}}));
+  std::set<std::int64_t> instants;
+  for (const FromRobot& pong : answers(3)) instants.insert(std::get<ClockPong>(pong.body).received_ns);
+  EXPECT_EQ(instants.size(), 3u);
 }
 
 TEST_F(ServedControl, TheRobotsStateNamesWhoStoppedIt) {
