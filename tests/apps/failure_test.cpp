@@ -7,6 +7,7 @@
 #include <random>
 #include <thread>
 
+#include "tests/apps/operator_window.hpp"
 #include "tests/apps/program.hpp"
 #include "tests/apps/runs.hpp"
 
@@ -53,6 +54,18 @@ TEST_F(Failure, AWindowNeedsADisplay) {
                                       {{{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
   expect_refused(outcome, "", "leave out --window");
   EXPECT_TRUE(fs::is_empty(out_.path()));
+}
+
+TEST_F(Failure, AWindowThatAnotherProgramDestroysIsNamed) {
+  for (const char* program : {"Xvfb", "xdotool"})
+    if (!there_is(program)) GTEST_SKIP() << "no " << program << " here; scripts/setup installs it";
+  const VirtualScreen screen;
+  ASSERT_NE(screen.name(), "") << "Xvfb does not start";
+  Program program({"rig", "view", (source_folder() / "configs/minerva.yaml").string()},
+                  {.environment = {{"DISPLAY", screen.name()}, {"WAYLAND_DISPLAY", ""}}});
+  ASSERT_TRUE(comes_true(
+      [&] { return screen.input("search --onlyvisible --name Foresight windowclose") || !program.running(); }));
+  expect_refused(program.wait(), "another program has destroyed the window", "start again");
 }
 
 TEST_F(Failure, ACrashTellsWhereItWasAndStillIsOne) {

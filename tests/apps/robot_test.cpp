@@ -134,6 +134,15 @@ TEST_P(Robot, RecordsWhatItsMockCamerasSee) {
   EXPECT_EQ(replay.exit_code, 0) << replay.err;
 }
 
+TEST_P(Robot, CompletesItsRecordingThoughNothingElseCanBeWritten) {
+  const std::string out = (folder_ / "run").string();
+  const Outcome robot = run_program({"robot", with_small_cameras(GetParam(), folder_), "--stepped", "--home",
+                                     "--follow", motion(), "--record", out, "--session-html", "/dev/full"});
+  EXPECT_EQ(robot.exit_code, 1);
+  EXPECT_THAT(robot.last_line(), HasSubstr("/dev/full"));
+  EXPECT_EQ(run_program({"replay", out, "--delay-ms", "400"}).exit_code, 0);
+}
+
 // What is judged is counted: a busy machine only makes it take longer. The drives stay without power, as a machine that
 // is late may rightly be stopped by the gate; how they move is judged in stepped time, above.
 TEST_P(Robot, RunsItsCamerasInRealTime) {
