@@ -29,15 +29,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+enum class Script { pick, tour };
+
 struct Arguments {
-  std::string rig, name = "operator", scene, device, head_display = "none", second_eye = "own";
+  std::string rig, name = "operator", scene, device;
+  HeadDisplayKind head_display = HeadDisplayKind::none;
+  bool second_eye_of_first = false;
   std::vector<std::string> display_lenses;
   bool mock = false, physics = false, served = false;
   unsigned layout = 0;
   double rate_hz = 30, font_scale = 1, fidelity_db = TrustSwitchOptions{}.lowest_db;
-  std::string script;
+  std::optional<Script> script;  // nothing: a seat with a window
   double delay_ms = 0;
-  std::string line, coding;
+  std::string line;
+  std::optional<LinkCoding> coding;
   unsigned seed = 1;
   std::optional<double> seconds;
   double pictures_hz = 5;
@@ -64,13 +69,12 @@ LineSpec line_of(const Arguments& arguments) {
 /// A tour goes on for ever; a pick ends when it is done, which bad lines make late.
 double most_seconds(const Arguments& arguments) {
   constexpr double kTour = 30, kPick = 120;
-  return arguments.seconds.value_or(arguments.script == "pick" ? kPick : kTour);
+  return arguments.seconds.value_or(arguments.script == Script::pick ? kPick : kTour);
 }
 
 /// Over a line that is written down, pairs are coded as they would be on it.
 LinkCoding coding_of(const Rig& rig, const Arguments& arguments) {
-  if (arguments.coding.empty()) return arguments.line.empty() ? rig.link.coding : LinkCoding::h264;
-  return arguments.coding == "h264" ? LinkCoding::h264 : LinkCoding::jpeg;
+  return arguments.coding.value_or(arguments.line.empty() ? rig.link.coding : LinkCoding::h264);
 }
 
 nlohmann::json number(const std::optional<double>& value) {
@@ -153,7 +157,7 @@ struct Task {
 /// Seeds pick one brick or the other, from one arrangement or another.
 Task task_of(const Arguments& arguments) {
   Task out;
-  out.picks = arguments.script == "pick";
+  out.picks = arguments.script == Script::pick;
   out.thing = arguments.seed % 2 == 1 ? "brick_red" : "brick_blue";
   out.layout = arguments.served ? arguments.layout : arguments.seed - 1;
   return out;
@@ -239,9 +243,8 @@ int run_live(const Rig& rig, const Arguments& arguments) {
   options.physics = arguments.physics;
   options.layout = arguments.layout;
   options.device = arguments.device;
-  if (arguments.head_display == "openxr") options.head_display = HeadDisplayKind::openxr;
-  if (arguments.head_display == "side-by-side") options.head_display = HeadDisplayKind::side_by_side;
-  options.second_eye_of_first = arguments.second_eye == "first";
+  options.head_display = arguments.head_display;
+  options.second_eye_of_first = arguments.second_eye_of_first;
   options.display_lenses.assign(arguments.display_lenses.begin(), arguments.display_lenses.end());
   options.rate_hz = arguments.rate_hz;
   options.font_scale = arguments.font_scale;
@@ -268,7 +271,7 @@ void refuse_options_of_the_other_way(const Arguments& given) {
                                                      {"--font-scale", given.font_scale != usual.font_scale},
                                                      {"--no-sounds", !given.sounds},
                                                      {"--head-display", given.head_display != usual.head_display}};
-  if (given.script.empty()) {
+  if (!given.script) {
     for (const auto& [name, is_given] : of_scripts)
       if (is_given) throw InputError(name, "belongs to --scripted", "add --scripted, or leave it out");
   } else {
@@ -283,22 +286,22 @@ void check(const Rig& rig, const Arguments& arguments) {
                      "add them to the rig (docs/rig-files.md)");
   if (!arguments.line.empty()) read_line_spec(arguments.line);  // known before anything is opened
   refuse_options_of_the_other_way(arguments);
-  if (!arguments.scene.empty() && !arguments.script.empty() && !arguments.served)
+  if (!arguments.scene.empty() && arguments.script && !arguments.served)
     throw InputError("--scene",
                      "is of a robot that is served: with both sides in one program the scene is the mock lab",
                      "leave it out, or add --served");
-  if (!arguments.coding.empty() && (arguments.script.empty() || arguments.served))
+  if (arguments.coding && (!arguments.script || arguments.served))
     throw InputError("--coding", "is of --scripted with both sides in one program",
                      "leave it out: the rig of the robot's side says it (link: coding)");
-  const bool live = arguments.script.empty() || arguments.served;
+  const bool live = !arguments.script || arguments.served;
   if (arguments.layout != 0 && (!live || !arguments.mock))
     throw InputError("--layout", "is of a robot's side that runs with --mock --physics",
                      live ? "add --mock" : "leave it out: --seed says it, too");
-  if (arguments.physics && (!arguments.script.empty() || !arguments.mock))
+  if (arguments.physics && (arguments.script || !arguments.mock))
     throw InputError("--physics", "is of a robot's side that runs with --mock", "add --mock, without --scripted");
-  if (arguments.second_eye != "own" && arguments.head_display != "openxr")
+  if (arguments.second_eye_of_first && arguments.head_display != HeadDisplayKind::openxr)
     throw InputError("--second-eye", "is of a headset", "add --head-display openxr");
-  if (!arguments.display_lenses.empty() && arguments.head_display != "side-by-side")
+  if (!arguments.display_lenses.empty() && arguments.head_display != HeadDisplayKind::side_by_side)
     throw InputError("--display-lens", "is of a head display that takes two eyes side by side",
                      "add --head-display side-by-side; a headset of OpenXR corrects its lenses itself");
   for (const std::string& file : arguments.display_lenses) read_panel_lens(file);  // known before anything is opened
@@ -319,7 +322,7 @@ int run(const Arguments& arguments) {
   Rig rig = read_rig(arguments.rig);
   check(rig, arguments);
   for (const std::string& words : words_on_groups(rig)) say(words);
-  if (!arguments.script.empty()) return run_scripted(rig, arguments);
+  if (arguments.script) return run_scripted(rig, arguments);
   give_start(rig);
   return run_live(rig, arguments);
 }
@@ -341,16 +344,16 @@ void add_operator_command(Command& app, std::function<int()>& action) {
   command->add_option(
       "--device", arguments->device,
       "Beside keyboard and mouse: gamepad, gamepad:1, spacemouse, or the recording of one (docs/input.md)");
-  command
-      ->add_option("--head-display", arguments->head_display,
-                   "Beside the window: openxr (a headset, docs/head-display.md), side-by-side, none (default)")
-      ->check(one_of({"openxr", "side-by-side", "none"}));
-  command
-      ->add_option(
-          "--second-eye", arguments->second_eye,
-          "With --head-display openxr: the right eye's frames are made of a view of its own (own, default), or\n"
-          "of the left eye's, row by row (first): cheaper where little is near; its own where that tears")
-      ->check(one_of({"own", "first"}));
+  command->add_choice<HeadDisplayKind>(
+      "--head-display", arguments->head_display,
+      {{"openxr", HeadDisplayKind::openxr},
+       {"side-by-side", HeadDisplayKind::side_by_side},
+       {"none", HeadDisplayKind::none}},
+      "Beside the window: openxr (a headset, docs/head-display.md), side-by-side, none (default)");
+  command->add_choice<bool>(
+      "--second-eye", arguments->second_eye_of_first, {{"own", false}, {"first", true}},
+      "With --head-display openxr: the right eye's frames are made of a view of its own (own, default), or\n"
+      "of the left eye's, row by row (first): cheaper where little is near; its own where that tears");
   command
       ->add_option("--display-lens", arguments->display_lenses,
                    "With --head-display side-by-side: results of `calibrate display`, one for both eyes or the\n"
@@ -366,21 +369,18 @@ void add_operator_command(Command& app, std::function<int()>& action) {
       ->add_option("--fidelity-db", arguments->fidelity_db,
                    "The newest image is shown instead where the view was less like the images that came (default 20)")
       ->check(from_to(0.0, 60.0));
-  command
-      ->add_option(
-          "--scripted", arguments->script,
-          "A program operates, both sides in stepped time, without a window: pick (a brick into a\ntray), tour")
-      ->check(one_of({"pick", "tour"}));
+  command->add_choice<std::optional<Script>>(
+      "--scripted", arguments->script, {{"pick", Script::pick}, {"tour", Script::tour}},
+      "A program operates, both sides in stepped time, without a window: pick (a brick into a\ntray), tour");
   command->add_flag(
       "--served", arguments->served,
       "With --scripted: the robot's side is a program of its own (foresight robot --serve), in real time");
   command->add_option("--delay-ms", arguments->delay_ms, "With --scripted: what the line takes each way (default 0)")
       ->check(from_to(0.0, 1e4));
   command->add_option("--line", arguments->line, "File of a line (docs/line.md) that everything passes")->reads();
-  command
-      ->add_option("--coding", arguments->coding,
-                   "With --scripted: of pairs on the line, jpeg or h264 (default: h264 with --line, else the rig's)")
-      ->check(one_of({"jpeg", "h264"}));
+  command->add_choice<std::optional<LinkCoding>>(
+      "--coding", arguments->coding, {{"jpeg", LinkCoding::jpeg}, {"h264", LinkCoding::h264}},
+      "With --scripted: of pairs on the line, jpeg or h264 (default: h264 with --line, else the rig's)");
   command->add_option("--seed", arguments->seed, "With --scripted: another seed, another motion");
   command
       ->add_option("--seconds", arguments->seconds, "With --scripted: of motion, at most (default 30, of a pick 120)")
