@@ -1,7 +1,7 @@
 // Marks the 4x4 tiles of a view's faces in which depth may have a step: those whose depth is not that of planes.
 #include "camera.glsl"
 #include "depth_slope.glsl"
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 32, local_size_y = 2) in;
 layout(binding = 1, r8) uniform writeonly image2DArray steps;
 const float kSuspicious = 0.45;  // of the tolerance: a little less than silhouettes.comp asks for
 

@@ -47,7 +47,7 @@ void SilhouettePass::find_steps(const View& view) {
     steps_ = gl::Texture(GL_R8, across, down, faces.count, 1, "steps of faces");
   start(steps_of_faces_, view);
   glBindImageTexture(1, steps_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R8);
-  glDispatchCompute(gl::groups(across, 8), gl::groups(down, 8), static_cast<GLuint>(faces.count));
+  glDispatchCompute(gl::groups(across, 32), gl::groups(down, 2), static_cast<GLuint>(faces.count));
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glBindTextureUnit(kStepsUnit, steps_.name());
 }
@@ -57,7 +57,7 @@ void SilhouettePass::find_pixels(const View& view) {
   const auto tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
   tiles_.start(tiles);
   start(find_tiles_, view);
-  glDispatchCompute(gl::groups(across, 8), gl::groups(down, 8), 1);
+  glDispatchCompute(gl::groups(across, 32), gl::groups(down, 2), 1);
   tiles_.finish(kPlacesUnit);
   pixels_.start(tiles * kTile * kTile);
   start(find_pixels_, view);

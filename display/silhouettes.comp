@@ -17,7 +17,7 @@
 #include "work_item.glsl"
 layout(local_size_x = 64) in;
 #else
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 32, local_size_y = 2) in;
 layout(binding = 8) uniform sampler2DArray steps;  // of each 4x4 tile of the faces: face_steps.comp
 #endif
 #if STEP < 2
