@@ -173,10 +173,12 @@ void ChartAtlas::collect_records(std::span<const AtlasView> views) {
     const Chart& shape = surface_->charts[i];
     const Patch& patch = surface_->patches[static_cast<std::size_t>(shape.patch)];
     eyes.clear();
+    bool may_show_back = false;
     for (const AtlasView& view : views) {
-      const Eigen::Vector3d eye =
-          view.T_camera_node[static_cast<std::size_t>(patch.node)].inverse().translation() - patch.origin;
-      eyes.emplace_back(eye.dot(patch.eu), eye.dot(patch.ev), eye.dot(patch.n));
+      const Eigen::Vector3d eye = view.T_camera_node[static_cast<std::size_t>(patch.node)].inverse().translation(),
+                            s = eye - patch.origin;
+      may_show_back = may_show_back || shape.may_show_back(eye);
+      eyes.emplace_back(s.dot(patch.eu), s.dot(patch.ev), s.dot(patch.n));
     }
     const ChartRaster& raster = chart.raster;
     const auto seen_from_front = [&](const TilePlane& tile, const Eigen::Vector2d& first_texel) {
@@ -194,7 +196,7 @@ void ChartAtlas::collect_records(std::span<const AtlasView> views) {
           TilePlane tile = page.tiles[t];
           const Eigen::Vector2d first(x * atlas::kPage + static_cast<int>(t % 2) * atlas::kTile,
                                       y * atlas::kPage + static_cast<int>(t / 2) * atlas::kTile);
-          if (shape.closed && !seen_from_front(tile, first)) tile.residual = -1;
+          if (!may_show_back && !seen_from_front(tile, first)) tile.residual = -1;
           any = any || tile.residual >= 0;
           record.tiles[t] = packed(tile, raster);
         }

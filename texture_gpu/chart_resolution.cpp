@@ -25,10 +25,11 @@ bool in_frustum(const Eigen::Vector3d& p, double r, const AtlasView& view) {
          !outside(p.y(), f.fy, f.cy + 0.5) && !outside(-p.y(), f.fy, f.height - 0.5 - f.cy);
 }
 
-/// True where every triangle of a solid's chart is turned away from the camera, wherever it lies in
-/// the chart's sphere. `n`, `p`: the patch's normal and the chart's centre in the camera frame.
-bool shows_its_back(const Chart& chart, const Eigen::Vector3d& n, const Eigen::Vector3d& p) {
-  if (!chart.closed || p.norm() <= chart.radius) return false;
+/// True where every triangle of a solid's chart is turned away from a camera outside it, wherever it lies in
+/// the chart's sphere. `n_node`: the patch's normal.
+bool shows_its_back(const Chart& chart, const Eigen::Vector3d& n_node, const Pose& T_camera_node) {
+  const Eigen::Vector3d p = T_camera_node * chart.center, n = T_camera_node.linear() * n_node;
+  if (p.norm() <= chart.radius || chart.may_show_back(T_camera_node.inverse().translation())) return false;
   if (chart.cone < 1e-3) return n.dot(p) > 1e-9;  // all in one plane: the camera is behind it
   const double angle = chart.cone + std::asin(chart.radius / p.norm());
   return angle < std::numbers::pi / 2 && n.dot(p) / p.norm() > std::sin(angle);
@@ -39,7 +40,7 @@ bool shows_its_back(const Chart& chart, const Eigen::Vector3d& n, const Eigen::V
 Eigen::Vector2d density_in_view(const Chart& chart, const Patch& patch, const AtlasView& view) {
   const Pose& T_camera_node = view.T_camera_node[static_cast<std::size_t>(patch.node)];
   const Eigen::Vector3d p = T_camera_node * chart.center;
-  if (!in_frustum(p, chart.radius, view) || shows_its_back(chart, T_camera_node.linear() * patch.n, p))
+  if (!in_frustum(p, chart.radius, view) || shows_its_back(chart, patch.n, T_camera_node))
     return Eigen::Vector2d::Zero();
   const auto& lens = view.lens->parameters();
   const double focal = std::max(lens.fx, lens.fy);

@@ -16,7 +16,7 @@ struct AtlasView {
 };
 
 /// Texels per metre along u and v that give one texel per pixel on the chart as seen from the view;
-/// zero: out of view, or a solid's chart seen from behind.
+/// zero: out of view, or a solid's chart seen from outside and behind.
 Eigen::Vector2d density_in_view(const Chart& chart, const Patch& patch, const AtlasView& view);
 
 }  // namespace foresight

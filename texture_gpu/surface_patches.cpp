@@ -121,7 +121,9 @@ class Builder {
       out_.corners.push_back(c);
     }
     link_neighbours(mesh, first, faces_);
-    closed_.push_back(is_solid(mesh));
+    Eigen::AlignedBox3d& body = bodies_.emplace_back();
+    if (is_solid(mesh))
+      for (const Eigen::Vector3f& v : mesh.vertices) body.extend(v.cast<double>());
   }
 
   void add_patch(std::vector<int> members) {
@@ -231,7 +233,7 @@ class Builder {
     }
     chart.slope = std::sqrt(slope2 / area);
     chart.cone = std::acos(std::clamp(least_cosine, -1.0, 1.0));
-    chart.closed = closed_[static_cast<std::size_t>(patch.node)];
+    chart.body = bodies_[static_cast<std::size_t>(patch.node)];
     const Vector2d mid = (chart.lower + chart.upper) / 2;
     chart.center = patch.origin + mid.x() * patch.eu + mid.y() * patch.ev + (h0 + h1) / 2 * patch.n;
     chart.radius = std::max(1e-6, std::hypot((chart.upper - chart.lower).norm() / 2, (h1 - h0) / 2));
@@ -297,7 +299,7 @@ class Builder {
   double extent_ = 1;
   std::vector<Face> faces_;
   std::vector<int> node_;
-  std::vector<bool> closed_;  // per node
+  std::vector<Eigen::AlignedBox3d> bodies_;  // per node; empty where it is not solid
   SurfacePatches out_;
 };
 

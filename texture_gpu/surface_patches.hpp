@@ -13,6 +13,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -45,8 +46,12 @@ struct Chart {
   double slope = 0;                      ///< rms slope of its triangles against the patch's plane
   double cone = 0;                       ///< largest angle of a triangle's normal from the patch's, radians
   Eigen::Vector2d polygon{0, 0};         ///< longest flat polygon on it along u and along v, metres
-  bool closed = false;                   ///< part of a watertight mesh: its back can never be seen
+  Eigen::AlignedBox3d body;              ///< of the watertight mesh that it is part of, node frame; else empty
   std::vector<int> neighbours;           ///< charts that touch this one
+
+  bool closed() const { return !body.isEmpty(); }
+  /// Whether a view from `eye`, node frame, may see its back: of a body's, only one from within, as of a room's walls.
+  bool may_show_back(const Eigen::Vector3d& eye) const { return !closed() || body.contains(eye); }
 };
 
 struct SurfacePatches {

@@ -252,7 +252,7 @@ TEST(ChartAtlas, RecordsHoldTheTilesThatACameraMaySeeFromTheFront) {
       TilePlane plane;
       if (x < across && y < down) plane = planes[static_cast<std::size_t>(y * across + x)];
       const Eigen::Vector2d uv = r.uv0 + Eigen::Vector2d(8 * x + 3.5, 8 * y + 3.5).cwiseQuotient(r.density);
-      if (shape.closed && faces_away(plane, r, uv, eye)) {
+      if (shape.closed() && faces_away(plane, r, uv, eye)) {
         dropped += plane.residual >= 0;
         plane.residual = -1;
       }
@@ -299,12 +299,27 @@ TEST(ChartAtlas, BacksOfSolidsAndWhatIsOutOfViewAreNotPlanned) {
     const Chart& chart = atlas->surface().charts[i];
     const Patch& patch = atlas->surface().patches[static_cast<std::size_t>(chart.patch)];
     const Pose& T = views[0].T_camera_node[static_cast<std::size_t>(patch.node)];
-    const bool back = chart.closed && chart.cone < 1e-3 && (T.linear() * patch.n).dot(T * chart.center) > 0;
+    const bool back = chart.closed() && chart.cone < 1e-3 && (T.linear() * patch.n).dot(T * chart.center) > 0;
     backs += back;
     EXPECT_FALSE(back && planned.contains(static_cast<std::uint32_t>(i)));
   }
   EXPECT_GT(backs, 5);
   EXPECT_TRUE(atlas->plan(atlas.view(look_at({0, 0, 1}, {0.1, 0, 2}))).empty());
+}
+
+// A room that was drawn as a box, seen from within: its walls turn their backs.
+TEST(ChartAtlas, ASolidIsPlannedFromWithin) {
+  const SceneModel scene({{"room", make_box({4, 4, 3}), -1, Pose::Identity()}});
+  const Lens lens = small_lens("pinhole");
+  const gl::Faces faces = gl::faces_for(lens, 5);
+  const auto surface = std::make_shared<SurfacePatches>(find_surface_patches(scene, {}));
+  ChartAtlas atlas(surface, {});
+  const std::vector<AtlasView> views{{&lens, &faces, {look_at({-1, 0, 0}, {1, 0.3, -0.5}).inverse()}}};
+  std::ptrdiff_t tiles = 0;
+  for (const PageRecord& record : atlas.plan(views))
+    tiles += std::ranges::count_if(
+        record.tiles, [&](const auto& tile) { return tile != packed({}, atlas.charts()[record.chart].raster); });
+  EXPECT_GT(tiles, 100);
 }
 
 constexpr std::uint64_t kPageBytes = 2 * atlas::kColourBytes + atlas::kHeightBytes;

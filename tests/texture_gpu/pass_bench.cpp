@@ -148,7 +148,7 @@ std::vector<Eigen::Vector2f> PassBench::blocks(std::size_t i) const {
 
 bool PassBench::turned_away(std::uint32_t index) const {
   const Chart& chart = surface->charts[index];
-  if (!chart.closed) return false;
+  if (!chart.closed()) return false;
   for (const AtlasView& view : views) {
     const Eigen::Vector3d eye =
         view.T_camera_node[static_cast<std::size_t>(patch_of(index).node)].inverse().translation();

@@ -183,7 +183,7 @@ TEST(SurfacePatches, ClosedMeshesAreFlagged) {
   const auto flags = [](const SceneModel& scene) {
     int closed = 0, open = 0;
     for (const Chart& chart : find_surface_patches(scene, {}).charts)
-      if (chart.radius > 0) ++(chart.closed ? closed : open);
+      if (chart.radius > 0) ++(chart.closed() ? closed : open);
     return std::pair(closed > 0, open > 0);
   };
   EXPECT_EQ(flags(one_node(make_box({1, 2, 3}))), std::pair(true, false));
