@@ -367,7 +367,8 @@ RobotTime RobotFuture::instant_to_show(RobotTime now) noexcept {
     instant_ = std::max(wanted, instant_.value_or(wanted));
   } else {
     const double step = std::clamp(to_seconds(wanted - *instant_), kSlowest * passed, kFastest * passed);
-    instant_ = *instant_ + seconds(step);
+    const RobotTime farthest = std::max(*instant_, wanted + seconds(kBeyond));
+    instant_ = std::min(*instant_ + seconds(step), farthest);
   }
   return *instant_;
 }

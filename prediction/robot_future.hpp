@@ -100,7 +100,7 @@ class RobotFuture {
   /// The same for the picture of `time`, not before the one before: without jumps, and scored once the truth is known.
   PredictedRobot show(RobotTime time) noexcept;
   /// The instant to show now: when a set-point that is sent now acts. It goes on evenly, at 0.9 to 1.1 of real time,
-  /// while the line changes.
+  /// while the line changes; where a line became so much faster that nothing is known of it yet, it waits.
   RobotTime instant_to_show(RobotTime now) noexcept;
   PredictedDelay delay() const noexcept { return motion_.delay(); }
 

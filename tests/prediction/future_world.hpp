@@ -50,6 +50,7 @@ class FutureWorld {
   bool jammed = false;         // the first joint is held fast by something
   bool robot_silent = false;   // no reports
   bool line_cut_down = false;  // no set-point arrives
+  double slower = 0;           // s that set-points take besides
   bool sends = true;           // set-points
   std::function<void(RobotReport&)> edit_report = [](RobotReport&) {};
   std::function<bool(double)> holds = [](double t) { return t > 0.2; };  // the switch
@@ -160,7 +161,7 @@ class FutureWorld {
     const SentSetPoint set_point{++number_, now_, seconds(lasts), holds(t()), 2, wish(t()), options_.named};
     future_.sent(set_point, now_);
     const bool lost = uniform() < options_.loss;
-    if (!line_cut_down && !lost) down_.emplace(now_ + way(), set_point);
+    if (!line_cut_down && !lost) down_.emplace(now_ + way() + seconds(slower), set_point);
   }
   double uniform() { return std::uniform_real_distribution<double>(0, 1)(random_); }
   Duration way() { return seconds(options_.delay + options_.jitter * uniform()); }

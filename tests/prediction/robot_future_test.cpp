@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
+#include <span>
 
 #include "tests/prediction/judged_future.hpp"
 #include "tests/support/allocations.hpp"
@@ -70,6 +72,22 @@ TEST(RobotFuture, ALineThatStandsStillIsNotLearntAsASlowOne) {
   world.line_cut_down = false;
   world.run(0.8);  // until reports tell of set-points again
   EXPECT_NEAR(world.future().delay().seconds, usual, 0.004);
+}
+
+// The instant that is shown would lie beyond all that is known until it had fallen back by 0.3 s.
+TEST(RobotFuture, PicturesWaitForALineThatBecameFaster) {
+  FutureWorld world;
+  world.lasts = 1;
+  world.slower = 0.3;
+  world.run(10);
+  world.slower = 0;
+  const std::size_t before = world.pictures().size();
+  world.run(4);
+  const std::span<const PredictedRobot> after = std::span(world.pictures()).subspan(before);
+  const auto unknown = std::ranges::count(after, FutureReason::too_far, &PredictedRobot::reason);
+  EXPECT_LT(unknown, std::ssize(after) / 10);
+  EXPECT_TRUE(std::ranges::is_sorted(after, {}, &PredictedRobot::time));
+  EXPECT_NEAR(to_seconds(after.back().time - world.now()), 0.3, 0.02);
 }
 
 // As when a line that stood still gives out what it held, the oldest first.
