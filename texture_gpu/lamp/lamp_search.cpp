@@ -163,10 +163,11 @@ LampSearch::Two LampSearch::both(const VectorXd& first, const VectorXd& second, 
           .strength = with_second < 0 ? of_second / with_second : std::numeric_limits<double>::infinity()};
 }
 
-/// A second lamp that is weaker, of such a strength beside the first. What moves would throw shadows of it too, which
-/// the first lamp would not explain.
+/// A second lamp of such a strength beside the first. What moves would throw shadows of both, and of those of the
+/// second the first lamp would explain nothing. Which of the two is the stronger one single images do not tell well.
 bool LampSearch::throws_no_shadows(double strength, const Candidate& first) const {
-  return strength < 1 && moving_.dark() >= kDarkAgainstSecond && first.explained > 1 / (1 + strength * strength);
+  const double weaker = std::min(strength, 1 / strength);
+  return moving_.dark() >= kDarkAgainstSecond && first.explained > 1 / (1 + weaker * weaker);
 }
 
 /// Whether single images show shadows of another lamp that is not much weaker.
