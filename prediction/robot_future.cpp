@@ -16,6 +16,7 @@ constexpr double kOutlasts = 0.9;          // of how long a set-point lasts once
 constexpr double kUnknownDelay = 0.02;     // s that a drive's response may be off before it was identified
 constexpr double kAtEase = 0.1;            // of what is no more a matter of precision: surely nothing holds the joint
 constexpr double kSettling = 5;            // s until the sigma of a drive just learnt is that of what was seen since
+constexpr double kGoesOn = 0.5;            // s in which a robot that stopped is where it is expected again
 constexpr double kHeldUnseen = 2;          // s that something may hold a joint before that is noticed, at most
 constexpr double kAssumedPast = 0.4, kAssumedEvery = 0.02;  // s before the first set-point that is known
 constexpr std::size_t kShown = 1024;
@@ -324,7 +325,9 @@ RobotFuture::Shown RobotFuture::predict(RobotTime time) const noexcept {
   }
   out.judged = true;
   const GateModel::State* cycle = motion_.cycle_at(time);
-  robot.blocked = (cycle != nullptr ? *cycle : motion_.cycles().newest()).blocked;
+  if (cycle == nullptr) cycle = &motion_.cycles().newest();
+  robot.blocked = cycle->blocked;
+  out.doing = cycle->doing;
   if (const FutureReason doubtful = doubt(out, joint); doubtful != FutureReason::none)
     fall_back(robot, doubtful, joint);
   else
@@ -379,18 +382,27 @@ void RobotFuture::score() noexcept {
     score(shown_ones_[0]);
 }
 
+// The gate did something else than was expected, as a stop where set-points stay away, or a report of that cannot have
+// come yet. That tells nothing of how well drives are known.
+bool RobotFuture::surprised(const Shown& shown) noexcept {
+  const double time = since_epoch(shown.robot.time);
+  const GateModel::State* was = motion_.cycle_at(shown.robot.time);
+  if (was != nullptr && was->doing != shown.doing) surprised_at_ = time;
+  return surprised_at_ && time - *surprised_at_ < kGoesOn + 2 * motion_.delay().seconds;
+}
+
 void RobotFuture::score(const Shown& shown) noexcept {
   PredictedRobot truth;
   const double time = since_epoch(shown.robot.time);
   if (!measured(time, truth)) return;
   const double passed = std::clamp(time - scored_at_, 0.0, 1.0);
   scored_at_ = time;
-  const bool trusted = shown.robot.status == StateStatus::predicted;
+  const bool trusted = shown.robot.status == StateStatus::predicted, is_usual = !surprised(shown);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     Joint& joint = joints_[i];
     const bool as_shown = trusted && std::isfinite(shown.robot.sigma[i]);
     const double off = std::abs((as_shown ? shown.robot.position[i] : shown.predicted[i]) - truth.position[i]);
-    if (!shown.settling[i])
+    if (is_usual && !shown.settling[i])
       joint.scale.score(CalibratedSigma::usual_part(off / shown.any_prior(i), shown.scale[i]), shown.scale[i], passed);
     const double usual = std::max(joint.precise, 3 * shown.sigma(i));
     // What a line loses is shown wrongly until the report of it has come: a way there and back.

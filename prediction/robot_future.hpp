@@ -139,7 +139,8 @@ class RobotFuture {
     bool judged = false;      // there is a prediction, whether it can be trusted or not
     JointValues predicted{};  // that one
     JointValues prior{}, scale{};
-    JointValues stopped{};  // how far from there it is if it has stopped
+    JointValues stopped{};              // how far from there it is if it has stopped
+    GateDoing doing = GateDoing::away;  // what the gate was expected to do then
     double sigma(std::size_t joint) const noexcept { return std::hypot(scale[joint] * prior[joint], stopped[joint]); }
     double any_prior(std::size_t joint) const noexcept { return std::hypot(prior[joint], stopped[joint]); }
     std::array<bool, std::tuple_size_v<JointValues>> settling{};
@@ -153,6 +154,7 @@ class RobotFuture {
   void identify() noexcept;
   void score() noexcept;
   void score(const Shown& shown) noexcept;
+  bool surprised(const Shown& shown) noexcept;
   std::optional<double> measured_until() const noexcept;
   bool measured(double time, PredictedRobot& out) const noexcept;
   Shown predict(RobotTime time) const noexcept;
@@ -177,6 +179,7 @@ class RobotFuture {
   std::optional<RobotTime> instant_;
   RobotTime instant_asked_;
   double identified_at_ = 0, scored_at_ = 0;
+  std::optional<double> surprised_at_;  // s: the gate last did something else than was expected
   LastOf<Shown> shown_ones_;
   LastOf<ScoredRobot> scored_;
 };

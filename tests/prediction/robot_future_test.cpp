@@ -90,6 +90,22 @@ TEST(RobotFuture, PicturesWaitForALineThatBecameFaster) {
   EXPECT_NEAR(to_seconds(after.back().time - world.now()), 0.3, 0.02);
 }
 
+// Each time the robot stops, and nobody can know of it before a report comes. Its drives are as well known as before.
+TEST(RobotFuture, GapsOfCommandsDoNotTakeTheTrustInDrives) {
+  FutureWorld world;
+  constexpr double kEvery = 3;
+  world.holds = [](double t) { return t < 10 || std::fmod(t, kEvery) < 2.2 || std::fmod(t, kEvery) > 2.4; };
+  world.run(10);
+  const std::size_t before = world.pictures().size();
+  while (world.t() < 40) {
+    const double phase = std::fmod(world.t(), kEvery);
+    world.line_cut_down = phase > 1 && phase < 1.7;
+    world.run(0.02);
+  }
+  const std::span<const PredictedRobot> after = std::span(world.pictures()).subspan(before);
+  EXPECT_LT(std::ranges::count(after, FutureReason::unsure, &PredictedRobot::reason), std::ssize(after) / 20);
+}
+
 // As when a line that stood still gives out what it held, the oldest first.
 TEST(RobotFuture, ReportsThatComeTooOldAreNoNews) {
   FutureWorld world;
