@@ -211,12 +211,19 @@ bool goes_well(const Rig& rig, RobotShape* shape, const std::vector<ToolStep>& s
 InputError out_of_reach(const Rig& rig, const ArmChain& arm, const Pose& from, const Pose& to,
                         const std::string& what) {
   const Eigen::Vector3d foot = rig.T_world_robot * arm.lines().front().point;
+  const double here = (from.translation() - foot).norm(), there = (to.translation() - foot).norm();
+  const bool is_far = std::max(here, there) > arm.reach();
+  const std::size_t joints = arm.lines().size();
   return {
       rig.name,
-      fmt::format("the arm does not reach {} with its jaws pointing down: they are {:.2f} and {:.2f} m from its first "
-                  "axis, and its last link gets {:.2f} m far",
-                  what, (from.translation() - foot).norm(), (to.translation() - foot).norm(), arm.reach()),
-      "correct robot.pose of the rig such that the lab's table is before it, or use a larger arm"};
+      fmt::format("the arm does not reach {} with its jaws pointing down, turned along a side of the thing: they are "
+                  "{:.2f} and {:.2f} m from its first axis, and its last link gets {:.2f} m far",
+                  what, here, there, arm.reach()),
+      joints < 6 && !is_far
+          ? fmt::format("use an arm of six joints or more: one of {} has its jaws turned one way wherever they are, "
+                        "which may be along no side",
+                        joints)
+          : "correct robot.pose of the rig such that the lab's table is before it, or use a larger arm"};
 }
 
 /// From a thing at one place to another, the jaws' y turned by `turn` about the vertical.
