@@ -1,6 +1,6 @@
-// Lists the pixels of some rows at which a model is, of a view whose pixels are those of its only face.
+// Lists the pixels of some rows at which a model is, of a view whose pixels are those of its only face. Groups as in view.comp.
 #include "work_list.glsl"
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 layout(binding = 1) uniform usampler2DArray surfaces;  // triangle + 1
 uniform ivec2 rows;                                    // first, and beyond the last
 
