@@ -68,7 +68,8 @@ ExpectedMotion::ExpectedMotion(GateOptions gate, RobotShape* shape, const Expect
       period_(seconds(1 / gate_.options().rate_hz)),
       sent_(static_cast<std::size_t>(options.keeps * kSetPointsPerSecond)),
       cycles_(static_cast<std::size_t>(options.keeps * gate_.options().rate_hz)),
-      line_(options.line) {}
+      line_(options.line),
+      gaps_(options.longest_gap) {}
 
 void ExpectedMotion::sent(const SentSetPoint& set_point) noexcept {
   const std::size_t before = sent_.size();
@@ -76,16 +77,21 @@ void ExpectedMotion::sent(const SentSetPoint& set_point) noexcept {
   if (sent_.size() == before && next_ > 0) --next_;  // the oldest one went
 }
 
-const SentSetPoint* ExpectedMotion::find(std::uint64_t number) const noexcept {
+std::size_t ExpectedMotion::first_after(std::uint64_t number) const noexcept {
   std::size_t from = 0, to = sent_.size();
   while (from < to) {
     const std::size_t middle = (from + to) / 2;
-    if (sent_[middle].number < number)
+    if (sent_[middle].number <= number)
       from = middle + 1;
     else
       to = middle;
   }
-  return from < sent_.size() && sent_[from].number == number ? &sent_[from] : nullptr;
+  return from;
+}
+
+const SentSetPoint* ExpectedMotion::find(std::uint64_t number) const noexcept {
+  const std::size_t after = first_after(number);
+  return after > 0 && sent_[after - 1].number == number ? &sent_[after - 1] : nullptr;
 }
 
 const GateModel::State* ExpectedMotion::cycle_at(RobotTime time) const noexcept {
@@ -129,6 +135,26 @@ void ExpectedMotion::learn_lateness(const RobotReport& report) noexcept {
   late_ = std::clamp(late_ + share * lateness(report, *expected), 0.0, kMostLate);
 }
 
+// For how long no set-point had come by the report, although some should have.
+double ExpectedMotion::missing(const RobotReport& report) const noexcept {
+  const std::size_t next = first_after(report.newest_set_point);
+  if (find(report.newest_set_point) == nullptr || next == sent_.size() || !line_delay_.valid) return 0;
+  const double late = to_seconds(report.time - sent_[next].sent) - line_delay_.seconds;
+  return std::clamp(late, 0.0, std::max(0.0, to_seconds(report.time - report.newest_came)));
+}
+
+// What keeps set-points away from the robot keeps all of them away, and it stops once the newest one lasts no more.
+void ExpectedMotion::learn_gaps(const RobotReport& report) noexcept {
+  if (report.newest_set_point != gap_after_) gaps_.add(std::exchange(gap_, 0), to_seconds(report.time - epoch_));
+  gap_after_ = report.newest_set_point;
+  gap_ = missing(report);
+  stop_chance_ = 0;
+  if (gap_ < ReportGaps::kNotable || report.doing != GateDoing::following) return;
+  const SentSetPoint& newest = *find(gap_after_);
+  const double began = to_seconds(report.time - newest.sent) - gap_;
+  stop_chance_ = gaps_.chance_to_reach(to_seconds(newest.lasts) - began, gap_);
+}
+
 void ExpectedMotion::learn_delay(const RobotReport& report, RobotTime now) noexcept {
   const SentSetPoint* newest = report.newest_set_point > newest_told_ ? find(report.newest_set_point) : nullptr;
   if (newest != nullptr) {
@@ -138,6 +164,7 @@ void ExpectedMotion::learn_delay(const RobotReport& report, RobotTime now) noexc
   }
   learn_overtaking(report);
   learn_lateness(report);
+  learn_gaps(report);
   delay_ = line_delay_;
   delay_.seconds = std::max(0.0, delay_.seconds + overtaken_ + late_);
   // Until the robot tells: as long as the way back.
@@ -221,9 +248,9 @@ void ExpectedMotion::begin_anew(const RobotReport& report, bool restarted) noexc
   while (!cycles_.empty() && cycles_.newest().time > report.time - period_ / 2) cycles_.drop_newest();
   gate_.set(state);
   cycles_.next() = state;
-  next_ = 0;
-  while (next_ < sent_.size() && sent_[next_].number <= state.taken) ++next_;
+  next_ = first_after(state.taken);
   acts_after_ = seconds(delay_.seconds);
+  held_until_ = report.time + seconds(gap_ < ReportGaps::kNotable ? 0 : gaps_.expected_length(gap_) - gap_);
 }
 
 std::optional<ExpectedMotion::Change> ExpectedMotion::reported(const RobotReport& report, RobotTime now) noexcept {
@@ -235,7 +262,8 @@ std::optional<ExpectedMotion::Change> ExpectedMotion::reported(const RobotReport
   const GateModel::State* expected = cycle_at(report.time);
   const bool other_line = std::abs(delay_.seconds - to_seconds(acts_after_)) > options_.sooner;
   const bool as_expected = expected != nullptr && agrees(report, *expected);
-  if (as_expected && !other_line && deviation(report, *expected) <= options_.tolerance) {
+  const bool held_longer = gap_ >= ReportGaps::kNotable && held_until_ <= report.time;
+  if (as_expected && !other_line && !held_longer && deviation(report, *expected) <= options_.tolerance) {
     confirmed_ = report.time;
     return {};
   }
@@ -254,7 +282,8 @@ std::optional<ExpectedMotion::Change> ExpectedMotion::reported(const RobotReport
 
 void ExpectedMotion::cycle() noexcept {
   const RobotTime time = gate_.state().time + period_;
-  for (; next_ < sent_.size() && sent_[next_].sent + acts_after_ <= time; ++next_) gate_.take(sent_[next_], time);
+  for (; next_ < sent_.size() && std::max(sent_[next_].sent + acts_after_, held_until_) <= time; ++next_)
+    gate_.take(sent_[next_], time);
   gate_.cycle(time);
   cycles_.next() = gate_.state();
 }

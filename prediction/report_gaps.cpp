@@ -1,12 +1,12 @@
 #include "prediction/report_gaps.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace foresight {
 namespace {
 
 constexpr double kTogether = 5e-3;  // what was held up came at once, and was waited for once
-constexpr double kNotable = 0.05;   // shorter gaps are nobody's concern
 constexpr double kRemembered = 60;
 constexpr double kRise = 0.2, kFall = kRise * 0.05 / 0.95;  // a quantile rises seldom by much, falls often by little
 
@@ -28,6 +28,16 @@ double ReportGaps::chance_to_reach(double length, double so_far) const noexcept 
     if (gap.length >= length) ++reached;
   }
   return (reached + 0.5) / (as_long + 1);
+}
+
+double ReportGaps::expected_length(double so_far) const noexcept {
+  std::array<double, kKept + 1> lengths{2 * so_far};
+  auto end = lengths.begin() + 1;
+  for (std::size_t i = 0; i < notable_.size(); ++i)
+    if (newest_ - notable_[i].ended <= kRemembered && notable_[i].length >= so_far) *end++ = notable_[i].length;
+  const auto middle = lengths.begin() + (end - lengths.begin()) / 2;
+  std::nth_element(lengths.begin(), middle, end);
+  return *middle;
 }
 
 }  // namespace foresight

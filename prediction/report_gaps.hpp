@@ -1,4 +1,5 @@
-// How long the robot's reports keep the seat waiting, and what that says of the gap that lasts now.
+// How long the robot's reports keep the seat waiting, or set-points the robot, and what that says of the gap that lasts
+// now.
 //
 // What keeps reports away keeps set-points away, and the robot stops once none of those that it has lasts any more.
 // Over a line that stands still for a tenth of a second now and then, and goes on each time, that a report is late
@@ -12,16 +13,20 @@ namespace foresight {
 /// One thread. Allocates at the start only; no method but the constructor throws. All times in s.
 class ReportGaps {
  public:
+  static constexpr double kNotable = 0.05;  ///< shorter gaps are nobody's concern
+
   /// `longest`: what is longer counts as that.
   explicit ReportGaps(double longest) : longest_(longest), notable_(kKept) {}
 
-  /// A report came at `now`, so long after the one before.
+  /// A report (or set-point, likewise below) came at `now`, so long after the one before.
   void add(double gap, double now) noexcept;
   /// What 95 % of the gaps do not exceed.
   double usual() const noexcept { return usual_; }
   /// How probable it is that a gap that has lasted `so_far` comes to `length`: by those of the last minute that lasted
   /// as long, with Jeffreys' prior for a share of which nothing is known (0.5 without any).
   double chance_to_reach(double length, double so_far) const noexcept;
+  /// How long a gap that has lasted `so_far` usually is, >= that: by those, and one twice as long as it is so far.
+  double expected_length(double so_far) const noexcept;
 
  private:
   static constexpr std::size_t kKept = 256;

@@ -265,8 +265,10 @@ FutureReason RobotFuture::doubt(const Shown& shown, int& joint) const noexcept {
 
 FutureReason RobotFuture::doubt(const Shown& shown, std::size_t joint) const noexcept {
   if (joints_[joint].held.doubted || joints_[joint].missed.doubted) return FutureReason::astray;
-  // Most times that reports are overdue the robot goes on: pixels are in doubt, the view as a whole is not yet.
-  if (shown.scale[joint] * shown.any_prior(joint) <= joints_[joint].least_sure) return FutureReason::none;
+  // Most times that reports are overdue the robot goes on: pixels are in doubt, the view as a whole is not yet. Nor is
+  // it where set-points are held up: what is shown is the likelier of two.
+  if (shown.scale[joint] * std::hypot(shown.prior[joint], shown.stopped[joint]) <= joints_[joint].least_sure)
+    return FutureReason::none;
   return shown.overdue ? FutureReason::stale : FutureReason::unsure;
 }
 
@@ -288,6 +290,9 @@ bool RobotFuture::predict(std::size_t joint, Shown& out) const noexcept {
   const double beyond = std::max(0.0, to_seconds(time - motion_.known_until()));
   // Whether it has is not told by any scale that was learnt while reports came.
   if (out.overdue) out.stopped[joint] = there.position - of.response.at(since_epoch(reported_)).position;
+  const double stops = motion_.stop_chance();
+  if (const SentSetPoint* asked = motion_.newest_at(time); stops > 0 && asked != nullptr)
+    out.held_up[joint] = std::sqrt(stops * (1 - stops)) * (asked->position[joint] - there.position);
   out.predicted[joint] = out.robot.position[joint] = there.position;
   out.prior[joint] = std::hypot(there.sigma, beyond * motion_.cycles().newest().motion[joint].velocity);
   out.scale[joint] = of.scale.sigma();

@@ -140,9 +140,14 @@ class RobotFuture {
     JointValues predicted{};  // that one
     JointValues prior{}, scale{};
     JointValues stopped{};              // how far from there it is if it has stopped
+    JointValues held_up{};              // how far off it may be as set-points are held up
     GateDoing doing = GateDoing::away;  // what the gate was expected to do then
-    double sigma(std::size_t joint) const noexcept { return std::hypot(scale[joint] * prior[joint], stopped[joint]); }
-    double any_prior(std::size_t joint) const noexcept { return std::hypot(prior[joint], stopped[joint]); }
+    double sigma(std::size_t joint) const noexcept {
+      return std::hypot(scale[joint] * prior[joint], stopped[joint], held_up[joint]);
+    }
+    double any_prior(std::size_t joint) const noexcept {
+      return std::hypot(prior[joint], stopped[joint], held_up[joint]);
+    }
     std::array<bool, std::tuple_size_v<JointValues>> settling{};
   };
   HistoryFault check(const RobotReport& report, RobotTime now) const noexcept;

@@ -39,6 +39,17 @@ TEST(ReportGaps, LongOnesAreNotForgottenForAMinute) {
   EXPECT_LT(gaps.chance_to_reach(0.3, 0.15), 0.02);
 }
 
+TEST(ReportGaps, AreExpectedToLastAsLongAsOthersThatLastedSoLong) {
+  ReportGaps gaps(1);
+  EXPECT_EQ(gaps.expected_length(0.1), 0.2) << "as long again";
+  double now = 0;
+  pass(gaps, now, 20, 0.2);
+  pass(gaps, now, 40, 0.7);
+  EXPECT_GE(gaps.expected_length(0.06), 0.2);
+  EXPECT_EQ(gaps.expected_length(0.25), 0.7);
+  EXPECT_EQ(gaps.expected_length(0.8), 1.6) << "none has lasted as long";
+}
+
 TEST(ReportGaps, UsualIsWhatMostKeep) {
   ReportGaps gaps(1);
   double now = 0;

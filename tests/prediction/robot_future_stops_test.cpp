@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "tests/prediction/judged_future.hpp"
@@ -170,6 +171,33 @@ TEST(RobotFuture, HowFarItMayHaveStoppedIsTold) {
     EXPECT_LE(by, shown.sigma[0] + 5e-4) << to_seconds(shown.time - cut_at);
   }
   EXPECT_GT(off, 5) << "it was given up at once: the test shows nothing";
+}
+
+// Reports are on time, and tell that nothing comes: again and again for so long that the robot stops.
+TEST(RobotFuture, WhatShouldHaveComeAndHasNotDoesNotAct) {
+  FutureWorld world;
+  constexpr double kEvery = 4, kCutFrom = 0.3, kCut = 0.9, kDelay = 0.3, kStops = 0.5;  // s
+  // A report that should have told of another set-point, the delay until what it changes is seen, a correction's blend.
+  constexpr double kKnown = kCutFrom + kDelay + 0.05 + 2 * kDelay + CorrectionBlend::kSettled;
+  world.lasts = kDelay + kStops;
+  world.holds = [](double t) { return t < 15 || std::fmod(t, kEvery) < 1.9 || std::fmod(t, kEvery) > 2.1; };
+  world.run(24);
+  const std::size_t began = world.pictures().size();
+  const double offset = world.t() - to_seconds(world.now() - RobotTime{});
+  while (world.t() < 48) {
+    const double phase = std::fmod(world.t(), kEvery);
+    world.line_cut_down = phase > kCutFrom && phase < kCutFrom + kCut;
+    world.run(0.02);
+  }
+  int seen = 0, wrong = 0;
+  for (const PredictedRobot& shown : std::span(world.pictures()).subspan(began)) {
+    const double phase = std::fmod(to_seconds(shown.time - RobotTime{}) + offset, kEvery);
+    if (shown.time > world.now() || phase < kKnown || phase > kKnown + kStops) continue;
+    ++seen;
+    wrong += std::abs(shown.position[0] - world.truth_at(shown.time)[0]) > 0.02;
+  }
+  EXPECT_GT(seen, 100);
+  EXPECT_LT(wrong, seen / 10) << "how long the first gap is nobody can know";
 }
 
 // A line that stands still for less long than a set-point lasts, again and again: the robot went on each time.
