@@ -64,7 +64,7 @@ void ShadowPass::operator()(const Camera& camera, const ShadowMap& map) {
   shade_.use();
   shade_.set("each", true);
   uneven_.dispatch();
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 void ShadowPass::take_out_of(const gl::Texture& image) const {
@@ -73,7 +73,7 @@ void ShadowPass::take_out_of(const gl::Texture& image) const {
   glBindTextureUnit(0, light_.name());
   glBindImageTexture(0, image.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
   blocks_.dispatch();
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 }  // namespace foresight
