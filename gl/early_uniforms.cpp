@@ -46,9 +46,9 @@ std::string with_early_uniforms(const std::string& shader) {
   std::string out;
   for (std::string line; std::getline(lines, line);) {
     std::smatch found;
-    if (std::regex_search(line, found, kValues)) {
+    if (line.starts_with("uniform ") && std::regex_search(line, found, kValues)) {
       out += early_values(found[1], found[2]) + found.suffix().str();
-    } else if (std::regex_search(line, found, kCameras)) {
+    } else if (line.starts_with("layout(") && std::regex_search(line, found, kCameras)) {
       const int count = found[3].matched ? std::stoi(found[3]) : 0;
       out += found[1].str() + found[2].str() + kAsGiven + (count ? "[" + found[3].str() + "]" : "") + "; }; " +
              early_cameras(found[2], count) + found.suffix().str();
