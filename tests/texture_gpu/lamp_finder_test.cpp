@@ -198,6 +198,32 @@ TEST(LampFinder, WhatMovesTellsThatThereIsNoSecondLamp) {
   }
 }
 
+TEST(ShadowRays, WaysOfAPacketAreBlockedAsEachIsAlone) {
+  const auto scene = small_scene();
+  const ShadowRays rays(*scene);
+  const SceneState state = state_at(*scene, 0);
+  const ShadowRays::Posed posed = rays.pose(state.T_world_node, std::vector<bool>(state.T_world_node.size(), true));
+  std::mt19937 generator{3};
+  std::uniform_real_distribution<float> aside(-0.5f, 0.5f);
+  int blocked = 0;
+  for (int i = 0; i < 100; ++i) {
+    ShadowRays::Points from, to;
+    for (int k = 0; k < ShadowRays::kPacket; ++k) {
+      from.col(k) << aside(generator), aside(generator), 0.01f;
+      to.col(k) << aside(generator), aside(generator), 1.2f;
+    }
+    to.col(5) = from.col(5);
+    const int count = i % (ShadowRays::kPacket + 1);
+    const unsigned together = posed.blocked(from, to, count);
+    for (int k = 0; k < ShadowRays::kPacket; ++k) {
+      const bool alone = posed.blocked(from.col(k).cast<double>(), to.col(k).cast<double>());
+      EXPECT_EQ(together >> k & 1u, k < count && alone) << i << ", " << k;
+      blocked += alone;
+    }
+  }
+  EXPECT_THAT(blocked, testing::AllOf(testing::Gt(20), testing::Lt(600)));
+}
+
 TEST(LampFinder, AFewDarkPointsDoNotOutweighSingleImages) {
   Room room;
   room.show(0, 3, {kLamp}, 0.05);

@@ -206,7 +206,7 @@ void LampSearch::refine(Candidate& best, int rounds, int tries, double spread, c
       c.direction =
           (c.direction + spread * Vector3d(normal(generator_), normal(generator_), normal(generator_))).normalized();
       c.distance *= std::exp(2 * spread * normal(generator_));
-      if (!disc.empty()) c.radius = std::clamp(c.radius * std::exp(2 * spread * normal(generator_)), 0.005, 0.4);
+      if (disc.cols() > 0) c.radius = std::clamp(c.radius * std::exp(2 * spread * normal(generator_)), 0.005, 0.4);
       judge(c);
       if (c.score > best.score) best = c;
     }

@@ -63,8 +63,8 @@ LampStrength lamp_strength(const MovingShadows& moving, const StillShadows& stil
   LampStrength out{.shadows = shadowed.size()};
   double mean = 0;
   for (const MovingShadows::Shadowed& s : shadowed) mean += s.facing;
-  for (const double facing : cast.facing) mean += facing;
-  mean /= static_cast<double>(std::max<std::size_t>(1, shadowed.size() + cast.facing.size()));
+  mean += cast.facing.sum();
+  mean /= static_cast<double>(std::max<std::ptrdiff_t>(1, std::ssize(shadowed) + cast.facing.size()));
   if (!(mean > 0)) return out;
   Best best_moving, best_still;
   const auto look_at = [&](int step) {

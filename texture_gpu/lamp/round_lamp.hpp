@@ -1,16 +1,14 @@
 // How much of a round lamp something hides.
 #pragma once
 
-#include <vector>
-
 #include "texture_gpu/lamp/shadow_rays.hpp"
 
 namespace foresight {
 
 /// Points of the unit disc that stand for all of it, a multiple of ShadowRays::kPacket; none: a lamp without extent.
-using Disc = std::vector<Eigen::Vector2d>;
+using Disc = Eigen::Matrix2Xf;
 /// Vogel's spiral.
-Disc spiral(std::size_t points);
+Disc spiral(int points);
 
 /// Share of a lamp at `lamp` that `what` hides from `p`, world, metres; the disc faces the point.
 double hidden_share(const ShadowRays::Posed& what, const Eigen::Vector3d& p, const Eigen::Vector3d& lamp, double radius,

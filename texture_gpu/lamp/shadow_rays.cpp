@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,19 +12,9 @@
 namespace foresight {
 namespace {
 
-struct Way {
-  Eigen::Vector3f origin, direction;
-  float near, far;  // metres along it
-};
-
-/// Nothing where less than the ends is there.
-std::optional<Way> way_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap) {
-  const Eigen::Vector3d way = to - from;
-  const double length = way.norm();
-  if (!(length > 2 * gap)) return std::nullopt;
-  return Way{from.cast<float>(), (way / length).cast<float>(), static_cast<float>(gap),
-             static_cast<float>(length - gap)};
-}
+// Of each packet's three coordinates one follows the other.
+static_assert(offsetof(RTCRay8, org_z) == offsetof(RTCRay8, org_x) + 2 * sizeof(RTCRay8::org_x));
+static_assert(offsetof(RTCRay8, dir_z) == offsetof(RTCRay8, dir_x) + 2 * sizeof(RTCRay8::dir_x));
 
 }  // namespace
 
@@ -101,39 +90,42 @@ ShadowRays::Posed& ShadowRays::Posed::operator=(Posed&& other) noexcept {
 }
 
 bool ShadowRays::Posed::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap) const {
-  const std::optional<Way> way = way_between(from, to, gap);
-  if (!way) return false;
+  const Eigen::Vector3d way = to - from;
+  const double length = way.norm();
+  if (!(length > 2 * gap)) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay ray{};
-  ray.org_x = way->origin.x(), ray.org_y = way->origin.y(), ray.org_z = way->origin.z();
-  ray.dir_x = way->direction.x(), ray.dir_y = way->direction.y(), ray.dir_z = way->direction.z();
-  ray.tnear = way->near;
-  ray.tfar = way->far;
+  Eigen::Vector3f::Map(&ray.org_x) = from.cast<float>();
+  Eigen::Vector3f::Map(&ray.dir_x) = (way / length).cast<float>();
+  ray.tnear = static_cast<float>(gap);
+  ray.tfar = static_cast<float>(length - gap);
   ray.mask = ~0u;
   rtcOccluded1(static_cast<RTCScene>(scene_), &context, &ray);
   return ray.tfar < 0;
 }
 
-int ShadowRays::Posed::count_blocked(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d, kPacket> to,
-                                     double gap) const {
+unsigned ShadowRays::Posed::blocked(const Points& from, const Points& to, int count, double gap) const {
+  using Row = Eigen::Array<float, 1, kPacket>;
+  const auto ends = static_cast<float>(gap);
+  const Points way = to - from;
+  const Row length = way.colwise().norm();
+  RTCRay8 rays;
+  Points::Map(rays.org_x) = from;
+  Points::Map(rays.dir_x) = way.array().rowwise() / length;
+  Row::Map(rays.tnear).setConstant(ends);
+  Row::Map(rays.tfar) = length - ends;
+  std::ranges::fill(rays.time, 0.0f);
+  std::ranges::fill(rays.mask, ~0u);
+  std::ranges::fill(rays.flags, 0u);
+  alignas(32) std::array<int, kPacket> valid;
+  for (int i = 0; i < kPacket; ++i) valid[static_cast<std::size_t>(i)] = i < count && length[i] > 2 * ends ? -1 : 0;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  RTCRay8 rays{};
-  alignas(32) std::array<int, kPacket> valid{};
-  for (std::size_t i = 0; i < kPacket; ++i) {
-    const std::optional<Way> way = way_between(from, to[i], gap);
-    if (!way) continue;
-    valid[i] = -1;
-    rays.org_x[i] = way->origin.x(), rays.org_y[i] = way->origin.y(), rays.org_z[i] = way->origin.z();
-    rays.dir_x[i] = way->direction.x(), rays.dir_y[i] = way->direction.y(), rays.dir_z[i] = way->direction.z();
-    rays.tnear[i] = way->near;
-    rays.tfar[i] = way->far;
-    rays.mask[i] = ~0u;
-  }
   rtcOccluded8(valid.data(), static_cast<RTCScene>(scene_), &context, &rays);
-  return static_cast<int>(std::ranges::count_if(rays.tfar, [](float far) { return far < 0; }));
+  unsigned out = 0;
+  for (int i = 0; i < kPacket; ++i) out |= (valid[static_cast<std::size_t>(i)] && rays.tfar[i] < 0 ? 1u : 0u) << i;
+  return out;
 }
 
 }  // namespace foresight

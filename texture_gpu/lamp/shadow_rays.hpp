@@ -1,8 +1,8 @@
 // Whether something of a posed scene stands between two points.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "scene/scene_model.hpp"
@@ -18,8 +18,9 @@ class ShadowRays {
   ShadowRays(const ShadowRays&) = delete;
   ShadowRays& operator=(const ShadowRays&) = delete;
 
-  static constexpr std::size_t kPacket = 8;
-  static constexpr double kGap = 2e-3;      ///< metres
+  static constexpr int kPacket = 8;
+  using Points = Eigen::Matrix<float, 3, kPacket, Eigen::RowMajor>;  ///< world, metres: a column each
+  static constexpr double kGap = 2e-3;                               ///< metres
   static constexpr double kContact = 5e-3;  ///< metres: what touches a surface does not throw shadows on its points
 
   /// Some of the nodes, where they stand at one instant. Must not outlive the ShadowRays.
@@ -31,9 +32,8 @@ class ShadowRays {
 
     /// True where a triangle lies on the way, ends left out by `gap` metres. World.
     bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap = kGap) const;
-    /// How many of these ways are blocked: cheaper together.
-    int count_blocked(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d, kPacket> to,
-                      double gap = kGap) const;
+    /// Likewise, a bit each of the first `count` ways: cheaper together, most where they lie close to each other.
+    unsigned blocked(const Points& from, const Points& to, int count, double gap = kGap) const;
 
    private:
     friend class ShadowRays;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "texture_gpu/lamp/lamp.hpp"
@@ -11,14 +12,26 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+using Eigen::VectorXd;
 
 constexpr std::size_t kFewestNew = 200;  // points that another image has to show
 constexpr std::size_t kAround = 80, kFewestAround = 8;
-constexpr double kNear = 0.15;         // share of the extent of what is seen: further away is another place
-constexpr float kAlike = 0.95f;        // cosine of normals
-constexpr float kMostBrighter = 0.4f;  // logarithm: print, of whatever lamp
-constexpr double kBorder = 0.05;       // of the lamp
-constexpr std::size_t kWays = 4 * ShadowRays::kPacket;  // over which a point sees its surroundings
+constexpr double kNear = 0.15;                  // share of the extent of what is seen: further away is another place
+constexpr float kAlike = 0.95f;                 // cosine of normals
+constexpr float kMostBrighter = 0.4f;           // logarithm: print, of whatever lamp
+constexpr double kBorder = 0.05;                // of the lamp
+constexpr int kWays = 4 * ShadowRays::kPacket;  // over which a point sees its surroundings
+
+/// Of points in a box, 0 .. 1 along each side: in this order, those that follow each other lie close to each other
+/// (Morton, "A computer oriented geodetic data base", 1966).
+std::uint32_t morton(const Vector3f& at) {
+  constexpr int kBits = 10;
+  const Eigen::Array3i cell = (at.array() * ((1 << kBits) - 1)).cast<int>();
+  std::uint32_t out = 0;
+  for (int bit = kBits - 1; bit >= 0; --bit)
+    for (const int c : cell) out = out << 1 | (static_cast<std::uint32_t>(c) >> bit & 1u);
+  return out;
+}
 
 }  // namespace
 
@@ -37,6 +50,9 @@ StillShadows::StillShadows(const ShadowRays& rays, std::span<const Witness> witn
     for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = shown[i] || best->knows(i);
     add(rays, witnesses, *best, most);
   }
+  more_than_around_.resize(static_cast<Eigen::Index>(brighter_.size()), static_cast<Eigen::Index>(points_.size()));
+  more_than_around_.setFromTriplets(entries_.begin(), entries_.end());
+  entries_ = {};
   leave_out_corners();
 }
 
@@ -50,7 +66,14 @@ void StillShadows::add(const ShadowRays& rays, std::span<const Witness> witnesse
     points_.push_back({witnesses[i], images_.size() - 1, record.value(i)});
     box.extend(witnesses[i].point);
   }
-  const auto near = static_cast<float>(kNear * box.diagonal().norm());
+  const Vector3f sizes = box.sizes().cwiseMax(1e-6f);
+  std::ranges::sort(std::span(points_).subspan(first), {},
+                    [&](const Point& p) { return morton((p.witness.point - box.min()).cwiseQuotient(sizes)); });
+  compare_with_around(first, static_cast<float>(kNear * box.diagonal().norm()));
+}
+
+/// Of the points from the `first` on, which are of one image, each with others that are not further away than `near`.
+void StillShadows::compare_with_around(std::size_t first, float near) {
   std::vector<std::pair<float, std::size_t>> others;
   for (std::size_t i = first; i < points_.size(); ++i) {
     open_.push_back(open(points_[i], near));
@@ -65,27 +88,21 @@ void StillShadows::add(const ShadowRays& rays, std::span<const Witness> witnesse
     const std::size_t count = std::min(others.size(), kAround);
     if (count < kFewestAround) continue;
     std::ranges::nth_element(others, others.begin() + static_cast<std::ptrdiff_t>(count - 1));
-    lists_.push_back({i, around_.size(), count});
+    const auto row = static_cast<int>(brighter_.size());
+    entries_.emplace_back(row, static_cast<int>(i), 1);
     Vector3f mean = Vector3f::Zero();
-    for (std::size_t k = 0; k < count; ++k) {
-      around_.push_back(others[k].second);
-      mean += points_[others[k].second].value / static_cast<float>(count);
+    for (const auto& [away, k] : std::span(others).first(count)) {
+      entries_.emplace_back(row, static_cast<int>(k), -1 / static_cast<double>(count));
+      mean += points_[k].value / static_cast<float>(count);
     }
     brighter_.push_back((points_[i].value - mean).cwiseMax(-kMostBrighter).cwiseMin(kMostBrighter));
   }
 }
 
 void StillShadows::leave_out_corners() {
-  std::vector<double> log_open;
-  for (const double open : open_) log_open.push_back(std::log(open));
-  const auto count = static_cast<Eigen::Index>(lists_.size());
-  more_open_.resize(count);
-  luma_.resize(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const List& list = lists_[static_cast<std::size_t>(i)];
-    more_open_[i] = log_open[list.point] - around(list, log_open);
-    luma_[i] = luma_of(brighter_[static_cast<std::size_t>(i)]);
-  }
+  more_open_ = more_than_around_ * VectorXd::Map(open_.data(), std::ssize(open_)).array().log().matrix();
+  luma_.resize(std::ssize(brighter_));
+  std::ranges::transform(brighter_, luma_.begin(), luma_of);
   more_open_.normalize();  // zeros stay zeros
   luma_ -= more_open_.dot(luma_) * more_open_;
 }
@@ -93,65 +110,82 @@ void StillShadows::leave_out_corners() {
 /// Over ways that are spread as light from all around counts: by their cosines.
 double StillShadows::open(const Point& point, double reach) const {
   static const Disc disc = spiral(kWays);
-  const Vector3d p = point.witness.point.cast<double>(), n = point.witness.normal.cast<double>(),
-                 right = n.unitOrthogonal(), up = n.cross(right);
+  const Vector3f &p = point.witness.point, &n = point.witness.normal, right = n.unitOrthogonal();
+  Eigen::Matrix3f axes;
+  axes << right, n.cross(right), n;
+  const ShadowRays::Points from = p.replicate<1, ShadowRays::kPacket>();
   int hits = 0;
-  std::array<Vector3d, ShadowRays::kPacket> to;
-  for (std::size_t first = 0; first < disc.size(); first += to.size()) {
-    for (std::size_t k = 0; k < to.size(); ++k) {
-      const Eigen::Vector2d& at = disc[first + k];
-      to[k] = p + reach * (at.x() * right + at.y() * up + std::sqrt(1 - at.squaredNorm()) * n);
-    }
-    hits += images_[point.image].count_blocked(p, to, ShadowRays::kContact);
+  for (int first = 0; first < kWays; first += ShadowRays::kPacket) {
+    ShadowRays::Points way;
+    way.topRows<2>() = disc.middleCols<ShadowRays::kPacket>(first);
+    way.row(2) = (1 - way.topRows<2>().colwise().squaredNorm().array()).sqrt();
+    const ShadowRays::Points to = (static_cast<float>(reach) * axes * way).colwise() + p;
+    hits += std::popcount(images_[point.image].blocked(from, to, ShadowRays::kPacket, ShadowRays::kContact));
   }
   return 1 - static_cast<double>(hits) / (kWays + 1);
 }
 
-double StillShadows::around(const List& list, const std::vector<double>& values) const {
-  double sum = 0;
-  for (std::size_t k = 0; k < list.count; ++k) sum += values[around_[list.first + k]];
-  return sum / static_cast<double>(list.count);
-}
-
-std::vector<double> StillShadows::hidden(const Vector3d& lamp, double radius, const Disc& disc) const {
-  std::vector<double> out;
-  for (const auto& [witness, image, value] : points_) {
+VectorXd StillShadows::hidden(const Vector3d& lamp, double radius, const Disc& disc) const {
+  if (disc.cols() == 0) return hidden_from_point(lamp);
+  VectorXd out(std::ssize(points_));
+  std::ranges::transform(points_, out.begin(), [&](const Point& point) {
+    const auto& [witness, image, value] = point;
     const Vector3d p = witness.point.cast<double>();
     const bool faces = witness.normal.cast<double>().dot(lamp - p) > 0;
-    out.push_back(faces ? hidden_share(images_[image], p, lamp, radius, disc, ShadowRays::kContact) : 1);
+    return faces ? hidden_share(images_[image], p, lamp, radius, disc, ShadowRays::kContact) : 1;
+  });
+  return out;
+}
+
+/// Rays of neighbours go together.
+VectorXd StillShadows::hidden_from_point(const Vector3d& lamp) const {
+  VectorXd out = VectorXd::Ones(std::ssize(points_));
+  const Vector3f at = lamp.cast<float>();
+  const ShadowRays::Points to = at.replicate<1, ShadowRays::kPacket>();
+  ShadowRays::Points from = to;
+  std::array<Eigen::Index, ShadowRays::kPacket> of{};
+  int count = 0;
+  const auto trace = [&](std::size_t image) {
+    const unsigned blocked = images_[image].blocked(from, to, count, ShadowRays::kContact);
+    for (int k = 0; k < count; ++k) out[of[static_cast<std::size_t>(k)]] = blocked >> k & 1u;
+    count = 0;
+  };
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const auto& [witness, image, value] = points_[i];
+    if (witness.normal.dot(at - witness.point) > 0) {
+      from.col(count) = witness.point;
+      of[static_cast<std::size_t>(count++)] = static_cast<Eigen::Index>(i);
+    }
+    const bool is_last = i + 1 == points_.size() || points_[i + 1].image != image;
+    if (count == ShadowRays::kPacket || is_last) trace(image);
   }
   return out;
 }
 
-Eigen::VectorXd StillShadows::more_hidden(const Vector3d& lamp, double radius, const Disc& disc) const {
-  const std::vector<double> values = hidden(lamp, radius, disc);
-  Eigen::VectorXd more(luma_.size());
-  for (Eigen::Index i = 0; i < more.size(); ++i) {
-    const List& list = lists_[static_cast<std::size_t>(i)];
-    more[i] = values[list.point] - around(list, values);
-  }
+VectorXd StillShadows::more_hidden(const Vector3d& lamp, double radius, const Disc& disc) const {
+  VectorXd more = more_than_around_ * hidden(lamp, radius, disc);
   more -= more_open_.dot(more) * more_open_;
   return more;
 }
 
 StillShadows::Cast StillShadows::cast(const Vector3d& lamp, double radius, const Disc& disc) const {
-  Cast out{{}, hidden(lamp, radius, disc), {}};
-  for (const Point& point : points_) {
+  Cast out{VectorXd(std::ssize(points_)), hidden(lamp, radius, disc), {}};
+  std::ranges::transform(points_, out.facing.begin(), [&](const Point& point) {
     const Vector3d l = lamp - point.witness.point.cast<double>();
-    out.facing.push_back(std::max(0.0, point.witness.normal.cast<double>().dot(l) / std::pow(l.norm(), 3)));
-  }
-  for (std::size_t i = 0; i < lists_.size(); ++i)
-    if (std::abs(out.hidden[lists_[i].point] - around(lists_[i], out.hidden)) > kBorder) out.borders.push_back(i);
+    return std::max(0.0, point.witness.normal.cast<double>().dot(l) / std::pow(l.norm(), 3));
+  });
+  const VectorXd more = more_than_around_ * out.hidden;
+  for (Eigen::Index i = 0; i < more.size(); ++i)
+    if (std::abs(more[i]) > kBorder) out.borders.push_back(i);
   return out;
 }
 
 Eigen::Array3d StillShadows::errors(const Cast& cast, double strength) const {
-  std::vector<double> shade;
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    shade.push_back(std::log(open_[i] + strength * cast.facing[i] * (1 - cast.hidden[i])) / kResponse);
+  const auto open = Eigen::ArrayXd::Map(open_.data(), std::ssize(open_));
+  const VectorXd shade = (open + strength * cast.facing.array() * (1 - cast.hidden.array())).log() / kResponse;
   Eigen::Array3d out = Eigen::Array3d::Zero();
-  for (const std::size_t i : cast.borders)
-    out += (brighter_[i].cast<double>().array() - (shade[lists_[i].point] - around(lists_[i], shade))).abs();
+  for (const Eigen::Index i : cast.borders)
+    out += (brighter_[static_cast<std::size_t>(i)].cast<double>().array() - more_than_around_.row(i).dot(shade)).abs();
   return out;
 }
 

@@ -5,6 +5,7 @@
 // corner is darker whatever the lamp: as much as it sees less of its surroundings is left out.
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <deque>
 #include <span>
 #include <vector>
@@ -20,7 +21,7 @@ class StillShadows {
   StillShadows(const ShadowRays& rays, std::span<const Witness> witnesses, const std::deque<LampRecord>& records,
                std::size_t most);
 
-  bool empty() const { return lists_.empty(); }
+  bool empty() const { return brighter_.empty(); }
 
   /// Of each point that has enough others around: how much brighter it is than these (logarithms), and how much more of
   /// a lamp is hidden from it; of both, what goes with the surroundings that they see is left out.
@@ -29,8 +30,8 @@ class StillShadows {
 
   /// What a lamp there hides of itself, of each point that was seen.
   struct Cast {
-    std::vector<double> facing, hidden;  ///< (n . l) / d^2; 0 .. 1
-    std::vector<std::size_t> borders;    ///< of the points, those of which more or less is hidden than around
+    Eigen::VectorXd facing, hidden;     ///< (n . l) / d^2; 0 .. 1
+    std::vector<Eigen::Index> borders;  ///< of the points, those of which more or less is hidden than around
   };
   Cast cast(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
   /// For red, green and blue: sums over the borders of by how much, in logarithms, they are not as bright beside what
@@ -44,22 +45,21 @@ class StillShadows {
     std::size_t image;
     Eigen::Vector3f value;  // logarithms
   };
-  struct List {
-    std::size_t point, first, count;  // those around it, of around_
-  };
   void add(const ShadowRays& rays, std::span<const Witness> witnesses, const LampRecord& record, std::size_t most);
-  double around(const List& list, const std::vector<double>& values) const;
-  std::vector<double> hidden(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
+  void compare_with_around(std::size_t first, float near);
+  Eigen::VectorXd hidden(const Eigen::Vector3d& lamp, double radius, const Disc& disc) const;
+  Eigen::VectorXd hidden_from_point(const Eigen::Vector3d& lamp) const;
   double open(const Point& point, double reach) const;
   void leave_out_corners();
 
   std::vector<ShadowRays::Posed> images_;  // all that throws shadows in them
-  std::vector<Point> points_;
-  std::vector<List> lists_;
-  std::vector<std::size_t> around_;
+  std::vector<Point> points_;              // neighbours follow each other
   std::vector<double> open_;               // of each point: share of what it sees that is not near
-  std::vector<Eigen::Vector3f> brighter_;  // of each list, logarithms
-  // Of each list: how much more open than around, logarithm, as a unit vector; luma, what goes with that left out.
+  // Of values of all points, a row for each that has enough around: how much more it has than the mean of these.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> more_than_around_;
+  std::vector<Eigen::Triplet<double>> entries_;  // of it, as long as it grows
+  std::vector<Eigen::Vector3f> brighter_;        // of each row, logarithms
+  // Of each row: how much more open than around, logarithm, as a unit vector; luma, what goes with that left out.
   Eigen::VectorXd more_open_, luma_;
 };
 
