@@ -15,6 +15,8 @@ constexpr double kOften = 9, kSeldom = 5;  // s since a drive was identified fir
 constexpr double kOutlasts = 0.9;          // of how long a set-point lasts once it came: a gap after which it may not
 constexpr double kUnknownDelay = 0.02;     // s that a drive's response may be off before it was identified
 constexpr double kAtEase = 0.1;            // of what is no more a matter of precision: surely nothing holds the joint
+constexpr double kOtherDelay = 0.1;        // s: a line that became so much faster or slower is another one
+constexpr double kLearntAfter = 0.5;       // s: until then reports have told how long what was on its way took
 constexpr double kSettling = 5;            // s until the sigma of a drive just learnt is that of what was seen since
 constexpr double kGoesOn = 0.5;            // s in which a robot that stopped is where it is expected again
 constexpr double kHeldUnseen = 2;          // s that something may hold a joint before that is noticed, at most
@@ -329,6 +331,7 @@ RobotFuture::Shown RobotFuture::predict(RobotTime time) const noexcept {
     return out;
   }
   out.judged = true;
+  out.delay = motion_.delay().seconds;
   const GateModel::State* cycle = motion_.cycle_at(time);
   if (cycle == nullptr) cycle = &motion_.cycles().newest();
   robot.blocked = cycle->blocked;
@@ -361,7 +364,10 @@ PredictedRobot RobotFuture::show(RobotTime time) noexcept {
   }
   shown_ = time;
   any_shown_ = shown.judged;
-  if (shown.judged) shown_ones_.next() = shown;
+  if (!shown.judged) return shown.robot;
+  const std::size_t before = shown_ones_.size();
+  shown_ones_.next() = shown;
+  if (shown_ones_.size() == before && compared_ > 0) --compared_;  // the oldest is gone
   return shown.robot;
 }
 
@@ -383,38 +389,66 @@ RobotTime RobotFuture::instant_to_show(RobotTime now) noexcept {
 
 void RobotFuture::score() noexcept {
   const std::optional<double> until = measured_until();
-  for (; until && !shown_ones_.empty() && since_epoch(shown_ones_[0].robot.time) <= *until; shown_ones_.drop_oldest())
-    score(shown_ones_[0]);
+  if (!until) return;
+  for (; compared_ < shown_ones_.size() && since_epoch(shown_ones_[compared_].robot.time) <= *until; ++compared_)
+    compare(shown_ones_[compared_]);
+  for (; compared_ > 0 && since_epoch(shown_ones_[0].robot.time) <= *until - kLearntAfter; --compared_) {
+    learn(shown_ones_[0]);
+    shown_ones_.drop_oldest();
+  }
 }
 
-// The gate did something else than was expected, as a stop where set-points stay away, or a report of that cannot have
-// come yet. That tells nothing of how well drives are known.
-bool RobotFuture::surprised(const Shown& shown) noexcept {
-  const double time = since_epoch(shown.robot.time);
+// The gate did something else than was expected, as a stop where set-points stay away, or did it sooner or later, as
+// the line became another; or a report of that cannot have come yet. That tells nothing of how well drives are known.
+void RobotFuture::look_for_surprise(const Shown& shown) noexcept {
   const GateModel::State* was = motion_.cycle_at(shown.robot.time);
-  if (was != nullptr && was->doing != shown.doing) surprised_at_ = time;
-  return surprised_at_ && time - *surprised_at_ < kGoesOn + 2 * motion_.delay().seconds;
+  const bool in_time = std::abs(motion_.delay().seconds - shown.delay) < kOtherDelay;
+  if (in_time && (was == nullptr || was->doing == shown.doing)) return;
+  const double time = since_epoch(shown.robot.time);
+  const bool goes_on = surprise_ && time < surprise_->last + kGoesOn + 2 * motion_.delay().seconds;
+  surprise_ =
+      goes_on ? Surprise{std::min(surprise_->from, time), std::max(surprise_->last, time)} : Surprise{time, time};
 }
 
-void RobotFuture::score(const Shown& shown) noexcept {
+bool RobotFuture::was_surprised(RobotTime time) const noexcept {
+  const double at = since_epoch(time);
+  return surprise_ && at >= surprise_->from && at < surprise_->last + kGoesOn + 2 * motion_.delay().seconds;
+}
+
+double RobotFuture::Shown::error(std::size_t joint, const JointValues& truth) const noexcept {
+  const bool as_shown = trusted() && std::isfinite(robot.sigma[joint]);
+  return std::abs((as_shown ? robot.position[joint] : predicted[joint]) - truth[joint]);
+}
+
+void RobotFuture::compare(const Shown& shown) noexcept {
   PredictedRobot truth;
   const double time = since_epoch(shown.robot.time);
   if (!measured(time, truth)) return;
-  const double passed = std::clamp(time - scored_at_, 0.0, 1.0);
-  scored_at_ = time;
-  const bool trusted = shown.robot.status == StateStatus::predicted, is_usual = !surprised(shown);
+  look_for_surprise(shown);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     Joint& joint = joints_[i];
-    const bool as_shown = trusted && std::isfinite(shown.robot.sigma[i]);
-    const double off = std::abs((as_shown ? shown.robot.position[i] : shown.predicted[i]) - truth.position[i]);
-    if (is_usual && !shown.settling[i])
-      joint.scale.score(CalibratedSigma::usual_part(off / shown.any_prior(i), shown.scale[i]), shown.scale[i], passed);
     const double usual = std::max(joint.precise, 3 * shown.sigma(i));
     // What a line loses is shown wrongly until the report of it has come: a way there and back.
     const double blind = joint.missed.doubted ? 0 : 2 * motion_.delay().seconds;
-    joint.missed.see(time, off > usual, options_.missed_after + blind);
+    joint.missed.see(time, shown.error(i, truth.position) > usual, options_.missed_after + blind);
   }
-  if (trusted) scored_.next() = {shown.robot, truth.position};
+  if (shown.trusted()) scored_.next() = {shown.robot, truth.position};
+}
+
+/// How well drives are known, once it has shown whether the line was as it had been thought to be.
+void RobotFuture::learn(const Shown& shown) noexcept {
+  PredictedRobot truth;
+  const double time = since_epoch(shown.robot.time);
+  if (!measured(time, truth)) return;
+  const double passed = std::clamp(time - learnt_at_, 0.0, 1.0);
+  learnt_at_ = time;
+  look_for_surprise(shown);
+  if (was_surprised(shown.robot.time)) return;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (shown.settling[i]) continue;
+    const double part = shown.error(i, truth.position) / shown.any_prior(i);
+    joints_[i].scale.score(CalibratedSigma::usual_part(part, shown.scale[i]), shown.scale[i], passed);
+  }
 }
 
 std::optional<ScoredRobot> RobotFuture::take_scored() noexcept {

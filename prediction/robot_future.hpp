@@ -104,6 +104,10 @@ class RobotFuture {
   RobotTime instant_to_show(RobotTime now) noexcept;
   PredictedDelay delay() const noexcept { return motion_.delay(); }
 
+  /// Whether the gate did then something else than was expected when that instant was shown, or did it sooner or later
+  /// as the line became another; as far as reports tell, and for so long as the robot may still be elsewhere for that.
+  bool was_surprised(RobotTime time) const noexcept;
+
   /// What was shown and is known now, oldest first; only of what was not invalid. Kept for a few seconds.
   std::optional<ScoredRobot> take_scored() noexcept;
   /// Of the drives, as far as they were identified.
@@ -142,12 +146,15 @@ class RobotFuture {
     JointValues stopped{};              // how far from there it is if it has stopped
     JointValues held_up{};              // how far off it may be as set-points are held up
     GateDoing doing = GateDoing::away;  // what the gate was expected to do then
+    double delay = 0;                   // s, of what was sent
     double sigma(std::size_t joint) const noexcept {
       return std::hypot(scale[joint] * prior[joint], stopped[joint], held_up[joint]);
     }
     double any_prior(std::size_t joint) const noexcept {
       return std::hypot(prior[joint], stopped[joint], held_up[joint]);
     }
+    bool trusted() const noexcept { return robot.status == StateStatus::predicted; }
+    double error(std::size_t joint, const JointValues& truth) const noexcept;
     std::array<bool, std::tuple_size_v<JointValues>> settling{};
   };
   HistoryFault check(const RobotReport& report, RobotTime now) const noexcept;
@@ -158,8 +165,9 @@ class RobotFuture {
   static void forget_hold(Joint& joint, double noticed) noexcept;
   void identify() noexcept;
   void score() noexcept;
-  void score(const Shown& shown) noexcept;
-  bool surprised(const Shown& shown) noexcept;
+  void compare(const Shown& shown) noexcept;
+  void learn(const Shown& shown) noexcept;
+  void look_for_surprise(const Shown& shown) noexcept;
   std::optional<double> measured_until() const noexcept;
   bool measured(double time, PredictedRobot& out) const noexcept;
   Shown predict(RobotTime time) const noexcept;
@@ -183,9 +191,13 @@ class RobotFuture {
   bool any_shown_ = false;
   std::optional<RobotTime> instant_;
   RobotTime instant_asked_;
-  double identified_at_ = 0, scored_at_ = 0;
-  std::optional<double> surprised_at_;  // s: the gate last did something else than was expected
-  LastOf<Shown> shown_ones_;
+  double identified_at_ = 0, learnt_at_ = 0;
+  struct Surprise {
+    double from, last;  // s: the gate did something else than was expected
+  };
+  std::optional<Surprise> surprise_;  // the last one
+  LastOf<Shown> shown_ones_;          // that are not learnt of yet
+  std::size_t compared_ = 0;          // so many of these
   LastOf<ScoredRobot> scored_;
 };
 

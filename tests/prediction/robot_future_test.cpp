@@ -106,6 +106,26 @@ TEST(RobotFuture, GapsOfCommandsDoNotTakeTheTrustInDrives) {
   EXPECT_LT(std::ranges::count(after, FutureReason::unsure, &PredictedRobot::reason), std::ssize(after) / 20);
 }
 
+// What was on its way then acts sooner or later than was expected, whatever the drives.
+using namespace std::chrono_literals;
+
+TEST(RobotFuture, ALineThatBecomesAnotherOneDoesNotTakeTheTrustInDrives) {
+  FutureWorld world;
+  constexpr double kEvery = 3;
+  world.lasts = 1;
+  world.run(10);
+  const double sigma = world.pictures().back().sigma[0];
+  while (world.t() < 40) {
+    world.slower = std::fmod(world.t(), 2 * kEvery) < kEvery ? 0.3 : 0;
+    world.run(0.02);
+  }
+  EXPECT_TRUE(world.future().was_surprised(world.now() - 800ms)) << "three tenths of a second after it became slower";
+  world.run(5);
+  EXPECT_FALSE(world.future().was_surprised(world.now() - 7s)) << "only the last time is remembered";
+  EXPECT_FALSE(world.future().was_surprised(world.now() - 1s));
+  EXPECT_LT(world.pictures().back().sigma[0], 2 * sigma);
+}
+
 // As when a line that stood still gives out what it held, the oldest first.
 TEST(RobotFuture, ReportsThatComeTooOldAreNoNews) {
   FutureWorld world;
