@@ -53,6 +53,7 @@ class RobotOutlook {
   /// As RobotFuture::show().
   PredictedRobot show(RobotTime time) { return future_->show(time); }
   RobotTime instant_to_show(RobotTime now) { return future_->instant_to_show(now); }
+  bool was_surprised(RobotTime time) const { return future_->was_surprised(time); }
   PredictedDelay delay() const { return future_->delay(); }
   const OutlookFigures& figures() const { return figures_; }
   /// A line for each joint whose drive's response was learnt: its name, and that as a key of the rig file.

@@ -147,6 +147,11 @@ PredictedRobot Seat::show(std::optional<RobotTime> at) {
   return shown_;
 }
 
+bool Seat::was_surprised(RobotTime time) const {
+  const std::lock_guard lock(mutex_);
+  return outlook_.was_surprised(time);
+}
+
 PredictedRobot Seat::look_ahead() {
   const std::lock_guard lock(mutex_);
   const auto now = robot_now();

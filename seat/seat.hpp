@@ -56,6 +56,8 @@ class Seat {
   PredictedRobot show(std::optional<RobotTime> at = std::nullopt);
   /// The instant of the robot's clock to show now; nothing while the clocks have not met.
   std::optional<RobotTime> instant_to_show();
+  /// As RobotFuture::was_surprised().
+  bool was_surprised(RobotTime time) const;
   /// Where it would be shown now; nothing is remembered of that.
   PredictedRobot look_ahead();
   SeatStatus status() const;

@@ -145,7 +145,8 @@ void ShownFidelity::shown(RememberedView picture) {
   if (kept_.size() > options_.kept) kept_.pop_front();
 }
 
-std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat& image, const cv::Mat& lost) {
+std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat& image, const cv::Mat& lost,
+                                               bool surprised) {
   while (!kept_.empty() && kept_.front().instant < instant - options_.same_instant) kept_.pop_front();
   if (kept_.empty()) return std::nullopt;
   auto nearest = kept_.begin();
@@ -170,7 +171,7 @@ std::optional<Fidelity> ShownFidelity::arrived(RobotTime instant, const cv::Mat&
   out.worst = static_cast<std::size_t>(std::ranges::max_element(out.wrong) - out.wrong.begin());
   out.exact_share = share_of(exact, seen);
   out.exact_wrong = share_of(wrong, exact);
-  if (picture.instant < begin_) return out;
+  if (picture.instant < begin_ || surprised) return out;
   const cv::Mat patches = patches_of(wrong);
   out.comparison = comparison_of(off, patches, seen);
   assumed_ = kAssumed * static_cast<double>(seen.total());

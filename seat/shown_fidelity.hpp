@@ -61,8 +61,10 @@ class ShownFidelity {
   /// The image of an instant came, in the order of their instants: nothing where no picture was shown for it, or one of
   /// other proportions. One of another size is compared as it looks at the image's. `image`: CV_8UC3; where coding took
   /// something away from it (`lost`, PosedImage::lost), nothing is compared, and elsewhere such an image is taken to be
-  /// a little smoother than the truth.
-  std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image, const cv::Mat& lost = {});
+  /// a little smoother than the truth. `surprised`: the robot did something else then than was expected; how right
+  /// pixels of each kind are where it does as expected, that does not tell.
+  std::optional<Fidelity> arrived(RobotTime instant, const cv::Mat& image, const cv::Mat& lost = {},
+                                  bool surprised = false);
   /// Which kinds of pixels count as exact: those that were wrong most rarely, as many as it takes until
   /// FidelityOptions::wrong_share of all such pixels have to be expected to be wrong, in what was shown last and in a
   /// usual picture of late together: good pictures make up for bad ones. Never a kind of which more than wrong_of_kind

@@ -38,9 +38,9 @@ void ViewTrust::collect() {
 }
 
 // Nothing of OpenGL: images are heard in between pictures, whatever context is current.
-void ViewTrust::heard(const link::LineImage& image, const PosedFrame* posed) {
+void ViewTrust::heard(const link::LineImage& image, const PosedFrame* posed, bool surprised) {
   shown_.told(image.loss_shares);
-  auto fidelity = shown_.arrived(image.captured, image.bgr, image.lost);
+  auto fidelity = shown_.arrived(image.captured, image.bgr, image.lost, surprised);
   if (!fidelity) return;
   if (fidelity->psnr_db) switch_.compared(now(), *fidelity->psnr_db);
   fidelity_ = std::move(fidelity);

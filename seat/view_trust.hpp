@@ -43,8 +43,8 @@ class ViewTrust {
   ViewTrust(ViewSession& session, const ViewSetup& setup, const Clock& clock, ViewTrustOptions options = {});
 
   /// A left image came, whether or not its frame is ever handed out: what was shown for its instant is compared.
-  /// `posed`: where its camera and all nodes were, if that is known.
-  void heard(const link::LineImage& image, const PosedFrame* posed);
+  /// `posed`: where its camera and all nodes were, if that is known. `surprised`: ShownFidelity::arrived().
+  void heard(const link::LineImage& image, const PosedFrame* posed, bool surprised = false);
   /// A frame is handed out, before it becomes textures.
   void saw(const PosedFrame& frame);
   /// The session has drawn the source's instant at `place`. Without marks, marked() may stay as it is.

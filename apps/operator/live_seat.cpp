@@ -86,8 +86,9 @@ class LiveSeat {
                     clock_);
     source_.show_things(&things_);
     driver_.may_push(things_.names());
-    source_.listen(
-        [this](const link::LineFrame& frame, const PosedFrame* posed) { trust_.heard(frame.image[0], posed); });
+    source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
+      trust_.heard(frame.image[0], posed, seat_.was_surprised(frame.image[0].captured));
+    });
   }
 
   int run() {

@@ -115,7 +115,7 @@ class Trial {
     motion_.look_by([this](const std::string& node) { return seen_.at(node); });
     source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
       const RobotTime captured = frame.image[0].captured;
-      trust_.heard(frame.image[0], posed);
+      trust_.heard(frame.image[0], posed, seat_.was_surprised(frame.image[0].captured));
       if (const cv::Mat seen = measures_.image_at(captured); !seen.empty()) video_.add(captured, seen, frame.bytes);
     });
     clock_.every(5ms, [this](RobotTime) {

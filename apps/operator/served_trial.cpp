@@ -75,7 +75,7 @@ class ServedTrial final : ViewObserver {
         measures_(describe_seat(rig, session_, setup_), options.out),
         joints_(rig.joint_names()) {
     source_.listen([this](const link::LineFrame& frame, const PosedFrame* posed) {
-      trust_.heard(frame.image[0], posed);
+      trust_.heard(frame.image[0], posed, seat_.was_surprised(frame.image[0].captured));
       measures_.saw(frame.image[0].captured, frame.image[0].bgr);
     });
     motion_.look_by([this](const std::string& node) { return seen_.at(node); });

@@ -315,6 +315,25 @@ TEST(ShownFidelity, WhatHadAReasonThatIsNoMoreTellsNothing) {
   EXPECT_EQ(after.exact_share, 1);
 }
 
+TEST(ShownFidelity, OfARobotThatDidSomethingElseNothingIsLearnt) {
+  ShownFidelity fidelity;
+  int rounds = 0;
+  const auto round = [&](int level, bool surprised) {
+    fidelity.shown(view(++rounds * 100ms));
+    return fidelity.arrived(at(rounds * 100ms), image(level), {}, surprised).value();
+  };
+  for (int i = 0; i < 20; ++i) round(120, false);
+  for (int i = 0; i < 10; ++i) {
+    const Fidelity surprised = round(60, true);
+    EXPECT_EQ(surprised.exact_share, 1);
+    EXPECT_EQ(surprised.exact_wrong, 1) << "that is told all the same";
+    EXPECT_TRUE(surprised.comparison.empty());
+  }
+  EXPECT_EQ(round(120, false).exact_share, 1);
+  for (int i = 0; i < 10; ++i) round(60, false);
+  EXPECT_EQ(round(120, false).exact_share, 0);
+}
+
 TEST(ShownFidelity, WhatNoImageColouredIsLeftOut) {
   ShownFidelity fidelity;
   RememberedView shown = view(100ms);
