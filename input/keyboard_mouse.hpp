@@ -99,6 +99,8 @@ class KeyboardMouse final : public Tracker {
   /// it is held on, and for kToldFor at least; nothing where no switch was held in vain.
   std::optional<Duration> held_in_vain(OperatorTime now) const noexcept;
   static constexpr Duration kToldFor = std::chrono::seconds(4);
+  /// A switch is held that does not count, as the window did not look: it has to be let go of.
+  bool has_to_let_go() const noexcept { return is_in_vain_; }
 
   std::string name() const override { return "keyboard and mouse"; }
   TrackerState read(OperatorTime now) noexcept override;
@@ -126,7 +128,7 @@ class KeyboardMouse final : public Tracker {
   };
   std::optional<LateLook> late_;
   bool was_in_vain_ = false;  // since the window looked
-  bool is_in_vain_ = false;   // a switch is held that does not count
+  bool is_in_vain_ = false;   // has_to_let_go()
   std::optional<std::size_t> joint_;
 };
 

@@ -164,7 +164,7 @@ void HandDriver::cycle(const SeatView& view) {
   input.T_base_view = rig_.T_world_robot.inverse() * T_world_view;
   const HandCycle& cycle = hand_.cycle(input);
   wish_.deadman = cycle.deadman;
-  wish_.refused = cycle.phase == HandPhase::refused;
+  wish_.refused = cycle.phase == HandPhase::refused || (keyboard_.has_to_let_go() && !cycle.deadman);
   wish_.position = cycle.positions;
   if (!pushing_.empty()) feel(view.now);
   if (const auto event = std::exchange(event_, std::nullopt)) input_took_ = view.now - *event;

@@ -23,7 +23,7 @@ struct SeatView {
 
 struct SeatWish {
   bool deadman = false;    ///< the switch is held
-  bool refused = false;    ///< it is held, but was pressed when it could not count: it has to be let go of
+  bool refused = false;    ///< it is held, but cannot count until it was let go of
   JointValues position{};  ///< with it: where the robot shall be, rad or m, in the rig's order
   LineRequest request = LineRequest::none;
   bool control = true;     ///< wants to be the one who commands

@@ -212,9 +212,17 @@ TEST_F(HandAtTheSeat, WhoHoldsAKeyThatDoesNotCountIsToldWhy) {
   EXPECT_EQ(said("keys").urgency, Urgency::trouble);
   cycles(250);
   EXPECT_THAT(said("keys").cure, testing::HasSubstr("let go, and press again")) << "the key is still held";
+  EXPECT_TRUE(wish_.refused) << "what to do next is to let go";
+  hold(true);
+  cycles(5);
+  EXPECT_TRUE(wish_.deadman) << "another device";
+  EXPECT_FALSE(wish_.refused);
+  hold(false);
   pressed.key_events.front().down = false;
   driver_->take(pressed, view_.now);
   EXPECT_EQ(said("keys").words, "");
+  cycles(1);
+  EXPECT_FALSE(wish_.refused);
 }
 
 TEST_F(HandAtTheSeat, AWindowThatHangsIsNoMatterToASeatThatNobodyDrives) {
