@@ -11,6 +11,7 @@ namespace foresight {
 namespace {
 
 constexpr const char* kReset = "remove its cause, then reset (r)";
+constexpr const char* kConfigure = "configure drives anew (c), then enable them (e)";
 constexpr const char* kProgram = "correct the program that commands";
 constexpr const char* kStoodStill =
     "look for what held it up, such as a suspended or an overloaded host; then reset (r)";
@@ -162,6 +163,12 @@ std::string grips_text(const RobotStatus& status, std::span<const JointWords> jo
   return ", but for " + joined(grip) + ", which " + (grip.size() == 1 ? "keeps its" : "keep their") + " grip";
 }
 
+/// Some drive cannot be enabled before it was configured anew.
+bool any_offline(const RobotStatus& status, std::size_t joints) {
+  const auto feedback = std::span(status.feedback).first(std::min(joints, status.feedback.size()));
+  return std::ranges::find(feedback, DriveState::offline, &DriveFeedback::state) != feedback.end();
+}
+
 /// Whether drives stop the robot so when they hear nothing.
 bool comes_of_silence(GateReason reason) {
   switch (reason) {
@@ -185,6 +192,8 @@ RobotWords describe_stop(const RobotStatus& status, std::span<const JointWords> 
     return {fmt::format("stopped: the program stood still for {:.1f} s, then {}; drives hold",
                         to_seconds(status.stood_still), text),
             kStoodStill};
+  if (reason == GateReason::not_enabled_in_time && any_offline(status, joints.size()))
+    return {"stopped: " + text + "; drives hold", kConfigure};
   return {"stopped: " + text + "; drives hold", words_for(reason).cure};
 }
 
@@ -195,6 +204,7 @@ RobotWords describe(const RobotStatus& status, std::span<const JointWords> joint
   RobotWords out{words_for(status.phase).name, words_for(status.phase).cure};
   const bool by_hand = reason == GateReason::emergency_stop;
   if (status.phase == RobotPhase::disabled) out.name += grips_text(status, joints);
+  if (status.phase == RobotPhase::disabled && any_offline(status, joints.size())) out.cure = kConfigure;
   if (status.phase == RobotPhase::stopped && reason != GateReason::none) {
     out = describe_stop(status, joints);
   } else if (status.phase == RobotPhase::ready && status.gate.state != GateState::idle) {

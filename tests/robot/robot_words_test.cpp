@@ -90,6 +90,21 @@ TEST(RobotWords, AProgramThatStoodStillIsTheCauseOfWhatDrivesSayThen) {
   EXPECT_THAT(describe(status, kJoints).name, testing::StartsWith("stopped by the operator"));
 }
 
+TEST(RobotWords, NobodyIsToldToEnableADriveThatHasToBeConfiguredFirst) {
+  RobotStatus status;
+  status.gate = {.state = GateState::stopped, .reason = GateReason::not_started};
+  status.feedback[0].state = DriveState::disabled;
+  status.feedback[1].state = DriveState::offline;
+  EXPECT_EQ(describe(status, kJoints).cure, "configure drives anew (c), then enable them (e)");
+  status.phase = RobotPhase::stopped;
+  status.gate.reason = GateReason::not_enabled_in_time;
+  EXPECT_EQ(describe(status, kJoints).cure, "configure drives anew (c), then enable them (e)");
+  status.feedback[1].state = DriveState::disabled;
+  EXPECT_THAT(describe(status, kJoints).cure, testing::HasSubstr("safe torque off"));
+  status.phase = RobotPhase::disabled;
+  EXPECT_EQ(describe(status, kJoints).cure, "enable the drives (e)");
+}
+
 TEST(RobotWords, SayWhatHoldsIt) {
   GateHold hold;
   EXPECT_EQ(hold_text(hold, kJoints, RobotTime{}), "");
