@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "link/control/control_words.hpp"
 
@@ -98,14 +99,22 @@ SeatLine drives_words(const SeatStatus& status) {
   SeatLine out{"drives", "", ""};
   if (!status.robot) return out;
   std::size_t fine = 0;
+  struct Trouble {
+    std::string drives, words;
+  };
+  std::vector<Trouble> troubles;
   for (const link::DriveLine& drive : status.robot->drives) {
     const bool good = drive.fault.empty() && drive.known;
     fine += good ? 1 : 0;
     if (good) continue;
-    out.words += (out.words.empty() ? "" : ", ") + drive.name + ": " +
-                 (drive.fault.empty() ? drive.state + (drive.homed ? "" : ", not homed") : drive.fault);
-    out.urgency = drive.fault.empty() ? Urgency::note : Urgency::trouble;
+    std::string words = drive.fault.empty() ? drive.state + (drive.homed ? "" : ", not homed") : drive.fault;
+    if (const auto same = std::ranges::find(troubles, words, &Trouble::words); same != troubles.end())
+      same->drives += ", " + drive.name;
+    else
+      troubles.push_back({drive.name, std::move(words)});
+    out.urgency = drive.fault.empty() ? std::max(out.urgency, Urgency::note) : Urgency::trouble;
   }
+  for (const auto& [drives, words] : troubles) out.words += (out.words.empty() ? "" : "; ") + drives + ": " + words;
   if (out.words.empty()) out.words = fmt::format("all {} answer", fine);
   if (const auto silent = silence(status)) {
     out.words = fmt::format("not known for {:.1f} s; before: {}", to_seconds(*silent), out.words);

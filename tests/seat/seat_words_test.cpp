@@ -194,6 +194,21 @@ TEST(SeatWords, WhileJointsLookForHomeNobodyIsToldToHomeThem) {
             "no pose: 3 of 10 joints tell no position; they look for home");
 }
 
+TEST(SeatWords, DrivesWithTheSameTroubleAreTogetherAndTheWorstCounts) {
+  SeatStatus status = driving();
+  const auto drive = [](const char* name, const char* fault) {
+    link::DriveLine out;
+    out.name = name;
+    out.state = "offline";
+    out.fault = fault;
+    return out;
+  };
+  status.robot->drives = {drive("yaw", "overcurrent"), drive("elbow", ""), drive("wrist", "overcurrent")};
+  const auto lines = seat_lines(status, {}, "");
+  EXPECT_EQ(find(lines, "drives")->words, "yaw, wrist: overcurrent; elbow: offline, not homed");
+  EXPECT_EQ(find(lines, "drives")->urgency, Urgency::trouble) << "whatever comes after it";
+}
+
 TEST(SeatWords, WhoWantsToSeeThePictureIsToldWhatIsNotWell) {
   SeatStatus status = driving();
   status.robot->hold = "joint elbow stands";
