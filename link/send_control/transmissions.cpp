@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace foresight {
 namespace {
@@ -88,6 +89,11 @@ void Transmissions::measure_round_trip(const Acknowledgement& acknowledgement, R
   if (!record || record->state == Record::State::acknowledged) return;
   const Duration trip = now - record->sent.at;
   least_ = least_ ? std::min(*least_ + *least_ / 4096, trip) : trip;  // forgets, as routes change
+  if (now - second_since_ > std::chrono::seconds(1)) {
+    least_of_[1] = std::exchange(least_of_[0], std::nullopt);
+    second_since_ = now;
+  }
+  least_of_[0] = std::min(least_of_[0].value_or(trip), trip);
   variation_ = smooth_ ? (3 * variation_ + Duration(std::abs((trip - *smooth_).count()))) / 4 : trip / 2;
   tripped_at_ = now;
   if (!queued_at_ || trip > *least_ + kNoQueue) queued_at_ = now;
@@ -101,7 +107,9 @@ void Transmissions::measure_rate(const Acknowledgement& acknowledgement) {
     Duration at = arrival.at;  // of a clock whose 32 bits begin again every 12 hours
     if (last_arrival_) at += kArrivalWrap * std::llround(to_seconds(*last_arrival_ - at) / to_seconds(kArrivalWrap));
     last_arrival_ = at;
-    rate_.add(record->sent.at, at, record->sent.bytes);
+    // Where the line carries more, the road is longer if all of late took longer.
+    if (rate_.add(record->sent.at, at, record->sent.bytes) && least_of_[0])
+      least_ = std::min(*least_of_[0], least_of_[1].value_or(*least_of_[0]));
   }
 }
 

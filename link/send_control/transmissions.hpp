@@ -88,6 +88,8 @@ class Transmissions {
   std::uint32_t newest_ = 0;  // of those acknowledged, the one sent last
   Duration newest_trip_{};    // and how long it took
   std::optional<Duration> smooth_, least_;
+  std::optional<Duration> least_of_[2];  // this second and the one before
+  RobotTime second_since_;
   Duration variation_{}, overtaking_ = std::chrono::milliseconds(5);
   std::optional<RobotTime> queued_at_;  // the last trip that took longer than the least and kNoQueue; the first
   RobotTime tripped_at_;                // when the last trip ended

@@ -18,6 +18,19 @@ TEST(RateMeter, TellsWhatTheLineCarriesThoughItIsGivenLess) {
   EXPECT_NEAR(meter.rate().value(), 1'000'000, 20'000);
 }
 
+TEST(RateMeter, TakesALongerRoadForNoQueue) {
+  DelayLine near({.delay = std::chrono::milliseconds(20), .bytes_per_s = 1'000'000}, {}, 1),
+      far({.delay = std::chrono::milliseconds(220), .bytes_per_s = 1'000'000}, {}, 1);
+  RateMeter meter;
+  int told = 0;
+  for (int i = 0; i < 12 * 80; ++i) {
+    const RobotTime sent{i / 12 * 100'000'000LL};
+    told += meter.add(sent, *(i < 240 ? near : far).send(sent, 1200) - RobotTime{}, 1200) ? 1 : 0;
+  }
+  EXPECT_GE(told, 5) << "each second";
+  EXPECT_NEAR(meter.rate().value(), 1'000'000, 20'000);
+}
+
 TEST(RateMeter, FollowsALineThatGetsSlower) {
   RateMeter meter;
   meter.add({}, std::chrono::milliseconds(20), 1000);  // the way without waiting

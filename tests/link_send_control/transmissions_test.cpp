@@ -46,6 +46,21 @@ TEST(Transmissions, OnALongRoadLooksFartherBack) {
   EXPECT_GT(sent.acknowledged_within(sent.of_late(), at_ms(2000)), 29'000U);
 }
 
+// Ten times a second eight packets that leave together, and come so.
+TEST(Transmissions, ALongerRoadIsKnownAfterSomeSeconds) {
+  Transmissions sent;
+  for (int tenth = 0; tenth < 80; ++tenth) {
+    const int begin = 100 * tenth, way = tenth < 30 ? 20 : 170;
+    for (int i = 0; i < 8; ++i) sent.send(1, static_cast<std::uint16_t>(i), 1000, at_ms(begin));
+    for (std::uint32_t i = 1; i <= 8; ++i)
+      sent.acknowledge(of(static_cast<std::uint32_t>(8 * tenth) + i, {}, begin + way), at_ms(begin + 2 * way));
+    if (tenth == 29) {
+      EXPECT_NEAR(to_seconds(*sent.least_round_trip()), 0.04, 0.001);
+    }
+  }
+  EXPECT_NEAR(to_seconds(*sent.least_round_trip()), 0.34, 0.001);
+}
+
 TEST(Transmissions, OfASilenceNothingIsKnown) {
   Transmissions sent;
   EXPECT_EQ(sent.known_calm(), milliseconds(0));
