@@ -21,13 +21,12 @@ const gl::Texture& BentImage::operator()(const gl::Texture& image, const Lens& e
   }
   const gl::Program& program = eye.has_distortion() ? distorted_ : straight_;
   const Lens::Parameters& p = eye.parameters();
-  program.use();
   program.set("eye", Eigen::Vector4d(p.fx, p.fy, p.cx, p.cy).cast<float>().eval());
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera_.name());
   glBindTextureUnit(0, image.name());
   glBindTextureUnit(1, rays_.name());
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-  glDispatchCompute(gl::groups(p.width, 8), gl::groups(p.height, 8), 1);
+  program.dispatch(p.width, p.height);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
   return picture_;
 }

@@ -28,14 +28,13 @@ const gl::Texture& DoubtPaint::operator()(const gl::Texture& shown, const gl::Te
   const int width = shown.width(), height = shown.height();
   if (!picture_ || picture_.width() != width || picture_.height() != height)
     picture_ = gl::Texture(GL_RGBA8, width, height, 0, 1, "painted by doubt");
-  program_.use();
   const ClassWords classes = packed_classes(risks);
   glProgramUniform1uiv(program_.name(), glGetUniformLocation(program_.name(), "classes"),
                        static_cast<GLsizei>(classes.size()), classes.data());
   glBindTextureUnit(0, shown.name());
   glBindTextureUnit(1, doubt.name());
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-  glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);
+  program_.dispatch(width, height);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
   return picture_;
 }

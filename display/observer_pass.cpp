@@ -67,7 +67,6 @@ void ObserverPass::operator()(const PredictedView& view, const Pose& T_world_obs
   add_pyramid(view.lens(), T_observer_world * T_world_operator, seen.lens(), kEyeZ, Wire::eye);
   std::array<gl::CameraBlock, 1 + kMostPanels> others{gl::make_camera_block(seen.lens(), seen.faces().faces)};
   const char* const names[kMostPanels] = {"T_panel0_observer", "T_panel1_observer"};
-  program_.use();
   for (std::size_t i = 0; i < panels.size(); ++i) {
     others[1 + i] = gl::make_camera_block(panels[i].lens, gl::Faces{});
     add_pyramid(view.lens(), T_observer_world * panels[i].T_world_camera, panels[i].lens, kPanelZ, Wire::camera);
@@ -89,7 +88,7 @@ void ObserverPass::operator()(const PredictedView& view, const Pose& T_world_obs
   glBindTextureUnit(4, wire_texels_.texture());
   glBindImageTexture(0, view.picture().name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // the view was stored by the pass before
-  glDispatchCompute(gl::groups(view.lens().width(), 8), gl::groups(view.lens().height(), 8), 1);
+  program_.dispatch(view.lens().width(), view.lens().height());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 

@@ -12,7 +12,6 @@ const gl::Texture& PictureMix::operator()(const gl::Texture& first, const gl::Te
                                           const Options& options) {
   if (!picture_ || picture_.width() != width || picture_.height() != height)
     picture_ = gl::Texture(GL_RGBA8, width, height, 0, 1, "mixed picture");
-  program_.use();
   program_.set("way", static_cast<int>(options.way));
   program_.set("size", Eigen::Vector2f(static_cast<float>(width), static_cast<float>(height)));
   program_.set("border", static_cast<int>(std::lround(options.border * width)));
@@ -20,7 +19,7 @@ const gl::Texture& PictureMix::operator()(const gl::Texture& first, const gl::Te
   glBindTextureUnit(0, first.name());
   glBindTextureUnit(1, second.name());
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-  glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);
+  program_.dispatch(width, height);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
   return picture_;
 }

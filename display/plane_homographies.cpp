@@ -5,7 +5,6 @@
 namespace foresight {
 namespace {
 
-constexpr int kGroupOfTriangles = 64;
 constexpr GLuint kHomographies = 3;  // as in homographies.comp
 constexpr std::size_t kBytes = 3 * 4 * sizeof(float);
 
@@ -17,10 +16,9 @@ PlaneHomographies::PlaneHomographies()
 
 void PlaneHomographies::update(std::size_t triangles, GLuint unit) {
   records_.reserve(triangles * kBytes);
-  program_.use();
   program_.set("triangle_count", static_cast<int>(triangles));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kHomographies, records_.buffer().name());
-  glDispatchCompute(gl::groups(static_cast<int>(triangles), kGroupOfTriangles), 1, 1);
+  program_.dispatch(static_cast<int>(triangles));
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glBindTextureUnit(unit, records_.texture());
 }

@@ -15,8 +15,7 @@ namespace foresight {
 namespace {
 
 // As in view.glsl and view.comp.
-constexpr unsigned kGroup = 64;  // invocations of a group, of a row or of a list
-constexpr int kBand = 64;        // rows: fewer cost as much as these, as each band is waited for
+constexpr int kBand = 64;  // rows: fewer cost as much as these, as each band is waited for
 constexpr GLuint kListUnit = 5, kPlanesUnit = 7, kHomographiesUnit = 8, kAgesUnit = 10;
 constexpr GLuint kSeenBlock = 1, kSeenUnit = 16;
 constexpr GLuint kPictureImage = 0, kSurfacesImage = 1, kLightImage = 2, kPixelsImage = 3;
@@ -76,8 +75,8 @@ PredictedView::Projection::Projection(const Lens& view, const Lens& lens, bool l
       usual(view_program(std::array{view, lens}, Cases::usual,
                          {.levels = levels, .listed = true, .blended = true, .before = true})),
       rest(view_program({&view, 1}, Cases::every, {.levels = levels, .listed = true, .blended = true})),
-      unseen("pixels that the newest image does not see", kGroup),
-      of_before("pixels that the image before shows", kGroup) {
+      unseen("pixels that the newest image does not see"),
+      of_before("pixels that the image before shows") {
   if (with_homographies) homographies.emplace();
 }
 
@@ -92,7 +91,7 @@ PredictedView::PredictedView(std::shared_ptr<const gl::SceneBuffers> scene,
       programs_(programs),
       all_(view_program({&lens, 1}, programs == ViewPrograms::two ? Cases::usual : Cases::every,
                         {.levels = raster_.has_levels()})),
-      rest_("pixels of the view", kGroup),
+      rest_("pixels of the view"),
       camera_(sizeof(gl::CameraBlock), "view camera"),
       node_poses_(GL_RGBA32F, 16, "view node poses"),
       rays_(gl::make_lens_rays(lens)),
@@ -124,17 +123,18 @@ void PredictedView::draw_part(const std::optional<gl::ViewPart>& part) {
   if (lens_.has_distortion() || programs_ == ViewPrograms::single)
     throw std::invalid_argument("a part of a view through a lens with distortion");
   part_ = std::make_unique<Part>(Part{gl::Program::compute(display_and_lookup_shaders(), "covered.comp"),
-                                      WorkList("pixels of a part of the view", kGroup)});
+                                      WorkList("pixels of a part of the view")});
 }
 
 void PredictedView::start_part() const {
   if (draws_part_) glClearTexImage(picture_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
 }
 
-void PredictedView::list_covered(Rows rows) const {
+/// For `by`.
+void PredictedView::list_covered(Rows rows, const gl::Program& by) const {
   start(part_->pixels);
   dispatch_all(part_->covered, rows);
-  part_->pixels.finish(kListUnit);
+  part_->pixels.finish(by, kListUnit);
 }
 
 template <typename DrawRows>
@@ -183,9 +183,8 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
   draw_rows([&](Rows rows) {
     if (programs_ == ViewPrograms::single) return dispatch_all(all_, rows);
     if (draws_part_) {
-      list_covered(rows);
-      listed_.use();
-      return part_->pixels.dispatch();
+      list_covered(rows, listed_);
+      return part_->pixels.dispatch(listed_);
     }
     start(rest_);
     dispatch_all(all_, rows);
@@ -259,26 +258,25 @@ void PredictedView::look_up(const NewestImages& images, const PublishedImage* be
 /// The newest image; lists what it does not show.
 void PredictedView::draw_newest(const NewestImages& images, Rows rows) const {
   Projection& p = *projection_;
-  if (draws_part_) list_covered(rows);
-  start(p.unseen);
   const gl::Program& newest = draws_part_ ? p.newest_of_part : p.newest;
+  if (draws_part_) list_covered(rows, newest);
+  start(p.unseen);
   p.newest_inputs.bind(newest, images.newest->depth_tolerance, kSeenBlock, kSeenUnit);
   p.newest_inputs.bind_pixels(kPixelsImage);
   newest.set("sharp", images.newest->sharp);
   if (draws_part_)
-    part_->pixels.dispatch();
+    part_->pixels.dispatch(newest);
   else
     dispatch_all(newest, rows);
   reset_samplers_();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  p.unseen.finish(kListUnit);
+  p.unseen.finish(p.usual, kListUnit);
 }
 
 /// What the newest image does not show; lists what is left.
 void PredictedView::draw_usual() {
   start(rest_);
-  projection_->usual_alone.use();
-  projection_->unseen.dispatch();
+  projection_->unseen.dispatch(projection_->usual_alone);
 }
 
 /// The same, where the image before shows it from there. Both programs list what is left.
@@ -288,14 +286,14 @@ void PredictedView::draw_usual_and_before(const PublishedImage& before, float sh
   p.of_before.bind(kBeforeBlock);
   start(rest_);
   p.inputs_before.bind(p.usual, before.depth_tolerance, kSeenBlock, kSeenUnit);
-  p.unseen.dispatch();
+  p.unseen.dispatch(p.usual);
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  p.of_before.finish(kListUnit);
+  p.of_before.finish(p.before, kListUnit);
   rest_.bind();
   p.inputs_before.bind(p.before, before.depth_tolerance, kSeenBlock, kSeenUnit);
   p.inputs_before.bind_pixels(kPixelsImage);
   p.before.set("sharp", sharp);
-  p.of_before.dispatch();
+  p.of_before.dispatch(p.before);
   reset_samplers_();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
@@ -370,15 +368,13 @@ void PredictedView::start(WorkList& list) const {
 }
 
 void PredictedView::dispatch_all(const gl::Program& program, Rows rows) const {
-  program.use();
   program.set("rows", Eigen::Vector2i(rows.first, rows.last));
-  glDispatchCompute(gl::groups(lens_.width(), kGroup), static_cast<GLuint>(rows.last - rows.first), 1);
+  program.dispatch(lens_.width(), rows.last - rows.first);
 }
 
 void PredictedView::dispatch(const WorkList& list, const gl::Program& program) {
-  list.finish(kListUnit);
-  program.use();
-  list.dispatch();
+  list.finish(program, kListUnit);
+  list.dispatch(program);
 }
 
 void PredictedView::finish(const PublishedTextures& textures, RobotTime instant) {

@@ -136,7 +136,7 @@ class PredictedView {
   void draw_usual();
   void draw_usual_and_before(const PublishedImage& before, float sharp);
   void start_part() const;
-  void list_covered(Rows rows) const;
+  void list_covered(Rows rows, const gl::Program& by) const;
   template <typename DrawRows>
   void draw_rows(DrawRows draw) const;
   void dispatch_all(const gl::Program& program, Rows rows) const;

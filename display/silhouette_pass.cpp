@@ -7,7 +7,7 @@ namespace foresight {
 namespace {
 
 constexpr int kTile = 4;  // px a side, as in the shaders
-constexpr unsigned kListGroup = 64, kTilesInGroup = kListGroup / (kTile * kTile);
+constexpr unsigned kPixelsOfTile = kTile * kTile;
 constexpr GLuint kPlacesUnit = 5, kStepsUnit = 8, kMeans = 2;  // as in silhouettes.comp
 /// Metres: surfaces that lie closer together count as one in images too (TextureOptions::depth_tolerance).
 constexpr float kStep = 0.02f;
@@ -30,12 +30,11 @@ SilhouettePass::SilhouettePass(const Lens& lens)
       find_pixels_(silhouette_program(lens, 1)),
       mix_(silhouette_program(lens, 2)),
       put_(silhouette_program(lens, 3)),
-      tiles_("tiles that may hold silhouettes", kTilesInGroup),
-      pixels_("pixels of silhouettes", kListGroup),
+      tiles_("tiles that may hold silhouettes"),
+      pixels_("pixels of silhouettes"),
       means_(GL_R32UI, 4096, "means at silhouettes") {}
 
 void SilhouettePass::start(const gl::Program& program, const View& view) {
-  program.use();
   program.set("face_size", Eigen::Vector2i(view.faces.faces.width, view.faces.faces.height));
   program.set("depth_tolerance", kStep);
 }
@@ -47,7 +46,7 @@ void SilhouettePass::find_steps(const View& view) {
     steps_ = gl::Texture(GL_R8, across, down, faces.count, 1, "steps of faces");
   start(steps_of_faces_, view);
   glBindImageTexture(1, steps_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R8);
-  glDispatchCompute(gl::groups(across, 32), gl::groups(down, 2), static_cast<GLuint>(faces.count));
+  steps_of_faces_.dispatch(across, down, faces.count);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glBindTextureUnit(kStepsUnit, steps_.name());
 }
@@ -57,13 +56,13 @@ void SilhouettePass::find_pixels(const View& view) {
   const auto tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
   tiles_.start(tiles);
   start(find_tiles_, view);
-  glDispatchCompute(gl::groups(across, 32), gl::groups(down, 2), 1);
-  tiles_.finish(kPlacesUnit);
-  pixels_.start(tiles * kTile * kTile);
+  find_tiles_.dispatch(across, down);
+  tiles_.finish(find_pixels_, kPlacesUnit, kPixelsOfTile);
+  pixels_.start(tiles * kPixelsOfTile);
   start(find_pixels_, view);
-  tiles_.dispatch();
-  pixels_.finish(kPlacesUnit);
-  means_.reserve(tiles * kTile * kTile * sizeof(GLuint));
+  tiles_.dispatch(find_pixels_);
+  pixels_.finish(mix_, kPlacesUnit);
+  means_.reserve(tiles * kPixelsOfTile * sizeof(GLuint));
 }
 
 void SilhouettePass::operator()(const View& view) {
@@ -76,10 +75,9 @@ void SilhouettePass::operator()(const View& view) {
   glBindImageTexture(0, view.picture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMeans, means_.buffer().name());
   start(mix_, view);
-  pixels_.dispatch();
+  pixels_.dispatch(mix_);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  put_.use();
-  pixels_.dispatch();
+  pixels_.dispatch(put_);
 }
 
 }  // namespace foresight

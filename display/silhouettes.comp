@@ -9,13 +9,12 @@
 #if STEP > 0
 #define WORK_UNIT 5
 #if STEP == 1
-#define ITEMS_PER_GROUP 4
 #define INVOCATIONS_PER_ITEM 16
 #else
-#define ITEMS_PER_GROUP 64
+#define INVOCATIONS_PER_ITEM 1
 #endif
-#include "work_item.glsl"
 layout(local_size_x = 64) in;
+#include "work_item.glsl"
 #else
 layout(local_size_x = 32, local_size_y = 2) in;
 layout(binding = 8) uniform sampler2DArray steps;  // of each 4x4 tile of the faces: face_steps.comp
@@ -111,7 +110,7 @@ const float kColoured = 0.5;  // alpha of less: no colour at all
 void main() {
   uint item;
   if (!next_work(item)) return;
-  uint index = (gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u) * 64u + gl_LocalInvocationIndex;
+  uint index = index_of_work();
   ivec2 pixel = ivec2(item & 0xffffu, item >> 16);
   means[index] = 0u;
   vec4 own = imageLoad(picture, pixel);
@@ -131,7 +130,7 @@ void main() {
 void main() {
   uint item;
   if (!next_work(item)) return;
-  uint index = (gl_WorkGroupID.y + gl_WorkGroupID.z * 65535u) * 64u + gl_LocalInvocationIndex;
+  uint index = index_of_work();
   if (means[index] != 0u) imageStore(picture, ivec2(item & 0xffffu, item >> 16), unpackUnorm4x8(means[index]));
 }
 #endif

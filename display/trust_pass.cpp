@@ -123,7 +123,6 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
   px.resize(state.T_world_node.size(), 0);
   node_px_.assign(std::span<const float>(px));
 
-  program_.use();
   std::array<int, kFrames> layers{};
   for (std::size_t i = 0; i < seen_.size(); ++i) layers[i] = seen_[i].layer;
   glProgramUniform1iv(program_.name(), glGetUniformLocation(program_.name(), "layer_of"),
@@ -152,7 +151,7 @@ void TrustPass::operator()(const PredictedView& view, const Pose& T_world_camera
   for (GLuint unit = 0; unit < std::size(units); ++unit) glBindTextureUnit(unit, units[unit]);
   glBindImageTexture(0, doubt_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
   glBindImageTexture(1, marked_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-  glDispatchCompute(gl::groups(doubt_.width(), 8), gl::groups(doubt_.height(), 8), 1);
+  program_.dispatch(doubt_.width(), doubt_.height());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                   GL_PIXEL_BUFFER_BARRIER_BIT);
 }

@@ -1,11 +1,10 @@
 // view.glsl for the pixels of some rows, or for those of a list. Defines: there.
+layout(local_size_x = 64) in;
 #if LISTED
 #define WORK_UNIT 5
-#define ITEMS_PER_GROUP 64
+#define INVOCATIONS_PER_ITEM 1
 #include "work_item.glsl"
-layout(local_size_x = 64) in;
 #else
-layout(local_size_x = 64) in;
 uniform ivec2 rows;  // first, and beyond the last
 #endif
 #include "view.glsl"

@@ -60,11 +60,10 @@ void OcclusionCulling::judge(const Faces& faces, GLuint depth, int layer, const 
       tiles_[i] = Texture(GL_R32F, tiles.x(), tiles.y(), 0, 1, "farthest depth of tiles");
     farthest_.set("level", static_cast<int>(i));
     farthest_.set("layer", layer);
-    farthest_.use();
     glBindTextureUnit(0, depth);
     glBindTextureUnit(1, tiles_[0].name());
     glBindImageTexture(0, tiles_[i].name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-    glDispatchCompute(groups(tiles.x(), 8), groups(tiles.y(), 8), 1);
+    farthest_.dispatch(tiles.x(), tiles.y());
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   }
 
@@ -87,12 +86,11 @@ void OcclusionCulling::judge(const Faces& faces, GLuint depth, int layer, const 
   judge_.set("face", Eigen::Vector4d(faces.fx, faces.fy, faces.cx, faces.cy).cast<float>().eval());
   judge_.set("size", size);
   judge_.set("count", static_cast<int>(boxes.size()));
-  judge_.use();
   for (GLuint i = 0; i < 2; ++i) glBindTextureUnit(i, tiles_[i].name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, boxes_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, commands_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, visible_.name());
-  glDispatchCompute(groups(static_cast<int>(boxes.size()), 64), 1, 1);
+  judge_.dispatch(static_cast<int>(boxes.size()));
   glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   judged_ = Fence::insert();
   is_judged_ = true;

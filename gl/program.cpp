@@ -1,5 +1,6 @@
 #include "gl/program.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <sstream>
 
@@ -130,13 +131,29 @@ GLint location(const Program& program, const char* uniform) {
 
 Program Program::compute(const ShaderSources& sources, const std::string& file,
                          const std::vector<std::string>& defines) {
-  return Program(make_program({read_stage(sources, GL_COMPUTE_SHADER, file, defines)}));
+  Program out(make_program({read_stage(sources, GL_COMPUTE_SHADER, file, defines)}));
+  std::array<GLint, 3> group{};
+  glGetProgramiv(out.name(), GL_COMPUTE_WORK_GROUP_SIZE, group.data());
+  std::ranges::copy(group, out.group_.begin());
+  return out;
 }
 
 Program Program::graphics(const ShaderSources& sources, const std::string& vertex, const std::string& fragment,
                           const std::vector<std::string>& defines) {
   return Program(make_program({read_stage(sources, GL_VERTEX_SHADER, vertex, defines),
                                read_stage(sources, GL_FRAGMENT_SHADER, fragment, defines)}));
+}
+
+void Program::dispatch(int across, int down, int deep) const {
+  const auto groups = [](int invocations, GLuint group) {
+    return (static_cast<GLuint>(invocations) + group - 1) / group;
+  };
+  use();
+  glDispatchCompute(groups(across, group_[0]), groups(down, group_[1]), groups(deep, group_[2]));
+}
+
+std::size_t Program::groups(std::size_t count) const {
+  return (count + invocations() - 1) / invocations();
 }
 
 void Program::set(const char* uniform, int value) const {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <initializer_list>
 #include <map>
 #include <string>
@@ -32,6 +34,15 @@ class Program : public Handle<delete_program> {
 
   void use() const { glUseProgram(name()); }
 
+  /// Uses and runs a compute program: whole groups of it, so many that there are `across` x `down` x `deep`
+  /// invocations. Those beyond are left out by the shader.
+  void dispatch(int across, int down = 1, int deep = 1) const;
+
+  /// Of a compute program: groups that have so many invocations.
+  std::size_t groups(std::size_t count) const;
+  /// Of a compute program: of each group.
+  std::size_t invocations() const { return std::size_t{group_[0]} * group_[1] * group_[2]; }
+
   /// Set a uniform by name. Unknown names are ignored: the compiler drops unused uniforms.
   void set(const char* uniform, int value) const;
   void set(const char* uniform, unsigned value) const;
@@ -43,11 +54,8 @@ class Program : public Handle<delete_program> {
 
  private:
   explicit Program(GLuint name) : Handle<delete_program>(name) {}
-};
 
-/// Groups of `group` needed to cover `count` invocations.
-constexpr unsigned groups(int count, int group) {
-  return static_cast<unsigned>((count + group - 1) / group);
-}
+  std::array<GLuint, 3> group_{};  // invocations along x, y, z, as the shader has them: asked once
+};
 
 }  // namespace foresight::gl

@@ -25,8 +25,7 @@ SamplerReset::SamplerReset() {
 void SamplerReset::operator()() const {
   if (!program_) return;
   glBindTextureUnit(kUnit, texture_.name());
-  program_.use();
-  glDispatchCompute(1, 1, 1);
+  program_.dispatch(1);
 }
 
 }  // namespace foresight::gl

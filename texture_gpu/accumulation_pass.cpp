@@ -51,7 +51,7 @@ void AccumulationPass::operator()(PublishedImage& newest, const PublishedImage& 
   program_.set("boxes_moved", static_cast<int>(rows.size() / 3));
   glBindTextureUnit(kMovedUnit, moved_.texture());
   glBindImageTexture(0, mean_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-  glDispatchCompute(gl::groups(mean_.width(), 8), gl::groups(mean_.height(), 8), 1);
+  program_.dispatch(mean_.width(), mean_.height());
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   glCopyImageSubData(mean_.name(), GL_TEXTURE_2D, 0, 0, 0, 0, newest.camera->image().name(), GL_TEXTURE_2D, 0, 0, 0, 0,
                      mean_.width(), mean_.height(), 1);

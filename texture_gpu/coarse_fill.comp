@@ -1,10 +1,10 @@
 // Hole filling, above the pages: a page with hardly a seen texel takes the means of itself and the
 // pages around it, the nearer and the more seen the more, and far from all of them its chart's. One invocation a page.
-#define ITEMS_PER_GROUP 64
+#define INVOCATIONS_PER_ITEM 1
 #include "chart_record.glsl"
 #include "atlas.glsl"
-#include "work_item.glsl"
 layout(local_size_x = 64) in;
+#include "work_item.glsl"
 layout(binding = 7) uniform usamplerBuffer chart_of_page;
 layout(binding = 8) uniform samplerBuffer charts;
 layout(binding = 9) uniform usamplerBuffer table;

@@ -99,7 +99,7 @@ bool may_see(int c, mat4x3 T_camera_node, Part part) {
 }
 
 void main() {
-  int index = 64 * first_group + int(gl_GlobalInvocationID.x);
+  int index = int(gl_WorkGroupSize.x) * first_group + int(gl_GlobalInvocationID.x);
   if (index >= page_count) return;
   uvec4 page = texelFetch(pages, 3 * index), planes01 = texelFetch(pages, 3 * index + 1),
         planes23 = texelFetch(pages, 3 * index + 2);

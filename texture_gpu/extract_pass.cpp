@@ -9,6 +9,8 @@ namespace foresight {
 
 namespace {
 
+constexpr std::size_t kInvocationsPerTile = 16;  // as in extract.comp
+
 gl::Program extract_program(std::span<const Lens> lenses, std::size_t cameras, std::size_t size) {
   auto defines = gl::camera_defines(lenses);
   defines.push_back("CAMERAS " + std::to_string(cameras));
@@ -37,6 +39,7 @@ ExtractPass::ExtractPass(std::span<const Lens> lenses)
 
 void dispatch_groups(const gl::Program& program, std::size_t count) {
   constexpr std::size_t kMost = 65535;
+  program.use();
   for (std::size_t first = 0; first < count; first += kMost) {
     program.set("first_group", static_cast<int>(first));
     glDispatchCompute(static_cast<GLuint>(std::min(kMost, count - first)), 1, 1);
@@ -46,6 +49,7 @@ void dispatch_groups(const gl::Program& program, std::size_t count) {
 void dispatch_slices(const gl::Program& program, std::size_t count, FrameGate* gate, const char* kind) {
   if (!gate) return dispatch_groups(program, count);
   constexpr std::size_t kMost = 65535;
+  program.use();
   for (std::size_t first = 0, now = 0; first < count; first += now) {
     glFinish();
     gate->end();
@@ -90,7 +94,6 @@ void ExtractPass::relevel(std::span<const PageJob> jobs, const gl::BufferTexture
                           const PublishedTextures& published, const AtlasStore& store) {
   if (jobs.empty()) return;
   relevel_jobs_.assign(jobs);
-  relevel_.use();
   glBindTextureUnit(7, relevel_jobs_.texture());
   glBindTextureUnit(8, charts.texture());
   published.bind();
@@ -145,7 +148,8 @@ void ExtractPass::run(std::size_t size, std::int64_t image, const SeenInputs& in
   glBindTextureUnit(10, tiles_[size].texture());
   static constexpr const char* kKinds[kSizes] = {"tiles", "tiles of 2x2 taps", "tiles of 4x4 taps", "tiles of 8x8 taps",
                                                  "tiles of levels"};
-  dispatch_slices(program, std::max<std::size_t>((tiles.size() + 3) / 4, 1), gate, kKinds[size]);
+  dispatch_slices(program, std::max<std::size_t>(program.groups(kInvocationsPerTile * tiles.size()), 1), gate,
+                  kKinds[size]);
   if (levels) SeenInputs::sample_images_by(0);
 }
 
@@ -165,7 +169,6 @@ void ExtractPass::extract(const Work& work, const SeenInputs& inputs, const Atla
   prepares_ = false;
   next_slice(gate, "copied tiles");
 
-  copy_.use();
   copy_tiles_.assign(std::span<const std::uint32_t>(unseen_tiles_));
   glBindTextureUnit(7, jobs_.texture());
   glBindTextureUnit(10, copy_tiles_.texture());

@@ -45,7 +45,7 @@ FillPass::FillPass(const SurfacePatches& surface)
       chart_of_page_(GL_R32UI, 16, "charts of pages"),
       spare_means_(atlas::kMeanFormat, surface.charts.size() * atlas::kMeanBytes, "spare chart means"),
       with_holes_("pages or tiles with holes"),
-      empty_pages_("pages without colour", 64),
+      empty_pages_("pages without colour"),
       chart_count_(static_cast<int>(surface.charts.size())) {
   std::vector<std::uint32_t> start{0}, list;
   for (const Chart& chart : surface.charts) {
@@ -73,15 +73,13 @@ void FillPass::operator()(const ExtractPass& extracted, const Work& work, const 
 void FillPass::push(std::size_t job_count, const AtlasStore& store) const {
   if (job_count == 0) return;
   glBindTextureUnit(11, store.colours->name());
-  push_.use();
   bind_level(0, *store.colours, 1, GL_WRITE_ONLY);
   dispatch_groups(push_, job_count);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  push_rest_.use();
   push_rest_.set("job_count", static_cast<int>(job_count));
   for (int level = 2; level <= 4; ++level)
     bind_level(static_cast<GLuint>(level - 2), *store.colours, level, GL_WRITE_ONLY);
-  glDispatchCompute(gl::groups(static_cast<int>(job_count), 64), 1, 1);
+  push_rest_.dispatch(static_cast<int>(job_count));
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
@@ -95,7 +93,6 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   if (work.dirty.empty()) return;
   dirty_.assign(work.dirty);
   chart_of_page_.assign(work.chart_of_page);
-  coarse_.use();
   glBindTextureUnit(7, dirty_.texture());
   glBindTextureUnit(8, next.charts.texture());
   glBindTextureUnit(9, next.table.texture());
@@ -104,20 +101,18 @@ void FillPass::means(const Work& work, const AtlasStore& store, const PublishedT
   glBindImageTexture(1, next.means.texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kMeanFormat);
   empty_pages_.start(work.chart_of_page.size());
   dispatch_groups(coarse_, work.dirty.size());
-  empty_pages_.finish();
+  empty_pages_.finish(coarse_fill_);
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // both passes store into the coarse colours
 
-  coarse_fill_.use();
   glBindTextureUnit(7, chart_of_page_.texture());
   glBindTextureUnit(10, next.means.texture());
-  empty_pages_.dispatch();
+  empty_pages_.dispatch(coarse_fill_);
   // Fetched by what follows, and copied when the next generation starts from this one.
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /// Hands chart means on to charts that were never seen.
 void FillPass::spread(const PublishedTextures& next) const {
-  spread_.use();
   spread_.set("chart_count", chart_count_);
   glBindTextureUnit(7, neighbour_start_.texture());
   glBindTextureUnit(8, neighbours_.texture());
@@ -126,22 +121,21 @@ void FillPass::spread(const PublishedTextures& next) const {
   for (int round = 0; round < kSpreadRounds; ++round, std::swap(from, to)) {  // even: ends in next.means
     glBindTextureUnit(9, from->texture());
     glBindImageTexture(0, to->texture(), 0, GL_FALSE, 0, GL_WRITE_ONLY, atlas::kMeanFormat);
-    glDispatchCompute(gl::groups(chart_count_, 64), 1, 1);
+    spread_.dispatch(chart_count_);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   }
 }
 
 void FillPass::list_holes(const gl::Program& program, std::size_t job_count, std::size_t most,
                           const gl::BufferTexture& holes, const AtlasStore& store) {
-  program.use();
   program.set("job_count", static_cast<int>(job_count));
   program.set("turn", turn_);
   program.set("refresh", kRefresh);
   glBindTextureUnit(10, holes.texture());
   glBindTextureUnit(11, store.colours->name());
   with_holes_.start(most);
-  glDispatchCompute(gl::groups(static_cast<int>(most), 64), 1, 1);
-  with_holes_.finish();
+  program.dispatch(static_cast<int>(most));
+  with_holes_.finish_for_groups();
 }
 
 void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const AtlasStore& store,
@@ -153,10 +147,9 @@ void FillPass::pull(std::size_t job_count, const gl::BufferTexture& holes, const
   glBindTextureUnit(14, next.coarse.texture());
   for (int level = 3; level >= 0; --level) {
     if (level == 0) list_holes(hole_tiles_, job_count, 4 * job_count, holes, store);
-    pull_[static_cast<std::size_t>(level)].use();
     bind_level(0, *store.colours, level, GL_READ_WRITE);
     bind_level(1, *store.colours, level + 1, GL_READ_ONLY);
-    with_holes_.dispatch();
+    with_holes_.dispatch(pull_[static_cast<std::size_t>(level)]);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   }
 }

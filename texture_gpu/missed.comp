@@ -78,7 +78,7 @@ float pixels_per_texel(int c, Tile t, vec3 p) {
 }
 
 void main() {
-  int index = 64 * first_group + int(gl_GlobalInvocationID.x);
+  int index = int(gl_WorkGroupSize.x) * first_group + int(gl_GlobalInvocationID.x);
   if (index >= tile_count) return;
   uint item = texelFetch(tiles, index).r;
   ivec2 in_page = 8 * ivec2(item & 1u, (item >> 1) & 1u);

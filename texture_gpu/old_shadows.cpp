@@ -84,7 +84,6 @@ void OldShadows::take_out(const Pages& pages, std::span<const PageJob> jobs, con
     atlas.write_job_geometry(jobs, {&lamp, 1}, geometry);
     geometry_.assign(std::span<const Eigen::Vector4f>(geometry));
     tiles_.assign(std::span<const std::uint32_t>(tiles));
-    program_->use();
     program_->set("seen_from", (T_lamp_world * image->seen_from).homogeneous().cast<float>().eval());
     map_->bind(*program_, kMapUnit);
     glBindTextureUnit(7, geometry_.texture());

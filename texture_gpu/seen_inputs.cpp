@@ -26,7 +26,6 @@ void SeenInputs::update(std::span<const CameraInput* const> cameras, std::span<c
 }
 
 void SeenInputs::bind(const gl::Program& program, double depth_tolerance, GLuint block, GLuint unit) const {
-  program.use();
   program.set("node_count", node_count_);
   program.set("depth_tolerance", static_cast<float>(depth_tolerance));
   glBindBufferBase(GL_UNIFORM_BUFFER, block, uniform_.name());

@@ -11,17 +11,17 @@ layout(binding = 1) uniform sampler2DArray depth;
 layout(binding = 2) uniform sampler2D rays;
 uniform mat4 T_lamp_camera;
 #if STEP == 2
-#define ITEMS_PER_GROUP 64
+#define INVOCATIONS_PER_ITEM 1
 #define WORDS_PER_ITEM 2
+layout(local_size_x = 64) in;  // a block each
 #include "work_item.glsl"
 #include "work_list.glsl"
-layout(local_size_x = 64) in;  // a block each
 layout(binding = 0, rgba8) uniform writeonly image2D light;
 #elif STEP == 1
-#define ITEMS_PER_GROUP 64
+#define INVOCATIONS_PER_ITEM 1
+layout(local_size_x = 64) in;  // a block each
 #include "work_item.glsl"
 #include "work_list.glsl"
-layout(local_size_x = 64) in;  // a block each
 #else
 #include "work_list.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

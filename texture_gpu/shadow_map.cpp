@@ -126,18 +126,16 @@ bool ShadowMap::update(const SceneLight& light, const SceneState& state) {
   raster_(T_world_lamp_, state, moving_);
   draw_still(light, state);
 
-  cells_program_.use();
   glBindTextureUnit(0, moving_.depth.name());
   glBindImageTexture(0, cells_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-  glDispatchCompute(gl::groups(kCells, 8), gl::groups(kCells, 8), 1);
-  spread_program_.use();
+  cells_program_.dispatch(kCells, kCells);
   spread_program_.set("reach", static_cast<int>(std::min(std::ceil(reach_ / kCell), kMostCells)) + 1);
   for (const bool down : {false, true}) {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     spread_program_.set("along", down ? Eigen::Vector2i(0, 1) : Eigen::Vector2i(1, 0));
     glBindTextureUnit(0, (down ? spread_ : cells_).name());
     glBindImageTexture(0, (down ? cells_ : spread_).name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-    glDispatchCompute(gl::groups(kCells, 8), gl::groups(kCells, 8), 1);
+    spread_program_.dispatch(kCells, kCells);
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return true;

@@ -8,7 +8,7 @@ namespace foresight {
 namespace {
 
 // As in the shaders.
-constexpr unsigned kBlocksInGroup = 64, kBlocksByPixels = 4;
+constexpr unsigned kPixelsOfBlock = 16;
 constexpr std::size_t kWordsOfBlock = 2;  // where it is, and its blocker
 constexpr GLuint kShadowUnit = 3, kWorkUnit = 15;
 
@@ -25,9 +25,9 @@ ShadowPass::ShadowPass(const Lens& lens)
       shaded_(shadow_program(lens, 1)),
       shade_(shadow_program(lens, 2)),
       unshade_(gl::Program::compute(gl::texture_gpu_shaders(), "unshade.comp")),
-      near_("blocks that a shadow may reach", kBlocksInGroup),
-      blocks_("blocks that may be in a shadow", kBlocksInGroup, kWordsOfBlock),
-      uneven_("blocks that a shadow ends in", kBlocksInGroup, kWordsOfBlock) {}
+      near_("blocks that a shadow may reach"),
+      blocks_("blocks that may be in a shadow", kWordsOfBlock),
+      uneven_("blocks that a shadow ends in", kWordsOfBlock) {}
 
 void ShadowPass::operator()(const Camera& camera, const ShadowMap& map) {
   const int width = camera.lens.width(), height = camera.lens.height();
@@ -38,7 +38,6 @@ void ShadowPass::operator()(const Camera& camera, const ShadowMap& map) {
 
   const Eigen::Matrix4f T_lamp_camera = (map.T_world_lamp().inverse() * camera.T_world_camera).matrix().cast<float>();
   const auto start = [&](const gl::Program& program) {
-    program.use();
     program.set("T_lamp_camera", T_lamp_camera);
     map.bind(program, kShadowUnit);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera.block.name());
@@ -49,30 +48,28 @@ void ShadowPass::operator()(const Camera& camera, const ShadowMap& map) {
   const auto most = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
   near_.start(most);
   start(reached_);
-  glDispatchCompute(gl::groups(across, 8), gl::groups(down, 8), 1);
-  near_.finish(kWorkUnit);
+  reached_.dispatch(across, down);
+  near_.finish(shaded_, kWorkUnit);
   blocks_.start(most);
   start(shaded_);
-  near_.dispatch();
-  blocks_.finish(kWorkUnit);
+  near_.dispatch(shaded_);
+  blocks_.finish(shade_, kWorkUnit);
   uneven_.start(most);
   start(shade_);
   shade_.set("each", false);
   glBindImageTexture(0, light_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-  blocks_.dispatch();
-  uneven_.finish(kWorkUnit);
-  shade_.use();
+  blocks_.dispatch(shade_);
+  uneven_.finish(shade_, kWorkUnit);
   shade_.set("each", true);
-  uneven_.dispatch();
+  uneven_.dispatch(shade_);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 void ShadowPass::take_out_of(const gl::Texture& image) const {
-  blocks_.finish(kWorkUnit, kBlocksByPixels);
-  unshade_.use();
+  blocks_.finish(unshade_, kWorkUnit, kPixelsOfBlock);
   glBindTextureUnit(0, light_.name());
   glBindImageTexture(0, image.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
-  blocks_.dispatch();
+  blocks_.dispatch(unshade_);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

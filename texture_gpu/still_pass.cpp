@@ -26,7 +26,7 @@ void StillPass::operator()(PublishedImage& newest, const PublishedImage* before)
   program_.set("interval", static_cast<float>(interval));
   glBindTextureUnit(kStillUnit, before->still.name());
   glBindImageTexture(0, newest.still.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-  glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);
+  program_.dispatch(width, height);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

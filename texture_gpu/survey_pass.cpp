@@ -12,18 +12,15 @@ gl::Program program(const char* file, std::span<const Lens> lenses, const std::v
   return gl::Program::compute(gl::texture_gpu_shaders(), file, defines);
 }
 
-/// One answer for each invocation of a program of groups of 64, which is in use with all that it needs: `buffer` gets
-/// them. `dispatch`: runs so many groups.
-template <typename Answer, typename Dispatch>
-void ask(const gl::Buffer& buffer, std::vector<Answer>& answers, Dispatch&& dispatch) {
+/// One answer for each invocation of the program, all of whose other inputs are bound: `buffer` gets them. `gate`: in
+/// slices of `kind`; may be null.
+template <typename Answer>
+void ask(const gl::Program& program, const gl::Buffer& buffer, std::vector<Answer>& answers, FrameGate* gate = nullptr,
+         const char* kind = nullptr) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.name());
-  dispatch(gl::groups(static_cast<int>(answers.size()), 64));
+  dispatch_slices(program, program.groups(answers.size()), gate, kind);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   buffer.read(std::span(answers));
-}
-
-void at_once(GLuint groups) {
-  glDispatchCompute(groups, 1, 1);
 }
 
 }  // namespace
@@ -52,7 +49,6 @@ std::vector<std::uint32_t> SurveyPass::cull(const SeenInputs& inputs, const gl::
                                             double depth_tolerance, FrameGate* gate) {
   std::vector<std::uint32_t> masks(static_cast<std::size_t>(page_count_));
   if (masks.empty()) return masks;
-  cull_.use();
   cull_.set("node_count", inputs.node_count());
   cull_.set("camera_count", inputs.camera_count());
   cull_.set("page_count", page_count_);
@@ -63,7 +59,7 @@ std::vector<std::uint32_t> SurveyPass::cull(const SeenInputs& inputs, const gl::
   glBindTextureUnit(2, inputs.camera(inputs.camera_count() - 1).blocks().name());
   glBindTextureUnit(3, pages_.texture());
   glBindTextureUnit(4, charts.texture());
-  ask(masks_, masks, [&](GLuint groups) { dispatch_slices(cull_, groups, gate, "pages in view"); });
+  ask(cull_, masks_, masks, gate, "pages in view");
   return masks;
 }
 
@@ -72,12 +68,11 @@ std::vector<std::uint32_t> SurveyPass::ask_tiles(const gl::Program& program, std
                                                  FrameGate* gate, const char* kind) {
   std::vector<std::uint32_t> answers(tiles.size());
   if (tiles.empty()) return answers;
-  program.use();
   program.set("tile_count", static_cast<int>(tiles.size()));
   tiles_.assign(tiles);
   if (answers_.bytes() < tiles.size_bytes()) answers_ = gl::Buffer(tiles.size_bytes() * 3 / 2, "missed tiles");
   glBindTextureUnit(10, tiles_.texture());
-  ask(answers_, answers, [&](GLuint groups) { dispatch_slices(program, groups, gate, kind); });
+  ask(program, answers_, answers, gate, kind);
   return answers;
 }
 
@@ -127,7 +122,7 @@ std::vector<ExposureSample> SurveyPass::brightness(const SeenInputs& inputs, con
   inputs.bind(exposure_, depth_tolerance);
   exposure_.set("camera", camera);
   bind_pages(exposure_, charts, store, first, stride);
-  ask(samples_, samples, at_once);
+  ask(exposure_, samples_, samples);
   return samples;
 }
 
@@ -139,7 +134,7 @@ std::vector<AgreementSample> SurveyPass::agreement(const SeenInputs& inputs, con
   inputs.bind(agreement_, depth_tolerance);
   bind_pages(agreement_, charts, store, first, stride);
   textures.bind();
-  ask(samples_, samples, at_once);
+  ask(agreement_, samples_, samples);
   return samples;
 }
 

@@ -7,11 +7,11 @@
 //                    |..p.p.p_______ far surface: behind it by more than the tolerance
 //
 // One invocation a pixel q.
-#define ITEMS_PER_GROUP 64
+#define INVOCATIONS_PER_ITEM 1
 #include "camera.glsl"
 #include "depth_slope.glsl"
-#include "work_item.glsl"
 layout(local_size_x = 64) in;
+#include "work_item.glsl"
 layout(binding = 0, r32ui) uniform uimage2DArray marked_depth;  // bits of near / z, the two highest of which are free
 const uint kUncertain = 1u << 31, kFarSide = 1u << 30;  // seen.glsl; a pixel may get both, by several invocations
 uniform float margin;  // px

@@ -1,10 +1,9 @@
 // Takes shadows of moving parts out of an image: each pixel as bright as it would be without. What would be brighter
 // than white is scaled, by its alpha. Over the blocks that shadow.comp listed.
-#define ITEMS_PER_GROUP 4
 #define INVOCATIONS_PER_ITEM 16
 #define WORDS_PER_ITEM 2
-#include "work_item.glsl"
 layout(local_size_x = 64) in;  // four blocks
+#include "work_item.glsl"
 layout(binding = 0) uniform sampler2D light;
 layout(binding = 0, rgba8) uniform image2D image;
 const float kBrightest = 0.95;  // below what counts as white in extract.comp

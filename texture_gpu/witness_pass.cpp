@@ -28,7 +28,7 @@ std::vector<Eigen::Vector3f> WitnessPass::brightness(const SeenInputs& inputs, c
   program_.set("T_camera_world", T_world_camera.inverse().matrix().cast<float>().eval());
   glBindTextureUnit(7, witnesses_.texture());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, values_.name());
-  glDispatchCompute(gl::groups(count_, 64), 1, 1);
+  program_.dispatch(count_);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   values_.read(std::span(values));
   std::vector<Eigen::Vector3f> out;

@@ -11,9 +11,8 @@ constexpr std::size_t kHeader = 4 * sizeof(GLuint);
 
 }  // namespace
 
-WorkList::WorkList(const char* label, unsigned items_per_group, std::size_t words_per_item)
-    : items_per_group_(items_per_group),
-      bytes_per_item_(words_per_item * sizeof(GLuint)),
+WorkList::WorkList(const char* label, std::size_t words_per_item)
+    : bytes_per_item_(words_per_item * sizeof(GLuint)),
       args_(gl::Program::compute(gl::texture_gpu_shaders(), "work_args.comp")),
       buffer_(GL_R32UI, 4096, label) {}
 
@@ -28,19 +27,27 @@ void WorkList::bind(unsigned block) const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, block, buffer_.buffer().name());
 }
 
-void WorkList::finish(unsigned unit, std::optional<unsigned> items_per_group) const {
+void WorkList::finish(const gl::Program& by, unsigned unit, unsigned invocations) const {
+  finish(by.invocations() / invocations, unit);
+}
+
+void WorkList::finish_for_groups(unsigned unit) const {
+  finish(std::size_t{1}, unit);
+}
+
+void WorkList::finish(std::size_t items_per_group, unsigned unit) const {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   bind();
-  args_.use();
-  args_.set("items_per_group", items_per_group.value_or(items_per_group_));
-  glDispatchCompute(1, 1, 1);
+  args_.set("items_per_group", static_cast<GLuint>(items_per_group));
+  args_.dispatch(1);
   // The last bit is for the next start(), which writes the header again.
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindTextureUnit(unit, buffer_.texture());
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer_.buffer().name());
 }
 
-void WorkList::dispatch() const {
+void WorkList::dispatch(const gl::Program& program) const {
+  program.use();
   glDispatchComputeIndirect(0);
 }
 

@@ -52,7 +52,6 @@ void Stereogram::operator()(const gl::Texture& depth, const DepthRange& range, c
 
 void Stereogram::find_links(const gl::Texture& depth, const DepthRange& range) {
   const double farthest = 1 / range.far;
-  links_program_.use();
   links_program_.set("size", Eigen::Vector2i(width_, height_));
   links_program_.set("range", Eigen::Vector2d(farthest, 1 / (1 / range.near - farthest)).cast<float>().eval());
   links_program_.set("eyes",
@@ -63,14 +62,13 @@ void Stereogram::find_links(const gl::Texture& depth, const DepthRange& range) {
   links_program_.set("smooth_links", options_.smooth ? 1 : 0);
   glBindTextureUnit(0, depth.name());
   glBindImageTexture(0, links_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-  glDispatchCompute(gl::groups(width_, 8), gl::groups(height_, 8), 1);
+  links_program_.dispatch(width_, height_);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void Stereogram::draw_strips() {
   const bool two = options_.pictures == StripPictures::two;
   const gl::Program& program = two ? two_ : one_;
-  program.use();
   program.set("size", Eigen::Vector2i(width_, height_));
   program.set("period", static_cast<int>(std::lround(options_.depth.most())));
   program.set("dots", pattern_ ? 0 : options_.dot);
@@ -93,7 +91,7 @@ void Stereogram::draw_strips() {
       glBindImageTexture(0, pictures_[0].name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
       shown_ = 0;
     }
-    glDispatchCompute(gl::groups(last - from, 8), gl::groups(height_, 8), 1);
+    program.dispatch(last - from, height_);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
@@ -101,7 +99,6 @@ void Stereogram::draw_strips() {
 
 void Stereogram::float_over(const Floater& floater) {
   const gl::Texture sprite = upload(floater.picture, "floater");
-  floater_program_.use();
   floater_program_.set("size", Eigen::Vector2i(width_, height_));
   const double separation = options_.depth.separation(floater.nearness);
   // The right eye's copy; the left eye's is the one before.
@@ -109,7 +106,7 @@ void Stereogram::float_over(const Floater& floater) {
   floater_program_.set("separation", static_cast<float>(separation));
   glBindTextureUnit(0, sprite.name());
   glBindImageTexture(0, picture().name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
-  glDispatchCompute(gl::groups(width_, 8), gl::groups(height_, 8), 1);
+  floater_program_.dispatch(width_, height_);
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
                   GL_FRAMEBUFFER_BARRIER_BIT);
 }

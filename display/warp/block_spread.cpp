@@ -15,12 +15,11 @@ const gl::Texture& BlockSpread::operator()(const WarpLayers& layers, int radius)
   program_.set("size", blocks);
   program_.set("radius", radius);
   program_.set("of_part", static_cast<int>(layers.of_part));
-  program_.use();
   for (int pass = 0; pass < 2; ++pass) {
     program_.set("way", Eigen::Vector2i(1 - pass, pass));
     glBindTextureUnit(0, pass == 0 ? layers.blocks.name() : around_[0].name());
     glBindImageTexture(0, around_[static_cast<std::size_t>(pass)].name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-    glDispatchCompute(gl::groups(blocks.x(), 8), gl::groups(blocks.y(), 8), 1);
+    program_.dispatch(blocks.x(), blocks.y());
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   }
   return around_[1];

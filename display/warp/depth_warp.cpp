@@ -181,7 +181,6 @@ void DepthWarp::list_tiles(const WarpLayers& source, const Pose& T_source_target
   tiles_.set("moved_count", moved);
   tiles_.set("keeps", static_cast<int>(keeps));
   tiles_.set("of_part", static_cast<int>(keeps && source.of_part));
-  tiles_.use();
   glBindTextureUnit(0, source.blocks.name());
   glBindTextureUnit(1, reach_.last().name());
   glBindTextureUnit(2, moved_.texture());
@@ -191,7 +190,7 @@ void DepthWarp::list_tiles(const WarpLayers& source, const Pose& T_source_target
     lists_[i].buffer().write(std::span<const GLuint>(kNoGroups));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, lists_[i].buffer().name());
   }
-  glDispatchCompute(gl::groups(tiles.x(), 8), gl::groups(tiles.y(), 8), 1);
+  tiles_.dispatch(tiles.x(), tiles.y());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -264,10 +263,9 @@ void DepthWarp::list_holes(const gl::Texture& holes) {
   gl::Buffer& list = lists_[static_cast<std::size_t>(Tiles::searched)].buffer();
   list.write(std::span<const GLuint>(kNoGroups));
   hole_tiles_.set("tiles", tiles);
-  hole_tiles_.use();
   glBindTextureUnit(0, holes.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list.name());
-  glDispatchCompute(gl::groups(tiles.x(), 8), gl::groups(tiles.y(), 8), 1);
+  hole_tiles_.dispatch(tiles.x(), tiles.y());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

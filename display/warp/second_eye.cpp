@@ -11,7 +11,6 @@ namespace {
 constexpr double kSameRows = 0.05;  // px
 constexpr double kSameWay = 1e-3;   // rad
 constexpr double kBeside = 2e-4;    // m above, below, before or behind the first
-constexpr int kRows = 16;           // of a group, as in the shader
 
 int rows_apart(const Lens& first, const Lens& second) {
   return static_cast<int>(std::lround(first.parameters().cy - second.parameters().cy));
@@ -51,12 +50,11 @@ void SecondEye::operator()(const gl::Texture& picture, const gl::Texture& depth,
   program_.set("first_size", Eigen::Vector2i(a.width, a.height));
   program_.set("second_size", Eigen::Vector2i(b.width, b.height));
   program_.set("rows_apart", rows_apart(first_, second_));
-  program_.use();
   glBindTextureUnit(0, depth.name());
   glBindTextureUnit(1, picture.name());
   glBindImageTexture(0, picture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glBindImageTexture(1, holes_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
-  glDispatchCompute(gl::groups(b.height, kRows), 1, 1);
+  program_.dispatch(b.height);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
   count_.finish();
 }

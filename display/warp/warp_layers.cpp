@@ -47,25 +47,23 @@ void LayerCapture::operator()(const gl::Texture& picture, const gl::FaceImages& 
 
   glCopyImageSubData(picture.name(), GL_TEXTURE_2D, 0, 0, 0, 0, layers.picture.name(), GL_TEXTURE_2D, 0, 0, 0, 0, width,
                      height, 1);
-  capture_.use();
   capture_.set("size", Eigen::Vector2i(width, height));
   glBindTextureUnit(0, faces.depth.name());
   glBindTextureUnit(1, faces.surface.name());
   glBindTextureUnit(2, scene_->node_of_triangle());
   glBindImageTexture(0, layers.depth.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
   glBindImageTexture(1, layers.node.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8UI);
-  glDispatchCompute(gl::groups(width, 8), gl::groups(height, 8), 1);
+  capture_.dispatch(width, height);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   find_blocks(layers);
 }
 
 void LayerCapture::find_blocks(const WarpLayers& layers) const {
-  blocks_.use();
   blocks_.set("size", Eigen::Vector2i(layers.lens.width(), layers.lens.height()));
   blocks_.set("of_part", static_cast<int>(layers.of_part));
   glBindTextureUnit(0, layers.depth.name());
   glBindImageTexture(0, layers.blocks.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  glDispatchCompute(gl::groups(layers.blocks.width(), 8), gl::groups(layers.blocks.height(), 8), 1);
+  blocks_.dispatch(layers.blocks.width(), layers.blocks.height());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

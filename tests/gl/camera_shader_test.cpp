@@ -59,11 +59,10 @@ std::vector<Answer> ask(const Lens& lens, const Faces& faces, const std::vector<
   camera.write(std::span(&block, 1));
   BufferTexture in(GL_RGBA32F, 16, "points");
   in.assign(std::span<const Eigen::Vector4f>(points));
-  program.use();
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, camera.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.name());
   glBindTextureUnit(0, in.texture());
-  glDispatchCompute(groups(static_cast<int>(points.size()), 64), 1, 1);
+  program.dispatch(static_cast<int>(points.size()));
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<Answer> answers(points.size());
   out.read(std::span<Answer>(answers));

@@ -48,8 +48,7 @@ TEST_F(EarlyUniformsTest, AreSetByTheirNames) {
   program.set("m", m);
   const Texture place(GL_R32F, 1, 1, 0, 1, "place");
   glBindImageTexture(0, place.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-  program.use();
-  glDispatchCompute(1, 1, 1);
+  program.dispatch(1);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   EXPECT_EQ(read_texture(place.name()).at<float>(0, 0), 4321.0F);
 }

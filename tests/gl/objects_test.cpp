@@ -84,10 +84,9 @@ TEST_F(ObjectsTest, ProgramsIncludeFilesAndTakeDefines) {
   const Program program = Program::compute(sources, "main.comp", {"DIVISOR 2u"});
   Buffer out(16, "out");
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.name());
-  program.use();
   program.set("start", 10u);
   program.set("no such uniform", 1);
-  glDispatchCompute(1, 1, 1);
+  program.dispatch(4);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::array<unsigned, 4> values{};
   out.read(std::span<unsigned>(values));
@@ -109,11 +108,31 @@ TEST_F(ObjectsTest, BadProgramsNameTheFile) {
   EXPECT_THAT(message({{"a.comp", "#include \"gone.glsl\"\n"}}, "a.comp"), testing::HasSubstr("gone.glsl"));
 }
 
-TEST_F(ObjectsTest, GroupsCoverEveryInvocation) {
-  EXPECT_EQ(groups(0, 8), 0u);
-  EXPECT_EQ(groups(1, 8), 1u);
-  EXPECT_EQ(groups(8, 8), 1u);
-  EXPECT_EQ(groups(9, 8), 2u);
+TEST_F(ObjectsTest, DispatchesReachEveryInvocation) {
+  const ShaderSources sources{{"count.comp",
+                               "layout(local_size_x = 8, local_size_y = 2, local_size_z = 3) in;\n"
+                               "layout(binding = 0, std430) buffer Out { uint last[3]; uint count; };\n"
+                               "void main() {\n"
+                               "  for (int i = 0; i < 3; ++i) atomicMax(last[i], gl_GlobalInvocationID[i]);\n"
+                               "  atomicAdd(count, 1u);\n"
+                               "}\n"}};
+  const Program program = Program::compute(sources, "count.comp");
+  const auto reached = [&](int across, int down, int deep) {
+    Buffer out(16, "out");
+    out.clear_to_zero();
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.name());
+    program.dispatch(across, down, deep);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    std::array<unsigned, 4> values{};
+    out.read(std::span<unsigned>(values));
+    return values;
+  };
+  EXPECT_THAT(reached(0, 1, 1), testing::ElementsAre(0u, 0u, 0u, 0u));
+  EXPECT_THAT(reached(1, 1, 1), testing::ElementsAre(7u, 1u, 2u, 48u));
+  EXPECT_THAT(reached(8, 2, 3), testing::ElementsAre(7u, 1u, 2u, 48u));
+  EXPECT_THAT(reached(9, 5, 4), testing::ElementsAre(15u, 5u, 5u, 12u * 48u));
+  EXPECT_EQ(program.groups(48), 1u);
+  EXPECT_EQ(program.groups(49), 2u);
 }
 
 }  // namespace

@@ -94,9 +94,8 @@ void main() {
   const gl::Buffer out(sizeof(places[0]) * places.size(), "places");
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.name());
   for (int level = 0; level < atlas::kLevels; ++level) {
-    program.use();
     program.set("level", level);
-    glDispatchCompute(gl::groups(static_cast<int>(places.size()), 64), 1, 1);
+    program.dispatch(static_cast<int>(places.size()));
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     out.read(std::span(places));
     const int side = atlas::kPage >> level;

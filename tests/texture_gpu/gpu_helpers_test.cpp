@@ -26,35 +26,41 @@ void main() { int i = int(gl_GlobalInvocationID.x); if (i < count && i % 3 == 0)
 )";
 
 const char* const kVisit = R"(
+layout(local_size_x = GROUP) in;
 #include "work_item.glsl"
-layout(local_size_x = ITEMS_PER_GROUP) in;
 layout(binding = 0, std430) buffer Visits { uint visits[]; };
 void main() { uint item; if (next_work(item)) atomicAdd(visits[item], 1u); }
 )";
 
 // 200,000 / 3 items are more than the 65,535 groups that one dimension of a dispatch may have.
 TEST_F(WorkListTest, EveryItemIsVisitedOnce) {
-  for (const unsigned items_per_group : {1u, 64u}) {
-    const std::vector<std::string> defines{"ITEMS_PER_GROUP " + std::to_string(items_per_group)};
-    const gl::Program fill = with_lists(kFill, defines), visit = with_lists(kVisit, defines);
-    WorkList list("test list", items_per_group);  // used again: what was listed before must be forgotten
+  struct Way {
+    unsigned group, invocations;  // of an item; 0: a group each
+  };
+  for (const Way way : {Way{4, 0}, Way{64, 1}, Way{64, 16}, Way{96, 2}}) {
+    std::vector<std::string> defines{"GROUP " + std::to_string(way.group)};
+    if (way.invocations) defines.push_back("INVOCATIONS_PER_ITEM " + std::to_string(way.invocations));
+    const gl::Program fill = with_lists(kFill, {}), visit = with_lists(kVisit, defines);
+    WorkList list("test list");  // used again: what was listed before must be forgotten
     for (const int count : {200000, 0, 1, 190, 193, 3000}) {
       gl::Buffer visits(4 * static_cast<std::size_t>(std::max(count, 1)), "visits");
       visits.clear_to_zero();
       list.start(static_cast<std::size_t>(count));
-      fill.use();
       fill.set("count", count);
-      glDispatchCompute(gl::groups(std::max(count, 1), 64), 1, 1);
-      list.finish();
-      visit.use();
+      fill.dispatch(std::max(count, 1));
+      if (way.invocations)
+        list.finish(visit, 15, way.invocations);
+      else
+        list.finish_for_groups();
       glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, visits.name());
-      list.dispatch();
+      list.dispatch(visit);
       glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
       std::vector<unsigned> got(static_cast<std::size_t>(count));
       visits.read(std::span<unsigned>(got));
+      const unsigned visits_of_item = way.invocations ? way.invocations : way.group;
       int wrong = 0;
-      for (std::size_t i = 0; i < got.size(); ++i) wrong += got[i] != (i % 3 == 0 ? 1u : 0u);
-      EXPECT_EQ(wrong, 0) << count << " items, " << items_per_group << " a group";
+      for (std::size_t i = 0; i < got.size(); ++i) wrong += got[i] != (i % 3 == 0 ? visits_of_item : 0u);
+      EXPECT_EQ(wrong, 0) << count << " items, " << way.group << " a group, " << way.invocations << " an item";
     }
   }
 }

@@ -33,8 +33,7 @@ class TexelTest : public HeadlessTest {
     in.write(std::span<const Eigen::Vector4f>(colours));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.name());
-    program.use();
-    glDispatchCompute(gl::groups(static_cast<int>(colours.size()), 64), 1, 1);
+    program.dispatch(static_cast<int>(colours.size()));
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     in.read(std::span(colours));
     std::vector<atlas::Texel> texels(colours.size());
