@@ -149,7 +149,7 @@ void ExpectedMotion::learn_gaps(const RobotReport& report) noexcept {
   gap_after_ = report.newest_set_point;
   gap_ = missing(report);
   stop_chance_ = 0;
-  if (gap_ < ReportGaps::kNotable || report.doing != GateDoing::following) return;
+  if (gap_ < LineGaps::kNotable || report.doing != GateDoing::following) return;
   const SentSetPoint& newest = *find(gap_after_);
   const double began = to_seconds(report.time - newest.sent) - gap_;
   stop_chance_ = gaps_.chance_to_reach(to_seconds(newest.lasts) - began, gap_);
@@ -250,7 +250,7 @@ void ExpectedMotion::begin_anew(const RobotReport& report, bool restarted) noexc
   cycles_.next() = state;
   next_ = first_after(state.taken);
   acts_after_ = seconds(delay_.seconds);
-  held_until_ = report.time + seconds(gap_ < ReportGaps::kNotable ? 0 : gaps_.expected_length(gap_) - gap_);
+  held_until_ = report.time + seconds(gap_ < LineGaps::kNotable ? 0 : gaps_.expected_length(gap_) - gap_);
 }
 
 std::optional<ExpectedMotion::Change> ExpectedMotion::reported(const RobotReport& report, RobotTime now) noexcept {
@@ -262,7 +262,7 @@ std::optional<ExpectedMotion::Change> ExpectedMotion::reported(const RobotReport
   const GateModel::State* expected = cycle_at(report.time);
   const bool other_line = std::abs(delay_.seconds - to_seconds(acts_after_)) > options_.sooner;
   const bool as_expected = expected != nullptr && agrees(report, *expected);
-  const bool held_longer = gap_ >= ReportGaps::kNotable && held_until_ <= report.time;
+  const bool held_longer = gap_ >= LineGaps::kNotable && held_until_ <= report.time;
   if (as_expected && !other_line && !held_longer && deviation(report, *expected) <= options_.tolerance) {
     confirmed_ = report.time;
     return {};

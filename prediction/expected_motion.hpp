@@ -13,7 +13,7 @@
 #include "prediction/gate_model.hpp"
 #include "prediction/last_of.hpp"
 #include "prediction/line_delay.hpp"
-#include "prediction/report_gaps.hpp"
+#include "prediction/line_gaps.hpp"
 
 namespace foresight {
 
@@ -87,7 +87,7 @@ class ExpectedMotion {
   Duration acts_after_{};        // the delay by which the cycles were made
   double late_ = 0;              // s that a set-point which has come waits until the gate takes it
   double overtaken_ = 0;         // s by which the gate's newest set-point is older than one that takes the line's delay
-  ReportGaps gaps_;              // of set-points
+  LineGaps gaps_;                // of set-points
   double gap_ = 0;               // s that none came, of those that should have
   std::uint64_t gap_after_ = 0;  // the set-point before it
   double stop_chance_ = 0;

@@ -21,7 +21,7 @@
 #include "prediction/correction_blend.hpp"
 #include "prediction/expected_motion.hpp"
 #include "prediction/joint_response.hpp"
-#include "prediction/report_gaps.hpp"
+#include "prediction/line_gaps.hpp"
 #include "scene/scene_model.hpp"
 
 namespace foresight {
@@ -184,7 +184,7 @@ class RobotFuture {
   ExpectedMotion motion_;
   std::vector<Joint> joints_;
   RobotTime epoch_, now_, reported_, came_, fed_, shown_, sent_at_;
-  ReportGaps gaps_;
+  LineGaps gaps_;
   Duration lasts_{};  // the newest set-point
   std::uint64_t sent_number_ = 0;
   GateDoing doing_ = GateDoing::away;

@@ -200,6 +200,27 @@ TEST(RobotFuture, WhatShouldHaveComeAndHasNotDoesNotAct) {
   EXPECT_LT(wrong, seen / 10) << "how long the first gap is nobody can know";
 }
 
+// Reports are on time, and tell that nothing comes: whether it comes before the robot stops nobody knows at first.
+TEST(RobotFuture, HowFarWhatIsHeldUpWouldTakeItIsTold) {
+  FutureWorld world;
+  constexpr double kDelay = 0.3, kGap = 0.9, kSeen = 0.75, kStops = 1;  // s
+  world.lasts = kDelay + kStops;
+  world.wish = [](double t) { return JointValues{0.8 * std::sin(0.5 * t), 0.5 * std::sin(1.7 * t)}; };
+  world.run(18);
+  world.line_cut_down = true;
+  world.run(kGap);
+  world.line_cut_down = false;
+  world.run(2 * kDelay + kSeen - kGap);
+  const PredictedRobot told = world.future().at(world.now() + seconds(world.future().delay().seconds));
+  const double left = std::abs(world.wish(world.t())[0] - told.position[0]);
+  ASSERT_EQ(told.status, StateStatus::predicted);
+  EXPECT_GT(left, 0.05) << "it would be there anyway: the test shows nothing";
+  EXPECT_GT(told.sigma[0], 0.45 * left) << "as likely as not";
+  world.run(2 * kDelay);
+  const double off = std::abs(told.position[0] - world.truth_at(told.time)[0]);
+  EXPECT_LT(off, 2 * told.sigma[0]);
+}
+
 // A line that stands still for less long than a set-point lasts, again and again: the robot went on each time.
 TEST(RobotFuture, ReportsThatAreLateAsOftenBeforeAreNoStop) {
   FutureWorld world;

@@ -11,12 +11,12 @@
 namespace foresight {
 
 /// One thread. Allocates at the start only; no method but the constructor throws. All times in s.
-class ReportGaps {
+class LineGaps {
  public:
   static constexpr double kNotable = 0.05;  ///< shorter gaps are nobody's concern
 
   /// `longest`: what is longer counts as that.
-  explicit ReportGaps(double longest) : longest_(longest), notable_(kKept) {}
+  explicit LineGaps(double longest) : longest_(longest), notable_(kKept) {}
 
   /// A report (or set-point, likewise below) came at `now`, so long after the one before.
   void add(double gap, double now) noexcept;

@@ -1,27 +1,27 @@
-#include "prediction/report_gaps.hpp"
+#include "prediction/line_gaps.hpp"
 
 #include <gtest/gtest.h>
 
-namespace foresight::report_gaps_test {
+namespace foresight::line_gaps_test {
 namespace {
 
 // Reports each 10 ms, and a gap of these seconds each second, until `until`.
-void pass(ReportGaps& gaps, double& now, double until, double gap) {
+void pass(LineGaps& gaps, double& now, double until, double gap) {
   while (now < until) {
     for (int i = 0; i < 80; ++i) gaps.add(0.01, now += 0.01);
     gaps.add(gap, now += gap);
   }
 }
 
-TEST(ReportGaps, NothingIsKnownBeforeTheFirst) {
-  ReportGaps gaps(1);
+TEST(LineGaps, NothingIsKnownBeforeTheFirst) {
+  LineGaps gaps(1);
   EXPECT_EQ(gaps.chance_to_reach(0.3, 0.1), 0.5);
   gaps.add(0.01, 1);
   EXPECT_EQ(gaps.chance_to_reach(0.3, 0.1), 0.5) << "what was not late says nothing of what is";
 }
 
-TEST(ReportGaps, GapsThatEndInTimeAreTrustedToDoSoAgain) {
-  ReportGaps gaps(1);
+TEST(LineGaps, GapsThatEndInTimeAreTrustedToDoSoAgain) {
+  LineGaps gaps(1);
   double now = 0;
   pass(gaps, now, 20, 0.2);
   EXPECT_LT(gaps.chance_to_reach(0.3, 0.15), 0.03);
@@ -29,8 +29,8 @@ TEST(ReportGaps, GapsThatEndInTimeAreTrustedToDoSoAgain) {
   EXPECT_GT(gaps.chance_to_reach(0.18, 0.15), 0.9);
 }
 
-TEST(ReportGaps, LongOnesAreNotForgottenForAMinute) {
-  ReportGaps gaps(1);
+TEST(LineGaps, LongOnesAreNotForgottenForAMinute) {
+  LineGaps gaps(1);
   double now = 0;
   pass(gaps, now, 5, 0.6);
   pass(gaps, now, 40, 0.2);
@@ -39,8 +39,8 @@ TEST(ReportGaps, LongOnesAreNotForgottenForAMinute) {
   EXPECT_LT(gaps.chance_to_reach(0.3, 0.15), 0.02);
 }
 
-TEST(ReportGaps, AreExpectedToLastAsLongAsOthersThatLastedSoLong) {
-  ReportGaps gaps(1);
+TEST(LineGaps, AreExpectedToLastAsLongAsOthersThatLastedSoLong) {
+  LineGaps gaps(1);
   EXPECT_EQ(gaps.expected_length(0.1), 0.2) << "as long again";
   double now = 0;
   pass(gaps, now, 20, 0.2);
@@ -50,8 +50,8 @@ TEST(ReportGaps, AreExpectedToLastAsLongAsOthersThatLastedSoLong) {
   EXPECT_EQ(gaps.expected_length(0.8), 1.6) << "none has lasted as long";
 }
 
-TEST(ReportGaps, UsualIsWhatMostKeep) {
-  ReportGaps gaps(1);
+TEST(LineGaps, UsualIsWhatMostKeep) {
+  LineGaps gaps(1);
   double now = 0;
   pass(gaps, now, 30, 0.2);
   EXPECT_LT(gaps.usual(), 0.03);
@@ -62,4 +62,4 @@ TEST(ReportGaps, UsualIsWhatMostKeep) {
 }
 
 }  // namespace
-}  // namespace foresight::report_gaps_test
+}  // namespace foresight::line_gaps_test

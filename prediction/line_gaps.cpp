@@ -1,4 +1,4 @@
-#include "prediction/report_gaps.hpp"
+#include "prediction/line_gaps.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,14 +12,14 @@ constexpr double kRise = 0.2, kFall = kRise * 0.05 / 0.95;  // a quantile rises 
 
 }  // namespace
 
-void ReportGaps::add(double gap, double now) noexcept {
+void LineGaps::add(double gap, double now) noexcept {
   if (gap < kTogether) return;
   usual_ = std::clamp(usual_ * (gap > usual_ ? 1 + kRise : 1 - kFall), 0.01, longest_);
   newest_ = now;
   if (gap >= kNotable) notable_.next() = {gap, now};
 }
 
-double ReportGaps::chance_to_reach(double length, double so_far) const noexcept {
+double LineGaps::chance_to_reach(double length, double so_far) const noexcept {
   double as_long = 0, reached = 0;
   for (std::size_t i = 0; i < notable_.size(); ++i) {
     const Gap& gap = notable_[i];
@@ -30,7 +30,7 @@ double ReportGaps::chance_to_reach(double length, double so_far) const noexcept 
   return (reached + 0.5) / (as_long + 1);
 }
 
-double ReportGaps::expected_length(double so_far) const noexcept {
+double LineGaps::expected_length(double so_far) const noexcept {
   std::array<double, kKept + 1> lengths{2 * so_far};
   auto end = lengths.begin() + 1;
   for (std::size_t i = 0; i < notable_.size(); ++i)
