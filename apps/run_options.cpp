@@ -7,6 +7,7 @@
 
 #include "apps/replay_report/progress_bar.hpp"
 #include "common/text.hpp"
+#include "scene/run_units.hpp"
 
 namespace foresight {
 
@@ -64,6 +65,8 @@ void add_images_option(Command& command, int& images) {
 
 RunFolder open_run(RunOptions& options) {
   RunFolder run = RunFolder::open(options.run, {.scene = options.scene});
+  if (const auto doubt = doubt_of_units(run))
+    std::cerr << "warning: " << options.run.string() << ": " << *doubt << "\n";
   options.textures.depth_tolerance =
       options.model_accuracy.value_or(run.scene()->accuracy().value_or(options.textures.depth_tolerance));
   return run;

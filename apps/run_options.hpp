@@ -25,8 +25,8 @@ void add_images_option(Command& command, int& images);
 /// Adds --accumulate (TextureOptions::accumulate). `accumulate` must live as long as `command`.
 Option* add_accumulate_option(Command& command, std::optional<bool>& accumulate);
 
-/// Reads and checks all of the run but its pixels, and sets options.textures.depth_tolerance by the
-/// model. Throws InputError.
+/// Reads and checks all of the run but its pixels, warns on stderr where it looks as if it were not in metres, and sets
+/// options.textures.depth_tolerance by the model. Throws InputError.
 RunFolder open_run(RunOptions& options);
 
 /// Reads every image once, with a progress bar on stderr. Throws InputError for the first bad one.
