@@ -1,11 +1,9 @@
-// The pages of a plan that are asked about, and the 4x4 points of each at which images are looked up. Needs
+// The pages that are asked about, and the 4x4 points of each at which images are looked up. Needs
 // chart_record.glsl and atlas.glsl.
 layout(binding = 7) uniform usamplerBuffer pages;  // as in cull.comp
 layout(binding = 8) uniform samplerBuffer charts;  // as planned
 layout(binding = 9) uniform usampler2DArray heights;
 uniform int page_count;
-uniform int first_page;  // the pages first_page, first_page + stride, ... are asked about
-uniform int stride;
 
 struct AskedPage {
   int chart_index;
@@ -15,12 +13,12 @@ struct AskedPage {
 };
 
 bool is_asked(int number) {
-  return first_page + number * stride < page_count;
+  return number < page_count;
 }
 
 // False where the page has no place.
 bool read_page(int number, out AskedPage page) {
-  uvec4 record = texelFetch(pages, 3 * (first_page + number * stride));
+  uvec4 record = texelFetch(pages, 3 * number);
   if (record.z == kNoSlot) return false;
   page = AskedPage(int(record.x), read_chart(charts, int(record.x)), ivec2(record.y & 0xffffu, record.y >> 16),
                    slot_origin(record.z, 0));

@@ -32,17 +32,15 @@ SurveyPass::SurveyPass(std::span<const Lens> lenses)
       perhaps_missed_(program("missed.comp", lenses, {"STEP 0"})),
       missed_(program("missed.comp", lenses, {"STEP 1"})),
       pages_(GL_RGBA32UI, 4096, "pages to survey"),
+      asked_pages_(GL_RGBA32UI, 4096, "pages to compare"),
       tiles_(GL_R32UI, 4096, "tiles to survey"),
       geometry_(GL_RGBA32F, 4096, "geometry of pages to survey") {}
 
 void SurveyPass::set_pages(std::span<const PageRecord> pages) {
   page_count_ = static_cast<int>(pages.size());
   pages_.assign(pages);
-  const std::size_t mask_bytes = pages.size() * sizeof(std::uint32_t),
-                    sample_bytes = pages.size() * sizeof(ExposureSample);
-  static_assert(sizeof(AgreementSample) <= sizeof(ExposureSample), "samples_ has room for either");
+  const std::size_t mask_bytes = pages.size() * sizeof(std::uint32_t);
   if (masks_.bytes() < mask_bytes) masks_ = gl::Buffer(mask_bytes * 3 / 2, "page masks");
-  if (samples_.bytes() < sample_bytes) samples_ = gl::Buffer(sample_bytes * 3 / 2, "page brightness");
 }
 
 std::vector<std::uint32_t> SurveyPass::cull(const SeenInputs& inputs, const gl::BufferTexture& charts,
@@ -115,39 +113,38 @@ SurveyPass::Missed SurveyPass::missed(const SeenInputs& inputs, std::span<const 
 }
 
 std::vector<ExposureSample> SurveyPass::brightness(const SeenInputs& inputs, const gl::BufferTexture& charts,
-                                                   const AtlasStore& store, int camera, double depth_tolerance,
-                                                   int first, int stride) {
-  std::vector<ExposureSample> samples(static_cast<std::size_t>(sample_count(first, stride)));
+                                                   const AtlasStore& store, std::span<const PageRecord> pages,
+                                                   int camera, double depth_tolerance) {
+  std::vector<ExposureSample> samples(pages.size());
   if (samples.empty()) return samples;
   inputs.bind(exposure_, depth_tolerance);
   exposure_.set("camera", camera);
-  bind_pages(exposure_, charts, store, first, stride);
+  bind_pages(exposure_, charts, store, pages);
   ask(exposure_, samples_, samples);
   return samples;
 }
 
 std::vector<AgreementSample> SurveyPass::agreement(const SeenInputs& inputs, const gl::BufferTexture& charts,
-                                                   const AtlasStore& store, const PublishedTextures& textures,
-                                                   double depth_tolerance, int first, int stride) {
-  std::vector<AgreementSample> samples(static_cast<std::size_t>(sample_count(first, stride)));
+                                                   const AtlasStore& store, std::span<const PageRecord> pages,
+                                                   const PublishedTextures& textures, double depth_tolerance) {
+  std::vector<AgreementSample> samples(pages.size());
   if (samples.empty()) return samples;
   inputs.bind(agreement_, depth_tolerance);
-  bind_pages(agreement_, charts, store, first, stride);
+  bind_pages(agreement_, charts, store, pages);
   textures.bind();
   ask(agreement_, samples_, samples);
   return samples;
 }
 
-int SurveyPass::sample_count(int first, int stride) const {
-  return first < page_count_ ? (page_count_ - first + stride - 1) / stride : 0;
-}
-
+/// And makes room for a sample of each.
 void SurveyPass::bind_pages(const gl::Program& program, const gl::BufferTexture& charts, const AtlasStore& store,
-                            int first, int stride) const {
-  program.set("page_count", page_count_);
-  program.set("first_page", first);
-  program.set("stride", stride);
-  glBindTextureUnit(7, pages_.texture());
+                            std::span<const PageRecord> pages) {
+  const std::size_t sample_bytes = pages.size() * sizeof(ExposureSample);
+  static_assert(sizeof(AgreementSample) <= sizeof(ExposureSample), "samples_ has room for either");
+  if (samples_.bytes() < sample_bytes) samples_ = gl::Buffer(sample_bytes * 3 / 2, "page brightness");
+  asked_pages_.assign(pages);
+  program.set("page_count", static_cast<int>(pages.size()));
+  glBindTextureUnit(7, asked_pages_.texture());
   glBindTextureUnit(8, charts.texture());
   glBindTextureUnit(9, store.heights.name());
 }

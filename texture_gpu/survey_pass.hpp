@@ -21,7 +21,7 @@ class SurveyPass {
   /// `lenses`: of all cameras.
   explicit SurveyPass(std::span<const Lens> lenses);
 
-  /// Uploads the pages to be asked about.
+  /// Uploads the pages that cull() asks about.
   void set_pages(std::span<const PageRecord> pages);
 
   /// One mask per page: bit 2 * tile + camera (cull.comp). Waits for the GPU. `gate`: in slices; may be null.
@@ -39,27 +39,25 @@ class SurveyPass {
   Missed missed(const SeenInputs& inputs, std::span<const Eigen::Vector4f> geometry, const AtlasStore& store,
                 std::span<const std::uint32_t> seen, double depth_tolerance, double worse, FrameGate* gate = nullptr);
 
-  /// Samples of the pages first, first + stride, ... as `camera` sees them now (exposure.comp).
-  /// Waits for the GPU.
+  /// Samples of `pages` as `camera` sees them now (exposure.comp). Waits for the GPU.
   std::vector<ExposureSample> brightness(const SeenInputs& inputs, const gl::BufferTexture& charts,
-                                         const AtlasStore& store, int camera, double depth_tolerance, int first,
-                                         int stride);
+                                         const AtlasStore& store, std::span<const PageRecord> pages, int camera,
+                                         double depth_tolerance);
 
-  /// How well the first camera's image agrees with `textures` on those pages (agreement.comp). Waits for the GPU.
+  /// How well the first camera's image agrees with `textures` on `pages` (agreement.comp). Waits for the GPU.
   std::vector<AgreementSample> agreement(const SeenInputs& inputs, const gl::BufferTexture& charts,
-                                         const AtlasStore& store, const PublishedTextures& textures,
-                                         double depth_tolerance, int first, int stride);
+                                         const AtlasStore& store, std::span<const PageRecord> pages,
+                                         const PublishedTextures& textures, double depth_tolerance);
 
  private:
   std::vector<std::uint32_t> ask_tiles(const gl::Program& program, std::span<const std::uint32_t> tiles,
                                        FrameGate* gate, const char* kind);
 
-  int sample_count(int first, int stride) const;
-  void bind_pages(const gl::Program& program, const gl::BufferTexture& charts, const AtlasStore& store, int first,
-                  int stride) const;
+  void bind_pages(const gl::Program& program, const gl::BufferTexture& charts, const AtlasStore& store,
+                  std::span<const PageRecord> pages);
 
   gl::Program cull_, exposure_, agreement_, perhaps_missed_, missed_;
-  gl::BufferTexture pages_, tiles_, geometry_;
+  gl::BufferTexture pages_, asked_pages_, tiles_, geometry_;
   gl::Buffer masks_, samples_, answers_;
   int page_count_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "gl/context.hpp"
@@ -11,7 +12,7 @@ namespace foresight {
 namespace {
 
 // Enough for a median of an image; of an average over ten images half as many.
-constexpr int kComparedPages = 600, kPagesPerAligned = 2;
+constexpr std::size_t kComparedPages = 600, kPagesPerAligned = 2;
 constexpr int kMostAccumulated = 320 * 240;  // px of an image, by a software renderer
 // Images within which a page that stays in view is written anyway; the same after the lamp became known or was lost.
 constexpr std::uint64_t kImagesToRefresh = 32, kImagesToRelight = 8;
@@ -351,24 +352,38 @@ bool TextureCore::place(const Masks& wanted, std::int64_t image, ChartAtlas::All
 
 /// How bright the new image is beside those before, and how well it lies on them.
 void TextureCore::compare_with_textures() {
-  // Each image asks other pages, so that all get references.
-  const int stride = std::max(1, static_cast<int>(records_.size()) / kComparedPages);
-  if (options_.even_exposure) estimate_exposure(static_cast<int>(image_ % stride), stride);
-  const int wide = kPagesPerAligned * stride;
-  sharpness_.update(survey_.agreement(newest_.inputs, charts_, store_, *current_, options_.depth_tolerance,
-                                      static_cast<int>(image_ % wide), wide));
+  if (options_.even_exposure) estimate_exposure();
+  // Each image others.
+  const std::size_t turns = kPagesPerAligned * std::max<std::size_t>(1, records_.size() / kComparedPages);
+  std::vector<PageRecord> pages;
+  for (std::size_t i = static_cast<std::size_t>(image_) % turns; i < records_.size(); i += turns)
+    pages.push_back(records_[i]);
+  sharpness_.update(survey_.agreement(newest_.inputs, charts_, store_, pages, *current_, options_.depth_tolerance));
   newest_.compared = true;
   mark("exposure");
 }
 
-void TextureCore::estimate_exposure(int first, int stride) {
+/// Of those that have a place. Each image asks others, so that all get references, and half of those that the image
+/// before asked, whose references are there.
+std::vector<PageRecord> TextureCore::pages_of_exposure() const {
+  std::vector<PageRecord> placed, out;
+  std::ranges::copy_if(records_, std::back_inserter(placed),
+                       [](const PageRecord& page) { return page.height_slot != atlas::kNoSlot; });
+  const std::size_t turns = std::max<std::size_t>(1, 2 * placed.size() / kComparedPages);
+  const std::size_t now = static_cast<std::size_t>(image_) % turns, next = (now + 1) % turns;
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    if (i % turns == now || i % turns == next) out.push_back(placed[i]);
+  return out;
+}
+
+void TextureCore::estimate_exposure() {
+  const std::vector<PageRecord> records = pages_of_exposure();
   std::vector<AtlasPage*> pages;
-  for (std::size_t i = static_cast<std::size_t>(first); i < records_.size(); i += static_cast<std::size_t>(stride))
-    pages.push_back(&atlas_.page_of(records_[i]));
+  for (const PageRecord& record : records) pages.push_back(&atlas_.page_of(record));
   std::vector<Eigen::Vector3f> tones;
   for (std::size_t i = 0; i < newest_.images.size(); ++i) {
-    const auto samples = survey_.brightness(newest_.inputs, charts_, store_, static_cast<int>(i),
-                                            options_.depth_tolerance, first, stride);
+    const auto samples =
+        survey_.brightness(newest_.inputs, charts_, store_, records, static_cast<int>(i), options_.depth_tolerance);
     exposures_[i].update(samples, pages, image_);
     if (i == 0 && newest_.images.size() > 1) ColourBalance::remember(samples, pages);
     // Of an image that shadows were taken out of, the correction waits for the next.

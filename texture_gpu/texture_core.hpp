@@ -69,7 +69,8 @@ class TextureCore {
   void keep_newest();
   std::shared_ptr<const NewestImages> lend(bool with_before) const;
   void compare_with_textures();
-  void estimate_exposure(int first, int stride);
+  std::vector<PageRecord> pages_of_exposure() const;
+  void estimate_exposure();
   bool is_exposure_known(std::size_t camera) const;
   bool save_what_leaves(LatestTextures& latest);
   SurveyPass::Missed not_shown(const SeenInputs& inputs, const std::vector<AtlasView>& views, const Masks& tiles);

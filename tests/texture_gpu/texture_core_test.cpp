@@ -283,6 +283,20 @@ TEST_F(TextureCoreTest, FollowsTheGainOfTheImages) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(process(frame(orbit(0), 0, 1 - 0.2 * i)).log_gain, 0);
 }
 
+// Far more pages than are compared with each image.
+TEST_F(TextureCoreTest, KnowsTheGainOfTheSecondLargeImage) {
+  Lens::Parameters large;
+  large.width = 960, large.height = 720;
+  large.fx = 780, large.fy = 790, large.cx = 479, large.cy = 361;
+  lens_ = Lens(large);
+  make({.memory_bytes = 256 << 20});
+  EXPECT_GT(process(frame(orbit(0))).pages, 1500u);
+  for (const double gain : {0.8, 0.9, 1.1}) {
+    const ExtractionReport report = process(frame(orbit(0), 0, gain));
+    EXPECT_NEAR(std::exp(report.log_gain), gain, 0.01);
+  }
+}
+
 TEST_F(TextureCoreTest, MatchesTheGoldenAtlas) {
   make();
   process(frame(orbit(0)));
