@@ -9,9 +9,9 @@
 namespace foresight {
 namespace {
 
-constexpr double kLarge = 250;     // m, and of the camera's path
-constexpr double kSmallPath = 1;   // m: a camera that moves less tells as much of the scene's size as one that does
-constexpr double kLeast = 0.005;   // rad that a part takes: two to five pixels of most cameras
+constexpr double kLarge = 250;    // m, and of the camera's path
+constexpr double kSmallPath = 1;  // m: a camera that moves less tells as much of the scene's size as one that does
+constexpr double kLeast = 0.005;  // rad that a part takes: two to five pixels of most cameras
 
 Eigen::AlignedBox3d box_of(const Mesh& mesh) {
   Eigen::AlignedBox3d box;
@@ -33,7 +33,8 @@ std::optional<std::string> too_large(const RunFolder& run, const std::vector<Eig
     const double size = boxes[i].isEmpty() ? 0 : boxes[i].sizes().maxCoeff();
     if (size > kLarge * std::max(moved, kSmallPath))
       return fmt::format(
-          "{} of the model is {:.0f} m large, and the camera's path {:.1f} m: if it is in millimetres, scale its mesh by "
+          "{} of the model is {:.0f} m large, and the camera's path {:.1f} m: if it is in millimetres, scale its mesh "
+          "by "
           "0.001, as models are in metres",
           in_quotes(run.scene()->nodes()[i].name), size, moved);
   }
@@ -57,7 +58,8 @@ std::optional<std::string> too_small(const RunFolder& run, const std::vector<Eig
     }
   }
   return fmt::format(
-      "no part of the model takes more than some pixels of an image ({} is {:.3g} m large, and {:.4g} m away at least): "
+      "no part of the model takes more than some pixels of an image ({} is {:.3g} m large, and {:.4g} m away at "
+      "least): "
       "models and trajectory.txt are in metres",
       in_quotes(run.scene()->nodes()[part].name), boxes[part].diagonal().norm(), nearest);
 }

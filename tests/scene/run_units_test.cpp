@@ -7,8 +7,8 @@
 namespace foresight::run_units_test {
 namespace {
 
-/// A triangle of `size` a metre ahead of a camera that goes `step` to the right from image to image, from `start` on, in
-/// what its maker took for metres.
+/// A triangle of `size` a metre ahead of a camera that goes `step` to the right from image to image, from `start` on,
+/// in what its maker took for metres.
 std::string doubt(double size, double step, double start = 0) {
   const TestRun run;
   run.write("scene.ply",
