@@ -18,7 +18,7 @@ nlohmann::json measured(const TempFolder& out, const std::string& rig, std::vect
 TEST(PredictionRobot, TheToolIsShownWhereItWillBeAcrossASecond) {
   const TempFolder out;
   for (const char* rig : {"minerva.yaml", "cia402.yaml"}) {
-    const nlohmann::json all = measured(out, rig, {"--seconds", "25", "--seed", "3"});
+    const nlohmann::json all = measured(out, rig, {"--seconds", "40", "--seed", "3"});
     ASSERT_FALSE(all.is_null()) << rig;
     EXPECT_GT(all["judged"].get<int>(), 1000) << rig;
     EXPECT_GT(all["fastest_share"].get<double>(), 0.99) << rig << ": up to full speed";
