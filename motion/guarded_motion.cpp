@@ -1,13 +1,31 @@
 #include "motion/guarded_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace foresight {
 namespace {
 
-constexpr int kSamplesToRest = 4;      // poses checked on the way to where the robot would stop
-constexpr double kRetreatSpeed = 0.1;  // away from what the robot stands too close to
-constexpr double kSameMargin = 1e-9;   // metres, rounding
+constexpr int kSamplesToRest = 16;          // poses checked on the way to where the robot would stop
+constexpr int kMostCyclesToRest = 100'000;  // only to end the loop with motions that are nonsense
+constexpr double kRetreatSpeed = 0.1;       // away from what the robot stands too close to
+constexpr double kSameMargin = 1e-9;        // metres, rounding
+
+/// A cycle of the fastest stop of all joints. How far they go in it, all together.
+double brake_all(GuardedMotion::Motions& motions, std::span<const JointLimits> limits, double dt) {
+  double gone = 0;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const JointMotion next = brake(motions[i], limits[i], dt);
+    gone += std::abs(next.position - motions[i].position);
+    motions[i] = next;
+  }
+  return gone;
+}
+
+bool all_rest(const GuardedMotion::Motions& motions, std::size_t joints) {
+  return std::all_of(motions.begin(), motions.begin() + static_cast<std::ptrdiff_t>(joints),
+                     [](const JointMotion& m) { return m.velocity == 0 && m.acceleration == 0; });
+}
 
 }  // namespace
 
@@ -30,15 +48,27 @@ GuardedMotion::Next GuardedMotion::towards(const JointValues& targets, double sp
   return next;
 }
 
-/// `check` is asked of positions from the next ones to where the robot would stop after them.
+/// `check` is asked of positions from the next ones to where the robot would stop after them. Each joint brakes for its
+/// own time, so these lie on no straight line between the two; they follow each other at equal shares of the way that
+/// all joints go together.
 template <typename Check>
 bool GuardedMotion::all_to_rest(const Next& next, Check&& check) noexcept {
-  JointValues between{};
-  for (int k = 0; k <= kSamplesToRest; ++k) {
-    const double share = static_cast<double>(k) / kSamplesToRest;
-    for (std::size_t i = 0; i < limits_.size(); ++i)
-      between[i] = next.motion[i].position + share * (next.stop[i] - next.motion[i].position);
-    if (!check(std::span<const double>(between.data(), limits_.size()))) return false;
+  const std::size_t joints = limits_.size();
+  Motions motions = next.motion;
+  const auto clear = [&] {
+    JointValues positions{};
+    for (std::size_t i = 0; i < joints; ++i) positions[i] = motions[i].position;
+    return check(std::span<const double>(positions.data(), joints));
+  };
+  double way = 0;
+  for (std::size_t i = 0; i < joints; ++i) way += std::abs(next.stop[i] - motions[i].position);
+  if (!clear()) return false;
+  double since = 0;
+  for (int cycle = 0; cycle < kMostCyclesToRest && !all_rest(motions, joints); ++cycle) {
+    since += brake_all(motions, limits_, dt_);
+    if (since < way / kSamplesToRest && !all_rest(motions, joints)) continue;
+    if (!clear()) return false;
+    since = 0;
   }
   return true;
 }
@@ -93,12 +123,11 @@ std::optional<GuardedMotion::Blocked> GuardedMotion::go_towards(const JointValue
 }
 
 void GuardedMotion::halt() noexcept {
-  for (std::size_t i = 0; i < limits_.size(); ++i) motion_[i] = brake(motion_[i], limits_[i], dt_);
+  brake_all(motion_, limits_, dt_);
 }
 
 bool GuardedMotion::at_rest() const noexcept {
-  return std::all_of(motion_.begin(), motion_.begin() + static_cast<std::ptrdiff_t>(limits_.size()),
-                     [](const JointMotion& m) { return m.velocity == 0 && m.acceleration == 0; });
+  return all_rest(motion_, limits_.size());
 }
 
 }  // namespace foresight

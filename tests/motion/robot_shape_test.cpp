@@ -169,6 +169,36 @@ TEST_F(RobotShapeTest, OutOfAFoldThereIsAWay) {
   EXPECT_NEAR(at[2], 0, 1e-3);
 }
 
+// Some joints brake four times as long as others, and targets come while they still move.
+TEST_F(RobotShapeTest, WhateverTheRobotIsAskedItStaysClear) {
+  GateOptions options;
+  for (const double acceleration : {2.0, 8.0, 2.0, 8.0})
+    options.joints.push_back({"turn", {-2.8, 2.8, 1, acceleration, 15 * acceleration}});
+  options.surroundings.workspace = {Eigen::Vector3d(-2, -2, -1.2), Eigen::Vector3d(2, 2, 2)};
+  options.surroundings.obstacles = {{"crate", {Eigen::Vector3d(0.5, -1, -0.5), Eigen::Vector3d(0.7, 1, 0.3)}}};
+  GuardedMotion motion(options, &shape_);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> position(-2.8, 2.8);
+  std::uniform_int_distribution<int> cycles(10, 400);
+  std::vector<double> margins(shape_.couples());
+  int blocked = 0;
+  double least = 1;
+  JointValues targets{}, at{};
+  for (int cycle = 0, until = 0; cycle < 20'000; ++cycle) {
+    if (cycle == until) {
+      for (std::size_t i = 0; i < 4; ++i) targets[i] = position(random);
+      until += cycles(random);
+    }
+    blocked += motion.go_towards(targets, 1) ? 1 : 0;
+    for (std::size_t i = 0; i < 4; ++i) at[i] = motion[i].position;
+    shape_.margins({at.data(), 4}, margins);
+    least = std::min(least, *std::ranges::min_element(margins));
+  }
+  EXPECT_GT(least, -0.1e-3);
+  EXPECT_GT(blocked, 1000) << "nothing is in its way";
+  EXPECT_LT(blocked, 15'000) << "it hardly moves";
+}
+
 TEST_F(RobotShapeTest, WhatIsTooCloseHasTheLeastMargin) {
   surroundings_.workspace = {Eigen::Vector3d(-1.2, -1, -0.5), Eigen::Vector3d(1.2, 1, 1.5)};
   surroundings_.obstacles = {{"table", {Eigen::Vector3d(0.3, -3, -1), Eigen::Vector3d(3, 3, -0.125)}},
