@@ -29,9 +29,7 @@ Doing doing_of(const RobotCycle& cycle) {
 /// The same words as in the terminal.
 RobotWords words_of(const RobotCycle& cycle, Doing doing, const std::vector<JointWords>& joints) {
   if (doing == Doing::held)
-    return {"held back: " +
-                place_text(joints[static_cast<std::size_t>(cycle.hold.joint)], cycle.hold.stands, cycle.hold.asked) +
-                ": " + parts_text(cycle.hold),
+    return {"held back: " + held_text(cycle.hold, joints[static_cast<std::size_t>(cycle.hold.joint)]),
             words_for(GateReason::obstructed).cure};
   RobotStatus status;
   status.phase = cycle.phase;

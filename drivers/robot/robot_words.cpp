@@ -238,11 +238,15 @@ std::string parts_text(const GateHold& hold) {
   return fmt::format("{} ({:.1f} mm apart, {:.1f} mm are kept)", hold.parts, 1e3 * hold.apart, 1e3 * hold.kept_apart);
 }
 
+std::string held_text(const GateHold& hold, const JointWords& joint) {
+  if (position_text(hold.stands, joint.unit) == position_text(hold.asked, joint.unit)) return parts_text(hold);
+  return place_text(joint, hold.stands, hold.asked) + ": " + parts_text(hold);
+}
+
 std::string hold_text(const GateHold& hold, std::span<const JointWords> joints, RobotTime now) {
   const auto joint = static_cast<std::size_t>(hold.joint);
   if (hold.joint < 0 || joint >= joints.size()) return "";
-  return fmt::format("held for {:.1f} s: ", to_seconds(now - hold.since)) +
-         place_text(joints[joint], hold.stands, hold.asked) + ": " + parts_text(hold);
+  return fmt::format("held for {:.1f} s: ", to_seconds(now - hold.since)) + held_text(hold, joints[joint]);
 }
 
 }  // namespace foresight

@@ -40,7 +40,9 @@ std::string position_text(double position, const std::string& unit);
 std::string place_text(const JointWords& joint, double stands, double should);
 /// "link 'arm_5' comes too close to obstacle 'table' (21.3 mm apart, 20.0 mm are kept)"
 std::string parts_text(const GateHold& hold);
-/// "held for 3.2 s: ", then the two before; "" where nothing holds the robot back.
+/// The two before, with ": " between; the parts alone where the joint, as it would be written, stands where it should.
+std::string held_text(const GateHold& hold, const JointWords& joint);
+/// "held for 3.2 s: ", then held_text(); "" where nothing holds the robot back.
 std::string hold_text(const GateHold& hold, std::span<const JointWords> joints, RobotTime now);
 
 }  // namespace foresight

@@ -119,6 +119,10 @@ TEST(RobotWords, SayWhatHoldsIt) {
       hold_text(hold, kJoints, RobotTime{4'500'000'000}),
       "held for 3.5 s: joint yaw stands at 0.2500 rad and should be at 1.0000 rad: link 'a' comes too close to 'b' "
       "(21.3 mm apart, 20.0 mm are kept)");
+  hold.asked = 0.25004;
+  EXPECT_EQ(hold_text(hold, kJoints, RobotTime{4'500'000'000}),
+            "held for 3.5 s: link 'a' comes too close to 'b' (21.3 mm apart, 20.0 mm are kept)")
+      << "the joint stands where it should be";
   hold.kept_apart = 0;
   hold.parts = "link 'a' leaves the workspace";
   EXPECT_THAT(parts_text(hold), testing::HasSubstr("workspace (21.3 mm before its end)"));
