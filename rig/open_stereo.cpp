@@ -98,9 +98,8 @@ OpenStereo open_stereo(const StereoConfig& config, const sim::ShaftsAt& shafts, 
     if (world.physics) {
       out.physics = std::make_shared<sim::PhysicalLab>(lab, shafts, clock.now(), *world.physics);
       options.state = [physics = out.physics](RobotTime time) { return physics->state_at(time); };
+      options.moving_light = true;
     }
-    // In real time it would take a third of the renderer's time.
-    options.moving_light = world.physics || dynamic_cast<SteppedClock*>(&clock) != nullptr;
     out.mock = std::make_shared<sim::MockStereo>(lab, shafts, options, clock);
   }
   std::array<std::unique_ptr<Camera>, 2> cameras;
