@@ -405,14 +405,19 @@ void RobotFuture::look_for_surprise(const Shown& shown) noexcept {
   const bool in_time = std::abs(motion_.delay().seconds - shown.delay) < kOtherDelay;
   if (in_time && (was == nullptr || was->doing == shown.doing)) return;
   const double time = since_epoch(shown.robot.time);
-  const bool goes_on = surprise_ && time < surprise_->last + kGoesOn + 2 * motion_.delay().seconds;
+  const bool goes_on = surprise_ && time < surprise_over();
   surprise_ =
       goes_on ? Surprise{std::min(surprise_->from, time), std::max(surprise_->last, time)} : Surprise{time, time};
 }
 
 bool RobotFuture::was_surprised(RobotTime time) const noexcept {
   const double at = since_epoch(time);
-  return surprise_ && at >= surprise_->from && at < surprise_->last + kGoesOn + 2 * motion_.delay().seconds;
+  return surprise_ && at >= surprise_->from && at < surprise_over();
+}
+
+/// Of the one that there is.
+double RobotFuture::surprise_over() const noexcept {
+  return surprise_->last + kGoesOn + 2 * motion_.delay().seconds;
 }
 
 double RobotFuture::Shown::error(std::size_t joint, const JointValues& truth) const noexcept {

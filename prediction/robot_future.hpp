@@ -168,6 +168,7 @@ class RobotFuture {
   void compare(const Shown& shown) noexcept;
   void learn(const Shown& shown) noexcept;
   void look_for_surprise(const Shown& shown) noexcept;
+  double surprise_over() const noexcept;
   std::optional<double> measured_until() const noexcept;
   bool measured(double time, PredictedRobot& out) const noexcept;
   Shown predict(RobotTime time) const noexcept;
