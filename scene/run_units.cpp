@@ -33,9 +33,8 @@ std::optional<std::string> too_large(const RunFolder& run, const std::vector<Eig
     const double size = boxes[i].isEmpty() ? 0 : boxes[i].sizes().maxCoeff();
     if (size > kLarge * std::max(moved, kSmallPath))
       return fmt::format(
-          "{} of the model is {:.0f} m large, and the camera's path {:.1f} m: if it is in millimetres, scale its mesh "
-          "by "
-          "0.001, as models are in metres",
+          "{} of the model is {:.0f} m large, and the camera's path {:.1f} m: if it is in millimetres, "
+          "scale its mesh by 0.001, as models are in metres",
           in_quotes(run.scene()->nodes()[i].name), size, moved);
   }
   return std::nullopt;
@@ -58,9 +57,8 @@ std::optional<std::string> too_small(const RunFolder& run, const std::vector<Eig
     }
   }
   return fmt::format(
-      "no part of the model takes more than some pixels of an image ({} is {:.3g} m large, and {:.4g} m away at "
-      "least): "
-      "models and trajectory.txt are in metres",
+      "no part of the model takes more than some pixels of an image ({} is {:.3g} m large, and {:.4g} m away "
+      "at least): models and trajectory.txt are in metres",
       in_quotes(run.scene()->nodes()[part].name), boxes[part].diagonal().norm(), nearest);
 }
 
