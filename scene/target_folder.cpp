@@ -81,7 +81,9 @@ TargetFolder::TargetFolder(const fs::path& target, FolderForm form) : form_(std:
   try {
     require_replaceable(target_.string(), target_, form_);
     fs::create_directories(target_.parent_path());
+    const StopSignalsHeld held;
     partial_ = form_.irreplaceable ? make_unfinished(target_) : make_partial(target_);
+    empty_.emplace(partial_);
   } catch (const fs::filesystem_error& e) {
     throw InputError(target.string(), "cannot be written (" + e.code().message() + ")", "choose a writable place");
   }

@@ -3,9 +3,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "common/removed_when_stopped.hpp"
 
 namespace foresight {
 
@@ -25,7 +28,8 @@ void require_replaceable(const std::string& where, const std::filesystem::path& 
 std::vector<std::filesystem::path> unfinished_beside(const std::filesystem::path& target);
 
 /// All is written into path(), a neighbour of the target, which commit() gives the target's name. Without commit()
-/// nothing stays, unless keep() is called. One thread.
+/// nothing stays, unless keep() is called; a stop signal that ends the program at once removes it while it is empty.
+/// One thread.
 class TargetFolder {
  public:
   /// Throws InputError: what require_replaceable() refuses, or a place that cannot be written.
@@ -47,6 +51,7 @@ class TargetFolder {
  private:
   FolderForm form_;
   std::filesystem::path target_, partial_;
+  std::optional<RemovedWhenStopped> empty_;
 };
 
 }  // namespace foresight

@@ -9,7 +9,6 @@
 
 #include "common/error.hpp"
 #include "common/parallel.hpp"
-#include "common/removed_when_stopped.hpp"
 #include "pictures/encode.hpp"
 #include "scene/files.hpp"
 #include "scene/run_writer.hpp"
@@ -83,8 +82,6 @@ class SynthRun {
   }
 
   SynthSummary write_all(const std::function<void(int, int)>& progress, const std::function<void()>& begins) {
-    // Until something is in it: all that a signal could leave behind that ends the program at once.
-    std::optional<RemovedWhenStopped> empty(target_.path());
     Lab lab = make_lab(0.0005 * std::clamp(relative_, 0.6, 8.0), options_.seed);
     for (Material& material : lab.materials)
       material.gloss = std::max(material.gloss, static_cast<float>(options_.gloss));
@@ -98,7 +95,6 @@ class SynthRun {
     const LightMap light(lab, std::clamp(relative_, 0.6, 16.0), poll);
     const Renderer renderer(lab, light, poll);
     if (begins) begins();
-    empty.reset();
     RunWriter run(target_.path(), lenses_[0], "synth_left");
     if (options_.stereo) run.add_right_camera(lenses_[1], T_left_right(), "synth_right");
     write_scene(target_.path(), lab, arm_position_at(0));

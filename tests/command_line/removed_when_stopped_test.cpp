@@ -11,6 +11,7 @@
 
 #include "apps/command_line/writable.hpp"
 #include "common/stop_signal.hpp"
+#include "scene/target_folder.hpp"
 #include "tests/scene/test_run.hpp"
 
 namespace foresight::removed_when_stopped_test {
@@ -75,6 +76,16 @@ TEST(RemovedWhenStopped, ASignalWaitsWhileSomethingIsMade) {
             kStopped);
   EXPECT_TRUE(fs::exists(waited));
   EXPECT_FALSE(fs::exists(made));
+}
+
+TEST(RemovedWhenStopped, ATargetFolderGoesFromItsFirstInstantOn) {
+  const TempFolder folder;
+  EXPECT_EQ(in_a_process([&] {
+              const TargetFolder target(folder / "run", {});
+              ::raise(SIGTERM);
+            }),
+            kStopped);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
 }  // namespace
