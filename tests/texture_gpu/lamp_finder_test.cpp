@@ -299,6 +299,25 @@ TEST(LampFinder, LooksNoFurtherThanTheKnownLampWhereThatStillExplainsAsMuch) {
   EXPECT_LT(degrees_off(*moved.lamp), 4);
 }
 
+TEST(LampFinder, LooksNoFurtherThanTheLampOfSingleImagesWhereTheseStillTellIt) {
+  Room room;
+  room.show(0, 2, {kLamp});
+  const ShadowRays rays(*room.scene);
+  LampQuestion question = room.question();
+  question.last = find_lamp(rays, question);
+  ASSERT_TRUE(question.last.lamp);
+  EXPECT_FALSE(question.last.told_by_what_moves);
+  question.last.still_elsewhere = 0.0123;
+  question.all_around = false;
+  const LampAnswer near = find_lamp(rays, question);
+  ASSERT_TRUE(near.lamp);
+  EXPECT_EQ(near.still_elsewhere, 0.0123) << "what other places explain is not asked";
+  EXPECT_LT(degrees_off(*near.lamp), 8);
+
+  question.last.still *= 2;  // it explained more before
+  EXPECT_NE(find_lamp(rays, question).still_elsewhere, 0.0123);
+}
+
 TEST(LampFinder, AFewPointsDoNotTellThatALampIsOff) {
   Room room;
   room.show(0, 10, {});

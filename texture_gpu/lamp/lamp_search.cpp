@@ -17,7 +17,8 @@ using Eigen::VectorXd;
 constexpr std::size_t kFewestDark = 40;
 constexpr std::size_t kMostCoarse = 400;
 constexpr int kDirections = 300;
-constexpr double kDistances[] = {1.5, 3, 10};                         // extents of what moves
+constexpr double kDistance = 3, kOtherDistances[] = {1.5, 10};        // extents of what moves
+constexpr std::size_t kWorthOthers = 75;                              // directions that are looked at in these, too
 constexpr double kRadii[] = {0, 0.02, 0.04, 0.07, 0.11, 0.16, 0.22};  // of the distance
 constexpr double kApart = 0.35;                                       // radians: another direction
 constexpr double kWorthSoft = 0.6;  // of the best score with hard shadows: may be the best with soft ones
@@ -87,6 +88,7 @@ class LampSearch {
   std::vector<Candidate> fine(std::span<const Coarse> all);
   LampAnswer keep(LampAnswer out) const;
   std::optional<LampAnswer> confirm();
+  bool still_holds(const Candidate& best, const LampAnswer& before) const;
   LampStrength strength(const Lamp& lamp) const { return lamp_strength(moving_, single_, lamp.position, lamp.radius); }
   Candidate as_candidate(const Lamp& lamp) const;
   Lamp as_lamp(const Candidate& c) const { return {place(c), c.radius * c.distance, {}}; }
@@ -225,15 +227,19 @@ std::vector<LampSearch::Coarse> LampSearch::coarse() {
     judge_coarsely(one.lamp, one.more_hidden);
     out.push_back(std::move(one));
   };
+  const auto sort = [&] { std::ranges::sort(out, std::greater(), [](const Coarse& one) { return one.lamp.score; }); };
   for (int i = 0; i < kDirections; ++i) {  // evenly over the sphere
     const double z = 1 - 2 * (i + 0.5) / kDirections, a = i * 2.39996, r = std::sqrt(1 - z * z);
-    for (const double distance : kDistances) add({r * std::cos(a), r * std::sin(a), z}, distance * extent_);
+    add({r * std::cos(a), r * std::sin(a), z}, kDistance * extent_);
   }
+  sort();
+  for (std::size_t i = 0; i < kWorthOthers; ++i)
+    for (const double distance : kOtherDistances) add(Vector3d(out[i].lamp.direction), distance * extent_);
   if (question_.last.lamp) {
     const Candidate known = as_candidate(*question_.last.lamp);
     add(known.direction, known.distance);
   }
-  std::ranges::sort(out, std::greater(), [](const Coarse& one) { return one.lamp.score; });
+  sort();
   return out;
 }
 
@@ -245,19 +251,27 @@ LampAnswer LampSearch::keep(LampAnswer out) const {
   return out;
 }
 
-/// The last answer, brought up to date; nothing where it no longer holds as it did.
+/// It explains most of what it did, of what tells the lamp, and enough of it.
+bool LampSearch::still_holds(const Candidate& best, const LampAnswer& before) const {
+  return before.told_by_what_moves ? best.explained >= std::max(kFewestExplained, kStillExplains * before.explained)
+                                   : best.still >= kStillExplains * before.still &&
+                                         likelier(std::ssize(single_.brighter()), best.still) >= kStillLikelier;
+}
+
+/// The last answer, brought up to date; nothing where it no longer holds as it did, or where what moves may tell now.
 std::optional<LampAnswer> LampSearch::confirm() {
   LampAnswer out = question_.last;
-  if (!out.lamp || !out.told_by_what_moves || out.several || moving_.dark() < kFewestDark) return std::nullopt;
+  if (!out.lamp || out.several || out.told_by_what_moves != moving_.dark() >= kFewestDark) return std::nullopt;
   Candidate best = as_candidate(*out.lamp);
   refine(best, 3, 8, 0.06, soft_);
-  if (best.explained < std::max(kFewestExplained, kStillExplains * out.explained)) return std::nullopt;
+  if (!still_holds(best, out)) return std::nullopt;
   const Lamp lamp = as_lamp(best);
   const LampStrength found = strength(lamp);
-  if (!found.is_told_by_what_moves() || !(found.moving.minCoeff() > 0) || found.is_gone(out.lamp->strength))
-    return std::nullopt;
+  if (out.told_by_what_moves && !found.is_told_by_what_moves()) return std::nullopt;
+  const Vector3d strength = found.is_told_by_what_moves() ? found.moving : found.still;
+  if (!(strength.minCoeff() > 0) || found.is_gone(out.lamp->strength)) return std::nullopt;
   out.lamp = lamp;
-  out.lamp->strength = found.moving;
+  out.lamp->strength = strength;
   out.dark = static_cast<int>(moving_.dark());
   out.explained = best.explained;
   out.still = best.still;

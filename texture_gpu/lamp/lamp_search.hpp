@@ -26,8 +26,9 @@ struct LampQuestion {
   std::deque<LampRecord> records;
   std::vector<bool> moving;  ///< nodes whose shadows are looked for; where the others stand does not change
   LampAnswer last;           ///< to the question before; its lamp is what is thought to be it
-  /// Look for the lamp everywhere. Else near the last answer, if that was told by what moves and still explains what
-  /// it did: that takes a quarter of the time, and tells nothing new of other lamps.
+  /// Look for the lamp everywhere. Else near the last answer, if it still explains what it did, unless it was told by
+  /// single images and what moves could tell now: that takes a quarter of the time, and tells nothing new of other
+  /// lamps.
   bool all_around = true;
 };
 
