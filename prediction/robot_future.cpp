@@ -58,6 +58,7 @@ RobotFuture::RobotFuture(RobotFutureOptions options, RobotShape* shape)
     const GateJoint& joint = options_.gate.joints[i];
     JointResponseOptions response;
     response.known = options_.responses[i];
+    response.farthest = options_.motion.farthest + options_.stale + kBeyond;  // obstacle() tells what is too far
     response.first_sigma = (response.known ? response.known->sigma : kUnknownDelay) * joint.limits.velocity;
     Joint& added = joints_.emplace_back();
     added.response = JointResponse(response);

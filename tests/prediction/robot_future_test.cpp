@@ -136,11 +136,16 @@ TEST(RobotFuture, ReportsThatComeTooOldAreNoNews) {
     report.time = report.time - late;
     report.newest_came = report.newest_came - late;
     for (ReportedJoint& joint : report.joint) joint.time = joint.time - late;
+    report.joint[1].time = report.joint[1].time - std::min<Duration>(late, 300ms);
   };
   world.run(2);
   EXPECT_EQ(world.future().at(world.now()).reason, FutureReason::none);
+  const std::size_t before = world.pictures().size();
   world.run(2);
   EXPECT_EQ(world.future().at(world.now()).reason, FutureReason::stale);
+  EXPECT_TRUE(std::ranges::none_of(std::span(world.pictures()).subspan(before), [](const PredictedRobot& shown) {
+    return shown.reason == FutureReason::too_far;
+  })) << "of a joint that tells of itself later than others";
 }
 
 TEST(RobotFuture, SaysWhyItCannotKnow) {
